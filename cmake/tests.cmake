@@ -1,0 +1,26 @@
+# SPDX-FileCopyrightText: The limen authors
+# SPDX-License-Identifier: Apache-2.0
+find_package(GTest REQUIRED)
+include(GoogleTest)
+
+if(NOT LIMEN_BUILD_SIMULATOR)
+  message(FATAL_ERROR "The tests need the simulator: configure with -DLIMEN_BUILD_SIMULATOR=ON or -DLIMEN_BUILD_TESTS=OFF")
+endif()
+
+add_executable(limen_unit_tests ${LIMEN_UNIT_TESTS})
+target_link_libraries(limen_unit_tests PRIVATE limen limen_simulate limen_cli limen_options fmt::fmt
+  nlohmann_json::nlohmann_json GTest::gtest_main)
+gtest_discover_tests(limen_unit_tests PROPERTIES LABELS unit DISCOVERY_MODE PRE_TEST)
+
+file(GLOB LIMEN_ACCEPTANCE_TESTS CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/tests/*_test.cpp)
+if(LIMEN_ACCEPTANCE_TESTS)
+  add_executable(limen_acceptance_tests ${LIMEN_ACCEPTANCE_TESTS})
+  target_link_libraries(limen_acceptance_tests PRIVATE limen limen_simulate limen_cli limen_options fmt::fmt
+    nlohmann_json::nlohmann_json GTest::gtest_main)
+  target_compile_definitions(limen_acceptance_tests PRIVATE LIMEN_PROGRAM="$<TARGET_FILE:limen_program>")
+  add_dependencies(limen_acceptance_tests limen_program)
+  gtest_discover_tests(limen_acceptance_tests PROPERTIES LABELS acceptance DISCOVERY_MODE PRE_TEST)
+endif()
+
+add_test(NAME floors COMMAND ${PROJECT_SOURCE_DIR}/scripts/check_floors)
+set_tests_properties(floors PROPERTIES LABELS unit)

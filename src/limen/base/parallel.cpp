@@ -1,0 +1,147 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/base/parallel.h"
+
+#include <algorithm>
+#include <atomic>
+#include <condition_variable>
+#include <exception>
+#include <memory>
+#include <mutex>
+#include <thread>
+
+namespace limen {
+namespace {
+
+thread_local bool inside_parallel = false;
+
+int machine_threads() {
+  return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+}
+
+std::atomic<int>& wanted_threads() {
+  static std::atomic<int> count{machine_threads()};
+  return count;
+}
+
+/// One call of parallel_for: workers claim pieces until none is left.
+struct Job {
+  std::size_t size = 0;
+  std::size_t grain = 1;
+  const std::function<void(std::size_t, std::size_t)>* body = nullptr;
+  std::atomic<std::size_t> next_piece{0};
+  std::mutex failure_mutex;
+  std::size_t failed_piece = 0;
+  std::exception_ptr failure;
+
+  void run() {
+    const std::size_t pieces = (size + grain - 1) / grain;
+    inside_parallel = true;
+    for (std::size_t piece = next_piece++; piece < pieces; piece = next_piece++) run_piece(piece);
+    inside_parallel = false;
+  }
+
+  void run_piece(std::size_t piece) {
+    try {
+      (*body)(piece * grain, std::min(size, (piece + 1) * grain));
+    } catch (...) {
+      const std::scoped_lock lock(failure_mutex);
+      if (!failure || piece < failed_piece) {
+        failure = std::current_exception();
+        failed_piece = piece;
+      }
+    }
+  }
+};
+
+/// Threads that wait for the current job; they live as long as the process.
+class Pool {
+ public:
+  static Pool& instance() {
+    static Pool pool;
+    return pool;
+  }
+
+  void run(Job& job, int helpers) {
+    const std::scoped_lock only_one(caller_mutex_);
+    {
+      const std::scoped_lock lock(mutex_);
+      while (static_cast<int>(threads_.size()) < helpers) {
+        const int index = static_cast<int>(threads_.size());
+        threads_.emplace_back([this, index](const std::stop_token& stop) { serve(stop, index); });
+      }
+      job_ = &job;
+      helpers_ = helpers;
+      busy_ = helpers;
+      ++generation_;
+    }
+    wake_.notify_all();
+    job.run();
+    std::unique_lock lock(mutex_);
+    done_.wait(lock, [this] { return busy_ == 0; });
+    job_ = nullptr;
+  }
+
+  ~Pool() {
+    for (std::jthread& thread : threads_) thread.request_stop();
+    wake_.notify_all();
+  }
+
+ private:
+  void serve(const std::stop_token& stop, int index) {
+    std::size_t seen = 0;
+    std::unique_lock lock(mutex_);
+    for (;;) {
+      if (!wake_.wait(lock, stop, [&] { return generation_ != seen; })) return;
+      seen = generation_;
+      if (index >= helpers_ || job_ == nullptr) continue;
+      Job* job = job_;
+      lock.unlock();
+      job->run();
+      lock.lock();
+      if (--busy_ == 0) done_.notify_all();
+    }
+  }
+
+  std::mutex caller_mutex_;
+  std::mutex mutex_;
+  std::condition_variable_any wake_;
+  std::condition_variable done_;
+  Job* job_ = nullptr;
+  std::size_t generation_ = 0;
+  int helpers_ = 0;
+  int busy_ = 0;
+  std::vector<std::jthread> threads_;
+};
+
+}  // namespace
+
+int thread_count() {
+  return wanted_threads();
+}
+
+void set_thread_count(int count) {
+  wanted_threads() = count > 0 ? count : machine_threads();
+}
+
+void parallel_for(std::size_t size, std::size_t grain,
+                  const std::function<void(std::size_t begin, std::size_t end)>& body) {
+  if (size == 0) return;
+  grain = std::max<std::size_t>(1, grain);
+  const std::size_t pieces = (size + grain - 1) / grain;
+  const int helpers =
+      static_cast<int>(std::min<std::size_t>(pieces, static_cast<std::size_t>(thread_count()))) - 1;
+  if (inside_parallel || helpers <= 0) {
+    for (std::size_t piece = 0; piece < pieces; ++piece)
+      body(piece * grain, std::min(size, (piece + 1) * grain));
+    return;
+  }
+  Job job;
+  job.size = size;
+  job.grain = grain;
+  job.body = &body;
+  Pool::instance().run(job, helpers);
+  if (job.failure) std::rethrow_exception(job.failure);
+}
+
+}  // namespace limen

@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+namespace limen {
+
+/// A random stream named by (seed, trial): the same pair gives the same numbers on every machine and for
+/// every thread count. PCG-XSH-RR on a splitmix64-seeded state.
+class RandomStream {
+ public:
+  explicit RandomStream(std::uint64_t seed, std::uint64_t trial = 0);
+
+  std::uint32_t next();
+  /// Uniform integer in [0, n); n > 0.
+  std::uint32_t below(std::uint32_t n);
+  /// Uniform in [0, 1).
+  double uniform();
+  double uniform(double low, double high) { return low + (high - low) * uniform(); }
+  /// Standard normal (polar method: exact, no library functions that differ between machines but log, sqrt).
+  double normal();
+
+ private:
+  std::uint64_t state_;
+  std::uint64_t increment_;
+  double spare_ = 0.0;
+  bool has_spare_ = false;
+};
+
+/// One round of splitmix64: a well-mixed 64-bit hash.
+std::uint64_t mix64(std::uint64_t value);
+
+}  // namespace limen

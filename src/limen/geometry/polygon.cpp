@@ -1,0 +1,54 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/geometry/polygon.h"
+
+#include <cmath>
+
+namespace limen {
+
+double signed_area(const Ring& ring) {
+  if (ring.size() < 3) return 0.0;
+  double twice = 0.0;
+  Vector2d previous = ring.back() - ring.front();
+  for (const Vector2d& p : ring) {
+    const Vector2d current = p - ring.front();
+    twice += previous.x() * current.y() - previous.y() * current.x();
+    previous = current;
+  }
+  return 0.5 * twice;
+}
+
+double area(const Polygon& polygon) {
+  double total = std::abs(signed_area(polygon.outer));
+  for (const Ring& hole : polygon.holes) total -= std::abs(signed_area(hole));
+  return total;
+}
+
+double area(const std::vector<Polygon>& polygons) {
+  double total = 0.0;
+  for (const Polygon& polygon : polygons) total += area(polygon);
+  return total;
+}
+
+bool contains(const Ring& ring, const Vector2d& p) {
+  bool inside = false;
+  for (std::size_t i = 0, j = ring.size() - 1; i < ring.size(); j = i++) {
+    const Vector2d& a = ring[i];
+    const Vector2d& b = ring[j];
+    if ((a.y() > p.y()) != (b.y() > p.y()) &&
+        p.x() < (b.x() - a.x()) * (p.y() - a.y()) / (b.y() - a.y()) + a.x()) {
+      inside = !inside;
+    }
+  }
+  return inside;
+}
+
+bool contains(const Polygon& polygon, const Vector2d& p) {
+  if (!contains(polygon.outer, p)) return false;
+  for (const Ring& hole : polygon.holes) {
+    if (contains(hole, p)) return false;
+  }
+  return true;
+}
+
+}  // namespace limen

@@ -1,0 +1,72 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "limen/geometry/rigid.h"
+
+namespace limen {
+
+/// The verdict of a registration. There is no fifth case: a wrong pose must never carry the first name.
+enum class Outcome {
+  registered,  ///< one pose explains the data clearly better than every different one, six freedoms held
+  ambiguous,   ///< several different poses explain the data about equally well: see alternatives
+  under_constrained,  ///< the best pose leaves some direction free: see unobserved
+  no_match            ///< nothing in common was found
+};
+const char* to_string(Outcome outcome);
+
+/// A direction the data does not fix.
+struct UnobservedFreedom {
+  bool rotation = false;                   ///< a turn about `direction`, else a shift along it
+  Vector3d direction = Vector3d::UnitX();  ///< unit vector, target frame
+  std::string name;                        ///< in a user's words: "shift along (0.00, 1.00, 0.00)"
+};
+
+/// A candidate pose and how well it explains both scans.
+struct Hypothesis {
+  Rigid3 target_from_source;     ///< world to world, metres
+  double score = 0.0;            ///< higher is better, m^2 of agreeing surface less the contradicted one
+  double agreeing_m2 = 0.0;      ///< surface of each scan met by the other, symmetrised
+  double contradicted_m2 = 0.0;  ///< surface of one scan standing where the other's rays passed free
+  double rms_m = 0.0;            ///< point-to-plane residual over the agreeing surface
+  int matched_planes = 0;
+};
+
+/// A pair of planes that agree under the final pose.
+struct PlaneMatch {
+  int source = -1;          ///< index into the source's planes
+  int target = -1;          ///< index into the target's planes
+  double distance_m = 0.0;  ///< signed, along the target's normal, at the middle of the overlap
+  double angle_rad = 0.0;
+  double overlap_m2 = 0.0;
+};
+
+/// Seconds of one stage of the pipeline.
+struct StageTime {
+  std::string name;
+  double seconds = 0.0;
+};
+
+/// One standard deviation of each degree of freedom of the pose, in the target frame, about `centre`.
+struct PoseSigma {
+  Vector3d rotation_rad = Vector3d::Zero();   ///< about x, y, z
+  Vector3d translation_m = Vector3d::Zero();  ///< along x, y, z, of the point `centre`
+  Vector3d centre = Vector3d::Zero();         ///< middle of the common surface, target world
+};
+
+struct RegistrationResult {
+  Outcome outcome = Outcome::no_match;
+  std::string reason;  ///< one sentence for a user: why this verdict
+  Hypothesis best;     ///< meaningless for no_match
+  PoseSigma sigma;
+  std::vector<UnobservedFreedom> unobserved;
+  std::vector<Hypothesis> alternatives;  ///< different poses, best first, without `best`
+  std::vector<PlaneMatch> matches;
+  std::vector<StageTime> stages;
+};
+
+}  // namespace limen

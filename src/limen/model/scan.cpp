@@ -1,0 +1,74 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/model/scan.h"
+
+#include "limen/base/error.h"
+#include "limen/base/parallel.h"
+
+namespace limen {
+namespace {
+
+void require(bool holds, const char* what, const std::string& where) {
+  if (!holds) throw Error(what, where, "this is a fault of limen: please report it", Fault::internal);
+}
+
+template <typename Value>
+std::vector<Value> pick(const std::vector<Value>& values, const std::vector<std::uint32_t>& indices) {
+  std::vector<Value> picked;
+  if (values.empty()) return picked;
+  picked.reserve(indices.size());
+  for (const std::uint32_t i : indices) picked.push_back(values[i]);
+  return picked;
+}
+
+}  // namespace
+
+void Scan::check() const {
+  const std::size_t n = points.size();
+  require(centres.size() <= 1 || centres.size() == n, "as many optical centres as points are needed", name);
+  require(topology.line.size() == topology.index.size(), "scan lines and indices differ in number", name);
+  require(topology.line.empty() || topology.line.size() == n, "the topology does not cover the points", name);
+  require(times_s.empty() || times_s.size() == n, "the times do not cover the points", name);
+  require(intensities.empty() || intensities.size() == n, "the intensities do not cover the points", name);
+  require(colours.empty() || colours.size() == 3 * n, "the colours do not cover the points", name);
+}
+
+Scan subset(const Scan& scan, const std::vector<std::uint32_t>& indices) {
+  Scan part;
+  part.name = scan.name;
+  part.local_origin = scan.local_origin;
+  part.level = scan.level;
+  part.points = pick(scan.points, indices);
+  part.centres = scan.mobile() ? pick(scan.centres, indices) : scan.centres;
+  part.topology.line = pick(scan.topology.line, indices);
+  part.topology.index = pick(scan.topology.index, indices);
+  part.times_s = pick(scan.times_s, indices);
+  part.intensities = pick(scan.intensities, indices);
+  if (!scan.colours.empty()) {
+    part.colours.reserve(3 * indices.size());
+    for (const std::size_t i : indices) {
+      for (std::size_t k = 0; k < 3; ++k) part.colours.push_back(scan.colours[3 * i + k]);
+    }
+  }
+  return part;
+}
+
+Extent extent_of(const std::vector<Vector3d>& points) {
+  if (points.empty()) return {};
+  const Extent start{points.front(), points.front()};
+  return parallel_reduce(
+      points.size(), 65536, start,
+      [&](std::size_t begin, std::size_t end) {
+        Extent extent{points[begin], points[begin]};
+        for (std::size_t i = begin; i < end; ++i) {
+          extent.low = extent.low.cwiseMin(points[i]);
+          extent.high = extent.high.cwiseMax(points[i]);
+        }
+        return extent;
+      },
+      [](const Extent& a, const Extent& b) {
+        return Extent{a.low.cwiseMin(b.low), a.high.cwiseMax(b.high)};
+      });
+}
+
+}  // namespace limen

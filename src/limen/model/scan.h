@@ -1,0 +1,62 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "limen/geometry/rigid.h"
+
+namespace limen {
+
+/// The place of each point in the order the scanner measured: profile (or column) and pulse within it.
+/// Both arrays have one entry per point, or are empty where the order is unknown.
+struct ScanTopology {
+  std::vector<std::int32_t> line;   ///< profile of a mobile scan, column of a static one
+  std::vector<std::int32_t> index;  ///< pulse within the line, row of a static scan
+  [[nodiscard]] bool known() const { return !line.empty(); }
+};
+
+/// A laser scan: points about a local origin, and from where they were seen.
+///
+/// x_in_world = local_origin + point; the origin is a round number near the data, so that a millimetre
+/// survives national grid coordinates of 6.8e6 m. Missing returns are not kept.
+struct Scan {
+  std::string name;                          ///< for messages and reports
+  Vector3d local_origin = Vector3d::Zero();  ///< metres, world
+  std::vector<Vector3d> points;              ///< metres, about local_origin
+  /// Optical centres, metres, about local_origin. Empty: unknown; one: a static station; one per point:
+  /// mobile.
+  std::vector<Vector3d> centres;
+  ScanTopology topology;
+  std::vector<double> times_s;        ///< per point or empty (GPS time, seconds)
+  std::vector<float> intensities;     ///< per point or empty, in the file's unit
+  std::vector<std::uint8_t> colours;  ///< 3 per point (red, green, blue) or empty
+  /// True where the frame's z axis is known to point up (level scanner, national grid); false: unknown.
+  bool level = false;
+
+  [[nodiscard]] std::size_t size() const { return points.size(); }
+  [[nodiscard]] bool centre_known() const { return !centres.empty(); }
+  [[nodiscard]] bool mobile() const { return centres.size() > 1; }
+  /// The optical centre of point i; call only where centre_known().
+  [[nodiscard]] const Vector3d& centre(std::size_t i) const {
+    return centres.size() > 1 ? centres[i] : centres[0];
+  }
+
+  /// Throws Error(Fault::internal) where array sizes disagree.
+  void check() const;
+};
+
+/// The points of `scan` with the given indices, all attributes kept, in the given order.
+Scan subset(const Scan& scan, const std::vector<std::uint32_t>& indices);
+
+/// Axis-aligned extent of the points about local_origin; two zero vectors for an empty scan.
+struct Extent {
+  Vector3d low = Vector3d::Zero();
+  Vector3d high = Vector3d::Zero();
+  [[nodiscard]] double diagonal() const { return (high - low).norm(); }
+};
+Extent extent_of(const std::vector<Vector3d>& points);
+
+}  // namespace limen
