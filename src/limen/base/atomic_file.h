@@ -1,0 +1,61 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace limen {
+
+/// A file that appears whole or not at all: the bytes go to a hidden file beside it, which commit() renames.
+/// Where the destination is not a regular file (/dev/stdout, a pipe) they go straight there.
+class AtomicFile {
+ public:
+  /// Throws Error where no file can be made there (missing folder, no permission, a folder of that name).
+  explicit AtomicFile(std::filesystem::path path);
+  /// Removes the hidden file unless commit() was called.
+  ~AtomicFile();
+  AtomicFile(const AtomicFile&) = delete;
+  AtomicFile& operator=(const AtomicFile&) = delete;
+
+  /// Appends; throws Error where the disk is full.
+  void write(std::string_view bytes);
+  /// Brings the bytes to the disk and the file to its name. Call it once, last.
+  void commit();
+
+ private:
+  [[noreturn]] void fail(const char* doing) const;
+  void flush();
+  void close_quietly() noexcept;
+
+  std::filesystem::path path_;
+  std::filesystem::path beside_;  ///< empty where it writes straight to path_
+  int descriptor_ = -1;
+  std::string buffer_;
+};
+
+/// Writes all of `bytes` to `path`, or throws Error and leaves what was there.
+void write_file(const std::filesystem::path& path, std::string_view bytes);
+
+/// A folder for results: made with its parents where it is missing, and proved writable before the work
+/// starts. What it made and nobody filled is removed again in the end, so a failure leaves nothing behind.
+class OutputFolder {
+ public:
+  /// Throws Error where the folder cannot be made or written to.
+  explicit OutputFolder(std::filesystem::path path);
+  ~OutputFolder();
+  OutputFolder(const OutputFolder&) = delete;
+  OutputFolder& operator=(const OutputFolder&) = delete;
+
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+
+ private:
+  void prove_writable() const;
+  void remove_empty() noexcept;
+
+  std::filesystem::path path_;
+  std::filesystem::path first_made_;  ///< the topmost folder that was missing; empty where none was
+};
+
+}  // namespace limen

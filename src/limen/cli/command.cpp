@@ -1,0 +1,58 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/cli/command.h"
+
+#include <utility>
+
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <fmt/format.h>
+
+namespace limen {
+namespace {
+
+void print(std::FILE* stream, std::string_view text) {
+  if (text.empty()) return;
+  fmt::print(stream, "{}{}", text, text.back() == '\n' ? "" : "\n");
+}
+
+}  // namespace
+
+void Session::say(std::string_view text) const {
+  if (!common.quiet && !common.json) print(stdout, text);
+}
+
+void Session::answer(std::string_view json_text) const {
+  if (common.json) print(stdout, json_text);
+}
+
+void Session::note(std::string_view text) const {
+  if (!common.quiet) print(stderr, fmt::format("limen: {}", text));
+}
+
+void add_common_options(CLI::App& app, Session& session) {
+  const std::string group = "Common options";
+  CommonOptions& common = session.common;
+  app.add_flag("-q,--quiet", common.quiet, "Neither progress nor summary; errors are still told")
+      ->group(group);
+  app.add_flag("--json", common.json, "The result as JSON on stdout, everything else on stderr")
+      ->group(group);
+  app.add_option("--threads", common.threads, "Threads to use; 0: all of the machine. Never changes a result")
+      ->check(CLI::Range(0, 4096))
+      ->type_name("N")
+      ->group(group);
+  app.add_option("--seed", common.seed, "Seed of every random choice (default 1)")
+      ->type_name("N")
+      ->group(group);
+}
+
+CLI::App* add_command(CLI::App& app, Session& session, const std::string& name,
+                      const std::string& description, std::function<int()> run) {
+  CLI::App* command = app.add_subcommand(name, description);
+  add_common_options(*command, session);
+  command->callback([&session, run = std::move(run)] { session.action = run; });
+  return command;
+}
+
+}  // namespace limen

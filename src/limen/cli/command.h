@@ -1,0 +1,63 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "limen/base/progress.h"
+
+namespace CLI {
+class App;
+}
+
+namespace limen {
+
+/// The exit statuses of the program: a contract with scripts.
+enum ExitStatus : int {
+  kExitOk = 0,             ///< done; of register: registered
+  kExitInternal = 1,       ///< a fault of limen
+  kExitBadInput = 2,       ///< a file, a value or an option the user gave
+  kExitUndecided = 3,      ///< ambiguous or under_constrained
+  kExitNoMatch = 4,        ///< nothing in common was found
+  kExitInterrupted = 130,  ///< stopped by the user
+};
+
+/// The options that every command has.
+struct CommonOptions {
+  bool quiet = false;      ///< neither progress nor summary
+  bool json = false;       ///< the result as JSON on stdout, everything else on stderr
+  int threads = 0;         ///< 0: as many as the machine has
+  std::uint64_t seed = 1;  ///< of every random choice
+};
+
+/// What a command gets from the program and gives back: the common options, the ears of its progress, and
+/// the work to be done once the whole command line was understood.
+struct Session {
+  CommonOptions common;
+  std::unique_ptr<Monitor> monitor;
+  std::function<int()> action;  ///< set by the chosen command; returns its exit status
+
+  /// The summary for a reader: to stdout, or nowhere with --quiet or --json.
+  void say(std::string_view text) const;
+  /// The result as JSON text: to stdout, only with --json.
+  void answer(std::string_view json_text) const;
+  /// A remark: one line to stderr, or nowhere with --quiet.
+  void note(std::string_view text) const;
+};
+
+/// Adds the subcommand `name` with its common options. The command adds its own to what is returned; its
+/// `run` is called after parsing and returns an exit status.
+///
+/// One command is one file pair with one function `void add_<name>_command(CLI::App& app, Session& session)`;
+/// program.cpp lists them.
+CLI::App* add_command(CLI::App& app, Session& session, const std::string& name,
+                      const std::string& description, std::function<int()> run);
+
+/// Adds --quiet, --json, --threads and --seed.
+void add_common_options(CLI::App& app, Session& session);
+
+}  // namespace limen

@@ -1,0 +1,115 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/cli/program.h"
+
+#include <algorithm>
+#include <iostream>
+#include <memory>
+#include <new>
+#include <string>
+
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <fmt/format.h>
+
+#include "limen/base/error.h"
+#include "limen/base/parallel.h"
+#include "limen/base/version.h"
+#include "limen/cli/command.h"
+#include "limen/cli/terminal.h"
+
+#if __has_include("limen/cli/info_command.h")
+#include "limen/cli/info_command.h"
+#define LIMEN_HAS_INFO 1
+#endif
+#if __has_include("limen/cli/transform_command.h")
+#include "limen/cli/transform_command.h"
+#define LIMEN_HAS_TRANSFORM 1
+#endif
+#if defined(LIMEN_WITH_SIMULATOR) && __has_include("limen/cli/simulate_command.h")
+#include "limen/cli/simulate_command.h"
+#define LIMEN_HAS_SIMULATE 1
+#endif
+
+namespace limen {
+namespace {
+
+/// One line, whatever the message holds.
+std::string one_line(std::string text) {
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  text.erase(text.find_last_not_of(' ') + 1);
+  return text;
+}
+
+int fail(const std::string& message, int status) {
+  std::cout.flush();
+  fmt::print(stderr, "limen: error: {}\n", one_line(message));
+  return status;
+}
+
+int status_of(Fault fault) {
+  switch (fault) {
+    case Fault::input:
+      return kExitBadInput;
+    case Fault::internal:
+      return kExitInternal;
+    case Fault::cancelled:
+      return kExitInterrupted;
+  }
+  return kExitInternal;
+}
+
+void add_commands([[maybe_unused]] CLI::App& app, [[maybe_unused]] Session& session) {
+#ifdef LIMEN_HAS_INFO
+  add_info_command(app, session);
+#endif
+#ifdef LIMEN_HAS_TRANSFORM
+  add_transform_command(app, session);
+#endif
+#ifdef LIMEN_HAS_SIMULATE
+  add_simulate_command(app, session);
+#endif
+}
+
+/// Runs what the command line asked for; every exception becomes one line and a status.
+int run_action(Session& session) {
+  try {
+    set_thread_count(session.common.threads);
+    session.monitor = make_monitor(session.common.quiet);
+    const InterruptGuard guard(*session.monitor);
+    const int status = session.action();
+    session.monitor.reset();
+    return status;
+  } catch (const Error& error) {
+    session.monitor.reset();
+    return fail(error.what(), status_of(error.fault()));
+  } catch (const std::bad_alloc&) {
+    session.monitor.reset();
+    return fail("out of memory (give fewer points or a larger machine)", kExitInternal);
+  } catch (const std::exception& error) {
+    session.monitor.reset();
+    return fail(fmt::format("{} (this is a fault of limen: please report it)", error.what()), kExitInternal);
+  }
+}
+
+}  // namespace
+
+int run_program(int argc, char** argv) {
+  Session session;
+  CLI::App app("limen registers laser scans of one building, indoors and outdoors, by its planar polygons.",
+               "limen");
+  app.set_version_flag("--version", fmt::format("limen {}", kVersion), "Tell the version and exit");
+  app.require_subcommand(1);
+  add_common_options(app, session);
+  add_commands(app, session);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return app.exit(error, std::cout, std::cerr);
+    return fail(fmt::format("{} (limen --help tells the usage)", error.what()), kExitBadInput);
+  }
+  return run_action(session);
+}
+
+}  // namespace limen
