@@ -17,6 +17,7 @@
 #include "limen/base/parallel.h"
 #include "limen/base/version.h"
 #include "limen/cli/command.h"
+#include "limen/cli/evaluate_command.h"
 #include "limen/cli/terminal.h"
 
 #if __has_include("limen/cli/info_command.h")
@@ -60,13 +61,14 @@ int status_of(Fault fault) {
   return kExitInternal;
 }
 
-void add_commands([[maybe_unused]] CLI::App& app, [[maybe_unused]] Session& session) {
+void add_commands(CLI::App& app, Session& session) {
 #ifdef LIMEN_HAS_INFO
   add_info_command(app, session);
 #endif
 #ifdef LIMEN_HAS_TRANSFORM
   add_transform_command(app, session);
 #endif
+  add_evaluate_command(app, session);
 #ifdef LIMEN_HAS_SIMULATE
   add_simulate_command(app, session);
 #endif

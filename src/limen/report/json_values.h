@@ -1,0 +1,25 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "limen/geometry/rigid.h"
+
+namespace limen {
+
+/// Keys keep the order in which they were written. For sources only: no installed header needs it.
+using Json = nlohmann::ordered_json;
+
+Json json_of(const Vector3d& vector);
+/// Four rows of four numbers.
+Json json_of(const Matrix4d& matrix);
+
+/// JSON text for readers and programs: two spaces per level, arrays of plain values on one line, the shortest
+/// digits that give back every double bit for bit, a line end last. Numbers that are not finite become null.
+std::string to_text(const Json& value);
+
+}  // namespace limen

@@ -1,0 +1,33 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "limen/model/result.h"
+
+namespace limen {
+
+/// What a file says about a pose: result.json says all of it, a text of 4 x 4 numbers only the matrix.
+struct PoseFile {
+  std::optional<Rigid3> target_from_source;  ///< empty where the outcome is no_match
+  std::optional<Outcome> outcome;
+  std::optional<PoseSigma> sigma;
+  std::optional<Vector3d> source_middle;  ///< middle of the source's extent, metres, source world
+  std::string source_path;                ///< as it was given to register; empty where unknown
+  std::string target_path;
+};
+
+/// Reads result.json (or any JSON object with `target_from_source` or `transform`, four rows of four), or a
+/// text of 16 numbers in four rows. Throws Error that names the file and the fault, also where the matrix is
+/// not rigid.
+PoseFile read_pose_file(const std::filesystem::path& path);
+
+/// The true pose of a pair. Read from what read_pose_file() reads, or from the truth of a simulated case: an
+/// object with `scans`, each with `file` (or `name`) and `world_from_scan`; there the scans are found by the
+/// file names in `result`. Throws Error where a scan is not in it.
+Rigid3 read_true_pose(const std::filesystem::path& path, const PoseFile& result);
+
+}  // namespace limen

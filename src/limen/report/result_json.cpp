@@ -1,0 +1,131 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/report/result_json.h"
+
+#include <fmt/format.h>
+
+#include "limen/base/version.h"
+#include "limen/report/json_values.h"
+
+namespace limen {
+namespace {
+
+Json pose_json(const Rigid3& target_from_source) {
+  return json_of(to_matrix(target_from_source));
+}
+
+Json sigma_json(const PoseSigma& sigma) {
+  return {{"rotation_rad", json_of(sigma.rotation_rad)},
+          {"translation_m", json_of(sigma.translation_m)},
+          {"centre", json_of(sigma.centre)}};
+}
+
+Json unobserved_json(const std::vector<UnobservedFreedom>& freedoms) {
+  Json list = Json::array();
+  for (const UnobservedFreedom& freedom : freedoms) {
+    list.push_back({{"kind", freedom.rotation ? "rotation" : "translation"},
+                    {"direction", json_of(freedom.direction)},
+                    {"name", freedom.name}});
+  }
+  return list;
+}
+
+Json evidence_json(const Hypothesis& pose) {
+  return {{"score", pose.score},
+          {"agreeing_m2", pose.agreeing_m2},
+          {"contradicted_m2", pose.contradicted_m2},
+          {"rms_m", pose.rms_m},
+          {"matched_planes", pose.matched_planes}};
+}
+
+Json alternatives_json(const std::vector<Hypothesis>& alternatives) {
+  Json list = Json::array();
+  for (const Hypothesis& pose : alternatives) {
+    list.push_back(
+        {{"target_from_source", pose_json(pose.target_from_source)}, {"evidence", evidence_json(pose)}});
+  }
+  return list;
+}
+
+Json matches_json(const std::vector<PlaneMatch>& matches) {
+  Json list = Json::array();
+  for (const PlaneMatch& match : matches) {
+    list.push_back({{"source_plane", match.source},
+                    {"target_plane", match.target},
+                    {"distance_m", match.distance_m},
+                    {"angle_rad", match.angle_rad},
+                    {"overlap_m2", match.overlap_m2}});
+  }
+  return list;
+}
+
+Json input_json(const InputSummary& input) {
+  return {
+      {"path", input.path},          {"points", input.points},          {"low", json_of(input.low)},
+      {"high", json_of(input.high)}, {"middle", json_of(input.middle)}, {"centre_known", input.centre_known},
+      {"mobile", input.mobile}};
+}
+
+Json options_json(const OptionList& options) {
+  Json object = Json::object();
+  for (const auto& [name, value] : options) {
+    std::visit([&object, &key = name](const auto& plain) { object[key] = plain; }, value);
+  }
+  return object;
+}
+
+Json stages_json(const std::vector<StageTime>& stages) {
+  Json object = Json::object();
+  for (const StageTime& stage : stages) {
+    object[stage.name] = object.value(stage.name, 0.0) + stage.seconds;
+  }
+  return object;
+}
+
+}  // namespace
+
+InputSummary summarise(const std::string& path, const Scan& scan) {
+  const Extent extent = extent_of(scan.points);
+  InputSummary summary;
+  summary.path = path;
+  summary.points = scan.size();
+  summary.low = scan.local_origin + extent.low;
+  summary.high = scan.local_origin + extent.high;
+  summary.middle = scan.local_origin + 0.5 * (extent.low + extent.high);
+  summary.centre_known = scan.centre_known();
+  summary.mobile = scan.mobile();
+  return summary;
+}
+
+std::string result_json(const RegistrationReport& report) {
+  const RegistrationResult& result = report.result;
+  const bool found = result.outcome != Outcome::no_match;
+  Json json;
+  json["outcome"] = to_string(result.outcome);
+  json["reason"] = result.reason;
+  json["target_from_source"] = found ? pose_json(result.best.target_from_source) : Json();
+  json["sigma"] = found ? sigma_json(result.sigma) : Json();
+  json["evidence"] = found ? evidence_json(result.best) : Json();
+  json["unobserved"] = unobserved_json(result.unobserved);
+  json["alternatives"] = alternatives_json(result.alternatives);
+  json["matches"] = matches_json(result.matches);
+  json["inputs"] = {{"source", input_json(report.source)}, {"target", input_json(report.target)}};
+  json["options"] = options_json(report.options);
+  json["version"] = kVersion;
+  json["seed"] = report.seed;
+  json["stages"] = stages_json(result.stages);
+  return to_text(json);
+}
+
+std::string transform_text(const Rigid3& target_from_source) {
+  const Matrix4d matrix = to_matrix(target_from_source);
+  std::string text;
+  for (int i = 0; i < 4; ++i) {
+    // + 0.0 turns a negative zero into zero.
+    text += fmt::format("{:.17g} {:.17g} {:.17g} {:.17g}\n", matrix(i, 0) + 0.0, matrix(i, 1) + 0.0,
+                        matrix(i, 2) + 0.0, matrix(i, 3) + 0.0);
+  }
+  return text;
+}
+
+}  // namespace limen
