@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "limen/geometry/rigid.h"
+
+namespace limen {
+
+/// Points in the order of a Morton curve over cubes: every cube of every level (a power of two of the finest)
+/// is one contiguous run. Stable, so the order does not depend on the thread count.
+struct MortonOrder {
+  std::vector<std::uint32_t> order;    ///< order[k]: index of the k-th point along the curve
+  std::vector<std::uint64_t> codes;    ///< codes[k]: its finest cube
+  std::vector<Vector3d> points;        ///< points[k]: its coordinates about `anchor`, metres
+  Vector3d anchor = Vector3d::Zero();  ///< corner of cell 0, 0, 0
+  double cell_m = 0.02;                ///< edge of the finest cube
+};
+
+/// Sorts `points` along the curve. Cubes outside 2^21 cells per axis are clamped to the border.
+MortonOrder morton_order(const std::vector<Vector3d>& points, double cell_m);
+
+/// Cell coordinates of a code, and back (each 21 bits).
+std::uint64_t morton_encode(std::uint32_t x, std::uint32_t y, std::uint32_t z);
+struct CellIndex {
+  std::uint32_t x = 0;
+  std::uint32_t y = 0;
+  std::uint32_t z = 0;
+};
+CellIndex morton_decode(std::uint64_t code);
+
+}  // namespace limen

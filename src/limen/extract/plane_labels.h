@@ -1,0 +1,18 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "limen/geometry/plane.h"
+
+namespace limen {
+
+/// Which plane each point of a scan belongs to.
+struct PlaneLabels {
+  std::vector<PlaneFit> fits;        ///< about the scan's local origin
+  std::vector<std::int32_t> labels;  ///< per point: index into fits, or -1
+};
+
+}  // namespace limen
