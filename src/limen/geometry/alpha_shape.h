@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstdint>
 #include <vector>
 
 #include "limen/geometry/polygon.h"
@@ -13,7 +12,7 @@ struct AlphaShapeOptions {
   double alpha_m = 0.3;      ///< radius of the disc that must not fit between the points, > 0
   double min_part_m2 = 0.0;  ///< parts with less area (holes taken out) are dropped, >= 0
   double min_hole_m2 = 0.0;  ///< smaller holes are filled, >= 0
-  bool thin = true;          ///< thin the points first: see thinned(); far faster on dense scans
+  bool thin = true;          ///< thin the points first: see thinning.h; far faster on dense scans
 
   void check() const;
 };
@@ -25,14 +24,7 @@ struct AlphaShapeOptions {
 /// holes are parts of their own. Rings are simple: where a ring would touch itself in a point it is split
 /// there, so that rings may share single points but never cross.
 /// Coordinates are rounded to a grid of 10 um (coarser where the extent exceeds 10 km). Points that are not
-/// finite are ignored. Fewer than three distinct points, or all on one line: no polygon.
+/// finite (or beyond 1e12 m) are ignored. Fewer than three distinct points, or all on one line: no polygon.
 std::vector<Polygon> alpha_shape(const std::vector<Vector2d>& points, const AlphaShapeOptions& options);
-
-/// Indices, ascending, of the points that are enough for the alpha shape with alpha_m = 4 * cell_m.
-///
-/// Of each square cell at the edge of the occupied ones the extreme points in eight directions stay, so that
-/// an outline moves by less than a quarter of a cell; of the cells inside, one point for each block of
-/// 3 x 3 cells: the one nearest to the middle. No point is further than 2.9 cells from one that stays.
-std::vector<std::uint32_t> thinned(const std::vector<Vector2d>& points, double cell_m);
 
 }  // namespace limen

@@ -1,0 +1,207 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/geometry/thinning.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "limen/base/error.h"
+#include "limen/base/random.h"
+
+namespace limen {
+namespace {
+
+constexpr double kMaxCoordinate_m = 1e12;
+
+bool usable(const Vector2d& p) {
+  return std::abs(p.x()) <= kMaxCoordinate_m && std::abs(p.y()) <= kMaxCoordinate_m;
+}
+
+/// Numbers the occupied cells of a square grid in the order of their first points.
+class CellTable {
+ public:
+  static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+
+  explicit CellTable(std::size_t points) { resize(std::max<std::size_t>(64, points / 4)); }
+
+  std::uint32_t insert(std::int64_t x, std::int64_t y) {
+    if (2 * cells_.size() >= slots_.size()) resize(2 * slots_.size());
+    const std::size_t slot = slot_of(x, y);
+    if (slots_[slot] == kNone) {
+      slots_[slot] = static_cast<std::uint32_t>(cells_.size());
+      cells_.push_back({x, y});
+    }
+    return slots_[slot];
+  }
+  [[nodiscard]] std::uint32_t find(std::int64_t x, std::int64_t y) const { return slots_[slot_of(x, y)]; }
+  [[nodiscard]] std::size_t size() const { return cells_.size(); }
+  [[nodiscard]] const std::array<std::int64_t, 2>& cell(std::size_t id) const { return cells_[id]; }
+
+  [[nodiscard]] bool occupied(std::int64_t x, std::int64_t y) const { return find(x, y) != kNone; }
+
+  /// True where an empty block of 3 x 3 cells lies around: smaller gaps hold no disc of alpha.
+  [[nodiscard]] bool at_edge(std::size_t id) const {
+    const auto [x, y] = cells_[id];
+    if (surrounded(x, y)) return false;
+    // Any block of 3 x 3 of the 9 x 9 cells around covers exactly one of these nine.
+    for (std::int64_t k = 0; k < 9; ++k) {
+      const std::int64_t at_x = x + 3 * (k % 3) - 3;
+      const std::int64_t at_y = y + 3 * (k / 3) - 3;
+      if (!occupied(at_x, at_y) && in_empty_block(at_x, at_y)) return true;
+    }
+    return false;
+  }
+
+ private:
+  [[nodiscard]] bool surrounded(std::int64_t x, std::int64_t y) const {
+    for (std::int64_t k = 0; k < 9; ++k) {
+      if (!occupied(x + k % 3 - 1, y + k / 3 - 1)) return false;
+    }
+    return true;
+  }
+
+  /// True where one of the nine blocks of 3 x 3 cells over this one is empty.
+  [[nodiscard]] bool in_empty_block(std::int64_t x, std::int64_t y) const {
+    std::array<bool, 25> full;
+    for (std::int64_t k = 0; k < 25; ++k) {
+      full[static_cast<std::size_t>(k)] = occupied(x + k % 5 - 2, y + k / 5 - 2);
+    }
+    for (std::size_t corner : {0U, 1U, 2U, 5U, 6U, 7U, 10U, 11U, 12U}) {
+      bool empty = true;
+      for (std::size_t k = 0; k < 9; ++k) empty = empty && !full[corner + 5 * (k / 3) + k % 3];
+      if (empty) return true;
+    }
+    return false;
+  }
+
+  [[nodiscard]] std::size_t slot_of(std::int64_t x, std::int64_t y) const {
+    const std::uint64_t key =
+        static_cast<std::uint64_t>(x) * 0x9e3779b97f4a7c15ULL + static_cast<std::uint64_t>(y);
+    std::size_t slot = static_cast<std::size_t>(mix64(key)) & (slots_.size() - 1);
+    while (slots_[slot] != kNone && (cells_[slots_[slot]][0] != x || cells_[slots_[slot]][1] != y)) {
+      slot = (slot + 1) & (slots_.size() - 1);
+    }
+    return slot;
+  }
+
+  void resize(std::size_t wanted) {
+    std::size_t size = 64;
+    while (size < wanted) size *= 2;
+    slots_.assign(size, kNone);
+    for (std::size_t id = 0; id < cells_.size(); ++id) {
+      slots_[slot_of(cells_[id][0], cells_[id][1])] = static_cast<std::uint32_t>(id);
+    }
+  }
+
+  std::vector<std::uint32_t> slots_;
+  std::vector<std::array<std::int64_t, 2>> cells_;
+};
+
+/// What stays of a cell: its point nearest to the middle, or, at the edge, its extremes in eight directions.
+class Representatives {
+ public:
+  Representatives(const std::vector<Vector2d>& points, double cell_m, Vector2d origin)
+      : points_(points), cell_m_(cell_m), origin_(std::move(origin)), table_(points.size()) {}
+
+  std::vector<std::uint32_t> indices() {
+    assign_cells();
+    choose_cells();
+    std::vector<std::array<std::uint32_t, 8>> chosen(roles_.size());
+    std::vector<std::array<double, 8>> best(roles_.size());
+    for (auto& scores : best) scores.fill(-std::numeric_limits<double>::infinity());
+    for (std::uint32_t i = 0; i < points_.size(); ++i) {
+      const std::uint32_t cell = cell_of_point_[i];
+      if (cell == CellTable::kNone || roles_[cell] == Role::dropped) continue;
+      offer(i, middle(cell), roles_[cell] == Role::edge, chosen[cell], best[cell]);
+    }
+    std::vector<std::uint32_t> kept;
+    for (std::size_t cell = 0; cell < roles_.size(); ++cell) {
+      if (roles_[cell] == Role::dropped) continue;
+      kept.insert(kept.end(), chosen[cell].begin(),
+                  chosen[cell].begin() + (roles_[cell] == Role::edge ? 8 : 1));
+    }
+    std::sort(kept.begin(), kept.end());
+    kept.erase(std::unique(kept.begin(), kept.end()), kept.end());
+    return kept;
+  }
+
+ private:
+  enum class Role : char { dropped, inside, edge };
+
+  void assign_cells() {
+    cell_of_point_.assign(points_.size(), CellTable::kNone);
+    std::int64_t last_x = 0;
+    std::int64_t last_y = 0;
+    std::uint32_t last = CellTable::kNone;
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      if (!usable(points_[i])) continue;
+      const Vector2d scaled = (points_[i] - origin_) / cell_m_;
+      const auto x = static_cast<std::int64_t>(std::floor(scaled.x()));
+      const auto y = static_cast<std::int64_t>(std::floor(scaled.y()));
+      if (last == CellTable::kNone || x != last_x || y != last_y)
+        last = table_.insert(last_x = x, last_y = y);
+      cell_of_point_[i] = last;
+    }
+  }
+
+  void choose_cells() {
+    roles_.resize(table_.size());
+    for (std::size_t id = 0; id < roles_.size(); ++id) {
+      // A block whose middle cell is empty keeps a point of each of its other cells.
+      const auto [x, y] = table_.cell(id);
+      const std::int64_t middle_x = x - (x % 3 + 3) % 3 + 1;
+      const std::int64_t middle_y = y - (y % 3 + 3) % 3 + 1;
+      const bool stays = (x == middle_x && y == middle_y) || !table_.occupied(middle_x, middle_y);
+      roles_[id] = table_.at_edge(id) ? Role::edge : stays ? Role::inside : Role::dropped;
+    }
+  }
+
+  [[nodiscard]] Vector2d middle(std::uint32_t cell) const {
+    const auto [x, y] = table_.cell(cell);
+    return origin_ + cell_m_ * Vector2d(static_cast<double>(x) + 0.5, static_cast<double>(y) + 0.5);
+  }
+
+  void offer(std::uint32_t i, const Vector2d& about, bool edge, std::array<std::uint32_t, 8>& chosen,
+             std::array<double, 8>& best) const {
+    const Vector2d p = points_[i] - about;
+    std::array<double, 8> score{-p.squaredNorm()};
+    if (edge)
+      score = {p.x(), -p.x(), p.y(), -p.y(), p.x() + p.y(), -p.x() - p.y(), p.x() - p.y(), p.y() - p.x()};
+    for (std::size_t k = 0; k < (edge ? 8U : 1U); ++k) {
+      if (score[k] <= best[k]) continue;
+      best[k] = score[k];
+      chosen[k] = i;
+    }
+  }
+
+  const std::vector<Vector2d>& points_;
+  double cell_m_;
+  Vector2d origin_;
+  CellTable table_;
+  std::vector<std::uint32_t> cell_of_point_;
+  std::vector<Role> roles_;
+};
+
+}  // namespace
+
+std::vector<std::uint32_t> thinned(const std::vector<Vector2d>& points, double cell_m) {
+  if (!(cell_m > 0.0)) throw_bad_option("cell_m", cell_m, "greater than 0");
+  Vector2d low = Vector2d::Zero();
+  Vector2d high = Vector2d::Zero();
+  bool any = false;
+  for (const Vector2d& p : points) {
+    if (!usable(p)) continue;
+    low = any ? low.cwiseMin(p).eval() : p;
+    high = any ? high.cwiseMax(p).eval() : p;
+    any = true;
+  }
+  if (!any) return {};
+  // Cell numbers must fit their integers, whatever the extent.
+  const double cell = std::max(cell_m, (high - low).maxCoeff() / 0x1.0p40);
+  return Representatives(points, cell, low).indices();
+}
+
+}  // namespace limen
