@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -14,16 +15,31 @@ namespace limen {
 
 /// What a user may say about a scan file that the file itself does not.
 struct ReadOptions {
-  /// Optical centre in the file's coordinates, metres. Empty: what the file says, else 0,0,0 where that can
-  /// be the scanner (the points lie around it and none is closer than a scanner can measure), else unknown.
+  /// Optical centre in the coordinates of the points as `limen info` tells them (an offset that the file
+  /// carries in a comment is part of them), metres. Empty: what the file says, else 0,0,0 where that can be
+  /// the scanner (the points lie around it and none is closer than a scanner can measure), else unknown.
   std::optional<Vector3d> origin;
   bool level = true;  ///< the file's z axis points up (--gravity up)
 
+  /// Throws Error where the origin is not finite.
   void check() const;
 };
 
-/// Reads every scan of a file; the format is recognised by content, then by extension. Most formats hold one,
-/// PTX holds several. Throws Error that names file, place and remedy for anything that cannot be read.
+/// The scans of a file and what is worth telling about it.
+struct ScanFile {
+  std::string format;               ///< in a user's words: "PLY, binary, little-endian"
+  std::vector<std::string> fields;  ///< names of the values per point, as the file has them
+  std::vector<Scan> scans;
+  std::size_t dropped = 0;         ///< points left out: not finite, or missing returns
+  std::vector<std::string> notes;  ///< sentences about what was assumed or left out
+};
+
+/// Reads a file with all that is known about it; the format is recognised by content, then by extension.
+/// Throws Error that names file, place and remedy for anything that cannot be read.
+ScanFile read_scan_file(const std::filesystem::path& path, const ReadOptions& options = {},
+                        Monitor& monitor = silent_monitor());
+
+/// Reads every scan of a file. Most formats hold one, PTX holds several.
 std::vector<Scan> read_scans(const std::filesystem::path& path, const ReadOptions& options = {},
                              Monitor& monitor = silent_monitor());
 

@@ -1,0 +1,33 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace limen {
+
+/// The bytes of a file, read-only, as long as the object lives: mapped where the file is a regular one, read
+/// into memory where it is not (a pipe).
+class MappedFile {
+ public:
+  /// Throws Error where the path is missing, a folder, unreadable or empty.
+  explicit MappedFile(const std::filesystem::path& path);
+  ~MappedFile();
+  MappedFile(const MappedFile&) = delete;
+  MappedFile& operator=(const MappedFile&) = delete;
+
+  [[nodiscard]] std::string_view bytes() const { return {data_, size_}; }
+
+ private:
+  void read_stream(int descriptor, const std::string& name);
+
+  const char* data_ = nullptr;
+  std::size_t size_ = 0;
+  bool mapped_ = false;
+  std::string read_;  ///< holds the bytes where they are not mapped
+};
+
+}  // namespace limen

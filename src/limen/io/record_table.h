@@ -1,0 +1,71 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <initializer_list>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace limen {
+
+/// The number types that occur in point files.
+enum class Scalar : std::uint8_t {
+  int8,
+  uint8,
+  int16,
+  uint16,
+  int32,
+  uint32,
+  int64,
+  uint64,
+  float32,
+  float64
+};
+/// Bytes of one number.
+std::size_t size_of(Scalar scalar);
+const char* name_of(Scalar scalar);
+[[nodiscard]] bool is_integer(Scalar scalar);
+
+/// One named column of numbers somewhere in memory: value i lies at data + i * stride.
+struct Field {
+  std::string name;  ///< lower case
+  Scalar type = Scalar::float64;
+  const char* data = nullptr;
+  std::size_t stride = 0;  ///< bytes
+};
+
+/// What every reader brings its file to: columns of equal length, in the file's own bytes where they are
+/// there (binary), else in numbers made from text. Records, columns and any mix of them look alike here.
+struct RecordTable {
+  std::size_t rows = 0;
+  bool swapped = false;  ///< bytes of each number are in the order opposite to this machine's
+  std::vector<Field> fields;
+  std::shared_ptr<const std::vector<double>> numbers;  ///< keeps what `fields` point to, where not the file
+
+  /// The first field with one of these names, in the order of the names; nullptr where there is none.
+  [[nodiscard]] const Field* find(std::initializer_list<std::string_view> names) const;
+};
+
+/// Fields of a table of doubles, row after row.
+RecordTable table_of_numbers(std::shared_ptr<const std::vector<double>> numbers,
+                             const std::vector<std::string>& names);
+
+/// Which values to load: [begin, end) of a column.
+struct RowRange {
+  std::size_t begin = 0;
+  std::size_t end = 0;
+};
+/// Writes the values of the rows to out[0], out[out_stride], ...
+void load_numbers(const RecordTable& table, const Field& field, RowRange rows, double* out,
+                  std::size_t out_stride = 1);
+
+/// One number from its bytes; `swapped` as in RecordTable.
+double load_number(const char* bytes, Scalar type, bool swapped);
+
+std::string lower_case(std::string_view text);
+
+}  // namespace limen
