@@ -24,3 +24,11 @@ endif()
 
 add_test(NAME floors COMMAND ${PROJECT_SOURCE_DIR}/scripts/check_floors)
 set_tests_properties(floors PROPERTIES LABELS unit)
+
+add_test(NAME installed_package
+         COMMAND ${CMAKE_COMMAND} -DBUILD_DIR=${PROJECT_BINARY_DIR}
+                 -DCONSUMER_DIR=${PROJECT_SOURCE_DIR}/tests/consumer
+                 -DWORK_DIR=${PROJECT_BINARY_DIR}/installed_package -DGENERATOR=${CMAKE_GENERATOR}
+                 -DCOMPILER=${CMAKE_CXX_COMPILER} "-DFLAGS=${CMAKE_CXX_FLAGS}"
+                 -P ${PROJECT_SOURCE_DIR}/cmake/test_install.cmake)
+set_tests_properties(installed_package PROPERTIES LABELS acceptance)

@@ -1,0 +1,17 @@
+# SPDX-FileCopyrightText: The limen authors
+# SPDX-License-Identifier: Apache-2.0
+# One program per file of benchmarks/; those with their own main are named *_main.cpp.
+find_package(benchmark REQUIRED)
+file(GLOB LIMEN_BENCHMARKS CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/benchmarks/*.cpp)
+add_custom_target(benchmarks)
+foreach(source IN LISTS LIMEN_BENCHMARKS)
+  get_filename_component(name ${source} NAME_WE)
+  string(REGEX REPLACE "_main$" "" target bench_${name})
+  add_executable(${target} ${source})
+  target_link_libraries(${target} PRIVATE limen limen_options fmt::fmt nlohmann_json::nlohmann_json
+    $<$<BOOL:${LIMEN_BUILD_SIMULATOR}>:limen_simulate>)
+  if(NOT source MATCHES "_main\\.cpp$")
+    target_link_libraries(${target} PRIVATE benchmark::benchmark_main)
+  endif()
+  add_dependencies(benchmarks ${target})
+endforeach()
