@@ -1,0 +1,23 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "limen/extract/plane_labels.h"
+#include "limen/model/features.h"
+
+namespace limen {
+
+struct SampleOptions {
+  double tile_m = 0.25;     ///< edge of the tiles of planes
+  double clutter_m = 0.25;  ///< edge of the cubes of points in no plane
+
+  void check() const;
+};
+
+/// Evenly spread pieces of surface: for every plane the means of its points in square tiles, then the means
+/// of the other points in cubes. `planes` are the polygons of `labels`, in the same order.
+std::vector<SurfaceSample> sample_surface(const Scan& scan, const PlaneLabels& labels,
+                                          const std::vector<PlanarPolygon>& planes,
+                                          const SampleOptions& options = {});
+
+}  // namespace limen
