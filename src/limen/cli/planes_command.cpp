@@ -1,0 +1,86 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/cli/planes_command.h"
+
+#include <algorithm>
+#include <memory>
+#include <string>
+
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <fmt/format.h>
+
+#include "limen/base/atomic_file.h"
+#include "limen/cli/scan_options.h"
+#include "limen/extract/extract_features.h"
+#include "limen/report/features_json.h"
+
+namespace limen {
+namespace {
+
+struct PlanesOptions {
+  std::string scan;
+  std::string output;
+  std::string origin;
+  std::string gravity = "up";
+  ExtractOptions extract;
+};
+
+std::string summary(const Features& features, const PlanesOptions& options) {
+  std::string text =
+      fmt::format("{} planes (points within {:.1f} mm; noise {:.1f} mm)\n", features.planes.size(),
+                  1e3 * features.inlier_threshold_m, 1e3 * features.noise_m);
+  if (!features.planes.empty()) text += "      points    area m2   rms mm   normal\n";
+  constexpr std::size_t kShown = 10;
+  for (std::size_t i = 0; i < std::min(kShown, features.planes.size()); ++i) {
+    const PlanarPolygon& plane = features.planes[i];
+    const Vector3d& n = plane.plane.normal;
+    text += fmt::format("{:12} {:10.2f} {:8.2f}   {:6.3f} {:6.3f} {:6.3f}\n", plane.inliers, plane.area_m2,
+                        1e3 * plane.rms_m, n.x(), n.y(), n.z());
+  }
+  if (features.planes.size() > kShown) text += fmt::format("... {} more\n", features.planes.size() - kShown);
+  return text + fmt::format("written to {}\n", options.output);
+}
+
+int run(const PlanesOptions& options, const Session& session) {
+  options.extract.check();
+  const ReadOptions reading = read_options(options.origin, "--origin", options.gravity);
+  const Scan scan = read_input(options.scan, reading, session);
+  // Opened before the long work: a place that cannot be written to is told at once.
+  AtomicFile file(options.output);
+  const Features features = extract_features(scan, options.extract, *session.monitor).features;
+  session.monitor->throw_if_cancelled();
+  const std::string json = features_json(features, summarise(options.scan, scan));
+  file.write(json);
+  file.commit();
+  session.say(summary(features, options));
+  session.answer(json);
+  return kExitOk;
+}
+
+}  // namespace
+
+void add_planes_command(CLI::App& app, Session& session) {
+  auto options = std::make_shared<PlanesOptions>();
+  CLI::App* command = add_command(app, session, "planes", "Find the planes of a scan and their outlines",
+                                  [options, &session] { return run(*options, session); });
+  command->add_option("SCAN", options->scan, "A scan of any format limen reads")->required();
+  command->add_option("-o,--output", options->output, "The JSON file to write")
+      ->required()
+      ->type_name("FILE");
+  command
+      ->add_option("--origin", options->origin,
+                   "From where the scan was taken, in the coordinates of its points, metres")
+      ->type_name("x,y,z");
+  add_gravity_option(*command, options->gravity);
+  command
+      ->add_option("--inlier-threshold-m", options->extract.grow.inlier_threshold_m,
+                   "Farthest a point may lie from its plane; 0: from the noise found in the scan (default)")
+      ->type_name("M");
+  command
+      ->add_option("--min-inliers", options->extract.grow.min_inliers, "Points a plane needs (default 200)")
+      ->type_name("N");
+}
+
+}  // namespace limen

@@ -1,0 +1,55 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/cli/scan_options.h"
+
+#include <charconv>
+#include <cmath>
+
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <fmt/format.h>
+
+#include "limen/base/error.h"
+
+namespace limen {
+
+Vector3d parse_point(const std::string& text, const std::string& option) {
+  Vector3d point;
+  const char* at = text.data();
+  const char* const end = at + text.size();
+  bool good = true;
+  for (Eigen::Index i = 0; i < 3 && good; ++i) {
+    if (at != end && *at == '+') ++at;
+    const auto [rest, error] = std::from_chars(at, end, point[i]);
+    const bool last = i == 2;
+    good =
+        error == std::errc() && std::isfinite(point[i]) && (last ? rest == end : rest != end && *rest == ',');
+    at = last ? rest : rest + 1;
+  }
+  if (!good) {
+    throw Error(fmt::format("{} is \"{}\", but must be three numbers", option, text), "",
+                "write x,y,z in metres without spaces, as 1.5,-2,0");
+  }
+  return point;
+}
+
+void add_gravity_option(CLI::App& command, std::string& gravity) {
+  command
+      .add_option("--gravity", gravity,
+                  "up: the z axis of the files points up (default); unknown: it may point anywhere")
+      ->check(CLI::IsMember({"up", "unknown"}));
+}
+
+ReadOptions read_options(const std::string& origin, const std::string& option, const std::string& gravity) {
+  ReadOptions options;
+  if (!origin.empty()) options.origin = parse_point(origin, option);
+  options.level = gravity == "up";
+  return options;
+}
+
+Scan read_input(const std::string& path, const ReadOptions& options, const Session& session) {
+  return read_scan(path, options, *session.monitor);
+}
+
+}  // namespace limen

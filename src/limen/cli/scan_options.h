@@ -1,0 +1,26 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "limen/cli/command.h"
+#include "limen/io/read_scan.h"
+
+namespace limen {
+
+/// "x,y,z" as three numbers. Throws Error that names `option`.
+Vector3d parse_point(const std::string& text, const std::string& option);
+
+/// Adds --gravity up|unknown: whether the z axis of the files points up.
+void add_gravity_option(CLI::App& command, std::string& gravity);
+
+/// What the user said of a scan: `origin` "x,y,z" or empty (`option` names it in messages), `gravity` "up"
+/// or "unknown".
+ReadOptions read_options(const std::string& origin, const std::string& option, const std::string& gravity);
+
+/// Reads the one scan of a file.
+Scan read_input(const std::string& path, const ReadOptions& options, const Session& session);
+
+}  // namespace limen
