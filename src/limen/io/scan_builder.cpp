@@ -119,13 +119,16 @@ ScanTopology stored_topology(const RecordTable& table) {
   return topology;
 }
 
-ScanTopology grid_topology(std::size_t rows, std::size_t columns) {
+/// A raster whose fast index runs over `length` points.
+ScanTopology grid_topology(std::size_t size, std::size_t length, bool by_column) {
   ScanTopology topology;
-  topology.line.resize(rows);
-  topology.index.resize(rows);
-  for (std::size_t i = 0; i < rows; ++i) {
-    topology.line[i] = static_cast<std::int32_t>(i % columns);
-    topology.index[i] = static_cast<std::int32_t>(i / columns);
+  topology.line.resize(size);
+  topology.index.resize(size);
+  std::vector<std::int32_t>& slow = by_column ? topology.line : topology.index;
+  std::vector<std::int32_t>& fast = by_column ? topology.index : topology.line;
+  for (std::size_t i = 0; i < size; ++i) {
+    slow[i] = static_cast<std::int32_t>(i / length);
+    fast[i] = static_cast<std::int32_t>(i % length);
   }
   return topology;
 }
@@ -134,7 +137,10 @@ ScanTopology find_topology(const RecordTable& table, const TableFacts& facts,
                            const std::vector<double>& times) {
   ScanTopology topology = stored_topology(table);
   if (topology.known()) return topology;
-  if (facts.columns > 1 && table.rows <= 2147483647U) return grid_topology(table.rows, facts.columns);
+  if (table.rows <= INT32_MAX && facts.columns > 1) return grid_topology(table.rows, facts.columns, false);
+  if (table.rows <= INT32_MAX && facts.column_length > 1) {
+    return grid_topology(table.rows, facts.column_length, true);
+  }
   const Field* theta = table.find({"theta", "scalar_theta"});
   if (theta == nullptr) return {};
   return recover_profiles(load_column<double>(table, theta), times);
@@ -237,6 +243,14 @@ std::string settle_centre(Scan& scan, const TableFacts& facts, const ReadOptions
     scan.centres = {facts.offset + *facts.centre - scan.local_origin};
     return {};
   }
+  if (facts.possible_centre) {
+    const Vector3d candidate = facts.offset + *facts.possible_centre - scan.local_origin;
+    if (can_be_scanner(scan.points, candidate)) {
+      scan.centres = {candidate};
+      return "the scanner is taken to stand at the view point of the file, " +
+             told(candidate + scan.local_origin);
+    }
+  }
   const bool zero_is_near = !facts.has_offset && scan.local_origin.isZero();
   if (zero_is_near && can_be_scanner(scan.points, Vector3d::Zero())) {
     scan.centres = {Vector3d::Zero()};
@@ -277,8 +291,10 @@ ScanFile with_scan(ScanFile file, const RecordTable& table, const TableFacts& fa
   }
   check_extent(scan);
   scan.level = options.level;
-  if (unusable > 0)
-    file.notes.push_back(fmt::format("{} points without finite coordinates are left out", unusable));
+  if (unusable > facts.missing) {
+    file.notes.push_back(
+        fmt::format("{} points without finite coordinates are left out", unusable - facts.missing));
+  }
   std::string note = settle_centre(scan, facts, options);
   if (!note.empty()) file.notes.push_back(std::move(note));
   file.dropped += unusable;

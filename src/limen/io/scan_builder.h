@@ -12,12 +12,15 @@ namespace limen {
 
 /// What a file says beside its table of points.
 struct TableFacts {
-  std::string name;                    ///< of the file, for messages
-  Vector3d offset = Vector3d::Zero();  ///< added to points and centres, metres
-  bool has_offset = false;             ///< the file carries an offset: its 0,0,0 is no scanner
-  std::optional<Vector3d> centre;      ///< optical centre, offset not yet added, metres
-  bool centre_unknown = false;         ///< the file says that it does not know its centre
-  std::size_t columns = 0;             ///< points stored row by row, so many in a row; 0: not so
+  std::string name;                         ///< of the file, for messages
+  Vector3d offset = Vector3d::Zero();       ///< added to points and centres, metres
+  bool has_offset = false;                  ///< the file carries an offset: its 0,0,0 is no scanner
+  std::optional<Vector3d> centre;           ///< optical centre, offset not yet added, metres
+  bool centre_unknown = false;              ///< the file says that it does not know its centre
+  std::optional<Vector3d> possible_centre;  ///< taken only where it can be the scanner
+  std::size_t missing = 0;                  ///< rows that the reader has told as missing returns already
+  std::size_t columns = 0;                  ///< points stored row by row, so many in a row; 0: not so
+  std::size_t column_length = 0;            ///< points stored column by column, so many in one; 0: not so
 };
 
 /// Makes a scan of a table: picks the local origin, finds the columns by their names, leaves out what is not

@@ -1,0 +1,21 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "limen/io/read_scan.h"
+
+namespace limen {
+
+/// True where the bytes begin like a PTX file: ten lines of 1, 1, 3, 3, 3, 3, 4, 4, 4 and 4 numbers.
+bool looks_like_ptx(std::string_view bytes);
+
+/// Reads a PTX file from memory: any number of static scans, each moved to world coordinates by its 4 x 4
+/// matrix. Each scan has its scanner's position as optical centre (where the matrix is the identity, 0,0,0
+/// only where that can be the scanner), and columns and rows as topology. Missing returns (0 0 0) are left
+/// out. `name` is for messages. Throws Error that names the file, the scan and the line.
+ScanFile read_ptx(std::string_view bytes, const std::string& name, const ReadOptions& options = {});
+
+}  // namespace limen

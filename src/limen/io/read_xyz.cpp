@@ -1,0 +1,191 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/io/read_xyz.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "limen/base/error.h"
+#include "limen/io/record_table.h"
+#include "limen/io/scan_builder.h"
+#include "limen/io/text_numbers.h"
+
+namespace limen {
+namespace {
+
+using Names = std::vector<std::string>;
+
+/// Lines before the first row of numbers are no more than this.
+constexpr std::size_t kMostHeaderLines = 1000;
+/// Rows that are looked at to tell colours from normals.
+constexpr std::size_t kSample = 1000;
+
+std::size_t leading_numbers(std::string_view line) {
+  std::size_t count = 0;
+  for (const std::string_view token : split_tokens(line)) {
+    if (!parse_number(token)) break;
+    ++count;
+  }
+  return count;
+}
+
+/// The column names in a line, lower case, units in brackets taken off; empty where x, y and z are not among
+/// them.
+Names column_names(std::string_view line) {
+  while (!line.empty() &&
+         (line.front() == '/' || line.front() == '#' || line.front() == '%' || line.front() == ' '))
+    line.remove_prefix(1);
+  Names names;
+  for (const std::string_view token : split_tokens(line)) {
+    names.push_back(lower_case(token.substr(0, token.find_first_of("[("))));
+  }
+  for (const char* wanted : {"x", "y", "z"}) {
+    if (std::find(names.begin(), names.end(), wanted) == names.end()) return {};
+  }
+  return names;
+}
+
+/// What stands before the rows.
+struct TextHeader {
+  Names names;
+  bool counted = false;       ///< a lone whole number: PTS
+  std::size_t body = 0;       ///< bytes before the first row (or count)
+  std::size_t lines = 0;      ///< lines before it
+  std::string_view odd_line;  ///< the first line that is no comment, no names, no numbers
+  std::size_t odd_number = 0;
+  std::string_view row;  ///< the first row; empty where there is none
+};
+
+bool is_comment(std::string_view line) {
+  const auto tokens = split_tokens(line);
+  return tokens.empty() || tokens[0][0] == '#' || tokens[0][0] == '%' || tokens[0].substr(0, 2) == "//";
+}
+
+TextHeader parse_text_header(std::string_view bytes) {
+  TextHeader header;
+  std::size_t at = bytes.substr(0, 3) == "\xEF\xBB\xBF" ? 3 : 0;
+  bool first_row_found = false;
+  for (std::size_t line_number = 1; at < bytes.size() && line_number < kMostHeaderLines; ++line_number) {
+    const TextLine line = first_line(bytes.substr(at));
+    const std::size_t numbers = leading_numbers(line.text);
+    if (numbers > 0 && !first_row_found) {
+      first_row_found = true;
+      header.body = at;
+      header.lines = line_number - 1;
+      header.counted = split_tokens(line.text).size() == 1 && parse_count(split_tokens(line.text)[0]);
+    }
+    if (numbers > 1 || (numbers == 1 && !header.counted)) {
+      header.row = line.text;
+      return header;
+    }
+    if (numbers == 0 && header.names.empty()) header.names = column_names(line.text);
+    if (numbers == 0 && header.names.empty() && !is_comment(line.text) && header.odd_number == 0) {
+      header.odd_line = line.text;
+      header.odd_number = line_number;
+    }
+    at += line.bytes;
+  }
+  return header;
+}
+
+/// "1,5;2,5;3,5" or "1,5 2,5 3,5": every piece between semicolons or blanks has one comma and no point.
+bool has_decimal_commas(std::string_view row) {
+  std::size_t pieces = 0;
+  while (!row.empty()) {
+    const std::size_t end = std::min(row.find_first_of("; \t\r"), row.size());
+    const std::string_view piece = row.substr(0, end);
+    row.remove_prefix(std::min(row.size(), end + 1));
+    if (piece.empty()) continue;
+    if (piece.find('.') != std::string_view::npos || std::count(piece.begin(), piece.end(), ',') != 1)
+      return false;
+    if (piece.front() == ',' || piece.back() == ',') return false;
+    ++pieces;
+  }
+  return pieces >= 3;
+}
+
+/// Whether columns 3 to 5 are colours: whole numbers from 0 to 255, not all of them 0 or 1.
+bool are_colours(const std::vector<double>& numbers, std::size_t columns) {
+  double largest = 0.0;
+  for (std::size_t i = 0; i < std::min(kSample, numbers.size() / columns); ++i) {
+    for (std::size_t k = 3; k < 6; ++k) {
+      const double value = numbers[i * columns + k];
+      if (!(value >= 0.0 && value <= 255.0) || value != std::floor(value)) return false;
+      largest = std::max(largest, value);
+    }
+  }
+  return largest > 1.0;
+}
+
+Names names_by_position(const std::vector<double>& numbers, std::size_t columns) {
+  Names names{"x", "y", "z"};
+  if (columns == 4 || columns == 7) names.emplace_back("intensity");
+  if (columns == 7 || (columns == 6 && are_colours(numbers, columns))) {
+    for (const char* colour : {"red", "green", "blue"}) names.emplace_back(colour);
+  }
+  while (names.size() < columns) names.push_back(fmt::format("column{}", names.size() + 1));
+  return names;
+}
+
+void require_rows(const TextHeader& header, const std::string& name) {
+  if (header.odd_number > 0) {
+    std::string shown;
+    for (const char c : header.odd_line.substr(0, 40)) shown += c >= ' ' && c < 127 ? c : ' ';
+    throw Error(fmt::format("neither rows of numbers nor names of columns with x, y and z: \"{}\"", shown),
+                fmt::format("{}, line {}", name, header.odd_number),
+                "give points as lines of numbers, or a PLY, PCD or PTX file");
+  }
+  if (header.row.empty()) throw Error("there are no points", name, "check how the file was exported");
+  const std::string where = fmt::format("{}, line {}", name, header.lines + 1);
+  if (has_decimal_commas(header.row)) {
+    throw Error("the numbers have decimal commas", where, "write them with decimal points");
+  }
+  if (leading_numbers(header.row) < 3) {
+    throw Error("a row of points needs three numbers", where, "give points as x y z");
+  }
+}
+
+}  // namespace
+
+bool looks_like_xyz(std::string_view bytes) {
+  const std::string_view head = bytes.substr(0, 65536);
+  if (head.substr(0, 4096).find('\0') != std::string_view::npos) return false;
+  const TextHeader header = parse_text_header(head);
+  return header.odd_number == 0 && leading_numbers(header.row) >= 3;
+}
+
+ScanFile read_xyz(std::string_view bytes, const std::string& name, const ReadOptions& options) {
+  const TextHeader header = parse_text_header(bytes);
+  require_rows(header, name);
+  TextRows wanted;
+  wanted.columns = leading_numbers(header.row);
+  if (!header.names.empty()) wanted.columns = std::min(wanted.columns, header.names.size());
+  wanted.first_line_number = header.lines + 1;
+  wanted.counts_allowed = header.counted;
+  ParsedRows parsed = parse_rows(bytes.substr(header.body), wanted, name);
+  if (header.counted && parsed.promised > parsed.rows) {
+    throw Error(fmt::format("the file ends after {} of {} points", parsed.rows, parsed.promised), name,
+                "get the whole file, or correct the count");
+  }
+  Names names = header.names.empty() ? names_by_position(parsed.numbers, wanted.columns) : header.names;
+  names.resize(wanted.columns);
+  ScanFile file;
+  file.format = header.counted ? "PTS text" : "XYZ text";
+  file.fields = names;
+  if (header.counted && parsed.promised < parsed.rows) {
+    file.notes.push_back(
+        fmt::format("the count says {}, the file holds {} points", parsed.promised, parsed.rows));
+  }
+  TableFacts facts;
+  facts.name = name;
+  auto numbers = std::make_shared<std::vector<double>>(std::move(parsed.numbers));
+  return with_scan(std::move(file), table_of_numbers(std::move(numbers), names), facts, options);
+}
+
+}  // namespace limen
