@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limen/match/rotation_from_directions.h"
 
-#include <array>
 #include <cmath>
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/SVD>
 
 #include "limen/base/error.h"
@@ -50,9 +50,11 @@ Matrix3d rotation_from_main_directions(const MainDirections& source, const MainD
 
 RotationFit rotation_from_directions(const std::vector<DirectionPair>& pairs, double min_spread_rad) {
   Matrix3d correlation = Matrix3d::Zero();
+  Matrix3d scatter = Matrix3d::Zero();
   double weight = 0.0;
   for (const DirectionPair& pair : pairs) {
     correlation += pair.weight * pair.target * pair.source.transpose();
+    scatter += pair.weight * pair.target * pair.target.transpose();
     weight += pair.weight;
   }
   if (!(weight > 0.0)) {
@@ -69,11 +71,11 @@ RotationFit rotation_from_directions(const std::vector<DirectionPair>& pairs, do
     sum += pair.weight * angle * angle;
   }
   fit.rms_rad = std::sqrt(sum / weight);
-  // The solution is unique when the second singular value and the signed third do not cancel. Directions
-  // within s of each other leave about s^2 / 4 there.
-  const Vector3d& values = svd.singularValues();
-  const double held = values[1] + sign * values[2];
-  if (held < 0.25 * min_spread_rad * min_spread_rad * values[0]) fit.free_axis = svd.matrixU().col(0);
+  // Two target directions at an angle s leave about s^2 / 4 in the second eigenvalue of their scatter.
+  const Eigen::SelfAdjointEigenSolver<Matrix3d> spread(scatter / weight);
+  if (spread.eigenvalues()[1] < 0.25 * min_spread_rad * min_spread_rad) {
+    fit.free_axis = spread.eigenvectors().col(2);
+  }
   return fit;
 }
 
