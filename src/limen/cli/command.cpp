@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limen/cli/command.h"
 
+#include <cmath>
 #include <utility>
 
 #include <CLI/App.hpp>
@@ -45,6 +46,16 @@ void add_common_options(CLI::App& app, Session& session) {
   app.add_option("--seed", common.seed, "Seed of every random choice (default 1)")
       ->type_name("N")
       ->group(group);
+}
+
+void add_length_option(CLI::App& app, const std::string& name, double& length_m,
+                       const std::string& description) {
+  const auto finite = [](const std::string& text) -> std::string {
+    double number = 0.0;
+    const bool good = CLI::detail::lexical_cast(text, number) && std::isfinite(number) && number >= 0.0;
+    return good ? "" : fmt::format("{} is not a length in metres", text);
+  };
+  app.add_option(name, length_m, description)->check(finite)->type_name("M");
 }
 
 CLI::App* add_command(CLI::App& app, Session& session, const std::string& name,

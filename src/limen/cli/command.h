@@ -57,6 +57,10 @@ struct Session {
 CLI::App* add_command(CLI::App& app, Session& session, const std::string& name,
                       const std::string& description, std::function<int()> run);
 
+/// Adds an option that takes a length in metres, finite and not negative.
+void add_length_option(CLI::App& app, const std::string& name, double& length_m,
+                       const std::string& description);
+
 /// Adds --quiet, --json, --threads and --seed.
 void add_common_options(CLI::App& app, Session& session);
 

@@ -45,6 +45,7 @@ std::string summary(const Features& features, const PlanesOptions& options) {
 
 int run(const PlanesOptions& options, const Session& session) {
   options.extract.check();
+  refuse_same_file(options.output, options.scan);
   const ReadOptions reading = read_options(options.origin, "--origin", options.gravity);
   const Scan scan = read_input(options.scan, reading, session);
   // Opened before the long work: a place that cannot be written to is told at once.
@@ -74,10 +75,8 @@ void add_planes_command(CLI::App& app, Session& session) {
                    "From where the scan was taken, in the coordinates of its points, metres")
       ->type_name("x,y,z");
   add_gravity_option(*command, options->gravity);
-  command
-      ->add_option("--inlier-threshold-m", options->extract.grow.inlier_threshold_m,
-                   "Farthest a point may lie from its plane; 0: from the noise found in the scan (default)")
-      ->type_name("M");
+  add_length_option(*command, "--inlier-threshold-m", options->extract.grow.inlier_threshold_m,
+                    "Farthest a point may lie from its plane; 0: from the noise found in the scan (default)");
   command
       ->add_option("--min-inliers", options->extract.grow.min_inliers, "Points a plane needs (default 200)")
       ->type_name("N");

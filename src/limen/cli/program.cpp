@@ -7,6 +7,7 @@
 #include <memory>
 #include <new>
 #include <string>
+#include <vector>
 
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
@@ -48,6 +49,18 @@ int fail(const std::string& message, int status) {
   std::cout.flush();
   fmt::print(stderr, "limen: error: {}\n", one_line(message));
   return status;
+}
+
+/// What is wrong with the command line, and where its usage is told.
+std::string usage_error(const CLI::App& app, const CLI::ParseError& error) {
+  const std::vector<CLI::App*> chosen = app.get_subcommands();
+  if (!chosen.empty()) {
+    return fmt::format("{} (limen {} --help tells the usage)", error.what(), chosen.front()->get_name());
+  }
+  const std::vector<std::string> unknown = app.remaining();
+  const std::string problem = unknown.empty() ? "a command is needed" : unknown.front() + " is not a command";
+  const bool about_commands = dynamic_cast<const CLI::RequiredError*>(&error) != nullptr;
+  return fmt::format("{} (limen --help tells the usage)", about_commands ? problem : error.what());
 }
 
 int status_of(Fault fault) {
@@ -111,7 +124,7 @@ int run_program(int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error, std::cout, std::cerr);
-    return fail(fmt::format("{} (limen --help tells the usage)", error.what()), kExitBadInput);
+    return fail(usage_error(app, error), kExitBadInput);
   }
   return run_action(session);
 }

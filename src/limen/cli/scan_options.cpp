@@ -4,6 +4,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <filesystem>
 
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
@@ -50,6 +51,13 @@ ReadOptions read_options(const std::string& origin, const std::string& option, c
 
 Scan read_input(const std::string& path, const ReadOptions& options, const Session& session) {
   return read_scan(path, options, *session.monitor);
+}
+
+void refuse_same_file(const std::string& output, const std::string& input) {
+  std::error_code missing;
+  if (std::filesystem::equivalent(output, input, missing)) {
+    throw Error("would be written over the input", output, "give the result another name");
+  }
 }
 
 }  // namespace limen

@@ -23,4 +23,7 @@ ReadOptions read_options(const std::string& origin, const std::string& option, c
 /// Reads the one scan of a file.
 Scan read_input(const std::string& path, const ReadOptions& options, const Session& session);
 
+/// Throws Error where `output` is the file `input`: a result never replaces what it was made from.
+void refuse_same_file(const std::string& output, const std::string& input);
+
 }  // namespace limen

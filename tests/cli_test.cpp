@@ -1,0 +1,119 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+// The command line as a script meets it: statuses, what goes to stdout, what to stderr.
+#include "run_program.h"
+#include <nlohmann/json.hpp>
+
+namespace limen {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr const char* kIdentity = "1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n";
+constexpr const char* kShifted = "1 0 0 0.25\n0 1 0 0\n0 0 1 0\n0 0 0 1\n";
+
+class CliTest : public ProgramTest {
+ protected:
+  /// An empty room of 5 m x 4 m x 3 m seen from its middle: points every 5 cm on six faces.
+  void write_room(const std::string& name) const {
+    std::string text;
+    const double size[3] = {5.0, 4.0, 3.0};
+    for (int axis = 0; axis < 3; ++axis) {
+      const int u = (axis + 1) % 3;
+      const int v = (axis + 2) % 3;
+      for (double a = 0.025; a < size[u]; a += 0.05) {
+        for (double b = 0.025; b < size[v]; b += 0.05) {
+          for (const double side : {-0.5, 0.5}) {
+            double x[3];
+            x[axis] = side * size[axis];
+            x[u] = a - 0.5 * size[u];
+            x[v] = b - 0.5 * size[v];
+            text += std::to_string(x[0]) + " " + std::to_string(x[1]) + " " + std::to_string(x[2]) + "\n";
+          }
+        }
+      }
+    }
+    write_whole(work() / name, text);
+  }
+};
+
+TEST_F(CliTest, HelpEverywhere) {
+  const ProgramRun all = run({"--help"});
+  EXPECT_EQ(all.status, 0);
+  EXPECT_EQ(all.err, "");
+  for (const std::string command : {"info", "planes", "register", "transform", "simulate", "evaluate"}) {
+    EXPECT_NE(all.out.find("\n  " + command), std::string::npos) << command;
+    const ProgramRun help = run({command, "--help"});
+    EXPECT_EQ(help.status, 0) << command;
+    EXPECT_EQ(help.err, "") << command;
+    for (const std::string option : {"--quiet", "--json", "--threads", "--seed", "--help"}) {
+      EXPECT_NE(help.out.find(option), std::string::npos) << command << " " << option;
+    }
+  }
+}
+
+TEST_F(CliTest, Version) {
+  const ProgramRun done = run({"--version"});
+  EXPECT_EQ(done.status, 0);
+  EXPECT_EQ(done.out.rfind("limen ", 0), 0U);
+  EXPECT_EQ(done.err, "");
+}
+
+TEST_F(CliTest, EvaluateTellsAKnownError) {
+  write_whole(work() / "found.txt", kShifted);
+  write_whole(work() / "true.txt", kIdentity);
+  const ProgramRun done = run({"evaluate", "found.txt", "true.txt", "--json"});
+  EXPECT_EQ(done.status, 0);
+  EXPECT_EQ(done.err, "");
+  const Json json = Json::parse(done.out);
+  EXPECT_NEAR(json["translation_error_m"].get<double>(), 0.25, 1e-12);
+  EXPECT_NEAR(json["rotation_error_deg"].get<double>(), 0.0, 1e-9);
+}
+
+TEST_F(CliTest, CommonOptionsMayStandBeforeOrAfterTheCommand) {
+  write_whole(work() / "pose.txt", kIdentity);
+  const ProgramRun before = run({"--json", "--threads", "1", "evaluate", "pose.txt", "pose.txt"});
+  const ProgramRun after = run({"evaluate", "pose.txt", "pose.txt", "--threads", "1", "--json"});
+  EXPECT_EQ(before.status, 0);
+  EXPECT_TRUE(Json::accept(before.out)) << before.out;
+  EXPECT_EQ(before.out, after.out);
+}
+
+TEST_F(CliTest, QuietSaysNothing) {
+  write_whole(work() / "pose.txt", kIdentity);
+  const ProgramRun done = run({"evaluate", "pose.txt", "pose.txt", "--quiet"});
+  EXPECT_EQ(done.status, 0);
+  EXPECT_EQ(done.out + done.err, "");
+}
+
+TEST_F(CliTest, PlanesOfARoomAreSix) {
+  write_room("room.xyz");
+  const ProgramRun done = run({"planes", "room.xyz", "-o", "planes.json", "--json"});
+  ASSERT_EQ(done.status, 0) << done.err;
+  EXPECT_EQ(done.err, "") << "not a terminal, so no progress";
+  EXPECT_EQ(done.out, read_whole(work() / "planes.json"));
+  const Json json = Json::parse(done.out);
+  ASSERT_EQ(json["planes"].size(), 6U);
+  for (const Json& plane : json["planes"]) {
+    EXPECT_LT(plane["rms_m"].get<double>(), 1e-4);
+    EXPECT_EQ(plane["outline"].size(), 1U) << "no holes";
+  }
+}
+
+TEST_F(CliTest, SameBytesForAnyNumberOfThreads) {
+  write_room("room.xyz");
+  ASSERT_EQ(run({"planes", "room.xyz", "-o", "one.json", "--threads", "1"}).status, 0);
+  ASSERT_EQ(run({"planes", "room.xyz", "-o", "four.json", "--threads", "4"}).status, 0);
+  EXPECT_EQ(read_whole(work() / "one.json"), read_whole(work() / "four.json"));
+}
+
+TEST_F(CliTest, InfoAnswersInJson) {
+  write_room("room.xyz");
+  const ProgramRun done = run({"info", "room.xyz", "--json"});
+  EXPECT_EQ(done.status, 0) << done.err;
+  EXPECT_EQ(done.err, "");
+  EXPECT_TRUE(Json::accept(done.out)) << done.out;
+}
+
+}  // namespace
+}  // namespace limen
