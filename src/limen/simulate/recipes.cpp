@@ -1,0 +1,288 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/simulate/recipes.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "limen/base/angles.h"
+#include "limen/base/error.h"
+#include "limen/simulate/furniture.h"
+#include "limen/simulate/street.h"
+
+namespace limen {
+namespace {
+
+std::vector<double> bays(int count, double low, double high, RandomStream& random) {
+  std::vector<double> widths;
+  for (int i = 0; i < count; ++i) widths.push_back(random.uniform(low, high));
+  return widths;
+}
+
+int between(int low, int high, RandomStream& random) {
+  return low + static_cast<int>(random.below(static_cast<std::uint32_t>(high - low + 1)));
+}
+
+/// The look of a house, different for every seed.
+FacadeOptions random_facade(const SceneOptions& options, double curtain_share, RandomStream& random) {
+  FacadeOptions facade;
+  facade.window_width_m = random.uniform(0.95, 1.7);
+  facade.window_height_m = random.uniform(1.2, 1.7);
+  facade.sill_m = random.uniform(0.55, 1.0);
+  facade.variation = random.uniform(0.05, 0.2);
+  facade.blank_share = random.uniform(0.0, 0.15);
+  facade.frame_depth_m = random.uniform(0.06, 0.2);
+  facade.bar_m = random.uniform(0.05, 0.08);
+  facade.mullions = between(0, 2, random);
+  facade.transoms = between(0, 1, random);
+  facade.splay_m = random.uniform() < 0.25 ? random.uniform(0.03, 0.09) : 0.0;
+  facade.door_width_m = random.uniform(0.82, 0.98);
+  facade.door_height_m = random.uniform(1.98, 2.12);
+  facade.curtain_share = options.curtain_share >= 0.0 ? options.curtain_share : curtain_share;
+  return facade;
+}
+
+void furnish_all(World& world, std::size_t building, double fullness, RandomStream& random) {
+  for (std::size_t room = 0; room < world.buildings[building].plan.rooms.size(); ++room)
+    furnish(world, building, room, fullness * random.uniform(0.7, 1.2), random);
+}
+
+/// Windows a room has to the outside, by façade: pairs (room, number of different outer normals).
+std::size_t facades_of(const World& world, std::size_t room, bool open_only) {
+  std::vector<Vector3d> normals;
+  for (const TrueOpening& opening : world.openings) {
+    if (!opening.exterior || opening.kind != "window" || opening.rooms[0] != static_cast<int>(room)) continue;
+    if (open_only && opening.curtained) continue;
+    const bool known = std::any_of(normals.begin(), normals.end(),
+                                   [&](const Vector3d& n) { return n.dot(opening.normal) > 0.99; });
+    if (!known) normals.push_back(opening.normal);
+  }
+  return normals.size();
+}
+
+/// Rooms of building 0 that satisfy `good`, in random order.
+template <typename Good>
+std::vector<std::size_t> rooms_where(const World& world, RandomStream& random, const Good& good) {
+  std::vector<std::size_t> rooms;
+  for (std::size_t room = 0; room < world.buildings[0].plan.rooms.size(); ++room)
+    if (good(room)) rooms.push_back(room);
+  for (std::size_t i = rooms.size(); i > 1; --i)
+    std::swap(rooms[i - 1], rooms[random.below(static_cast<std::uint32_t>(i))]);
+  return rooms;
+}
+
+Recipe room_recipe(const SceneOptions& options, RandomStream& random) {
+  PlanOptions plan;
+  plan.main_bays_m = bays(between(4, 6, random), 2.2, 3.4, random);
+  plan.south_depth_m = random.uniform(3.6, 5.6);
+  plan.corridor_m = random.uniform() < 0.5 ? random.uniform(1.3, 2.0) : 0.0;
+  plan.north_depth_m = random.uniform(3.2, 4.6);
+  plan.outer_wall_m = random.uniform(0.25, 0.5);
+  plan.inner_wall_m = random.uniform(0.1, 0.24);
+  plan.storey_height_m = random.uniform(2.85, 3.4);
+  Recipe recipe;
+  FacadeOptions facade = random_facade(options, 0.15, random);
+  facade.open_door_share = 0.9;
+  add_building(recipe.world, make_floor_plan(plan, random), facade, random);
+  furnish_all(recipe.world, 0, 0.9, random);
+  add_ground(recipe.world);
+  add_street(recipe.world, 0, {.opposite = facade}, random);
+  add_garden(recipe.world, 0, 2, random);
+  const auto rooms = rooms_where(recipe.world, random, [&](std::size_t room) {
+    const Room& r = recipe.world.buildings[0].plan.rooms[room];
+    return r.use != RoomUse::corridor && signed_area(r.outline) > 12.0 &&
+           facades_of(recipe.world, room, false) > 0;
+  });
+  recipe.station_rooms.assign(2, rooms.empty() ? 0 : rooms[0]);
+  return recipe;
+}
+
+/// An empty box whose only surfaces repeat under a turn: nobody can tell the poses apart.
+Recipe symmetric_recipe(const SceneOptions& options, RandomStream& random) {
+  const bool square = options.seed % 2 == 0;
+  const double inner = random.uniform(4.0, 7.0);
+  const double depth = square ? inner : inner * random.uniform(0.6, 0.85);
+  PlanOptions plan;
+  plan.outer_wall_m = 0.3;
+  plan.main_bays_m = {inner + 2.0 * plan.outer_wall_m};
+  plan.south_depth_m = depth;
+  plan.storey_height_m = random.uniform(2.9, 3.3);
+  plan.use = RoomUse::empty;
+  plan.regular = true;
+  FacadeOptions facade;
+  facade.window_width_m = random.uniform(1.0, 1.6);
+  facade.entrance = false;
+  facade.ornament_share = 0.0;
+  facade.curtain_share = 0.0;
+  // Half of the boxes have the same window in every wall, with nothing outside.
+  facade.blank_share = options.seed / 2 % 2 == 0 ? 1.0 : 0.0;
+  facade.gable_share = 1.0 - facade.blank_share;
+  Recipe recipe;
+  add_building(recipe.world, make_floor_plan(plan, random), facade, random);
+  recipe.station_rooms = {0, 0};
+  return recipe;
+}
+
+Recipe flat_recipe(const SceneOptions& options, RandomStream& random) {
+  PlanOptions plan;
+  plan.main_bays_m = bays(between(4, 6, random), 2.8, 4.2, random);
+  plan.south_depth_m = random.uniform(3.4, 5.0);
+  plan.corridor_m = random.uniform(1.2, 1.8);
+  plan.north_depth_m = random.uniform(3.0, 4.5);
+  plan.outer_wall_m = random.uniform(0.28, 0.45);
+  plan.inner_wall_m = random.uniform(0.09, 0.2);
+  plan.storey_height_m = random.uniform(2.8, 3.2);
+  plan.bays_per_room = 1 + static_cast<int>(random.below(2));
+  plan.ground_floor_m = random.uniform(0.3, 1.0);
+  Recipe recipe;
+  FacadeOptions facade = random_facade(options, 0.2, random);
+  facade.open_door_share = 1.0;
+  facade.extra_door_share = 0.6;
+  add_building(recipe.world, make_floor_plan(plan, random), facade, random);
+  furnish_all(recipe.world, 0, 0.8, random);
+  add_ground(recipe.world);
+  add_street(recipe.world, 0, {.opposite = facade}, random);
+  add_garden(recipe.world, 0, 2, random);
+  recipe.through_door = true;
+  recipe.station_rooms = {0, 0};
+  return recipe;
+}
+
+/// Rooms for stations: the first one as `options.facades` asks, the others in rooms with open windows.
+std::vector<std::size_t> rooms_with_view(const World& world, const SceneOptions& options, std::size_t count,
+                                         RandomStream& random) {
+  const auto with = [&](std::size_t facades, bool exactly) {
+    return rooms_where(world, random, [&](std::size_t room) {
+      const std::size_t seen = facades_of(world, room, true);
+      const Room& r = world.buildings[0].plan.rooms[room];
+      return signed_area(r.outline) > 10.0 && r.storey < 2 && r.use != RoomUse::stairs &&
+             (exactly ? seen == facades : seen >= facades);
+    });
+  };
+  std::vector<std::size_t> rooms;
+  if (options.facades > 0) rooms = with(options.facades, true);
+  if (options.facades == 0) rooms = with(2, false);
+  if (rooms.empty()) rooms = with(1, false);
+  if (rooms.empty()) rooms = with(0, false);
+  rooms.resize(1, 0);
+  for (const std::size_t room : with(1, false))
+    if (rooms.size() < count && room != rooms[0]) rooms.push_back(room);
+  while (rooms.size() < count) rooms.push_back(rooms[0]);
+  return rooms;
+}
+
+Recipe museum_recipe(const SceneOptions& options, RandomStream& random) {
+  PlanOptions plan;
+  plan.main_bays_m = bays(between(5, 7, random), 2.7, 3.9, random);
+  plan.second_bays_m = bays(between(3, 5, random), 2.9, 3.9, random);
+  plan.turn_rad = radians(random.uniform(20.0, 35.0));
+  plan.south_depth_m = random.uniform(4.6, 6.5);
+  plan.corridor_m = random.uniform(1.8, 2.6);
+  plan.north_depth_m = random.uniform(3.8, 5.2);
+  plan.outer_wall_m = random.uniform(0.35, 0.6);
+  plan.inner_wall_m = random.uniform(0.14, 0.3);
+  plan.storeys = between(2, 3, random);
+  plan.storey_height_m = random.uniform(3.5, 4.3);
+  plan.slab_m = random.uniform(0.3, 0.45);
+  plan.ground_floor_m = random.uniform(0.4, 1.1);
+  plan.bays_per_room = between(2, 3, random);
+  plan.stairwell = true;
+  plan.use = RoomUse::exhibition;
+  Recipe recipe;
+  FacadeOptions facade = random_facade(options, 0.05, random);
+  facade.window_width_m = random.uniform(1.2, 1.8);
+  facade.window_height_m = random.uniform(1.7, 2.2);
+  facade.extra_door_share = 0.7;
+  facade.door_width_m = random.uniform(1.1, 1.5);
+  facade.door_height_m = random.uniform(2.1, 2.5);
+  facade.gable_share = 0.9;
+  add_building(recipe.world, make_floor_plan(plan, random), facade, random);
+  furnish_all(recipe.world, 0, 0.7, random);
+  add_ground(recipe.world);
+  StreetOptions street{.edges = 3, .opposite = facade};
+  street.path_m = random.uniform(7.0, 9.5);
+  street.opposite_m = street.path_m + random.uniform(8.0, 11.0);
+  recipe.path = add_street(recipe.world, 0, street, random);
+  add_garden(recipe.world, 0, 4, random);
+  recipe.station_rooms =
+      rooms_with_view(recipe.world, options, options.stations > 0 ? options.stations : 2, random);
+  recipe.points_indoor = 300000;
+  recipe.points_outdoor = 800000;
+  recipe.profile_turn_rad = random.uniform() < 0.5 ? radians(45.0) : 0.0;
+  recipe.national_grid = true;
+  return recipe;
+}
+
+/// Every bay and storey alike: only what lies outside the grid can tell shifts apart.
+Recipe regular_recipe(const SceneOptions& options, RandomStream& random) {
+  PlanOptions plan;
+  plan.main_bays_m.assign(static_cast<std::size_t>(between(4, 6, random) * 2), random.uniform(2.7, 3.3));
+  plan.south_depth_m = random.uniform(4.8, 6.0);
+  plan.corridor_m = random.uniform(1.8, 2.4);
+  plan.north_depth_m = plan.south_depth_m;
+  plan.outer_wall_m = random.uniform(0.3, 0.5);
+  plan.inner_wall_m = random.uniform(0.12, 0.2);
+  plan.storeys = between(2, 4, random);
+  plan.storey_height_m = random.uniform(3.1, 3.6);
+  plan.bays_per_room = 2;
+  plan.regular = true;
+  plan.use = RoomUse::office;
+  Recipe recipe;
+  FacadeOptions facade = random_facade(options, 0.1, random);
+  facade.variation = 0.0;
+  facade.blank_share = 0.0;
+  facade.gable_share = 0.0;
+  facade.entrance = false;
+  add_building(recipe.world, make_floor_plan(plan, random), facade, random);
+  furnish_all(recipe.world, 0, 0.6, random);
+  add_ground(recipe.world);
+  StreetOptions street{.edges = 1, .opposite = facade};
+  street.path_m = random.uniform(7.0, 9.5);
+  street.opposite_m = street.path_m + random.uniform(8.0, 11.0);
+  recipe.path = add_street(recipe.world, 0, street, random);
+  add_garden(recipe.world, 0, 2, random);
+  const auto rooms = rooms_where(recipe.world, random, [&](std::size_t room) {
+    const Room& r = recipe.world.buildings[0].plan.rooms[room];
+    return r.use == RoomUse::office && r.storey < 2 && r.outline[0].y() < 1.0 &&
+           facades_of(recipe.world, room, true) == 1;
+  });
+  recipe.station_rooms.assign(1, rooms.empty() ? 0 : rooms[0]);
+  recipe.points_indoor = 300000;
+  recipe.points_outdoor = 800000;
+  recipe.profile_turn_rad = random.uniform() < 0.5 ? radians(45.0) : 0.0;
+  recipe.national_grid = true;
+  return recipe;
+}
+
+struct NamedRecipe {
+  const char* name;
+  Recipe (*make)(const SceneOptions&, RandomStream&);
+};
+
+constexpr std::array<NamedRecipe, 5> kRecipes = {{{"room", room_recipe},
+                                                  {"symmetric_room", symmetric_recipe},
+                                                  {"flat", flat_recipe},
+                                                  {"museum", museum_recipe},
+                                                  {"regular_facade", regular_recipe}}};
+
+}  // namespace
+
+std::vector<std::string> scene_names() {
+  std::vector<std::string> names;
+  for (const NamedRecipe& recipe : kRecipes) names.emplace_back(recipe.name);
+  return names;
+}
+
+Recipe make_recipe(const SceneOptions& options) {
+  std::string known;
+  std::uint64_t trial = 1;
+  for (const NamedRecipe& recipe : kRecipes) {
+    RandomStream random(options.seed, trial++);
+    if (options.name == recipe.name) return recipe.make(options, random);
+    known += known.empty() ? recipe.name : std::string(", ") + recipe.name;
+  }
+  throw Error("no scene is called '" + options.name + "'", "limen simulate", "choose one of: " + known);
+}
+
+}  // namespace limen

@@ -1,0 +1,28 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "limen/simulate/scene.h"
+
+namespace limen {
+
+/// What a scene consists of before it is scanned. Building 0 is the one that matters.
+struct Recipe {
+  World world;
+  std::vector<std::size_t> station_rooms;  ///< rooms of building 0, one per station
+  bool through_door = false;  ///< the two stations stand in rooms joined by an open door, in sight
+  std::size_t points_indoor = 260000;
+  std::size_t points_outdoor = 0;
+  std::optional<Trajectory> path;  ///< of the mobile scan
+  double profile_turn_rad = 0.0;
+  bool national_grid = false;  ///< world coordinates far from zero
+};
+
+/// Builds the scene named in the options. Throws Error for an unknown name.
+Recipe make_recipe(const SceneOptions& options);
+
+}  // namespace limen

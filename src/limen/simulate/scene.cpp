@@ -1,0 +1,243 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/simulate/scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "limen/base/error.h"
+#include "limen/simulate/recipes.h"
+#include "limen/simulate/stations.h"
+
+namespace limen {
+namespace {
+
+/// A random orientation, uniform over all.
+Matrix3d any_orientation(RandomStream& random) {
+  Eigen::Quaterniond q(random.normal(), random.normal(), random.normal(), random.normal());
+  return nearest_rotation(q.normalized().toRotationMatrix());
+}
+
+Matrix3d heading(double angle) {
+  return rotation_exp({0.0, 0.0, angle});
+}
+
+/// The nearest multiple of 2^-16 m, so that adding a whole number of metres is exact.
+Vector3d rounded(const Vector3d& x) {
+  return (x * 65536.0).array().round().matrix() / 65536.0;
+}
+
+/// A slow, smooth error of a trajectory with zero mean over its duration: a few waves per axis.
+class Drift {
+ public:
+  Drift(double sigma, double begin_s, double end_s, RandomStream& random) : begin_(begin_s), end_(end_s) {
+    for (Wave& wave : waves_) {
+      for (int axis = 0; axis < 3; ++axis) {
+        wave.amplitude[axis] = sigma * random.normal() / std::sqrt(0.5 * kWaves);
+        wave.phase[axis] = random.uniform(0.0, 2.0 * std::numbers::pi);
+      }
+    }
+  }
+
+  [[nodiscard]] Vector3d at(double time_s) const {
+    Vector3d sum = Vector3d::Zero();
+    const double share = (time_s - begin_) / std::max(1e-9, end_ - begin_);
+    for (int k = 0; k < kWaves; ++k)
+      for (int axis = 0; axis < 3; ++axis) {
+        const Wave& wave = waves_[static_cast<std::size_t>(k)];
+        // Whole numbers of waves: the mean over the drive is zero.
+        sum[axis] +=
+            wave.amplitude[axis] * std::sin(2.0 * std::numbers::pi * (k + 1) * share + wave.phase[axis]);
+      }
+    return sum;
+  }
+
+ private:
+  static constexpr int kWaves = 3;
+  struct Wave {
+    Vector3d amplitude = Vector3d::Zero();
+    Vector3d phase = Vector3d::Zero();
+  };
+  std::array<Wave, kWaves> waves_;
+  double begin_;
+  double end_;
+};
+
+/// Scans a recipe and writes down what is true.
+class Simulation {
+ public:
+  Simulation(const SceneOptions& options, Monitor& monitor)
+      : o_(options),
+        monitor_(monitor),
+        recipe_(make_recipe(options)),
+        caster_(recipe_.world.mesh),
+        merged_(merge_planes(recipe_.world.mesh)),
+        random_(options.seed, 1000) {
+    world_from_scene_.rotation = heading(random_.uniform(0.0, 2.0 * std::numbers::pi));
+    if (recipe_.national_grid) origin_ = Vector3d(1050000.0, 6840000.0, 150.0);
+  }
+
+  SimulatedCase run() {
+    begin_truth();
+    const std::vector<Station> stations = place_stations(recipe_, caster_, random_);
+    for (std::size_t i = 0; i < stations.size(); ++i) {
+      monitor_.throw_if_cancelled();
+      add_station(stations[i], i);
+    }
+    monitor_.throw_if_cancelled();
+    if (recipe_.path) add_mobile();
+    keep_seen_planes();
+    return std::move(case_);
+  }
+
+ private:
+  void begin_truth() {
+    Truth& truth = case_.truth;
+    truth.scene = o_.name;
+    truth.seed = o_.seed;
+    truth.local_origin = origin_;
+    truth.planes = merged_.planes;
+    for (TruePlane& plane : truth.planes) plane.plane = transformed(world_from_scene_, plane.plane);
+    truth.openings = recipe_.world.openings;
+    for (TrueOpening& opening : truth.openings) {
+      for (Vector3d& corner : opening.outer) corner = world_from_scene_ * corner;
+      for (Vector3d& corner : opening.inner) corner = world_from_scene_ * corner;
+      opening.normal = world_from_scene_.rotation * opening.normal;
+    }
+  }
+
+  void add_station(const Station& station, std::size_t number) {
+    Rigid3 local_from_scan;
+    local_from_scan.rotation =
+        o_.any_rotation ? any_orientation(random_) : heading(random_.uniform(0.0, 2.0 * std::numbers::pi));
+    local_from_scan.translation = rounded(world_from_scene_ * station.position);
+    const Rigid3 scene_from_scan = inverse(world_from_scene_) * local_from_scan;
+    // The head stands upright whatever frame the points are given in.
+    const Rigid3 head{heading(random_.uniform(0.0, 2.0 * std::numbers::pi)), scene_from_scan.translation};
+    const std::size_t points = o_.points_indoor > 0 ? o_.points_indoor : recipe_.points_indoor;
+    const std::uint64_t seed = mix64(o_.seed * 1000 + number);
+    const auto pattern = [&](std::size_t pulses) { return station_pattern(head, pulses); };
+    const Sweep result = sweep_of(pattern, points, seed);
+    Scan scan;
+    scan.name = number < 10 ? "indoor_0" + std::to_string(number) : "indoor_" + std::to_string(number);
+    scan.centres = {Vector3d::Zero()};
+    scan.level = !o_.any_rotation;
+    const Rigid3 scan_from_scene = inverse(scene_from_scan);
+    for (const Echo& echo : result.echoes) {
+      scan.points.push_back(scan_from_scene * echo.point);
+      scan.intensities.push_back(echo.intensity);
+    }
+    ScanTruth truth{.name = scan.name,
+                    .room = static_cast<int>(station.room),
+                    .local_from_scan = local_from_scan,
+                    .plane_of_point = {}};
+    record(std::move(scan), std::move(truth), result);
+  }
+
+  void add_mobile() {
+    const std::size_t points = o_.points_outdoor > 0 ? o_.points_outdoor : recipe_.points_outdoor;
+    ScanPattern pattern;
+    const auto make = [&](std::size_t pulses) {
+      pattern = profiler_pattern(*recipe_.path, recipe_.profile_turn_rad, pulses);
+      return pattern;
+    };
+    const Sweep result = sweep_of(make, points, mix64(o_.seed * 1000 + 900));
+    const Drift drift(o_.drift_m, pattern.pulse(0, 0).time_s, pattern.pulse(pattern.lines - 1, 0).time_s,
+                      random_);
+    Scan scan;
+    scan.name = "outdoor";
+    scan.local_origin = origin_;
+    scan.level = true;
+    for (const Echo& echo : result.echoes) {
+      const Pulse pulse = pattern.pulse(echo.line, echo.index);
+      const Vector3d error = drift.at(pulse.time_s);
+      scan.points.push_back(world_from_scene_ * echo.point + error);
+      scan.centres.push_back(world_from_scene_ * pulse.origin + error);
+      scan.times_s.push_back(pulse.time_s);
+      scan.topology.line.push_back(static_cast<std::int32_t>(echo.line));
+      scan.topology.index.push_back(static_cast<std::int32_t>(echo.index));
+      scan.intensities.push_back(echo.intensity);
+    }
+    ScanTruth truth{.name = scan.name, .mobile = true, .local_from_scan = {}, .plane_of_point = {}};
+    record(std::move(scan), std::move(truth), result);
+  }
+
+  /// Fires as many pulses as give about `points` echoes: a thin sweep measures the share that comes back.
+  template <typename MakePattern>
+  [[nodiscard]] Sweep sweep_of(const MakePattern& pattern, std::size_t points, std::uint64_t seed) const {
+    const ScanPattern thin = pattern(20000);
+    const Sweep trial = sweep(caster_, recipe_.world.openings, thin, o_.scanner, seed);
+    const double share = std::max(0.02, static_cast<double>(trial.echoes.size()) /
+                                            static_cast<double>(thin.lines * thin.pulses_per_line));
+    const auto pulses = static_cast<std::size_t>(std::lround(static_cast<double>(points) / share));
+    return sweep(caster_, recipe_.world.openings, pattern(pulses), o_.scanner, seed);
+  }
+
+  void record(Scan scan, ScanTruth truth, const Sweep& result) {
+    std::vector<std::size_t> inliers(case_.truth.planes.size(), 0);
+    for (const Echo& echo : result.echoes) {
+      const int plane =
+          echo.surface < 0 ? -1 : merged_.plane_of_surface[static_cast<std::size_t>(echo.surface)];
+      truth.plane_of_point.push_back(plane);
+      if (plane >= 0) ++inliers[static_cast<std::size_t>(plane)];
+    }
+    for (std::size_t i = 0; i < inliers.size(); ++i) case_.truth.planes[i].inliers.push_back(inliers[i]);
+    for (std::size_t i = 0; i < result.sights.size(); ++i)
+      case_.truth.openings[i].sights.push_back(result.sights[i]);
+    case_.scans.push_back(std::move(scan));
+    case_.truth.scans.push_back(std::move(truth));
+  }
+
+  /// Drops planes nobody saw a point of, and renumbers.
+  void keep_seen_planes() {
+    Truth& truth = case_.truth;
+    std::vector<std::int32_t> renumbered(truth.planes.size(), -1);
+    std::vector<TruePlane> seen;
+    for (std::size_t i = 0; i < truth.planes.size(); ++i) {
+      const auto& counts = truth.planes[i].inliers;
+      if (std::none_of(counts.begin(), counts.end(), [](std::size_t n) { return n > 0; })) continue;
+      renumbered[i] = static_cast<std::int32_t>(seen.size());
+      seen.push_back(std::move(truth.planes[i]));
+    }
+    truth.planes = std::move(seen);
+    for (ScanTruth& scan : truth.scans)
+      for (std::int32_t& plane : scan.plane_of_point)
+        if (plane >= 0) plane = renumbered[static_cast<std::size_t>(plane)];
+  }
+
+  const SceneOptions& o_;
+  Monitor& monitor_;
+  Recipe recipe_;
+  RayCaster caster_;
+  MergedPlanes merged_;
+  RandomStream random_;
+  Rigid3 world_from_scene_;
+  Vector3d origin_ = Vector3d::Zero();
+  SimulatedCase case_;
+};
+
+}  // namespace
+
+void SceneOptions::check() const {
+  const auto names = scene_names();
+  if (std::find(names.begin(), names.end(), name) == names.end()) make_recipe(*this);
+  constexpr std::size_t kMost = 100000000;
+  if (points_indoor > kMost)
+    throw_bad_option("points_indoor", static_cast<double>(points_indoor), "at most 1e8");
+  if (points_outdoor > kMost)
+    throw_bad_option("points_outdoor", static_cast<double>(points_outdoor), "at most 1e8");
+  if (stations > 99) throw_bad_option("stations", static_cast<double>(stations), "at most 99");
+  if (facades > 2) throw_bad_option("facades", static_cast<double>(facades), "at most 2");
+  if (!(curtain_share <= 1.0)) throw_bad_option("curtain_share", curtain_share, "at most 1");
+  if (!(drift_m >= 0.0 && drift_m <= 1.0)) throw_bad_option("drift_m", drift_m, "between 0 and 1");
+  scanner.check();
+}
+
+SimulatedCase simulate(const SceneOptions& options, Monitor& monitor) {
+  options.check();
+  monitor.begin_stage("simulating");
+  return Simulation(options, monitor).run();
+}
+
+}  // namespace limen

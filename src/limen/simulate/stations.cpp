@@ -1,0 +1,133 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/simulate/stations.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include "limen/base/error.h"
+#include "limen/simulate/furniture.h"
+
+namespace limen {
+namespace {
+
+/// Finds places by trial: the building's plan proposes, rays dispose.
+class Surveyor {
+ public:
+  Surveyor(const Recipe& recipe, const RayCaster& caster, RandomStream& random)
+      : building_(recipe.world.buildings[0]), world_(recipe.world), caster_(caster), random_(random) {}
+
+  [[nodiscard]] std::optional<Station> in_room(std::size_t room, const std::vector<Station>& others) {
+    for (const double radius : {0.6, 0.45, 0.3}) {
+      for (int attempt = 0; attempt < 300; ++attempt) {
+        const Station station{random_point(room), room};
+        const bool apart = std::all_of(others.begin(), others.end(), [&](const Station& other) {
+          return (other.position - station.position).norm() > (attempt < 200 ? 1.2 : 0.5);
+        });
+        if (apart && clear(station, radius)) return station;
+      }
+    }
+    return std::nullopt;
+  }
+
+  /// Two stations on either side of one open door, in sight.
+  [[nodiscard]] std::vector<Station> through_a_door() {
+    std::vector<std::size_t> doors;
+    for (std::size_t i = 0; i < world_.openings.size(); ++i)
+      if (!world_.openings[i].exterior && !world_.openings[i].curtained) doors.push_back(i);
+    for (int attempt = 0; attempt < 4000 && !doors.empty(); ++attempt) {
+      const TrueOpening& door =
+          world_.openings[doors[random_.below(static_cast<std::uint32_t>(doors.size()))]];
+      const auto inner = static_cast<std::size_t>(door.rooms[0]);
+      const auto outer = static_cast<std::size_t>(door.rooms[1]);
+      if (small(inner) || small(outer)) continue;
+      const Station first{random_point(inner), inner};
+      const Station second{random_point(outer), outer};
+      if (clear(first, 0.4) && clear(second, 0.4) && in_sight(first.position, second.position))
+        return {first, second};
+    }
+    return {};
+  }
+
+ private:
+  [[nodiscard]] bool small(std::size_t room) const {
+    return signed_area(building_.plan.rooms[room].outline) < 7.0;
+  }
+
+  Vector3d random_point(std::size_t room) {
+    const Room& r = building_.plan.rooms[room];
+    Vector2d low = r.outline[0];
+    Vector2d high = low;
+    for (const Vector2d& p : r.outline) {
+      low = low.cwiseMin(p);
+      high = high.cwiseMax(p);
+    }
+    const double x = random_.uniform(low.x(), high.x());
+    const double y = random_.uniform(low.y(), high.y());
+    return {x, y, r.floor_m + random_.uniform(1.35, 1.75)};
+  }
+
+  /// Stands on the floor with nothing within `radius`.
+  [[nodiscard]] bool clear(const Station& station, double radius) const {
+    const Vector3d& p = station.position;
+    const Room& room = building_.plan.rooms[station.room];
+    if (!is_free(building_, station.room, {p.x(), p.y()}, radius)) return false;
+    const RayHit down = caster_.cast(p, -Vector3d::UnitZ());
+    if (!down.found() || std::abs(p.z() - down.range_m - room.floor_m) > 0.01) return false;
+    for (const double tilt : {-0.8, -0.3, 0.0, 0.4}) {
+      for (int i = 0; i < 24; ++i) {
+        const double azimuth = 2.0 * std::numbers::pi * i / 24;
+        const Vector3d direction(std::cos(tilt) * std::cos(azimuth), std::cos(tilt) * std::sin(azimuth),
+                                 std::sin(tilt));
+        const RayHit hit = caster_.cast(p, direction);
+        if (hit.found() && (hit.inside || hit.range_m * std::cos(tilt) < radius)) return false;
+      }
+    }
+    return true;
+  }
+
+  /// Nothing but open doorways in between.
+  [[nodiscard]] bool in_sight(const Vector3d& from, const Vector3d& to) const {
+    const double distance = (to - from).norm();
+    const Vector3d direction = (to - from) / distance;
+    double start = 0.0;
+    for (int step = 0; step < 6; ++step) {
+      const RayHit hit = caster_.cast(from, direction, start);
+      if (!hit.found() || hit.range_m > distance) return true;
+      const Surface& surface = caster_.mesh().surfaces()[static_cast<std::size_t>(hit.surface)];
+      if (surface.element != Element::portal) return false;
+      start = hit.range_m + 1e-3;
+    }
+    return false;
+  }
+
+  const Building& building_;
+  const World& world_;
+  const RayCaster& caster_;
+  RandomStream& random_;
+};
+
+}  // namespace
+
+std::vector<Station> place_stations(const Recipe& recipe, const RayCaster& caster, RandomStream& random) {
+  Surveyor surveyor(recipe, caster, random);
+  std::vector<Station> stations;
+  if (recipe.through_door) stations = surveyor.through_a_door();
+  for (std::size_t i = stations.size(); i < recipe.station_rooms.size(); ++i) {
+    const std::size_t wanted = recipe.station_rooms[i];
+    std::optional<Station> station = surveyor.in_room(wanted, stations);
+    // A room may be too full: then any other does.
+    const std::size_t rooms = recipe.world.buildings[0].plan.rooms.size();
+    for (std::size_t other = 0; !station && other < rooms; ++other)
+      station = surveyor.in_room((wanted + other) % rooms, stations);
+    if (!station)
+      throw Error("no room of the simulated building has space for a scanner", "limen simulate",
+                  "choose another --seed", Fault::internal);
+    stations.push_back(*station);
+  }
+  return stations;
+}
+
+}  // namespace limen

@@ -1,0 +1,33 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "limen/simulate/building.h"
+#include "limen/simulate/scanner.h"
+
+namespace limen {
+
+/// A street along some façades of a building and what stands in it.
+struct StreetOptions {
+  std::size_t first_edge = 0;    ///< of the envelope
+  std::size_t edges = 1;         ///< how many façades the street follows
+  double path_m = 8.0;           ///< from the façades to the vehicle's path
+  double opposite_m = 17.0;      ///< to the façades across the street; 0: none
+  double tree_spacing_m = 16.0;  ///< on the building's side; 0: no trees
+  double car_share = 0.5;        ///< of the parking places taken
+  double antenna_m = 2.4;        ///< height of the scanner above the road
+  FacadeOptions opposite;        ///< how the houses across look
+};
+
+/// The envelope's edges [first, first + count) moved outwards by `distance`: count + 1 corners.
+std::vector<Vector2d> offset_chain(const Ring& envelope, std::size_t first, std::size_t count,
+                                   double distance);
+
+/// Adds ground, pavement, houses across, trees, cars and poles; returns the path of the scanner.
+Trajectory add_street(World& world, std::size_t building, const StreetOptions& options, RandomStream& random);
+
+/// Ground all round, and a garden with trees behind the building's edge `edge`.
+void add_ground(World& world);
+void add_garden(World& world, std::size_t building, std::size_t edge, RandomStream& random);
+
+}  // namespace limen

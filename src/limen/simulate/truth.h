@@ -1,0 +1,123 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "limen/geometry/plane.h"
+#include "limen/model/scan.h"
+
+namespace limen {
+
+/// What a surface of the simulated world belongs to.
+enum class Element : std::uint8_t {
+  wall,
+  floor,
+  ceiling,
+  roof,
+  reveal,
+  frame,
+  mullion,
+  glass,
+  curtain,
+  blind,
+  door,
+  furniture,
+  stairs,
+  ground,
+  pavement,
+  ornament,
+  car,
+  tree,
+  pole,
+  portal  ///< the empty cross-section of an opening without glass: seen by nobody, counted by the simulator
+};
+
+/// The element's name as it stands in truth.json.
+inline const char* to_string(Element element) {
+  static constexpr std::array<const char*, 20> names = {
+      "wall",     "floor",    "ceiling", "roof", "reveal",    "frame",  "mullion",
+      "glass",    "curtain",  "blind",   "door", "furniture", "stairs", "ground",
+      "pavement", "ornament", "car",     "tree", "pole",      "portal"};
+  return names[static_cast<std::size_t>(element)];
+}
+
+/// A plane of the simulated world that at least one scan has a point on. Coplanar faces looking the same way
+/// are one plane.
+struct TruePlane {
+  Plane plane;                       ///< about Truth::local_origin; the normal points to the visible side
+  Element element = Element::wall;   ///< of the face with the largest area
+  double area_m2 = 0.0;              ///< of all its faces, openings taken out
+  std::vector<std::size_t> inliers;  ///< points of each scan on it
+};
+
+/// How one scan saw one opening.
+struct OpeningSight {
+  std::size_t crossed = 0;  ///< rays with an echo that crossed the glass or the free cross-section
+  std::size_t through = 0;  ///< of these, rays that came back from beyond the opening's own parts
+  std::size_t parts = 0;    ///< echoes on its reveals, frame, glass, curtain, door leaf
+  std::uint64_t cells = 0;  ///< 8 x 8 cells of the opening with a ray through: bit 8 * row + column
+};
+
+/// A window or door with its clear opening on both faces of the wall. Corners about Truth::local_origin, in
+/// order round the rectangle, seen from outside: lower left, lower right, upper right, upper left.
+struct TrueOpening {
+  std::string kind;                     ///< "window" or "door"
+  std::array<Vector3d, 4> outer;        ///< on the outer face (for inner walls: room rooms[1]'s face)
+  std::array<Vector3d, 4> inner;        ///< on the inner face (room rooms[0]'s)
+  Vector3d normal = Vector3d::UnitX();  ///< of the outer face
+  double thickness_m = 0.0;             ///< of the wall
+  bool exterior = false;                ///< between a room and the outside
+  bool glazed = false;
+  bool curtained = false;            ///< curtain or blind drawn, or door closed: nothing to see through
+  std::vector<int> rooms;            ///< one or two room numbers
+  std::vector<OpeningSight> sights;  ///< one per scan
+};
+
+/// What is true of one scan.
+struct ScanTruth {
+  std::string name;  ///< Scan::name
+  bool mobile = false;
+  int room = -1;                             ///< the room a station stands in
+  Rigid3 local_from_scan;                    ///< scan frame to world less Truth::local_origin
+  std::vector<std::int32_t> plane_of_point;  ///< index into Truth::planes or -1 (not planar, mixed pixel)
+};
+
+/// The exact truth of a simulated case. Coordinates are about local_origin (a whole number of metres):
+/// x_in_world = local_origin + x.
+struct Truth {
+  std::string scene;
+  std::uint64_t seed = 0;
+  Vector3d local_origin = Vector3d::Zero();
+  std::vector<TruePlane> planes;
+  std::vector<TrueOpening> openings;
+  std::vector<ScanTruth> scans;
+};
+
+/// The scan's own coordinates (local_origin included) to world coordinates.
+inline Rigid3 world_from_scan(const Truth& truth, std::size_t scan) {
+  Rigid3 pose = truth.scans[scan].local_from_scan;
+  // A mobile scan is already in world coordinates: there the pose is the identity, exactly.
+  if (!truth.scans[scan].mobile) pose.translation += truth.local_origin;
+  return pose;
+}
+
+/// The true pose between two scans, x_in_target = pose * x_in_source, each in its file's coordinates.
+inline Rigid3 true_target_from_source(const Truth& truth, std::size_t source, std::size_t target) {
+  const ScanTruth& from = truth.scans[source];
+  const ScanTruth& to = truth.scans[target];
+  const Rigid3 local = inverse(to.local_from_scan) * from.local_from_scan;
+  return to_world(local, from.mobile ? truth.local_origin : Vector3d::Zero(),
+                  to.mobile ? truth.local_origin : Vector3d::Zero());
+}
+
+/// Scans as a scanner would give them, and, apart, the truth.
+struct SimulatedCase {
+  std::vector<Scan> scans;
+  Truth truth;
+};
+
+}  // namespace limen
