@@ -1,0 +1,25 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+
+#include "limen/model/features.h"
+
+namespace limen {
+
+/// An optical centre found from the data, and how well the data bears it out.
+struct EstimatedCentre {
+  Vector3d centre = Vector3d::Zero();  ///< about the scan's local origin, metres
+  Vector3d up = Vector3d::UnitZ();     ///< the axis the scanner turned about, sign open
+  double misfit = 0.0;                 ///< median |log density - model|; below 0.08 the model holds
+};
+
+/// Where a static scanner must have stood, from the density of its points on planes: a scanner of even
+/// angular steps puts h / (r^3 cos e) points on a square metre of a plane at distance h, range r, elevation
+/// e. Robust fit of centre and rate over fully covered tiles (`features.samples`). Empty where there are too
+/// few tiles or the density does not follow the model (a joined, mobile or evenly thinned cloud). The
+/// scanner's vertical axis is taken from z and from the normals of the largest planes: whichever fits best.
+std::optional<EstimatedCentre> estimate_centre(const Features& features);
+
+}  // namespace limen
