@@ -15,7 +15,7 @@ namespace limen {
 bool can_be_scanner(const std::vector<Vector3d>& points, const Vector3d& candidate);
 
 /// The share of points that lie well behind another one of the same narrow direction, seen from
-/// `candidate`. About 0.1 from a true optical centre, about 0.5 from elsewhere.
+/// `candidate`. From true optical centres of real scans 0.002 to 0.19 was measured.
 double hidden_share(const std::vector<Vector3d>& points, const Vector3d& candidate);
 
 }  // namespace limen

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <utility>
 
 #include <fmt/format.h>
@@ -84,7 +85,7 @@ PlyProperty property_of(const Line& line) {
 
 /// The last three tokens as numbers.
 std::optional<Vector3d> last_three(const Tokens& tokens) {
-  if (tokens.size() < 4) return {};
+  if (tokens.size() < 5) return {};  // comment, topic, three numbers
   Vector3d x;
   for (int k = 0; k < 3; ++k) {
     const auto number = parse_number(tokens[tokens.size() - 3 + static_cast<std::size_t>(k)]);
@@ -94,23 +95,31 @@ std::optional<Vector3d> last_three(const Tokens& tokens) {
   return x;
 }
 
-/// Takes what a comment says about the frame; `tokens` begin with the word after "comment".
-void read_comment(const Tokens& tokens, PlyHeader& header) {
-  if (tokens.empty()) return;
-  std::string word = lower_case(tokens[0]);
+/// The first word of a comment without a colon or an equals sign behind it.
+std::string topic_of(const Tokens& tokens) {
+  std::string word = tokens.size() < 2 ? "" : lower_case(tokens[1]);
   while (!word.empty() && (word.back() == ':' || word.back() == '=')) word.pop_back();
-  if (word == "scanner_position") {
+  return word;
+}
+
+std::optional<Vector3d> offset_in_comment(const Tokens& tokens) {
+  static constexpr std::array<std::string_view, 5> kTopics{"offset", "pivot", "shift", "global_shift",
+                                                           "translation"};
+  if (std::find(kTopics.begin(), kTopics.end(), topic_of(tokens)) == kTopics.end()) return {};
+  return last_three(tokens);
+}
+
+/// Takes what a comment says about the frame; `tokens` begin with the word "comment" or "obj_info".
+void read_comment(const Tokens& tokens, PlyHeader& header) {
+  if (topic_of(tokens) == "scanner_position") {
     header.centre = last_three(tokens);
     header.centre_unknown = !header.centre;
     return;
   }
-  static constexpr std::array<std::string_view, 5> kWords{"offset", "pivot", "shift", "global_shift",
-                                                          "translation"};
-  if (header.has_offset || std::find(kWords.begin(), kWords.end(), word) == kWords.end()) return;
-  if (const std::optional<Vector3d> offset = last_three(tokens)) {
-    header.offset = *offset;
-    header.has_offset = true;
-  }
+  const std::optional<Vector3d> offset = header.has_offset ? std::nullopt : offset_in_comment(tokens);
+  if (!offset) return;
+  header.offset = *offset;
+  header.has_offset = true;
 }
 
 /// Takes one line; returns true at end_header.
@@ -126,7 +135,7 @@ bool read_line(const Line& line, PlyHeader& header) {
     if (header.elements.back().properties.size() >= kMostProperties) line.fail("too many properties");
     header.elements.back().properties.push_back(property_of(line));
   } else if (word == "comment" || word == "obj_info") {
-    read_comment(Tokens(line.tokens.begin() + 1, line.tokens.end()), header);
+    read_comment(line.tokens, header);
   } else if (!word.empty()) {
     line.fail(fmt::format("unknown word \"{}\"", word.substr(0, 40)));
   }
@@ -188,6 +197,12 @@ PlyHeader parse_ply_header(std::string_view bytes, const std::string& name) {
     return header;
   }
   bad_header("the header has no line \"end_header\"", header.lines.size(), name);
+}
+
+std::optional<Vector3d> offset_in_line(std::string_view header_line) {
+  const Tokens tokens = split_tokens(header_line);
+  if (tokens.empty() || (tokens[0] != "comment" && tokens[0] != "obj_info")) return {};
+  return offset_in_comment(tokens);
 }
 
 std::size_t ply_record_bytes(std::string_view bytes, std::size_t at, const PlyElement& element, bool swapped,

@@ -55,6 +55,9 @@ struct PlyHeader {
 /// word is offset, pivot, shift, global_shift or translation and three numbers end the line.
 PlyHeader parse_ply_header(std::string_view bytes, const std::string& name);
 
+/// The offset that a header line carries in the sense of parse_ply_header; empty where it carries none.
+std::optional<Vector3d> offset_in_line(std::string_view header_line);
+
 /// Bytes of the record at `at`, lists included; throws Error where the file ends before it.
 std::size_t ply_record_bytes(std::string_view bytes, std::size_t at, const PlyElement& element, bool swapped,
                              const std::string& name);

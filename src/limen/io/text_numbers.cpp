@@ -152,6 +152,10 @@ std::vector<std::string_view> split_tokens(std::string_view line) {
   return tokens;
 }
 
+bool holds_row(std::string_view line) {
+  return kind_of(line) != LineKind::nothing;
+}
+
 TextLine first_line(std::string_view text) {
   const std::size_t end = text.find_first_of("\r\n");
   if (end == std::string_view::npos) return {text, text.size()};

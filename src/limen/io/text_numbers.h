@@ -25,6 +25,9 @@ struct TextLine {
 };
 TextLine first_line(std::string_view text);
 
+/// False for lines that hold nothing: empty ones and comments that begin with #, % or //.
+bool holds_row(std::string_view line);
+
 /// Rows of numbers in a text.
 struct TextRows {
   std::size_t columns = 0;            ///< numbers wanted of each row; further ones are ignored
@@ -40,7 +43,7 @@ struct ParsedRows {
   std::size_t promised = 0;  ///< sum of the counts
 };
 
-/// Reads rows of numbers on all threads. Empty lines and lines that begin with #, % or // are no rows.
+/// Reads rows of numbers on all threads. Lines of which holds_row() is false are passed over.
 /// Throws Error with file and line where a row is too short or holds a word, and where rows are missing.
 ParsedRows parse_rows(std::string_view text, const TextRows& wanted, const std::string& name);
 
