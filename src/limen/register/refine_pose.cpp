@@ -1,0 +1,195 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/register/refine_pose.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include <Eigen/Cholesky>
+
+#include "limen/base/error.h"
+
+namespace limen {
+namespace {
+
+using Vector6d = Eigen::Matrix<double, 6, 1>;
+
+/// One tile against one plane, in the target's frame.
+struct Contact {
+  Vector3d at = Vector3d::Zero();
+  Vector3d normal = Vector3d::UnitZ();
+  double residual_m = 0.0;  // how far the source has to move along the normal
+  double sigma_m = 0.0;
+  double area_m2 = 0.0;
+  int source_plane = -1;
+  int target_plane = -1;
+};
+
+class Refiner {
+ public:
+  Refiner(const ScanView& source, const ScanView& target, const RefineOptions& options)
+      : source_(source), target_(target), options_(options) {}
+
+  [[nodiscard]] RefinedPose run(const Rigid3& start) const {
+    RefinedPose refined;
+    refined.target_from_source = start;
+    for (int round = 0; round < options_.rounds; ++round) {
+      const double share = static_cast<double>(round) / std::max(1, options_.rounds - 1);
+      const double gate =
+          options_.first_gate_m * std::pow(options_.last_gate_m / options_.first_gate_m, share);
+      const std::vector<Contact> contacts = contacts_of(refined.target_from_source, gate);
+      if (contacts.size() < 6) break;
+      adjust(contacts, gate, refined);
+    }
+    summarise(refined);
+    return refined;
+  }
+
+ private:
+  [[nodiscard]] double sigma_of(const SurfaceSample& sample, double noise_m) const {
+    return std::sqrt(noise_m * noise_m / static_cast<double>(sample.count) +
+                     options_.flatness_m * options_.flatness_m);
+  }
+
+  void collect(const ScanView& scan, const ScanView& judge, const Rigid3& judge_from_scan, double gate,
+               bool forth, const Rigid3& target_from_source, std::vector<Contact>& contacts) const {
+    if (judge.panorama == nullptr) return;
+    SightQuery query;
+    query.surface_m = gate;
+    query.free_m = 1e9;
+    const double noise = std::max(scan.features->noise_m, 0.0005);
+    for (const SurfaceSample& sample : scan.features->samples) {
+      if (sample.plane < 0) break;  // clutter follows the planes
+      query.at = judge_from_scan * sample.mean;
+      query.normal = judge_from_scan.rotation * sample.normal;
+      query.oriented = scan.features->planes[static_cast<std::size_t>(sample.plane)].oriented;
+      const Sight sight = judge.panorama->look(query);
+      if (sight.kind != SightKind::surface || sight.plane < 0) continue;
+      const PlanarPolygon& plane = judge.features->planes[static_cast<std::size_t>(sight.plane)];
+      Contact contact;
+      contact.sigma_m = sigma_of(sample, noise);
+      contact.area_m2 = static_cast<double>(sample.area_m2);
+      if (forth) {
+        contact.at = query.at;
+        contact.normal = plane.plane.normal;
+        contact.residual_m = -sight.distance_m;
+        contact.source_plane = sample.plane;
+        contact.target_plane = sight.plane;
+      } else {
+        contact.at = sample.mean;
+        contact.normal = target_from_source.rotation * plane.plane.normal;
+        contact.residual_m = sight.distance_m;
+        contact.source_plane = sight.plane;
+        contact.target_plane = sample.plane;
+      }
+      contacts.push_back(contact);
+    }
+  }
+
+  [[nodiscard]] std::vector<Contact> contacts_of(const Rigid3& pose, double gate) const {
+    std::vector<Contact> contacts;
+    collect(source_, target_, pose, gate, true, pose, contacts);
+    collect(target_, source_, inverse(pose), gate, false, pose, contacts);
+    return contacts;
+  }
+
+  static Vector3d middle_of(const std::vector<Contact>& contacts) {
+    Vector3d sum = Vector3d::Zero();
+    for (const Contact& contact : contacts) sum += contact.at;
+    return sum / static_cast<double>(contacts.size());
+  }
+
+  static Vector6d row_of(const Contact& contact, const Vector3d& centre) {
+    Vector6d row;
+    row << (contact.at - centre).cross(contact.normal), contact.normal;
+    return row;
+  }
+
+  /// Tukey's weight: nothing counts beyond the gate.
+  static double robust_weight(double residual, double gate) {
+    const double x = residual / gate;
+    return std::abs(x) >= 1.0 ? 0.0 : (1.0 - x * x) * (1.0 - x * x);
+  }
+
+  /// One Gauss-Newton step.
+  static void adjust(const std::vector<Contact>& contacts, double gate, RefinedPose& refined) {
+    const Vector3d centre = middle_of(contacts);
+    Matrix6d normal = Matrix6d::Zero();
+    Vector6d right = Vector6d::Zero();
+    for (const Contact& contact : contacts) {
+      const double weight = robust_weight(contact.residual_m, gate) / (contact.sigma_m * contact.sigma_m);
+      const Vector6d row = row_of(contact, centre);
+      normal += weight * row * row.transpose();
+      right += weight * contact.residual_m * row;
+    }
+    // Directions without information stay where they are.
+    const double damping = 1e-9 * normal.trace();
+    const Vector6d step = (normal + damping * Matrix6d::Identity()).ldlt().solve(right);
+    const Rigid3 move{rotation_exp(step.head<3>()), Vector3d::Zero()};
+    Rigid3& pose = refined.target_from_source;
+    pose.rotation = nearest_rotation(move.rotation * pose.rotation);
+    pose.translation = move.rotation * (pose.translation - centre) + centre + step.tail<3>();
+  }
+
+  void summarise(RefinedPose& refined) const {
+    const std::vector<Contact> contacts = contacts_of(refined.target_from_source, options_.last_gate_m);
+    refined.matched_tiles = static_cast<int>(contacts.size());
+    if (contacts.empty()) return;
+    refined.centre = middle_of(contacts);
+    double sum = 0.0;
+    double weights = 0.0;
+    struct Sums {
+      double area = 0.0, distance = 0.0;
+      int tiles = 0;
+    };
+    std::map<std::pair<int, int>, Sums> pairs;
+    for (const Contact& contact : contacts) {
+      const double weight = 1.0 / (contact.sigma_m * contact.sigma_m);
+      const Vector6d row = row_of(contact, refined.centre);
+      refined.information += weight * row * row.transpose();
+      sum += weight * contact.residual_m * contact.residual_m;
+      weights += weight;
+      Sums& pair = pairs[{contact.source_plane, contact.target_plane}];
+      pair.area += 0.5 * contact.area_m2;
+      pair.distance += 0.5 * contact.area_m2 * -contact.residual_m;
+      ++pair.tiles;
+    }
+    refined.rms_m = std::sqrt(sum / weights);
+    // The residuals themselves say how good the weights were.
+    const double factor = sum / std::max(1.0, static_cast<double>(contacts.size()) - 6.0);
+    refined.information /= std::max(factor, 1e-6);
+    for (const auto& [key, pair] : pairs) {
+      if (pair.tiles < 2) continue;
+      const Vector3d turned = refined.target_from_source.rotation *
+                              source_.features->planes[static_cast<std::size_t>(key.first)].plane.normal;
+      const double cosine =
+          std::abs(turned.dot(target_.features->planes[static_cast<std::size_t>(key.second)].plane.normal));
+      refined.matches.push_back(
+          {key.first, key.second, pair.distance / pair.area, std::acos(std::min(1.0, cosine)), pair.area});
+    }
+    std::stable_sort(refined.matches.begin(), refined.matches.end(),
+                     [](const PlaneMatch& a, const PlaneMatch& b) { return a.overlap_m2 > b.overlap_m2; });
+  }
+
+  const ScanView& source_;
+  const ScanView& target_;
+  const RefineOptions& options_;
+};
+
+}  // namespace
+
+void RefineOptions::check() const {
+  if (!(last_gate_m > 0)) throw_bad_option("last_gate_m", last_gate_m, "more than 0");
+  if (!(first_gate_m >= last_gate_m)) throw_bad_option("first_gate_m", first_gate_m, "at least last_gate_m");
+  if (rounds < 1) throw_bad_option("rounds", rounds, "1 or more");
+  if (!(flatness_m >= 0)) throw_bad_option("flatness_m", flatness_m, "0 or more");
+}
+
+RefinedPose refine_pose(const ScanView& source, const ScanView& target, const Rigid3& start,
+                        const RefineOptions& options) {
+  options.check();
+  return Refiner(source, target, options).run(start);
+}
+
+}  // namespace limen

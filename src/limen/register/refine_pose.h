@@ -1,0 +1,39 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "limen/model/result.h"
+#include "limen/register/score_pose.h"
+
+namespace limen {
+
+using Matrix6d = Eigen::Matrix<double, 6, 6>;
+
+struct RefineOptions {
+  double first_gate_m = 0.08;  ///< surfaces nearer than this are matched in the first round
+  double last_gate_m = 0.015;  ///< and in the last
+  int rounds = 12;
+  double flatness_m = 0.001;  ///< real walls are not flatter than this: least deviation of a tile
+
+  void check() const;
+};
+
+/// A pose after least squares, and what the data says of it.
+struct RefinedPose {
+  Rigid3 target_from_source;                ///< local frames
+  Vector3d centre = Vector3d::Zero();       ///< middle of the matched surface, target local frame
+  Matrix6d information = Matrix6d::Zero();  ///< of (rotation, translation) about `centre`, target axes, SI
+  double rms_m = 0.0;                       ///< weighted point-to-plane residual
+  int matched_tiles = 0;
+  std::vector<PlaneMatch> matches;  ///< pairs of planes with at least two matched tiles
+};
+
+/// Robust point-to-plane adjustment over all matched surface of both scans, both ways: each tile of one scan
+/// against the plane of the other that its scanner saw there (2021, 3.4: "then refine on all matched
+/// planes").
+RefinedPose refine_pose(const ScanView& source, const ScanView& target, const Rigid3& start,
+                        const RefineOptions& options);
+
+}  // namespace limen

@@ -1,0 +1,55 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/register/score_pose.h"
+
+namespace limen {
+namespace {
+
+constexpr double kClutterWeight = 0.5;  // clutter moves, and its cubes meet less sharply than planes
+
+/// Asks `judge` about every sample of `scan`.
+PoseScore one_way(const ScanView& scan, const ScanView& judge, const Rigid3& judge_from_scan,
+                  const ScoreOptions& options) {
+  PoseScore score;
+  if (judge.panorama == nullptr) return score;
+  SightQuery query;
+  query.free_m = options.free_m;
+  const std::vector<SurfaceSample>& samples = scan.features->samples;
+  for (std::size_t i = 0; i < samples.size(); i += options.stride) {
+    const SurfaceSample& sample = samples[i];
+    const bool planar = sample.plane >= 0;
+    query.at = judge_from_scan * sample.mean;
+    query.normal = planar ? Vector3d(judge_from_scan.rotation * sample.normal) : Vector3d::Zero();
+    query.oriented = planar && scan.features->planes[static_cast<std::size_t>(sample.plane)].oriented;
+    query.surface_m = planar ? options.surface_m : 1.5 * options.surface_m;
+    const Sight sight = judge.panorama->look(query);
+    const double area = static_cast<double>(sample.area_m2) * (planar ? 1.0 : kClutterWeight);
+    if (sight.kind == SightKind::surface) {
+      const double off = sight.distance_m / query.surface_m;
+      const double gain = area * (1.0 - off * off);
+      score.agreeing_m2 += gain;
+      if (planar) score.planar_m2 += gain;
+    } else if (sight.kind == SightKind::free) {
+      score.contradicted_m2 += area;
+    }
+    if (sight.kind != SightKind::unseen) score.tested_m2 += area;
+  }
+  return score;
+}
+
+}  // namespace
+
+PoseScore score_pose(const ScanView& source, const ScanView& target, const Rigid3& target_from_source,
+                     const ScoreOptions& options) {
+  const PoseScore forth = one_way(source, target, target_from_source, options);
+  const PoseScore back = one_way(target, source, inverse(target_from_source), options);
+  const double factor = 0.5 * static_cast<double>(options.stride);
+  PoseScore both;
+  both.agreeing_m2 = factor * (forth.agreeing_m2 + back.agreeing_m2);
+  both.planar_m2 = factor * (forth.planar_m2 + back.planar_m2);
+  both.contradicted_m2 = factor * (forth.contradicted_m2 + back.contradicted_m2);
+  both.tested_m2 = factor * (forth.tested_m2 + back.tested_m2);
+  return both;
+}
+
+}  // namespace limen

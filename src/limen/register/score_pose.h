@@ -1,0 +1,39 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+
+#include "limen/extract/panorama.h"
+#include "limen/model/features.h"
+
+namespace limen {
+
+/// One scan as registration sees it: its features and what its scanner knows of space.
+struct ScanView {
+  const Features* features = nullptr;
+  const Panorama* panorama = nullptr;  ///< null where the optical centre is unknown
+};
+
+struct ScoreOptions {
+  double surface_m = 0.06;  ///< surfaces nearer than this agree
+  double free_m = 0.10;     ///< matter this far inside seen free space is contradicted
+  std::size_t stride = 1;   ///< every stride-th sample is asked
+};
+
+/// How well a pose explains both scans, asked both ways and averaged: m^2 of each scan's surface that the
+/// other confirms (clipped, weighted 1 - d^2 / t^2: 2021, eq. 9-10 over the seen surface itself), and m^2
+/// standing where the other's rays passed free.
+struct PoseScore {
+  double agreeing_m2 = 0.0;
+  double planar_m2 = 0.0;  ///< of agreeing_m2: on planes
+  double contradicted_m2 = 0.0;
+  double tested_m2 = 0.0;  ///< surface that the other scan could have judged
+
+  [[nodiscard]] double value() const { return agreeing_m2 - 2.0 * contradicted_m2; }
+};
+
+PoseScore score_pose(const ScanView& source, const ScanView& target, const Rigid3& target_from_source,
+                     const ScoreOptions& options);
+
+}  // namespace limen
