@@ -45,7 +45,6 @@ PlanarPolygon transformed(const Rigid3& b_from_a, const PlanarPolygon& polygon_i
   moved.frame.u = b_from_a.rotation * polygon_in_a.frame.u;
   moved.frame.v = b_from_a.rotation * polygon_in_a.frame.v;
   moved.centroid = b_from_a * polygon_in_a.centroid;
-  moved.moments = b_from_a.rotation * polygon_in_a.moments * b_from_a.rotation.transpose();
   return moved;
 }
 
