@@ -9,7 +9,7 @@ foreach(source IN LISTS LIMEN_BENCHMARKS)
   string(REGEX REPLACE "_main$" "" target bench_${name})
   add_executable(${target} ${source})
   target_link_libraries(${target} PRIVATE limen limen_options fmt::fmt nlohmann_json::nlohmann_json
-    $<$<BOOL:${LIMEN_BUILD_SIMULATOR}>:limen_simulate>)
+    CLI11::CLI11 $<$<BOOL:${LIMEN_BUILD_SIMULATOR}>:limen_simulate>)
   if(NOT source MATCHES "_main\\.cpp$")
     target_link_libraries(${target} PRIVATE benchmark::benchmark_main)
   endif()

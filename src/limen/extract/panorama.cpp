@@ -17,7 +17,9 @@ constexpr double kSameNormal = 0.94;  // cosine: about 20 degrees
 
 Panorama::Panorama(const Scan& scan, const std::vector<std::int32_t>& labels, const Features& features,
                    const Vector3d& centre)
-    : features_(&features), centre_(centre) {
+    : centre_(centre) {
+  facets_.reserve(features.planes.size());
+  for (const PlanarPolygon& polygon : features.planes) facets_.push_back({polygon.plane, polygon.oriented});
   const double wanted = std::sqrt(static_cast<double>(scan.size()) / (6.0 * kPointsPerPixel));
   edge_ = static_cast<std::size_t>(std::clamp(wanted, 24.0, 384.0));
   pixels_.resize(6 * edge_ * edge_);
@@ -83,12 +85,12 @@ bool Panorama::on_surface(const SightQuery& query, const Vector3d& ray, const Pi
       sight = {SightKind::surface, -1, range - static_cast<double>(measured)};
       return true;
     }
-    const PlanarPolygon& polygon = features_->planes[static_cast<std::size_t>(plane)];
-    const double distance = polygon.plane.signed_distance(query.at);
+    const Facet& facet = facets_[static_cast<std::size_t>(plane)];
+    const double distance = facet.plane.signed_distance(query.at);
     if (std::abs(distance) > query.surface_m) return false;
     if (!query.normal.isZero()) {
-      const double cosine = query.normal.dot(polygon.plane.normal);
-      if ((query.oriented && polygon.oriented ? cosine : std::abs(cosine)) < kSameNormal) return false;
+      const double cosine = query.normal.dot(facet.plane.normal);
+      if ((query.oriented && facet.oriented ? cosine : std::abs(cosine)) < kSameNormal) return false;
     }
     // The plane must have been measured near here, not only somewhere else along it.
     if (std::abs(range - measured) > 0.3 + 0.03 * range) return false;

@@ -58,7 +58,11 @@ class Panorama {
   [[nodiscard]] bool on_surface(const SightQuery& query, const Vector3d& ray, const Pixel& pixel,
                                 Sight& sight) const;
 
-  const Features* features_;
+  struct Facet {
+    Plane plane;
+    bool oriented = false;
+  };
+  std::vector<Facet> facets_;
   Vector3d centre_;
   std::size_t edge_ = 0;  ///< pixels per cube edge
   std::vector<Pixel> pixels_;

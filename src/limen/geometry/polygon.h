@@ -31,14 +31,16 @@ bool contains(const Polygon& polygon, const Vector2d& p);
 /// column has two parts), and the points that support it.
 struct PlanarPolygon {
   Plane plane;
-  PlaneFrame frame;                                   ///< 2-D coordinates of `parts`
-  std::vector<Polygon> parts;                         ///< largest first
-  std::size_t inliers = 0;                            ///< points within the inlier threshold
-  double rms_m = 0.0;                                 ///< root mean square distance of the inliers
-  double area_m2 = 0.0;                               ///< of all parts, holes taken out
-  Vector3d centroid = Vector3d::Zero();               ///< mean of the inliers
-  bool oriented = false;                              ///< the normal points to the side the scanner saw
-  Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();  ///< covariance of the inliers, m^2
+  PlaneFrame frame;                      ///< 2-D coordinates of `parts`
+  std::vector<Polygon> parts;            ///< largest first
+  std::size_t inliers = 0;               ///< points within the inlier threshold
+  double rms_m = 0.0;                    ///< root mean square distance of the inliers
+  double area_m2 = 0.0;                  ///< of all parts, holes taken out
+  Vector3d centroid = Vector3d::Zero();  ///< mean of the inliers
+  bool oriented = false;                 ///< the normal points to the side the scanner saw
 };
+
+/// The same surface seen from behind: normal, frame and outlines turned round.
+PlanarPolygon flipped(const PlanarPolygon& polygon);
 
 }  // namespace limen

@@ -148,6 +148,7 @@ class Refiner {
       const double weight = 1.0 / (contact.sigma_m * contact.sigma_m);
       const Vector6d row = row_of(contact, refined.centre);
       refined.information += weight * row * row.transpose();
+      refined.geometry_m2 += 0.5 * contact.area_m2 * row * row.transpose();
       sum += weight * contact.residual_m * contact.residual_m;
       weights += weight;
       Sums& pair = pairs[{contact.source_plane, contact.target_plane}];

@@ -1,0 +1,174 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/register/register.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <utility>
+
+#include <Eigen/LU>
+
+#include "limen/base/error.h"
+#include "limen/base/parallel.h"
+#include "limen/register/prepare_scan.h"
+
+namespace limen {
+namespace {
+
+constexpr std::size_t kCoarseSamples = 1500;  // asked per scan when hundreds of poses are compared
+
+/// Names and times the stages of one registration.
+class StageClock {
+ public:
+  StageClock(std::vector<StageTime>& stages, Monitor& monitor) : stages_(stages), monitor_(monitor) {}
+
+  void begin(const char* name) {
+    monitor_.throw_if_cancelled();
+    monitor_.begin_stage(name);
+    name_ = name;
+    start_ = std::chrono::steady_clock::now();
+  }
+  void end() {
+    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start_;
+    stages_.push_back({name_, seconds.count()});
+  }
+
+ private:
+  std::vector<StageTime>& stages_;
+  Monitor& monitor_;
+  const char* name_ = "";
+  std::chrono::steady_clock::time_point start_;
+};
+
+/// The candidates that explain the scans best at a coarse look, best first.
+std::vector<PoseCandidate> shortlist(std::vector<PoseCandidate> candidates, const ScanView& source,
+                                     const ScanView& target, int most) {
+  ScoreOptions coarse;
+  const std::size_t samples = std::max(source.features->samples.size(), target.features->samples.size());
+  coarse.stride = 1 + samples / kCoarseSamples;
+  std::vector<double> values(candidates.size());
+  parallel_for(candidates.size(), 8, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      values[i] = score_pose(source, target, candidates[i].target_from_source, coarse).value();
+    }
+  });
+  std::vector<std::size_t> order(candidates.size());
+  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return values[a] > values[b]; });
+  std::vector<PoseCandidate> best;
+  for (const std::size_t i : order) {
+    if (static_cast<int>(best.size()) == most) break;
+    best.push_back(candidates[i]);
+  }
+  return best;
+}
+
+std::vector<JudgedPose> refine_all(const std::vector<PoseCandidate>& candidates, const ScanView& source,
+                                   const ScanView& target, const RegisterOptions& options) {
+  ScoreOptions fine;
+  const double noise = std::max(source.features->noise_m, target.features->noise_m);
+  fine.surface_m = std::clamp(4.0 * noise, 0.02, 0.05);
+  fine.free_m = fine.surface_m + 0.03;
+  std::vector<JudgedPose> judged(candidates.size());
+  parallel_for(candidates.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      judged[i].refined = refine_pose(source, target, candidates[i].target_from_source, options.refine);
+      judged[i].score = score_pose(source, target, judged[i].refined.target_from_source, fine);
+    }
+  });
+  return judged;
+}
+
+Hypothesis to_hypothesis(const JudgedPose& pose, const Scan& source, const Scan& target) {
+  Hypothesis hypothesis;
+  hypothesis.target_from_source =
+      to_world(pose.refined.target_from_source, source.local_origin, target.local_origin);
+  hypothesis.score = pose.score.value();
+  hypothesis.agreeing_m2 = pose.score.agreeing_m2;
+  hypothesis.contradicted_m2 = pose.score.contradicted_m2;
+  hypothesis.rms_m = pose.refined.rms_m;
+  hypothesis.matched_planes = static_cast<int>(pose.refined.matches.size());
+  return hypothesis;
+}
+
+PoseSigma sigma_of(const RefinedPose& pose, const Scan& target) {
+  PoseSigma sigma;
+  sigma.centre = pose.centre + target.local_origin;
+  const Matrix6d damped = pose.information + 1e-6 * Matrix6d::Identity();
+  const Matrix6d covariance = damped.inverse();
+  for (Eigen::Index k = 0; k < 3; ++k) {
+    sigma.rotation_rad[k] = std::sqrt(std::max(0.0, covariance(k, k)));
+    sigma.translation_m[k] = std::sqrt(std::max(0.0, covariance(k + 3, k + 3)));
+  }
+  return sigma;
+}
+
+/// Steps of one attempt: poses from planes, a coarse look, refinement.
+std::vector<JudgedPose> attempt(const PreparedScan& source, const PreparedScan& target, bool gravity_known,
+                                const RegisterOptions& options, StageClock& clock) {
+  clock.begin("hypotheses");
+  PoseEnumerationOptions enumerate = options.enumerate;
+  enumerate.gravity_known = gravity_known;
+  std::vector<PoseCandidate> candidates =
+      enumerate_poses(source.extracted.features, target.extracted.features, enumerate);
+  clock.end();
+  clock.begin("scoring");
+  candidates = shortlist(std::move(candidates), source.view(), target.view(), options.refined_poses);
+  clock.end();
+  clock.begin("refinement");
+  std::vector<JudgedPose> judged = refine_all(candidates, source.view(), target.view(), options);
+  clock.end();
+  return judged;
+}
+
+}  // namespace
+
+void RegisterOptions::check() const {
+  extract.check();
+  enumerate.check();
+  refine.check();
+  verdict.check();
+  if (refined_poses < 1) throw_bad_option("refined_poses", refined_poses, "1 or more");
+  if (alternatives < 0) throw_bad_option("alternatives", alternatives, "0 or more");
+}
+
+RegistrationResult register_scans(const Scan& source, const Scan& target, const RegisterOptions& options,
+                                  Monitor& monitor) {
+  options.check();
+  RegistrationResult result;
+  StageClock clock(result.stages, monitor);
+  clock.begin("source features");
+  const PreparedScan from = prepare_scan(source, options.extract, monitor);
+  clock.end();
+  clock.begin("target features");
+  const PreparedScan to = prepare_scan(target, options.extract, monitor);
+  clock.end();
+
+  const bool level = options.gravity == Gravity::up ||
+                     (options.gravity == Gravity::automatic && from.looks_level && to.looks_level);
+  std::vector<JudgedPose> poses = attempt(from, to, level, options, clock);
+  Verdict verdict = judge(poses, options.verdict);
+  if (level && options.gravity == Gravity::automatic && verdict.outcome == Outcome::no_match) {
+    poses = attempt(from, to, false, options, clock);
+    verdict = judge(poses, options.verdict);
+  }
+
+  result.outcome = verdict.outcome;
+  result.reason = verdict.reason;
+  result.unobserved = verdict.unobserved;
+  if (verdict.ranking.empty()) return result;
+  const JudgedPose& best = poses[verdict.ranking.front()];
+  result.best = to_hypothesis(best, source, target);
+  result.sigma = sigma_of(best.refined, target);
+  result.matches = best.refined.matches;
+  for (std::size_t k = 1; k < verdict.ranking.size() &&
+                          result.alternatives.size() < static_cast<std::size_t>(options.alternatives);
+       ++k) {
+    result.alternatives.push_back(to_hypothesis(poses[verdict.ranking[k]], source, target));
+  }
+  return result;
+}
+
+}  // namespace limen

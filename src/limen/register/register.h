@@ -1,0 +1,41 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+#include "limen/base/progress.h"
+#include "limen/extract/extract_features.h"
+#include "limen/match/enumerate_poses.h"
+#include "limen/model/result.h"
+#include "limen/register/refine_pose.h"
+#include "limen/register/verdict.h"
+
+namespace limen {
+
+/// What is known of the vertical.
+enum class Gravity {
+  automatic,  ///< level where the planes of both scans say so, else unknown
+  up,         ///< both z axes point up
+  unknown     ///< any orientation
+};
+
+struct RegisterOptions {
+  Gravity gravity = Gravity::automatic;
+  std::uint64_t seed = 1;
+  ExtractOptions extract;
+  PoseEnumerationOptions enumerate;
+  RefineOptions refine;
+  VerdictOptions verdict;
+  int refined_poses = 32;  ///< candidates that are refined and judged
+  int alternatives = 8;    ///< different poses reported besides the best
+
+  void check() const;
+};
+
+/// Registers two scans by planar polygons (2021), for any starting pose: the one-call door.
+/// Poses are between the scans' world coordinates: x_target = target_from_source * x_source.
+RegistrationResult register_scans(const Scan& source, const Scan& target, const RegisterOptions& options = {},
+                                  Monitor& monitor = silent_monitor());
+
+}  // namespace limen

@@ -1,0 +1,139 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/register/verdict.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <fmt/format.h>
+
+#include "limen/base/angles.h"
+#include "limen/base/error.h"
+
+namespace limen {
+namespace {
+
+bool same_pose(const RefinedPose& a, const RefinedPose& b, const VerdictOptions& options) {
+  const Matrix3d turn = a.target_from_source.rotation.transpose() * b.target_from_source.rotation;
+  if (rotation_angle(turn) > radians(options.same_rotation_deg)) return false;
+  // Where both poses put the middle of the surface matched by the first.
+  const Vector3d middle = inverse(a.target_from_source) * a.centre;
+  return (b.target_from_source * middle - a.centre).norm() <= options.same_shift_m;
+}
+
+/// Distinct poses, best value first.
+std::vector<std::size_t> rank(const std::vector<JudgedPose>& poses, const VerdictOptions& options) {
+  std::vector<std::size_t> order(poses.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return poses[a].score.value() > poses[b].score.value();
+  });
+  std::vector<std::size_t> distinct;
+  for (const std::size_t i : order) {
+    const bool known = std::any_of(distinct.begin(), distinct.end(), [&](std::size_t j) {
+      return same_pose(poses[j].refined, poses[i].refined, options);
+    });
+    if (!known) distinct.push_back(i);
+  }
+  return distinct;
+}
+
+bool contradicted(const PoseScore& score, const VerdictOptions& options) {
+  return score.contradicted_m2 > options.max_contradiction * score.agreeing_m2;
+}
+
+std::string direction_name(const Vector3d& d) {
+  if (std::abs(d.z()) > 0.996) return "the vertical";
+  return fmt::format("({:.2f}, {:.2f}, {:.2f})", d.x(), d.y(), d.z());
+}
+
+/// Directions in which a 3 x 3 information (m^2) is below the bound.
+void add_weak(const Matrix3d& information, double bound, bool rotation,
+              std::vector<UnobservedFreedom>& weak) {
+  const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(information);
+  for (Eigen::Index k = 0; k < 3; ++k) {
+    if (solver.eigenvalues()[k] >= bound) continue;
+    Vector3d d = solver.eigenvectors().col(k);
+    Eigen::Index largest = 0;
+    d.cwiseAbs().maxCoeff(&largest);
+    if (d[largest] < 0) d = -d;
+    weak.push_back({rotation, d, (rotation ? "turn about " : "shift along ") + direction_name(d)});
+  }
+}
+
+}  // namespace
+
+void VerdictOptions::check() const {
+  if (!(min_agreeing_m2 > 0)) throw_bad_option("min_agreeing_m2", min_agreeing_m2, "more than 0");
+  if (!(max_contradiction > 0)) throw_bad_option("max_contradiction", max_contradiction, "more than 0");
+  if (!(max_rival_share > 0 && max_rival_share < 1)) {
+    throw_bad_option("max_rival_share", max_rival_share, "within (0, 1)");
+  }
+  if (!(min_held_m2 > 0)) throw_bad_option("min_held_m2", min_held_m2, "more than 0");
+}
+
+std::vector<UnobservedFreedom> unobserved_freedoms(const RefinedPose& pose, double min_held_m2) {
+  const Matrix3d turns = pose.geometry_m2.topLeftCorner<3, 3>();
+  const Matrix3d shifts = pose.geometry_m2.bottomRightCorner<3, 3>();
+  const Matrix3d mixed = pose.geometry_m2.topRightCorner<3, 3>();
+  const Matrix3d damping = 1e-9 * Matrix3d::Identity();
+  // What is left of each block once the other is free (Schur complements).
+  const Matrix3d shift_held = shifts - mixed.transpose() * (turns + damping).inverse() * mixed;
+  const Matrix3d turn_held = turns - mixed * (shifts + damping).inverse() * mixed.transpose();
+  std::vector<UnobservedFreedom> weak;
+  add_weak(shift_held, min_held_m2, false, weak);
+  add_weak(turn_held, 0.25 * min_held_m2, true, weak);
+  return weak;
+}
+
+Verdict judge(const std::vector<JudgedPose>& poses, const VerdictOptions& options) {
+  options.check();
+  Verdict verdict;
+  verdict.ranking = rank(poses, options);
+  if (verdict.ranking.empty()) {
+    verdict.reason = "no planes of the two scans can be laid on one another";
+    return verdict;
+  }
+  const JudgedPose& best = poses[verdict.ranking.front()];
+  if (best.score.planar_m2 < options.min_agreeing_m2) {
+    verdict.reason =
+        fmt::format("the scans have only {:.1f} m2 of surface in common at best", best.score.planar_m2);
+    return verdict;
+  }
+  if (contradicted(best.score, options)) {
+    verdict.reason =
+        fmt::format("at best {:.1f} m2 agree, but {:.1f} m2 of one scan stand where the other saw free space",
+                    best.score.agreeing_m2, best.score.contradicted_m2);
+    return verdict;
+  }
+  const double value = best.score.value();
+  std::size_t rivals = 0;
+  for (std::size_t k = 1; k < verdict.ranking.size(); ++k) {
+    const PoseScore& other = poses[verdict.ranking[k]].score;
+    const bool near =
+        other.value() > options.max_rival_share * value || other.value() > value - options.min_lead_m2;
+    if (near && other.value() > 0) ++rivals;
+  }
+  verdict.unobserved = unobserved_freedoms(best.refined, options.min_held_m2);
+  if (!verdict.unobserved.empty()) {
+    verdict.outcome = Outcome::under_constrained;
+    verdict.reason = "the common surface does not fix the " + verdict.unobserved.front().name;
+    return verdict;
+  }
+  if (rivals > 0) {
+    verdict.outcome = Outcome::ambiguous;
+    verdict.reason = fmt::format("{} different pose{} explain{} the scans nearly as well", rivals,
+                                 rivals == 1 ? "" : "s", rivals == 1 ? "s" : "");
+    return verdict;
+  }
+  verdict.outcome = Outcome::registered;
+  verdict.reason =
+      fmt::format("{:.1f} m2 of surface agree, {:.1f} m2 are contradicted, no different pose comes near",
+                  best.score.agreeing_m2, best.score.contradicted_m2);
+  return verdict;
+}
+
+}  // namespace limen
