@@ -159,7 +159,11 @@ class Simulation {
       scan.topology.index.push_back(static_cast<std::int32_t>(echo.index));
       scan.intensities.push_back(echo.intensity);
     }
-    ScanTruth truth{.name = scan.name, .mobile = true, .local_from_scan = {}, .plane_of_point = {}};
+    ScanTruth truth{.name = scan.name,
+                    .mobile = true,
+                    .drift_m = o_.drift_m,
+                    .local_from_scan = {},
+                    .plane_of_point = {}};
     record(std::move(scan), std::move(truth), result);
   }
 

@@ -81,8 +81,9 @@ struct TrueOpening {
 struct ScanTruth {
   std::string name;  ///< Scan::name
   bool mobile = false;
-  int room = -1;                             ///< the room a station stands in
-  Rigid3 local_from_scan;                    ///< scan frame to world less Truth::local_origin
+  double drift_m = 0.0;    ///< error of the trajectory that was put in, one standard deviation per axis
+  int room = -1;           ///< the room a station stands in
+  Rigid3 local_from_scan;  ///< scan frame to world less Truth::local_origin
   std::vector<std::int32_t> plane_of_point;  ///< index into Truth::planes or -1 (not planar, mixed pixel)
 };
 

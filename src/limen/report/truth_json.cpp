@@ -1,0 +1,145 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/report/truth_json.h"
+
+#include <bit>
+
+#include "limen/report/json_values.h"
+
+namespace limen {
+namespace {
+
+std::string file_of(const std::string& scan_name) {
+  return scan_name + ".ply";
+}
+
+const char* kind_of(bool mobile) {
+  return mobile ? "mobile" : "station";
+}
+
+Json scans_json(const Truth& truth) {
+  Json scans = Json::array();
+  for (std::size_t i = 0; i < truth.scans.size(); ++i) {
+    const ScanTruth& scan = truth.scans[i];
+    Json json;
+    json["name"] = scan.name;
+    json["file"] = file_of(scan.name);
+    json["kind"] = kind_of(scan.mobile);
+    json["points"] = scan.plane_of_point.size();
+    json["room"] = scan.room >= 0 ? Json(scan.room) : Json(nullptr);
+    json["drift_m"] = scan.drift_m;
+    json["world_from_scan"] = json_of(to_matrix(world_from_scan(truth, i)));
+    scans.push_back(std::move(json));
+  }
+  return scans;
+}
+
+Json pairs_json(const Truth& truth) {
+  Json pairs = Json::array();
+  for (std::size_t source = 0; source < truth.scans.size(); ++source) {
+    for (std::size_t target = 0; target < truth.scans.size(); ++target) {
+      if (source == target) continue;
+      Json json;
+      json["source"] = file_of(truth.scans[source].name);
+      json["target"] = file_of(truth.scans[target].name);
+      json["target_from_source"] = json_of(to_matrix(true_target_from_source(truth, source, target)));
+      pairs.push_back(std::move(json));
+    }
+  }
+  return pairs;
+}
+
+Json planes_json(const Truth& truth) {
+  Json planes = Json::array();
+  for (std::size_t i = 0; i < truth.planes.size(); ++i) {
+    const TruePlane& plane = truth.planes[i];
+    Json json;
+    json["id"] = i;
+    json["class"] = to_string(plane.element);
+    json["normal"] = json_of(plane.plane.normal);
+    json["offset"] = shifted(plane.plane, -truth.local_origin).offset;
+    json["local_offset"] = plane.plane.offset;
+    json["area_m2"] = plane.area_m2;
+    json["inliers"] = plane.inliers;
+    planes.push_back(std::move(json));
+  }
+  return planes;
+}
+
+Json corners_json(const std::array<Vector3d, 4>& corners, const Vector3d& origin) {
+  Json json = Json::array();
+  for (const Vector3d& corner : corners) json.push_back(json_of(Vector3d(corner + origin)));
+  return json;
+}
+
+Json sights_json(const TrueOpening& opening, const Truth& truth) {
+  Json sights = Json::array();
+  for (std::size_t i = 0; i < opening.sights.size(); ++i) {
+    const OpeningSight& sight = opening.sights[i];
+    if (sight.crossed + sight.parts == 0) continue;
+    Json json;
+    json["scan"] = truth.scans[i].name;
+    json["crossed"] = sight.crossed;
+    json["through"] = sight.through;
+    json["parts"] = sight.parts;
+    json["share_through"] = std::popcount(sight.cells) / 64.0;
+    sights.push_back(std::move(json));
+  }
+  return sights;
+}
+
+Json openings_json(const Truth& truth) {
+  Json openings = Json::array();
+  for (std::size_t i = 0; i < truth.openings.size(); ++i) {
+    const TrueOpening& opening = truth.openings[i];
+    Json json;
+    json["id"] = i;
+    json["kind"] = opening.kind;
+    json["exterior"] = opening.exterior;
+    json["glazed"] = opening.glazed;
+    json["curtained"] = opening.curtained;
+    json["rooms"] = opening.rooms;
+    json["normal"] = json_of(opening.normal);
+    json["thickness_m"] = opening.thickness_m;
+    json["width_m"] = (opening.outer[1] - opening.outer[0]).norm();
+    json["height_m"] = (opening.outer[3] - opening.outer[0]).norm();
+    json["outer"] = corners_json(opening.outer, truth.local_origin);
+    json["inner"] = corners_json(opening.inner, truth.local_origin);
+    json["seen"] = sights_json(opening, truth);
+    openings.push_back(std::move(json));
+  }
+  return openings;
+}
+
+}  // namespace
+
+std::string truth_json(const Truth& truth) {
+  Json json;
+  json["scene"] = truth.scene;
+  json["seed"] = truth.seed;
+  json["units"] = "m";
+  json["local_origin"] = json_of(truth.local_origin);
+  json["scans"] = scans_json(truth);
+  json["pairs"] = pairs_json(truth);
+  json["planes"] = planes_json(truth);
+  json["openings"] = openings_json(truth);
+  return to_text(json);
+}
+
+std::string task_json(const SimulatedCase& simulated) {
+  Json json;
+  json["units"] = "m";
+  json["scans"] = Json::array();
+  for (const Scan& scan : simulated.scans)
+    json["scans"].push_back(
+        {{"file", file_of(scan.name)}, {"kind", kind_of(scan.mobile())}, {"level", scan.level}});
+  // A mobile scan is the one that is already where it belongs.
+  if (simulated.scans.size() > 1) {
+    const bool outdoor = simulated.scans.back().mobile();
+    json["source"] = file_of(simulated.scans.front().name);
+    json["target"] = file_of((outdoor ? simulated.scans.back() : simulated.scans[1]).name);
+  }
+  return to_text(json);
+}
+
+}  // namespace limen

@@ -1,0 +1,25 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "limen/simulate/truth.h"
+
+namespace limen {
+
+/// The truth of a simulated case as JSON text, all digits of every double: scene, seed, `local_origin`, and
+/// - `scans`: file, kind, points, `world_from_scan` (four rows of four);
+/// - `pairs`: `target_from_source` for every ordered pair of scans;
+/// - `planes`: id, normal (to the visible side), `offset` in the world and `local_offset` about local_origin
+///   (exact), class, area, `inliers` per scan;
+/// - `openings`: kind, rooms, wall normal and thickness, width, height, corners `outer` and `inner` in the
+///   world (lower left, lower right, upper right, upper left, seen from outside), and per scan the rays that
+///   crossed it, that came back from beyond, from its parts, and the share of its area seen through.
+/// The scans' files are named after them with ".ply".
+std::string truth_json(const Truth& truth);
+
+/// What a program under test may know of the case: files, what kind of scan each holds, which pair to join.
+std::string task_json(const SimulatedCase& simulated);
+
+}  // namespace limen
