@@ -20,6 +20,7 @@
 #include "limen/cli/command.h"
 #include "limen/cli/evaluate_command.h"
 #include "limen/cli/planes_command.h"
+#include "limen/cli/register_command.h"
 #include "limen/cli/terminal.h"
 
 #if __has_include("limen/cli/info_command.h")
@@ -84,6 +85,7 @@ void add_commands(CLI::App& app, Session& session) {
 #endif
   add_evaluate_command(app, session);
   add_planes_command(app, session);
+  add_register_command(app, session);
 #ifdef LIMEN_HAS_SIMULATE
   add_simulate_command(app, session);
 #endif

@@ -35,17 +35,19 @@ Vector3d parse_point(const std::string& text, const std::string& option) {
   return point;
 }
 
-void add_gravity_option(CLI::App& command, std::string& gravity) {
-  command
-      .add_option("--gravity", gravity,
-                  "up: the z axis of the files points up (default); unknown: it may point anywhere")
-      ->check(CLI::IsMember({"up", "unknown"}));
+void add_gravity_option(CLI::App& command, std::string& gravity, bool with_auto) {
+  const std::vector<std::string> known = with_auto ? std::vector<std::string>{"auto", "up", "unknown"}
+                                                   : std::vector<std::string>{"up", "unknown"};
+  std::string description = "up: the z axis of the files points up; unknown: it may point anywhere";
+  if (with_auto) description += "; auto: up where floors and walls say so";
+  command.add_option("--gravity", gravity, fmt::format("{} (default {})", description, gravity))
+      ->check(CLI::IsMember(known));
 }
 
 ReadOptions read_options(const std::string& origin, const std::string& option, const std::string& gravity) {
   ReadOptions options;
   if (!origin.empty()) options.origin = parse_point(origin, option);
-  options.level = gravity == "up";
+  options.level = gravity != "unknown";
   return options;
 }
 

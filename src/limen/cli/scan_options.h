@@ -13,11 +13,11 @@ namespace limen {
 /// "x,y,z" as three numbers. Throws Error that names `option`.
 Vector3d parse_point(const std::string& text, const std::string& option);
 
-/// Adds --gravity up|unknown: whether the z axis of the files points up.
-void add_gravity_option(CLI::App& command, std::string& gravity);
+/// Adds --gravity up|unknown, and auto where that is offered: whether the z axis of the files points up.
+void add_gravity_option(CLI::App& command, std::string& gravity, bool with_auto = false);
 
-/// What the user said of a scan: `origin` "x,y,z" or empty (`option` names it in messages), `gravity` "up"
-/// or "unknown".
+/// What the user said of a scan: `origin` "x,y,z" or empty (`option` names it in messages), `gravity`
+/// "auto", "up" or "unknown".
 ReadOptions read_options(const std::string& origin, const std::string& option, const std::string& gravity);
 
 /// Reads the one scan of a file.

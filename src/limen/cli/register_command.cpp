@@ -1,0 +1,176 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/cli/register_command.h"
+
+#include <chrono>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <fmt/format.h>
+
+#include "limen/base/angles.h"
+#include "limen/base/atomic_file.h"
+#include "limen/base/error.h"
+#include "limen/cli/scan_options.h"
+#include "limen/register/register.h"
+#include "limen/report/result_json.h"
+
+namespace limen {
+namespace {
+
+struct RegisterCommandOptions {
+  std::string source;
+  std::string target;
+  std::string folder;
+  std::string method = "auto";
+  std::string gravity = "auto";
+  std::string origin;
+  std::string source_origin;
+  std::string target_origin;
+};
+
+void check_method(const std::string& method) {
+  if (method == "auto" || method == "polygons") return;
+  throw Error(fmt::format("--method {} is not available yet", method), "", "use polygons, or auto");
+}
+
+Gravity gravity_of(const std::string& name) {
+  if (name == "up") return Gravity::up;
+  return name == "unknown" ? Gravity::unknown : Gravity::automatic;
+}
+
+/// The options of one side: what is said of it alone counts before what is said of both.
+ReadOptions side_options(const RegisterCommandOptions& options, const std::string& own,
+                         const std::string& name) {
+  return own.empty() ? read_options(options.origin, "--origin", options.gravity)
+                     : read_options(own, name, options.gravity);
+}
+
+OptionList reported(const RegisterCommandOptions& options) {
+  OptionList list = {{"method", options.method}, {"gravity", options.gravity}};
+  if (!options.origin.empty()) list.emplace_back("origin", options.origin);
+  if (!options.source_origin.empty()) list.emplace_back("source_origin", options.source_origin);
+  if (!options.target_origin.empty()) list.emplace_back("target_origin", options.target_origin);
+  return list;
+}
+
+RegistrationReport register_files(const RegisterCommandOptions& options, const Session& session) {
+  const ReadOptions source_options = side_options(options, options.source_origin, "--source-origin");
+  const ReadOptions target_options = side_options(options, options.target_origin, "--target-origin");
+  const auto start = std::chrono::steady_clock::now();
+  session.monitor->begin_stage("reading");
+  const Scan source = read_input(options.source, source_options, session);
+  const Scan target = read_input(options.target, target_options, session);
+  const std::chrono::duration<double> reading = std::chrono::steady_clock::now() - start;
+
+  RegisterOptions registering;
+  registering.gravity = gravity_of(options.gravity);
+  registering.seed = session.common.seed;
+  RegistrationReport report;
+  report.result = register_scans(source, target, registering, *session.monitor);
+  report.result.stages.insert(report.result.stages.begin(), {"reading", reading.count()});
+  report.source = summarise(options.source, source);
+  report.target = summarise(options.target, target);
+  report.options = reported(options);
+  report.seed = session.common.seed;
+  return report;
+}
+
+/// result.json comes last: where it is, the folder is complete. A transform of an earlier run must not
+/// outlive a run that found none.
+void write_results(const std::filesystem::path& folder, const RegistrationReport& report,
+                   const std::string& json) {
+  if (report.result.outcome == Outcome::no_match) {
+    std::filesystem::remove(folder / "transform.txt");
+  } else {
+    write_file(folder / "transform.txt", transform_text(report.result.best.target_from_source));
+  }
+  write_file(folder / "result.json", json);
+}
+
+std::string pose_summary(const RegistrationReport& report) {
+  const Hypothesis& best = report.result.best;
+  const PoseSigma& sigma = report.result.sigma;
+  const Vector3d& t = best.target_from_source.translation;
+  std::string text =
+      fmt::format("rotation    {:.4f} deg\n", degrees(rotation_angle(best.target_from_source.rotation)));
+  text += fmt::format("translation {:.4f} {:.4f} {:.4f} m\n", t.x(), t.y(), t.z());
+  text += fmt::format("sigma       {:.5f} deg, {:.2f} mm (the largest of three)\n",
+                      degrees(sigma.rotation_rad.maxCoeff()), 1e3 * sigma.translation_m.maxCoeff());
+  for (const UnobservedFreedom& freedom : report.result.unobserved) {
+    text += fmt::format("not fixed   {}\n", freedom.name);
+  }
+  if (!report.result.alternatives.empty()) {
+    text +=
+        fmt::format("others      {} different poses, see alternatives\n", report.result.alternatives.size());
+  }
+  return text;
+}
+
+std::string summary(const RegistrationReport& report, const std::string& folder) {
+  std::string text = fmt::format("{}: {}\n", to_string(report.result.outcome), report.result.reason);
+  if (report.result.outcome != Outcome::no_match) text += pose_summary(report);
+  double seconds = 0.0;
+  for (const StageTime& stage : report.result.stages) seconds += stage.seconds;
+  return text + fmt::format("in {:.2f} s; written to {}\n", seconds, folder);
+}
+
+int status_of(Outcome outcome) {
+  switch (outcome) {
+    case Outcome::registered:
+      return kExitOk;
+    case Outcome::ambiguous:
+    case Outcome::under_constrained:
+      return kExitUndecided;
+    case Outcome::no_match:
+      return kExitNoMatch;
+  }
+  return kExitInternal;
+}
+
+int run(const RegisterCommandOptions& options, const Session& session) {
+  check_method(options.method);
+  const OutputFolder folder(options.folder);
+  const RegistrationReport report = register_files(options, session);
+  const std::string json = result_json(report);
+  session.monitor->throw_if_cancelled();
+  write_results(folder.path(), report, json);
+  session.say(summary(report, options.folder));
+  session.answer(json);
+  return status_of(report.result.outcome);
+}
+
+void add_origin_options(CLI::App& command, RegisterCommandOptions& options) {
+  const auto add = [&command](const char* name, std::string& text, const char* description) {
+    command.add_option(name, text, description)->type_name("x,y,z");
+  };
+  add("--source-origin", options.source_origin,
+      "From where SOURCE was taken, in the coordinates of its points, metres");
+  add("--target-origin", options.target_origin, "The same for TARGET");
+  add("--origin", options.origin, "The same for both, where they were taken from one place of their frames");
+}
+
+}  // namespace
+
+void add_register_command(CLI::App& app, Session& session) {
+  auto options = std::make_shared<RegisterCommandOptions>();
+  CLI::App* command = add_command(app, session, "register",
+                                  "Find the pose of one scan in another; status 0: registered, "
+                                  "3: ambiguous or under-constrained, 4: no match",
+                                  [options, &session] { return run(*options, session); });
+  command->add_option("SOURCE", options->source, "The scan to be moved")->required();
+  command->add_option("TARGET", options->target, "The scan that stays")->required();
+  command->add_option("-o,--output", options->folder, "Folder for result.json and transform.txt")
+      ->required()
+      ->type_name("DIR");
+  command->add_option("--method", options->method, "What to match: auto (default) or polygons")
+      ->check(CLI::IsMember({"auto", "polygons", "openings", "hybrid", "segments"}));
+  add_gravity_option(*command, options->gravity, true);
+  add_origin_options(*command, *options);
+}
+
+}  // namespace limen
