@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limen/report/result_json.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "limen/base/version.h"
@@ -82,6 +84,23 @@ Json stages_json(const std::vector<StageTime>& stages) {
   return object;
 }
 
+/// Middle of the central 90 % of the points along each axis, about the local origin: a few echoes of the
+/// house across the street, seen through a window, do not move it.
+Vector3d middle_of(const std::vector<Vector3d>& points) {
+  if (points.empty()) return Vector3d::Zero();
+  constexpr std::size_t kEnough = 20000;
+  const std::size_t stride = 1 + points.size() / kEnough;
+  Vector3d middle;
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    std::vector<double> values;
+    for (std::size_t i = 0; i < points.size(); i += stride) values.push_back(points[i][axis]);
+    std::sort(values.begin(), values.end());
+    const std::size_t cut = values.size() / 20;
+    middle[axis] = 0.5 * (values[cut] + values[values.size() - 1 - cut]);
+  }
+  return middle;
+}
+
 }  // namespace
 
 InputSummary summarise(const std::string& path, const Scan& scan) {
@@ -91,7 +110,7 @@ InputSummary summarise(const std::string& path, const Scan& scan) {
   summary.points = scan.size();
   summary.low = scan.local_origin + extent.low;
   summary.high = scan.local_origin + extent.high;
-  summary.middle = scan.local_origin + 0.5 * (extent.low + extent.high);
+  summary.middle = scan.local_origin + middle_of(scan.points);
   summary.centre_known = scan.centre_known();
   summary.mobile = scan.mobile();
   return summary;

@@ -21,7 +21,7 @@ struct InputSummary {
   std::size_t points = 0;              ///< that could be used
   Vector3d low = Vector3d::Zero();     ///< extent of the points, metres, world
   Vector3d high = Vector3d::Zero();    ///< extent of the points, metres, world
-  Vector3d middle = Vector3d::Zero();  ///< of the extent: where a translation error is measured
+  Vector3d middle = Vector3d::Zero();  ///< of the central 90 % along each axis: where errors are measured
   bool centre_known = false;           ///< it is known from where the points were seen
   bool mobile = false;                 ///< the scanner moved
 };

@@ -101,14 +101,16 @@ TEST(JsonText, SurvivesTheWayThereAndBack) {
   EXPECT_EQ(to_text(json_of(Vector3d(1.5, infinite, -2))), "[1.5, null, -2.0]\n");
 }
 
-TEST(InputSummary, LiesInTheWorld) {
+TEST(InputSummary, LiesInTheWorldAndIgnoresStrays) {
   Scan scan;
   scan.local_origin = Vector3d(1e6, 6e6, 100);
-  scan.points = {Vector3d(0, 0, 0), Vector3d(2, 4, 6)};
+  for (int i = 0; i <= 100; ++i) scan.points.emplace_back(0.02 * i, 0.04 * i, 0.06 * i);
+  scan.points.emplace_back(500, 0, 0);
   scan.centres = {Vector3d::Zero()};
   const InputSummary summary = summarise("scan.ply", scan);
-  EXPECT_EQ(summary.middle, Vector3d(1000001, 6000002, 103));
-  EXPECT_EQ(summary.points, 2U);
+  EXPECT_NEAR((summary.middle - Vector3d(1000001, 6000002, 103)).norm(), 0.0, 0.1);
+  EXPECT_EQ(summary.high, Vector3d(1000500, 6000004, 106));
+  EXPECT_EQ(summary.points, 102U);
   EXPECT_TRUE(summary.centre_known);
   EXPECT_FALSE(summary.mobile);
 }
