@@ -86,6 +86,14 @@ TEST_F(CliTest, QuietSaysNothing) {
   EXPECT_EQ(done.out + done.err, "");
 }
 
+TEST_F(CliTest, AResultThatCannotBeToldIsAnError) {
+  if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "this machine has no /dev/full";
+  write_whole(work() / "pose.txt", kIdentity);
+  const std::string command = std::string(LIMEN_PROGRAM) + " evaluate " + (work() / "pose.txt").string() +
+                              " " + (work() / "pose.txt").string() + " > /dev/full 2> /dev/null";
+  EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 2);
+}
+
 TEST_F(CliTest, PlanesOfARoomAreSix) {
   write_room("room.xyz");
   const ProgramRun done = run({"planes", "room.xyz", "-o", "planes.json", "--json"});
@@ -105,6 +113,44 @@ TEST_F(CliTest, SameBytesForAnyNumberOfThreads) {
   ASSERT_EQ(run({"planes", "room.xyz", "-o", "one.json", "--threads", "1"}).status, 0);
   ASSERT_EQ(run({"planes", "room.xyz", "-o", "four.json", "--threads", "4"}).status, 0);
   EXPECT_EQ(read_whole(work() / "one.json"), read_whole(work() / "four.json"));
+}
+
+TEST_F(CliTest, RegisterWritesItsTwoFilesAndTheSameBytesEachTime) {
+  ASSERT_EQ(run({"simulate", "room", "-o", "room", "--points-indoor", "60000", "--seed", "5"}).status, 0);
+  const std::vector<std::string> scans = {"room/indoor_00.ply", "room/indoor_01.ply"};
+  const ProgramRun first = run({"register", scans[0], scans[1], "-o", "a", "--json", "--threads", "1"});
+  const ProgramRun second = run({"register", scans[0], scans[1], "-o", "b", "--json", "--threads", "3"});
+  EXPECT_EQ(first.err, "");
+  Json one = Json::parse(first.out);
+  Json two = Json::parse(second.out);
+  EXPECT_EQ(first.out, read_whole(work() / "a" / "result.json"));
+  ASSERT_EQ(first.status, 0) << first.out.substr(0, 300);
+  EXPECT_EQ(one["outcome"], "registered");
+  EXPECT_TRUE(one["stages"].contains("reading"));
+  one.erase("stages");
+  two.erase("stages");
+  EXPECT_EQ(one, two) << "only the times may differ";
+  EXPECT_EQ(read_whole(work() / "a" / "transform.txt"), read_whole(work() / "b" / "transform.txt"));
+
+  const ProgramRun judged = run({"evaluate", "a/result.json", "room/truth/truth.json", "--json"});
+  ASSERT_EQ(judged.status, 0) << judged.err;
+  const Json error = Json::parse(judged.out);
+  EXPECT_LT(error["translation_error_m"].get<double>(), 0.005);
+  EXPECT_LT(error["rotation_error_deg"].get<double>(), 0.05);
+}
+
+TEST_F(CliTest, NoMatchTakesAwayTheTransformOfAnEarlierRun) {
+  std::string line;
+  for (int i = 0; i < 1000; ++i) line += std::to_string(0.01 * i) + " 0 0\n";
+  write_whole(work() / "line.xyz", line);
+  std::filesystem::create_directory(work() / "out");
+  write_whole(work() / "out" / "transform.txt", kShifted);
+  const ProgramRun done = run({"register", "line.xyz", "line.xyz", "-o", "out"});
+  EXPECT_EQ(done.status, 4) << done.err;
+  EXPECT_FALSE(std::filesystem::exists(work() / "out" / "transform.txt"));
+  const Json json = Json::parse(read_whole(work() / "out" / "result.json"));
+  EXPECT_EQ(json["outcome"], "no_match");
+  EXPECT_TRUE(json["target_from_source"].is_null());
 }
 
 TEST_F(CliTest, InfoAnswersInJson) {

@@ -10,6 +10,8 @@
 #include <CLI/Formatter.hpp>
 #include <fmt/format.h>
 
+#include "limen/cli/terminal.h"
+
 namespace limen {
 namespace {
 
@@ -18,18 +20,33 @@ void print(std::FILE* stream, std::string_view text) {
   fmt::print(stream, "{}{}", text, text.back() == '\n' ? "" : "\n");
 }
 
+std::string not_a_seed(const std::string& text) {
+  const bool digits = !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;
+  return digits ? "" : fmt::format("{} is not a whole number of 0 or more", text);
+}
+
 }  // namespace
 
 void Session::say(std::string_view text) const {
-  if (!common.quiet && !common.json) print(stdout, text);
+  if (common.quiet || common.json) return;
+  wipe_progress();
+  print(stdout, text);
 }
 
 void Session::answer(std::string_view json_text) const {
-  if (common.json) print(stdout, json_text);
+  if (!common.json) return;
+  wipe_progress();
+  print(stdout, json_text);
 }
 
 void Session::note(std::string_view text) const {
-  if (!common.quiet) print(stderr, fmt::format("limen: {}", text));
+  if (common.quiet) return;
+  wipe_progress();
+  print(stderr, fmt::format("limen: {}", text));
+}
+
+void Session::wipe_progress() const {
+  if (auto* terminal = dynamic_cast<TerminalMonitor*>(monitor.get())) terminal->wipe();
 }
 
 void add_common_options(CLI::App& app, Session& session) {
@@ -44,6 +61,7 @@ void add_common_options(CLI::App& app, Session& session) {
       ->type_name("N")
       ->group(group);
   app.add_option("--seed", common.seed, "Seed of every random choice (default 1)")
+      ->check(not_a_seed)
       ->type_name("N")
       ->group(group);
 }

@@ -47,6 +47,9 @@ struct Session {
   void answer(std::string_view json_text) const;
   /// A remark: one line to stderr, or nowhere with --quiet.
   void note(std::string_view text) const;
+
+ private:
+  void wipe_progress() const;
 };
 
 /// Adds the subcommand `name` with its common options. The command adds its own to what is returned; its

@@ -47,7 +47,9 @@ int run(const PlanesOptions& options, const Session& session) {
   options.extract.check();
   refuse_same_file(options.output, options.scan);
   const ReadOptions reading = read_options(options.origin, "--origin", options.gravity);
+  session.monitor->begin_stage("reading");
   const Scan scan = read_input(options.scan, reading, session);
+  session.monitor->begin_stage("planes");
   // Opened before the long work: a place that cannot be written to is told at once.
   AtomicFile file(options.output);
   const Features features = extract_features(scan, options.extract, *session.monitor).features;

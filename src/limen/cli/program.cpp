@@ -3,6 +3,7 @@
 #include "limen/cli/program.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <iostream>
 #include <memory>
 #include <new>
@@ -99,6 +100,9 @@ int run_action(Session& session) {
     const InterruptGuard guard(*session.monitor);
     const int status = session.action();
     session.monitor.reset();
+    if (std::fflush(stdout) != 0) {
+      return fail("standard output: cannot be written (free some room, or read all of it)", kExitBadInput);
+    }
     return status;
   } catch (const Error& error) {
     session.monitor.reset();

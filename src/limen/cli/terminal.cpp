@@ -32,7 +32,12 @@ void install(void (*handler)(int)) {
 }  // namespace
 
 TerminalMonitor::~TerminalMonitor() {
+  wipe();
+}
+
+void TerminalMonitor::wipe() {
   if (line_open_) fmt::print(stderr, "\r\x1b[K");
+  line_open_ = false;
 }
 
 void TerminalMonitor::begin_stage(std::string_view name) {

@@ -17,6 +17,8 @@ class TerminalMonitor : public Monitor {
   ~TerminalMonitor() override;
   void begin_stage(std::string_view name) override;
   void advance(double done, double total) override;
+  /// Takes the line away, before something else is printed.
+  void wipe();
 
  private:
   void draw(int percent);
