@@ -124,7 +124,7 @@ class Refiner {
       right += weight * contact.residual_m * row;
     }
     // Directions without information stay where they are.
-    const double damping = 1e-9 * normal.trace();
+    const double damping = 1e-4 * normal.trace();
     const Vector6d step = (normal + damping * Matrix6d::Identity()).ldlt().solve(right);
     const Rigid3 move{rotation_exp(step.head<3>()), Vector3d::Zero()};
     Rigid3& pose = refined.target_from_source;

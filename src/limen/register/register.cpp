@@ -16,7 +16,8 @@
 namespace limen {
 namespace {
 
-constexpr std::size_t kCoarseSamples = 1500;  // asked per scan when hundreds of poses are compared
+constexpr std::size_t kFirstLook = 400;    // samples asked per scan when thousands of poses are compared
+constexpr std::size_t kSecondLook = 2000;  // and when hundreds are
 
 /// Names and times the stages of one registration.
 class StageClock {
@@ -41,12 +42,12 @@ class StageClock {
   std::chrono::steady_clock::time_point start_;
 };
 
-/// The candidates that explain the scans best at a coarse look, best first.
-std::vector<PoseCandidate> shortlist(std::vector<PoseCandidate> candidates, const ScanView& source,
-                                     const ScanView& target, int most) {
+/// The `most` candidates that explain the scans best when about `samples` pieces of each are asked, best
+/// first.
+std::vector<PoseCandidate> best_of(const std::vector<PoseCandidate>& candidates, const ScanView& source,
+                                   const ScanView& target, std::size_t samples, std::size_t most) {
   ScoreOptions coarse;
-  const std::size_t samples = std::max(source.features->samples.size(), target.features->samples.size());
-  coarse.stride = 1 + samples / kCoarseSamples;
+  coarse.stride = 1 + std::max(source.features->samples.size(), target.features->samples.size()) / samples;
   std::vector<double> values(candidates.size());
   parallel_for(candidates.size(), 8, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
@@ -57,11 +58,9 @@ std::vector<PoseCandidate> shortlist(std::vector<PoseCandidate> candidates, cons
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return values[a] > values[b]; });
+  if (order.size() > most) order.resize(most);
   std::vector<PoseCandidate> best;
-  for (const std::size_t i : order) {
-    if (static_cast<int>(best.size()) == most) break;
-    best.push_back(candidates[i]);
-  }
+  for (const std::size_t i : order) best.push_back(candidates[i]);
   return best;
 }
 
@@ -115,7 +114,9 @@ std::vector<JudgedPose> attempt(const PreparedScan& source, const PreparedScan& 
       enumerate_poses(source.extracted.features, target.extracted.features, enumerate);
   clock.end();
   clock.begin("scoring");
-  candidates = shortlist(std::move(candidates), source.view(), target.view(), options.refined_poses);
+  const auto refined = static_cast<std::size_t>(options.refined_poses);
+  candidates = best_of(candidates, source.view(), target.view(), kFirstLook, 8 * refined);
+  candidates = best_of(candidates, source.view(), target.view(), kSecondLook, refined);
   clock.end();
   clock.begin("refinement");
   std::vector<JudgedPose> judged = refine_all(candidates, source.view(), target.view(), options);

@@ -30,7 +30,9 @@ struct PoseScore {
   double contradicted_m2 = 0.0;
   double tested_m2 = 0.0;  ///< surface that the other scan could have judged
 
-  [[nodiscard]] double value() const { return agreeing_m2 - 2.0 * contradicted_m2; }
+  /// What poses are ranked by, m^2. One contradicted square metre outweighs several agreeing ones: surfaces
+  /// meet by chance, but matter cannot stand where a ray passed.
+  [[nodiscard]] double value() const { return agreeing_m2 - 4.0 * contradicted_m2; }
 };
 
 PoseScore score_pose(const ScanView& source, const ScanView& target, const Rigid3& target_from_source,

@@ -42,7 +42,15 @@ std::vector<std::size_t> rank(const std::vector<JudgedPose>& poses, const Verdic
 }
 
 bool contradicted(const PoseScore& score, const VerdictOptions& options) {
-  return score.contradicted_m2 > options.max_contradiction * score.agreeing_m2;
+  const double evidence = std::min(1.0, score.agreeing_m2 / options.full_evidence_m2);
+  return score.contradicted_m2 > options.max_contradiction * evidence * score.agreeing_m2;
+}
+
+bool is_rival(const PoseScore& other, double best_value, const VerdictOptions& options) {
+  if (other.value() <= 0 || other.contradicted_m2 > options.max_rival_contradiction * other.agreeing_m2)
+    return false;
+  return other.value() > options.max_rival_share * best_value ||
+         other.value() > best_value - options.min_lead_m2;
 }
 
 std::string direction_name(const Vector3d& d) {
@@ -112,10 +120,7 @@ Verdict judge(const std::vector<JudgedPose>& poses, const VerdictOptions& option
   const double value = best.score.value();
   std::size_t rivals = 0;
   for (std::size_t k = 1; k < verdict.ranking.size(); ++k) {
-    const PoseScore& other = poses[verdict.ranking[k]].score;
-    const bool near =
-        other.value() > options.max_rival_share * value || other.value() > value - options.min_lead_m2;
-    if (near && other.value() > 0) ++rivals;
+    if (is_rival(poses[verdict.ranking[k]].score, value, options)) ++rivals;
   }
   verdict.unobserved = unobserved_freedoms(best.refined, options.min_held_m2);
   if (!verdict.unobserved.empty()) {

@@ -18,11 +18,13 @@ struct JudgedPose {
 
 struct VerdictOptions {
   double min_agreeing_m2 = 2.5;     ///< common planar surface that a pose must show
-  double max_contradiction = 0.20;  ///< contradicted over agreeing surface
-  double max_rival_share = 0.80;    ///< a different pose with more of the best value is a rival
-  double min_lead_m2 = 1.0;         ///< the best pose must lead every different one by this
-  double min_held_m2 = 0.25;        ///< surface (times lever^2 for turns) that must hold each freedom
-  double same_rotation_deg = 1.0;   ///< poses nearer than both bounds are one pose
+  double max_contradiction = 0.10;  ///< contradicted over agreeing surface
+  double full_evidence_m2 = 10.0;  ///< with less agreeing surface, proportionally less contradiction is borne
+  double max_rival_contradiction = 0.25;  ///< a pose contradicted more than this is no rival
+  double max_rival_share = 0.80;          ///< a different pose with more of the best value is a rival
+  double min_lead_m2 = 1.0;               ///< the best pose must lead every different one by this
+  double min_held_m2 = 0.06;              ///< surface (times lever^2 for turns) that must hold each freedom
+  double same_rotation_deg = 1.0;         ///< poses nearer than both bounds are one pose
   double same_shift_m = 0.05;
 
   void check() const;
