@@ -20,21 +20,14 @@
 #include "limen/base/version.h"
 #include "limen/cli/command.h"
 #include "limen/cli/evaluate_command.h"
+#include "limen/cli/info_command.h"
 #include "limen/cli/planes_command.h"
 #include "limen/cli/register_command.h"
 #include "limen/cli/terminal.h"
-
-#if __has_include("limen/cli/info_command.h")
-#include "limen/cli/info_command.h"
-#define LIMEN_HAS_INFO 1
-#endif
-#if __has_include("limen/cli/transform_command.h")
 #include "limen/cli/transform_command.h"
-#define LIMEN_HAS_TRANSFORM 1
-#endif
-#if defined(LIMEN_WITH_SIMULATOR) && __has_include("limen/cli/simulate_command.h")
+
+#ifdef LIMEN_WITH_SIMULATOR
 #include "limen/cli/simulate_command.h"
-#define LIMEN_HAS_SIMULATE 1
 #endif
 
 namespace limen {
@@ -78,16 +71,12 @@ int status_of(Fault fault) {
 }
 
 void add_commands(CLI::App& app, Session& session) {
-#ifdef LIMEN_HAS_INFO
   add_info_command(app, session);
-#endif
-#ifdef LIMEN_HAS_TRANSFORM
-  add_transform_command(app, session);
-#endif
-  add_evaluate_command(app, session);
   add_planes_command(app, session);
   add_register_command(app, session);
-#ifdef LIMEN_HAS_SIMULATE
+  add_transform_command(app, session);
+  add_evaluate_command(app, session);
+#ifdef LIMEN_WITH_SIMULATOR
   add_simulate_command(app, session);
 #endif
 }
