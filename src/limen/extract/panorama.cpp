@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "limen/base/parallel.h"
 
@@ -11,15 +12,12 @@ namespace limen {
 namespace {
 
 constexpr double kPointsPerPixel = 2.0;
-constexpr double kSameNormal = 0.94;  // cosine: about 20 degrees
 
 }  // namespace
 
 Panorama::Panorama(const Scan& scan, const std::vector<std::int32_t>& labels, const Features& features,
                    const Vector3d& centre)
-    : centre_(centre) {
-  facets_.reserve(features.planes.size());
-  for (const PlanarPolygon& polygon : features.planes) facets_.push_back({polygon.plane, polygon.oriented});
+    : facets_(facets_of(features)), centre_(centre) {
   const double wanted = std::sqrt(static_cast<double>(scan.size()) / (6.0 * kPointsPerPixel));
   edge_ = static_cast<std::size_t>(std::clamp(wanted, 24.0, 384.0));
   pixels_.resize(6 * edge_ * edge_);
@@ -85,16 +83,11 @@ bool Panorama::on_surface(const SightQuery& query, const Vector3d& ray, const Pi
       sight = {SightKind::surface, -1, range - static_cast<double>(measured)};
       return true;
     }
-    const Facet& facet = facets_[static_cast<std::size_t>(plane)];
-    const double distance = facet.plane.signed_distance(query.at);
-    if (std::abs(distance) > query.surface_m) return false;
-    if (!query.normal.isZero()) {
-      const double cosine = query.normal.dot(facet.plane.normal);
-      if ((query.oriented && facet.oriented ? cosine : std::abs(cosine)) < kSameNormal) return false;
-    }
+    const std::optional<double> distance = distance_if_same(query, facets_[static_cast<std::size_t>(plane)]);
+    if (!distance) return false;
     // The plane must have been measured near here, not only somewhere else along it.
     if (std::abs(range - measured) > 0.3 + 0.03 * range) return false;
-    sight = {SightKind::surface, plane, distance};
+    sight = {SightKind::surface, plane, *distance};
     return true;
   };
   return test(pixel.near_m, pixel.near_plane) ||

@@ -7,6 +7,8 @@
 
 #include "limen/base/angles.h"
 #include "limen/extract/estimate_centre.h"
+#include "limen/extract/panorama.h"
+#include "limen/extract/voxel_map.h"
 #include "limen/match/enumerate_rotations.h"
 
 namespace limen {
@@ -44,18 +46,21 @@ PreparedScan prepare_scan(const Scan& scan, const ExtractOptions& options, Monit
   prepared.extracted = extract_features(scan, options, monitor);
   Features& features = prepared.extracted.features;
   prepared.looks_level = looks_level(features);
-  if (scan.mobile()) return prepared;
-  Vector3d centre = Vector3d::Zero();
-  if (scan.centre_known()) {
+  std::optional<Vector3d> centre;
+  if (scan.centres.size() == 1) {
     centre = scan.centre(0);
-  } else {
-    const std::optional<EstimatedCentre> estimated = estimate_centre(features);
-    if (!estimated) return prepared;
-    centre = estimated->centre;
-    prepared.centre_estimated = true;
-    orient(features, centre);
+  } else if (!scan.centre_known()) {
+    if (const std::optional<EstimatedCentre> estimated = estimate_centre(features)) {
+      centre = estimated->centre;
+      prepared.centre_estimated = true;
+      orient(features, *centre);
+    }
   }
-  prepared.panorama = std::make_unique<Panorama>(scan, prepared.extracted.labels, features, centre);
+  if (centre) {
+    prepared.space = std::make_unique<Panorama>(scan, prepared.extracted.labels, features, *centre);
+  } else {
+    prepared.space = std::make_unique<VoxelMap>(scan, features);
+  }
   return prepared;
 }
 

@@ -14,11 +14,11 @@ namespace limen {
 /// A scan made ready for registration: features, labels, and its view of space.
 struct PreparedScan {
   ExtractedFeatures extracted;
-  std::unique_ptr<Panorama> panorama;  ///< null where no optical centre is known or can be estimated
-  bool centre_estimated = false;       ///< the scan did not say where the scanner was
-  bool looks_level = false;            ///< a main direction of its planes is the z axis
+  std::unique_ptr<SpaceView> space;  ///< a panorama for a static station, else a map of cubes
+  bool centre_estimated = false;     ///< the scan did not say where the scanner was
+  bool looks_level = false;          ///< a main direction of its planes is the z axis
 
-  [[nodiscard]] ScanView view() const { return {&extracted.features, panorama.get()}; }
+  [[nodiscard]] ScanView view() const { return {&extracted.features, space.get()}; }
 };
 
 /// Features of `scan`, its optical centre (estimated where the scan does not say) and its depth panorama.

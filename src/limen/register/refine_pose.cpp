@@ -54,7 +54,7 @@ class Refiner {
 
   void collect(const ScanView& scan, const ScanView& judge, const Rigid3& judge_from_scan, double gate,
                bool forth, const Rigid3& target_from_source, std::vector<Contact>& contacts) const {
-    if (judge.panorama == nullptr) return;
+    if (judge.space == nullptr) return;
     SightQuery query;
     query.surface_m = gate;
     query.free_m = 1e9;
@@ -64,7 +64,7 @@ class Refiner {
       query.at = judge_from_scan * sample.mean;
       query.normal = judge_from_scan.rotation * sample.normal;
       query.oriented = scan.features->planes[static_cast<std::size_t>(sample.plane)].oriented;
-      const Sight sight = judge.panorama->look(query);
+      const Sight sight = judge.space->look(query);
       if (sight.kind != SightKind::surface || sight.plane < 0) continue;
       const PlanarPolygon& plane = judge.features->planes[static_cast<std::size_t>(sight.plane)];
       Contact contact;

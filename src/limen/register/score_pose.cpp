@@ -11,7 +11,7 @@ constexpr double kClutterWeight = 0.5;  // clutter moves, and its cubes meet les
 PoseScore one_way(const ScanView& scan, const ScanView& judge, const Rigid3& judge_from_scan,
                   const ScoreOptions& options) {
   PoseScore score;
-  if (judge.panorama == nullptr) return score;
+  if (judge.space == nullptr) return score;
   SightQuery query;
   query.free_m = options.free_m;
   const std::vector<SurfaceSample>& samples = scan.features->samples;
@@ -22,7 +22,7 @@ PoseScore one_way(const ScanView& scan, const ScanView& judge, const Rigid3& jud
     query.normal = planar ? Vector3d(judge_from_scan.rotation * sample.normal) : Vector3d::Zero();
     query.oriented = planar && scan.features->planes[static_cast<std::size_t>(sample.plane)].oriented;
     query.surface_m = planar ? options.surface_m : 1.5 * options.surface_m;
-    const Sight sight = judge.panorama->look(query);
+    const Sight sight = judge.space->look(query);
     const double area = static_cast<double>(sample.area_m2) * (planar ? 1.0 : kClutterWeight);
     if (sight.kind == SightKind::surface) {
       const double off = sight.distance_m / query.surface_m;

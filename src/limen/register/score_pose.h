@@ -4,7 +4,7 @@
 
 #include <memory>
 
-#include "limen/extract/panorama.h"
+#include "limen/extract/space_view.h"
 #include "limen/model/features.h"
 
 namespace limen {
@@ -12,7 +12,7 @@ namespace limen {
 /// One scan as registration sees it: its features and what its scanner knows of space.
 struct ScanView {
   const Features* features = nullptr;
-  const Panorama* panorama = nullptr;  ///< null where the optical centre is unknown
+  const SpaceView* space = nullptr;  ///< what its scanner knows of space
 };
 
 struct ScoreOptions {
