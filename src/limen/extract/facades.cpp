@@ -1,0 +1,70 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/extract/facades.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <utility>
+
+#include "limen/base/error.h"
+#include "limen/geometry/polygon_clip.h"
+
+namespace limen {
+namespace {
+
+/// Extent of the outer rings along a direction of space.
+double extent_along(const PlanarPolygon& polygon, const Vector3d& direction) {
+  double low = std::numeric_limits<double>::infinity();
+  double high = -low;
+  for (const Polygon& part : polygon.parts) {
+    for (const Vector2d& p : part.outer) {
+      const double at = direction.dot(polygon.frame.to_space(p));
+      low = std::min(low, at);
+      high = std::max(high, at);
+    }
+  }
+  return std::max(0.0, high - low);
+}
+
+}  // namespace
+
+void FacadeOptions::check() const {
+  if (!(max_tilt_rad > 0.0 && max_tilt_rad < 0.25 * std::numbers::pi)) {
+    throw_bad_option("max_tilt_rad", max_tilt_rad, "in (0, pi/4)");
+  }
+  if (!(min_area_m2 >= 0.0)) throw_bad_option("min_area_m2", min_area_m2, "at least 0");
+  if (!(min_height_m >= 0.0)) throw_bad_option("min_height_m", min_height_m, "at least 0");
+  if (!(min_width_m >= 0.0)) throw_bad_option("min_width_m", min_width_m, "at least 0");
+}
+
+std::vector<int> find_facades(const std::vector<PlanarPolygon>& polygons, const Vector3d& up,
+                              const FacadeOptions& options) {
+  options.check();
+  std::vector<std::pair<double, int>> found;  // area, index
+  for (std::size_t i = 0; i < polygons.size(); ++i) {
+    const PlanarPolygon& polygon = polygons[i];
+    if (std::abs(polygon.plane.normal.dot(up)) > std::sin(options.max_tilt_rad)) continue;
+    const Vector3d across = up.cross(polygon.plane.normal).normalized();
+    if (extent_along(polygon, up) < options.min_height_m) continue;
+    if (extent_along(polygon, across) < options.min_width_m) continue;
+    const double area_m2 = area(filled(polygon.parts));
+    if (area_m2 >= options.min_area_m2) found.emplace_back(area_m2, static_cast<int>(i));
+  }
+  std::stable_sort(found.begin(), found.end(),
+                   [](const auto& a, const auto& b) { return a.first > b.first; });
+  std::vector<int> facades;
+  for (const auto& [area_m2, index] : found) facades.push_back(index);
+  return facades;
+}
+
+std::vector<Polygon> wall_outline(const PlanarPolygon& polygon, double close_gaps_m) {
+  const std::vector<Polygon> whole = filled(polygon.parts);
+  if (close_gaps_m <= 0.0) return whole;
+  // Growing joins the banks of a gap; shrinking gives the outside back its place. What the wall had stays.
+  const std::vector<Polygon> closed = grown(filled(grown(whole, 0.5 * close_gaps_m)), -0.5 * close_gaps_m);
+  return filled(merged(whole, closed));
+}
+
+}  // namespace limen
