@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "limen/base/angles.h"
+#include "limen/simulate/shell.h"
 
 namespace limen {
 namespace {
@@ -46,10 +47,9 @@ class Builder {
     choose_bay_variations();
     add_windows();
     if (o_.interior_doors) add_doors();
-    add_walls();
-    add_slabs();
-    if (plan_.stair_bottom >= 0) add_stairs();
-    add_outside();
+    add_shell(world_.mesh, {plan_, faces_, holes_}, o_.ornament_share, random_);
+    for (std::size_t room = 0; room < plan_.rooms.size(); ++room)
+      if (stairs_rise(plan_, room)) building_.occupied[room].push_back({stairs_area(plan_.rooms[room]), 0.0});
     world_.buildings.push_back(std::move(building_));
     return world_.buildings.size() - 1;
   }
@@ -212,154 +212,6 @@ class Builder {
         shape.at(shape.hinge_left ? -0.15 : shape.width_m + 0.15, 0.0, shape.thickness_m + 0.5 * reach);
     building_.occupied[static_cast<std::size_t>(faces_[pair.inner].room)].push_back(
         {rectangle_ring({hinge.x(), hinge.y()}, along, {0.7, reach}), 0.0});
-  }
-
-  void add_walls() {
-    for (std::size_t face = 0; face < faces_.size(); ++face) {
-      const WallFace& wall = faces_[face];
-      world_.mesh.add_panel(wall.frame(), {wall.length(), wall.high_m - wall.low_m}, holes_[face],
-                            surface_of(Element::wall));
-    }
-  }
-
-  void add_slabs() {
-    for (std::size_t room = 0; room < plan_.rooms.size(); ++room) {
-      const Room& r = plan_.rooms[room];
-      add_level(r, r.floor_m, true, stairs_reach(room, -1));
-      add_level(r, r.ceiling_m, false, stairs_reach(room, 1));
-    }
-    const double z = plan_.roof_m;
-    const Ring& e = plan_.envelope;
-    const auto roof = [&](std::vector<std::size_t> corners) {
-      std::vector<Vector3d> ring;
-      for (const std::size_t i : corners) ring.emplace_back(e[i].x(), e[i].y(), z);
-      world_.mesh.add_polygon(ring, surface_of(Element::roof));
-    };
-    if (e.size() == 4) return roof({0, 1, 2, 3});
-    roof({0, 1, 4, 5});
-    roof({1, 2, 3, 4});
-  }
-
-  /// Whether the stairs pass through the floor (step -1) or the ceiling (+1) of a room.
-  [[nodiscard]] bool stairs_reach(std::size_t room, int step) const {
-    const Room& r = plan_.rooms[room];
-    if (r.use != RoomUse::stairs) return false;
-    const auto same = [&](const Room& other) {
-      return other.use == RoomUse::stairs && other.storey == r.storey + step;
-    };
-    return std::any_of(plan_.rooms.begin(), plan_.rooms.end(), same);
-  }
-
-  void add_level(const Room& room, double z, bool up, bool hole) {
-    const Surface like = surface_of(up ? Element::floor : Element::ceiling);
-    if (hole) {
-      const Vector2d a = room.outline[0];
-      const Vector2d size((room.outline[1] - a).norm(), (room.outline[3] - a).norm());
-      const Vector2d u = (room.outline[1] - a).normalized();
-      const Vector2d v = (room.outline[3] - a).normalized();
-      const Vector3d u3(u.x(), u.y(), 0.0);
-      const Vector3d v3(v.x(), v.y(), 0.0);
-      const PanelRect well = stair_well(size);
-      // Seen from below the two axes change places, and the normal with them.
-      if (up) {
-        world_.mesh.add_panel({{a.x(), a.y(), z}, u3, v3}, size, {well}, like);
-      } else {
-        world_.mesh.add_panel({{a.x(), a.y(), z}, v3, u3}, {size.y(), size.x()},
-                              {{well.v0, well.u0, well.v1, well.u1}}, like);
-      }
-      return;
-    }
-    std::vector<Vector3d> ring;
-    for (const Vector2d& p : room.outline) ring.emplace_back(p.x(), p.y(), z);
-    if (!up) std::reverse(ring.begin(), ring.end());
-    world_.mesh.add_polygon(ring, like);
-  }
-
-  /// The hole for the stairs in a stair room of `size`: along its second side.
-  static PanelRect stair_well(const Vector2d& size) { return {0.05, 1.1, 1.2, size.y() - 0.9}; }
-
-  void add_stairs() {
-    for (std::size_t room = 0; room < plan_.rooms.size(); ++room)
-      if (stairs_reach(room, 1)) add_flight(plan_.rooms[room], room);
-  }
-
-  void add_flight(const Room& room, std::size_t index) {
-    const Vector2d a = room.outline[0];
-    const Vector2d u = (room.outline[1] - a).normalized();
-    const Vector2d v = (room.outline[3] - a).normalized();
-    const PanelRect well = stair_well({(room.outline[1] - a).norm(), (room.outline[3] - a).norm()});
-    const double rise = next_floor(room) - room.floor_m;
-    const int steps = static_cast<int>(std::lround(rise / 0.175));
-    const double going = (well.v1 - well.v0) / steps;
-    const double yaw = std::atan2(u.y(), u.x());
-    for (int i = 0; i < steps; ++i) {
-      const Vector2d p = a + 0.5 * (well.u0 + well.u1) * u + (well.v0 + (i + 0.5) * going) * v;
-      const double height = rise / steps;
-      world_.mesh.add_box({{p.x(), p.y(), room.floor_m + i * height}, yaw},
-                          {well.u1 - well.u0 - 0.02, going, height}, surface_of(Element::stairs));
-    }
-    add_well_sides(room, well, u, v);
-    const Vector2d centre = a + 0.5 * (well.u0 + well.u1) * u + 0.5 * (well.v0 + well.v1) * v;
-    building_.occupied[index].push_back(
-        {rectangle_ring(centre, u, {well.u1 - well.u0 + 0.4, well.v1 - well.v0 + 1.0}), 0.0});
-  }
-
-  [[nodiscard]] double next_floor(const Room& room) const {
-    for (const Room& other : plan_.rooms)
-      if (other.use == RoomUse::stairs && other.storey == room.storey + 1) return other.floor_m;
-    return room.ceiling_m;
-  }
-
-  /// The slab's thickness seen in the stair well.
-  void add_well_sides(const Room& room, const PanelRect& well, const Vector2d& u, const Vector2d& v) {
-    const Vector2d a = room.outline[0];
-    const auto corner = [&](double x, double y) { return Vector2d(a + x * u + y * v); };
-    const Ring ring = {corner(well.u0, well.v0), corner(well.u1, well.v0), corner(well.u1, well.v1),
-                       corner(well.u0, well.v1)};
-    for (std::size_t i = 0; i < 4; ++i) {
-      const WallFace side{ring[i], ring[(i + 1) % 4], room.ceiling_m, next_floor(room), 0};
-      world_.mesh.add_panel(side.frame(), {side.length(), side.high_m - side.low_m}, {},
-                            surface_of(Element::reveal));
-    }
-  }
-
-  /// A band along an envelope edge, proud of the wall.
-  void add_band(std::size_t edge, double low, double high, double proud) {
-    const Vector2d a = plan_.envelope[edge];
-    const Vector2d b = plan_.envelope[(edge + 1) % plan_.envelope.size()];
-    const Vector2d along = (b - a).normalized();
-    const Vector2d out(along.y(), -along.x());
-    const Vector2d middle = 0.5 * (a + b) + 0.5 * proud * out;
-    world_.mesh.add_box({{middle.x(), middle.y(), low}, std::atan2(along.y(), along.x())},
-                        {(b - a).norm() + 2.0 * proud, proud, high - low}, surface_of(Element::ornament));
-  }
-
-  void add_outside() {
-    const bool plinth = random_.uniform() < o_.ornament_share;
-    const bool courses = random_.uniform() < o_.ornament_share;
-    const bool cornice = random_.uniform() < o_.ornament_share;
-    double ground = plan_.roof_m;
-    int top_storey = 0;
-    for (const Room& room : plan_.rooms) {
-      ground = std::min(ground, room.floor_m);
-      top_storey = std::max(top_storey, room.storey);
-    }
-    const double course = random_.uniform(0.04, 0.1);
-    const double overhang = random_.uniform(0.15, 0.35);
-    for (std::size_t edge = 0; edge < plan_.envelope.size(); ++edge) {
-      if (plinth && ground > 0.25) add_band(edge, plan_.base_m, ground - 0.06, 0.05);
-      if (cornice) add_band(edge, plan_.roof_m - 0.3, plan_.roof_m, overhang);
-      for (int storey = 1; courses && storey <= top_storey; ++storey) {
-        const double level = floor_of(storey);
-        add_band(edge, level - 0.2, level - 0.02, course);
-      }
-    }
-  }
-
-  [[nodiscard]] double floor_of(int storey) const {
-    for (const Room& room : plan_.rooms)
-      if (room.storey == storey) return room.floor_m;
-    return plan_.roof_m;
   }
 
   [[nodiscard]] RoomUse use_of(std::size_t face) const {

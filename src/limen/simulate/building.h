@@ -37,6 +37,7 @@ struct FacadeOptions {
 struct Footprint {
   Ring area;            ///< convex, counter-clockwise
   double from_m = 0.0;  ///< only things higher than this above the floor are in the way
+  bool piece = false;   ///< a piece of furniture that stands on it, not a place kept free
 };
 
 /// The two faces of one wall: back to back, a room's and another room's or the outside's.
@@ -56,6 +57,7 @@ std::vector<WallPair> wall_pairs(const FloorPlan& plan, const std::vector<WallFa
 struct Building {
   FloorPlan plan;
   std::vector<std::vector<Footprint>> occupied;  ///< per room: door swings, window niches, furniture
+  std::vector<Vector2d> street_normals;          ///< outward normals of the façades a street follows
   int room_offset = 0;                           ///< added to room numbers in TrueOpening::rooms
 };
 

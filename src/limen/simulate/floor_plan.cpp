@@ -179,8 +179,6 @@ class Planner {
     const double hung =
         o_.regular || use == RoomUse::stairs || random_.uniform() < 0.6 ? 0.0 : random_.uniform(0.1, 0.3);
     room.ceiling_m = room.floor_m + o_.storey_height_m - o_.slab_m - hung;
-    if (use == RoomUse::stairs && plan_.stair_bottom < 0)
-      plan_.stair_bottom = static_cast<int>(plan_.rooms.size());
     plan_.rooms.push_back(room);
   }
 

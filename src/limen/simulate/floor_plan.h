@@ -70,7 +70,6 @@ struct FloorPlan {
   double base_m = 0.0;
   double roof_m = 3.0;
   std::vector<WindowAxis> axes;
-  int stair_bottom = -1;  ///< room with the stairs on the lowest storey; one more above each
 
   /// Faces of all rooms, then of the envelope.
   [[nodiscard]] std::vector<WallFace> faces() const;

@@ -268,7 +268,7 @@ class Decorator {
       const Vector2d p = back + part.middle.x() * along + part.middle.y() * in;
       mesh_.add_box({{p.x(), p.y(), room_.floor_m + part.middle.z()}, yaw}, part.size, like);
     }
-    building_.occupied[index_].push_back({area, 0.0});
+    building_.occupied[index_].push_back({area, 0.0, true});
     return true;
   }
 

@@ -165,6 +165,7 @@ MergedPlanes merge_planes(const Mesh& mesh) {
     if (surface.area_m2 > largest[slot]) {
       largest[slot] = surface.area_m2;
       merged.planes[slot].element = surface.element;
+      merged.planes[slot].plane = surface.plane;
     }
   }
   return merged;

@@ -73,7 +73,8 @@ struct MergedPlanes {
   std::vector<TruePlane> planes;      ///< in the mesh's frame, no inliers yet
 };
 
-/// Merges planes within 1 mm (of their offsets about the mesh's origin) and 0.01 degrees.
+/// Merges planes within 1 mm (of their offsets about the mesh's origin) and 0.01 degrees; the largest face
+/// lends its plane.
 MergedPlanes merge_planes(const Mesh& mesh);
 
 /// The surface of a kind of matter, with its usual reflectivity.

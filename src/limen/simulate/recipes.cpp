@@ -48,15 +48,21 @@ void furnish_all(World& world, std::size_t building, double fullness, RandomStre
     furnish(world, building, room, fullness * random.uniform(0.7, 1.2), random);
 }
 
-/// Windows a room has to the outside, by façade: pairs (room, number of different outer normals).
-std::size_t facades_of(const World& world, std::size_t room, bool open_only) {
-  std::vector<Vector3d> normals;
+bool has_normal(const std::vector<Vector2d>& normals, const Vector3d& normal) {
+  return std::any_of(normals.begin(), normals.end(),
+                     [&](const Vector2d& n) { return n.x() * normal.x() + n.y() * normal.y() > 0.999; });
+}
+
+enum class View { any_window, open_to_street };
+
+/// How many façades a room of building 0 has such windows in.
+std::size_t facades_of(const World& world, std::size_t room, View view) {
+  std::vector<Vector2d> normals;
   for (const TrueOpening& opening : world.openings) {
     if (!opening.exterior || opening.kind != "window" || opening.rooms[0] != static_cast<int>(room)) continue;
-    if (open_only && opening.curtained) continue;
-    const bool known = std::any_of(normals.begin(), normals.end(),
-                                   [&](const Vector3d& n) { return n.dot(opening.normal) > 0.99; });
-    if (!known) normals.push_back(opening.normal);
+    const bool open = !opening.curtained && has_normal(world.buildings[0].street_normals, opening.normal);
+    if (view == View::open_to_street && !open) continue;
+    if (!has_normal(normals, opening.normal)) normals.emplace_back(opening.normal.x(), opening.normal.y());
   }
   return normals.size();
 }
@@ -87,12 +93,12 @@ Recipe room_recipe(const SceneOptions& options, RandomStream& random) {
   add_building(recipe.world, make_floor_plan(plan, random), facade, random);
   furnish_all(recipe.world, 0, 0.9, random);
   add_ground(recipe.world);
-  add_street(recipe.world, 0, {.opposite = facade}, random);
+  recipe.path = add_street(recipe.world, 0, {.opposite = facade}, random);
   add_garden(recipe.world, 0, 2, random);
   const auto rooms = rooms_where(recipe.world, random, [&](std::size_t room) {
     const Room& r = recipe.world.buildings[0].plan.rooms[room];
     return r.use != RoomUse::corridor && signed_area(r.outline) > 12.0 &&
-           facades_of(recipe.world, room, false) > 0;
+           facades_of(recipe.world, room, View::any_window) > 0;
   });
   recipe.station_rooms.assign(2, rooms.empty() ? 0 : rooms[0]);
   return recipe;
@@ -142,7 +148,7 @@ Recipe flat_recipe(const SceneOptions& options, RandomStream& random) {
   add_building(recipe.world, make_floor_plan(plan, random), facade, random);
   furnish_all(recipe.world, 0, 0.8, random);
   add_ground(recipe.world);
-  add_street(recipe.world, 0, {.opposite = facade}, random);
+  recipe.path = add_street(recipe.world, 0, {.opposite = facade}, random);
   add_garden(recipe.world, 0, 2, random);
   recipe.through_door = true;
   recipe.station_rooms = {0, 0};
@@ -154,7 +160,7 @@ std::vector<std::size_t> rooms_with_view(const World& world, const SceneOptions&
                                          RandomStream& random) {
   const auto with = [&](std::size_t facades, bool exactly) {
     return rooms_where(world, random, [&](std::size_t room) {
-      const std::size_t seen = facades_of(world, room, true);
+      const std::size_t seen = facades_of(world, room, View::open_to_street);
       const Room& r = world.buildings[0].plan.rooms[room];
       return signed_area(r.outline) > 10.0 && r.storey < 2 && r.use != RoomUse::stairs &&
              (exactly ? seen == facades : seen >= facades);
@@ -196,7 +202,7 @@ Recipe museum_recipe(const SceneOptions& options, RandomStream& random) {
   facade.extra_door_share = 0.7;
   facade.door_width_m = random.uniform(1.1, 1.5);
   facade.door_height_m = random.uniform(2.1, 2.5);
-  facade.gable_share = 0.9;
+  facade.gable_share = 1.0;
   add_building(recipe.world, make_floor_plan(plan, random), facade, random);
   furnish_all(recipe.world, 0, 0.7, random);
   add_ground(recipe.world);
@@ -206,11 +212,10 @@ Recipe museum_recipe(const SceneOptions& options, RandomStream& random) {
   recipe.path = add_street(recipe.world, 0, street, random);
   add_garden(recipe.world, 0, 4, random);
   recipe.station_rooms =
-      rooms_with_view(recipe.world, options, options.stations > 0 ? options.stations : 2, random);
+      rooms_with_view(recipe.world, options, std::max<std::size_t>(2, options.stations), random);
   recipe.points_indoor = 300000;
   recipe.points_outdoor = 800000;
   recipe.profile_turn_rad = random.uniform() < 0.5 ? radians(45.0) : 0.0;
-  recipe.national_grid = true;
   return recipe;
 }
 
@@ -245,14 +250,25 @@ Recipe regular_recipe(const SceneOptions& options, RandomStream& random) {
   const auto rooms = rooms_where(recipe.world, random, [&](std::size_t room) {
     const Room& r = recipe.world.buildings[0].plan.rooms[room];
     return r.use == RoomUse::office && r.storey < 2 && r.outline[0].y() < 1.0 &&
-           facades_of(recipe.world, room, true) == 1;
+           facades_of(recipe.world, room, View::open_to_street) == 1;
   });
   recipe.station_rooms.assign(1, rooms.empty() ? 0 : rooms[0]);
   recipe.points_indoor = 300000;
   recipe.points_outdoor = 800000;
   recipe.profile_turn_rad = random.uniform() < 0.5 ? radians(45.0) : 0.0;
-  recipe.national_grid = true;
   return recipe;
+}
+
+/// As many stations as were asked for: more ones stand in further rooms, or in the same where it is alone.
+void set_station_count(Recipe& recipe, std::size_t count, RandomStream& random) {
+  if (count == 0) return;
+  const auto others = rooms_where(recipe.world, random, [&](std::size_t room) {
+    return signed_area(recipe.world.buildings[0].plan.rooms[room].outline) > 8.0;
+  });
+  for (std::size_t i = 0; recipe.station_rooms.size() < count; ++i)
+    recipe.station_rooms.push_back(others.empty() ? 0 : others[i % others.size()]);
+  recipe.station_rooms.resize(count);
+  recipe.through_door = recipe.through_door && count > 1;
 }
 
 struct NamedRecipe {
@@ -279,7 +295,13 @@ Recipe make_recipe(const SceneOptions& options) {
   std::uint64_t trial = 1;
   for (const NamedRecipe& recipe : kRecipes) {
     RandomStream random(options.seed, trial++);
-    if (options.name == recipe.name) return recipe.make(options, random);
+    if (options.name == recipe.name) {
+      Recipe made = recipe.make(options, random);
+      set_station_count(made, options.stations, random);
+      if (options.points_outdoor == 0 && made.points_outdoor == 0) made.path.reset();
+      made.national_grid = made.path.has_value();
+      return made;
+    }
     known += known.empty() ? recipe.name : std::string(", ") + recipe.name;
   }
   throw Error("no scene is called '" + options.name + "'", "limen simulate", "choose one of: " + known);

@@ -14,15 +14,17 @@ namespace limen {
 
 /// Which case to make. The same options give the same case, bit for bit, for any thread count.
 struct SceneOptions {
-  std::string name = "room";       ///< one of scene_names()
-  std::uint64_t seed = 1;          ///< another seed: another building, other stations, other noise
-  std::size_t points_indoor = 0;   ///< of each station, about; 0: the scene's own number
-  std::size_t points_outdoor = 0;  ///< of each mobile scan, about; 0: the scene's own number
-  std::size_t stations = 0;        ///< tripod stations; 0: the scene's own number
-  std::size_t facades = 0;         ///< façades the first station's room has windows in (museum): 0 any, 1, 2
-  bool any_rotation = false;       ///< stations stand at any rotation, else level with any heading
-  double curtain_share = -1.0;     ///< of the windows; negative: the scene's own share
-  double drift_m = 0.0;            ///< slow error of a mobile trajectory, one standard deviation per axis
+  std::string name = "room";      ///< one of scene_names()
+  std::uint64_t seed = 1;         ///< another seed: another building, other stations, other noise
+  std::size_t points_indoor = 0;  ///< of each station, about; 0: the scene's own number
+  /// Of the mobile scan, about; 0: the scene's own number, which is none for room and flat.
+  std::size_t points_outdoor = 0;
+  std::size_t stations = 0;  ///< tripod stations; 0: the scene's own number
+  std::size_t facades =
+      0;  ///< street façades the first room has open windows in (museum); 0: as many as it gets
+  bool any_rotation = false;    ///< stations stand at any rotation, else level with any heading
+  double curtain_share = -1.0;  ///< of the windows; negative: the scene's own share
+  double drift_m = 0.0;         ///< slow error of a mobile trajectory, one standard deviation per axis
   ScannerOptions scanner;
 
   void check() const;

@@ -37,14 +37,14 @@ class Surveyor {
     std::vector<std::size_t> doors;
     for (std::size_t i = 0; i < world_.openings.size(); ++i)
       if (!world_.openings[i].exterior && !world_.openings[i].curtained) doors.push_back(i);
-    for (int attempt = 0; attempt < 4000 && !doors.empty(); ++attempt) {
+    for (int attempt = 0; attempt < 20000 && !doors.empty(); ++attempt) {
       const TrueOpening& door =
           world_.openings[doors[random_.below(static_cast<std::uint32_t>(doors.size()))]];
       const auto inner = static_cast<std::size_t>(door.rooms[0]);
       const auto outer = static_cast<std::size_t>(door.rooms[1]);
       if (small(inner) || small(outer)) continue;
       const Station first{random_point(inner), inner};
-      const Station second{random_point(outer), outer};
+      const Station second{beyond(first.position, door, outer), outer};
       if (clear(first, 0.4) && clear(second, 0.4) && in_sight(first.position, second.position))
         return {first, second};
     }
@@ -67,6 +67,15 @@ class Surveyor {
     const double x = random_.uniform(low.x(), high.x());
     const double y = random_.uniform(low.y(), high.y());
     return {x, y, r.floor_m + random_.uniform(1.35, 1.75)};
+  }
+
+  /// A point of `room` on a line from `from` through the doorway.
+  Vector3d beyond(const Vector3d& from, const TrueOpening& door, std::size_t room) {
+    const Vector3d across = door.outer[1] - door.outer[0];
+    const Vector3d gap = door.outer[0] + random_.uniform(0.2, 0.8) * across;
+    Vector3d p = gap + (gap - from).normalized() * random_.uniform(0.5, 5.0);
+    p.z() = building_.plan.rooms[room].floor_m + random_.uniform(1.35, 1.75);
+    return p;
   }
 
   /// Stands on the floor with nothing within `radius`.

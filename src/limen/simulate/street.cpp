@@ -167,7 +167,11 @@ Trajectory add_street(World& world, std::size_t building, const StreetOptions& o
   const Ring envelope = world.buildings[building].plan.envelope;
   const auto chain = [&](double distance) { return offset_chain(envelope, o.first_edge, o.edges, distance); };
   Mesh& mesh = world.mesh;
-  for (std::size_t edge = 0; edge < o.edges; ++edge) add_pavement(mesh, envelope, o.first_edge + edge);
+  for (std::size_t edge = o.first_edge; edge < o.first_edge + o.edges; ++edge) {
+    add_pavement(mesh, envelope, edge);
+    const Vector2d along = envelope[(edge + 1) % envelope.size()] - envelope[edge % envelope.size()];
+    world.buildings[building].street_normals.push_back(right_of(along.normalized()));
+  }
   if (o.opposite_m > 0.0) {
     const std::vector<Vector2d> across = chain(o.opposite_m);
     for (std::size_t i = 0; i + 1 < across.size(); ++i) {
