@@ -162,23 +162,29 @@ void ScanGrid::cut_jumps(double max_jump) {
   });
 }
 
-double noise_along_lines(const ScanGrid& grid) {
+double surface_noise(const ScanGrid& grid) {
   const std::size_t step = 1 + grid.size() / 200000;
   std::vector<double> offsets;
   for (std::size_t at = 0; at < grid.size(); at += step) {
     const auto& links = grid.links(at);
-    if (links[ScanGrid::previous] == ScanGrid::kNone || links[ScanGrid::next] == ScanGrid::kNone) continue;
-    const Vector3d& before = grid.point(static_cast<std::size_t>(links[ScanGrid::previous]));
-    const Vector3d along = grid.point(static_cast<std::size_t>(links[ScanGrid::next])) - before;
-    if (along.norm() < 1e-6) continue;
-    offsets.push_back(along.cross(grid.point(at) - before).norm() / along.norm());
+    if (std::count(links.begin(), links.end(), ScanGrid::kNone) > 0) continue;
+    const auto neighbour = [&](ScanGrid::Link link) -> const Vector3d& {
+      return grid.point(static_cast<std::size_t>(links[link]));
+    };
+    const Vector3d along = neighbour(ScanGrid::next) - neighbour(ScanGrid::previous);
+    const Vector3d across = neighbour(ScanGrid::line_after) - neighbour(ScanGrid::line_before);
+    const Vector3d normal = along.cross(across);
+    if (normal.norm() < 0.3 * along.norm() * across.norm() || normal.norm() < 1e-9) continue;
+    const Vector3d of_line = neighbour(ScanGrid::next) + neighbour(ScanGrid::previous);
+    const Vector3d of_others = neighbour(ScanGrid::line_after) + neighbour(ScanGrid::line_before);
+    // Half the sum of four independent echoes, two of them negative: the noise of one.
+    offsets.push_back(0.5 * std::abs(normal.normalized().dot(of_line - of_others)));
   }
   if (offsets.size() < 20) return 0.0;
   const auto middle = offsets.begin() + static_cast<std::ptrdiff_t>(offsets.size() / 2);
   std::nth_element(offsets.begin(), middle, offsets.end());
-  // The middle of three points is off the chord of the others by sqrt(3/2) times the noise of one.
   constexpr double kMedianOfNormal = 0.6745;
-  return *middle / kMedianOfNormal / std::sqrt(1.5);
+  return *middle / kMedianOfNormal;
 }
 
 }  // namespace limen

@@ -53,8 +53,9 @@ class ScanGrid {
   std::vector<std::array<std::int32_t, 4>> links_;
 };
 
-/// One standard deviation, metres, of echoes about the straight line through their neighbours of the same
-/// scan line: from the median over the scan. 0 where there are too few such triples to tell.
-double noise_along_lines(const ScanGrid& grid);
+/// One standard deviation, metres, of echoes along the surface's normal: the middle of the neighbours of the
+/// same line against the middle of those of the lines beside it, so that jitter from line to line counts too.
+/// From the median over the scan; 0 where too few echoes have all four neighbours.
+double surface_noise(const ScanGrid& grid);
 
 }  // namespace limen

@@ -59,7 +59,7 @@ class Detector {
     std::iota(free_.begin(), free_.end(), 0U);
     anchor_ = grid_.point(grid_.size() / 2);
     threshold_m_ = options.inlier_threshold_m > 0.0 ? options.inlier_threshold_m
-                                                    : std::clamp(3.3 * noise_along_lines(grid_), 0.01, 0.04);
+                                                    : std::clamp(3.3 * surface_noise(grid_), 0.01, 0.04);
   }
 
   PlaneLabels run(Monitor& monitor) {

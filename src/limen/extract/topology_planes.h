@@ -27,7 +27,7 @@
 namespace limen {
 
 struct TopologyPlaneOptions {
-  double inlier_threshold_m = 0.0;  ///< 0: 3.3 times the noise found along the lines, between 10 and 40 mm
+  double inlier_threshold_m = 0.0;  ///< 0: 3.3 times the noise found in the scan, between 10 and 40 mm
   int min_inliers = 200;            ///< smallest plane, points, >= 12
   double max_jump = 4.0;            ///< of neighbours, in units of the local spacing, > 1
   double reach_m = 0.35;            ///< size of the neighbourhood that samples are drawn from, > 0

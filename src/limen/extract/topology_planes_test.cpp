@@ -220,7 +220,7 @@ TEST(ScanGrid, EstimatesTheNoise) {
       scan.topology.index.push_back(pulse);
     }
   }
-  EXPECT_NEAR(noise_along_lines(ScanGrid(scan, 4.0)), 0.004, 0.0003);
+  EXPECT_NEAR(surface_noise(ScanGrid(scan, 4.0)), 0.004, 0.0003);
 }
 
 }  // namespace
