@@ -146,36 +146,56 @@ ScanTopology find_topology(const RecordTable& table, const TableFacts& facts,
   return recover_profiles(load_column<double>(table, theta), times);
 }
 
-/// Brings a colour value to 0..255 by the largest value of all three columns.
-double colour_scale(double largest, bool fractions) {
-  if (largest > 255.0) return 255.0 / 65535.0;
-  return largest <= 1.0 && fractions ? 255.0 : 1.0;
+/// What one column of colours holds.
+struct ColourRange {
+  double largest = 0.0;
+  bool fractions = false;
+};
+
+ColourRange range_of(const std::vector<float>& values) {
+  ColourRange range;
+  for (const float value : values) {
+    range.largest = std::max(range.largest, static_cast<double>(value));
+    range.fractions = range.fractions || value != std::floor(value);
+  }
+  return range;
+}
+
+/// Brings a colour to 0..255: from 0..65535, or from 0..1.
+double colour_scale(const ColourRange& range) {
+  if (range.largest > 255.0) return 255.0 / 65535.0;
+  return range.largest <= 1.0 && range.fractions ? 255.0 : 1.0;
+}
+
+std::vector<std::uint8_t> interleaved(const RecordTable& table, const Triple& fields, double scale) {
+  std::vector<std::uint8_t> colours(3 * table.rows);
+  parallel_for(table.rows, kPiece, [&](std::size_t begin, std::size_t end) {
+    std::array<double, kStrip> strip{};
+    for (std::size_t at = begin; at < end; at += kStrip) {
+      const std::size_t stop = std::min(end, at + kStrip);
+      for (std::size_t k = 0; k < 3; ++k) {
+        load_numbers(table, *fields[k], {at, stop}, strip.data());
+        for (std::size_t i = at; i < stop; ++i) {
+          const double value = scale * strip[i - at];
+          colours[3 * i + k] = value > 0.0 ? static_cast<std::uint8_t>(std::min(255.0, value + 0.5)) : 0;
+        }
+      }
+    }
+  });
+  return colours;
 }
 
 std::vector<std::uint8_t> load_colours(const RecordTable& table) {
   const Triple fields{table.find({"red", "r", "diffuse_red"}), table.find({"green", "g", "diffuse_green"}),
                       table.find({"blue", "b", "diffuse_blue"})};
   if (!whole(fields)) return {};
-  double largest = 0.0;
-  bool fractions = false;
-  std::array<std::vector<float>, 3> values;
-  for (std::size_t k = 0; k < 3; ++k) {
-    values[k] = load_column<float>(table, fields[k]);
-    if (fields[k]->type == Scalar::uint8) continue;
-    for (const float value : values[k]) {
-      largest = std::max(largest, static_cast<double>(value));
-      fractions = fractions || value != std::floor(value);
-    }
+  ColourRange all;
+  for (const Field* field : fields) {
+    if (field->type == Scalar::uint8) continue;
+    const ColourRange one = range_of(load_column<float>(table, field));
+    all = {std::max(all.largest, one.largest), all.fractions || one.fractions};
   }
-  const double scale = colour_scale(largest, fractions);
-  std::vector<std::uint8_t> colours(3 * table.rows);
-  for (std::size_t k = 0; k < 3; ++k) {
-    for (std::size_t i = 0; i < table.rows; ++i) {
-      const double value = scale * static_cast<double>(values[k][i]);
-      colours[3 * i + k] = value > 0.0 ? static_cast<std::uint8_t>(std::min(255.0, value + 0.5)) : 0;
-    }
-  }
-  return colours;
+  return interleaved(table, fields, colour_scale(all));
 }
 
 /// Optical centres the file gives per point: one where all are the same, none where it gives none.

@@ -3,7 +3,9 @@
 #include "limen/io/text_numbers.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
+#include <cstdint>
 #include <system_error>
 
 #include <fmt/format.h>
@@ -89,6 +91,34 @@ void count_rows(Piece& piece, const TextRows& wanted) {
   });
 }
 
+constexpr std::array<double, 16> kPowersOfTen{1e0, 1e1, 1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
+                                              1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15};
+
+/// Reads a plain decimal of at most 15 digits, which is exact: digits and power of ten are whole doubles, so
+/// their quotient is rounded once. Returns where it ends, or nullptr for any other spelling.
+const char* read_plain_decimal(const char* at, const char* end, double& out) {
+  const bool negative = at < end && *at == '-';
+  if (negative) ++at;
+  const char* const begin = at;
+  const char* point = nullptr;
+  std::int64_t digits = 0;
+  for (; at < end && at - begin <= 16; ++at) {
+    if (*at == '.' && point == nullptr) {
+      point = at;
+    } else if (*at >= '0' && *at <= '9') {
+      digits = 10 * digits + (*at - '0');
+    } else {
+      break;
+    }
+  }
+  const auto count = at - begin - (point != nullptr ? 1 : 0);
+  if (count < 1 || count > 15 || (at < end && !separates(*at))) return nullptr;
+  const auto decimals = point == nullptr ? std::size_t{0} : static_cast<std::size_t>(at - point - 1);
+  const double value = static_cast<double>(digits) / kPowersOfTen[decimals];
+  out = negative ? -value : value;
+  return at;
+}
+
 /// Reads the numbers of one line; returns how many there were, at most `columns`.
 std::size_t read_row(std::string_view line, std::size_t columns, double* out) {
   const char* at = line.data();
@@ -96,6 +126,10 @@ std::size_t read_row(std::string_view line, std::size_t columns, double* out) {
   for (std::size_t k = 0; k < columns; ++k) {
     while (at < end && (separates(*at) || *at == '"')) ++at;
     if (at < end && *at == '+') ++at;
+    if (const char* const plain = read_plain_decimal(at, end, out[k])) {
+      at = plain;
+      continue;
+    }
     const auto [stop, error] = std::from_chars(at, end, out[k]);
     if (error == std::errc::result_out_of_range) {
       out[k] = 0.0;  // denormal: from_chars leaves the value alone

@@ -102,10 +102,18 @@ TEST(TransformCloud, OtherFormatsBecomePly) {
   const TemporaryFolder folder;
   const auto in = folder.write("in.xyz", "1 2 3 0.5\n4 5 6 0.75\n");
   const Rigid3 pose = grid_from_station();
-  transform_cloud(in, pose, folder / "out.ply");
+  EXPECT_TRUE(transform_cloud(in, pose, folder / "out.ply").notes.empty());
   const Scan after = read_scan(folder / "out.ply");
   EXPECT_LT((after.local_origin + after.points[1] - pose * Vector3d(4, 5, 6)).norm(), 3e-9);
   EXPECT_EQ(after.intensities, (std::vector<float>{0.5F, 0.75F}));
+}
+
+TEST(TransformCloud, TellsWhatOtherFormatsLose) {
+  const TemporaryFolder folder;
+  const auto in = folder.write("in.csv", "x,y,z,Classification,nx\n1,2,3,4,5\n6,7,8,9,0\n");
+  const auto notes = transform_cloud(in, Rigid3{}, folder / "out.ply").notes;
+  ASSERT_EQ(notes.size(), 1U);
+  EXPECT_NE(notes[0].find("classification, nx"), std::string::npos);
 }
 
 TEST(TransformCloud, LeavesNothingBehindWhereTheInputIsBroken) {
