@@ -3,15 +3,28 @@
 #pragma once
 
 #include "limen/base/progress.h"
+#include "limen/extract/facades.h"
 #include "limen/extract/grow_planes.h"
+#include "limen/extract/interior_points.h"
 #include "limen/extract/make_polygons.h"
 #include "limen/extract/sample_surface.h"
 #include "limen/model/features.h"
 
 namespace limen {
 
+/// Planes inside a building as a mobile scan sees them through the openings of its façades (2021, 3.1).
+struct InteriorOptions {
+  bool enabled = true;   ///< for mobile scans
+  int min_inliers = 40;  ///< smallest plane among the points behind façades
+  FacadeCriteria facades;
+  InteriorPointOptions points;
+
+  void check() const;
+};
+
 struct ExtractOptions {
   GrowOptions grow;
+  InteriorOptions interior;
   PolygonOptions polygons;
   SampleOptions samples;
 
@@ -22,6 +35,8 @@ struct ExtractOptions {
 struct ExtractedFeatures {
   Features features;
   std::vector<std::int32_t> labels;
+  std::vector<int> facades;         ///< indices of the planes that are façades; mobile scans only
+  std::size_t interior_points = 0;  ///< points behind them
 };
 
 /// Planar polygons and surface samples of a scan: the one-call door.

@@ -30,7 +30,7 @@ double extent_along(const PlanarPolygon& polygon, const Vector3d& direction) {
 
 }  // namespace
 
-void FacadeOptions::check() const {
+void FacadeCriteria::check() const {
   if (!(max_tilt_rad > 0.0 && max_tilt_rad < 0.25 * std::numbers::pi)) {
     throw_bad_option("max_tilt_rad", max_tilt_rad, "in (0, pi/4)");
   }
@@ -40,7 +40,7 @@ void FacadeOptions::check() const {
 }
 
 std::vector<int> find_facades(const std::vector<PlanarPolygon>& polygons, const Vector3d& up,
-                              const FacadeOptions& options) {
+                              const FacadeCriteria& options) {
   options.check();
   std::vector<std::pair<double, int>> found;  // area, index
   for (std::size_t i = 0; i < polygons.size(); ++i) {

@@ -10,7 +10,7 @@
 namespace limen {
 
 /// Which polygons are façades: large and vertical (Djahel, Monasse, Vallet 2021, section 3.1.1).
-struct FacadeOptions {
+struct FacadeCriteria {
   double max_tilt_rad = radians(3.0);  ///< of the plane from the vertical, in (0, pi/4)
   double min_area_m2 = 5.0;            ///< inside the outer rings, openings counted as wall, >= 0
   double min_height_m = 2.0;           ///< extent along the vertical, >= 0
@@ -22,7 +22,7 @@ struct FacadeOptions {
 /// Indices of the façades, largest first. `up`: unit vector against gravity, in the polygons' frame.
 /// The wall's size is taken with its openings filled: a façade that is mostly glass is one too.
 std::vector<int> find_facades(const std::vector<PlanarPolygon>& polygons, const Vector3d& up,
-                              const FacadeOptions& options = {});
+                              const FacadeCriteria& options = {});
 
 /// The region of a wall's plane that belongs to the house: its outer rings with all holes filled, and gaps
 /// narrower than `close_gaps_m` between or into them closed (cornices, a window cut by the scan's edge).

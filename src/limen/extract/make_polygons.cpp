@@ -65,16 +65,16 @@ void PolygonOptions::check() const {
   if (simplify_m < 0) throw_bad_option("simplify_m", simplify_m, "0 or more");
 }
 
-std::vector<std::vector<std::uint32_t>> points_of(const PlaneLabels& labels) {
-  std::vector<std::size_t> counts(labels.fits.size(), 0);
-  for (const std::int32_t label : labels.labels) {
+std::vector<std::vector<std::uint32_t>> points_of(const std::vector<std::int32_t>& labels,
+                                                  std::size_t planes) {
+  std::vector<std::size_t> counts(planes, 0);
+  for (const std::int32_t label : labels) {
     if (label >= 0) ++counts[static_cast<std::size_t>(label)];
   }
-  std::vector<std::vector<std::uint32_t>> points(labels.fits.size());
+  std::vector<std::vector<std::uint32_t>> points(planes);
   for (std::size_t k = 0; k < points.size(); ++k) points[k].reserve(counts[k]);
-  for (std::size_t i = 0; i < labels.labels.size(); ++i) {
-    if (labels.labels[i] >= 0)
-      points[static_cast<std::size_t>(labels.labels[i])].push_back(static_cast<std::uint32_t>(i));
+  for (std::size_t i = 0; i < labels.size(); ++i) {
+    if (labels[i] >= 0) points[static_cast<std::size_t>(labels[i])].push_back(static_cast<std::uint32_t>(i));
   }
   return points;
 }
@@ -82,7 +82,7 @@ std::vector<std::vector<std::uint32_t>> points_of(const PlaneLabels& labels) {
 std::vector<PlanarPolygon> make_polygons(const Scan& scan, const PlaneLabels& labels,
                                          const PolygonOptions& options, Monitor& monitor) {
   options.check();
-  const std::vector<std::vector<std::uint32_t>> points = points_of(labels);
+  const std::vector<std::vector<std::uint32_t>> points = points_of(labels.labels, labels.fits.size());
   std::vector<PlanarPolygon> polygons(points.size());
   parallel_for(points.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {

@@ -68,10 +68,11 @@ std::vector<SurfaceSample> plane_samples(const Scan& scan, const PlanarPolygon& 
   return samples;
 }
 
-std::vector<SurfaceSample> clutter_samples(const Scan& scan, const PlaneLabels& labels, double cube_m) {
+std::vector<SurfaceSample> clutter_samples(const Scan& scan, const std::vector<std::int32_t>& labels,
+                                           double cube_m) {
   std::vector<std::pair<std::int64_t, std::uint32_t>> keyed;
   for (std::uint32_t i = 0; i < scan.size(); ++i) {
-    if (labels.labels[i] >= 0) continue;
+    if (labels[i] >= 0) continue;
     const Vector3d p = scan.points[i] / cube_m;
     keyed.emplace_back(key_of(p.x(), p.y(), p.z()), i);
   }
@@ -91,11 +92,11 @@ void SampleOptions::check() const {
   if (!(clutter_m > 0)) throw_bad_option("clutter_m", clutter_m, "more than 0");
 }
 
-std::vector<SurfaceSample> sample_surface(const Scan& scan, const PlaneLabels& labels,
+std::vector<SurfaceSample> sample_surface(const Scan& scan, const std::vector<std::int32_t>& labels,
                                           const std::vector<PlanarPolygon>& planes,
                                           const SampleOptions& options) {
   options.check();
-  const std::vector<std::vector<std::uint32_t>> points = points_of(labels);
+  const std::vector<std::vector<std::uint32_t>> points = points_of(labels, planes.size());
   std::vector<std::vector<SurfaceSample>> parts(planes.size() + 1);
   parallel_for(parts.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "limen/extract/plane_labels.h"
 #include "limen/model/features.h"
 
 namespace limen {
@@ -15,8 +14,8 @@ struct SampleOptions {
 };
 
 /// Evenly spread pieces of surface: for every plane the means of its points in square tiles, then the means
-/// of the other points in cubes. `planes` are the polygons of `labels`, in the same order.
-std::vector<SurfaceSample> sample_surface(const Scan& scan, const PlaneLabels& labels,
+/// of the other points in cubes. `labels[i]` is the plane of point i, or -1.
+std::vector<SurfaceSample> sample_surface(const Scan& scan, const std::vector<std::int32_t>& labels,
                                           const std::vector<PlanarPolygon>& planes,
                                           const SampleOptions& options = {});
 

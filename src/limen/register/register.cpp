@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include <Eigen/LU>
@@ -104,6 +105,29 @@ PoseSigma sigma_of(const RefinedPose& pose, const Scan& target) {
   return sigma;
 }
 
+/// The planes seen through openings, alone.
+Features interior_only(const Features& features) {
+  Features part;
+  std::copy_if(features.planes.begin(), features.planes.end(), std::back_inserter(part.planes),
+               [](const PlanarPolygon& plane) { return plane.interior; });
+  return part;
+}
+
+/// Poses from all planes and, where a scan looks into a building from outside, from its interior planes
+/// alone: the large surfaces of the street would crowd out the few that both scans share (2021, section 3.1).
+std::vector<PoseCandidate> propose(const Features& source, const Features& target,
+                                   const PoseEnumerationOptions& options) {
+  std::vector<PoseCandidate> candidates = enumerate_poses(source, target, options);
+  const Features source_inside = interior_only(source);
+  const Features target_inside = interior_only(target);
+  if (source_inside.planes.empty() && target_inside.planes.empty()) return candidates;
+  const std::vector<PoseCandidate> more =
+      enumerate_poses(source_inside.planes.empty() ? source : source_inside,
+                      target_inside.planes.empty() ? target : target_inside, options);
+  candidates.insert(candidates.end(), more.begin(), more.end());
+  return candidates;
+}
+
 /// Steps of one attempt: poses from planes, a coarse look, refinement.
 std::vector<JudgedPose> attempt(const PreparedScan& source, const PreparedScan& target, bool gravity_known,
                                 const RegisterOptions& options, StageClock& clock) {
@@ -111,7 +135,7 @@ std::vector<JudgedPose> attempt(const PreparedScan& source, const PreparedScan& 
   PoseEnumerationOptions enumerate = options.enumerate;
   enumerate.gravity_known = gravity_known;
   std::vector<PoseCandidate> candidates =
-      enumerate_poses(source.extracted.features, target.extracted.features, enumerate);
+      propose(source.extracted.features, target.extracted.features, enumerate);
   clock.end();
   clock.begin("scoring");
   const auto refined = static_cast<std::size_t>(options.refined_poses);
