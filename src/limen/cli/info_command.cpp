@@ -53,10 +53,10 @@ double points_per_cube(const Scan& scan, double side_m) {
 /// some points.
 double surface_density(const Scan& scan) {
   constexpr double kEnough = 8.0;
-  constexpr double kLargest_m = 5.0;
+  constexpr double kLargestM = 5.0;
   double side_m = 0.05;
   double count = points_per_cube(scan, side_m);
-  while (count < kEnough && side_m < kLargest_m) {
+  while (count < kEnough && side_m < kLargestM) {
     side_m *= 2.0;
     count = points_per_cube(scan, side_m);
   }

@@ -12,7 +12,7 @@
 namespace limen {
 namespace {
 
-constexpr double kNearest_m = 0.1;
+constexpr double kNearestM = 0.1;
 constexpr double kNearShare = 1e-3;
 constexpr double kMostHidden = 0.35;
 /// Directions are the cells of a cube's six faces, so many along a side: 1.4 to 5.6 degrees each.
@@ -74,7 +74,7 @@ double hidden_share(const std::vector<Vector3d>& points, const Vector3d& candida
 bool can_be_scanner(const std::vector<Vector3d>& points, const Vector3d& candidate) {
   if (!inside_grown_box(points, candidate)) return false;
   const auto near = std::count_if(points.begin(), points.end(), [&](const Vector3d& point) {
-    return (point - candidate).squaredNorm() < kNearest_m * kNearest_m;
+    return (point - candidate).squaredNorm() < kNearestM * kNearestM;
   });
   if (static_cast<double>(near) > kNearShare * static_cast<double>(points.size())) return false;
   return hidden_share(points, candidate) <= kMostHidden;

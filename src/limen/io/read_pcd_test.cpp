@@ -67,7 +67,7 @@ std::string compressed_body() {
   for (const Row& row : rows()) columns += bytes_of(row.z);
   for (const Row& row : rows()) columns += bytes_of(row.intensity);
   for (const Row& row : rows()) columns += bytes_of(row.rgb);
-  columns += std::string(12 * 14, 'n');
+  columns += std::string(std::size_t{12} * 14, 'n');
   const std::string packed = pack_lzf(columns);
   return bytes_of(static_cast<std::uint32_t>(packed.size())) +
          bytes_of(static_cast<std::uint32_t>(columns.size())) + packed;

@@ -191,7 +191,7 @@ TEST(ReadScan, RandomDamageNeverCrashes) {
       "x;y;z\n1;2;3\n"};
   RandomStream random(5);
   int read = 0;
-  for (int trial = 0; trial < 3000; ++trial) {
+  for (int trial = 0; trial < 800; ++trial) {
     std::string bytes = seeds[random.below(static_cast<std::uint32_t>(seeds.size()))];
     for (std::uint32_t k = 0; k <= random.below(4); ++k)
       bytes[random.below(static_cast<std::uint32_t>(bytes.size()))] = static_cast<char>(random.below(256));
@@ -202,7 +202,7 @@ TEST(ReadScan, RandomDamageNeverCrashes) {
       EXPECT_NE(error.fault(), Fault::internal) << error.what();
     }
   }
-  EXPECT_GT(read, 100);
+  EXPECT_GT(read, 50);
 }
 
 }  // namespace

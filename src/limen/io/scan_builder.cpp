@@ -24,11 +24,11 @@ namespace {
 constexpr std::size_t kPiece = 65536;
 constexpr std::size_t kStrip = 1024;
 /// No coordinate on Earth is larger (geocentric ones reach 6.4e6 m).
-constexpr double kLargest_m = 1e8;
-constexpr double kLargestExtent_m = 1e6;
+constexpr double kLargestM = 1e8;
+constexpr double kLargestExtentM = 1e6;
 /// Points nearer to 0,0,0 than this keep it as their local origin.
-constexpr double kNearZero_m = 1e4;
-constexpr double kRound_m = 100.0;
+constexpr double kNearZeroM = 1e4;
+constexpr double kRoundM = 100.0;
 
 using Triple = std::array<const Field*, 3>;
 
@@ -56,7 +56,7 @@ Triple require_coordinates(const RecordTable& table, const TableFacts& facts) {
 }
 
 bool usable(const Vector3d& x) {
-  return (x.array().abs() < kLargest_m).all();  // false for NaN too
+  return (x.array().abs() < kLargestM).all();  // false for NaN too
 }
 
 /// The first usable point, world; the search is short unless the file begins with missing returns.
@@ -282,7 +282,7 @@ std::string settle_centre(Scan& scan, const TableFacts& facts, const ReadOptions
 
 void check_extent(const Scan& scan) {
   const Extent extent = extent_of(scan.points);
-  if (extent.diagonal() <= kLargestExtent_m) return;
+  if (extent.diagonal() <= kLargestExtentM) return;
   throw Error(fmt::format("absurd extent: the points lie between {} and {}",
                           told(extent.low + scan.local_origin), told(extent.high + scan.local_origin)),
               scan.name, "check the unit, the types and the offset of the file");
@@ -291,8 +291,8 @@ void check_extent(const Scan& scan) {
 }  // namespace
 
 Vector3d round_origin_near(const Vector3d& x) {
-  if ((x.array().abs() < kNearZero_m).all()) return Vector3d::Zero();
-  return (x / kRound_m).array().round() * kRound_m;
+  if ((x.array().abs() < kNearZeroM).all()) return Vector3d::Zero();
+  return (x / kRoundM).array().round() * kRoundM;
 }
 
 ScanFile with_scan(ScanFile file, const RecordTable& table, const TableFacts& facts,
