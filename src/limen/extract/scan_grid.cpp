@@ -29,8 +29,9 @@ bool in_order(const ScanTopology& topology) {
 std::vector<std::uint32_t> order_of(const ScanTopology& topology) {
   const std::size_t n = topology.line.size();
   std::vector<std::uint32_t> order(n);
-  const auto [low, high] = std::minmax_element(topology.line.begin(), topology.line.end());
-  const auto range = static_cast<std::size_t>(static_cast<std::int64_t>(*high) - *low) + 1;
+  const auto extremes = std::minmax_element(topology.line.begin(), topology.line.end());
+  const std::int64_t first_line = *extremes.first;
+  const auto range = static_cast<std::size_t>(*extremes.second - first_line) + 1;
   const auto before = [&](std::uint32_t a, std::uint32_t b) {
     return topology.line[a] != topology.line[b] ? topology.line[a] < topology.line[b]
                                                 : topology.index[a] < topology.index[b];
@@ -41,7 +42,7 @@ std::vector<std::uint32_t> order_of(const ScanTopology& topology) {
     return order;
   }
   std::vector<std::uint32_t> begins(range + 1, 0);
-  const auto rank = [&](std::size_t i) { return static_cast<std::size_t>(topology.line[i] - *low); };
+  const auto rank = [&](std::size_t i) { return static_cast<std::size_t>(topology.line[i] - first_line); };
   for (std::size_t i = 0; i < n; ++i) ++begins[rank(i) + 1];
   std::partial_sum(begins.begin(), begins.end(), begins.begin());
   std::vector<std::uint32_t> place(begins.begin(), begins.end() - 1);
