@@ -99,8 +99,11 @@ std::string pose_summary(const RegistrationReport& report) {
   std::string text =
       fmt::format("rotation    {:.4f} deg\n", degrees(rotation_angle(best.target_from_source.rotation)));
   text += fmt::format("translation {:.4f} {:.4f} {:.4f} m\n", t.x(), t.y(), t.z());
-  text += fmt::format("sigma       {:.5f} deg, {:.2f} mm (the largest of three)\n",
-                      degrees(sigma.rotation_rad.maxCoeff()), 1e3 * sigma.translation_m.maxCoeff());
+  // Where a freedom is open its sigma is a large number that tells a reader nothing.
+  if (report.result.unobserved.empty()) {
+    text += fmt::format("sigma       {:.5f} deg, {:.2f} mm (the largest of three)\n",
+                        degrees(sigma.rotation_rad.maxCoeff()), 1e3 * sigma.translation_m.maxCoeff());
+  }
   for (const UnobservedFreedom& freedom : report.result.unobserved) {
     text += fmt::format("not fixed   {}\n", freedom.name);
   }
