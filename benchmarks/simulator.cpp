@@ -39,7 +39,7 @@ void station_in_a_museum(benchmark::State& state) {
 void street_scan_of_a_museum(benchmark::State& state) {
   const limen::Recipe recipe = museum();
   const limen::RayCaster caster(recipe.world.mesh);
-  run(state, recipe, caster, limen::profiler_pattern(*recipe.path, recipe.profile_turn_rad, 1000000));
+  run(state, recipe, caster, limen::profiler_pattern(*recipe.path, recipe.head_turns_rad, 1000000));
 }
 
 void building_a_museum(benchmark::State& state) {

@@ -8,6 +8,8 @@
 namespace limen {
 namespace {
 
+constexpr double kFarM = 1000.0;
+
 void require(bool holds, const char* what, const std::string& where) {
   if (!holds) throw Error(what, where, "this is a fault of limen: please report it", Fault::internal);
 }
@@ -69,6 +71,21 @@ Extent extent_of(const std::vector<Vector3d>& points) {
       [](const Extent& a, const Extent& b) {
         return Extent{a.low.cwiseMin(b.low), a.high.cwiseMax(b.high)};
       });
+}
+
+bool is_near_origin(const Scan& scan) {
+  const Extent extent = extent_of(scan.points);
+  return (0.5 * (extent.low + extent.high)).norm() < kFarM;
+}
+
+Scan recentred(Scan scan) {
+  if (is_near_origin(scan)) return scan;
+  const Extent extent = extent_of(scan.points);
+  const Vector3d shift = (0.5 * (extent.low + extent.high)).array().round().matrix();
+  for (Vector3d& x : scan.points) x -= shift;
+  for (Vector3d& x : scan.centres) x -= shift;
+  scan.local_origin += shift;
+  return scan;
 }
 
 }  // namespace limen

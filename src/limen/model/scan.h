@@ -51,6 +51,11 @@ struct Scan {
 /// The points of `scan` with the given indices, all attributes kept, in the given order.
 Scan subset(const Scan& scan, const std::vector<std::uint32_t>& indices);
 
+/// The same scan about a local origin near its points: unchanged where they lie within 1 km of it already.
+/// Turns about a far origin would amplify the smallest angle.
+bool is_near_origin(const Scan& scan);
+Scan recentred(Scan scan);
+
 /// Axis-aligned extent of the points about local_origin; two zero vectors for an empty scan.
 struct Extent {
   Vector3d low = Vector3d::Zero();

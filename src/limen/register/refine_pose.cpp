@@ -59,7 +59,10 @@ class Refiner {
     query.surface_m = gate;
     query.free_m = 1e9;
     const double noise = std::max(scan.features->noise_m, 0.0005);
-    for (const SurfaceSample& sample : scan.features->samples) {
+    const std::vector<SurfaceSample>& samples = scan.features->samples;
+    const std::size_t stride = options_.samples == 0 ? 1 : 1 + samples.size() / options_.samples;
+    for (std::size_t i = 0; i < samples.size(); i += stride) {
+      const SurfaceSample& sample = samples[i];
       if (sample.plane < 0) break;  // clutter follows the planes
       query.at = judge_from_scan * sample.mean;
       query.normal = judge_from_scan.rotation * sample.normal;
@@ -69,7 +72,7 @@ class Refiner {
       const PlanarPolygon& plane = judge.features->planes[static_cast<std::size_t>(sight.plane)];
       Contact contact;
       contact.sigma_m = sigma_of(sample, noise);
-      contact.area_m2 = static_cast<double>(sample.area_m2);
+      contact.area_m2 = static_cast<double>(sample.area_m2) * static_cast<double>(stride);
       if (forth) {
         contact.at = query.at;
         contact.normal = plane.plane.normal;

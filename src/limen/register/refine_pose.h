@@ -15,6 +15,7 @@ struct RefineOptions {
   double first_gate_m = 0.08;  ///< surfaces nearer than this are matched in the first round
   double last_gate_m = 0.015;  ///< and in the last
   int rounds = 12;
+  std::size_t samples = 0;    ///< of each scan that are used, about; 0: all
   double flatness_m = 0.001;  ///< real walls are not flatter than this: least deviation of a tile
 
   void check() const;

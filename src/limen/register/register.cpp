@@ -17,8 +17,9 @@
 namespace limen {
 namespace {
 
-constexpr std::size_t kFirstLook = 400;    // samples asked per scan when thousands of poses are compared
-constexpr std::size_t kSecondLook = 2000;  // and when hundreds are
+constexpr std::size_t kFirstLook = 800;    // samples asked per scan when thousands of poses are compared
+constexpr std::size_t kPolished = 4;       // poses refined on every sample
+constexpr std::size_t kSecondLook = 4000;  // and when hundreds are
 
 /// Names and times the stages of one registration.
 class StageClock {
@@ -48,7 +49,7 @@ class StageClock {
 std::vector<PoseCandidate> best_of(const std::vector<PoseCandidate>& candidates, const ScanView& source,
                                    const ScanView& target, std::size_t samples, std::size_t most) {
   ScoreOptions coarse;
-  coarse.stride = 1 + std::max(source.features->samples.size(), target.features->samples.size()) / samples;
+  coarse.samples = samples;
   std::vector<double> values(candidates.size());
   parallel_for(candidates.size(), 8, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
@@ -65,16 +66,24 @@ std::vector<PoseCandidate> best_of(const std::vector<PoseCandidate>& candidates,
   return best;
 }
 
-std::vector<JudgedPose> refine_all(const std::vector<PoseCandidate>& candidates, const ScanView& source,
-                                   const ScanView& target, const RegisterOptions& options) {
+/// Tolerances of the final score, from the noise of the scans.
+ScoreOptions fine_score(const ScanView& source, const ScanView& target) {
   ScoreOptions fine;
   const double noise = std::max(source.features->noise_m, target.features->noise_m);
   fine.surface_m = std::clamp(4.0 * noise, 0.02, 0.05);
   fine.free_m = fine.surface_m + 0.03;
+  return fine;
+}
+
+std::vector<JudgedPose> refine_all(const std::vector<PoseCandidate>& candidates, const ScanView& source,
+                                   const ScanView& target, const RegisterOptions& options) {
+  const ScoreOptions fine = fine_score(source, target);
+  RefineOptions quick = options.refine;
+  quick.samples = kSecondLook;
   std::vector<JudgedPose> judged(candidates.size());
   parallel_for(candidates.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      judged[i].refined = refine_pose(source, target, candidates[i].target_from_source, options.refine);
+      judged[i].refined = refine_pose(source, target, candidates[i].target_from_source, quick);
       judged[i].score = score_pose(source, target, judged[i].refined.target_from_source, fine);
     }
   });
@@ -128,6 +137,20 @@ std::vector<PoseCandidate> propose(const Features& source, const Features& targe
   return candidates;
 }
 
+/// The poses that may become the answer are refined once more, on everything.
+void polish(std::vector<JudgedPose>& poses, const ScanView& source, const ScanView& target,
+            const RegisterOptions& options) {
+  const Verdict first = judge(poses, options.verdict);
+  const std::size_t count = std::min<std::size_t>(kPolished, first.ranking.size());
+  parallel_for(count, 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      JudgedPose& pose = poses[first.ranking[k]];
+      pose.refined = refine_pose(source, target, pose.refined.target_from_source, options.refine);
+      pose.score = score_pose(source, target, pose.refined.target_from_source, fine_score(source, target));
+    }
+  });
+}
+
 /// Steps of one attempt: poses from planes, a coarse look, refinement.
 std::vector<JudgedPose> attempt(const PreparedScan& source, const PreparedScan& target, bool gravity_known,
                                 const RegisterOptions& options, StageClock& clock) {
@@ -144,6 +167,7 @@ std::vector<JudgedPose> attempt(const PreparedScan& source, const PreparedScan& 
   clock.end();
   clock.begin("refinement");
   std::vector<JudgedPose> judged = refine_all(candidates, source.view(), target.view(), options);
+  polish(judged, source.view(), target.view(), options);
   clock.end();
   return judged;
 }
@@ -162,6 +186,8 @@ void RegisterOptions::check() const {
 RegistrationResult register_scans(const Scan& source, const Scan& target, const RegisterOptions& options,
                                   Monitor& monitor) {
   options.check();
+  if (!is_near_origin(source)) return register_scans(recentred(source), target, options, monitor);
+  if (!is_near_origin(target)) return register_scans(source, recentred(target), options, monitor);
   RegistrationResult result;
   StageClock clock(result.stages, monitor);
   clock.begin("source features");

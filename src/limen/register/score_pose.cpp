@@ -15,7 +15,8 @@ PoseScore one_way(const ScanView& scan, const ScanView& judge, const Rigid3& jud
   SightQuery query;
   query.free_m = options.free_m;
   const std::vector<SurfaceSample>& samples = scan.features->samples;
-  for (std::size_t i = 0; i < samples.size(); i += options.stride) {
+  const std::size_t stride = options.samples == 0 ? 1 : 1 + samples.size() / options.samples;
+  for (std::size_t i = 0; i < samples.size(); i += stride) {
     const SurfaceSample& sample = samples[i];
     const bool planar = sample.plane >= 0;
     query.at = judge_from_scan * sample.mean;
@@ -23,7 +24,8 @@ PoseScore one_way(const ScanView& scan, const ScanView& judge, const Rigid3& jud
     query.oriented = planar && scan.features->planes[static_cast<std::size_t>(sample.plane)].oriented;
     query.surface_m = planar ? options.surface_m : 1.5 * options.surface_m;
     const Sight sight = judge.space->look(query);
-    const double area = static_cast<double>(sample.area_m2) * (planar ? 1.0 : kClutterWeight);
+    const double area =
+        static_cast<double>(sample.area_m2) * static_cast<double>(stride) * (planar ? 1.0 : kClutterWeight);
     if (sight.kind == SightKind::surface) {
       const double off = sight.distance_m / query.surface_m;
       const double gain = area * (1.0 - off * off);
@@ -43,12 +45,11 @@ PoseScore score_pose(const ScanView& source, const ScanView& target, const Rigid
                      const ScoreOptions& options) {
   const PoseScore forth = one_way(source, target, target_from_source, options);
   const PoseScore back = one_way(target, source, inverse(target_from_source), options);
-  const double factor = 0.5 * static_cast<double>(options.stride);
   PoseScore both;
-  both.agreeing_m2 = factor * (forth.agreeing_m2 + back.agreeing_m2);
-  both.planar_m2 = factor * (forth.planar_m2 + back.planar_m2);
-  both.contradicted_m2 = factor * (forth.contradicted_m2 + back.contradicted_m2);
-  both.tested_m2 = factor * (forth.tested_m2 + back.tested_m2);
+  both.agreeing_m2 = 0.5 * (forth.agreeing_m2 + back.agreeing_m2);
+  both.planar_m2 = 0.5 * (forth.planar_m2 + back.planar_m2);
+  both.contradicted_m2 = 0.5 * (forth.contradicted_m2 + back.contradicted_m2);
+  both.tested_m2 = 0.5 * (forth.tested_m2 + back.tested_m2);
   return both;
 }
 

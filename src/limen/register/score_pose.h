@@ -18,7 +18,7 @@ struct ScanView {
 struct ScoreOptions {
   double surface_m = 0.06;  ///< surfaces nearer than this agree
   double free_m = 0.10;     ///< matter this far inside seen free space is contradicted
-  std::size_t stride = 1;   ///< every stride-th sample is asked
+  std::size_t samples = 0;  ///< asked of each scan, about; 0: all
 };
 
 /// How well a pose explains both scans, asked both ways and averaged: m^2 of each scan's surface that the
