@@ -28,6 +28,16 @@ double extent_along(const PlanarPolygon& polygon, const Vector3d& direction) {
   return std::max(0.0, high - low);
 }
 
+constexpr double kMaxReliefAngle_rad = radians(5.0);
+
+/// Parallel, seen from the same side, and within `max_relief_m` of the wall's plane.
+bool in_relief(const PlanarPolygon& wall, const PlanarPolygon& other, double max_relief_m) {
+  const double cosine = wall.plane.normal.dot(other.plane.normal);
+  if (std::abs(cosine) < std::cos(kMaxReliefAngle_rad)) return false;
+  if (wall.oriented && other.oriented && cosine < 0.0) return false;
+  return std::abs(wall.plane.signed_distance(other.centroid)) <= max_relief_m;
+}
+
 }  // namespace
 
 void FacadeCriteria::check() const {
@@ -59,12 +69,31 @@ std::vector<int> find_facades(const std::vector<PlanarPolygon>& polygons, const 
   return facades;
 }
 
-std::vector<Polygon> wall_outline(const PlanarPolygon& polygon, double close_gaps_m) {
-  const std::vector<Polygon> whole = filled(polygon.parts);
-  if (close_gaps_m <= 0.0) return whole;
-  // Growing joins the banks of a gap; shrinking gives the outside back its place. What the wall had stays.
-  const std::vector<Polygon> closed = grown(filled(grown(whole, 0.5 * close_gaps_m)), -0.5 * close_gaps_m);
-  return filled(merged(whole, closed));
+void WallOutlineOptions::check() const {
+  if (!(close_gaps_m >= 0.0)) throw_bad_option("close_gaps_m", close_gaps_m, "at least 0");
+  if (!(max_relief_m >= 0.0)) throw_bad_option("max_relief_m", max_relief_m, "at least 0");
+}
+
+std::vector<Polygon> wall_outline(const std::vector<PlanarPolygon>& polygons, int wall,
+                                  const WallOutlineOptions& options) {
+  options.check();
+  const PlanarPolygon& base = polygons.at(static_cast<std::size_t>(wall));
+  const std::vector<Polygon> own = filled(base.parts);
+  std::vector<Polygon> pieces = own;
+  for (const PlanarPolygon& other : polygons) {
+    if (&other == &base || !in_relief(base, other, options.max_relief_m)) continue;
+    const std::vector<Polygon> seen = projected(other.parts, other.frame, base.frame);
+    pieces.insert(pieces.end(), seen.begin(), seen.end());
+  }
+  std::vector<Polygon> whole = filled(pieces);
+  if (options.close_gaps_m > 0.0) {
+    // Growing joins the banks of a gap; shrinking gives the outside back its place. What the wall had stays.
+    const double half = 0.5 * options.close_gaps_m;
+    whole = filled(merged(whole, grown(filled(grown(whole, half)), -half)));
+  }
+  // The house next door may stand on the same line.
+  std::erase_if(whole, [&](const Polygon& part) { return intersection_area({part}, own) <= 0.0; });
+  return whole;
 }
 
 }  // namespace limen

@@ -24,10 +24,21 @@ struct FacadeCriteria {
 std::vector<int> find_facades(const std::vector<PlanarPolygon>& polygons, const Vector3d& up,
                               const FacadeCriteria& options = {});
 
-/// The region of a wall's plane that belongs to the house: its outer rings with all holes filled, and gaps
-/// narrower than `close_gaps_m` between or into them closed (cornices, a window cut by the scan's edge).
-/// In the polygon's own frame. An opening is exactly a hole in the polygon, so that a test against the
-/// polygon itself would refuse every ray that came in through a window.
-std::vector<Polygon> wall_outline(const PlanarPolygon& polygon, double close_gaps_m);
+/// How far the region of a wall reaches beyond its polygon.
+struct WallOutlineOptions {
+  double close_gaps_m =
+      0.5;  ///< gaps narrower than this are closed: cornices, a window at the scan's edge; >= 0
+  double max_relief_m =
+      0.1;  ///< parallel pieces this near to the plane belong to the wall: plinths, bands; >= 0
+
+  void check() const;
+};
+
+/// The region of a wall's plane that belongs to the house, in the frame of polygons[wall]: its outer rings
+/// and those of the pieces in relief that it hangs together with, all holes filled and narrow gaps closed. An
+/// opening is exactly a hole in the polygon, so that a test against the polygon itself would refuse every ray
+/// that came in through a window.
+std::vector<Polygon> wall_outline(const std::vector<PlanarPolygon>& polygons, int wall,
+                                  const WallOutlineOptions& options = {});
 
 }  // namespace limen

@@ -8,7 +8,6 @@
 
 #include "limen/base/error.h"
 #include "limen/base/parallel.h"
-#include "limen/extract/facades.h"
 #include "limen/extract/outline_raster.h"
 
 namespace limen {
@@ -47,7 +46,7 @@ std::vector<Target> make_targets(const std::vector<PlanarPolygon>& polygons, con
   std::vector<Target> targets;
   for (const int wall : walls) {
     const PlanarPolygon& polygon = polygons.at(static_cast<std::size_t>(wall));
-    OutlineRaster outline(wall_outline(polygon, options.close_gaps_m));
+    OutlineRaster outline(wall_outline(polygons, wall, options.outline));
     if (outline.box().empty()) continue;
     const Extent box = box_of(polygon.frame, outline.polygons());
     targets.push_back({wall, polygon.plane, polygon.frame, polygon.oriented, std::move(outline), box});
@@ -142,7 +141,7 @@ std::vector<Crossing> trace_block(const Scan& scan, std::size_t begin, std::size
 void InteriorPointOptions::check() const {
   if (!(min_beyond_m >= 0.0)) throw_bad_option("min_beyond_m", min_beyond_m, "at least 0");
   if (!(min_depth_m > 0.0)) throw_bad_option("min_depth_m", min_depth_m, "greater than 0");
-  if (!(close_gaps_m >= 0.0)) throw_bad_option("close_gaps_m", close_gaps_m, "at least 0");
+  outline.check();
 }
 
 std::vector<Crossing> find_interior_points(const Scan& scan, const std::vector<PlanarPolygon>& polygons,

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "limen/base/progress.h"
+#include "limen/extract/facades.h"
 #include "limen/geometry/polygon.h"
 #include "limen/model/scan.h"
 
@@ -26,7 +27,7 @@ namespace limen {
 struct InteriorPointOptions {
   double min_beyond_m = 1.0;  ///< from the crossing to the point along the ray, >= 0 (openings: 0.1)
   double min_depth_m = 0.1;   ///< of the point behind the wall's plane, > 0
-  double close_gaps_m = 0.5;  ///< narrower gaps of a wall's outline are closed, >= 0
+  WallOutlineOptions outline;
 
   void check() const;
 };

@@ -141,7 +141,7 @@ TEST(InteriorPoints, AreThoseOfBruteForceForAnyNumberOfThreads) {
                              random.uniform(-1.0, 15.0));
   }
   InteriorPointOptions exact;
-  exact.close_gaps_m = 0.0;
+  exact.outline = {0.0, 0.0};
   const std::vector<std::int32_t> expected = brute_force(scan, walls);
   const int before = thread_count();
   for (const int threads : {1, 3}) {
@@ -188,12 +188,32 @@ TEST(Facades, AreLargeAndVertical) {
 TEST(WallOutline, FillsHolesAndClosesNarrowGaps) {
   PlanarPolygon split = wall(0.0, rectangle(0, 0, 4, 3), {rectangle(1, 1, 2, 2)});
   split.parts.push_back({rectangle(0, 3.3, 4, 6), {}});  // a cornice between
-  EXPECT_EQ(wall_outline(split, 0.0).size(), 2U);
-  EXPECT_NEAR(area(wall_outline(split, 0.0)), 12.0 + 10.8, 1e-3);
-  ASSERT_EQ(wall_outline(split, 0.5).size(), 1U);
-  EXPECT_NEAR(area(wall_outline(split, 0.5)), 24.0, 0.1);
-  EXPECT_EQ(wall_outline(split, 0.2).size(), 2U);
-  EXPECT_TRUE(wall_outline(PlanarPolygon{}, 0.5).empty());
+  const auto outline = [&](double close_gaps_m) { return wall_outline({split}, 0, {close_gaps_m, 0.0}); };
+  EXPECT_EQ(outline(0.0).size(), 2U);
+  EXPECT_NEAR(area(outline(0.0)), 12.0 + 10.8, 1e-3);
+  ASSERT_EQ(outline(0.5).size(), 1U);
+  EXPECT_NEAR(area(outline(0.5)), 24.0, 0.1);
+  EXPECT_EQ(outline(0.2).size(), 2U);
+  EXPECT_TRUE(wall_outline({PlanarPolygon{}}, 0).empty());
+}
+
+TEST(WallOutline, TakesPiecesInReliefButNotTheHouseNextDoor) {
+  const auto piece = [](double offset, const Ring& ring) {
+    PlanarPolygon made = wall(offset, ring, {});
+    made.centroid = made.frame.to_space(ring[0]);
+    return made;
+  };
+  PlanarPolygon from_inside = piece(10.05, rectangle(0, -9, 4, 0));
+  from_inside.plane = from_inside.plane.flipped();
+  const std::vector<PlanarPolygon> polygons{piece(10.0, rectangle(0, 3, 4, 8)),
+                                            piece(9.94, rectangle(0, 0, 4, 2.8)),  // a plinth
+                                            piece(9.5, rectangle(0, 0, 4, 9)),     // a balcony
+                                            piece(10.0, rectangle(6, 0, 9, 8)),    // next door
+                                            from_inside};
+  EXPECT_NEAR(area(wall_outline(polygons, 0, {0.5, 0.0})), 20.0, 0.1);
+  EXPECT_NEAR(area(wall_outline(polygons, 0, {0.5, 0.1})), 32.0, 0.1);
+  EXPECT_NEAR(area(wall_outline(polygons, 1, {0.5, 0.1})), 32.0, 0.1);
+  EXPECT_THROW(wall_outline(polygons, 0, {-1.0, 0.1}), Error);
 }
 
 TEST(OutlineRaster, AnswersAsTheExactTest) {

@@ -31,7 +31,7 @@ std::vector<std::uint32_t> order_of(const ScanTopology& topology) {
   std::vector<std::uint32_t> order(n);
   const auto extremes = std::minmax_element(topology.line.begin(), topology.line.end());
   const std::int64_t first_line = *extremes.first;
-  const auto range = static_cast<std::size_t>(*extremes.second - first_line) + 1;
+  const auto range = static_cast<std::size_t>(static_cast<std::int64_t>(*extremes.second) - first_line) + 1;
   const auto before = [&](std::uint32_t a, std::uint32_t b) {
     return topology.line[a] != topology.line[b] ? topology.line[a] < topology.line[b]
                                                 : topology.index[a] < topology.index[b];
