@@ -15,9 +15,12 @@
 namespace limen {
 namespace {
 
-constexpr std::size_t kMaxParts = 4;     // of one plane, largest first
-constexpr double kMinDeterminant = 0.2;  // three axes flatter than this do not fix a shift
-constexpr double kSameShiftM = 0.15;     // poses nearer than this are one
+constexpr std::size_t kMaxParts = 4;       // of one plane, largest first
+constexpr double kMinDeterminant = 0.2;    // three axes flatter than this do not fix a shift
+constexpr std::size_t kSlidingAxes = 4;    // heaviest axes that are paired for sliding poses
+constexpr std::size_t kSlidingShifts = 6;  // shifts tried along each
+constexpr double kMaxSweepM = 40.0;        // either way
+constexpr double kSameShiftM = 0.15;       // poses nearer than this are one
 
 /// Axis-aligned rectangle in the coordinates of an axis.
 struct Box {
@@ -135,11 +138,7 @@ class PoseEnumerator {
   }
 
   [[nodiscard]] std::vector<PoseCandidate> run() const {
-    RotationOptions rotation_options;
-    rotation_options.gravity_known = options_.gravity_known;
-    rotation_options.gravity_tolerance_deg = options_.gravity_tolerance_deg;
-    rotation_options.direction_deg = options_.direction_deg;
-    const std::vector<Matrix3d> rotations = enumerate_rotations(source_axes_, target_axes_, rotation_options);
+    const std::vector<Matrix3d> rotations = all_rotations();
     std::vector<std::vector<PoseCandidate>> found(rotations.size());
     parallel_for(rotations.size(), 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) found[i] = poses_of(rotations[i]);
@@ -150,7 +149,78 @@ class PoseEnumerator {
     return all;
   }
 
+  [[nodiscard]] std::vector<PoseCandidate> run_sliding(double step_m) const {
+    const std::vector<Matrix3d> rotations = all_rotations();
+    std::vector<std::vector<PoseCandidate>> found(rotations.size());
+    parallel_for(rotations.size(), 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) found[i] = sliding_poses_of(rotations[i], step_m);
+    });
+    std::vector<PoseCandidate> all;
+    for (const std::vector<PoseCandidate>& poses : found) all.insert(all.end(), poses.begin(), poses.end());
+    return all;
+  }
+
  private:
+  [[nodiscard]] std::vector<Matrix3d> all_rotations() const {
+    RotationOptions rotation_options;
+    rotation_options.gravity_known = options_.gravity_known;
+    rotation_options.gravity_tolerance_deg = options_.gravity_tolerance_deg;
+    rotation_options.direction_deg = options_.direction_deg;
+    return enumerate_rotations(source_axes_, target_axes_, rotation_options);
+  }
+
+  [[nodiscard]] std::vector<PoseCandidate> sliding_poses_of(const Matrix3d& rotation, double step_m) const {
+    std::vector<AxisPairs> axes;
+    for (const AxisDirection& direction : target_axes_) axes.push_back(pairs_along(direction, rotation));
+    std::erase_if(axes, [](const AxisPairs& a) { return a.pairs.empty(); });
+    std::stable_sort(axes.begin(), axes.end(),
+                     [](const AxisPairs& a, const AxisPairs& b) { return a.weight_m2 > b.weight_m2; });
+    if (axes.size() > kSlidingAxes) axes.resize(kSlidingAxes);
+    std::vector<PoseCandidate> poses;
+    for (std::size_t i = 0; i < axes.size(); ++i) {
+      for (std::size_t j = i + 1; j < axes.size(); ++j) slide(rotation, axes[i], axes[j], step_m, poses);
+    }
+    return poses;
+  }
+
+  /// Appends the poses of the best shifts along two axes, swept along their cross product.
+  void slide(const Matrix3d& rotation, const AxisPairs& a, const AxisPairs& b, double step_m,
+             std::vector<PoseCandidate>& poses) const {
+    const Vector3d free = a.axis.direction.cross(b.axis.direction);
+    if (free.norm() < 0.5) return;
+    Matrix3d normals;
+    normals << a.axis.direction.transpose(), b.axis.direction.transpose(), free.normalized().transpose();
+    const Matrix3d solve = normals.inverse();
+    const auto range = sweep_range(rotation, free.normalized());
+    for (std::size_t k = 0; k < std::min(kSlidingShifts, a.shifts.size()); ++k) {
+      for (std::size_t l = 0; l < std::min(kSlidingShifts, b.shifts.size()); ++l) {
+        for (double c = range.first; c <= range.second; c += step_m) {
+          poses.push_back({{rotation, solve * Vector3d(a.shifts[k].value, b.shifts[l].value, c)},
+                           a.shifts[k].limit_m2 + b.shifts[l].limit_m2,
+                           1});
+        }
+      }
+    }
+  }
+
+  /// Shifts along `direction` that bring any plane of the source beside any of the target.
+  [[nodiscard]] std::pair<double, double> sweep_range(const Matrix3d& rotation,
+                                                      const Vector3d& direction) const {
+    std::pair<double, double> from(1e300, -1e300);
+    std::pair<double, double> to(1e300, -1e300);
+    for (const PlanarPolygon& plane : source_.planes) {
+      const double x = direction.dot(rotation * plane.centroid);
+      from = {std::min(from.first, x), std::max(from.second, x)};
+    }
+    for (const PlanarPolygon& plane : target_.planes) {
+      const double x = direction.dot(plane.centroid);
+      to = {std::min(to.first, x), std::max(to.second, x)};
+    }
+    const double middle = 0.5 * (to.first + to.second - from.first - from.second);
+    const double reach = std::min(kMaxSweepM, 0.5 * (to.second - to.first + from.second - from.first));
+    return {middle - reach, middle + reach};
+  }
+
   static void keep_best(std::vector<PoseCandidate>& poses, std::size_t most) {
     std::stable_sort(poses.begin(), poses.end(), [](const PoseCandidate& a, const PoseCandidate& b) {
       return a.support_m2 > b.support_m2;
@@ -273,7 +343,8 @@ class PoseEnumerator {
           pose.target_from_source = {rotation, solve * Vector3d(a.value, b.value, c.value)};
           for (const AxisPairs& along : axes) {
             if (along.pairs.empty()) continue;
-            pose.support_m2 += along.support(pose.target_from_source.translation, options_.offset_tolerance_m);
+            pose.support_m2 +=
+                along.support(pose.target_from_source.translation, options_.offset_tolerance_m);
           }
           pose.free_translations = open;
           if (pose.support_m2 > least) poses.push_back(pose);
@@ -325,6 +396,13 @@ std::vector<PoseCandidate> enumerate_poses(const Features& source, const Feature
                                            const PoseEnumerationOptions& options) {
   options.check();
   return PoseEnumerator(source, target, options).run();
+}
+
+std::vector<PoseCandidate> enumerate_sliding_poses(const Features& source, const Features& target,
+                                                   double step_m, const PoseEnumerationOptions& options) {
+  options.check();
+  if (!(step_m > 0)) throw_bad_option("step_m", step_m, "more than 0");
+  return PoseEnumerator(source, target, options).run_sliding(step_m);
 }
 
 }  // namespace limen

@@ -17,7 +17,12 @@
 namespace limen {
 namespace {
 
-constexpr std::size_t kFirstLook = 800;    // samples asked per scan when thousands of poses are compared
+constexpr std::size_t kFirstLook = 800;  // samples asked per scan when thousands of poses are compared
+constexpr std::size_t kMany = 4000;      // poses that get a first look
+constexpr std::size_t kGlance = 100;     // samples asked of each scan when there are more
+constexpr int kSettleSteps = 16;         // either way along a shift that the planes leave open
+constexpr double kSettleStepM = 0.02;
+constexpr double kSlideStepM = 0.3;
 constexpr std::size_t kPolished = 4;       // poses refined on every sample
 constexpr std::size_t kSecondLook = 4000;  // and when hundreds are
 
@@ -122,19 +127,57 @@ Features interior_only(const Features& features) {
   return part;
 }
 
-/// Poses from all planes and, where a scan looks into a building from outside, from its interior planes
-/// alone: the large surfaces of the street would crowd out the few that both scans share (2021, section 3.1).
+/// The features that poses are proposed from where a scan looks into a building from outside: its interior
+/// planes alone, for the large surfaces of the street would crowd out the few that both scans share
+/// (2021, 3.1).
+struct InsidePair {
+  Features source;
+  Features target;
+  bool differs = false;  ///< from the pair of whole scans
+};
+
+InsidePair inside_pair(const Features& source, const Features& target) {
+  InsidePair pair{interior_only(source), interior_only(target), false};
+  pair.differs = !pair.source.planes.empty() || !pair.target.planes.empty();
+  if (pair.source.planes.empty()) pair.source.planes = source.planes;
+  if (pair.target.planes.empty()) pair.target.planes = target.planes;
+  return pair;
+}
+
+/// Poses from all planes, and from the interior ones.
 std::vector<PoseCandidate> propose(const Features& source, const Features& target,
                                    const PoseEnumerationOptions& options) {
   std::vector<PoseCandidate> candidates = enumerate_poses(source, target, options);
-  const Features source_inside = interior_only(source);
-  const Features target_inside = interior_only(target);
-  if (source_inside.planes.empty() && target_inside.planes.empty()) return candidates;
-  const std::vector<PoseCandidate> more =
-      enumerate_poses(source_inside.planes.empty() ? source : source_inside,
-                      target_inside.planes.empty() ? target : target_inside, options);
+  const InsidePair inside = inside_pair(source, target);
+  if (!inside.differs) return candidates;
+  const std::vector<PoseCandidate> more = enumerate_poses(inside.source, inside.target, options);
   candidates.insert(candidates.end(), more.begin(), more.end());
   return candidates;
+}
+
+/// Poses that leave one shift open, for scans that share too few planes.
+std::vector<PoseCandidate> propose_sliding(const Features& source, const Features& target,
+                                           const PoseEnumerationOptions& options) {
+  const InsidePair inside = inside_pair(source, target);
+  return enumerate_sliding_poses(inside.source, inside.target, kSlideStepM, options);
+}
+
+/// Moves a pose along the shifts its planes leave open to where the rest of the surface agrees best.
+void settle_open_shifts(JudgedPose& pose, const ScanView& source, const ScanView& target,
+                        const RegisterOptions& options) {
+  const ScoreOptions fine = fine_score(source, target);
+  for (const UnobservedFreedom& freedom : unobserved_freedoms(pose.refined, options.verdict.min_held_m2)) {
+    if (freedom.rotation) return;
+    const Rigid3 start = pose.refined.target_from_source;
+    for (int step = -kSettleSteps; step <= kSettleSteps; ++step) {
+      Rigid3 moved = start;
+      moved.translation += kSettleStepM * step * freedom.direction;
+      const PoseScore score = score_pose(source, target, moved, fine);
+      if (score.value() <= pose.score.value()) continue;
+      pose.score = score;
+      pose.refined.target_from_source = moved;
+    }
+  }
 }
 
 /// The poses that may become the answer are refined once more, on everything.
@@ -145,23 +188,31 @@ void polish(std::vector<JudgedPose>& poses, const ScanView& source, const ScanVi
   parallel_for(count, 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       JudgedPose& pose = poses[first.ranking[k]];
+      settle_open_shifts(pose, source, target, options);
       pose.refined = refine_pose(source, target, pose.refined.target_from_source, options.refine);
       pose.score = score_pose(source, target, pose.refined.target_from_source, fine_score(source, target));
     }
   });
 }
 
-/// Steps of one attempt: poses from planes, a coarse look, refinement.
+/// How an attempt proposes its poses.
+enum class Proposal { held, sliding };
+
+/// Steps of one attempt: poses from planes, coarse looks, refinement.
 std::vector<JudgedPose> attempt(const PreparedScan& source, const PreparedScan& target, bool gravity_known,
-                                const RegisterOptions& options, StageClock& clock) {
+                                Proposal proposal, const RegisterOptions& options, StageClock& clock) {
   clock.begin("hypotheses");
   PoseEnumerationOptions enumerate = options.enumerate;
   enumerate.gravity_known = gravity_known;
+  const Features& from = source.extracted.features;
+  const Features& to = target.extracted.features;
   std::vector<PoseCandidate> candidates =
-      propose(source.extracted.features, target.extracted.features, enumerate);
+      proposal == Proposal::held ? propose(from, to, enumerate) : propose_sliding(from, to, enumerate);
   clock.end();
   clock.begin("scoring");
   const auto refined = static_cast<std::size_t>(options.refined_poses);
+  if (candidates.size() > kMany)
+    candidates = best_of(candidates, source.view(), target.view(), kGlance, kMany);
   candidates = best_of(candidates, source.view(), target.view(), kFirstLook, 8 * refined);
   candidates = best_of(candidates, source.view(), target.view(), kSecondLook, refined);
   clock.end();
@@ -199,12 +250,17 @@ RegistrationResult register_scans(const Scan& source, const Scan& target, const 
 
   const bool level = options.gravity == Gravity::up ||
                      (options.gravity == Gravity::automatic && from.looks_level && to.looks_level);
-  std::vector<JudgedPose> poses = attempt(from, to, level, options, clock);
+  std::vector<JudgedPose> poses = attempt(from, to, level, Proposal::held, options, clock);
   Verdict verdict = judge(poses, options.verdict);
-  if (level && options.gravity == Gravity::automatic && verdict.outcome == Outcome::no_match) {
-    poses = attempt(from, to, false, options, clock);
+  const auto try_again = [&](bool gravity_known, Proposal proposal) {
+    const std::vector<JudgedPose> more = attempt(from, to, gravity_known, proposal, options, clock);
+    poses.insert(poses.end(), more.begin(), more.end());
     verdict = judge(poses, options.verdict);
+  };
+  if (verdict.outcome == Outcome::no_match && level && options.gravity == Gravity::automatic) {
+    try_again(false, Proposal::held);
   }
+  if (verdict.outcome == Outcome::no_match && level) try_again(true, Proposal::sliding);
 
   result.outcome = verdict.outcome;
   result.reason = verdict.reason;

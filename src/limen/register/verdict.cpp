@@ -53,6 +53,13 @@ bool is_rival(const PoseScore& other, double best_value, const VerdictOptions& o
          other.value() > best_value - options.min_lead_m2;
 }
 
+/// A pose that may still turn, or slide two ways and more, is no answer.
+bool too_loose(const std::vector<UnobservedFreedom>& unobserved) {
+  const bool turns =
+      std::any_of(unobserved.begin(), unobserved.end(), [](const auto& f) { return f.rotation; });
+  return turns || unobserved.size() > 2;
+}
+
 std::string direction_name(const Vector3d& d) {
   if (std::abs(d.z()) > 0.996) return "the vertical";
   return fmt::format("({:.2f}, {:.2f}, {:.2f})", d.x(), d.y(), d.z());
@@ -123,6 +130,12 @@ Verdict judge(const std::vector<JudgedPose>& poses, const VerdictOptions& option
     if (is_rival(poses[verdict.ranking[k]].score, value, options)) ++rivals;
   }
   verdict.unobserved = unobserved_freedoms(best.refined, options.min_held_m2);
+  if (too_loose(verdict.unobserved)) {
+    verdict.unobserved.clear();
+    verdict.reason = fmt::format("the {:.1f} m2 of surface in common do not even fix the rotation",
+                                 best.score.agreeing_m2);
+    return verdict;
+  }
   if (!verdict.unobserved.empty()) {
     verdict.outcome = Outcome::under_constrained;
     verdict.reason = "the common surface does not fix the " + verdict.unobserved.front().name;
