@@ -215,7 +215,8 @@ Recipe museum_recipe(const SceneOptions& options, RandomStream& random) {
       rooms_with_view(recipe.world, options, std::max<std::size_t>(2, options.stations), random);
   recipe.points_indoor = 300000;
   recipe.points_outdoor = 800000;
-  recipe.profile_turn_rad = random.uniform() < 0.5 ? radians(45.0) : 0.0;
+  if (random.uniform() < 0.5) recipe.head_turns_rad = {radians(45.0), radians(-45.0)};
+  recipe.wants_view = true;
   return recipe;
 }
 
@@ -255,7 +256,8 @@ Recipe regular_recipe(const SceneOptions& options, RandomStream& random) {
   recipe.station_rooms.assign(1, rooms.empty() ? 0 : rooms[0]);
   recipe.points_indoor = 300000;
   recipe.points_outdoor = 800000;
-  recipe.profile_turn_rad = random.uniform() < 0.5 ? radians(45.0) : 0.0;
+  if (random.uniform() < 0.5) recipe.head_turns_rad = {radians(45.0), radians(-45.0)};
+  recipe.wants_view = true;
   return recipe;
 }
 

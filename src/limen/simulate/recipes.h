@@ -17,9 +17,10 @@ struct Recipe {
   bool through_door = false;  ///< the two stations stand in rooms joined by an open door, in sight
   std::size_t points_indoor = 260000;
   std::size_t points_outdoor = 0;
+  bool wants_view = false;         ///< stations are placed where they see much through their windows
   std::optional<Trajectory> path;  ///< of the mobile scan
-  double profile_turn_rad = 0.0;
-  bool national_grid = false;  ///< world coordinates far from zero
+  std::vector<double> head_turns_rad = {0.0};  ///< one head across the path, or two askew
+  bool national_grid = false;                  ///< world coordinates far from zero
 };
 
 /// Builds the scene named in the options. Throws Error for an unknown name.

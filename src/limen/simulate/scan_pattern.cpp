@@ -55,38 +55,44 @@ Vector3d Trajectory::heading(double distance_m) const {
   return along.normalized();
 }
 
-ScanPattern profiler_pattern(const Trajectory& trajectory, double turn_rad, std::size_t pulses) {
+ScanPattern profiler_pattern(const Trajectory& trajectory, const std::vector<double>& head_turns_rad,
+                             std::size_t pulses) {
   constexpr double kSpeed = 5.0;          // m/s
   constexpr double kStart = 381000.0;     // seconds of the GPS week
   constexpr double kTypicalRange = 10.0;  // m
   constexpr double kCircle = 2.0 * std::numbers::pi;
   const double length = trajectory.length();
   // As many profiles as make the spacing along the path that of the pulses at a typical range.
-  const double wanted = static_cast<double>(std::max<std::size_t>(pulses, 64));
+  const auto heads = static_cast<double>(head_turns_rad.size());
+  const double wanted = static_cast<double>(std::max<std::size_t>(pulses, 128)) / heads;
   const double per_line = std::max(64.0, std::sqrt(wanted * kCircle * kTypicalRange / length));
+  const auto head_lines = std::max<std::size_t>(2, static_cast<std::size_t>(std::lround(wanted / per_line)));
   ScanPattern pattern;
   pattern.pulses_per_line = static_cast<std::size_t>(std::lround(per_line));
-  pattern.lines = std::max<std::size_t>(2, static_cast<std::size_t>(std::lround(wanted / per_line)));
+  pattern.lines = head_lines * head_turns_rad.size();
   struct Pose {
     Vector3d origin;
     Vector3d across;
   };
   const auto poses = std::make_shared<std::vector<Pose>>();
-  for (std::size_t line = 0; line < pattern.lines; ++line) {
-    const double distance = length * static_cast<double>(line) / static_cast<double>(pattern.lines - 1);
-    const Vector3d heading = trajectory.heading(distance);
-    const Vector3d across(heading.y(), -heading.x(), 0.0);
-    poses->push_back({trajectory.at(distance), std::cos(turn_rad) * across + std::sin(turn_rad) * heading});
+  for (const double turn : head_turns_rad) {
+    for (std::size_t line = 0; line < head_lines; ++line) {
+      const double distance = length * static_cast<double>(line) / static_cast<double>(head_lines - 1);
+      const Vector3d heading = trajectory.heading(distance);
+      const Vector3d across(heading.y(), -heading.x(), 0.0);
+      poses->push_back({trajectory.at(distance), std::cos(turn) * across + std::sin(turn) * heading});
+    }
   }
   const auto rows = static_cast<double>(pattern.pulses_per_line);
-  const double line_time = length / kSpeed / static_cast<double>(pattern.lines - 1);
-  pattern.pulse = [poses, rows, line_time](std::size_t line, std::size_t index) {
+  const double line_time = length / kSpeed / static_cast<double>(head_lines - 1);
+  pattern.pulse = [poses, rows, line_time, head_lines](std::size_t line, std::size_t index) {
     // A profile begins below the vehicle, rises on its right, and comes back down on its left.
     const double share = (static_cast<double>(index) + 0.5) / rows;
     const Pose& pose = (*poses)[line];
     const Vector3d direction =
         std::sin(kCircle * share) * pose.across - std::cos(kCircle * share) * Vector3d::UnitZ();
-    return Pulse{pose.origin, direction, kStart + line_time * (static_cast<double>(line) + share)};
+    return Pulse{pose.origin, direction,
+                 kStart + line_time * (static_cast<double>(line % head_lines) + share)};
   };
   return pattern;
 }

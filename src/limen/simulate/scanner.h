@@ -73,8 +73,10 @@ struct Trajectory {
   [[nodiscard]] Vector3d heading(double distance_m) const;
 };
 
-/// A profiler on a vehicle: full circles in an upright plane that is turned by `turn_rad` about the vertical
-/// from the plane across the path, about `pulses` in all; profiles as far apart as pulses at 10 m.
-ScanPattern profiler_pattern(const Trajectory& trajectory, double turn_rad, std::size_t pulses);
+/// Profilers on a vehicle: each head turns full circles in an upright plane, turned by its angle about the
+/// vertical from the plane across the path. About `pulses` in all; profiles as far apart as pulses at 10 m.
+/// The lines of the first head come first, then those of the second, which drives along at the same time.
+ScanPattern profiler_pattern(const Trajectory& trajectory, const std::vector<double>& head_turns_rad,
+                             std::size_t pulses);
 
 }  // namespace limen

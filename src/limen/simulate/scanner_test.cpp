@@ -166,7 +166,7 @@ TEST(Scanner, AProfilerDrivesItsPathAndTurnsInItsPlane) {
   const Trajectory path{{{0.0, 0.0, 2.0}, {30.0, 0.0, 2.0}}};
   EXPECT_DOUBLE_EQ(path.length(), 30.0);
   for (const double turn : {0.0, radians(45.0)}) {
-    const ScanPattern pattern = profiler_pattern(path, turn, 50000);
+    const ScanPattern pattern = profiler_pattern(path, {turn}, 50000);
     EXPECT_NEAR(static_cast<double>(pattern.lines * pattern.pulses_per_line), 50000.0, 1000.0);
     EXPECT_EQ(pattern.pulse(0, 0).origin, path.points[0]);
     EXPECT_LT((pattern.pulse(pattern.lines - 1, 0).origin - path.points[1]).norm(), 1e-9);
@@ -176,6 +176,16 @@ TEST(Scanner, AProfilerDrivesItsPathAndTurnsInItsPlane) {
       EXPECT_NEAR(direction.x() * std::cos(turn) + direction.y() * std::sin(turn), 0.0, 1e-12);
     }
   }
+}
+
+TEST(Scanner, TwoHeadsDriveTheSamePathAtTheSameTime) {
+  const Trajectory path{{{0.0, 0.0, 2.0}, {30.0, 0.0, 2.0}}};
+  const ScanPattern pattern = profiler_pattern(path, {radians(45.0), radians(-45.0)}, 50000);
+  ASSERT_EQ(pattern.lines % 2, 0U);
+  const std::size_t second = pattern.lines / 2;
+  EXPECT_EQ(pattern.pulse(5, 9).origin, pattern.pulse(second + 5, 9).origin);
+  EXPECT_EQ(pattern.pulse(5, 9).time_s, pattern.pulse(second + 5, 9).time_s);
+  EXPECT_LT(pattern.pulse(5, 40).direction.x() * pattern.pulse(second + 5, 40).direction.x(), 0.0);
 }
 
 }  // namespace

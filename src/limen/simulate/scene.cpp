@@ -139,7 +139,7 @@ class Simulation {
     const std::size_t points = o_.points_outdoor > 0 ? o_.points_outdoor : recipe_.points_outdoor;
     ScanPattern pattern;
     const auto make = [&](std::size_t pulses) {
-      pattern = profiler_pattern(*recipe_.path, recipe_.profile_turn_rad, pulses);
+      pattern = profiler_pattern(*recipe_.path, recipe_.head_turns_rad, pulses);
       return pattern;
     };
     const Sweep result = sweep_of(make, points, mix64(o_.seed * 1000 + 900));

@@ -203,12 +203,15 @@ TEST(Scene, MobileScansHaveCentresTimesAndTopology) {
   ASSERT_TRUE(scan.mobile());
   ASSERT_TRUE(scan.topology.known());
   EXPECT_TRUE(scan.level);
+  int heads = 1;
   for (std::size_t i = 1; i < scan.size(); ++i) {
     const bool later_line = scan.topology.line[i] > scan.topology.line[i - 1];
     EXPECT_TRUE(later_line || scan.topology.index[i] > scan.topology.index[i - 1]);
-    EXPECT_GT(scan.times_s[i], scan.times_s[i - 1]);
+    // A second head starts the drive anew: once, at most.
+    heads += scan.times_s[i] <= scan.times_s[i - 1] ? 1 : 0;
     EXPECT_TRUE(later_line || scan.centres[i] == scan.centres[i - 1]);
   }
+  EXPECT_LE(heads, 2);
 }
 
 TEST(Scene, DriftMovesPointsAndCentresAlikeByTheAmountAsked) {

@@ -32,6 +32,20 @@ class Surveyor {
     return std::nullopt;
   }
 
+  /// Of several free places the one that sees most of the street through the room's windows.
+  [[nodiscard]] std::optional<Station> with_a_view(std::size_t room, const std::vector<Station>& others) {
+    std::optional<Station> best;
+    int most = -1;
+    for (int attempt = 0; attempt < 10; ++attempt) {
+      const std::optional<Station> station = in_room(room, others);
+      const int seen = station ? windows_seen(*station) : -1;
+      if (seen <= most) continue;
+      most = seen;
+      best = station;
+    }
+    return best;
+  }
+
   /// Two stations on either side of one open door, in sight.
   [[nodiscard]] std::vector<Station> through_a_door() {
     std::vector<std::size_t> doors;
@@ -69,6 +83,23 @@ class Surveyor {
     return {x, y, r.floor_m + random_.uniform(1.35, 1.75)};
   }
 
+  /// How many of 5 x 5 points in each of the room's open windows on a street can be seen past.
+  [[nodiscard]] int windows_seen(const Station& station) const {
+    int seen = 0;
+    for (const TrueOpening& window : world_.openings) {
+      if (!window.exterior || window.curtained || window.rooms[0] != static_cast<int>(station.room)) continue;
+      const bool street =
+          std::any_of(building_.street_normals.begin(), building_.street_normals.end(),
+                      [&](const Vector2d& n) { return n.dot(window.normal.head<2>()) > 0.999; });
+      for (int i = 0; street && i < 25; ++i) {
+        const Vector3d u = (i % 5 + 0.5) / 5.0 * (window.outer[1] - window.outer[0]);
+        const Vector3d v = (i / 5 + 0.5) / 5.0 * (window.outer[3] - window.outer[0]);
+        seen += in_sight(station.position, window.outer[0] + u + v) ? 1 : 0;
+      }
+    }
+    return seen;
+  }
+
   /// A point of `room` on a line from `from` through the doorway.
   Vector3d beyond(const Vector3d& from, const TrueOpening& door, std::size_t room) {
     const Vector3d across = door.outer[1] - door.outer[0];
@@ -97,7 +128,7 @@ class Surveyor {
     return true;
   }
 
-  /// Nothing but open doorways in between.
+  /// Nothing but open doorways and panes in between.
   [[nodiscard]] bool in_sight(const Vector3d& from, const Vector3d& to) const {
     const double distance = (to - from).norm();
     const Vector3d direction = (to - from) / distance;
@@ -106,7 +137,7 @@ class Surveyor {
       const RayHit hit = caster_.cast(from, direction, start);
       if (!hit.found() || hit.range_m > distance) return true;
       const Surface& surface = caster_.mesh().surfaces()[static_cast<std::size_t>(hit.surface)];
-      if (surface.element != Element::portal) return false;
+      if (surface.element != Element::portal && surface.element != Element::glass) return false;
       start = hit.range_m + 1e-3;
     }
     return false;
@@ -126,7 +157,8 @@ std::vector<Station> place_stations(const Recipe& recipe, const RayCaster& caste
   if (recipe.through_door) stations = surveyor.through_a_door();
   for (std::size_t i = stations.size(); i < recipe.station_rooms.size(); ++i) {
     const std::size_t wanted = recipe.station_rooms[i];
-    std::optional<Station> station = surveyor.in_room(wanted, stations);
+    std::optional<Station> station =
+        recipe.wants_view ? surveyor.with_a_view(wanted, stations) : surveyor.in_room(wanted, stations);
     // A room may be too full: then any other does.
     const std::size_t rooms = recipe.world.buildings[0].plan.rooms.size();
     for (std::size_t other = 0; !station && other < rooms; ++other)
