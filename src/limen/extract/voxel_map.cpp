@@ -114,13 +114,30 @@ void VoxelMap::carve_ray(const Vector3d& from, const Vector3d& to) {
   }
 }
 
+bool VoxelMap::is_free(const Vector3d& x) const {
+  const std::int64_t index = index_of(key_of(x));
+  return index >= 0 && free_[static_cast<std::size_t>(index)];
+}
+
+bool VoxelMap::passed_freely(const SightQuery& query) const {
+  if (free_.empty() || !is_free(query.at)) return false;
+  // A ray that grazes a surface frees the cube it stands in, but not the cubes on both sides of it.
+  if (!query.normal.isZero()) {
+    return is_free(query.at + edge_ * query.normal) && is_free(query.at - edge_ * query.normal);
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    const Vector3d step = edge_ * Vector3d::Unit(axis);
+    if (!is_free(query.at + step) || !is_free(query.at - step)) return false;
+  }
+  return true;
+}
+
 Sight VoxelMap::look(const SightQuery& query) const {
   const std::int64_t index = index_of(key_of(query.at));
   if (index < 0) return {};
   const auto found = cubes_.find(index);
   if (found == cubes_.end()) {
-    const bool passed = !free_.empty() && free_[static_cast<std::size_t>(index)];
-    return {passed ? SightKind::free : SightKind::unseen, -1, 0.0};
+    return {passed_freely(query) ? SightKind::free : SightKind::unseen, -1, 0.0};
   }
   Sight best;
   double nearest = query.surface_m;

@@ -39,6 +39,8 @@ class VoxelMap : public SpaceView {
   using Key = std::array<std::int32_t, 3>;
   [[nodiscard]] Key key_of(const Vector3d& x) const;
   [[nodiscard]] std::int64_t index_of(const Key& key) const;  ///< -1 outside
+  [[nodiscard]] bool is_free(const Vector3d& x) const;
+  [[nodiscard]] bool passed_freely(const SightQuery& query) const;
   void enter(const Features& features);
   void carve(const Scan& scan, double margin_m);
   void carve_ray(const Vector3d& from, const Vector3d& to);

@@ -17,9 +17,9 @@ namespace {
 
 constexpr std::size_t kMaxParts = 4;       // of one plane, largest first
 constexpr double kMinDeterminant = 0.2;    // three axes flatter than this do not fix a shift
-constexpr std::size_t kSlidingAxes = 4;    // heaviest axes that are paired for sliding poses
-constexpr std::size_t kSlidingShifts = 6;  // shifts tried along each
-constexpr double kMaxSweepM = 40.0;        // either way
+constexpr std::size_t kSlidingAxes = 3;    // heaviest axes that are paired for sliding poses
+constexpr std::size_t kSlidingShifts = 5;  // shifts tried along each
+constexpr double kMaxSweepM = 25.0;        // either way
 constexpr double kSameShiftM = 0.15;       // poses nearer than this are one
 
 /// Axis-aligned rectangle in the coordinates of an axis.
@@ -155,6 +155,7 @@ class PoseEnumerator {
     parallel_for(rotations.size(), 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) found[i] = sliding_poses_of(rotations[i], step_m);
     });
+
     std::vector<PoseCandidate> all;
     for (const std::vector<PoseCandidate>& poses : found) all.insert(all.end(), poses.begin(), poses.end());
     return all;

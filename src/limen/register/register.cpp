@@ -22,7 +22,7 @@ constexpr std::size_t kMany = 4000;      // poses that get a first look
 constexpr std::size_t kGlance = 100;     // samples asked of each scan when there are more
 constexpr int kSettleSteps = 16;         // either way along a shift that the planes leave open
 constexpr double kSettleStepM = 0.02;
-constexpr double kSlideStepM = 0.3;
+constexpr double kSlideStepM = 0.4;
 constexpr std::size_t kPolished = 4;       // poses refined on every sample
 constexpr std::size_t kSecondLook = 4000;  // and when hundreds are
 

@@ -23,7 +23,7 @@ struct VerdictOptions {
   double max_rival_contradiction = 0.25;  ///< a pose contradicted more than this is no rival
   double max_rival_share = 0.80;          ///< a different pose with more of the best value is a rival
   double min_lead_m2 = 1.0;               ///< the best pose must lead every different one by this
-  double min_held_m2 = 0.06;              ///< surface (times lever^2 for turns) that must hold each freedom
+  double min_held_m2 = 0.03;              ///< surface (times lever^2 for turns) that must hold each freedom
   double same_rotation_deg = 1.0;         ///< poses nearer than both bounds are one pose
   double same_shift_m = 0.05;
 
