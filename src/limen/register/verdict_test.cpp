@@ -1,0 +1,93 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/register/verdict.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "limen/base/error.h"
+
+namespace limen {
+namespace {
+
+/// A pose held by one square metre in each direction, with the given surfaces.
+JudgedPose pose(double agreeing_m2, double contradicted_m2, double shift_m) {
+  JudgedPose judged;
+  judged.refined.target_from_source.translation.x() = shift_m;
+  judged.refined.centre.x() = shift_m;
+  judged.refined.geometry_m2 = Matrix6d::Identity();
+  judged.score = {agreeing_m2, agreeing_m2, contradicted_m2, 100.0};
+  return judged;
+}
+
+TEST(Verdict, OneGoodPoseIsRegistered) {
+  EXPECT_EQ(judge({pose(30, 0.5, 0), pose(20, 9, 3)}).outcome, Outcome::registered);
+}
+
+TEST(Verdict, NothingToJudgeIsNoMatch) {
+  const Verdict verdict = judge({});
+  EXPECT_EQ(verdict.outcome, Outcome::no_match);
+  EXPECT_FALSE(verdict.reason.empty());
+}
+
+TEST(Verdict, TwoGoodPosesAreAmbiguous) {
+  EXPECT_EQ(judge({pose(30, 0, 0), pose(29, 0, 2)}).outcome, Outcome::ambiguous);
+}
+
+TEST(Verdict, TheSamePoseTwiceIsNoRival) {
+  const Verdict verdict = judge({pose(30, 0, 0), pose(30, 0, 0.01)});
+  EXPECT_EQ(verdict.outcome, Outcome::registered);
+  EXPECT_EQ(verdict.ranking.size(), 1U);
+}
+
+TEST(Verdict, AnImpossiblePoseIsNoRival) {
+  // It agrees more, but a third of it stands where the other scan saw free space.
+  EXPECT_EQ(judge({pose(20, 0, 0), pose(60, 11, 2)}).outcome, Outcome::registered);
+}
+
+TEST(Verdict, ContradictedPoseIsNoMatch) {
+  EXPECT_EQ(judge({pose(30, 6, 0)}).outcome, Outcome::no_match);
+}
+
+TEST(Verdict, LittleEvidenceBearsLittleContradiction) {
+  EXPECT_EQ(judge({pose(4, 0.3, 0)}).outcome, Outcome::no_match);
+  EXPECT_EQ(judge({pose(4, 0.05, 0)}).outcome, Outcome::registered);
+}
+
+TEST(Verdict, TooLittleSurfaceIsNoMatch) {
+  EXPECT_EQ(judge({pose(1, 0, 0)}).outcome, Outcome::no_match);
+}
+
+TEST(Verdict, AnOpenShiftIsNamed) {
+  JudgedPose open = pose(30, 0, 0);
+  open.refined.geometry_m2(4, 4) = 0.0;
+  const Verdict verdict = judge({open});
+  ASSERT_EQ(verdict.outcome, Outcome::under_constrained);
+  ASSERT_EQ(verdict.unobserved.size(), 1U);
+  EXPECT_FALSE(verdict.unobserved[0].rotation);
+  EXPECT_NEAR(std::abs(verdict.unobserved[0].direction.y()), 1.0, 1e-9);
+  EXPECT_NE(verdict.reason.find("shift along"), std::string::npos);
+}
+
+TEST(Verdict, APoseThatMayTurnIsNoAnswer) {
+  JudgedPose loose = pose(30, 0, 0);
+  loose.refined.geometry_m2(2, 2) = 0.0;
+  EXPECT_EQ(judge({loose}).outcome, Outcome::no_match);
+}
+
+TEST(Verdict, AShiftHeldOnlyThroughATurnIsOpen) {
+  // Coupling: what holds the shift is the same tile that would have to hold the turn.
+  JudgedPose coupled = pose(30, 0, 0);
+  coupled.refined.geometry_m2(2, 4) = coupled.refined.geometry_m2(4, 2) = 0.9999;
+  EXPECT_FALSE(unobserved_freedoms(coupled.refined, 0.03).empty());
+}
+
+TEST(Verdict, OptionsNameTheirBound) {
+  VerdictOptions options;
+  options.max_rival_share = 1.5;
+  EXPECT_THROW(judge({}, options), Error);
+}
+
+}  // namespace
+}  // namespace limen
