@@ -156,14 +156,15 @@ Recipe flat_recipe(const SceneOptions& options, RandomStream& random) {
 }
 
 /// Rooms for stations: the first one as `options.facades` asks, the others in rooms with open windows.
-std::vector<std::size_t> rooms_with_view(const World& world, const SceneOptions& options, std::size_t count,
-                                         RandomStream& random) {
+void choose_rooms_with_view(Recipe& recipe, const SceneOptions& options, RandomStream& random) {
+  const World& world = recipe.world;
   const auto with = [&](std::size_t facades, bool exactly) {
     return rooms_where(world, random, [&](std::size_t room) {
       const std::size_t seen = facades_of(world, room, View::open_to_street);
       const Room& r = world.buildings[0].plan.rooms[room];
       return signed_area(r.outline) > 10.0 && r.storey < 2 && r.use != RoomUse::stairs &&
-             (exactly ? seen == facades : seen >= facades);
+             (exactly ? seen == facades && facades_of(world, room, View::any_window) == facades
+                      : seen >= facades);
     });
   };
   std::vector<std::size_t> rooms;
@@ -171,11 +172,13 @@ std::vector<std::size_t> rooms_with_view(const World& world, const SceneOptions&
   if (options.facades == 0) rooms = with(2, false);
   if (rooms.empty()) rooms = with(1, false);
   if (rooms.empty()) rooms = with(0, false);
+  recipe.spare_rooms = rooms;
   rooms.resize(1, 0);
+  const std::size_t count = std::max<std::size_t>(2, options.stations);
   for (const std::size_t room : with(1, false))
     if (rooms.size() < count && room != rooms[0]) rooms.push_back(room);
   while (rooms.size() < count) rooms.push_back(rooms[0]);
-  return rooms;
+  recipe.station_rooms = rooms;
 }
 
 Recipe museum_recipe(const SceneOptions& options, RandomStream& random) {
@@ -211,11 +214,10 @@ Recipe museum_recipe(const SceneOptions& options, RandomStream& random) {
   street.opposite_m = street.path_m + random.uniform(8.0, 11.0);
   recipe.path = add_street(recipe.world, 0, street, random);
   add_garden(recipe.world, 0, 4, random);
-  recipe.station_rooms =
-      rooms_with_view(recipe.world, options, std::max<std::size_t>(2, options.stations), random);
+  choose_rooms_with_view(recipe, options, random);
   recipe.points_indoor = 300000;
   recipe.points_outdoor = 800000;
-  if (random.uniform() < 0.5) recipe.head_turns_rad = {radians(45.0), radians(-45.0)};
+  if (random.uniform() < 0.5) recipe.head_turns_rad = {radians(35.0), radians(-35.0)};
   recipe.wants_view = true;
   return recipe;
 }
@@ -254,9 +256,10 @@ Recipe regular_recipe(const SceneOptions& options, RandomStream& random) {
            facades_of(recipe.world, room, View::open_to_street) == 1;
   });
   recipe.station_rooms.assign(1, rooms.empty() ? 0 : rooms[0]);
+  recipe.spare_rooms = rooms;
   recipe.points_indoor = 300000;
   recipe.points_outdoor = 800000;
-  if (random.uniform() < 0.5) recipe.head_turns_rad = {radians(45.0), radians(-45.0)};
+  if (random.uniform() < 0.5) recipe.head_turns_rad = {radians(35.0), radians(-35.0)};
   recipe.wants_view = true;
   return recipe;
 }

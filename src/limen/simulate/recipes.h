@@ -14,6 +14,7 @@ namespace limen {
 struct Recipe {
   World world;
   std::vector<std::size_t> station_rooms;  ///< rooms of building 0, one per station
+  std::vector<std::size_t> spare_rooms;    ///< as good as the first of them, should that one be too full
   bool through_door = false;  ///< the two stations stand in rooms joined by an open door, in sight
   std::size_t points_indoor = 260000;
   std::size_t points_outdoor = 0;

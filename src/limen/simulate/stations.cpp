@@ -156,13 +156,15 @@ std::vector<Station> place_stations(const Recipe& recipe, const RayCaster& caste
   std::vector<Station> stations;
   if (recipe.through_door) stations = surveyor.through_a_door();
   for (std::size_t i = stations.size(); i < recipe.station_rooms.size(); ++i) {
-    const std::size_t wanted = recipe.station_rooms[i];
-    std::optional<Station> station =
-        recipe.wants_view ? surveyor.with_a_view(wanted, stations) : surveyor.in_room(wanted, stations);
-    // A room may be too full: then any other does.
-    const std::size_t rooms = recipe.world.buildings[0].plan.rooms.size();
-    for (std::size_t other = 0; !station && other < rooms; ++other)
-      station = surveyor.in_room((wanted + other) % rooms, stations);
+    // A room may be too full: then one as good does, or any other.
+    std::vector<std::size_t> rooms = {recipe.station_rooms[i]};
+    if (i == 0) rooms.insert(rooms.end(), recipe.spare_rooms.begin(), recipe.spare_rooms.end());
+    for (std::size_t room = 0; room < recipe.world.buildings[0].plan.rooms.size(); ++room)
+      rooms.push_back(room);
+    std::optional<Station> station;
+    for (std::size_t k = 0; !station && k < rooms.size(); ++k)
+      station =
+          recipe.wants_view ? surveyor.with_a_view(rooms[k], stations) : surveyor.in_room(rooms[k], stations);
     if (!station)
       throw Error("no room of the simulated building has space for a scanner", "limen simulate",
                   "choose another --seed", Fault::internal);

@@ -194,7 +194,7 @@ Trajectory add_street(World& world, std::size_t building, const StreetOptions& o
     add_cylinder(mesh, lifted(p, 0.0), 0.08, random.uniform(2.5, 7.0), Element::pole);
   });
   Trajectory trajectory;
-  for (const Vector2d& p : driven(chain(o.path_m), 18.0)) trajectory.points.push_back(lifted(p, o.antenna_m));
+  for (const Vector2d& p : driven(chain(o.path_m), 11.0)) trajectory.points.push_back(lifted(p, o.antenna_m));
   return trajectory;
 }
 
