@@ -1,0 +1,28 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "limen/base/progress.h"
+#include "limen/extract/grow_planes.h"
+#include "limen/extract/threshold.h"
+#include "limen/model/scan.h"
+
+namespace limen {
+
+struct AutomaticThresholdOptions {
+  std::size_t max_points = 40000;  ///< the choice is made on an even subset of about this many
+  /// Thresholds tried, as multiples of the one that the noise within small cubes asks for.
+  std::vector<double> factors = {1.0, 1.6, 2.5, 4.0};
+  double max_threshold_m = 0.04;
+
+  void check() const;
+};
+
+/// The inlier threshold in metres for growing planes in `scan`, chosen a contrario (2021, 3.1.1) among
+/// multiples of what the noise asks for: walls that are not flat, and clouds joined from many sweeps, need
+/// more than their noise over a few decimetres tells.
+double automatic_threshold(const Scan& scan, const GrowOptions& grow,
+                           const AutomaticThresholdOptions& options = {},
+                           Monitor& monitor = silent_monitor());
+
+}  // namespace limen
