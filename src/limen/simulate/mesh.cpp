@@ -131,6 +131,7 @@ int Mesh::add_panel(const PlaneFrame& frame, const Vector2d& size, const std::ve
 void Mesh::add_prism(const std::vector<Vector3d>& ring, double height, const Surface& like) {
   const Vector3d up(0.0, 0.0, height);
   std::vector<Vector3d> top;
+  top.reserve(ring.size());
   for (const Vector3d& corner : ring) top.push_back(corner + up);
   add_polygon(top, like);
   for (std::size_t i = 0; i < ring.size(); ++i) {

@@ -16,6 +16,7 @@ namespace {
 
 std::vector<double> bays(int count, double low, double high, RandomStream& random) {
   std::vector<double> widths;
+  widths.reserve(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) widths.push_back(random.uniform(low, high));
   return widths;
 }
@@ -225,7 +226,7 @@ Recipe museum_recipe(const SceneOptions& options, RandomStream& random) {
 /// Every bay and storey alike: only what lies outside the grid can tell shifts apart.
 Recipe regular_recipe(const SceneOptions& options, RandomStream& random) {
   PlanOptions plan;
-  plan.main_bays_m.assign(static_cast<std::size_t>(between(4, 6, random) * 2), random.uniform(2.7, 3.3));
+  plan.main_bays_m.assign(2 * static_cast<std::size_t>(between(4, 6, random)), random.uniform(2.7, 3.3));
   plan.south_depth_m = random.uniform(4.8, 6.0);
   plan.corridor_m = random.uniform(1.8, 2.4);
   plan.north_depth_m = plan.south_depth_m;
@@ -291,6 +292,7 @@ constexpr std::array<NamedRecipe, 5> kRecipes = {{{"room", room_recipe},
 
 std::vector<std::string> scene_names() {
   std::vector<std::string> names;
+  names.reserve(kRecipes.size());
   for (const NamedRecipe& recipe : kRecipes) names.emplace_back(recipe.name);
   return names;
 }

@@ -110,6 +110,7 @@ class ShellBuilder {
 
   void add_roof(const std::vector<std::size_t>& corners) {
     std::vector<Vector3d> ring;
+    ring.reserve(corners.size());
     for (const std::size_t i : corners) ring.push_back(level(plan_.envelope[i], plan_.roof_m));
     mesh_.add_polygon(ring, surface_of(Element::roof));
   }

@@ -92,8 +92,9 @@ class Surveyor {
           std::any_of(building_.street_normals.begin(), building_.street_normals.end(),
                       [&](const Vector2d& n) { return n.dot(window.normal.head<2>()) > 0.999; });
       for (int i = 0; street && i < 25; ++i) {
+        const int row = i / 5;
         const Vector3d u = (i % 5 + 0.5) / 5.0 * (window.outer[1] - window.outer[0]);
-        const Vector3d v = (i / 5 + 0.5) / 5.0 * (window.outer[3] - window.outer[0]);
+        const Vector3d v = (row + 0.5) / 5.0 * (window.outer[3] - window.outer[0]);
         seen += in_sight(station.position, window.outer[0] + u + v) ? 1 : 0;
       }
     }

@@ -28,7 +28,7 @@ void add_cylinder(Mesh& mesh, const Vector3d& base, double radius, double height
 
 Vector3d inside_ball(RandomStream& random) {
   for (;;) {
-    const Vector3d p(random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0));
+    Vector3d p(random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0));
     if (p.squaredNorm() <= 1.0) return p;
   }
 }
@@ -136,8 +136,8 @@ void along_chain(const std::vector<Vector2d>& chain, double spacing, RandomStrea
 }
 
 void add_pavement(Mesh& mesh, const Ring& envelope, std::size_t edge) {
-  const Vector2d a = envelope[edge % envelope.size()];
-  const Vector2d b = envelope[(edge + 1) % envelope.size()];
+  const Vector2d& a = envelope[edge % envelope.size()];
+  const Vector2d& b = envelope[(edge + 1) % envelope.size()];
   const Vector2d along = (b - a).normalized();
   const Vector2d middle = 0.5 * (a + b) + 1.25 * right_of(along);
   mesh.add_box({lifted(middle, 0.0), std::atan2(along.y(), along.x())}, {(b - a).norm(), 2.5, 0.12},
@@ -154,7 +154,7 @@ std::vector<Vector2d> offset_chain(const Ring& envelope, std::size_t first, std:
   };
   std::vector<Vector2d> chain;
   for (std::size_t k = 0; k <= count; ++k) {
-    const Vector2d corner = envelope[(first + k) % n];
+    const Vector2d& corner = envelope[(first + k) % n];
     const Vector2d before = right_of(direction(first + (k == 0 ? 0 : k - 1)));
     const Vector2d after = right_of(direction(first + (k == count ? k - 1 : k)));
     const Vector2d bisector = (before + after).normalized();
