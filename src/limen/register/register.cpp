@@ -183,11 +183,11 @@ void settle_open_shifts(JudgedPose& pose, const ScanView& source, const ScanView
 /// The poses that may become the answer are refined once more, on everything.
 void polish(std::vector<JudgedPose>& poses, const ScanView& source, const ScanView& target,
             const RegisterOptions& options) {
-  const Verdict first = judge(poses, options.verdict);
-  const std::size_t count = std::min<std::size_t>(kPolished, first.ranking.size());
+  const std::vector<std::size_t> ranking = rank(poses, options.verdict);
+  const std::size_t count = std::min<std::size_t>(kPolished, ranking.size());
   parallel_for(count, 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
-      JudgedPose& pose = poses[first.ranking[k]];
+      JudgedPose& pose = poses[ranking[k]];
       settle_open_shifts(pose, source, target, options);
       pose.refined = refine_pose(source, target, pose.refined.target_from_source, options.refine);
       pose.score = score_pose(source, target, pose.refined.target_from_source, fine_score(source, target));
@@ -251,11 +251,15 @@ RegistrationResult register_scans(const Scan& source, const Scan& target, const 
   const bool level = options.gravity == Gravity::up ||
                      (options.gravity == Gravity::automatic && from.looks_level && to.looks_level);
   std::vector<JudgedPose> poses = attempt(from, to, level, Proposal::held, options, clock);
-  Verdict verdict = judge(poses, options.verdict);
+  const ContrastFunction contrast = [&](std::size_t first, std::size_t second) {
+    return contrast_poses(from.view(), to.view(), poses[first].refined.target_from_source,
+                          poses[second].refined.target_from_source, fine_score(from.view(), to.view()));
+  };
+  Verdict verdict = judge(poses, contrast, options.verdict);
   const auto try_again = [&](bool gravity_known, Proposal proposal) {
     const std::vector<JudgedPose> more = attempt(from, to, gravity_known, proposal, options, clock);
     poses.insert(poses.end(), more.begin(), more.end());
-    verdict = judge(poses, options.verdict);
+    verdict = judge(poses, contrast, options.verdict);
   };
   if (verdict.outcome == Outcome::no_match && level && options.gravity == Gravity::automatic) {
     try_again(false, Proposal::held);

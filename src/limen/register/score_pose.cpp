@@ -2,41 +2,78 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limen/register/score_pose.h"
 
+#include <cmath>
+
 namespace limen {
 namespace {
 
 constexpr double kClutterWeight = 0.5;  // clutter moves, and its cubes meet less sharply than planes
+
+/// What the judge's scanner says to one sample of the other scan.
+struct Answer {
+  Sight sight;
+  double area_m2 = 0.0;
+  double gain_m2 = 0.0;  // agreeing surface, 1 - d^2 / t^2 of the area
+  bool planar = false;
+
+  [[nodiscard]] double contradicted_m2() const { return sight.kind == SightKind::free ? area_m2 : 0.0; }
+  [[nodiscard]] double value() const { return gain_m2 - kContradictionWeight * contradicted_m2(); }
+};
+
+Answer ask(const SurfaceSample& sample, const ScanView& scan, const ScanView& judge,
+           const Rigid3& judge_from_scan, const ScoreOptions& options) {
+  Answer answer;
+  answer.planar = sample.plane >= 0;
+  SightQuery query;
+  query.free_m = options.free_m;
+  query.at = judge_from_scan * sample.mean;
+  query.normal = answer.planar ? Vector3d(judge_from_scan.rotation * sample.normal) : Vector3d::Zero();
+  query.oriented = answer.planar && scan.features->planes[static_cast<std::size_t>(sample.plane)].oriented;
+  query.surface_m = answer.planar ? options.surface_m : 1.5 * options.surface_m;
+  answer.sight = judge.space->look(query);
+  answer.area_m2 = static_cast<double>(sample.area_m2) * (answer.planar ? 1.0 : kClutterWeight);
+  if (answer.sight.kind == SightKind::surface) {
+    const double off = answer.sight.distance_m / query.surface_m;
+    answer.gain_m2 = answer.area_m2 * (1.0 - off * off);
+  }
+  return answer;
+}
+
+std::size_t stride_of(const ScanView& scan, const ScoreOptions& options) {
+  return options.samples == 0 ? 1 : 1 + scan.features->samples.size() / options.samples;
+}
 
 /// Asks `judge` about every sample of `scan`.
 PoseScore one_way(const ScanView& scan, const ScanView& judge, const Rigid3& judge_from_scan,
                   const ScoreOptions& options) {
   PoseScore score;
   if (judge.space == nullptr) return score;
-  SightQuery query;
-  query.free_m = options.free_m;
   const std::vector<SurfaceSample>& samples = scan.features->samples;
-  const std::size_t stride = options.samples == 0 ? 1 : 1 + samples.size() / options.samples;
+  const std::size_t stride = stride_of(scan, options);
   for (std::size_t i = 0; i < samples.size(); i += stride) {
-    const SurfaceSample& sample = samples[i];
-    const bool planar = sample.plane >= 0;
-    query.at = judge_from_scan * sample.mean;
-    query.normal = planar ? Vector3d(judge_from_scan.rotation * sample.normal) : Vector3d::Zero();
-    query.oriented = planar && scan.features->planes[static_cast<std::size_t>(sample.plane)].oriented;
-    query.surface_m = planar ? options.surface_m : 1.5 * options.surface_m;
-    const Sight sight = judge.space->look(query);
-    const double area =
-        static_cast<double>(sample.area_m2) * static_cast<double>(stride) * (planar ? 1.0 : kClutterWeight);
-    if (sight.kind == SightKind::surface) {
-      const double off = sight.distance_m / query.surface_m;
-      const double gain = area * (1.0 - off * off);
-      score.agreeing_m2 += gain;
-      if (planar) score.planar_m2 += gain;
-    } else if (sight.kind == SightKind::free) {
-      score.contradicted_m2 += area;
-    }
-    if (sight.kind != SightKind::unseen) score.tested_m2 += area;
+    const Answer answer = ask(samples[i], scan, judge, judge_from_scan, options);
+    score.agreeing_m2 += answer.gain_m2;
+    if (answer.planar) score.planar_m2 += answer.gain_m2;
+    score.contradicted_m2 += answer.contradicted_m2();
+    if (answer.sight.kind != SightKind::unseen) score.tested_m2 += answer.area_m2;
   }
-  return score;
+  const auto factor = static_cast<double>(stride);
+  return {factor * score.agreeing_m2, factor * score.planar_m2, factor * score.contradicted_m2,
+          factor * score.tested_m2};
+}
+
+void add_contrast(const ScanView& scan, const ScanView& judge, const Rigid3& first, const Rigid3& second,
+                  const ScoreOptions& options, PoseContrast& contrast) {
+  if (judge.space == nullptr) return;
+  const std::vector<SurfaceSample>& samples = scan.features->samples;
+  const std::size_t stride = stride_of(scan, options);
+  for (std::size_t i = 0; i < samples.size(); i += stride) {
+    const double lead = ask(samples[i], scan, judge, first, options).value() -
+                        ask(samples[i], scan, judge, second, options).value();
+    // Both ways are averaged, as in the score.
+    (lead > 0 ? contrast.for_first_m2 : contrast.for_second_m2) +=
+        0.5 * static_cast<double>(stride) * std::abs(lead);
+  }
 }
 
 }  // namespace
@@ -51,6 +88,14 @@ PoseScore score_pose(const ScanView& source, const ScanView& target, const Rigid
   both.contradicted_m2 = 0.5 * (forth.contradicted_m2 + back.contradicted_m2);
   both.tested_m2 = 0.5 * (forth.tested_m2 + back.tested_m2);
   return both;
+}
+
+PoseContrast contrast_poses(const ScanView& source, const ScanView& target, const Rigid3& first,
+                            const Rigid3& second, const ScoreOptions& options) {
+  PoseContrast contrast;
+  add_contrast(source, target, first, second, options, contrast);
+  add_contrast(target, source, inverse(first), inverse(second), options, contrast);
+  return contrast;
 }
 
 }  // namespace limen

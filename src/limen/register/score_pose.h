@@ -21,6 +21,8 @@ struct ScoreOptions {
   std::size_t samples = 0;  ///< asked of each scan, about; 0: all
 };
 
+inline constexpr double kContradictionWeight = 4.0;
+
 /// How well a pose explains both scans, asked both ways and averaged: m^2 of each scan's surface that the
 /// other confirms (clipped, weighted 1 - d^2 / t^2: 2021, eq. 9-10 over the seen surface itself), and m^2
 /// standing where the other's rays passed free.
@@ -32,8 +34,18 @@ struct PoseScore {
 
   /// What poses are ranked by, m^2. One contradicted square metre outweighs several agreeing ones: surfaces
   /// meet by chance, but matter cannot stand where a ray passed.
-  [[nodiscard]] double value() const { return agreeing_m2 - 4.0 * contradicted_m2; }
+  [[nodiscard]] double value() const { return agreeing_m2 - kContradictionWeight * contradicted_m2; }
 };
+
+/// What tells two poses apart, m^2: surface that speaks for the one more than for the other. Surface that
+/// agrees under both poses, however much of it there is, tells nothing.
+struct PoseContrast {
+  double for_first_m2 = 0.0;
+  double for_second_m2 = 0.0;
+};
+
+PoseContrast contrast_poses(const ScanView& source, const ScanView& target, const Rigid3& first,
+                            const Rigid3& second, const ScoreOptions& options);
 
 PoseScore score_pose(const ScanView& source, const ScanView& target, const Rigid3& target_from_source,
                      const ScoreOptions& options);

@@ -24,21 +24,15 @@ bool same_pose(const RefinedPose& a, const RefinedPose& b, const VerdictOptions&
   return (b.target_from_source * middle - a.centre).norm() <= options.same_shift_m;
 }
 
-/// Distinct poses, best value first.
-std::vector<std::size_t> rank(const std::vector<JudgedPose>& poses, const VerdictOptions& options) {
-  std::vector<std::size_t> order(poses.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return poses[a].score.value() > poses[b].score.value();
-  });
-  std::vector<std::size_t> distinct;
-  for (const std::size_t i : order) {
-    const bool known = std::any_of(distinct.begin(), distinct.end(), [&](std::size_t j) {
-      return same_pose(poses[j].refined, poses[i].refined, options);
-    });
-    if (!known) distinct.push_back(i);
-  }
-  return distinct;
+/// Whether two poses differ only along shifts that the first leaves open.
+bool same_but_for(const RefinedPose& a, const RefinedPose& b, const std::vector<UnobservedFreedom>& open,
+                  const VerdictOptions& options) {
+  const Matrix3d turn = a.target_from_source.rotation.transpose() * b.target_from_source.rotation;
+  if (rotation_angle(turn) > radians(options.same_rotation_deg)) return false;
+  const Vector3d middle = inverse(a.target_from_source) * a.centre;
+  Vector3d shift = b.target_from_source * middle - a.centre;
+  for (const UnobservedFreedom& freedom : open) shift -= freedom.direction.dot(shift) * freedom.direction;
+  return shift.norm() <= options.same_shift_m;
 }
 
 bool contradicted(const PoseScore& score, const VerdictOptions& options) {
@@ -46,11 +40,14 @@ bool contradicted(const PoseScore& score, const VerdictOptions& options) {
   return score.contradicted_m2 > options.max_contradiction * evidence * score.agreeing_m2;
 }
 
-bool is_rival(const PoseScore& other, double best_value, const VerdictOptions& options) {
-  if (other.value() <= 0 || other.contradicted_m2 > options.max_rival_contradiction * other.agreeing_m2)
-    return false;
-  return other.value() > options.max_rival_share * best_value ||
-         other.value() > best_value - options.min_lead_m2;
+/// Whether `other` is possible at all: what speaks for it is not outweighed by what it contradicts.
+bool possible(const PoseScore& other, const VerdictOptions& options) {
+  return other.value() > 0 && other.contradicted_m2 <= options.max_rival_contradiction * other.agreeing_m2;
+}
+
+bool is_rival(const PoseContrast& contrast, const VerdictOptions& options) {
+  return contrast.for_second_m2 > options.max_rival_share * contrast.for_first_m2 ||
+         contrast.for_first_m2 - contrast.for_second_m2 < options.min_lead_m2;
 }
 
 /// A pose that may still turn, or slide two ways and more, is no answer.
@@ -104,7 +101,24 @@ std::vector<UnobservedFreedom> unobserved_freedoms(const RefinedPose& pose, doub
   return weak;
 }
 
-Verdict judge(const std::vector<JudgedPose>& poses, const VerdictOptions& options) {
+std::vector<std::size_t> rank(const std::vector<JudgedPose>& poses, const VerdictOptions& options) {
+  std::vector<std::size_t> order(poses.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return poses[a].score.value() > poses[b].score.value();
+  });
+  std::vector<std::size_t> distinct;
+  for (const std::size_t i : order) {
+    const bool known = std::any_of(distinct.begin(), distinct.end(), [&](std::size_t j) {
+      return same_pose(poses[j].refined, poses[i].refined, options);
+    });
+    if (!known) distinct.push_back(i);
+  }
+  return distinct;
+}
+
+Verdict judge(const std::vector<JudgedPose>& poses, const ContrastFunction& contrast,
+              const VerdictOptions& options) {
   options.check();
   Verdict verdict;
   verdict.ranking = rank(poses, options);
@@ -124,11 +138,6 @@ Verdict judge(const std::vector<JudgedPose>& poses, const VerdictOptions& option
                     best.score.agreeing_m2, best.score.contradicted_m2);
     return verdict;
   }
-  const double value = best.score.value();
-  std::size_t rivals = 0;
-  for (std::size_t k = 1; k < verdict.ranking.size(); ++k) {
-    if (is_rival(poses[verdict.ranking[k]].score, value, options)) ++rivals;
-  }
   verdict.unobserved = unobserved_freedoms(best.refined, options.min_held_m2);
   if (too_loose(verdict.unobserved)) {
     verdict.unobserved.clear();
@@ -136,15 +145,22 @@ Verdict judge(const std::vector<JudgedPose>& poses, const VerdictOptions& option
                                  best.score.agreeing_m2);
     return verdict;
   }
-  if (!verdict.unobserved.empty()) {
-    verdict.outcome = Outcome::under_constrained;
-    verdict.reason = "the common surface does not fix the " + verdict.unobserved.front().name;
-    return verdict;
+  std::size_t rivals = 0;
+  for (std::size_t k = 1; k < verdict.ranking.size(); ++k) {
+    const std::size_t other = verdict.ranking[k];
+    if (!possible(poses[other].score, options)) continue;
+    if (same_but_for(best.refined, poses[other].refined, verdict.unobserved, options)) continue;
+    if (is_rival(contrast(verdict.ranking.front(), other), options)) ++rivals;
   }
   if (rivals > 0) {
     verdict.outcome = Outcome::ambiguous;
     verdict.reason = fmt::format("{} different pose{} explain{} the scans nearly as well", rivals,
                                  rivals == 1 ? "" : "s", rivals == 1 ? "s" : "");
+    return verdict;
+  }
+  if (!verdict.unobserved.empty()) {
+    verdict.outcome = Outcome::under_constrained;
+    verdict.reason = "the common surface does not fix the " + verdict.unobserved.front().name;
     return verdict;
   }
   verdict.outcome = Outcome::registered;

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
+#include <string>
 #include <vector>
 
 #include "limen/model/result.h"
@@ -21,10 +23,11 @@ struct VerdictOptions {
   double max_contradiction = 0.10;  ///< contradicted over agreeing surface
   double full_evidence_m2 = 10.0;  ///< with less agreeing surface, proportionally less contradiction is borne
   double max_rival_contradiction = 0.25;  ///< a pose contradicted more than this is no rival
-  double max_rival_share = 0.80;          ///< a different pose with more of the best value is a rival
-  double min_lead_m2 = 1.0;               ///< the best pose must lead every different one by this
-  double min_held_m2 = 0.03;              ///< surface (times lever^2 for turns) that must hold each freedom
-  double same_rotation_deg = 1.0;         ///< poses nearer than both bounds are one pose
+  double max_rival_share =
+      0.40;  ///< a pose is a rival if this share of what tells it from the best speaks for it
+  double min_lead_m2 = 0.75;       ///< or if less surface than this speaks for the best against it
+  double min_held_m2 = 0.03;       ///< surface (times lever^2 for turns) that must hold each freedom
+  double same_rotation_deg = 1.0;  ///< poses nearer than both bounds are one pose
   double same_shift_m = 0.05;
 
   void check() const;
@@ -40,7 +43,13 @@ struct Verdict {
 
 /// Decides: enough common surface, no contradiction, a clear lead over every different pose, six freedoms
 /// held.
-Verdict judge(const std::vector<JudgedPose>& poses, const VerdictOptions& options = {});
+/// `contrast` tells two poses apart, given their indices.
+using ContrastFunction = std::function<PoseContrast(std::size_t first, std::size_t second)>;
+Verdict judge(const std::vector<JudgedPose>& poses, const ContrastFunction& contrast,
+              const VerdictOptions& options = {});
+
+/// Distinct poses, best value first: indices.
+std::vector<std::size_t> rank(const std::vector<JudgedPose>& poses, const VerdictOptions& options = {});
 
 /// Freedoms of a pose that less than `min_held_m2` of matched surface holds.
 std::vector<UnobservedFreedom> unobserved_freedoms(const RefinedPose& pose, double min_held_m2);

@@ -21,48 +21,64 @@ JudgedPose pose(double agreeing_m2, double contradicted_m2, double shift_m) {
   return judged;
 }
 
+/// What tells two poses apart: all of each.
+Verdict judge_all(const std::vector<JudgedPose>& poses) {
+  return judge(poses, [&](std::size_t a, std::size_t b) {
+    return PoseContrast{poses[a].score.agreeing_m2, poses[b].score.agreeing_m2};
+  });
+}
+
 TEST(Verdict, OneGoodPoseIsRegistered) {
-  EXPECT_EQ(judge({pose(30, 0.5, 0), pose(20, 9, 3)}).outcome, Outcome::registered);
+  EXPECT_EQ(judge_all({pose(30, 0.5, 0), pose(20, 9, 3)}).outcome, Outcome::registered);
 }
 
 TEST(Verdict, NothingToJudgeIsNoMatch) {
-  const Verdict verdict = judge({});
+  const Verdict verdict = judge_all({});
   EXPECT_EQ(verdict.outcome, Outcome::no_match);
   EXPECT_FALSE(verdict.reason.empty());
 }
 
 TEST(Verdict, TwoGoodPosesAreAmbiguous) {
-  EXPECT_EQ(judge({pose(30, 0, 0), pose(29, 0, 2)}).outcome, Outcome::ambiguous);
+  EXPECT_EQ(judge_all({pose(30, 0, 0), pose(29, 0, 2)}).outcome, Outcome::ambiguous);
+}
+
+TEST(Verdict, SurfaceThatAgreesUnderBothPosesTellsNothing) {
+  // Both poses agree on 80 m2; of what tells them apart, 3 m2 speak for the first and 0.2 m2 for the second.
+  const std::vector<JudgedPose> poses{pose(83, 0, 0), pose(80, 0.5, 0.12)};
+  const auto contrast = [](std::size_t, std::size_t) { return PoseContrast{3.0, 0.2}; };
+  EXPECT_EQ(judge(poses, contrast).outcome, Outcome::registered);
+  const auto even = [](std::size_t, std::size_t) { return PoseContrast{3.0, 2.0}; };
+  EXPECT_EQ(judge(poses, even).outcome, Outcome::ambiguous);
 }
 
 TEST(Verdict, TheSamePoseTwiceIsNoRival) {
-  const Verdict verdict = judge({pose(30, 0, 0), pose(30, 0, 0.01)});
+  const Verdict verdict = judge_all({pose(30, 0, 0), pose(30, 0, 0.01)});
   EXPECT_EQ(verdict.outcome, Outcome::registered);
   EXPECT_EQ(verdict.ranking.size(), 1U);
 }
 
 TEST(Verdict, AnImpossiblePoseIsNoRival) {
   // It agrees more, but a third of it stands where the other scan saw free space.
-  EXPECT_EQ(judge({pose(20, 0, 0), pose(60, 11, 2)}).outcome, Outcome::registered);
+  EXPECT_EQ(judge_all({pose(20, 0, 0), pose(60, 11, 2)}).outcome, Outcome::registered);
 }
 
 TEST(Verdict, ContradictedPoseIsNoMatch) {
-  EXPECT_EQ(judge({pose(30, 6, 0)}).outcome, Outcome::no_match);
+  EXPECT_EQ(judge_all({pose(30, 6, 0)}).outcome, Outcome::no_match);
 }
 
 TEST(Verdict, LittleEvidenceBearsLittleContradiction) {
-  EXPECT_EQ(judge({pose(4, 0.3, 0)}).outcome, Outcome::no_match);
-  EXPECT_EQ(judge({pose(4, 0.05, 0)}).outcome, Outcome::registered);
+  EXPECT_EQ(judge_all({pose(4, 0.3, 0)}).outcome, Outcome::no_match);
+  EXPECT_EQ(judge_all({pose(4, 0.05, 0)}).outcome, Outcome::registered);
 }
 
 TEST(Verdict, TooLittleSurfaceIsNoMatch) {
-  EXPECT_EQ(judge({pose(1, 0, 0)}).outcome, Outcome::no_match);
+  EXPECT_EQ(judge_all({pose(1, 0, 0)}).outcome, Outcome::no_match);
 }
 
 TEST(Verdict, AnOpenShiftIsNamed) {
   JudgedPose open = pose(30, 0, 0);
   open.refined.geometry_m2(4, 4) = 0.0;
-  const Verdict verdict = judge({open});
+  const Verdict verdict = judge_all({open});
   ASSERT_EQ(verdict.outcome, Outcome::under_constrained);
   ASSERT_EQ(verdict.unobserved.size(), 1U);
   EXPECT_FALSE(verdict.unobserved[0].rotation);
@@ -70,10 +86,19 @@ TEST(Verdict, AnOpenShiftIsNamed) {
   EXPECT_NE(verdict.reason.find("shift along"), std::string::npos);
 }
 
+TEST(Verdict, RivalsAlongAnOpenShiftAreTheSameAnswer) {
+  JudgedPose open = pose(30, 0, 0);
+  open.refined.geometry_m2(3, 3) = 0.0;
+  EXPECT_EQ(judge_all({open, pose(29, 0, 2)}).outcome, Outcome::under_constrained);
+  JudgedPose elsewhere = pose(29, 0, 0);
+  elsewhere.refined.target_from_source.translation.y() = 2;
+  EXPECT_EQ(judge_all({open, elsewhere}).outcome, Outcome::ambiguous);
+}
+
 TEST(Verdict, APoseThatMayTurnIsNoAnswer) {
   JudgedPose loose = pose(30, 0, 0);
   loose.refined.geometry_m2(2, 2) = 0.0;
-  EXPECT_EQ(judge({loose}).outcome, Outcome::no_match);
+  EXPECT_EQ(judge_all({loose}).outcome, Outcome::no_match);
 }
 
 TEST(Verdict, AShiftHeldOnlyThroughATurnIsOpen) {
@@ -86,7 +111,7 @@ TEST(Verdict, AShiftHeldOnlyThroughATurnIsOpen) {
 TEST(Verdict, OptionsNameTheirBound) {
   VerdictOptions options;
   options.max_rival_share = 1.5;
-  EXPECT_THROW(judge({}, options), Error);
+  EXPECT_THROW(judge({}, {}, options), Error);
 }
 
 }  // namespace
