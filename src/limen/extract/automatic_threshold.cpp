@@ -66,4 +66,19 @@ double automatic_threshold(const Scan& scan, const GrowOptions& grow,
   return choose_threshold({part.size(), extent.high - extent.low}, detector, choice).threshold_m;
 }
 
+double a_contrario_threshold(const Scan& scan, const GrowOptions& grow, const ThresholdOptions& choice,
+                             Monitor& monitor) {
+  const Scan part = even_subset(scan, AutomaticThresholdOptions{}.max_points);
+  GrowOptions trial = grow;
+  trial.min_inliers = std::max(50, grow.min_inliers / 2);
+  ThresholdOptions among = choice;
+  among.min_inliers = static_cast<std::size_t>(trial.min_inliers);
+  const Extent extent = extent_of(part.points);
+  const auto detector = [&](double threshold_m) {
+    trial.inlier_threshold_m = threshold_m;
+    return detected(grow_planes(part, trial, monitor));
+  };
+  return choose_threshold({part.size(), extent.high - extent.low}, detector, among).threshold_m;
+}
+
 }  // namespace limen

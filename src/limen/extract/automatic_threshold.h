@@ -25,4 +25,9 @@ double automatic_threshold(const Scan& scan, const GrowOptions& grow,
                            const AutomaticThresholdOptions& options = {},
                            Monitor& monitor = silent_monitor());
 
+/// The threshold chosen a contrario among `choice.thresholds_m`, whatever the noise (2021, 3.1.1), on an even
+/// subset of about 40 000 points. `choice.min_inliers` is taken from `grow`.
+double a_contrario_threshold(const Scan& scan, const GrowOptions& grow, const ThresholdOptions& choice = {},
+                             Monitor& monitor = silent_monitor());
+
 }  // namespace limen

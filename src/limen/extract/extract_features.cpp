@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "limen/base/error.h"
-#include "limen/extract/automatic_threshold.h"
 
 namespace limen {
 namespace {
@@ -56,22 +55,6 @@ void add_interior(const Scan& scan, const ExtractOptions& options, ExtractedFeat
   mark_interior(features.planes, behind, extracted.labels);
 }
 
-/// Root mean square distance of all inliers to their planes, metres.
-double noise_about(const GrownPlanes& grown) {
-  std::vector<std::size_t> counts(grown.planes.fits.size(), 0);
-  for (const std::int32_t label : grown.planes.labels) {
-    if (label >= 0) ++counts[static_cast<std::size_t>(label)];
-  }
-  double squares = 0.0;
-  double total = 0.0;
-  for (std::size_t k = 0; k < counts.size(); ++k) {
-    const double count = static_cast<double>(counts[k]);
-    squares += count * grown.planes.fits[k].rms_m * grown.planes.fits[k].rms_m;
-    total += count;
-  }
-  return total > 0 ? std::sqrt(squares / total) : grown.noise_m;
-}
-
 }  // namespace
 
 void InteriorOptions::check() const {
@@ -89,16 +72,14 @@ void ExtractOptions::check() const {
 
 ExtractedFeatures extract_features(const Scan& scan, const ExtractOptions& options, Monitor& monitor) {
   options.check();
-  GrowOptions grow = options.grow;
-  if (grow.inlier_threshold_m == 0.0) grow.inlier_threshold_m = automatic_threshold(scan, grow, {}, monitor);
-  GrownPlanes grown = grow_planes(scan, grow, monitor);
+  DetectedPlanes detected = detect_planes(scan, options.detect, options.grow, monitor);
   ExtractedFeatures extracted;
   Features& features = extracted.features;
   features.local_origin = scan.local_origin;
-  features.noise_m = noise_about(grown);
-  features.inlier_threshold_m = grown.inlier_threshold_m;
-  features.planes = make_polygons(scan, grown.planes, options.polygons, monitor);
-  extracted.labels = std::move(grown.planes.labels);
+  features.noise_m = detected.noise_m;
+  features.inlier_threshold_m = detected.planes.inlier_threshold_m;
+  features.planes = make_polygons(scan, detected.planes, options.polygons, monitor);
+  extracted.labels = std::move(detected.planes.labels);
   if (scan.mobile() && options.interior.enabled) add_interior(scan, options, extracted, monitor);
   features.samples = sample_surface(scan, extracted.labels, features.planes, options.samples);
   return extracted;

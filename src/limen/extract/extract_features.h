@@ -3,6 +3,7 @@
 #pragma once
 
 #include "limen/base/progress.h"
+#include "limen/extract/detect_planes.h"
 #include "limen/extract/facades.h"
 #include "limen/extract/grow_planes.h"
 #include "limen/extract/interior_points.h"
@@ -23,7 +24,8 @@ struct InteriorOptions {
 };
 
 struct ExtractOptions {
-  GrowOptions grow;
+  DetectOptions detect;
+  GrowOptions grow;  ///< its threshold and smallest plane hold for every detector
   InteriorOptions interior;
   PolygonOptions polygons;
   SampleOptions samples;

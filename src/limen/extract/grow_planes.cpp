@@ -328,6 +328,7 @@ class PlaneGrower {
     GrownPlanes grown;
     grown.noise_m = noise_m_;
     grown.inlier_threshold_m = threshold_m_;
+    grown.planes.inlier_threshold_m = threshold_m_;
     std::vector<PointMoments> sums = moments_by_label();
     const std::vector<std::int32_t> target = merge(sums);
     std::vector<std::int32_t> final_label(sums.size(), -1);

@@ -14,12 +14,12 @@ double rms_about(const PointMoments& moments, const Plane& plane) {
   return std::sqrt(std::max(0.0, variance) + distance * distance);
 }
 
-MergedPlanes merge_planes(const std::vector<PointMoments>& pieces, double max_angle_rad, double max_rms_m) {
+MergedPieces merge_planes(const std::vector<PointMoments>& pieces, double max_angle_rad, double max_rms_m) {
   std::vector<std::size_t> by_size(pieces.size());
   std::iota(by_size.begin(), by_size.end(), 0U);
   std::stable_sort(by_size.begin(), by_size.end(),
                    [&](std::size_t a, std::size_t b) { return pieces[a].count > pieces[b].count; });
-  MergedPlanes merged;
+  MergedPieces merged;
   merged.target.resize(pieces.size());
   std::vector<Plane> fits;  // of merged.planes
   for (const std::size_t i : by_size) {

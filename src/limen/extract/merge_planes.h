@@ -13,13 +13,13 @@ namespace limen {
 double rms_about(const PointMoments& moments, const Plane& plane);
 
 /// Pieces of planes made one where they continue each other.
-struct MergedPlanes {
+struct MergedPieces {
   std::vector<PointMoments> planes;  ///< in the order of their largest pieces
   std::vector<std::int32_t> target;  ///< per piece: index into planes
 };
 
 /// Each piece, largest first, joins the first plane within `max_angle_rad` such that neither is further than
 /// `max_rms_m` (root mean square) from the plane fitted to both. Moments about one anchor.
-MergedPlanes merge_planes(const std::vector<PointMoments>& pieces, double max_angle_rad, double max_rms_m);
+MergedPieces merge_planes(const std::vector<PointMoments>& pieces, double max_angle_rad, double max_rms_m);
 
 }  // namespace limen

@@ -13,6 +13,7 @@ namespace limen {
 struct PlaneLabels {
   std::vector<PlaneFit> fits;        ///< about the scan's local origin
   std::vector<std::int32_t> labels;  ///< per point: index into fits, or -1
+  double inlier_threshold_m = 0.0;   ///< that the detector used
 };
 
 }  // namespace limen

@@ -110,7 +110,7 @@ double plane_log10_nfa(const CloudSize& cloud, const DetectedPlane& plane, doubl
   return to_log10(log_tests(cloud, options) + log_tail_bound(n, k, share));
 }
 
-ThresholdChoice choose_threshold(const CloudSize& cloud, const PlaneDetector& detector,
+ThresholdChoice choose_threshold(const CloudSize& cloud, const ThresholdTrial& detector,
                                  const ThresholdOptions& options) {
   options.check();
   ThresholdChoice choice;

@@ -48,7 +48,7 @@ struct DetectedPlane {
 };
 
 /// Runs the detector with a threshold in metres and tells the planes it found.
-using PlaneDetector = std::function<std::vector<DetectedPlane>(double threshold_m)>;
+using ThresholdTrial = std::function<std::vector<DetectedPlane>(double threshold_m)>;
 
 struct ThresholdScore {
   double threshold_m = 0.0;
@@ -64,7 +64,7 @@ struct ThresholdChoice {
 
 /// Tries all thresholds and takes the one with the smallest number of false alarms. Ties: per_plane takes the
 /// smaller threshold; published, where 0 is the rule, the one with most planes, then the smaller.
-ThresholdChoice choose_threshold(const CloudSize& cloud, const PlaneDetector& detector,
+ThresholdChoice choose_threshold(const CloudSize& cloud, const ThresholdTrial& detector,
                                  const ThresholdOptions& options = {});
 
 /// Equations 3 to 6: log10 of tests * P[K >= F].

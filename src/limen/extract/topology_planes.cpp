@@ -258,7 +258,7 @@ class Detector {
   }
 
   void merge_pieces() {
-    MergedPlanes merged = merge_planes(pieces_, options_.max_merge_angle_rad, 0.6 * threshold_m_);
+    MergedPieces merged = merge_planes(pieces_, options_.max_merge_angle_rad, 0.6 * threshold_m_);
     pieces_ = std::move(merged.planes);
     for (std::int32_t& label : labels_) {
       if (label != kFree) label = merged.target[static_cast<std::size_t>(label)];
@@ -317,6 +317,7 @@ class Detector {
     std::stable_sort(kept.begin(), kept.end(),
                      [&](std::size_t a, std::size_t b) { return sums[a].count > sums[b].count; });
     PlaneLabels result;
+    result.inlier_threshold_m = threshold_m_;
     std::vector<std::int32_t> final_label(sums.size(), kFree);
     for (const std::size_t k : kept) {
       final_label[k] = static_cast<std::int32_t>(result.fits.size());
