@@ -1,0 +1,299 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Quality of the plane detectors against exact truth: scenes x seeds x stations, one line of CSV each, and a
+// summary.
+//   bench_plane_quality --scene room --seeds 3 --points 260000 --detector grow
+//
+// Words. A point's true plane is what the simulator says (coplanar faces that look the same way are one
+// plane; points on leaves, trunks and mixed pixels have none). A true plane counts where the scan has at
+// least `--min-true` (1000) points on it.
+// - A detected plane is *pure* where at least 80 % of its points have the same true plane, its owner.
+// - recall: share of the counting true planes that are found: the owner of a pure detected plane that holds
+//   at least half of the points of that true plane. Such a detected plane is the only one (more than half),
+//   and it has one owner, so the pairs are one to one.
+// - precision: share of the detected planes that are pure, their owner of any size.
+// - pieces: pure detected planes, of at least 5 % of their owner's points, beyond the owner's first, where
+//   the owner counts (over-segmentation).
+// - fused: counting true planes that have more than half of their points in a detected plane that is not
+//   theirs, being owned by, or having more points of, another one (under-segmentation).
+// - `--list` names what was missed and what was not pure.
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <map>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "limen/base/parallel.h"
+#include "limen/extract/detect_planes.h"
+#include "limen/simulate/scene.h"
+
+namespace {
+
+using namespace limen;  // NOLINT(google-build-using-namespace): a program, not a header
+
+constexpr double kPure = 0.8;
+constexpr double kCovered = 0.5;
+constexpr double kPiece = 0.05;
+
+struct Settings {
+  std::vector<std::string> scenes = {"room", "flat", "museum"};
+  int first_seed = 1;
+  int seeds = 2;
+  std::size_t points = 260000;
+  int stations = 1;
+  bool outdoor = false;
+  std::string detector = "auto";
+  std::string threshold = "auto";
+  double threshold_m = 0.0;
+  double noise_m = 0.003;
+  std::size_t min_true = 1000;
+  int min_inliers = 200;
+  int threads = 0;
+  int repeats = 1;
+  bool list = false;
+};
+
+struct Counts {
+  int true_planes = 0;
+  int found = 0;
+  int detected = 0;
+  int pure = 0;
+  int pieces = 0;
+  int fused = 0;
+
+  Counts& operator+=(const Counts& other) {
+    true_planes += other.true_planes;
+    found += other.found;
+    detected += other.detected;
+    pure += other.pure;
+    pieces += other.pieces;
+    fused += other.fused;
+    return *this;
+  }
+  [[nodiscard]] double recall() const { return true_planes > 0 ? 100.0 * found / true_planes : 100.0; }
+  [[nodiscard]] double precision() const { return detected > 0 ? 100.0 * pure / detected : 100.0; }
+};
+
+/// How many points each pair of a detected and a true plane share.
+struct Overlaps {
+  std::vector<std::map<std::int32_t, std::size_t>> by_detected;  ///< true plane (or -1) to points
+  std::vector<std::size_t> detected_size;
+  std::map<std::int32_t, std::size_t> true_size;
+
+  /// The true plane that most points of a detected plane have; -1 where most have none.
+  [[nodiscard]] std::int32_t main_truth(std::size_t k) const {
+    std::int32_t best = -1;
+    std::size_t most = 0;
+    for (const auto& [truth, count] : by_detected[k]) {
+      if (count <= most) continue;
+      most = count;
+      best = truth;
+    }
+    return best;
+  }
+  [[nodiscard]] std::size_t shared(std::size_t k, std::int32_t truth) const {
+    const auto at = by_detected[k].find(truth);
+    return at == by_detected[k].end() ? 0 : at->second;
+  }
+  /// The true plane of a pure detected plane, else -1.
+  [[nodiscard]] std::int32_t owner(std::size_t k) const {
+    const std::int32_t truth = main_truth(k);
+    const bool pure =
+        truth >= 0 && static_cast<double>(shared(k, truth)) >= kPure * static_cast<double>(detected_size[k]);
+    return pure ? truth : -1;
+  }
+  [[nodiscard]] double cover(std::size_t k, std::int32_t truth) const {
+    return static_cast<double>(shared(k, truth)) / static_cast<double>(true_size.at(truth));
+  }
+};
+
+Overlaps overlaps_of(const PlaneLabels& planes, const std::vector<std::int32_t>& truth) {
+  Overlaps overlaps;
+  overlaps.by_detected.resize(planes.fits.size());
+  overlaps.detected_size.resize(planes.fits.size(), 0);
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    if (truth[i] >= 0) ++overlaps.true_size[truth[i]];
+    if (planes.labels[i] < 0) continue;
+    const auto k = static_cast<std::size_t>(planes.labels[i]);
+    ++overlaps.by_detected[k][truth[i]];
+    ++overlaps.detected_size[k];
+  }
+  return overlaps;
+}
+
+std::string describe(const Truth& truth, std::int32_t plane) {
+  if (plane < 0) return "none";
+  const TruePlane& it = truth.planes[static_cast<std::size_t>(plane)];
+  return fmt::format("{} {} (n {:.2f} {:.2f} {:.2f} d {:.3f}, {:.2f} m2)", to_string(it.element), plane,
+                     it.plane.normal.x(), it.plane.normal.y(), it.plane.normal.z(), it.plane.offset,
+                     it.area_m2);
+}
+
+void list_missed(const Overlaps& overlaps, const Truth& truth, std::int32_t plane) {
+  fmt::print("#  missed {} with {} points:", describe(truth, plane), overlaps.true_size.at(plane));
+  for (std::size_t k = 0; k < overlaps.by_detected.size(); ++k) {
+    if (overlaps.cover(k, plane) < kPiece) continue;
+    fmt::print(" {:.0f} % in #{} of {}", 100.0 * overlaps.cover(k, plane), k,
+               describe(truth, overlaps.main_truth(k)));
+  }
+  fmt::print("\n");
+}
+
+void list_impure(const Overlaps& overlaps, const Truth& truth, std::size_t k) {
+  fmt::print("#  not pure #{} with {} points:", k, overlaps.detected_size[k]);
+  for (const auto& [plane, count] : overlaps.by_detected[k]) {
+    const double share = static_cast<double>(count) / static_cast<double>(overlaps.detected_size[k]);
+    if (share > kPiece) fmt::print(" {:.0f} % {}", 100.0 * share, describe(truth, plane));
+  }
+  fmt::print("\n");
+}
+
+Counts compare(const Overlaps& overlaps, const Truth& truth, const Settings& settings) {
+  Counts counts;
+  counts.detected = static_cast<int>(overlaps.detected_size.size());
+  std::map<std::int32_t, int> large_pieces;
+  for (std::size_t k = 0; k < overlaps.detected_size.size(); ++k) {
+    const std::int32_t owner = overlaps.owner(k);
+    if (owner >= 0) {
+      ++counts.pure;
+      if (overlaps.cover(k, owner) >= kPiece) ++large_pieces[owner];
+    } else if (settings.list) {
+      list_impure(overlaps, truth, k);
+    }
+  }
+  for (const auto& [plane, size] : overlaps.true_size) {
+    if (size < settings.min_true) continue;
+    ++counts.true_planes;
+    counts.pieces += std::max(0, large_pieces[plane] - 1);
+    bool found = false;
+    for (std::size_t k = 0; k < overlaps.detected_size.size(); ++k) {
+      if (overlaps.cover(k, plane) < kCovered) continue;
+      if (overlaps.owner(k) == plane) found = true;
+      if (overlaps.main_truth(k) != plane) ++counts.fused;
+    }
+    if (found) ++counts.found;
+    if (!found && settings.list) list_missed(overlaps, truth, plane);
+  }
+  return counts;
+}
+
+/// Lines and pulses of a simulated station, which keeps none: columns run upwards, so a new one begins where
+/// the elevation falls.
+ScanTopology station_lines(const Scan& scan) {
+  ScanTopology topology;
+  double before = -10.0;
+  std::int32_t line = -1;
+  const auto pulses_per_rad = std::sqrt(static_cast<double>(scan.size()) * 2.4 / 6.28) / 2.618;
+  for (const Vector3d& x : scan.points) {
+    const double elevation = std::asin(x.z() / x.norm());
+    if (line < 0 || elevation < before - 0.02) ++line;
+    before = elevation;
+    topology.line.push_back(line);
+    topology.index.push_back(static_cast<std::int32_t>(std::lround(elevation * pulses_per_rad * 4.0)));
+  }
+  return topology;
+}
+
+DetectOptions detect_options(const Settings& settings) {
+  DetectOptions options;
+  if (settings.detector == "grow") options.detector = PlaneDetector::grow;
+  if (settings.detector == "scan_lines") options.detector = PlaneDetector::scan_lines;
+  if (settings.detector == "msac") options.detector = PlaneDetector::msac;
+  if (settings.threshold == "noise") options.threshold = ThresholdRule::noise;
+  if (settings.threshold == "a_contrario") options.threshold = ThresholdRule::a_contrario;
+  return options;
+}
+
+struct Timed {
+  DetectedPlanes detected;
+  double seconds = 0.0;
+};
+
+/// The fastest of several runs: the others waited for the machine.
+Timed detect(const Scan& scan, const Settings& settings) {
+  GrowOptions grow;
+  grow.inlier_threshold_m = settings.threshold_m;
+  grow.min_inliers = settings.min_inliers;
+  Timed timed;
+  for (int k = 0; k < settings.repeats; ++k) {
+    const auto start = std::chrono::steady_clock::now();
+    timed.detected = detect_planes(scan, detect_options(settings), grow);
+    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+    timed.seconds = k == 0 ? seconds.count() : std::min(timed.seconds, seconds.count());
+  }
+  return timed;
+}
+
+Counts run(const std::string& scene, int seed, const Settings& settings) {
+  SceneOptions options;
+  options.name = scene;
+  options.seed = static_cast<std::uint64_t>(seed);
+  (settings.outdoor ? options.points_outdoor : options.points_indoor) = settings.points;
+  options.scanner.noise_m = settings.noise_m;
+  SimulatedCase simulated = simulate(options);
+  Counts sum;
+  int stations = 0;
+  for (std::size_t i = 0; i < simulated.scans.size(); ++i) {
+    Scan& scan = simulated.scans[i];
+    if (scan.mobile() != settings.outdoor || (!settings.outdoor && stations++ >= settings.stations)) continue;
+    if (settings.detector == "scan_lines" && !scan.topology.known()) scan.topology = station_lines(scan);
+    const Timed timed = detect(scan, settings);
+    const Overlaps overlaps = overlaps_of(timed.detected.planes, simulated.truth.scans[i].plane_of_point);
+    const Counts counts = compare(overlaps, simulated.truth, settings);
+    fmt::print("{},{},{},{},{:.1f},{},{},{:.1f},{},{},{:.1f},{},{},{:.3f}\n", scene, seed, scan.name,
+               scan.size(), 1e3 * timed.detected.planes.inlier_threshold_m, counts.true_planes, counts.found,
+               counts.recall(), counts.detected, counts.pure, counts.precision(), counts.pieces, counts.fused,
+               timed.seconds);
+    std::fflush(stdout);
+    sum += counts;
+  }
+  return sum;
+}
+
+void add_options(CLI::App& app, Settings& settings) {
+  app.add_option("--scene", settings.scenes, "built-in scenes (default room flat museum)");
+  app.add_option("--first-seed", settings.first_seed, "first seed");
+  app.add_option("--seeds", settings.seeds, "number of buildings");
+  app.add_option("--points", settings.points, "points of each scan");
+  app.add_option("--stations", settings.stations, "stations of each building");
+  app.add_flag("--outdoor", settings.outdoor, "the mobile scan instead of the stations");
+  app.add_option("--detector", settings.detector, "auto, grow, scan_lines or msac");
+  app.add_option("--threshold", settings.threshold, "auto, noise or a_contrario");
+  app.add_option("--threshold-m", settings.threshold_m, "inlier threshold; 0: by --threshold");
+  app.add_option("--noise-m", settings.noise_m, "range noise of the scanner");
+  app.add_option("--min-true", settings.min_true, "points of a true plane that counts");
+  app.add_option("--min-inliers", settings.min_inliers, "points of the smallest detected plane");
+  app.add_option("--threads", settings.threads, "0: the machine's");
+  app.add_option("--repeats", settings.repeats, "runs of each detection; the fastest is told");
+  app.add_flag("--list", settings.list, "name what was missed and what was not pure");
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Settings settings;
+  CLI::App app("Quality of limen's plane detectors against the simulator's exact truth");
+  add_options(app, settings);
+  CLI11_PARSE(app, argc, argv);
+  set_thread_count(settings.threads);
+  fmt::print(
+      "scene,seed,scan,points,threshold_mm,true,found,recall,detected,pure,precision,pieces,fused,seconds\n");
+  Counts all;
+  for (const std::string& scene : settings.scenes) {
+    Counts sum;
+    for (int seed = settings.first_seed; seed < settings.first_seed + settings.seeds; ++seed)
+      sum += run(scene, seed, settings);
+    fmt::print("# {}: recall {:.1f} %, precision {:.1f} %, {} pieces, {} fused\n", scene, sum.recall(),
+               sum.precision(), sum.pieces, sum.fused);
+    all += sum;
+  }
+  fmt::print("# all: recall {:.1f} % ({} of {}), precision {:.1f} % ({} of {}), {} pieces, {} fused\n",
+             all.recall(), all.found, all.true_planes, all.precision(), all.pure, all.detected, all.pieces,
+             all.fused);
+  return 0;
+}
