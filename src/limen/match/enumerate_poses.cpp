@@ -129,12 +129,24 @@ std::vector<Shift> best_shifts(const std::vector<Pair>& pairs, double tolerance,
   return kept;
 }
 
+/// The planes with the largest areas, nothing else.
+Features largest_planes(const Features& features, int most) {
+  Features part;
+  part.planes = features.planes;
+  std::stable_sort(part.planes.begin(), part.planes.end(),
+                   [](const PlanarPolygon& a, const PlanarPolygon& b) { return a.area_m2 > b.area_m2; });
+  if (part.planes.size() > static_cast<std::size_t>(most)) part.planes.resize(static_cast<std::size_t>(most));
+  return part;
+}
+
 class PoseEnumerator {
  public:
   PoseEnumerator(const Features& source, const Features& target, const PoseEnumerationOptions& options)
-      : source_(source), target_(target), options_(options) {
-    source_axes_ = axis_directions(source, options.direction_deg);
-    target_axes_ = axis_directions(target, options.direction_deg);
+      : source_(largest_planes(source, options.max_planes)),
+        target_(largest_planes(target, options.max_planes)),
+        options_(options) {
+    source_axes_ = axis_directions(source_, options.direction_deg);
+    target_axes_ = axis_directions(target_, options.direction_deg);
   }
 
   [[nodiscard]] std::vector<PoseCandidate> run() const {
@@ -374,8 +386,8 @@ class PoseEnumerator {
     return kept;
   }
 
-  const Features& source_;
-  const Features& target_;
+  Features source_;
+  Features target_;
   const PoseEnumerationOptions& options_;
   std::vector<AxisDirection> source_axes_;
   std::vector<AxisDirection> target_axes_;
@@ -390,6 +402,7 @@ void PoseEnumerationOptions::check() const {
     throw_bad_option("direction_deg", direction_deg, "within (0, 45)");
   if (!(offset_tolerance_m > 0)) throw_bad_option("offset_tolerance_m", offset_tolerance_m, "more than 0");
   if (max_shifts_per_axis < 1) throw_bad_option("max_shifts_per_axis", max_shifts_per_axis, "1 or more");
+  if (max_planes < 1) throw_bad_option("max_planes", max_planes, "1 or more");
   if (max_poses < 1) throw_bad_option("max_poses", max_poses, "1 or more");
 }
 

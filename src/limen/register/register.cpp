@@ -225,6 +225,12 @@ std::vector<JudgedPose> attempt(const PreparedScan& source, const PreparedScan& 
 
 }  // namespace
 
+ExtractOptions features_for_registration() {
+  ExtractOptions options;
+  options.grow.min_inliers = 60;
+  return options;
+}
+
 void RegisterOptions::check() const {
   extract.check();
   enumerate.check();

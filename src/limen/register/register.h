@@ -20,10 +20,14 @@ enum class Gravity {
   unknown     ///< any orientation
 };
 
+/// Feature options for registration: small planes too, for they may hold the one shift that large ones leave
+/// open.
+ExtractOptions features_for_registration();
+
 struct RegisterOptions {
   Gravity gravity = Gravity::automatic;
   std::uint64_t seed = 1;
-  ExtractOptions extract;
+  ExtractOptions extract = features_for_registration();
   PoseEnumerationOptions enumerate;
   RefineOptions refine;
   VerdictOptions verdict;
