@@ -53,6 +53,8 @@ struct Settings {
   double noise_m = 0.003;
   std::size_t min_true = 1000;
   int min_inliers = 200;
+  double coarsest_cell_m = GrowOptions{}.coarsest_cell_m;
+  double finest_cell_m = GrowOptions{}.finest_cell_m;
   int threads = 0;
   int repeats = 1;
   bool list = false;
@@ -219,6 +221,8 @@ Timed detect(const Scan& scan, const Settings& settings) {
   GrowOptions grow;
   grow.inlier_threshold_m = settings.threshold_m;
   grow.min_inliers = settings.min_inliers;
+  grow.coarsest_cell_m = settings.coarsest_cell_m;
+  grow.finest_cell_m = settings.finest_cell_m;
   Timed timed;
   for (int k = 0; k < settings.repeats; ++k) {
     const auto start = std::chrono::steady_clock::now();
@@ -268,6 +272,8 @@ void add_options(CLI::App& app, Settings& settings) {
   app.add_option("--noise-m", settings.noise_m, "range noise of the scanner");
   app.add_option("--min-true", settings.min_true, "points of a true plane that counts");
   app.add_option("--min-inliers", settings.min_inliers, "points of the smallest detected plane");
+  app.add_option("--coarsest-cell-m", settings.coarsest_cell_m, "of grow: edge of the first cubes");
+  app.add_option("--finest-cell-m", settings.finest_cell_m, "of grow: edge of the last cubes");
   app.add_option("--threads", settings.threads, "0: the machine's");
   app.add_option("--repeats", settings.repeats, "runs of each detection; the fastest is told");
   app.add_flag("--list", settings.list, "name what was missed and what was not pure");

@@ -7,6 +7,11 @@
 #include <numeric>
 
 namespace limen {
+namespace {
+
+constexpr double kExtrapolated = 1.6;  // times the gate: a piece about the plane of the larger one alone
+
+}  // namespace
 
 double rms_about(const PointMoments& moments, const Plane& plane) {
   const double distance = plane.signed_distance(moments.mean());
@@ -24,10 +29,14 @@ MergedPieces merge_planes(const std::vector<PointMoments>& pieces, double max_an
   std::vector<Plane> fits;  // of merged.planes
   for (const std::size_t i : by_size) {
     const PointMoments& piece = pieces[i];
+    merged.target[i] = -1;
+    if (piece.count < 3.0) continue;
     const Plane own = fit_plane(piece).plane;
     std::size_t k = 0;
     for (; k < fits.size(); ++k) {
       if (std::abs(own.normal.dot(fits[k].normal)) < std::cos(max_angle_rad)) continue;
+      // A slight turn of the common plane would hide a step between pieces that lie far apart.
+      if (rms_about(piece, fits[k]) >= kExtrapolated * max_rms_m) continue;
       PointMoments both = merged.planes[k];
       both += piece;
       const Plane common = fit_plane(both).plane;
