@@ -15,7 +15,7 @@
 namespace limen {
 namespace {
 
-constexpr std::size_t kMaxParts = 4;       // of one plane, largest first
+constexpr std::size_t kMaxParts = 6;       // of one plane, largest first
 constexpr double kMinDeterminant = 0.2;    // three axes flatter than this do not fix a shift
 constexpr std::size_t kSlidingAxes = 3;    // heaviest axes that are paired for sliding poses
 constexpr std::size_t kSlidingShifts = 5;  // shifts tried along each
@@ -129,12 +129,15 @@ std::vector<Shift> best_shifts(const std::vector<Pair>& pairs, double tolerance,
   return kept;
 }
 
-/// The planes with the largest areas, nothing else.
+/// The planes with the largest areas, nothing else; those seen through openings first, for both scans share
+/// them.
 Features largest_planes(const Features& features, int most) {
   Features part;
   part.planes = features.planes;
   std::stable_sort(part.planes.begin(), part.planes.end(),
-                   [](const PlanarPolygon& a, const PlanarPolygon& b) { return a.area_m2 > b.area_m2; });
+                   [](const PlanarPolygon& a, const PlanarPolygon& b) {
+                     return a.interior != b.interior ? a.interior : a.area_m2 > b.area_m2;
+                   });
   if (part.planes.size() > static_cast<std::size_t>(most)) part.planes.resize(static_cast<std::size_t>(most));
   return part;
 }

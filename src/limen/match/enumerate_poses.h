@@ -14,7 +14,7 @@ struct PoseEnumerationOptions {
   double direction_deg = 5.0;          ///< normals nearer than this are one direction
   double offset_tolerance_m = 0.06;    ///< planes nearer than this are taken for one
   int max_shifts_per_axis = 48;        ///< candidates per axis and rotation
-  int max_planes = 64;                 ///< largest planes of each scan that are matched
+  int max_planes = 96;                 ///< largest planes of each scan that are matched
   int max_poses = 1500;                ///< poses returned
 
   void check() const;

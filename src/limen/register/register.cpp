@@ -188,9 +188,9 @@ void polish(std::vector<JudgedPose>& poses, const ScanView& source, const ScanVi
   parallel_for(count, 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       JudgedPose& pose = poses[ranking[k]];
-      settle_open_shifts(pose, source, target, options);
       pose.refined = refine_pose(source, target, pose.refined.target_from_source, options.refine);
       pose.score = score_pose(source, target, pose.refined.target_from_source, fine_score(source, target));
+      settle_open_shifts(pose, source, target, options);
     }
   });
 }
