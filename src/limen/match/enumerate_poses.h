@@ -15,7 +15,7 @@ struct PoseEnumerationOptions {
   double offset_tolerance_m = 0.06;    ///< planes nearer than this are taken for one
   int max_shifts_per_axis = 48;        ///< candidates per axis and rotation
   int max_planes = 96;                 ///< largest planes of each scan that are matched
-  int max_poses = 1500;                ///< poses returned
+  int max_poses = 3000;                ///< poses returned
 
   void check() const;
 };

@@ -41,10 +41,13 @@ bool contradicted(const PoseScore& score, const VerdictOptions& options) {
 }
 
 /// Whether `other` comes near the best and is possible at all: what speaks for it is not outweighed by what
-/// it contradicts.
-bool possible(const PoseScore& other, double best_value, const VerdictOptions& options) {
-  return other.value() > 0 && other.value() > options.min_rival_value * best_value &&
-         other.contradicted_m2 <= options.max_rival_contradiction * other.agreeing_m2;
+/// it contradicts, and it does not contradict clearly more than the best.
+bool possible(const PoseScore& other, const PoseScore& best, const VerdictOptions& options) {
+  const double bearable = best.contradicted_m2 + options.excess_contradiction_m2 +
+                          options.excess_contradiction_share * other.agreeing_m2;
+  return other.value() > 0 && other.value() > options.min_rival_value * best.value() &&
+         other.contradicted_m2 <= options.max_rival_contradiction * other.agreeing_m2 &&
+         other.contradicted_m2 <= bearable;
 }
 
 bool is_rival(const PoseContrast& contrast, const VerdictOptions& options) {
@@ -150,7 +153,7 @@ Verdict judge(const std::vector<JudgedPose>& poses, const ContrastFunction& cont
   std::size_t rivals = 0;
   for (std::size_t k = 1; k < verdict.ranking.size(); ++k) {
     const std::size_t other = verdict.ranking[k];
-    if (!possible(poses[other].score, best.score.value(), options)) continue;
+    if (!possible(poses[other].score, best.score, options)) continue;
     if (same_but_for(best.refined, poses[other].refined, verdict.unobserved, options)) continue;
     if (is_rival(contrast(verdict.ranking.front(), other), options)) ++rivals;
   }
