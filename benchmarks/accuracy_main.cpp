@@ -48,6 +48,7 @@ struct Row {
   double rotation_deg = 0.0;
   double translation_m = 0.0;
   double seconds = 0.0;
+  double worst_sigma = 0.0;  ///< the largest of the six errors, in standard deviations
 };
 
 /// A random rotation (all of them, or about z) and a shift of up to 20 m.
@@ -88,6 +89,15 @@ Row run(const Scan& source, const Scan& target, const Rigid3& truth, const Setti
                               : Vector3d(0.5 * (extent.low + extent.high) + source.local_origin);
   row.rotation_deg = degrees(rotation_angle(error.rotation));
   row.translation_m = (error * middle - middle).norm();
+  // The six errors in the target's frame about the centre that the sigmas refer to.
+  const Rigid3 off = result.best.target_from_source * inverse(truth);
+  const Vector3d turn = rotation_log(off.rotation);
+  const Vector3d shift = off * result.sigma.centre - result.sigma.centre;
+  for (Eigen::Index k = 0; k < 3; ++k) {
+    row.worst_sigma =
+        std::max({row.worst_sigma, std::abs(turn[k]) / std::max(1e-12, result.sigma.rotation_rad[k]),
+                  std::abs(shift[k]) / std::max(1e-12, result.sigma.translation_m[k])});
+  }
   return row;
 }
 
@@ -103,12 +113,16 @@ void summarise(const std::vector<Row>& rows, const Settings& settings) {
   std::vector<double> seconds;
   int count[4] = {};
   int wrong = 0;
+  int within_two = 0;
+  std::vector<double> worst;
   for (const Row& row : rows) {
     ++count[static_cast<int>(row.outcome)];
     seconds.push_back(row.seconds);
     if (row.outcome != Outcome::registered) continue;
     rotations.push_back(row.rotation_deg);
     translations.push_back(row.translation_m);
+    worst.push_back(row.worst_sigma);
+    if (row.worst_sigma <= 2.0) ++within_two;
     if (row.translation_m > settings.wrong_m || row.rotation_deg > settings.wrong_deg) ++wrong;
   }
   fmt::print("# {} runs: registered {}, ambiguous {}, under_constrained {}, no_match {}, WRONG {}\n",
@@ -116,6 +130,9 @@ void summarise(const std::vector<Row>& rows, const Settings& settings) {
   fmt::print("# registered: median {:.3f} mm {:.4f} deg, 95 % {:.3f} mm {:.4f} deg; {:.2f} s median\n",
              1000 * quantile(translations, 0.5), quantile(rotations, 0.5),
              1000 * quantile(translations, 0.95), quantile(rotations, 0.95), quantile(seconds, 0.5));
+  fmt::print(
+      "# all six errors within 2 sigma in {} of {}; the worst of six: median {:.2f}, 95 % {:.2f} sigma\n",
+      within_two, worst.size(), quantile(worst, 0.5), quantile(worst, 0.95));
 }
 
 /// The same pair from `settings.poses` random starts.

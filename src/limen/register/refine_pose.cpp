@@ -135,6 +135,33 @@ class Refiner {
     pose.translation = move.rotation * (pose.translation - centre) + centre + step.tail<3>();
   }
 
+  /// What the tiles of one pair of planes say together.
+  struct PairSums {
+    Matrix6d information = Matrix6d::Zero();
+    Vector6d shared = Vector6d::Zero();  // sum of weight times row: how a common offset of the pair acts
+    double weight = 0.0;
+    double weighted_residual = 0.0;
+    double area_m2 = 0.0;
+    double distance = 0.0;  // area times distance
+    int tiles = 0;
+  };
+
+  /// Deviation common to all tiles of a pair of planes: the planes' own errors, a scanner's drift. Taken from
+  /// how the pairs' mean residuals scatter, not less than a tenth of the noise.
+  [[nodiscard]] double pair_offset_m(const std::map<std::pair<int, int>, PairSums>& pairs) const {
+    double squares = 0.0;
+    double areas = 0.0;
+    for (const auto& [key, pair] : pairs) {
+      const double mean = pair.weighted_residual / pair.weight;
+      squares += pair.area_m2 * mean * mean;
+      areas += pair.area_m2;
+    }
+    const auto count = static_cast<double>(pairs.size());
+    const double freedoms = count / std::max(1.0, count - 3.0);
+    const double noise = std::max(source_.features->noise_m, target_.features->noise_m);
+    return std::max(std::sqrt(freedoms * squares / areas), 0.1 * noise);
+  }
+
   void summarise(RefinedPose& refined) const {
     const std::vector<Contact> contacts = contacts_of(refined.target_from_source, options_.last_gate_m);
     refined.matched_tiles = static_cast<int>(contacts.size());
@@ -142,35 +169,42 @@ class Refiner {
     refined.centre = middle_of(contacts);
     double sum = 0.0;
     double weights = 0.0;
-    struct Sums {
-      double area = 0.0, distance = 0.0;
-      int tiles = 0;
-    };
-    std::map<std::pair<int, int>, Sums> pairs;
+    std::map<std::pair<int, int>, PairSums> pairs;
     for (const Contact& contact : contacts) {
-      const double weight = 1.0 / (contact.sigma_m * contact.sigma_m);
+      // Each piece of surface is met twice, once from either scan.
+      const double weight = 0.5 / (contact.sigma_m * contact.sigma_m);
       const Vector6d row = row_of(contact, refined.centre);
-      refined.information += weight * row * row.transpose();
+      PairSums& pair = pairs[{contact.source_plane, contact.target_plane}];
+      pair.information += weight * row * row.transpose();
+      pair.shared += weight * row;
+      pair.weight += weight;
+      pair.weighted_residual += weight * contact.residual_m;
+      pair.area_m2 += 0.5 * contact.area_m2;
+      pair.distance += 0.5 * contact.area_m2 * -contact.residual_m;
+      ++pair.tiles;
       refined.geometry_m2 += 0.5 * contact.area_m2 * row * row.transpose();
       sum += weight * contact.residual_m * contact.residual_m;
       weights += weight;
-      Sums& pair = pairs[{contact.source_plane, contact.target_plane}];
-      pair.area += 0.5 * contact.area_m2;
-      pair.distance += 0.5 * contact.area_m2 * -contact.residual_m;
-      ++pair.tiles;
     }
     refined.rms_m = std::sqrt(sum / weights);
     // The residuals themselves say how good the weights were.
-    const double factor = sum / std::max(1.0, static_cast<double>(contacts.size()) - 6.0);
-    refined.information /= std::max(factor, 1e-6);
+    const double factor =
+        std::max(sum / std::max(1.0, 0.5 * static_cast<double>(contacts.size()) - 6.0), 1e-6);
+    const double offset = pair_offset_m(pairs);
+    for (const auto& [key, pair] : pairs) {
+      // A common offset of unknown size takes its share of what the pair says about shifts along its normal.
+      const double offset_weight = offset * offset / (1.0 + offset * offset * pair.weight / factor);
+      refined.information += pair.information / factor -
+                             offset_weight * pair.shared * pair.shared.transpose() / (factor * factor);
+    }
     for (const auto& [key, pair] : pairs) {
       if (pair.tiles < 2) continue;
       const Vector3d turned = refined.target_from_source.rotation *
                               source_.features->planes[static_cast<std::size_t>(key.first)].plane.normal;
       const double cosine =
           std::abs(turned.dot(target_.features->planes[static_cast<std::size_t>(key.second)].plane.normal));
-      refined.matches.push_back(
-          {key.first, key.second, pair.distance / pair.area, std::acos(std::min(1.0, cosine)), pair.area});
+      refined.matches.push_back({key.first, key.second, pair.distance / pair.area_m2,
+                                 std::acos(std::min(1.0, cosine)), pair.area_m2});
     }
     std::stable_sort(refined.matches.begin(), refined.matches.end(),
                      [](const PlaneMatch& a, const PlaneMatch& b) { return a.overlap_m2 > b.overlap_m2; });
