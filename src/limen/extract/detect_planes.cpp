@@ -12,6 +12,8 @@
 namespace limen {
 namespace {
 
+constexpr double kMobileThresholdM = 0.025;  // least inlier threshold for the façades of a mobile scan
+
 double noise_about(const PlaneLabels& planes) {
   std::vector<std::size_t> counts(planes.fits.size(), 0);
   for (const std::int32_t label : planes.labels) {
@@ -30,8 +32,14 @@ double noise_about(const PlaneLabels& planes) {
 /// 0 leaves the choice to the detector.
 double threshold_for(const Scan& scan, ThresholdRule rule, const GrowOptions& grow, Monitor& monitor) {
   if (grow.inlier_threshold_m > 0.0) return grow.inlier_threshold_m;
-  // A street is too wide for the choice on a subset: there the noise decides.
   if (rule == ThresholdRule::automatic && !scan.mobile()) return automatic_threshold(scan, grow, {}, monitor);
+  if (rule == ThresholdRule::automatic) {
+    // A street is too wide for the choice on a subset, and façades have relief of centimetres, whatever the
+    // noise.
+    AutomaticThresholdOptions by_noise;
+    by_noise.factors = {1.0};
+    return std::max(kMobileThresholdM, automatic_threshold(scan, grow, by_noise, monitor));
+  }
   if (rule == ThresholdRule::a_contrario) return a_contrario_threshold(scan, grow, {}, monitor);
   return 0.0;
 }

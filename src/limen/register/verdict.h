@@ -23,8 +23,8 @@ struct VerdictOptions {
   double max_contradiction = 0.10;  ///< contradicted over agreeing surface
   double full_evidence_m2 = 10.0;  ///< with less agreeing surface, proportionally less contradiction is borne
   double max_rival_contradiction = 0.25;     ///< a pose contradicted more than this is no rival
-  double excess_contradiction_m2 = 1.5;      ///< nor is one contradicted more than the best by this ...
-  double excess_contradiction_share = 0.03;  ///< ... and this share of its agreeing surface
+  double excess_contradiction_m2 = 1.0;      ///< nor is one contradicted more than the best by this ...
+  double excess_contradiction_share = 0.02;  ///< ... and this share of its agreeing surface
   double min_rival_value = 0.65;  ///< a pose whose value is a smaller share of the best one's is no rival
   double max_rival_share =
       0.40;  ///< a pose is a rival if this share of what tells it from the best speaks for it
