@@ -5,12 +5,15 @@
 // summary.
 //   bench_plane_quality --scene room --seeds 3 --points 260000 --detector grow
 //
-// Words. A point's true plane is what the simulator says (coplanar faces that look the same way are one
-// plane; points on leaves, trunks, folds of curtains and mixed pixels have none). Nobody can tell from its
+// Words. A point's true plane is what the simulator says; points on leaves, trunks, folds of curtains and
+// mixed pixels have none. Coplanar faces that look the same way are one plane, and so are, here, those within
+// 0.1 degrees and `--same-m` (6 mm, twice the noise) of each other in the middle of either's points: a
+// detector that puts the pieces of one wall together must put these together. Nor can anybody tell from its
 // place to which of two surfaces a point belongs that is an inlier of both: a point *fits* every true plane
-// that passes within `--fit-m` (8 mm, 2.7 times the noise) of it and has points in its cube of 5 cm or one
-// of the cubes around; where it fits another than its own, it is shared. `--fit-m 0` counts strictly. A true
-// plane counts where the scan has at least `--min-true` (1000) points on it that are not shared.
+// that passes within `--fit-m` (8 mm, 2.7 times the noise) of it and has points in its cube of 5 cm or one of
+// the cubes around; where it fits another than its own, it is shared. With both options 0 the simulator's
+// planes count as they are. A true plane counts where the scan has at least `--min-true` (1000) points on it
+// that are not shared.
 // - A detected plane is *pure* where at least 80 % of its points fit one true plane, its owner (the one that
 //   most of them fit).
 // - recall: share of the counting true planes that are found: the owner of a pure detected plane that holds
@@ -34,6 +37,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "limen/base/angles.h"
 #include "limen/base/parallel.h"
 #include "limen/extract/detect_planes.h"
 #include "limen/simulate/scene.h"
@@ -58,6 +62,7 @@ struct Settings {
   double threshold_m = 0.0;
   double noise_m = 0.003;
   double fit_m = 0.008;
+  double same_m = 0.006;
   std::size_t min_true = 1000;
   int min_inliers = 200;
   double coarsest_cell_m = GrowOptions{}.coarsest_cell_m;
@@ -90,11 +95,48 @@ struct Counts {
   [[nodiscard]] double precision() const { return detected > 0 ? 100.0 * pure / detected : 100.0; }
 };
 
+/// True planes that no scan can tell apart become one, the one with most points: the true plane of each
+/// point.
+std::vector<std::int32_t> joined_truth(const SimulatedCase& simulated, std::size_t scan, double same_m) {
+  std::vector<std::int32_t> of_point = simulated.truth.scans[scan].plane_of_point;
+  const std::vector<TruePlane>& planes = simulated.truth.planes;
+  std::vector<PointMoments> sums(planes.size());
+  const Rigid3& world_from_scan = simulated.truth.scans[scan].local_from_scan;
+  for (std::size_t i = 0; i < of_point.size(); ++i) {
+    if (of_point[i] >= 0)
+      sums[static_cast<std::size_t>(of_point[i])].add(world_from_scan * simulated.scans[scan].points[i]);
+  }
+  std::vector<std::size_t> order(planes.size());
+  for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return sums[a].count > sums[b].count; });
+  std::vector<std::int32_t> target(planes.size());
+  std::vector<std::size_t> kept;
+  for (const std::size_t k : order) {
+    target[k] = static_cast<std::int32_t>(k);
+    if (sums[k].count < 1.0) continue;
+    const auto same = std::find_if(kept.begin(), kept.end(), [&](std::size_t other) {
+      return planes[k].plane.normal.dot(planes[other].plane.normal) > std::cos(radians(0.1)) &&
+             std::abs(planes[other].plane.signed_distance(sums[k].mean())) < same_m &&
+             std::abs(planes[k].plane.signed_distance(sums[other].mean())) < same_m;
+    });
+    if (same == kept.end()) {
+      kept.push_back(k);
+    } else {
+      target[k] = static_cast<std::int32_t>(*same);
+    }
+  }
+  for (std::int32_t& plane : of_point) {
+    if (plane >= 0) plane = target[static_cast<std::size_t>(plane)];
+  }
+  return of_point;
+}
+
 /// The true planes that each point fits, its own first.
 class Fitting {
  public:
-  Fitting(const SimulatedCase& simulated, std::size_t scan, double fit_m)
-      : own_(simulated.truth.scans[scan].plane_of_point), begins_{0} {
+  Fitting(const SimulatedCase& simulated, std::size_t scan, const Settings& settings)
+      : own_(joined_truth(simulated, scan, settings.same_m)), begins_{0} {
     const Rigid3& world_from_scan = simulated.truth.scans[scan].local_from_scan;
     const std::vector<Vector3d>& points = simulated.scans[scan].points;
     std::unordered_map<std::uint64_t, std::vector<std::int32_t>> planes_of_cube;
@@ -106,13 +148,13 @@ class Fitting {
     for (std::size_t i = 0; i < points.size(); ++i) {
       const std::size_t first = fits_.size();
       if (own_[i] >= 0) fits_.push_back(own_[i]);
-      for (int step = 0; fit_m > 0.0 && step < 27; ++step) {
+      for (int step = 0; settings.fit_m > 0.0 && step < 27; ++step) {
         const auto near =
             planes_of_cube.find(cube_of(points[i], step % 3 - 1, step / 3 % 3 - 1, step / 9 - 1));
         if (near == planes_of_cube.end()) continue;
         for (const std::int32_t k : near->second) {
           const Plane& plane = simulated.truth.planes[static_cast<std::size_t>(k)].plane;
-          if (std::abs(plane.signed_distance(world_from_scan * points[i])) > fit_m) continue;
+          if (std::abs(plane.signed_distance(world_from_scan * points[i])) > settings.fit_m) continue;
           if (std::find(fits_.begin() + static_cast<std::ptrdiff_t>(first), fits_.end(), k) == fits_.end())
             fits_.push_back(k);
         }
@@ -136,7 +178,7 @@ class Fitting {
     return (part(x.x(), dx) << 42U) | (part(x.y(), dy) << 21U) | part(x.z(), dz);
   }
 
-  const std::vector<std::int32_t>& own_;
+  std::vector<std::int32_t> own_;
   std::vector<std::size_t> begins_;
   std::vector<std::int32_t> fits_;
 };
@@ -321,7 +363,7 @@ Counts run(const std::string& scene, int seed, const Settings& settings) {
     if (scan.mobile() != settings.outdoor || (!settings.outdoor && stations++ >= settings.stations)) continue;
     if (settings.detector == "scan_lines" && !scan.topology.known()) scan.topology = station_lines(scan);
     const Timed timed = detect(scan, settings);
-    const Overlaps overlaps = overlaps_of(timed.detected.planes, Fitting(simulated, i, settings.fit_m));
+    const Overlaps overlaps = overlaps_of(timed.detected.planes, Fitting(simulated, i, settings));
     const Counts counts = compare(overlaps, simulated.truth, settings);
     fmt::print("{},{},{},{},{:.1f},{},{},{:.1f},{},{},{:.1f},{},{},{},{:.3f}\n", scene, seed, scan.name,
                scan.size(), 1e3 * timed.detected.planes.inlier_threshold_m, counts.true_planes, counts.found,
@@ -345,6 +387,7 @@ void add_options(CLI::App& app, Settings& settings) {
   app.add_option("--threshold-m", settings.threshold_m, "inlier threshold; 0: by --threshold");
   app.add_option("--noise-m", settings.noise_m, "range noise of the scanner");
   app.add_option("--fit-m", settings.fit_m, "a point fits the true planes within this; 0: its own alone");
+  app.add_option("--same-m", settings.same_m, "true planes nearer than this, facing one way, are one");
   app.add_option("--min-true", settings.min_true, "points of a true plane that counts");
   app.add_option("--min-inliers", settings.min_inliers, "points of the smallest detected plane");
   app.add_option("--coarsest-cell-m", settings.coarsest_cell_m, "of grow: edge of the first cubes");

@@ -21,6 +21,7 @@ namespace {
 constexpr double kJoinAngleDeg = 3.0;  // normals of two pieces of one plane
 constexpr int kSparseLevels = 3;       // coarser than the first cubes, for what lies far from the scanner
 constexpr int kSettlings = 2;
+constexpr double kExplained = 0.65;  // of a plane's points: others would take them
 constexpr std::size_t kPiece = 131072;
 
 double noise_of(const CellGrid& grid) {
@@ -59,10 +60,14 @@ class PlaneGrower {
     monitor.throw_if_cancelled();
     const PointNormals normals(sorted_, kGateShare * threshold_m_);
     merge();
+    const SettleOptions settling{.threshold_m = threshold_m_};
     for (int k = 0; k < kSettlings; ++k) {
-      labels_ = settled(sorted_, normals, labels_, fits(), {.threshold_m = threshold_m_});
+      labels_ = settled(sorted_, normals, labels_, sums_, settling);
       merge();
     }
+    dissolve(explained_shares(sorted_, normals, labels_, sums_, settling));
+    labels_ = settled(sorted_, normals, labels_, sums_, settling);
+    merge();
     return finish();
   }
 
@@ -96,6 +101,13 @@ class PlaneGrower {
     }
   }
 
+  /// Planes that cut through the edges of others give their points back.
+  void dissolve(const std::vector<double>& explained) {
+    for (std::int32_t& label : labels_) {
+      if (label >= 0 && explained[static_cast<std::size_t>(label)] > kExplained) label = -1;
+    }
+  }
+
   void sum_up() {
     using Sums = std::vector<PointMoments>;
     sums_ = parallel_reduce(
@@ -111,12 +123,6 @@ class PlaneGrower {
           for (std::size_t i = 0; i < a.size(); ++i) a[i] += b[i];
           return a;
         });
-  }
-
-  [[nodiscard]] std::vector<Plane> fits() const {
-    std::vector<Plane> planes;
-    for (const PointMoments& sum : sums_) planes.push_back(fit_plane(sum).plane);
-    return planes;
   }
 
   [[nodiscard]] GrownPlanes finish() const {

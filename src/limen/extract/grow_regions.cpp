@@ -161,8 +161,10 @@ void RegionGrower::grow_region(CellGrid& grid, std::int32_t seed) {
 void RegionGrower::settle(CellGrid& grid, const Region& region) {
   std::int32_t label = kRejected;
   if (region.moments.count >= kMinPiece) {
-    label = plane_joined_by(region.moments, fit_plane(region.moments).plane);
-    if (label < 0 && region.moments.count >= 0.5 * options_.min_inliers) {
+    // What can stand alone does: whether it continues another plane is seen better in the end.
+    if (region.moments.count < 0.5 * options_.min_inliers) {
+      label = plane_joined_by(region.moments, fit_plane(region.moments).plane);
+    } else {
       label = static_cast<std::int32_t>(planes_.size());
       planes_.emplace_back();
     }

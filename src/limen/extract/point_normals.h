@@ -11,7 +11,7 @@ namespace limen {
 
 /// Which way the surface faces at each point, from the points of its cube: the smallest cube, from
 /// `finest_m` up to `coarsest_m`, with enough points. Where these make no plane (an edge, clutter) or are too
-/// few, nothing is known.
+/// few, it is not known.
 class PointNormals {
  public:
   /// `max_thickness_m`: root mean square distance of the points of a cube to its plane.
@@ -23,8 +23,13 @@ class PointNormals {
     const std::int32_t i = of_point_[position];
     return i < 0 ? nullptr : &normals_[static_cast<std::size_t>(i)];
   }
+  /// The points around the position are many, but make no plane.
+  [[nodiscard]] bool rough(std::uint32_t position) const { return of_point_[position] == kRough; }
 
  private:
+  static constexpr std::int32_t kSparse = -1;
+  static constexpr std::int32_t kRough = -2;
+
   std::vector<Vector3d> normals_;
   std::vector<std::int32_t> of_point_;
 };

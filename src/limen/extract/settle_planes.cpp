@@ -65,37 +65,104 @@ class SupportGrid {
   std::vector<std::vector<std::int32_t>> planes_;
 };
 
-}  // namespace
+/// Which planes a point may belong to.
+class Candidates {
+ public:
+  Candidates(const MortonOrder& sorted, const PointNormals& normals, const std::vector<std::int32_t>& labels,
+             std::vector<Plane> planes, const SettleOptions& options)
+      : sorted_(sorted),
+        normals_(normals),
+        labels_(labels),
+        planes_(std::move(planes)),
+        grid_(sorted, labels, level_of(options.cell_m, sorted.cell_m), options.min_support),
+        threshold_m_(options.threshold_m),
+        min_cosine_(std::cos(radians(options.max_angle_deg))) {}
 
-std::vector<std::int32_t> settled(const MortonOrder& sorted, const PointNormals& normals,
-                                  const std::vector<std::int32_t>& labels, const std::vector<Plane>& planes,
-                                  const SettleOptions& options) {
-  const SupportGrid grid(sorted, labels, level_of(options.cell_m, sorted.cell_m), options.min_support);
-  const double min_cosine = std::cos(radians(options.max_angle_deg));
-  std::vector<std::int32_t> result = labels;
-  const auto nearest = [&](std::uint32_t k, const std::vector<std::int32_t>& near) {
-    const Vector3d* const normal = normals.at(k);
-    const auto fits = [&](std::int32_t i) {
-      return normal == nullptr ||
-             std::abs(normal->dot(planes[static_cast<std::size_t>(i)].normal)) >= min_cosine;
-    };
+  [[nodiscard]] const SupportGrid& grid() const { return grid_; }
+  [[nodiscard]] double distance(std::uint32_t k, std::int32_t plane) const {
+    return std::abs(planes_[static_cast<std::size_t>(plane)].signed_distance(sorted_.points[k]));
+  }
+  /// The surface at point k faces along with the plane, as far as is known.
+  [[nodiscard]] bool fits(std::uint32_t k, std::int32_t plane) const {
+    const Vector3d* const normal = normals_.at(k);
+    return normal == nullptr ||
+           std::abs(normal->dot(planes_[static_cast<std::size_t>(plane)].normal)) >= min_cosine_;
+  }
+  [[nodiscard]] std::int32_t nearest(std::uint32_t k, const std::vector<std::int32_t>& near) const {
     // Far from the others of its plane a point keeps it, unless the surface there faces another way.
-    std::int32_t best = labels[k] >= 0 && fits(labels[k]) ? labels[k] : -1;
-    double smallest = options.threshold_m;
+    std::int32_t best = labels_[k] >= 0 && fits(k, labels_[k]) ? labels_[k] : -1;
+    double smallest = threshold_m_;
     for (const std::int32_t i : near) {
-      const double d = std::abs(planes[static_cast<std::size_t>(i)].signed_distance(sorted.points[k]));
-      if (d >= smallest || !fits(i)) continue;
+      const double d = distance(k, i);
+      if (d >= smallest || !fits(k, i)) continue;
       smallest = d;
       best = i;
     }
     return best;
-  };
-  parallel_for(grid.runs().size(), 256, [&](std::size_t begin, std::size_t end) {
+  }
+
+ private:
+  const MortonOrder& sorted_;
+  const PointNormals& normals_;
+  const std::vector<std::int32_t>& labels_;
+  std::vector<Plane> planes_;
+  SupportGrid grid_;
+  double threshold_m_;
+  double min_cosine_;
+};
+
+std::vector<Plane> planes_of(const std::vector<PointMoments>& sums) {
+  std::vector<Plane> planes;
+  for (const PointMoments& sum : sums) planes.push_back(sum.count >= 3.0 ? fit_plane(sum).plane : Plane{});
+  return planes;
+}
+
+}  // namespace
+
+std::vector<double> explained_shares(const MortonOrder& sorted, const PointNormals& normals,
+                                     const std::vector<std::int32_t>& labels,
+                                     const std::vector<PointMoments>& sums, const SettleOptions& options) {
+  const Candidates candidates(sorted, normals, labels, planes_of(sums), options);
+  using Counts = std::vector<double>;
+  Counts shares = parallel_reduce(
+      candidates.grid().runs().size(), 8192, Counts(sums.size(), 0.0),
+      [&](std::size_t begin, std::size_t end) {
+        Counts counts(sums.size(), 0.0);
+        std::vector<std::int32_t> near;
+        for (std::size_t i = begin; i < end; ++i) {
+          candidates.grid().near(i, near);
+          for (std::uint32_t k = candidates.grid().runs().begin(i); k < candidates.grid().runs().end(i);
+               ++k) {
+            if (labels[k] < 0) continue;
+            const auto own = static_cast<std::size_t>(labels[k]);
+            counts[own] += std::any_of(near.begin(), near.end(), [&](std::int32_t other) {
+              return sums[static_cast<std::size_t>(other)].count > sums[own].count &&
+                     candidates.distance(k, other) < options.threshold_m && candidates.fits(k, other);
+            });
+          }
+        }
+        return counts;
+      },
+      [](Counts a, const Counts& b) {
+        for (std::size_t i = 0; i < a.size(); ++i) a[i] += b[i];
+        return a;
+      });
+  for (std::size_t i = 0; i < shares.size(); ++i) shares[i] /= std::max(1.0, sums[i].count);
+  return shares;
+}
+
+std::vector<std::int32_t> settled(const MortonOrder& sorted, const PointNormals& normals,
+                                  const std::vector<std::int32_t>& labels,
+                                  const std::vector<PointMoments>& sums, const SettleOptions& options) {
+  const Candidates candidates(sorted, normals, labels, planes_of(sums), options);
+  const CellRuns& runs = candidates.grid().runs();
+  std::vector<std::int32_t> result = labels;
+  parallel_for(runs.size(), 256, [&](std::size_t begin, std::size_t end) {
     std::vector<std::int32_t> near;
     for (std::size_t i = begin; i < end; ++i) {
-      grid.near(i, near);
+      candidates.grid().near(i, near);
       if (near.empty()) continue;
-      for (std::uint32_t k = grid.runs().begin(i); k < grid.runs().end(i); ++k) result[k] = nearest(k, near);
+      for (std::uint32_t k = runs.begin(i); k < runs.end(i); ++k) result[k] = candidates.nearest(k, near);
     }
   });
   return result;
