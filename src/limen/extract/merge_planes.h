@@ -19,8 +19,10 @@ struct MergedPieces {
 };
 
 /// Each piece, largest first, joins the first plane within `max_angle_rad` such that neither is further than
-/// `max_rms_m` (root mean square) from the plane fitted to both, nor the piece than 1.6 times that from the
-/// plane as it was. Moments about one anchor.
+/// `max_rms_m` (root mean square) from the plane fitted to both. A slight turn of that plane would hide a
+/// step between pieces that lie apart: the piece must also be within 1.6 times that of the plane as it was,
+/// or 4 times where both are of the size of a wall (1 m^2, 0.5 m wide), which may bulge. Moments about one
+/// anchor.
 MergedPieces merge_planes(const std::vector<PointMoments>& pieces, double max_angle_rad, double max_rms_m);
 
 }  // namespace limen
