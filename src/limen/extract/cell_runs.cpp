@@ -35,31 +35,54 @@ void CellRuns::add(std::uint64_t code, std::uint32_t place) {
 
 void CellRuns::finish(std::uint32_t places) {
   begins_.push_back(places);
-  table_.assign(std::bit_ceil(2 * codes_.size() + 1), -1);
+  std::size_t blocks = 0;
+  for (std::size_t i = 0; i < codes_.size(); ++i) blocks += i == 0 || codes_[i] >> 3U != codes_[i - 1] >> 3U;
+  table_.assign(std::bit_ceil(2 * blocks + 1), {});
   mask_ = table_.size() - 1;
   for (std::size_t i = 0; i < codes_.size(); ++i) {
-    std::uint64_t slot = mix64(codes_[i]) & mask_;
-    while (table_[slot] >= 0) slot = (slot + 1) & mask_;
-    table_[slot] = static_cast<std::int32_t>(i);
+    const std::uint64_t code = codes_[i] >> 3U;
+    std::uint64_t slot = slot_of(code);
+    while (table_[slot].first >= 0 && table_[slot].code != code) slot = (slot + 1) & mask_;
+    Block& block = table_[slot];
+    if (block.first < 0) block = {code, static_cast<std::int32_t>(i), 0};
+    block.mask |= 1U << (codes_[i] & 7U);
   }
 }
 
-std::int32_t CellRuns::find(std::uint64_t code) const {
-  for (std::uint64_t slot = mix64(code) & mask_; table_[slot] >= 0; slot = (slot + 1) & mask_) {
-    if (codes_[static_cast<std::size_t>(table_[slot])] == code) return table_[slot];
+std::uint64_t CellRuns::slot_of(std::uint64_t block_code) const {
+  return mix64(block_code) & mask_;
+}
+
+const CellRuns::Block* CellRuns::find(std::uint64_t block_code) const {
+  for (std::uint64_t slot = slot_of(block_code); table_[slot].first >= 0; slot = (slot + 1) & mask_) {
+    if (table_[slot].code == block_code) return &table_[slot];
   }
-  return -1;
+  return nullptr;
 }
 
 CellNeighbours CellRuns::neighbours(std::size_t i) const {
   const CellIndex at = morton_decode(codes_[i]);
+  // Along each axis the cubes around lie in two blocks: bit k of `side` chooses the one of axis k. Unsigned
+  // wrap-around gives a code that no block has.
+  const auto block_of = [](std::uint32_t x, bool upper) { return (upper ? x + 1 : x - 1) >> 1U; };
+  std::array<const Block*, 8> blocks{};
+  for (std::uint32_t side = 0; side < 8; ++side) {
+    blocks[side] = find(morton_encode(block_of(at.x, (side & 1U) != 0), block_of(at.y, (side & 2U) != 0),
+                                      block_of(at.z, (side & 4U) != 0)));
+  }
   CellNeighbours found;
   for (std::uint32_t step = 0; step < 27; ++step) {
     if (step == 13) continue;
-    // Unsigned wrap-around gives a code that no cell has.
-    const std::int32_t neighbour =
-        find(morton_encode(at.x + step % 3 - 1, at.y + step / 3 % 3 - 1, at.z + step / 9 - 1));
-    if (neighbour >= 0) found.add(neighbour);
+    const std::uint32_t x = at.x + step % 3 - 1;
+    const std::uint32_t y = at.y + step / 3 % 3 - 1;
+    const std::uint32_t z = at.z + step / 9 - 1;
+    const auto upper = [](std::uint32_t to, std::uint32_t from) {
+      return to >> 1U == (from + 1) >> 1U ? 1U : 0U;
+    };
+    const Block* const block = blocks[upper(x, at.x) | upper(y, at.y) << 1U | upper(z, at.z) << 2U];
+    const std::uint32_t child = (x & 1U) | (y & 1U) << 1U | (z & 1U) << 2U;
+    if (block == nullptr || (block->mask >> child & 1U) == 0) continue;
+    found.add(block->first + std::popcount(block->mask & ((1U << child) - 1U)));
   }
   return found;
 }

@@ -25,7 +25,8 @@ class CellNeighbours {
   std::size_t count_ = 0;
 };
 
-/// The occupied cubes of one level: runs of a list of points along the curve, and a hash from code to run.
+/// The occupied cubes of one level: runs of a list of points along the curve, and a hash from blocks of 2 x 2
+/// x 2 cubes to their runs, so that the cubes around one are found with eight look-ups.
 class CellRuns {
  public:
   /// Over the points at the positions `active` along the curve, ascending.
@@ -45,11 +46,18 @@ class CellRuns {
  private:
   void add(std::uint64_t code, std::uint32_t place);
   void finish(std::uint32_t places);
-  [[nodiscard]] std::int32_t find(std::uint64_t code) const;
+  /// The cubes of one block, which follow each other.
+  struct Block {
+    std::uint64_t code = 0;
+    std::int32_t first = -1;  ///< run of its first occupied cube; -1: an empty slot of the table
+    std::uint32_t mask = 0;   ///< bit per cube: occupied
+  };
+  [[nodiscard]] std::uint64_t slot_of(std::uint64_t block_code) const;
+  [[nodiscard]] const Block* find(std::uint64_t block_code) const;
 
   std::vector<std::uint64_t> codes_;
   std::vector<std::uint32_t> begins_;
-  std::vector<std::int32_t> table_;
+  std::vector<Block> table_;
   std::uint64_t mask_ = 0;
 };
 

@@ -21,7 +21,8 @@ namespace {
 constexpr double kJoinAngleDeg = 3.0;  // normals of two pieces of one plane
 constexpr int kSparseLevels = 3;       // coarser than the first cubes, for what lies far from the scanner
 constexpr int kSettlings = 2;
-constexpr double kExplained = 0.65;  // of a plane's points: others would take them
+constexpr double kSettleCellM = 0.08;  // points choose among the planes of their cube and those around
+constexpr double kExplained = 0.65;    // of a plane's points: others would take them
 constexpr std::size_t kPiece = 131072;
 
 double noise_of(const CellGrid& grid) {
@@ -59,14 +60,16 @@ class PlaneGrower {
     grow(monitor);
     monitor.throw_if_cancelled();
     const PointNormals normals(sorted_, kGateShare * threshold_m_);
+    const SettleGrid grid(sorted_, kSettleCellM);
+    const SettleScene scene{sorted_, normals, grid};
     merge();
     const SettleOptions settling{.threshold_m = threshold_m_};
     for (int k = 0; k < kSettlings; ++k) {
-      labels_ = settled(sorted_, normals, labels_, sums_, settling);
+      labels_ = settled(scene, labels_, sums_, settling);
       merge();
     }
-    dissolve(explained_shares(sorted_, normals, labels_, sums_, settling));
-    labels_ = settled(sorted_, normals, labels_, sums_, settling);
+    dissolve(explained_shares(scene, labels_, sums_, settling));
+    labels_ = settled(scene, labels_, sums_, settling);
     merge();
     return finish();
   }

@@ -195,9 +195,17 @@ std::int32_t RegionGrower::plane_joined_by(const PointMoments& moments, const Pl
 /// Points of a cube and of its neighbours join the nearest plane found there.
 void RegionGrower::label_points(const CellGrid& grid, const std::vector<std::uint32_t>& active,
                                 std::vector<std::int32_t>& labels) const {
+  // Most cubes of the fine levels are far from any plane.
+  std::vector<std::uint8_t> touched(grid.cells().size(), 0);
+  for (std::size_t i = 0; i < touched.size(); ++i) {
+    if (grid.cells()[i].region < 0) continue;
+    touched[i] = 1;
+    for (const std::int32_t j : grid.neighbours(i)) touched[static_cast<std::size_t>(j)] = 1;
+  }
   parallel_for(grid.cells().size(), 256, [&](std::size_t begin, std::size_t end) {
     std::vector<std::int32_t> near;
     for (std::size_t i = begin; i < end; ++i) {
+      if (touched[i] == 0) continue;
       const Cell& cell = grid.cells()[i];
       near.clear();
       if (cell.region >= 0) near.push_back(cell.region);

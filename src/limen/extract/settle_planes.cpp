@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "limen/base/angles.h"
 #include "limen/base/parallel.h"
@@ -21,14 +22,13 @@ struct Support {
 /// Planes by cube, those with most points first; cubes are runs of the curve.
 class SupportGrid {
  public:
-  SupportGrid(const MortonOrder& sorted, const std::vector<std::int32_t>& labels, int level,
-              std::uint32_t min_support)
-      : runs_(sorted, level), planes_(runs_.size()) {
-    parallel_for(runs_.size(), 256, [&](std::size_t begin, std::size_t end) {
+  SupportGrid(const SettleGrid& grid, const std::vector<std::int32_t>& labels, std::uint32_t min_support)
+      : grid_(grid), planes_(grid.runs().size()) {
+    parallel_for(planes_.size(), 256, [&](std::size_t begin, std::size_t end) {
       std::vector<Support> support;
       for (std::size_t i = begin; i < end; ++i) {
         support.clear();
-        for (std::uint32_t k = runs_.begin(i); k < runs_.end(i); ++k) count(labels[k], support);
+        for (std::uint32_t k = runs().begin(i); k < runs().end(i); ++k) count(labels[k], support);
         for (const Support& s : support) {
           if (s.count >= min_support) planes_[i].push_back(s.plane);
         }
@@ -36,7 +36,7 @@ class SupportGrid {
     });
   }
 
-  [[nodiscard]] const CellRuns& runs() const { return runs_; }
+  [[nodiscard]] const CellRuns& runs() const { return grid_.runs(); }
 
   /// Planes in a cube and those around it, each once.
   void near(std::size_t cube, std::vector<std::int32_t>& planes) const {
@@ -47,7 +47,7 @@ class SupportGrid {
       }
     };
     add(cube);
-    for (const std::int32_t i : runs_.neighbours(cube)) add(static_cast<std::size_t>(i));
+    for (const std::int32_t i : grid_.around(cube)) add(static_cast<std::size_t>(i));
   }
 
  private:
@@ -61,20 +61,20 @@ class SupportGrid {
     support.push_back({label, 1});
   }
 
-  CellRuns runs_;
+  const SettleGrid& grid_;
   std::vector<std::vector<std::int32_t>> planes_;
 };
 
 /// Which planes a point may belong to.
 class Candidates {
  public:
-  Candidates(const MortonOrder& sorted, const PointNormals& normals, const std::vector<std::int32_t>& labels,
-             std::vector<Plane> planes, const SettleOptions& options)
-      : sorted_(sorted),
-        normals_(normals),
+  Candidates(const SettleScene& scene, const std::vector<std::int32_t>& labels, std::vector<Plane> planes,
+             const SettleOptions& options)
+      : sorted_(scene.sorted),
+        normals_(scene.normals),
         labels_(labels),
         planes_(std::move(planes)),
-        grid_(sorted, labels, level_of(options.cell_m, sorted.cell_m), options.min_support),
+        grid_(scene.grid, labels, options.min_support),
         threshold_m_(options.threshold_m),
         min_cosine_(std::cos(radians(options.max_angle_deg))) {}
 
@@ -119,10 +119,26 @@ std::vector<Plane> planes_of(const std::vector<PointMoments>& sums) {
 
 }  // namespace
 
-std::vector<double> explained_shares(const MortonOrder& sorted, const PointNormals& normals,
-                                     const std::vector<std::int32_t>& labels,
+SettleGrid::SettleGrid(const MortonOrder& sorted, double cell_m)
+    : runs_(sorted, level_of(cell_m, sorted.cell_m)), begins_(runs_.size() + 1, 0) {
+  constexpr std::size_t kCubes = 4096;
+  std::vector<std::vector<std::int32_t>> pieces((runs_.size() + kCubes - 1) / kCubes);
+  parallel_for(runs_.size(), kCubes, [&](std::size_t begin, std::size_t end) {
+    std::vector<std::int32_t>& piece = pieces[begin / kCubes];
+    for (std::size_t i = begin; i < end; ++i) {
+      const CellNeighbours near = runs_.neighbours(i);
+      piece.insert(piece.end(), near.begin(), near.end());
+      begins_[i + 1] = static_cast<std::size_t>(near.end() - near.begin());
+    }
+  });
+  std::partial_sum(begins_.begin(), begins_.end(), begins_.begin());
+  neighbours_.reserve(begins_.back());
+  for (const auto& piece : pieces) neighbours_.insert(neighbours_.end(), piece.begin(), piece.end());
+}
+
+std::vector<double> explained_shares(const SettleScene& scene, const std::vector<std::int32_t>& labels,
                                      const std::vector<PointMoments>& sums, const SettleOptions& options) {
-  const Candidates candidates(sorted, normals, labels, planes_of(sums), options);
+  const Candidates candidates(scene, labels, planes_of(sums), options);
   using Counts = std::vector<double>;
   Counts shares = parallel_reduce(
       candidates.grid().runs().size(), 8192, Counts(sums.size(), 0.0),
@@ -151,10 +167,9 @@ std::vector<double> explained_shares(const MortonOrder& sorted, const PointNorma
   return shares;
 }
 
-std::vector<std::int32_t> settled(const MortonOrder& sorted, const PointNormals& normals,
-                                  const std::vector<std::int32_t>& labels,
+std::vector<std::int32_t> settled(const SettleScene& scene, const std::vector<std::int32_t>& labels,
                                   const std::vector<PointMoments>& sums, const SettleOptions& options) {
-  const Candidates candidates(sorted, normals, labels, planes_of(sums), options);
+  const Candidates candidates(scene, labels, planes_of(sums), options);
   const CellRuns& runs = candidates.grid().runs();
   std::vector<std::int32_t> result = labels;
   parallel_for(runs.size(), 256, [&](std::size_t begin, std::size_t end) {
