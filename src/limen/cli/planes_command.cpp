@@ -3,8 +3,12 @@
 #include "limen/cli/planes_command.h"
 
 #include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <map>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
@@ -12,6 +16,7 @@
 #include <fmt/format.h>
 
 #include "limen/base/atomic_file.h"
+#include "limen/base/error.h"
 #include "limen/cli/scan_options.h"
 #include "limen/extract/extract_features.h"
 #include "limen/report/features_json.h"
@@ -24,8 +29,37 @@ struct PlanesOptions {
   std::string output;
   std::string origin;
   std::string gravity = "up";
+  std::string detector = "auto";
+  std::string threshold = "auto";
   ExtractOptions extract;
 };
+
+const std::map<std::string, PlaneDetector>& detectors() {
+  static const std::map<std::string, PlaneDetector> names = {{"auto", PlaneDetector::automatic},
+                                                             {"grow", PlaneDetector::grow},
+                                                             {"scan_lines", PlaneDetector::scan_lines},
+                                                             {"msac", PlaneDetector::msac}};
+  return names;
+}
+
+/// A rule by its name, else a length in metres.
+void set_threshold(const std::string& text, ExtractOptions& extract) {
+  static const std::map<std::string, ThresholdRule> rules = {{"auto", ThresholdRule::automatic},
+                                                             {"noise", ThresholdRule::noise},
+                                                             {"a_contrario", ThresholdRule::a_contrario}};
+  const auto rule = rules.find(text);
+  if (rule != rules.end()) {
+    extract.detect.threshold = rule->second;
+    return;
+  }
+  double& metres = extract.grow.inlier_threshold_m;
+  const char* const end = text.data() + text.size();
+  const auto [rest, error] = std::from_chars(text.data(), end, metres);
+  if (error != std::errc() || rest != end || !(metres >= 0.0) || !std::isfinite(metres)) {
+    throw Error(fmt::format("--threshold-m is \"{}\", but must be a length in metres or a rule", text), "",
+                "write auto, noise, a_contrario or a number as 0.01");
+  }
+}
 
 std::string summary(const Features& features, const PlanesOptions& options) {
   std::string text =
@@ -43,7 +77,10 @@ std::string summary(const Features& features, const PlanesOptions& options) {
   return text + fmt::format("written to {}\n", options.output);
 }
 
-int run(const PlanesOptions& options, const Session& session) {
+int run(PlanesOptions options, const Session& session) {
+  options.extract.detect.detector = detectors().at(options.detector);
+  options.extract.detect.seed = session.common.seed;
+  set_threshold(options.threshold, options.extract);
   options.extract.check();
   refuse_same_file(options.output, options.scan);
   const ReadOptions reading = read_options(options.origin, "--origin", options.gravity);
@@ -77,11 +114,24 @@ void add_planes_command(CLI::App& app, Session& session) {
                    "From where the scan was taken, in the coordinates of its points, metres")
       ->type_name("x,y,z");
   add_gravity_option(*command, options->gravity);
-  add_length_option(*command, "--inlier-threshold-m", options->extract.grow.inlier_threshold_m,
-                    "Farthest a point may lie from its plane; 0: from the noise found in the scan (default)");
+  std::vector<std::string> names;
+  for (const auto& [name, detector] : detectors()) names.push_back(name);
+  command
+      ->add_option(
+          "--detector", options->detector,
+          "How planes are found (default auto, which is grow); scan_lines needs a scan whose lines are "
+          "known; msac is slow")
+      ->check(CLI::IsMember(names));
+  command
+      ->add_option("--threshold-m,--inlier-threshold-m", options->threshold,
+                   "Farthest a point may lie from its plane: metres, or a rule: auto (default), noise, "
+                   "a_contrario; 0 is auto")
+      ->type_name("METRES|RULE");
   command
       ->add_option("--min-inliers", options->extract.grow.min_inliers, "Points a plane needs (default 200)")
       ->type_name("N");
+  add_length_option(*command, "--alpha-m", options->extract.polygons.alpha_m,
+                    "Radius of the outlines' alpha shape; 0: from the spacing of the points (default)");
 }
 
 }  // namespace limen
