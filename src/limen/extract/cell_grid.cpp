@@ -14,6 +14,7 @@ namespace {
 
 constexpr std::uint32_t kMinCellPoints = 6;
 constexpr double kMinChildPoints = 4.0;
+constexpr int kChildLevels = 2;  // quarters of the edge: halves are met by a tilted plane through any step
 
 void measure(Cell& cell, const MortonOrder& sorted, const std::vector<std::uint32_t>& active) {
   for (std::uint32_t k = cell.begin; k < cell.end; ++k) cell.moments.add(sorted.points[active[k]]);
@@ -34,11 +35,11 @@ double unevenness_of(const Cell& cell, const MortonOrder& sorted, const std::vec
     double count = 0.0;
     double sum = 0.0;
   };
-  std::array<Child, 8> children;
+  std::array<Child, 1U << (3 * kChildLevels)> children;
   const Plane plane = cell.plane();
-  const int shift = 3 * (level - 1);
+  const int shift = 3 * (level - kChildLevels);
   for (std::uint32_t k = cell.begin; k < cell.end; ++k) {
-    Child& child = children[(sorted.codes[active[k]] >> shift) & 7U];
+    Child& child = children[(sorted.codes[active[k]] >> shift) & (children.size() - 1)];
     child.count += 1.0;
     child.sum += plane.signed_distance(sorted.points[active[k]]);
   }
@@ -60,7 +61,8 @@ CellGrid::CellGrid(const MortonOrder& sorted, const std::vector<std::uint32_t>& 
       cells_[i].begin = runs_.begin(i);
       cells_[i].end = runs_.end(i);
       measure(cells_[i], sorted, active);
-      if (level > 0) cells_[i].unevenness_m = unevenness_of(cells_[i], sorted, active, level);
+      if (level >= kChildLevels && cells_[i].count() >= kMinCellPoints)
+        cells_[i].unevenness_m = unevenness_of(cells_[i], sorted, active, level);
     }
   });
 }

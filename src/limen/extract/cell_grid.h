@@ -18,8 +18,8 @@ struct Cell {
   std::int32_t region = -1;
   double thickness_m = 0.0;  ///< root mean square distance to its own plane
   double spread_m = 0.0;     ///< standard deviation along its second axis
-  /// Largest distance of the mean of an eighth of the cube to the plane, less what noise explains: high
-  /// where the cube holds a step or a bend that its thickness hides.
+  /// Largest distance to the plane of the mean of a small cube within, of a quarter of the edge, less what
+  /// noise explains: high where the cube holds a step or a bend that its thickness hides.
   double unevenness_m = 0.0;
   Vector3d mean = Vector3d::Zero();
   Vector3d normal = Vector3d::UnitZ();
