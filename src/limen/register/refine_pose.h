@@ -12,7 +12,7 @@ namespace limen {
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
 struct RefineOptions {
-  double first_gate_m = 0.08;  ///< surfaces nearer than this are matched in the first round
+  double first_gate_m = 0.12;  ///< surfaces nearer than this are matched in the first round
   double last_gate_m = 0.015;  ///< and in the last
   int rounds = 12;
   std::size_t samples = 0;    ///< of each scan that are used, about; 0: all

@@ -162,12 +162,20 @@ std::vector<PoseCandidate> propose_sliding(const Features& source, const Feature
   return enumerate_sliding_poses(inside.source, inside.target, kSlideStepM, options);
 }
 
-/// Moves a pose along the shifts its planes leave open to where the rest of the surface agrees best.
-void settle_open_shifts(JudgedPose& pose, const ScanView& source, const ScanView& target,
+void refine_and_score(JudgedPose& pose, const ScanView& source, const ScanView& target,
+                      const RegisterOptions& options) {
+  pose.refined = refine_pose(source, target, pose.refined.target_from_source, options.refine);
+  pose.score = score_pose(source, target, pose.refined.target_from_source, fine_score(source, target));
+}
+
+/// Moves a pose along the shifts its planes leave open to where the rest of the surface agrees best; tells
+/// whether it moved.
+bool settle_open_shifts(JudgedPose& pose, const ScanView& source, const ScanView& target,
                         const RegisterOptions& options) {
   const ScoreOptions fine = fine_score(source, target);
+  bool moved_at_all = false;
   for (const UnobservedFreedom& freedom : unobserved_freedoms(pose.refined, options.verdict.min_held_m2)) {
-    if (freedom.rotation) return;
+    if (freedom.rotation) return moved_at_all;
     const Rigid3 start = pose.refined.target_from_source;
     for (int step = -kSettleSteps; step <= kSettleSteps; ++step) {
       Rigid3 moved = start;
@@ -176,8 +184,10 @@ void settle_open_shifts(JudgedPose& pose, const ScanView& source, const ScanView
       if (score.value() <= pose.score.value()) continue;
       pose.score = score;
       pose.refined.target_from_source = moved;
+      moved_at_all = true;
     }
   }
+  return moved_at_all;
 }
 
 /// The poses that may become the answer are refined once more, on everything.
@@ -188,9 +198,9 @@ void polish(std::vector<JudgedPose>& poses, const ScanView& source, const ScanVi
   parallel_for(count, 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       JudgedPose& pose = poses[ranking[k]];
-      pose.refined = refine_pose(source, target, pose.refined.target_from_source, options.refine);
-      pose.score = score_pose(source, target, pose.refined.target_from_source, fine_score(source, target));
-      settle_open_shifts(pose, source, target, options);
+      refine_and_score(pose, source, target, options);
+      // A pose that slid to its place meets surface that it had missed.
+      if (settle_open_shifts(pose, source, target, options)) refine_and_score(pose, source, target, options);
     }
   });
 }
