@@ -12,7 +12,7 @@
 namespace limen {
 
 enum class PlaneDetector {
-  automatic,   ///< the one that measured best for the kind of scan: see detector_for
+  automatic,   ///< the one that measured best: see detector_for
   grow,        ///< cubes, coarse to fine: needs nothing but points (grow_planes.h)
   scan_lines,  ///< 2021, section 2.1: needs the scan's lines (topology_planes.h)
   msac         ///< 2021, section 2.2: the published baseline, slow (msac_planes.h)
@@ -20,8 +20,8 @@ enum class PlaneDetector {
 
 /// Where the inlier threshold comes from when GrowOptions::inlier_threshold_m is 0.
 enum class ThresholdRule {
-  automatic,   ///< a contrario among multiples of what the noise asks for (automatic_threshold.h); noise for
-               ///< mobile scans
+  automatic,   ///< a contrario among multiples of what the noise asks for (automatic_threshold.h); mobile
+               ///< scans: what the noise asks for, at least 25 mm
   noise,       ///< the detector's own: 3.3 times the noise it finds
   a_contrario  ///< 2021, 3.1.1: among 5, 10, 15, 20, 30 and 50 mm, whatever the noise
 };
@@ -38,7 +38,8 @@ struct DetectedPlanes {
   PlaneDetector detector = PlaneDetector::grow;  ///< the detector used; never automatic
 };
 
-/// The detector that `automatic` stands for.
+/// The detector that `automatic` stands for: grow for every scan so far. Where the scan's lines are known
+/// scan_lines is faster, but not better (docs/planes.md).
 PlaneDetector detector_for(const Scan& scan);
 
 /// Planes by the detector asked for. `grow.inlier_threshold_m` and `grow.min_inliers` hold for each of them.
