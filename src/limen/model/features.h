@@ -12,11 +12,31 @@
 
 namespace limen {
 
-/// A window or door as a rectangle in its wall (2022, section 2). Coordinates about the scan's local origin.
+/// How an opening was noticed.
+enum class OpeningView : std::uint8_t {
+  through,  ///< rays came back from well beyond the wall
+  recess,   ///< rays only came back from a little behind the wall: a blind, a shutter, a closed door
+  hole      ///< the wall was not measured there: a curtain hangs before it, or nothing came back
+};
+const char* to_string(OpeningView view);
+
+/// A window or door as an upright rectangle in its wall (2022, section 2). Coordinates about the scan's local
+/// origin. Seen from the scanner's side of the wall the corners are lower left, lower right, upper right,
+/// upper left; edge k runs from corner k to corner (k + 1) % 4: bottom, right, top, left.
 struct Opening {
-  Vector3d corners[4];       ///< in order round the rectangle, metres
+  Vector3d corners[4];       ///< in order round the rectangle, metres, in the plane of the wall
   int facade = -1;           ///< index into Features::planes of the wall it lies in
-  std::size_t evidence = 0;  ///< rays that crossed the wall plane inside it
+  std::size_t evidence = 0;  ///< rays that crossed the wall plane inside it and came back from behind
+  OpeningView view = OpeningView::through;
+  /// One standard deviation of each edge's place, across the edge within the wall, metres. An edge that was
+  /// not seen (hidden by a tree, cut off by the scan's border) has 1 or more.
+  double edge_sigma_m[4] = {1.0, 1.0, 1.0, 1.0};
+  double reveal_depth_m = 0.0;  ///< how far the sides of the opening reach behind the wall; 0: not seen
+  double reveal_sigma_m = 0.0;  ///< one standard deviation of it
+  bool reveal_complete =
+      false;  ///< the sides end there: the depth is the wall's thickness, not a lower bound
+  std::vector<Vector3d>
+      outline;  ///< the seen outline in the wall where it is not a rectangle (arched, round)
 };
 
 /// A small piece of surface: the mean of the points in one tile of a plane, or of one cube of clutter.
