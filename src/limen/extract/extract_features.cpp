@@ -31,11 +31,12 @@ void mark_interior(std::vector<PlanarPolygon>& planes, const std::vector<std::ui
   for (std::size_t k = 0; k < planes.size(); ++k) planes[k].interior = 2 * behind[k] > planes[k].inliers;
 }
 
-/// The façades, the points behind them, and the planes among these that were too small for the whole scan.
+/// The walls, the points behind them, and the planes among these that were too small for the whole scan.
 void add_interior(const Scan& scan, const ExtractOptions& options, ExtractedFeatures& extracted,
                   Monitor& monitor) {
   Features& features = extracted.features;
-  extracted.facades = find_facades(features.planes, Vector3d::UnitZ(), options.interior.facades);
+  extracted.facades = find_facades(features.planes, Vector3d::UnitZ(),
+                                   scan.mobile() ? options.interior.facades : options.interior.walls);
   if (extracted.facades.empty()) return;
   const std::vector<std::uint32_t> behind = point_indices(
       find_interior_points(scan, features.planes, extracted.facades, options.interior.points, monitor));
@@ -60,6 +61,7 @@ void add_interior(const Scan& scan, const ExtractOptions& options, ExtractedFeat
 void InteriorOptions::check() const {
   if (min_inliers < 3) throw_bad_option("interior min_inliers", min_inliers, "3 or more");
   facades.check();
+  walls.check();
   points.check();
 }
 
@@ -80,9 +82,16 @@ ExtractedFeatures extract_features(const Scan& scan, const ExtractOptions& optio
   features.inlier_threshold_m = detected.planes.inlier_threshold_m;
   features.planes = make_polygons(scan, detected.planes, options.polygons, monitor);
   extracted.labels = std::move(detected.planes.labels);
-  if (scan.mobile() && options.interior.enabled) add_interior(scan, options, extracted, monitor);
+  if (scan.centre_known() && options.interior.enabled) add_interior(scan, options, extracted, monitor);
   features.samples = sample_surface(scan, extracted.labels, features.planes, options.samples);
   return extracted;
+}
+
+void add_seen_through(const Scan& scan, const ExtractOptions& options, ExtractedFeatures& extracted,
+                      Monitor& monitor) {
+  add_interior(scan, options, extracted, monitor);
+  Features& features = extracted.features;
+  features.samples = sample_surface(scan, extracted.labels, features.planes, options.samples);
 }
 
 }  // namespace limen

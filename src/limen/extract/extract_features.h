@@ -13,11 +13,13 @@
 
 namespace limen {
 
-/// Planes inside a building as a mobile scan sees them through the openings of its façades (2021, 3.1).
+/// Planes that a scan sees through the openings of its walls: a mobile scan those inside a building (2021,
+/// 3.1), a station those outside it, or in the next room (2021, section 5: future work).
 struct InteriorOptions {
-  bool enabled = true;   ///< for mobile scans
-  int min_inliers = 40;  ///< smallest plane among the points behind façades
-  FacadeCriteria facades;
+  bool enabled = true;
+  int min_inliers = 40;                       ///< smallest plane among the points behind walls
+  FacadeCriteria facades;                     ///< walls of a mobile scan
+  FacadeCriteria walls{0.05, 2.0, 1.2, 0.8};  ///< walls of a station
   InteriorPointOptions points;
 
   void check() const;
@@ -37,12 +39,17 @@ struct ExtractOptions {
 struct ExtractedFeatures {
   Features features;
   std::vector<std::int32_t> labels;
-  std::vector<int> facades;         ///< indices of the planes that are façades; mobile scans only
+  std::vector<int> facades;         ///< indices of the planes that are façades, or walls of a station
   std::size_t interior_points = 0;  ///< points behind them
 };
 
 /// Planar polygons and surface samples of a scan: the one-call door.
 ExtractedFeatures extract_features(const Scan& scan, const ExtractOptions& options = {},
                                    Monitor& monitor = silent_monitor());
+
+/// Adds the planes seen through the walls' openings and marks them, then takes the samples anew: for a scan
+/// whose optical centre became known only after extract_features.
+void add_seen_through(const Scan& scan, const ExtractOptions& options, ExtractedFeatures& extracted,
+                      Monitor& monitor = silent_monitor());
 
 }  // namespace limen

@@ -7,7 +7,9 @@
 
 #include "limen/base/angles.h"
 #include "limen/extract/estimate_centre.h"
+// OPENINGS
 #include "limen/extract/panorama.h"
+#include "limen/extract/scanner_up.h"
 #include "limen/extract/voxel_map.h"
 #include "limen/match/enumerate_rotations.h"
 
@@ -15,7 +17,8 @@ namespace limen {
 namespace {
 
 constexpr double kLevelDeg = 1.0;
-constexpr double kLevelShare = 0.1;  // of the planes' area that must be horizontal
+constexpr double kNearlyLevelDeg = 3.0;  // a level scanner may be off by this: its own z is as good
+constexpr double kLevelShare = 0.1;      // of the planes' area that must be horizontal
 
 bool looks_level(const Features& features) {
   double total = 0.0;
@@ -39,28 +42,81 @@ void orient(Features& features, const Vector3d& centre) {
   }
 }
 
-}  // namespace
+/// The scan turned about its local origin.
+Scan turned(const Scan& scan, const Matrix3d& rotation) {
+  Scan copy = scan;
+  for (Vector3d& x : copy.points) x = rotation * x;
+  for (Vector3d& x : copy.centres) x = rotation * x;
+  return copy;
+}
 
-PreparedScan prepare_scan(const Scan& scan, const ExtractOptions& options, Monitor& monitor) {
-  PreparedScan prepared;
-  prepared.extracted = extract_features(scan, options, monitor);
+/// The smallest turn that brings `up` to z; none where it is there already.
+Matrix3d turn_upright(const Vector3d& up) {
+  if (up.z() > std::cos(radians(kNearlyLevelDeg))) return Matrix3d::Identity();
+  return Eigen::Quaterniond::FromTwoVectors(up, Vector3d::UnitZ()).toRotationMatrix();
+}
+
+/// Everything but the question of the vertical: z points up where `upright`.
+void prepare(const Scan& scan, const ExtractOptions& options, PreparedScan& prepared, Monitor& monitor) {
+  ExtractOptions used = options;
+  used.interior.enabled = options.interior.enabled && (prepared.upright || scan.mobile());
+  prepared.extracted = extract_features(scan, used, monitor);
+}
+
+/// The optical centre, the view of space, what is seen through openings, and the openings.
+void look_around(const Scan& scan, const ExtractOptions& options, PreparedScan& prepared, Monitor& monitor) {
   Features& features = prepared.extracted.features;
-  prepared.looks_level = looks_level(features);
-  std::optional<Vector3d> centre;
-  if (scan.centres.size() == 1) {
-    centre = scan.centre(0);
-  } else if (!scan.centre_known()) {
+  Scan placed;
+  const Scan* seen = &scan;
+  if (!scan.centre_known()) {
     if (const std::optional<EstimatedCentre> estimated = estimate_centre(features)) {
-      centre = estimated->centre;
       prepared.centre_estimated = true;
-      orient(features, *centre);
+      orient(features, estimated->centre);
+      placed = scan;
+      placed.centres = {estimated->centre};
+      seen = &placed;
+      if (prepared.upright) add_seen_through(placed, options, prepared.extracted, monitor);
     }
   }
-  if (centre) {
-    prepared.space = std::make_unique<Panorama>(scan, prepared.extracted.labels, features, *centre);
+  if (seen->centres.size() == 1) {
+    prepared.space = std::make_unique<Panorama>(*seen, prepared.extracted.labels, features, seen->centre(0));
   } else {
-    prepared.space = std::make_unique<VoxelMap>(scan, features);
+    prepared.space = std::make_unique<VoxelMap>(*seen, features);
   }
+  if (prepared.upright && seen->centre_known())
+    (void)0;
+}
+
+}  // namespace
+
+PreparedScan prepare_scan(const Scan& scan, const ExtractOptions& options, Gravity gravity,
+                          Monitor& monitor) {
+  PreparedScan prepared;
+  prepared.upright = gravity == Gravity::up;
+  if (gravity != Gravity::unknown) {
+    prepare(scan, options, prepared, monitor);
+    if (!prepared.upright && looks_level(prepared.extracted.features)) {
+      prepared.upright = true;
+      if (scan.centres.size() == 1) add_seen_through(scan, options, prepared.extracted, monitor);
+    }
+    if (prepared.upright) {
+      look_around(scan, options, prepared, monitor);
+      return prepared;
+    }
+  }
+  const std::optional<Vector3d> up = find_scanner_up(scan, monitor);
+  if (up) {
+    prepared.upright = true;
+    prepared.upright_from_scan = turn_upright(*up);
+    if (!prepared.upright_from_scan.isIdentity()) {
+      const Scan copy = turned(scan, prepared.upright_from_scan);
+      prepare(copy, options, prepared, monitor);
+      look_around(copy, options, prepared, monitor);
+      return prepared;
+    }
+  }
+  if (up || gravity == Gravity::unknown) prepare(scan, options, prepared, monitor);
+  look_around(scan, options, prepared, monitor);
   return prepared;
 }
 

@@ -11,18 +11,28 @@
 
 namespace limen {
 
-/// A scan made ready for registration: features, labels, and its view of space.
+/// What is known of the vertical.
+enum class Gravity {
+  automatic,  ///< level where the planes of both scans say so, else as each scan shows by itself
+  up,         ///< both z axes point up
+  unknown     ///< any orientation: only what each scan shows by itself counts
+};
+
+/// A scan made ready for registration: features, labels, and its view of space, all in a frame that is turned
+/// upright about the scan's local origin where the scan's own is not.
 struct PreparedScan {
   ExtractedFeatures extracted;
+  Matrix3d upright_from_scan = Matrix3d::Identity();
   std::unique_ptr<SpaceView> space;  ///< a panorama for a static station, else a map of cubes
   bool centre_estimated = false;     ///< the scan did not say where the scanner was
-  bool looks_level = false;          ///< a main direction of its planes is the z axis
+  bool upright = false;              ///< z of the prepared frame points up
 
   [[nodiscard]] ScanView view() const { return {&extracted.features, space.get()}; }
 };
 
-/// Features of `scan`, its optical centre (estimated where the scan does not say) and its depth panorama.
+/// Features of `scan`, openings included where the vertical and the optical centre are known; the centre is
+/// estimated where the scan does not say.
 PreparedScan prepare_scan(const Scan& scan, const ExtractOptions& options,
-                          Monitor& monitor = silent_monitor());
+                          Gravity gravity = Gravity::automatic, Monitor& monitor = silent_monitor());
 
 }  // namespace limen

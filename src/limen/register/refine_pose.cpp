@@ -9,22 +9,12 @@
 #include <Eigen/Cholesky>
 
 #include "limen/base/error.h"
+#include "limen/register/pose_contacts.h"
 
 namespace limen {
 namespace {
 
 using Vector6d = Eigen::Matrix<double, 6, 1>;
-
-/// One tile against one plane, in the target's frame.
-struct Contact {
-  Vector3d at = Vector3d::Zero();
-  Vector3d normal = Vector3d::UnitZ();
-  double residual_m = 0.0;  // how far the source has to move along the normal
-  double sigma_m = 0.0;
-  double area_m2 = 0.0;
-  int source_plane = -1;
-  int target_plane = -1;
-};
 
 class Refiner {
  public:
@@ -38,65 +28,19 @@ class Refiner {
       const double share = static_cast<double>(round) / std::max(1, options_.rounds - 1);
       const double gate =
           options_.first_gate_m * std::pow(options_.last_gate_m / options_.first_gate_m, share);
-      const std::vector<Contact> contacts = contacts_of(refined.target_from_source, gate);
-      if (contacts.size() < 6) break;
-      adjust(contacts, gate, refined);
+      const double opening_gate =
+          options_.first_opening_gate_m *
+          std::pow(options_.last_opening_gate_m / options_.first_opening_gate_m, share);
+      const Contacts contacts =
+          find_contacts(source_, target_, refined.target_from_source, {gate, opening_gate}, options_);
+      if (contacts.all.size() < 4) break;
+      adjust(contacts.all, refined);
     }
     summarise(refined);
     return refined;
   }
 
  private:
-  [[nodiscard]] double sigma_of(const SurfaceSample& sample, double noise_m) const {
-    return std::sqrt(noise_m * noise_m / static_cast<double>(sample.count) +
-                     options_.flatness_m * options_.flatness_m);
-  }
-
-  void collect(const ScanView& scan, const ScanView& judge, const Rigid3& judge_from_scan, double gate,
-               bool forth, const Rigid3& target_from_source, std::vector<Contact>& contacts) const {
-    if (judge.space == nullptr) return;
-    SightQuery query;
-    query.surface_m = gate;
-    query.free_m = 1e9;
-    const double noise = std::max(scan.features->noise_m, 0.0005);
-    const std::vector<SurfaceSample>& samples = scan.features->samples;
-    const std::size_t stride = options_.samples == 0 ? 1 : 1 + samples.size() / options_.samples;
-    for (std::size_t i = 0; i < samples.size(); i += stride) {
-      const SurfaceSample& sample = samples[i];
-      if (sample.plane < 0) break;  // clutter follows the planes
-      query.at = judge_from_scan * sample.mean;
-      query.normal = judge_from_scan.rotation * sample.normal;
-      query.oriented = scan.features->planes[static_cast<std::size_t>(sample.plane)].oriented;
-      const Sight sight = judge.space->look(query);
-      if (sight.kind != SightKind::surface || sight.plane < 0) continue;
-      const PlanarPolygon& plane = judge.features->planes[static_cast<std::size_t>(sight.plane)];
-      Contact contact;
-      contact.sigma_m = sigma_of(sample, noise);
-      contact.area_m2 = static_cast<double>(sample.area_m2) * static_cast<double>(stride);
-      if (forth) {
-        contact.at = query.at;
-        contact.normal = plane.plane.normal;
-        contact.residual_m = -sight.distance_m;
-        contact.source_plane = sample.plane;
-        contact.target_plane = sight.plane;
-      } else {
-        contact.at = sample.mean;
-        contact.normal = target_from_source.rotation * plane.plane.normal;
-        contact.residual_m = sight.distance_m;
-        contact.source_plane = sight.plane;
-        contact.target_plane = sample.plane;
-      }
-      contacts.push_back(contact);
-    }
-  }
-
-  [[nodiscard]] std::vector<Contact> contacts_of(const Rigid3& pose, double gate) const {
-    std::vector<Contact> contacts;
-    collect(source_, target_, pose, gate, true, pose, contacts);
-    collect(target_, source_, inverse(pose), gate, false, pose, contacts);
-    return contacts;
-  }
-
   static Vector3d middle_of(const std::vector<Contact>& contacts) {
     Vector3d sum = Vector3d::Zero();
     for (const Contact& contact : contacts) sum += contact.at;
@@ -105,7 +49,11 @@ class Refiner {
 
   static Vector6d row_of(const Contact& contact, const Vector3d& centre) {
     Vector6d row;
-    row << (contact.at - centre).cross(contact.normal), contact.normal;
+    if (contact.turn) {
+      row << contact.normal, Vector3d::Zero();
+    } else {
+      row << (contact.at - centre).cross(contact.normal), contact.normal;
+    }
     return row;
   }
 
@@ -116,12 +64,13 @@ class Refiner {
   }
 
   /// One Gauss-Newton step.
-  static void adjust(const std::vector<Contact>& contacts, double gate, RefinedPose& refined) {
+  static void adjust(const std::vector<Contact>& contacts, RefinedPose& refined) {
     const Vector3d centre = middle_of(contacts);
     Matrix6d normal = Matrix6d::Zero();
     Vector6d right = Vector6d::Zero();
     for (const Contact& contact : contacts) {
-      const double weight = robust_weight(contact.residual_m, gate) / (contact.sigma_m * contact.sigma_m);
+      const double weight =
+          robust_weight(contact.residual_m, contact.gate_m) / (contact.sigma_m * contact.sigma_m);
       const Vector6d row = row_of(contact, centre);
       normal += weight * row * row.transpose();
       right += weight * contact.residual_m * row;
@@ -163,10 +112,37 @@ class Refiner {
   }
 
   void summarise(RefinedPose& refined) const {
-    const std::vector<Contact> contacts = contacts_of(refined.target_from_source, options_.last_gate_m);
+    const Contacts found = find_contacts(source_, target_, refined.target_from_source,
+                                         {options_.last_gate_m, options_.last_opening_gate_m}, options_);
+    refined.openings = found.openings;
+    if (found.all.empty()) return;
+    refined.centre = middle_of(found.all);
+    std::vector<Contact> contacts;
+    std::vector<Contact> others;
+    for (const Contact& contact : found.all)
+      (contact.source_plane >= 0 ? contacts : others).push_back(contact);
     refined.matched_tiles = static_cast<int>(contacts.size());
-    if (contacts.empty()) return;
-    refined.centre = middle_of(contacts);
+    add_openings(others, refined);
+    if (!contacts.empty()) add_planes(contacts, refined);
+  }
+
+  /// What openings and faces of walls hold, each on its own deviation; more where they disagree among
+  /// themselves.
+  static void add_openings(const std::vector<Contact>& contacts, RefinedPose& refined) {
+    double squares = 0.0;
+    for (const Contact& contact : contacts)
+      squares += std::pow(std::min(3.0, std::abs(contact.residual_m) / contact.sigma_m), 2);
+    const double factor =
+        std::max(1.0, squares / std::max<double>(1.0, static_cast<double>(contacts.size()) - 3.0));
+    for (const Contact& contact : contacts) {
+      const Vector6d row = row_of(contact, refined.centre);
+      refined.information += row * row.transpose() / (factor * contact.sigma_m * contact.sigma_m);
+      refined.geometry_m2 += contact.area_m2 * row * row.transpose();
+    }
+  }
+
+  /// What the tiles of matched planes hold.
+  void add_planes(const std::vector<Contact>& contacts, RefinedPose& refined) const {
     double sum = 0.0;
     double weights = 0.0;
     std::map<std::pair<int, int>, PairSums> pairs;

@@ -13,6 +13,7 @@
 #include "limen/base/error.h"
 #include "limen/base/parallel.h"
 #include "limen/register/prepare_scan.h"
+#include "limen/register/propose.h"
 
 namespace limen {
 namespace {
@@ -22,9 +23,24 @@ constexpr std::size_t kMany = 6000;      // poses that get a first look
 constexpr std::size_t kGlance = 100;     // samples asked of each scan when there are more
 constexpr int kSettleSteps = 16;         // either way along a shift that the planes leave open
 constexpr double kSettleStepM = 0.02;
-constexpr double kSlideStepM = 0.4;
 constexpr std::size_t kPolished = 4;       // poses refined on every sample
 constexpr std::size_t kSecondLook = 4000;  // and when hundreds are
+
+/// A pose between the upright frames, told between the scans' own.
+JudgedPose in_own_frames(const JudgedPose& upright, const PreparedScan& source, const PreparedScan& target) {
+  const Matrix3d back = target.upright_from_scan.transpose();
+  JudgedPose own = upright;
+  RefinedPose& pose = own.refined;
+  pose.target_from_source = {back * pose.target_from_source.rotation * source.upright_from_scan,
+                             back * pose.target_from_source.translation};
+  pose.centre = back * pose.centre;
+  Matrix6d both = Matrix6d::Zero();
+  both.topLeftCorner<3, 3>() = back;
+  both.bottomRightCorner<3, 3>() = back;
+  pose.information = both * pose.information * both.transpose();
+  pose.geometry_m2 = both * pose.geometry_m2 * both.transpose();
+  return own;
+}
 
 /// Names and times the stages of one registration.
 class StageClock {
@@ -80,10 +96,19 @@ ScoreOptions fine_score(const ScanView& source, const ScanView& target) {
   return fine;
 }
 
+/// What the method refines on.
+RefineOptions refine_options(const RegisterOptions& options) {
+  RefineOptions refine = options.refine;
+  refine.planes = refine.planes && options.method != Method::openings;
+  refine.openings = refine.openings && options.method != Method::polygons;
+  if (options.wall_thickness_m > 0) refine.wall_thickness_m = options.wall_thickness_m;
+  return refine;
+}
+
 std::vector<JudgedPose> refine_all(const std::vector<PoseCandidate>& candidates, const ScanView& source,
                                    const ScanView& target, const RegisterOptions& options) {
   const ScoreOptions fine = fine_score(source, target);
-  RefineOptions quick = options.refine;
+  RefineOptions quick = refine_options(options);
   quick.samples = kSecondLook;
   std::vector<JudgedPose> judged(candidates.size());
   parallel_for(candidates.size(), 1, [&](std::size_t begin, std::size_t end) {
@@ -119,52 +144,9 @@ PoseSigma sigma_of(const RefinedPose& pose, const Scan& target) {
   return sigma;
 }
 
-/// The planes seen through openings, alone.
-Features interior_only(const Features& features) {
-  Features part;
-  std::copy_if(features.planes.begin(), features.planes.end(), std::back_inserter(part.planes),
-               [](const PlanarPolygon& plane) { return plane.interior; });
-  return part;
-}
-
-/// The features that poses are proposed from where a scan looks into a building from outside: its interior
-/// planes alone, for the large surfaces of the street would crowd out the few that both scans share
-/// (2021, 3.1).
-struct InsidePair {
-  Features source;
-  Features target;
-  bool differs = false;  ///< from the pair of whole scans
-};
-
-InsidePair inside_pair(const Features& source, const Features& target) {
-  InsidePair pair{interior_only(source), interior_only(target), false};
-  pair.differs = !pair.source.planes.empty() || !pair.target.planes.empty();
-  if (pair.source.planes.empty()) pair.source.planes = source.planes;
-  if (pair.target.planes.empty()) pair.target.planes = target.planes;
-  return pair;
-}
-
-/// Poses from all planes, and from the interior ones.
-std::vector<PoseCandidate> propose(const Features& source, const Features& target,
-                                   const PoseEnumerationOptions& options) {
-  std::vector<PoseCandidate> candidates = enumerate_poses(source, target, options);
-  const InsidePair inside = inside_pair(source, target);
-  if (!inside.differs) return candidates;
-  const std::vector<PoseCandidate> more = enumerate_poses(inside.source, inside.target, options);
-  candidates.insert(candidates.end(), more.begin(), more.end());
-  return candidates;
-}
-
-/// Poses that leave one shift open, for scans that share too few planes.
-std::vector<PoseCandidate> propose_sliding(const Features& source, const Features& target,
-                                           const PoseEnumerationOptions& options) {
-  const InsidePair inside = inside_pair(source, target);
-  return enumerate_sliding_poses(inside.source, inside.target, kSlideStepM, options);
-}
-
 void refine_and_score(JudgedPose& pose, const ScanView& source, const ScanView& target,
                       const RegisterOptions& options) {
-  pose.refined = refine_pose(source, target, pose.refined.target_from_source, options.refine);
+  pose.refined = refine_pose(source, target, pose.refined.target_from_source, refine_options(options));
   pose.score = score_pose(source, target, pose.refined.target_from_source, fine_score(source, target));
 }
 
@@ -212,12 +194,13 @@ enum class Proposal { held, sliding };
 std::vector<JudgedPose> attempt(const PreparedScan& source, const PreparedScan& target, bool gravity_known,
                                 Proposal proposal, const RegisterOptions& options, StageClock& clock) {
   clock.begin("hypotheses");
-  PoseEnumerationOptions enumerate = options.enumerate;
-  enumerate.gravity_known = gravity_known;
+  ProposalOptions proposing{options.method, options.enumerate, options.wall_thickness_m};
+  proposing.planes.gravity_known = gravity_known;
   const Features& from = source.extracted.features;
   const Features& to = target.extracted.features;
-  std::vector<PoseCandidate> candidates =
-      proposal == Proposal::held ? propose(from, to, enumerate) : propose_sliding(from, to, enumerate);
+  std::vector<PoseCandidate> candidates = proposal == Proposal::held
+                                              ? propose_poses(from, to, proposing)
+                                              : propose_sliding_poses(from, to, proposing);
   clock.end();
   clock.begin("scoring");
   const auto refined = static_cast<std::size_t>(options.refined_poses);
@@ -246,6 +229,8 @@ void RegisterOptions::check() const {
   enumerate.check();
   refine.check();
   verdict.check();
+  if (!(wall_thickness_m >= 0 && wall_thickness_m < 5))
+    throw_bad_option("wall_thickness_m", wall_thickness_m, "within [0, 5)");
   if (refined_poses < 1) throw_bad_option("refined_poses", refined_poses, "1 or more");
   if (alternatives < 0) throw_bad_option("alternatives", alternatives, "0 or more");
 }
@@ -258,14 +243,13 @@ RegistrationResult register_scans(const Scan& source, const Scan& target, const 
   RegistrationResult result;
   StageClock clock(result.stages, monitor);
   clock.begin("source features");
-  const PreparedScan from = prepare_scan(source, options.extract, monitor);
+  const PreparedScan from = prepare_scan(source, options.extract, options.gravity, monitor);
   clock.end();
   clock.begin("target features");
-  const PreparedScan to = prepare_scan(target, options.extract, monitor);
+  const PreparedScan to = prepare_scan(target, options.extract, options.gravity, monitor);
   clock.end();
 
-  const bool level = options.gravity == Gravity::up ||
-                     (options.gravity == Gravity::automatic && from.looks_level && to.looks_level);
+  const bool level = from.upright && to.upright;
   std::vector<JudgedPose> poses = attempt(from, to, level, Proposal::held, options, clock);
   const ContrastFunction contrast = [&](std::size_t first, std::size_t second) {
     return contrast_poses(from.view(), to.view(), poses[first].refined.target_from_source,
@@ -277,7 +261,7 @@ RegistrationResult register_scans(const Scan& source, const Scan& target, const 
     poses.insert(poses.end(), more.begin(), more.end());
     verdict = judge(poses, contrast, options.verdict);
   };
-  if (verdict.outcome == Outcome::no_match && level && options.gravity == Gravity::automatic) {
+  if (verdict.outcome == Outcome::no_match && level && options.gravity != Gravity::up) {
     try_again(false, Proposal::held);
   }
   if (verdict.outcome == Outcome::no_match && level) try_again(true, Proposal::sliding);
@@ -285,15 +269,18 @@ RegistrationResult register_scans(const Scan& source, const Scan& target, const 
   result.outcome = verdict.outcome;
   result.reason = verdict.reason;
   result.unobserved = verdict.unobserved;
+  for (UnobservedFreedom& freedom : result.unobserved)
+    freedom.direction = to.upright_from_scan.transpose() * freedom.direction;
   if (verdict.ranking.empty()) return result;
-  const JudgedPose& best = poses[verdict.ranking.front()];
+  const JudgedPose best = in_own_frames(poses[verdict.ranking.front()], from, to);
   result.best = to_hypothesis(best, source, target);
   result.sigma = sigma_of(best.refined, target);
   result.matches = best.refined.matches;
   for (std::size_t k = 1; k < verdict.ranking.size() &&
                           result.alternatives.size() < static_cast<std::size_t>(options.alternatives);
        ++k) {
-    result.alternatives.push_back(to_hypothesis(poses[verdict.ranking[k]], source, target));
+    result.alternatives.push_back(
+        to_hypothesis(in_own_frames(poses[verdict.ranking[k]], from, to), source, target));
   }
   return result;
 }

@@ -8,24 +8,21 @@
 #include "limen/extract/extract_features.h"
 #include "limen/match/enumerate_poses.h"
 #include "limen/model/result.h"
+#include "limen/register/prepare_scan.h"
+#include "limen/register/propose.h"
 #include "limen/register/refine_pose.h"
 #include "limen/register/verdict.h"
 
 namespace limen {
-
-/// What is known of the vertical.
-enum class Gravity {
-  automatic,  ///< level where the planes of both scans say so, else unknown
-  up,         ///< both z axes point up
-  unknown     ///< any orientation
-};
 
 /// Feature options for registration: small planes too, for they may hold the one shift that large ones leave
 /// open.
 ExtractOptions features_for_registration();
 
 struct RegisterOptions {
+  Method method = Method::automatic;
   Gravity gravity = Gravity::automatic;
+  double wall_thickness_m = 0.0;  ///< of the outer walls, as the user knows it; 0: not known
   std::uint64_t seed = 1;
   ExtractOptions extract = features_for_registration();
   PoseEnumerationOptions enumerate;
@@ -37,8 +34,8 @@ struct RegisterOptions {
   void check() const;
 };
 
-/// Registers two scans by planar polygons (2021), for any starting pose: the one-call door.
-/// Poses are between the scans' world coordinates: x_target = target_from_source * x_source.
+/// Registers two scans by planar polygons (2021), openings (2022) or both (2023), for any starting pose: the
+/// one-call door. Poses are between the scans' world coordinates: x_target = target_from_source * x_source.
 RegistrationResult register_scans(const Scan& source, const Scan& target, const RegisterOptions& options = {},
                                   Monitor& monitor = silent_monitor());
 

@@ -3,6 +3,9 @@
 #include "limen/register/score_pose.h"
 
 #include <cmath>
+#include <vector>
+
+#include "limen/register/match_openings.h"
 
 namespace limen {
 namespace {
@@ -58,8 +61,22 @@ PoseScore one_way(const ScanView& scan, const ScanView& judge, const Rigid3& jud
     if (answer.sight.kind != SightKind::unseen) score.tested_m2 += answer.area_m2;
   }
   const auto factor = static_cast<double>(stride);
-  return {factor * score.agreeing_m2, factor * score.planar_m2, factor * score.contradicted_m2,
+  return {factor * score.agreeing_m2, factor * score.planar_m2, 0.0, factor * score.contradicted_m2,
           factor * score.tested_m2};
+}
+
+/// The area of each source opening that meets one of the target, clipped as surface is.
+std::vector<double> opening_gains(const ScanView& source, const ScanView& target, const Rigid3& pose,
+                                  const ScoreOptions& options) {
+  std::vector<double> gains(source.features->openings.size(), 0.0);
+  if (gains.empty() || target.features->openings.empty()) return gains;
+  OpeningMatchOptions matching;
+  matching.gate_m = options.opening_m;
+  for (const OpeningMatch& match : match_openings(*source.features, *target.features, pose, matching)) {
+    const double off = std::hypot(match.shift_across_m, match.shift_up_m) / options.opening_m;
+    gains[static_cast<std::size_t>(match.source)] = match.trust * match.area_m2 * (1.0 - off * off);
+  }
+  return gains;
 }
 
 void add_contrast(const ScanView& scan, const ScanView& judge, const Rigid3& first, const Rigid3& second,
@@ -87,6 +104,9 @@ PoseScore score_pose(const ScanView& source, const ScanView& target, const Rigid
   both.planar_m2 = 0.5 * (forth.planar_m2 + back.planar_m2);
   both.contradicted_m2 = 0.5 * (forth.contradicted_m2 + back.contradicted_m2);
   both.tested_m2 = 0.5 * (forth.tested_m2 + back.tested_m2);
+  for (const double gain : opening_gains(source, target, target_from_source, options))
+    both.opening_m2 += gain;
+  both.agreeing_m2 += both.opening_m2;
   return both;
 }
 
@@ -95,6 +115,12 @@ PoseContrast contrast_poses(const ScanView& source, const ScanView& target, cons
   PoseContrast contrast;
   add_contrast(source, target, first, second, options, contrast);
   add_contrast(target, source, inverse(first), inverse(second), options, contrast);
+  const std::vector<double> in_first = opening_gains(source, target, first, options);
+  const std::vector<double> in_second = opening_gains(source, target, second, options);
+  for (std::size_t i = 0; i < in_first.size(); ++i) {
+    const double lead = in_first[i] - in_second[i];
+    (lead > 0 ? contrast.for_first_m2 : contrast.for_second_m2) += std::abs(lead);
+  }
   return contrast;
 }
 

@@ -18,6 +18,7 @@ struct ScanView {
 struct ScoreOptions {
   double surface_m = 0.06;  ///< surfaces nearer than this agree
   double free_m = 0.10;     ///< matter this far inside seen free space is contradicted
+  double opening_m = 0.25;  ///< openings nearer than this within their wall agree
   std::size_t samples = 0;  ///< asked of each scan, about; 0: all
 };
 
@@ -25,10 +26,11 @@ inline constexpr double kContradictionWeight = 4.0;
 
 /// How well a pose explains both scans, asked both ways and averaged: m^2 of each scan's surface that the
 /// other confirms (clipped, weighted 1 - d^2 / t^2: 2021, eq. 9-10 over the seen surface itself), and m^2
-/// standing where the other's rays passed free.
+/// standing where the other's rays passed free. An opening that both scans see counts with its area.
 struct PoseScore {
   double agreeing_m2 = 0.0;
-  double planar_m2 = 0.0;  ///< of agreeing_m2: on planes
+  double planar_m2 = 0.0;   ///< of agreeing_m2: on planes
+  double opening_m2 = 0.0;  ///< of agreeing_m2: openings seen from both sides
   double contradicted_m2 = 0.0;
   double tested_m2 = 0.0;  ///< surface that the other scan could have judged
 

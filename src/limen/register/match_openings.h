@@ -1,0 +1,46 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "limen/model/features.h"
+
+namespace limen {
+
+/// Two rectangles taken for one opening under a pose, and how far the source has to move within the wall.
+///
+/// The wall's normal is left out: seen from its two sides the rectangles lie a wall's thickness apart
+/// (2022, 3.1; the bias named there). An opening may be wider inside than outside: what left and right edge
+/// say in common is the shift, what they say against one another is the splay and says nothing of the pose.
+struct OpeningMatch {
+  int source = -1;  ///< index into the source's openings
+  int target = -1;
+  Vector3d at = Vector3d::Zero();       ///< middle of the target's rectangle, target frame
+  Vector3d across = Vector3d::UnitX();  ///< unit vectors in the target's wall
+  Vector3d up = Vector3d::UnitZ();
+  double shift_across_m = 0.0;
+  double shift_up_m = 0.0;
+  double sigma_across_m = 1.0;
+  double sigma_up_m = 1.0;
+  double area_m2 = 0.0;   ///< of the smaller rectangle
+  double trust = 1.0;     ///< in (0, 1]: less for openings that were not seen through
+  double gap_m = 0.0;     ///< of the source's rectangle behind the target's wall plane
+  bool opposite = false;  ///< seen from the two sides of the wall
+};
+
+struct OpeningMatchOptions {
+  double gate_m = 0.25;  ///< middles farther apart within the wall are no match
+  double max_size_difference_m = 0.35;
+  double min_gap_m = 0.04;  ///< of the two faces of a wall
+  double max_gap_m = 1.3;
+  double max_same_face_m = 0.08;  ///< of rectangles seen from the same side
+  double max_angle_rad = 0.1;     ///< between the walls
+};
+
+/// One-to-one matches, nearest first. `target_from_source`: local frames.
+std::vector<OpeningMatch> match_openings(const Features& source, const Features& target,
+                                         const Rigid3& target_from_source,
+                                         const OpeningMatchOptions& options = {});
+
+}  // namespace limen

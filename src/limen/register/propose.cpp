@@ -1,0 +1,81 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/register/propose.h"
+
+#include <algorithm>
+#include <iterator>
+
+namespace limen {
+namespace {
+
+constexpr double kSlideStepM = 0.4;
+
+/// The planes seen through openings alone, or all others.
+Features part_of(const Features& features, bool seen_through) {
+  Features part;
+  std::copy_if(features.planes.begin(), features.planes.end(), std::back_inserter(part.planes),
+               [seen_through](const PlanarPolygon& plane) { return plane.interior == seen_through; });
+  return part;
+}
+
+void append(std::vector<PoseCandidate>& all, const std::vector<PoseCandidate>& more) {
+  all.insert(all.end(), more.begin(), more.end());
+}
+
+/// The features that poses are proposed from where a scan looks through openings: what the one sees through
+/// them against what stands around the other, for the large surfaces of either side would crowd out the few
+/// that both share (2021, 3.1; 5 for what a room sees of the street).
+struct ThroughPair {
+  Features source;
+  Features target;
+};
+
+std::vector<ThroughPair> through_pairs(const Features& source, const Features& target) {
+  const Features source_through = part_of(source, true);
+  const Features target_through = part_of(target, true);
+  std::vector<ThroughPair> pairs;
+  if (!target_through.planes.empty()) pairs.push_back({part_of(source, false), target_through});
+  if (!source_through.planes.empty()) pairs.push_back({source_through, part_of(target, false)});
+  return pairs;
+}
+
+}  // namespace
+
+const char* to_string(Method method) {
+  switch (method) {
+    case Method::automatic:
+      return "auto";
+    case Method::polygons:
+      return "polygons";
+    case Method::openings:
+      return "openings";
+    case Method::hybrid:
+      return "hybrid";
+    case Method::segments:
+      return "segments";
+  }
+  return "auto";
+}
+
+std::vector<PoseCandidate> propose_poses(const Features& source, const Features& target,
+                                         const ProposalOptions& options) {
+  std::vector<PoseCandidate> all;
+  if (options.method == Method::automatic || options.method == Method::polygons) {
+    append(all, enumerate_poses(source, target, options.planes));
+    for (const ThroughPair& pair : through_pairs(source, target))
+      append(all, enumerate_poses(pair.source, pair.target, options.planes));
+  }
+  return all;
+}
+
+std::vector<PoseCandidate> propose_sliding_poses(const Features& source, const Features& target,
+                                                 const ProposalOptions& options) {
+  const std::vector<ThroughPair> pairs = through_pairs(source, target);
+  if (pairs.empty()) return enumerate_sliding_poses(source, target, kSlideStepM, options.planes);
+  std::vector<PoseCandidate> all;
+  for (const ThroughPair& pair : pairs)
+    append(all, enumerate_sliding_poses(pair.source, pair.target, kSlideStepM, options.planes));
+  return all;
+}
+
+}  // namespace limen
