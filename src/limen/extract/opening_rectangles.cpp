@@ -1,0 +1,227 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/extract/opening_rectangles.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace limen {
+namespace {
+
+constexpr double kNeck_m = 0.06;     // wall seen to reach this far in from both sides divides
+constexpr double kTrimShare = 0.12;  // of a side's length that is left out at either corner
+constexpr double kSearch_m = 0.3;    // how far a side is looked for beyond its region
+constexpr int kRounds = 3;
+constexpr double kSigmaFloor_m = 0.003;  // no side is known better than the points are
+constexpr double kUnbounded_m = 1.0;
+constexpr double kMinSupport_m = 0.08;  // beyond a side within which wall must be seen
+
+/// Where a side lies, and how well it is known.
+struct Separator {
+  double place = 0.0;  ///< outward coordinate
+  double sigma_m = kUnbounded_m;
+  bool found = false;
+};
+
+/// A sample's place across a side, growing outwards.
+struct Mark {
+  double at = 0.0;
+  bool wall = false;
+};
+
+/// The place that parts the open marks inside from the wall outside with the fewest on the wrong side, the
+/// first from inside where several are as good; the search ends where a pier has clearly been met.
+Separator separate(std::vector<Mark> marks, double from, double to) {
+  std::sort(marks.begin(), marks.end(), [](const Mark& a, const Mark& b) { return a.at < b.at; });
+  long open = 0;
+  long walls = 0;
+  for (const Mark& mark : marks) (mark.wall ? walls : open) += 1;
+  if (open == 0) return {};
+  // cost(k): walls among the first k marks (inside) and open ones among the others (outside).
+  const long patience = 4 + open / 4;
+  long cost = open;
+  long best = cost;
+  std::size_t first = 0;
+  std::size_t last = 0;
+  for (std::size_t k = 1; k <= marks.size(); ++k) {
+    cost += marks[k - 1].wall ? 1 : -1;
+    if (cost < best) {
+      best = cost;
+      first = k;
+    }
+    if (cost == best) last = k;
+    if (cost > best + patience) break;
+  }
+  const double low = first == 0 ? from : marks[first - 1].at;
+  if (walls == 0 || last >= marks.size()) return {low, kUnbounded_m, last > 0};
+  const double high = std::min(marks[last].at, to);
+  const double gap = high - low;
+  return {0.5 * (low + high), std::sqrt(gap * gap / 12.0 + kSigmaFloor_m * kSigmaFloor_m), true};
+}
+
+class Fitter {
+ public:
+  Fitter(const WallEvidence& evidence, const OpeningGrid& grid) : evidence_(evidence), grid_(grid) {}
+
+  [[nodiscard]] OpeningRectangle fit(const Box2& region) const {
+    OpeningRectangle rectangle{.box = region};
+    const double spacing_m = grid_.spacing_m(0.5 * (region.low + region.high));
+    const double search_m = std::max(kSearch_m, 4.0 * spacing_m);
+    Box2 around = region;
+    around.low.array() -= 2.0 * search_m;
+    around.high.array() += 2.0 * search_m;
+    const std::vector<std::uint32_t> near = grid_.samples_in(around);
+    for (int round = 0; round < kRounds; ++round) {
+      for (const Side side : kSides) {
+        const Separator found = place_side(rectangle.box, side, search_m, near);
+        if (!found.found) continue;
+        set_place(rectangle.box, side, outward(side) * found.place);
+        rectangle.sigma_m[static_cast<std::size_t>(side)] = found.sigma_m;
+      }
+    }
+    return rectangle;
+  }
+
+ private:
+  [[nodiscard]] Separator place_side(const Box2& box, Side side, double search_m,
+                                     const std::vector<std::uint32_t>& near) const {
+    const Eigen::Index axis = axis_of(side);
+    const Eigen::Index other = 1 - axis;
+    const double length = box.high[other] - box.low[other];
+    const double low = box.low[other] + kTrimShare * length;
+    const double high = box.high[other] - kTrimShare * length;
+    const double size = box.high[axis] - box.low[axis];
+    const double sign = outward(side);
+    const double at = sign * place_of(box, side);
+    const double from = at - std::min(search_m, 0.5 * size);
+    const double to = at + search_m;
+    std::vector<Mark> marks;
+    for (const std::uint32_t i : near) {
+      const WallSample& sample = evidence_.samples[i];
+      if (sample.kind == SampleKind::cover) continue;
+      const Vector2d p(sample.u, sample.v);
+      const double t = sign * p[axis];
+      if (p[other] < low || p[other] > high || t < from || t > to) continue;
+      marks.push_back({t, sample.kind == SampleKind::wall});
+    }
+    return separate(std::move(marks), from, to);
+  }
+
+  const WallEvidence& evidence_;
+  const OpeningGrid& grid_;
+};
+
+/// Part of a side beyond which the first thing seen is wall.
+double bounded_share(const Box2& box, Side side, const OpeningGrid& grid) {
+  const double spacing_m = grid.spacing_m(0.5 * (box.low + box.high));
+  const double support_m = std::max(kMinSupport_m, 3.0 * spacing_m);
+  const int steps = std::max(2, static_cast<int>(std::ceil(support_m / grid.cell_m())));
+  const bool upright = axis_of(side) == 0;
+  const int direction = outward(side) > 0.0 ? 1 : -1;
+  const int first = upright ? grid.row(box.low.y()) : grid.column(box.low.x());
+  const int last = upright ? grid.row(box.high.y()) : grid.column(box.high.x());
+  const int start = upright ? grid.column(place_of(box, side)) : grid.row(place_of(box, side));
+  int walls = 0;
+  for (int k = first; k <= last; ++k) {
+    for (int s = 0; s <= steps; ++s) {
+      const int across = start + direction * s;
+      if ((upright ? grid.at(across, k) : grid.at(k, across)) != OpeningGrid::Cell::wall) continue;
+      ++walls;
+      break;
+    }
+  }
+  return last < first ? 0.0 : static_cast<double>(walls) / (last - first + 1);
+}
+
+bool overlap(const Box2& a, const Box2& b) {
+  const Vector2d common = a.high.cwiseMin(b.high) - a.low.cwiseMax(b.low);
+  if ((common.array() <= 0.0).any()) return false;
+  const Vector2d sa = a.high - a.low;
+  const Vector2d sb = b.high - b.low;
+  return common.prod() > 0.3 * std::min(sa.prod(), sb.prod());
+}
+
+/// Side by side (or one above the other) with the same ends, a bar apart.
+bool joined_by_bar(const Box2& a, const Box2& b, Eigen::Index axis, double bar_m) {
+  constexpr double kSameEnd_m = 0.08;
+  const Eigen::Index other = 1 - axis;
+  if (std::abs(a.low[other] - b.low[other]) > kSameEnd_m ||
+      std::abs(a.high[other] - b.high[other]) > kSameEnd_m)
+    return false;
+  const double gap = std::max(a.low[axis], b.low[axis]) - std::min(a.high[axis], b.high[axis]);
+  return gap <= bar_m && gap > -0.5 * bar_m;
+}
+
+/// Boxes that overlap or lie a bar apart become one, until none do.
+std::vector<Box2> merged_boxes(std::vector<Box2> boxes, double bar_m) {
+  for (bool changed = true; changed;) {
+    changed = false;
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+      for (std::size_t j = boxes.size(); j-- > i + 1;) {
+        if (!overlap(boxes[i], boxes[j]) && !joined_by_bar(boxes[i], boxes[j], 0, bar_m) &&
+            !joined_by_bar(boxes[i], boxes[j], 1, bar_m))
+          continue;
+        boxes[i].add(boxes[j].low);
+        boxes[i].add(boxes[j].high);
+        boxes.erase(boxes.begin() + static_cast<std::ptrdiff_t>(j));
+        changed = true;
+      }
+    }
+  }
+  return boxes;
+}
+
+}  // namespace
+
+OpeningRectangle measured(OpeningRectangle rectangle, const WallEvidence& evidence, const OpeningGrid& grid,
+                          const OpeningOptions& options) {
+  const Box2& box = rectangle.box;
+  rectangle.evidence = 0;
+  rectangle.through = 0;
+  for (const std::uint32_t i : grid.samples_in(box)) {
+    const WallSample& sample = evidence.samples[i];
+    if (sample.kind != SampleKind::open) continue;
+    ++rectangle.evidence;
+    if (sample.depth_m > options.through_m) ++rectangle.through;
+  }
+  double open = 0.0;
+  double wall = 0.0;
+  double all = 0.0;
+  for (int r = grid.row(box.low.y() + 0.5 * grid.cell_m()); r <= grid.row(box.high.y() - 0.5 * grid.cell_m());
+       ++r) {
+    for (int c = grid.column(box.low.x() + 0.5 * grid.cell_m());
+         c <= grid.column(box.high.x() - 0.5 * grid.cell_m()); ++c) {
+      const OpeningGrid::Cell cell = grid.at(c, r);
+      open += cell == OpeningGrid::Cell::open ? 1.0 : 0.0;
+      wall += cell == OpeningGrid::Cell::wall ? 1.0 : 0.0;
+      all += 1.0;
+    }
+  }
+  rectangle.fill = open / std::max(1.0, open + wall);
+  rectangle.known = open / std::max(1.0, all);
+  for (const Side side : kSides) {
+    const auto k = static_cast<std::size_t>(side);
+    rectangle.bounded[k] = bounded_share(box, side, grid);
+    if (rectangle.bounded[k] < options.min_bounded) rectangle.sigma_m[k] = kUnbounded_m;
+  }
+  return rectangle;
+}
+
+std::vector<OpeningRectangle> opening_rectangles(const WallEvidence& evidence, const OpeningGrid& grid,
+                                                 const OpeningOptions& options) {
+  const Fitter fitter(evidence, grid);
+  std::vector<Box2> boxes;
+  for (const Box2& region : grid.regions(OpeningGrid::Cell::open, kNeck_m)) {
+    const Vector2d size = region.high - region.low;
+    if (size.x() > 1.5 * options.max_width_m || size.y() > 1.5 * options.max_height_m) continue;
+    boxes.push_back(fitter.fit(region).box);
+  }
+  std::vector<OpeningRectangle> rectangles;
+  for (const Box2& box : merged_boxes(std::move(boxes), options.merge_bar_m)) {
+    rectangles.push_back(measured(fitter.fit(box), evidence, grid, options));
+  }
+  return rectangles;
+}
+
+}  // namespace limen

@@ -1,0 +1,137 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Openings of walls: Djahel, Vallet, Monasse, "Detecting openings for indoor/outdoor registration", 2022,
+// sections 2.2 (evidence by ray tracing) and 2.3 (components and their rectangles).
+//
+// Departures from the printed text:
+// - every wall that a ray meets from its seen side is told, not only the first one; the depth behind the wall
+//   that makes a crossing is measured along the wall's normal (`min_depth_m`), not along the ray;
+// - evidence against an opening counts as much as evidence for it: the wall's own points. Where neither was
+//   seen (trees, cars, wide gaps between scan lines) nothing is said;
+// - components are those of a raster in which each cell says what the nearest ray says, not of a distance
+//   threshold between crossings: the spacing of a mobile scan differs by direction and by height;
+// - the rectangle is upright: one axis is the vertical projected into the wall. Its sides are where they best
+//   part crossings from wall, not at the extreme crossings; each comes with a standard deviation.
+#include "limen/extract/openings.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "limen/base/error.h"
+#include "limen/base/parallel.h"
+#include "limen/extract/opening_evidence.h"
+#include "limen/extract/opening_grid.h"
+#include "limen/extract/opening_rectangles.h"
+
+namespace limen {
+namespace {
+
+constexpr double kMinKnown = 0.25;        // part of a rectangle in which something was seen behind the wall
+constexpr std::size_t kMinEvidence = 12;  // rays
+constexpr double kThroughShare = 0.05;
+constexpr double kFoot_m = 0.15;  // a door's lower end is no higher above the foot of the wall beside it
+
+/// The lowest wall beside a rectangle, within an opening's breadth; high where there is none.
+double foot_beside(const WallEvidence& evidence, const OpeningGrid& grid, const Box2& box) {
+  constexpr double kBeside_m = 0.6;
+  Box2 beside = box;
+  beside.low -= Vector2d(kBeside_m, 2.0 * kFoot_m);
+  beside.high.x() += kBeside_m;
+  beside.high.y() = box.low.y() + 0.5;
+  std::vector<double> heights;
+  for (const std::uint32_t i : grid.samples_in(beside)) {
+    const WallSample& sample = evidence.samples[i];
+    if (sample.kind == SampleKind::wall && (sample.u < box.low.x() || sample.u > box.high.x()))
+      heights.push_back(sample.v);
+  }
+  constexpr std::size_t kEnough = 5;
+  if (heights.size() < kEnough) return 1e9;
+  std::nth_element(heights.begin(), heights.begin() + kEnough - 1, heights.end());
+  return heights[kEnough - 1];
+}
+
+bool acceptable(const OpeningRectangle& rectangle, const WallEvidence& evidence, const OpeningGrid& grid,
+                const OpeningOptions& options) {
+  const Vector2d size = rectangle.box.high - rectangle.box.low;
+  if (size.x() < options.min_width_m || size.x() > options.max_width_m) return false;
+  if (size.y() < options.min_height_m || size.y() > options.max_height_m) return false;
+  if (rectangle.evidence < kMinEvidence || rectangle.fill < options.min_fill) return false;
+  if (rectangle.known < kMinKnown) return false;
+  int bounded = 0;
+  for (const double share : rectangle.bounded) bounded += share >= options.min_bounded ? 1 : 0;
+  if (rectangle.bounded[static_cast<std::size_t>(Side::bottom)] < options.min_bounded &&
+      std::abs(rectangle.box.low.y() - foot_beside(evidence, grid, rectangle.box)) < kFoot_m)
+    ++bounded;
+  return bounded >= 3;
+}
+
+Opening make_opening(const OpeningRectangle& rectangle, const OpeningWall& wall,
+                     const OpeningOptions& /*options*/) {
+  Opening opening;
+  const Box2& b = rectangle.box;
+  opening.corners[0] = wall.frame.to_space(b.low);
+  opening.corners[1] = wall.frame.to_space({b.high.x(), b.low.y()});
+  opening.corners[2] = wall.frame.to_space(b.high);
+  opening.corners[3] = wall.frame.to_space({b.low.x(), b.high.y()});
+  opening.facade = wall.base;
+  opening.evidence = rectangle.evidence;
+  const double share = static_cast<double>(rectangle.through) /
+                       static_cast<double>(std::max<std::size_t>(1, rectangle.evidence));
+  opening.view = share >= kThroughShare ? OpeningView::through : OpeningView::recess;
+  for (std::size_t k = 0; k < 4; ++k) opening.edge_sigma_m[k] = std::min(1.0, rectangle.sigma_m[k]);
+  return opening;
+}
+
+std::vector<Opening> openings_of(const WallEvidence& evidence, const OpeningOptions& options) {
+  const bool any = std::any_of(evidence.samples.begin(), evidence.samples.end(),
+                               [](const WallSample& sample) { return sample.kind == SampleKind::open; });
+  if (!any) return {};
+  const OpeningGrid grid(evidence);
+  std::vector<Opening> openings;
+  for (const OpeningRectangle& rectangle : opening_rectangles(evidence, grid, options)) {
+    if (!acceptable(rectangle, evidence, grid, options)) continue;
+    openings.push_back(make_opening(rectangle, evidence.wall, options));
+  }
+  return openings;
+}
+
+}  // namespace
+
+void OpeningOptions::check() const {
+  walls.check();
+  if (!(same_wall_m > 0.0)) throw_bad_option("same_wall_m", same_wall_m, "greater than 0");
+  if (!(min_depth_m > 0.0)) throw_bad_option("min_depth_m", min_depth_m, "greater than 0");
+  if (!(through_m > min_depth_m)) throw_bad_option("through_m", through_m, "greater than min_depth_m");
+  if (!(min_width_m > 0.0)) throw_bad_option("min_width_m", min_width_m, "greater than 0");
+  if (!(min_height_m > 0.0)) throw_bad_option("min_height_m", min_height_m, "greater than 0");
+  if (!(max_width_m > min_width_m)) throw_bad_option("max_width_m", max_width_m, "greater than min_width_m");
+  if (!(max_height_m > min_height_m))
+    throw_bad_option("max_height_m", max_height_m, "greater than min_height_m");
+  if (!(min_fill > 0.0 && min_fill <= 1.0)) throw_bad_option("min_fill", min_fill, "in (0, 1]");
+  if (!(min_bounded > 0.0 && min_bounded <= 1.0)) throw_bad_option("min_bounded", min_bounded, "in (0, 1]");
+  if (!(merge_bar_m >= 0.0)) throw_bad_option("merge_bar_m", merge_bar_m, "at least 0");
+  if (!(max_niche_m >= 0.0)) throw_bad_option("max_niche_m", max_niche_m, "at least 0");
+  if (!(max_curtain_gap_m >= 0.0)) throw_bad_option("max_curtain_gap_m", max_curtain_gap_m, "at least 0");
+}
+
+std::vector<Opening> find_openings(const Scan& scan, const ExtractedFeatures& extracted, const Vector3d& up,
+                                   const OpeningOptions& options, Monitor& monitor) {
+  options.check();
+  if (scan.size() == 0) return {};
+  if (!scan.centre_known() && !options.centre) {
+    throw Error("the optical centre is not known", scan.name, "give it with --origin, or a file that has it");
+  }
+  const std::vector<OpeningWall> walls = opening_walls(scan, extracted, up, options);
+  const std::vector<WallEvidence> evidence = opening_evidence(scan, extracted, walls, options, monitor);
+  std::vector<std::vector<Opening>> found(evidence.size());
+  parallel_for(evidence.size(), 1, [&](std::size_t begin, std::size_t end) {
+    monitor.throw_if_cancelled();
+    for (std::size_t w = begin; w < end; ++w) found[w] = openings_of(evidence[w], options);
+  });
+  std::vector<Opening> openings;
+  for (const std::vector<Opening>& part : found) openings.insert(openings.end(), part.begin(), part.end());
+  return openings;
+}
+
+}  // namespace limen
