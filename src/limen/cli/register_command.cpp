@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <string>
 
@@ -31,11 +32,18 @@ struct RegisterCommandOptions {
   std::string origin;
   std::string source_origin;
   std::string target_origin;
+  double wall_thickness_m = 0.0;
 };
 
-void check_method(const std::string& method) {
-  if (method == "auto" || method == "polygons") return;
-  throw Error(fmt::format("--method {} is not available yet", method), "", "use polygons, or auto");
+Method method_of(const std::string& name) {
+  static const std::map<std::string, Method> methods = {{"auto", Method::automatic},
+                                                        {"polygons", Method::polygons},
+                                                        {"openings", Method::openings},
+                                                        {"hybrid", Method::hybrid}};
+  const auto found = methods.find(name);
+  if (found != methods.end()) return found->second;
+  throw Error(fmt::format("--method {} is not available yet", name), "",
+              "use polygons, openings, hybrid or auto");
 }
 
 Gravity gravity_of(const std::string& name) {
@@ -55,6 +63,7 @@ OptionList reported(const RegisterCommandOptions& options) {
   if (!options.origin.empty()) list.emplace_back("origin", options.origin);
   if (!options.source_origin.empty()) list.emplace_back("source_origin", options.source_origin);
   if (!options.target_origin.empty()) list.emplace_back("target_origin", options.target_origin);
+  if (options.wall_thickness_m > 0) list.emplace_back("wall_thickness_m", options.wall_thickness_m);
   return list;
 }
 
@@ -69,6 +78,8 @@ RegistrationReport register_files(const RegisterCommandOptions& options, const S
 
   RegisterOptions registering;
   registering.gravity = gravity_of(options.gravity);
+  registering.method = method_of(options.method);
+  registering.wall_thickness_m = options.wall_thickness_m;
   registering.seed = session.common.seed;
   RegistrationReport report;
   report.result = register_scans(source, target, registering, *session.monitor);
@@ -107,6 +118,11 @@ std::string pose_summary(const RegistrationReport& report) {
   for (const UnobservedFreedom& freedom : report.result.unobserved) {
     text += fmt::format("not fixed   {}\n", freedom.name);
   }
+  for (const MeasuredThickness& wall : report.result.thickness) {
+    if (wall.sigma_m > 0.1) continue;
+    text += fmt::format("wall        {:.3f} m thick, sigma {:.1f} mm, by {} opening{}\n", wall.value_m,
+                        1e3 * wall.sigma_m, wall.openings, wall.openings == 1 ? "" : "s");
+  }
   if (!report.result.alternatives.empty()) {
     text +=
         fmt::format("others      {} different poses, see alternatives\n", report.result.alternatives.size());
@@ -136,7 +152,7 @@ int status_of(Outcome outcome) {
 }
 
 int run(const RegisterCommandOptions& options, const Session& session) {
-  check_method(options.method);
+  method_of(options.method);
   const OutputFolder folder(options.folder);
   const RegistrationReport report = register_files(options, session);
   const std::string json = result_json(report);
@@ -170,8 +186,12 @@ void add_register_command(CLI::App& app, Session& session) {
   command->add_option("-o,--output", options->folder, "Folder for result.json and transform.txt")
       ->required()
       ->type_name("DIR");
-  command->add_option("--method", options->method, "What to match: auto (default) or polygons")
+  command
+      ->add_option("--method", options->method,
+                   "What to match: auto (default), polygons, openings, or hybrid (both)")
       ->check(CLI::IsMember({"auto", "polygons", "openings", "hybrid", "segments"}));
+  add_length_option(*command, "--wall-thickness-m,--wall-thickness", options->wall_thickness_m,
+                    "Thickness of the outer walls where it is known; else it is measured, or named as open");
   add_gravity_option(*command, options->gravity, true);
   add_origin_options(*command, *options);
 }

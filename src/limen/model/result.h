@@ -34,6 +34,7 @@ struct Hypothesis {
   double contradicted_m2 = 0.0;  ///< surface of one scan standing where the other's rays passed free
   double rms_m = 0.0;            ///< point-to-plane residual over the agreeing surface
   int matched_planes = 0;
+  int matched_openings = 0;
 };
 
 /// A pair of planes that agree under the final pose.
@@ -43,6 +44,23 @@ struct PlaneMatch {
   double distance_m = 0.0;  ///< signed, along the target's normal, at the middle of the overlap
   double angle_rad = 0.0;
   double overlap_m2 = 0.0;
+};
+
+/// A pair of openings that agree under the final pose.
+struct MatchedOpenings {
+  int source = -1;              ///< index into the source's openings
+  int target = -1;              ///< index into the target's openings
+  double shift_across_m = 0.0;  ///< of the target's rectangle against the source's, within the wall
+  double shift_up_m = 0.0;
+};
+
+/// The thickness of a wall that one scan saw from inside and the other from outside.
+struct MeasuredThickness {
+  int source_plane = -1;  ///< index into the source's planes
+  int target_plane = -1;
+  int openings = 0;      ///< that show the two planes to be one wall
+  double value_m = 0.0;  ///< distance of the two faces at the openings
+  double sigma_m = 0.0;  ///< one standard deviation; large where nothing fixes the pose along the normal
 };
 
 /// Seconds of one stage of the pipeline.
@@ -66,6 +84,8 @@ struct RegistrationResult {
   std::vector<UnobservedFreedom> unobserved;
   std::vector<Hypothesis> alternatives;  ///< different poses, best first, without `best`
   std::vector<PlaneMatch> matches;
+  std::vector<MatchedOpenings> openings;
+  std::vector<MeasuredThickness> thickness;  ///< of the walls between the scans, most openings first
   std::vector<StageTime> stages;
 };
 

@@ -83,8 +83,7 @@ void look_around(const Scan& scan, const ExtractOptions& options, PreparedScan& 
   } else {
     prepared.space = std::make_unique<VoxelMap>(*seen, features);
   }
-  if (prepared.upright && seen->centre_known())
-    (void)0;
+  if (prepared.upright && seen->centre_known()) (void)0;
 }
 
 }  // namespace

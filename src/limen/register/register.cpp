@@ -12,6 +12,7 @@
 
 #include "limen/base/error.h"
 #include "limen/base/parallel.h"
+#include "limen/register/measure_thickness.h"
 #include "limen/register/prepare_scan.h"
 #include "limen/register/propose.h"
 
@@ -64,6 +65,13 @@ class StageClock {
   const char* name_ = "";
   std::chrono::steady_clock::time_point start_;
 };
+
+std::vector<MatchedOpenings> matched_openings(const RefinedPose& pose) {
+  std::vector<MatchedOpenings> list;
+  for (const OpeningMatch& match : pose.openings)
+    list.push_back({match.source, match.target, match.shift_across_m, match.shift_up_m});
+  return list;
+}
 
 /// The `most` candidates that explain the scans best when about `samples` pieces of each are asked, best
 /// first.
@@ -129,6 +137,7 @@ Hypothesis to_hypothesis(const JudgedPose& pose, const Scan& source, const Scan&
   hypothesis.contradicted_m2 = pose.score.contradicted_m2;
   hypothesis.rms_m = pose.refined.rms_m;
   hypothesis.matched_planes = static_cast<int>(pose.refined.matches.size());
+  hypothesis.matched_openings = static_cast<int>(pose.refined.openings.size());
   return hypothesis;
 }
 
@@ -276,6 +285,9 @@ RegistrationResult register_scans(const Scan& source, const Scan& target, const 
   result.best = to_hypothesis(best, source, target);
   result.sigma = sigma_of(best.refined, target);
   result.matches = best.refined.matches;
+  result.openings = matched_openings(best.refined);
+  result.thickness = measure_thickness(poses[verdict.ranking.front()].refined, from.extracted.features,
+                                       to.extracted.features);
   for (std::size_t k = 1; k < verdict.ranking.size() &&
                           result.alternatives.size() < static_cast<std::size_t>(options.alternatives);
        ++k) {

@@ -37,7 +37,8 @@ Json evidence_json(const Hypothesis& pose) {
           {"agreeing_m2", pose.agreeing_m2},
           {"contradicted_m2", pose.contradicted_m2},
           {"rms_m", pose.rms_m},
-          {"matched_planes", pose.matched_planes}};
+          {"matched_planes", pose.matched_planes},
+          {"matched_openings", pose.matched_openings}};
 }
 
 Json alternatives_json(const std::vector<Hypothesis>& alternatives) {
@@ -57,6 +58,29 @@ Json matches_json(const std::vector<PlaneMatch>& matches) {
                     {"distance_m", match.distance_m},
                     {"angle_rad", match.angle_rad},
                     {"overlap_m2", match.overlap_m2}});
+  }
+  return list;
+}
+
+Json openings_json(const std::vector<MatchedOpenings>& matches) {
+  Json list = Json::array();
+  for (const MatchedOpenings& match : matches) {
+    list.push_back({{"source_opening", match.source},
+                    {"target_opening", match.target},
+                    {"shift_across_m", match.shift_across_m},
+                    {"shift_up_m", match.shift_up_m}});
+  }
+  return list;
+}
+
+Json thickness_json(const std::vector<MeasuredThickness>& walls) {
+  Json list = Json::array();
+  for (const MeasuredThickness& wall : walls) {
+    list.push_back({{"source_plane", wall.source_plane},
+                    {"target_plane", wall.target_plane},
+                    {"openings", wall.openings},
+                    {"thickness_m", wall.value_m},
+                    {"sigma_m", wall.sigma_m}});
   }
   return list;
 }
@@ -128,6 +152,8 @@ std::string result_json(const RegistrationReport& report) {
   json["unobserved"] = unobserved_json(result.unobserved);
   json["alternatives"] = alternatives_json(result.alternatives);
   json["matches"] = matches_json(result.matches);
+  json["matched_openings"] = openings_json(result.openings);
+  json["wall_thickness"] = thickness_json(result.thickness);
   json["inputs"] = {{"source", input_json(report.source)}, {"target", input_json(report.target)}};
   json["options"] = options_json(report.options);
   json["version"] = kVersion;
