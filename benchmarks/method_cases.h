@@ -88,7 +88,6 @@ inline std::vector<PairPlan> plan_pairs(const std::vector<std::string>& kinds, c
         plan.scene.any_rotation = level.any_rotation;
         plan.scene.points_indoor = selection.points_indoor;
         plan.scene.points_outdoor = selection.points_outdoor;
-        if (plan.scene.name == "flat" && plan.scene.points_outdoor == 0) plan.scene.points_outdoor = 800000;
         plans.push_back(plan);
       }
     }

@@ -23,7 +23,7 @@ namespace {
 using namespace limen;           // NOLINT(google-build-using-namespace): a program, not a header
 using namespace limen::methods;  // NOLINT(google-build-using-namespace)
 
-const std::vector<std::string> kKinds = {"museum", "flat"};
+const std::vector<std::string> kKinds = {"museum", "townhouse", "villa"};
 
 /// Sets the method by its name; false where this build does not know it.
 template <typename Options>

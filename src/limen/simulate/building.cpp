@@ -35,7 +35,8 @@ class Builder {
         o_(options),
         random_(random),
         faces_(plan.faces()),
-        holes_(faces_.size()) {
+        holes_(faces_.size()),
+        spandrels_(faces_.size()) {
     building_.plan = plan;
     building_.occupied.resize(plan.rooms.size());
     for (const Building& other : world.buildings)
@@ -47,7 +48,7 @@ class Builder {
     choose_bay_variations();
     add_windows();
     if (o_.interior_doors) add_doors();
-    add_shell(world_.mesh, {plan_, faces_, holes_}, o_.ornament_share, random_);
+    add_shell(world_.mesh, {plan_, faces_, holes_, spandrels_}, o_.ornament_share, random_);
     for (std::size_t room = 0; room < plan_.rooms.size(); ++room)
       if (stairs_rise(plan_, room)) building_.occupied[room].push_back({stairs_area(plan_.rooms[room]), 0.0});
     world_.buildings.push_back(std::move(building_));
@@ -96,10 +97,13 @@ class Builder {
     if (style.blank && !door) return;
     OpeningShape shape;
     shape.kind = door ? OpeningKind::closed_door : OpeningKind::window;
-    shape.width_m = door ? 1.1 : std::min(o_.window_width_m * style.width, plan_.axes[axis].bay_m - 0.5);
-    const double sill = door ? 0.0 : std::max(0.08, o_.sill_m + style.sill);
+    const StoreyLook look = look_of(room.storey);
+    shape.width_m =
+        door ? 1.1 : std::min(o_.window_width_m * style.width * look.width, plan_.axes[axis].bay_m - 0.5);
+    const double sill = door ? 0.0 : std::max(0.08, o_.sill_m + style.sill + look.sill_m);
     const double top_room = room.ceiling_m - room.floor_m - 0.12;
-    shape.height_m = std::min(door ? 2.1 : o_.window_height_m * style.height, top_room - sill - o_.splay_m);
+    shape.height_m =
+        std::min(door ? 2.1 : o_.window_height_m * style.height * look.height, top_room - sill - o_.splay_m);
     u += door ? 0.0 : style.shift;
     // A partition or an end of the façade may stand too near: the window is narrowed, or left out.
     const double margin = o_.splay_m + 0.3;
@@ -107,7 +111,8 @@ class Builder {
     const double right = std::min(u + 0.5 * shape.width_m, pair.end_m - margin);
     if (right - left < 0.5 || shape.height_m < 0.4) return;
     shape.width_m = right - left;
-    shape.splay_m = door ? 0.0 : o_.splay_m;
+    if (!door) set_head(shape, look);
+    shape.splay_m = door || shape.head != HeadForm::rectangular ? 0.0 : o_.splay_m;
     shape.frame_depth_m = std::min(o_.frame_depth_m, pair.thickness_m - 0.08);
     shape.bar_m = o_.bar_m;
     shape.mullions = shape.width_m < 0.7 ? 0 : o_.mullions;
@@ -115,6 +120,22 @@ class Builder {
     if (!door && random_.uniform() < o_.curtain_share)
       shape.cover = random_.uniform() < 0.65 ? Cover::curtain : Cover::blind;
     place(shape, pair, {left, room.floor_m + sill});
+  }
+
+  [[nodiscard]] StoreyLook look_of(int storey) const {
+    if (o_.storeys.empty()) return {};
+    return o_.storeys[std::min(static_cast<std::size_t>(storey), o_.storeys.size() - 1)];
+  }
+
+  /// An arch must leave jambs below it; a round window is as high as it is wide.
+  static void set_head(OpeningShape& shape, const StoreyLook& look) {
+    shape.head = look.head;
+    shape.rise_m = look.rise * shape.width_m;
+    const double rise = look.head == HeadForm::semicircle ? 0.5 * shape.width_m : shape.rise_m;
+    if (look.head == HeadForm::round)
+      shape.height_m = std::min(shape.height_m, shape.width_m);
+    else if (rise + 0.3 > shape.height_m)
+      shape.head = HeadForm::rectangular;
   }
 
   /// Doors: a random spanning tree over the rooms of each storey, corridors first, and some more.
@@ -162,18 +183,24 @@ class Builder {
     shape.thickness_m = pair.thickness_m;
     shape.outer = frame;
     shape.outer.origin = frame.to_space({at.x(), at.y() - outer.low_m});
-    cut(pair.outer, shape.outer_corners());
-    cut(pair.inner, shape.inner_corners());
+    cut(pair.outer, shape.outer_corners(), shape);
+    cut(pair.inner, shape.inner_corners(), shape);
     add_opening_parts(world_.mesh, shape, random_);
     record(shape, pair);
     keep_clear(shape, pair);
   }
 
-  void cut(std::size_t face, const std::array<Vector3d, 4>& corners) {
+  void cut(std::size_t face, const std::array<Vector3d, 4>& corners, const OpeningShape& shape) {
     const PlaneFrame frame = faces_[face].frame();
     const Vector2d p = frame.to_plane(corners[0]);
     const Vector2d q = frame.to_plane(corners[2]);
-    holes_[face].push_back({std::min(p.x(), q.x()), p.y(), std::max(p.x(), q.x()), q.y()});
+    const PanelRect hole{std::min(p.x(), q.x()), p.y(), std::max(p.x(), q.x()), q.y()};
+    holes_[face].push_back(hole);
+    // Curved outlines are the same from both sides.
+    for (PanelTriangle triangle : spandrels(shape.outline(), {shape.width_m, shape.height_m})) {
+      for (Vector2d& x : triangle) x += Vector2d(hole.u0, hole.v0);
+      spandrels_[face].push_back(triangle);
+    }
   }
 
   void record(const OpeningShape& shape, const WallPair& pair) {
@@ -181,6 +208,9 @@ class Builder {
     opening.kind = shape.kind == OpeningKind::window ? "window" : "door";
     opening.outer = shape.outer_corners();
     opening.inner = shape.inner_corners();
+    opening.head = to_string(shape.head);
+    opening.outer_outline = shape.outer_outline();
+    opening.inner_outline = shape.inner_outline();
     opening.normal = shape.outer.u.cross(shape.outer.v);
     opening.thickness_m = shape.thickness_m;
     opening.exterior = faces_[pair.outer].room < 0;
@@ -224,6 +254,7 @@ class Builder {
   RandomStream& random_;
   std::vector<WallFace> faces_;
   std::vector<std::vector<PanelRect>> holes_;
+  std::vector<std::vector<PanelTriangle>> spandrels_;
   std::vector<WallPair> pairs_;
   std::vector<BayStyle> bays_;
   int entrance_axis_ = -1;

@@ -10,6 +10,15 @@
 
 namespace limen {
 
+/// How the windows of one storey differ from FacadeOptions, where storeys are not alike.
+struct StoreyLook {
+  double width = 1.0;   ///< times window_width_m
+  double height = 1.0;  ///< times window_height_m
+  double sill_m = 0.0;  ///< added
+  HeadForm head = HeadForm::rectangular;
+  double rise = 0.25;  ///< of a segmental arch, times the window's width
+};
+
 /// How a building's openings look.
 struct FacadeOptions {
   double window_width_m = 1.2;
@@ -30,7 +39,8 @@ struct FacadeOptions {
   double door_width_m = 0.9;
   double door_height_m = 2.05;
   bool interior_doors = true;
-  bool entrance = true;  ///< a house door in the ground floor
+  bool entrance = true;                  ///< a house door in the ground floor
+  std::vector<StoreyLook> storeys = {};  ///< from the ground up; further storeys look like the last one
 };
 
 /// A floor area that furniture of some height must leave free, or that is taken.

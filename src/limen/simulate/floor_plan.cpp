@@ -92,7 +92,7 @@ class Planner {
  public:
   Planner(const PlanOptions& options, RandomStream& random)
       : o_(options), random_(random), rows_(rows_of(options)), depth_(depth_of(options)) {
-    plan_.roof_m = o_.ground_floor_m + o_.storeys * o_.storey_height_m + 0.3;
+    plan_.roof_m = floor_of(o_.storeys) + 0.3;
     set_wings();
   }
 
@@ -174,12 +174,24 @@ class Planner {
     room.outline = ring;
     room.storey = storey;
     room.use = use;
-    room.floor_m = o_.ground_floor_m + storey * o_.storey_height_m;
+    room.floor_m = floor_of(storey);
     // A hung ceiling here and there: rooms of one storey are not all equally high.
     const double hung =
         o_.regular || use == RoomUse::stairs || random_.uniform() < 0.6 ? 0.0 : random_.uniform(0.1, 0.3);
-    room.ceiling_m = room.floor_m + o_.storey_height_m - o_.slab_m - hung;
+    room.ceiling_m = room.floor_m + height_of(storey) - o_.slab_m - hung;
     plan_.rooms.push_back(room);
+  }
+
+  [[nodiscard]] double height_of(int storey) const {
+    const auto i = static_cast<std::size_t>(storey);
+    return i < o_.storey_heights_m.size() ? o_.storey_heights_m[i] : o_.storey_height_m;
+  }
+
+  [[nodiscard]] double floor_of(int storey) const {
+    if (o_.storey_heights_m.empty()) return o_.ground_floor_m + storey * o_.storey_height_m;
+    double floor = o_.ground_floor_m;
+    for (int below = 0; below < storey; ++below) floor += height_of(below);
+    return floor;
   }
 
   void add_axes(const Wing& wing) {

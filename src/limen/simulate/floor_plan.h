@@ -49,6 +49,8 @@ struct PlanOptions {
   int storeys = 1;
   double ground_floor_m = 0.3;   ///< above the street
   double storey_height_m = 3.2;  ///< floor to floor
+  /// Of each storey, where they differ; storeys beyond the list have storey_height_m.
+  std::vector<double> storey_heights_m = {};
   double slab_m = 0.35;
   int bays_per_room = 2;   ///< at most; the partition differs from storey to storey
   bool regular = false;    ///< every room has exactly bays_per_room bays

@@ -149,6 +149,24 @@ void Mesh::add_box(const BoxPlace& place, const Vector3d& size, const Surface& l
   add_polygon({ring[3], ring[2], ring[1], ring[0]}, like);
 }
 
+void Mesh::add_shifted(std::size_t first_surface, const std::array<std::size_t, 2>& range,
+                       const Vector3d& shift) {
+  std::map<int, int> copies;
+  for (std::size_t i = range[0]; i < range[1]; ++i) {
+    const int original = surface_of_triangle_[i];
+    if (static_cast<std::size_t>(original) < first_surface) continue;
+    if (copies.find(original) == copies.end()) {
+      Surface copy = surfaces_[static_cast<std::size_t>(original)];
+      copy.plane.offset += copy.plane.normal.dot(shift);
+      copy.area_m2 = 0.0;
+      copies[original] = add_surface(copy);
+    }
+    const std::array<std::uint32_t, 3> corners = triangles_[i];
+    add_triangle(vertices_[corners[0]] + shift, vertices_[corners[1]] + shift, vertices_[corners[2]] + shift,
+                 copies[original]);
+  }
+}
+
 MergedPlanes merge_planes(const Mesh& mesh) {
   MergedPlanes merged;
   PlaneIndex index;

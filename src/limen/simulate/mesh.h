@@ -54,6 +54,8 @@ class Mesh {
   void add_box(const BoxPlace& place, const Vector3d& size, const Surface& like);
   /// A straight prism over a horizontal convex ring (counter-clockwise from above), with a top.
   void add_prism(const std::vector<Vector3d>& ring, double height, const Surface& like);
+  /// Copies triangles [begin, end), those of surfaces from `first_surface` on, moved by `shift`. No sheets.
+  void add_shifted(std::size_t first_surface, const std::array<std::size_t, 2>& range, const Vector3d& shift);
 
   [[nodiscard]] const std::vector<Vector3d>& vertices() const { return vertices_; }
   [[nodiscard]] const std::vector<std::array<std::uint32_t, 3>>& triangles() const { return triangles_; }

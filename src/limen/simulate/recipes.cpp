@@ -2,82 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limen/simulate/recipes.h"
 
-#include <algorithm>
 #include <array>
 #include <utility>
 
 #include "limen/base/angles.h"
 #include "limen/base/error.h"
-#include "limen/simulate/furniture.h"
+#include "limen/simulate/recipe_parts.h"
 #include "limen/simulate/street.h"
 
 namespace limen {
 namespace {
-
-std::vector<double> bays(int count, double low, double high, RandomStream& random) {
-  std::vector<double> widths;
-  widths.reserve(static_cast<std::size_t>(count));
-  for (int i = 0; i < count; ++i) widths.push_back(random.uniform(low, high));
-  return widths;
-}
-
-int between(int low, int high, RandomStream& random) {
-  return low + static_cast<int>(random.below(static_cast<std::uint32_t>(high - low + 1)));
-}
-
-/// The look of a house, different for every seed.
-FacadeOptions random_facade(const SceneOptions& options, double curtain_share, RandomStream& random) {
-  FacadeOptions facade;
-  facade.window_width_m = random.uniform(0.95, 1.7);
-  facade.window_height_m = random.uniform(1.2, 1.7);
-  facade.sill_m = random.uniform(0.55, 1.0);
-  facade.variation = random.uniform(0.05, 0.2);
-  facade.blank_share = random.uniform(0.0, 0.15);
-  facade.frame_depth_m = random.uniform(0.06, 0.2);
-  facade.bar_m = random.uniform(0.05, 0.08);
-  facade.mullions = between(0, 2, random);
-  facade.transoms = between(0, 1, random);
-  facade.splay_m = random.uniform() < 0.25 ? random.uniform(0.03, 0.09) : 0.0;
-  facade.door_width_m = random.uniform(0.82, 0.98);
-  facade.door_height_m = random.uniform(1.98, 2.12);
-  facade.curtain_share = options.curtain_share >= 0.0 ? options.curtain_share : curtain_share;
-  return facade;
-}
-
-void furnish_all(World& world, std::size_t building, double fullness, RandomStream& random) {
-  for (std::size_t room = 0; room < world.buildings[building].plan.rooms.size(); ++room)
-    furnish(world, building, room, fullness * random.uniform(0.7, 1.2), random);
-}
-
-bool has_normal(const std::vector<Vector2d>& normals, const Vector3d& normal) {
-  return std::any_of(normals.begin(), normals.end(),
-                     [&](const Vector2d& n) { return n.x() * normal.x() + n.y() * normal.y() > 0.999; });
-}
-
-enum class View { any_window, open_to_street };
-
-/// How many façades a room of building 0 has such windows in.
-std::size_t facades_of(const World& world, std::size_t room, View view) {
-  std::vector<Vector2d> normals;
-  for (const TrueOpening& opening : world.openings) {
-    if (!opening.exterior || opening.kind != "window" || opening.rooms[0] != static_cast<int>(room)) continue;
-    const bool open = !opening.curtained && has_normal(world.buildings[0].street_normals, opening.normal);
-    if (view == View::open_to_street && !open) continue;
-    if (!has_normal(normals, opening.normal)) normals.emplace_back(opening.normal.x(), opening.normal.y());
-  }
-  return normals.size();
-}
-
-/// Rooms of building 0 that satisfy `good`, in random order.
-template <typename Good>
-std::vector<std::size_t> rooms_where(const World& world, RandomStream& random, const Good& good) {
-  std::vector<std::size_t> rooms;
-  for (std::size_t room = 0; room < world.buildings[0].plan.rooms.size(); ++room)
-    if (good(room)) rooms.push_back(room);
-  for (std::size_t i = rooms.size(); i > 1; --i)
-    std::swap(rooms[i - 1], rooms[random.below(static_cast<std::uint32_t>(i))]);
-  return rooms;
-}
 
 Recipe room_recipe(const SceneOptions& options, RandomStream& random) {
   PlanOptions plan;
@@ -154,32 +88,6 @@ Recipe flat_recipe(const SceneOptions& options, RandomStream& random) {
   recipe.through_door = true;
   recipe.station_rooms = {0, 0};
   return recipe;
-}
-
-/// Rooms for stations: the first one as `options.facades` asks, the others in rooms with open windows.
-void choose_rooms_with_view(Recipe& recipe, const SceneOptions& options, RandomStream& random) {
-  const World& world = recipe.world;
-  const auto with = [&](std::size_t facades, bool exactly) {
-    return rooms_where(world, random, [&](std::size_t room) {
-      const std::size_t seen = facades_of(world, room, View::open_to_street);
-      const Room& r = world.buildings[0].plan.rooms[room];
-      return signed_area(r.outline) > 10.0 && r.storey < 2 && r.use != RoomUse::stairs &&
-             (exactly ? seen == facades && facades_of(world, room, View::any_window) == facades
-                      : seen >= facades);
-    });
-  };
-  std::vector<std::size_t> rooms;
-  if (options.facades > 0) rooms = with(options.facades, true);
-  if (options.facades == 0) rooms = with(2, false);
-  if (rooms.empty()) rooms = with(1, false);
-  if (rooms.empty()) rooms = with(0, false);
-  recipe.spare_rooms = rooms;
-  rooms.resize(1, 0);
-  const std::size_t count = std::max<std::size_t>(2, options.stations);
-  for (const std::size_t room : with(1, false))
-    if (rooms.size() < count && room != rooms[0]) rooms.push_back(room);
-  while (rooms.size() < count) rooms.push_back(rooms[0]);
-  recipe.station_rooms = rooms;
 }
 
 Recipe museum_recipe(const SceneOptions& options, RandomStream& random) {
@@ -282,11 +190,15 @@ struct NamedRecipe {
   Recipe (*make)(const SceneOptions&, RandomStream&);
 };
 
-constexpr std::array<NamedRecipe, 5> kRecipes = {{{"room", room_recipe},
+// The place in the list is the scene's random stream: new scenes go to the end.
+constexpr std::array<NamedRecipe, 8> kRecipes = {{{"room", room_recipe},
                                                   {"symmetric_room", symmetric_recipe},
                                                   {"flat", flat_recipe},
                                                   {"museum", museum_recipe},
-                                                  {"regular_facade", regular_recipe}}};
+                                                  {"regular_facade", regular_recipe},
+                                                  {"townhouse", townhouse_recipe},
+                                                  {"villa", villa_recipe},
+                                                  {"identical_bays", identical_recipe}}};
 
 }  // namespace
 

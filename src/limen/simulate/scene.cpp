@@ -103,6 +103,8 @@ class Simulation {
     for (TrueOpening& opening : truth.openings) {
       for (Vector3d& corner : opening.outer) corner = world_from_scene_ * corner;
       for (Vector3d& corner : opening.inner) corner = world_from_scene_ * corner;
+      for (Vector3d& corner : opening.outer_outline) corner = world_from_scene_ * corner;
+      for (Vector3d& corner : opening.inner_outline) corner = world_from_scene_ * corner;
       opening.normal = world_from_scene_.rotation * opening.normal;
     }
   }

@@ -20,10 +20,10 @@ struct SceneOptions {
   /// Of the mobile scan, about; 0: the scene's own number, which is none for room and flat.
   std::size_t points_outdoor = 0;
   std::size_t stations = 0;  ///< tripod stations; 0: the scene's own number
-  std::size_t facades =
-      0;  ///< street façades the first room has open windows in (museum); 0: as many as it gets
+  /// Street façades the first room has open windows in (museum, townhouse, villa); 0: as many as it gets.
+  std::size_t facades = 0;
   bool any_rotation = false;    ///< stations stand at any rotation, else level with any heading
-  double curtain_share = -1.0;  ///< of the windows; negative: the scene's own share
+  double curtain_share = -1.0;  ///< of the windows; negative: the scene's own share; none in identical_bays
   double drift_m = 0.0;         ///< slow error of a mobile trajectory, one standard deviation per axis
   ScannerOptions scanner;
 

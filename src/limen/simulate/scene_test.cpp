@@ -20,7 +20,7 @@ SceneOptions small(const std::string& name, std::uint64_t seed) {
   options.name = name;
   options.seed = seed;
   options.points_indoor = 8000;
-  if (name == "museum" || name == "regular_facade") options.points_outdoor = 16000;
+  if (name != "room" && name != "symmetric_room" && name != "flat") options.points_outdoor = 16000;
   return options;
 }
 

@@ -45,8 +45,11 @@ class ShellBuilder {
   void add_walls() {
     for (std::size_t i = 0; i < shell_.faces.size(); ++i) {
       const WallFace& wall = shell_.faces[i];
-      mesh_.add_panel(wall.frame(), {wall.length(), wall.high_m - wall.low_m}, shell_.holes[i],
-                      surface_of(Element::wall));
+      const PlaneFrame frame = wall.frame();
+      const int id = mesh_.add_panel(frame, {wall.length(), wall.high_m - wall.low_m}, shell_.holes[i],
+                                     surface_of(Element::wall));
+      for (const PanelTriangle& t : shell_.spandrels[i])
+        mesh_.add_triangle(frame.to_space(t[0]), frame.to_space(t[1]), frame.to_space(t[2]), id);
     }
   }
 

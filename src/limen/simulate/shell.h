@@ -2,16 +2,24 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+#include <vector>
+
 #include "limen/simulate/floor_plan.h"
 #include "limen/simulate/mesh.h"
 
 namespace limen {
 
-/// A plan with its wall faces and the holes that openings cut into them (one list per face).
+/// A triangle of wall in the coordinates of a panel, counter-clockwise.
+using PanelTriangle = std::array<Vector2d, 3>;
+
+/// A plan with its wall faces, the holes that openings cut into them (one list per face), and what stays of
+/// the wall in the corners of holes that are not rectangular.
 struct ShellPlan {
   const FloorPlan& plan;
   const std::vector<WallFace>& faces;
   const std::vector<std::vector<PanelRect>>& holes;
+  const std::vector<std::vector<PanelTriangle>>& spandrels;
 };
 
 /// Adds walls, floors, ceilings, stairs, roof, and a plinth, string courses and a cornice, each with the

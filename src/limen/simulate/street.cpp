@@ -144,6 +144,33 @@ void add_pavement(Mesh& mesh, const Ring& envelope, std::size_t edge) {
                surface_of(Element::pavement));
 }
 
+/// Houses across, trees, cars and poles.
+void line_street(World& world, const Ring& envelope, const StreetOptions& o, RandomStream& random) {
+  const auto chain = [&](double distance) { return offset_chain(envelope, o.first_edge, o.edges, distance); };
+  Mesh& mesh = world.mesh;
+  if (o.opposite_m > 0.0) {
+    const std::vector<Vector2d> across = chain(o.opposite_m);
+    for (std::size_t i = 0; i + 1 < across.size(); ++i) {
+      const Vector2d along = (across[i + 1] - across[i]).normalized();
+      add_opposite(world, across[i] + 2.0 * along, across[i + 1] - 2.0 * along, o.opposite, random);
+    }
+  }
+  if (o.tree_spacing_m > 0.0) {
+    along_chain(chain(2.9), o.tree_spacing_m, random,
+                [&](const Vector2d& p, const Vector2d&) { add_tree(mesh, p, random); });
+    along_chain(chain(o.opposite_m - 2.5), 0.7 * o.tree_spacing_m, random,
+                [&](const Vector2d& p, const Vector2d&) { add_tree(mesh, p, random); });
+  }
+  for (const double distance : {o.path_m - 3.0, o.path_m + 3.2}) {
+    along_chain(chain(distance), 6.0, random, [&](const Vector2d& p, const Vector2d& along) {
+      if (random.uniform() < o.car_share) add_car(mesh, p, along, random);
+    });
+  }
+  along_chain(chain(2.2), 21.0, random, [&](const Vector2d& p, const Vector2d&) {
+    add_cylinder(mesh, lifted(p, 0.0), 0.08, random.uniform(2.5, 7.0), Element::pole);
+  });
+}
+
 }  // namespace
 
 std::vector<Vector2d> offset_chain(const Ring& envelope, std::size_t first, std::size_t count,
@@ -168,31 +195,11 @@ Trajectory add_street(World& world, std::size_t building, const StreetOptions& o
   const auto chain = [&](double distance) { return offset_chain(envelope, o.first_edge, o.edges, distance); };
   Mesh& mesh = world.mesh;
   for (std::size_t edge = o.first_edge; edge < o.first_edge + o.edges; ++edge) {
-    add_pavement(mesh, envelope, edge);
+    if (!o.bare) add_pavement(mesh, envelope, edge);
     const Vector2d along = envelope[(edge + 1) % envelope.size()] - envelope[edge % envelope.size()];
     world.buildings[building].street_normals.push_back(right_of(along.normalized()));
   }
-  if (o.opposite_m > 0.0) {
-    const std::vector<Vector2d> across = chain(o.opposite_m);
-    for (std::size_t i = 0; i + 1 < across.size(); ++i) {
-      const Vector2d along = (across[i + 1] - across[i]).normalized();
-      add_opposite(world, across[i] + 2.0 * along, across[i + 1] - 2.0 * along, o.opposite, random);
-    }
-  }
-  if (o.tree_spacing_m > 0.0) {
-    along_chain(chain(2.9), o.tree_spacing_m, random,
-                [&](const Vector2d& p, const Vector2d&) { add_tree(mesh, p, random); });
-    along_chain(chain(o.opposite_m - 2.5), 0.7 * o.tree_spacing_m, random,
-                [&](const Vector2d& p, const Vector2d&) { add_tree(mesh, p, random); });
-  }
-  for (const double distance : {o.path_m - 3.0, o.path_m + 3.2}) {
-    along_chain(chain(distance), 6.0, random, [&](const Vector2d& p, const Vector2d& along) {
-      if (random.uniform() < o.car_share) add_car(mesh, p, along, random);
-    });
-  }
-  along_chain(chain(2.2), 21.0, random, [&](const Vector2d& p, const Vector2d&) {
-    add_cylinder(mesh, lifted(p, 0.0), 0.08, random.uniform(2.5, 7.0), Element::pole);
-  });
+  if (!o.bare) line_street(world, envelope, o, random);
   Trajectory trajectory;
   for (const Vector2d& p : driven(chain(o.path_m), 11.0)) trajectory.points.push_back(lifted(p, o.antenna_m));
   return trajectory;

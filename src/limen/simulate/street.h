@@ -17,6 +17,7 @@ struct StreetOptions {
   double car_share = 0.5;        ///< of the parking places taken
   double antenna_m = 2.4;        ///< height of the scanner above the road
   FacadeOptions opposite;        ///< how the houses across look
+  bool bare = false;             ///< nothing but the road: no pavement, trees, cars, poles, houses
 };
 
 /// The envelope's edges [first, first + count) moved outwards by `distance`: count + 1 corners.

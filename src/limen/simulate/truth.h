@@ -59,15 +59,22 @@ struct OpeningSight {
   std::size_t crossed = 0;  ///< rays with an echo that crossed the glass or the free cross-section
   std::size_t through = 0;  ///< of these, rays that came back from beyond the opening's own parts
   std::size_t parts = 0;    ///< echoes on its reveals, frame, glass, curtain, door leaf
-  std::uint64_t cells = 0;  ///< 8 x 8 cells of the opening with a ray through: bit 8 * row + column
+  /// 8 x 8 cells of the opening's rectangle with a ray through: bit 8 * row + column
+  std::uint64_t cells = 0;
 };
 
-/// A window or door with its clear opening on both faces of the wall. Corners about Truth::local_origin, in
-/// order round the rectangle, seen from outside: lower left, lower right, upper right, upper left.
+/// A window or door with its clear opening on both faces of the wall. Corners of the bounding rectangle about
+/// Truth::local_origin, in order round the rectangle, seen from outside: lower left, lower right, upper
+/// right, upper left.
 struct TrueOpening {
-  std::string kind;                     ///< "window" or "door"
-  std::array<Vector3d, 4> outer;        ///< on the outer face (for inner walls: room rooms[1]'s face)
-  std::array<Vector3d, 4> inner;        ///< on the inner face (room rooms[0]'s)
+  std::string kind;                  ///< "window" or "door"
+  std::array<Vector3d, 4> outer;     ///< on the outer face (for inner walls: room rooms[1]'s face)
+  std::array<Vector3d, 4> inner;     ///< on the inner face (room rooms[0]'s)
+  std::string head = "rectangular";  ///< or "segmental", "semicircle", "round"
+  /// The clear opening as it is built on either face; the corners stand on its bounding rectangle. The four
+  /// corners where the head is rectangular.
+  std::vector<Vector3d> outer_outline;
+  std::vector<Vector3d> inner_outline;
   Vector3d normal = Vector3d::UnitX();  ///< of the outer face
   double thickness_m = 0.0;             ///< of the wall
   bool exterior = false;                ///< between a room and the outside
