@@ -220,6 +220,19 @@ void record(const Opening& opening, const Wanted& wanted, const Fit& fit, Tally&
   }
 }
 
+/// What the wall of an opening is in truth: the element most of its points belong to.
+std::string wall_element(const Truth& truth, std::size_t scan, const std::vector<std::int32_t>& labels,
+                         int facade) {
+  std::array<int, 20> count{};
+  for (std::size_t i = 0; i < labels.size(); ++i) {
+    const std::int32_t plane = truth.scans[scan].plane_of_point[i];
+    if (labels[i] == facade && plane >= 0)
+      ++count[static_cast<std::size_t>(truth.planes[static_cast<std::size_t>(plane)].element)];
+  }
+  const auto most = std::max_element(count.begin(), count.end()) - count.begin();
+  return to_string(static_cast<Element>(most));
+}
+
 void list_opening(const char* what, const Opening& opening) {
   const Vector3d& a = opening.corners[0];
   fmt::print(
@@ -250,7 +263,7 @@ void list_missed(const Wanted& wanted, const TrueOpening& truth, std::size_t sca
 }
 
 Tally match(const std::vector<Opening>& openings, const std::vector<Wanted>& wanted, const Truth& truth,
-            std::size_t scan, const Settings& settings) {
+            std::size_t scan, const std::vector<std::int32_t>& labels, const Settings& settings) {
   struct Pair {
     double iou;
     std::size_t found, wanted;
@@ -280,7 +293,8 @@ Tally match(const std::vector<Opening>& openings, const std::vector<Wanted>& wan
   for (std::size_t i = 0; i < openings.size(); ++i) {
     if (used[i] != 0) continue;
     ++tally.wrong;
-    if (settings.list) list_opening("wrong", openings[i]);
+    if (settings.list)
+      list_opening(("wrong " + wall_element(truth, scan, labels, openings[i].facade)).c_str(), openings[i]);
   }
   for (std::size_t j = 0; j < wanted.size(); ++j) {
     if (!wanted[j].in_view) continue;
@@ -303,7 +317,8 @@ Tally run_scan(const SimulatedCase& simulated, std::size_t s, const Settings& se
   const auto start = std::chrono::steady_clock::now();
   const std::vector<Opening> openings = find_openings(scan, extracted, up);
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
-  Tally tally = match(openings, wanted_of(simulated, s, settings), simulated.truth, s, settings);
+  Tally tally =
+      match(openings, wanted_of(simulated, s, settings), simulated.truth, s, extracted.labels, settings);
   tally.seconds = seconds.count();
   return tally;
 }

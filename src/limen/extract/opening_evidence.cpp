@@ -20,7 +20,6 @@ constexpr double kMaxExtension_m = 0.5;   // of a ray beyond a point before the 
 constexpr double kMobileRelief_m = 0.12;  // plinths, bands and cornices of façades
 constexpr double kStaticRelief_m = 0.05;  // linings; farther before an inner wall hang curtains
 constexpr double kParallel = 0.9962;      // cosine of 5 degrees
-constexpr double kBend = 1e-3;            // metres per metre that a long wall may leave its plane
 
 const Vector3d& centre_of(const Scan& scan, const OpeningOptions& options, std::size_t i) {
   return scan.centre_known() ? scan.centre(i) : *options.centre;
@@ -66,16 +65,17 @@ OpeningWall make_wall(int base, const Plane& plane, const Vector3d& centroid, co
 
 /// Adds to the wall all planes in its plane that are near to what it has, until none is left.
 void add_members(OpeningWall& wall, const std::vector<PlanarPolygon>& polygons,
-                 const std::vector<FacingPlane>& planes, const OpeningOptions& options) {
+                 const std::vector<FacingPlane>& planes, const std::vector<char>& taken,
+                 const OpeningOptions& options) {
   const double reach_m = std::max(options.max_width_m, options.max_height_m);
   for (bool grown = true; grown;) {
     grown = false;
     for (std::size_t k = 0; k < polygons.size(); ++k) {
-      if (wall.planes[k] == static_cast<char>(PlaneRole::member) || !planes[k].seen) continue;
+      if (wall.planes[k] == static_cast<char>(PlaneRole::member) || taken[k] != 0 || !planes[k].seen)
+        continue;
       if (planes[k].plane.normal.dot(wall.plane.normal) < kParallel) continue;
       const Vector3d& centroid = polygons[k].centroid;
-      const double away_m = (centroid - wall.frame.origin).norm();
-      if (std::abs(wall.plane.signed_distance(centroid)) > options.same_wall_m + kBend * away_m) continue;
+      if (std::abs(wall.plane.signed_distance(centroid)) > options.same_wall_m) continue;
       const Box2 box = box_in(wall.frame, polygons[k]);
       if (box.empty() || (!wall.box.empty() && gap_between(wall.box, box) > reach_m)) continue;
       wall.box.add(box.low);
@@ -87,9 +87,15 @@ void add_members(OpeningWall& wall, const std::vector<PlanarPolygon>& polygons,
 }
 
 void mark_relief(OpeningWall& wall, const std::vector<PlanarPolygon>& polygons, double max_relief_m) {
+  double area_m2 = 0.0;
+  for (std::size_t k = 0; k < polygons.size(); ++k) {
+    if (wall.planes[k] == static_cast<char>(PlaneRole::member)) area_m2 += polygons[k].area_m2;
+  }
   for (std::size_t k = 0; k < polygons.size(); ++k) {
     if (wall.planes[k] != static_cast<char>(PlaneRole::other)) continue;
     if (std::abs(polygons[k].plane.normal.dot(wall.plane.normal)) < kParallel) continue;
+    // The larger of two is the wall; before frames and blinds it is not their ornament.
+    if (polygons[k].area_m2 > area_m2) continue;
     const double before_m = wall.plane.signed_distance(polygons[k].centroid);
     if (before_m > 0.0 && before_m <= max_relief_m) wall.planes[k] = static_cast<char>(PlaneRole::relief);
   }
@@ -242,12 +248,12 @@ std::vector<OpeningWall> opening_walls(const Scan& scan, const ExtractedFeatures
   std::vector<OpeningWall> walls;
   for (const int base : bases) {
     const auto k = static_cast<std::size_t>(base);
-    if (taken[k] != 0 || !planes[k].seen) continue;
+    if (taken[k] != 0 || taken[k] != 0 || !planes[k].seen) continue;
     OpeningWall wall = make_wall(base, planes[k].plane, polygons[k].centroid, up);
     wall.planes.assign(polygons.size(), static_cast<char>(PlaneRole::other));
     wall.planes[k] = static_cast<char>(PlaneRole::member);
     wall.box = box_in(wall.frame, polygons[k]);
-    add_members(wall, polygons, planes, options);
+    add_members(wall, polygons, planes, taken, options);
     for (std::size_t j = 0; j < polygons.size(); ++j) {
       if (wall.planes[j] == static_cast<char>(PlaneRole::member)) taken[j] = 1;
     }

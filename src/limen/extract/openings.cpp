@@ -60,10 +60,13 @@ bool acceptable(const OpeningRectangle& rectangle, const WallEvidence& evidence,
   if (rectangle.known < kMinKnown) return false;
   int bounded = 0;
   for (const double share : rectangle.bounded) bounded += share >= options.min_bounded ? 1 : 0;
-  if (rectangle.bounded[static_cast<std::size_t>(Side::bottom)] < options.min_bounded &&
-      std::abs(rectangle.box.low.y() - foot_beside(evidence, grid, rectangle.box)) < kFoot_m)
-    ++bounded;
-  return bounded >= 3;
+  const auto has = [&](Side side) {
+    return rectangle.bounded[static_cast<std::size_t>(side)] >= options.min_bounded;
+  };
+  if (bounded >= 3) return true;
+  // A door ends at the floor; what has no lintel is a passage between two walls.
+  return bounded == 2 && has(Side::top) && !has(Side::bottom) &&
+         std::abs(rectangle.box.low.y() - foot_beside(evidence, grid, rectangle.box)) < kFoot_m;
 }
 
 Opening make_opening(const OpeningRectangle& rectangle, const OpeningWall& wall,
@@ -94,6 +97,38 @@ std::vector<Opening> openings_of(const WallEvidence& evidence, const OpeningOpti
     openings.push_back(make_opening(rectangle, evidence.wall, options));
   }
   return openings;
+}
+
+/// The middle of an opening, and whether two are one hole seen in two planes of one wall (its face and its
+/// frames, a plinth and the wall behind).
+Vector3d middle_of(const Opening& opening) {
+  return 0.25 * (opening.corners[0] + opening.corners[1] + opening.corners[2] + opening.corners[3]);
+}
+
+bool same_hole(const Opening& a, const Opening& b) {
+  constexpr double kWall_m = 0.4;
+  const Vector3d u = (a.corners[1] - a.corners[0]).normalized();
+  const Vector3d v = (a.corners[3] - a.corners[0]).normalized();
+  const Vector3d other = (b.corners[1] - b.corners[0]).normalized();
+  if (u.dot(other) < 0.99) return false;
+  const Vector3d between = middle_of(b) - middle_of(a);
+  if (std::abs(between.dot(u.cross(v))) > kWall_m) return false;
+  const Vector2d half(
+      0.5 * (a.corners[1] - a.corners[0]).norm() + 0.5 * (b.corners[1] - b.corners[0]).norm(),
+      0.5 * (a.corners[3] - a.corners[0]).norm() + 0.5 * (b.corners[3] - b.corners[0]).norm());
+  return std::abs(between.dot(u)) < 0.7 * half.x() && std::abs(between.dot(v)) < 0.7 * half.y();
+}
+
+/// Each hole once: in the wall with most points, which comes first.
+std::vector<Opening> without_doubles(const std::vector<Opening>& openings) {
+  std::vector<Opening> kept;
+  for (const Opening& opening : openings) {
+    const bool doubled = std::any_of(kept.begin(), kept.end(), [&](const Opening& other) {
+      return other.facade != opening.facade && same_hole(other, opening);
+    });
+    if (!doubled) kept.push_back(opening);
+  }
+  return kept;
 }
 
 }  // namespace
@@ -131,7 +166,7 @@ std::vector<Opening> find_openings(const Scan& scan, const ExtractedFeatures& ex
   });
   std::vector<Opening> openings;
   for (const std::vector<Opening>& part : found) openings.insert(openings.end(), part.begin(), part.end());
-  return openings;
+  return without_doubles(openings);
 }
 
 }  // namespace limen
