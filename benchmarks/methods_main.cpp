@@ -25,21 +25,12 @@ using namespace limen::methods;  // NOLINT(google-build-using-namespace)
 
 const std::vector<std::string> kKinds = {"museum", "townhouse", "villa"};
 
-/// Sets the method by its name; false where this build does not know it.
-template <typename Options>
-bool set_method(Options& options, const std::string& name) {
-  if constexpr (requires { options.method; }) {
-    using Method = decltype(options.method);
-    if (name == "auto") options.method = Method::automatic;
-    if (name == "polygons") options.method = Method::polygons;
-    if (name == "openings") options.method = Method::openings;
-    if (name == "hybrid") options.method = Method::hybrid;
-    if (name == "segments") options.method = Method::segments;
-    return name == "auto" || name == "polygons" || name == "openings" || name == "hybrid" ||
-           name == "segments";
-  } else {
-    return name == "auto";
-  }
+Method method_of(const std::string& name) {
+  for (const Method method :
+       {Method::automatic, Method::polygons, Method::openings, Method::hybrid, Method::segments})
+    if (name == to_string(method)) return method;
+  throw Error("no method is called '" + name + "'", "bench_methods",
+              "choose of auto, polygons, openings, hybrid, segments");
 }
 
 /// A pair that was scanned, and what a run needs of its truth.
@@ -64,10 +55,7 @@ Pair make_pair(PairPlan plan) {
 
 Row run(const Pair& pair, const std::string& method) {
   RegisterOptions options;
-  if (!set_method(options, method)) {
-    throw Error("this build has no method '" + method + "'", "bench_methods",
-                "choose of auto, polygons, openings, hybrid, segments");
-  }
+  options.method = method_of(method);
   const Rigid3 truth = true_target_from_source(pair.made.truth, 0, pair.made.scans.size() - 1);
   const auto start = std::chrono::steady_clock::now();
   const RegistrationResult result = register_scans(pair.station(), pair.street(), options);
@@ -91,6 +79,11 @@ Row run(const Pair& pair, const std::string& method) {
         return miss_of(other.target_from_source, truth, centre).within(pair.plan.level);
       });
   row.sigmas = errors_in_sigmas(result, truth);
+  const std::optional<double> thickness = facade_thickness(pair.made.truth);
+  if (thickness && !result.thickness.empty()) {
+    row.thickness_error_m = result.thickness[0].value_m - *thickness;
+    row.thickness_sigma_m = result.thickness[0].sigma_m;
+  }
   return row;
 }
 
@@ -127,6 +120,7 @@ std::string page(const std::vector<Row>& rows, const std::vector<std::string>& m
 }
 
 int run_all(const Selection& selection, const std::vector<std::string>& methods, const std::string& file) {
+  for (const std::string& method : methods) method_of(method);
   std::vector<Row> rows;
   print_header();
   for (const PairPlan& plan : plan_pairs(kKinds, selection)) {

@@ -66,9 +66,10 @@ Json planes_json(const Truth& truth) {
   return planes;
 }
 
-Json corners_json(const std::array<Vector3d, 4>& corners, const Vector3d& origin) {
+template <typename Points>
+Json points_json(const Points& points, const Vector3d& origin) {
   Json json = Json::array();
-  for (const Vector3d& corner : corners) json.push_back(json_of(Vector3d(corner + origin)));
+  for (const Vector3d& corner : points) json.push_back(json_of(Vector3d(corner + origin)));
   return json;
 }
 
@@ -103,8 +104,13 @@ Json openings_json(const Truth& truth) {
     json["thickness_m"] = opening.thickness_m;
     json["width_m"] = (opening.outer[1] - opening.outer[0]).norm();
     json["height_m"] = (opening.outer[3] - opening.outer[0]).norm();
-    json["outer"] = corners_json(opening.outer, truth.local_origin);
-    json["inner"] = corners_json(opening.inner, truth.local_origin);
+    json["outer"] = points_json(opening.outer, truth.local_origin);
+    json["inner"] = points_json(opening.inner, truth.local_origin);
+    json["head"] = opening.head;
+    if (opening.head != "rectangular") {
+      json["outer_outline"] = points_json(opening.outer_outline, truth.local_origin);
+      json["inner_outline"] = points_json(opening.inner_outline, truth.local_origin);
+    }
     json["seen"] = sights_json(opening, truth);
     openings.push_back(std::move(json));
   }

@@ -14,8 +14,10 @@ namespace limen {
 /// - `planes`: id, normal (to the visible side), `offset` in the world and `local_offset` about local_origin
 ///   (exact), class, area, `inliers` per scan;
 /// - `openings`: kind, rooms, wall normal and thickness, width, height, corners `outer` and `inner` in the
-///   world (lower left, lower right, upper right, upper left, seen from outside), and per scan the rays that
-///   crossed it, that came back from beyond, from its parts, and the share of its area seen through.
+///   world (lower left, lower right, upper right, upper left, seen from outside), `head` (rectangular,
+///   segmental, semicircle, round) and, where it is not rectangular, the clear opening as it is built,
+///   `outer_outline` and `inner_outline`, of which the corners are the bounding rectangle, and per scan the rays
+///   that crossed it, that came back from beyond, from its parts, and the share of its area seen through.
 /// The scans' files are named after them with ".ply".
 std::string truth_json(const Truth& truth);
 

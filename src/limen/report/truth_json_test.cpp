@@ -63,6 +63,23 @@ TEST(TruthJson, PlanesAndOpeningsAgreeInTheWorld) {
   }
 }
 
+TEST(TruthJson, TellsTheOutlineOfArchedWindows) {
+  TrueOpening arched;
+  arched.kind = "window";
+  arched.head = "semicircle";
+  arched.outer_outline = {Vector3d(1.0, 2.0, 3.0), Vector3d(2.0, 2.0, 3.0), Vector3d(1.5, 2.0, 4.0)};
+  arched.inner_outline = {Vector3d(1.0, 2.5, 3.0), Vector3d(2.0, 2.5, 3.0), Vector3d(1.5, 2.5, 4.0)};
+  Truth truth;
+  truth.local_origin = Vector3d(100.0, 0.0, 0.0);
+  truth.openings = {arched, TrueOpening{}};
+  const json openings = json::parse(truth_json(truth))["openings"];
+  EXPECT_EQ(openings[0]["head"], "semicircle");
+  EXPECT_EQ(openings[0]["outer_outline"], (json{{101.0, 2.0, 3.0}, {102.0, 2.0, 3.0}, {101.5, 2.0, 4.0}}));
+  EXPECT_EQ(openings[0]["inner_outline"][2], (json{101.5, 2.5, 4.0}));
+  EXPECT_EQ(openings[1]["head"], "rectangular");
+  EXPECT_FALSE(openings[1].contains("outer_outline"));
+}
+
 TEST(TaskJson, NamesFilesButNoTruth) {
   const SimulatedCase made = museum();
   const std::string text = task_json(made);
