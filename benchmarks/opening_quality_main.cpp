@@ -47,6 +47,7 @@ struct Settings {
   std::size_t min_rays = 60;
   int threads = 0;
   bool list = false;
+  bool errors = false;
 };
 
 struct Tally {
@@ -101,21 +102,22 @@ int bits(std::uint64_t cells) {
   return count;
 }
 
-/// Corners on the face the scanner looks at, from lower left as it sees them; false where it looks at none.
-bool face_of(const TrueOpening& opening, const ScanTruth& scan, Wanted& wanted) {
-  const auto& o = opening.outer;
+/// One face of an opening, corners from lower left as seen from before it, in the truth's coordinates.
+Wanted face_of(const TrueOpening& opening, bool outer) {
   const auto& i = opening.inner;
-  bool outer = scan.mobile ? opening.exterior : false;
-  bool inner = false;
-  if (!scan.mobile) {
-    inner = !opening.rooms.empty() && opening.rooms[0] == scan.room;
-    outer = opening.rooms.size() > 1 && opening.rooms[1] == scan.room;
-  }
-  if (!outer && !inner) return false;
-  wanted.corners = outer ? o : std::array<Vector3d, 4>{i[1], i[0], i[3], i[2]};
+  Wanted wanted;
+  wanted.corners = outer ? opening.outer : std::array<Vector3d, 4>{i[1], i[0], i[3], i[2]};
   wanted.normal = outer ? opening.normal : Vector3d(-opening.normal);
   wanted.thickness_m = opening.thickness_m;
-  return true;
+  return wanted;
+}
+
+/// Whether the scan must find the opening on this face: a façade's from the street, a room's from its
+/// station.
+bool faces_scan(const TrueOpening& opening, const ScanTruth& scan, bool outer) {
+  if (scan.mobile) return outer && opening.exterior;
+  const std::size_t room = outer ? 1 : 0;
+  return opening.rooms.size() > room && opening.rooms[room] == scan.room;
 }
 
 /// Points on the wall in the frame about an opening, and on the opening's own face: per square metre.
@@ -147,6 +149,17 @@ Density density_about(const Scan& scan, const Wanted& wanted) {
   return density;
 }
 
+/// Decides whether the opening is in view, and seen through.
+void judge_view(const Scan& scan, const OpeningSight& sight, const Settings& settings, Wanted& wanted) {
+  const double rays = static_cast<double>(sight.through + sight.parts);
+  const double area_m2 =
+      (wanted.corners[1] - wanted.corners[0]).norm() * (wanted.corners[3] - wanted.corners[0]).norm();
+  const Density density = density_about(scan, wanted);
+  wanted.in_view = density.before && rays >= static_cast<double>(settings.min_rays) &&
+                   rays >= 0.2 * density.around * area_m2;
+  wanted.through = wanted.in_view && bits(sight.cells) >= 32;
+}
+
 std::vector<Wanted> wanted_of(const SimulatedCase& simulated, std::size_t s, const Settings& settings) {
   const Scan& scan = simulated.scans[s];
   const ScanTruth& truth = simulated.truth.scans[s];
@@ -157,21 +170,15 @@ std::vector<Wanted> wanted_of(const SimulatedCase& simulated, std::size_t s, con
   std::vector<Wanted> list;
   for (std::size_t k = 0; k < simulated.truth.openings.size(); ++k) {
     const TrueOpening& opening = simulated.truth.openings[k];
-    Wanted wanted;
-    wanted.index = k;
-    if (!face_of(opening, truth, wanted)) continue;
-    for (Vector3d& corner : wanted.corners)
-      corner = truth.mobile ? Vector3d(corner + shift) : Vector3d(scan_from_local * corner + shift);
-    if (!truth.mobile) wanted.normal = scan_from_local.rotation * wanted.normal;
-    const OpeningSight& sight = opening.sights[s];
-    const double rays = static_cast<double>(sight.through + sight.parts);
-    const double area_m2 =
-        (wanted.corners[1] - wanted.corners[0]).norm() * (wanted.corners[3] - wanted.corners[0]).norm();
-    const Density density = density_about(scan, wanted);
-    wanted.in_view = density.before && rays >= static_cast<double>(settings.min_rays) &&
-                     rays >= 0.2 * density.around * area_m2;
-    wanted.through = wanted.in_view && bits(sight.cells) >= 32;
-    list.push_back(wanted);
+    for (const bool outer : {true, false}) {
+      Wanted wanted = face_of(opening, outer);
+      wanted.index = k;
+      for (Vector3d& corner : wanted.corners)
+        corner = truth.mobile ? Vector3d(corner + shift) : Vector3d(scan_from_local * corner + shift);
+      if (!truth.mobile) wanted.normal = scan_from_local.rotation * wanted.normal;
+      if (faces_scan(opening, truth, outer)) judge_view(scan, opening.sights[s], settings, wanted);
+      list.push_back(wanted);
+    }
   }
   return list;
 }
@@ -179,6 +186,7 @@ std::vector<Wanted> wanted_of(const SimulatedCase& simulated, std::size_t s, con
 /// Low and high of a found rectangle in the frame of a true one, and the distance between their planes.
 struct Fit {
   double iou = 0.0;
+  double inside = 0.0;                      ///< part of the found one within the true one
   std::array<double, 4> edge_error_m = {};  ///< bottom, right, top, left
 };
 
@@ -203,6 +211,7 @@ Fit compare(const Opening& opening, const Wanted& wanted) {
   const Vector2d common = high.cwiseMin(size) - low.cwiseMax(Vector2d::Zero());
   if ((common.array() <= 0.0).any()) return fit;
   fit.iou = common.prod() / (size.prod() + (high - low).prod() - common.prod());
+  fit.inside = common.prod() / (high - low).prod();
   fit.edge_error_m = {low.y(), high.x() - size.x(), high.y() - size.y(), low.x()};
   return fit;
 }
@@ -243,6 +252,13 @@ void list_opening(const char* what, const Opening& opening) {
       opening.edge_sigma_m[2], opening.edge_sigma_m[3]);
 }
 
+void print_errors(const Opening& opening, const Fit& fit, const TrueOpening& truth) {
+  constexpr std::array<double, 4> kOutward = {-1.0, 1.0, 1.0, -1.0};
+  for (std::size_t k = 0; k < 4; ++k)
+    fmt::print("edge,{},{},{},{},{:.4f},{:.4f}\n", truth.kind, truth.curtained ? "curtained" : "open",
+               to_string(opening.view), k, kOutward[k] * fit.edge_error_m[k], opening.edge_sigma_m[k]);
+}
+
 void list_errors(const Opening& opening, const Wanted& wanted, const Fit& fit, const TrueOpening& truth) {
   const auto& e = fit.edge_error_m;
   list_opening("far off", opening);
@@ -260,6 +276,12 @@ void list_missed(const Wanted& wanted, const TrueOpening& truth, std::size_t sca
       truth.kind, wanted.index, truth.curtained ? " curtained" : "", wanted.through ? " seen through" : "",
       (wanted.corners[1] - a).norm(), (wanted.corners[3] - a).norm(), a.x(), a.y(), a.z(), sight.through,
       sight.parts, bits(sight.cells));
+}
+
+/// The seen part of an opening that is not in view as a whole.
+bool part_of_hidden(const Opening& opening, const std::vector<Wanted>& wanted) {
+  return std::any_of(wanted.begin(), wanted.end(),
+                     [&](const Wanted& it) { return !it.in_view && compare(opening, it).inside > 0.8; });
 }
 
 Tally match(const std::vector<Opening>& openings, const std::vector<Wanted>& wanted, const Truth& truth,
@@ -288,10 +310,15 @@ Tally match(const std::vector<Opening>& openings, const std::vector<Wanted>& wan
     if (!it.in_view) continue;
     const Fit fit = compare(openings[pair.found], it);
     record(openings[pair.found], it, fit, tally);
+    if (settings.errors) print_errors(openings[pair.found], fit, truth.openings[it.index]);
     if (settings.list && fit.iou < 0.9) list_errors(openings[pair.found], it, fit, truth.openings[it.index]);
   }
   for (std::size_t i = 0; i < openings.size(); ++i) {
     if (used[i] != 0) continue;
+    if (part_of_hidden(openings[i], wanted)) {
+      ++tally.beyond;
+      continue;
+    }
     ++tally.wrong;
     if (settings.list)
       list_opening(("wrong " + wall_element(truth, scan, labels, openings[i].facade)).c_str(), openings[i]);
@@ -394,6 +421,7 @@ int main(int argc, char** argv) {
   app.add_option("--curtains", settings.curtains, "share of curtained windows; negative: the scene's own");
   app.add_option("--min-rays", settings.min_rays, "rays that met an opening in view");
   app.add_option("--threads", settings.threads, "0: the machine's");
+  app.add_flag("--errors", settings.errors, "a line for each edge: outward error, deviation");
   app.add_flag("--list", settings.list, "name what was missed, wrong, or far off");
   CLI11_PARSE(app, argc, argv);
   set_thread_count(settings.threads);

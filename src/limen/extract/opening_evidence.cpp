@@ -147,6 +147,7 @@ class Tracer {
       : scan_(scan), labels_(extracted.labels), options_(options) {
     for (const OpeningWall& wall : walls) targets_.push_back(make_target(wall));
     on_wall_m_ = extracted.features.inlier_threshold_m;
+    side_m_ = std::min(on_wall_m_, std::max(0.004, 2.0 * extracted.features.noise_m));
     behind_m_ = std::max({options.min_depth_m, 4.0 * extracted.features.noise_m, on_wall_m_ + 0.002});
   }
 
@@ -197,12 +198,21 @@ class Tracer {
     const std::int32_t label = labels_[point];
     const auto role =
         label < 0 ? PlaneRole::other : static_cast<PlaneRole>(wall.planes[static_cast<std::size_t>(label)]);
-    if (role == PlaneRole::member || role == PlaneRole::relief || std::abs(before_m) <= on_wall_m_) {
+    if (role == PlaneRole::member || role == PlaneRole::relief) {
       kind = SampleKind::wall;
       return true;
     }
-    kind = before_m < 0.0 ? SampleKind::open : SampleKind::cover;
-    return before_m < 0.0 ? -before_m >= behind_m_ : before_m <= options_.max_curtain_gap_m;
+    if (before_m > on_wall_m_) {
+      kind = SampleKind::cover;
+      return before_m <= options_.max_curtain_gap_m;
+    }
+    if (before_m > -side_m_) {
+      kind = SampleKind::wall;
+      return label < 0;
+    }
+    kind = -before_m >= behind_m_ ? SampleKind::open : SampleKind::shallow;
+    // Where points within the threshold belong to no other plane they may as well be wall.
+    return -before_m > on_wall_m_ || label >= 0;
   }
 
   void add_sample(std::size_t point, std::uint32_t w, Samples& found) const {
@@ -229,8 +239,9 @@ class Tracer {
   const std::vector<std::int32_t>& labels_;
   const OpeningOptions& options_;
   std::vector<Target> targets_;
-  double on_wall_m_ = 0.0;
-  double behind_m_ = 0.0;
+  double on_wall_m_ = 0.0;  // no farther from the plane a point in no plane is wall
+  double side_m_ = 0.0;     // farther behind it a point of another plane is not
+  double behind_m_ = 0.0;   // farther behind it a point lies in an opening
 };
 
 }  // namespace

@@ -28,9 +28,10 @@ enum class PlaneRole : char {
 
 /// What the ray of a point says of the place where it meets the wall's plane.
 enum class SampleKind : std::uint8_t {
-  wall,  ///< the point lies on the wall
-  open,  ///< it lies behind the wall
-  cover  ///< it lies a little before it
+  wall,    ///< the point lies on the wall
+  open,    ///< it lies behind the wall
+  cover,   ///< it lies a little before it
+  shallow  ///< it lies too little behind it to prove an opening: the side of one, or rough wall
 };
 
 struct WallSample {

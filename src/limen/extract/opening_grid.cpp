@@ -68,13 +68,16 @@ void OpeningGrid::count_samples(const WallEvidence& evidence) {
   for (std::size_t i = 0; i < cell_of.size(); ++i) order_[next[cell_of[i]]++] = static_cast<std::uint32_t>(i);
   cells_.assign(size, Cell::unknown);
   for (std::size_t i = 0; i < size; ++i) {
-    std::array<std::uint32_t, 3> count{};
+    std::array<std::uint32_t, 4> count{};
     for (std::uint32_t k = begin_[i]; k < begin_[i + 1]; ++k)
       ++count[static_cast<std::size_t>(evidence.samples[order_[k]].kind)];
-    if (begin_[i] == begin_[i + 1]) continue;
     const auto wall = count[static_cast<std::size_t>(SampleKind::wall)];
     const auto open = count[static_cast<std::size_t>(SampleKind::open)];
-    cells_[i] = wall + open == 0 ? Cell::cover : open > wall ? Cell::open : Cell::wall;
+    if (wall + open > 0) {
+      cells_[i] = open > wall ? Cell::open : Cell::wall;
+    } else if (count[static_cast<std::size_t>(SampleKind::cover)] > 0) {
+      cells_[i] = Cell::cover;
+    }
   }
 }
 

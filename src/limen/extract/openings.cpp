@@ -16,13 +16,16 @@
 #include "limen/extract/openings.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <optional>
 
 #include "limen/base/error.h"
 #include "limen/base/parallel.h"
 #include "limen/extract/opening_evidence.h"
 #include "limen/extract/opening_grid.h"
 #include "limen/extract/opening_rectangles.h"
+#include "limen/extract/opening_reveals.h"
 
 namespace limen {
 namespace {
@@ -86,15 +89,76 @@ Opening make_opening(const OpeningRectangle& rectangle, const OpeningWall& wall,
   return opening;
 }
 
-std::vector<Opening> openings_of(const WallEvidence& evidence, const OpeningOptions& options) {
+/// The height of the floor at an opening's foot in the wall's frame, where a level plane lies near there.
+std::optional<double> floor_at(const Features& features, const OpeningWall& wall, const Box2& box) {
+  constexpr double kNear_m = 0.08;
+  constexpr double kMinArea_m2 = 0.5;
+  constexpr double kReach_m = 0.5;  // from the floor's outline to the opening
+  const Vector3d foot = wall.frame.to_space({0.5 * (box.low.x() + box.high.x()), box.low.y()});
+  std::optional<double> height;
+  std::size_t most = 0;
+  for (const PlanarPolygon& polygon : features.planes) {
+    const double slope = polygon.plane.normal.dot(wall.frame.v);
+    if (std::abs(slope) < 0.995 || polygon.area_m2 < kMinArea_m2 || polygon.inliers <= most) continue;
+    const double rise = -polygon.plane.signed_distance(foot) / slope;
+    if (std::abs(rise) > kNear_m) continue;
+    Box2 around = box_of(polygon.parts);
+    around.low.array() -= kReach_m;
+    around.high.array() += kReach_m;
+    if (!around.contains(polygon.frame.to_plane(foot))) continue;
+    most = polygon.inliers;
+    height = box.low.y() + rise;
+  }
+  return height;
+}
+
+/// Takes the places of the sides from the reveals where they were seen, and a door's foot from the floor.
+void refine_sides(const Features& features, const OpeningWall& wall, const std::array<Reveal, 4>& reveals,
+                  OpeningRectangle& rectangle) {
+  for (const Side side : kSides) {
+    const Reveal& reveal = reveals[static_cast<std::size_t>(side)];
+    double& sigma_m = rectangle.sigma_m[static_cast<std::size_t>(side)];
+    if (!reveal.found || reveal.sigma_m > sigma_m) continue;
+    set_place(rectangle.box, side, reveal.place);
+    sigma_m = reveal.sigma_m;
+  }
+  constexpr double kFloorSigma_m = 0.005;
+  double& foot_sigma_m = rectangle.sigma_m[static_cast<std::size_t>(Side::bottom)];
+  const std::optional<double> floor = floor_at(features, wall, rectangle.box);
+  if (floor && foot_sigma_m > kFloorSigma_m) {
+    rectangle.box.low.y() = *floor;
+    foot_sigma_m = kFloorSigma_m;
+  }
+}
+
+/// The wall's thickness where a side was seen to its end (the least: a door leaf may stand in line with one),
+/// else how far the deepest side goes.
+void set_reveal(const std::array<Reveal, 4>& reveals, Opening& opening) {
+  for (const Reveal& reveal : reveals) {
+    if (!reveal.found) continue;
+    const bool better = reveal.complete ? !opening.reveal_complete || reveal.depth_m < opening.reveal_depth_m
+                                        : !opening.reveal_complete && reveal.depth_m > opening.reveal_depth_m;
+    if (!better) continue;
+    opening.reveal_depth_m = reveal.depth_m;
+    opening.reveal_sigma_m = reveal.complete ? reveal.depth_sigma_m : 0.02;
+    opening.reveal_complete = reveal.complete;
+  }
+}
+
+std::vector<Opening> openings_of(const Scan& scan, const Features& features, const WallEvidence& evidence,
+                                 const OpeningOptions& options) {
   const bool any = std::any_of(evidence.samples.begin(), evidence.samples.end(),
                                [](const WallSample& sample) { return sample.kind == SampleKind::open; });
   if (!any) return {};
   const OpeningGrid grid(evidence);
   std::vector<Opening> openings;
-  for (const OpeningRectangle& rectangle : opening_rectangles(evidence, grid, options)) {
+  for (OpeningRectangle& rectangle : opening_rectangles(evidence, grid, options)) {
     if (!acceptable(rectangle, evidence, grid, options)) continue;
+    const std::array<Reveal, 4> reveals =
+        find_reveals(scan, evidence, grid, rectangle, std::max(features.noise_m, 0.001));
+    refine_sides(features, evidence.wall, reveals, rectangle);
     openings.push_back(make_opening(rectangle, evidence.wall, options));
+    set_reveal(reveals, openings.back());
   }
   return openings;
 }
@@ -162,7 +226,8 @@ std::vector<Opening> find_openings(const Scan& scan, const ExtractedFeatures& ex
   std::vector<std::vector<Opening>> found(evidence.size());
   parallel_for(evidence.size(), 1, [&](std::size_t begin, std::size_t end) {
     monitor.throw_if_cancelled();
-    for (std::size_t w = begin; w < end; ++w) found[w] = openings_of(evidence[w], options);
+    for (std::size_t w = begin; w < end; ++w)
+      found[w] = openings_of(scan, extracted.features, evidence[w], options);
   });
   std::vector<Opening> openings;
   for (const std::vector<Opening>& part : found) openings.insert(openings.end(), part.begin(), part.end());
