@@ -82,6 +82,14 @@ std::optional<SegmentOverlap> overlap(const Measured& first, const Measured& sec
   return result;
 }
 
+/// Whether the box of a segment leaves the box [low, high].
+bool apart(const Vector3d& a, const Vector3d& b, const Vector3d& low, const Vector3d& high) {
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    if (std::max(a[i], b[i]) < low[i] || std::min(a[i], b[i]) > high[i]) return true;
+  }
+  return false;
+}
+
 Measured measured(const Vector3d& a, const Vector3d& b) {
   const double length = (b - a).norm();
   return {a, b, length > kNoLengthM ? Vector3d((b - a) / length) : Vector3d::UnitX(), length};
@@ -169,25 +177,21 @@ double SegmentSetMeasure::weigh(const Prepared& segment, double gain) const {
   return options_.weight == SegmentWeight::length ? term : term / segment.length;
 }
 
-/// Segments of the target whose box comes within the distance of this one's.
-std::vector<std::size_t> SegmentSetMeasure::near(const Prepared& segment) const {
-  const double d = options_.max_distance_m;
-  const Vector3d low = (segment.a.cwiseMin(segment.b).array() - d).matrix();
-  const Vector3d high = (segment.a.cwiseMax(segment.b).array() + d).matrix();
+/// Where segments of the target begin that may come within the distance of `low` along the sorting axis.
+std::size_t SegmentSetMeasure::first_near(const Vector3d& low) const {
   const auto begin = std::lower_bound(
       target_.begin(), target_.end(), low[axis_] - longest_m_,
       [this](const Prepared& s, double value) { return std::min(s.a[axis_], s.b[axis_]) < value; });
-  std::vector<std::size_t> found;
-  for (auto it = begin; it != target_.end() && std::min(it->a[axis_], it->b[axis_]) <= high[axis_]; ++it) {
-    const bool apart = (it->a.cwiseMax(it->b).array() < low.array()).any() ||
-                       (it->a.cwiseMin(it->b).array() > high.array()).any();
-    if (!apart) found.push_back(static_cast<std::size_t>(it - target_.begin()));
-  }
-  return found;
+  return static_cast<std::size_t>(begin - target_.begin());
 }
 
 /// Every place along a segment counts once, for the piece with the largest gain there.
-SegmentSetMeasure::Cover SegmentSetMeasure::cover(std::vector<Piece> pieces) {
+SegmentSetMeasure::Cover SegmentSetMeasure::cover(std::vector<Piece>& pieces) {
+  if (pieces.empty()) return {};
+  if (pieces.size() == 1) {
+    const double length = pieces[0].to_m - pieces[0].from_m;
+    return {length * pieces[0].gain, length};
+  }
   std::sort(pieces.begin(), pieces.end(), [](const Piece& x, const Piece& y) {
     return std::tie(y.gain, x.from_m, x.to_m) < std::tie(x.gain, y.from_m, y.to_m);
   });
@@ -209,12 +213,17 @@ SetDistance SegmentSetMeasure::to(const std::vector<Segment>& source,
   SetDistance result;
   result.nominal = nominal_;
   std::vector<TargetPiece> on_target;
+  std::vector<Piece> pieces;
   for (const Segment& segment : source) {
     const Prepared s = prepare(target_from_source * segment.a, target_from_source * segment.b);
     if (s.length <= kNoLengthM) continue;
-    std::vector<Piece> pieces;
-    for (const std::size_t k : near(s)) {
+    const Vector3d low = (s.a.cwiseMin(s.b).array() - options_.max_distance_m).matrix();
+    const Vector3d high = (s.a.cwiseMax(s.b).array() + options_.max_distance_m).matrix();
+    pieces.clear();
+    for (std::size_t k = first_near(low); k < target_.size(); ++k) {
       const Prepared& t = target_[k];
+      if (std::min(t.a[axis_], t.b[axis_]) > high[axis_]) break;
+      if (apart(t.a, t.b, low, high)) continue;
       const auto common = overlap({s.a, s.b, s.direction, s.length}, {t.a, t.b, t.direction, t.length},
                                   min_cosine, options_.whole_segments);
       if (!common) continue;
@@ -223,7 +232,7 @@ SetDistance SegmentSetMeasure::to(const std::vector<Segment>& source,
       pieces.push_back({common->first_from_m, common->first_to_m, gain});
       on_target.push_back({k, {common->second_from_m, common->second_to_m, gain}});
     }
-    const Cover covered = cover(std::move(pieces));
+    const Cover covered = cover(pieces);
     result.nominal += weigh(s, 0.0);
     result.source_distance += weigh(s, covered.gain);
     result.source_covered_m += covered.length_m;
@@ -232,10 +241,10 @@ SetDistance SegmentSetMeasure::to(const std::vector<Segment>& source,
   std::stable_sort(on_target.begin(), on_target.end(),
                    [](const TargetPiece& x, const TargetPiece& y) { return x.target < y.target; });
   for (auto it = on_target.begin(); it != on_target.end();) {
-    std::vector<Piece> pieces;
+    pieces.clear();
     const std::size_t k = it->target;
     for (; it != on_target.end() && it->target == k; ++it) pieces.push_back(it->piece);
-    const Cover covered = cover(std::move(pieces));
+    const Cover covered = cover(pieces);
     result.distance += weigh(target_[k], covered.gain) - weigh(target_[k], 0.0);
     result.target_covered_m += covered.length_m;
   }

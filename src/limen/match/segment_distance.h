@@ -122,8 +122,8 @@ class SegmentSetMeasure {
 
   [[nodiscard]] Prepared prepare(const Vector3d& a, const Vector3d& b) const;
   [[nodiscard]] double weigh(const Prepared& segment, double gain) const;
-  [[nodiscard]] std::vector<std::size_t> near(const Prepared& segment) const;
-  [[nodiscard]] static Cover cover(std::vector<Piece> pieces);
+  [[nodiscard]] std::size_t first_near(const Vector3d& low) const;
+  [[nodiscard]] static Cover cover(std::vector<Piece>& pieces);
 
   SegmentDistanceOptions options_;
   std::vector<Prepared> target_;  // by its low end along axis_
