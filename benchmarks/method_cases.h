@@ -135,10 +135,11 @@ struct Row {
   double thickness_error_m = std::numeric_limits<double>::quiet_NaN();
   double thickness_sigma_m = std::numeric_limits<double>::quiet_NaN();
   double seconds = 0.0;
+  bool alike = false;  ///< nobody can know the pose: no registration is right
 
   [[nodiscard]] bool registered() const { return outcome == Outcome::registered; }
-  [[nodiscard]] bool right() const { return registered() && near; }
-  [[nodiscard]] bool wrong() const { return registered() && !near; }
+  [[nodiscard]] bool right() const { return registered() && near && !alike; }
+  [[nodiscard]] bool wrong() const { return registered() && !right(); }
 };
 
 /// Rotation and translation by which a pose is off, the latter at a point of the source.

@@ -170,9 +170,9 @@ Recipe build_villa(const SceneOptions& options, RandomStream& random) {
   return recipe;
 }
 
-Recipe finished(Recipe recipe, RandomStream& random) {
+Recipe finished(Recipe recipe, std::size_t points_outdoor, RandomStream& random) {
   recipe.points_indoor = 300000;
-  recipe.points_outdoor = 800000;
+  recipe.points_outdoor = points_outdoor;
   if (random.uniform() < 0.5) recipe.head_turns_rad = {radians(35.0), radians(-35.0)};
   recipe.wants_view = true;
   return recipe;
@@ -181,11 +181,13 @@ Recipe finished(Recipe recipe, RandomStream& random) {
 }  // namespace
 
 Recipe townhouse_recipe(const SceneOptions& options, RandomStream& random) {
-  return finished(with_view(options, random, [&] { return build_townhouse(options, random); }), random);
+  return finished(with_view(options, random, [&] { return build_townhouse(options, random); }), 800000,
+                  random);
 }
 
 Recipe villa_recipe(const SceneOptions& options, RandomStream& random) {
-  return finished(with_view(options, random, [&] { return build_villa(options, random); }), random);
+  // Three sides of a street are a long way.
+  return finished(with_view(options, random, [&] { return build_villa(options, random); }), 1200000, random);
 }
 
 }  // namespace limen
