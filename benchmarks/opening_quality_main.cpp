@@ -257,6 +257,9 @@ void print_errors(const Opening& opening, const Fit& fit, const TrueOpening& tru
   for (std::size_t k = 0; k < 4; ++k)
     fmt::print("edge,{},{},{},{},{:.4f},{:.4f}\n", truth.kind, truth.curtained ? "curtained" : "open",
                to_string(opening.view), k, kOutward[k] * fit.edge_error_m[k], opening.edge_sigma_m[k]);
+  fmt::print("reveal,{},{},{},{},{:.4f},{:.4f},{:.4f}\n", truth.kind, truth.curtained ? "curtained" : "open",
+             to_string(opening.view), opening.reveal_complete ? "complete" : "seen", opening.reveal_depth_m,
+             opening.reveal_sigma_m, truth.thickness_m);
 }
 
 void list_errors(const Opening& opening, const Wanted& wanted, const Fit& fit, const TrueOpening& truth) {
@@ -372,11 +375,12 @@ double share_below(const std::vector<double>& values, double bound) {
 void summarise(const std::string& name, const Tally& t) {
   fmt::print(
       "# {}: recall seen through {:.1f} % ({} of {}), all in view {:.1f} % ({} of {}), precision {:.1f} % "
-      "({} wrong of {}), IoU {:.3f}, corner median {:.1f} mm, 95 % {:.1f} mm; edges within 1 sigma {:.1f} %, "
+      "({} wrong, {} right), IoU {:.3f}, corner median {:.1f} mm, 95 % {:.1f} mm; edges within 1 sigma "
+      "{:.1f} %, "
       "2 sigma {:.1f} %; wall thickness from {} reveals: median error {:.1f} mm, within 2 sigma {:.1f} %; "
       "{:.2f} s\n",
       name, percent(t.found_through, t.through), t.found_through, t.through, percent(t.found, t.in_view),
-      t.found, t.in_view, percent(t.detected - t.wrong, t.detected), t.wrong, t.detected, mean(t.iou),
+      t.found, t.in_view, percent(t.right, t.right + t.wrong), t.wrong, t.right, mean(t.iou),
       1e3 * quantile(t.corner_m, 0.5), 1e3 * quantile(t.corner_m, 0.95), share_below(t.sigmas, 1.0),
       share_below(t.sigmas, 2.0), t.reveal_m.size(), 1e3 * quantile(t.reveal_m, 0.5),
       share_below(t.reveal_sigmas, 2.0), t.seconds);

@@ -20,14 +20,19 @@ constexpr double kCorner_m = 0.05;    // left out at either end of a side
 constexpr double kMaxReach_m = 0.12;  // of a side from where crossings and wall part
 constexpr double kMaxSlope = 0.5;     // of splayed sides, metres per metre
 constexpr double kSlopeStep = 0.05;
-constexpr double kSplayGain = 1.3;  // a splayed side must fit that much better than a straight one
-constexpr double kFloor_m = 0.002;  // no side is known better
+constexpr double kSplayGain = 1.3;    // a splayed side must fit that much better than a straight one
+constexpr double kMinGraze = 0.08;    // tangent between ray and side: beams that touch an edge run along it
+constexpr double kMaxStart_m = 0.05;  // a side begins at the wall's face; a frame's bar does not
+constexpr double kFloor_m = 0.002;    // no side is known better
 
 /// A point seen through the opening, as one of its sides sees it.
 struct SidePoint {
   double across = 0.0;   ///< of the point, growing outwards
   double crossed = 0.0;  ///< of its ray on the wall's face
   double depth = 0.0;    ///< behind the wall's face
+
+  /// Tangent of the angle at which the ray meets a side of this slope.
+  [[nodiscard]] double graze(double slope) const { return (across - crossed) / depth - slope; }
 };
 
 struct Line {
@@ -57,7 +62,9 @@ class WindowScore {
 
 Line best_line(const std::vector<SidePoint>& points, double slope, double width) {
   std::vector<std::pair<double, double>> sorted;  // place, depth
-  for (const SidePoint& p : points) sorted.emplace_back(p.across - slope * p.depth, p.depth);
+  for (const SidePoint& p : points) {
+    if (p.graze(slope) >= kMinGraze) sorted.emplace_back(p.across - slope * p.depth, p.depth);
+  }
   std::sort(sorted.begin(), sorted.end());
   WindowScore window;
   Line best{0.0, slope, 0.0};
@@ -121,9 +128,18 @@ FittedLine refined(const std::vector<SidePoint>& points, const Line& line, doubl
 std::vector<SidePoint> near_line(const std::vector<SidePoint>& points, const Line& line, double within_m) {
   std::vector<SidePoint> near;
   for (const SidePoint& p : points) {
+    if (p.graze(line.slope) < kMinGraze) continue;
     if (std::abs(p.across - line.place - line.slope * p.depth) <= within_m) near.push_back(p);
   }
   return near;
+}
+
+/// Depth at which a side begins: a few points nearer are strays.
+double start_of(const std::vector<SidePoint>& points) {
+  std::vector<double> depths;
+  for (const SidePoint& p : points) depths.push_back(p.depth);
+  std::nth_element(depths.begin(), depths.begin() + 1, depths.end());
+  return depths[1];
 }
 
 /// The deepest point reached without a gap.
@@ -163,7 +179,7 @@ class RevealFinder {
     const std::vector<SidePoint> all = points_of(side);
     const double place = outward(side) * place_of(rectangle_.box, side);
     const double sigma_m = rectangle_.sigma_m[static_cast<std::size_t>(side)];
-    const double reach_m = std::clamp(3.0 * sigma_m, 0.03, kMaxReach_m);
+    const double reach_m = std::min(2.5 * sigma_m + 0.01, kMaxReach_m);
     const double width_m = std::max(5.0 * noise_m_, 0.01);
     std::vector<SidePoint> near;
     for (const SidePoint& p : all) {
@@ -173,7 +189,7 @@ class RevealFinder {
     if (near.size() < kMinPoints) return {};
     const Line line = find_line(near, width_m);
     std::vector<SidePoint> on = near_line(near, line, width_m);
-    if (on.size() < kMinPoints || depths_of(on) < kMinBins) return {};
+    if (on.size() < kMinPoints || depths_of(on) < kMinBins || start_of(on) > kMaxStart_m) return {};
     const FittedLine fitted = refined(on, line, noise_m_);
     if (std::abs(fitted.line.place - place) > reach_m) return {};
     Reveal reveal;
@@ -225,12 +241,21 @@ class RevealFinder {
       if (beyond < 0.03 || before < 0.0) continue;
       passed.push_back(p.depth * before / (before + beyond));
     }
+    // Behind a frame the side often goes on a little wider.
+    constexpr double kContinued_m = 0.4;
+    constexpr double kSplay_m = 0.1;
+    constexpr std::ptrdiff_t kContinuedRays = 4;
     constexpr std::size_t kRays = 3;  // a stray one proves nothing
     if (passed.size() < kRays) return;
     std::nth_element(passed.begin(), passed.begin() + kRays - 1, passed.end());
     const double pass_m = passed[kRays - 1];
     const double gap_m = pass_m - reveal.depth_m;
     if (gap_m < -0.02 || gap_m > std::max(0.03, 1.5 * spacing_m_)) return;
+    const auto goes_on = std::count_if(all.begin(), all.end(), [&](const SidePoint& p) {
+      const double beyond = p.across - line.place - line.slope * p.depth;
+      return p.depth > pass_m && p.depth < pass_m + kContinued_m && beyond > 0.0 && beyond < kSplay_m;
+    });
+    if (goes_on >= kContinuedRays) return;
     reveal.complete = true;
     reveal.depth_sigma_m = std::hypot(std::max(gap_m, 0.0) / std::sqrt(12.0), 0.004);
     reveal.depth_m += 0.5 * gap_m;
