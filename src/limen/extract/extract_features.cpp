@@ -8,11 +8,43 @@
 #include <utility>
 
 #include "limen/base/error.h"
+#include "limen/extract/automatic_threshold.h"
+#include "limen/extract/split_planes.h"
 
 namespace limen {
 namespace {
 
-/// Points behind the façades that belong to no plane yet, ascending.
+/// Which planes have most of their points behind walls.
+std::vector<bool> mostly_behind(const std::vector<PlanarPolygon>& planes,
+                                const std::vector<std::uint32_t>& points,
+                                const std::vector<std::int32_t>& labels) {
+  std::vector<std::size_t> behind(planes.size(), 0);
+  for (const std::uint32_t i : points) {
+    if (labels[i] >= 0) ++behind[static_cast<std::size_t>(labels[i])];
+  }
+  std::vector<bool> interior(planes.size());
+  for (std::size_t k = 0; k < planes.size(); ++k) interior[k] = 2 * behind[k] > planes[k].inliers;
+  return interior;
+}
+
+/// Takes the marked planes out: labels of their points become -1, all others move up.
+void remove_planes(const std::vector<bool>& marked, ExtractedFeatures& extracted) {
+  std::vector<std::int32_t> place(marked.size(), -1);
+  std::vector<PlanarPolygon>& planes = extracted.features.planes;
+  std::vector<PlanarPolygon> kept;
+  for (std::size_t k = 0; k < marked.size(); ++k) {
+    if (marked[k]) continue;
+    place[k] = static_cast<std::int32_t>(kept.size());
+    kept.push_back(std::move(planes[k]));
+  }
+  planes = std::move(kept);
+  for (std::int32_t& label : extracted.labels) {
+    if (label >= 0) label = place[static_cast<std::size_t>(label)];
+  }
+  for (int& facade : extracted.facades) facade = place[static_cast<std::size_t>(facade)];
+}
+
+/// Points behind the walls that belong to no plane, ascending.
 std::vector<std::uint32_t> unlabelled(const std::vector<std::uint32_t>& points,
                                       const std::vector<std::int32_t>& labels) {
   std::vector<std::uint32_t> left;
@@ -21,17 +53,8 @@ std::vector<std::uint32_t> unlabelled(const std::vector<std::uint32_t>& points,
   return left;
 }
 
-/// Planes most of whose points lie behind a façade are interior.
-void mark_interior(std::vector<PlanarPolygon>& planes, const std::vector<std::uint32_t>& points,
-                   const std::vector<std::int32_t>& labels) {
-  std::vector<std::size_t> behind(planes.size(), 0);
-  for (const std::uint32_t i : points) {
-    if (labels[i] >= 0) ++behind[static_cast<std::size_t>(labels[i])];
-  }
-  for (std::size_t k = 0; k < planes.size(); ++k) planes[k].interior = 2 * behind[k] > planes[k].inliers;
-}
-
-/// The walls, the points behind them, and the planes among these that were too small for the whole scan.
+/// The walls, the points behind them, and the planes among these: found anew, as finely as the noise allows,
+/// for there are few points and the relief of façades is not theirs.
 void add_interior(const Scan& scan, const ExtractOptions& options, ExtractedFeatures& extracted,
                   Monitor& monitor) {
   Features& features = extracted.features;
@@ -41,19 +64,31 @@ void add_interior(const Scan& scan, const ExtractOptions& options, ExtractedFeat
   const std::vector<std::uint32_t> behind = point_indices(
       find_interior_points(scan, features.planes, extracted.facades, options.interior.points, monitor));
   extracted.interior_points = behind.size();
+  std::vector<bool> marked = mostly_behind(features.planes, behind, extracted.labels);
+  // A wall that others look through stays what it is.
+  for (const int facade : extracted.facades) marked[static_cast<std::size_t>(facade)] = false;
+  remove_planes(marked, extracted);
   const std::vector<std::uint32_t> left = unlabelled(behind, extracted.labels);
+  const Scan part = subset(scan, left);
   GrowOptions grow = options.grow;
   grow.min_inliers = options.interior.min_inliers;
-  grow.inlier_threshold_m = features.inlier_threshold_m;
-  const Scan part = subset(scan, left);
-  const GrownPlanes grown = grow_planes(part, grow, monitor);
+  if (scan.mobile()) {
+    AutomaticThresholdOptions by_noise;
+    by_noise.factors = {1.0};
+    grow.inlier_threshold_m =
+        std::min(features.inlier_threshold_m, automatic_threshold(part, grow, by_noise, monitor));
+  } else {
+    grow.inlier_threshold_m = features.inlier_threshold_m;
+  }
+  PlaneLabels grown = grow_planes(part, grow, monitor).planes;
+  if (scan.mobile()) grown = split_planes(part, grown);
   const auto first = static_cast<std::int32_t>(features.planes.size());
   for (std::size_t k = 0; k < left.size(); ++k) {
-    if (grown.planes.labels[k] >= 0) extracted.labels[left[k]] = first + grown.planes.labels[k];
+    if (grown.labels[k] >= 0) extracted.labels[left[k]] = first + grown.labels[k];
   }
-  const std::vector<PlanarPolygon> planes = make_polygons(part, grown.planes, options.polygons, monitor);
+  std::vector<PlanarPolygon> planes = make_polygons(part, grown, options.polygons, monitor);
+  for (PlanarPolygon& plane : planes) plane.interior = true;
   features.planes.insert(features.planes.end(), planes.begin(), planes.end());
-  mark_interior(features.planes, behind, extracted.labels);
 }
 
 }  // namespace

@@ -9,7 +9,10 @@ namespace limen {
 namespace {
 
 constexpr double kLeastRevealSigmaM = 0.01;
-constexpr double kHoldingShare = 0.15;  // of an opening's area: the surface its edges are worth as a hold
+constexpr double kHoldingShare = 0.15;   // of an opening's area: the surface its edges are worth as a hold
+constexpr double kAnglePerGate = 2.0;    // rad/m: how far the normals of one surface may differ
+constexpr double kLeastAngleRad = 0.07;  // the normals of small planes are not better than this
+constexpr double kMostAngleRad = 0.3;
 constexpr double kTurnGateRad = 0.15;
 
 class Collector {
@@ -45,6 +48,8 @@ class Collector {
     query.surface_m = gate;
     query.free_m = 1e9;
     const double noise = std::max(scan.features->noise_m, 0.0005);
+    // The nearer the planes, the better their normals have to agree.
+    const double least_cosine = std::cos(std::clamp(kAnglePerGate * gate, kLeastAngleRad, kMostAngleRad));
     const std::vector<SurfaceSample>& samples = scan.features->samples;
     const std::size_t stride = options_.samples == 0 ? 1 : 1 + samples.size() / options_.samples;
     for (std::size_t i = 0; i < samples.size(); i += stride) {
@@ -56,6 +61,7 @@ class Collector {
       const Sight sight = judge.space->look(query);
       if (sight.kind != SightKind::surface || sight.plane < 0) continue;
       const PlanarPolygon& plane = judge.features->planes[static_cast<std::size_t>(sight.plane)];
+      if (std::abs(query.normal.dot(plane.plane.normal)) < least_cosine) continue;
       Contact contact;
       contact.sigma_m = sigma_of(sample, noise);
       contact.gate_m = gate;

@@ -7,7 +7,7 @@
 
 #include "limen/base/angles.h"
 #include "limen/extract/estimate_centre.h"
-// OPENINGS
+#include "limen/extract/openings.h"
 #include "limen/extract/panorama.h"
 #include "limen/extract/scanner_up.h"
 #include "limen/extract/voxel_map.h"
@@ -83,7 +83,8 @@ void look_around(const Scan& scan, const ExtractOptions& options, PreparedScan& 
   } else {
     prepared.space = std::make_unique<VoxelMap>(*seen, features);
   }
-  if (prepared.upright && seen->centre_known()) (void)0;
+  if (prepared.upright && seen->centre_known())
+    features.openings = find_openings(*seen, prepared.extracted, Vector3d::UnitZ(), {}, monitor);
 }
 
 }  // namespace

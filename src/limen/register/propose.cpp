@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <iterator>
 
+#include "limen/match/enumerate_hybrid_poses.h"
+
 namespace limen {
 namespace {
 
@@ -39,6 +41,23 @@ std::vector<ThroughPair> through_pairs(const Features& source, const Features& t
   return pairs;
 }
 
+/// Poses that lay openings on openings; the shift across the wall from planes that both scans saw, or
+/// assumed.
+std::vector<PoseCandidate> opening_candidates(const Features& source, const Features& target,
+                                              const ProposalOptions& options) {
+  HybridPoseOptions hybrid;
+  hybrid.openings.gravity_known = options.planes.gravity_known;
+  if (options.wall_thickness_m > 0) hybrid.wall_thickness_m = options.wall_thickness_m;
+  const std::vector<OpeningPose> poses = enumerate_opening_poses(source, target, hybrid.openings);
+  std::vector<PoseCandidate> all;
+  for (const OpeningPose& pose : poses)
+    all.push_back({pose.target_from_source, pose.support_m, pose.thickness_held ? 0 : 1});
+  if (options.method == Method::openings) return all;
+  for (const HybridPose& pose : enumerate_hybrid_poses(source, target, poses, hybrid))
+    all.push_back({pose.target_from_source, pose.support_m2, pose.free_translations});
+  return all;
+}
+
 }  // namespace
 
 const char* to_string(Method method) {
@@ -65,6 +84,8 @@ std::vector<PoseCandidate> propose_poses(const Features& source, const Features&
     for (const ThroughPair& pair : through_pairs(source, target))
       append(all, enumerate_poses(pair.source, pair.target, options.planes));
   }
+  if (options.method != Method::polygons && options.planes.gravity_known)
+    append(all, opening_candidates(source, target, options));
   return all;
 }
 

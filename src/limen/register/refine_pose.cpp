@@ -7,6 +7,7 @@
 #include <map>
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 
 #include "limen/base/error.h"
 #include "limen/register/pose_contacts.h"
@@ -15,6 +16,9 @@ namespace limen {
 namespace {
 
 using Vector6d = Eigen::Matrix<double, 6, 1>;
+
+constexpr double kWeakShare = 1e-4;  // of the information: less is the planes' error
+constexpr double kGateSigma = 0.2;   // deviation of a tile far from the goal, as a share of the gate
 
 class Refiner {
  public:
@@ -63,21 +67,55 @@ class Refiner {
     return std::abs(x) >= 1.0 ? 0.0 : (1.0 - x * x) * (1.0 - x * x);
   }
 
-  /// One Gauss-Newton step.
-  static void adjust(const std::vector<Contact>& contacts, RefinedPose& refined) {
-    const Vector3d centre = middle_of(contacts);
+  /// Sums of one kind of evidence.
+  struct NormalEquations {
     Matrix6d normal = Matrix6d::Zero();
     Vector6d right = Vector6d::Zero();
-    for (const Contact& contact : contacts) {
-      const double weight =
-          robust_weight(contact.residual_m, contact.gate_m) / (contact.sigma_m * contact.sigma_m);
-      const Vector6d row = row_of(contact, centre);
+
+    void add(const Vector6d& row, double residual, double weight) {
       normal += weight * row * row.transpose();
-      right += weight * contact.residual_m * row;
+      right += weight * residual * row;
     }
-    // Directions without information stay where they are.
-    const double damping = 1e-4 * normal.trace();
-    const Vector6d step = (normal + damping * Matrix6d::Identity()).ldlt().solve(right);
+  };
+
+  /// Planes of one direction seem to hold the others a little, by the errors of their normals: what is that
+  /// weak is left out, so that the pose stays where it is there, or goes where openings want it.
+  static NormalEquations without_weak(const NormalEquations& planes) {
+    // Turns are measured by what they move at the typical lever, so that they compare with shifts.
+    const double lever = std::sqrt(planes.normal.topLeftCorner<3, 3>().trace() /
+                                   std::max(1e-12, planes.normal.bottomRightCorner<3, 3>().trace()));
+    Vector6d unit;
+    unit << Vector3d::Constant(1.0 / std::max(0.1, lever)), Vector3d::Ones();
+    const Matrix6d scaled = unit.asDiagonal() * planes.normal * unit.asDiagonal();
+    const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(scaled);
+    NormalEquations kept;
+    for (Eigen::Index k = 0; k < 6; ++k) {
+      if (solver.eigenvalues()[k] < kWeakShare * scaled.trace()) continue;
+      const Vector6d d = solver.eigenvectors().col(k);
+      const Vector6d back = d.cwiseQuotient(unit);
+      kept.normal += solver.eigenvalues()[k] * back * back.transpose();
+      kept.right += d.dot(unit.cwiseProduct(planes.right)) * back;
+    }
+    return kept;
+  }
+
+  /// One Gauss-Newton step. Far from the goal a plane says no more than its gate allows: else the first tiles
+  /// that happen to meet would outweigh every opening.
+  static void adjust(const std::vector<Contact>& contacts, RefinedPose& refined) {
+    const Vector3d centre = middle_of(contacts);
+    NormalEquations planes;
+    NormalEquations openings;
+    for (const Contact& contact : contacts) {
+      const bool plane = contact.source_plane >= 0;
+      const double sigma = plane ? std::hypot(contact.sigma_m, kGateSigma * contact.gate_m) : contact.sigma_m;
+      (plane ? planes : openings)
+          .add(row_of(contact, centre), contact.residual_m,
+               robust_weight(contact.residual_m, contact.gate_m) / (sigma * sigma));
+    }
+    const NormalEquations held = without_weak(planes);
+    const Matrix6d normal = held.normal + openings.normal;
+    const double damping = 1e-9 * normal.trace();
+    const Vector6d step = (normal + damping * Matrix6d::Identity()).ldlt().solve(held.right + openings.right);
     const Rigid3 move{rotation_exp(step.head<3>()), Vector3d::Zero()};
     Rigid3& pose = refined.target_from_source;
     pose.rotation = nearest_rotation(move.rotation * pose.rotation);

@@ -101,6 +101,7 @@ ScoreOptions fine_score(const ScanView& source, const ScanView& target) {
   const double noise = std::max(source.features->noise_m, target.features->noise_m);
   fine.surface_m = std::clamp(4.0 * noise, 0.02, 0.05);
   fine.free_m = fine.surface_m + 0.03;
+  fine.opening_m = 0.1;
   return fine;
 }
 
