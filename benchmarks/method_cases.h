@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -95,12 +96,14 @@ inline std::vector<PairPlan> plan_pairs(const std::vector<std::string>& kinds, c
   return plans;
 }
 
-/// Façades in which the station's room has a window that the station sees through.
+/// Façades in which the station sees at least two fifths of one open window of its room, and the street scan
+/// sees something through the same. Less is no view: nobody would set up a scanner there to look out.
 inline std::size_t facades_seen(const Truth& truth) {
+  constexpr int kCells = 26;  // of 64
   std::vector<Vector3d> normals;
   for (const TrueOpening& opening : truth.openings) {
     if (!opening.exterior || opening.curtained || opening.rooms[0] != truth.scans[0].room) continue;
-    if (opening.sights[0].through == 0) continue;
+    if (std::popcount(opening.sights[0].cells) < kCells || opening.sights.back().through == 0) continue;
     const bool known = std::any_of(normals.begin(), normals.end(),
                                    [&](const Vector3d& n) { return n.dot(opening.normal) > 0.999; });
     if (!known) normals.push_back(opening.normal);

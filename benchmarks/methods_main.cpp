@@ -108,6 +108,8 @@ constexpr const char* kPage =
 
 Made by `scripts/compare_methods{}`; do not edit. Simulated pairs of one indoor station and one street scan, exact truth.
 
+The station sees at least two fifths of one open window in each façade counted here; seeds without are passed over.
+
 - easy: the room has open windows in two façades, curtains on 10 % of all windows
 - medium: one façade, 30 % curtains
 - hard: one façade, 60 % curtains, the street scan's trajectory drifts by 1 cm
