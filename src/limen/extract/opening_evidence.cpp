@@ -268,6 +268,7 @@ std::vector<OpeningWall> opening_walls(const Scan& scan, const ExtractedFeatures
     for (std::size_t j = 0; j < polygons.size(); ++j) {
       if (wall.planes[j] == static_cast<char>(PlaneRole::member)) taken[j] = 1;
     }
+    if (wall.box.high.y() - wall.box.low.y() < options.min_wall_m) continue;
     mark_relief(wall, polygons, scan.mobile() ? kMobileRelief_m : kStaticRelief_m);
     set_spacing(wall, polygons);
     walls.push_back(std::move(wall));

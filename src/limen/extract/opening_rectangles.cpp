@@ -59,7 +59,7 @@ Separator separate(std::vector<Mark> marks, double from, double to) {
   }
   const bool wall_met = std::any_of(marks.begin() + static_cast<std::ptrdiff_t>(best_at), marks.end(),
                                     [](const Mark& mark) { return mark.wall; });
-  if (!wall_met) return {marks[best_at - 1].at, kUnbounded_m, true};
+  if (!wall_met || best_at == 0) return {marks[best_at == 0 ? 0 : best_at - 1].at, kUnbounded_m, true};
   double weight = 0.0;
   double first = 0.0;
   double second = 0.0;
@@ -122,15 +122,40 @@ class Fitter {
       if (p[other] < low || p[other] > high || t < from || t > to) continue;
       marks.push_back({t, sample.kind == SampleKind::wall});
     }
-    return separate(std::move(marks), from, to);
+    Separator found = separate(std::move(marks), from, to);
+    if (found.found && found.sigma_m >= kUnbounded_m)
+      found.place = behind_occluder(found.place, side, {low, high});
+    return found;
+  }
+
+  /// Where nothing was seen between the opening and the next wall the side lies somewhere in between.
+  [[nodiscard]] double behind_occluder(double from, Side side, const Vector2d& along) const {
+    constexpr double kReach_m = 1.0;
+    constexpr std::size_t kWalls = 4;
+    constexpr double kHiddenShare = 0.25;  // an open leaf hides more of the wall than of its opening
+    const Eigen::Index axis = axis_of(side);
+    const double sign = outward(side);
+    Box2 box;
+    box.add(Vector2d::Unit(axis) * sign * (from + 1e-6) + Vector2d::Unit(1 - axis) * along.x());
+    box.add(Vector2d::Unit(axis) * sign * (from + kReach_m) + Vector2d::Unit(1 - axis) * along.y());
+    std::vector<double> walls;
+    for (const std::uint32_t i : grid_.samples_in(box)) {
+      const WallSample& sample = evidence_.samples[i];
+      if (sample.kind == SampleKind::wall) walls.push_back(sign * (axis == 0 ? sample.u : sample.v));
+    }
+    if (walls.size() < kWalls) return from;
+    std::nth_element(walls.begin(), walls.begin() + kWalls - 1, walls.end());
+    return from + kHiddenShare * (walls[kWalls - 1] - from);
   }
 
   const WallEvidence& evidence_;
   const OpeningGrid& grid_;
 };
 
-/// Part of a side beyond which the first thing seen is wall.
+/// Part of a side beyond which the first thing seen is wall, among where anything was seen; where little was,
+/// among all.
 double bounded_share(const Box2& box, Side side, const OpeningGrid& grid) {
+  constexpr double kEnough = 0.25;
   const double spacing_m = grid.spacing_m(0.5 * (box.low + box.high));
   const double support_m = std::max(kMinSupport_m, 3.0 * spacing_m);
   const int steps = std::max(2, static_cast<int>(std::ceil(support_m / grid.cell_m())));
@@ -140,15 +165,21 @@ double bounded_share(const Box2& box, Side side, const OpeningGrid& grid) {
   const int last = upright ? grid.row(box.high.y()) : grid.column(box.high.x());
   const int start = upright ? grid.column(place_of(box, side)) : grid.row(place_of(box, side));
   int walls = 0;
+  int others = 0;
   for (int k = first; k <= last; ++k) {
-    for (int s = 0; s <= steps; ++s) {
+    int wall = 0;
+    int open = 0;
+    for (int s = 0; s <= steps && wall == 0; ++s) {
       const int across = start + direction * s;
-      if ((upright ? grid.at(across, k) : grid.at(k, across)) != OpeningGrid::Cell::wall) continue;
-      ++walls;
-      break;
+      const OpeningGrid::Cell cell = upright ? grid.at(across, k) : grid.at(k, across);
+      wall += cell == OpeningGrid::Cell::wall ? 1 : 0;
+      open += cell == OpeningGrid::Cell::open && s >= 2 ? 1 : 0;
     }
+    walls += wall;
+    others += wall == 0 && open > 0 ? 1 : 0;
   }
-  return last < first ? 0.0 : static_cast<double>(walls) / (last - first + 1);
+  const double share = last < first ? 0.0 : static_cast<double>(walls) / (last - first + 1);
+  return share < kEnough ? share : static_cast<double>(walls) / (walls + others);
 }
 
 bool overlap(const Box2& a, const Box2& b) {

@@ -22,6 +22,7 @@
 
 #include "limen/base/error.h"
 #include "limen/base/parallel.h"
+#include "limen/extract/opening_curtains.h"
 #include "limen/extract/opening_evidence.h"
 #include "limen/extract/opening_grid.h"
 #include "limen/extract/opening_rectangles.h"
@@ -35,7 +36,7 @@ constexpr std::size_t kMinEvidence = 12;  // rays
 constexpr double kThroughShare = 0.05;
 constexpr double kFoot_m = 0.15;  // a door's lower end is no higher above the foot of the wall beside it
 
-/// The lowest wall beside a rectangle, within an opening's breadth; high where there is none.
+/// The lowest wall beside a rectangle, within an opening's breadth; very low where there is none.
 double foot_beside(const WallEvidence& evidence, const OpeningGrid& grid, const Box2& box) {
   constexpr double kBeside_m = 0.6;
   Box2 beside = box;
@@ -49,44 +50,29 @@ double foot_beside(const WallEvidence& evidence, const OpeningGrid& grid, const 
       heights.push_back(sample.v);
   }
   constexpr std::size_t kEnough = 5;
-  if (heights.size() < kEnough) return 1e9;
+  if (heights.size() < kEnough) return -1e9;
   std::nth_element(heights.begin(), heights.begin() + kEnough - 1, heights.end());
   return heights[kEnough - 1];
 }
 
-bool acceptable(const OpeningRectangle& rectangle, const WallEvidence& evidence, const OpeningGrid& grid,
-                const OpeningOptions& options) {
-  const Vector2d size = rectangle.box.high - rectangle.box.low;
-  if (size.x() < options.min_width_m || size.x() > options.max_width_m) return false;
-  if (size.y() < options.min_height_m || size.y() > options.max_height_m) return false;
-  if (rectangle.evidence < kMinEvidence || rectangle.fill < options.min_fill) return false;
-  if (rectangle.known < kMinKnown) return false;
-  int bounded = 0;
-  for (const double share : rectangle.bounded) bounded += share >= options.min_bounded ? 1 : 0;
-  const auto has = [&](Side side) {
-    return rectangle.bounded[static_cast<std::size_t>(side)] >= options.min_bounded;
-  };
-  if (bounded >= 3) return true;
-  // A door ends at the floor; what has no lintel is a passage between two walls.
-  return bounded == 2 && has(Side::top) && !has(Side::bottom) &&
-         std::abs(rectangle.box.low.y() - foot_beside(evidence, grid, rectangle.box)) < kFoot_m;
+/// The middle of an opening, and whether two are one hole seen in two planes of one wall (its face and its
+/// frames, a plinth and the wall behind).
+Vector3d middle_of(const Opening& opening) {
+  return 0.25 * (opening.corners[0] + opening.corners[1] + opening.corners[2] + opening.corners[3]);
 }
 
-Opening make_opening(const OpeningRectangle& rectangle, const OpeningWall& wall,
-                     const OpeningOptions& /*options*/) {
-  Opening opening;
-  const Box2& b = rectangle.box;
-  opening.corners[0] = wall.frame.to_space(b.low);
-  opening.corners[1] = wall.frame.to_space({b.high.x(), b.low.y()});
-  opening.corners[2] = wall.frame.to_space(b.high);
-  opening.corners[3] = wall.frame.to_space({b.low.x(), b.high.y()});
-  opening.facade = wall.base;
-  opening.evidence = rectangle.evidence;
-  const double share = static_cast<double>(rectangle.through) /
-                       static_cast<double>(std::max<std::size_t>(1, rectangle.evidence));
-  opening.view = share >= kThroughShare ? OpeningView::through : OpeningView::recess;
-  for (std::size_t k = 0; k < 4; ++k) opening.edge_sigma_m[k] = std::min(1.0, rectangle.sigma_m[k]);
-  return opening;
+bool same_hole(const Opening& a, const Opening& b) {
+  constexpr double kWall_m = 0.6;
+  const Vector3d u = (a.corners[1] - a.corners[0]).normalized();
+  const Vector3d v = (a.corners[3] - a.corners[0]).normalized();
+  const Vector3d other = (b.corners[1] - b.corners[0]).normalized();
+  if (u.dot(other) < 0.99) return false;
+  const Vector3d between = middle_of(b) - middle_of(a);
+  if (std::abs(between.dot(u.cross(v))) > kWall_m) return false;
+  const Vector2d half(
+      0.5 * (a.corners[1] - a.corners[0]).norm() + 0.5 * (b.corners[1] - b.corners[0]).norm(),
+      0.5 * (a.corners[3] - a.corners[0]).norm() + 0.5 * (b.corners[3] - b.corners[0]).norm());
+  return std::abs(between.dot(u)) < 0.7 * half.x() && std::abs(between.dot(v)) < 0.7 * half.y();
 }
 
 /// The height of the floor at an opening's foot in the wall's frame, where a level plane lies near there.
@@ -112,6 +98,43 @@ std::optional<double> floor_at(const Features& features, const OpeningWall& wall
   return height;
 }
 
+bool acceptable(const Features& features, const OpeningRectangle& rectangle, const WallEvidence& evidence,
+                const OpeningGrid& grid, const OpeningOptions& options) {
+  const Vector2d size = rectangle.box.high - rectangle.box.low;
+  if (size.x() < options.min_width_m || size.x() > options.max_width_m) return false;
+  if (size.y() < options.min_height_m || size.y() > options.max_height_m) return false;
+  if (rectangle.evidence < kMinEvidence || rectangle.fill < options.min_fill) return false;
+  if (rectangle.known < kMinKnown) return false;
+  int bounded = 0;
+  for (const double share : rectangle.bounded) bounded += share >= options.min_bounded ? 1 : 0;
+  const auto has = [&](Side side) {
+    return rectangle.bounded[static_cast<std::size_t>(side)] >= options.min_bounded;
+  };
+  if (bounded >= 3) return true;
+  // A door ends at the floor; what has no lintel is a passage between two walls.
+  return bounded == 2 && has(Side::top) && !has(Side::bottom) &&
+         (floor_at(features, evidence.wall, rectangle.box) ||
+          rectangle.box.low.y() < foot_beside(evidence, grid, rectangle.box) + kFoot_m);
+}
+
+Opening make_opening(const OpeningRectangle& rectangle, const OpeningWall& wall) {
+  Opening opening;
+  const Box2& b = rectangle.box;
+  opening.corners[0] = wall.frame.to_space(b.low);
+  opening.corners[1] = wall.frame.to_space({b.high.x(), b.low.y()});
+  opening.corners[2] = wall.frame.to_space(b.high);
+  opening.corners[3] = wall.frame.to_space({b.low.x(), b.high.y()});
+  opening.facade = wall.base;
+  opening.evidence = rectangle.evidence;
+  const double share = static_cast<double>(rectangle.through) /
+                       static_cast<double>(std::max<std::size_t>(1, rectangle.evidence));
+  opening.view = rectangle.curtain        ? OpeningView::hole
+                 : share >= kThroughShare ? OpeningView::through
+                                          : OpeningView::recess;
+  for (std::size_t k = 0; k < 4; ++k) opening.edge_sigma_m[k] = std::min(1.0, rectangle.sigma_m[k]);
+  return opening;
+}
+
 /// Takes the places of the sides from the reveals where they were seen, and a door's foot from the floor.
 void refine_sides(const Features& features, const OpeningWall& wall, const std::array<Reveal, 4>& reveals,
                   OpeningRectangle& rectangle) {
@@ -132,55 +155,47 @@ void refine_sides(const Features& features, const OpeningWall& wall, const std::
 }
 
 /// The wall's thickness where a side was seen to its end (the least: a door leaf may stand in line with one),
-/// else how far the deepest side goes.
+/// else how far the sides go at least: the lintel, or both the left and the right one.
 void set_reveal(const std::array<Reveal, 4>& reveals, Opening& opening) {
+  constexpr double kUnknownEnd_m = 0.02;
+  const auto& of = [&](Side side) -> const Reveal& { return reveals[static_cast<std::size_t>(side)]; };
   for (const Reveal& reveal : reveals) {
-    if (!reveal.found) continue;
-    const bool better = reveal.complete ? !opening.reveal_complete || reveal.depth_m < opening.reveal_depth_m
-                                        : !opening.reveal_complete && reveal.depth_m > opening.reveal_depth_m;
-    if (!better) continue;
+    if (!reveal.complete || (opening.reveal_complete && reveal.depth_m >= opening.reveal_depth_m)) continue;
     opening.reveal_depth_m = reveal.depth_m;
-    opening.reveal_sigma_m = reveal.complete ? reveal.depth_sigma_m : 0.02;
-    opening.reveal_complete = reveal.complete;
+    opening.reveal_sigma_m = reveal.depth_sigma_m;
+    opening.reveal_complete = true;
   }
+  if (opening.reveal_complete) return;
+  const double both_m = std::min(of(Side::left).depth_m, of(Side::right).depth_m);
+  opening.reveal_depth_m = std::max(of(Side::top).depth_m, both_m);
+  if (opening.reveal_depth_m > 0.0) opening.reveal_sigma_m = kUnknownEnd_m;
 }
 
 std::vector<Opening> openings_of(const Scan& scan, const Features& features, const WallEvidence& evidence,
                                  const OpeningOptions& options) {
-  const bool any = std::any_of(evidence.samples.begin(), evidence.samples.end(),
-                               [](const WallSample& sample) { return sample.kind == SampleKind::open; });
+  const bool any =
+      std::any_of(evidence.samples.begin(), evidence.samples.end(), [](const WallSample& sample) {
+        return sample.kind == SampleKind::open || sample.kind == SampleKind::cover;
+      });
   if (!any) return {};
   const OpeningGrid grid(evidence);
   std::vector<Opening> openings;
   for (OpeningRectangle& rectangle : opening_rectangles(evidence, grid, options)) {
-    if (!acceptable(rectangle, evidence, grid, options)) continue;
+    if (!acceptable(features, rectangle, evidence, grid, options)) continue;
     const std::array<Reveal, 4> reveals =
         find_reveals(scan, evidence, grid, rectangle, std::max(features.noise_m, 0.001));
     refine_sides(features, evidence.wall, reveals, rectangle);
-    openings.push_back(make_opening(rectangle, evidence.wall, options));
+    openings.push_back(make_opening(rectangle, evidence.wall));
     set_reveal(reveals, openings.back());
   }
+  for (const OpeningRectangle& rectangle :
+       curtained_rectangles(scan, evidence, grid, features.noise_m, options)) {
+    const Opening opening = make_opening(rectangle, evidence.wall);
+    const bool known = std::any_of(openings.begin(), openings.end(),
+                                   [&](const Opening& other) { return same_hole(other, opening); });
+    if (!known) openings.push_back(opening);
+  }
   return openings;
-}
-
-/// The middle of an opening, and whether two are one hole seen in two planes of one wall (its face and its
-/// frames, a plinth and the wall behind).
-Vector3d middle_of(const Opening& opening) {
-  return 0.25 * (opening.corners[0] + opening.corners[1] + opening.corners[2] + opening.corners[3]);
-}
-
-bool same_hole(const Opening& a, const Opening& b) {
-  constexpr double kWall_m = 0.4;
-  const Vector3d u = (a.corners[1] - a.corners[0]).normalized();
-  const Vector3d v = (a.corners[3] - a.corners[0]).normalized();
-  const Vector3d other = (b.corners[1] - b.corners[0]).normalized();
-  if (u.dot(other) < 0.99) return false;
-  const Vector3d between = middle_of(b) - middle_of(a);
-  if (std::abs(between.dot(u.cross(v))) > kWall_m) return false;
-  const Vector2d half(
-      0.5 * (a.corners[1] - a.corners[0]).norm() + 0.5 * (b.corners[1] - b.corners[0]).norm(),
-      0.5 * (a.corners[3] - a.corners[0]).norm() + 0.5 * (b.corners[3] - b.corners[0]).norm());
-  return std::abs(between.dot(u)) < 0.7 * half.x() && std::abs(between.dot(v)) < 0.7 * half.y();
 }
 
 /// Each hole once: in the wall with most points, which comes first.
@@ -199,6 +214,7 @@ std::vector<Opening> without_doubles(const std::vector<Opening>& openings) {
 
 void OpeningOptions::check() const {
   walls.check();
+  if (!(min_wall_m >= 0.0)) throw_bad_option("min_wall_m", min_wall_m, "at least 0");
   if (!(same_wall_m > 0.0)) throw_bad_option("same_wall_m", same_wall_m, "greater than 0");
   if (!(min_depth_m > 0.0)) throw_bad_option("min_depth_m", min_depth_m, "greater than 0");
   if (!(through_m > min_depth_m)) throw_bad_option("through_m", through_m, "greater than min_depth_m");

@@ -16,6 +16,7 @@ namespace limen {
 /// Which openings are looked for.
 struct OpeningOptions {
   FacadeCriteria walls = {radians(3.0), 0.8, 1.0, 0.3};  ///< in what openings are looked for
+  double min_wall_m = 2.2;     ///< height of a wall, all its planes together; furniture is lower; >= 0
   double same_wall_m = 0.03;   ///< planes this near to each other, facing one way, are one wall; > 0
   double min_depth_m = 0.03;   ///< points at least this far behind the wall lie in an opening; > 0
   double through_m = 0.6;      ///< farther behind they lie beyond it: view through; > min_depth_m
