@@ -21,6 +21,7 @@
 #include "limen/cli/command.h"
 #include "limen/cli/evaluate_command.h"
 #include "limen/cli/info_command.h"
+#include "limen/cli/openings_command.h"
 #include "limen/cli/planes_command.h"
 #include "limen/cli/register_command.h"
 #include "limen/cli/terminal.h"
@@ -73,6 +74,7 @@ int status_of(Fault fault) {
 void add_commands(CLI::App& app, Session& session) {
   add_info_command(app, session);
   add_planes_command(app, session);
+  add_openings_command(app, session);
   add_register_command(app, session);
   add_transform_command(app, session);
   add_evaluate_command(app, session);

@@ -40,9 +40,25 @@ Json plane_json(const PlanarPolygon& polygon, const Vector3d& local_origin) {
   return json;
 }
 
-}  // namespace
+Json opening_json(const Opening& opening, const Vector3d& local_origin) {
+  Json json;
+  json["corners"] = Json::array();
+  for (const Vector3d& corner : opening.corners)
+    json["corners"].push_back(json_of(Vector3d(local_origin + corner)));
+  json["facade"] = opening.facade;
+  json["evidence"] = opening.evidence;
+  json["view"] = to_string(opening.view);
+  json["edge_sigma_m"] = opening.edge_sigma_m;
+  json["reveal_depth_m"] = opening.reveal_depth_m;
+  json["reveal_sigma_m"] = opening.reveal_sigma_m;
+  json["reveal_complete"] = opening.reveal_complete;
+  json["outline"] = Json::array();
+  for (const Vector3d& point : opening.outline)
+    json["outline"].push_back(json_of(Vector3d(local_origin + point)));
+  return json;
+}
 
-std::string features_json(const Features& features, const InputSummary& input) {
+Json json_of_features(const Features& features, const InputSummary& input) {
   Json json;
   json["input"] = {{"path", input.path}, {"points", input.points}, {"centre_known", input.centre_known}};
   json["inlier_threshold_m"] = features.inlier_threshold_m;
@@ -50,6 +66,23 @@ std::string features_json(const Features& features, const InputSummary& input) {
   json["planes"] = Json::array();
   for (const PlanarPolygon& polygon : features.planes) {
     json["planes"].push_back(plane_json(polygon, features.local_origin));
+  }
+  return json;
+}
+
+}  // namespace
+
+std::string features_json(const Features& features, const InputSummary& input) {
+  Json json = json_of_features(features, input);
+  json["version"] = kVersion;
+  return to_text(json);
+}
+
+std::string openings_json(const Features& features, const InputSummary& input) {
+  Json json = json_of_features(features, input);
+  json["openings"] = Json::array();
+  for (const Opening& opening : features.openings) {
+    json["openings"].push_back(opening_json(opening, features.local_origin));
   }
   json["version"] = kVersion;
   return to_text(json);

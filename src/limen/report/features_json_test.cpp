@@ -55,6 +55,36 @@ TEST(FeaturesJson, OutlineKeepsItsSize) {
   EXPECT_NEAR((vector_of(hole[2]) - vector_of(hole[0])).norm(), 2.0 * std::sqrt(2.0), 1e-8);
 }
 
+TEST(FeaturesJson, OpeningsKeepEveryField) {
+  Features features = far_features();
+  Opening opening;
+  opening.corners[0] = Vector3d(1, 2, 3);
+  opening.corners[2] = Vector3d(2.125, 2, 4.5);
+  opening.facade = 0;
+  opening.evidence = 321;
+  opening.view = OpeningView::recess;
+  opening.edge_sigma_m[1] = 0.0625;
+  opening.reveal_depth_m = 0.25;
+  opening.reveal_sigma_m = 0.005;
+  opening.reveal_complete = true;
+  opening.outline = {Vector3d(0, 0, 1), Vector3d(1, 0, 1), Vector3d(1, 0, 2)};
+  features.openings = {opening};
+  const Json json = Json::parse(openings_json(features, {}));
+  ASSERT_EQ(json["openings"].size(), 1U);
+  const Json& it = json["openings"][0];
+  EXPECT_EQ(vector_of(it["corners"][0]), Vector3d(1050001, 6840002, 103));
+  EXPECT_EQ(vector_of(it["corners"][2]), Vector3d(1050002.125, 6840002, 104.5));
+  EXPECT_EQ(it["facade"], 0);
+  EXPECT_EQ(it["evidence"], 321);
+  EXPECT_EQ(it["view"], "recess");
+  EXPECT_EQ(it["edge_sigma_m"], Json({1.0, 0.0625, 1.0, 1.0}));
+  EXPECT_EQ(it["reveal_depth_m"], 0.25);
+  EXPECT_EQ(it["reveal_sigma_m"], 0.005);
+  EXPECT_EQ(it["reveal_complete"], true);
+  EXPECT_EQ(vector_of(it["outline"][2]), Vector3d(1050001, 6840000, 102));
+  EXPECT_EQ(json["planes"].size(), 1U);
+}
+
 TEST(FeaturesJson, NoPlanesIsAnEmptyList) {
   const Json json = Json::parse(features_json({}, {}));
   EXPECT_TRUE(json["planes"].is_array());
