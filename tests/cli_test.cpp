@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
 // The command line as a script meets it: statuses, what goes to stdout, what to stderr.
+#include <cmath>
+
 #include "run_program.h"
 #include <nlohmann/json.hpp>
 
@@ -37,11 +39,27 @@ class CliTest : public ProgramTest {
   }
 };
 
+/// A wall at x = 2.5 m with a window of 1.2 m x 1.4 m about its middle, and what is seen through it; all
+/// moved along x by `shift_m`.
+std::string window_room(double shift_m) {
+  std::string text;
+  for (double y = -2.0; y < 2.0; y += 0.025) {
+    for (double z = -1.5; z < 1.5; z += 0.025) {
+      const double share = std::abs(y) < 0.6 && std::abs(z) < 0.7 ? 2.0 : 1.0;
+      text += std::to_string(2.5 * share + shift_m) + " " + std::to_string(share * y) + " " +
+              std::to_string(share * z) + "\n";
+      text += std::to_string(-2.5 + shift_m) + " " + std::to_string(y) + " " + std::to_string(z) + "\n";
+    }
+  }
+  return text;
+}
+
 TEST_F(CliTest, HelpEverywhere) {
   const ProgramRun all = run({"--help"});
   EXPECT_EQ(all.status, 0);
   EXPECT_EQ(all.err, "");
-  for (const std::string command : {"info", "planes", "register", "transform", "simulate", "evaluate"}) {
+  for (const std::string command :
+       {"info", "planes", "openings", "register", "transform", "simulate", "evaluate"}) {
     EXPECT_NE(all.out.find("\n  " + command), std::string::npos) << command;
     const ProgramRun help = run({command, "--help"});
     EXPECT_EQ(help.status, 0) << command;
@@ -106,6 +124,36 @@ TEST_F(CliTest, PlanesOfARoomAreSix) {
     EXPECT_LT(plane["rms_m"].get<double>(), 1e-4);
     EXPECT_EQ(plane["outline"].size(), 1U) << "no holes";
   }
+}
+
+TEST_F(CliTest, OpeningsOfAWallWithOneWindowAreOne) {
+  write_whole(work() / "wall.xyz", window_room(0.0));
+  const ProgramRun done =
+      run({"openings", "wall.xyz", "-o", "openings.json", "--origin", "0,0,0", "--json", "--quiet"});
+  EXPECT_EQ(done.status, 0);
+  EXPECT_EQ(done.err, "");
+  EXPECT_EQ(done.out, read_whole(work() / "openings.json"));
+  const Json json = Json::parse(done.out);
+  ASSERT_EQ(json["openings"].size(), 1U);
+  const Json& opening = json["openings"][0];
+  EXPECT_EQ(opening["view"], "through");
+  // Seen from the middle of the room, y runs to the left.
+  const std::vector<std::vector<double>> corners = {
+      {2.5, 0.6, -0.7}, {2.5, -0.6, -0.7}, {2.5, -0.6, 0.7}, {2.5, 0.6, 0.7}};
+  for (std::size_t k = 0; k < 4; ++k) {
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      EXPECT_NEAR(opening["corners"][k][axis].get<double>(), corners[k][axis], 0.02) << k << " " << axis;
+    EXPECT_LT(opening["edge_sigma_m"][k].get<double>(), 0.02);
+  }
+}
+
+TEST_F(CliTest, OpeningsNeedThePlaceOfTheScanner) {
+  write_whole(work() / "far.xyz", window_room(100.0));
+  const ProgramRun done = run({"openings", "far.xyz", "-o", "openings.json"});
+  EXPECT_EQ(done.status, 2);
+  EXPECT_EQ(done.out, "");
+  EXPECT_NE(done.err.find("--origin"), std::string::npos) << done.err;
+  EXPECT_FALSE(std::filesystem::exists(work() / "openings.json"));
 }
 
 TEST_F(CliTest, SameBytesForAnyNumberOfThreads) {
