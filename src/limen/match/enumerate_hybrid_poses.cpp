@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <utility>
 
 #include "limen/base/angles.h"
 #include "limen/base/error.h"
@@ -71,9 +73,14 @@ class HybridEnumerator {
 
   /// All poses of one opening pose, the best held first.
   [[nodiscard]] std::vector<HybridPose> poses_of(const OpeningPose& opening) const {
-    if (opening.sides == WallSides::same) {  // both scans saw the same face: nothing is open
-      return {at_thickness(opening, opening.thickness_m, ThicknessSource::planes)};
+    if (opening.sides == WallSides::same) {  // nothing is open
+      std::vector<HybridPose> poses = {
+          at_thickness(opening, opening.thickness_m, ThicknessSource::same_face)};
+      poses.front().support_m2 = support_at(shifts_near(opening, 0.0, 0.0), 0.0);
+      return poses;
     }
+    const auto shifts = shifts_near(opening, opening.thickness_m - options_.openings.max_thickness_m,
+                                    opening.thickness_m - options_.openings.min_thickness_m);
     std::vector<HybridPose> poses;
     const auto add = [&](const HybridPose& pose) {
       const bool known = std::any_of(poses.begin(), poses.end(), [&](const HybridPose& other) {
@@ -85,7 +92,7 @@ class HybridEnumerator {
       add(at_thickness(opening, *options_.wall_thickness_m, ThicknessSource::user));
     }
     if (opening.thickness_held) add(at_thickness(opening, opening.thickness_m, ThicknessSource::openings));
-    for (const HybridPose& pose : held_by_planes(opening)) add(pose);
+    for (const HybridPose& pose : held_by_planes(opening, shifts)) add(pose);
     if (const auto depth = reveal_thickness(source_, target_, opening)) {
       add(at_thickness(opening, *depth, ThicknessSource::reveals));
     }
@@ -94,23 +101,39 @@ class HybridEnumerator {
         add(at_thickness(opening, thickness, ThicknessSource::assumed));
       }
     }
+    for (HybridPose& pose : poses)
+      pose.support_m2 = support_at(shifts, opening.thickness_m - pose.thickness_m);
     return poses;
   }
 
  private:
+  /// Shifts along the normal that planes ask for. Towards the target's scanner the wall becomes thinner by as
+  /// much.
+  [[nodiscard]] std::vector<PlaneShift> shifts_near(const OpeningPose& opening, double low,
+                                                    double high) const {
+    return finder_.along(opening.target_from_source, opening.wall_normal, low - options_.offset_tolerance_m,
+                         high + options_.offset_tolerance_m);
+  }
+
+  /// Overlap of the planes that agree with a shift.
+  [[nodiscard]] double support_at(const std::vector<PlaneShift>& shifts, double shift_m) const {
+    double sum = 0.0;
+    for (const PlaneShift& shift : shifts) {
+      const double off = (shift.shift_m - shift_m) / options_.offset_tolerance_m;
+      sum += shift.overlap_m2 * std::max(0.0, 1.0 - off * off);
+    }
+    return sum;
+  }
+
   [[nodiscard]] bool possible(double thickness) const {
     return thickness >= options_.openings.min_thickness_m && thickness <= options_.openings.max_thickness_m;
   }
 
-  [[nodiscard]] std::vector<HybridPose> held_by_planes(const OpeningPose& opening) const {
-    // A shift along the normal, towards the target's scanner, makes the wall thinner by as much.
-    const auto shifts = finder_.along(opening.target_from_source, opening.wall_normal,
-                                      opening.thickness_m - options_.openings.max_thickness_m,
-                                      opening.thickness_m - options_.openings.min_thickness_m);
+  [[nodiscard]] std::vector<HybridPose> held_by_planes(const OpeningPose& opening,
+                                                       const std::vector<PlaneShift>& shifts) const {
     std::vector<HybridPose> poses;
     for (const CommonShift& shift : common_shifts(shifts, options_.offset_tolerance_m, options_.max_shifts)) {
       poses.push_back(at_thickness(opening, opening.thickness_m - shift.shift_m, ThicknessSource::planes));
-      poses.back().support_m2 = shift.overlap_m2;
     }
     return poses;
   }
@@ -141,6 +164,38 @@ std::vector<OpeningPose> apart_within_the_wall(const std::vector<OpeningPose>& p
   return kept;
 }
 
+/// The place of each pose: the better of those by openings (the given order) and by planes.
+std::vector<std::size_t> places_of(const std::vector<HybridPose>& poses) {
+  std::vector<std::size_t> by_planes(poses.size());
+  std::iota(by_planes.begin(), by_planes.end(), std::size_t{0});
+  std::vector<std::size_t> places = by_planes;
+  std::stable_sort(by_planes.begin(), by_planes.end(),
+                   [&](std::size_t a, std::size_t b) { return poses[a].support_m2 > poses[b].support_m2; });
+  for (std::size_t k = 0; k < by_planes.size() && poses[by_planes[k]].support_m2 > 0.0; ++k) {
+    places[by_planes[k]] = std::min(places[by_planes[k]], k);
+  }
+  return places;
+}
+
+/// Both lists by place, at most `most`. Overlaps are compared within a list only: scans of one side share
+/// whole façades, scans of opposite sides a strip of a back wall.
+std::vector<HybridPose> merged(const std::vector<HybridPose>& opposite, const std::vector<HybridPose>& same,
+                               std::size_t most) {
+  std::vector<std::pair<std::size_t, const HybridPose*>> order;
+  for (const std::vector<HybridPose>* list : {&opposite, &same}) {
+    const std::vector<std::size_t> places = places_of(*list);
+    for (std::size_t i = 0; i < list->size(); ++i) order.emplace_back(places[i], &(*list)[i]);
+  }
+  std::stable_sort(order.begin(), order.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::vector<HybridPose> poses;
+  for (const auto& [place, pose] : order) {
+    if (poses.size() == most) break;
+    poses.push_back(*pose);
+  }
+  return poses;
+}
+
 /// The options with the user's thickness for possible, and for the only assumption.
 HybridPoseOptions with_users_thickness(HybridPoseOptions options) {
   if (options.wall_thickness_m) {
@@ -164,6 +219,8 @@ const char* to_string(ThicknessSource source) {
       return "openings";
     case ThicknessSource::planes:
       return "planes";
+    case ThicknessSource::same_face:
+      return "same face";
     default:
       return "assumed";
   }
@@ -198,18 +255,14 @@ std::vector<HybridPose> enumerate_hybrid_poses(const Features& source, const Fea
   parallel_for(openings.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) found[i] = enumerator.poses_of(openings[i]);
   });
-  std::vector<HybridPose> poses;
-  bool more = true;
-  for (std::size_t rank = 0; more; ++rank) {
-    more = false;
-    for (const auto& some : found) {
-      if (rank >= some.size()) continue;
-      if (poses.size() == static_cast<std::size_t>(options.max_poses)) return poses;
-      poses.push_back(some[rank]);
-      more = true;
+  std::vector<HybridPose> opposite;
+  std::vector<HybridPose> same;
+  for (const std::vector<HybridPose>& some : found) {
+    for (const HybridPose& pose : some) {
+      (pose.opening.sides == WallSides::opposite ? opposite : same).push_back(pose);
     }
   }
-  return poses;
+  return merged(opposite, same, static_cast<std::size_t>(options.max_poses));
 }
 
 }  // namespace limen

@@ -41,24 +41,25 @@ enum class ThicknessSource : std::uint8_t {
   user,      ///< the user's wall thickness
   reveals,   ///< sides of openings that reach from face to face
   openings,  ///< openings in another wall
-  planes     ///< planes that both scans saw
+  planes,    ///< planes that both scans saw
+  same_face  ///< both scans saw the same face of the wall: there is no thickness between them
 };
 const char* to_string(ThicknessSource source);
 
 /// A pose proposed by openings and planes, in the scans' local frames.
 struct HybridPose {
   Rigid3 target_from_source;
-  double support_m2 = 0.0;    ///< overlap of the planes that hold the normal, bounding rectangles
+  double support_m2 = 0.0;    ///< overlap of planes that agree along the normal, bounding rectangles
   int free_translations = 0;  ///< 1 where nothing held the shift along the wall's normal
   double thickness_m = 0.0;   ///< of the wall at this pose
   ThicknessSource thickness_source = ThicknessSource::assumed;
   OpeningPose opening;  ///< the pose it came from
 };
 
-/// Poses from openings and planes: first every opening pose with its heaviest shift along the normal, in the
-/// order of the opening poses, then every one with its second, and so on. Where the user gave a thickness,
-/// that shift comes first. A pose whose normal nothing holds is listed with assumed thicknesses and
-/// `free_translations` 1. Deterministic. Throws Error for bad options.
+/// Poses from openings and planes. A pose stands in the list by the better of its two places, by the distance
+/// of its openings and by the overlap of its planes, counted for each of the two cases of sides apart. Where
+/// the user gave a thickness, that shift comes first of its opening pose's. A pose whose normal nothing holds
+/// is listed with assumed thicknesses and `free_translations` 1. Deterministic. Throws Error for bad options.
 std::vector<HybridPose> enumerate_hybrid_poses(const Features& source, const Features& target,
                                                const HybridPoseOptions& options = {});
 /// The same from opening poses at hand.

@@ -235,12 +235,24 @@ class Enumerator {
         all.push_back({&pair, pose_at(pair, shift.shift, first), shift.vote, first, std::move(list)});
       }
     }
+    return shared_out(std::move(all));
+  }
+
+  /// Most votes first, every wall of the source having its turn: a wall with one window must not be crowded
+  /// out by the twenty of the house across the street, some of which fit everywhere.
+  [[nodiscard]] std::vector<Candidate> shared_out(std::vector<Candidate> all) const {
     std::stable_sort(all.begin(), all.end(),
                      [](const Candidate& x, const Candidate& y) { return x.vote > y.vote; });
-    if (all.size() > static_cast<std::size_t>(options_.max_poses)) {
-      all.resize(static_cast<std::size_t>(options_.max_poses));
+    std::vector<std::size_t> turns(matcher_.source().size(), 0);
+    std::vector<std::pair<std::size_t, std::size_t>> order;  // turn, place
+    for (std::size_t i = 0; i < all.size(); ++i) order.emplace_back(turns[all[i].pair->source]++, i);
+    std::sort(order.begin(), order.end());
+    if (order.size() > static_cast<std::size_t>(options_.max_poses)) {
+      order.resize(static_cast<std::size_t>(options_.max_poses));
     }
-    return all;
+    std::vector<Candidate> kept;
+    for (const auto& [turn, place] : order) kept.push_back(std::move(all[place]));
+    return kept;
   }
 
   /// A candidate, fitted; with every thickness where nothing holds it.
@@ -315,7 +327,6 @@ std::vector<OpeningPose> without_twins(std::vector<OpeningPose> poses, const Vec
   std::vector<OpeningPose> kept;
   std::vector<Vector3d> middles;
   for (OpeningPose& pose : poses) {
-    if (static_cast<int>(kept.size()) == options.max_poses) break;
     const Vector3d moved = pose.target_from_source * middle;
     bool known = false;
     for (std::size_t i = 0; i < kept.size() && !known; ++i) {

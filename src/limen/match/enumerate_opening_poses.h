@@ -45,6 +45,8 @@ struct OpeningPoseOptions {
   double same_side_m = 0.3;  ///< faces seen from one side are taken for one within this
   std::vector<double> thicknesses_m = {0.15, 0.3, 0.45, 0.6};  ///< assumed where nothing holds the normal
   double wall_parallel_deg = 6.0;                              ///< walls that meet differ by no more
+  /// Poses that are fitted for each of the two cases of sides, the source's walls taking turns. Where nothing
+  /// holds the normal, each is listed once per assumed thickness.
   int max_poses = 600;
 
   void check() const;
