@@ -8,6 +8,7 @@
 #include "limen/base/angles.h"
 #include "limen/base/error.h"
 #include "limen/base/parallel.h"
+#include "limen/match/distinct_poses.h"
 #include "limen/match/opening_matcher.h"
 #include "limen/match/rigid_from_lines.h"
 
@@ -260,22 +261,24 @@ class Enumerator {
     const auto fit = matcher_.fit(candidate.target_from_source, sides_);
     if (!fit) return {};
     std::vector<OpeningPose> poses = {described(candidate, *fit)};
-    if (fit->normal_held || sides_ == WallSides::same) return poses;
-    for (const double thickness : candidate.others_m) {
-      OpeningPose pose = poses.front();
-      pose.target_from_source.translation -= (thickness - candidate.thickness_m) * pose.wall_normal;
-      pose.thickness_m += thickness - candidate.thickness_m;
-      if (matcher_.source().size() > 1) measure(pose);  // other walls may meet now, or no longer
-      poses.push_back(std::move(pose));
+    std::vector<double> shifts_m = {0.0};
+    if (!poses.front().thickness_held) {
+      for (const double thickness : candidate.others_m) {
+        OpeningPose pose = poses.front();
+        shifts_m.push_back(candidate.thickness_m - thickness);
+        pose.target_from_source.translation += shifts_m.back() * pose.wall_normal;
+        pose.thickness_m -= shifts_m.back();
+        poses.push_back(std::move(pose));
+      }
+    }
+    const auto distances = matcher_.distances_along(poses.front().target_from_source, sides_,
+                                                    poses.front().wall_normal, shifts_m);
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+      poses[i].distance = distances[i].distance;
+      poses[i].nominal_distance = distances[i].nominal;
+      poses[i].support_m = 0.5 * (distances[i].source_covered_m + distances[i].target_covered_m);
     }
     return poses;
-  }
-
-  void measure(OpeningPose& pose) const {
-    const SetDistance distance = matcher_.distance_at(pose.target_from_source, sides_);
-    pose.distance = distance.distance;
-    pose.nominal_distance = distance.nominal;
-    pose.support_m = 0.5 * (distance.source_covered_m + distance.target_covered_m);
   }
 
   /// The walls that proposed a pose speak for it, else those with most openings in common.
@@ -307,7 +310,6 @@ class Enumerator {
     pose.wall_normal = matcher_.target()[speaker->target_wall].normal();
     pose.thickness_m = speaker->thickness_m;
     pose.matched_openings = static_cast<int>(pose.pairs.size());
-    measure(pose);
     return pose;
   }
 
@@ -317,33 +319,6 @@ class Enumerator {
   WallSides sides_;
   const OpeningPoseOptions& options_;
 };
-
-/// Best first, without those that are nearly a better one.
-std::vector<OpeningPose> without_twins(std::vector<OpeningPose> poses, const Vector3d& middle,
-                                       const OpeningPoseOptions& options) {
-  std::stable_sort(poses.begin(), poses.end(),
-                   [](const OpeningPose& a, const OpeningPose& b) { return a.distance < b.distance; });
-  const double same_rotation = radians(options.same_rotation_deg);
-  std::vector<OpeningPose> kept;
-  std::vector<Vector3d> middles;
-  for (OpeningPose& pose : poses) {
-    const Vector3d moved = pose.target_from_source * middle;
-    bool known = false;
-    for (std::size_t i = 0; i < kept.size() && !known; ++i) {
-      const Vector3d off = moved - middles[i];
-      const double across = off.dot(pose.wall_normal);
-      if (std::abs(across) >= options.same_thickness_m) continue;
-      if ((off - across * pose.wall_normal).norm() >= options.same_shift_m) continue;
-      const Matrix3d turn =
-          kept[i].target_from_source.rotation.transpose() * pose.target_from_source.rotation;
-      known = rotation_angle(turn) < same_rotation;
-    }
-    if (known) continue;
-    middles.push_back(moved);
-    kept.push_back(std::move(pose));
-  }
-  return kept;
-}
 
 Vector3d middle_of(const std::vector<OpeningWall>& walls) {
   Vector3d sum = Vector3d::Zero();
@@ -401,7 +376,7 @@ std::vector<OpeningPose> enumerate_opening_poses(const Features& source, const F
       all.insert(all.end(), some.begin(), some.end());
     }
   }
-  return without_twins(std::move(all), middle_of(source_walls), options);
+  return distinct_poses(std::move(all), middle_of(source_walls), options);
 }
 
 }  // namespace limen

@@ -19,6 +19,7 @@ constexpr double kMaxToleranceM = 0.35;  // for edges that are known badly
 constexpr double kMinInformation = 0.003;
 constexpr double kGravityWeight = 1e4;  // against metres of edges: gravity is exact
 constexpr int kFitRounds = 3;
+constexpr double kAcrossCosine = 0.9999;  // a shift along the normal moves nothing within such a wall
 
 double variance(const WallRectangle& a, const WallRectangle& b, std::size_t k) {
   return a.sigma_m[k] * a.sigma_m[k] + b.sigma_m[k] * b.sigma_m[k] + kEdgeNoiseM * kEdgeNoiseM;
@@ -181,30 +182,45 @@ std::vector<WallMeeting> OpeningMatcher::meetings(const Rigid3& target_from_sour
   return result;
 }
 
-SetDistance OpeningMatcher::distance_at(const Rigid3& target_from_source, WallSides sides) const {
-  SetDistance total;
-  total.source_distance = source_nominal_;
-  total.nominal = source_nominal_ + target_nominal_;
-  total.distance = total.nominal;
-  for (std::size_t a = 0; a < source_.size(); ++a) {
-    // A wall of the source is one wall of the target: the one that fits best.
-    SetDistance best;
-    double best_gain = 0.0;
-    for (std::size_t b = 0; b < target_.size(); ++b) {
-      if (!face(target_from_source.rotation, a, b, sides)) continue;
-      if (!possible(thickness_at(target_from_source, a, b), sides)) continue;
-      const SetDistance one = target_measures_[b].to(source_edges_[a], target_from_source);
-      if (one.nominal - one.distance > best_gain) {
-        best_gain = one.nominal - one.distance;
-        best = one;
+std::vector<SetDistance> OpeningMatcher::best_of_wall(std::size_t source_wall,
+                                                      const Rigid3& target_from_source, WallSides sides,
+                                                      const Vector3d& direction,
+                                                      const std::vector<double>& shifts_m) const {
+  std::vector<SetDistance> best(shifts_m.size());
+  for (std::size_t b = 0; b < target_.size(); ++b) {
+    if (!face(target_from_source.rotation, source_wall, b, sides)) continue;
+    const double thickness = thickness_at(target_from_source, source_wall, b);
+    const double thinner = target_[b].normal().dot(direction);  // per metre of shift
+    std::optional<SetDistance> any;
+    for (std::size_t i = 0; i < shifts_m.size(); ++i) {
+      if (!possible(thickness - shifts_m[i] * thinner, sides)) continue;
+      if (!any || std::abs(thinner) < kAcrossCosine) {
+        const Rigid3 shifted{target_from_source.rotation,
+                             target_from_source.translation + shifts_m[i] * direction};
+        any = target_measures_[b].to(source_edges_[source_wall], shifted);
       }
+      if (any->nominal - any->distance > best[i].nominal - best[i].distance) best[i] = *any;
     }
-    total.distance -= best_gain;
-    total.source_covered_m += best.source_covered_m;
-    total.target_covered_m += best.target_covered_m;
   }
-  total.distance = std::max(0.0, total.distance);
-  return total;
+  return best;
+}
+
+std::vector<SetDistance> OpeningMatcher::distances_along(const Rigid3& target_from_source, WallSides sides,
+                                                         const Vector3d& direction,
+                                                         const std::vector<double>& shifts_m) const {
+  SetDistance nothing;
+  nothing.nominal = source_nominal_ + target_nominal_;
+  nothing.distance = nothing.nominal;
+  std::vector<SetDistance> totals(shifts_m.size(), nothing);
+  for (std::size_t a = 0; a < source_.size(); ++a) {
+    const auto best = best_of_wall(a, target_from_source, sides, direction, shifts_m);
+    for (std::size_t i = 0; i < totals.size(); ++i) {
+      totals[i].distance = std::max(0.0, totals[i].distance - (best[i].nominal - best[i].distance));
+      totals[i].source_covered_m += best[i].source_covered_m;
+      totals[i].target_covered_m += best[i].target_covered_m;
+    }
+  }
+  return totals;
 }
 
 /// Walls on walls and up on up (Wahba over the meetings); metres of edges weigh.

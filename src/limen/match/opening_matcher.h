@@ -48,8 +48,12 @@ class OpeningMatcher {
   /// Walls of both scans that face each other rightly at a pose, a possible thickness apart; with their
   /// pairs.
   [[nodiscard]] std::vector<WallMeeting> meetings(const Rigid3& target_from_source, WallSides sides) const;
-  /// Equation 14 over all walls, in the form of (9).
-  [[nodiscard]] SetDistance distance_at(const Rigid3& target_from_source, WallSides sides) const;
+  /// Equation 14 over all walls, in the form of (9), at the pose shifted along `direction` (unit, target
+  /// frame) by each of `shifts_m`. Walls across that direction are compared once: their normal is left out
+  /// anyhow.
+  [[nodiscard]] std::vector<SetDistance> distances_along(const Rigid3& target_from_source, WallSides sides,
+                                                         const Vector3d& direction,
+                                                         const std::vector<double>& shifts_m) const;
 
   /// A pose with the evidence for it.
   struct Fit {
@@ -67,6 +71,11 @@ class OpeningMatcher {
                           WallSides sides) const;
   [[nodiscard]] double thickness_at(const Rigid3& target_from_source, std::size_t source_wall,
                                     std::size_t target_wall) const;
+  /// For each shift the best gain of one source wall: a wall of the source is one wall of the target.
+  [[nodiscard]] std::vector<SetDistance> best_of_wall(std::size_t source_wall,
+                                                      const Rigid3& target_from_source, WallSides sides,
+                                                      const Vector3d& direction,
+                                                      const std::vector<double>& shifts_m) const;
   [[nodiscard]] std::vector<WallRectangle> in_target_wall(const Rigid3& target_from_source,
                                                           std::size_t source_wall, std::size_t target_wall,
                                                           WallSides sides) const;
