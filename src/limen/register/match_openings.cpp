@@ -155,6 +155,7 @@ std::optional<OpeningMatch> match_of(const Opening& source, const Rectangle& a, 
   match.at = b.origin + 0.5 * (b.width * b.across + b.height * b.up);
   match.across = b.across;
   match.up = b.up;
+  match.tilt_rad = std::asin(std::clamp(a.up.cross(b.up).dot(b.across.cross(b.up)), -1.0, 1.0));
   match.area_m2 = std::min(a.width * a.height, b.width * b.height);
   match.trust = std::min(trust_of(source), trust_of(target));
   return match;

@@ -26,6 +26,7 @@ struct OpeningMatch {
   double area_m2 = 0.0;   ///< of the smaller rectangle
   double trust = 1.0;     ///< in (0, 1]: less for openings that were not seen through
   double gap_m = 0.0;     ///< of the source's rectangle behind the target's wall plane
+  double tilt_rad = 0.0;  ///< by which the source's rectangle must turn about across x up to stand upright
   bool opposite = false;  ///< seen from the two sides of the wall
 };
 

@@ -128,6 +128,10 @@ class Collector {
       contact.residual_m = turn.dot(axis);
       contacts.push_back(contact);
     }
+    // Openings stand upright, in either scan.
+    contact.normal = normal;
+    contact.residual_m = match.tilt_rad;
+    contacts.push_back(contact);
     const Thickness thickness = thickness_of(source, target, match);
     if (thickness.sigma_m <= 0.0) return;
     contact.turn = false;

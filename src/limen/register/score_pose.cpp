@@ -61,8 +61,8 @@ PoseScore one_way(const ScanView& scan, const ScanView& judge, const Rigid3& jud
     if (answer.sight.kind != SightKind::unseen) score.tested_m2 += answer.area_m2;
   }
   const auto factor = static_cast<double>(stride);
-  return {factor * score.agreeing_m2, factor * score.planar_m2, 0.0, factor * score.contradicted_m2,
-          factor * score.tested_m2};
+  return {factor * score.agreeing_m2, factor * score.planar_m2, factor * score.contradicted_m2,
+          factor * score.tested_m2, 0.0};
 }
 
 /// The area of each source opening that meets one of the target, clipped as surface is.
@@ -79,17 +79,38 @@ std::vector<double> opening_gains(const ScanView& source, const ScanView& target
   return gains;
 }
 
+/// One plane counts for no more than this, m^2, however large: that two large planes meet is one coincidence,
+/// not many.
+constexpr double kPlaneLimit_m2 = 5.0;
+
+double saturated(double area_m2) {
+  return kPlaneLimit_m2 * (1.0 - std::exp(-area_m2 / kPlaneLimit_m2));
+}
+
+void add_lead(double lead, PoseContrast& contrast) {
+  (lead > 0 ? contrast.for_first_m2 : contrast.for_second_m2) += std::abs(lead);
+}
+
 void add_contrast(const ScanView& scan, const ScanView& judge, const Rigid3& first, const Rigid3& second,
                   const ScoreOptions& options, PoseContrast& contrast) {
   if (judge.space == nullptr) return;
   const std::vector<SurfaceSample>& samples = scan.features->samples;
   const std::size_t stride = stride_of(scan, options);
+  // Both ways are averaged, as in the score.
+  const double share = 0.5 * static_cast<double>(stride);
+  std::vector<PoseContrast> planes(scan.features->planes.size());
   for (std::size_t i = 0; i < samples.size(); i += stride) {
-    const double lead = ask(samples[i], scan, judge, first, options).value() -
-                        ask(samples[i], scan, judge, second, options).value();
-    // Both ways are averaged, as in the score.
-    (lead > 0 ? contrast.for_first_m2 : contrast.for_second_m2) +=
-        0.5 * static_cast<double>(stride) * std::abs(lead);
+    const Answer in_first = ask(samples[i], scan, judge, first, options);
+    const Answer in_second = ask(samples[i], scan, judge, second, options);
+    const double agreeing = share * (in_first.gain_m2 - in_second.gain_m2);
+    add_lead(agreeing, samples[i].plane >= 0 ? planes[static_cast<std::size_t>(samples[i].plane)] : contrast);
+    // Matter where a ray passed is no coincidence: it counts in full.
+    add_lead(share * kContradictionWeight * (in_second.contradicted_m2() - in_first.contradicted_m2()),
+             contrast);
+  }
+  for (const PoseContrast& plane : planes) {
+    contrast.for_first_m2 += saturated(plane.for_first_m2);
+    contrast.for_second_m2 += saturated(plane.for_second_m2);
   }
 }
 
@@ -118,8 +139,7 @@ PoseContrast contrast_poses(const ScanView& source, const ScanView& target, cons
   const std::vector<double> in_first = opening_gains(source, target, first, options);
   const std::vector<double> in_second = opening_gains(source, target, second, options);
   for (std::size_t i = 0; i < in_first.size(); ++i) {
-    const double lead = in_first[i] - in_second[i];
-    (lead > 0 ? contrast.for_first_m2 : contrast.for_second_m2) += std::abs(lead);
+    add_lead(in_first[i] - in_second[i], contrast);
   }
   return contrast;
 }

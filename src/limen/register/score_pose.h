@@ -29,10 +29,10 @@ inline constexpr double kContradictionWeight = 4.0;
 /// standing where the other's rays passed free. An opening that both scans see counts with its area.
 struct PoseScore {
   double agreeing_m2 = 0.0;
-  double planar_m2 = 0.0;   ///< of agreeing_m2: on planes
-  double opening_m2 = 0.0;  ///< of agreeing_m2: openings seen from both sides
+  double planar_m2 = 0.0;  ///< of agreeing_m2: on planes
   double contradicted_m2 = 0.0;
-  double tested_m2 = 0.0;  ///< surface that the other scan could have judged
+  double tested_m2 = 0.0;   ///< surface that the other scan could have judged
+  double opening_m2 = 0.0;  ///< of agreeing_m2: openings seen from both sides
 
   /// What poses are ranked by, m^2. One contradicted square metre outweighs several agreeing ones: surfaces
   /// meet by chance, but matter cannot stand where a ray passed.
