@@ -138,10 +138,12 @@ struct Row {
   double thickness_error_m = std::numeric_limits<double>::quiet_NaN();
   double thickness_sigma_m = std::numeric_limits<double>::quiet_NaN();
   double seconds = 0.0;
-  bool alike = false;  ///< nobody can know the pose: no registration is right
+  bool alike = false;  ///< nobody can know the pose: it is right to say so and to list it
 
   [[nodiscard]] bool registered() const { return outcome == Outcome::registered; }
-  [[nodiscard]] bool right() const { return registered() && near && !alike; }
+  [[nodiscard]] bool right() const {
+    return alike ? outcome == Outcome::ambiguous && listed : registered() && near;
+  }
   [[nodiscard]] bool wrong() const { return registered() && !right(); }
 };
 

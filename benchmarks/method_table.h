@@ -94,7 +94,7 @@ inline std::string table_row(const Level& level, const std::string& method, cons
 /// The markdown table, level by level, methods in the order they were run.
 inline std::string table(const std::vector<Row>& rows, const std::vector<std::string>& methods) {
   std::string text =
-      "| level | method | registered within the bar | wrong | ambiguous (true pose listed) | "
+      "| level | method | right | wrong | ambiguous (true pose listed) | "
       "under-constrained "
       "| no match | median shift | median turn | freedoms within 2 sigma | thickness error "
       "| thickness within 2 sigma | time |\n"

@@ -106,22 +106,23 @@ void print(const Row& row) {
 constexpr const char* kPage =
     R"(# Methods compared
 
-Made by `scripts/compare_methods{}`; do not edit. Simulated pairs of one indoor station and one street scan, exact truth.
+Made by `scripts/compare_methods{}`; do not edit.
 
-The station sees at least two fifths of one open window in each façade counted here; seeds without are passed over.
+Simulated pairs of one indoor station and one street scan, exact truth. The station sees at least two fifths of an open
+window in each façade counted here; seeds where it does not are passed over.
 
 - easy: the room has open windows in two façades, curtains on 10 % of all windows
 - medium: one façade, 30 % curtains
 - hard: one façade, 60 % curtains, the street scan's trajectory drifts by 1 cm
 - any_rotation: as easy, every other room with one façade only; the station at any rotation
-- identical: rooms that repeat, nothing tells them apart: right is `ambiguous` with the true pose listed
+- identical: rooms that repeat, nothing tells them apart
 
-*Wrong* means `registered` beyond the level's bar, 2 cm and 0.2°, in hard 5 cm and 0.5°; in identical any `registered`.
-Freedoms are the six of each registered pose, counted one by one. Thickness: of the outer wall with most openings, where
-its stated deviation is below 5 cm. Times are of the machine this was made on.
+*Right* means `registered` within the level's bar: 2 cm and 0.2°, in hard 5 cm and 0.5°; in identical it means
+`ambiguous` with the true pose among those listed. *Wrong* means any other `registered`. Freedoms are the six of each registered pose, counted one by one. Thickness: of the outer wall with most
+openings, where its stated deviation is below 5 cm. Times are of the machine this was made on.
 
 {}
-Registered within the bar, by kind of building:
+Right, by kind of building:
 
 {})";
 
@@ -133,9 +134,26 @@ struct Request {
   std::string arguments;  ///< as typed, for the page
 };
 
+/// A misspelt name must not pass for a run without pairs.
+void check_names(const std::vector<std::string>& asked, const std::vector<std::string>& known) {
+  for (const std::string& name : asked) {
+    if (std::find(known.begin(), known.end(), name) != known.end()) continue;
+    throw Error("nothing is called '" + name + "'", "bench_methods",
+                fmt::format("choose of {}", fmt::join(known, ", ")));
+  }
+}
+
+void check(const Request& request) {
+  for (const std::string& method : request.methods) method_of(method);
+  std::vector<std::string> levels;
+  for (const Level& level : all_levels()) levels.push_back(level.name);
+  check_names(request.selection.levels, levels);
+  check_names(request.selection.kinds, kKinds);
+}
+
 int run_all(const Request& request) {
   const std::vector<std::string>& methods = request.methods;
-  for (const std::string& method : methods) method_of(method);
+  check(request);
   std::vector<Row> rows;
   print_header();
   for (const PairPlan& plan : plan_pairs(kKinds, request.selection)) {

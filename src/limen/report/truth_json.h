@@ -16,8 +16,9 @@ namespace limen {
 /// - `openings`: kind, rooms, wall normal and thickness, width, height, corners `outer` and `inner` in the
 ///   world (lower left, lower right, upper right, upper left, seen from outside), `head` (rectangular,
 ///   segmental, semicircle, round) and, where it is not rectangular, the clear opening as it is built,
-///   `outer_outline` and `inner_outline`, of which the corners are the bounding rectangle, and per scan the rays
-///   that crossed it, that came back from beyond, from its parts, and the share of its area seen through.
+///   `outer_outline` and `inner_outline`, of which the corners are the bounding rectangle, and per scan the
+///   rays that crossed it, that came back from beyond, from its parts, and the share of its area seen
+///   through.
 /// The scans' files are named after them with ".ply".
 std::string truth_json(const Truth& truth);
 
