@@ -33,6 +33,7 @@ namespace {
 
 constexpr double kMinKnown = 0.25;        // part of a rectangle in which something was seen behind the wall
 constexpr std::size_t kMinEvidence = 12;  // rays
+constexpr double kMinWallRound = 0.5;
 constexpr double kThroughShare = 0.05;
 constexpr double kFoot_m = 0.15;  // a door's lower end is no higher above the foot of the wall beside it
 
@@ -98,6 +99,28 @@ std::optional<double> floor_at(const Features& features, const OpeningWall& wall
   return height;
 }
 
+/// Part of the samples just outside a rectangle that lie on wall. Rays pass everywhere between the bars of a
+/// fence: what is bounded by bars is no opening.
+double wall_round(const WallEvidence& evidence, const OpeningGrid& grid, const Box2& box) {
+  constexpr double kRim_m = 0.15;
+  constexpr double kEdge_m = 0.02;
+  Box2 outside = box;
+  outside.low.array() -= kRim_m;
+  outside.high.array() += kRim_m;
+  Box2 inside = box;
+  inside.low.array() -= kEdge_m;
+  inside.high.array() += kEdge_m;
+  double wall = 0.0;
+  double open = 0.0;
+  for (const std::uint32_t i : grid.samples_in(outside)) {
+    const WallSample& sample = evidence.samples[i];
+    if (inside.contains({sample.u, sample.v})) continue;
+    wall += sample.kind == SampleKind::wall ? 1.0 : 0.0;
+    open += sample.kind == SampleKind::open ? 1.0 : 0.0;
+  }
+  return wall / std::max(1.0, wall + open);
+}
+
 bool acceptable(const Features& features, const OpeningRectangle& rectangle, const WallEvidence& evidence,
                 const OpeningGrid& grid, const OpeningOptions& options) {
   const Vector2d size = rectangle.box.high - rectangle.box.low;
@@ -105,6 +128,7 @@ bool acceptable(const Features& features, const OpeningRectangle& rectangle, con
   if (size.y() < options.min_height_m || size.y() > options.max_height_m) return false;
   if (rectangle.evidence < kMinEvidence || rectangle.fill < options.min_fill) return false;
   if (rectangle.known < kMinKnown) return false;
+  if (wall_round(evidence, grid, rectangle.box) < kMinWallRound) return false;
   int bounded = 0;
   for (const double share : rectangle.bounded) bounded += share >= options.min_bounded ? 1 : 0;
   const auto has = [&](Side side) {
@@ -202,9 +226,8 @@ std::vector<Opening> openings_of(const Scan& scan, const Features& features, con
 std::vector<Opening> without_doubles(const std::vector<Opening>& openings) {
   std::vector<Opening> kept;
   for (const Opening& opening : openings) {
-    const bool doubled = std::any_of(kept.begin(), kept.end(), [&](const Opening& other) {
-      return other.facade != opening.facade && same_hole(other, opening);
-    });
+    const bool doubled = std::any_of(kept.begin(), kept.end(),
+                                     [&](const Opening& other) { return same_hole(other, opening); });
     if (!doubled) kept.push_back(opening);
   }
   return kept;
