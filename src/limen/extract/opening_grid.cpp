@@ -21,7 +21,7 @@ constexpr double kMaxReach_m = 0.2;
 
 }  // namespace
 
-OpeningGrid::OpeningGrid(const WallEvidence& evidence)
+OpeningGrid::OpeningGrid(const WallEvidence& evidence, const DirectionMap& directions)
     : samples_(&evidence.samples), box_(evidence.wall.box) {
   cell_m_ = std::clamp(kCellPerSpacing * evidence.wall.spacing_m, kMinCell_m, kMaxCell_m);
   const Vector2d size = box_.high - box_.low;
@@ -30,6 +30,7 @@ OpeningGrid::OpeningGrid(const WallEvidence& evidence)
   rows_ = static_cast<int>(size.y() / cell_m_) + 1;
   count_samples(evidence);
   spread();
+  mark_silent(evidence.wall, directions);
 }
 
 int OpeningGrid::column(double u) const {
@@ -136,6 +137,22 @@ void OpeningGrid::spread() {
   cells_ = std::move(spread);
 }
 
+void OpeningGrid::mark_silent(const OpeningWall& wall, const DirectionMap& directions) {
+  constexpr double kMinRadius_rad = 0.006;
+  constexpr double kRadiusPerSpacing = 1.5;
+  const double off_m = wall.plane.signed_distance(directions.centre());
+  for (int r = 0; r < rows_; ++r) {
+    for (int c = 0; c < columns_; ++c) {
+      if (cells_[index(c, r)] != Cell::unknown) continue;
+      const Vector3d x = wall.frame.to_space(middle(c, r));
+      const double range_m = (x - directions.centre()).norm();
+      // The wall's own spacing, seen from the scanner across the wall.
+      const double radius = kRadiusPerSpacing * wall.spacing_m * std::sqrt(off_m / range_m) / range_m;
+      if (directions.silent(x, std::max(kMinRadius_rad, radius))) cells_[index(c, r)] = Cell::silent;
+    }
+  }
+}
+
 std::vector<std::uint32_t> OpeningGrid::samples_in(const Box2& box) const {
   std::vector<std::uint32_t> found;
   const int c0 = std::clamp(column(box.low.x()), 0, columns_ - 1);
@@ -160,19 +177,22 @@ double OpeningGrid::spacing_m(const Vector2d& at) const {
 /// For each cell of `kind` how many steps (also across corners) it is to the next cell of another kind.
 std::vector<std::uint16_t> OpeningGrid::steps_within(Cell kind) const {
   std::vector<std::uint16_t> steps(cells_.size(), 0);
+  const auto is_kind = [&](Cell cell) {
+    return cell == kind || (kind == Cell::open && cell == Cell::silent);
+  };
   const auto step = [&](int c, int r) -> int {
     return c < 0 || r < 0 || c >= columns_ || r >= rows_ ? 0 : steps[index(c, r)];
   };
   for (int r = 0; r < rows_; ++r) {
     for (int c = 0; c < columns_; ++c) {
-      if (cells_[index(c, r)] != kind) continue;
+      if (!is_kind(cells_[index(c, r)])) continue;
       const int least = std::min({step(c - 1, r), step(c - 1, r - 1), step(c, r - 1), step(c + 1, r - 1)});
       steps[index(c, r)] = static_cast<std::uint16_t>(std::min(least + 1, 60000));
     }
   }
   for (int r = rows_ - 1; r >= 0; --r) {
     for (int c = columns_ - 1; c >= 0; --c) {
-      if (cells_[index(c, r)] != kind) continue;
+      if (!is_kind(cells_[index(c, r)])) continue;
       const int least = std::min({step(c + 1, r), step(c + 1, r + 1), step(c, r + 1), step(c - 1, r + 1)});
       steps[index(c, r)] = static_cast<std::uint16_t>(std::min<int>(steps[index(c, r)], least + 1));
     }

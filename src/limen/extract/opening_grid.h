@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "limen/extract/direction_map.h"
 #include "limen/extract/opening_evidence.h"
 
 namespace limen {
@@ -14,9 +15,15 @@ namespace limen {
 /// samples of one kind is of that kind.
 class OpeningGrid {
  public:
-  enum class Cell : std::uint8_t { unknown, wall, open, cover };
+  enum class Cell : std::uint8_t {
+    unknown,
+    wall,
+    open,
+    cover,
+    silent  ///< no ray came back from this direction, as from the sky behind a pane
+  };
 
-  explicit OpeningGrid(const WallEvidence& evidence);
+  explicit OpeningGrid(const WallEvidence& evidence, const DirectionMap& directions = {});
 
   [[nodiscard]] const Box2& box() const { return box_; }
   [[nodiscard]] double cell_m() const { return cell_m_; }
@@ -26,17 +33,26 @@ class OpeningGrid {
   [[nodiscard]] int row(double v) const;
   /// Unknown beyond the grid.
   [[nodiscard]] Cell at(int column, int row) const;
+  [[nodiscard]] bool passes(int column, int row) const {
+    return at(column, row) == Cell::open || at(column, row) == Cell::silent;
+  }
+  /// Middle of a cell in the wall's frame.
+  [[nodiscard]] Vector2d middle(int column, int row) const {
+    return box_.low + cell_m_ * Vector2d(column + 0.5, row + 0.5);
+  }
   /// Indices of the samples in a box, in a fixed order.
   [[nodiscard]] std::vector<std::uint32_t> samples_in(const Box2& box) const;
   /// Typical distance between samples about a place, metres.
   [[nodiscard]] double spacing_m(const Vector2d& at) const;
 
-  /// Boxes of the connected regions of `kind` whose core, `neck_m` within them, hangs together.
+  /// Boxes of the connected regions of `kind` (open: and silent) whose core, `neck_m` within them, hangs
+  /// together.
   [[nodiscard]] std::vector<Box2> regions(Cell kind, double neck_m) const;
 
  private:
   void count_samples(const WallEvidence& evidence);
   void spread();
+  void mark_silent(const OpeningWall& wall, const DirectionMap& directions);
   [[nodiscard]] std::size_t index(int column, int row) const {
     return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) +
            static_cast<std::size_t>(column);

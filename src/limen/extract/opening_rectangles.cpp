@@ -122,10 +122,31 @@ class Fitter {
       if (p[other] < low || p[other] > high || t < from || t > to) continue;
       marks.push_back({t, sample.kind == SampleKind::wall});
     }
+    add_silent(box, side, {from, to}, {low, high}, marks);
     Separator found = separate(std::move(marks), from, to);
     if (found.found && found.sigma_m >= kUnbounded_m)
       found.place = behind_occluder(found.place, side, {low, high});
     return found;
+  }
+
+  /// Silent cells are open: a mark for each, as coarse as the cells.
+  void add_silent(const Box2& box, Side side, const Vector2d& across, const Vector2d& along,
+                  std::vector<Mark>& marks) const {
+    const Eigen::Index axis = axis_of(side);
+    const double sign = outward(side);
+    const double reach_m = across.y() - across.x();
+    const int c0 = grid_.column(box.low.x() - reach_m);
+    const int c1 = grid_.column(box.high.x() + reach_m);
+    const int r1 = grid_.row(box.high.y() + reach_m);
+    for (int r = grid_.row(box.low.y() - reach_m); r <= r1; ++r) {
+      for (int c = c0; c <= c1; ++c) {
+        if (grid_.at(c, r) != OpeningGrid::Cell::silent) continue;
+        const Vector2d p = grid_.middle(c, r);
+        const double t = sign * p[axis];
+        if (p[1 - axis] < along.x() || p[1 - axis] > along.y() || t < across.x() || t > across.y()) continue;
+        marks.push_back({t, false});
+      }
+    }
   }
 
   /// Where nothing was seen between the opening and the next wall the side lies somewhere in between.
@@ -173,7 +194,7 @@ double bounded_share(const Box2& box, Side side, const OpeningGrid& grid) {
       const int across = start + direction * s;
       const OpeningGrid::Cell cell = upright ? grid.at(across, k) : grid.at(k, across);
       wall += cell == OpeningGrid::Cell::wall ? 1 : 0;
-      open += cell == OpeningGrid::Cell::open && s >= 2 ? 1 : 0;
+      open += grid.passes(upright ? across : k, upright ? k : across) && s >= 2 ? 1 : 0;
     }
     walls += wall;
     others += wall == 0 && open > 0 ? 1 : 0;
@@ -241,7 +262,7 @@ OpeningRectangle measured(OpeningRectangle rectangle, const WallEvidence& eviden
     for (int c = grid.column(box.low.x() + 0.5 * grid.cell_m());
          c <= grid.column(box.high.x() - 0.5 * grid.cell_m()); ++c) {
       const OpeningGrid::Cell cell = grid.at(c, r);
-      open += cell == OpeningGrid::Cell::open ? 1.0 : 0.0;
+      open += grid.passes(c, r) ? 1.0 : 0.0;
       wall += cell == OpeningGrid::Cell::wall ? 1.0 : 0.0;
       all += 1.0;
     }

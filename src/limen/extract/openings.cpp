@@ -196,13 +196,13 @@ void set_reveal(const std::array<Reveal, 4>& reveals, Opening& opening) {
 }
 
 std::vector<Opening> openings_of(const Scan& scan, const Features& features, const WallEvidence& evidence,
-                                 const OpeningOptions& options) {
+                                 const DirectionMap& directions, const OpeningOptions& options) {
   const bool any =
       std::any_of(evidence.samples.begin(), evidence.samples.end(), [](const WallSample& sample) {
         return sample.kind == SampleKind::open || sample.kind == SampleKind::cover;
       });
   if (!any) return {};
-  const OpeningGrid grid(evidence);
+  const OpeningGrid grid(evidence, directions);
   std::vector<Opening> openings;
   for (OpeningRectangle& rectangle : opening_rectangles(evidence, grid, options)) {
     if (!acceptable(features, rectangle, evidence, grid, options)) continue;
@@ -262,11 +262,13 @@ std::vector<Opening> find_openings(const Scan& scan, const ExtractedFeatures& ex
   }
   const std::vector<OpeningWall> walls = opening_walls(scan, extracted, up, options);
   const std::vector<WallEvidence> evidence = opening_evidence(scan, extracted, walls, options, monitor);
+  DirectionMap directions;
+  if (!scan.mobile()) directions = DirectionMap(scan, scan.centre_known() ? scan.centre(0) : *options.centre);
   std::vector<std::vector<Opening>> found(evidence.size());
   parallel_for(evidence.size(), 1, [&](std::size_t begin, std::size_t end) {
     monitor.throw_if_cancelled();
     for (std::size_t w = begin; w < end; ++w)
-      found[w] = openings_of(scan, extracted.features, evidence[w], options);
+      found[w] = openings_of(scan, extracted.features, evidence[w], directions, options);
   });
   std::vector<Opening> openings;
   for (const std::vector<Opening>& part : found) openings.insert(openings.end(), part.begin(), part.end());
