@@ -226,7 +226,6 @@ std::vector<SetDistance> OpeningMatcher::distances_along(const Rigid3& target_fr
 /// Walls on walls and up on up (Wahba over the meetings); metres of edges weigh.
 Matrix3d OpeningMatcher::rotation_of(const std::vector<WallMeeting>& meetings, WallSides sides) const {
   std::vector<DirectionPair> directions;
-  double all = 0.0;
   for (const WallMeeting& meeting : meetings) {
     const OpeningWall& from = source_[meeting.source_wall];
     const OpeningWall& to = target_[meeting.target_wall];
@@ -237,7 +236,6 @@ Matrix3d OpeningMatcher::rotation_of(const std::vector<WallMeeting>& meetings, W
     directions.push_back({from.normal(), normal, length});
     directions.push_back(
         {from.frame.v, to.frame.v, options_.gravity_known ? kGravityWeight * length : length});
-    all += length;
   }
   return rotation_from_directions(directions).rotation;
 }
