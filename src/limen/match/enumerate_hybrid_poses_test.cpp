@@ -139,6 +139,20 @@ TEST(EnumerateHybridPoses, RevealsThatReachThroughHoldTheNormal) {
   EXPECT_LT(house.error(poses.front().target_from_source), 0.02);
 }
 
+TEST(EnumerateHybridPoses, TheSameFaceIsNotCalledPlanes) {
+  const Wall front{Vector3d::Zero(), Vector3d::UnitX(), 14.0, 9.0, synthetic::irregular()};
+  Features one;
+  Features other;
+  add_wall(one, front, {});
+  add_wall(other, front, {});
+  const auto poses = enumerate_hybrid_poses(one, other);
+  ASSERT_FALSE(poses.empty());
+  EXPECT_EQ(poses.front().opening.sides, WallSides::same);
+  EXPECT_EQ(poses.front().thickness_source, ThicknessSource::same_face);
+  EXPECT_EQ(poses.front().free_translations, 0);
+  EXPECT_NEAR(poses.front().support_m2, 14.0 * 9.0, 1.0);
+}
+
 TEST(WallThickness, IsMeasuredBetweenTheFacesWhereAnInteriorPlaneHoldsThePose) {
   House house;
   house.show_back_wall();

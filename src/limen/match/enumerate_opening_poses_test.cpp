@@ -134,6 +134,25 @@ TEST(EnumerateOpeningPoses, ARegularFacadeListsEveryShift) {
   EXPECT_EQ(true_places(poses, truth, Vector3d(7.0, 0.3, 1.5)).size(), 1U);
 }
 
+TEST(EnumerateOpeningPoses, TheHouseAcrossTheStreetDoesNotCrowdOutTheRoomsWindow) {
+  // The station sees its own window, and through it twelve of a regular house which fit the long regular
+  // façade in very many places. Only the own window fits the true pose.
+  const Window own{3.0, 1.0, 1.9, 2.1};
+  std::vector<Window> all = synthetic::grid(16, 3);
+  all.push_back({44.0, 1.0, own.width, own.height});
+  const Features outside = seen({south_wall(all, 50.0)}, {});
+  const Wall room{Vector3d(41.0, 0.0, 0.0), Vector3d::UnitX(), 6.0, 3.0, {own}};
+  Features inside = seen({room}, {true, 0.4, 0.0, 0.0, 1});
+  const Wall across{Vector3d(60.0, -20.0, 0.0), -Vector3d::UnitX(), 14.0, 9.0, synthetic::grid(4, 3)};
+  add_wall(inside, across, {});
+  OpeningPoseOptions options;
+  options.try_same = false;
+  options.thicknesses_m = {0.4};
+  options.max_poses = 12;
+  const auto poses = enumerate_opening_poses(inside, outside, options);
+  EXPECT_FALSE(true_places(poses, Rigid3{}, Vector3d(45.0, 0.4, 2.0)).empty());
+}
+
 TEST(EnumerateOpeningPoses, OneWindowGivesAPosePerWindowOfItsSize) {
   std::vector<Window> all = synthetic::grid(4, 1);
   all.push_back({11.5, 1.0, 2.4, 1.5});
