@@ -186,8 +186,11 @@ std::vector<HybridPose> merged(const std::vector<HybridPose>& opposite, const st
     const std::vector<std::size_t> places = places_of(*list);
     for (std::size_t i = 0; i < list->size(); ++i) order.emplace_back(places[i], &(*list)[i]);
   }
-  std::stable_sort(order.begin(), order.end(),
-                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  // The distance is of all edges of both scans, so it compares across the cases too.
+  std::stable_sort(order.begin(), order.end(), [](const auto& a, const auto& b) {
+    if (a.first != b.first) return a.first < b.first;
+    return a.second->opening.distance < b.second->opening.distance;
+  });
   std::vector<HybridPose> poses;
   for (const auto& [place, pose] : order) {
     if (poses.size() == most) break;
