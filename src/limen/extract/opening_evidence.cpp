@@ -16,6 +16,7 @@ namespace {
 constexpr std::size_t kBlock = 128;  // consecutive rays that are rejected together
 constexpr std::size_t kBlocksPerPiece = 128;
 constexpr double kMinStandOff_m = 0.05;   // of the scanner before a wall that it sees
+constexpr double kMinBeside_m = 0.3;      // of wall beside an opening; reveals one above the other have less
 constexpr double kMaxExtension_m = 0.5;   // of a ray beyond a point before the wall
 constexpr double kMobileRelief_m = 0.12;  // plinths, bands and cornices of façades
 constexpr double kStaticRelief_m = 0.05;  // linings; farther before an inner wall hang curtains
@@ -244,6 +245,40 @@ class Tracer {
   double behind_m_ = 0.0;   // farther behind it a point lies in an opening
 };
 
+/// Points that count as wall but lie a little behind what is wall around them are the sides of openings: with
+/// a threshold of 2.5 cm they reach that far into the opening. Walls bulge: what is wall is told locally.
+void part_sides(WallEvidence& evidence, double noise_m) {
+  constexpr double kTile_m = 0.5;
+  constexpr double kMinBehind_m = 0.004;
+  const Vector2d size = evidence.wall.box.high - evidence.wall.box.low;
+  const auto columns = static_cast<std::size_t>(size.x() / kTile_m) + 1;
+  const auto rows = static_cast<std::size_t>(size.y() / kTile_m) + 1;
+  const auto tile_of = [&](const WallSample& sample) {
+    const Vector2d at = (Vector2d(sample.u, sample.v) - evidence.wall.box.low).cwiseMax(0.0) / kTile_m;
+    return std::min(rows - 1, static_cast<std::size_t>(at.y())) * columns +
+           std::min(columns - 1, static_cast<std::size_t>(at.x()));
+  };
+  // Means of the front half: two passes, the second without what lies behind the first's mean.
+  std::vector<double> depth(columns * rows, 1e9);
+  for (int pass = 0; pass < 3; ++pass) {
+    std::vector<double> sum(depth.size(), 0.0);
+    std::vector<double> count(depth.size(), 0.0);
+    for (const WallSample& sample : evidence.samples) {
+      if (sample.kind != SampleKind::wall) continue;
+      const std::size_t tile = tile_of(sample);
+      if (sample.depth_m > depth[tile] + 2.0 * noise_m) continue;
+      sum[tile] += sample.depth_m;
+      count[tile] += 1.0;
+    }
+    for (std::size_t t = 0; t < depth.size(); ++t) depth[t] = count[t] > 0.0 ? sum[t] / count[t] : 1e9;
+  }
+  const double behind_m = std::max(kMinBehind_m, 2.0 * noise_m);
+  for (WallSample& sample : evidence.samples) {
+    if (sample.kind == SampleKind::wall && sample.depth_m > depth[tile_of(sample)] + behind_m)
+      sample.kind = SampleKind::shallow;
+  }
+}
+
 }  // namespace
 
 std::vector<OpeningWall> opening_walls(const Scan& scan, const ExtractedFeatures& extracted,
@@ -268,7 +303,8 @@ std::vector<OpeningWall> opening_walls(const Scan& scan, const ExtractedFeatures
     for (std::size_t j = 0; j < polygons.size(); ++j) {
       if (wall.planes[j] == static_cast<char>(PlaneRole::member)) taken[j] = 1;
     }
-    if (wall.box.high.y() - wall.box.low.y() < options.min_wall_m) continue;
+    const Vector2d size = wall.box.high - wall.box.low;
+    if (size.y() < options.min_wall_m || size.x() < options.min_width_m + kMinBeside_m) continue;
     mark_relief(wall, polygons, scan.mobile() ? kMobileRelief_m : kStaticRelief_m);
     set_spacing(wall, polygons);
     walls.push_back(std::move(wall));
@@ -299,6 +335,9 @@ std::vector<WallEvidence> opening_evidence(const Scan& scan, const ExtractedFeat
     for (const auto& [wall, sample] : piece) evidence[wall].samples.push_back(sample);
     piece = {};
   }
+  parallel_for(evidence.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t w = begin; w < end; ++w) part_sides(evidence[w], extracted.features.noise_m);
+  });
   return evidence;
 }
 

@@ -12,7 +12,8 @@ namespace {
 constexpr double kNeck_m = 0.06;     // wall seen to reach this far in from both sides divides
 constexpr double kTrimShare = 0.12;  // of a side's length that is left out at either corner
 constexpr double kSearch_m = 0.3;    // how far a side is looked for beyond its region
-constexpr int kRounds = 3;
+constexpr int kRounds = 2;
+constexpr double kMinPane_m = 0.15;      // smaller regions are no part of an opening
 constexpr double kSigmaFloor_m = 0.003;  // no side is known better than the points are
 constexpr double kUnbounded_m = 1.0;
 constexpr double kMinSupport_m = 0.08;  // beyond a side within which wall must be seen
@@ -280,15 +281,23 @@ OpeningRectangle measured(OpeningRectangle rectangle, const WallEvidence& eviden
 std::vector<OpeningRectangle> opening_rectangles(const WallEvidence& evidence, const OpeningGrid& grid,
                                                  const OpeningOptions& options) {
   const Fitter fitter(evidence, grid);
+  std::vector<OpeningRectangle> fitted;
   std::vector<Box2> boxes;
   for (const Box2& region : grid.regions(OpeningGrid::Cell::open, kNeck_m)) {
     const Vector2d size = region.high - region.low;
+    if (size.minCoeff() < kMinPane_m) continue;
     if (size.x() > 1.5 * options.max_width_m || size.y() > 1.5 * options.max_height_m) continue;
-    boxes.push_back(fitter.fit(region).box);
+    fitted.push_back(fitter.fit(region));
+    boxes.push_back(fitted.back().box);
   }
   std::vector<OpeningRectangle> rectangles;
   for (const Box2& box : merged_boxes(std::move(boxes), options.merge_bar_m)) {
-    rectangles.push_back(measured(fitter.fit(box), evidence, grid, options));
+    const Vector2d size = box.high - box.low;
+    if (size.x() < options.min_width_m || size.y() < options.min_height_m) continue;
+    const auto alone = std::find_if(fitted.begin(), fitted.end(), [&](const OpeningRectangle& other) {
+      return other.box.low == box.low && other.box.high == box.high;
+    });
+    rectangles.push_back(measured(alone != fitted.end() ? *alone : fitter.fit(box), evidence, grid, options));
   }
   return rectangles;
 }

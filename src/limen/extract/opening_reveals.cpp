@@ -44,20 +44,18 @@ struct Line {
 /// Different depths among the points with `across - slope * depth` in a window that starts at the k-th.
 class WindowScore {
  public:
-  void add(double depth) { ++count_[bin(depth)]; }
-  void remove(double depth) { --count_[bin(depth)]; }
-  [[nodiscard]] double score() const {
-    double sum = 0.0;
-    for (const int count : count_) sum += std::min(count, 3);
-    return sum;
-  }
+  void add(double depth) { score_ += ++count_[bin(depth)] <= kPerDepth ? 1.0 : 0.0; }
+  void remove(double depth) { score_ -= --count_[bin(depth)] < kPerDepth ? 1.0 : 0.0; }
+  [[nodiscard]] double score() const { return score_; }
 
  private:
   static std::size_t bin(double depth) {
     return std::min(kBins - 1, static_cast<std::size_t>(depth / kDepthBin_m));
   }
   static constexpr std::size_t kBins = 70;
+  static constexpr int kPerDepth = 3;  // more points at one depth say no more
   std::array<int, kBins> count_{};
+  double score_ = 0.0;
 };
 
 Line best_line(const std::vector<SidePoint>& points, double slope, double width) {
@@ -96,8 +94,9 @@ struct FittedLine {
   double sigma_m = 1.0;
 };
 
-/// Least squares over the points near the line; a straight side keeps its direction.
-FittedLine refined(const std::vector<SidePoint>& points, const Line& line, double noise_m) {
+/// Least squares over the points near the line; a straight side keeps its direction. Frames and stray points
+/// pass for a side: its deviation is that of points anywhere within `width_m`.
+FittedLine refined(const std::vector<SidePoint>& points, const Line& line, double width_m) {
   double n = 0.0;
   double sd = 0.0;
   double sa = 0.0;
@@ -114,13 +113,13 @@ FittedLine refined(const std::vector<SidePoint>& points, const Line& line, doubl
   FittedLine fitted{line, 1.0};
   if (line.slope == 0.0) {
     fitted.line.place = sa / n;
-    fitted.sigma_m = std::hypot(noise_m / std::sqrt(n), kFloor_m);
+    fitted.sigma_m = std::hypot(width_m / std::sqrt(n), kFloor_m);
   } else {
     fitted.line.slope = (sda / n - sd * sa / (n * n)) / std::max(spread, 1e-9);
     fitted.line.place = (sa - fitted.line.slope * sd) / n;
     const double mean = sd / n;
     fitted.sigma_m =
-        std::hypot(noise_m * std::sqrt((1.0 + mean * mean / std::max(spread, 1e-9)) / n), kFloor_m);
+        std::hypot(width_m * std::sqrt((1.0 + mean * mean / std::max(spread, 1e-9)) / n), kFloor_m);
   }
   return fitted;
 }
@@ -190,7 +189,7 @@ class RevealFinder {
     const Line line = find_line(near, width_m);
     std::vector<SidePoint> on = near_line(near, line, width_m);
     if (on.size() < kMinPoints || depths_of(on) < kMinBins || start_of(on) > kMaxStart_m) return {};
-    const FittedLine fitted = refined(on, line, noise_m_);
+    const FittedLine fitted = refined(on, line, 2.0 * width_m);
     if (std::abs(fitted.line.place - place) > reach_m) return {};
     Reveal reveal;
     reveal.found = true;

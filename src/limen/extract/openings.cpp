@@ -212,6 +212,8 @@ std::vector<Opening> openings_of(const Scan& scan, const Features& features, con
     openings.push_back(make_opening(rectangle, evidence.wall));
     set_reveal(reveals, openings.back());
   }
+  // A curtain hangs in the room; before a façade hang flags.
+  if (scan.mobile()) return openings;
   for (const OpeningRectangle& rectangle :
        curtained_rectangles(scan, evidence, grid, features.noise_m, options)) {
     const Opening opening = make_opening(rectangle, evidence.wall);
