@@ -81,8 +81,10 @@ std::vector<PoseCandidate> propose_poses(const Features& source, const Features&
   std::vector<PoseCandidate> all;
   if (options.method == Method::automatic || options.method == Method::polygons) {
     append(all, enumerate_poses(source, target, options.planes));
+    PoseEnumerationOptions fewer = options.planes;
+    fewer.max_poses = std::max(1, options.planes.max_poses / 2);
     for (const ThroughPair& pair : through_pairs(source, target))
-      append(all, enumerate_poses(pair.source, pair.target, options.planes));
+      append(all, enumerate_poses(pair.source, pair.target, fewer));
   }
   if (options.method != Method::polygons && options.planes.gravity_known)
     append(all, opening_candidates(source, target, options));

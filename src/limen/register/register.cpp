@@ -20,7 +20,7 @@ namespace limen {
 namespace {
 
 constexpr std::size_t kFirstLook = 800;  // samples asked per scan when thousands of poses are compared
-constexpr std::size_t kMany = 6000;      // poses that get a first look
+constexpr std::size_t kMany = 2500;      // poses that get a first look
 constexpr std::size_t kGlance = 100;     // samples asked of each scan when there are more
 constexpr int kSettleSteps = 16;         // either way along a shift that the planes leave open
 constexpr double kSettleStepM = 0.02;

@@ -46,6 +46,14 @@ std::size_t stride_of(const ScanView& scan, const ScoreOptions& options) {
   return options.samples == 0 ? 1 : 1 + scan.features->samples.size() / options.samples;
 }
 
+/// One plane counts for no more than this, m^2, however large: that two large planes meet is one coincidence,
+/// not many.
+constexpr double kPlaneLimit_m2 = 5.0;
+
+double saturated(double area_m2) {
+  return kPlaneLimit_m2 * (1.0 - std::exp(-area_m2 / kPlaneLimit_m2));
+}
+
 /// Asks `judge` about every sample of `scan`.
 PoseScore one_way(const ScanView& scan, const ScanView& judge, const Rigid3& judge_from_scan,
                   const ScoreOptions& options) {
@@ -53,16 +61,30 @@ PoseScore one_way(const ScanView& scan, const ScanView& judge, const Rigid3& jud
   if (judge.space == nullptr) return score;
   const std::vector<SurfaceSample>& samples = scan.features->samples;
   const std::size_t stride = stride_of(scan, options);
+  const auto factor = static_cast<double>(stride);
+  // Samples come plane by plane, clutter last.
+  std::int32_t plane = -1;
+  double of_plane = 0.0;
   for (std::size_t i = 0; i < samples.size(); i += stride) {
     const Answer answer = ask(samples[i], scan, judge, judge_from_scan, options);
-    score.agreeing_m2 += answer.gain_m2;
-    if (answer.planar) score.planar_m2 += answer.gain_m2;
-    score.contradicted_m2 += answer.contradicted_m2();
-    if (answer.sight.kind != SightKind::unseen) score.tested_m2 += answer.area_m2;
+    const double gain = factor * answer.gain_m2;
+    score.agreeing_m2 += gain;
+    if (samples[i].plane != plane) {
+      score.evidence_m2 += saturated(of_plane);
+      of_plane = 0.0;
+      plane = samples[i].plane;
+    }
+    if (answer.planar) {
+      score.planar_m2 += gain;
+      of_plane += gain;
+    } else {
+      score.evidence_m2 += gain;
+    }
+    score.contradicted_m2 += factor * answer.contradicted_m2();
+    if (answer.sight.kind != SightKind::unseen) score.tested_m2 += factor * answer.area_m2;
   }
-  const auto factor = static_cast<double>(stride);
-  return {factor * score.agreeing_m2, factor * score.planar_m2, factor * score.contradicted_m2,
-          factor * score.tested_m2, 0.0};
+  score.evidence_m2 += saturated(of_plane);
+  return score;
 }
 
 /// The area of each source opening that meets one of the target, clipped as surface is.
@@ -77,14 +99,6 @@ std::vector<double> opening_gains(const ScanView& source, const ScanView& target
     gains[static_cast<std::size_t>(match.source)] = match.trust * match.area_m2 * (1.0 - off * off);
   }
   return gains;
-}
-
-/// One plane counts for no more than this, m^2, however large: that two large planes meet is one coincidence,
-/// not many.
-constexpr double kPlaneLimit_m2 = 5.0;
-
-double saturated(double area_m2) {
-  return kPlaneLimit_m2 * (1.0 - std::exp(-area_m2 / kPlaneLimit_m2));
 }
 
 void add_lead(double lead, PoseContrast& contrast) {
@@ -128,6 +142,7 @@ PoseScore score_pose(const ScanView& source, const ScanView& target, const Rigid
   for (const double gain : opening_gains(source, target, target_from_source, options))
     both.opening_m2 += gain;
   both.agreeing_m2 += both.opening_m2;
+  both.evidence_m2 = 0.5 * (forth.evidence_m2 + back.evidence_m2) + both.opening_m2;
   return both;
 }
 

@@ -33,10 +33,13 @@ struct PoseScore {
   double contradicted_m2 = 0.0;
   double tested_m2 = 0.0;   ///< surface that the other scan could have judged
   double opening_m2 = 0.0;  ///< of agreeing_m2: openings seen from both sides
+  /// Agreeing surface, each plane counting for no more than 5 m^2, however large: that two façades lie in one
+  /// plane is one coincidence, not many.
+  double evidence_m2 = 0.0;
 
   /// What poses are ranked by, m^2. One contradicted square metre outweighs several agreeing ones: surfaces
   /// meet by chance, but matter cannot stand where a ray passed.
-  [[nodiscard]] double value() const { return agreeing_m2 - kContradictionWeight * contradicted_m2; }
+  [[nodiscard]] double value() const { return evidence_m2 - kContradictionWeight * contradicted_m2; }
 };
 
 /// What tells two poses apart, m^2: surface that speaks for the one more than for the other. Surface that

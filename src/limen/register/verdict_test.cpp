@@ -17,7 +17,7 @@ JudgedPose pose(double agreeing_m2, double contradicted_m2, double shift_m) {
   judged.refined.target_from_source.translation.x() = shift_m;
   judged.refined.centre.x() = shift_m;
   judged.refined.geometry_m2 = Matrix6d::Identity();
-  judged.score = {agreeing_m2, agreeing_m2, contradicted_m2, 100.0};
+  judged.score = {agreeing_m2, agreeing_m2, contradicted_m2, 100.0, 0.0, agreeing_m2};
   return judged;
 }
 
