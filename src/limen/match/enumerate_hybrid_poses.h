@@ -58,9 +58,9 @@ struct HybridPose {
 
 /// Poses from openings and planes. A pose stands in the list by the better of its two places, by the distance
 /// of its openings and by the overlap of its planes, counted for each of the two cases of sides apart; equal
-/// places by distance. Where the user gave a thickness, that shift comes first of its opening pose's. A pose
-/// whose normal nothing holds is listed with assumed thicknesses and `free_translations` 1. Deterministic.
-/// Throws Error for bad options.
+/// places go by distance. Where the user gave a thickness, that shift comes first of its opening pose's. A
+/// pose whose normal nothing holds is listed with assumed thicknesses and `free_translations` 1.
+/// Deterministic. Throws Error for bad options.
 std::vector<HybridPose> enumerate_hybrid_poses(const Features& source, const Features& target,
                                                const HybridPoseOptions& options = {});
 /// The same from opening poses at hand.
