@@ -113,7 +113,8 @@ std::vector<OpeningRectangle> curtained_rectangles(const Scan& scan, const WallE
     rectangle.box.low.array() += kOverhang_m;
     rectangle.box.high.array() -= kOverhang_m;
     const Vector2d opening = rectangle.box.high - rectangle.box.low;
-    if (opening.x() < options.min_width_m || opening.y() < options.min_height_m) continue;
+    if (opening.x() < std::max(kMinCurtain_m, options.min_width_m)) continue;
+    if (opening.y() < std::max(kMinCurtain_m, options.min_height_m)) continue;
     rectangle.sigma_m.fill(kSigma_m);
     rectangle.curtain = true;
     rectangles.push_back(rectangle);

@@ -11,8 +11,8 @@
 namespace limen {
 namespace {
 
-constexpr double kCellPerSpacing = 0.6;
-constexpr double kMinCell_m = 0.02;
+constexpr double kCellPerSpacing = 0.9;
+constexpr double kMinCell_m = 0.025;
 constexpr double kMaxCell_m = 0.06;
 constexpr double kMaxCells = 6e6;
 constexpr double kTile_m = 0.5;           // over which the distance between samples is taken

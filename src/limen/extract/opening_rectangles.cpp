@@ -6,6 +6,8 @@
 #include <cmath>
 #include <utility>
 
+#include "limen/extract/opening_separator.h"
+
 namespace limen {
 namespace {
 
@@ -13,70 +15,8 @@ constexpr double kNeck_m = 0.06;     // wall seen to reach this far in from both
 constexpr double kTrimShare = 0.12;  // of a side's length that is left out at either corner
 constexpr double kSearch_m = 0.3;    // how far a side is looked for beyond its region
 constexpr int kRounds = 2;
-constexpr double kMinPane_m = 0.15;      // smaller regions are no part of an opening
-constexpr double kSigmaFloor_m = 0.003;  // no side is known better than the points are
-constexpr double kUnbounded_m = 1.0;
+constexpr double kMinPane_m = 0.15;     // smaller regions are no part of an opening
 constexpr double kMinSupport_m = 0.08;  // beyond a side within which wall must be seen
-
-/// Where a side lies, and how well it is known.
-struct Separator {
-  double place = 0.0;  ///< outward coordinate
-  double sigma_m = kUnbounded_m;
-  bool found = false;
-};
-
-/// A sample's place across a side, growing outwards.
-struct Mark {
-  double at = 0.0;
-  bool wall = false;
-};
-
-/// Share of the samples beyond a side that pretend to be open (a beam that meets the edge measures something
-/// behind it), and of those within that pretend to be wall.
-constexpr double kFalseOpen = 0.15;
-constexpr double kFalseWall = 0.03;
-
-/// Where the marks change from open to wall, going outwards: mean and standard deviation of the place given
-/// all marks, each wrong with the probabilities above, every place in [from, to] as likely before. The search
-/// ends where a pier has clearly been met.
-Separator separate(std::vector<Mark> marks, double from, double to) {
-  static const double wall_inside = std::log((1.0 - kFalseOpen) / kFalseWall);
-  static const double open_outside = std::log((1.0 - kFalseWall) / kFalseOpen);
-  constexpr double kPatience = 30.0;  // log likelihood
-  std::sort(marks.begin(), marks.end(), [](const Mark& a, const Mark& b) { return a.at < b.at; });
-  const auto open = std::count_if(marks.begin(), marks.end(), [](const Mark& mark) { return !mark.wall; });
-  if (open == 0) return {};
-  // Between marks k - 1 and k the likelihood is the same; `cost` falls with each open mark left inside.
-  std::vector<double> costs = {0.0};
-  double best = 0.0;
-  std::size_t best_at = 0;
-  for (const Mark& mark : marks) {
-    costs.push_back(costs.back() + (mark.wall ? wall_inside : -open_outside));
-    if (costs.back() < best) {
-      best = costs.back();
-      best_at = costs.size() - 1;
-    }
-    if (costs.back() > best + kPatience) break;
-  }
-  const bool wall_met = std::any_of(marks.begin() + static_cast<std::ptrdiff_t>(best_at), marks.end(),
-                                    [](const Mark& mark) { return mark.wall; });
-  if (!wall_met || best_at == 0) return {marks[best_at == 0 ? 0 : best_at - 1].at, kUnbounded_m, true};
-  double weight = 0.0;
-  double first = 0.0;
-  double second = 0.0;
-  for (std::size_t k = 0; k < costs.size(); ++k) {
-    const double low = k == 0 ? from : marks[k - 1].at;
-    const double high = k == marks.size() ? to : marks[k].at;
-    const double w = (high - low) * std::exp(best - costs[k]);
-    weight += w;
-    first += w * 0.5 * (low + high);
-    second += w * (low * low + low * high + high * high) / 3.0;
-  }
-  if (!(weight > 0.0)) return {};
-  const double mean = first / weight;
-  const double variance = std::max(0.0, second / weight - mean * mean);
-  return {mean, std::sqrt(variance + kSigmaFloor_m * kSigmaFloor_m), true};
-}
 
 class Fitter {
  public:
@@ -92,7 +32,7 @@ class Fitter {
     const std::vector<std::uint32_t> near = grid_.samples_in(around);
     for (int round = 0; round < kRounds; ++round) {
       for (const Side side : kSides) {
-        const Separator found = place_side(rectangle.box, side, search_m, near);
+        const SideSeparator found = place_side(rectangle.box, side, search_m, near);
         if (!found.found) continue;
         set_place(rectangle.box, side, outward(side) * found.place);
         rectangle.sigma_m[static_cast<std::size_t>(side)] = found.sigma_m;
@@ -102,8 +42,8 @@ class Fitter {
   }
 
  private:
-  [[nodiscard]] Separator place_side(const Box2& box, Side side, double search_m,
-                                     const std::vector<std::uint32_t>& near) const {
+  [[nodiscard]] SideSeparator place_side(const Box2& box, Side side, double search_m,
+                                         const std::vector<std::uint32_t>& near) const {
     const Eigen::Index axis = axis_of(side);
     const Eigen::Index other = 1 - axis;
     const double length = box.high[other] - box.low[other];
@@ -114,7 +54,7 @@ class Fitter {
     const double at = sign * place_of(box, side);
     const double from = at - std::min(search_m, 0.5 * size);
     const double to = at + search_m;
-    std::vector<Mark> marks;
+    std::vector<SideMark> marks;
     for (const std::uint32_t i : near) {
       const WallSample& sample = evidence_.samples[i];
       if (sample.kind == SampleKind::cover) continue;
@@ -124,15 +64,15 @@ class Fitter {
       marks.push_back({t, sample.kind == SampleKind::wall});
     }
     add_silent(box, side, {from, to}, {low, high}, marks);
-    Separator found = separate(std::move(marks), from, to);
-    if (found.found && found.sigma_m >= kUnbounded_m)
+    SideSeparator found = separate(std::move(marks), from, to);
+    if (found.found && found.sigma_m >= kUnboundedSigma_m)
       found.place = behind_occluder(found.place, side, {low, high});
     return found;
   }
 
   /// Silent cells are open: a mark for each, as coarse as the cells.
   void add_silent(const Box2& box, Side side, const Vector2d& across, const Vector2d& along,
-                  std::vector<Mark>& marks) const {
+                  std::vector<SideMark>& marks) const {
     const Eigen::Index axis = axis_of(side);
     const double sign = outward(side);
     const double reach_m = across.y() - across.x();
@@ -273,7 +213,7 @@ OpeningRectangle measured(OpeningRectangle rectangle, const WallEvidence& eviden
   for (const Side side : kSides) {
     const auto k = static_cast<std::size_t>(side);
     rectangle.bounded[k] = bounded_share(box, side, grid);
-    if (rectangle.bounded[k] < options.min_bounded) rectangle.sigma_m[k] = kUnbounded_m;
+    if (rectangle.bounded[k] < options.min_bounded) rectangle.sigma_m[k] = kUnboundedSigma_m;
   }
   return rectangle;
 }

@@ -25,6 +25,7 @@
 #include "limen/extract/opening_curtains.h"
 #include "limen/extract/opening_evidence.h"
 #include "limen/extract/opening_grid.h"
+#include "limen/extract/opening_outline.h"
 #include "limen/extract/opening_rectangles.h"
 #include "limen/extract/opening_reveals.h"
 
@@ -32,7 +33,7 @@ namespace limen {
 namespace {
 
 constexpr double kMinKnown = 0.25;        // part of a rectangle in which something was seen behind the wall
-constexpr std::size_t kMinEvidence = 12;  // rays
+constexpr std::size_t kMinEvidence = 20;  // rays
 constexpr double kMinWallRound = 0.5;
 constexpr double kThroughShare = 0.05;
 constexpr double kFoot_m = 0.15;  // a door's lower end is no higher above the foot of the wall beside it
@@ -209,8 +210,11 @@ std::vector<Opening> openings_of(const Scan& scan, const Features& features, con
     const std::array<Reveal, 4> reveals =
         find_reveals(scan, evidence, grid, rectangle, std::max(features.noise_m, 0.001));
     refine_sides(features, evidence.wall, reveals, rectangle);
+    const OpeningOutline outline = find_outline(evidence, grid, rectangle);
+    if (!outline.ring.empty()) rectangle.box = outline.box;
     openings.push_back(make_opening(rectangle, evidence.wall));
     set_reveal(reveals, openings.back());
+    for (const Vector2d& p : outline.ring) openings.back().outline.push_back(evidence.wall.frame.to_space(p));
   }
   // A curtain hangs in the room; before a façade hang flags.
   if (scan.mobile()) return openings;

@@ -163,6 +163,38 @@ TEST(Openings, ABarFlushWithTheWallDoesNotDivideButAPierDoes) {
   }
 }
 
+TEST(Openings, AnArchKeepsItsOutline) {
+  WallScene scene;
+  const Hole jambs = rectangle(-0.6, -0.6, 0.6, 0.5);
+  scene.hole = [=](double u, double v) { return jambs(u, v) || (v >= 0.5 && std::hypot(u, v - 0.5) < 0.6); };
+  const std::vector<Opening> openings = openings_of(scene);
+  ASSERT_EQ(openings.size(), 1U);
+  expect_box(box_of(scene, openings[0]), -0.6, -0.6, 0.6, 1.1, 0.02);
+  ASSERT_GE(openings[0].outline.size(), 8U);
+  Ring ring;
+  for (const Vector3d& x : openings[0].outline) {
+    ring.emplace_back(x.x(), x.z());
+    if (x.z() > 0.55) {
+      EXPECT_NEAR(std::hypot(x.x(), x.z() - 0.5), 0.6, 0.025);
+    }
+  }
+  EXPECT_NEAR(std::abs(signed_area(ring)), 1.2 * 1.1 + 0.5 * 3.14159 * 0.36, 0.06);
+}
+
+TEST(Openings, ARoundWindowKeepsItsOutlineAndARectangleHasNone) {
+  WallScene scene;
+  scene.hole = [](double u, double v) { return std::hypot(u - 0.3, v - 0.2) < 0.5; };
+  const std::vector<Opening> openings = openings_of(scene);
+  ASSERT_EQ(openings.size(), 1U);
+  expect_box(box_of(scene, openings[0]), -0.2, -0.3, 0.8, 0.7, 0.025);
+  ASSERT_GE(openings[0].outline.size(), 8U);
+  for (const Vector3d& x : openings[0].outline) EXPECT_NEAR(std::hypot(x.x() - 0.3, x.z() - 0.2), 0.5, 0.025);
+  scene.hole = rectangle(-0.2, -0.3, 0.8, 0.7);
+  const std::vector<Opening> square = openings_of(scene);
+  ASSERT_EQ(square.size(), 1U);
+  EXPECT_TRUE(square[0].outline.empty());
+}
+
 TEST(Openings, ABlindBehindTheFaceIsARecess) {
   WallScene scene;
   scene.hole = rectangle(-0.6, -0.6, 0.6, 0.9);
