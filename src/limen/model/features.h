@@ -58,6 +58,9 @@ struct Features {
   std::vector<SurfaceSample> samples;  ///< evenly spread over the seen surface, planes first
   double inlier_threshold_m = 0.0;     ///< the distance threshold that was used or chosen
   double noise_m = 0.0;                ///< estimated range noise, one standard deviation
+  /// Slow error of a mobile scan's trajectory, one standard deviation per axis, as the surface of its large
+  /// planes shows it (with their relief); 0 for a static scan.
+  double drift_m = 0.0;
 };
 
 }  // namespace limen

@@ -48,12 +48,13 @@ std::vector<PoseCandidate> opening_candidates(const Features& source, const Feat
   HybridPoseOptions hybrid;
   hybrid.openings.gravity_known = options.planes.gravity_known;
   if (options.wall_thickness_m > 0) hybrid.wall_thickness_m = options.wall_thickness_m;
-  const std::vector<OpeningPose> poses = enumerate_opening_poses(source, target, hybrid.openings);
   std::vector<PoseCandidate> all;
-  for (const OpeningPose& pose : poses)
-    all.push_back({pose.target_from_source, pose.support_m, pose.thickness_held ? 0 : 1});
-  if (options.method == Method::openings) return all;
-  for (const HybridPose& pose : enumerate_hybrid_poses(source, target, poses, hybrid))
+  if (options.method == Method::openings) {
+    for (const OpeningPose& pose : enumerate_opening_poses(source, target, hybrid.openings))
+      all.push_back({pose.target_from_source, pose.support_m, pose.thickness_held ? 0 : 1});
+    return all;
+  }
+  for (const HybridPose& pose : enumerate_hybrid_poses(source, target, hybrid))
     all.push_back({pose.target_from_source, pose.support_m2, pose.free_translations});
   return all;
 }

@@ -95,21 +95,27 @@ std::vector<PoseCandidate> best_of(const std::vector<PoseCandidate>& candidates,
   return best;
 }
 
-/// Tolerances of the final score, from the noise of the scans.
+double drift_m(const ScanView& source, const ScanView& target) {
+  return std::hypot(source.features->drift_m, target.features->drift_m);
+}
+
+/// Tolerances of the final score, from the noise of the scans and the error of their trajectories.
 ScoreOptions fine_score(const ScanView& source, const ScanView& target) {
   ScoreOptions fine;
   const double noise = std::max(source.features->noise_m, target.features->noise_m);
-  fine.surface_m = std::clamp(4.0 * noise, 0.02, 0.05);
+  fine.surface_m = std::clamp(std::max(4.0 * noise, 3.0 * drift_m(source, target)), 0.02, 0.05);
   fine.free_m = fine.surface_m + 0.03;
   fine.opening_m = 0.1;
   return fine;
 }
 
-/// What the method refines on.
-RefineOptions refine_options(const RegisterOptions& options) {
+/// What the method refines on, and how near surfaces have to be.
+RefineOptions refine_options(const ScanView& source, const ScanView& target, const RegisterOptions& options) {
   RefineOptions refine = options.refine;
   refine.planes = refine.planes && options.method != Method::openings;
   refine.openings = refine.openings && options.method != Method::polygons;
+  refine.last_gate_m =
+      std::min(refine.first_gate_m, std::max(refine.last_gate_m, 2.5 * drift_m(source, target)));
   if (options.wall_thickness_m > 0) refine.wall_thickness_m = options.wall_thickness_m;
   return refine;
 }
@@ -117,7 +123,7 @@ RefineOptions refine_options(const RegisterOptions& options) {
 std::vector<JudgedPose> refine_all(const std::vector<PoseCandidate>& candidates, const ScanView& source,
                                    const ScanView& target, const RegisterOptions& options) {
   const ScoreOptions fine = fine_score(source, target);
-  RefineOptions quick = refine_options(options);
+  RefineOptions quick = refine_options(source, target, options);
   quick.samples = kSecondLook;
   std::vector<JudgedPose> judged(candidates.size());
   parallel_for(candidates.size(), 1, [&](std::size_t begin, std::size_t end) {
@@ -142,21 +148,27 @@ Hypothesis to_hypothesis(const JudgedPose& pose, const Scan& source, const Scan&
   return hypothesis;
 }
 
-PoseSigma sigma_of(const RefinedPose& pose, const Scan& target) {
+/// Over what length a trajectory's error changes: its size over this is the turn it may cause.
+constexpr double kDriftLengthM = 5.0;
+
+/// What the data hold, and what the trajectory may be off where this place was scanned: the matched surface
+/// is seen within seconds, so that the error is one for all of it and does not average out.
+PoseSigma sigma_of(const RefinedPose& pose, const Scan& target, double drift_m) {
   PoseSigma sigma;
   sigma.centre = pose.centre + target.local_origin;
   const Matrix6d damped = pose.information + 1e-6 * Matrix6d::Identity();
   const Matrix6d covariance = damped.inverse();
   for (Eigen::Index k = 0; k < 3; ++k) {
-    sigma.rotation_rad[k] = std::sqrt(std::max(0.0, covariance(k, k)));
-    sigma.translation_m[k] = std::sqrt(std::max(0.0, covariance(k + 3, k + 3)));
+    sigma.rotation_rad[k] = std::hypot(std::sqrt(std::max(0.0, covariance(k, k))), drift_m / kDriftLengthM);
+    sigma.translation_m[k] = std::hypot(std::sqrt(std::max(0.0, covariance(k + 3, k + 3))), drift_m);
   }
   return sigma;
 }
 
 void refine_and_score(JudgedPose& pose, const ScanView& source, const ScanView& target,
                       const RegisterOptions& options) {
-  pose.refined = refine_pose(source, target, pose.refined.target_from_source, refine_options(options));
+  pose.refined =
+      refine_pose(source, target, pose.refined.target_from_source, refine_options(source, target, options));
   pose.score = score_pose(source, target, pose.refined.target_from_source, fine_score(source, target));
 }
 
@@ -284,7 +296,7 @@ RegistrationResult register_scans(const Scan& source, const Scan& target, const 
   if (verdict.ranking.empty()) return result;
   const JudgedPose best = in_own_frames(poses[verdict.ranking.front()], from, to);
   result.best = to_hypothesis(best, source, target);
-  result.sigma = sigma_of(best.refined, target);
+  result.sigma = sigma_of(best.refined, target, drift_m(from.view(), to.view()));
   result.matches = best.refined.matches;
   result.openings = matched_openings(best.refined);
   result.thickness = measure_thickness(poses[verdict.ranking.front()].refined, from.extracted.features,
