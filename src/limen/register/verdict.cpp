@@ -67,16 +67,20 @@ std::string direction_name(const Vector3d& d) {
   return fmt::format("({:.2f}, {:.2f}, {:.2f})", d.x(), d.y(), d.z());
 }
 
+/// The direction with its largest part positive: a freedom has no sign.
+Vector3d positive(const Vector3d& d) {
+  Eigen::Index largest = 0;
+  d.cwiseAbs().maxCoeff(&largest);
+  return d[largest] < 0 ? Vector3d(-d) : d;
+}
+
 /// Directions in which a 3 x 3 information (m^2) is below the bound.
 void add_weak(const Matrix3d& information, double bound, bool rotation,
               std::vector<UnobservedFreedom>& weak) {
   const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(information);
   for (Eigen::Index k = 0; k < 3; ++k) {
     if (solver.eigenvalues()[k] >= bound) continue;
-    Vector3d d = solver.eigenvectors().col(k);
-    Eigen::Index largest = 0;
-    d.cwiseAbs().maxCoeff(&largest);
-    if (d[largest] < 0) d = -d;
+    const Vector3d d = positive(solver.eigenvectors().col(k));
     weak.push_back({rotation, d, (rotation ? "turn about " : "shift along ") + direction_name(d)});
   }
 }
@@ -89,6 +93,8 @@ void VerdictOptions::check() const {
   if (!(max_rival_share > 0 && max_rival_share < 1)) {
     throw_bad_option("max_rival_share", max_rival_share, "within (0, 1)");
   }
+  if (!(max_sigma_m > 0)) throw_bad_option("max_sigma_m", max_sigma_m, "more than 0");
+  if (!(max_sigma_deg > 0)) throw_bad_option("max_sigma_deg", max_sigma_deg, "more than 0");
   if (!(min_held_m2 > 0)) throw_bad_option("min_held_m2", min_held_m2, "more than 0");
 }
 
@@ -104,6 +110,31 @@ std::vector<UnobservedFreedom> unobserved_freedoms(const RefinedPose& pose, doub
   add_weak(shift_held, min_held_m2, false, weak);
   add_weak(turn_held, 0.25 * min_held_m2, true, weak);
   return weak;
+}
+
+std::vector<UnobservedFreedom> loose_freedoms(const RefinedPose& pose, const VerdictOptions& options) {
+  const Matrix6d damped = pose.information + 1e-6 * Matrix6d::Identity();
+  const Matrix6d covariance = damped.inverse();
+  std::vector<UnobservedFreedom> loose;
+  const Eigen::SelfAdjointEigenSolver<Matrix3d> shifts(covariance.bottomRightCorner<3, 3>());
+  const Eigen::SelfAdjointEigenSolver<Matrix3d> turns(covariance.topLeftCorner<3, 3>());
+  for (Eigen::Index k = 0; k < 3; ++k) {
+    const double sigma_m = std::sqrt(std::max(0.0, shifts.eigenvalues()[k]));
+    const double sigma_deg = degrees(std::sqrt(std::max(0.0, turns.eigenvalues()[k])));
+    const Vector3d along = positive(shifts.eigenvectors().col(k));
+    const Vector3d about = positive(turns.eigenvectors().col(k));
+    if (sigma_m > options.max_sigma_m) {
+      loose.push_back({false, along,
+                       fmt::format("shift along {}, known to {:.0f} mm only", direction_name(along),
+                                   1e3 * std::min(sigma_m, 10.0))});
+    }
+    if (sigma_deg > options.max_sigma_deg) {
+      loose.push_back({true, about,
+                       fmt::format("turn about {}, known to {:.2f} deg only", direction_name(about),
+                                   std::min(sigma_deg, 180.0))});
+    }
+  }
+  return loose;
 }
 
 std::vector<std::size_t> rank(const std::vector<JudgedPose>& poses, const VerdictOptions& options) {
@@ -163,6 +194,7 @@ Verdict judge(const std::vector<JudgedPose>& poses, const ContrastFunction& cont
                                  rivals == 1 ? "" : "s", rivals == 1 ? "s" : "");
     return verdict;
   }
+  if (verdict.unobserved.empty()) verdict.unobserved = loose_freedoms(best.refined, options);
   if (!verdict.unobserved.empty()) {
     verdict.outcome = Outcome::under_constrained;
     verdict.reason = "the common surface does not fix the " + verdict.unobserved.front().name;

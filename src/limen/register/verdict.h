@@ -30,6 +30,8 @@ struct VerdictOptions {
       0.40;  ///< a pose is a rival if this share of what tells it from the best speaks for it
   double min_lead_m2 = 0.75;       ///< or if less surface than this speaks for the best against it
   double min_held_m2 = 0.03;       ///< surface (times lever^2 for turns) that must hold each freedom
+  double max_sigma_m = 0.012;      ///< a shift known less well than this counts as open
+  double max_sigma_deg = 0.1;      ///< and so does a turn
   double same_rotation_deg = 1.0;  ///< poses nearer than both bounds are one pose
   double same_shift_m = 0.05;
 
@@ -56,5 +58,9 @@ std::vector<std::size_t> rank(const std::vector<JudgedPose>& poses, const Verdic
 
 /// Freedoms of a pose that less than `min_held_m2` of matched surface holds.
 std::vector<UnobservedFreedom> unobserved_freedoms(const RefinedPose& pose, double min_held_m2);
+
+/// Freedoms of a pose that are held, but not as well as the options ask for: by far-off or hardly seen
+/// openings, say. The name tells how well.
+std::vector<UnobservedFreedom> loose_freedoms(const RefinedPose& pose, const VerdictOptions& options = {});
 
 }  // namespace limen

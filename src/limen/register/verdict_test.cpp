@@ -17,6 +17,7 @@ JudgedPose pose(double agreeing_m2, double contradicted_m2, double shift_m) {
   judged.refined.target_from_source.translation.x() = shift_m;
   judged.refined.centre.x() = shift_m;
   judged.refined.geometry_m2 = Matrix6d::Identity();
+  judged.refined.information = 1e8 * Matrix6d::Identity();
   judged.score = {agreeing_m2, agreeing_m2, contradicted_m2, 100.0, 0.0, agreeing_m2};
   return judged;
 }
@@ -84,6 +85,16 @@ TEST(Verdict, AnOpenShiftIsNamed) {
   EXPECT_FALSE(verdict.unobserved[0].rotation);
   EXPECT_NEAR(std::abs(verdict.unobserved[0].direction.y()), 1.0, 1e-9);
   EXPECT_NE(verdict.reason.find("shift along"), std::string::npos);
+}
+
+TEST(Verdict, AShiftThatIsHardlyKnownIsNamed) {
+  JudgedPose loose = pose(30, 0, 0);
+  loose.refined.information(4, 4) = 1.0 / (0.024 * 0.024);
+  const Verdict verdict = judge_all({loose});
+  EXPECT_EQ(verdict.outcome, Outcome::under_constrained);
+  ASSERT_EQ(verdict.unobserved.size(), 1U);
+  EXPECT_NEAR(verdict.unobserved[0].direction.y(), 1.0, 1e-9);
+  EXPECT_NE(verdict.unobserved[0].name.find("24 mm"), std::string::npos);
 }
 
 TEST(Verdict, RivalsAlongAnOpenShiftAreTheSameAnswer) {
