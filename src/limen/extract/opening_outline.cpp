@@ -136,7 +136,7 @@ OpeningOutline find_outline(const WallEvidence& evidence, const OpeningGrid& gri
     box.low = rectangle.box.low;
     box.high.x() = rectangle.box.high.x();
   }
-  OpeningOutline outline{follow(samples, box), box};
+  OpeningOutline outline{follow(samples, box), box, round};
   if (outline.ring.size() < 5) return {};
   return outline;
 }

@@ -8,8 +8,9 @@ namespace limen {
 
 /// The outline of an opening that is clearly no rectangle.
 struct OpeningOutline {
-  Ring ring;  ///< in the wall's frame, counter-clockwise; empty: a rectangle describes it
-  Box2 box;   ///< its upright rectangle
+  Ring ring;           ///< in the wall's frame, counter-clockwise; empty: a rectangle describes it
+  Box2 box;            ///< its upright rectangle
+  bool round = false;  ///< bent all round, not only at the head
 };
 
 /// Looks at the corners of a rectangle: where wall fills two of them (an arch) or all four (a round window)

@@ -20,10 +20,11 @@ constexpr double kCorner_m = 0.05;    // left out at either end of a side
 constexpr double kMaxReach_m = 0.12;  // of a side from where crossings and wall part
 constexpr double kMaxSlope = 0.5;     // of splayed sides, metres per metre
 constexpr double kSlopeStep = 0.05;
-constexpr double kSplayGain = 1.3;    // a splayed side must fit that much better than a straight one
-constexpr double kMinGraze = 0.08;    // tangent between ray and side: beams that touch an edge run along it
-constexpr double kMaxStart_m = 0.05;  // a side begins at the wall's face; a frame's bar does not
-constexpr double kFloor_m = 0.002;    // no side is known better
+constexpr double kSplayGain = 1.3;     // a splayed side must fit that much better than a straight one
+constexpr double kMinGraze = 0.08;     // tangent between ray and side: beams that touch an edge run along it
+constexpr double kMaxStart_m = 0.05;   // a side begins at the wall's face; a frame's bar does not
+constexpr double kMinBeyond_m = 0.03;  // of a point past a side whose ray did not end on it
+constexpr double kFloor_m = 0.002;     // no side is known better
 
 /// A point seen through the opening, as one of its sides sees it.
 struct SidePoint {
@@ -154,6 +155,15 @@ double continuous_depth(const std::vector<SidePoint>& points, double max_gap_m) 
   return reached;
 }
 
+/// A ray that cut through where a side would go on.
+struct Passage {
+  double depth = 0.0;   ///< where it did
+  double end = 0.0;     ///< of its point
+  double beyond = 0.0;  ///< of its point past the side
+
+  [[nodiscard]] bool far() const { return end - depth > 0.25 || beyond > 0.15; }
+};
+
 class RevealFinder {
  public:
   RevealFinder(const Scan& scan, const WallEvidence& evidence, const OpeningGrid& grid,
@@ -226,6 +236,18 @@ class RevealFinder {
     return bins.size();
   }
 
+  /// A frame stands where the side ends: behind it the opening may be wider, but the wall goes on.
+  static bool ends_at_frame(const std::vector<SidePoint>& all, const Line& line, double depth_m) {
+    constexpr double kFrame_m = 0.08;  // depth of a frame, and a little
+    constexpr double kBar_m = 0.12;
+    constexpr std::ptrdiff_t kPoints = 3;
+    const auto count = std::count_if(all.begin(), all.end(), [&](const SidePoint& p) {
+      const double inside = line.place + line.slope * p.depth - p.across;
+      return inside > 0.02 && inside < kBar_m && p.depth > depth_m - kFrame_m && p.depth < depth_m + 0.02;
+    });
+    return count >= kPoints;
+  }
+
   /// How deep the side goes, and whether it ends there: the shallowest rays that cut through where it would
   /// go on.
   void set_depth(const std::vector<SidePoint>& on, const std::vector<SidePoint>& all, const Line& line,
@@ -233,28 +255,24 @@ class RevealFinder {
     if (on.empty()) return;
     const double max_gap_m = std::max(0.08, 3.0 * spacing_m_);
     reveal.depth_m = continuous_depth(on, max_gap_m);
-    std::vector<double> passed;
+    std::vector<Passage> passed;
     for (const SidePoint& p : all) {
       const double beyond = p.across - line.place - line.slope * p.depth;
       const double before = line.place - p.crossed;
-      if (beyond < 0.03 || before < 0.0) continue;
-      passed.push_back(p.depth * before / (before + beyond));
+      if (beyond < kMinBeyond_m || before < 0.0) continue;
+      passed.push_back({p.depth * before / (before + beyond), p.depth, beyond});
     }
-    // Behind a frame the side often goes on a little wider.
-    constexpr double kContinued_m = 0.4;
-    constexpr double kSplay_m = 0.1;
-    constexpr std::ptrdiff_t kContinuedRays = 4;
     constexpr std::size_t kRays = 3;  // a stray one proves nothing
     if (passed.size() < kRays) return;
-    std::nth_element(passed.begin(), passed.begin() + kRays - 1, passed.end());
-    const double pass_m = passed[kRays - 1];
+    std::partial_sort(passed.begin(), passed.begin() + kRays, passed.end(),
+                      [](const Passage& a, const Passage& b) { return a.depth < b.depth; });
+    // Behind a frame the side often goes on a little wider: the first rays past a wall's end go far.
+    if (std::any_of(passed.begin(), passed.begin() + kRays, [](const Passage& ray) { return !ray.far(); }))
+      return;
+    const double pass_m = passed[kRays - 1].depth;
     const double gap_m = pass_m - reveal.depth_m;
-    if (gap_m < -0.02 || gap_m > std::max(0.03, 1.5 * spacing_m_)) return;
-    const auto goes_on = std::count_if(all.begin(), all.end(), [&](const SidePoint& p) {
-      const double beyond = p.across - line.place - line.slope * p.depth;
-      return p.depth > pass_m && p.depth < pass_m + kContinued_m && beyond > 0.0 && beyond < kSplay_m;
-    });
-    if (goes_on >= kContinuedRays) return;
+    if (gap_m < -0.02 || gap_m > std::max(0.05, 1.5 * spacing_m_)) return;
+    if (ends_at_frame(all, line, reveal.depth_m + 0.5 * gap_m)) return;
     reveal.complete = true;
     reveal.depth_sigma_m = std::hypot(std::max(gap_m, 0.0) / std::sqrt(12.0), 0.004);
     reveal.depth_m += 0.5 * gap_m;

@@ -179,12 +179,23 @@ void refine_sides(const Features& features, const OpeningWall& wall, const std::
   }
 }
 
+/// The plane side of an arch or a round window would be a chord.
+void drop_bent_sides(const OpeningOutline& outline, std::array<Reveal, 4>& reveals) {
+  reveals[static_cast<std::size_t>(Side::top)] = {};
+  if (!outline.round) return;
+  reveals = {};
+}
+
 /// The wall's thickness where a side was seen to its end (the least: a door leaf may stand in line with one),
 /// else how far the sides go at least: the lintel, or both the left and the right one.
-void set_reveal(const std::array<Reveal, 4>& reveals, Opening& opening) {
+void set_reveal(const std::array<Reveal, 4>& reveals, bool outside, Opening& opening) {
   constexpr double kUnknownEnd_m = 0.02;
   const auto& of = [&](Side side) -> const Reveal& { return reveals[static_cast<std::size_t>(side)]; };
-  for (const Reveal& reveal : reveals) {
+  constexpr double kThinnest_m = 0.25;  // of outer walls: sides that end sooner end at a rebate or a splay
+  for (const Side side : {Side::left, Side::right, Side::top}) {
+    const Reveal& reveal = of(side);
+    // From the street a lintel may be the crown of a flat arch.
+    if (outside && (side == Side::top || reveal.depth_m < kThinnest_m)) continue;
     if (!reveal.complete || (opening.reveal_complete && reveal.depth_m >= opening.reveal_depth_m)) continue;
     opening.reveal_depth_m = reveal.depth_m;
     opening.reveal_sigma_m = reveal.depth_sigma_m;
@@ -207,13 +218,14 @@ std::vector<Opening> openings_of(const Scan& scan, const Features& features, con
   std::vector<Opening> openings;
   for (OpeningRectangle& rectangle : opening_rectangles(evidence, grid, options)) {
     if (!acceptable(features, rectangle, evidence, grid, options)) continue;
-    const std::array<Reveal, 4> reveals =
-        find_reveals(scan, evidence, grid, rectangle, std::max(features.noise_m, 0.001));
-    refine_sides(features, evidence.wall, reveals, rectangle);
     const OpeningOutline outline = find_outline(evidence, grid, rectangle);
     if (!outline.ring.empty()) rectangle.box = outline.box;
+    std::array<Reveal, 4> reveals =
+        find_reveals(scan, evidence, grid, rectangle, std::max(features.noise_m, 0.001));
+    if (!outline.ring.empty()) drop_bent_sides(outline, reveals);
+    refine_sides(features, evidence.wall, reveals, rectangle);
     openings.push_back(make_opening(rectangle, evidence.wall));
-    set_reveal(reveals, openings.back());
+    set_reveal(reveals, scan.mobile(), openings.back());
     for (const Vector2d& p : outline.ring) openings.back().outline.push_back(evidence.wall.frame.to_space(p));
   }
   // A curtain hangs in the room; before a façade hang flags.
