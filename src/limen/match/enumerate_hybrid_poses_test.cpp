@@ -10,7 +10,6 @@
 #include "limen/base/error.h"
 #include "limen/match/plane_shifts.h"
 #include "limen/match/synthetic_openings.h"
-#include "limen/match/wall_thickness.h"
 
 namespace limen {
 namespace {
@@ -151,55 +150,6 @@ TEST(EnumerateHybridPoses, TheSameFaceIsNotCalledPlanes) {
   EXPECT_EQ(poses.front().thickness_source, ThicknessSource::same_face);
   EXPECT_EQ(poses.front().free_translations, 0);
   EXPECT_NEAR(poses.front().support_m2, 14.0 * 9.0, 1.0);
-}
-
-TEST(WallThickness, IsMeasuredBetweenTheFacesWhereAnInteriorPlaneHoldsThePose) {
-  House house;
-  house.show_back_wall();
-  // A pose that is off by 2 cm along the normal: the back wall shows it, the thickness stays right.
-  Rigid3 pose = house.target_from_source;
-  pose.translation += 0.02 * (pose.rotation * Vector3d::UnitY());
-  const auto walls = estimate_thickness(house.inside, house.outside, pose);
-  ASSERT_EQ(walls.size(), 1U);
-  EXPECT_EQ(walls[0].source, ThicknessSource::planes);
-  EXPECT_NEAR(walls[0].value_m, house.thickness_m, 0.001);
-  EXPECT_LT(walls[0].sigma_m, 0.01);
-  EXPECT_EQ(walls[0].openings, 3);
-  EXPECT_EQ(walls[0].source_wall, 0);
-  EXPECT_FALSE(walls[0].from_reveals_m);
-}
-
-TEST(WallThickness, IsNotObservedWhereNothingHoldsIt) {
-  const House house;
-  const auto walls = estimate_thickness(house.inside, house.outside, house.target_from_source);
-  ASSERT_EQ(walls.size(), 1U);
-  EXPECT_EQ(walls[0].source, ThicknessSource::assumed);
-  EXPECT_GT(walls[0].sigma_m, 0.3);
-}
-
-TEST(WallThickness, MeasuresAreCombinedAndContradictingOnesLeftOut) {
-  House house;
-  house.show_back_wall();
-  WallThicknessOptions options;
-  const double planes = estimate_thickness(house.inside, house.outside, house.target_from_source)[0].sigma_m;
-  Opening& opening = house.inside.openings[0];
-  opening.reveal_depth_m = 0.43;
-  opening.reveal_sigma_m = 0.006;
-  opening.reveal_complete = true;
-  const auto both = estimate_thickness(house.inside, house.outside, house.target_from_source);
-  EXPECT_GT(both[0].value_m, 0.421);
-  EXPECT_LT(both[0].value_m, 0.43);
-  EXPECT_LT(both[0].sigma_m, planes);
-  EXPECT_DOUBLE_EQ(both[0].from_reveals_m.value_or(0.0), 0.43);
-  opening.reveal_depth_m = 0.25;  // a wrong one
-  EXPECT_NEAR(estimate_thickness(house.inside, house.outside, house.target_from_source)[0].value_m, 0.42,
-              0.001);
-  const House bare;
-  options.wall_thickness_m = 0.40;
-  const auto user = estimate_thickness(bare.inside, bare.outside, bare.target_from_source, options);
-  EXPECT_EQ(user[0].source, ThicknessSource::user);
-  EXPECT_DOUBLE_EQ(user[0].value_m, 0.40);
-  EXPECT_DOUBLE_EQ(user[0].sigma_m, 0.02);
 }
 
 }  // namespace
