@@ -12,7 +12,12 @@
 // - components are those of a raster in which each cell says what the nearest ray says, not of a distance
 //   threshold between crossings: the spacing of a mobile scan differs by direction and by height;
 // - the rectangle is upright: one axis is the vertical projected into the wall. Its sides are where they best
-//   part crossings from wall, not at the extreme crossings; each comes with a standard deviation.
+//   part crossings from wall, not at the extreme crossings, or where the opening's side surfaces (reveals)
+//   meet the wall's face; each comes with a standard deviation;
+// - crossings that end a little behind the wall (frames, blinds, closed doors) count as well as those that
+// end
+//   in the room, and directions from which a static scanner got nothing back as crossings;
+// - windows whose curtain hides the wall around them are told from the curtain.
 #include "limen/extract/openings.h"
 
 #include <algorithm>
@@ -122,6 +127,25 @@ double wall_round(const WallEvidence& evidence, const OpeningGrid& grid, const B
   return wall / std::max(1.0, wall + open);
 }
 
+/// A recess whose back is one flat piece of wall: everything behind the face at one small depth. A window has
+/// frames before its pane or blind.
+bool is_niche(const WallEvidence& evidence, const OpeningGrid& grid, const Box2& box, double max_depth_m) {
+  constexpr double kFlat_m = 0.03;
+  constexpr double kRim_m = 0.1;  // sides, and shadows at their feet
+  Box2 inside = box;
+  inside.low.array() += kRim_m;
+  inside.high.array() -= kRim_m;
+  std::vector<float> depths;
+  for (const std::uint32_t i : grid.samples_in(inside)) {
+    if (evidence.samples[i].kind == SampleKind::open) depths.push_back(evidence.samples[i].depth_m);
+  }
+  if (depths.empty()) return false;
+  std::sort(depths.begin(), depths.end());
+  const float low = depths[depths.size() / 20];
+  const float high = depths[depths.size() - 1 - depths.size() / 20];
+  return high - low < kFlat_m && high < max_depth_m;
+}
+
 bool acceptable(const Features& features, const OpeningRectangle& rectangle, const WallEvidence& evidence,
                 const OpeningGrid& grid, const OpeningOptions& options) {
   const Vector2d size = rectangle.box.high - rectangle.box.low;
@@ -218,6 +242,7 @@ std::vector<Opening> openings_of(const Scan& scan, const Features& features, con
   std::vector<Opening> openings;
   for (OpeningRectangle& rectangle : opening_rectangles(evidence, grid, options)) {
     if (!acceptable(features, rectangle, evidence, grid, options)) continue;
+    if (scan.mobile() && is_niche(evidence, grid, rectangle.box, options.max_niche_m)) continue;
     const OpeningOutline outline = find_outline(evidence, grid, rectangle);
     if (!outline.ring.empty()) rectangle.box = outline.box;
     std::array<Reveal, 4> reveals =

@@ -206,6 +206,18 @@ TEST(Openings, ABlindBehindTheFaceIsARecess) {
   EXPECT_FALSE(openings[0].reveal_complete);
 }
 
+TEST(Openings, AFlatShallowRecessSeenFromTheStreetIsANicheAWindowHasFrames) {
+  for (const bool framed : {false, true}) {
+    WallScene scene;
+    scene.hole = rectangle(-0.6, -0.6, 0.6, 0.9);
+    scene.in_opening = [=](double u, double) { return framed && std::abs(u) < 0.08 ? 0.06 : 0.12; };
+    Scan scan = scene.scan();
+    scan.centres.assign(scan.size(), Vector3d(scan.centres[0]));  // a vehicle that stands still
+    const ExtractedFeatures extracted = extract_features(scan);
+    EXPECT_EQ(find_openings(scan, extracted, Vector3d::UnitZ()).size(), framed ? 1U : 0U);
+  }
+}
+
 TEST(Openings, ACurtainBeforeTheWallIsAHoleWithWideSides) {
   WallScene scene;
   scene.hole = rectangle(-0.6, -0.5, 0.6, 0.9);
