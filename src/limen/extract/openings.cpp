@@ -146,6 +146,15 @@ bool is_niche(const WallEvidence& evidence, const OpeningGrid& grid, const Box2&
   return high - low < kFlat_m && high < max_depth_m;
 }
 
+/// As large as a door and seen well, its lintel along all its width: furniture and an open leaf may hide both
+/// sides.
+bool is_doorway(const OpeningRectangle& rectangle) {
+  constexpr std::size_t kEnough = 200;
+  const Vector2d size = rectangle.box.high - rectangle.box.low;
+  return size.x() > 0.6 && size.x() < 1.8 && size.y() > 1.8 && size.y() < 3.0 &&
+         rectangle.evidence >= kEnough && rectangle.bounded[static_cast<std::size_t>(Side::top)] > 0.9;
+}
+
 bool acceptable(const Features& features, const OpeningRectangle& rectangle, const WallEvidence& evidence,
                 const OpeningGrid& grid, const OpeningOptions& options) {
   const Vector2d size = rectangle.box.high - rectangle.box.low;
@@ -161,9 +170,10 @@ bool acceptable(const Features& features, const OpeningRectangle& rectangle, con
   };
   if (bounded >= 3) return true;
   // A door ends at the floor; what has no lintel is a passage between two walls.
-  return bounded == 2 && has(Side::top) && !has(Side::bottom) &&
-         (floor_at(features, evidence.wall, rectangle.box) ||
-          rectangle.box.low.y() < foot_beside(evidence, grid, rectangle.box) + kFoot_m);
+  const bool foot = floor_at(features, evidence.wall, rectangle.box) ||
+                    rectangle.box.low.y() < foot_beside(evidence, grid, rectangle.box) + kFoot_m;
+  if (!has(Side::top) || has(Side::bottom) || !foot) return false;
+  return bounded == 2 || is_doorway(rectangle);
 }
 
 Opening make_opening(const OpeningRectangle& rectangle, const OpeningWall& wall) {
