@@ -25,7 +25,7 @@ constexpr std::size_t kGrain = 8;
 Vector3d up_of(const Features& features, bool gravity_known) {
   if (gravity_known) return Vector3d::UnitZ();
   Vector3d sum = Vector3d::Zero();
-  for (const OpeningWall& wall : opening_walls(features)) sum += wall.frame.v;
+  for (const WallWithOpenings& wall : walls_with_openings(features)) sum += wall.frame.v;
   return sum.norm() > 1e-9 ? Vector3d(sum.normalized()) : Vector3d(Vector3d::UnitZ());
 }
 

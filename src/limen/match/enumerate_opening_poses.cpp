@@ -75,8 +75,8 @@ class Enumerator {
  private:
   /// Equations 15 and 16 with the walls' own directions: right and up are known in both scans.
   [[nodiscard]] WallPair wall_pair(std::size_t a, std::size_t b) const {
-    const OpeningWall& from = matcher_.source()[a];
-    const OpeningWall& to = matcher_.target()[b];
+    const WallWithOpenings& from = matcher_.source()[a];
+    const WallWithOpenings& to = matcher_.target()[b];
     const double side = sides_ == WallSides::opposite ? -1.0 : 1.0;
     LinePair vertical;
     vertical.source.direction = from.frame.v;
@@ -146,7 +146,7 @@ class Enumerator {
   }
 
   [[nodiscard]] Rigid3 pose_at(const WallPair& pair, const Vector2d& shift, double thickness) const {
-    const OpeningWall& wall = matcher_.target()[pair.target];
+    const WallWithOpenings& wall = matcher_.target()[pair.target];
     return {pair.rotation,
             pair.start + shift.x() * wall.frame.u + shift.y() * wall.frame.v - thickness * wall.normal()};
   }
@@ -158,7 +158,7 @@ class Enumerator {
     const Vector3d normal = matcher_.target()[pair.target].normal();
     std::vector<Shift> found;  // x: thickness
     for (const WallPair& other : pairs) {
-      const OpeningWall& wall = matcher_.target()[other.target];
+      const WallWithOpenings& wall = matcher_.target()[other.target];
       const double along = wall.frame.u.dot(normal);
       if (std::abs(along) < std::sin(radians(kCornerDeg)) || &other == &pair) continue;
       if (rotation_angle(pair.rotation.transpose() * other.rotation) > radians(kSameRotationDeg)) continue;
@@ -205,8 +205,8 @@ class Enumerator {
       });
       if (!known && possible(thickness)) list.push_back(thickness);
     };
-    const OpeningWall& from = matcher_.source()[pair.source];
-    const OpeningWall& to = matcher_.target()[pair.target];
+    const WallWithOpenings& from = matcher_.source()[pair.source];
+    const WallWithOpenings& to = matcher_.target()[pair.target];
     for (const auto& [i, j] : matcher_.pairs_at(as_seen_in_target(pair.source), pair.target, shift)) {
       const Opening& a = source_.openings[static_cast<std::size_t>(from.rectangles[i].opening)];
       const Opening& b = target_.openings[static_cast<std::size_t>(to.rectangles[j].opening)];
@@ -298,8 +298,8 @@ class Enumerator {
     pose.thickness_held = fit.normal_held || sides_ == WallSides::same;
     const WallMeeting* speaker = &fit.meetings.front();
     for (const WallMeeting& meeting : fit.meetings) {
-      const OpeningWall& from = matcher_.source()[meeting.source_wall];
-      const OpeningWall& to = matcher_.target()[meeting.target_wall];
+      const WallWithOpenings& from = matcher_.source()[meeting.source_wall];
+      const WallWithOpenings& to = matcher_.target()[meeting.target_wall];
       for (const auto& [i, j] : meeting.pairs) {
         pose.pairs.push_back({from.rectangles[i].opening, to.rectangles[j].opening});
       }
@@ -320,10 +320,10 @@ class Enumerator {
   const OpeningPoseOptions& options_;
 };
 
-Vector3d middle_of(const std::vector<OpeningWall>& walls) {
+Vector3d middle_of(const std::vector<WallWithOpenings>& walls) {
   Vector3d sum = Vector3d::Zero();
   double count = 0.0;
-  for (const OpeningWall& wall : walls) {
+  for (const WallWithOpenings& wall : walls) {
     sum += static_cast<double>(wall.rectangles.size()) * wall.frame.origin;
     count += static_cast<double>(wall.rectangles.size());
   }
@@ -360,15 +360,15 @@ void OpeningPoseOptions::check() const {
 std::vector<OpeningPose> enumerate_opening_poses(const Features& source, const Features& target,
                                                  const OpeningPoseOptions& options) {
   options.check();
-  OpeningWallOptions wall_options;
+  WallWithOpeningsOptions wall_options;
   if (options.gravity_known) wall_options.up = Vector3d::UnitZ();
-  const std::vector<OpeningWall> source_walls = opening_walls(source, wall_options);
-  const std::vector<OpeningWall> target_walls = opening_walls(target, wall_options);
+  const std::vector<WallWithOpenings> source_walls = walls_with_openings(source, wall_options);
+  const std::vector<WallWithOpenings> target_walls = walls_with_openings(target, wall_options);
   std::vector<OpeningPose> all;
   const int turns = options.quarter_turns && !options.gravity_known ? 4 : 1;
   for (int turn = 0; turn < turns; ++turn) {
-    std::vector<OpeningWall> walls;
-    for (const OpeningWall& wall : source_walls) walls.push_back(turned(wall, turn));
+    std::vector<WallWithOpenings> walls;
+    for (const WallWithOpenings& wall : source_walls) walls.push_back(turned(wall, turn));
     const OpeningMatcher matcher(std::move(walls), target_walls, options);
     for (const WallSides sides : {WallSides::opposite, WallSides::same}) {
       if (!(sides == WallSides::opposite ? options.try_opposite : options.try_same)) continue;

@@ -50,15 +50,15 @@ std::size_t name_in_target(std::size_t k, WallSides sides) {
 
 }  // namespace
 
-OpeningMatcher::OpeningMatcher(std::vector<OpeningWall> source, std::vector<OpeningWall> target,
+OpeningMatcher::OpeningMatcher(std::vector<WallWithOpenings> source, std::vector<WallWithOpenings> target,
                                const OpeningPoseOptions& options)
     : source_(std::move(source)), target_(std::move(target)), options_(options) {
   const double squared = options_.edge_tolerance_m * options_.edge_tolerance_m;
-  for (const OpeningWall& wall : source_) {
+  for (const WallWithOpenings& wall : source_) {
     source_edges_.push_back(seen_edges(wall));
     for (const Segment& edge : source_edges_.back()) source_nominal_ += edge.length() * squared;
   }
-  for (OpeningWall& wall : target_) {
+  for (WallWithOpenings& wall : target_) {
     std::stable_sort(wall.rectangles.begin(), wall.rectangles.end(),
                      [](const WallRectangle& a, const WallRectangle& b) { return a.edge[3] < b.edge[3]; });
     double widest = 0.0;
@@ -144,7 +144,7 @@ bool OpeningMatcher::face(const Matrix3d& rotation, std::size_t source_wall, std
 
 double OpeningMatcher::thickness_at(const Rigid3& target_from_source, std::size_t source_wall,
                                     std::size_t target_wall) const {
-  const OpeningWall& wall = target_[target_wall];
+  const WallWithOpenings& wall = target_[target_wall];
   return wall.normal().dot(wall.frame.origin - target_from_source * source_[source_wall].frame.origin);
 }
 
@@ -227,8 +227,8 @@ std::vector<SetDistance> OpeningMatcher::distances_along(const Rigid3& target_fr
 Matrix3d OpeningMatcher::rotation_of(const std::vector<WallMeeting>& meetings, WallSides sides) const {
   std::vector<DirectionPair> directions;
   for (const WallMeeting& meeting : meetings) {
-    const OpeningWall& from = source_[meeting.source_wall];
-    const OpeningWall& to = target_[meeting.target_wall];
+    const WallWithOpenings& from = source_[meeting.source_wall];
+    const WallWithOpenings& to = target_[meeting.target_wall];
     double length = 0.0;
     for (const auto& [i, j] : meeting.pairs)
       length += from.rectangles[i].width() + from.rectangles[i].height();
@@ -244,8 +244,8 @@ OpeningMatcher::Fit OpeningMatcher::improved(const Fit& old, WallSides sides) co
   std::vector<LinePair> lines;
   Vector3d centre = Vector3d::Zero();
   for (const WallMeeting& meeting : old.meetings) {
-    const OpeningWall& from = source_[meeting.source_wall];
-    const OpeningWall& to = target_[meeting.target_wall];
+    const WallWithOpenings& from = source_[meeting.source_wall];
+    const WallWithOpenings& to = target_[meeting.target_wall];
     for (const auto& [i, j] : meeting.pairs) {
       const WallRectangle& r = from.rectangles[i];
       const WallRectangle seen = sides == WallSides::opposite ? seen_from_behind(r) : r;

@@ -29,11 +29,11 @@ struct RectangleFit {
 /// The walls with openings of two scans, ready to be compared in many poses.
 class OpeningMatcher {
  public:
-  OpeningMatcher(std::vector<OpeningWall> source, std::vector<OpeningWall> target,
+  OpeningMatcher(std::vector<WallWithOpenings> source, std::vector<WallWithOpenings> target,
                  const OpeningPoseOptions& options);
 
-  [[nodiscard]] const std::vector<OpeningWall>& source() const { return source_; }
-  [[nodiscard]] const std::vector<OpeningWall>& target() const { return target_; }
+  [[nodiscard]] const std::vector<WallWithOpenings>& source() const { return source_; }
+  [[nodiscard]] const std::vector<WallWithOpenings>& target() const { return target_; }
 
   /// Whether two rectangles, in one frame, may be one opening: a vertical and a horizontal edge seen in both,
   /// widths and heights within the tolerance where all their edges were seen.
@@ -82,8 +82,8 @@ class OpeningMatcher {
   [[nodiscard]] Matrix3d rotation_of(const std::vector<WallMeeting>& meetings, WallSides sides) const;
   [[nodiscard]] Fit improved(const Fit& old, WallSides sides) const;
 
-  std::vector<OpeningWall> source_;
-  std::vector<OpeningWall> target_;  // rectangles by their left edge
+  std::vector<WallWithOpenings> source_;
+  std::vector<WallWithOpenings> target_;  // rectangles by their left edge
   std::vector<std::vector<Segment>> source_edges_;
   std::vector<SegmentSetMeasure> target_measures_;
   std::vector<double> widest_m_;  // rectangle of each target wall

@@ -44,7 +44,7 @@ struct Group {
   std::vector<int> openings;
 };
 
-std::vector<Group> group_by_wall(const Features& features, const OpeningWallOptions& options) {
+std::vector<Group> group_by_wall(const Features& features, const WallWithOpeningsOptions& options) {
   const double min_cosine = std::cos(radians(options.same_wall_deg));
   std::vector<Group> groups;
   for (std::size_t i = 0; i < features.openings.size(); ++i) {
@@ -121,7 +121,7 @@ bool any_edge_seen(const WallRectangle& rectangle) {
 
 }  // namespace
 
-void OpeningWallOptions::check() const {
+void WallWithOpeningsOptions::check() const {
   if (up && !(std::abs(up->norm() - 1.0) < 1e-6)) throw_bad_option("up", up->norm(), "a unit vector");
   if (!(same_wall_deg > 0.0 && same_wall_deg < 45.0)) {
     throw_bad_option("same_wall_deg", same_wall_deg, "in (0, 45)");
@@ -129,11 +129,12 @@ void OpeningWallOptions::check() const {
   if (!(same_wall_m > 0.0)) throw_bad_option("same_wall_m", same_wall_m, "> 0");
 }
 
-std::vector<OpeningWall> opening_walls(const Features& features, const OpeningWallOptions& options) {
+std::vector<WallWithOpenings> walls_with_openings(const Features& features,
+                                                  const WallWithOpeningsOptions& options) {
   options.check();
-  std::vector<OpeningWall> walls;
+  std::vector<WallWithOpenings> walls;
   for (const Group& group : group_by_wall(features, options)) {
-    OpeningWall wall;
+    WallWithOpenings wall;
     wall.facade = largest_plane(features, group);
     wall.frame = frame_of(features, group, wall.facade, options.up);
     for (const int i : group.openings) {
@@ -146,8 +147,8 @@ std::vector<OpeningWall> opening_walls(const Features& features, const OpeningWa
   return walls;
 }
 
-OpeningWall turned(const OpeningWall& wall, int quarter_turns) {
-  OpeningWall result = wall;
+WallWithOpenings turned(const WallWithOpenings& wall, int quarter_turns) {
+  WallWithOpenings result = wall;
   for (int turn = 0; turn < quarter_turns % 4; ++turn) {
     // u becomes the old v, v the old -u: what was at the top is now at the right, the left is now the top.
     result.frame = {result.frame.origin, result.frame.v, -result.frame.u};
@@ -168,7 +169,7 @@ WallRectangle seen_from_behind(const WallRectangle& rectangle) {
   return result;
 }
 
-Segment edge_segment(const OpeningWall& wall, const WallRectangle& rectangle, std::size_t k) {
+Segment edge_segment(const WallWithOpenings& wall, const WallRectangle& rectangle, std::size_t k) {
   const auto& e = rectangle.edge;
   if (k % 2 == 0) {
     return {wall.frame.to_space(Vector2d(e[3], e[k])), wall.frame.to_space(Vector2d(e[1], e[k]))};
@@ -176,7 +177,7 @@ Segment edge_segment(const OpeningWall& wall, const WallRectangle& rectangle, st
   return {wall.frame.to_space(Vector2d(e[k], e[0])), wall.frame.to_space(Vector2d(e[k], e[2]))};
 }
 
-std::vector<Segment> seen_edges(const OpeningWall& wall) {
+std::vector<Segment> seen_edges(const WallWithOpenings& wall) {
   std::vector<Segment> edges;
   for (const WallRectangle& rectangle : wall.rectangles) {
     for (std::size_t k = 0; k < 4; ++k) {

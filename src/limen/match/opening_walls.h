@@ -24,7 +24,7 @@ struct WallRectangle {
 };
 
 /// A wall with openings: as a scanner that stands before it sees it, u points right, v up, u x v towards it.
-struct OpeningWall {
+struct WallWithOpenings {
   PlaneFrame frame;  ///< origin in the wall
   int facade = -1;   ///< index into Features::planes of its largest plane, or -1
   std::vector<WallRectangle> rectangles;
@@ -32,7 +32,7 @@ struct OpeningWall {
   [[nodiscard]] Vector3d normal() const { return frame.u.cross(frame.v); }
 };
 
-struct OpeningWallOptions {
+struct WallWithOpeningsOptions {
   std::optional<Vector3d> up;  ///< unit: the vertical, where known; else the openings' own upper side
   double same_wall_deg = 5.0;  ///< openings whose planes differ by less, and
   double same_wall_m = 0.3;    ///< lie nearer than this to one plane, are of one wall
@@ -42,16 +42,17 @@ struct OpeningWallOptions {
 
 /// The openings of a scan by wall, in the order of their first opening. An opening without a side that was
 /// seen, or in a plane that is not a wall, is left out.
-std::vector<OpeningWall> opening_walls(const Features& features, const OpeningWallOptions& options = {});
+std::vector<WallWithOpenings> walls_with_openings(const Features& features,
+                                                  const WallWithOpeningsOptions& options = {});
 
 /// The same wall turned by `quarter_turns` about its normal: its frame turns, and with it the names of edges.
-OpeningWall turned(const OpeningWall& wall, int quarter_turns);
+WallWithOpenings turned(const WallWithOpenings& wall, int quarter_turns);
 /// The rectangle as somebody on the other side of the wall sees it: left and right change places.
 WallRectangle seen_from_behind(const WallRectangle& rectangle);
 
 /// The seen edges of a wall's openings as segments in space.
-std::vector<Segment> seen_edges(const OpeningWall& wall);
+std::vector<Segment> seen_edges(const WallWithOpenings& wall);
 /// Edge k of a rectangle as a segment in space: bottom and top to the right, left and right upwards.
-Segment edge_segment(const OpeningWall& wall, const WallRectangle& rectangle, std::size_t k);
+Segment edge_segment(const WallWithOpenings& wall, const WallRectangle& rectangle, std::size_t k);
 
 }  // namespace limen
