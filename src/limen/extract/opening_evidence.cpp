@@ -233,7 +233,14 @@ class Tracer {
       return;
     WallSample sample{static_cast<float>(at.x()), static_cast<float>(at.y()), static_cast<float>(-before_m),
                       static_cast<std::uint32_t>(point), SampleKind::wall};
-    if (kind_of(point, wall, before_m, sample.kind)) found.emplace_back(w, sample);
+    if (!kind_of(point, wall, before_m, sample.kind)) return;
+    if (sample.kind == SampleKind::wall) {
+      // The wall is where the point lies: a grazing ray meets the plane decimetres away.
+      const Vector2d own = wall.frame.to_plane(x);
+      sample.u = static_cast<float>(own.x());
+      sample.v = static_cast<float>(own.y());
+    }
+    found.emplace_back(w, sample);
   }
 
   const Scan& scan_;
