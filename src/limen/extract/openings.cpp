@@ -76,10 +76,17 @@ bool same_hole(const Opening& a, const Opening& b) {
   if (u.dot(other) < 0.99) return false;
   const Vector3d between = middle_of(b) - middle_of(a);
   if (std::abs(between.dot(u.cross(v))) > kWall_m) return false;
-  const Vector2d half(
-      0.5 * (a.corners[1] - a.corners[0]).norm() + 0.5 * (b.corners[1] - b.corners[0]).norm(),
-      0.5 * (a.corners[3] - a.corners[0]).norm() + 0.5 * (b.corners[3] - b.corners[0]).norm());
-  return std::abs(between.dot(u)) < 0.7 * half.x() && std::abs(between.dot(v)) < 0.7 * half.y();
+  const auto common = [&](const Vector3d& axis, const Vector3d& a_side, const Vector3d& b_side) {
+    const double a_half = 0.5 * a_side.norm();
+    const double b_half = 0.5 * b_side.norm();
+    const double apart = std::abs(between.dot(axis));
+    return std::clamp(a_half + b_half - apart, 0.0, 2.0 * std::min(a_half, b_half)) /
+           (2.0 * std::min(a_half, b_half));
+  };
+  // A pane between the bars of a frame lies within its window.
+  constexpr double kSame = 0.5;
+  return common(u, a.corners[1] - a.corners[0], b.corners[1] - b.corners[0]) > kSame &&
+         common(v, a.corners[3] - a.corners[0], b.corners[3] - b.corners[0]) > kSame;
 }
 
 /// The height of the floor at an opening's foot in the wall's frame, where a level plane lies near there.
