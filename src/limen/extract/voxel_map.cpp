@@ -10,6 +10,8 @@
 namespace limen {
 namespace {
 
+constexpr std::int32_t kBlockBits = 3;
+constexpr std::size_t kBlockCubes = 512;
 constexpr std::size_t kMaxRays = 400000;  // of a scan, evenly chosen, that free space
 
 /// The extent of all but the strays: the lowest and highest thousandth are left out, half a metre is added.
@@ -25,6 +27,11 @@ Extent robust_extent(const std::vector<Vector3d>& points) {
     extent.high[axis] = values[values.size() - 1 - values.size() / 1000] + 0.5;
   }
   return extent;
+}
+
+std::size_t place_in_block(const std::array<std::int32_t, 3>& key) {
+  return (static_cast<std::size_t>(key[2] & 7) << 6U) | (static_cast<std::size_t>(key[1] & 7) << 3U) |
+         static_cast<std::size_t>(key[0] & 7);
 }
 
 }  // namespace
@@ -46,6 +53,10 @@ VoxelMap::VoxelMap(const Scan& scan, const Features& features, const VoxelMapOpt
   for (std::size_t axis = 0; axis < 3; ++axis) {
     size_[axis] = 1 + static_cast<std::int32_t>(sides[static_cast<Eigen::Index>(axis)] / edge_);
   }
+  for (std::size_t axis = 0; axis < 3; ++axis) blocks_[axis] = (size_[axis] >> kBlockBits) + 1;
+  block_at_.assign(static_cast<std::size_t>(blocks_[0]) * static_cast<std::size_t>(blocks_[1]) *
+                       static_cast<std::size_t>(blocks_[2]),
+                   -1);
   enter(features);
   if (scan.centre_known()) carve(scan, std::max(options.margin_m, 2.0 * edge_));
 }
@@ -63,6 +74,34 @@ std::int64_t VoxelMap::index_of(const Key& key) const {
   return (static_cast<std::int64_t>(key[2]) * size_[1] + key[1]) * size_[0] + key[0];
 }
 
+std::size_t VoxelMap::block_of(const Key& key) const {
+  return (static_cast<std::size_t>(key[2] >> kBlockBits) * static_cast<std::size_t>(blocks_[1]) +
+          static_cast<std::size_t>(key[1] >> kBlockBits)) *
+             static_cast<std::size_t>(blocks_[0]) +
+         static_cast<std::size_t>(key[0] >> kBlockBits);
+}
+
+const VoxelMap::Cube* VoxelMap::find(const Key& key) const {
+  const std::int32_t block = block_at_[block_of(key)];
+  if (block < 0) return nullptr;
+  const std::int32_t cube = cube_at_[static_cast<std::size_t>(block) * kBlockCubes + place_in_block(key)];
+  return cube < 0 ? nullptr : &cubes_[static_cast<std::size_t>(cube)];
+}
+
+VoxelMap::Cube& VoxelMap::obtain(const Key& key) {
+  std::int32_t& block = block_at_[block_of(key)];
+  if (block < 0) {
+    block = static_cast<std::int32_t>(cube_at_.size() / kBlockCubes);
+    cube_at_.resize(cube_at_.size() + kBlockCubes, -1);
+  }
+  std::int32_t& cube = cube_at_[static_cast<std::size_t>(block) * kBlockCubes + place_in_block(key)];
+  if (cube < 0) {
+    cube = static_cast<std::int32_t>(cubes_.size());
+    cubes_.emplace_back();
+  }
+  return cubes_[static_cast<std::size_t>(cube)];
+}
+
 void VoxelMap::enter(const Features& features) {
   const auto add_plane = [](Cube& cube, std::int32_t plane) {
     for (std::int32_t& slot : cube.planes) {
@@ -76,10 +115,9 @@ void VoxelMap::enter(const Features& features) {
   for (const SurfaceSample& sample : features.samples) {
     const Key at = key_of(sample.mean);
     for (std::int32_t step = 0; step < 27; ++step) {
-      const std::int64_t index =
-          index_of({at[0] + step % 3 - 1, at[1] + step / 3 % 3 - 1, at[2] + step / 9 - 1});
-      if (index < 0) continue;
-      Cube& cube = cubes_[index];
+      const Key key{at[0] + step % 3 - 1, at[1] + step / 3 % 3 - 1, at[2] + step / 9 - 1};
+      if (index_of(key) < 0) continue;
+      Cube& cube = obtain(key);
       if (sample.plane >= 0) {
         add_plane(cube, sample.plane);
       } else if (step == 13) {
@@ -133,22 +171,22 @@ bool VoxelMap::passed_freely(const SightQuery& query) const {
 }
 
 Sight VoxelMap::look(const SightQuery& query) const {
-  const std::int64_t index = index_of(key_of(query.at));
-  if (index < 0) return {};
-  const auto found = cubes_.find(index);
-  if (found == cubes_.end()) {
+  const Key key = key_of(query.at);
+  if (index_of(key) < 0) return {};
+  const Cube* const found = find(key);
+  if (found == nullptr) {
     return {passed_freely(query) ? SightKind::free : SightKind::unseen, -1, 0.0};
   }
   Sight best;
   double nearest = query.surface_m;
-  for (const std::int32_t plane : found->second.planes) {
+  for (const std::int32_t plane : found->planes) {
     if (plane < 0) break;
     const std::optional<double> distance = distance_if_same(query, facets_[static_cast<std::size_t>(plane)]);
     if (!distance || std::abs(*distance) > nearest) continue;
     nearest = std::abs(*distance);
     best = {SightKind::surface, plane, *distance};
   }
-  if (best.kind == SightKind::unseen && query.normal.isZero() && found->second.clutter) {
+  if (best.kind == SightKind::unseen && query.normal.isZero() && found->clutter) {
     best = {SightKind::surface, -1, 0.0};
   }
   return best;

@@ -4,7 +4,6 @@
 
 #include <array>
 #include <cstdint>
-#include <unordered_map>
 #include <vector>
 
 #include "limen/extract/space_view.h"
@@ -41,6 +40,9 @@ class VoxelMap : public SpaceView {
   [[nodiscard]] std::int64_t index_of(const Key& key) const;  ///< -1 outside
   [[nodiscard]] bool is_free(const Vector3d& x) const;
   [[nodiscard]] bool passed_freely(const SightQuery& query) const;
+  [[nodiscard]] std::size_t block_of(const Key& key) const;
+  [[nodiscard]] const Cube* find(const Key& key) const;
+  Cube& obtain(const Key& key);  ///< `key` lies inside
   void enter(const Features& features);
   void carve(const Scan& scan, double margin_m);
   void carve_ray(const Vector3d& from, const Vector3d& to);
@@ -49,7 +51,11 @@ class VoxelMap : public SpaceView {
   double edge_ = 0.25;
   Vector3d low_ = Vector3d::Zero();
   Key size_{0, 0, 0};
-  std::unordered_map<std::int64_t, Cube> cubes_;
+  // Cubes with surface, found by blocks of 8 x 8 x 8: few of them hold any.
+  Key blocks_{0, 0, 0};
+  std::vector<std::int32_t> block_at_;  ///< number of the block in `cube_at_`, or -1
+  std::vector<std::int32_t> cube_at_;   ///< 512 per block: index into `cubes_`, or -1
+  std::vector<Cube> cubes_;
   std::vector<bool> free_;
 };
 
