@@ -73,7 +73,7 @@ struct StageTime {
 struct PoseSigma {
   Vector3d rotation_rad = Vector3d::Zero();   ///< about x, y, z
   Vector3d translation_m = Vector3d::Zero();  ///< along x, y, z, of the point `centre`
-  Vector3d centre = Vector3d::Zero();         ///< middle of the common surface, target world
+  Vector3d centre = Vector3d::Zero();         ///< the point known best, near the common surface; target world
 };
 
 struct RegistrationResult {

@@ -48,8 +48,10 @@ std::vector<MeasuredThickness> measure_thickness(const RefinedPose& pose, const 
   for (const auto& [wall, sum] : walls) {
     const double planes = std::hypot(plane_sigma_m(source.planes[static_cast<std::size_t>(wall.first)]),
                                      plane_sigma_m(target.planes[static_cast<std::size_t>(wall.second)]));
+    // What holds the pose and the wall itself were scanned at different moments of a drive.
+    const double drift = std::hypot(source.drift_m, target.drift_m);
     measured.push_back({wall.first, wall.second, sum.openings, sum.gap / sum.weight,
-                        std::hypot(std::sqrt(sum.variance / sum.weight), planes)});
+                        std::hypot(std::sqrt(sum.variance / sum.weight), planes, drift)});
   }
   std::stable_sort(measured.begin(), measured.end(),
                    [](const auto& a, const auto& b) { return a.openings > b.openings; });

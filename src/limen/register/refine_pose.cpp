@@ -8,6 +8,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 
 #include "limen/base/error.h"
 #include "limen/register/pose_contacts.h"
@@ -17,8 +18,9 @@ namespace {
 
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 
-constexpr double kWeakShare = 1e-4;  // of the information: less is the planes' error
-constexpr double kGateSigma = 0.2;   // deviation of a tile far from the goal, as a share of the gate
+constexpr double kWeakShare = 1e-4;   // of the information: less is the planes' error
+constexpr double kMaxCentreM = 20.0;  // the best known point is sought this far from the matched surface
+constexpr double kGateSigma = 0.2;    // deviation of a tile far from the goal, as a share of the gate
 
 class Refiner {
  public:
@@ -162,6 +164,27 @@ class Refiner {
     refined.matched_tiles = static_cast<int>(contacts.size());
     add_openings(others, refined);
     if (!contacts.empty()) add_planes(contacts, refined);
+    move_centre(refined);
+  }
+
+  /// Moves `centre` to the point whose place is known best: there turns and shifts hardly depend on each
+  /// other, so that a far-off patch of ground does not make a well-held shift look open.
+  static void move_centre(RefinedPose& refined) {
+    const Matrix6d damped = refined.information + 1e-6 * Matrix6d::Identity();
+    const Matrix6d covariance = damped.inverse();
+    const Matrix3d turns = covariance.topLeftCorner<3, 3>();
+    const Matrix3d mixed = covariance.bottomLeftCorner<3, 3>();  // shifts by turns
+    // The mean square of shift + turn x c is least at:
+    const Vector3d twist(mixed(1, 2) - mixed(2, 1), mixed(2, 0) - mixed(0, 2), mixed(0, 1) - mixed(1, 0));
+    const Matrix3d square = turns.trace() * Matrix3d::Identity() - turns;
+    Vector3d c = -square.ldlt().solve(twist);
+    if (!c.allFinite()) return;
+    if (c.norm() > kMaxCentreM) c *= kMaxCentreM / c.norm();
+    Matrix6d move = Matrix6d::Identity();
+    move.bottomLeftCorner<3, 3>() << 0, -c.z(), c.y(), c.z(), 0, -c.x(), -c.y(), c.x(), 0;
+    refined.information = move.transpose() * refined.information * move;
+    refined.geometry_m2 = move.transpose() * refined.geometry_m2 * move;
+    refined.centre += c;
   }
 
   /// What openings and faces of walls hold, each on its own deviation; more where they disagree among
@@ -234,7 +257,7 @@ class Refiner {
 void RefineOptions::check() const {
   if (!(last_gate_m > 0)) throw_bad_option("last_gate_m", last_gate_m, "more than 0");
   if (!(first_gate_m >= last_gate_m)) throw_bad_option("first_gate_m", first_gate_m, "at least last_gate_m");
-  if (rounds < 1) throw_bad_option("rounds", rounds, "1 or more");
+  if (rounds < 0) throw_bad_option("rounds", rounds, "0 or more");
   if (!(flatness_m >= 0)) throw_bad_option("flatness_m", flatness_m, "0 or more");
 }
 

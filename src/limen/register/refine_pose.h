@@ -31,8 +31,8 @@ struct RefineOptions {
 
 /// A pose after least squares, and what the data says of it.
 struct RefinedPose {
-  Rigid3 target_from_source;                ///< local frames
-  Vector3d centre = Vector3d::Zero();       ///< middle of the matched surface, target local frame
+  Rigid3 target_from_source;           ///< local frames
+  Vector3d centre = Vector3d::Zero();  ///< the point known best, near the matched surface; target local frame
   Matrix6d information = Matrix6d::Zero();  ///< of (rotation, translation) about `centre`, target axes, SI
   Matrix6d geometry_m2 = Matrix6d::Zero();  ///< the same with m^2 of surface as weights
   double rms_m = 0.0;                       ///< weighted point-to-plane residual

@@ -21,9 +21,10 @@ namespace {
 
 constexpr std::size_t kFirstLook = 800;  // samples asked per scan when thousands of poses are compared
 constexpr std::size_t kMany = 2500;      // poses that get a first look
-constexpr std::size_t kGlance = 100;     // samples asked of each scan when there are more
+constexpr std::size_t kGlance = 150;     // samples asked of each scan when there are more
 constexpr int kSettleSteps = 16;         // either way along a shift that the planes leave open
 constexpr double kSettleStepM = 0.02;
+constexpr double kCarefulGateM = 0.04;
 constexpr std::size_t kPolished = 4;       // poses refined on every sample
 constexpr std::size_t kSecondLook = 4000;  // and when hundreds are
 
@@ -73,23 +74,31 @@ std::vector<MatchedOpenings> matched_openings(const RefinedPose& pose) {
   return list;
 }
 
-/// The `most` candidates that explain the scans best when about `samples` pieces of each are asked, best
-/// first.
+/// A comparison of many poses: on few samples a single one that seems contradicted stands for many square
+/// metres, so it must not weigh as much as later.
+struct Look {
+  std::size_t samples = 0;  ///< asked of each scan, about
+  std::size_t most = 0;     ///< poses kept
+  double contradiction_weight = kContradictionWeight;
+};
+
+/// The candidates that explain the scans best, best first.
 std::vector<PoseCandidate> best_of(const std::vector<PoseCandidate>& candidates, const ScanView& source,
-                                   const ScanView& target, std::size_t samples, std::size_t most) {
+                                   const ScanView& target, const Look& look) {
   ScoreOptions coarse;
-  coarse.samples = samples;
+  coarse.samples = look.samples;
   std::vector<double> values(candidates.size());
   parallel_for(candidates.size(), 8, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      values[i] = score_pose(source, target, candidates[i].target_from_source, coarse).value();
+      const PoseScore score = score_pose(source, target, candidates[i].target_from_source, coarse);
+      values[i] = score.evidence_m2 - look.contradiction_weight * score.contradicted_m2;
     }
   });
   std::vector<std::size_t> order(candidates.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return values[a] > values[b]; });
-  if (order.size() > most) order.resize(most);
+  if (order.size() > look.most) order.resize(look.most);
   std::vector<PoseCandidate> best;
   for (const std::size_t i : order) best.push_back(candidates[i]);
   return best;
@@ -120,6 +129,33 @@ RefineOptions refine_options(const ScanView& source, const ScanView& target, con
   return refine;
 }
 
+/// Least squares may leave a good pose along a shift that hardly anything holds: then smaller steps are
+/// tried, and where they lead astray as well, the pose stays.
+JudgedPose refined_if_better(const ScanView& source, const ScanView& target, const Rigid3& start,
+                             const RefineOptions& options, const ScoreOptions& fine) {
+  const auto judged = [&](const RefineOptions& refine) {
+    JudgedPose pose;
+    pose.refined = refine_pose(source, target, start, refine);
+    pose.score = score_pose(source, target, pose.refined.target_from_source, fine);
+    return pose;
+  };
+  JudgedPose pose = judged(options);
+  // Clearly worse: by a little the score may fall where a pose gets better.
+  const double start_value = score_pose(source, target, start, fine).value();
+  const double before = start_value - std::max(0.3, 0.05 * start_value);
+  RefineOptions careful = options;
+  if (pose.score.value() < before) {
+    careful.first_gate_m = std::max(careful.last_gate_m, kCarefulGateM);
+    careful.first_opening_gate_m = std::max(careful.last_opening_gate_m, 2.0 * kCarefulGateM);
+    pose = judged(careful);
+  }
+  if (pose.score.value() < before) {
+    careful.rounds = 0;
+    pose = judged(careful);
+  }
+  return pose;
+}
+
 std::vector<JudgedPose> refine_all(const std::vector<PoseCandidate>& candidates, const ScanView& source,
                                    const ScanView& target, const RegisterOptions& options) {
   const ScoreOptions fine = fine_score(source, target);
@@ -128,17 +164,17 @@ std::vector<JudgedPose> refine_all(const std::vector<PoseCandidate>& candidates,
   std::vector<JudgedPose> judged(candidates.size());
   parallel_for(candidates.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      judged[i].refined = refine_pose(source, target, candidates[i].target_from_source, quick);
-      judged[i].score = score_pose(source, target, judged[i].refined.target_from_source, fine);
+      judged[i] = refined_if_better(source, target, candidates[i].target_from_source, quick, fine);
     }
   });
   return judged;
 }
 
-Hypothesis to_hypothesis(const JudgedPose& pose, const Scan& source, const Scan& target) {
+Hypothesis to_hypothesis(const JudgedPose& pose, const PreparedPair& pair) {
   Hypothesis hypothesis;
   hypothesis.target_from_source =
-      to_world(pose.refined.target_from_source, source.local_origin, target.local_origin);
+      to_world(pose.refined.target_from_source, pair.source.extracted.features.local_origin,
+               pair.target.extracted.features.local_origin);
   hypothesis.score = pose.score.value();
   hypothesis.agreeing_m2 = pose.score.agreeing_m2;
   hypothesis.contradicted_m2 = pose.score.contradicted_m2;
@@ -153,9 +189,9 @@ constexpr double kDriftLengthM = 5.0;
 
 /// What the data hold, and what the trajectory may be off where this place was scanned: the matched surface
 /// is seen within seconds, so that the error is one for all of it and does not average out.
-PoseSigma sigma_of(const RefinedPose& pose, const Scan& target, double drift_m) {
+PoseSigma sigma_of(const RefinedPose& pose, const Vector3d& target_origin, double drift_m) {
   PoseSigma sigma;
-  sigma.centre = pose.centre + target.local_origin;
+  sigma.centre = pose.centre + target_origin;
   const Matrix6d damped = pose.information + 1e-6 * Matrix6d::Identity();
   const Matrix6d covariance = damped.inverse();
   for (Eigen::Index k = 0; k < 3; ++k) {
@@ -167,9 +203,8 @@ PoseSigma sigma_of(const RefinedPose& pose, const Scan& target, double drift_m) 
 
 void refine_and_score(JudgedPose& pose, const ScanView& source, const ScanView& target,
                       const RegisterOptions& options) {
-  pose.refined =
-      refine_pose(source, target, pose.refined.target_from_source, refine_options(source, target, options));
-  pose.score = score_pose(source, target, pose.refined.target_from_source, fine_score(source, target));
+  pose = refined_if_better(source, target, pose.refined.target_from_source,
+                           refine_options(source, target, options), fine_score(source, target));
 }
 
 /// Moves a pose along the shifts its planes leave open to where the rest of the surface agrees best; tells
@@ -227,15 +262,40 @@ std::vector<JudgedPose> attempt(const PreparedScan& source, const PreparedScan& 
   clock.begin("scoring");
   const auto refined = static_cast<std::size_t>(options.refined_poses);
   if (candidates.size() > kMany)
-    candidates = best_of(candidates, source.view(), target.view(), kGlance, kMany);
-  candidates = best_of(candidates, source.view(), target.view(), kFirstLook, 8 * refined);
-  candidates = best_of(candidates, source.view(), target.view(), kSecondLook, refined);
+    candidates = best_of(candidates, source.view(), target.view(), {kGlance, kMany, 0.25});
+  candidates = best_of(candidates, source.view(), target.view(), {kFirstLook, 8 * refined, 1.0});
+  candidates = best_of(candidates, source.view(), target.view(), {kSecondLook, refined});
   clock.end();
   clock.begin("refinement");
   std::vector<JudgedPose> judged = refine_all(candidates, source.view(), target.view(), options);
   polish(judged, source.view(), target.view(), options);
   clock.end();
   return judged;
+}
+
+/// The result in the scans' own frames.
+void tell(const Verdict& verdict, const std::vector<JudgedPose>& poses, const PreparedPair& pair,
+          const RegisterOptions& options, RegistrationResult& result) {
+  const PreparedScan& from = pair.source;
+  const PreparedScan& to = pair.target;
+  result.outcome = verdict.outcome;
+  result.reason = verdict.reason;
+  result.unobserved = verdict.unobserved;
+  for (UnobservedFreedom& freedom : result.unobserved)
+    freedom.direction = to.upright_from_scan.transpose() * freedom.direction;
+  if (verdict.ranking.empty()) return;
+  const RefinedPose& upright = poses[verdict.ranking.front()].refined;
+  const JudgedPose best = in_own_frames(poses[verdict.ranking.front()], from, to);
+  result.best = to_hypothesis(best, pair);
+  result.sigma = sigma_of(best.refined, to.extracted.features.local_origin, drift_m(from.view(), to.view()));
+  result.matches = best.refined.matches;
+  result.openings = matched_openings(best.refined);
+  result.thickness = measure_thickness(upright, from.extracted.features, to.extracted.features);
+  for (std::size_t k = 1; k < verdict.ranking.size() &&
+                          result.alternatives.size() < static_cast<std::size_t>(options.alternatives);
+       ++k) {
+    result.alternatives.push_back(to_hypothesis(in_own_frames(poses[verdict.ranking[k]], from, to), pair));
+  }
 }
 
 }  // namespace
@@ -257,20 +317,13 @@ void RegisterOptions::check() const {
   if (alternatives < 0) throw_bad_option("alternatives", alternatives, "0 or more");
 }
 
-RegistrationResult register_scans(const Scan& source, const Scan& target, const RegisterOptions& options,
-                                  Monitor& monitor) {
+RegistrationResult register_prepared(const PreparedPair& pair, const RegisterOptions& options,
+                                     Monitor& monitor) {
   options.check();
-  if (!is_near_origin(source)) return register_scans(recentred(source), target, options, monitor);
-  if (!is_near_origin(target)) return register_scans(source, recentred(target), options, monitor);
+  const PreparedScan& from = pair.source;
+  const PreparedScan& to = pair.target;
   RegistrationResult result;
   StageClock clock(result.stages, monitor);
-  clock.begin("source features");
-  const PreparedScan from = prepare_scan(source, options.extract, options.gravity, monitor);
-  clock.end();
-  clock.begin("target features");
-  const PreparedScan to = prepare_scan(target, options.extract, options.gravity, monitor);
-  clock.end();
-
   const bool level = from.upright && to.upright;
   std::vector<JudgedPose> poses = attempt(from, to, level, Proposal::held, options, clock);
   const ContrastFunction contrast = [&](std::size_t first, std::size_t second) {
@@ -286,27 +339,28 @@ RegistrationResult register_scans(const Scan& source, const Scan& target, const 
   if (verdict.outcome == Outcome::no_match && level && options.gravity != Gravity::up) {
     try_again(false, Proposal::held);
   }
-  if (verdict.outcome == Outcome::no_match && level) try_again(true, Proposal::sliding);
+  const bool planes = options.method == Method::automatic || options.method == Method::polygons;
+  if (verdict.outcome == Outcome::no_match && level && planes) try_again(true, Proposal::sliding);
+  tell(verdict, poses, pair, options, result);
+  return result;
+}
 
-  result.outcome = verdict.outcome;
-  result.reason = verdict.reason;
-  result.unobserved = verdict.unobserved;
-  for (UnobservedFreedom& freedom : result.unobserved)
-    freedom.direction = to.upright_from_scan.transpose() * freedom.direction;
-  if (verdict.ranking.empty()) return result;
-  const JudgedPose best = in_own_frames(poses[verdict.ranking.front()], from, to);
-  result.best = to_hypothesis(best, source, target);
-  result.sigma = sigma_of(best.refined, target, drift_m(from.view(), to.view()));
-  result.matches = best.refined.matches;
-  result.openings = matched_openings(best.refined);
-  result.thickness = measure_thickness(poses[verdict.ranking.front()].refined, from.extracted.features,
-                                       to.extracted.features);
-  for (std::size_t k = 1; k < verdict.ranking.size() &&
-                          result.alternatives.size() < static_cast<std::size_t>(options.alternatives);
-       ++k) {
-    result.alternatives.push_back(
-        to_hypothesis(in_own_frames(poses[verdict.ranking[k]], from, to), source, target));
-  }
+RegistrationResult register_scans(const Scan& source, const Scan& target, const RegisterOptions& options,
+                                  Monitor& monitor) {
+  options.check();
+  if (!is_near_origin(source)) return register_scans(recentred(source), target, options, monitor);
+  if (!is_near_origin(target)) return register_scans(source, recentred(target), options, monitor);
+  std::vector<StageTime> stages;
+  StageClock clock(stages, monitor);
+  PreparedPair pair;
+  clock.begin("source features");
+  pair.source = prepare_scan(source, options.extract, options.gravity, monitor);
+  clock.end();
+  clock.begin("target features");
+  pair.target = prepare_scan(target, options.extract, options.gravity, monitor);
+  clock.end();
+  RegistrationResult result = register_prepared(pair, options, monitor);
+  result.stages.insert(result.stages.begin(), stages.begin(), stages.end());
   return result;
 }
 

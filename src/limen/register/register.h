@@ -34,6 +34,17 @@ struct RegisterOptions {
   void check() const;
 };
 
+/// Two scans made ready with `options.extract` and `options.gravity`.
+struct PreparedPair {
+  PreparedScan source;
+  PreparedScan target;
+};
+
+/// The part behind the door: everything but the features, so that a scan is prepared once for many partners
+/// or methods.
+RegistrationResult register_prepared(const PreparedPair& pair, const RegisterOptions& options = {},
+                                     Monitor& monitor = silent_monitor());
+
 /// Registers two scans by planar polygons (2021), openings (2022) or both (2023), for any starting pose: the
 /// one-call door. Poses are between the scans' world coordinates: x_target = target_from_source * x_source.
 RegistrationResult register_scans(const Scan& source, const Scan& target, const RegisterOptions& options = {},

@@ -51,8 +51,10 @@ bool possible(const PoseScore& other, const PoseScore& best, const VerdictOption
 }
 
 bool is_rival(const PoseContrast& contrast, const VerdictOptions& options) {
-  return contrast.for_second_m2 > options.max_rival_share * contrast.for_first_m2 ||
-         contrast.for_first_m2 - contrast.for_second_m2 < options.min_lead_m2;
+  const double lead = contrast.for_first_m2 - contrast.for_second_m2;
+  return lead < options.min_lead_m2 ||
+         (lead < options.clear_lead_m2 &&
+          contrast.for_second_m2 > options.max_rival_share * contrast.for_first_m2);
 }
 
 /// A pose that may still turn, or slide two ways and more, is no answer.
