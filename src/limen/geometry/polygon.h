@@ -38,7 +38,7 @@ struct PlanarPolygon {
   double area_m2 = 0.0;                  ///< of all parts, holes taken out
   Vector3d centroid = Vector3d::Zero();  ///< mean of the inliers
   bool oriented = false;                 ///< the normal points to the side the scanner saw
-  bool interior = false;                 ///< seen through the openings of a wall: inside from a street, outside from a room
+  bool interior = false;  ///< seen through the openings of a wall: inside from a street, outside from a room
 };
 
 /// The same surface seen from behind: normal, frame and outlines turned round.

@@ -80,6 +80,7 @@ struct Look {
   std::size_t samples = 0;  ///< asked of each scan, about
   std::size_t most = 0;     ///< poses kept
   double contradiction_weight = kContradictionWeight;
+  bool openings = true;
 };
 
 /// The candidates that explain the scans best, best first.
@@ -87,6 +88,7 @@ std::vector<PoseCandidate> best_of(const std::vector<PoseCandidate>& candidates,
                                    const ScanView& target, const Look& look) {
   ScoreOptions coarse;
   coarse.samples = look.samples;
+  coarse.openings = look.openings;
   std::vector<double> values(candidates.size());
   parallel_for(candidates.size(), 8, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
@@ -109,8 +111,9 @@ double drift_m(const ScanView& source, const ScanView& target) {
 }
 
 /// Tolerances of the final score, from the noise of the scans and the error of their trajectories.
-ScoreOptions fine_score(const ScanView& source, const ScanView& target) {
+ScoreOptions fine_score(const ScanView& source, const ScanView& target, Method method) {
   ScoreOptions fine;
+  fine.openings = method != Method::polygons;
   const double noise = std::max(source.features->noise_m, target.features->noise_m);
   fine.surface_m = std::clamp(std::max(4.0 * noise, 3.0 * drift_m(source, target)), 0.02, 0.05);
   fine.free_m = fine.surface_m + 0.03;
@@ -158,7 +161,7 @@ JudgedPose refined_if_better(const ScanView& source, const ScanView& target, con
 
 std::vector<JudgedPose> refine_all(const std::vector<PoseCandidate>& candidates, const ScanView& source,
                                    const ScanView& target, const RegisterOptions& options) {
-  const ScoreOptions fine = fine_score(source, target);
+  const ScoreOptions fine = fine_score(source, target, options.method);
   RefineOptions quick = refine_options(source, target, options);
   quick.samples = kSecondLook;
   std::vector<JudgedPose> judged(candidates.size());
@@ -203,15 +206,16 @@ PoseSigma sigma_of(const RefinedPose& pose, const Vector3d& target_origin, doubl
 
 void refine_and_score(JudgedPose& pose, const ScanView& source, const ScanView& target,
                       const RegisterOptions& options) {
-  pose = refined_if_better(source, target, pose.refined.target_from_source,
-                           refine_options(source, target, options), fine_score(source, target));
+  pose =
+      refined_if_better(source, target, pose.refined.target_from_source,
+                        refine_options(source, target, options), fine_score(source, target, options.method));
 }
 
 /// Moves a pose along the shifts its planes leave open to where the rest of the surface agrees best; tells
 /// whether it moved.
 bool settle_open_shifts(JudgedPose& pose, const ScanView& source, const ScanView& target,
                         const RegisterOptions& options) {
-  const ScoreOptions fine = fine_score(source, target);
+  const ScoreOptions fine = fine_score(source, target, options.method);
   bool moved_at_all = false;
   for (const UnobservedFreedom& freedom : unobserved_freedoms(pose.refined, options.verdict.min_held_m2)) {
     if (freedom.rotation) return moved_at_all;
@@ -261,10 +265,12 @@ std::vector<JudgedPose> attempt(const PreparedScan& source, const PreparedScan& 
   clock.end();
   clock.begin("scoring");
   const auto refined = static_cast<std::size_t>(options.refined_poses);
+  const bool openings = options.method != Method::polygons;
   if (candidates.size() > kMany)
-    candidates = best_of(candidates, source.view(), target.view(), {kGlance, kMany, 0.25});
-  candidates = best_of(candidates, source.view(), target.view(), {kFirstLook, 8 * refined, 1.0});
-  candidates = best_of(candidates, source.view(), target.view(), {kSecondLook, refined});
+    candidates = best_of(candidates, source.view(), target.view(), {kGlance, kMany, 0.25, openings});
+  candidates = best_of(candidates, source.view(), target.view(), {kFirstLook, 8 * refined, 1.0, openings});
+  candidates = best_of(candidates, source.view(), target.view(),
+                       {kSecondLook, refined, kContradictionWeight, openings});
   clock.end();
   clock.begin("refinement");
   std::vector<JudgedPose> judged = refine_all(candidates, source.view(), target.view(), options);
@@ -328,7 +334,8 @@ RegistrationResult register_prepared(const PreparedPair& pair, const RegisterOpt
   std::vector<JudgedPose> poses = attempt(from, to, level, Proposal::held, options, clock);
   const ContrastFunction contrast = [&](std::size_t first, std::size_t second) {
     return contrast_poses(from.view(), to.view(), poses[first].refined.target_from_source,
-                          poses[second].refined.target_from_source, fine_score(from.view(), to.view()));
+                          poses[second].refined.target_from_source,
+                          fine_score(from.view(), to.view(), options.method));
   };
   Verdict verdict = judge(poses, contrast, options.verdict);
   const auto try_again = [&](bool gravity_known, Proposal proposal) {

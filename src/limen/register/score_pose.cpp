@@ -91,7 +91,7 @@ PoseScore one_way(const ScanView& scan, const ScanView& judge, const Rigid3& jud
 std::vector<double> opening_gains(const ScanView& source, const ScanView& target, const Rigid3& pose,
                                   const ScoreOptions& options) {
   std::vector<double> gains(source.features->openings.size(), 0.0);
-  if (gains.empty() || target.features->openings.empty()) return gains;
+  if (!options.openings || gains.empty() || target.features->openings.empty()) return gains;
   OpeningMatchOptions matching;
   matching.gate_m = options.opening_m;
   for (const OpeningMatch& match : match_openings(*source.features, *target.features, pose, matching)) {

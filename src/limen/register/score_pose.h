@@ -19,6 +19,7 @@ struct ScoreOptions {
   double surface_m = 0.06;  ///< surfaces nearer than this agree
   double free_m = 0.10;     ///< matter this far inside seen free space is contradicted
   double opening_m = 0.25;  ///< openings nearer than this within their wall agree
+  bool openings = true;     ///< openings count
   std::size_t samples = 0;  ///< asked of each scan, about; 0: all
 };
 
