@@ -40,7 +40,7 @@ class Refiner {
       const Contacts contacts =
           find_contacts(source_, target_, refined.target_from_source, {gate, opening_gate}, options_);
       if (contacts.all.size() < 4) break;
-      adjust(contacts.all, refined);
+      adjust(contacts.all, kGateSigma * (gate - options_.last_gate_m), refined);
     }
     summarise(refined);
     return refined;
@@ -101,15 +101,15 @@ class Refiner {
     return kept;
   }
 
-  /// One Gauss-Newton step. Far from the goal a plane says no more than its gate allows: else the first tiles
-  /// that happen to meet would outweigh every opening.
-  static void adjust(const std::vector<Contact>& contacts, RefinedPose& refined) {
+  /// One Gauss-Newton step. Far from the goal a tile says no more than `plane_sigma_m` allows: else the first
+  /// ones that happen to meet would outweigh every opening.
+  static void adjust(const std::vector<Contact>& contacts, double plane_sigma_m, RefinedPose& refined) {
     const Vector3d centre = middle_of(contacts);
     NormalEquations planes;
     NormalEquations openings;
     for (const Contact& contact : contacts) {
       const bool plane = contact.source_plane >= 0;
-      const double sigma = plane ? std::hypot(contact.sigma_m, kGateSigma * contact.gate_m) : contact.sigma_m;
+      const double sigma = plane ? std::hypot(contact.sigma_m, plane_sigma_m) : contact.sigma_m;
       (plane ? planes : openings)
           .add(row_of(contact, centre), contact.residual_m,
                robust_weight(contact.residual_m, contact.gate_m) / (sigma * sigma));
