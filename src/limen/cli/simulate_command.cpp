@@ -79,7 +79,7 @@ void add_simulate_command(CLI::App& app, Session& session) {
   add_count_option(*command, "--points-outdoor", scene.points_outdoor, "Points of the mobile scan, about");
   add_count_option(*command, "--stations", scene.stations, "Number of stations");
   add_count_option(*command, "--facades", scene.facades,
-                   "Facades the first station's room has windows in (museum)");
+                   "Facades the first station's room has open windows in (museum, townhouse, villa)");
   command->add_flag("--any-rotation", scene.any_rotation, "Give stations any rotation, not only any heading");
   command
       ->add_option("--curtain-share", scene.curtain_share,
