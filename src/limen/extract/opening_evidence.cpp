@@ -20,6 +20,7 @@ constexpr double kMinBeside_m = 0.3;      // of wall beside an opening; reveals 
 constexpr double kMaxExtension_m = 0.5;   // of a ray beyond a point before the wall
 constexpr double kMobileRelief_m = 0.12;  // plinths, bands and cornices of façades
 constexpr double kStaticRelief_m = 0.05;  // linings; farther before an inner wall hang curtains
+constexpr double kSurelyWall_m2 = 6.0;    // a lower wall of a low room; no furniture is that large
 constexpr double kParallel = 0.9962;      // cosine of 5 degrees
 
 const Vector3d& centre_of(const Scan& scan, const OpeningOptions& options, std::size_t i) {
@@ -87,11 +88,17 @@ void add_members(OpeningWall& wall, const std::vector<PlanarPolygon>& polygons,
   }
 }
 
-void mark_relief(OpeningWall& wall, const std::vector<PlanarPolygon>& polygons, double max_relief_m) {
+/// Of the planes that are the wall's own.
+double area_of(const OpeningWall& wall, const std::vector<PlanarPolygon>& polygons) {
   double area_m2 = 0.0;
   for (std::size_t k = 0; k < polygons.size(); ++k) {
     if (wall.planes[k] == static_cast<char>(PlaneRole::member)) area_m2 += polygons[k].area_m2;
   }
+  return area_m2;
+}
+
+void mark_relief(OpeningWall& wall, const std::vector<PlanarPolygon>& polygons, double max_relief_m) {
+  const double area_m2 = area_of(wall, polygons);
   for (std::size_t k = 0; k < polygons.size(); ++k) {
     if (wall.planes[k] != static_cast<char>(PlaneRole::other)) continue;
     if (std::abs(polygons[k].plane.normal.dot(wall.plane.normal)) < kParallel) continue;
@@ -301,7 +308,7 @@ std::vector<OpeningWall> opening_walls(const Scan& scan, const ExtractedFeatures
   std::vector<OpeningWall> walls;
   for (const int base : bases) {
     const auto k = static_cast<std::size_t>(base);
-    if (taken[k] != 0 || taken[k] != 0 || !planes[k].seen) continue;
+    if (taken[k] != 0 || !planes[k].seen) continue;
     OpeningWall wall = make_wall(base, planes[k].plane, polygons[k].centroid, up);
     wall.planes.assign(polygons.size(), static_cast<char>(PlaneRole::other));
     wall.planes[k] = static_cast<char>(PlaneRole::member);
@@ -311,7 +318,8 @@ std::vector<OpeningWall> opening_walls(const Scan& scan, const ExtractedFeatures
       if (wall.planes[j] == static_cast<char>(PlaneRole::member)) taken[j] = 1;
     }
     const Vector2d size = wall.box.high - wall.box.low;
-    if (size.y() < options.min_wall_m || size.x() < options.min_width_m + kMinBeside_m) continue;
+    if (size.x() < options.min_width_m + kMinBeside_m) continue;
+    if (size.y() < options.min_wall_m && area_of(wall, polygons) < kSurelyWall_m2) continue;
     mark_relief(wall, polygons, scan.mobile() ? kMobileRelief_m : kStaticRelief_m);
     set_spacing(wall, polygons);
     walls.push_back(std::move(wall));
