@@ -28,7 +28,7 @@ struct VerdictOptions {
   double min_rival_value = 0.65;  ///< a pose whose value is a smaller share of the best one's is no rival
   double max_rival_share =
       0.40;  ///< a pose is a rival if this share of what tells it from the best speaks for it
-  double clear_lead_m2 = 5.0;      ///< ... unless this much more surface speaks for the best
+  double clear_lead_m2 = 4.0;      ///< ... unless this much more surface speaks for the best
   double min_lead_m2 = 0.75;       ///< or if less surface than this speaks for the best against it
   double min_held_m2 = 0.03;       ///< surface (times lever^2 for turns) that must hold each freedom
   double max_sigma_m = 0.012;      ///< a shift known less well than this counts as open
