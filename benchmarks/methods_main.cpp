@@ -129,8 +129,9 @@ window in each façade counted here; seeds where it does not are passed over.
 - identical: rooms that repeat, nothing tells them apart
 
 *Right* means `registered` within the level's bar: 2 cm and 0.2°, in hard 5 cm and 0.5°; in identical it means
-`ambiguous` with the true pose among those listed. *Wrong* means any other `registered`. Freedoms are the six of each registered pose, counted one by one. Thickness: of the outer wall with most
-openings, where its stated deviation is below 5 cm. Times are of the machine this was made on.
+`ambiguous` with the true pose among those listed. *Wrong* means any other `registered`. Freedoms are the six of each
+registered pose, counted one by one. Thickness: of the outer wall with most openings, where its stated deviation is below
+5 cm. Times are of the machine this was made on.
 
 {}
 Right, by kind of building:
