@@ -93,6 +93,7 @@ PreparedScan prepare_scan(const Scan& scan, const ExtractOptions& options, Gravi
                           Monitor& monitor) {
   PreparedScan prepared;
   prepared.upright = gravity == Gravity::up;
+  prepared.mobile = scan.mobile();
   if (gravity != Gravity::unknown) {
     prepare(scan, options, prepared, monitor);
     if (!prepared.upright && looks_level(prepared.extracted.features)) {

@@ -25,6 +25,7 @@ struct PreparedScan {
   Matrix3d upright_from_scan = Matrix3d::Identity();
   std::unique_ptr<SpaceView> space;  ///< a panorama for a static station, else a map of cubes
   bool centre_estimated = false;     ///< the scan did not say where the scanner was
+  bool mobile = false;               ///< seen from many places along a path
   bool upright = false;              ///< z of the prepared frame points up
 
   [[nodiscard]] ScanView view() const { return {&extracted.features, space.get()}; }

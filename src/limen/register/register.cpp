@@ -337,11 +337,13 @@ RegistrationResult register_prepared(const PreparedPair& pair, const RegisterOpt
                           poses[second].refined.target_from_source,
                           fine_score(from.view(), to.view(), options.method));
   };
-  Verdict verdict = judge(poses, contrast, options.verdict);
+  VerdictOptions judging = options.verdict;
+  judging.through_wall = from.mobile != to.mobile;
+  Verdict verdict = judge(poses, contrast, judging);
   const auto try_again = [&](bool gravity_known, Proposal proposal) {
     const std::vector<JudgedPose> more = attempt(from, to, gravity_known, proposal, options, clock);
     poses.insert(poses.end(), more.begin(), more.end());
-    verdict = judge(poses, contrast, options.verdict);
+    verdict = judge(poses, contrast, judging);
   };
   if (verdict.outcome == Outcome::no_match && level && options.gravity != Gravity::up) {
     try_again(false, Proposal::held);

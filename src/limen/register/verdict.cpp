@@ -40,6 +40,13 @@ bool contradicted(const PoseScore& score, const VerdictOptions& options) {
   return score.contradicted_m2 > options.max_contradiction * evidence * score.agreeing_m2;
 }
 
+/// Whether a pose through a wall is borne out by no opening and contradicted more than a right one would be.
+bool unsure_through_wall(const PoseScore& score, const VerdictOptions& options) {
+  return options.through_wall && score.opening_m2 <= 0.0 &&
+         score.contradicted_m2 >
+             options.max_unopened_contradiction * score.agreeing_m2 + options.unopened_allowance_m2;
+}
+
 /// Whether `other` comes near the best and is possible at all: what speaks for it is not outweighed by what
 /// it contradicts, and it does not contradict clearly more than the best.
 bool possible(const PoseScore& other, const PoseScore& best, const VerdictOptions& options) {
@@ -194,6 +201,13 @@ Verdict judge(const std::vector<JudgedPose>& poses, const ContrastFunction& cont
     verdict.outcome = Outcome::ambiguous;
     verdict.reason = fmt::format("{} different pose{} explain{} the scans nearly as well", rivals,
                                  rivals == 1 ? "" : "s", rivals == 1 ? "s" : "");
+    return verdict;
+  }
+  if (unsure_through_wall(best.score, options)) {
+    verdict.outcome = Outcome::ambiguous;
+    verdict.reason = fmt::format(
+        "no opening is seen from both sides, and {:.1f} m2 of one scan stand where the other saw free space",
+        best.score.contradicted_m2);
     return verdict;
   }
   if (verdict.unobserved.empty()) verdict.unobserved = loose_freedoms(best.refined, options);

@@ -22,6 +22,11 @@ struct VerdictOptions {
   double min_agreeing_m2 = 2.5;     ///< common planar surface that a pose must show
   double max_contradiction = 0.10;  ///< contradicted over agreeing surface
   double full_evidence_m2 = 10.0;  ///< with less agreeing surface, proportionally less contradiction is borne
+  /// One scan looks through walls that the other stands behind: where no opening shows the two to meet, a
+  /// pose shifted by a storey or a house agrees on façades and ceilings alike, and only contradiction tells.
+  bool through_wall = false;
+  double max_unopened_contradiction = 0.03;  ///< then, over agreeing surface ...
+  double unopened_allowance_m2 = 0.2;        ///< ... and this much
   double max_rival_contradiction = 0.25;     ///< a pose contradicted more than this is no rival
   double excess_contradiction_m2 = 1.0;      ///< nor is one contradicted more than the best by this ...
   double excess_contradiction_share = 0.02;  ///< ... and this share of its agreeing surface

@@ -87,6 +87,21 @@ TEST(Verdict, AnOpenShiftIsNamed) {
   EXPECT_NE(verdict.reason.find("shift along"), std::string::npos);
 }
 
+TEST(Verdict, ThroughAWallWithoutAnOpeningContradictionWeighsMore) {
+  VerdictOptions options;
+  options.through_wall = true;
+  const auto outcome = [&](const JudgedPose& pose) {
+    return judge(
+               {pose}, [](std::size_t, std::size_t) { return PoseContrast{}; }, options)
+        .outcome;
+  };
+  EXPECT_EQ(outcome(pose(40, 1.0, 0)), Outcome::registered);
+  EXPECT_EQ(outcome(pose(40, 2.0, 0)), Outcome::ambiguous);
+  JudgedPose opened = pose(40, 2.0, 0);
+  opened.score.opening_m2 = 3.0;
+  EXPECT_EQ(outcome(opened), Outcome::registered);
+}
+
 TEST(Verdict, AShiftThatIsHardlyKnownIsNamed) {
   JudgedPose loose = pose(30, 0, 0);
   loose.refined.information(4, 4) = 1.0 / (0.024 * 0.024);
