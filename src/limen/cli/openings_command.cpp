@@ -106,15 +106,7 @@ void add_openings_command(CLI::App& app, Session& session) {
   auto options = std::make_shared<OpeningsCommand>();
   CLI::App* command = add_command(app, session, "openings", "Find the windows and doors of a scan",
                                   [options, &session] { return run(*options, session); });
-  command->add_option("SCAN", options->scan, "A scan of any format limen reads")->required();
-  command->add_option("-o,--output", options->output, "The JSON file to write")
-      ->required()
-      ->type_name("FILE");
-  command
-      ->add_option("--origin", options->origin,
-                   "From where the scan was taken, in the coordinates of its points, metres")
-      ->type_name("x,y,z");
-  add_gravity_option(*command, options->gravity);
+  add_feature_options(*command, {options->scan, options->output, options->origin, options->gravity});
   OpeningOptions& o = options->openings;
   add_length_option(*command, "--min-width-m", o.min_width_m,
                     "Width of the narrowest opening (default 0.35)");

@@ -105,15 +105,7 @@ void add_planes_command(CLI::App& app, Session& session) {
   auto options = std::make_shared<PlanesOptions>();
   CLI::App* command = add_command(app, session, "planes", "Find the planes of a scan and their outlines",
                                   [options, &session] { return run(*options, session); });
-  command->add_option("SCAN", options->scan, "A scan of any format limen reads")->required();
-  command->add_option("-o,--output", options->output, "The JSON file to write")
-      ->required()
-      ->type_name("FILE");
-  command
-      ->add_option("--origin", options->origin,
-                   "From where the scan was taken, in the coordinates of its points, metres")
-      ->type_name("x,y,z");
-  add_gravity_option(*command, options->gravity);
+  add_feature_options(*command, {options->scan, options->output, options->origin, options->gravity});
   std::vector<std::string> names;
   for (const auto& [name, detector] : detectors()) names.push_back(name);
   command

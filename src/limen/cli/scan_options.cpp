@@ -44,6 +44,16 @@ void add_gravity_option(CLI::App& command, std::string& gravity, bool with_auto)
       ->check(CLI::IsMember(known));
 }
 
+void add_feature_options(CLI::App& command, const FeatureOptions& options) {
+  command.add_option("SCAN", options.scan, "A scan of any format limen reads")->required();
+  command.add_option("-o,--output", options.output, "The JSON file to write")->required()->type_name("FILE");
+  command
+      .add_option("--origin", options.origin,
+                  "From where the scan was taken, in the coordinates of its points, metres")
+      ->type_name("x,y,z");
+  add_gravity_option(command, options.gravity);
+}
+
 ReadOptions read_options(const std::string& origin, const std::string& option, const std::string& gravity) {
   ReadOptions options;
   if (!origin.empty()) options.origin = parse_point(origin, option);

@@ -16,6 +16,16 @@ Vector3d parse_point(const std::string& text, const std::string& option);
 /// Adds --gravity up|unknown, and auto where that is offered: whether the z axis of the files points up.
 void add_gravity_option(CLI::App& command, std::string& gravity, bool with_auto = false);
 
+/// What every command that takes features from a scan to a file asks for.
+struct FeatureOptions {
+  std::string& scan;
+  std::string& output;
+  std::string& origin;
+  std::string& gravity;
+};
+/// Adds SCAN, --output, --origin and --gravity.
+void add_feature_options(CLI::App& command, const FeatureOptions& options);
+
 /// What the user said of a scan: `origin` "x,y,z" or empty (`option` names it in messages), `gravity`
 /// "auto", "up" or "unknown".
 ReadOptions read_options(const std::string& origin, const std::string& option, const std::string& gravity);
