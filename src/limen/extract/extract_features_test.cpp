@@ -10,32 +10,14 @@
 #include "limen/base/random.h"
 #include "limen/extract/estimate_centre.h"
 #include "limen/extract/panorama.h"
+#include "limen/extract/synthetic_room.h"
 #include "limen/extract/voxel_map.h"
 
 namespace limen {
 namespace {
 
-/// A box of 6 x 5 x 3 m about its scanner, seen in even steps of azimuth and elevation, 2 mm noise.
-Scan box_scan(std::size_t points = 60000) {
-  const Vector3d low(-2, -3, -1.5);
-  const Vector3d high(4, 2, 1.5);
-  RandomStream stream(5);
-  Scan scan;
-  scan.name = "box";
-  for (std::size_t i = 0; i < points; ++i) {
-    const double azimuth = stream.uniform(-3.14159265, 3.14159265);
-    const double elevation = stream.uniform(-1.05, 1.57);
-    const Vector3d ray(std::cos(azimuth) * std::cos(elevation), std::sin(azimuth) * std::cos(elevation),
-                       std::sin(elevation));
-    double range = 1e9;
-    for (int axis = 0; axis < 3; ++axis) {
-      const double wall = ray[axis] > 0 ? high[axis] : low[axis];
-      if (std::abs(ray[axis]) > 1e-9) range = std::min(range, wall / ray[axis]);
-    }
-    scan.points.push_back((range + 0.002 * stream.normal()) * ray);
-  }
-  scan.centres = {Vector3d::Zero()};
-  return scan;
+Scan room_scan(std::size_t points = 60000) {
+  return box_scan(points, -1.05, 1.57);
 }
 
 SightQuery at(const Vector3d& x, const Vector3d& normal) {
@@ -47,7 +29,7 @@ SightQuery at(const Vector3d& x, const Vector3d& normal) {
 }
 
 TEST(Panorama, KnowsWhatIsThereFreeAndHidden) {
-  const Scan scan = box_scan();
+  const Scan scan = room_scan();
   const ExtractedFeatures extracted = extract_features(scan);
   const Panorama view(scan, extracted.labels, extracted.features, Vector3d::Zero());
   const Sight wall = view.look(at({4.01, 0.5, 0.2}, -Vector3d::UnitX()));
@@ -61,7 +43,7 @@ TEST(Panorama, KnowsWhatIsThereFreeAndHidden) {
 }
 
 TEST(Panorama, TheBackOfAWallIsNotItsFront) {
-  const Scan scan = box_scan();
+  const Scan scan = room_scan();
   const ExtractedFeatures extracted = extract_features(scan);
   const Panorama view(scan, extracted.labels, extracted.features, Vector3d::Zero());
   EXPECT_NE(view.look(at({4.0, 0.5, 0.2}, Vector3d::UnitX())).kind, SightKind::surface);
@@ -69,7 +51,7 @@ TEST(Panorama, TheBackOfAWallIsNotItsFront) {
 }
 
 TEST(VoxelMap, KnowsSurfacesAndWhatRaysPassed) {
-  const Scan scan = box_scan();
+  const Scan scan = room_scan();
   const ExtractedFeatures extracted = extract_features(scan);
   const VoxelMap map(scan, extracted.features);
   EXPECT_EQ(map.look(at({4.01, 0.5, 0.2}, -Vector3d::UnitX())).kind, SightKind::surface);
@@ -78,7 +60,7 @@ TEST(VoxelMap, KnowsSurfacesAndWhatRaysPassed) {
 }
 
 TEST(VoxelMap, WithoutAnOpticalCentreNothingIsFree) {
-  Scan scan = box_scan();
+  Scan scan = room_scan();
   scan.centres.clear();
   const ExtractedFeatures extracted = extract_features(scan);
   const VoxelMap map(scan, extracted.features);
@@ -86,7 +68,7 @@ TEST(VoxelMap, WithoutAnOpticalCentreNothingIsFree) {
 }
 
 TEST(EstimateCentre, FromTheDensityOnWalls) {
-  Scan scan = box_scan(120000);
+  Scan scan = room_scan(120000);
   scan.centres.clear();
   const Vector3d shift(12.5, -7.25, 140.0);
   for (Vector3d& x : scan.points) x += shift;
@@ -114,7 +96,7 @@ TEST(EstimateCentre, EvenlyThinnedCloudsHaveNone) {
 }
 
 TEST(ExtractFeatures, ABoxHasSixOrientedWalls) {
-  const ExtractedFeatures extracted = extract_features(box_scan(400000));
+  const ExtractedFeatures extracted = extract_features(room_scan(400000));
   ASSERT_EQ(extracted.features.planes.size(), 6U);
   for (const PlanarPolygon& plane : extracted.features.planes) {
     EXPECT_TRUE(plane.oriented);

@@ -267,7 +267,7 @@ OpeningMatcher::Fit OpeningMatcher::improved(const Fit& old, WallSides sides) co
   fit.target_from_source.rotation = rotation_of(old.meetings, sides);
   // The middle of the edges stays where it is along directions that the edges do not hold.
   const Vector3d start = old.target_from_source * centre - fit.target_from_source.rotation * centre;
-  const LineTranslation shift =
+  const TranslationFit shift =
       translation_from_lines(fit.target_from_source.rotation, lines, start, kMinInformation);
   fit.target_from_source.translation = shift.translation;
   fit.normal_held = shift.unobserved.empty();

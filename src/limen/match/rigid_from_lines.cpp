@@ -4,8 +4,6 @@
 
 #include <cmath>
 
-#include <Eigen/Eigenvalues>
-
 #include "limen/base/error.h"
 
 namespace limen {
@@ -44,43 +42,26 @@ Matrix3d rotation_from_lines(const LinePair& vertical, const LinePair& horizonta
          basis(vertical.source.direction, horizontal.source.direction).transpose();  // (16)
 }
 
-LineTranslation translation_from_lines(const Matrix3d& target_from_source_rotation,
-                                       const std::vector<LinePair>& pairs, const Vector3d& start,
-                                       double min_information) {
+TranslationFit translation_from_lines(const Matrix3d& target_from_source_rotation,
+                                      const std::vector<LinePair>& pairs, const Vector3d& start,
+                                      double min_information) {
   const auto gap = [&](const LinePair& pair, const Vector3d& t) {
     return Vector3d(pair.target.point - (target_from_source_rotation * pair.source.point + t));
   };
-  Matrix3d information = Matrix3d::Zero();  // -M of (19)
-  Vector3d right_side = Vector3d::Zero();
-  double weight = 0.0;
+  TranslationSums sums;  // the information is -M of (19)
   for (const LinePair& pair : pairs) {
     const Matrix3d space = measured_space(pair);
-    information += pair.weight * space;
-    right_side += pair.weight * space * gap(pair, start);
-    weight += pair.weight;
+    sums.information += pair.weight * space;
+    sums.right_side += pair.weight * space * gap(pair, start);
+    sums.weight += pair.weight;
   }
-  LineTranslation fit;
-  fit.translation = start;
-  if (!(weight > 0.0)) {
-    fit.unobserved = {Vector3d::UnitX(), Vector3d::UnitY(), Vector3d::UnitZ()};
-    return fit;
-  }
-  const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(information / weight);
-  const Vector3d& values = solver.eigenvalues();
-  for (int i = 0; i < 3; ++i) {
-    const Vector3d direction = solver.eigenvectors().col(i);
-    if (values[i] <= min_information) {
-      fit.unobserved.push_back(direction);
-    } else {
-      fit.translation += direction * (direction.dot(right_side) / weight / values[i]);
-    }
-  }
-  if (values[0] > 1e-15) fit.condition = std::sqrt(values[2] / values[0]);
+  TranslationFit fit = solve_translation(sums, start, min_information);
+  if (!(sums.weight > 0.0)) return fit;
   double sum = 0.0;
   for (const LinePair& pair : pairs) {
     sum += pair.weight * (measured_space(pair) * gap(pair, fit.translation)).squaredNorm();
   }
-  fit.rms_m = std::sqrt(sum / weight);
+  fit.rms_m = std::sqrt(sum / sums.weight);
   return fit;
 }
 

@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <limits>
 #include <optional>
 #include <vector>
 
 #include "limen/geometry/rigid.h"
+#include "limen/match/translation_fit.h"
 
 // Djahel, Monasse, Vallet, "Detecting openings for indoor/outdoor registration", 2022, section 3.3, equations
 // 15 to 19 (Monasse, Djahel, Vallet 2023, section IV-D, equations 10 to 14, is the same): the rigid motion
@@ -40,21 +40,13 @@ struct LinePair {
 /// as that allows. Throws Error where the two are parallel in one of the scans.
 Matrix3d rotation_from_lines(const LinePair& vertical, const LinePair& horizontal);
 
-struct LineTranslation {
-  Vector3d translation = Vector3d::Zero();  ///< of target_from_source, metres
-  double rms_m = 0.0;                       ///< weighted root mean square distance that is left
-  /// Condition of the system (root of the ratio of M's eigenvalues): infinite where a direction is not held.
-  double condition = std::numeric_limits<double>::infinity();
-  std::vector<Vector3d> unobserved;  ///< unit directions, target frame; along them `start` is kept
-};
-
 /// Equations 17 to 19: the shift that brings the turned points of the source's lines nearest to the target's
 /// lines. A direction is held when its share of the information (eigenvalue of the weighted mean of
 /// [d]x^t [d]x) exceeds `min_information`.
-LineTranslation translation_from_lines(const Matrix3d& target_from_source_rotation,
-                                       const std::vector<LinePair>& pairs,
-                                       const Vector3d& start = Vector3d::Zero(),
-                                       double min_information = 0.003);
+TranslationFit translation_from_lines(const Matrix3d& target_from_source_rotation,
+                                      const std::vector<LinePair>& pairs,
+                                      const Vector3d& start = Vector3d::Zero(),
+                                      double min_information = 0.003);
 
 /// Both steps for the papers' two pairs. Throws Error where the two lines of a scan are parallel.
 Rigid3 rigid_from_lines(const LinePair& vertical, const LinePair& horizontal);

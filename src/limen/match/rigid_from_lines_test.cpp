@@ -59,7 +59,7 @@ TEST(RigidFromLines, LeastSquaresOfManyLines) {
     pairs.back().target.point += 0.02 * any_vector(random);
     pairs.back().weight = random.uniform(0.5, 2.0);
   }
-  const LineTranslation fit = translation_from_lines(truth.rotation, pairs);
+  const TranslationFit fit = translation_from_lines(truth.rotation, pairs);
   const auto cost = [&](const Vector3d& t) {
     double sum = 0.0;
     for (const LinePair& p : pairs) {
@@ -79,7 +79,7 @@ TEST(RigidFromLines, ParallelLinesLeaveTheirDirectionOpen) {
   const Rigid3 truth{Matrix3d::Identity(), Vector3d(1.0, 2.0, 3.0)};
   const std::vector<LinePair> pairs = {pair_under(truth, Vector3d(0.0, 0.0, 0.0), Vector3d::UnitZ(), 0.5),
                                        pair_under(truth, Vector3d(4.0, 0.0, 0.0), Vector3d::UnitZ(), -0.5)};
-  const LineTranslation fit = translation_from_lines(truth.rotation, pairs, Vector3d(0.0, 0.0, 7.0));
+  const TranslationFit fit = translation_from_lines(truth.rotation, pairs, Vector3d(0.0, 0.0, 7.0));
   ASSERT_EQ(fit.unobserved.size(), 1U);
   EXPECT_NEAR(std::abs(fit.unobserved[0].z()), 1.0, 1e-9);
   EXPECT_LT((fit.translation - Vector3d(1.0, 2.0, 7.0)).norm(), 1e-9);
@@ -96,7 +96,7 @@ TEST(RigidFromLines, AWallsNormalLeftOutIsNotPulledToZero) {
     pair.target.point.y() -= 0.4;
     pair.wall_normal = Vector3d::UnitY();
   }
-  const LineTranslation fit = translation_from_lines(truth.rotation, pairs, Vector3d(0.0, 2.0, 0.0));
+  const TranslationFit fit = translation_from_lines(truth.rotation, pairs, Vector3d(0.0, 2.0, 0.0));
   ASSERT_EQ(fit.unobserved.size(), 1U);
   EXPECT_NEAR(std::abs(fit.unobserved[0].y()), 1.0, 1e-9);
   EXPECT_LT((fit.translation - truth.translation).norm(), 1e-9);
@@ -106,7 +106,7 @@ TEST(RigidFromLines, AWallsNormalLeftOutIsNotPulledToZero) {
 }
 
 TEST(RigidFromLines, NoPairsHoldNothing) {
-  const LineTranslation fit = translation_from_lines(Matrix3d::Identity(), {}, Vector3d(1.0, 2.0, 3.0));
+  const TranslationFit fit = translation_from_lines(Matrix3d::Identity(), {}, Vector3d(1.0, 2.0, 3.0));
   EXPECT_EQ(fit.unobserved.size(), 3U);
   EXPECT_EQ(fit.translation, Vector3d(1.0, 2.0, 3.0));
 }

@@ -4,8 +4,6 @@
 
 #include <cmath>
 
-#include <Eigen/Eigenvalues>
-
 #include "limen/base/error.h"
 
 namespace limen {
@@ -20,37 +18,21 @@ TranslationFit translation_from_planes(const Matrix3d& target_from_source_rotati
                                        const std::vector<PlanePair>& pairs, const Vector3d& start,
                                        const TranslationOptions& options) {
   options.check();
-  Matrix3d information = Matrix3d::Zero();
-  Vector3d right_side = Vector3d::Zero();
-  double weight = 0.0;
   const auto gap = [&](const PlanePair& pair, const Vector3d& translation) {
     return -pair.target.signed_distance(target_from_source_rotation * pair.source_point + translation);
   };
+  TranslationSums sums;
   for (const PlanePair& pair : pairs) {
-    information += pair.weight * pair.target.normal * pair.target.normal.transpose();  // (22), both sides
-    right_side += pair.weight * gap(pair, start) * pair.target.normal;                 // times N^T
-    weight += pair.weight;
+    sums.information +=
+        pair.weight * pair.target.normal * pair.target.normal.transpose();   // (22), both sides
+    sums.right_side += pair.weight * gap(pair, start) * pair.target.normal;  // times N^T
+    sums.weight += pair.weight;
   }
-  TranslationFit fit;
-  fit.translation = start;
-  if (!(weight > 0.0)) {
-    fit.unobserved = {Vector3d::UnitX(), Vector3d::UnitY(), Vector3d::UnitZ()};
-    return fit;
-  }
-  const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(information / weight);
-  const Vector3d& values = solver.eigenvalues();
-  for (int i = 0; i < 3; ++i) {
-    const Vector3d direction = solver.eigenvectors().col(i);
-    if (values[i] <= options.min_information) {
-      fit.unobserved.push_back(direction);
-    } else {
-      fit.translation += direction * (direction.dot(right_side) / weight / values[i]);
-    }
-  }
-  if (values[0] > 1e-15) fit.condition = std::sqrt(values[2] / values[0]);
+  TranslationFit fit = solve_translation(sums, start, options.min_information);
+  if (!(sums.weight > 0.0)) return fit;
   double sum = 0.0;
   for (const PlanePair& pair : pairs) sum += pair.weight * std::pow(gap(pair, fit.translation), 2);
-  fit.rms_m = std::sqrt(sum / weight);
+  fit.rms_m = std::sqrt(sum / sums.weight);
   return fit;
 }
 

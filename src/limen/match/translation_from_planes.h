@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <limits>
 #include <vector>
 
 #include "limen/geometry/polygon.h"
+#include "limen/match/translation_fit.h"
 
 namespace limen {
 
@@ -23,15 +23,6 @@ struct TranslationOptions {
   double min_information = 0.003;
 
   void check() const;
-};
-
-struct TranslationFit {
-  Vector3d translation = Vector3d::Zero();  ///< of target_from_source, metres
-  double rms_m = 0.0;                       ///< weighted root mean square distance that is left
-  /// Condition of the system (ratio of its largest to its smallest singular value): 1 for three orthogonal
-  /// planes, infinite where a direction is not held at all.
-  double condition = std::numeric_limits<double>::infinity();
-  std::vector<Vector3d> unobserved;  ///< unit directions, target frame; along them `start` is kept
 };
 
 /// Djahel, Monasse, Vallet 2021, section 3.4, equations 20 to 22: the shift that lays the turned source

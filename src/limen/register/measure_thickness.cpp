@@ -7,23 +7,22 @@
 #include <map>
 #include <utility>
 
-#include <Eigen/LU>
-
 namespace limen {
 namespace {
 
 constexpr double kLeastPlaneSigmaM = 0.0005;  // of a plane's place at an opening
 
+/// Neighbouring points err alike: n of them are taken for the square root of n independent ones.
 double plane_sigma_m(const PlanarPolygon& plane) {
-  const double share = std::sqrt(static_cast<double>(std::max<std::size_t>(1, plane.inliers)));
-  return std::hypot(kLeastPlaneSigmaM, plane.rms_m / std::sqrt(share));
+  const double independent = std::sqrt(static_cast<double>(std::max<std::size_t>(1, plane.inliers)));
+  return std::hypot(kLeastPlaneSigmaM, plane.rms_m / std::sqrt(independent));
 }
 
 }  // namespace
 
 std::vector<MeasuredThickness> measure_thickness(const RefinedPose& pose, const Features& source,
                                                  const Features& target) {
-  const Matrix6d covariance = (pose.information + 1e-6 * Matrix6d::Identity()).inverse();
+  const Matrix6d covariance = covariance_of(pose);
   struct Sum {
     double gap = 0.0;
     double weight = 0.0;

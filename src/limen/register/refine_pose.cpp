@@ -170,8 +170,7 @@ class Refiner {
   /// Moves `centre` to the point whose place is known best: there turns and shifts hardly depend on each
   /// other, so that a far-off patch of ground does not make a well-held shift look open.
   static void move_centre(RefinedPose& refined) {
-    const Matrix6d damped = refined.information + 1e-6 * Matrix6d::Identity();
-    const Matrix6d covariance = damped.inverse();
+    const Matrix6d covariance = covariance_of(refined);
     const Matrix3d turns = covariance.topLeftCorner<3, 3>();
     const Matrix3d mixed = covariance.bottomLeftCorner<3, 3>();  // shifts by turns
     // The mean square of shift + turn x c is least at:
@@ -259,6 +258,11 @@ void RefineOptions::check() const {
   if (!(first_gate_m >= last_gate_m)) throw_bad_option("first_gate_m", first_gate_m, "at least last_gate_m");
   if (rounds < 0) throw_bad_option("rounds", rounds, "0 or more");
   if (!(flatness_m >= 0)) throw_bad_option("flatness_m", flatness_m, "0 or more");
+}
+
+Matrix6d covariance_of(const RefinedPose& pose) {
+  const Matrix6d damped = pose.information + 1e-6 * Matrix6d::Identity();
+  return damped.inverse();
 }
 
 RefinedPose refine_pose(const ScanView& source, const ScanView& target, const Rigid3& start,

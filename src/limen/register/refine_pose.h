@@ -41,6 +41,10 @@ struct RefinedPose {
   std::vector<OpeningMatch> openings;  ///< pairs of openings, at the final pose
 };
 
+/// Covariance of (rotation, translation) about `pose.centre`, target axes, SI; a freedom that nothing holds
+/// has a deviation of 1000 m or radians.
+Matrix6d covariance_of(const RefinedPose& pose);
+
 /// Robust point-to-plane adjustment over all matched surface of both scans, both ways: each tile of one scan
 /// against the plane of the other that its scanner saw there (2021, 3.4: "then refine on all matched
 /// planes"). Matched openings enter with the shifts of their edges within the wall, with the wall's two faces

@@ -8,8 +8,6 @@
 #include <iterator>
 #include <utility>
 
-#include <Eigen/LU>
-
 #include "limen/base/error.h"
 #include "limen/base/parallel.h"
 #include "limen/register/measure_thickness.h"
@@ -195,8 +193,7 @@ constexpr double kDriftLengthM = 5.0;
 PoseSigma sigma_of(const RefinedPose& pose, const Vector3d& target_origin, double drift_m) {
   PoseSigma sigma;
   sigma.centre = pose.centre + target_origin;
-  const Matrix6d damped = pose.information + 1e-6 * Matrix6d::Identity();
-  const Matrix6d covariance = damped.inverse();
+  const Matrix6d covariance = covariance_of(pose);
   for (Eigen::Index k = 0; k < 3; ++k) {
     sigma.rotation_rad[k] = std::hypot(std::sqrt(std::max(0.0, covariance(k, k))), drift_m / kDriftLengthM);
     sigma.translation_m[k] = std::hypot(std::sqrt(std::max(0.0, covariance(k + 3, k + 3))), drift_m);

@@ -122,8 +122,7 @@ std::vector<UnobservedFreedom> unobserved_freedoms(const RefinedPose& pose, doub
 }
 
 std::vector<UnobservedFreedom> loose_freedoms(const RefinedPose& pose, const VerdictOptions& options) {
-  const Matrix6d damped = pose.information + 1e-6 * Matrix6d::Identity();
-  const Matrix6d covariance = damped.inverse();
+  const Matrix6d covariance = covariance_of(pose);
   std::vector<UnobservedFreedom> loose;
   const Eigen::SelfAdjointEigenSolver<Matrix3d> shifts(covariance.bottomRightCorner<3, 3>());
   const Eigen::SelfAdjointEigenSolver<Matrix3d> turns(covariance.topLeftCorner<3, 3>());
