@@ -97,6 +97,7 @@ class Simulation {
     truth.scene = o_.name;
     truth.seed = o_.seed;
     truth.local_origin = origin_;
+    truth.local_from_scene = world_from_scene_;
     truth.planes = merged_.planes;
     for (TruePlane& plane : truth.planes) plane.plane = transformed(world_from_scene_, plane.plane);
     truth.openings = recipe_.world.openings;

@@ -100,6 +100,7 @@ struct Truth {
   std::string scene;
   std::uint64_t seed = 0;
   Vector3d local_origin = Vector3d::Zero();
+  Rigid3 local_from_scene;  ///< from the frame in which the building was built, that of Recipe::world
   std::vector<TruePlane> planes;
   std::vector<TrueOpening> openings;
   std::vector<ScanTruth> scans;
