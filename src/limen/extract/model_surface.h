@@ -1,0 +1,37 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "limen/model/bim_model.h"
+
+namespace limen {
+
+struct ModelSurfaceOptions {
+  double front_m = 0.004;       ///< matter this near before a face hides it, > 0
+  double same_plane_m = 0.002;  ///< faces of several elements within this are one plane, > 0
+  double min_area_m2 = 0.01;    ///< smaller pieces are left out, >= 0
+
+  void check() const;
+};
+
+/// Whether a laser is stopped there today as on the day the model was drawn: walls, slabs, roofs, columns,
+/// beams, stairs, coverings, terrain. Not: panes, leaves, furniture, railings, and elements of no known kind,
+/// unless the file knows no kinds at all.
+bool is_built_matter(const BimModel& model, const BimElement& element);
+
+/// The surface of a model's built matter as far as it borders on air: faces less what other elements stand
+/// against or penetrate them, flush faces of neighbouring elements made one. Each polygon has one part and
+/// may have holes; its normal points into the air; `oriented` is true, `inliers` 0.
+///
+/// How: every face is cut by the cross-sections of the elements around it with a plane just before the face.
+/// So neither end faces of walls under ceilings nor floors under walls remain.
+struct ModelSurface {
+  std::vector<PlanarPolygon> polygons;  ///< largest first
+  std::vector<std::int32_t> elements;   ///< of each polygon: the element that gives most of it
+};
+ModelSurface visible_surface(const BimModel& model, const ModelSurfaceOptions& options = {});
+
+}  // namespace limen
