@@ -171,4 +171,27 @@ DirectionClusters cluster_directions(const std::vector<PlanarPolygon>& polygons,
   return cluster_directions(planes, weights, up, options);
 }
 
+DirectionClusters cluster_directions(const std::vector<Segment>& segments, const std::optional<Vector3d>& up,
+                                     const DirectionClusterOptions& options) {
+  constexpr double kNoLengthM = 1e-6;
+  std::vector<Plane> directions;
+  std::vector<double> weights;
+  std::vector<int> used;
+  std::vector<int> too_short;
+  for (std::size_t i = 0; i < segments.size(); ++i) {
+    const double length = segments[i].length();
+    (length > kNoLengthM ? used : too_short).push_back(static_cast<int>(i));
+    if (!(length > kNoLengthM)) continue;
+    directions.push_back({segments[i].direction(), 0.0});
+    weights.push_back(length);
+  }
+  DirectionClusters found = cluster_directions(directions, weights, up, options);
+  const auto back = [&used](int& index) { index = used[static_cast<std::size_t>(index)]; };
+  for (DirectionCluster& cluster : found.clusters)
+    std::for_each(cluster.planes.begin(), cluster.planes.end(), back);
+  std::for_each(found.unassigned.begin(), found.unassigned.end(), back);
+  found.unassigned.insert(found.unassigned.end(), too_short.begin(), too_short.end());
+  return found;
+}
+
 }  // namespace limen

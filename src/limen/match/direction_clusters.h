@@ -7,6 +7,7 @@
 
 #include "limen/base/angles.h"
 #include "limen/geometry/polygon.h"
+#include "limen/geometry/segment.h"
 
 // Djahel, Monasse, Vallet 2021, section 3.2.2, algorithm 1: greedy clustering of planes by direction.
 //
@@ -58,6 +59,10 @@ DirectionClusters cluster_directions(const std::vector<Plane>& planes, const std
 /// The same with the inliers as weights, as published.
 DirectionClusters cluster_directions(const std::vector<PlanarPolygon>& polygons,
                                      const std::optional<Vector3d>& up,
+                                     const DirectionClusterOptions& options = {});
+/// The same for the directions of segments, weighted by their lengths (2023, section IV-B); `planes` of the
+/// result are indices of segments. Segments shorter than a micrometre count nowhere and stay unassigned.
+DirectionClusters cluster_directions(const std::vector<Segment>& segments, const std::optional<Vector3d>& up,
                                      const DirectionClusterOptions& options = {});
 
 }  // namespace limen
