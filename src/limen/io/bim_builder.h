@@ -1,0 +1,53 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "limen/base/progress.h"
+#include "limen/io/polygon_mesh.h"
+#include "limen/model/bim_model.h"
+
+namespace limen {
+
+/// An element and its surface in world coordinates, openings not yet cut.
+struct RawElement {
+  BimElement about;
+  PolygonMesh mesh;
+};
+
+/// A closed solid to be taken out of an element.
+struct RawOpening {
+  std::string guid;
+  std::int32_t host = -1;     ///< index into RawModel::elements, or -1
+  std::int32_t filling = -1;  ///< the same, or -1
+  bool recess = false;        ///< a niche: it does not pass through its host
+  PolygonMesh mesh;
+};
+
+/// A room and its boundary.
+struct RawSpace {
+  BimSpace about;  ///< without faces
+  PolygonMesh mesh;
+};
+
+/// What every reader of models brings its file to: surfaces in world coordinates, metres, in the file's
+/// order.
+struct RawModel {
+  BimModel head;  ///< name, schema, units and warnings; without elements
+  std::vector<RawElement> elements;
+  std::vector<RawOpening> openings;
+  std::vector<RawSpace> spaces;
+};
+
+/// Makes the model: picks the local origin, makes flat faces, cuts openings, questions odd sizes. Throws
+/// Error where there is no surface at all.
+BimModel built(RawModel raw, Monitor& monitor = silent_monitor());
+
+/// What an element of an IFC type ("IfcWallStandardCase", any case) is; `predefined` as the file has it
+/// ("ROOF") or empty.
+BimKind kind_of_ifc_type(const std::string& type, const std::string& predefined = {});
+
+}  // namespace limen
