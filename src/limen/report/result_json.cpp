@@ -33,12 +33,17 @@ Json unobserved_json(const std::vector<UnobservedFreedom>& freedoms) {
 }
 
 Json evidence_json(const Hypothesis& pose) {
-  return {{"score", pose.score},
-          {"agreeing_m2", pose.agreeing_m2},
-          {"contradicted_m2", pose.contradicted_m2},
-          {"rms_m", pose.rms_m},
-          {"matched_planes", pose.matched_planes},
-          {"matched_openings", pose.matched_openings}};
+  Json json = {{"score", pose.score},
+               {"agreeing_m2", pose.agreeing_m2},
+               {"contradicted_m2", pose.contradicted_m2},
+               {"rms_m", pose.rms_m},
+               {"matched_planes", pose.matched_planes},
+               {"matched_openings", pose.matched_openings}};
+  if (pose.matched_segments > 0) {
+    json["matched_segments"] = pose.matched_segments;
+    json["agreeing_length_m"] = pose.agreeing_length_m;
+  }
+  return json;
 }
 
 Json alternatives_json(const std::vector<Hypothesis>& alternatives) {
