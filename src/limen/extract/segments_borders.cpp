@@ -1,0 +1,335 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/extract/segments_borders.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+namespace limen {
+namespace {
+
+constexpr double kWaviness = 0.6;       // of an outline, in units of the spacing
+constexpr double kShortestPiece = 4.0;  // pixels
+constexpr double kBin = 1.5;            // width of a bin in units of the spacing
+constexpr double kDepth = 6.0;          // how far inward gaps are measured, in units of the spacing
+constexpr int kFewestBins = 5;
+constexpr double kUniform = 0.57735;  // standard deviation of what is uniform in [-1, 1]
+
+double tolerance_at(const PlaneImage& image, const Vector2d& p) {
+  return image.pixel_m() + kWaviness * image.spacing_m(p);
+}
+
+/// Corners of a ring, as indices: no point is further from its chord than the tolerance at that point.
+class CornerFinder {
+ public:
+  CornerFinder(const PlaneImage& image, const Ring& ring) : ring_(ring) {
+    tolerance_.reserve(ring.size());
+    for (const Vector2d& p : ring) tolerance_.push_back(tolerance_at(image, p));
+  }
+
+  [[nodiscard]] std::vector<std::size_t> run() const {
+    // From the point farthest from the first to the point farthest from that: a ring has no ends.
+    const std::size_t first = farthest_from(0);
+    const std::size_t second = farthest_from(first);
+    std::vector<std::size_t> corners;
+    split(std::min(first, second), std::max(first, second), corners);
+    split(std::max(first, second), std::min(first, second) + ring_.size(), corners);
+    return corners;
+  }
+
+ private:
+  [[nodiscard]] const Vector2d& at(std::size_t i) const { return ring_[i % ring_.size()]; }
+  [[nodiscard]] std::size_t farthest_from(std::size_t from) const {
+    std::size_t best = 0;
+    for (std::size_t i = 0; i < ring_.size(); ++i)
+      if ((ring_[i] - ring_[from]).squaredNorm() > (ring_[best] - ring_[from]).squaredNorm()) best = i;
+    return best;
+  }
+  /// Writes the first corner of each piece between `begin` and `end`.
+  void split(std::size_t begin, std::size_t end, std::vector<std::size_t>& corners) const {
+    std::vector<std::pair<std::size_t, std::size_t>> open = {{begin, end}};
+    while (!open.empty()) {
+      const auto [from, to] = open.back();
+      open.pop_back();
+      const std::size_t worst = worst_between(from, to);
+      if (worst == from) {
+        corners.push_back(from);
+        continue;
+      }
+      open.emplace_back(worst, to);
+      open.emplace_back(from, worst);
+    }
+  }
+  [[nodiscard]] std::size_t worst_between(std::size_t from, std::size_t to) const {
+    const Vector2d chord = (at(to) - at(from)).normalized();
+    const Vector2d across(-chord.y(), chord.x());
+    std::size_t worst = from;
+    double most = 1.0;
+    for (std::size_t i = from + 1; i < to; ++i) {
+      const double off = std::abs((at(i) - at(from)).dot(across)) / tolerance_[i % ring_.size()];
+      if (off <= most) continue;
+      most = off;
+      worst = i;
+    }
+    return worst;
+  }
+
+  const Ring& ring_;
+  std::vector<double> tolerance_;
+};
+
+/// Least-squares line through ring points [begin, end], `along` the way the ring runs.
+Strip line_through(const Ring& ring, std::size_t begin, std::size_t end) {
+  Vector2d mean = Vector2d::Zero();
+  for (std::size_t i = begin; i <= end; ++i) mean += ring[i % ring.size()];
+  mean /= static_cast<double>(end - begin + 1);
+  Eigen::Matrix2d outer = Eigen::Matrix2d::Zero();
+  for (std::size_t i = begin; i <= end; ++i) {
+    const Vector2d off = ring[i % ring.size()] - mean;
+    outer += off * off.transpose();
+  }
+  const double angle = 0.5 * std::atan2(2.0 * outer(0, 1), outer(0, 0) - outer(1, 1));
+  Strip strip;
+  strip.origin = mean;
+  strip.along = Vector2d(std::cos(angle), std::sin(angle));
+  if (strip.along.dot(ring[end % ring.size()] - ring[begin % ring.size()]) < 0.0) strip.along = -strip.along;
+  return strip;
+}
+
+/// Grows pieces of one ring into straight runs.
+class RunGrower {
+ public:
+  RunGrower(const PlaneImage& image, const Ring& ring)
+      : image_(image), ring_(ring), used_(ring.size(), 0), hole_(signed_area(ring) < 0.0) {}
+
+  void run(double min_length_m, std::vector<StraightRun>& runs) {
+    const std::vector<std::size_t> corners = CornerFinder(image_, ring_).run();
+    std::vector<std::pair<std::size_t, std::size_t>> pieces;
+    for (std::size_t k = 0; k < corners.size(); ++k) {
+      const std::size_t next = corners[(k + 1) % corners.size()];
+      pieces.emplace_back(corners[k], next > corners[k] ? next : next + ring_.size());
+    }
+    std::stable_sort(pieces.begin(), pieces.end(),
+                     [&](const auto& a, const auto& b) { return length(a) > length(b); });
+    for (const auto& piece : pieces) {
+      if (length(piece) < kShortestPiece * image_.pixel_m()) break;
+      if (used_[(piece.first + piece.second) / 2 % ring_.size()] != 0) continue;
+      const StraightRun run = grown(piece);
+      if (run.line.end_m - run.line.begin_m >= min_length_m) runs.push_back(run);
+    }
+  }
+
+ private:
+  using Piece = std::pair<std::size_t, std::size_t>;
+  [[nodiscard]] const Vector2d& at(std::size_t i) const { return ring_[i % ring_.size()]; }
+  [[nodiscard]] double length(const Piece& piece) const {
+    return (at(piece.second) - at(piece.first)).norm();
+  }
+
+  [[nodiscard]] StraightRun grown(const Piece& piece) {
+    Piece span = piece;
+    Strip line = line_through(ring_, span.first, span.second);
+    for (int round = 0; round < 2; ++round) {
+      extend(line, span);
+      line = line_through(ring_, span.first, span.second);
+    }
+    StraightRun run{line, hole_};
+    for (std::size_t i = span.first; i <= span.second; ++i) {
+      const double t = (at(i) - line.origin).dot(line.along);
+      run.line.begin_m = std::min(run.line.begin_m, t);
+      run.line.end_m = std::max(run.line.end_m, t);
+      used_[i % ring_.size()] = 1;
+    }
+    return run;
+  }
+
+  /// Takes in what follows on either side as long as it keeps to the line.
+  void extend(const Strip& line, Piece& span) const {
+    const auto fits = [&](std::size_t i) {
+      const Vector2d& p = at(i);
+      return used_[i % ring_.size()] == 0 &&
+             std::abs((p - line.origin).dot(line.inward())) < 1.5 * tolerance_at(image_, p);
+    };
+    while (span.second - span.first + 1 < ring_.size() && fits(span.second + 1)) ++span.second;
+    while (span.second - span.first + 1 < ring_.size() && fits(span.first + ring_.size() - 1)) {
+      if (span.first == 0) {
+        span.first += ring_.size();
+        span.second += ring_.size();
+      }
+      --span.first;
+    }
+  }
+
+  const PlaneImage& image_;
+  const Ring& ring_;
+  std::vector<char> used_;
+  bool hole_;
+};
+
+/// The points along a run, bin by bin, outermost first.
+struct BinnedPoints {
+  double begin_m = 0.0;
+  double bin_m = 0.0;
+  std::vector<std::vector<std::pair<double, FlatPoint>>> bins;  ///< inward distance and point
+};
+
+BinnedPoints binned(const PlaneImage& image, const Strip& strip, double bin_m) {
+  BinnedPoints points;
+  points.begin_m = strip.begin_m;
+  points.bin_m = bin_m;
+  points.bins.resize(static_cast<std::size_t>((strip.end_m - strip.begin_m) / bin_m) + 1);
+  for (const FlatPoint& point : image.points_in(strip)) {
+    const Vector2d off = point.at - strip.origin;
+    const double t = (off.dot(strip.along) - strip.begin_m) / bin_m;
+    const auto k = std::min(points.bins.size() - 1, static_cast<std::size_t>(std::max(0.0, t)));
+    points.bins[k].emplace_back(off.dot(strip.inward()), point);
+  }
+  for (auto& bin : points.bins)
+    std::sort(bin.begin(), bin.end(), [](const auto& a, const auto& b) {
+      return a.first != b.first ? a.first < b.first : a.second.point < b.second.point;
+    });
+  return points;
+}
+
+/// Mean distance from a place within to the next point inward.
+double shortfall_of(const BinnedPoints& points, double depth_m) {
+  double squares = 0.0;
+  double sum = 0.0;
+  for (const auto& bin : points.bins) {
+    for (std::size_t i = 1; i < bin.size() && bin[i].first < bin[0].first + depth_m; ++i) {
+      const double gap = bin[i].first - bin[i - 1].first;
+      squares += gap * gap;
+      sum += gap;
+    }
+  }
+  return sum > 0.0 ? 0.5 * squares / sum : 0.0;
+}
+
+struct Line2 {
+  double height = 0.0;
+  double slope = 0.0;
+  [[nodiscard]] double at(double t) const { return height + slope * t; }
+};
+
+/// h over t of the bins within [begin, end], robustly: weights 1 / (1 + (r / scale)^2), from the median on.
+Line2 robust_line(const std::vector<BorderBin>& bins, double begin, double end, double scale) {
+  std::vector<double> heights;
+  for (const BorderBin& bin : bins)
+    if (bin.found && bin.t >= begin && bin.t <= end) heights.push_back(bin.h);
+  if (heights.empty()) return {};
+  const auto middle = heights.begin() + static_cast<std::ptrdiff_t>(heights.size() / 2);
+  std::nth_element(heights.begin(), middle, heights.end());
+  Line2 line{*middle, 0.0};
+  for (int round = 0; round < 8; ++round) {
+    double w = 0.0, t = 0.0, h = 0.0, tt = 0.0, th = 0.0;
+    for (const BorderBin& bin : bins) {
+      if (!bin.found || bin.t < begin || bin.t > end) continue;
+      const double off = (bin.h - line.at(bin.t)) / scale;
+      const double weight = 1.0 / (1.0 + off * off);
+      w += weight;
+      t += weight * bin.t;
+      h += weight * bin.h;
+      tt += weight * bin.t * bin.t;
+      th += weight * bin.t * bin.h;
+    }
+    const double spread = tt - t * t / w;
+    line.slope = spread > 1e-12 ? (th - t * h / w) / spread : 0.0;
+    line.height = (h - line.slope * t) / w;
+  }
+  return line;
+}
+
+std::vector<BorderBin> outermost(const BinnedPoints& points, const Strip& strip) {
+  std::vector<BorderBin> bins(points.bins.size());
+  for (std::size_t k = 0; k < bins.size(); ++k) {
+    bins[k].t = points.begin_m + (static_cast<double>(k) + 0.5) * points.bin_m;
+    if (points.bins[k].empty()) continue;
+    const auto& [h, point] = points.bins[k].front();
+    bins[k].found = true;
+    bins[k].t = (point.at - strip.origin).dot(strip.along);
+    bins[k].h = h;
+    bins[k].point = point.point;
+  }
+  return bins;
+}
+
+/// Turns the strip's line onto the fitted one: the bins' places are told anew.
+Strip turned_onto(const Strip& strip, const Line2& line, std::vector<BorderBin>& bins) {
+  Strip turned;
+  turned.along = (strip.along + line.slope * strip.inward()).normalized();
+  turned.origin = strip.at(0.0, line.height);
+  turned.begin_m = 1e300;
+  turned.end_m = -1e300;
+  for (BorderBin& bin : bins) {
+    const Vector2d off = strip.at(bin.t, bin.h) - turned.origin;
+    bin.t = off.dot(turned.along);
+    bin.h = off.dot(turned.inward());
+    turned.begin_m = std::min(turned.begin_m, bin.t);
+    turned.end_m = std::max(turned.end_m, bin.t);
+  }
+  return turned;
+}
+
+/// Fills in which bins fit, and sigma. False: too few, or too ragged.
+bool judge(BorderFit& fit, double core_begin, double core_end) {
+  const double slack = std::max(0.004, 2.2 * fit.shortfall_m);
+  double squares = 0.0;
+  int fitting = 0;
+  int core = 0;
+  for (BorderBin& bin : fit.bins) {
+    // Bin heights are about the line through the outermost points: 0 where they are on average.
+    bin.fits = bin.found && std::abs(bin.h) <= slack;
+    const bool in_core = bin.t >= core_begin && bin.t <= core_end;
+    if (in_core) ++core;
+    if (!in_core || !bin.fits) continue;
+    ++fitting;
+    squares += bin.h * bin.h;
+  }
+  if (fitting < kFewestBins || fitting * 3 < core * 2) return false;
+  const double spread = std::sqrt(squares / fitting);
+  // Where the points' rows run along the border all bins err alike: their agreement tells nothing.
+  const double expected = kUniform * fit.shortfall_m;
+  const double own = expected > 0.0 ? std::max(0.0, 1.0 - spread * spread / (expected * expected)) : 0.0;
+  fit.sigma_m = std::sqrt(spread * spread / fitting + expected * expected * own);
+  return true;
+}
+
+}  // namespace
+
+std::vector<StraightRun> straight_runs(const PlaneImage& image, double min_length_m) {
+  std::vector<StraightRun> runs;
+  for (const Ring& ring : image.contours()) {
+    if (static_cast<double>(ring.size()) * image.pixel_m() < 2.0 * min_length_m) continue;
+    RunGrower(image, ring).run(min_length_m, runs);
+  }
+  return runs;
+}
+
+std::optional<BorderFit> fit_border(const PlaneImage& image, const StraightRun& run, double beyond_m) {
+  const double middle_t = 0.5 * (run.line.begin_m + run.line.end_m);
+  const double reach = image.reach_m(run.line.at(middle_t, 0.0));
+  const double spacing = image.spacing_m(run.line.at(middle_t, reach));
+  Strip strip = run.line;
+  strip.begin_m -= beyond_m;
+  strip.end_m += beyond_m;
+  strip.low_m = reach - 3.0 * spacing - image.pixel_m();
+  strip.high_m = reach + kDepth * spacing;
+  const double bin_m = std::max(0.005, kBin * spacing);
+  const BinnedPoints points = binned(image, strip, bin_m);
+  BorderFit fit;
+  fit.bin_m = bin_m;
+  fit.shortfall_m = shortfall_of(points, kDepth * spacing);
+  fit.bins = outermost(points, strip);
+  const double scale = std::max(0.0015, 0.7 * fit.shortfall_m);
+  const Line2 line = robust_line(fit.bins, run.line.begin_m, run.line.end_m, scale);
+  fit.line = turned_onto(strip, line, fit.bins);
+  // Along hardly changes by the turn: the run keeps its bounds.
+  if (!judge(fit, run.line.begin_m, run.line.end_m)) return std::nullopt;
+  fit.line.origin -= fit.shortfall_m * fit.line.inward();
+  for (BorderBin& bin : fit.bins) bin.h += fit.shortfall_m;
+  return fit;
+}
+
+}  // namespace limen

@@ -1,0 +1,49 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "limen/extract/segments_image.h"
+
+namespace limen {
+
+/// A stretch of an outline that is straight within what its points allow.
+struct StraightRun {
+  Strip line;         ///< through the outline; the filled side is inward; begin_m and end_m bound the run
+  bool hole = false;  ///< of a hole of the image
+};
+
+/// The straight runs of a plane's outlines that are longer than `min_length_m`: corners after Douglas and
+/// Peucker 1973, then each run grows from its longest piece on, longest first.
+std::vector<StraightRun> straight_runs(const PlaneImage& image, double min_length_m);
+
+/// What is known at one place along a border: bins of the width at which nearly every one holds points.
+struct BorderBin {
+  double t = 0.0;           ///< along the line, of the outermost point
+  double h = 0.0;           ///< inward, of the outermost point
+  std::uint32_t point = 0;  ///< the outermost point, index into the scan
+  bool found = false;       ///< false: no point near the line
+  bool fits = false;        ///< the outermost point is where the line says
+};
+
+/// A line fitted to the outermost points of a plane.
+struct BorderFit {
+  Strip line;                ///< the edge itself: h = 0; begin_m, end_m of the bins
+  double bin_m = 0.0;        ///< width of a bin
+  double shortfall_m = 0.0;  ///< by how much the outermost points fall short of the edge, on average
+  double sigma_m = 0.0;      ///< one standard deviation of the edge's place across
+  std::vector<BorderBin> bins;
+};
+
+/// Fits a line to the outermost points along a run and `beyond_m` further on either side.
+///
+/// A surface's samples end before the surface does. How far before is told by the samples themselves: the
+/// mean distance from a place within to the next sample, sum g^2 / (2 sum g) over the gaps g between samples
+/// one behind the other, is the same for rows of even spacing as for samples at random. Empty: too few
+/// points, or a border too ragged to be a line.
+std::optional<BorderFit> fit_border(const PlaneImage& image, const StraightRun& run, double beyond_m);
+
+}  // namespace limen

@@ -1,0 +1,188 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/extract/segments_creases.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "limen/base/angles.h"
+#include "limen/base/parallel.h"
+
+namespace limen {
+namespace {
+
+constexpr double kStep_m = 0.01;
+constexpr double kMargin_m = 0.02;
+constexpr double kAside_m = 0.012;  // points next to an edge may belong to the other plane
+constexpr double kEndShare = 0.5;   // of a crease along which one of its planes must end
+
+/// The box of a plane's image in space.
+struct Box3 {
+  Vector3d low = Vector3d::Constant(1e300);
+  Vector3d high = Vector3d::Constant(-1e300);
+};
+
+Box3 box_in_space(const PlaneImage& image) {
+  Box3 box;
+  for (const double u : {image.box().low.x(), image.box().high.x()}) {
+    for (const double v : {image.box().low.y(), image.box().high.y()}) {
+      const Vector3d x = image.frame().to_space({u, v});
+      box.low = box.low.cwiseMin(x);
+      box.high = box.high.cwiseMax(x);
+    }
+  }
+  box.low.array() -= kMargin_m;
+  box.high.array() += kMargin_m;
+  return box;
+}
+
+bool overlap(const Box3& a, const Box3& b) {
+  return (a.low.array() <= b.high.array()).all() && (b.low.array() <= a.high.array()).all();
+}
+
+/// A line in space, bounded.
+struct Line3 {
+  Vector3d origin = Vector3d::Zero();
+  Vector3d along = Vector3d::UnitX();
+  double begin_m = -1e9;
+  double end_m = 1e9;
+};
+
+/// Cuts a line down to the rectangle of an image.
+void clip(const PlaneImage& image, Line3& line) {
+  const Vector2d origin = image.frame().to_plane(line.origin);
+  const Vector2d along(image.frame().u.dot(line.along), image.frame().v.dot(line.along));
+  for (Eigen::Index axis = 0; axis < 2; ++axis) {
+    const double low = image.box().low[axis] - kMargin_m - origin[axis];
+    const double high = image.box().high[axis] + kMargin_m - origin[axis];
+    if (std::abs(along[axis]) < 1e-9) {
+      if (low > 0.0 || high < 0.0) line.end_m = line.begin_m;
+      continue;
+    }
+    const double a = low / along[axis];
+    const double b = high / along[axis];
+    line.begin_m = std::max(line.begin_m, std::min(a, b));
+    line.end_m = std::min(line.end_m, std::max(a, b));
+  }
+}
+
+std::optional<Line3> meeting_line(const Plane& a, const Plane& b, const Vector3d& near, double least_sine) {
+  const Vector3d across = a.normal.cross(b.normal);
+  const double sine = across.norm();
+  if (sine < least_sine) return std::nullopt;
+  Line3 line;
+  line.along = across / sine;
+  // The point of both planes nearest to `near`.
+  const double da = a.signed_distance(near);
+  const double db = b.signed_distance(near);
+  const double cosine = a.normal.dot(b.normal);
+  const double scale = 1.0 / (sine * sine);
+  line.origin = near - scale * (da - db * cosine) * a.normal - scale * (db - da * cosine) * b.normal;
+  return line;
+}
+
+/// How a plane lies about a place of a line in it.
+struct Support {
+  bool near = false;  ///< it has points there
+  bool ends = false;  ///< on one side only
+};
+
+/// Looks at a plane along a line in it.
+class LineView {
+ public:
+  LineView(const PlaneImage& image, const Line3& line)
+      : image_(image),
+        origin_(image.frame().to_plane(line.origin)),
+        along_(image.frame().u.dot(line.along), image.frame().v.dot(line.along)),
+        across_(-along_.y(), along_.x()) {}
+
+  [[nodiscard]] Support at(double t) const {
+    const Vector2d p = origin_ + t * along_;
+    Support support;
+    support.near =
+        image_.covered(p) || image_.covered(p + kAside_m * across_) || image_.covered(p - kAside_m * across_);
+    if (!support.near) return support;
+    const double aside = image_.reach_m(p) + kAside_m + 2.0 * image_.pixel_m();
+    support.ends = !image_.covered(p + aside * across_) || !image_.covered(p - aside * across_);
+    return support;
+  }
+
+ private:
+  const PlaneImage& image_;
+  Vector2d origin_;
+  Vector2d along_;
+  Vector2d across_;
+};
+
+/// The stretches of a line that both planes bear out.
+void add_stretches(const PlaneImage& a, const PlaneImage& b, const Line3& line, const DetectedEdge& like,
+                   const SegmentOptions& options, std::vector<DetectedEdge>& edges) {
+  const LineView view_a(a, line);
+  const LineView view_b(b, line);
+  double begin = 0.0;
+  double last = -1e9;
+  int steps = 0;
+  int ends = 0;
+  const auto finish = [&] {
+    if (steps > 0 && last - begin >= options.min_length_m && ends >= kEndShare * steps) {
+      DetectedEdge edge = like;
+      edge.segment = {line.origin + begin * line.along, line.origin + last * line.along};
+      edges.push_back(edge);
+    }
+    steps = 0;
+    ends = 0;
+  };
+  for (double t = line.begin_m; t <= line.end_m; t += kStep_m) {
+    const Support of_a = view_a.at(t);
+    if (!of_a.near) continue;
+    const Support of_b = view_b.at(t);
+    if (!of_b.near) continue;
+    if (steps > 0 && t - last > options.join_gap_m) finish();
+    if (steps == 0) begin = t;
+    last = t;
+    ++steps;
+    if (of_a.ends || of_b.ends) ++ends;
+  }
+  finish();
+}
+
+/// How well the place of a plane is known, from its points.
+double plane_sigma_m(const PlanarPolygon& plane) {
+  return plane.rms_m / std::sqrt(std::max(1.0, static_cast<double>(plane.inliers)));
+}
+
+}  // namespace
+
+std::vector<DetectedEdge> find_creases(const Features& features,
+                                       const std::vector<std::unique_ptr<PlaneImage>>& images,
+                                       const SegmentOptions& options) {
+  const double least_sine = std::sin(radians(options.min_angle_deg));
+  std::vector<Box3> boxes;
+  for (const auto& image : images) boxes.push_back(box_in_space(*image));
+  std::vector<std::vector<DetectedEdge>> found(images.size());
+  parallel_for(images.size(), 1, [&](std::size_t i, std::size_t /*end*/) {
+    for (std::size_t j = i + 1; j < images.size(); ++j) {
+      if (!overlap(boxes[i], boxes[j])) continue;
+      const Vector3d near =
+          0.5 * (boxes[i].low.cwiseMax(boxes[j].low) + boxes[i].high.cwiseMin(boxes[j].high));
+      const PlanarPolygon& a = features.planes[i];
+      const PlanarPolygon& b = features.planes[j];
+      std::optional<Line3> line = meeting_line(a.plane, b.plane, near, least_sine);
+      if (!line) continue;
+      clip(*images[i], *line);
+      clip(*images[j], *line);
+      if (line->end_m - line->begin_m < options.min_length_m) continue;
+      DetectedEdge like;
+      like.planes = {static_cast<std::int32_t>(i), static_cast<std::int32_t>(j)};
+      like.sigma_m =
+          std::hypot(plane_sigma_m(a), plane_sigma_m(b)) / a.plane.normal.cross(b.plane.normal).norm();
+      add_stretches(*images[i], *images[j], *line, like, options, found[i]);
+    }
+  });
+  std::vector<DetectedEdge> edges;
+  for (const auto& part : found) edges.insert(edges.end(), part.begin(), part.end());
+  return edges;
+}
+
+}  // namespace limen
