@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -92,6 +93,48 @@ struct ScanTruth {
   int room = -1;           ///< the room a station stands in
   Rigid3 local_from_scan;  ///< scan frame to world less Truth::local_origin
   std::vector<std::int32_t> plane_of_point;  ///< index into Truth::planes or -1 (not planar, mixed pixel)
+  /// Of a scanned model: index into BimModel::elements or -1 (furniture, mixed pixel). Empty elsewhere.
+  std::vector<std::int32_t> element_of_point = {};
+};
+
+/// How an element of a model stands in the building that was scanned.
+enum class ModelState : std::uint8_t {
+  moved,    ///< built elsewhere: shift_m
+  missing,  ///< never built
+  open      ///< a door that stands wide open: nothing of it is to be seen
+};
+inline const char* to_string(ModelState state) {
+  static constexpr std::array<const char*, 3> names = {"moved", "missing", "open"};
+  return names[static_cast<std::size_t>(state)];
+}
+
+struct ModelChange {
+  int element = -1;  ///< index into BimModel::elements
+  std::string guid;
+  std::string kind;  ///< "wall", "door", ...
+  ModelState state = ModelState::moved;
+  Vector3d shift_m = Vector3d::Zero();  ///< as built less as planned, world axes
+};
+
+/// The room a station stands in.
+struct ModelRoom {
+  int space = -1;  ///< index into BimModel::spaces; -1: the model names none there
+  std::string guid;
+  std::string name;
+  double length_m = 0.0;  ///< of the smallest rectangle round its plan, the longer side
+  double width_m = 0.0;
+  double height_m = 0.0;
+  double area_m2 = 0.0;
+  std::vector<int> like;  ///< other spaces of the same plan, height and openings: the model repeats the room
+};
+
+/// What is true of a scanned model.
+struct ModelTruth {
+  std::string file;  ///< name of the model's file
+  bool as_built = false;
+  std::vector<ModelChange> changes;
+  std::vector<ModelRoom> rooms;  ///< one per scan
+  int furniture = 0;             ///< boxes that the model does not have
 };
 
 /// The exact truth of a simulated case. Coordinates are about local_origin (a whole number of metres):
@@ -104,6 +147,7 @@ struct Truth {
   std::vector<TruePlane> planes;
   std::vector<TrueOpening> openings;
   std::vector<ScanTruth> scans;
+  std::optional<ModelTruth> model = std::nullopt;  ///< of a scanned model; its coordinates are the world's
 };
 
 /// The scan's own coordinates (local_origin included) to world coordinates.
