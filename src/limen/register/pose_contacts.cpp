@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "limen/register/asked_samples.h"
+
 namespace limen {
 namespace {
 
@@ -51,8 +53,8 @@ class Collector {
     // The nearer the planes, the better their normals have to agree.
     const double least_cosine = std::cos(std::clamp(kAnglePerGate * gate, kLeastAngleRad, kMostAngleRad));
     const std::vector<SurfaceSample>& samples = scan.features->samples;
-    const std::size_t stride = options_.samples == 0 ? 1 : 1 + samples.size() / options_.samples;
-    for (std::size_t i = 0; i < samples.size(); i += stride) {
+    const AskedSamples asked = asked_samples(scan, judge, judge_from_scan, options_.samples);
+    for (const std::uint32_t i : asked.indices) {
       const SurfaceSample& sample = samples[i];
       if (sample.plane < 0) break;  // clutter follows the planes
       query.at = judge_from_scan * sample.mean;
@@ -65,7 +67,7 @@ class Collector {
       Contact contact;
       contact.sigma_m = sigma_of(sample, noise);
       contact.gate_m = gate;
-      contact.area_m2 = static_cast<double>(sample.area_m2) * static_cast<double>(stride);
+      contact.area_m2 = static_cast<double>(sample.area_m2) * asked.factor;
       if (forth) {
         contact.at = query.at;
         contact.normal = plane.plane.normal;

@@ -85,9 +85,20 @@ void look_around(const Scan& scan, const ExtractOptions& options, PreparedScan& 
   }
   if (prepared.upright && seen->centre_known())
     features.openings = find_openings(*seen, prepared.extracted, Vector3d::UnitZ(), {}, monitor);
+  if (seen->centres.size() == 1) prepared.stations = seen->centres;
+  prepared.settle_reach();
 }
 
+constexpr double kReachM = 0.3;  // beyond the samples
+
 }  // namespace
+
+void PreparedScan::settle_reach() {
+  reach.setEmpty();
+  for (const SurfaceSample& sample : extracted.features.samples) reach.extend(sample.mean);
+  reach.min().array() -= kReachM;
+  reach.max().array() += kReachM;
+}
 
 PreparedScan prepare_scan(const Scan& scan, const ExtractOptions& options, Gravity gravity,
                           Monitor& monitor) {

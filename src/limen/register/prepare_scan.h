@@ -7,6 +7,7 @@
 
 #include "limen/base/progress.h"
 #include "limen/extract/extract_features.h"
+#include "limen/model/bim_model.h"
 #include "limen/register/score_pose.h"
 
 namespace limen {
@@ -27,8 +28,14 @@ struct PreparedScan {
   bool centre_estimated = false;     ///< the scan did not say where the scanner was
   bool mobile = false;               ///< seen from many places along a path
   bool upright = false;              ///< z of the prepared frame points up
+  bool model = false;                ///< a building model instead of a scan
+  std::vector<BimSpace> rooms;       ///< of a model
+  std::vector<Vector3d> stations;    ///< optical centres of static stations, prepared frame
+  Eigen::AlignedBox3d reach;         ///< around the samples, prepared frame
 
-  [[nodiscard]] ScanView view() const { return {&extracted.features, space.get()}; }
+  [[nodiscard]] ScanView view() const { return {&extracted.features, space.get(), reach, model}; }
+  /// Sets `reach` from the samples.
+  void settle_reach();
 };
 
 /// Features of `scan`, openings included where the vertical and the optical centre are known; the centre is

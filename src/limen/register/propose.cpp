@@ -6,6 +6,7 @@
 #include <iterator>
 
 #include "limen/match/enumerate_hybrid_poses.h"
+#include "limen/match/enumerate_model_poses.h"
 
 namespace limen {
 namespace {
@@ -59,6 +60,18 @@ std::vector<PoseCandidate> opening_candidates(const Features& source, const Feat
   return all;
 }
 
+/// Poses of a scan anywhere in a model.
+std::vector<PoseCandidate> model_candidates(const Features& source, const Features& target,
+                                            const ProposalOptions& options) {
+  ModelPoseOptions in_model;
+  in_model.gravity_known = options.planes.gravity_known;
+  in_model.gravity_tolerance_deg = options.planes.gravity_tolerance_deg;
+  if (options.model == ModelSide::target) return enumerate_model_poses(source, target, in_model);
+  std::vector<PoseCandidate> poses = enumerate_model_poses(target, source, in_model);
+  for (PoseCandidate& pose : poses) pose.target_from_source = inverse(pose.target_from_source);
+  return poses;
+}
+
 }  // namespace
 
 const char* to_string(Method method) {
@@ -80,7 +93,12 @@ const char* to_string(Method method) {
 std::vector<PoseCandidate> propose_poses(const Features& source, const Features& target,
                                          const ProposalOptions& options) {
   std::vector<PoseCandidate> all;
-  if (options.method == Method::automatic || options.method == Method::polygons) {
+  const bool planes = options.method == Method::automatic || options.method == Method::polygons;
+  if (planes && options.model != ModelSide::none) {
+    all = model_candidates(source, target, options);
+    if (!all.empty()) return all;
+  }
+  if (planes) {
     append(all, enumerate_poses(source, target, options.planes));
     PoseEnumerationOptions fewer = options.planes;
     fewer.max_poses = std::max(1, options.planes.max_poses / 2);

@@ -19,10 +19,14 @@ enum class Method {
 };
 const char* to_string(Method method);
 
+/// Which side is a building model.
+enum class ModelSide { none, source, target };
+
 struct ProposalOptions {
   Method method = Method::automatic;
   PoseEnumerationOptions planes;
   double wall_thickness_m = 0.0;  ///< as the user knows it; 0: not known
+  ModelSide model = ModelSide::none;
 };
 
 /// Poses of the source in the target, local frames, from everything the method allows. The order means

@@ -11,20 +11,20 @@
 #include "limen/base/error.h"
 #include "limen/base/parallel.h"
 #include "limen/register/measure_thickness.h"
+#include "limen/register/model_rooms.h"
 #include "limen/register/prepare_scan.h"
 #include "limen/register/propose.h"
+#include "limen/register/select_poses.h"
 
 namespace limen {
 namespace {
 
-constexpr std::size_t kFirstLook = 800;  // samples asked per scan when thousands of poses are compared
-constexpr std::size_t kMany = 2500;      // poses that get a first look
-constexpr std::size_t kGlance = 150;     // samples asked of each scan when there are more
-constexpr int kSettleSteps = 16;         // either way along a shift that the planes leave open
+constexpr int kSettleSteps = 16;  // either way along a shift that the planes leave open
 constexpr double kSettleStepM = 0.02;
 constexpr double kCarefulGateM = 0.04;
-constexpr std::size_t kPolished = 4;       // poses refined on every sample
-constexpr std::size_t kSecondLook = 4000;  // and when hundreds are
+constexpr double kAsBuiltM = 0.05;    // by how much built matter may miss its drawing and count
+constexpr std::size_t kPolished = 4;  // poses refined on every sample
+constexpr int kModelPoses = 128;      // refined at least where a scan is sought in a model
 
 /// A pose between the upright frames, told between the scans' own.
 JudgedPose in_own_frames(const JudgedPose& upright, const PreparedScan& source, const PreparedScan& target) {
@@ -72,38 +72,6 @@ std::vector<MatchedOpenings> matched_openings(const RefinedPose& pose) {
   return list;
 }
 
-/// A comparison of many poses: on few samples a single one that seems contradicted stands for many square
-/// metres, so it must not weigh as much as later.
-struct Look {
-  std::size_t samples = 0;  ///< asked of each scan, about
-  std::size_t most = 0;     ///< poses kept
-  double contradiction_weight = kContradictionWeight;
-  bool openings = true;
-};
-
-/// The candidates that explain the scans best, best first.
-std::vector<PoseCandidate> best_of(const std::vector<PoseCandidate>& candidates, const ScanView& source,
-                                   const ScanView& target, const Look& look) {
-  ScoreOptions coarse;
-  coarse.samples = look.samples;
-  coarse.openings = look.openings;
-  std::vector<double> values(candidates.size());
-  parallel_for(candidates.size(), 8, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const PoseScore score = score_pose(source, target, candidates[i].target_from_source, coarse);
-      values[i] = score.evidence_m2 - look.contradiction_weight * score.contradicted_m2;
-    }
-  });
-  std::vector<std::size_t> order(candidates.size());
-  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return values[a] > values[b]; });
-  if (order.size() > look.most) order.resize(look.most);
-  std::vector<PoseCandidate> best;
-  for (const std::size_t i : order) best.push_back(candidates[i]);
-  return best;
-}
-
 double drift_m(const ScanView& source, const ScanView& target) {
   return std::hypot(source.features->drift_m, target.features->drift_m);
 }
@@ -114,6 +82,8 @@ ScoreOptions fine_score(const ScanView& source, const ScanView& target, Method m
   fine.openings = method != Method::polygons;
   const double noise = std::max(source.features->noise_m, target.features->noise_m);
   fine.surface_m = std::clamp(std::max(4.0 * noise, 3.0 * drift_m(source, target)), 0.02, 0.05);
+  // Nothing is built quite as it is drawn.
+  if (source.model || target.model) fine.surface_m = kAsBuiltM;
   fine.free_m = fine.surface_m + 0.03;
   fine.opening_m = 0.1;
   return fine;
@@ -171,6 +141,16 @@ std::vector<JudgedPose> refine_all(const std::vector<PoseCandidate>& candidates,
   return judged;
 }
 
+/// The room of the model that the first station stands in; `target_from_source`: the scans' own frames.
+std::string room_of(const Rigid3& target_from_source, const PreparedPair& pair) {
+  const PreparedScan& model = pair.source.model ? pair.source : pair.target;
+  const PreparedScan& scan = pair.source.model ? pair.target : pair.source;
+  if (!model.model || scan.stations.empty()) return {};
+  const Vector3d station = scan.upright_from_scan.transpose() * scan.stations.front();
+  return room_at(model.rooms,
+                 (pair.source.model ? inverse(target_from_source) : target_from_source) * station);
+}
+
 Hypothesis to_hypothesis(const JudgedPose& pose, const PreparedPair& pair) {
   Hypothesis hypothesis;
   hypothesis.target_from_source =
@@ -182,6 +162,7 @@ Hypothesis to_hypothesis(const JudgedPose& pose, const PreparedPair& pair) {
   hypothesis.rms_m = pose.refined.rms_m;
   hypothesis.matched_planes = static_cast<int>(pose.refined.matches.size());
   hypothesis.matched_openings = static_cast<int>(pose.refined.openings.size());
+  hypothesis.room = room_of(pose.refined.target_from_source, pair);
   return hypothesis;
 }
 
@@ -254,6 +235,7 @@ std::vector<JudgedPose> attempt(const PreparedScan& source, const PreparedScan& 
   clock.begin("hypotheses");
   ProposalOptions proposing{options.method, options.enumerate, options.wall_thickness_m};
   proposing.planes.gravity_known = gravity_known;
+  proposing.model = source.model ? ModelSide::source : target.model ? ModelSide::target : ModelSide::none;
   const Features& from = source.extracted.features;
   const Features& to = target.extracted.features;
   std::vector<PoseCandidate> candidates = proposal == Proposal::held
@@ -261,13 +243,10 @@ std::vector<JudgedPose> attempt(const PreparedScan& source, const PreparedScan& 
                                               : propose_sliding_poses(from, to, proposing);
   clock.end();
   clock.begin("scoring");
-  const auto refined = static_cast<std::size_t>(options.refined_poses);
-  const bool openings = options.method != Method::polygons;
-  if (candidates.size() > kMany)
-    candidates = best_of(candidates, source.view(), target.view(), {kGlance, kMany, 0.25, openings});
-  candidates = best_of(candidates, source.view(), target.view(), {kFirstLook, 8 * refined, 1.0, openings});
-  candidates = best_of(candidates, source.view(), target.view(),
-                       {kSecondLook, refined, kContradictionWeight, openings});
+  const bool model = source.model || target.model;
+  const int refined = model ? std::max(options.refined_poses, kModelPoses) : options.refined_poses;
+  candidates = select_poses(candidates, source.view(), target.view(), static_cast<std::size_t>(refined),
+                            options.method != Method::polygons);
   clock.end();
   clock.begin("refinement");
   std::vector<JudgedPose> judged = refine_all(candidates, source.view(), target.view(), options);
@@ -294,10 +273,12 @@ void tell(const Verdict& verdict, const std::vector<JudgedPose>& poses, const Pr
   result.matches = best.refined.matches;
   result.openings = matched_openings(best.refined);
   result.thickness = measure_thickness(upright, from.extracted.features, to.extracted.features);
-  for (std::size_t k = 1; k < verdict.ranking.size() &&
-                          result.alternatives.size() < static_cast<std::size_t>(options.alternatives);
-       ++k) {
-    result.alternatives.push_back(to_hypothesis(in_own_frames(poses[verdict.ranking[k]], from, to), pair));
+  // Every pose that cannot be told from the best is listed, and then some.
+  for (std::size_t k = 1; k < verdict.ranking.size(); ++k) {
+    const std::size_t pose = verdict.ranking[k];
+    const bool rival = std::find(verdict.rivals.begin(), verdict.rivals.end(), pose) != verdict.rivals.end();
+    if (!rival && result.alternatives.size() >= static_cast<std::size_t>(options.alternatives)) continue;
+    result.alternatives.push_back(to_hypothesis(in_own_frames(poses[pose], from, to), pair));
   }
 }
 
@@ -335,7 +316,8 @@ RegistrationResult register_prepared(const PreparedPair& pair, const RegisterOpt
                           fine_score(from.view(), to.view(), options.method));
   };
   VerdictOptions judging = options.verdict;
-  judging.through_wall = from.mobile != to.mobile;
+  const bool model = from.model || to.model;
+  judging.through_wall = !model && from.mobile != to.mobile;
   Verdict verdict = judge(poses, contrast, judging);
   const auto try_again = [&](bool gravity_known, Proposal proposal) {
     const std::vector<JudgedPose> more = attempt(from, to, gravity_known, proposal, options, clock);
@@ -346,7 +328,7 @@ RegistrationResult register_prepared(const PreparedPair& pair, const RegisterOpt
     try_again(false, Proposal::held);
   }
   const bool planes = options.method == Method::automatic || options.method == Method::polygons;
-  if (verdict.outcome == Outcome::no_match && level && planes) try_again(true, Proposal::sliding);
+  if (verdict.outcome == Outcome::no_match && level && planes && !model) try_again(true, Proposal::sliding);
   tell(verdict, poses, pair, options, result);
   return result;
 }

@@ -2,9 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limen/register/score_pose.h"
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <utility>
 #include <vector>
 
+#include "limen/register/asked_samples.h"
 #include "limen/register/match_openings.h"
 
 namespace limen {
@@ -42,10 +46,6 @@ Answer ask(const SurfaceSample& sample, const ScanView& scan, const ScanView& ju
   return answer;
 }
 
-std::size_t stride_of(const ScanView& scan, const ScoreOptions& options) {
-  return options.samples == 0 ? 1 : 1 + scan.features->samples.size() / options.samples;
-}
-
 /// One plane counts for no more than this, m^2, however large: that two large planes meet is one coincidence,
 /// not many.
 constexpr double kPlaneLimit_m2 = 5.0;
@@ -60,12 +60,14 @@ PoseScore one_way(const ScanView& scan, const ScanView& judge, const Rigid3& jud
   PoseScore score;
   if (judge.space == nullptr) return score;
   const std::vector<SurfaceSample>& samples = scan.features->samples;
-  const std::size_t stride = stride_of(scan, options);
-  const auto factor = static_cast<double>(stride);
+  const AskedSamples asked = asked_samples(scan, judge, judge_from_scan, options.samples);
+  const double factor = asked.factor;
   // Samples come plane by plane, clutter last.
   std::int32_t plane = -1;
   double of_plane = 0.0;
-  for (std::size_t i = 0; i < samples.size(); i += stride) {
+  double planar = 0.0;
+  double explained = 0.0;
+  for (const std::uint32_t i : asked.indices) {
     const Answer answer = ask(samples[i], scan, judge, judge_from_scan, options);
     const double gain = factor * answer.gain_m2;
     score.agreeing_m2 += gain;
@@ -77,6 +79,10 @@ PoseScore one_way(const ScanView& scan, const ScanView& judge, const Rigid3& jud
     if (answer.planar) {
       score.planar_m2 += gain;
       of_plane += gain;
+      if (judge.model && judge.reach.contains(judge_from_scan * samples[i].mean)) {
+        planar += answer.area_m2;
+        if (answer.sight.kind == SightKind::surface) explained += answer.area_m2;
+      }
     } else {
       score.evidence_m2 += gain;
     }
@@ -84,6 +90,7 @@ PoseScore one_way(const ScanView& scan, const ScanView& judge, const Rigid3& jud
     if (answer.sight.kind != SightKind::unseen) score.tested_m2 += factor * answer.area_m2;
   }
   score.evidence_m2 += saturated(of_plane);
+  if (judge.model) score.explained_share = planar > 0 ? explained / planar : 0.0;
   return score;
 }
 
@@ -105,15 +112,28 @@ void add_lead(double lead, PoseContrast& contrast) {
   (lead > 0 ? contrast.for_first_m2 : contrast.for_second_m2) += std::abs(lead);
 }
 
+/// What is asked under either pose.
+AskedSamples asked_for_both(const ScanView& scan, const ScanView& judge, const Rigid3& first,
+                            const Rigid3& second, const ScoreOptions& options) {
+  AskedSamples asked = asked_samples(scan, judge, first, options.samples);
+  if (!scan.model) return asked;
+  const AskedSamples more = asked_samples(scan, judge, second, options.samples);
+  std::vector<std::uint32_t> both;
+  std::set_union(asked.indices.begin(), asked.indices.end(), more.indices.begin(), more.indices.end(),
+                 std::back_inserter(both));
+  asked.indices = std::move(both);
+  return asked;
+}
+
 void add_contrast(const ScanView& scan, const ScanView& judge, const Rigid3& first, const Rigid3& second,
                   const ScoreOptions& options, PoseContrast& contrast) {
   if (judge.space == nullptr) return;
   const std::vector<SurfaceSample>& samples = scan.features->samples;
-  const std::size_t stride = stride_of(scan, options);
+  const AskedSamples asked = asked_for_both(scan, judge, first, second, options);
   // Both ways are averaged, as in the score.
-  const double share = 0.5 * static_cast<double>(stride);
+  const double share = 0.5 * asked.factor;
   std::vector<PoseContrast> planes(scan.features->planes.size());
-  for (std::size_t i = 0; i < samples.size(); i += stride) {
+  for (const std::uint32_t i : asked.indices) {
     const Answer in_first = ask(samples[i], scan, judge, first, options);
     const Answer in_second = ask(samples[i], scan, judge, second, options);
     const double agreeing = share * (in_first.gain_m2 - in_second.gain_m2);
@@ -132,13 +152,17 @@ void add_contrast(const ScanView& scan, const ScanView& judge, const Rigid3& fir
 
 PoseScore score_pose(const ScanView& source, const ScanView& target, const Rigid3& target_from_source,
                      const ScoreOptions& options) {
-  const PoseScore forth = one_way(source, target, target_from_source, options);
-  const PoseScore back = one_way(target, source, inverse(target_from_source), options);
+  PoseScore forth;
+  PoseScore back;
+  if (options.ask_model || !source.model) forth = one_way(source, target, target_from_source, options);
+  if (options.ask_model || !target.model)
+    back = one_way(target, source, inverse(target_from_source), options);
   PoseScore both;
   both.agreeing_m2 = 0.5 * (forth.agreeing_m2 + back.agreeing_m2);
   both.planar_m2 = 0.5 * (forth.planar_m2 + back.planar_m2);
   both.contradicted_m2 = 0.5 * (forth.contradicted_m2 + back.contradicted_m2);
   both.tested_m2 = 0.5 * (forth.tested_m2 + back.tested_m2);
+  both.explained_share = std::min(forth.explained_share, back.explained_share);
   for (const double gain : opening_gains(source, target, target_from_source, options))
     both.opening_m2 += gain;
   both.agreeing_m2 += both.opening_m2;

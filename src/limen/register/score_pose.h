@@ -4,6 +4,8 @@
 
 #include <memory>
 
+#include <Eigen/Geometry>
+
 #include "limen/extract/space_view.h"
 #include "limen/model/features.h"
 
@@ -13,6 +15,8 @@ namespace limen {
 struct ScanView {
   const Features* features = nullptr;
   const SpaceView* space = nullptr;  ///< what its scanner knows of space
+  Eigen::AlignedBox3d reach;         ///< around its samples
+  bool model = false;                ///< a building model: everything, of which the other saw a part
 };
 
 struct ScoreOptions {
@@ -21,6 +25,7 @@ struct ScoreOptions {
   double opening_m = 0.25;  ///< openings nearer than this within their wall agree
   bool openings = true;     ///< openings count
   std::size_t samples = 0;  ///< asked of each scan, about; 0: all
+  bool ask_model = true;    ///< the scan is asked about a model's surface as well, not only the model
 };
 
 inline constexpr double kContradictionWeight = 4.0;
@@ -37,6 +42,8 @@ struct PoseScore {
   /// Agreeing surface, each plane counting for no more than 5 m^2, however large: that two façades lie in one
   /// plane is one coincidence, not many.
   double evidence_m2 = 0.0;
+  /// Against a model: share of the scan's planar surface within the model's extent that lies on the model.
+  double explained_share = 1.0;
 
   /// What poses are ranked by, m^2. One contradicted square metre outweighs several agreeing ones: surfaces
   /// meet by chance, but matter cannot stand where a ray passed.

@@ -189,13 +189,13 @@ Verdict judge(const std::vector<JudgedPose>& poses, const ContrastFunction& cont
                                  best.score.agreeing_m2);
     return verdict;
   }
-  std::size_t rivals = 0;
   for (std::size_t k = 1; k < verdict.ranking.size(); ++k) {
     const std::size_t other = verdict.ranking[k];
     if (!possible(poses[other].score, best.score, options)) continue;
     if (same_but_for(best.refined, poses[other].refined, verdict.unobserved, options)) continue;
-    if (is_rival(contrast(verdict.ranking.front(), other), options)) ++rivals;
+    if (is_rival(contrast(verdict.ranking.front(), other), options)) verdict.rivals.push_back(other);
   }
+  const std::size_t rivals = verdict.rivals.size();
   if (rivals > 0) {
     verdict.outcome = Outcome::ambiguous;
     verdict.reason = fmt::format("{} different pose{} explain{} the scans nearly as well", rivals,

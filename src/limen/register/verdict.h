@@ -49,6 +49,7 @@ struct Verdict {
   Outcome outcome = Outcome::no_match;
   std::string reason;
   std::vector<std::size_t> ranking;           ///< indices of distinct poses, best first
+  std::vector<std::size_t> rivals;            ///< those that cannot be told from the best
   std::vector<UnobservedFreedom> unobserved;  ///< of the best pose
 };
 
