@@ -6,6 +6,9 @@ include(CMakePackageConfigHelpers)
 set(LIMEN_PACKAGE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/limen)
 install(TARGETS limen EXPORT limenTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(TARGETS limen_program RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+if(LIMEN_BUILD_IFC)
+  install(TARGETS limen_ifc RUNTIME DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/limen)
+endif()
 # Headers that need the libraries we build with, but do not ask of users, stay at home.
 install(DIRECTORY src/limen DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.h"
         PATTERN "cli" EXCLUDE PATTERN "simulate" EXCLUDE PATTERN "json_values.h" EXCLUDE

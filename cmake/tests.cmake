@@ -10,6 +10,10 @@ endif()
 add_executable(limen_unit_tests ${LIMEN_UNIT_TESTS})
 target_link_libraries(limen_unit_tests PRIVATE limen limen_simulate limen_cli limen_options fmt::fmt
   nlohmann_json::nlohmann_json GTest::gtest_main)
+if(LIMEN_BUILD_IFC)
+  target_compile_definitions(limen_unit_tests PRIVATE LIMEN_WITH_IFC=1)
+  add_dependencies(limen_unit_tests limen_ifc)
+endif()
 gtest_discover_tests(limen_unit_tests PROPERTIES LABELS unit DISCOVERY_MODE PRE_TEST)
 
 file(GLOB LIMEN_ACCEPTANCE_TESTS CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/tests/*_test.cpp)

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "limen/base/progress.h"
-#include "limen/io/polygon_mesh.h"
+#include "limen/io/solid.h"
 #include "limen/model/bim_model.h"
 
 namespace limen {
@@ -15,22 +15,21 @@ namespace limen {
 /// An element and its surface in world coordinates, openings not yet cut.
 struct RawElement {
   BimElement about;
-  PolygonMesh mesh;
+  std::vector<Solid> shapes;
 };
 
-/// A closed solid to be taken out of an element.
+/// A closed solid to be taken out of elements.
 struct RawOpening {
   std::string guid;
-  std::int32_t host = -1;     ///< index into RawModel::elements, or -1
-  std::int32_t filling = -1;  ///< the same, or -1
-  bool recess = false;        ///< a niche: it does not pass through its host
-  PolygonMesh mesh;
+  std::vector<std::int32_t> hosts;  ///< indices into RawModel::elements: the wall first, then its parts
+  std::int32_t filling = -1;        ///< the same, or -1
+  std::vector<Solid> shapes;
 };
 
 /// A room and its boundary.
 struct RawSpace {
   BimSpace about;  ///< without faces
-  PolygonMesh mesh;
+  std::vector<Solid> shapes;
 };
 
 /// What every reader of models brings its file to: surfaces in world coordinates, metres, in the file's

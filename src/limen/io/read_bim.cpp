@@ -10,6 +10,7 @@
 #include "limen/base/error.h"
 #include "limen/io/bim_builder.h"
 #include "limen/io/mapped_file.h"
+#include "limen/io/read_ifc.h"
 #include "limen/io/read_mesh_ply.h"
 #include "limen/io/read_obj.h"
 
@@ -29,7 +30,9 @@ RawModel mesh_ply(std::string_view bytes, const std::string& name, Monitor& /*mo
   return read_mesh_ply(bytes, name);
 }
 
-constexpr std::array<Format, 2> kFormats{{
+constexpr std::array<Format, 4> kFormats{{
+    {looks_like_step, read_ifc},
+    {looks_like_ifczip, read_ifczip},
     {looks_like_mesh_ply, mesh_ply},
     {looks_like_obj, obj},
 }};

@@ -161,13 +161,14 @@ RawModel read_mesh_ply(std::string_view bytes, const std::string& name) {
   const PlyElement& vertex = header.elements[header.vertex(name)];
   const std::array<std::size_t, 3> xyz = coordinates_of(vertex, name);
   RawElement element;
+  Solid shape;
   element.about.type = "mesh";
   RecordWalker walker(bytes, header, name);
   std::size_t too_short = 0;
   for (const PlyElement& part : header.elements) {
     if (&part == &vertex) {
       walker.walk(part, [&](const Record& r) {
-        element.mesh.points.push_back(header.offset + Vector3d(r[xyz[0]][0], r[xyz[1]][0], r[xyz[2]][0]));
+        shape.mesh.points.push_back(header.offset + Vector3d(r[xyz[0]][0], r[xyz[1]][0], r[xyz[2]][0]));
       });
     } else if (holds_faces(part)) {
       const std::size_t corners = corner_property(part, name);
@@ -176,7 +177,7 @@ RawModel read_mesh_ply(std::string_view bytes, const std::string& name) {
         if (ring.size() < 3) {
           ++too_short;
         } else {
-          element.mesh.add(ring);
+          shape.mesh.add(ring);
         }
       });
     } else {
@@ -189,6 +190,7 @@ RawModel read_mesh_ply(std::string_view bytes, const std::string& name) {
   if (too_short > 0)
     model.head.warnings.push_back(
         fmt::format("{} faces with fewer than three corners are left out", too_short));
+  element.shapes.push_back(std::move(shape));
   model.elements.push_back(std::move(element));
   return model;
 }

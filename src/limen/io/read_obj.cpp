@@ -152,15 +152,17 @@ class ObjReader {
     std::vector<std::uint32_t> place(vertices_.size(), 0);
     for (std::size_t i = 0; i < names_.size(); ++i) {
       RawElement element;
+      Solid shape;
       element.about.type = names_[i].empty() ? "mesh" : names_[i];
       element.about.name = names_[i];
       element.about.kind = kinds_[i];
       for (std::vector<std::uint32_t>& ring : faces_[i]) {
-        for (std::uint32_t& corner : ring) corner = local(corner, place, element.mesh.points);
-        element.mesh.add(ring);
+        for (std::uint32_t& corner : ring) corner = local(corner, place, shape.mesh.points);
+        shape.mesh.add(ring);
       }
       for (const std::uint32_t corner : used_) place[corner] = 0;
       used_.clear();
+      element.shapes.push_back(std::move(shape));
       model.elements.push_back(std::move(element));
     }
     return model;

@@ -1,0 +1,59 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <vector>
+
+namespace limen {
+
+/// One entity of a STEP file: #id = TYPE(arguments);
+struct StepEntity {
+  std::int64_t id = 0;
+  std::string_view type;       ///< as written, usually upper case
+  std::string_view arguments;  ///< between the outer brackets
+};
+
+/// The entities of a STEP physical file (ISO 10303-21), without knowledge of what they mean. Statements that
+/// are damaged are counted and passed over.
+class StepFile {
+ public:
+  /// `bytes` must outlive the object. Of entities with one number the first counts.
+  explicit StepFile(std::string_view bytes);
+
+  [[nodiscard]] const std::vector<StepEntity>& entities() const { return entities_; }  ///< by ascending id
+  [[nodiscard]] const StepEntity* find(std::int64_t id) const;
+  [[nodiscard]] std::size_t damaged() const { return damaged_; }
+  /// The first name in FILE_SCHEMA, upper case; empty where there is none.
+  [[nodiscard]] const std::string& schema() const { return schema_; }
+  /// Whether the file is closed by END-ISO-10303-21.
+  [[nodiscard]] bool whole() const { return whole_; }
+
+ private:
+  void read_statement(std::string_view statement);
+
+  std::vector<StepEntity> entities_;
+  std::unordered_map<std::int64_t, std::size_t> by_id_;
+  std::size_t damaged_ = 0;
+  std::string schema_;
+  bool whole_ = false;
+};
+
+/// The arguments between the outermost commas, blanks trimmed.
+std::vector<std::string_view> step_arguments(std::string_view arguments);
+
+/// What one argument says; nothing where it says something else.
+std::optional<std::int64_t> step_reference(std::string_view argument);  ///< #12
+std::vector<std::int64_t> step_references(std::string_view argument);   ///< (#1,#2) or #1
+std::optional<double> step_number(std::string_view argument);           ///< 1. or IFCREAL(1.)
+std::string step_enumeration(std::string_view argument);                ///< .ROOF. -> "ROOF"
+/// A text in UTF-8 without control characters: '' and \\ are undone, \X\, \X2\, \X4\ and \S\ decoded; bytes
+/// beyond ASCII are UTF-8 where they can be, else Latin-1. Empty for $.
+std::string step_text(std::string_view argument);
+
+}  // namespace limen
