@@ -2,8 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limen/cli/simulate_command.h"
 
+#include <algorithm>
+#include <filesystem>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
@@ -11,9 +14,14 @@
 #include <fmt/format.h>
 
 #include "limen/base/atomic_file.h"
+#include "limen/io/read_bim.h"
 #include "limen/io/write_ply.h"
+#include "limen/report/result_json.h"
 #include "limen/report/truth_json.h"
+#include "limen/simulate/bim_office.h"
+#include "limen/simulate/bim_scene.h"
 #include "limen/simulate/scene.h"
+#include "limen/simulate/write_ifc.h"
 
 namespace limen {
 namespace {
@@ -21,6 +29,9 @@ namespace {
 struct SimulateOptions {
   std::string output;
   SceneOptions scene;
+  std::string room = "any";  ///< the remaining ones are of models
+  std::string units = "m";
+  bool as_built = false;
 };
 
 std::string summary(const SimulatedCase& simulated, const std::string& folder) {
@@ -29,22 +40,80 @@ std::string summary(const SimulatedCase& simulated, const std::string& folder) {
     text += fmt::format("{:<16} {:>9} points, {}\n", scan.name + ".ply", scan.size(),
                         scan.mobile() ? "mobile, world coordinates" : "station, its own frame");
   }
+  if (simulated.truth.model) text += fmt::format("{:<16} the model\n", simulated.truth.model->file);
   return text + fmt::format("written to {} with task.json; the truth is in truth/truth.json\n", folder);
+}
+
+/// The known poses of further stations in the first one's frame, one file each.
+void write_station_poses(const SimulatedCase& simulated, const std::filesystem::path& folder) {
+  for (std::size_t i = 1; simulated.truth.model && i < simulated.scans.size(); ++i)
+    write_file(folder / fmt::format("source_from_{}.txt", simulated.scans[i].name),
+               transform_text(true_target_from_source(simulated.truth, i, 0)));
+}
+
+RoomChoice room_choice(const std::string& room) {
+  if (room == "unique") return RoomChoice::unique;
+  return room == "repeated" ? RoomChoice::repeated : RoomChoice::any;
+}
+
+constexpr const char* kOffice = "office";
+
+BimSceneOptions bim_options(const SimulateOptions& options) {
+  BimSceneOptions bim;
+  bim.seed = options.scene.seed;
+  bim.stations = std::max<std::size_t>(1, options.scene.stations);
+  if (options.scene.points_indoor > 0) bim.points = options.scene.points_indoor;
+  bim.any_rotation = options.scene.any_rotation;
+  bim.room = room_choice(options.room);
+  bim.as_built.on = options.as_built;
+  bim.scanner = options.scene.scanner;
+  bim.check();
+  return bim;
+}
+
+/// Scans a model file, or the built-in one, which is written beside the scans.
+SimulatedCase simulate_model(const SimulateOptions& options, const std::filesystem::path& folder,
+                             Monitor& monitor) {
+  const BimSceneOptions bim = bim_options(options);
+  if (options.scene.name != kOffice) {
+    const std::filesystem::path path(options.scene.name);
+    BimModel model = read_bim(path, monitor);
+    model.name = path.filename().string();
+    return simulate_bim(model, bim, monitor);
+  }
+  const BimRecipe recipe = office_recipe();
+  BimModel model = model_of(recipe);
+  model.name = "model.ifc";
+  SimulatedCase simulated = simulate_bim(model, bim, monitor);
+  write_file(folder / model.name,
+             ifc_text(recipe, options.units == "mm" ? IfcUnit::millimetre : IfcUnit::metre));
+  return simulated;
+}
+
+/// A model is meant where the name is no scene's but that of an existing file, or the built-in model's.
+bool means_model(const std::string& name) {
+  const std::vector<std::string> scenes = scene_names();
+  if (std::find(scenes.begin(), scenes.end(), name) != scenes.end()) return false;
+  std::error_code error;
+  return name == kOffice || std::filesystem::exists(name, error);
 }
 
 int run(SimulateOptions& options, const Session& session) {
   options.scene.seed = session.common.seed;
-  options.scene.check();
+  const bool model = means_model(options.scene.name);
+  if (!model) options.scene.check();
   // Made before the long work: a place that cannot be written to is told at once.
   const OutputFolder folder(options.output);
   const OutputFolder truth_folder(folder.path() / "truth");
-  const SimulatedCase simulated = simulate(options.scene, *session.monitor);
+  const SimulatedCase simulated = model ? simulate_model(options, folder.path(), *session.monitor)
+                                        : simulate(options.scene, *session.monitor);
   session.monitor->begin_stage("writing");
   for (const Scan& scan : simulated.scans) {
     session.monitor->throw_if_cancelled();
     write_ply(folder.path() / (scan.name + ".ply"), scan);
   }
   const std::string task = task_json(simulated);
+  write_station_poses(simulated, folder.path());
   write_file(truth_folder.path() / "truth.json", truth_json(simulated.truth));
   write_file(folder.path() / "task.json", task);
   session.say(summary(simulated, options.output));
@@ -71,7 +140,11 @@ void add_simulate_command(CLI::App& app, Session& session) {
       add_command(app, session, "simulate", "Scan a made-up building whose truth is known exactly",
                   [options, &session] { return run(*options, session); });
   SceneOptions& scene = options->scene;
-  command->add_option("NAME", scene.name, "The scene: " + known_scenes())->required();
+  command
+      ->add_option(
+          "NAME", scene.name,
+          "The scene: " + known_scenes() + "; " + kOffice + " (a BIM model); or a model file (IFC, OBJ, PLY)")
+      ->required();
   command->add_option("-o,--output", options->output, "The folder for scans, task.json and truth/truth.json")
       ->required()
       ->type_name("DIR");
@@ -87,6 +160,12 @@ void add_simulate_command(CLI::App& app, Session& session) {
       ->type_name("SHARE");
   add_length_option(*command, "--noise-m", scene.scanner.noise_m,
                     "Range noise, one standard deviation (default 0.003)");
+  command->add_flag("--as-built", options->as_built,
+                    "Of a model: some elements moved by 1 to 5 cm, some missing, furniture added");
+  command->add_option("--room", options->room, "Of a model: scan a room that is unique in it, or repeated")
+      ->check(CLI::IsMember({"any", "unique", "repeated"}));
+  command->add_option("--units", options->units, "Unit of office's model.ifc")
+      ->check(CLI::IsMember({"m", "mm"}));
   add_length_option(*command, "--drift-m", scene.drift_m, "Slow error of the mobile scan's path (default 0)");
 }
 

@@ -161,9 +161,12 @@ std::optional<Json> object_in(const std::string& text, const fs::path& path) {
   }
 }
 
-Rigid3 world_from_scan(const Json& scans, const std::string& scan_path, const fs::path& path) {
+/// The pose of a scan, or of the model: that is where the world is.
+Rigid3 world_from_input(const Json& truth, const std::string& scan_path, const fs::path& path) {
   const fs::path wanted(scan_path);
-  for (const Json& scan : scans) {
+  const Json model = truth.value("model", Json());
+  if (model.is_object() && text_at(model, "file") == wanted.filename()) return {};
+  for (const Json& scan : truth["scans"]) {
     if (!scan.is_object()) continue;
     if (text_at(scan, "file") != wanted.filename() && text_at(scan, "name") != wanted.stem()) continue;
     for (const char* key : {"world_from_scan", "to_world"}) {
@@ -197,9 +200,8 @@ Rigid3 read_true_pose(const fs::path& path, const PoseFile& result) {
     throw Error("holds poses by scan, but the result does not say which scans it registered", path.string(),
                 "give the result.json that limen register wrote");
   }
-  const Json& scans = (*object)["scans"];
-  return inverse(world_from_scan(scans, result.target_path, path)) *
-         world_from_scan(scans, result.source_path, path);
+  return inverse(world_from_input(*object, result.target_path, path)) *
+         world_from_input(*object, result.source_path, path);
 }
 
 }  // namespace limen

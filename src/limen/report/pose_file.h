@@ -27,7 +27,8 @@ PoseFile read_pose_file(const std::filesystem::path& path);
 
 /// The true pose of a pair. Read from what read_pose_file() reads, or from the truth of a simulated case: an
 /// object with `scans`, each with `file` (or `name`) and `world_from_scan`; there the scans are found by the
-/// file names in `result`. Throws Error where a scan is not in it.
+/// file names in `result`; the model that was scanned, where it is the target, by `file` of `model`. Throws
+/// Error where a scan is not in it.
 Rigid3 read_true_pose(const std::filesystem::path& path, const PoseFile& result);
 
 }  // namespace limen

@@ -29,6 +29,7 @@ Json scans_json(const Truth& truth) {
     json["room"] = scan.room >= 0 ? Json(scan.room) : Json(nullptr);
     json["drift_m"] = scan.drift_m;
     json["world_from_scan"] = json_of(to_matrix(world_from_scan(truth, i)));
+    if (truth.model) json["target_from_source"] = json["world_from_scan"];  // the target is the model
     scans.push_back(std::move(json));
   }
   return scans;
@@ -117,6 +118,43 @@ Json openings_json(const Truth& truth) {
   return openings;
 }
 
+Json room_json(const ModelRoom& room, const std::string& scan) {
+  Json json;
+  json["scan"] = scan;
+  json["space"] = room.space >= 0 ? Json(room.space) : Json(nullptr);
+  json["guid"] = room.guid;
+  json["name"] = room.name;
+  json["length_m"] = room.length_m;
+  json["width_m"] = room.width_m;
+  json["height_m"] = room.height_m;
+  json["area_m2"] = room.area_m2;
+  json["repeated"] = !room.like.empty();
+  json["like"] = room.like;
+  return json;
+}
+
+Json model_json(const Truth& truth) {
+  const ModelTruth& model = *truth.model;
+  Json json;
+  json["file"] = model.file;
+  json["as_built"] = model.as_built;
+  json["furniture"] = model.furniture;
+  json["rooms"] = Json::array();
+  for (std::size_t i = 0; i < model.rooms.size(); ++i)
+    json["rooms"].push_back(room_json(model.rooms[i], truth.scans[i].name));
+  json["changes"] = Json::array();
+  for (const ModelChange& change : model.changes) {
+    Json item;
+    item["element"] = change.element;
+    item["guid"] = change.guid;
+    item["kind"] = change.kind;
+    item["state"] = to_string(change.state);
+    if (change.state == ModelState::moved) item["shift_m"] = json_of(change.shift_m);
+    json["changes"].push_back(std::move(item));
+  }
+  return json;
+}
+
 }  // namespace
 
 std::string truth_json(const Truth& truth) {
@@ -125,6 +163,7 @@ std::string truth_json(const Truth& truth) {
   json["seed"] = truth.seed;
   json["units"] = "m";
   json["local_origin"] = json_of(truth.local_origin);
+  if (truth.model) json["model"] = model_json(truth);
   json["scans"] = scans_json(truth);
   json["pairs"] = pairs_json(truth);
   json["planes"] = planes_json(truth);
@@ -139,6 +178,11 @@ std::string task_json(const SimulatedCase& simulated) {
   for (const Scan& scan : simulated.scans)
     json["scans"].push_back(
         {{"file", file_of(scan.name)}, {"kind", kind_of(scan.mobile())}, {"level", scan.level}});
+  if (simulated.truth.model) {
+    json["source"] = file_of(simulated.scans.front().name);
+    json["target"] = simulated.truth.model->file;
+    return to_text(json);
+  }
   // A mobile scan is the one that is already where it belongs.
   if (simulated.scans.size() > 1) {
     const bool outdoor = simulated.scans.back().mobile();

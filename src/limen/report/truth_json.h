@@ -19,6 +19,10 @@ namespace limen {
 ///   `outer_outline` and `inner_outline`, of which the corners are the bounding rectangle, and per scan the
 ///   rays that crossed it, that came back from beyond, from its parts, and the share of its area seen
 ///   through.
+/// - `model`, where one was scanned: file, `as_built`, number of pieces of `furniture` it does not have, the
+///   room of each scan with its sizes and the spaces `like` it (`repeated`), and `changes`: element, guid,
+///   kind, state (moved, missing, open), `shift_m`. World coordinates are the model's, and each scan has
+///   `target_from_source`, its pose in the model.
 /// The scans' files are named after them with ".ply".
 std::string truth_json(const Truth& truth);
 
