@@ -59,8 +59,8 @@ Pair make_pair(PairPlan plan) {
 void prepare(Pair& pair) {
   const RegisterOptions options;
   const auto start = std::chrono::steady_clock::now();
-  pair.prepared.source = prepare_scan(pair.station(), options.extract, options.gravity);
-  pair.prepared.target = prepare_scan(pair.street(), options.extract, options.gravity);
+  pair.prepared.source = prepare_scan(pair.station(), prepare_options(options));
+  pair.prepared.target = prepare_scan(pair.street(), prepare_options(options));
   pair.preparing_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 

@@ -113,20 +113,22 @@ class Joiner {
 };
 
 /// All parts in one upright frame where one of the scans shows which way is up.
-std::vector<PreparedScan> prepare_parts(const std::vector<Scan>& scans, const ExtractOptions& options,
-                                        Gravity gravity, Monitor& monitor) {
+std::vector<PreparedScan> prepare_parts(const std::vector<Scan>& scans, const PrepareOptions& options,
+                                        Monitor& monitor) {
   std::vector<PreparedScan> parts;
   for (const Scan& scan : scans) {
-    parts.push_back(prepare_scan(scan, options, gravity, monitor));
+    parts.push_back(prepare_scan(scan, options, monitor));
     if (parts.back().upright) break;
   }
   if (!parts.back().upright) return parts;
+  PrepareOptions level = options;
+  level.gravity = Gravity::up;
   const Matrix3d upright = parts.back().upright_from_scan;
   const std::size_t known = parts.size() - 1;
   std::vector<PreparedScan> all;
   for (std::size_t k = 0; k < scans.size(); ++k) {
     all.push_back(k == known ? std::move(parts.back())
-                             : prepare_scan(turned(scans[k], upright), options, Gravity::up, monitor));
+                             : prepare_scan(turned(scans[k], upright), level, monitor));
     all.back().upright_from_scan = upright;
   }
   return all;
@@ -134,16 +136,16 @@ std::vector<PreparedScan> prepare_parts(const std::vector<Scan>& scans, const Ex
 
 }  // namespace
 
-PreparedScan prepare_group(const std::vector<PlacedScan>& scans, const ExtractOptions& options,
-                           Gravity gravity, Monitor& monitor) {
+PreparedScan prepare_group(const std::vector<PlacedScan>& scans, const PrepareOptions& options,
+                           Monitor& monitor) {
   if (scans.empty()) throw Error("there is no scan", "group of scans", "give at least one");
   if (scans.size() == 1 && to_matrix(scans.front().group_from_scan).isIdentity())
-    return prepare_scan(scans.front().scan, options, gravity, monitor);
+    return prepare_scan(scans.front().scan, options, monitor);
   const PlacedScan& first = scans.front();
   const Vector3d origin = (first.group_from_scan * first.scan.local_origin).array().round();
   std::vector<Scan> placed;
   for (const PlacedScan& scan : scans) placed.push_back(moved(scan, origin));
-  std::vector<PreparedScan> parts = prepare_parts(placed, options, gravity, monitor);
+  std::vector<PreparedScan> parts = prepare_parts(placed, options, monitor);
   PreparedScan group;
   group.upright = parts.front().upright;
   group.upright_from_scan = parts.front().upright_from_scan;

@@ -17,7 +17,7 @@ struct PlacedScan {
 /// Several scans known to one another, made ready as if they were one: planes, openings and samples of all,
 /// surfaces seen from several stations once, and what all scanners know of space. The group's frame is that
 /// of the first scan if its pose is the identity. Throws Error for an empty list.
-PreparedScan prepare_group(const std::vector<PlacedScan>& scans, const ExtractOptions& options,
-                           Gravity gravity = Gravity::automatic, Monitor& monitor = silent_monitor());
+PreparedScan prepare_group(const std::vector<PlacedScan>& scans, const PrepareOptions& options = {},
+                           Monitor& monitor = silent_monitor());
 
 }  // namespace limen

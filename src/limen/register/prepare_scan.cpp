@@ -10,6 +10,7 @@
 #include "limen/extract/openings.h"
 #include "limen/extract/panorama.h"
 #include "limen/extract/scanner_up.h"
+#include "limen/extract/segments.h"
 #include "limen/extract/voxel_map.h"
 #include "limen/match/enumerate_rotations.h"
 
@@ -63,8 +64,8 @@ void prepare(const Scan& scan, const ExtractOptions& options, PreparedScan& prep
   prepared.extracted = extract_features(scan, used, monitor);
 }
 
-/// The optical centre, the view of space, what is seen through openings, and the openings.
-void look_around(const Scan& scan, const ExtractOptions& options, PreparedScan& prepared, Monitor& monitor) {
+/// The optical centre, the view of space, what is seen through openings, the openings, and the segments.
+void look_around(const Scan& scan, const PrepareOptions& options, PreparedScan& prepared, Monitor& monitor) {
   Features& features = prepared.extracted.features;
   Scan placed;
   const Scan* seen = &scan;
@@ -75,17 +76,18 @@ void look_around(const Scan& scan, const ExtractOptions& options, PreparedScan& 
       placed = scan;
       placed.centres = {estimated->centre};
       seen = &placed;
-      if (prepared.upright) add_seen_through(placed, options, prepared.extracted, monitor);
+      if (prepared.upright) add_seen_through(placed, options.extract, prepared.extracted, monitor);
     }
   }
   if (seen->centres.size() == 1) {
     prepared.space = std::make_unique<Panorama>(*seen, prepared.extracted.labels, features, seen->centre(0));
+    prepared.stations = seen->centres;
   } else {
     prepared.space = std::make_unique<VoxelMap>(*seen, features);
   }
   if (prepared.upright && seen->centre_known())
     features.openings = find_openings(*seen, prepared.extracted, Vector3d::UnitZ(), {}, monitor);
-  if (seen->centres.size() == 1) prepared.stations = seen->centres;
+  if (options.segments) features.segments = find_segments(*seen, prepared.extracted, {}, monitor);
   prepared.settle_reach();
 }
 
@@ -100,16 +102,15 @@ void PreparedScan::settle_reach() {
   reach.max().array() += kReachM;
 }
 
-PreparedScan prepare_scan(const Scan& scan, const ExtractOptions& options, Gravity gravity,
-                          Monitor& monitor) {
+PreparedScan prepare_scan(const Scan& scan, const PrepareOptions& options, Monitor& monitor) {
   PreparedScan prepared;
-  prepared.upright = gravity == Gravity::up;
+  prepared.upright = options.gravity == Gravity::up;
   prepared.mobile = scan.mobile();
-  if (gravity != Gravity::unknown) {
-    prepare(scan, options, prepared, monitor);
+  if (options.gravity != Gravity::unknown) {
+    prepare(scan, options.extract, prepared, monitor);
     if (!prepared.upright && looks_level(prepared.extracted.features)) {
       prepared.upright = true;
-      if (scan.centres.size() == 1) add_seen_through(scan, options, prepared.extracted, monitor);
+      if (scan.centres.size() == 1) add_seen_through(scan, options.extract, prepared.extracted, monitor);
     }
     if (prepared.upright) {
       look_around(scan, options, prepared, monitor);
@@ -122,12 +123,12 @@ PreparedScan prepare_scan(const Scan& scan, const ExtractOptions& options, Gravi
     prepared.upright_from_scan = turn_upright(*up);
     if (!prepared.upright_from_scan.isIdentity()) {
       const Scan copy = turned(scan, prepared.upright_from_scan);
-      prepare(copy, options, prepared, monitor);
+      prepare(copy, options.extract, prepared, monitor);
       look_around(copy, options, prepared, monitor);
       return prepared;
     }
   }
-  if (up || gravity == Gravity::unknown) prepare(scan, options, prepared, monitor);
+  if (up || options.gravity == Gravity::unknown) prepare(scan, options.extract, prepared, monitor);
   look_around(scan, options, prepared, monitor);
   return prepared;
 }

@@ -38,9 +38,15 @@ struct PreparedScan {
   void settle_reach();
 };
 
+struct PrepareOptions {
+  ExtractOptions extract;
+  Gravity gravity = Gravity::automatic;
+  bool segments = false;  ///< line segments as well
+};
+
 /// Features of `scan`, openings included where the vertical and the optical centre are known; the centre is
 /// estimated where the scan does not say.
-PreparedScan prepare_scan(const Scan& scan, const ExtractOptions& options,
-                          Gravity gravity = Gravity::automatic, Monitor& monitor = silent_monitor());
+PreparedScan prepare_scan(const Scan& scan, const PrepareOptions& options = {},
+                          Monitor& monitor = silent_monitor());
 
 }  // namespace limen

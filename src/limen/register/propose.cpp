@@ -7,6 +7,7 @@
 
 #include "limen/match/enumerate_hybrid_poses.h"
 #include "limen/match/enumerate_model_poses.h"
+#include "limen/match/enumerate_segment_poses.h"
 
 namespace limen {
 namespace {
@@ -93,6 +94,12 @@ const char* to_string(Method method) {
 std::vector<PoseCandidate> propose_poses(const Features& source, const Features& target,
                                          const ProposalOptions& options) {
   std::vector<PoseCandidate> all;
+  if (options.method == Method::segments) {
+    SegmentPoseOptions lines;
+    lines.gravity_known = options.planes.gravity_known;
+    lines.gravity_tolerance_deg = options.planes.gravity_tolerance_deg;
+    return enumerate_segment_poses(source.segments, target.segments, lines);
+  }
   const bool planes = options.method == Method::automatic || options.method == Method::polygons;
   if (planes && options.model != ModelSide::none) {
     all = model_candidates(source, target, options);

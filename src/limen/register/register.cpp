@@ -3,7 +3,6 @@
 #include "limen/register/register.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <iterator>
 #include <utility>
@@ -12,9 +11,9 @@
 #include "limen/base/parallel.h"
 #include "limen/register/measure_thickness.h"
 #include "limen/register/model_rooms.h"
-#include "limen/register/prepare_scan.h"
 #include "limen/register/propose.h"
 #include "limen/register/select_poses.h"
+#include "limen/register/stage_clock.h"
 
 namespace limen {
 namespace {
@@ -41,29 +40,6 @@ JudgedPose in_own_frames(const JudgedPose& upright, const PreparedScan& source, 
   pose.geometry_m2 = both * pose.geometry_m2 * both.transpose();
   return own;
 }
-
-/// Names and times the stages of one registration.
-class StageClock {
- public:
-  StageClock(std::vector<StageTime>& stages, Monitor& monitor) : stages_(stages), monitor_(monitor) {}
-
-  void begin(const char* name) {
-    monitor_.throw_if_cancelled();
-    monitor_.begin_stage(name);
-    name_ = name;
-    start_ = std::chrono::steady_clock::now();
-  }
-  void end() {
-    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start_;
-    stages_.push_back({name_, seconds.count()});
-  }
-
- private:
-  std::vector<StageTime>& stages_;
-  Monitor& monitor_;
-  const char* name_ = "";
-  std::chrono::steady_clock::time_point start_;
-};
 
 std::vector<MatchedOpenings> matched_openings(const RefinedPose& pose) {
   std::vector<MatchedOpenings> list;
@@ -290,6 +266,10 @@ ExtractOptions features_for_registration() {
   return options;
 }
 
+PrepareOptions prepare_options(const RegisterOptions& options) {
+  return {options.extract, options.gravity, options.method == Method::segments};
+}
+
 void RegisterOptions::check() const {
   extract.check();
   enumerate.check();
@@ -330,25 +310,6 @@ RegistrationResult register_prepared(const PreparedPair& pair, const RegisterOpt
   const bool planes = options.method == Method::automatic || options.method == Method::polygons;
   if (verdict.outcome == Outcome::no_match && level && planes && !model) try_again(true, Proposal::sliding);
   tell(verdict, poses, pair, options, result);
-  return result;
-}
-
-RegistrationResult register_scans(const Scan& source, const Scan& target, const RegisterOptions& options,
-                                  Monitor& monitor) {
-  options.check();
-  if (!is_near_origin(source)) return register_scans(recentred(source), target, options, monitor);
-  if (!is_near_origin(target)) return register_scans(source, recentred(target), options, monitor);
-  std::vector<StageTime> stages;
-  StageClock clock(stages, monitor);
-  PreparedPair pair;
-  clock.begin("source features");
-  pair.source = prepare_scan(source, options.extract, options.gravity, monitor);
-  clock.end();
-  clock.begin("target features");
-  pair.target = prepare_scan(target, options.extract, options.gravity, monitor);
-  clock.end();
-  RegistrationResult result = register_prepared(pair, options, monitor);
-  result.stages.insert(result.stages.begin(), stages.begin(), stages.end());
   return result;
 }
 

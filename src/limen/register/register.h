@@ -3,12 +3,14 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
+#include <vector>
 
 #include "limen/base/progress.h"
 #include "limen/extract/extract_features.h"
 #include "limen/match/enumerate_poses.h"
 #include "limen/model/result.h"
-#include "limen/register/prepare_scan.h"
+#include "limen/register/prepare_group.h"
 #include "limen/register/propose.h"
 #include "limen/register/refine_pose.h"
 #include "limen/register/verdict.h"
@@ -34,7 +36,10 @@ struct RegisterOptions {
   void check() const;
 };
 
-/// Two scans made ready with `options.extract` and `options.gravity`.
+/// How the scans of a pair are to be prepared.
+PrepareOptions prepare_options(const RegisterOptions& options);
+
+/// Two scans made ready with `prepare_options`, or one and a model, either way round.
 struct PreparedPair {
   PreparedScan source;
   PreparedScan target;
@@ -45,9 +50,25 @@ struct PreparedPair {
 RegistrationResult register_prepared(const PreparedPair& pair, const RegisterOptions& options = {},
                                      Monitor& monitor = silent_monitor());
 
-/// Registers two scans by planar polygons (2021), openings (2022) or both (2023), for any starting pose: the
-/// one-call door. Poses are between the scans' world coordinates: x_target = target_from_source * x_source.
+/// One side of a registration: one or more scans that are known to one another, or a building model.
+struct RegisterInput {
+  std::vector<PlacedScan> scans;
+  std::optional<BimModel> model;
+};
+
+/// Registers scans with scans or with a model, either way round, for any starting pose: the one-call door.
+/// Throws Error where both sides are models or one is empty.
+RegistrationResult register_inputs(const RegisterInput& source, const RegisterInput& target,
+                                   const RegisterOptions& options = {}, Monitor& monitor = silent_monitor());
+
+/// Registers two scans by planar polygons (2021), openings (2022) or both (2023), for any starting pose.
+/// Poses are between the scans' world coordinates: x_target = target_from_source * x_source.
 RegistrationResult register_scans(const Scan& source, const Scan& target, const RegisterOptions& options = {},
                                   Monitor& monitor = silent_monitor());
+
+/// Finds a scan in a building model by its planes, or its line segments (2023, IV).
+RegistrationResult register_to_model(const Scan& scan, const BimModel& model,
+                                     const RegisterOptions& options = {},
+                                     Monitor& monitor = silent_monitor());
 
 }  // namespace limen

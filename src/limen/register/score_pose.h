@@ -15,7 +15,7 @@ namespace limen {
 struct ScanView {
   const Features* features = nullptr;
   const SpaceView* space = nullptr;  ///< what its scanner knows of space
-  Eigen::AlignedBox3d reach;         ///< around its samples
+  Eigen::AlignedBox3d reach = {};    ///< around its samples
   bool model = false;                ///< a building model: everything, of which the other saw a part
 };
 

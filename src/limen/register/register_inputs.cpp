@@ -1,0 +1,81 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/base/error.h"
+#include "limen/register/prepare_model.h"
+#include "limen/register/register.h"
+#include "limen/register/stage_clock.h"
+
+namespace limen {
+namespace {
+
+/// Scans about origins near their points: turns about a far origin would amplify the smallest angle.
+std::vector<PlacedScan> near_origins(const std::vector<PlacedScan>& scans) {
+  std::vector<PlacedScan> near;
+  for (const PlacedScan& placed : scans)
+    near.push_back(
+        {is_near_origin(placed.scan) ? placed.scan : recentred(placed.scan), placed.group_from_scan});
+  return near;
+}
+
+bool all_near(const std::vector<PlacedScan>& scans) {
+  for (const PlacedScan& placed : scans) {
+    if (!is_near_origin(placed.scan)) return false;
+  }
+  return true;
+}
+
+PreparedScan prepare(const RegisterInput& input, const PrepareOptions& options, Monitor& monitor) {
+  if (input.model) return prepare_model(*input.model, {}, monitor);
+  if (all_near(input.scans)) return prepare_group(input.scans, options, monitor);
+  return prepare_group(near_origins(input.scans), options, monitor);
+}
+
+PreparedScan prepare(const Scan& scan, const PrepareOptions& options, Monitor& monitor) {
+  return is_near_origin(scan) ? prepare_scan(scan, options, monitor)
+                              : prepare_scan(recentred(scan), options, monitor);
+}
+
+PreparedScan prepare(const BimModel& model, const PrepareOptions& /*of scans*/, Monitor& monitor) {
+  return prepare_model(model, {}, monitor);
+}
+
+template <typename Source, typename Target>
+RegistrationResult prepare_and_register(const Source& source, const Target& target,
+                                        const RegisterOptions& options, Monitor& monitor) {
+  options.check();
+  std::vector<StageTime> stages;
+  StageClock clock(stages, monitor);
+  PreparedPair pair;
+  clock.begin("source features");
+  pair.source = prepare(source, prepare_options(options), monitor);
+  clock.end();
+  clock.begin("target features");
+  pair.target = prepare(target, prepare_options(options), monitor);
+  clock.end();
+  RegistrationResult result = register_prepared(pair, options, monitor);
+  result.stages.insert(result.stages.begin(), stages.begin(), stages.end());
+  return result;
+}
+
+}  // namespace
+
+RegistrationResult register_inputs(const RegisterInput& source, const RegisterInput& target,
+                                   const RegisterOptions& options, Monitor& monitor) {
+  if (source.model && target.model) {
+    throw Error("both sides are building models", source.model->name + " and " + target.model->name,
+                "give a scan as one of them");
+  }
+  return prepare_and_register(source, target, options, monitor);
+}
+
+RegistrationResult register_scans(const Scan& source, const Scan& target, const RegisterOptions& options,
+                                  Monitor& monitor) {
+  return prepare_and_register(source, target, options, monitor);
+}
+
+RegistrationResult register_to_model(const Scan& scan, const BimModel& model, const RegisterOptions& options,
+                                     Monitor& monitor) {
+  return prepare_and_register(scan, model, options, monitor);
+}
+
+}  // namespace limen
