@@ -16,6 +16,7 @@
 #include "limen/base/angles.h"
 #include "limen/base/atomic_file.h"
 #include "limen/base/error.h"
+#include "limen/cli/register_segment_files.h"
 #include "limen/cli/scan_options.h"
 #include "limen/register/register.h"
 #include "limen/report/result_json.h"
@@ -65,6 +66,12 @@ OptionList reported(const RegisterCommandOptions& options) {
   if (!options.target_origin.empty()) list.emplace_back("target_origin", options.target_origin);
   if (options.wall_thickness_m > 0) list.emplace_back("wall_thickness_m", options.wall_thickness_m);
   return list;
+}
+
+/// Two lists of segments are registered as such by any method that could mean them.
+bool takes_segments(const RegisterCommandOptions& options) {
+  return (options.method == "segments" || options.method == "auto") &&
+         are_segment_files(options.source, options.target);
 }
 
 RegistrationReport register_files(const RegisterCommandOptions& options, const Session& session) {
@@ -152,9 +159,16 @@ int status_of(Outcome outcome) {
 }
 
 int run(const RegisterCommandOptions& options, const Session& session) {
-  method_of(options.method);
+  const bool segments = takes_segments(options);
+  if (!segments) method_of(options.method);
   const OutputFolder folder(options.folder);
-  const RegistrationReport report = register_files(options, session);
+  RegistrationReport report;
+  if (segments) {
+    report = register_segment_files(options.source, options.target, gravity_of(options.gravity), session);
+    report.options = reported(options);
+  } else {
+    report = register_files(options, session);
+  }
   const std::string json = result_json(report);
   session.monitor->throw_if_cancelled();
   write_results(folder.path(), report, json);

@@ -8,6 +8,7 @@
 #include "limen/base/error.h"
 #include "limen/base/parallel.h"
 #include "limen/match/direction_clusters.h"
+#include "limen/match/parallel_rotations.h"
 #include "limen/match/rigid_from_lines.h"
 #include "limen/match/segment_lookup.h"
 #include "limen/match/segment_votes.h"
@@ -94,7 +95,8 @@ class Enumerator {
     rotation_options.gravity_tolerance_deg = options_.gravity_tolerance_deg;
     rotation_options.direction_deg = options_.direction_deg;
     rotation_options.same_rotation_deg = options_.same_rotation_deg;
-    const std::vector<Matrix3d> rotations = enumerate_rotations(source_axes_, target_axes_, rotation_options);
+    std::vector<Matrix3d> rotations = enumerate_rotations(source_axes_, target_axes_, rotation_options);
+    if (rotations.empty()) rotations = turns_of_parallels(rotation_options);
     std::vector<double> aligned;
     for (const Matrix3d& rotation : rotations) aligned.push_back(aligned_length(rotation));
     const double most = aligned.empty() ? 0.0 : *std::max_element(aligned.begin(), aligned.end());
@@ -103,6 +105,18 @@ class Enumerator {
       if (aligned[i] > 0.0 && aligned[i] >= kMinAlignedShare * most) kept.push_back(rotations[i]);
     }
     return kept;
+  }
+
+  /// Where the sets share one direction only.
+  [[nodiscard]] std::vector<Matrix3d> turns_of_parallels(const RotationOptions& rotation_options) const {
+    std::vector<Matrix3d> all;
+    for (const AxisDirection& from : source_axes_) {
+      for (const AxisDirection& to : target_axes_) {
+        const std::vector<Matrix3d> some = parallel_rotations(source_, target_, from, to, rotation_options);
+        all.insert(all.end(), some.begin(), some.end());
+      }
+    }
+    return all;
   }
 
   /// Length of the source whose directions are directions of the target too.

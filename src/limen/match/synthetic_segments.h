@@ -119,8 +119,10 @@ inline std::vector<Segment> detect(const std::vector<Segment>& edges, const Dete
   std::vector<Segment> found;
   Vector3d low = Vector3d::Constant(1e300);
   Vector3d high = Vector3d::Constant(-1e300);
-  const auto noise = [&] {
-    return Vector3d(random.normal(), random.normal(), random.normal()) * detector.noise_m;
+  const auto noise = [&]() -> Vector3d {
+    const double x = random.normal();
+    const double y = random.normal();
+    return detector.noise_m * Vector3d(x, y, random.normal());
   };
   const auto add = [&](const Segment& edge, double from, double to) {
     const Vector3d way = edge.b - edge.a;

@@ -1,0 +1,338 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/register/register_segments.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <numeric>
+
+#include <fmt/format.h>
+
+#include "limen/base/angles.h"
+#include "limen/base/error.h"
+#include "limen/base/parallel.h"
+#include "limen/match/segment_distance.h"
+#include "limen/register/verdict.h"
+
+namespace limen {
+namespace {
+
+constexpr double kLevelDeg = 2.0;         // segments nearer to the vertical, or to level, are so
+constexpr double kLevelShare = 0.6;       // of the length of a set that shows its vertical
+constexpr double kVerticalShare = 0.1;    // of it, that must be vertical
+constexpr std::size_t kListedOthers = 8;  // different poses that are listed though they are no rivals
+constexpr double kUprightEvidence = 0.8;  // an upright pose as good as this is believed before a tilted one
+
+double total_length(const std::vector<Segment>& segments) {
+  double sum = 0.0;
+  for (const Segment& segment : segments) sum += segment.length();
+  return sum;
+}
+
+/// Whether most of a set is vertical or level.
+bool looks_level(const std::vector<Segment>& segments) {
+  double vertical = 0.0;
+  double level = 0.0;
+  for (const Segment& segment : segments) {
+    const double rise = std::abs(segment.b.z() - segment.a.z());
+    const double length = segment.length();
+    if (rise > std::cos(radians(kLevelDeg)) * length) vertical += length;
+    if (rise < std::sin(radians(kLevelDeg)) * length) level += length;
+  }
+  const double total = total_length(segments);
+  return vertical > kVerticalShare * total && vertical + level > kLevelShare * total;
+}
+
+struct Judged {
+  SegmentFit fit;
+  double score_m = 0.0;
+};
+
+/// What tells two poses apart, metres of evidence for either.
+struct Contrast {
+  double for_first_m = 0.0;
+  double for_second_m = 0.0;
+};
+
+Contrast contrast(const SegmentFit& first, const SegmentFit& second) {
+  Contrast sum;
+  for (std::size_t i = 0; i < first.met_m.size(); ++i) {
+    const double lead = first.met_m[i] - second.met_m[i];
+    (lead > 0.0 ? sum.for_first_m : sum.for_second_m) += std::abs(lead);
+  }
+  return sum;
+}
+
+/// The work with the smaller set, which is moved on the larger one.
+class SegmentRegistration {
+ public:
+  SegmentRegistration(const std::vector<Segment>& moved, const std::vector<Segment>& fixed,
+                      const SegmentRegisterOptions& options)
+      : moved_(moved), fixed_(fixed), options_(options), refiner_(moved, fixed, options.refine) {}
+
+  void find_candidates() {
+    SegmentPoseOptions enumerating = options_.enumerate;
+    enumerating.gravity_known = options_.gravity == Gravity::up;
+    candidates_ = enumerate_segment_poses(moved_, fixed_, enumerating);
+    const auto worst = std::find_if(candidates_.begin(), candidates_.end(), [&](const PoseCandidate& c) {
+      return c.support_m2 < 0.4 * candidates_.front().support_m2;
+    });
+    candidates_.erase(worst, candidates_.end());
+    if (candidates_.size() > static_cast<std::size_t>(options_.refined_poses))
+      candidates_.resize(static_cast<std::size_t>(options_.refined_poses));
+  }
+
+  void refine() {
+    std::vector<SegmentFit> fits(candidates_.size());
+    parallel_for(fits.size(), 4, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) fits[i] = refiner_.refine(candidates_[i].target_from_source);
+    });
+    drop_tilted(fits);
+    keep_distinct(fits);
+    score();
+  }
+
+  /// Fills all of `result` but stages; poses still take the moved set to the fixed one.
+  void decide(RegistrationResult& result) {
+    if (poses_.empty()) {
+      result.reason = "no two directions of the segments of one set are found in the other";
+      return;
+    }
+    const SegmentFit& best = poses_.front().fit;
+    if (best.evidence_m < options_.min_common_m || best.matched_segments < options_.min_segments) {
+      result.reason = fmt::format("the sets have only {} segments, {:.1f} m, in common at best",
+                                  best.matched_segments, best.matched_m);
+      return;
+    }
+    result.unobserved = unobserved_freedoms(best.pose, options_.min_held_m);
+    if (too_loose(result.unobserved)) {
+      result.unobserved.clear();
+      result.reason =
+          fmt::format("the {} segments in common do not even fix the rotation", best.matched_segments);
+      return;
+    }
+    judge_rivals(result);
+  }
+
+  /// Distinct poses, best first; after decide() rivals of the best come before the others.
+  [[nodiscard]] const std::vector<Judged>& poses() const { return poses_; }
+  [[nodiscard]] std::size_t rivals() const { return rivals_; }
+
+ private:
+  static bool too_loose(const std::vector<UnobservedFreedom>& unobserved) {
+    return unobserved.size() > 2 || std::any_of(unobserved.begin(), unobserved.end(),
+                                                [](const UnobservedFreedom& f) { return f.rotation; });
+  }
+
+  /// Where the vertical shows in both sets, poses that do not keep it are dropped - unless one of them is
+  /// clearly better: then z is not up in both.
+  void drop_tilted(std::vector<SegmentFit>& fits) const {
+    if (options_.gravity != Gravity::automatic || !looks_level(moved_) || !looks_level(fixed_)) return;
+    const double upright = std::cos(radians(options_.enumerate.gravity_tolerance_deg));
+    double best = 0.0;
+    double best_upright = 0.0;
+    const auto keeps_up = [&](const SegmentFit& fit) {
+      return fit.pose.target_from_source.rotation(2, 2) > upright;
+    };
+    for (const SegmentFit& fit : fits) {
+      best = std::max(best, fit.evidence_m);
+      if (keeps_up(fit)) best_upright = std::max(best_upright, fit.evidence_m);
+    }
+    if (best_upright < kUprightEvidence * best) return;
+    std::erase_if(fits, [&](const SegmentFit& fit) { return !keeps_up(fit); });
+  }
+
+  [[nodiscard]] bool same(const RefinedPose& a, const RefinedPose& b,
+                          const std::vector<UnobservedFreedom>& open) const {
+    const Matrix3d turn = a.target_from_source.rotation.transpose() * b.target_from_source.rotation;
+    if (rotation_angle(turn) > radians(options_.same_rotation_deg)) return false;
+    const Vector3d middle = inverse(a.target_from_source) * a.centre;
+    Vector3d shift = b.target_from_source * middle - a.centre;
+    for (const UnobservedFreedom& freedom : open) {
+      if (!freedom.rotation) shift -= freedom.direction.dot(shift) * freedom.direction;
+    }
+    return shift.norm() <= options_.same_shift_m;
+  }
+
+  /// Fills poses_.
+  void keep_distinct(std::vector<SegmentFit>& fits) {
+    std::stable_sort(fits.begin(), fits.end(),
+                     [](const SegmentFit& a, const SegmentFit& b) { return a.evidence_m > b.evidence_m; });
+    for (SegmentFit& fit : fits) {
+      if (!(fit.evidence_m > 0.0)) continue;
+      const bool known = std::any_of(poses_.begin(), poses_.end(),
+                                     [&](const Judged& other) { return same(other.fit.pose, fit.pose, {}); });
+      if (!known) poses_.push_back({std::move(fit), 0.0});
+    }
+  }
+
+  /// (8) and (14), as a length: what is covered, from both sides, in metres. Ranks the poses by it.
+  void score() {
+    SegmentDistanceOptions measuring;
+    measuring.max_distance_m = options_.refine.last_gate_m;
+    measuring.max_angle_rad = radians(options_.refine.max_angle_deg);
+    const SegmentSetMeasure measure(fixed_, measuring);
+    const double squared = measuring.max_distance_m * measuring.max_distance_m;
+    parallel_for(poses_.size(), 4, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        const SetDistance distance = measure.to(moved_, poses_[i].fit.pose.target_from_source);
+        poses_[i].score_m = 0.5 * (distance.nominal - distance.distance) / squared;
+      }
+    });
+    std::stable_sort(poses_.begin(), poses_.end(),
+                     [](const Judged& a, const Judged& b) { return a.score_m > b.score_m; });
+  }
+
+  [[nodiscard]] bool is_rival(const SegmentFit& best, const SegmentFit& other) const {
+    if (other.evidence_m < options_.min_rival_value * best.evidence_m) return false;
+    const Contrast told = contrast(best, other);
+    return told.for_first_m - told.for_second_m < options_.min_lead_m ||
+           told.for_second_m > options_.max_rival_share * told.for_first_m;
+  }
+
+  void judge_rivals(RegistrationResult& result) {
+    const SegmentFit& best = poses_.front().fit;
+    const auto others = std::stable_partition(poses_.begin() + 1, poses_.end(), [&](const Judged& other) {
+      return !same(best.pose, other.fit.pose, result.unobserved) && is_rival(best, other.fit);
+    });
+    const auto rivals = static_cast<std::size_t>(others - poses_.begin()) - 1;
+    rivals_ = rivals;
+    const double share = best.evidence_m / refiner_.total_evidence_m();
+    if (rivals > 0 && share < options_.min_share) {
+      result.unobserved.clear();
+      result.reason = fmt::format(
+          "at best {:.0f} % of the smaller set lies on the other, and {} different poses reach as much: "
+          "that is chance",
+          100.0 * share, rivals);
+      return;
+    }
+    if (rivals > 0) {
+      result.outcome = Outcome::ambiguous;
+      result.reason = fmt::format("{} different pose{} lay{} the segments on one another nearly as well",
+                                  rivals, rivals == 1 ? "" : "s", rivals == 1 ? "s" : "");
+      return;
+    }
+    VerdictOptions bounds;
+    bounds.max_sigma_m = options_.max_sigma_m;
+    bounds.max_sigma_deg = options_.max_sigma_deg;
+    if (result.unobserved.empty()) result.unobserved = loose_freedoms(best.pose, bounds);
+    if (!result.unobserved.empty()) {
+      result.outcome = Outcome::under_constrained;
+      result.reason = "the segments in common do not fix the " + result.unobserved.front().name;
+      return;
+    }
+    result.outcome = Outcome::registered;
+    result.reason =
+        fmt::format("{} segments, {:.1f} m, lie on one another{}, no different pose comes near",
+                    best.matched_segments, best.matched_m, best.in_one_plane ? " in one plane" : "");
+  }
+
+  const std::vector<Segment>& moved_;
+  const std::vector<Segment>& fixed_;
+  const SegmentRegisterOptions& options_;
+  SegmentRefiner refiner_;
+  std::vector<PoseCandidate> candidates_;
+  std::vector<Judged> poses_;  // distinct, best first
+  std::size_t rivals_ = 0;
+};
+
+/// The pose told the other way round.
+RefinedPose inverted(const RefinedPose& pose) {
+  RefinedPose back = pose;
+  back.target_from_source = inverse(pose.target_from_source);
+  back.centre = back.target_from_source * pose.centre;
+  Matrix6d turn = Matrix6d::Zero();
+  turn.topLeftCorner<3, 3>() = back.target_from_source.rotation;
+  turn.bottomRightCorner<3, 3>() = back.target_from_source.rotation;
+  back.information = turn * pose.information * turn.transpose();
+  back.geometry_m2 = turn * pose.geometry_m2 * turn.transpose();
+  return back;
+}
+
+Hypothesis hypothesis_of(const Judged& judged, bool swapped, const SegmentSet& source,
+                         const SegmentSet& target) {
+  Hypothesis hypothesis;
+  const Rigid3& pose = judged.fit.pose.target_from_source;
+  hypothesis.target_from_source =
+      to_world(swapped ? inverse(pose) : pose, source.local_origin, target.local_origin);
+  hypothesis.score = judged.score_m;
+  hypothesis.rms_m = judged.fit.pose.rms_m;
+  hypothesis.matched_segments = judged.fit.matched_segments;
+  hypothesis.agreeing_length_m = judged.fit.matched_m;
+  return hypothesis;
+}
+
+PoseSigma sigma_of(const RefinedPose& pose, const Vector3d& local_origin) {
+  const Matrix6d covariance = covariance_of(pose);
+  PoseSigma sigma;
+  for (Eigen::Index k = 0; k < 3; ++k) {
+    sigma.rotation_rad[k] = std::sqrt(std::max(0.0, covariance(k, k)));
+    sigma.translation_m[k] = std::sqrt(std::max(0.0, covariance(k + 3, k + 3)));
+  }
+  sigma.centre = local_origin + pose.centre;
+  return sigma;
+}
+
+/// Runs one step, timed and named.
+template <typename Step>
+void timed(const char* name, RegistrationResult& result, Monitor& monitor, const Step& step) {
+  monitor.throw_if_cancelled();
+  monitor.begin_stage(name);
+  const auto start = std::chrono::steady_clock::now();
+  step();
+  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+  result.stages.push_back({name, seconds.count()});
+}
+
+void refuse_unusable(const std::vector<Segment>& segments, const char* which) {
+  const auto finite = [](const Segment& s) { return s.a.allFinite() && s.b.allFinite(); };
+  if (std::all_of(segments.begin(), segments.end(), finite)) return;
+  throw Error("coordinates are not finite", fmt::format("segments of the {}", which),
+              "leave such segments out");
+}
+
+}  // namespace
+
+void SegmentRegisterOptions::check() const {
+  enumerate.check();
+  refine.check();
+  if (refined_poses < 1) throw_bad_option("refined_poses", refined_poses, "1 or more");
+  if (alternatives < 0) throw_bad_option("alternatives", alternatives, "0 or more");
+  if (!(min_common_m > 0)) throw_bad_option("min_common_m", min_common_m, "more than 0");
+  if (!(max_rival_share > 0 && max_rival_share < 1))
+    throw_bad_option("max_rival_share", max_rival_share, "within (0, 1)");
+  if (!(min_held_m > 0)) throw_bad_option("min_held_m", min_held_m, "more than 0");
+  if (!(max_sigma_m > 0)) throw_bad_option("max_sigma_m", max_sigma_m, "more than 0");
+  if (!(max_sigma_deg > 0)) throw_bad_option("max_sigma_deg", max_sigma_deg, "more than 0");
+}
+
+RegistrationResult register_segments(const SegmentSet& source, const SegmentSet& target,
+                                     const SegmentRegisterOptions& options, Monitor& monitor) {
+  options.check();
+  refuse_unusable(source.segments, "source");
+  refuse_unusable(target.segments, "target");
+  const bool swapped = total_length(source.segments) > total_length(target.segments);
+  SegmentRegistration work(swapped ? target.segments : source.segments,
+                           swapped ? source.segments : target.segments, options);
+  RegistrationResult result;
+  timed("candidates", result, monitor, [&] { work.find_candidates(); });
+  timed("refinement", result, monitor, [&] { work.refine(); });
+  timed("verdict", result, monitor, [&] { work.decide(result); });
+  if (result.outcome == Outcome::no_match) return result;
+  const RefinedPose& found = work.poses().front().fit.pose;
+  const RefinedPose best = swapped ? inverted(found) : found;
+  for (UnobservedFreedom& freedom : result.unobserved) {
+    if (swapped) freedom.direction = best.target_from_source.rotation * freedom.direction;
+  }
+  result.sigma = sigma_of(best, target.local_origin);
+  result.best = hypothesis_of(work.poses().front(), swapped, source, target);
+  const std::size_t listed =
+      std::min(std::max(work.rivals(), kListedOthers), static_cast<std::size_t>(options.alternatives));
+  for (std::size_t k = 1; k < work.poses().size() && k <= listed; ++k) {
+    result.alternatives.push_back(hypothesis_of(work.poses()[k], swapped, source, target));
+  }
+  return result;
+}
+
+}  // namespace limen
