@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "limen/base/angles.h"
 #include "limen/base/error.h"
 #include "limen/base/parallel.h"
 #include "limen/extract/segments_borders.h"
@@ -45,7 +46,9 @@ class BorderFinder {
     for (const StraightRun& run : straight_runs(image, kShortestRun * o_.min_length_m)) {
       if (!sight_.knows() && !run.hole) continue;
       const std::optional<BorderFit> fit = fit_border(image, run, o_.join_gap_m);
-      if (!fit || fit->sigma_m > o_.max_border_sigma_m) continue;
+      if (!fit || fit->sigma_m > o_.max_border_sigma_m ||
+          fit->angle_sigma_rad > radians(o_.max_border_angle_deg))
+        continue;
       add_edges(plane, image, *fit, edges);
     }
     return edges;
@@ -144,6 +147,8 @@ void SegmentOptions::check() const {
   if (!(join_gap_m >= 0.0)) throw_bad_option("join_gap_m", join_gap_m, "0 or more");
   if (!(max_border_sigma_m > 0.0))
     throw_bad_option("max_border_sigma_m", max_border_sigma_m, "greater than 0");
+  if (!(max_border_angle_deg > 0.0))
+    throw_bad_option("max_border_angle_deg", max_border_angle_deg, "greater than 0");
 }
 
 std::vector<DetectedEdge> find_edges(const Scan& scan, const ExtractedFeatures& extracted,

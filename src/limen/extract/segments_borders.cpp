@@ -15,6 +15,8 @@ constexpr double kShortestPiece = 4.0;  // pixels
 constexpr double kBin = 1.5;            // width of a bin in units of the spacing
 constexpr double kDepth = 6.0;          // how far inward gaps are measured, in units of the spacing
 constexpr int kFewestBins = 5;
+constexpr double kBend_m = 0.002;     // a line may seem to bend by this,
+constexpr double kBendSigmas = 3.5;   // or by this many standard deviations
 constexpr double kUniform = 0.57735;  // standard deviation of what is uniform in [-1, 1]
 
 double tolerance_at(const PlaneImage& image, const Vector2d& p) {
@@ -272,11 +274,54 @@ Strip turned_onto(const Strip& strip, const Line2& line, std::vector<BorderBin>&
   return turned;
 }
 
-/// Fills in which bins fit, and sigma. False: too few, or too ragged.
+/// How many of the heights are independent: rows of points that run nearly along the border step from one to
+/// the next only here and there.
+double independent(const std::vector<double>& heights) {
+  double product = 0.0;
+  double squares = 1e-12;
+  for (std::size_t k = 0; k < heights.size(); ++k) {
+    squares += heights[k] * heights[k];
+    if (k > 0) product += heights[k] * heights[k - 1];
+  }
+  const double related = std::clamp(product / squares, 0.0, 0.95);
+  return static_cast<double>(heights.size()) * (1.0 - related) / (1.0 + related);
+}
+
+/// By how much the heights bend in their middle, and one standard deviation of that if they were independent.
+struct Bend {
+  double middle_m = 0.0;
+  double sigma_m = 0.0;
+};
+
+Bend bend_of(const std::vector<double>& places, const std::vector<double>& heights, double spread) {
+  // Heights against the square of the place, freed of mean and slope: the rest of a parabola.
+  const auto count = static_cast<double>(places.size());
+  double mean = 0.0;
+  for (const double t : places) mean += t / count;
+  double m2 = 0.0;
+  double m3 = 0.0;
+  for (const double t : places) {
+    m2 += (t - mean) * (t - mean) / count;
+    m3 += (t - mean) * (t - mean) * (t - mean) / count;
+  }
+  double product = 0.0;
+  double squares = 1e-15;
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    const double t = places[k] - mean;
+    const double shape = t * t - m2 - (m2 > 0.0 ? m3 / m2 : 0.0) * t;
+    product += shape * heights[k];
+    squares += shape * shape;
+  }
+  const double half = 0.5 * (places.back() - places.front());
+  return {std::abs(product / squares) * half * half, spread / std::sqrt(squares) * half * half};
+}
+
+/// Fills in which bins fit, and how well the line is known. False: too few, too ragged, or bent.
 bool judge(BorderFit& fit, double core_begin, double core_end) {
   const double slack = std::max(0.004, 2.2 * fit.shortfall_m);
+  std::vector<double> places;
+  std::vector<double> heights;
   double squares = 0.0;
-  int fitting = 0;
   int core = 0;
   for (BorderBin& bin : fit.bins) {
     // Bin heights are about the line through the outermost points: 0 where they are on average.
@@ -284,15 +329,22 @@ bool judge(BorderFit& fit, double core_begin, double core_end) {
     const bool in_core = bin.t >= core_begin && bin.t <= core_end;
     if (in_core) ++core;
     if (!in_core || !bin.fits) continue;
-    ++fitting;
+    places.push_back(bin.t);
+    heights.push_back(bin.h);
     squares += bin.h * bin.h;
   }
+  const auto fitting = static_cast<int>(places.size());
   if (fitting < kFewestBins || fitting * 3 < core * 2) return false;
   const double spread = std::sqrt(squares / fitting);
+  const Bend bend = bend_of(places, heights, spread);
+  if (bend.middle_m > kBend_m && bend.middle_m > kBendSigmas * bend.sigma_m) return false;
   // Where the points' rows run along the border all bins err alike: their agreement tells nothing.
   const double expected = kUniform * fit.shortfall_m;
   const double own = expected > 0.0 ? std::max(0.0, 1.0 - spread * spread / (expected * expected)) : 0.0;
-  fit.sigma_m = std::sqrt(spread * spread / fitting + expected * expected * own);
+  const double count = std::max(1.0, independent(heights));
+  fit.sigma_m = std::sqrt(spread * spread / count + expected * expected * own);
+  fit.angle_sigma_rad = std::sqrt(12.0 / count) * std::max(spread, 0.3 * expected) /
+                        std::max(0.01, places.back() - places.front());
   return true;
 }
 
@@ -305,6 +357,27 @@ std::vector<StraightRun> straight_runs(const PlaneImage& image, double min_lengt
     RunGrower(image, ring).run(min_length_m, runs);
   }
   return runs;
+}
+
+Approach approach_of(const PlaneImage& image, const Strip& line) {
+  constexpr double kDeepest_m = 0.06;
+  const double middle_t = 0.5 * (line.begin_m + line.end_m);
+  const double spacing = image.spacing_m(line.at(middle_t, 0.0));
+  Strip strip = line;
+  strip.low_m = -0.5 * image.pixel_m();
+  strip.high_m = std::max(kDeepest_m, kDepth * spacing);
+  const BinnedPoints points = binned(image, strip, std::max(0.005, kBin * spacing));
+  std::vector<double> nearest;
+  for (const auto& bin : points.bins)
+    if (!bin.empty()) nearest.push_back(bin.front().first);
+  Approach approach;
+  if (nearest.empty()) return approach;
+  const auto middle = nearest.begin() + static_cast<std::ptrdiff_t>(nearest.size() / 2);
+  std::nth_element(nearest.begin(), middle, nearest.end());
+  approach.nearest_m = *middle;
+  approach.shortfall_m = shortfall_of(points, strip.high_m);
+  approach.filled = static_cast<double>(nearest.size()) / static_cast<double>(points.bins.size());
+  return approach;
 }
 
 std::optional<BorderFit> fit_border(const PlaneImage& image, const StraightRun& run, double beyond_m) {

@@ -31,19 +31,28 @@ struct BorderBin {
 
 /// A line fitted to the outermost points of a plane.
 struct BorderFit {
-  Strip line;                ///< the edge itself: h = 0; begin_m, end_m of the bins
-  double bin_m = 0.0;        ///< width of a bin
-  double shortfall_m = 0.0;  ///< by how much the outermost points fall short of the edge, on average
-  double sigma_m = 0.0;      ///< one standard deviation of the edge's place across
+  Strip line;                    ///< the edge itself: h = 0; begin_m, end_m of the bins
+  double bin_m = 0.0;            ///< width of a bin
+  double shortfall_m = 0.0;      ///< by how much the outermost points fall short of the edge, on average
+  double sigma_m = 0.0;          ///< one standard deviation of the edge's place across
+  double angle_sigma_rad = 0.0;  ///< the same of its direction
   std::vector<BorderBin> bins;
 };
+
+/// How near a plane's points come to a line in it, on the inward side of the line.
+struct Approach {
+  double nearest_m = 0.0;    ///< median over the bins of the distance of the nearest point
+  double shortfall_m = 0.0;  ///< what this distance is on average where the surface reaches the line
+  double filled = 0.0;       ///< share of the bins with points
+};
+Approach approach_of(const PlaneImage& image, const Strip& line);
 
 /// Fits a line to the outermost points along a run and `beyond_m` further on either side.
 ///
 /// A surface's samples end before the surface does. How far before is told by the samples themselves: the
 /// mean distance from a place within to the next sample, sum g^2 / (2 sum g) over the gaps g between samples
 /// one behind the other, is the same for rows of even spacing as for samples at random. Empty: too few
-/// points, or a border too ragged to be a line.
+/// points, or a border too ragged or bent to be a line.
 std::optional<BorderFit> fit_border(const PlaneImage& image, const StraightRun& run, double beyond_m);
 
 }  // namespace limen

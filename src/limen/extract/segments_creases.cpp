@@ -8,6 +8,7 @@
 
 #include "limen/base/angles.h"
 #include "limen/base/parallel.h"
+#include "limen/extract/segments_borders.h"
 
 namespace limen {
 namespace {
@@ -15,7 +16,10 @@ namespace {
 constexpr double kStep_m = 0.01;
 constexpr double kMargin_m = 0.02;
 constexpr double kAside_m = 0.012;  // points next to an edge may belong to the other plane
-constexpr double kEndShare = 0.5;   // of a crease along which one of its planes must end
+constexpr double kBeyondStrays_m = 0.015;
+constexpr double kNear = 1.7;      // how far from a line points may begin, in units of their usual shortfall
+constexpr double kFilled = 0.4;    // share of the bins along a line that must hold points
+constexpr double kEndShare = 0.5;  // of a crease along which one of its planes must end
 
 /// The box of a plane's image in space.
 struct Box3 {
@@ -100,12 +104,31 @@ class LineView {
   [[nodiscard]] Support at(double t) const {
     const Vector2d p = origin_ + t * along_;
     Support support;
-    support.near =
-        image_.covered(p) || image_.covered(p + kAside_m * across_) || image_.covered(p - kAside_m * across_);
-    if (!support.near) return support;
-    const double aside = image_.reach_m(p) + kAside_m + 2.0 * image_.pixel_m();
-    support.ends = !image_.covered(p + aside * across_) || !image_.covered(p - aside * across_);
+    if (!image_.covered(p) && !image_.covered(p + kAside_m * across_) &&
+        !image_.covered(p - kAside_m * across_))
+      return support;
+    // A few strays of another surface on the line reach no further than their own discs.
+    const double aside = image_.reach_m(p) + kBeyondStrays_m;
+    const bool left = image_.covered(p + aside * across_);
+    const bool right = image_.covered(p - aside * across_);
+    support.near = left || right;
+    support.ends = !left || !right;
     return support;
+  }
+
+  /// The plane's points come as near to a stretch of the line as they must where the surface does.
+  [[nodiscard]] bool reaches(double begin, double end) const {
+    for (const double sign : {1.0, -1.0}) {
+      Strip strip;
+      strip.origin = origin_;
+      strip.along = sign * along_;
+      strip.begin_m = sign > 0.0 ? begin : -end;
+      strip.end_m = sign > 0.0 ? end : -begin;
+      const Approach approach = approach_of(image_, strip);
+      if (approach.filled >= kFilled && approach.nearest_m <= kNear * approach.shortfall_m + kAside_m)
+        return true;
+    }
+    return false;
   }
 
  private:
@@ -125,7 +148,8 @@ void add_stretches(const PlaneImage& a, const PlaneImage& b, const Line3& line, 
   int steps = 0;
   int ends = 0;
   const auto finish = [&] {
-    if (steps > 0 && last - begin >= options.min_length_m && ends >= kEndShare * steps) {
+    if (steps > 0 && last - begin >= options.min_length_m && ends >= kEndShare * steps &&
+        view_a.reaches(begin, last) && view_b.reaches(begin, last)) {
       DetectedEdge edge = like;
       edge.segment = {line.origin + begin * line.along, line.origin + last * line.along};
       edges.push_back(edge);
