@@ -78,9 +78,8 @@ Outcome outcome_of(const std::vector<Solid>& shapes, const std::vector<const Sol
     SolidFaces made = solid_faces(shapes, cutters);
     outcome.faces = std::move(made.faces);
     if (made.open_cutters > 0)
-      outcome.warning = fmt::format(
-          "{} of its solids or openings are not closed: Boolean operations with them are left out",
-          made.open_cutters);
+      outcome.warning =
+          fmt::format("{} of its solids are not closed: sides of openings may be missing", made.open_cutters);
   } catch (const Error& error) {
     outcome.warning = fmt::format("its surface could not be made ({})", error.problem());
   }

@@ -35,22 +35,34 @@ std::vector<PolygonMesh> solids_of(const RawOpening& opening) {
   return meshes;
 }
 
-Passage passage_in(const BimFace& face, const std::vector<PolygonMesh>& meshes) {
+/// How much of a face counts as wall.
+enum class Extent {
+  outline,   ///< what there is of it
+  rectangle  ///< all within its bounding rectangle: where the file has cut the openings out already
+};
+
+Polygon rectangle_of(const Polygon& outline) {
+  const Box2 box = box_of(std::vector<Polygon>{outline});
+  return {{box.low, {box.high.x(), box.low.y()}, box.high, {box.low.x(), box.high.y()}}, {}};
+}
+
+Passage passage_in(const BimFace& face, const std::vector<PolygonMesh>& meshes, Extent extent) {
   Passage passage{&face, {}, 0.0};
+  const std::vector<Polygon> wall{extent == Extent::outline ? face.outline : rectangle_of(face.outline)};
   for (const PolygonMesh& mesh : meshes) {
-    const std::vector<Polygon> part =
-        intersection({face.outline}, section(mesh, face.frame, PlaneSide::behind));
+    const std::vector<Polygon> part = intersection(wall, section(mesh, face.frame, PlaneSide::behind));
     passage.areas = passage.areas.empty() ? part : merged(passage.areas, part);
   }
   passage.area_m2 = area(passage.areas);
   return passage;
 }
 
-std::vector<Passage> passages_of(const std::vector<BimFace>& faces, const std::vector<PolygonMesh>& meshes) {
+std::vector<Passage> passages_of(const std::vector<BimFace>& faces, const std::vector<PolygonMesh>& meshes,
+                                 Extent extent) {
   std::vector<Passage> passages;
   for (const BimFace& face : faces) {
     if (std::abs(face.plane.normal.z()) > kSteepest) continue;
-    Passage passage = passage_in(face, meshes);
+    Passage passage = passage_in(face, meshes, extent);
     if (passage.area_m2 > kLeastArea_m2) passages.push_back(std::move(passage));
   }
   return passages;
@@ -68,9 +80,10 @@ std::optional<double> thickness_behind(const Passage& front, const std::vector<P
   return thickness;
 }
 
-std::optional<BimOpening> box_through(const std::vector<BimFace>& host, const RawOpening& opening) {
+std::optional<BimOpening> box_through(const std::vector<BimFace>& host, const RawOpening& opening,
+                                      Extent extent) {
   const std::vector<PolygonMesh> meshes = solids_of(opening);
-  const std::vector<Passage> passages = passages_of(host, meshes);
+  const std::vector<Passage> passages = passages_of(host, meshes, extent);
   // The larger side speaks; where both are equal, the one that comes first.
   const Passage* front = nullptr;
   for (const Passage& passage : passages) {
@@ -99,7 +112,8 @@ std::optional<BimOpening> box_of_opening(const RawModel& raw, const RawOpening& 
   for (const std::int32_t host : opening.hosts) {
     std::optional<BimOpening> box;
     try {
-      box = box_through(uncut[static_cast<std::size_t>(host)], opening);
+      box = box_through(uncut[static_cast<std::size_t>(host)], opening, Extent::outline);
+      if (!box) box = box_through(uncut[static_cast<std::size_t>(host)], opening, Extent::rectangle);
     } catch (const Error&) {
       continue;  // the element's warning tells of its geometry
     }

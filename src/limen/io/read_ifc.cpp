@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 #include "limen/base/error.h"
+#include "limen/io/ifc_extract.h"
 #include "limen/io/ifc_process.h"
 #include "limen/io/ifc_stream.h"
 #include "limen/io/ifc_structure.h"
@@ -64,14 +65,14 @@ class WarningList {
 /// The shapes, got by as many runs of limen_ifc as it takes.
 class ShapeSource {
  public:
-  ShapeSource(std::string_view bytes, const std::string& name, Monitor& monitor)
-      : bytes_(bytes), name_(name), monitor_(monitor) {}
+  ShapeSource(std::string text, const std::string& name, Monitor& monitor)
+      : text_(std::move(text)), name_(name), monitor_(monitor) {}
 
   IfcShapes get(std::vector<std::string>& warnings) {
     const auto start = std::chrono::steady_clock::now();
     std::vector<std::int64_t> skip;
     for (;;) {
-      const IfcRun run = run_ifc_helper(bytes_, skip, {}, monitor_);
+      const IfcRun run = run_ifc_helper(text_, skip, {}, monitor_);
       IfcShapes shapes = parse_ifc_stream(run.output);
       if (shapes.complete) return shapes;
       refuse(shapes, run);
@@ -98,7 +99,7 @@ class ShapeSource {
         "the file is damaged, or larger than the memory allows: export it again, or as a mesh (OBJ, PLY)");
   }
 
-  std::string_view bytes_;
+  std::string text_;
   const std::string& name_;
   Monitor& monitor_;
 };
@@ -262,7 +263,7 @@ RawModel read_ifc(std::string_view bytes, const std::string& name, Monitor& moni
   IfcStructure structure = read_ifc_structure(file);
   monitor.throw_if_cancelled();
   std::vector<std::string> warnings;
-  IfcShapes shapes = ShapeSource(bytes, name, monitor).get(warnings);
+  IfcShapes shapes = ShapeSource(text_of_shapes(file), name, monitor).get(warnings);
   RawModel model = Assembly(file, std::move(structure), std::move(shapes)).assemble();
   model.head.name = name;
   model.head.schema = file.schema();

@@ -3,6 +3,7 @@
 #include "limen/io/step_file.h"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <charconv>
 
@@ -21,25 +22,46 @@ std::string_view trimmed(std::string_view text) {
   return text;
 }
 
-/// Passes over a text that begins at `at`; returns the place behind its closing quotation mark. Two marks in
-/// a row are one text after another, which comes to the same.
-std::size_t behind_text(std::string_view bytes, std::size_t at) {
-  const std::size_t end = bytes.find('\'', at + 1);
-  return end == std::string_view::npos ? bytes.size() : end + 1;
+bool digit(char c) {
+  return c >= '0' && c <= '9';
 }
 
+/// Whether an entity begins at `at`: "#12 =".
+bool entity_at(std::string_view bytes, std::size_t at) {
+  if (at >= bytes.size() || bytes[at] != '#') return false;
+  std::size_t end = at + 1;
+  while (end < bytes.size() && digit(bytes[end])) ++end;
+  if (end == at + 1) return false;
+  while (end < bytes.size() && bytes[end] == ' ') ++end;
+  return end < bytes.size() && bytes[end] == '=';
+}
+
+/// Passes over a text that begins at `at`; returns the place behind its closing quotation mark. Two marks in
+/// a row are one text after another, which comes to the same. A text that does not close before the next
+/// entity has lost its mark and ends at the line's end.
+std::size_t behind_text(std::string_view bytes, std::size_t at) {
+  std::size_t end = at + 1;
+  for (; end < bytes.size() && bytes[end] != '\''; ++end) {
+    if (bytes[end] == '\n' && entity_at(bytes, end + 1)) return end;
+  }
+  return std::min(end + 1, bytes.size());
+}
+
+/// Passes over a comment; one that never closes is no comment.
 std::size_t behind_comment(std::string_view bytes, std::size_t at) {
   const std::size_t end = bytes.find("*/", at + 2);
-  return end == std::string_view::npos ? bytes.size() : end + 2;
+  return end == std::string_view::npos ? at + 2 : end + 2;
 }
 
 bool comment_at(std::string_view bytes, std::size_t at) {
   return bytes[at] == '/' && at + 1 < bytes.size() && bytes[at + 1] == '*';
 }
 
-/// The end of the statement that begins at `at`: the place of its semicolon.
+/// The end of the statement that begins at `at`: the place of its semicolon, or, where that is lost, the end
+/// of the line before the next entity.
 std::size_t end_of_statement(std::string_view bytes, std::size_t at) {
   while (at < bytes.size() && bytes[at] != ';') {
+    if (bytes[at] == '\n' && entity_at(bytes, at + 1)) return at;
     if (bytes[at] == '\'') {
       at = behind_text(bytes, at);
     } else if (comment_at(bytes, at)) {
@@ -62,6 +84,15 @@ std::size_t begin_of_statement(std::string_view bytes, std::size_t at) {
     }
   }
   return std::min(at, bytes.size());
+}
+
+/// What stands in a STEP file beside entities.
+bool is_keyword(const std::string& word) {
+  static constexpr std::array<std::string_view, 10> kWords{
+      "ISO-10303-21",    "END-ISO-10303-21", "HEADER",    "DATA",
+      "ENDSEC",          "FILE_DESCRIPTION", "FILE_NAME", "FILE_SCHEMA",
+      "FILE_POPULATION", "SECTION_LANGUAGE"};
+  return std::find(kWords.begin(), kWords.end(), word) != kWords.end();
 }
 
 std::string upper_case(std::string_view text) {
@@ -222,6 +253,7 @@ void StepFile::read_statement(std::string_view statement) {
     const std::string word = upper_case(trimmed(statement.substr(0, open)));
     if (word == "END-ISO-10303-21") whole_ = true;
     const std::size_t begin = statement.find('\'');
+    if (!is_keyword(word)) ++damaged_;
     if (word != "FILE_SCHEMA" || begin == std::string_view::npos || !schema_.empty()) return;
     schema_ = upper_case(trimmed(statement.substr(begin + 1, statement.find('\'', begin + 1) - begin - 1)));
     return;
