@@ -7,6 +7,8 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
@@ -16,6 +18,7 @@
 #include "limen/base/angles.h"
 #include "limen/base/atomic_file.h"
 #include "limen/base/error.h"
+#include "limen/cli/register_inputs.h"
 #include "limen/cli/register_segment_files.h"
 #include "limen/cli/scan_options.h"
 #include "limen/register/register.h"
@@ -33,6 +36,8 @@ struct RegisterCommandOptions {
   std::string origin;
   std::string source_origin;
   std::string target_origin;
+  std::vector<std::string> source_with;
+  std::vector<std::string> target_with;
   double wall_thickness_m = 0.0;
 };
 
@@ -40,11 +45,9 @@ Method method_of(const std::string& name) {
   static const std::map<std::string, Method> methods = {{"auto", Method::automatic},
                                                         {"polygons", Method::polygons},
                                                         {"openings", Method::openings},
-                                                        {"hybrid", Method::hybrid}};
-  const auto found = methods.find(name);
-  if (found != methods.end()) return found->second;
-  throw Error(fmt::format("--method {} is not available yet", name), "",
-              "use polygons, openings, hybrid or auto");
+                                                        {"hybrid", Method::hybrid},
+                                                        {"segments", Method::segments}};
+  return methods.at(name);
 }
 
 Gravity gravity_of(const std::string& name) {
@@ -79,8 +82,8 @@ RegistrationReport register_files(const RegisterCommandOptions& options, const S
   const ReadOptions target_options = side_options(options, options.target_origin, "--target-origin");
   const auto start = std::chrono::steady_clock::now();
   session.monitor->begin_stage("reading");
-  const Scan source = read_input(options.source, source_options, session);
-  const Scan target = read_input(options.target, target_options, session);
+  Side source = read_side({options.source, options.source_with, source_options}, session);
+  Side target = read_side({options.target, options.target_with, target_options}, session);
   const std::chrono::duration<double> reading = std::chrono::steady_clock::now() - start;
 
   RegisterOptions registering;
@@ -89,10 +92,10 @@ RegistrationReport register_files(const RegisterCommandOptions& options, const S
   registering.wall_thickness_m = options.wall_thickness_m;
   registering.seed = session.common.seed;
   RegistrationReport report;
-  report.result = register_scans(source, target, registering, *session.monitor);
+  report.result = register_inputs(source.input, target.input, registering, *session.monitor);
   report.result.stages.insert(report.result.stages.begin(), {"reading", reading.count()});
-  report.source = summarise(options.source, source);
-  report.target = summarise(options.target, target);
+  report.source = std::move(source.summary);
+  report.target = std::move(target.summary);
   report.options = reported(options);
   report.seed = session.common.seed;
   return report;
@@ -130,6 +133,7 @@ std::string pose_summary(const RegistrationReport& report) {
     text += fmt::format("wall        {:.3f} m thick, sigma {:.1f} mm, by {} opening{}\n", wall.value_m,
                         1e3 * wall.sigma_m, wall.openings, wall.openings == 1 ? "" : "s");
   }
+  if (!best.room.empty()) text += fmt::format("room        {}\n", best.room);
   if (!report.result.alternatives.empty()) {
     text +=
         fmt::format("others      {} different poses, see alternatives\n", report.result.alternatives.size());
@@ -160,7 +164,6 @@ int status_of(Outcome outcome) {
 
 int run(const RegisterCommandOptions& options, const Session& session) {
   const bool segments = takes_segments(options);
-  if (!segments) method_of(options.method);
   const OutputFolder folder(options.folder);
   RegistrationReport report;
   if (segments) {
@@ -177,6 +180,18 @@ int run(const RegisterCommandOptions& options, const Session& session) {
   return status_of(report.result.outcome);
 }
 
+void add_with_option(CLI::App& command, const char* name, std::vector<std::string>& with, const char* side) {
+  command
+      .add_option(
+          name, with,
+          fmt::format("Another scan that is known in {0}'s frame, and the file of its pose there (4 x 4 "
+                      "numbers, or a result.json); may be given several times",
+                      side))
+      ->type_size(2)
+      ->type_name("SCAN POSE")
+      ->take_all();
+}
+
 void add_origin_options(CLI::App& command, RegisterCommandOptions& options) {
   const auto add = [&command](const char* name, std::string& text, const char* description) {
     command.add_option(name, text, description)->type_name("x,y,z");
@@ -191,21 +206,26 @@ void add_origin_options(CLI::App& command, RegisterCommandOptions& options) {
 
 void add_register_command(CLI::App& app, Session& session) {
   auto options = std::make_shared<RegisterCommandOptions>();
-  CLI::App* command = add_command(app, session, "register",
-                                  "Find the pose of one scan in another; status 0: registered, "
-                                  "3: ambiguous or under-constrained, 4: no match",
-                                  [options, &session] { return run(*options, session); });
-  command->add_option("SOURCE", options->source, "The scan to be moved")->required();
-  command->add_option("TARGET", options->target, "The scan that stays")->required();
+  CLI::App* command =
+      add_command(app, session, "register",
+                  "Find the pose of a scan in another or in a building model; status 0: registered, "
+                  "3: ambiguous or under-constrained, 4: no match",
+                  [options, &session] { return run(*options, session); });
+  command->add_option("SOURCE", options->source, "The scan, model or list of segments to be moved")
+      ->required();
+  command->add_option("TARGET", options->target, "The scan, model or list of segments that stays")
+      ->required();
   command->add_option("-o,--output", options->folder, "Folder for result.json and transform.txt")
       ->required()
       ->type_name("DIR");
   command
       ->add_option("--method", options->method,
-                   "What to match: auto (default), polygons, openings, or hybrid (both)")
+                   "What to match: auto (default), polygons, openings, hybrid (both), or segments")
       ->check(CLI::IsMember({"auto", "polygons", "openings", "hybrid", "segments"}));
   add_length_option(*command, "--wall-thickness-m,--wall-thickness", options->wall_thickness_m,
                     "Thickness of the outer walls where it is known; else it is measured, or named as open");
+  add_with_option(*command, "--source-with", options->source_with, "SOURCE");
+  add_with_option(*command, "--target-with", options->target_with, "TARGET");
   add_gravity_option(*command, options->gravity, true);
   add_origin_options(*command, *options);
 }

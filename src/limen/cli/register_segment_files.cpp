@@ -20,7 +20,10 @@ InputSummary summary_of(const std::string& path, const SegmentSet& set) {
     ends.points.push_back(segment.a);
     ends.points.push_back(segment.b);
   }
-  return summarise(path, ends);
+  InputSummary summary = summarise(path, ends);
+  summary.kind = "segments";
+  summary.elements = set.segments.size();
+  return summary;
 }
 
 }  // namespace
@@ -31,7 +34,7 @@ bool are_segment_files(const std::string& source, const std::string& target) {
   if (first != second) {
     const std::string& other = first ? target : source;
     if (!std::filesystem::exists(other)) throw Error("does not exist", other, "look at the path");
-    throw Error("holds segments, the other file does not", first ? source : target,
+    throw Error("holds no segments that limen can read, the other file does", other,
                 "give two scans, or two files of segments");
   }
   return first;

@@ -43,6 +43,7 @@ Json evidence_json(const Hypothesis& pose) {
     json["matched_segments"] = pose.matched_segments;
     json["agreeing_length_m"] = pose.agreeing_length_m;
   }
+  if (!pose.room.empty()) json["room"] = pose.room;
   return json;
 }
 
@@ -91,10 +92,20 @@ Json thickness_json(const std::vector<MeasuredThickness>& walls) {
 }
 
 Json input_json(const InputSummary& input) {
-  return {
-      {"path", input.path},          {"points", input.points},          {"low", json_of(input.low)},
-      {"high", json_of(input.high)}, {"middle", json_of(input.middle)}, {"centre_known", input.centre_known},
-      {"mobile", input.mobile}};
+  Json json = {{"path", input.path}, {"kind", input.kind}};
+  if (input.kind == "scan") {
+    json["points"] = input.points;
+  } else {
+    json[input.kind == "model" ? "elements" : "segments"] = input.elements;
+  }
+  if (!input.with.empty()) json["with"] = input.with;
+  json["low"] = json_of(input.low);
+  json["high"] = json_of(input.high);
+  json["middle"] = json_of(input.middle);
+  if (input.kind != "scan") return json;
+  json["centre_known"] = input.centre_known;
+  json["mobile"] = input.mobile;
+  return json;
 }
 
 Json options_json(const OptionList& options) {
@@ -142,6 +153,22 @@ InputSummary summarise(const std::string& path, const Scan& scan) {
   summary.middle = scan.local_origin + middle_of(scan.points);
   summary.centre_known = scan.centre_known();
   summary.mobile = scan.mobile();
+  return summary;
+}
+
+InputSummary summarise(const std::string& path, const BimModel& model) {
+  std::vector<Vector3d> corners;
+  for (const BimFace& face : model.faces) {
+    for (const Vector2d& p : face.outline.outer) corners.push_back(face.frame.to_space(p));
+  }
+  const Extent extent = extent_of(corners);
+  InputSummary summary;
+  summary.path = path;
+  summary.kind = "model";
+  summary.elements = model.elements.size();
+  summary.low = model.local_origin + extent.low;
+  summary.high = model.local_origin + extent.high;
+  summary.middle = 0.5 * (summary.low + summary.high);
   return summary;
 }
 

@@ -9,15 +9,19 @@
 #include <variant>
 #include <vector>
 
+#include "limen/model/bim_model.h"
 #include "limen/model/features.h"
 #include "limen/model/result.h"
 #include "limen/model/scan.h"
 
 namespace limen {
 
-/// What a report says about one scan that went in.
+/// What a report says about one scan, group of scans or model that went in.
 struct InputSummary {
   std::string path;                    ///< as the user wrote it
+  std::string kind = "scan";           ///< or "model", or "segments"
+  std::vector<std::string> with;       ///< further scans of the group
+  std::size_t elements = 0;            ///< of a model, or segments
   std::size_t points = 0;              ///< that could be used
   Vector3d low = Vector3d::Zero();     ///< extent of the points, metres, world
   Vector3d high = Vector3d::Zero();    ///< extent of the points, metres, world
@@ -26,6 +30,7 @@ struct InputSummary {
   bool mobile = false;                 ///< the scanner moved
 };
 InputSummary summarise(const std::string& path, const Scan& scan);
+InputSummary summarise(const std::string& path, const BimModel& model);
 
 /// An option by its command-line name.
 using OptionValue = std::variant<bool, std::int64_t, double, std::string>;
