@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <set>
 
 #include <Eigen/Cholesky>
@@ -72,8 +71,9 @@ SegmentRefiner::SegmentRefiner(const std::vector<Segment>& moved, const std::vec
 
 std::vector<SegmentRefiner::Match> SegmentRefiner::match(const Rigid3& pose, double gate_m) const {
   std::vector<Match> matches;
-  std::map<std::pair<int, int>, std::pair<double, double>> pairs;  // length, pieces
+  std::size_t first = 0;  // match of the current moved segment: its pieces follow one another
   for (std::size_t i = 0; i < pieces_.size(); ++i) {
+    if (i > 0 && pieces_[i].segment != pieces_[i - 1].segment) first = weigh(first, matches);
     const Vector3d at = pose * pieces_[i].at;
     const SegmentHit hit = lookup_.nearest(at, pose.rotation * pieces_[i].direction);
     if (hit.segment < 0 || hit.distance_m >= gate_m) continue;
@@ -82,15 +82,25 @@ std::vector<SegmentRefiner::Match> SegmentRefiner::match(const Rigid3& pose, dou
     const double along = direction.dot(at - line.a);
     if (along < -kPastEndM || along > line.length() + kPastEndM) continue;
     matches.push_back({i, hit.segment, at, line.a + along * direction - at, direction, 0.0});
-    auto& [length, pieces] = pairs[{pieces_[i].segment, hit.segment}];
-    length += pieces_[i].length_m;
-    pieces += 1.0;
   }
-  for (Match& m : matches) {
-    const auto& [length, pieces] = pairs[{pieces_[m.piece].segment, m.fixed}];
-    m.weight = 2.0 / pieces * length / (length + kShortM);
-  }
+  weigh(first, matches);
   return matches;
+}
+
+/// Shares two ends' worth of evidence among the pieces of one moved segment that lie on one fixed segment.
+/// Returns where the next segment's matches begin.
+std::size_t SegmentRefiner::weigh(std::size_t first, std::vector<Match>& matches) const {
+  for (std::size_t k = first; k < matches.size(); ++k) {
+    double length = 0.0;
+    double pieces = 0.0;
+    for (std::size_t j = first; j < matches.size(); ++j) {
+      if (matches[j].fixed != matches[k].fixed) continue;
+      length += pieces_[matches[j].piece].length_m;
+      pieces += 1.0;
+    }
+    matches[k].weight = 2.0 / pieces * length / (length + kShortM);
+  }
+  return matches.size();
 }
 
 Vector3d SegmentRefiner::middle_of(const std::vector<Match>& matches) {

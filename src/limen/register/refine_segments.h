@@ -55,6 +55,7 @@ class SegmentRefiner {
     double weight = 0.0;                     // ends' worth
   };
   [[nodiscard]] std::vector<Match> match(const Rigid3& pose, double gate_m) const;
+  std::size_t weigh(std::size_t first, std::vector<Match>& matches) const;
   [[nodiscard]] static Vector3d middle_of(const std::vector<Match>& matches);
   static void adjust(const std::vector<Match>& matches, double gate_m, Rigid3& pose);
   static void summarise(const std::vector<Match>& matches, double gate_m, SegmentFit& fit);

@@ -17,7 +17,7 @@ struct SegmentRegisterOptions {
   Gravity gravity = Gravity::automatic;
   SegmentPoseOptions enumerate;  ///< `gravity_known` is set from `gravity`
   RefineSegmentsOptions refine;
-  int refined_poses = 400;         ///< candidates that are refined and judged
+  int refined_poses = 300;         ///< candidates that are refined and judged
   int alternatives = 200;          ///< different poses reported besides the best
   double min_common_m = 4.0;       ///< length in common that a pose must show, long segments cut short
   int min_segments = 6;            ///< segments in common
