@@ -15,6 +15,8 @@
 #include <fmt/format.h>
 
 #include "limen/base/random.h"
+#include "limen/cli/model_info.h"
+#include "limen/io/read_bim.h"
 #include "limen/io/read_scan.h"
 #include "limen/report/json_values.h"
 
@@ -158,6 +160,12 @@ std::string text_of(const Json& file) {
 
 int run(const std::string& path, const Session& session) {
   session.monitor->begin_stage("reading");
+  if (is_bim_file(path)) {
+    const Json model = json_of_model(path, read_bim(path, *session.monitor));
+    session.say(text_of_model(model));
+    session.answer(to_text(model));
+    return kExitOk;
+  }
   const Json json = json_of_file(path, read_scan_file(path, {}, *session.monitor));
   session.say(text_of(json));
   session.answer(to_text(json));
@@ -168,9 +176,9 @@ int run(const std::string& path, const Session& session) {
 
 void add_info_command(CLI::App& app, Session& session) {
   auto path = std::make_shared<std::string>();
-  CLI::App* command = add_command(app, session, "info", "Tell what a scan file holds",
+  CLI::App* command = add_command(app, session, "info", "Tell what a scan or a model file holds",
                                   [path, &session] { return run(*path, session); });
-  command->add_option("FILE", *path, "A scan of any format limen reads")->required();
+  command->add_option("FILE", *path, "A scan or a model of any format limen reads")->required();
 }
 
 }  // namespace limen
