@@ -114,7 +114,7 @@ class EdgeTruthFinder {
       if ((kept.plane.normal - plane.normal).norm() > 1e-12 ||
           std::abs(kept.plane.offset - plane.offset) > 1e-9)
         continue;
-      if (kept.inliers[scan] > 0 && kept.element != Element::glass) {
+      if (kept.inliers[scan] > 0) {
         face_of_truth[next] = static_cast<std::int32_t>(faces_.size());
         face_of_merged_[m] = face_of_truth[next];
         TrueFace face;

@@ -122,11 +122,12 @@ class BorderFinder {
   const SegmentOptions& o_;
 };
 
-std::vector<DetectedEdge> find_borders(const Scan& scan, const Features& features,
+std::vector<DetectedEdge> find_borders(const Scan& scan, const ExtractedFeatures& extracted,
                                        const std::vector<std::unique_ptr<PlaneImage>>& images,
                                        const SegmentOptions& options, Monitor& monitor) {
   constexpr double kLeastSame_m = 0.02;
-  const BorderSight sight(scan, std::max(kLeastSame_m, 1.5 * features.inlier_threshold_m));
+  const Features& features = extracted.features;
+  const BorderSight sight(scan, extracted, std::max(kLeastSame_m, 1.5 * features.inlier_threshold_m));
   const BorderFinder finder(features, sight, options);
   std::vector<std::vector<DetectedEdge>> found(images.size());
   parallel_for(images.size(), 1, [&](std::size_t k, std::size_t /*end*/) {
@@ -159,7 +160,7 @@ std::vector<DetectedEdge> find_edges(const Scan& scan, const ExtractedFeatures& 
   std::vector<DetectedEdge> edges;
   if (options.creases) edges = find_creases(features, images, options);
   if (options.borders) {
-    const std::vector<DetectedEdge> borders = find_borders(scan, features, images, options, monitor);
+    const std::vector<DetectedEdge> borders = find_borders(scan, extracted, images, options, monitor);
     edges.insert(edges.end(), borders.begin(), borders.end());
   }
   MergeOptions merge;

@@ -377,6 +377,15 @@ Approach approach_of(const PlaneImage& image, const Strip& line) {
   approach.nearest_m = *middle;
   approach.shortfall_m = shortfall_of(points, strip.high_m);
   approach.filled = static_cast<double>(nearest.size()) / static_cast<double>(points.bins.size());
+  approach.first_m = 1e300;
+  approach.last_m = -1e300;
+  for (const auto& bin : points.bins) {
+    if (bin.empty() || bin.front().first > approach.nearest_m + 2.0 * approach.shortfall_m + image.pixel_m())
+      continue;
+    const double t = (bin.front().second.at - strip.origin).dot(strip.along);
+    approach.first_m = std::min(approach.first_m, t);
+    approach.last_m = std::max(approach.last_m, t);
+  }
   return approach;
 }
 

@@ -44,6 +44,8 @@ struct Approach {
   double nearest_m = 0.0;    ///< median over the bins of the distance of the nearest point
   double shortfall_m = 0.0;  ///< what this distance is on average where the surface reaches the line
   double filled = 0.0;       ///< share of the bins with points
+  double first_m = 0.0;      ///< along the line, of the first and the last bin with a point that near
+  double last_m = 0.0;
 };
 Approach approach_of(const PlaneImage& image, const Strip& line);
 

@@ -14,10 +14,10 @@ namespace limen {
 namespace {
 
 constexpr double kStep_m = 0.01;
-constexpr double kMargin_m = 0.02;
+constexpr double kMargin_m = 0.2;   // rows of points may end this far from an edge
 constexpr double kAside_m = 0.012;  // points next to an edge may belong to the other plane
 constexpr double kBeyondStrays_m = 0.015;
-constexpr double kNear = 1.7;      // how far from a line points may begin, in units of their usual shortfall
+constexpr double kNear = 1.4;      // how far from a line points may begin, in units of their usual shortfall
 constexpr double kFilled = 0.4;    // share of the bins along a line that must hold points
 constexpr double kEndShare = 0.5;  // of a crease along which one of its planes must end
 
@@ -92,6 +92,11 @@ struct Support {
   bool ends = false;  ///< on one side only
 };
 
+struct Interval {
+  double begin_m = 1e300;
+  double end_m = -1e300;
+};
+
 /// Looks at a plane along a line in it.
 class LineView {
  public:
@@ -103,21 +108,23 @@ class LineView {
 
   [[nodiscard]] Support at(double t) const {
     const Vector2d p = origin_ + t * along_;
-    Support support;
-    if (!image_.covered(p) && !image_.covered(p + kAside_m * across_) &&
-        !image_.covered(p - kAside_m * across_))
-      return support;
-    // A few strays of another surface on the line reach no further than their own discs.
-    const double aside = image_.reach_m(p) + kBeyondStrays_m;
+    // A few strays of another surface on the line reach no further than their own discs; where rows of
+    // points run along the line the next one may be further away than the points of a row are apart.
+    const double reach = image_.reach_m(p);
+    const double aside = reach + kBeyondStrays_m;
     const bool left = image_.covered(p + aside * across_);
     const bool right = image_.covered(p - aside * across_);
-    support.near = left || right;
+    Support support;
+    support.near = left || right || image_.covered(p + 2.0 * reach * across_) ||
+                   image_.covered(p - 2.0 * reach * across_);
     support.ends = !left || !right;
     return support;
   }
 
-  /// The plane's points come as near to a stretch of the line as they must where the surface does.
-  [[nodiscard]] bool reaches(double begin, double end) const {
+  /// The part of a stretch of the line along which the plane's points come as near to it as they must where
+  /// the surface does; empty where they do not.
+  [[nodiscard]] Interval reached(double begin, double end) const {
+    Interval reached;
     for (const double sign : {1.0, -1.0}) {
       Strip strip;
       strip.origin = origin_;
@@ -125,10 +132,14 @@ class LineView {
       strip.begin_m = sign > 0.0 ? begin : -end;
       strip.end_m = sign > 0.0 ? end : -begin;
       const Approach approach = approach_of(image_, strip);
-      if (approach.filled >= kFilled && approach.nearest_m <= kNear * approach.shortfall_m + kAside_m)
-        return true;
+      if (approach.filled < kFilled || approach.nearest_m > kNear * approach.shortfall_m + kAside_m) continue;
+      const double half = 0.5 * image_.spacing_m(strip.at(0.5 * (strip.begin_m + strip.end_m), 0.0));
+      const double first = sign > 0.0 ? approach.first_m : -approach.last_m;
+      const double last = sign > 0.0 ? approach.last_m : -approach.first_m;
+      reached.begin_m = std::min(reached.begin_m, first - half);
+      reached.end_m = std::max(reached.end_m, last + half);
     }
-    return false;
+    return reached;
   }
 
  private:
@@ -148,11 +159,16 @@ void add_stretches(const PlaneImage& a, const PlaneImage& b, const Line3& line, 
   int steps = 0;
   int ends = 0;
   const auto finish = [&] {
-    if (steps > 0 && last - begin >= options.min_length_m && ends >= kEndShare * steps &&
-        view_a.reaches(begin, last) && view_b.reaches(begin, last)) {
-      DetectedEdge edge = like;
-      edge.segment = {line.origin + begin * line.along, line.origin + last * line.along};
-      edges.push_back(edge);
+    if (steps > 0 && last - begin >= options.min_length_m && ends >= kEndShare * steps) {
+      const Interval of_a = view_a.reached(begin, last);
+      const Interval of_b = view_b.reached(begin, last);
+      const double from = std::max({begin, of_a.begin_m, of_b.begin_m});
+      const double to = std::min({last, of_a.end_m, of_b.end_m});
+      if (to - from >= options.min_length_m) {
+        DetectedEdge edge = like;
+        edge.segment = {line.origin + from * line.along, line.origin + to * line.along};
+        edges.push_back(edge);
+      }
     }
     steps = 0;
     ends = 0;

@@ -10,7 +10,7 @@ namespace limen {
 
 /// When two edges are one.
 struct MergeOptions {
-  double beside_m = 0.025;     ///< a border this near to a crease is the crease
+  double beside_m = 0.015;     ///< a border this near to a crease is the crease
   double same_m = 0.012;       ///< edges of one kind this near to one another are one
   double max_angle_deg = 4.0;  ///< between two edges that are one
   double join_gap_m = 0.15;    ///< pieces of one line are joined across gaps up to this

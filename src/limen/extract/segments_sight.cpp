@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "limen/base/angles.h"
+
 namespace limen {
 namespace {
 
@@ -13,10 +15,12 @@ constexpr double kAnyJump = 1e12;    // links between scan lines are never cut
 constexpr double kTouchSlope = 4.0;  // how steeply what stands on a surface may rise as the scanner sees it
 constexpr double kTouchMargin_m = 0.03;
 constexpr int kLooks = 3;
+constexpr double kAlikeDeg = 20.0;  // planes that differ by more face another way
 
 }  // namespace
 
-BorderSight::BorderSight(const Scan& scan, double same_m) : scan_(&scan), same_m_(same_m) {
+BorderSight::BorderSight(const Scan& scan, const ExtractedFeatures& extracted, double same_m)
+    : scan_(&scan), extracted_(&extracted), same_m_(same_m) {
   if (scan.centres.size() == 1) make_image();
   if (scan.mobile() && scan.topology.known()) make_grid();
 }
@@ -60,6 +64,14 @@ void BorderSight::make_grid() {
     place_of_[grid_->scan_index(at)] = static_cast<std::uint32_t>(at);
 }
 
+/// False where the point belongs to a plane that faces another way.
+bool BorderSight::faces_like(const Plane& plane, std::size_t point) const {
+  const std::int32_t label = extracted_->labels[point];
+  if (label < 0) return true;
+  const Plane& own = extracted_->features.planes[static_cast<std::size_t>(label)].plane;
+  return std::abs(own.normal.dot(plane.normal)) > std::cos(radians(kAlikeDeg));
+}
+
 /// What the ray of a point says, where it meets the plane beyond the border.
 void BorderSight::vote(const BorderPlace& place, std::size_t point, Votes& votes) const {
   const Vector3d& x = scan_->points[point];
@@ -73,7 +85,7 @@ void BorderSight::vote(const BorderPlace& place, std::size_t point, Votes& votes
   const double out = (meets - place.edge).dot(place.outward);
   if (out < 0.25 * place.step_m || out > 6.0 * place.step_m + 0.02) return;
   const double before = height > 0.0 ? place.plane.signed_distance(x) : -place.plane.signed_distance(x);
-  if (std::abs(before) <= same_m_) {
+  if (std::abs(before) <= same_m_ && faces_like(place.plane, point)) {
     ++votes.same;
   } else if (before < 0.0) {
     ++votes.open;

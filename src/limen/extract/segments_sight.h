@@ -7,6 +7,7 @@
 #include <memory>
 #include <vector>
 
+#include "limen/extract/extract_features.h"
 #include "limen/extract/scan_grid.h"
 #include "limen/geometry/plane.h"
 #include "limen/model/scan.h"
@@ -37,8 +38,9 @@ struct BorderPlace {
 /// asked.
 class BorderSight {
  public:
-  /// `same_m`: points nearer to a plane than this lie on it. The scan must outlive this.
-  BorderSight(const Scan& scan, double same_m);
+  /// `same_m`: points nearer to a plane than this lie on it, unless they belong to one that faces another
+  /// way. The scan and what was extracted from it must outlive this.
+  BorderSight(const Scan& scan, const ExtractedFeatures& extracted, double same_m);
 
   /// It can tell anything at all.
   [[nodiscard]] bool knows() const { return !pixels_.empty() || grid_ != nullptr; }
@@ -65,7 +67,10 @@ class BorderSight {
   [[nodiscard]] Votes votes_of_lines(const BorderPlace& place) const;
   void vote(const BorderPlace& place, std::size_t point, Votes& votes) const;
 
+  [[nodiscard]] bool faces_like(const Plane& plane, std::size_t point) const;
+
   const Scan* scan_;
+  const ExtractedFeatures* extracted_;
   double same_m_;
   std::size_t edge_ = 0;  ///< pixels per edge of the cube
   std::vector<Pixel> pixels_;
