@@ -13,10 +13,7 @@
 
 #include "limen/base/error.h"
 #include "limen/io/ifc_process.h"
-#include "limen/io/ifc_stream.h"
-#include "limen/io/ifc_stream_format.h"
 #include "limen/io/read_bim.h"
-#include "limen/io/step_file.h"
 #include "limen/io/test_support.h"
 
 namespace limen {
@@ -407,55 +404,6 @@ TEST_F(ReadIfc, SilenceAndCancelEndTheHelper) {
   EXPECT_THROW(run_ifc_helper("x", {}, {}, monitor), Error);
   canceller.join();
   unsetenv("LIMEN_IFC_HELPER");
-}
-
-TEST(IfcStream, CutAndFlippedStreamsNeverHarm) {
-  // A product with a nested operation, then every prefix of it and many single flips.
-  const auto count = [](std::uint32_t n) { return testing_io::bytes_of(n); };
-  const auto number = [](double x) { return testing_io::bytes_of(x); };
-  std::string mesh(1, '\0');
-  mesh += count(3);
-  for (int k = 0; k < 9; ++k) mesh += number(k);
-  mesh += count(1) + count(3) + count(0) + count(1) + count(2);
-  const std::string node = std::string(1, '\3') + count(2) + mesh + mesh;
-  const std::string product = testing_io::bytes_of<std::int64_t>(7) + count(7) + "IfcWall" + count(1) + node;
-  std::string stream(kIfcStreamMagic);
-  stream += "L" + count(8) + number(1.0) + "P" + count(static_cast<std::uint32_t>(product.size())) + product +
-            "Z" + count(4) + count(1);
-  const IfcShapes whole = parse_ifc_stream(stream);
-  ASSERT_TRUE(whole.complete);
-  ASSERT_EQ(whole.products.size(), 1U);
-  EXPECT_EQ(whole.products[0].shapes[0].children.size(), 2U);
-  for (std::size_t size = 0; size < stream.size(); ++size)
-    EXPECT_FALSE(parse_ifc_stream(std::string_view(stream).substr(0, size)).complete);
-  RandomStream random(5);
-  for (int trial = 0; trial < 2000; ++trial) {
-    std::string flipped = stream;
-    flipped[random.below(static_cast<std::uint32_t>(stream.size()))] = static_cast<char>(random.below(256));
-    for (const IfcProductShapes& made : parse_ifc_stream(flipped).products)
-      for (const Solid& shape : made.shapes)
-        for (const std::uint32_t corner : shape.mesh.corners) EXPECT_LT(corner, shape.mesh.points.size());
-  }
-}
-
-TEST(StepFile, CommentsTextsAndLostSemicolons) {
-  const std::string text =
-      "ISO-10303-21;\nFILE_SCHEMA(('ifc4'));\n/* #9=X(); */ #2 = IFCB('a;b''c', /* no */ (1,(2,3)), $ ) ;\n"
-      "#1=IFCA(#2,.T.)\n#3=IFCC('lost mark);\n#4=IFCD();\nEND-ISO-10303-21;\n";
-  const StepFile file(text);
-  EXPECT_EQ(file.schema(), "IFC4");
-  EXPECT_TRUE(file.whole());
-  EXPECT_EQ(file.entities().size(), 3U);
-  EXPECT_EQ(file.damaged(), 1U);
-  ASSERT_NE(file.find(2), nullptr);
-  const auto arguments = step_arguments(file.find(2)->arguments);
-  ASSERT_EQ(arguments.size(), 3U);
-  EXPECT_EQ(step_text(arguments[0]), "a;b'c");
-  EXPECT_EQ(step_references(step_arguments(file.find(1)->arguments)[0]), std::vector<std::int64_t>{2});
-  EXPECT_EQ(file.find(9), nullptr);
-  EXPECT_NE(file.find(4), nullptr);
-  EXPECT_DOUBLE_EQ(step_number("IFCLENGTHMEASURE(0.3048)").value_or(0.0), 0.3048);
-  EXPECT_EQ(step_enumeration(".Roof."), "ROOF");
 }
 
 }  // namespace
