@@ -3,6 +3,7 @@
 #include "limen/report/pose_file.h"
 
 #include <fstream>
+#include <utility>
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -109,6 +110,21 @@ TEST_F(PoseFileTest, FindsTheTruthOfTwoScansOfACase) {
   other.source_path = "cellar.ply";
   EXPECT_THROW((void)read_true_pose(path, other), Error);
   EXPECT_THROW((void)read_true_pose(path, PoseFile{}), Error);
+}
+
+TEST_F(PoseFileTest, FindsTheTruthOfAScanInItsModel) {
+  Json truth;
+  truth["model"]["file"] = "house.ifc";
+  truth["scans"] = {{{"file", "room.ply"}, {"world_from_scan", json_of(to_matrix(kPose))}}};
+  const fs::path path = file("truth.json", to_text(truth));
+  PoseFile result;
+  result.source_path = "somewhere/room.ply";
+  result.target_path = "elsewhere/house.ifc";
+  EXPECT_TRUE(same(read_true_pose(path, result), kPose));
+  std::swap(result.source_path, result.target_path);
+  EXPECT_TRUE(same(read_true_pose(path, result), inverse(kPose)));
+  result.source_path = "elsewhere/barn.ifc";
+  EXPECT_THROW((void)read_true_pose(path, result), Error);
 }
 
 TEST_F(PoseFileTest, MeasuresAKnownError) {

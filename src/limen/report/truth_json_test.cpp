@@ -80,6 +80,34 @@ TEST(TruthJson, TellsTheOutlineOfArchedWindows) {
   EXPECT_FALSE(openings[1].contains("outer_outline"));
 }
 
+TEST(TruthJson, TellsOfAScannedModel) {
+  SimulatedCase made;
+  made.truth.local_origin = Vector3d(1000.0, 2000.0, 30.0);
+  made.scans.resize(1);
+  made.scans[0].name = "scan_01";
+  made.truth.scans.push_back({.name = "scan_01",
+                              .local_from_scan = {Matrix3d::Identity(), Vector3d(1.5, 2.5, 3.5)},
+                              .plane_of_point = {}});
+  made.truth.model =
+      ModelTruth{.file = "house.ifc", .as_built = true, .changes = {}, .rooms = {}, .furniture = 3};
+  made.truth.model->rooms.push_back({.space = 4, .guid = "g", .name = "12 Office", .like = {5, 7}});
+  made.truth.model->changes.push_back({.element = 8,
+                                       .guid = "w",
+                                       .kind = "wall",
+                                       .state = ModelState::moved,
+                                       .shift_m = Vector3d(0.01, 0.0, 0.0)});
+  made.truth.model->changes.push_back({.element = 9, .guid = "d", .kind = "door", .state = ModelState::open});
+  const json truth = json::parse(truth_json(made.truth));
+  EXPECT_EQ(matrix_of(truth["scans"][0]["target_from_source"]).col(3),
+            Eigen::Vector4d(1001.5, 2002.5, 33.5, 1.0));
+  EXPECT_EQ(truth["model"]["file"], "house.ifc");
+  EXPECT_EQ(truth["model"]["rooms"][0]["repeated"], true);
+  EXPECT_EQ(truth["model"]["rooms"][0]["like"], json({5, 7}));
+  EXPECT_EQ(truth["model"]["changes"][0]["shift_m"][0], 0.01);
+  EXPECT_EQ(truth["model"]["changes"][1]["state"], "open");
+  EXPECT_EQ(json::parse(task_json(made))["target"], "house.ifc");
+}
+
 TEST(TaskJson, NamesFilesButNoTruth) {
   const SimulatedCase made = museum();
   const std::string text = task_json(made);

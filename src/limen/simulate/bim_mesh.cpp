@@ -230,13 +230,15 @@ BuiltState as_planned(const BimModel& model) {
 }
 
 BimMesh build_mesh(const BimModel& model, const std::vector<BimMatter>& matter, const BuiltState& built) {
+  // A mesh may be the skin of a room instead of a solid: only IFC says which.
+  const bool solids = model.schema.rfind("IFC", 0) == 0;
   const std::vector<char> closed = closed_elements(model);
   BimMesh result;
   for (const BimMatter& part : matter) {
     const BimFace& face = model.faces[part.face];
     const auto element = static_cast<std::size_t>(face.element);
     if (built.there[element] == 0) continue;
-    const bool one_sided = closed[element] != 0 && !may_have_panes(model.elements[element].kind);
+    const bool one_sided = solids && closed[element] != 0 && !may_have_panes(model.elements[element].kind);
     add_part(result, face, part, built.shift_m[element], one_sided);
   }
   return result;

@@ -35,8 +35,8 @@ struct BimMesh {
   std::vector<int> element_of_surface;  ///< index into BimModel::elements; -1: not of the model
 };
 
-/// Elements that are closed solids are seen from outside only; light that gets inside them through a crack is
-/// lost. All others are seen from both sides.
+/// Elements of an IFC file that are closed solids are seen from outside only; light that gets inside them
+/// through a crack is lost. All others, and meshes, are seen from both sides.
 BimMesh build_mesh(const BimModel& model, const std::vector<BimMatter>& matter, const BuiltState& built);
 
 }  // namespace limen
