@@ -15,6 +15,7 @@
 #include "limen/extract/segments_creases.h"
 #include "limen/extract/segments_image.h"
 #include "limen/extract/segments_merge.h"
+#include "limen/extract/segments_points.h"
 #include "limen/extract/segments_sight.h"
 
 namespace limen {
@@ -23,10 +24,10 @@ namespace {
 constexpr double kShortestRun = 0.5;  // of an outline, in units of the shortest segment
 constexpr int kSmooth = 2;            // bins to either side that a place's sight is smoothed over
 
-std::vector<std::unique_ptr<PlaneImage>> images_of(const Scan& scan, const ExtractedFeatures& extracted,
+std::vector<std::unique_ptr<PlaneImage>> images_of(const Scan& scan, const std::vector<PlanarPolygon>& planes,
+                                                   const std::vector<std::int32_t>& labels,
                                                    Monitor& monitor) {
-  const std::vector<PlanarPolygon>& planes = extracted.features.planes;
-  const std::vector<std::vector<std::uint32_t>> points = points_of(extracted.labels, planes.size());
+  const std::vector<std::vector<std::uint32_t>> points = points_of(labels, planes.size());
   std::vector<std::unique_ptr<PlaneImage>> images(planes.size());
   parallel_for(planes.size(), 1, [&](std::size_t k, std::size_t /*end*/) {
     monitor.throw_if_cancelled();
@@ -38,14 +39,15 @@ std::vector<std::unique_ptr<PlaneImage>> images_of(const Scan& scan, const Extra
 /// The borders of one plane.
 class BorderFinder {
  public:
-  BorderFinder(const Features& features, const BorderSight& sight, const SegmentOptions& options)
-      : features_(features), sight_(sight), o_(options) {}
+  BorderFinder(const Features& features, const BorderSight& sight, const std::vector<char>& ambiguous,
+               const SegmentOptions& options)
+      : features_(features), sight_(sight), ambiguous_(ambiguous), o_(options) {}
 
   [[nodiscard]] std::vector<DetectedEdge> run(std::size_t plane, const PlaneImage& image) const {
     std::vector<DetectedEdge> edges;
     for (const StraightRun& run : straight_runs(image, kShortestRun * o_.min_length_m)) {
       if (!sight_.knows() && !run.hole) continue;
-      const std::optional<BorderFit> fit = fit_border(image, run, o_.join_gap_m);
+      const std::optional<BorderFit> fit = fit_border(image, run, o_.join_gap_m, ambiguous_);
       if (!fit || fit->sigma_m > o_.max_border_sigma_m ||
           fit->angle_sigma_rad > radians(o_.max_border_angle_deg))
         continue;
@@ -119,20 +121,29 @@ class BorderFinder {
 
   const Features& features_;
   const BorderSight& sight_;
+  const std::vector<char>& ambiguous_;
   const SegmentOptions& o_;
 };
 
-std::vector<DetectedEdge> find_borders(const Scan& scan, const ExtractedFeatures& extracted,
-                                       const std::vector<std::unique_ptr<PlaneImage>>& images,
-                                       const SegmentOptions& options, Monitor& monitor) {
+/// What borders are found from.
+struct BorderScene {
+  const Scan& scan;
+  const ExtractedFeatures& extracted;
+  const std::vector<std::unique_ptr<PlaneImage>>& images;
+  const std::vector<char>& ambiguous;
+};
+
+std::vector<DetectedEdge> find_borders(const BorderScene& scene, const SegmentOptions& options,
+                                       Monitor& monitor) {
   constexpr double kLeastSame_m = 0.02;
-  const Features& features = extracted.features;
-  const BorderSight sight(scan, extracted, std::max(kLeastSame_m, 1.5 * features.inlier_threshold_m));
-  const BorderFinder finder(features, sight, options);
-  std::vector<std::vector<DetectedEdge>> found(images.size());
-  parallel_for(images.size(), 1, [&](std::size_t k, std::size_t /*end*/) {
+  const Features& features = scene.extracted.features;
+  const BorderSight sight(scene.scan, scene.extracted,
+                          std::max(kLeastSame_m, 1.5 * features.inlier_threshold_m));
+  const BorderFinder finder(features, sight, scene.ambiguous, options);
+  std::vector<std::vector<DetectedEdge>> found(scene.images.size());
+  parallel_for(found.size(), 1, [&](std::size_t k, std::size_t /*end*/) {
     monitor.throw_if_cancelled();
-    found[k] = finder.run(k, *images[k]);
+    found[k] = finder.run(k, *scene.images[k]);
   });
   std::vector<DetectedEdge> edges;
   for (const auto& part : found) edges.insert(edges.end(), part.begin(), part.end());
@@ -156,11 +167,15 @@ std::vector<DetectedEdge> find_edges(const Scan& scan, const ExtractedFeatures& 
                                      const SegmentOptions& options, Monitor& monitor) {
   options.check();
   const Features& features = extracted.features;
-  const std::vector<std::unique_ptr<PlaneImage>> images = images_of(scan, extracted, monitor);
+  std::vector<std::unique_ptr<PlaneImage>> images =
+      images_of(scan, features.planes, extracted.labels, monitor);
+  images = images_of(scan, features.planes, completed_labels(scan, extracted, images), monitor);
+  const Creases creases = find_creases(features, images, options, scan.size());
   std::vector<DetectedEdge> edges;
-  if (options.creases) edges = find_creases(features, images, options);
+  if (options.creases) edges = creases.edges;
   if (options.borders) {
-    const std::vector<DetectedEdge> borders = find_borders(scan, extracted, images, options, monitor);
+    const std::vector<DetectedEdge> borders =
+        find_borders({scan, extracted, images, creases.ambiguous}, options, monitor);
     edges.insert(edges.end(), borders.begin(), borders.end());
   }
   MergeOptions merge;

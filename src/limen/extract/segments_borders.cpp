@@ -177,12 +177,14 @@ struct BinnedPoints {
   std::vector<std::vector<std::pair<double, FlatPoint>>> bins;  ///< inward distance and point
 };
 
-BinnedPoints binned(const PlaneImage& image, const Strip& strip, double bin_m) {
+BinnedPoints binned(const PlaneImage& image, const Strip& strip, double bin_m,
+                    const std::vector<char>& ambiguous = {}) {
   BinnedPoints points;
   points.begin_m = strip.begin_m;
   points.bin_m = bin_m;
   points.bins.resize(static_cast<std::size_t>((strip.end_m - strip.begin_m) / bin_m) + 1);
   for (const FlatPoint& point : image.points_in(strip)) {
+    if (!ambiguous.empty() && ambiguous[point.point] != 0) continue;
     const Vector2d off = point.at - strip.origin;
     const double t = (off.dot(strip.along) - strip.begin_m) / bin_m;
     const auto k = std::min(points.bins.size() - 1, static_cast<std::size_t>(std::max(0.0, t)));
@@ -364,23 +366,23 @@ Approach approach_of(const PlaneImage& image, const Strip& line) {
   const double middle_t = 0.5 * (line.begin_m + line.end_m);
   const double spacing = image.spacing_m(line.at(middle_t, 0.0));
   Strip strip = line;
-  strip.low_m = -0.5 * image.pixel_m();
-  strip.high_m = std::max(kDeepest_m, kDepth * spacing);
+  strip.high_m = line.low_m + std::max(kDeepest_m, kDepth * spacing);
   const BinnedPoints points = binned(image, strip, std::max(0.005, kBin * spacing));
   std::vector<double> nearest;
   for (const auto& bin : points.bins)
-    if (!bin.empty()) nearest.push_back(bin.front().first);
+    if (!bin.empty()) nearest.push_back(bin.front().first - line.low_m);
   Approach approach;
   if (nearest.empty()) return approach;
-  const auto middle = nearest.begin() + static_cast<std::ptrdiff_t>(nearest.size() / 2);
-  std::nth_element(nearest.begin(), middle, nearest.end());
-  approach.nearest_m = *middle;
-  approach.shortfall_m = shortfall_of(points, strip.high_m);
+  std::sort(nearest.begin(), nearest.end());
+  approach.nearest_m = nearest[nearest.size() / 2];
+  approach.spread_m = nearest[3 * nearest.size() / 4] - nearest[nearest.size() / 4];
+  approach.shortfall_m = shortfall_of(points, strip.high_m - strip.low_m);
   approach.filled = static_cast<double>(nearest.size()) / static_cast<double>(points.bins.size());
   approach.first_m = 1e300;
   approach.last_m = -1e300;
   for (const auto& bin : points.bins) {
-    if (bin.empty() || bin.front().first > approach.nearest_m + 2.0 * approach.shortfall_m + image.pixel_m())
+    if (bin.empty() ||
+        bin.front().first > line.low_m + approach.nearest_m + 2.0 * approach.shortfall_m + image.pixel_m())
       continue;
     const double t = (bin.front().second.at - strip.origin).dot(strip.along);
     approach.first_m = std::min(approach.first_m, t);
@@ -389,7 +391,8 @@ Approach approach_of(const PlaneImage& image, const Strip& line) {
   return approach;
 }
 
-std::optional<BorderFit> fit_border(const PlaneImage& image, const StraightRun& run, double beyond_m) {
+std::optional<BorderFit> fit_border(const PlaneImage& image, const StraightRun& run, double beyond_m,
+                                    const std::vector<char>& ambiguous) {
   const double middle_t = 0.5 * (run.line.begin_m + run.line.end_m);
   const double reach = image.reach_m(run.line.at(middle_t, 0.0));
   const double spacing = image.spacing_m(run.line.at(middle_t, reach));
@@ -399,7 +402,7 @@ std::optional<BorderFit> fit_border(const PlaneImage& image, const StraightRun& 
   strip.low_m = reach - 3.0 * spacing - image.pixel_m();
   strip.high_m = reach + kDepth * spacing;
   const double bin_m = std::max(0.005, kBin * spacing);
-  const BinnedPoints points = binned(image, strip, bin_m);
+  const BinnedPoints points = binned(image, strip, bin_m, ambiguous);
   BorderFit fit;
   fit.bin_m = bin_m;
   fit.shortfall_m = shortfall_of(points, kDepth * spacing);

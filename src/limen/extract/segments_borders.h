@@ -41,12 +41,14 @@ struct BorderFit {
 
 /// How near a plane's points come to a line in it, on the inward side of the line.
 struct Approach {
-  double nearest_m = 0.0;    ///< median over the bins of the distance of the nearest point
+  double nearest_m = 0.0;    ///< median over the bins of the distance of the nearest point from line.low_m on
   double shortfall_m = 0.0;  ///< what this distance is on average where the surface reaches the line
+  double spread_m = 0.0;     ///< between the quarters of the distances: none where rows run along the line
   double filled = 0.0;       ///< share of the bins with points
   double first_m = 0.0;      ///< along the line, of the first and the last bin with a point that near
   double last_m = 0.0;
 };
+/// `line.low_m`: points nearer to the line do not count.
 Approach approach_of(const PlaneImage& image, const Strip& line);
 
 /// Fits a line to the outermost points along a run and `beyond_m` further on either side.
@@ -55,6 +57,8 @@ Approach approach_of(const PlaneImage& image, const Strip& line);
 /// mean distance from a place within to the next sample, sum g^2 / (2 sum g) over the gaps g between samples
 /// one behind the other, is the same for rows of even spacing as for samples at random. Empty: too few
 /// points, or a border too ragged or bent to be a line.
-std::optional<BorderFit> fit_border(const PlaneImage& image, const StraightRun& run, double beyond_m);
+/// Points marked in `ambiguous` (by their index in the scan) do not count.
+std::optional<BorderFit> fit_border(const PlaneImage& image, const StraightRun& run, double beyond_m,
+                                    const std::vector<char>& ambiguous);
 
 }  // namespace limen

@@ -15,9 +15,11 @@ namespace {
 
 constexpr double kStep_m = 0.01;
 constexpr double kMargin_m = 0.2;   // rows of points may end this far from an edge
-constexpr double kAside_m = 0.012;  // points next to an edge may belong to the other plane
+constexpr double kAside_m = 0.006;  // slack of that
+constexpr double kAmbiguous = 1.2;  // how near to a plane points may be its own, in units of the threshold
 constexpr double kBeyondStrays_m = 0.015;
-constexpr double kNear = 1.4;      // how far from a line points may begin, in units of their usual shortfall
+constexpr double kNear = 1.25;     // how far from a line points may begin, in units of their usual shortfall,
+constexpr double kRows = 0.85;     // and more where rows run along the line
 constexpr double kFilled = 0.4;    // share of the bins along a line that must hold points
 constexpr double kEndShare = 0.5;  // of a crease along which one of its planes must end
 
@@ -97,11 +99,20 @@ struct Interval {
   double end_m = -1e300;
 };
 
+/// How far from a line the points of a surface that reaches it may begin. Where rows of points run along the
+/// line they all begin at one distance, anything up to the distance between two rows.
+double farthest(const Approach& approach) {
+  const double same = std::clamp(1.0 - approach.spread_m / std::max(1e-6, approach.shortfall_m), 0.0, 1.0);
+  return (kNear + kRows * same) * approach.shortfall_m + kAside_m;
+}
+
 /// Looks at a plane along a line in it.
 class LineView {
  public:
-  LineView(const PlaneImage& image, const Line3& line)
+  /// Points of the plane nearer to the line than `ambiguous_m` may be the other plane's.
+  LineView(const PlaneImage& image, const Line3& line, double ambiguous_m)
       : image_(image),
+        ambiguous_m_(ambiguous_m),
         origin_(image.frame().to_plane(line.origin)),
         along_(image.frame().u.dot(line.along), image.frame().v.dot(line.along)),
         across_(-along_.y(), along_.x()) {}
@@ -131,8 +142,9 @@ class LineView {
       strip.along = sign * along_;
       strip.begin_m = sign > 0.0 ? begin : -end;
       strip.end_m = sign > 0.0 ? end : -begin;
+      strip.low_m = ambiguous_m_;
       const Approach approach = approach_of(image_, strip);
-      if (approach.filled < kFilled || approach.nearest_m > kNear * approach.shortfall_m + kAside_m) continue;
+      if (approach.filled < kFilled || approach.nearest_m > farthest(approach)) continue;
       const double half = 0.5 * image_.spacing_m(strip.at(0.5 * (strip.begin_m + strip.end_m), 0.0));
       const double first = sign > 0.0 ? approach.first_m : -approach.last_m;
       const double last = sign > 0.0 ? approach.last_m : -approach.first_m;
@@ -142,50 +154,73 @@ class LineView {
     return reached;
   }
 
+  void add_ambiguous(double begin, double end, std::vector<std::uint32_t>& points) const {
+    const Strip strip{origin_, along_, begin, end, -ambiguous_m_, ambiguous_m_};
+    for (const FlatPoint& point : image_.points_in(strip)) points.push_back(point.point);
+  }
+
  private:
   const PlaneImage& image_;
+  double ambiguous_m_;
   Vector2d origin_;
   Vector2d along_;
   Vector2d across_;
 };
 
-/// The stretches of a line that both planes bear out.
-void add_stretches(const PlaneImage& a, const PlaneImage& b, const Line3& line, const DetectedEdge& like,
-                   const SegmentOptions& options, std::vector<DetectedEdge>& edges) {
-  const LineView view_a(a, line);
-  const LineView view_b(b, line);
-  double begin = 0.0;
-  double last = -1e9;
-  int steps = 0;
-  int ends = 0;
-  const auto finish = [&] {
-    if (steps > 0 && last - begin >= options.min_length_m && ends >= kEndShare * steps) {
-      const Interval of_a = view_a.reached(begin, last);
-      const Interval of_b = view_b.reached(begin, last);
-      const double from = std::max({begin, of_a.begin_m, of_b.begin_m});
-      const double to = std::min({last, of_a.end_m, of_b.end_m});
-      if (to - from >= options.min_length_m) {
-        DetectedEdge edge = like;
-        edge.segment = {line.origin + from * line.along, line.origin + to * line.along};
-        edges.push_back(edge);
+/// What two planes have in common.
+struct Meeting {
+  std::vector<DetectedEdge> edges;
+  std::vector<std::uint32_t> ambiguous;  ///< points
+};
+
+/// Finds the stretches of a line that both planes bear out.
+class Meet {
+ public:
+  Meet(const LineView& a, const LineView& b, const Line3& line, const SegmentOptions& options)
+      : a_(a), b_(b), line_(line), o_(options) {}
+
+  void run(const DetectedEdge& like, Meeting& meeting) {
+    for (double t = line_.begin_m; t <= line_.end_m; t += kStep_m) {
+      const Support of_a = a_.at(t);
+      if (!of_a.near) continue;
+      const Support of_b = b_.at(t);
+      if (!of_b.near) continue;
+      if (steps_ > 0 && t - last_ > o_.join_gap_m) finish(like, meeting);
+      if (steps_ == 0) begin_ = t;
+      last_ = t;
+      ++steps_;
+      if (of_a.ends || of_b.ends) ++ends_;
+    }
+    finish(like, meeting);
+  }
+
+ private:
+  void finish(const DetectedEdge& like, Meeting& meeting) {
+    if (steps_ > 0 && last_ - begin_ >= o_.min_length_m && ends_ >= kEndShare * steps_) {
+      a_.add_ambiguous(begin_, last_, meeting.ambiguous);
+      b_.add_ambiguous(begin_, last_, meeting.ambiguous);
+      const Interval of_a = a_.reached(begin_, last_);
+      const Interval of_b = b_.reached(begin_, last_);
+      const double from = std::max({begin_, of_a.begin_m, of_b.begin_m});
+      const double to = std::min({last_, of_a.end_m, of_b.end_m});
+      if (to - from >= o_.min_length_m) {
+        meeting.edges.push_back(like);
+        meeting.edges.back().segment = {line_.origin + from * line_.along, line_.origin + to * line_.along};
       }
     }
-    steps = 0;
-    ends = 0;
-  };
-  for (double t = line.begin_m; t <= line.end_m; t += kStep_m) {
-    const Support of_a = view_a.at(t);
-    if (!of_a.near) continue;
-    const Support of_b = view_b.at(t);
-    if (!of_b.near) continue;
-    if (steps > 0 && t - last > options.join_gap_m) finish();
-    if (steps == 0) begin = t;
-    last = t;
-    ++steps;
-    if (of_a.ends || of_b.ends) ++ends;
+    steps_ = 0;
+    ends_ = 0;
   }
-  finish();
-}
+
+  const LineView& a_;
+  const LineView& b_;
+  const Line3& line_;
+  const SegmentOptions& o_;
+  double begin_ = 0.0;
+  double last_ = -1e9;
+  int steps_ = 0;
+  int ends_ = 0;
+};
 
 /// How well the place of a plane is known, from its points.
 double plane_sigma_m(const PlanarPolygon& plane) {
@@ -194,13 +229,12 @@ double plane_sigma_m(const PlanarPolygon& plane) {
 
 }  // namespace
 
-std::vector<DetectedEdge> find_creases(const Features& features,
-                                       const std::vector<std::unique_ptr<PlaneImage>>& images,
-                                       const SegmentOptions& options) {
+Creases find_creases(const Features& features, const std::vector<std::unique_ptr<PlaneImage>>& images,
+                     const SegmentOptions& options, std::size_t points) {
   const double least_sine = std::sin(radians(options.min_angle_deg));
   std::vector<Box3> boxes;
   for (const auto& image : images) boxes.push_back(box_in_space(*image));
-  std::vector<std::vector<DetectedEdge>> found(images.size());
+  std::vector<Meeting> found(images.size());
   parallel_for(images.size(), 1, [&](std::size_t i, std::size_t /*end*/) {
     for (std::size_t j = i + 1; j < images.size(); ++j) {
       if (!overlap(boxes[i], boxes[j])) continue;
@@ -213,16 +247,23 @@ std::vector<DetectedEdge> find_creases(const Features& features,
       clip(*images[i], *line);
       clip(*images[j], *line);
       if (line->end_m - line->begin_m < options.min_length_m) continue;
+      const double sine = a.plane.normal.cross(b.plane.normal).norm();
       DetectedEdge like;
       like.planes = {static_cast<std::int32_t>(i), static_cast<std::int32_t>(j)};
-      like.sigma_m =
-          std::hypot(plane_sigma_m(a), plane_sigma_m(b)) / a.plane.normal.cross(b.plane.normal).norm();
-      add_stretches(*images[i], *images[j], *line, like, options, found[i]);
+      like.sigma_m = std::hypot(plane_sigma_m(a), plane_sigma_m(b)) / sine;
+      const double ambiguous_m = kAmbiguous * features.inlier_threshold_m / std::max(0.3, sine);
+      const LineView view_a(*images[i], *line, ambiguous_m);
+      const LineView view_b(*images[j], *line, ambiguous_m);
+      Meet(view_a, view_b, *line, options).run(like, found[i]);
     }
   });
-  std::vector<DetectedEdge> edges;
-  for (const auto& part : found) edges.insert(edges.end(), part.begin(), part.end());
-  return edges;
+  Creases creases;
+  creases.ambiguous.assign(points, 0);
+  for (const Meeting& part : found) {
+    creases.edges.insert(creases.edges.end(), part.edges.begin(), part.edges.end());
+    for (const std::uint32_t point : part.ambiguous) creases.ambiguous[point] = 1;
+  }
+  return creases;
 }
 
 }  // namespace limen

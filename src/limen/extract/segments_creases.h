@@ -10,10 +10,17 @@
 
 namespace limen {
 
+struct Creases {
+  std::vector<DetectedEdge> edges;
+  /// Of each point of the scan: it lies on two planes that come near one another, so that it does not tell
+  /// where either ends.
+  std::vector<char> ambiguous;
+};
+
 /// The pieces of the lines in which planes meet, where both have points next to the line and one of them ends
-/// there. `images[k]` belongs to Features::planes[k].
-std::vector<DetectedEdge> find_creases(const Features& features,
-                                       const std::vector<std::unique_ptr<PlaneImage>>& images,
-                                       const SegmentOptions& options);
+/// there. `images[k]` belongs to Features::planes[k]; `points`: of the
+/// scan.
+Creases find_creases(const Features& features, const std::vector<std::unique_ptr<PlaneImage>>& images,
+                     const SegmentOptions& options, std::size_t points);
 
 }  // namespace limen
