@@ -1,0 +1,158 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/deviation/element_shift.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include <Eigen/Eigenvalues>
+
+namespace limen {
+namespace {
+
+constexpr double kBinM = 0.001;
+constexpr std::ptrdiff_t kSmooth = 4;   // bins either way
+constexpr double kLeastWidthM = 0.006;  // of the peak, either way
+constexpr int kRounds = 6;
+constexpr double kFaceSigmaM = 0.003;   // flatness of built surfaces: a face is known no better
+constexpr double kRobustM = 0.008;      // faces that differ by more from the shift count less
+constexpr double kMostPoints = 2000.0;  // more points do not make a face more certain
+constexpr double kAcross = 0.5;         // cosine: a face across a direction
+
+/// Start of the peak: middle of the fullest window.
+double peak_of(const std::vector<float>& distances, double most) {
+  const auto half = static_cast<std::ptrdiff_t>(std::ceil(most / kBinM));
+  const std::ptrdiff_t size = 2 * half + 1;
+  std::vector<int> bins(static_cast<std::size_t>(size), 0);
+  for (const float d : distances) {
+    const auto bin = static_cast<std::ptrdiff_t>(std::lround(static_cast<double>(d) / kBinM)) + half;
+    ++bins[static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(bin, 0, size - 1))];
+  }
+  std::ptrdiff_t best = half;
+  int fullest = -1;
+  int sum = 0;
+  for (std::ptrdiff_t k = -kSmooth; k < size; ++k) {
+    // The window about k: one bin enters, one leaves. Of equally full ones the nearest to the face counts.
+    if (k + kSmooth < size) sum += bins[static_cast<std::size_t>(k + kSmooth)];
+    if (k - kSmooth - 1 >= 0) sum -= bins[static_cast<std::size_t>(k - kSmooth - 1)];
+    const bool nearer = sum == fullest && std::abs(k - half) < std::abs(best - half);
+    if (k < 0 || (sum <= fullest && !nearer)) continue;
+    fullest = sum;
+    best = k;
+  }
+  return static_cast<double>(best - half) * kBinM;
+}
+
+double weight_of(const FaceOffset& face) {
+  return std::min(static_cast<double>(face.points), kMostPoints);
+}
+
+double tukey(double residual, double width) {
+  const double x = residual / width;
+  return std::abs(x) >= 1.0 ? 0.0 : (1.0 - x * x) * (1.0 - x * x);
+}
+
+/// Normal equations of a shift.
+struct Sums {
+  Matrix3d information = Matrix3d::Zero();
+  Vector3d right = Vector3d::Zero();
+  double squares = 0.0;
+  double weight = 0.0;
+};
+
+Sums sums_at(const std::vector<FaceOffset>& faces, const Vector3d& shift, double width) {
+  Sums sums;
+  for (const FaceOffset& face : faces) {
+    const double residual = face.offset_m - face.normal.dot(shift);
+    const double weight = weight_of(face) * tukey(residual, width);
+    sums.information += weight * face.normal * face.normal.transpose();
+    sums.right += weight * residual * face.normal;
+    sums.squares += weight * residual * residual;
+    sums.weight += weight;
+  }
+  return sums;
+}
+
+/// Directions that enough points hold, as an orthonormal basis; the others go to `open`.
+std::vector<Vector3d> held_directions(const std::vector<FaceOffset>& faces, const DeviationOptions& options,
+                                      std::vector<Vector3d>& open) {
+  Matrix3d information = Matrix3d::Zero();
+  for (const FaceOffset& face : faces) information += weight_of(face) * face.normal * face.normal.transpose();
+  const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(information);
+  std::vector<Vector3d> held;
+  for (Eigen::Index k = 2; k >= 0; --k) {
+    Vector3d direction = solver.eigenvectors().col(k);
+    Eigen::Index largest = 0;
+    direction.cwiseAbs().maxCoeff(&largest);
+    if (direction[largest] < 0.0) direction = -direction;
+    std::size_t points = 0;
+    for (const FaceOffset& face : faces)
+      points += std::abs(face.normal.dot(direction)) > kAcross ? face.points : 0;
+    const bool enough = solver.eigenvalues()[k] > options.min_held_share * information.trace() &&
+                        points >= options.min_held_points;
+    (enough ? held : open).push_back(direction);
+  }
+  return held;
+}
+
+}  // namespace
+
+FaceOffset face_offset(const Vector3d& normal, std::vector<float> distances_m, double max_distance_m) {
+  FaceOffset face;
+  face.normal = normal;
+  if (distances_m.empty()) return face;
+  double middle = peak_of(distances_m, max_distance_m);
+  double width = 2.0 * kLeastWidthM;
+  for (int round = 0; round < kRounds; ++round) {
+    double sum = 0.0;
+    double squares = 0.0;
+    std::size_t count = 0;
+    for (const float d : distances_m) {
+      const double off = static_cast<double>(d) - middle;
+      if (std::abs(off) > width) continue;
+      sum += off;
+      squares += off * off;
+      ++count;
+    }
+    if (count == 0) break;
+    const double mean = sum / static_cast<double>(count);
+    middle += mean;
+    face.sigma_m = std::sqrt(std::max(0.0, squares / static_cast<double>(count) - mean * mean));
+    face.points = count;
+    width = std::max(kLeastWidthM, 3.0 * face.sigma_m);
+  }
+  face.offset_m = middle;
+  return face;
+}
+
+ElementShift shift_of(const std::vector<FaceOffset>& faces, const DeviationOptions& options) {
+  ElementShift result;
+  const std::vector<Vector3d> held = held_directions(faces, options, result.open);
+  result.held = static_cast<int>(held.size());
+  if (held.empty()) return result;
+  Eigen::Matrix<double, 3, Eigen::Dynamic> basis(3, result.held);
+  for (int k = 0; k < result.held; ++k) basis.col(k) = held[static_cast<std::size_t>(k)];
+  // From wide to narrow: the first round is plain least squares over all faces within reach.
+  double width = 3.0 * options.max_distance_m;
+  Sums sums;
+  Eigen::MatrixXd small;
+  for (int round = 0; round < 2 * kRounds; ++round) {
+    sums = sums_at(faces, result.shift_m, width);
+    small = basis.transpose() * sums.information * basis;
+    small.diagonal().array() += 1e-9 * sums.information.trace() + 1e-12;
+    result.shift_m += basis * small.ldlt().solve(basis.transpose() * sums.right);
+    width = std::max(kRobustM, 0.6 * width);
+  }
+  // A face is one observation, good to its flatness, or to how the faces disagree.
+  const double scatter = sums.weight > 0.0 ? sums.squares / sums.weight : 0.0;
+  const double variance = scatter + kFaceSigmaM * kFaceSigmaM;
+  double largest = 0.0;
+  for (const FaceOffset& face : faces) largest = std::max(largest, weight_of(face));
+  const Eigen::MatrixXd covariance = variance * largest * small.inverse();
+  const Matrix3d full = basis * covariance * basis.transpose();
+  result.sigma_m = full.diagonal().cwiseMax(0.0).cwiseSqrt();
+  return result;
+}
+
+}  // namespace limen

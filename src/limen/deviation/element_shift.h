@@ -1,0 +1,26 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "limen/deviation/deviation.h"
+
+namespace limen {
+
+/// Where the matter before one face stands.
+struct FaceOffset {
+  Vector3d normal = Vector3d::UnitX();
+  double offset_m = 0.0;  ///< along the normal
+  double sigma_m = 0.0;   ///< standard deviation of the points about it
+  std::size_t points = 0;
+};
+
+/// Where most of the points of a face are: the peak of their distribution, so that what else stands within
+/// reach of the face, or another element's surface, does not pull.
+FaceOffset face_offset(const Vector3d& normal, std::vector<float> distances_m, double max_distance_m);
+
+/// The rigid shift that explains the offsets of an element's faces, robustly.
+ElementShift shift_of(const std::vector<FaceOffset>& faces, const DeviationOptions& options);
+
+}  // namespace limen

@@ -1,0 +1,23 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "limen/geometry/face_index.h"
+#include "limen/model/bim_model.h"
+
+namespace limen {
+
+/// The faces of a model as points are laid on them.
+struct ModelFaces {
+  std::vector<FlatFace> faces;
+  std::vector<std::int32_t> elements;  ///< of each face
+};
+
+/// All faces of the elements. Faces of elements that are no closed solids are there twice, once for either
+/// side: which side of a sheet is the outer one nobody can say.
+ModelFaces faces_of(const BimModel& model);
+
+}  // namespace limen

@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "limen/deviation/deviation.h"
+#include "limen/geometry/face_index.h"
+
+namespace limen {
+
+/// A scan in the model's local frame.
+struct PlacedScan {
+  std::vector<Vector3d> points;
+  std::vector<Vector3d> centres;  ///< as Scan::centres
+
+  PlacedScan(const Scan& scan, const Rigid3& model_from_scan);
+  [[nodiscard]] bool centre_known() const { return !centres.empty(); }
+  [[nodiscard]] const Vector3d& centre(std::size_t i) const {
+    return centres.size() > 1 ? centres[i] : centres[0];
+  }
+};
+
+/// The face that each point lies on.
+struct PointFaces {
+  std::vector<std::int32_t> face;  ///< index into the index's faces, or -1
+  std::vector<float> distance_m;   ///< signed; NaN where there is no face
+  std::vector<char> far;           ///< 1: no face of any direction within reach
+};
+
+/// The nearest face whose front the scanner saw and whose direction is that of the surface at the point.
+/// Where points are too sparse for a direction, the nearest that could be seen; at edges and in clutter,
+/// where the surface has no direction, none.
+PointFaces lay_on_faces(const PlacedScan& scan, const FaceIndex& index, const DeviationOptions& options,
+                        Monitor& monitor);
+
+}  // namespace limen
