@@ -19,6 +19,7 @@
 #include "limen/base/parallel.h"
 #include "limen/base/version.h"
 #include "limen/cli/command.h"
+#include "limen/cli/deviation_command.h"
 #include "limen/cli/evaluate_command.h"
 #include "limen/cli/info_command.h"
 #include "limen/cli/openings_command.h"
@@ -78,6 +79,7 @@ void add_commands(CLI::App& app, Session& session) {
   add_register_command(app, session);
   add_transform_command(app, session);
   add_evaluate_command(app, session);
+  add_deviation_command(app, session);
 #ifdef LIMEN_WITH_SIMULATOR
   add_simulate_command(app, session);
 #endif

@@ -83,7 +83,7 @@ class Tiles {
 
 }  // namespace
 
-std::vector<FaceCoverage> face_coverage(const PlacedScan& scan, const PointFaces& laid,
+std::vector<FaceCoverage> face_coverage(const ScanInModel& scan, const PointFaces& laid,
                                         const FaceIndex& index, const DeviationOptions& options) {
   Tiles tiles(index, options.tile_m);
   const std::size_t stride = 1 + scan.points.size() / options.rays;

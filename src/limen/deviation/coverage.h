@@ -17,7 +17,7 @@ struct FaceCoverage {
 /// Coverage of every face of the index by about `options.rays` rays, evenly taken: tiles that neither a point
 /// nor a ray reached count nowhere, so that the share covered does not depend on how dense the scan is. Where
 /// the scanner's place is not known nothing counts as passed.
-std::vector<FaceCoverage> face_coverage(const PlacedScan& scan, const PointFaces& laid,
+std::vector<FaceCoverage> face_coverage(const ScanInModel& scan, const PointFaces& laid,
                                         const FaceIndex& index, const DeviationOptions& options);
 
 }  // namespace limen

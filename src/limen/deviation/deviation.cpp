@@ -75,7 +75,7 @@ class Measuring {
   Measuring(const BimModel& model, const DeviationOptions& options, Monitor& monitor)
       : model_(model), options_(options), monitor_(monitor), faces_(faces_of(model)) {}
 
-  [[nodiscard]] Deviation run(const PlacedScan& scan) {
+  [[nodiscard]] Deviation run(const ScanInModel& scan) {
     const FaceIndex index(faces_.faces, options_.max_distance_m);
     monitor_.begin_stage("distances");
     PointFaces laid = lay_on_faces(scan, index, options_, monitor_);
@@ -133,7 +133,7 @@ class Measuring {
     return all;
   }
 
-  void find_unmodelled(const PlacedScan& scan, const PointFaces& laid, Deviation& result) const {
+  void find_unmodelled(const ScanInModel& scan, const PointFaces& laid, Deviation& result) const {
     std::vector<Vector3d> loose;
     for (std::size_t i = 0; i < laid.far.size(); ++i) {
       if (laid.far[i] != 0) loose.push_back(scan.points[i]);
@@ -213,7 +213,7 @@ Deviation measure_deviation(const Scan& scan, const BimModel& model, const Rigid
   model.check();
   if (scan.points.empty()) throw Error("holds no points", scan.name, "give a scan with points");
   if (model.faces.empty()) throw Error("holds no faces", model.name, "give a model with elements");
-  return Measuring(model, options, monitor).run(PlacedScan(scan, model_from_scan));
+  return Measuring(model, options, monitor).run(ScanInModel(scan, model_from_scan));
 }
 
 }  // namespace limen

@@ -18,7 +18,7 @@ constexpr std::size_t kGrain = 8192;
 
 }  // namespace
 
-PlacedScan::PlacedScan(const Scan& scan, const Rigid3& model_from_scan)
+ScanInModel::ScanInModel(const Scan& scan, const Rigid3& model_from_scan)
     : points(scan.size()), centres(scan.centres.size()) {
   parallel_for(points.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) points[i] = model_from_scan * scan.points[i];
@@ -26,7 +26,7 @@ PlacedScan::PlacedScan(const Scan& scan, const Rigid3& model_from_scan)
   for (std::size_t i = 0; i < centres.size(); ++i) centres[i] = model_from_scan * scan.centres[i];
 }
 
-PointFaces lay_on_faces(const PlacedScan& scan, const FaceIndex& index, const DeviationOptions& options,
+PointFaces lay_on_faces(const ScanInModel& scan, const FaceIndex& index, const DeviationOptions& options,
                         Monitor& monitor) {
   const std::size_t count = scan.points.size();
   PointFaces laid;

@@ -11,11 +11,11 @@
 namespace limen {
 
 /// A scan in the model's local frame.
-struct PlacedScan {
+struct ScanInModel {
   std::vector<Vector3d> points;
   std::vector<Vector3d> centres;  ///< as Scan::centres
 
-  PlacedScan(const Scan& scan, const Rigid3& model_from_scan);
+  ScanInModel(const Scan& scan, const Rigid3& model_from_scan);
   [[nodiscard]] bool centre_known() const { return !centres.empty(); }
   [[nodiscard]] const Vector3d& centre(std::size_t i) const {
     return centres.size() > 1 ? centres[i] : centres[0];
@@ -32,7 +32,7 @@ struct PointFaces {
 /// The nearest face whose front the scanner saw and whose direction is that of the surface at the point.
 /// Where points are too sparse for a direction, the nearest that could be seen; at edges and in clutter,
 /// where the surface has no direction, none.
-PointFaces lay_on_faces(const PlacedScan& scan, const FaceIndex& index, const DeviationOptions& options,
+PointFaces lay_on_faces(const ScanInModel& scan, const FaceIndex& index, const DeviationOptions& options,
                         Monitor& monitor);
 
 }  // namespace limen
