@@ -113,12 +113,42 @@ std::size_t write_products(const RecordWriter& writer, const std::shared_ptr<Bui
   return count;
 }
 
-int run(const RecordWriter& writer, const std::set<int>& skip) {
-  std::string text = all_of_stdin();
-  const auto model = std::make_shared<BuildingModel>();
-  std::shared_ptr<BuildingModel> target = model;
+using Entity = std::pair<std::string, std::shared_ptr<BuildingEntity>>;
+
+/// Reads entity by entity, so that one that is damaged takes no other with it.
+std::shared_ptr<BuildingModel> load(std::string text, const RecordWriter& writer) {
+  auto model = std::make_shared<BuildingModel>();
   ReaderSTEP reader;
-  reader.loadModelFromString(text, target);
+  reader.readHeader(text, model);
+  std::vector<std::string> lines;
+  reader.splitIntoStepLines(text, lines);
+  std::vector<Entity> entities;
+  for (const std::string& line : lines) {
+    Entity entity;
+    try {
+      reader.readSingleStepLine(line, entity);
+    } catch (const std::exception&) {
+      continue;  // a type that the schema does not know; what needs it tells of its lack
+    }
+    if (!entity.second) continue;
+    model->insertEntity(entity.second, true, false);
+    entities.push_back(std::move(entity));
+  }
+  for (const Entity& entity : entities) {
+    try {
+      reader.readEntityArguments(model->getIfcSchemaVersion(), {entity}, model->getMapIfcEntities());
+    } catch (const std::bad_alloc&) {
+      throw;
+    } catch (const std::exception& error) {
+      tell(writer, entity.second->m_entity_id, error.what());
+    }
+  }
+  model->updateCache();
+  return model;
+}
+
+int run(const RecordWriter& writer, const std::set<int>& skip) {
+  const std::shared_ptr<BuildingModel> model = load(all_of_stdin(), writer);
   if (!model->getUnitConverter()) return refuse(writer, "there is no project with units");
   Payload loaded;
   loaded.put_number(model->getUnitConverter()->getLengthInMeterFactor());

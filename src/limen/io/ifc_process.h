@@ -14,7 +14,7 @@ namespace limen {
 
 /// Bounds within which limen_ifc works.
 struct IfcProcessOptions {
-  double silence_s = 20.0;          ///< it is stopped where it says nothing for so long, > 0
+  double silence_s = 15.0;          ///< it is stopped where it says nothing for so long, > 0
   double silence_s_per_mb = 0.5;    ///< and so much longer for each megabyte of the file, >= 0
   double memory_mb = 3000.0;        ///< address space it may take, > 0
   double memory_mb_per_mb = 100.0;  ///< and so much more for each megabyte of the file, >= 0

@@ -83,6 +83,7 @@ class StructureReader {
     const std::string type = upper_case(entity.type);
     if (type == "IFCMAPCONVERSION") maps_.push_back(entity.id);
     if (type == "IFCPROJECT") projects_.push_back(entity.id);
+    if (type == "IFCUNITASSIGNMENT") assignments_.push_back(entity.id);
     if (type.compare(0, 6, "IFCREL") != 0) return;
     const Arguments arguments = step_arguments(entity.arguments);
     const std::optional<std::int64_t> first = step_reference(argument(arguments, 4));
@@ -119,9 +120,16 @@ class StructureReader {
     return *value * *base;
   }
 
+  /// Of the project's units; of a file that has lost its project any.
   void read_units() {
-    for (const std::int64_t project : projects_) {
-      const std::int64_t assignment = step_reference(argument(arguments_of(project), 8)).value_or(0);
+    std::vector<std::int64_t> assignments;
+    for (const std::int64_t project : projects_)
+      assignments.push_back(step_reference(argument(arguments_of(project), 8)).value_or(0));
+    if (projects_.empty()) {
+      warn("the file has no project: it is damaged");
+      assignments = assignments_;
+    }
+    for (const std::int64_t assignment : assignments) {
       for (const std::int64_t unit : step_references(argument(arguments_of(assignment), 0))) {
         const std::optional<double> metres = metres_of_unit(unit);
         if (!metres) continue;
@@ -243,6 +251,7 @@ class StructureReader {
   const StepFile& file_;
   IfcStructure structure_;
   std::vector<std::int64_t> projects_;
+  std::vector<std::int64_t> assignments_;
   std::vector<std::int64_t> maps_;
   std::map<std::int64_t, std::int64_t> filling_of_;    ///< opening -> what stands in it
   std::map<std::int64_t, std::int64_t> opening_of_;    ///< the other way

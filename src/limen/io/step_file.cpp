@@ -95,6 +95,31 @@ bool is_keyword(const std::string& word) {
   return std::find(kWords.begin(), kWords.end(), word) != kWords.end();
 }
 
+/// Empty where an entity has several types at once.
+bool is_type_name(std::string_view type) {
+  return std::all_of(type.begin(), type.end(), [](char c) {
+    return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || digit(c) || c == '_';
+  });
+}
+
+/// True where every bracket in the arguments has its partner and every text its end.
+bool brackets_match(std::string_view arguments) {
+  int depth = 0;
+  std::size_t at = 0;
+  while (at < arguments.size() && depth >= 0) {
+    if (arguments[at] == '\'') {
+      at = arguments.find('\'', at + 1);
+      if (at == std::string_view::npos) return false;
+    } else if (comment_at(arguments, at)) {
+      at = behind_comment(arguments, at) - 1;
+    } else {
+      depth += arguments[at] == '(' ? 1 : arguments[at] == ')' ? -1 : 0;
+    }
+    ++at;
+  }
+  return depth == 0;
+}
+
 std::string upper_case(std::string_view text) {
   std::string result(text);
   for (char& c : result) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
@@ -271,7 +296,11 @@ void StepFile::read_statement(std::string_view statement) {
   }
   entity.type = trimmed(statement.substr(equals + 1, open - equals - 1));
   entity.arguments = statement.substr(open + 1, statement.rfind(')') - open - 1);
-  entities_.push_back(entity);
+  if (is_type_name(entity.type) && brackets_match(entity.arguments)) {
+    entities_.push_back(entity);
+  } else {
+    ++damaged_;
+  }
 }
 
 std::vector<std::string_view> step_arguments(std::string_view arguments) {
