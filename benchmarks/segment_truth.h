@@ -143,18 +143,22 @@ class EdgeTruthFinder {
     std::vector<std::vector<Polygon>> pieces(faces_.size());
     std::vector<char> framed(faces_.size(), 0);
     for (std::size_t t = 0; t < mesh_.triangles().size(); ++t) {
-      const int merged = merged_.plane_of_surface[static_cast<std::size_t>(mesh_.surface_of_triangle()[t])];
-      const int f = merged < 0 ? -1 : face_of_merged_[static_cast<std::size_t>(merged)];
-      if (f < 0) continue;
-      TrueFace& face = faces_[static_cast<std::size_t>(f)];
-      Polygon triangle;
-      for (const std::uint32_t corner : mesh_.triangles()[t]) {
-        const Vector3d x = points_from_scene_ * mesh_.vertices()[corner];
-        if (framed[static_cast<std::size_t>(f)] == 0) face.frame = make_frame(face.plane, x);
-        framed[static_cast<std::size_t>(f)] = 1;
-        triangle.outer.push_back(face.frame.to_plane(x));
+      const int surface = mesh_.surface_of_triangle()[t];
+      // A thin sheet is two faces.
+      for (const int side : {surface, mesh_.surfaces()[static_cast<std::size_t>(surface)].back}) {
+        const int merged = side < 0 ? -1 : merged_.plane_of_surface[static_cast<std::size_t>(side)];
+        const int f = merged < 0 ? -1 : face_of_merged_[static_cast<std::size_t>(merged)];
+        if (f < 0) continue;
+        TrueFace& face = faces_[static_cast<std::size_t>(f)];
+        Polygon triangle;
+        for (const std::uint32_t corner : mesh_.triangles()[t]) {
+          const Vector3d x = points_from_scene_ * mesh_.vertices()[corner];
+          if (framed[static_cast<std::size_t>(f)] == 0) face.frame = make_frame(face.plane, x);
+          framed[static_cast<std::size_t>(f)] = 1;
+          triangle.outer.push_back(face.frame.to_plane(x));
+        }
+        pieces[static_cast<std::size_t>(f)].push_back(triangle);
       }
-      pieces[static_cast<std::size_t>(f)].push_back(triangle);
     }
     for (std::size_t f = 0; f < faces_.size(); ++f) {
       // Triangles meet on the grid of the set operations only up to its step: gaps are closed.

@@ -18,8 +18,8 @@ constexpr double kMargin_m = 0.2;   // rows of points may end this far from an e
 constexpr double kAside_m = 0.006;  // slack of that
 constexpr double kAmbiguous = 1.2;  // how near to a plane points may be its own, in units of the threshold
 constexpr double kBeyondStrays_m = 0.015;
-constexpr double kNear = 1.25;     // how far from a line points may begin, in units of their usual shortfall,
-constexpr double kRows = 0.85;     // and more where rows run along the line
+constexpr double kNear = 1.6;      // how far from a line points may begin, in units of their usual shortfall,
+constexpr double kRows = 0.6;      // and more where rows run along the line
 constexpr double kFilled = 0.4;    // share of the bins along a line that must hold points
 constexpr double kEndShare = 0.5;  // of a crease along which one of its planes must end
 
@@ -97,6 +97,7 @@ struct Support {
 struct Interval {
   double begin_m = 1e300;
   double end_m = -1e300;
+  [[nodiscard]] bool empty() const { return end_m <= begin_m; }
 };
 
 /// How far from a line the points of a surface that reaches it may begin. Where rows of points run along the
@@ -197,10 +198,11 @@ class Meet {
  private:
   void finish(const DetectedEdge& like, Meeting& meeting) {
     if (steps_ > 0 && last_ - begin_ >= o_.min_length_m && ends_ >= kEndShare * steps_) {
-      a_.add_ambiguous(begin_, last_, meeting.ambiguous);
-      b_.add_ambiguous(begin_, last_, meeting.ambiguous);
       const Interval of_a = a_.reached(begin_, last_);
       const Interval of_b = b_.reached(begin_, last_);
+      // Where a plane does not reach the other, its points there are the other's.
+      if (of_a.empty()) a_.add_ambiguous(begin_, last_, meeting.ambiguous);
+      if (of_b.empty()) b_.add_ambiguous(begin_, last_, meeting.ambiguous);
       const double from = std::max({begin_, of_a.begin_m, of_b.begin_m});
       const double to = std::min({last_, of_a.end_m, of_b.end_m});
       if (to - from >= o_.min_length_m) {

@@ -12,8 +12,8 @@ namespace limen {
 
 struct Creases {
   std::vector<DetectedEdge> edges;
-  /// Of each point of the scan: it lies on two planes that come near one another, so that it does not tell
-  /// where either ends.
+  /// Of each point of the scan: it also lies on another plane than its own, which its own does not reach: it
+  /// does not tell where its own ends.
   std::vector<char> ambiguous;
 };
 

@@ -170,6 +170,45 @@ std::vector<DetectedEdge> joined(std::vector<DetectedEdge> edges, const MergeOpt
   return kept;
 }
 
+/// Where the line of `edge` passes the line of `other`, as a length from edge.a; a length far away where they
+/// do not come near one another.
+double passing_place(const Segment& edge, const Segment& other, double near_m) {
+  constexpr double kNowhere = 1e9;
+  const Vector3d u = edge.direction();
+  const Vector3d v = other.direction();
+  const double cosine = u.dot(v);
+  const double sine2 = 1.0 - cosine * cosine;
+  if (sine2 < 0.1) return kNowhere;
+  const Vector3d off = other.a - edge.a;
+  const double t = (off.dot(u) - cosine * off.dot(v)) / sine2;
+  const double s = (cosine * off.dot(u) - off.dot(v)) / sine2;
+  if ((edge.a + t * u - other.a - s * v).norm() > near_m) return kNowhere;
+  // The other one need not reach the corner either.
+  constexpr double kShort_m = 0.1;
+  return s < -kShort_m || s > other.length() + kShort_m ? kNowhere : t;
+}
+
+/// Ends that stop short of a corner, where another edge passes, are drawn up to it.
+void draw_to_corners(std::vector<DetectedEdge>& edges, const MergeOptions& options) {
+  EdgeIndex index;
+  for (std::size_t k = 0; k < edges.size(); ++k) index.add(edges[k].segment, k);
+  const std::vector<DetectedEdge> before = edges;
+  for (std::size_t k = 0; k < edges.size(); ++k) {
+    const Segment& edge = before[k].segment;
+    double begin = options.corner_m;
+    double end = options.corner_m;
+    for (const std::size_t other : index.near(edge)) {
+      if (other == k) continue;
+      const double t = passing_place(edge, before[other].segment, options.same_m);
+      if (t <= 0.0) begin = std::min(begin, -t);
+      if (t >= edge.length()) end = std::min(end, t - edge.length());
+    }
+    const Vector3d along = edge.direction();
+    if (begin < options.corner_m) edges[k].segment.a = edge.a - begin * along;
+    if (end < options.corner_m) edges[k].segment.b = edge.b + end * along;
+  }
+}
+
 }  // namespace
 
 std::vector<DetectedEdge> merged_edges(std::vector<DetectedEdge> edges, const MergeOptions& options) {
@@ -181,6 +220,8 @@ std::vector<DetectedEdge> merged_edges(std::vector<DetectedEdge> edges, const Me
       std::remove_if(merged.begin(), merged.end(),
                      [&](const DetectedEdge& edge) { return edge.segment.length() < options.min_length_m; }),
       merged.end());
+  draw_to_corners(merged, options);
+  std::stable_sort(merged.begin(), merged.end(), longer);
   return merged;
 }
 

@@ -12,8 +12,7 @@ namespace {
 
 constexpr double kPointsPerPixel = 1.5;
 constexpr double kAnyJump = 1e12;    // links between scan lines are never cut
-constexpr double kTouchSlope = 4.0;  // how steeply what stands on a surface may rise as the scanner sees it
-constexpr double kTouchMargin_m = 0.03;
+constexpr double kTouchSlope = 1.5;  // how steeply what stands on a surface may rise as the scanner sees it
 constexpr int kLooks = 3;
 constexpr double kAlikeDeg = 20.0;  // planes that differ by more face another way
 
@@ -89,7 +88,7 @@ void BorderSight::vote(const BorderPlace& place, std::size_t point, Votes& votes
     ++votes.same;
   } else if (before < 0.0) {
     ++votes.open;
-  } else if ((x - place.edge).norm() < kTouchSlope * out + kTouchMargin_m) {
+  } else if ((x - place.edge).norm() < kTouchSlope * out) {
     ++votes.touching;
   } else {
     ++votes.hidden;
