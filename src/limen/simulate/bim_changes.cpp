@@ -113,7 +113,7 @@ std::vector<int> hosts_of(const BimModel& model) {
 class Mover {
  public:
   Mover(const BimModel& model, const AsBuiltOptions& options, RandomStream& random)
-      : model_(model), o_(options), hosts_(hosts_of(model)), own_(model.elements.size(), Vector3d::Zero()) {
+      : o_(options), hosts_(hosts_of(model)), own_(model.elements.size(), Vector3d::Zero()) {
     for (std::size_t i = 0; i < own_.size(); ++i) {
       const BimKind kind = model.elements[i].kind;
       const bool chosen = random.uniform() < o_.moved_share;
@@ -159,7 +159,6 @@ class Mover {
     if (hosts_[worst] >= 0) own_[static_cast<std::size_t>(hosts_[worst])].setZero();
   }
 
-  const BimModel& model_;
   const AsBuiltOptions& o_;
   std::vector<int> hosts_;
   std::vector<Vector3d> own_;

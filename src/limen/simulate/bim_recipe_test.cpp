@@ -42,16 +42,6 @@ double prism_volume(const BimPrism& prism) {
   return area(prism.profile) * prism.depth_m;
 }
 
-/// Area of the upright faces of walls, reveals included.
-double wall_area(const BimModel& model) {
-  double sum = 0.0;
-  for (const BimFace& face : model.faces)
-    if (model.elements[static_cast<std::size_t>(face.element)].kind == BimKind::wall &&
-        std::abs(face.plane.normal.z()) < 0.1)
-      sum += face.area_m2;
-  return sum;
-}
-
 TEST(BimRecipe, EveryElementOfTheOfficeIsClosedAndHasItsVolume) {
   const BimRecipe recipe = office_recipe();
   const BimModel model = model_of(recipe);
@@ -116,6 +106,16 @@ TEST(WriteIfc, EveryReferenceIsDefinedBeforeAndGuidsAreUnique) {
 }
 
 #ifdef LIMEN_WITH_IFC
+/// Area of the upright faces of walls, reveals included.
+double wall_area(const BimModel& model) {
+  double sum = 0.0;
+  for (const BimFace& face : model.faces)
+    if (model.elements[static_cast<std::size_t>(face.element)].kind == BimKind::wall &&
+        std::abs(face.plane.normal.z()) < 0.1)
+      sum += face.area_m2;
+  return sum;
+}
+
 void expect_read_back(IfcUnit unit) {
   const BimModel planned = model_of(office_recipe());
   const auto path = std::filesystem::temp_directory_path() /
