@@ -25,6 +25,7 @@
 #include "limen/cli/openings_command.h"
 #include "limen/cli/planes_command.h"
 #include "limen/cli/register_command.h"
+#include "limen/cli/segments_command.h"
 #include "limen/cli/terminal.h"
 #include "limen/cli/transform_command.h"
 
@@ -76,6 +77,7 @@ void add_commands(CLI::App& app, Session& session) {
   add_info_command(app, session);
   add_planes_command(app, session);
   add_openings_command(app, session);
+  add_segments_command(app, session);
   add_register_command(app, session);
   add_transform_command(app, session);
   add_evaluate_command(app, session);

@@ -32,7 +32,7 @@ struct SegmentOptions {
   double join_gap_m = 0.15;           ///< pieces of one line are joined across gaps up to this, >= 0
   bool creases = true;                ///< where two planes meet
   bool borders = true;                ///< where a plane ends
-  double max_border_sigma_m = 0.005;  ///< borders whose place is known less well are left out, > 0
+  double max_border_sigma_m = 0.006;  ///< borders whose place is known less well are left out, > 0
   double max_border_angle_deg = 0.6;  ///< borders whose direction is known less well, > 0
 
   void check() const;
