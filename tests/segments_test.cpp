@@ -143,7 +143,7 @@ TEST_F(SegmentFilesTest, TheProgramRegistersThem) {
   ASSERT_EQ(done.status, 0) << done.out << done.err;
   const auto result = nlohmann::json::parse(read_whole(work() / "out" / "result.json"));
   EXPECT_EQ(result["outcome"], "registered");
-  EXPECT_EQ(result["inputs"]["source"]["points"], 2 * scan.size());
+  EXPECT_EQ(result["inputs"]["source"]["segments"], scan.size());
   EXPECT_GT(result["evidence"]["matched_segments"], 10);
   for (std::size_t i = 0; i < 3; ++i) {
     EXPECT_NEAR(result["target_from_source"][i][3].get<double>(),

@@ -126,32 +126,63 @@ FaceOffset face_offset(const Vector3d& normal, std::vector<float> distances_m, d
   return face;
 }
 
-ElementShift shift_of(const std::vector<FaceOffset>& faces, const DeviationOptions& options) {
-  ElementShift result;
-  const std::vector<Vector3d> held = held_directions(faces, options, result.open);
-  result.held = static_cast<int>(held.size());
-  if (held.empty()) return result;
-  Eigen::Matrix<double, 3, Eigen::Dynamic> basis(3, result.held);
-  for (int k = 0; k < result.held; ++k) basis.col(k) = held[static_cast<std::size_t>(k)];
+namespace {
+
+using Basis = Eigen::Matrix<double, 3, Eigen::Dynamic>;
+
+/// The shift within some directions, and its covariance in them.
+struct ShiftFit {
+  Vector3d shift = Vector3d::Zero();
+  Eigen::MatrixXd covariance;
+};
+
+ShiftFit fit_within(const Basis& basis, const std::vector<FaceOffset>& faces, double widest) {
+  ShiftFit fit;
   // From wide to narrow: the first round is plain least squares over all faces within reach.
-  double width = 3.0 * options.max_distance_m;
+  double width = widest;
   Sums sums;
   Eigen::MatrixXd small;
   for (int round = 0; round < 2 * kRounds; ++round) {
-    sums = sums_at(faces, result.shift_m, width);
+    sums = sums_at(faces, fit.shift, width);
     small = basis.transpose() * sums.information * basis;
     small.diagonal().array() += 1e-9 * sums.information.trace() + 1e-12;
-    result.shift_m += basis * small.ldlt().solve(basis.transpose() * sums.right);
+    fit.shift += basis * small.ldlt().solve(basis.transpose() * sums.right);
     width = std::max(kRobustM, 0.6 * width);
   }
   // A face is one observation, good to its flatness, or to how the faces disagree.
   const double scatter = sums.weight > 0.0 ? sums.squares / sums.weight : 0.0;
-  const double variance = scatter + kFaceSigmaM * kFaceSigmaM;
   double largest = 0.0;
   for (const FaceOffset& face : faces) largest = std::max(largest, weight_of(face));
-  const Eigen::MatrixXd covariance = variance * largest * small.inverse();
-  const Matrix3d full = basis * covariance * basis.transpose();
-  result.sigma_m = full.diagonal().cwiseMax(0.0).cwiseSqrt();
+  fit.covariance = (scatter + kFaceSigmaM * kFaceSigmaM) * largest * small.inverse();
+  return fit;
+}
+
+Basis basis_of(const std::vector<Vector3d>& directions) {
+  Basis basis(3, static_cast<Eigen::Index>(directions.size()));
+  for (std::size_t k = 0; k < directions.size(); ++k) basis.col(static_cast<Eigen::Index>(k)) = directions[k];
+  return basis;
+}
+
+}  // namespace
+
+ElementShift shift_of(const std::vector<FaceOffset>& faces, const DeviationOptions& options) {
+  ElementShift result;
+  std::vector<Vector3d> held = held_directions(faces, options, result.open);
+  // Directions that the faces hold too loosely are open too, the loosest first.
+  while (!held.empty()) {
+    const Basis basis = basis_of(held);
+    const ShiftFit fit = fit_within(basis, faces, 3.0 * options.max_distance_m);
+    Eigen::Index loosest = 0;
+    const double variance = fit.covariance.diagonal().maxCoeff(&loosest);
+    if (variance <= options.max_shift_sigma_m * options.max_shift_sigma_m) {
+      result.shift_m = fit.shift;
+      result.sigma_m = (basis * fit.covariance * basis.transpose()).diagonal().cwiseMax(0.0).cwiseSqrt();
+      break;
+    }
+    result.open.push_back(held[static_cast<std::size_t>(loosest)]);
+    held.erase(held.begin() + loosest);
+  }
+  result.held = static_cast<int>(held.size());
   return result;
 }
 
