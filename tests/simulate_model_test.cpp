@@ -105,6 +105,10 @@ TEST_F(SimulateModelTest, BadModelsAndWishesAreToldAndLeaveNothing) {
     EXPECT_FALSE(std::filesystem::exists(work() / "out")) << model;
   }
   EXPECT_EQ(run({"simulate", "office", "-o", "out", "--room", "pretty"}).status, 2);
+  // Nothing is passed over without a word.
+  EXPECT_EQ(run({"simulate", "room", "-o", "out", "--as-built"}).status, 2);
+  EXPECT_EQ(run({"simulate", "office", "-o", "out", "--facades", "2"}).status, 2);
+  EXPECT_FALSE(std::filesystem::exists(work() / "out"));
 }
 
 }  // namespace

@@ -14,6 +14,7 @@
 #include <fmt/format.h>
 
 #include "limen/base/atomic_file.h"
+#include "limen/base/error.h"
 #include "limen/io/read_bim.h"
 #include "limen/io/write_ply.h"
 #include "limen/report/result_json.h"
@@ -98,10 +99,38 @@ bool means_model(const std::string& name) {
   return name == kOffice || std::filesystem::exists(name, error);
 }
 
+std::string known_scenes() {
+  std::string known;
+  for (const std::string& name : scene_names()) known += (known.empty() ? "" : ", ") + name;
+  return known + ", " + kOffice;
+}
+
+/// An option that would be passed over without a word is a mistake.
+void check_options(const SimulateOptions& options, bool model) {
+  const SceneOptions& scene = options.scene;
+  const auto refuse = [](bool given, const std::string& option, const char* what) {
+    if (given) throw Error(option + " is for " + what + " only", "limen simulate", "leave it out");
+  };
+  if (model) {
+    refuse(scene.points_outdoor > 0, "--points-outdoor", "scenes");
+    refuse(scene.facades > 0, "--facades", "scenes");
+    refuse(scene.curtain_share >= 0.0, "--curtain-share", "scenes");
+    refuse(scene.drift_m > 0.0, "--drift-m", "scenes");
+    refuse(options.units != "m" && scene.name != kOffice, "--units", kOffice);
+    return;
+  }
+  refuse(options.as_built, "--as-built", "models");
+  refuse(options.room != "any", "--room", "models");
+  refuse(options.units != "m", "--units", kOffice);
+  if (scene.name.find_first_of("./") != std::string::npos)
+    throw Error("there is no such file", scene.name, "give a model file, or one of: " + known_scenes());
+  scene.check();
+}
+
 int run(SimulateOptions& options, const Session& session) {
   options.scene.seed = session.common.seed;
   const bool model = means_model(options.scene.name);
-  if (!model) options.scene.check();
+  check_options(options, model);
   // Made before the long work: a place that cannot be written to is told at once.
   const OutputFolder folder(options.output);
   const OutputFolder truth_folder(folder.path() / "truth");
@@ -121,12 +150,6 @@ int run(SimulateOptions& options, const Session& session) {
   return kExitOk;
 }
 
-std::string known_scenes() {
-  std::string known;
-  for (const std::string& name : scene_names()) known += (known.empty() ? "" : ", ") + name;
-  return known;
-}
-
 void add_count_option(CLI::App& command, const std::string& name, std::size_t& count,
                       const std::string& description) {
   command.add_option(name, count, description + "; 0: the scene's own (default)")->type_name("N");
@@ -137,13 +160,12 @@ void add_count_option(CLI::App& command, const std::string& name, std::size_t& c
 void add_simulate_command(CLI::App& app, Session& session) {
   auto options = std::make_shared<SimulateOptions>();
   CLI::App* command =
-      add_command(app, session, "simulate", "Scan a made-up building whose truth is known exactly",
+      add_command(app, session, "simulate", "Scan a made-up building or a model; the truth is known exactly",
                   [options, &session] { return run(*options, session); });
   SceneOptions& scene = options->scene;
   command
-      ->add_option(
-          "NAME", scene.name,
-          "The scene: " + known_scenes() + "; " + kOffice + " (a BIM model); or a model file (IFC, OBJ, PLY)")
+      ->add_option("NAME", scene.name,
+                   "The scene: " + known_scenes() + " (a BIM model); or a model file (IFC, OBJ, PLY)")
       ->required();
   command->add_option("-o,--output", options->output, "The folder for scans, task.json and truth/truth.json")
       ->required()
