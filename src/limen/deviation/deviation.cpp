@@ -17,6 +17,7 @@
 namespace limen {
 namespace {
 
+constexpr double kMissingShare = 0.01;   // of an element's surface, that rays passed: less says little of it
 constexpr std::size_t kFacePoints = 30;  // fewer do not tell where a face stands
 
 /// Matter that may let light pass: that rays went through says nothing.
@@ -61,7 +62,8 @@ Presence presence_of(const ElementDeviation& it, BimKind kind, const DeviationOp
       it.points >= static_cast<std::size_t>(options.min_points) && it.covered_m2 >= options.min_judged_m2;
   if (seen && (it.covered_share >= options.min_found_share || may_be_pane(kind))) return Presence::found;
   if (reached < options.min_judged_m2 || may_be_pane(kind)) return Presence::not_judged;
-  const bool missing = it.covered_share < options.min_found_share && it.passed_m2 >= options.min_missing_m2;
+  const double least = std::max(options.min_missing_m2, kMissingShare * it.area_m2);
+  const bool missing = it.covered_share < options.min_found_share && it.passed_m2 >= least;
   return missing ? Presence::not_found : Presence::not_judged;
 }
 
@@ -100,6 +102,8 @@ class Measuring {
     for (std::size_t k = 0; k < faces_.elements.size(); ++k)
       faces_of_element[static_cast<std::size_t>(faces_.elements[k])].push_back(k);
     result.elements.resize(model_.elements.size());
+    for (const BimFace& face : model_.faces)
+      result.elements[static_cast<std::size_t>(face.element)].area_m2 += face.area_m2;
     std::vector<Gathered> gathered(model_.elements.size());
     parallel_for(model_.elements.size(), 16, [&](std::size_t begin, std::size_t end) {
       for (std::size_t e = begin; e < end; ++e) {
@@ -111,8 +115,6 @@ class Measuring {
         it.shift = shift_of(gathered[e].offsets, options_);
       }
     });
-    for (const BimFace& face : model_.faces)
-      result.elements[static_cast<std::size_t>(face.element)].area_m2 += face.area_m2;
     std::vector<FaceOffset> all;
     for (const Gathered& g : gathered) all.insert(all.end(), g.offsets.begin(), g.offsets.end());
     result.common = shift_of(all, options_);
@@ -124,7 +126,7 @@ class Measuring {
     Gathered all;
     for (const std::size_t k : faces) {
       it.covered_m2 += coverage[k].covered_m2;
-      it.passed_m2 += coverage[k].passed_m2;
+      if (faces_.panes[k] == 0) it.passed_m2 += coverage[k].passed_m2;
       all.distances.insert(all.distances.end(), distances[k].begin(), distances[k].end());
       if (distances[k].size() < kFacePoints) continue;
       all.offsets.push_back(face_offset(faces_.faces[k].plane.normal, distances[k], options_.max_distance_m));

@@ -14,6 +14,7 @@ namespace limen {
 struct ModelFaces {
   std::vector<FlatFace> faces;
   std::vector<std::int32_t> elements;  ///< of each face
+  std::vector<char> panes;             ///< of each face: 1 where it may be glass in a door
 };
 
 /// All faces of the elements. Faces of elements that are no closed solids are there twice, once for either

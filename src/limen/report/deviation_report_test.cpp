@@ -8,9 +8,9 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <limits>
 #include <string>
 #include <vector>
-#include <limits>
 
 #include <gtest/gtest.h>
 #include <unistd.h>
