@@ -156,6 +156,7 @@ void SegmentOptions::check() const {
   if (!(min_length_m > 0.0)) throw_bad_option("min_length_m", min_length_m, "greater than 0");
   if (!(min_angle_deg > 0.0 && min_angle_deg <= 90.0))
     throw_bad_option("min_angle_deg", min_angle_deg, "greater than 0, at most 90");
+  if (min_plane_points < 0) throw_bad_option("min_plane_points", min_plane_points, "0 or more");
   if (!(join_gap_m >= 0.0)) throw_bad_option("join_gap_m", join_gap_m, "0 or more");
   if (!(max_border_sigma_m > 0.0))
     throw_bad_option("max_border_sigma_m", max_border_sigma_m, "greater than 0");
@@ -166,22 +167,28 @@ void SegmentOptions::check() const {
 std::vector<DetectedEdge> find_edges(const Scan& scan, const ExtractedFeatures& extracted,
                                      const SegmentOptions& options, Monitor& monitor) {
   options.check();
-  const Features& features = extracted.features;
   std::vector<std::unique_ptr<PlaneImage>> images =
-      images_of(scan, features.planes, extracted.labels, monitor);
-  images = images_of(scan, features.planes, completed_labels(scan, extracted, images), monitor);
-  const Creases creases = find_creases(features, images, options, scan.size());
+      images_of(scan, extracted.features.planes, extracted.labels, monitor);
+  const ExtractedFeatures more = with_small_planes(scan, extracted, completed_labels(scan, extracted, images),
+                                                   options.min_plane_points, monitor);
+  images = images_of(scan, more.features.planes, more.labels, monitor);
+  const Creases creases = find_creases(more.features, images, options, scan.size());
   std::vector<DetectedEdge> edges;
   if (options.creases) edges = creases.edges;
   if (options.borders) {
     const std::vector<DetectedEdge> borders =
-        find_borders({scan, extracted, images, creases.ambiguous}, options, monitor);
+        find_borders({scan, more, images, creases.ambiguous}, options, monitor);
     edges.insert(edges.end(), borders.begin(), borders.end());
   }
   MergeOptions merge;
   merge.join_gap_m = options.join_gap_m;
   merge.min_length_m = options.min_length_m;
-  return merged_edges(std::move(edges), merge);
+  edges = merged_edges(std::move(edges), merge);
+  const auto planes = static_cast<std::int32_t>(extracted.features.planes.size());
+  for (DetectedEdge& edge : edges)
+    for (std::int32_t& plane : edge.planes)
+      if (plane >= planes) plane = -1;
+  return edges;
 }
 
 std::vector<Segment> find_segments(const Scan& scan, const ExtractedFeatures& extracted,

@@ -30,6 +30,7 @@ struct SegmentOptions {
   double min_length_m = 0.2;          ///< of a segment, > 0
   double min_angle_deg = 12.0;        ///< between two planes that make an edge, in (0, 90]
   double join_gap_m = 0.15;           ///< pieces of one line are joined across gaps up to this, >= 0
+  int min_plane_points = 60;          ///< of small planes looked for among points without one; 0: none
   bool creases = true;                ///< where two planes meet
   bool borders = true;                ///< where a plane ends
   double max_border_sigma_m = 0.006;  ///< borders whose place is known less well are left out, > 0
@@ -48,8 +49,9 @@ enum class EdgeKind : std::uint8_t {
 struct DetectedEdge {
   Segment segment;  ///< about the scan's local origin
   EdgeKind kind = EdgeKind::crease;
-  std::array<std::int32_t, 2> planes = {-1,
-                                        -1};  ///< indices into Features::planes; the second only of a crease
+  /// Indices into Features::planes, the second only of a crease; -1 also stands for a small plane that was
+  /// looked for here alone.
+  std::array<std::int32_t, 2> planes = {-1, -1};
   double sigma_m = 0.0;  ///< one standard deviation of its place across, as the fit tells it
 };
 

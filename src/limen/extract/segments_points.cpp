@@ -3,6 +3,7 @@
 #include "limen/extract/segments_points.h"
 
 #include <cmath>
+#include <utility>
 
 #include "limen/base/parallel.h"
 
@@ -38,6 +39,31 @@ std::vector<std::int32_t> completed_labels(const Scan& scan, const ExtractedFeat
     }
   });
   return labels;
+}
+
+ExtractedFeatures with_small_planes(const Scan& scan, const ExtractedFeatures& extracted,
+                                    std::vector<std::int32_t> labels, int min_points, Monitor& monitor) {
+  ExtractedFeatures more;
+  more.features.local_origin = extracted.features.local_origin;
+  more.features.inlier_threshold_m = extracted.features.inlier_threshold_m;
+  more.features.noise_m = extracted.features.noise_m;
+  more.features.planes = extracted.features.planes;
+  more.labels = std::move(labels);
+  std::vector<std::uint32_t> left;
+  for (std::size_t i = 0; i < more.labels.size(); ++i)
+    if (more.labels[i] < 0) left.push_back(static_cast<std::uint32_t>(i));
+  if (min_points < 3 || left.size() < static_cast<std::size_t>(min_points)) return more;
+  const Scan part = subset(scan, left);
+  GrowOptions grow;
+  grow.inlier_threshold_m = extracted.features.inlier_threshold_m;
+  grow.min_inliers = min_points;
+  const PlaneLabels grown = grow_planes(part, grow, monitor).planes;
+  const auto first = static_cast<std::int32_t>(more.features.planes.size());
+  for (std::size_t k = 0; k < left.size(); ++k)
+    if (grown.labels[k] >= 0) more.labels[left[k]] = first + grown.labels[k];
+  for (PlanarPolygon& polygon : make_polygons(part, grown, {}, monitor))
+    more.features.planes.push_back(std::move(polygon));
+  return more;
 }
 
 }  // namespace limen
