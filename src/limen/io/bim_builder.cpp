@@ -154,7 +154,8 @@ BimModel built(RawModel raw, Monitor& monitor) {
   BimModel model = std::move(raw.head);
   const Box3 box = box_of(raw.elements);
   if (box.empty()) {
-    throw Error("the model has no surface", model.name,
+    const std::string why = model.warnings.empty() ? "" : ": " + model.warnings.front();
+    throw Error("the model has no surface" + why, model.name,
                 "export it with its geometry (IFC with shape representations, OBJ or PLY with faces)");
   }
   question_size(box, model);
