@@ -14,6 +14,7 @@ constexpr double kWaviness = 0.6;       // of an outline, in units of the spacin
 constexpr double kShortestPiece = 4.0;  // pixels
 constexpr double kBin = 1.5;            // width of a bin in units of the spacing
 constexpr double kDepth = 6.0;          // how far inward gaps are measured, in units of the spacing
+constexpr double kTowardsMean = 0.16;   // measured on samples at random; rows have one value for both
 constexpr int kFewestBins = 5;
 constexpr double kBend_m = 0.002;     // a line may seem to bend by this,
 constexpr double kBendSigmas = 3.5;   // or by this many standard deviations
@@ -197,18 +198,33 @@ BinnedPoints binned(const PlaneImage& image, const Strip& strip, double bin_m,
   return points;
 }
 
-/// Mean distance from a place within to the next point inward.
-double shortfall_of(const BinnedPoints& points, double depth_m) {
+/// The distance from a place within to the next point inward.
+struct Shortfall {
+  double mean_m = 0.0;
+  double middle_m = 0.0;  ///< median
+};
+
+Shortfall shortfall_of(const BinnedPoints& points, double depth_m) {
+  std::vector<double> gaps;
+  for (const auto& bin : points.bins)
+    for (std::size_t i = 1; i < bin.size() && bin[i].first < bin[0].first + depth_m; ++i)
+      gaps.push_back(bin[i].first - bin[i - 1].first);
   double squares = 0.0;
   double sum = 0.0;
-  for (const auto& bin : points.bins) {
-    for (std::size_t i = 1; i < bin.size() && bin[i].first < bin[0].first + depth_m; ++i) {
-      const double gap = bin[i].first - bin[i - 1].first;
-      squares += gap * gap;
-      sum += gap;
-    }
+  for (const double gap : gaps) {
+    squares += gap * gap;
+    sum += gap;
   }
-  return sum > 0.0 ? 0.5 * squares / sum : 0.0;
+  if (!(sum > 0.0)) return {};
+  // Of all places, those in gaps wider than m have the next point further than m for the rest of the gap:
+  // the median m halves the sum of min(gap, m).
+  std::sort(gaps.begin(), gaps.end());
+  double shorter = 0.0;
+  std::size_t k = 0;
+  while (k < gaps.size() && shorter + static_cast<double>(gaps.size() - k) * gaps[k] < 0.5 * sum)
+    shorter += gaps[k++];
+  const double middle = (0.5 * sum - shorter) / static_cast<double>(gaps.size() - k);
+  return {0.5 * squares / sum, middle};
 }
 
 struct Line2 {
@@ -363,10 +379,11 @@ std::vector<StraightRun> straight_runs(const PlaneImage& image, double min_lengt
 
 Approach approach_of(const PlaneImage& image, const Strip& line) {
   constexpr double kDeepest_m = 0.06;
-  const double middle_t = 0.5 * (line.begin_m + line.end_m);
-  const double spacing = image.spacing_m(line.at(middle_t, 0.0));
+  const auto spacing_at = [&](double t) { return image.spacing_m(line.at(t, line.low_m)); };
+  const double spacing = spacing_at(0.5 * (line.begin_m + line.end_m));
+  const double widest = std::max({spacing, spacing_at(line.begin_m), spacing_at(line.end_m)});
   Strip strip = line;
-  strip.high_m = line.low_m + std::max(kDeepest_m, kDepth * spacing);
+  strip.high_m = line.low_m + std::max(kDeepest_m, kDepth * widest);
   const BinnedPoints points = binned(image, strip, std::max(0.005, kBin * spacing));
   std::vector<double> nearest;
   for (const auto& bin : points.bins)
@@ -376,15 +393,16 @@ Approach approach_of(const PlaneImage& image, const Strip& line) {
   std::sort(nearest.begin(), nearest.end());
   approach.nearest_m = nearest[nearest.size() / 2];
   approach.spread_m = nearest[3 * nearest.size() / 4] - nearest[nearest.size() / 4];
-  approach.shortfall_m = shortfall_of(points, strip.high_m - strip.low_m);
+  approach.shortfall_m = shortfall_of(points, strip.high_m - strip.low_m).mean_m;
   approach.filled = static_cast<double>(nearest.size()) / static_cast<double>(points.bins.size());
   approach.first_m = 1e300;
   approach.last_m = -1e300;
+  const double usual = approach.nearest_m + 2.0 * approach.shortfall_m;
   for (const auto& bin : points.bins) {
-    if (bin.empty() ||
-        bin.front().first > line.low_m + approach.nearest_m + 2.0 * approach.shortfall_m + image.pixel_m())
-      continue;
+    if (bin.empty()) continue;
     const double t = (bin.front().second.at - strip.origin).dot(strip.along);
+    const double sparser = std::max(1.0, spacing_at(t) / spacing);
+    if (bin.front().first > line.low_m + sparser * usual + image.pixel_m()) continue;
     approach.first_m = std::min(approach.first_m, t);
     approach.last_m = std::max(approach.last_m, t);
   }
@@ -405,15 +423,18 @@ std::optional<BorderFit> fit_border(const PlaneImage& image, const StraightRun& 
   const BinnedPoints points = binned(image, strip, bin_m, ambiguous);
   BorderFit fit;
   fit.bin_m = bin_m;
-  fit.shortfall_m = shortfall_of(points, kDepth * spacing);
+  const Shortfall shortfall = shortfall_of(points, kDepth * spacing);
+  fit.shortfall_m = shortfall.mean_m;
   fit.bins = outermost(points, strip);
   const double scale = std::max(0.0015, 0.7 * fit.shortfall_m);
   const Line2 line = robust_line(fit.bins, run.line.begin_m, run.line.end_m, scale);
   fit.line = turned_onto(strip, line, fit.bins);
   // Along hardly changes by the turn: the run keeps its bounds.
   if (!judge(fit, run.line.begin_m, run.line.end_m)) return std::nullopt;
-  fit.line.origin -= fit.shortfall_m * fit.line.inward();
-  for (BorderBin& bin : fit.bins) bin.h += fit.shortfall_m;
+  // The robust line lies between the median and the mean of the distances.
+  const double moved = shortfall.middle_m + kTowardsMean * (shortfall.mean_m - shortfall.middle_m);
+  fit.line.origin -= moved * fit.line.inward();
+  for (BorderBin& bin : fit.bins) bin.h += moved;
   return fit;
 }
 

@@ -15,6 +15,8 @@ namespace {
 
 using Interval = std::pair<double, double>;
 
+constexpr double kUnsure = 2.5;  // a border may be this many of its standard deviations off its own crease
+
 /// Edges found by the cubes they pass.
 class EdgeIndex {
  public:
@@ -109,7 +111,9 @@ std::vector<DetectedEdge> without_doubles(std::vector<DetectedEdge> edges, const
     std::vector<Interval> taken;
     for (const std::size_t k : index.near(edge.segment)) {
       const bool beside = edge.kind == EdgeKind::border && kept[k].kind == EdgeKind::crease;
-      const double reach = beside ? options.beside_m : options.same_m;
+      const bool of_it = kept[k].planes[0] == edge.planes[0] || kept[k].planes[1] == edge.planes[0];
+      const double unsure = of_it ? kUnsure * edge.sigma_m : 0.0;
+      const double reach = beside ? options.beside_m + unsure : options.same_m;
       const Interval part = covered_part(edge.segment, kept[k].segment, reach, cosine);
       if (part.second > part.first) taken.push_back(part);
     }
