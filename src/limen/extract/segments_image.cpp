@@ -15,7 +15,7 @@ constexpr double kReach = 1.8;         // radius of a disc in units of the spaci
 constexpr double kMostPixels = 6.0e6;
 constexpr double kMostTiles = 1.0e6;
 constexpr double kFinestPixel_m = 0.008;
-constexpr double kWidestSpacing_m = 0.15;
+constexpr double kWidestSpacing_m = 0.25;
 constexpr double kPixel = 0.6;  // in units of the spacing where points are densest
 
 }  // namespace
@@ -61,12 +61,33 @@ void PlaneImage::sort_points(const std::vector<Vector3d>& points, const std::vec
   for (const FlatPoint& point : flat) flat_[next[tile(point.at)]++] = point;
 }
 
+/// How much further apart the rows of a tile's points are than its points on average: at random the nearest
+/// neighbour is half that average away, in rows far apart it is much nearer.
+double PlaneImage::elongation(std::size_t tile) const {
+  constexpr std::uint32_t kAsked = 12;
+  constexpr double kMost = 6.0;
+  const std::uint32_t begin = begins_[tile];
+  const std::uint32_t end = begins_[tile + 1];
+  if (end - begin < 6) return 1.0;
+  const std::uint32_t step = 1 + (end - begin) / kAsked;
+  double sum = 0.0;
+  double asked = 0.0;
+  for (std::uint32_t i = begin; i < end; i += step, asked += 1.0) {
+    double least = tile_m_ * tile_m_;
+    for (std::uint32_t j = begin; j < end; ++j)
+      if (j != i) least = std::min(least, (flat_[i].at - flat_[j].at).squaredNorm());
+    sum += std::sqrt(least);
+  }
+  const double mean = tile_m_ / std::sqrt(static_cast<double>(end - begin));
+  return std::clamp(0.5 * mean * asked / std::max(sum, 1e-6), 1.0, kMost);
+}
+
 /// A tile at a border is half empty: the densest of a tile and those around it tells.
 void PlaneImage::measure_spacing(double fallback_m) {
   std::vector<float> own(begins_.size() - 1);
   for (std::size_t k = 0; k < own.size(); ++k) {
     const double count = begins_[k + 1] - begins_[k];
-    own[k] = static_cast<float>(count < 2.0 ? kWidestSpacing_m : tile_m_ / std::sqrt(count));
+    own[k] = static_cast<float>(count < 2.0 ? kWidestSpacing_m : tile_m_ / std::sqrt(count) * elongation(k));
   }
   spacing_m_.resize(own.size());
   for (long row = 0; row < tile_rows_; ++row) {

@@ -41,7 +41,7 @@ class PlaneImage {
   [[nodiscard]] const PlaneFrame& frame() const { return frame_; }
   [[nodiscard]] const Box2& box() const { return box_; }
   [[nodiscard]] double pixel_m() const { return pixel_m_; }
-  /// Distance between neighbouring points about a place, metres.
+  /// Distance between neighbouring points about a place, metres; where they lie in rows, between the rows.
   [[nodiscard]] double spacing_m(const Vector2d& p) const;
   /// Radius of the discs about a place, metres.
   [[nodiscard]] double reach_m(const Vector2d& p) const;
@@ -57,6 +57,7 @@ class PlaneImage {
   void sort_points(const std::vector<Vector3d>& points, const std::vector<std::uint32_t>& indices,
                    double spacing_m);
   void measure_spacing(double fallback_m);
+  [[nodiscard]] double elongation(std::size_t tile) const;
   void fill();
   [[nodiscard]] double finest_pixel_m() const;
   void stamp(const Vector2d& p, double radius_m);

@@ -14,7 +14,8 @@ constexpr double kPointsPerPixel = 1.5;
 constexpr double kAnyJump = 1e12;    // links between scan lines are never cut
 constexpr double kTouchSlope = 1.5;  // how steeply what stands on a surface may rise as the scanner sees it
 constexpr int kLooks = 3;
-constexpr double kAlikeDeg = 20.0;  // planes that differ by more face another way
+constexpr double kWidestGap_m = 0.5;  // between scan lines on a surface
+constexpr double kAlikeDeg = 20.0;    // planes that differ by more face another way
 
 }  // namespace
 
@@ -82,7 +83,8 @@ void BorderSight::vote(const BorderPlace& place, std::size_t point, Votes& votes
   if (share <= 0.0) return;
   const Vector3d meets = centre + share * (x - centre);
   const double out = (meets - place.edge).dot(place.outward);
-  if (out < 0.25 * place.step_m || out > 6.0 * place.step_m + 0.02) return;
+  const double widest = grid_ ? kWidestGap_m : 6.0 * place.step_m + 0.02;
+  if (out < 0.25 * place.step_m || out > widest) return;
   const double before = height > 0.0 ? place.plane.signed_distance(x) : -place.plane.signed_distance(x);
   if (std::abs(before) <= same_m_ && faces_like(place.plane, point)) {
     ++votes.same;
@@ -140,7 +142,8 @@ Beyond BorderSight::look(const BorderPlace& place) const {
   if (!knows()) return Beyond::unknown;
   const Votes votes = grid_ ? votes_of_lines(place) : votes_of_image(place);
   const int most = std::max({votes.hidden, votes.touching, votes.open});
-  if (most == 0) return votes.same > 0 ? Beyond::same : Beyond::silent;
+  // The next scan line may be far away: of a mobile scan that nothing speaks of a place says nothing.
+  if (most == 0) return votes.same > 0 || grid_ ? Beyond::same : Beyond::silent;
   if (votes.hidden == most) return Beyond::hidden;
   return votes.open == most ? Beyond::open : Beyond::touching;
 }

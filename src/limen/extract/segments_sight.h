@@ -21,7 +21,7 @@ enum class Beyond : std::uint8_t {
   hidden,    ///< something nearer to the scanner hides what is there
   touching,  ///< something that stands on the surface at its border
   open,      ///< rays went on behind the surface: it ends here
-  silent     ///< no ray came back
+  silent     ///< no ray came back; not told of mobile scans
 };
 
 /// A place on the border of a plane, and how to look beyond it.
