@@ -13,7 +13,6 @@
 #include "limen/base/error.h"
 #include "limen/base/parallel.h"
 #include "limen/io/opening_boxes.h"
-#include "limen/io/record_table.h"
 #include "limen/io/scan_builder.h"
 #include "limen/io/solid_faces.h"
 
@@ -103,52 +102,6 @@ std::string name_of(const BimElement& element) {
 }
 
 }  // namespace
-
-BimKind kind_of_ifc_type(const std::string& type, const std::string& predefined) {
-  static constexpr std::array<std::pair<std::string_view, BimKind>, 34> kKinds{{
-      {"ifcwallelement", BimKind::wall},
-      {"ifcwall", BimKind::wall},
-      {"ifccurtainwall", BimKind::wall},
-      {"ifcslab", BimKind::slab},
-      {"ifcfooting", BimKind::slab},
-      {"ifcroof", BimKind::roof},
-      {"ifccolumn", BimKind::column},
-      {"ifcpile", BimKind::column},
-      {"ifcchimney", BimKind::column},
-      {"ifcbeam", BimKind::beam},
-      {"ifcmember", BimKind::beam},
-      {"ifcstair", BimKind::stair},
-      {"ifcramp", BimKind::stair},
-      {"ifcrailing", BimKind::railing},
-      {"ifccovering", BimKind::covering},
-      {"ifcplate", BimKind::plate},
-      {"ifcwindow", BimKind::window},
-      {"ifcdoor", BimKind::door},
-      {"ifcfurn", BimKind::furniture},
-      {"ifcsystemfurniture", BimKind::furniture},
-      {"ifcflow", BimKind::furniture},
-      {"ifcdistribution", BimKind::furniture},
-      {"ifcenergyconversion", BimKind::furniture},
-      {"ifcsanitary", BimKind::furniture},
-      {"ifclight", BimKind::furniture},
-      {"ifclamp", BimKind::furniture},
-      {"ifcspaceheater", BimKind::furniture},
-      {"ifcelectric", BimKind::furniture},
-      {"ifcoutlet", BimKind::furniture},
-      {"ifcswitchingdevice", BimKind::furniture},
-      {"ifcairterminal", BimKind::furniture},
-      {"ifcwasteterminal", BimKind::furniture},
-      {"ifcsite", BimKind::terrain},
-      {"ifcgeographicelement", BimKind::terrain},
-  }};
-  const std::string name = lower_case(type);
-  const auto found = std::find_if(kKinds.begin(), kKinds.end(), [&](const auto& known) {
-    return std::string_view(name).substr(0, known.first.size()) == known.first;
-  });
-  if (found == kKinds.end()) return BimKind::other;
-  if (found->second == BimKind::slab && lower_case(predefined) == "roof") return BimKind::roof;
-  return found->second;
-}
 
 BimModel built(RawModel raw, Monitor& monitor) {
   BimModel model = std::move(raw.head);

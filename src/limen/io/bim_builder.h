@@ -45,8 +45,4 @@ struct RawModel {
 /// Error where there is no surface at all.
 BimModel built(RawModel raw, Monitor& monitor = silent_monitor());
 
-/// What an element of an IFC type ("IfcWallStandardCase", any case) is; `predefined` as the file has it
-/// ("ROOF") or empty.
-BimKind kind_of_ifc_type(const std::string& type, const std::string& predefined = {});
-
 }  // namespace limen

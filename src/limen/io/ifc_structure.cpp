@@ -10,7 +10,7 @@
 
 #include <fmt/format.h>
 
-#include "limen/io/bim_builder.h"
+#include "limen/io/ifc_types.h"
 
 namespace limen {
 namespace {
@@ -276,108 +276,6 @@ std::vector<std::int64_t> with_parts(const IfcStructure& structure, std::int64_t
     }
   }
   return all;
-}
-
-std::string element_type_named(std::string_view upper) {
-  static constexpr std::array<std::string_view, 92> kTypes{"IfcWall",
-                                                           "IfcWallStandardCase",
-                                                           "IfcWallElementedCase",
-                                                           "IfcCurtainWall",
-                                                           "IfcSlab",
-                                                           "IfcSlabStandardCase",
-                                                           "IfcSlabElementedCase",
-                                                           "IfcRoof",
-                                                           "IfcColumn",
-                                                           "IfcColumnStandardCase",
-                                                           "IfcBeam",
-                                                           "IfcBeamStandardCase",
-                                                           "IfcMember",
-                                                           "IfcMemberStandardCase",
-                                                           "IfcStair",
-                                                           "IfcStairFlight",
-                                                           "IfcRamp",
-                                                           "IfcRampFlight",
-                                                           "IfcRailing",
-                                                           "IfcCovering",
-                                                           "IfcPlate",
-                                                           "IfcPlateStandardCase",
-                                                           "IfcWindow",
-                                                           "IfcWindowStandardCase",
-                                                           "IfcDoor",
-                                                           "IfcDoorStandardCase",
-                                                           "IfcFooting",
-                                                           "IfcPile",
-                                                           "IfcChimney",
-                                                           "IfcShadingDevice",
-                                                           "IfcBuildingElementProxy",
-                                                           "IfcBuildingElementPart",
-                                                           "IfcBuildingElementComponent",
-                                                           "IfcElementAssembly",
-                                                           "IfcFurnishingElement",
-                                                           "IfcFurniture",
-                                                           "IfcSystemFurnitureElement",
-                                                           "IfcTransportElement",
-                                                           "IfcCivilElement",
-                                                           "IfcGeographicElement",
-                                                           "IfcProjectionElement",
-                                                           "IfcDiscreteAccessory",
-                                                           "IfcMechanicalFastener",
-                                                           "IfcFastener",
-                                                           "IfcReinforcingBar",
-                                                           "IfcReinforcingMesh",
-                                                           "IfcTendon",
-                                                           "IfcTendonAnchor",
-                                                           "IfcVibrationIsolator",
-                                                           "IfcDistributionElement",
-                                                           "IfcDistributionFlowElement",
-                                                           "IfcDistributionControlElement",
-                                                           "IfcDistributionChamberElement",
-                                                           "IfcFlowTerminal",
-                                                           "IfcFlowSegment",
-                                                           "IfcFlowFitting",
-                                                           "IfcFlowController",
-                                                           "IfcFlowMovingDevice",
-                                                           "IfcFlowStorageDevice",
-                                                           "IfcFlowTreatmentDevice",
-                                                           "IfcEnergyConversionDevice",
-                                                           "IfcSanitaryTerminal",
-                                                           "IfcLightFixture",
-                                                           "IfcLamp",
-                                                           "IfcOutlet",
-                                                           "IfcSwitchingDevice",
-                                                           "IfcElectricAppliance",
-                                                           "IfcElectricDistributionBoard",
-                                                           "IfcSpaceHeater",
-                                                           "IfcBoiler",
-                                                           "IfcTank",
-                                                           "IfcPump",
-                                                           "IfcFan",
-                                                           "IfcValve",
-                                                           "IfcDuctSegment",
-                                                           "IfcDuctFitting",
-                                                           "IfcPipeSegment",
-                                                           "IfcPipeFitting",
-                                                           "IfcCableCarrierSegment",
-                                                           "IfcCableCarrierFitting",
-                                                           "IfcCableSegment",
-                                                           "IfcAirTerminal",
-                                                           "IfcAirTerminalBox",
-                                                           "IfcWasteTerminal",
-                                                           "IfcFireSuppressionTerminal",
-                                                           "IfcStackTerminal",
-                                                           "IfcSensor",
-                                                           "IfcAlarm",
-                                                           "IfcController",
-                                                           "IfcActuator",
-                                                           "IfcCommunicationsAppliance",
-                                                           "IfcAudioVisualAppliance"};
-  static const std::map<std::string, std::string_view, std::less<>> kByUpper = [] {
-    std::map<std::string, std::string_view, std::less<>> types;
-    for (const std::string_view type : kTypes) types.emplace(upper_case(type), type);
-    return types;
-  }();
-  const auto found = kByUpper.find(upper);
-  return found == kByUpper.end() ? std::string{} : std::string(found->second);
 }
 
 }  // namespace limen

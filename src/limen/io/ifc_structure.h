@@ -50,8 +50,4 @@ IfcStructure read_ifc_structure(const StepFile& file);
 /// The parts of an element and their parts, itself first.
 std::vector<std::int64_t> with_parts(const IfcStructure& structure, std::int64_t element);
 
-/// "IfcWallStandardCase" for "IFCWALLSTANDARDCASE": the types of building elements that a model may hold.
-/// Empty for all other types.
-std::string element_type_named(std::string_view upper_case);
-
 }  // namespace limen

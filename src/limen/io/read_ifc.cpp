@@ -17,6 +17,7 @@
 #include "limen/io/ifc_process.h"
 #include "limen/io/ifc_stream.h"
 #include "limen/io/ifc_structure.h"
+#include "limen/io/ifc_types.h"
 #include "limen/io/record_table.h"
 #include "limen/io/step_file.h"
 #include "limen/io/zip_member.h"

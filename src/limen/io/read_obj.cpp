@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 #include "limen/base/error.h"
+#include "limen/io/ifc_types.h"
 #include "limen/io/text_numbers.h"
 
 namespace limen {
