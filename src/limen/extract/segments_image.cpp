@@ -15,7 +15,7 @@ constexpr double kReach = 1.8;         // radius of a disc in units of the spaci
 constexpr double kMostPixels = 6.0e6;
 constexpr double kMostTiles = 1.0e6;
 constexpr double kFinestPixel_m = 0.008;
-constexpr double kWidestSpacing_m = 0.25;
+constexpr double kWidestSpacing_m = 0.15;
 constexpr double kPixel = 0.6;  // in units of the spacing where points are densest
 
 }  // namespace
@@ -65,7 +65,7 @@ void PlaneImage::sort_points(const std::vector<Vector3d>& points, const std::vec
 /// neighbour is half that average away, in rows far apart it is much nearer.
 double PlaneImage::elongation(std::size_t tile) const {
   constexpr std::uint32_t kAsked = 12;
-  constexpr double kMost = 6.0;
+  constexpr double kMost = 2.0;
   const std::uint32_t begin = begins_[tile];
   const std::uint32_t end = begins_[tile + 1];
   if (end - begin < 6) return 1.0;
