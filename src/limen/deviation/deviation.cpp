@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "limen/base/error.h"
 #include "limen/base/parallel.h"
@@ -18,6 +19,11 @@ namespace limen {
 namespace {
 
 constexpr double kMissingShare = 0.01;   // of an element's surface, that rays passed: less says little of it
+constexpr double kContestedShare = 0.3;  // of a face's points that might be on another face
+constexpr double kOwnShare = 0.3;        // of the gap to it: matter nearer than this is the face's own
+constexpr double kNearLimit = 0.7;       // of the largest distance: what lies there may be anything
+constexpr double kPeakShare = 0.65;      // of a face's points that stand together, else it is two things
+constexpr double kMostNoise = 1.8;       // of a typical face's: one that scatters more is no plane
 constexpr std::size_t kFacePoints = 30;  // fewer do not tell where a face stands
 
 /// Matter that may let light pass: that rays went through says nothing.
@@ -32,6 +38,27 @@ std::vector<std::vector<float>> distances_by_face(const PointFaces& laid, std::s
     if (laid.face[i] >= 0) distances[static_cast<std::size_t>(laid.face[i])].push_back(laid.distance_m[i]);
   }
   return distances;
+}
+
+/// The typical gap from each face to another that its points might be on; infinite where few might.
+std::vector<double> gaps_by_face(const PointFaces& laid, std::size_t faces) {
+  std::vector<std::vector<float>> gaps(faces);
+  std::vector<std::size_t> asked(faces, 0);
+  for (std::size_t k = 0; k < laid.gap_m.size(); ++k) {
+    const std::size_t i = k * PointFaces::kGapStride;
+    if (i >= laid.face.size() || laid.face[i] < 0) continue;
+    const auto face = static_cast<std::size_t>(laid.face[i]);
+    ++asked[face];
+    if (!std::isnan(laid.gap_m[k])) gaps[face].push_back(laid.gap_m[k]);
+  }
+  std::vector<double> typical(faces, std::numeric_limits<double>::infinity());
+  for (std::size_t k = 0; k < faces; ++k) {
+    if (static_cast<double>(gaps[k].size()) <= kContestedShare * static_cast<double>(asked[k])) continue;
+    const auto middle = gaps[k].begin() + static_cast<std::ptrdiff_t>(gaps[k].size() / 2);
+    std::nth_element(gaps[k].begin(), middle, gaps[k].end());
+    typical[k] = static_cast<double>(*middle);
+  }
+  return typical;
 }
 
 float nth(std::vector<float>& values, double share) {
@@ -73,6 +100,32 @@ struct Gathered {
   std::vector<FaceOffset> offsets;
 };
 
+/// The scatter of the points of a typical face: most points' faces scatter less.
+double typical_sigma_m(const std::vector<Gathered>& gathered) {
+  std::vector<std::pair<double, std::size_t>> sigmas;
+  std::size_t total = 0;
+  for (const Gathered& g : gathered) {
+    for (const FaceOffset& face : g.offsets) {
+      sigmas.emplace_back(face.sigma_m, face.points);
+      total += face.points;
+    }
+  }
+  std::sort(sigmas.begin(), sigmas.end());
+  std::size_t passed = 0;
+  for (const auto& [sigma, points] : sigmas) {
+    passed += points;
+    if (2 * passed >= total) return sigma;
+  }
+  return 0.0;
+}
+
+/// What points and rays say of every face.
+struct FaceEvidence {
+  std::vector<std::vector<float>> distances_m;
+  std::vector<double> gap_m;  ///< to another face that its points might be on
+  const std::vector<FaceCoverage>& coverage;
+};
+
 class Measuring {
  public:
   Measuring(const BimModel& model, const DeviationOptions& options, Monitor& monitor)
@@ -97,7 +150,8 @@ class Measuring {
  private:
   void measure_elements(const PointFaces& laid, const std::vector<FaceCoverage>& coverage,
                         Deviation& result) const {
-    const std::vector<std::vector<float>> distances = distances_by_face(laid, faces_.faces.size());
+    const FaceEvidence evidence{distances_by_face(laid, faces_.faces.size()),
+                                gaps_by_face(laid, faces_.faces.size()), coverage};
     std::vector<std::vector<std::size_t>> faces_of_element(model_.elements.size());
     for (std::size_t k = 0; k < faces_.elements.size(); ++k)
       faces_of_element[static_cast<std::size_t>(faces_.elements[k])].push_back(k);
@@ -109,27 +163,42 @@ class Measuring {
       for (std::size_t e = begin; e < end; ++e) {
         ElementDeviation& it = result.elements[e];
         it.element = static_cast<std::int32_t>(e);
-        gathered[e] = gather(faces_of_element[e], distances, coverage, it);
+        gathered[e] = gather(faces_of_element[e], evidence, it);
         describe(gathered[e].distances, it);
         it.presence = presence_of(it, model_.elements[e].kind, options_);
-        it.shift = shift_of(gathered[e].offsets, options_);
       }
     });
+    find_shifts(gathered, result);
+  }
+
+  void find_shifts(std::vector<Gathered>& gathered, Deviation& result) const {
+    const double noise_m = typical_sigma_m(gathered);
     std::vector<FaceOffset> all;
-    for (const Gathered& g : gathered) all.insert(all.end(), g.offsets.begin(), g.offsets.end());
+    for (std::size_t e = 0; e < gathered.size(); ++e) {
+      for (FaceOffset& face : gathered[e].offsets)
+        face.contested = face.contested || face.sigma_m > kMostNoise * noise_m;
+      result.elements[e].shift = shift_of(gathered[e].offsets, options_);
+      all.insert(all.end(), gathered[e].offsets.begin(), gathered[e].offsets.end());
+    }
     result.common = shift_of(all, options_);
   }
 
-  [[nodiscard]] Gathered gather(const std::vector<std::size_t>& faces,
-                                const std::vector<std::vector<float>>& distances,
-                                const std::vector<FaceCoverage>& coverage, ElementDeviation& it) const {
+  [[nodiscard]] Gathered gather(const std::vector<std::size_t>& faces, const FaceEvidence& evidence,
+                                ElementDeviation& it) const {
     Gathered all;
     for (const std::size_t k : faces) {
-      it.covered_m2 += coverage[k].covered_m2;
-      if (faces_.panes[k] == 0) it.passed_m2 += coverage[k].passed_m2;
-      all.distances.insert(all.distances.end(), distances[k].begin(), distances[k].end());
-      if (distances[k].size() < kFacePoints) continue;
-      all.offsets.push_back(face_offset(faces_.faces[k].plane.normal, distances[k], options_.max_distance_m));
+      const std::vector<float>& distances = evidence.distances_m[k];
+      it.covered_m2 += evidence.coverage[k].covered_m2;
+      if (faces_.panes[k] == 0) it.passed_m2 += evidence.coverage[k].passed_m2;
+      all.distances.insert(all.distances.end(), distances.begin(), distances.end());
+      if (distances.size() < kFacePoints) continue;
+      FaceOffset offset = face_offset(faces_.faces[k].plane.normal, distances, options_.max_distance_m);
+      const double off = std::abs(offset.offset_m);
+      const bool split =
+          static_cast<double>(offset.points) < kPeakShare * static_cast<double>(distances.size());
+      offset.contested =
+          split || off > kOwnShare * evidence.gap_m[k] || off > kNearLimit * options_.max_distance_m;
+      all.offsets.push_back(offset);
     }
     const double reached = it.covered_m2 + it.passed_m2;
     it.covered_share = reached > 0.0 ? it.covered_m2 / reached : 0.0;

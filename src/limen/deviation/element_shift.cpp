@@ -15,10 +15,11 @@ constexpr double kBinM = 0.001;
 constexpr std::ptrdiff_t kSmooth = 4;   // bins either way
 constexpr double kLeastWidthM = 0.006;  // of the peak, either way
 constexpr int kRounds = 6;
-constexpr double kFaceSigmaM = 0.003;   // flatness of built surfaces: a face is known no better
-constexpr double kRobustM = 0.008;      // faces that differ by more from the shift count less
-constexpr double kMostPoints = 2000.0;  // more points do not make a face more certain
-constexpr double kAcross = 0.5;         // cosine: a face across a direction
+constexpr double kFaceSigmaM = 0.003;     // flatness of built surfaces: a face is known no better
+constexpr double kContestedWeight = 0.1;  // (3 mm / 10 mm)^2: it may be another face's matter
+constexpr double kRobustM = 0.008;        // faces that differ by more from the shift count less
+constexpr double kMostPoints = 2000.0;    // more points do not make a face more certain
+constexpr double kAcross = 0.5;           // cosine: a face across a direction
 
 /// Start of the peak: middle of the fullest window.
 double peak_of(const std::vector<float>& distances, double most) {
@@ -45,7 +46,8 @@ double peak_of(const std::vector<float>& distances, double most) {
 }
 
 double weight_of(const FaceOffset& face) {
-  return std::min(static_cast<double>(face.points), kMostPoints);
+  const double points = std::min(static_cast<double>(face.points), kMostPoints);
+  return face.contested ? kContestedWeight * points : points;
 }
 
 double tukey(double residual, double width) {
@@ -152,7 +154,8 @@ ShiftFit fit_within(const Basis& basis, const std::vector<FaceOffset>& faces, do
   // A face is one observation, good to its flatness, or to how the faces disagree.
   const double scatter = sums.weight > 0.0 ? sums.squares / sums.weight : 0.0;
   double largest = 0.0;
-  for (const FaceOffset& face : faces) largest = std::max(largest, weight_of(face));
+  for (const FaceOffset& face : faces)
+    largest = std::max(largest, std::min(static_cast<double>(face.points), kMostPoints));
   fit.covariance = (scatter + kFaceSigmaM * kFaceSigmaM) * largest * small.inverse();
   return fit;
 }

@@ -14,6 +14,8 @@ struct FaceOffset {
   double offset_m = 0.0;  ///< along the normal
   double sigma_m = 0.0;   ///< standard deviation of the points about it
   std::size_t points = 0;
+  /// Other matter may stand there as well: another face lies near, or the offset is near the limit.
+  bool contested = false;
 };
 
 /// Where most of the points of a face are: the peak of their distribution, so that what else stands within

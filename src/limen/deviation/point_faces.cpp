@@ -33,6 +33,7 @@ PointFaces lay_on_faces(const ScanInModel& scan, const FaceIndex& index, const D
   laid.face.assign(count, -1);
   laid.distance_m.assign(count, std::numeric_limits<float>::quiet_NaN());
   laid.far.assign(count, 0);
+  laid.gap_m.assign(count / PointFaces::kGapStride + 1, std::numeric_limits<float>::quiet_NaN());
   const MortonOrder sorted = morton_order(scan.points, kFinestCubeM);
   monitor.throw_if_cancelled();
   const PointNormals normals(sorted, kMaxThicknessM);
@@ -58,6 +59,11 @@ PointFaces lay_on_faces(const ScanInModel& scan, const FaceIndex& index, const D
     if (hit.face >= 0) {
       laid.face[i] = hit.face;
       laid.distance_m[i] = static_cast<float>(hit.signed_m);
+      if (i % PointFaces::kGapStride != 0) return;
+      query.but_not = &index.face(hit.face).plane;
+      const FaceHit other = index.nearest(query);
+      if (other.face >= 0)
+        laid.gap_m[i / PointFaces::kGapStride] = static_cast<float>(std::abs(other.signed_m - hit.signed_m));
       return;
     }
     FaceQuery any;

@@ -27,6 +27,10 @@ struct PointFaces {
   std::vector<std::int32_t> face;  ///< index into the index's faces, or -1
   std::vector<float> distance_m;   ///< signed; NaN where there is no face
   std::vector<char> far;           ///< 1: no face of any direction within reach
+  /// Of every kGapStride-th point: how far behind or before its face another lies that it might be on
+  /// instead; NaN where there is none within reach.
+  std::vector<float> gap_m;
+  static constexpr std::size_t kGapStride = 8;
 };
 
 /// The nearest face whose front the scanner saw and whose direction is that of the surface at the point.

@@ -11,6 +11,8 @@ namespace {
 
 constexpr double kLeastCellM = 0.25;
 constexpr double kMostCells = 6e6;
+constexpr double kSamePlaneM = 0.005;
+constexpr double kSameWay = 0.99;
 
 /// Squared distance of a point to the nearest edge of a ring.
 double ring_distance_squared(const Ring& ring, const Vector2d& p) {
@@ -145,6 +147,9 @@ FaceHit FaceIndex::nearest(const FaceQuery& query) const {
       if ((query.oriented ? cosine : std::abs(cosine)) < query.min_cosine) continue;
     }
     if (query.seen_from != nullptr && plane.signed_distance(*query.seen_from) <= 0.0) continue;
+    if (query.but_not != nullptr && plane.normal.dot(query.but_not->normal) > kSameWay &&
+        std::abs(query.but_not->signed_distance(query.x) - signed_m) < kSamePlaneM)
+      continue;
     const double most = std::sqrt(best * best - signed_m * signed_m);
     const double off = outside_distance(face, face.face.frame.to_plane(query.x), most);
     if (off >= most) continue;

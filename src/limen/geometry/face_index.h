@@ -30,6 +30,7 @@ struct FaceQuery {
   double min_cosine = 0.0;              ///< of the face's normal with `normal`
   bool oriented = false;                ///< the sign of `normal` counts
   const Vector3d* seen_from = nullptr;  ///< only faces whose front that point sees; null: any
+  const Plane* but_not = nullptr;       ///< no face within 5 mm of this plane that looks the same way
 };
 
 /// A place where a straight line goes through a face.

@@ -125,6 +125,29 @@ TEST(FaceIndex, FindsEveryFaceThatALineCrosses) {
   EXPECT_GT(crossed, 500);
 }
 
+TEST(FaceIndex, AnotherPlaneThanTheNearest) {
+  std::vector<FlatFace> faces;
+  for (const double height : {0.0, 0.003, 0.03, -0.02}) {
+    FlatFace face;
+    face.plane.offset = height;
+    face.frame = make_frame(face.plane, Vector3d(0, 0, height));
+    face.outline.outer = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
+    faces.push_back(face);
+  }
+  faces[3].plane = faces[3].plane.flipped();
+  const FaceIndex index(faces, 0.1);
+  FaceQuery query;
+  query.x = {0.2, 0.1, 0.001};
+  EXPECT_EQ(index.nearest(query).face, 0);
+  query.but_not = &faces[0].plane;
+  EXPECT_EQ(index.nearest(query).face, 3);  // the other way round, and so another one
+  const Vector3d up = Vector3d::UnitZ();
+  query.normal = &up;
+  query.oriented = true;
+  query.min_cosine = 0.9;
+  EXPECT_EQ(index.nearest(query).face, 2);
+}
+
 TEST(FaceIndex, WithoutFacesNothingIsFound) {
   const FaceIndex index({}, 0.1);
   EXPECT_EQ(index.nearest({}).face, -1);
