@@ -22,6 +22,7 @@ namespace limen {
 namespace {
 
 constexpr double kShortestRun = 0.5;  // of an outline, in units of the shortest segment
+constexpr double kBeyond = 0.5;       // how far a border is looked for beyond its run, in units of the run
 constexpr int kSmooth = 2;            // bins to either side that a place's sight is smoothed over
 
 std::vector<std::unique_ptr<PlaneImage>> images_of(const Scan& scan, const std::vector<PlanarPolygon>& planes,
@@ -47,7 +48,9 @@ class BorderFinder {
     std::vector<DetectedEdge> edges;
     for (const StraightRun& run : straight_runs(image, kShortestRun * o_.min_length_m)) {
       if (!sight_.knows() && !run.hole) continue;
-      const std::optional<BorderFit> fit = fit_border(image, run, o_.join_gap_m, ambiguous_);
+      // An outline is cut where it wavers: the points may go on along the line.
+      const double beyond_m = std::max(o_.join_gap_m, kBeyond * (run.line.end_m - run.line.begin_m));
+      const std::optional<BorderFit> fit = fit_border(image, run, beyond_m, ambiguous_);
       if (!fit || fit->sigma_m > o_.max_border_sigma_m ||
           fit->angle_sigma_rad > radians(o_.max_border_angle_deg))
         continue;
