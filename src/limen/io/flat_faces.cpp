@@ -121,14 +121,22 @@ class Gatherer {
   }
 
   using Cell = std::array<std::int64_t, 4>;
-  [[nodiscard]] Cell cell_of(const Plane& plane) const {
+  /// A plane's cell by normal and offset, and the next one in each direction, whose border is nearest.
+  struct Place {
+    Cell cell;
+    Cell towards;  ///< -1 or 1 each
+  };
+  [[nodiscard]] Place place_of(const Plane& plane) const {
     constexpr double kOffsetCell_m = 0.05;
-    Cell cell{};
-    for (int k = 0; k < 3; ++k)
-      cell[static_cast<std::size_t>(k)] =
-          static_cast<std::int64_t>(std::floor(plane.normal[k] / (2.0 * options_.angle_rad)));
-    cell[3] = static_cast<std::int64_t>(std::floor(plane.signed_distance(centre_) / kOffsetCell_m));
-    return cell;
+    Place place{};
+    for (std::size_t k = 0; k < 4; ++k) {
+      const double value = k < 3 ? plane.normal[static_cast<Eigen::Index>(k)] / (2.0 * options_.angle_rad)
+                                 : plane.signed_distance(centre_) / kOffsetCell_m;
+      const double floor = std::floor(value);
+      place.cell[k] = static_cast<std::int64_t>(floor);
+      place.towards[k] = value - floor < 0.5 ? -1 : 1;
+    }
+    return place;
   }
   static std::uint64_t key_of(const Cell& cell) {
     std::uint64_t hash = 0;
@@ -140,10 +148,10 @@ class Gatherer {
     if (!mesh_.points.empty()) centre_ = mesh_.points.front();
     std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> by_cell;
     for (std::uint32_t i = 0; i < clusters_.size(); ++i) {
-      const Cell base = cell_of(clusters_[i].plane);
-      const std::uint32_t home = joined_into(i, base, by_cell);
+      const Place place = place_of(clusters_[i].plane);
+      const std::uint32_t home = joined_into(i, place, by_cell);
       if (home == i) {
-        by_cell[key_of(base)].push_back(i);
+        by_cell[key_of(place.cell)].push_back(i);
         continue;
       }
       std::vector<std::size_t>& pieces = clusters_[home].pieces;
@@ -154,11 +162,11 @@ class Gatherer {
 
   /// The earlier (larger) cluster that takes cluster i, or i.
   [[nodiscard]] std::uint32_t joined_into(
-      std::uint32_t i, const Cell& base,
+      std::uint32_t i, const Place& place,
       const std::unordered_map<std::uint64_t, std::vector<std::uint32_t>>& by_cell) const {
-    for (int step = 0; step < 81; ++step) {
-      const Cell cell{base[0] + step % 3 - 1, base[1] + step / 3 % 3 - 1, base[2] + step / 9 % 3 - 1,
-                      base[3] + step / 27 - 1};
+    for (unsigned step = 0; step < 16; ++step) {
+      Cell cell = place.cell;
+      for (std::size_t k = 0; k < 4; ++k) cell[k] += (step >> k & 1U) != 0 ? place.towards[k] : 0;
       const auto found = by_cell.find(key_of(cell));
       if (found == by_cell.end()) continue;
       for (const std::uint32_t other : found->second) {
@@ -245,7 +253,9 @@ std::vector<BimFace> flat_faces(const PolygonMesh& mesh, std::int32_t element,
     const PlaneFrame frame = make_frame(cluster.plane, whole.points[whole.corners[whole.begin_of(largest)]]);
     std::vector<Polygon> pieces;
     for (const std::size_t piece : cluster.pieces) pieces.push_back(outline_of(whole, piece, frame));
-    for (BimFace& face : faces_in_plane(cluster.plane, frame, merged(pieces), options)) {
+    // A lone triangle, as curved surfaces have many, is united already.
+    const bool united = pieces.size() == 1 && pieces.front().outer.size() == 3;
+    for (BimFace& face : faces_in_plane(cluster.plane, frame, united ? pieces : merged(pieces), options)) {
       face.element = element;
       faces.push_back(std::move(face));
     }
