@@ -23,8 +23,9 @@ TEST(IfcStream, CutAndFlippedStreamsNeverHarm) {
   const std::string node = std::string(1, '\3') + count(2) + mesh + mesh;
   const std::string product = testing_io::bytes_of<std::int64_t>(7) + count(7) + "IfcWall" + count(1) + node;
   std::string stream(kIfcStreamMagic);
-  stream += "L" + count(8) + number(1.0) + "P" + count(static_cast<std::uint32_t>(product.size())) + product +
-            "Z" + count(4) + count(1);
+  stream.append("L").append(count(8)).append(number(1.0));
+  stream.append("P").append(count(static_cast<std::uint32_t>(product.size()))).append(product);
+  stream.append("Z").append(count(4)).append(count(1));
   const IfcShapes whole = parse_ifc_stream(stream);
   ASSERT_TRUE(whole.complete);
   ASSERT_EQ(whole.products.size(), 1U);
