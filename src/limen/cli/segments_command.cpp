@@ -17,7 +17,11 @@
 #include "limen/base/atomic_file.h"
 #include "limen/cli/scan_options.h"
 #include "limen/extract/estimate_centre.h"
+#include "limen/extract/model_edges.h"
+#include "limen/extract/model_surface.h"
+#include "limen/extract/sample_model.h"
 #include "limen/extract/segments.h"
+#include "limen/io/read_bim.h"
 #include "limen/report/segments_json.h"
 
 namespace limen {
@@ -29,6 +33,7 @@ struct SegmentsCommand {
   std::string origin;
   std::string gravity = "up";
   SegmentOptions segments;
+  double sampled_m = 0.0;
 };
 
 /// What the segments of a scan are taken from, and how it is known from where the scan was taken.
@@ -54,6 +59,24 @@ FoundSegments segments_of(Scan scan, const SegmentsCommand& command, const Sessi
   return found;
 }
 
+/// The edges of a model: exactly as drawn, or (2023, IV-A) those that points spread over it show.
+FoundSegments segments_of(const BimModel& model, const SegmentsCommand& command, const Session& session) {
+  FoundSegments found;
+  found.centre = "of no meaning to a model";
+  session.monitor->begin_stage("segments");
+  if (command.sampled_m > 0) {
+    ModelSamplingOptions sampling;
+    sampling.spacing_m = command.sampled_m;
+    sampling.seed = session.common.seed;
+    found.segments = sampled_model_segments(model, sampling, command.segments);
+    return found;
+  }
+  ModelEdgeOptions exact;
+  exact.min_length_m = command.segments.min_length_m;
+  found.segments = sharp_edges(visible_surface(model).polygons, exact);
+  return found;
+}
+
 std::string summary(const FoundSegments& found, const std::string& output) {
   double total_m = 0.0;
   for (const Segment& segment : found.segments) total_m += segment.length();
@@ -70,9 +93,24 @@ std::string summary(const FoundSegments& found, const std::string& output) {
   return text + fmt::format("written to {}\n", output);
 }
 
+int run_model(const SegmentsCommand& command, const Session& session) {
+  session.monitor->begin_stage("reading");
+  const BimModel model = read_bim(command.scan, *session.monitor);
+  for (const std::string& warning : model.warnings) session.note(command.scan + ": " + warning);
+  AtomicFile file(command.output);
+  const FoundSegments found = segments_of(model, command, session);
+  const std::string json = segments_json(found.segments, model.local_origin, summarise(command.scan, model));
+  file.write(json);
+  file.commit();
+  session.say(summary(found, command.output));
+  session.answer(json);
+  return kExitOk;
+}
+
 int run(const SegmentsCommand& command, const Session& session) {
   command.segments.check();
   refuse_same_file(command.output, command.scan);
+  if (is_bim_file(command.scan)) return run_model(command, session);
   const ReadOptions reading = read_options(command.origin, "--origin", command.gravity);
   session.monitor->begin_stage("reading");
   Scan scan = read_input(command.scan, reading, session);
@@ -93,7 +131,8 @@ int run(const SegmentsCommand& command, const Session& session) {
 
 void add_segments_command(CLI::App& app, Session& session) {
   auto options = std::make_shared<SegmentsCommand>();
-  CLI::App* command = add_command(app, session, "segments", "Find the 3-D line segments of a scan: its edges",
+  CLI::App* command = add_command(app, session, "segments",
+                                  "Find the 3-D line segments of a scan or a building model: its edges",
                                   [options, &session] { return run(*options, session); });
   add_feature_options(*command, {options->scan, options->output, options->origin, options->gravity});
   SegmentOptions& o = options->segments;
@@ -103,6 +142,10 @@ void add_segments_command(CLI::App& app, Session& session) {
                     "Pieces of one line are joined across gaps up to this (default 0.15)");
   add_length_option(*command, "--max-border-sigma-m", o.max_border_sigma_m,
                     "Borders of surfaces whose place is known less well are left out (default 0.006)");
+  add_length_option(
+      *command, "--sampled-m", options->sampled_m,
+      "Of a model: take the edges that points this far apart on its surface show, instead of the "
+      "exact ones");
   command
       ->add_option("--min-angle-deg", o.min_angle_deg, "Between two surfaces that make an edge (default 12)")
       ->type_name("DEGREES");

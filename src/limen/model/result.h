@@ -37,7 +37,8 @@ struct Hypothesis {
   int matched_openings = 0;
   int matched_segments = 0;        ///< of registering sets of segments; `score` is in metres there
   double agreeing_length_m = 0.0;  ///< length of the smaller set of segments that lies on the other
-  std::string room;  ///< of a model with named rooms: where the (first) station then stands
+  double explained_share = 1.0;    ///< against a model: of the walls that the scan saw
+  std::string room;                ///< of a model with named rooms: where the (first) station then stands
 };
 
 /// A pair of planes that agree under the final pose.

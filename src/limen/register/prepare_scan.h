@@ -33,7 +33,7 @@ struct PreparedScan {
   std::vector<Vector3d> stations;    ///< optical centres of static stations, prepared frame
   Eigen::AlignedBox3d reach;         ///< around the samples, prepared frame
 
-  [[nodiscard]] ScanView view() const { return {&extracted.features, space.get(), reach, model}; }
+  [[nodiscard]] ScanView view() const { return {&extracted.features, space.get(), reach, model, mobile}; }
   /// Sets `reach` from the samples.
   void settle_reach();
 };

@@ -138,6 +138,7 @@ Hypothesis to_hypothesis(const JudgedPose& pose, const PreparedPair& pair) {
   hypothesis.rms_m = pose.refined.rms_m;
   hypothesis.matched_planes = static_cast<int>(pose.refined.matches.size());
   hypothesis.matched_openings = static_cast<int>(pose.refined.openings.size());
+  hypothesis.explained_share = pose.score.explained_share;
   hypothesis.room = room_of(pose.refined.target_from_source, pair);
   return hypothesis;
 }

@@ -16,6 +16,8 @@ namespace {
 
 constexpr double kClutterWeight = 0.5;  // clutter moves, and its cubes meet less sharply than planes
 
+constexpr double kWallTilt = 0.5;  // |normal . up| of a wall is less
+
 /// What the judge's scanner says to one sample of the other scan.
 struct Answer {
   Sight sight;
@@ -54,6 +56,15 @@ double saturated(double area_m2) {
   return kPlaneLimit_m2 * (1.0 - std::exp(-area_m2 / kPlaneLimit_m2));
 }
 
+/// Whether a sample is of a wall that a model should have: upright, not seen through a window; of a mobile
+/// scan, which sees much else, within the model's extent.
+bool asks_wall(const SurfaceSample& sample, const ScanView& scan, const ScanView& model,
+               const Rigid3& model_from_scan) {
+  if (scan.features->planes[static_cast<std::size_t>(sample.plane)].interior) return false;
+  if (std::abs(model_from_scan.rotation.row(2).dot(sample.normal)) > kWallTilt) return false;
+  return !scan.mobile || model.reach.contains(model_from_scan * sample.mean);
+}
+
 /// Asks `judge` about every sample of `scan`.
 PoseScore one_way(const ScanView& scan, const ScanView& judge, const Rigid3& judge_from_scan,
                   const ScoreOptions& options) {
@@ -65,7 +76,7 @@ PoseScore one_way(const ScanView& scan, const ScanView& judge, const Rigid3& jud
   // Samples come plane by plane, clutter last.
   std::int32_t plane = -1;
   double of_plane = 0.0;
-  double planar = 0.0;
+  double walls = 0.0;
   double explained = 0.0;
   for (const std::uint32_t i : asked.indices) {
     const Answer answer = ask(samples[i], scan, judge, judge_from_scan, options);
@@ -79,8 +90,8 @@ PoseScore one_way(const ScanView& scan, const ScanView& judge, const Rigid3& jud
     if (answer.planar) {
       score.planar_m2 += gain;
       of_plane += gain;
-      if (judge.model && judge.reach.contains(judge_from_scan * samples[i].mean)) {
-        planar += answer.area_m2;
+      if (judge.model && asks_wall(samples[i], scan, judge, judge_from_scan)) {
+        walls += answer.area_m2;
         if (answer.sight.kind == SightKind::surface) explained += answer.area_m2;
       }
     } else {
@@ -90,7 +101,7 @@ PoseScore one_way(const ScanView& scan, const ScanView& judge, const Rigid3& jud
     if (answer.sight.kind != SightKind::unseen) score.tested_m2 += factor * answer.area_m2;
   }
   score.evidence_m2 += saturated(of_plane);
-  if (judge.model) score.explained_share = planar > 0 ? explained / planar : 0.0;
+  if (judge.model) score.explained_share = walls > 0 ? explained / walls : 1.0;
   return score;
 }
 

@@ -17,6 +17,7 @@ struct ScanView {
   const SpaceView* space = nullptr;  ///< what its scanner knows of space
   Eigen::AlignedBox3d reach = {};    ///< around its samples
   bool model = false;                ///< a building model: everything, of which the other saw a part
+  bool mobile = false;               ///< seen from many places along a path
 };
 
 struct ScoreOptions {
@@ -42,7 +43,8 @@ struct PoseScore {
   /// Agreeing surface, each plane counting for no more than 5 m^2, however large: that two façades lie in one
   /// plane is one coincidence, not many.
   double evidence_m2 = 0.0;
-  /// Against a model: share of the scan's planar surface within the model's extent that lies on the model.
+  /// Against a model: share of the scan's upright planar surface that lies on the model. Floors and ceilings
+  /// say little: any room has them.
   double explained_share = 1.0;
 
   /// What poses are ranked by, m^2. One contradicted square metre outweighs several agreeing ones: surfaces

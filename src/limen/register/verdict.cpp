@@ -99,6 +99,9 @@ void add_weak(const Matrix3d& information, double bound, bool rotation,
 void VerdictOptions::check() const {
   if (!(min_agreeing_m2 > 0)) throw_bad_option("min_agreeing_m2", min_agreeing_m2, "more than 0");
   if (!(max_contradiction > 0)) throw_bad_option("max_contradiction", max_contradiction, "more than 0");
+  if (!(min_explained_share >= 0 && min_explained_share <= 1)) {
+    throw_bad_option("min_explained_share", min_explained_share, "within [0, 1]");
+  }
   if (!(max_rival_share > 0 && max_rival_share < 1)) {
     throw_bad_option("max_rival_share", max_rival_share, "within (0, 1)");
   }
@@ -168,6 +171,17 @@ Verdict judge(const std::vector<JudgedPose>& poses, const ContrastFunction& cont
   verdict.ranking = rank(poses, options);
   if (verdict.ranking.empty()) {
     verdict.reason = "no planes of the two scans can be laid on one another";
+    return verdict;
+  }
+  const double explained = poses[verdict.ranking.front()].score.explained_share;
+  std::erase_if(verdict.ranking,
+                [&](std::size_t i) { return poses[i].score.explained_share < options.min_explained_share; });
+  if (verdict.ranking.empty()) {
+    verdict.reason = fmt::format(
+        "at best {:.0f} % of the walls that the scan saw are in the model: it was taken elsewhere, or much "
+        "was "
+        "built otherwise",
+        100.0 * explained);
     return verdict;
   }
   const JudgedPose& best = poses[verdict.ranking.front()];
