@@ -44,8 +44,8 @@ PointFaces lay_on_faces(const ScanInModel& scan, const FaceIndex& index, const D
     FaceQuery query;
     query.x = scan.points[i];
     FaceHit hit;
+    Vector3d normal = Vector3d::Zero();  // lives as long as the query that points to it
     if (!normals.rough(k)) {
-      Vector3d normal = Vector3d::Zero();
       query.min_cosine = min_cosine;
       query.oriented = scan.centre_known();
       if (query.oriented) query.seen_from = &scan.centre(i);
