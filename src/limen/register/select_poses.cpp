@@ -15,7 +15,11 @@ constexpr std::size_t kMany = 2500;      // poses that get a first look
 constexpr std::size_t kGlance = 150;     // samples asked of each scan when there are more
 constexpr std::size_t kGlimpse = 40;     // and when there are tens of thousands
 constexpr std::size_t kVeryMany = 8000;
-constexpr double kModelShare = 0.45;  // in a model a pose this much worse than the best is not looked into
+// In a model a pose is not looked into further where its value is a smaller share of the best one's; the
+// fewer samples were asked, the smaller.
+constexpr double kGlanceShare = 0.3;
+constexpr double kFirstShare = 0.35;
+constexpr double kModelShare = 0.45;
 
 }  // namespace
 
@@ -51,9 +55,12 @@ std::vector<PoseCandidate> select_poses(const std::vector<PoseCandidate>& candid
   std::vector<PoseCandidate> left = candidates;
   if (model && left.size() > kVeryMany)
     left = best_of(left, source, target, {kGlimpse, kVeryMany, 0.0, false, false});
-  if (left.size() > kMany)
-    left = best_of(left, source, target, {kGlance, kMany, 0.25, openings && !model, !model});
-  left = best_of(left, source, target, {kFirstLook, 8 * most, 1.0, openings, true});
+  if (left.size() > kMany) {
+    left = best_of(left, source, target,
+                   {kGlance, kMany, 0.25, openings && !model, !model, model ? kGlanceShare : 0.0});
+  }
+  left =
+      best_of(left, source, target, {kFirstLook, 8 * most, 1.0, openings, true, model ? kFirstShare : 0.0});
   return best_of(left, source, target,
                  {kSecondLook, most, kContradictionWeight, openings, true, model ? kModelShare : 0.0});
 }
