@@ -13,8 +13,8 @@ namespace limen {
 /// with faces. False for everything else, also for files that cannot be opened.
 bool is_bim_file(const std::filesystem::path& path);
 
-/// Reads a model of any format that limen knows, chosen by content. Throws Error where it cannot be read; what
-/// is damaged or left out of a model that can be read in part stands in BimModel::warnings.
+/// Reads a model of any format that limen knows, chosen by content. Throws Error where it cannot be read;
+/// what is damaged or left out of a model that can be read in part stands in BimModel::warnings.
 BimModel read_bim(const std::filesystem::path& path, Monitor& monitor = silent_monitor());
 
 }  // namespace limen
