@@ -16,23 +16,22 @@
 namespace limen {
 namespace {
 
-/// Points that keep their distance: at most one per cube of the edge spacing / sqrt(3).
+/// Points that keep their distance, in cubes as wide as that: only neighbouring cubes have to be asked.
 class Disks {
  public:
-  explicit Disks(double spacing_m) : spacing_m_(spacing_m), cell_m_(spacing_m / std::sqrt(3.0)) {}
+  explicit Disks(double spacing_m) : spacing_m_(spacing_m) {}
 
   /// Whether `x` is far enough from all others; then it is kept.
   bool add(const Vector3d& x) {
-    const Vector3d cell = (x / cell_m_).array().floor();
-    for (int dx = -2; dx <= 2; ++dx) {
-      for (int dy = -2; dy <= 2; ++dy) {
-        for (int dz = -2; dz <= 2; ++dz) {
-          const auto found = cells_.find(key_of(cell + Vector3d(dx, dy, dz)));
-          if (found != cells_.end() && (points_[found->second] - x).norm() < spacing_m_) return false;
-        }
-      }
+    const Vector3d cell = (x / spacing_m_).array().floor();
+    // Its own cube first: late darts mostly end there.
+    if (taken(key_of(cell), x)) return false;
+    for (int k = 0; k < 27; ++k) {
+      if (k != 13 && taken(key_of(cell + Vector3d(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1)), x)) return false;
     }
-    cells_.emplace(key_of(cell), points_.size());
+    const auto [place, fresh] = last_.try_emplace(key_of(cell), points_.size());
+    before_.push_back(fresh ? kNone : place->second);
+    place->second = points_.size();
     points_.push_back(x);
     return true;
   }
@@ -40,15 +39,27 @@ class Disks {
   [[nodiscard]] std::vector<Vector3d>& points() { return points_; }
 
  private:
+  static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
+
   static std::int64_t key_of(const Vector3d& cell) {
     const auto part = [](double c) { return static_cast<std::int64_t>(c) & 0x1fffff; };
     return (part(cell.x()) << 42) | (part(cell.y()) << 21) | part(cell.z());
   }
 
+  /// Whether a point of that cube is too near.
+  [[nodiscard]] bool taken(std::int64_t key, const Vector3d& x) const {
+    const auto found = last_.find(key);
+    if (found == last_.end()) return false;
+    for (std::size_t i = found->second; i != kNone; i = before_[i]) {
+      if ((points_[i] - x).squaredNorm() < spacing_m_ * spacing_m_) return true;
+    }
+    return false;
+  }
+
   double spacing_m_;
-  double cell_m_;
   std::vector<Vector3d> points_;
-  std::unordered_map<std::int64_t, std::size_t> cells_;
+  std::vector<std::size_t> before_;                     // of each point: the one before it in its cube
+  std::unordered_map<std::int64_t, std::size_t> last_;  // of each cube: its last point
 };
 
 /// Darts thrown at the polygon's box, as many per area as `per_m2` says.

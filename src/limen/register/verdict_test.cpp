@@ -52,6 +52,16 @@ TEST(Verdict, SurfaceThatAgreesUnderBothPosesTellsNothing) {
   EXPECT_EQ(judge(poses, even).outcome, Outcome::ambiguous);
 }
 
+TEST(Verdict, WallsThatAreNotInTheModelForbidAPose) {
+  JudgedPose foreign = pose(30, 0, 0);
+  foreign.score.explained_share = 0.5;  // a corner in a larger room
+  EXPECT_EQ(judge_all({foreign}).outcome, Outcome::no_match);
+  // Nor does it stand in the way of a right one.
+  const Verdict verdict = judge_all({foreign, pose(28, 0, 3)});
+  EXPECT_EQ(verdict.outcome, Outcome::registered);
+  EXPECT_EQ(verdict.ranking.front(), 1U);
+}
+
 TEST(Verdict, TheSamePoseTwiceIsNoRival) {
   const Verdict verdict = judge_all({pose(30, 0, 0), pose(30, 0, 0.01)});
   EXPECT_EQ(verdict.outcome, Outcome::registered);
