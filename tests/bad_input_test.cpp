@@ -188,7 +188,6 @@ std::vector<BadUsage> bad_usages() {
       {"BadSeed", {"register", "good.xyz", "good.xyz", "-o", "out", "--seed", "-7"}, "--seed"},
       {"BadGravity", {"register", "good.xyz", "good.xyz", "-o", "out", "--gravity", "down"}, "--gravity"},
       {"BadMethod", {"register", "good.xyz", "good.xyz", "-o", "out", "--method", "magic"}, "--method"},
-      {"MethodToCome", {"register", "good.xyz", "good.xyz", "-o", "out", "--method", "segments"}, "segments"},
       {"BadOrigin", {"planes", "good.xyz", "-o", "x.json", "--origin", "1,2"}, "--origin"},
       {"NanOrigin", {"planes", "good.xyz", "-o", "x.json", "--origin", "nan,0,0"}, "--origin"},
       {"BadThreshold", {"planes", "good.xyz", "-o", "x.json", "--inlier-threshold-m", "-1"}, "threshold"},

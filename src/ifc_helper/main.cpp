@@ -116,7 +116,7 @@ std::size_t write_products(const RecordWriter& writer, const std::shared_ptr<Bui
 using Entity = std::pair<std::string, std::shared_ptr<BuildingEntity>>;
 
 /// Reads entity by entity, so that one that is damaged takes no other with it.
-std::shared_ptr<BuildingModel> load(std::string text, const RecordWriter& writer) {
+std::shared_ptr<BuildingModel> load(const std::string& text, const RecordWriter& writer) {
   auto model = std::make_shared<BuildingModel>();
   ReaderSTEP reader;
   reader.readHeader(text, model);

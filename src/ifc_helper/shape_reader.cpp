@@ -303,6 +303,8 @@ class ItemWalker {
   const std::function<void(const std::string&)>& tell_;
 };
 
+// The signature is IfcPlusPlus's.
+// NOLINTNEXTLINE(performance-unnecessary-value-param)
 void hear(void* listener, std::shared_ptr<StatusCallback::Message> message) {
   if (!message || message->m_message_type != StatusCallback::MESSAGE_TYPE_ERROR) return;
   std::string text;

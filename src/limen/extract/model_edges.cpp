@@ -8,6 +8,7 @@
 #include <unordered_map>
 
 #include "limen/base/error.h"
+#include "limen/geometry/cell_key.h"
 #include "limen/geometry/polygon_clip.h"
 
 namespace limen {
@@ -76,7 +77,7 @@ class LineMaker {
     const int steps = 1 + static_cast<int>(side.length() / (0.5 * kCellM));
     for (int k = 0; k <= steps; ++k) {
       const Vector3d x = side.a + (side.b - side.a) * (static_cast<double>(k) / steps);
-      std::vector<std::size_t>& cell = cells_[key_of(x, Vector3d::Zero())];
+      std::vector<std::size_t>& cell = cells_[cell_key(cell_of(x, kCellM))];
       if (cell.empty() || cell.back() != line) cell.push_back(line);
     }
   }
@@ -84,12 +85,6 @@ class LineMaker {
   [[nodiscard]] std::vector<EdgeLine>& lines() { return lines_; }
 
  private:
-  static std::int64_t key_of(const Vector3d& x, const Vector3d& shift) {
-    const Vector3d cell = (x / kCellM).array().floor().matrix() + shift;
-    const auto part = [](double c) { return static_cast<std::int64_t>(c) & 0x1fffff; };
-    return (part(cell.x()) << 42) | (part(cell.y()) << 21) | part(cell.z());
-  }
-
   [[nodiscard]] bool on_line(const Side& side, const EdgeLine& line) const {
     if (std::abs((side.b - side.a).dot(line.direction)) < kSameDirection * side.length()) return false;
     const auto off = [&](const Vector3d& x) { return (x - line.point).cross(line.direction).norm(); };
@@ -100,7 +95,7 @@ class LineMaker {
     for (const Vector3d& x : {Vector3d(0.5 * (side.a + side.b)), side.a, side.b}) {
       for (int k = 0; k < 27; ++k) {
         const Vector3d shift(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1);
-        const auto found = cells_.find(key_of(x, shift));
+        const auto found = cells_.find(cell_key(cell_of(x, kCellM) + shift));
         if (found == cells_.end()) continue;
         for (const std::size_t line : found->second) {
           if (on_line(side, lines_[line])) return line;

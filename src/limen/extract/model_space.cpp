@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "limen/geometry/cell_key.h"
 #include "limen/geometry/polygon_clip.h"
 
 namespace limen {
@@ -66,11 +67,6 @@ bool ModelSpace::Mask::covers(const Vector3d& x) const {
               static_cast<std::size_t>(p.x())];
 }
 
-std::int64_t ModelSpace::key_of(const Vector3d& x) {
-  const auto part = [](double c) { return static_cast<std::int64_t>(std::floor(c / kCellM)) & 0x1fffff; };
-  return (part(x.x()) << 42) | (part(x.y()) << 21) | part(x.z());
-}
-
 void ModelSpace::enter(std::int32_t index, double reach_m) {
   const Mask& mask = masks_[static_cast<std::size_t>(index)];
   // Places a third of a cell apart on the plane, and as far before and behind it as questions reach.
@@ -86,7 +82,8 @@ void ModelSpace::enter(std::int32_t index, double reach_m) {
       }
       if (!near) continue;
       for (int layer = -layers; layer <= layers; ++layer) {
-        std::vector<std::int32_t>& cell = cells_[key_of(x + layer * step * mask.plane.normal)];
+        std::vector<std::int32_t>& cell =
+            cells_[cell_key(cell_of(x + layer * step * mask.plane.normal, kCellM))];
         if (cell.empty() || cell.back() != index) cell.push_back(index);
       }
     }
@@ -103,7 +100,7 @@ ModelSpace::ModelSpace(const Features& features, double reach_m) {
 
 Sight ModelSpace::look(const SightQuery& query) const {
   Sight sight{SightKind::unseen};
-  const auto found = cells_.find(key_of(query.at));
+  const auto found = cells_.find(cell_key(cell_of(query.at, kCellM)));
   if (found == cells_.end()) return sight;
   double least = query.surface_m;
   for (const std::int32_t index : found->second) {

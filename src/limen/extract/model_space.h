@@ -33,7 +33,6 @@ class ModelSpace : public SpaceView {
   };
 
   [[nodiscard]] static Mask mask_of(const PlanarPolygon& polygon);
-  [[nodiscard]] static std::int64_t key_of(const Vector3d& x);
   void enter(std::int32_t index, double reach_m);
 
   std::vector<Mask> masks_;

@@ -11,6 +11,7 @@
 #include "limen/base/error.h"
 #include "limen/base/random.h"
 #include "limen/extract/model_surface.h"
+#include "limen/geometry/cell_key.h"
 #include "limen/geometry/polygon_clip.h"
 
 namespace limen {
@@ -23,13 +24,13 @@ class Disks {
 
   /// Whether `x` is far enough from all others; then it is kept.
   bool add(const Vector3d& x) {
-    const Vector3d cell = (x / spacing_m_).array().floor();
+    const Vector3d cell = cell_of(x, spacing_m_);
     // Its own cube first: late darts mostly end there.
-    if (taken(key_of(cell), x)) return false;
+    if (taken(cell_key(cell), x)) return false;
     for (int k = 0; k < 27; ++k) {
-      if (k != 13 && taken(key_of(cell + Vector3d(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1)), x)) return false;
+      if (k != 13 && taken(cell_key(cell + Vector3d(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1)), x)) return false;
     }
-    const auto [place, fresh] = last_.try_emplace(key_of(cell), points_.size());
+    const auto [place, fresh] = last_.try_emplace(cell_key(cell), points_.size());
     before_.push_back(fresh ? kNone : place->second);
     place->second = points_.size();
     points_.push_back(x);
@@ -40,11 +41,6 @@ class Disks {
 
  private:
   static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
-
-  static std::int64_t key_of(const Vector3d& cell) {
-    const auto part = [](double c) { return static_cast<std::int64_t>(c) & 0x1fffff; };
-    return (part(cell.x()) << 42) | (part(cell.y()) << 21) | part(cell.z());
-  }
 
   /// Whether a point of that cube is too near.
   [[nodiscard]] bool taken(std::int64_t key, const Vector3d& x) const {

@@ -13,6 +13,7 @@
 #include "limen/base/angles.h"
 #include "limen/base/error.h"
 #include "limen/base/parallel.h"
+#include "limen/geometry/cell_key.h"
 #include "limen/match/enumerate_rotations.h"
 
 namespace limen {
@@ -82,11 +83,7 @@ class Ballot {
   explicit Ballot(double cell_m) : cell_m_(cell_m) {}
 
   void add(const Vector3d& translation) {
-    const auto part = [&](double x) {
-      return static_cast<std::int64_t>(std::llround(x / cell_m_)) & 0x1fffff;
-    };
-    const std::int64_t key =
-        (part(translation.x()) << 42) | (part(translation.y()) << 21) | part(translation.z());
+    const std::int64_t key = cell_key((translation / cell_m_).array().round());
     const auto [place, fresh] = place_.try_emplace(key, found_.size());
     if (fresh) found_.push_back({translation, 0});
     ++found_[place->second].votes;

@@ -20,6 +20,7 @@ using Vector6d = Eigen::Matrix<double, 6, 1>;
 
 constexpr double kWeakShare = 1e-4;   // of the information: less is the planes' error
 constexpr double kMaxCentreM = 20.0;  // the best known point is sought this far from the matched surface
+constexpr double kBuiltM = 0.002;     // by how much a wall stands elsewhere than drawn, at least: 1 sigma
 constexpr double kGateSigma = 0.2;    // deviation of a tile far from the goal, as a share of the gate
 
 class Refiner {
@@ -136,7 +137,7 @@ class Refiner {
   };
 
   /// Deviation common to all tiles of a pair of planes: the planes' own errors, a scanner's drift. Taken from
-  /// how the pairs' mean residuals scatter, not less than a tenth of the noise.
+  /// how the pairs' mean residuals scatter, not less than a tenth of the noise, or than builders err.
   [[nodiscard]] double pair_offset_m(const std::map<std::pair<int, int>, PairSums>& pairs) const {
     double squares = 0.0;
     double areas = 0.0;
@@ -148,7 +149,8 @@ class Refiner {
     const auto count = static_cast<double>(pairs.size());
     const double freedoms = count / std::max(1.0, count - 3.0);
     const double noise = std::max(source_.features->noise_m, target_.features->noise_m);
-    return std::max(std::sqrt(freedoms * squares / areas), 0.1 * noise);
+    const double least = source_.model || target_.model ? kBuiltM : 0.1 * noise;
+    return std::max(std::sqrt(freedoms * squares / areas), least);
   }
 
   void summarise(RefinedPose& refined) const {

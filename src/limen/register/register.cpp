@@ -204,7 +204,7 @@ void polish(std::vector<JudgedPose>& poses, const ScanView& source, const ScanVi
 }
 
 /// How an attempt proposes its poses.
-enum class Proposal { held, sliding };
+enum class Proposal { held, sliding, segments };
 
 /// Steps of one attempt: poses from planes, coarse looks, refinement.
 std::vector<JudgedPose> attempt(const PreparedScan& source, const PreparedScan& target, bool gravity_known,
@@ -215,7 +215,8 @@ std::vector<JudgedPose> attempt(const PreparedScan& source, const PreparedScan& 
   proposing.model = source.model ? ModelSide::source : target.model ? ModelSide::target : ModelSide::none;
   const Features& from = source.extracted.features;
   const Features& to = target.extracted.features;
-  std::vector<PoseCandidate> candidates = proposal == Proposal::held
+  if (proposal == Proposal::segments) proposing.method = Method::segments;
+  std::vector<PoseCandidate> candidates = proposal != Proposal::sliding
                                               ? propose_poses(from, to, proposing)
                                               : propose_sliding_poses(from, to, proposing);
   clock.end();
@@ -267,8 +268,10 @@ ExtractOptions features_for_registration() {
   return options;
 }
 
-PrepareOptions prepare_options(const RegisterOptions& options) {
-  return {options.extract, options.gravity, options.method == Method::segments};
+PrepareOptions prepare_options(const RegisterOptions& options, bool with_model) {
+  const bool lines =
+      options.method == Method::segments || (with_model && options.method == Method::automatic);
+  return {options.extract, options.gravity, lines};
 }
 
 void RegisterOptions::check() const {
@@ -310,6 +313,9 @@ RegistrationResult register_prepared(const PreparedPair& pair, const RegisterOpt
   }
   const bool planes = options.method == Method::automatic || options.method == Method::polygons;
   if (verdict.outcome == Outcome::no_match && level && planes && !model) try_again(true, Proposal::sliding);
+  // Where the planes of a scan find no place in a model, its edges may (2023, IV).
+  const bool lines = options.method == Method::automatic && model;
+  if (verdict.outcome == Outcome::no_match && lines) try_again(level, Proposal::segments);
   tell(verdict, poses, pair, options, result);
   return result;
 }

@@ -36,8 +36,8 @@ struct RegisterOptions {
   void check() const;
 };
 
-/// How the scans of a pair are to be prepared.
-PrepareOptions prepare_options(const RegisterOptions& options);
+/// How the scans of a pair are to be prepared; `with_model`: the other side is a model.
+PrepareOptions prepare_options(const RegisterOptions& options, bool with_model = false);
 
 /// Two scans made ready with `prepare_options`, or one and a model, either way round.
 struct PreparedPair {

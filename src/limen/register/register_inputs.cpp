@@ -39,6 +39,16 @@ PreparedScan prepare(const BimModel& model, const PrepareOptions& /*of scans*/, 
   return prepare_model(model, {}, monitor);
 }
 
+bool is_model(const RegisterInput& input) {
+  return input.model.has_value();
+}
+bool is_model(const Scan& /*scan*/) {
+  return false;
+}
+bool is_model(const BimModel& /*model*/) {
+  return true;
+}
+
 template <typename Source, typename Target>
 RegistrationResult prepare_and_register(const Source& source, const Target& target,
                                         const RegisterOptions& options, Monitor& monitor) {
@@ -47,10 +57,10 @@ RegistrationResult prepare_and_register(const Source& source, const Target& targ
   StageClock clock(stages, monitor);
   PreparedPair pair;
   clock.begin("source features");
-  pair.source = prepare(source, prepare_options(options), monitor);
+  pair.source = prepare(source, prepare_options(options, is_model(target)), monitor);
   clock.end();
   clock.begin("target features");
-  pair.target = prepare(target, prepare_options(options), monitor);
+  pair.target = prepare(target, prepare_options(options, is_model(source)), monitor);
   clock.end();
   RegistrationResult result = register_prepared(pair, options, monitor);
   result.stages.insert(result.stages.begin(), stages.begin(), stages.end());
