@@ -100,7 +100,7 @@ std::vector<Vector3d> held_directions(const std::vector<FaceOffset>& faces, cons
 
 }  // namespace
 
-FaceOffset face_offset(const Vector3d& normal, std::vector<float> distances_m, double max_distance_m) {
+FaceOffset face_offset(const Vector3d& normal, const std::vector<float>& distances_m, double max_distance_m) {
   FaceOffset face;
   face.normal = normal;
   if (distances_m.empty()) return face;

@@ -20,7 +20,7 @@ struct FaceOffset {
 
 /// Where most of the points of a face are: the peak of their distribution, so that what else stands within
 /// reach of the face, or another element's surface, does not pull.
-FaceOffset face_offset(const Vector3d& normal, std::vector<float> distances_m, double max_distance_m);
+FaceOffset face_offset(const Vector3d& normal, const std::vector<float>& distances_m, double max_distance_m);
 
 /// The rigid shift that explains the offsets of an element's faces, robustly.
 ElementShift shift_of(const std::vector<FaceOffset>& faces, const DeviationOptions& options);

@@ -94,8 +94,7 @@ class LineMaker {
   [[nodiscard]] std::size_t find(const Side& side) const {
     for (const Vector3d& x : {Vector3d(0.5 * (side.a + side.b)), side.a, side.b}) {
       for (int k = 0; k < 27; ++k) {
-        const Vector3d shift(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1);
-        const auto found = cells_.find(cell_key(cell_of(x, kCellM) + shift));
+        const auto found = cells_.find(cell_key(cell_of(x, kCellM) + way_to_cell(k)));
         if (found == cells_.end()) continue;
         for (const std::size_t line : found->second) {
           if (on_line(side, lines_[line])) return line;

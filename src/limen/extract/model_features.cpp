@@ -26,8 +26,9 @@ std::vector<SurfaceSample> samples_of(const PlanarPolygon& polygon, std::int32_t
       Vector2d sum = Vector2d::Zero();
       int inside = 0;
       for (int k = 0; k < kSubtiles * kSubtiles; ++k) {
-        const Vector2d p(column * tile_m + (k % kSubtiles + 0.5) * step,
-                         row * tile_m + (k / kSubtiles + 0.5) * step);
+        const int below = k / kSubtiles;
+        const int beside = k % kSubtiles;
+        const Vector2d p(column * tile_m + (beside + 0.5) * step, row * tile_m + (below + 0.5) * step);
         if (!contains(polygon.parts.front(), p)) continue;
         sum += p;
         ++inside;

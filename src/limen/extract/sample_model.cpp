@@ -28,7 +28,7 @@ class Disks {
     // Its own cube first: late darts mostly end there.
     if (taken(cell_key(cell), x)) return false;
     for (int k = 0; k < 27; ++k) {
-      if (k != 13 && taken(cell_key(cell + Vector3d(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1)), x)) return false;
+      if (k != 13 && taken(cell_key(cell + way_to_cell(k)), x)) return false;
     }
     const auto [place, fresh] = last_.try_emplace(cell_key(cell), points_.size());
     before_.push_back(fresh ? kNone : place->second);

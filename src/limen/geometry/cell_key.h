@@ -19,4 +19,12 @@ inline Vector3d cell_of(const Vector3d& x, double cell_m) {
   return (x / cell_m).array().floor();
 }
 
+/// The way to the k-th of the 27 cells around a cell; 13 is the cell itself.
+inline Vector3d way_to_cell(int k) {
+  const int x = k % 3 - 1;
+  const int y = k / 3 % 3 - 1;
+  const int z = k / 9 - 1;
+  return {static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)};
+}
+
 }  // namespace limen
