@@ -105,8 +105,12 @@ TEST_F(RegisterModelTest, WhatCannotBeIsTold) {
   EXPECT_FALSE(std::filesystem::exists(work() / "result" / "result.json"));
 }
 
-TEST_F(RegisterModelTest, EdgesOfAModel) {
+TEST_F(RegisterModelTest, FeaturesOfAModel) {
   simulate("unique", "1");
+  ASSERT_EQ(run({"planes", "case/model.ifc", "-o", "planes.json"}).status, 0);
+  ASSERT_EQ(run({"openings", "case/model.ifc", "-o", "openings.json"}).status, 0);
+  EXPECT_GT(json_at("planes.json")["planes"].size(), 100U);
+  EXPECT_GT(json_at("openings.json")["openings"].size(), 20U);
   ASSERT_EQ(run({"segments", "case/model.ifc", "-o", "exact.json"}).status, 0);
   ASSERT_EQ(run({"segments", "case/model.ifc", "-o", "sampled.json", "--sampled-m", "0.06"}).status, 0);
   EXPECT_GT(json_at("exact.json")["segments"].size(), 200U);

@@ -16,7 +16,9 @@
 #include "limen/base/atomic_file.h"
 #include "limen/base/error.h"
 #include "limen/cli/scan_options.h"
+#include "limen/extract/model_features.h"
 #include "limen/extract/openings.h"
+#include "limen/io/read_bim.h"
 #include "limen/match/enumerate_rotations.h"
 #include "limen/report/features_json.h"
 
@@ -71,9 +73,21 @@ std::string summary(const std::vector<Opening>& openings, const std::string& out
   return text + fmt::format("written to {}\n", output);
 }
 
+int run_model(const OpeningsCommand& command, const Session& session) {
+  const BimModel model = read_model_input(command.scan, session);
+  session.monitor->begin_stage("openings");
+  const Features features = model_features(model).features;
+  const std::string json = openings_json(features, summarise(command.scan, model));
+  write_file(command.output, json);
+  session.say(summary(features.openings, command.output));
+  session.answer(json);
+  return kExitOk;
+}
+
 int run(const OpeningsCommand& command, const Session& session) {
   command.openings.check();
   refuse_same_file(command.output, command.scan);
+  if (is_bim_file(command.scan)) return run_model(command, session);
   const ReadOptions reading = read_options(command.origin, "--origin", command.gravity);
   session.monitor->begin_stage("reading");
   const Scan scan = read_input(command.scan, reading, session);
@@ -104,7 +118,7 @@ int run(const OpeningsCommand& command, const Session& session) {
 
 void add_openings_command(CLI::App& app, Session& session) {
   auto options = std::make_shared<OpeningsCommand>();
-  CLI::App* command = add_command(app, session, "openings", "Find the windows and doors of a scan",
+  CLI::App* command = add_command(app, session, "openings", "Find the windows and doors of a scan or a model",
                                   [options, &session] { return run(*options, session); });
   add_feature_options(*command, {options->scan, options->output, options->origin, options->gravity});
   OpeningOptions& o = options->openings;

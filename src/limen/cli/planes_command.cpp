@@ -19,6 +19,8 @@
 #include "limen/base/error.h"
 #include "limen/cli/scan_options.h"
 #include "limen/extract/extract_features.h"
+#include "limen/extract/model_features.h"
+#include "limen/io/read_bim.h"
 #include "limen/report/features_json.h"
 
 namespace limen {
@@ -77,12 +79,24 @@ std::string summary(const Features& features, const PlanesOptions& options) {
   return text + fmt::format("written to {}\n", options.output);
 }
 
+int run_model(const PlanesOptions& options, const Session& session) {
+  const BimModel model = read_model_input(options.scan, session);
+  session.monitor->begin_stage("planes");
+  const Features features = model_features(model).features;
+  const std::string json = features_json(features, summarise(options.scan, model));
+  write_file(options.output, json);
+  session.say(summary(features, options));
+  session.answer(json);
+  return kExitOk;
+}
+
 int run(PlanesOptions options, const Session& session) {
   options.extract.detect.detector = detectors().at(options.detector);
   options.extract.detect.seed = session.common.seed;
   set_threshold(options.threshold, options.extract);
   options.extract.check();
   refuse_same_file(options.output, options.scan);
+  if (is_bim_file(options.scan)) return run_model(options, session);
   const ReadOptions reading = read_options(options.origin, "--origin", options.gravity);
   session.monitor->begin_stage("reading");
   const Scan scan = read_input(options.scan, reading, session);
@@ -103,8 +117,9 @@ int run(PlanesOptions options, const Session& session) {
 
 void add_planes_command(CLI::App& app, Session& session) {
   auto options = std::make_shared<PlanesOptions>();
-  CLI::App* command = add_command(app, session, "planes", "Find the planes of a scan and their outlines",
-                                  [options, &session] { return run(*options, session); });
+  CLI::App* command =
+      add_command(app, session, "planes", "Find the planes of a scan or a model and their outlines",
+                  [options, &session] { return run(*options, session); });
   add_feature_options(*command, {options->scan, options->output, options->origin, options->gravity});
   std::vector<std::string> names;
   for (const auto& [name, detector] : detectors()) names.push_back(name);

@@ -16,8 +16,7 @@ Side read_model_side(const SideOptions& options, const Session& session) {
   if (!options.with.empty())
     throw Error("is a building model", options.path, "further scans can only stand by a scan");
   Side side;
-  side.input.model = read_bim(options.path, *session.monitor);
-  for (const std::string& warning : side.input.model->warnings) session.note(options.path + ": " + warning);
+  side.input.model = read_model_input(options.path, session);
   side.summary = summarise(options.path, *side.input.model);
   return side;
 }

@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "limen/base/error.h"
+#include "limen/io/read_bim.h"
 
 namespace limen {
 
@@ -63,6 +64,13 @@ ReadOptions read_options(const std::string& origin, const std::string& option, c
 
 Scan read_input(const std::string& path, const ReadOptions& options, const Session& session) {
   return read_scan(path, options, *session.monitor);
+}
+
+BimModel read_model_input(const std::string& path, const Session& session) {
+  session.monitor->begin_stage("reading");
+  BimModel model = read_bim(path, *session.monitor);
+  for (const std::string& warning : model.warnings) session.note(path + ": " + warning);
+  return model;
 }
 
 void refuse_same_file(const std::string& output, const std::string& input) {

@@ -7,6 +7,7 @@
 
 #include "limen/cli/command.h"
 #include "limen/io/read_scan.h"
+#include "limen/model/bim_model.h"
 
 namespace limen {
 
@@ -32,6 +33,9 @@ ReadOptions read_options(const std::string& origin, const std::string& option, c
 
 /// Reads the one scan of a file.
 Scan read_input(const std::string& path, const ReadOptions& options, const Session& session);
+
+/// Reads a building model and notes its warnings.
+BimModel read_model_input(const std::string& path, const Session& session);
 
 /// Throws Error where `output` is the file `input`: a result never replaces what it was made from.
 void refuse_same_file(const std::string& output, const std::string& input);

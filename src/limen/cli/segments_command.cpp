@@ -94,9 +94,7 @@ std::string summary(const FoundSegments& found, const std::string& output) {
 }
 
 int run_model(const SegmentsCommand& command, const Session& session) {
-  session.monitor->begin_stage("reading");
-  const BimModel model = read_bim(command.scan, *session.monitor);
-  for (const std::string& warning : model.warnings) session.note(command.scan + ": " + warning);
+  const BimModel model = read_model_input(command.scan, session);
   AtomicFile file(command.output);
   const FoundSegments found = segments_of(model, command, session);
   const std::string json = segments_json(found.segments, model.local_origin, summarise(command.scan, model));
