@@ -301,6 +301,7 @@ RegistrationResult register_prepared(const PreparedPair& pair, const RegisterOpt
   };
   VerdictOptions judging = options.verdict;
   const bool model = from.model || to.model;
+  judging.in_model = model;
   judging.through_wall = !model && from.mobile != to.mobile;
   Verdict verdict = judge(poses, contrast, judging);
   const auto try_again = [&](bool gravity_known, Proposal proposal) {
@@ -313,9 +314,9 @@ RegistrationResult register_prepared(const PreparedPair& pair, const RegisterOpt
   }
   const bool planes = options.method == Method::automatic || options.method == Method::polygons;
   if (verdict.outcome == Outcome::no_match && level && planes && !model) try_again(true, Proposal::sliding);
-  // Where the planes of a scan find no place in a model, its edges may (2023, IV).
+  // Where the planes of a scan propose no place in a model, its edges may (2023, IV).
   const bool lines = options.method == Method::automatic && model;
-  if (verdict.outcome == Outcome::no_match && lines) try_again(level, Proposal::segments);
+  if (poses.empty() && lines) try_again(level, Proposal::segments);
   tell(verdict, poses, pair, options, result);
   return result;
 }

@@ -190,7 +190,7 @@ Verdict judge(const std::vector<JudgedPose>& poses, const ContrastFunction& cont
         fmt::format("the scans have only {:.1f} m2 of surface in common at best", best.score.planar_m2);
     return verdict;
   }
-  if (contradicted(best.score, options)) {
+  if (contradicted(best.score, options) || (options.in_model && best.score.value() <= 0.0)) {
     verdict.reason =
         fmt::format("at best {:.1f} m2 agree, but {:.1f} m2 of one scan stand where the other saw free space",
                     best.score.agreeing_m2, best.score.contradicted_m2);
@@ -214,6 +214,16 @@ Verdict judge(const std::vector<JudgedPose>& poses, const ContrastFunction& cont
     verdict.outcome = Outcome::ambiguous;
     verdict.reason = fmt::format("{} different pose{} explain{} the scans nearly as well", rivals,
                                  rivals == 1 ? "" : "s", rivals == 1 ? "s" : "");
+    return verdict;
+  }
+  if (options.in_model &&
+      best.score.contradicted_m2 >
+          options.max_model_contradiction * best.score.agreeing_m2 + options.model_allowance_m2) {
+    verdict.outcome = Outcome::ambiguous;
+    verdict.reason = fmt::format(
+        "{:.1f} m2 of the model stand where the scan saw free space: another room, or built "
+        "otherwise",
+        best.score.contradicted_m2);
     return verdict;
   }
   if (unsure_through_wall(best.score, options)) {

@@ -32,6 +32,10 @@ struct VerdictOptions {
   /// model: simulated furnished rooms with a quarter of the elements moved had 0.68 and more, foreign
   /// buildings 0.42 at most.
   double min_explained_share = 0.58;
+  /// One side is a model: with more contradicted surface than this a pose is not sure.
+  bool in_model = false;
+  double max_model_contradiction = 0.02;     ///< over agreeing surface ...
+  double model_allowance_m2 = 0.5;           ///< ... and this much
   double max_rival_contradiction = 0.25;     ///< a pose contradicted more than this is no rival
   double excess_contradiction_m2 = 1.0;      ///< nor is one contradicted more than the best by this ...
   double excess_contradiction_share = 0.02;  ///< ... and this share of its agreeing surface
