@@ -69,7 +69,7 @@ Scan read_input(const std::string& path, const ReadOptions& options, const Sessi
 BimModel read_model_input(const std::string& path, const Session& session) {
   session.monitor->begin_stage("reading");
   BimModel model = read_bim(path, *session.monitor);
-  for (const std::string& warning : model.warnings) session.note(path + ": " + warning);
+  for (const std::string& warning : model.warnings) session.note(fmt::format("{}: {}", path, warning));
   return model;
 }
 
