@@ -77,13 +77,6 @@ Rigid3 table1_pose(std::uint64_t seed, std::size_t row) {
   return {rotation_exp(radians(kRows[row % 4][1]) * axis), kRows[row % 4][0] * way};
 }
 
-Scan moved(const Scan& scan, const Rigid3& pose) {
-  Scan copy = scan;
-  for (Vector3d& x : copy.points) x = pose * x;
-  for (Vector3d& x : copy.centres) x = pose * x;
-  return copy;
-}
-
 Row run(const Scan& source, const Scan& target, const Rigid3& truth, const Settings& settings) {
   RegisterOptions options;
   if (settings.gravity == "unknown") options.gravity = Gravity::unknown;

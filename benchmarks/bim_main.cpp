@@ -116,8 +116,8 @@ void run_foreign(const Options& options) {
       const RegistrationResult result = register_inputs(bim_cases::input_of(made), target, registering);
       ++outcomes[to_string(result.outcome)];
       fmt::print("{:<24} in {:<24} {:<46} {:<12} explained {:.2f} value {:.1f} {}\n", models[plan.model].name,
-                 models[other].name, plan.label(), to_string(result.outcome), result.best.explained_share,
-                 result.best.score, result.reason);
+                 models[other].name, plan.label(), to_string(result.outcome),
+                 result.best.explained_share.value_or(1.0), result.best.score, result.reason);
       std::fflush(stdout);
     }
   }
@@ -152,8 +152,9 @@ void run(const Options& options) {
     fmt::print("{:<24} {:<46} {:<6} {:<12} {:6.1f} mm {:7.4f} deg  {:.2f} s  explained {:.2f} {}{} [{}] {}\n",
                name, plan.label(), judgement.right() ? "right" : (judgement.wrong() ? "WRONG" : "-"),
                to_string(result.outcome), 1e3 * judgement.translation_m, judgement.rotation_deg,
-               seconds.count(), result.best.explained_share, judgement.repeated ? "repeated " : "",
-               judgement.listed ? "listed" : "not listed", result.alternatives.size(), result.reason);
+               seconds.count(), result.best.explained_share.value_or(1.0),
+               judgement.repeated ? "repeated " : "", judgement.listed ? "listed" : "not listed",
+               result.alternatives.size(), result.reason);
     std::fflush(stdout);
   }
   for (const auto& [name, tally] : tallies) print(name, tally);

@@ -76,12 +76,10 @@ std::string summary(const std::vector<Opening>& openings, const std::string& out
 int run_model(const OpeningsCommand& command, const Session& session) {
   const BimModel model = read_model_input(command.scan, session);
   session.monitor->begin_stage("openings");
+  AtomicFile file(command.output);
   const Features features = model_features(model).features;
   const std::string json = openings_json(features, summarise(command.scan, model));
-  write_file(command.output, json);
-  session.say(summary(features.openings, command.output));
-  session.answer(json);
-  return kExitOk;
+  return deliver(file, json, summary(features.openings, command.output), session);
 }
 
 int run(const OpeningsCommand& command, const Session& session) {
@@ -105,13 +103,8 @@ int run(const OpeningsCommand& command, const Session& session) {
   extracted.features.openings =
       scan.level ? find_openings(scan, extracted, Vector3d::UnitZ(), command.openings, *session.monitor)
                  : openings_any_way_up(scan, extracted, command.openings, *session.monitor);
-  session.monitor->throw_if_cancelled();
   const std::string json = openings_json(extracted.features, summarise(command.scan, scan));
-  file.write(json);
-  file.commit();
-  session.say(summary(extracted.features.openings, command.output));
-  session.answer(json);
-  return kExitOk;
+  return deliver(file, json, summary(extracted.features.openings, command.output), session);
 }
 
 }  // namespace

@@ -82,12 +82,10 @@ std::string summary(const Features& features, const PlanesOptions& options) {
 int run_model(const PlanesOptions& options, const Session& session) {
   const BimModel model = read_model_input(options.scan, session);
   session.monitor->begin_stage("planes");
+  AtomicFile file(options.output);
   const Features features = model_features(model).features;
   const std::string json = features_json(features, summarise(options.scan, model));
-  write_file(options.output, json);
-  session.say(summary(features, options));
-  session.answer(json);
-  return kExitOk;
+  return deliver(file, json, summary(features, options), session);
 }
 
 int run(PlanesOptions options, const Session& session) {
@@ -104,13 +102,8 @@ int run(PlanesOptions options, const Session& session) {
   // Opened before the long work: a place that cannot be written to is told at once.
   AtomicFile file(options.output);
   const Features features = extract_features(scan, options.extract, *session.monitor).features;
-  session.monitor->throw_if_cancelled();
   const std::string json = features_json(features, summarise(options.scan, scan));
-  file.write(json);
-  file.commit();
-  session.say(summary(features, options));
-  session.answer(json);
-  return kExitOk;
+  return deliver(file, json, summary(features, options), session);
 }
 
 }  // namespace

@@ -73,6 +73,15 @@ BimModel read_model_input(const std::string& path, const Session& session) {
   return model;
 }
 
+int deliver(AtomicFile& file, const std::string& json, const std::string& summary, const Session& session) {
+  session.monitor->throw_if_cancelled();
+  file.write(json);
+  file.commit();
+  session.say(summary);
+  session.answer(json);
+  return kExitOk;
+}
+
 void refuse_same_file(const std::string& output, const std::string& input) {
   std::error_code missing;
   if (std::filesystem::equivalent(output, input, missing)) {

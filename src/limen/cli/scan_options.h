@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "limen/base/atomic_file.h"
 #include "limen/cli/command.h"
 #include "limen/io/read_scan.h"
 #include "limen/model/bim_model.h"
@@ -36,6 +37,10 @@ Scan read_input(const std::string& path, const ReadOptions& options, const Sessi
 
 /// Reads a building model and notes its warnings.
 BimModel read_model_input(const std::string& path, const Session& session);
+
+/// The end of a command that takes features: `json` goes into the file and to who asked for it, `summary` to
+/// a reader. Returns the exit status.
+int deliver(AtomicFile& file, const std::string& json, const std::string& summary, const Session& session);
 
 /// Throws Error where `output` is the file `input`: a result never replaces what it was made from.
 void refuse_same_file(const std::string& output, const std::string& input);

@@ -98,11 +98,7 @@ int run_model(const SegmentsCommand& command, const Session& session) {
   AtomicFile file(command.output);
   const FoundSegments found = segments_of(model, command, session);
   const std::string json = segments_json(found.segments, model.local_origin, summarise(command.scan, model));
-  file.write(json);
-  file.commit();
-  session.say(summary(found, command.output));
-  session.answer(json);
-  return kExitOk;
+  return deliver(file, json, summary(found, command.output), session);
 }
 
 int run(const SegmentsCommand& command, const Session& session) {
@@ -118,11 +114,7 @@ int run(const SegmentsCommand& command, const Session& session) {
   AtomicFile file(command.output);
   const FoundSegments found = segments_of(std::move(scan), command, session);
   const std::string json = segments_json(found.segments, local_origin, input);
-  file.write(json);
-  file.commit();
-  session.say(summary(found, command.output));
-  session.answer(json);
-  return kExitOk;
+  return deliver(file, json, summary(found, command.output), session);
 }
 
 }  // namespace

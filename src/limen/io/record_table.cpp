@@ -64,6 +64,14 @@ void load_strip(const Strip& strip, bool swapped) {
   }
 }
 
+void keep_bits(const Strip& strip, BitRange bits) {
+  const std::uint64_t mask = bits.count >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << bits.count) - 1;
+  for (std::size_t i = 0; i < strip.count; ++i) {
+    double& number = strip.to[i * strip.to_stride];
+    number = static_cast<double>((static_cast<std::uint64_t>(number) >> bits.shift) & mask);
+  }
+}
+
 /// Calls `action` with a value of the C++ type of `type`.
 template <typename Action>
 void with_type(Scalar type, const Action& action) {
@@ -127,7 +135,7 @@ RecordTable table_of_numbers(std::shared_ptr<const std::vector<double>> numbers,
     table.fields.push_back(
         {names[k], Scalar::float64, first + k * sizeof(double), names.size() * sizeof(double)});
   }
-  table.numbers = std::move(numbers);
+  table.keeper = std::move(numbers);
   return table;
 }
 
@@ -136,6 +144,11 @@ void load_numbers(const RecordTable& table, const Field& field, RowRange rows, d
   const Strip strip{field.data + rows.begin * field.stride, field.stride, rows.end - rows.begin, out,
                     out_stride};
   with_type(field.type, [&](auto value) { load_strip<decltype(value)>(strip, table.swapped); });
+  if (field.bits.count != 0) keep_bits(strip, field.bits);
+  if (field.scale != 1.0 || field.offset != 0.0) {
+    for (std::size_t i = 0; i < strip.count; ++i)
+      out[i * out_stride] = field.offset + field.scale * out[i * out_stride];
+  }
 }
 
 double load_number(const char* bytes, Scalar type, bool swapped) {

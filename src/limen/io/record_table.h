@@ -30,12 +30,25 @@ std::size_t size_of(Scalar scalar);
 const char* name_of(Scalar scalar);
 [[nodiscard]] bool is_integer(Scalar scalar);
 
-/// One named column of numbers somewhere in memory: value i lies at data + i * stride.
+/// Some bits of an integer, counted from the lowest; count 0: the whole number.
+struct BitRange {
+  unsigned shift = 0;
+  unsigned count = 0;
+};
+
+/// One named column of numbers somewhere in memory: value i is offset + scale * n, where n are `bits` of the
+/// number that lies at data + i * stride.
 struct Field {
   std::string name;  ///< lower case
   Scalar type = Scalar::float64;
   const char* data = nullptr;
   std::size_t stride = 0;  ///< bytes
+  double scale = 1.0;
+  double offset = 0.0;
+  BitRange bits = {};
+
+  /// The stored number is the value.
+  [[nodiscard]] bool plain() const { return scale == 1.0 && offset == 0.0 && bits.count == 0; }
 };
 
 /// What every reader brings its file to: columns of equal length, in the file's own bytes where they are
@@ -44,7 +57,7 @@ struct RecordTable {
   std::size_t rows = 0;
   bool swapped = false;  ///< bytes of each number are in the order opposite to this machine's
   std::vector<Field> fields;
-  std::shared_ptr<const std::vector<double>> numbers;  ///< keeps what `fields` point to, where not the file
+  std::shared_ptr<const void> keeper;  ///< keeps what `fields` point to, where not the file
 
   /// The first field with one of these names, in the order of the names; nullptr where there is none.
   [[nodiscard]] const Field* find(std::initializer_list<std::string_view> names) const;

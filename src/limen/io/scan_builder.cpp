@@ -64,21 +64,25 @@ Vector3d first_usable(const RecordTable& table, const Triple& fields, const Tabl
   for (std::size_t i = 0; i < table.rows; ++i) {
     Vector3d x;
     for (std::size_t k = 0; k < 3; ++k) load_numbers(table, *fields[k], {i, i + 1}, &x[static_cast<int>(k)]);
-    if (usable(x)) return facts.offset + x;
+    if (usable(x)) return facts.offset + (facts.pose ? *facts.pose * x : x);
   }
   throw Error("no usable points: every one has a coordinate that is not a number or absurdly large",
               facts.name, "check how the file was exported");
 }
 
-/// Loads three columns as points plus `shift`.
-std::vector<Vector3d> load_points(const RecordTable& table, const Triple& fields, const Vector3d& shift) {
+/// Loads three columns as points, moved.
+std::vector<Vector3d> load_points(const RecordTable& table, const Triple& fields, const Rigid3& motion) {
+  const bool turned = !motion.rotation.isIdentity(0.0);
   std::vector<Vector3d> points(table.rows);
   parallel_for(table.rows, kPiece, [&](std::size_t begin, std::size_t end) {
     for (std::size_t strip = begin; strip < end; strip += kStrip) {
       const RowRange rows{strip, std::min(end, strip + kStrip)};
       for (int k = 0; k < 3; ++k)
         load_numbers(table, *fields[static_cast<std::size_t>(k)], rows, points[strip].data() + k, 3);
-      for (std::size_t i = rows.begin; i < rows.end; ++i) points[i] += shift;
+      for (std::size_t i = rows.begin; i < rows.end; ++i) {
+        if (turned) points[i] = motion.rotation * points[i];
+        points[i] += motion.translation;
+      }
     }
   });
   return points;
@@ -199,10 +203,10 @@ std::vector<std::uint8_t> load_colours(const RecordTable& table) {
 }
 
 /// Optical centres the file gives per point: one where all are the same, none where it gives none.
-std::vector<Vector3d> load_centres(const RecordTable& table, const Vector3d& shift) {
+std::vector<Vector3d> load_centres(const RecordTable& table, const Rigid3& motion) {
   const Triple fields = find_triple(table, "_origin");
   if (!whole(fields)) return {};
-  std::vector<Vector3d> centres = load_points(table, fields, shift);
+  std::vector<Vector3d> centres = load_points(table, fields, motion);
   const bool same =
       std::all_of(centres.begin(), centres.end(), [&](const Vector3d& c) { return c == centres[0]; });
   if (same) centres.resize(1);
@@ -213,9 +217,10 @@ Scan load_scan(const RecordTable& table, const TableFacts& facts, const Triple& 
   Scan scan;
   scan.name = facts.name;
   scan.local_origin = round_origin_near(first_usable(table, fields, facts));
-  const Vector3d shift = facts.offset - scan.local_origin;
-  scan.points = load_points(table, fields, shift);
-  scan.centres = load_centres(table, shift);
+  Rigid3 motion = facts.pose.value_or(Rigid3{});
+  motion.translation += facts.offset - scan.local_origin;
+  scan.points = load_points(table, fields, motion);
+  scan.centres = load_centres(table, motion);
   scan.times_s = load_column<double>(table, table.find({"gps_time", "gpstime", "time", "t", "timestamp",
                                                         "scalar_gps_time", "scalar_gpstime", "scalar_time"}));
   scan.intensities = load_column<float>(

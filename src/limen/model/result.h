@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -35,10 +36,10 @@ struct Hypothesis {
   double rms_m = 0.0;            ///< point-to-plane residual over the agreeing surface
   int matched_planes = 0;
   int matched_openings = 0;
-  int matched_segments = 0;        ///< of registering sets of segments; `score` is in metres there
-  double agreeing_length_m = 0.0;  ///< length of the smaller set of segments that lies on the other
-  double explained_share = 1.0;    ///< against a model: of the walls that the scan saw
-  std::string room;                ///< of a model with named rooms: where the (first) station then stands
+  int matched_segments = 0;               ///< of registering sets of segments; `score` is in metres there
+  double agreeing_length_m = 0.0;         ///< length of the smaller set of segments that lies on the other
+  std::optional<double> explained_share;  ///< against a model: of the walls that the scan saw
+  std::string room;  ///< of a model with named rooms: where the (first) station then stands
 };
 
 /// A pair of planes that agree under the final pose.
@@ -90,6 +91,7 @@ struct RegistrationResult {
   std::vector<PlaneMatch> matches;
   std::vector<MatchedOpenings> openings;
   std::vector<MeasuredThickness> thickness;  ///< of the walls between the scans, most openings first
+  std::size_t judged_poses = 0;              ///< poses that were refined and judged
   std::vector<StageTime> stages;
 };
 

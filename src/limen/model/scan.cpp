@@ -35,6 +35,12 @@ void Scan::check() const {
   require(colours.empty() || colours.size() == 3 * n, "the colours do not cover the points", name);
 }
 
+Scan moved(Scan scan, const Rigid3& motion) {
+  for (Vector3d& x : scan.points) x = motion * x;
+  for (Vector3d& x : scan.centres) x = motion * x;
+  return scan;
+}
+
 Scan subset(const Scan& scan, const std::vector<std::uint32_t>& indices) {
   Scan part;
   part.name = scan.name;

@@ -51,6 +51,9 @@ struct Scan {
 /// The points of `scan` with the given indices, all attributes kept, in the given order.
 Scan subset(const Scan& scan, const std::vector<std::uint32_t>& indices);
 
+/// The scan's points and optical centres moved about the local origin, which stays.
+Scan moved(Scan scan, const Rigid3& motion);
+
 /// The same scan about a local origin near its points: unchanged where they lie within 1 km of it already.
 /// Turns about a far origin would amplify the smallest angle.
 bool is_near_origin(const Scan& scan);

@@ -18,20 +18,12 @@ constexpr double kSameNormal = 0.9995;  // cosine: 1.8 degrees
 constexpr double kSamePlaneM = 0.02;
 constexpr double kSameOpeningM = 0.2;
 
-/// The scan's points about `origin` in the group's frame.
-Scan moved(const PlacedScan& placed, const Vector3d& origin) {
-  Scan scan = placed.scan;
-  const Rigid3 local = to_local(placed.group_from_scan, scan.local_origin, origin);
-  for (Vector3d& x : scan.points) x = local * x;
-  for (Vector3d& x : scan.centres) x = local * x;
+/// The scan about `origin` in the group's frame.
+Scan placed_about(const PlacedScan& placed, const Vector3d& origin) {
+  const Rigid3 local = to_local(placed.group_from_scan, placed.scan.local_origin, origin);
+  Scan scan = moved(placed.scan, local);
   scan.local_origin = origin;
   scan.level = scan.level && local.rotation(2, 2) > 0.99999;
-  return scan;
-}
-
-Scan turned(Scan scan, const Matrix3d& rotation) {
-  for (Vector3d& x : scan.points) x = rotation * x;
-  for (Vector3d& x : scan.centres) x = rotation * x;
   return scan;
 }
 
@@ -128,7 +120,7 @@ std::vector<PreparedScan> prepare_parts(const std::vector<Scan>& scans, const Pr
   std::vector<PreparedScan> all;
   for (std::size_t k = 0; k < scans.size(); ++k) {
     all.push_back(k == known ? std::move(parts.back())
-                             : prepare_scan(turned(scans[k], upright), level, monitor));
+                             : prepare_scan(moved(scans[k], {upright, Vector3d::Zero()}), level, monitor));
     all.back().upright_from_scan = upright;
   }
   return all;
@@ -144,7 +136,7 @@ PreparedScan prepare_group(const std::vector<PlacedScan>& scans, const PrepareOp
   const PlacedScan& first = scans.front();
   const Vector3d origin = (first.group_from_scan * first.scan.local_origin).array().round();
   std::vector<Scan> placed;
-  for (const PlacedScan& scan : scans) placed.push_back(moved(scan, origin));
+  for (const PlacedScan& scan : scans) placed.push_back(placed_about(scan, origin));
   std::vector<PreparedScan> parts = prepare_parts(placed, options, monitor);
   PreparedScan group;
   group.upright = parts.front().upright;

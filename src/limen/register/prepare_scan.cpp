@@ -43,14 +43,6 @@ void orient(Features& features, const Vector3d& centre) {
   }
 }
 
-/// The scan turned about its local origin.
-Scan turned(const Scan& scan, const Matrix3d& rotation) {
-  Scan copy = scan;
-  for (Vector3d& x : copy.points) x = rotation * x;
-  for (Vector3d& x : copy.centres) x = rotation * x;
-  return copy;
-}
-
 /// The smallest turn that brings `up` to z; none where it is there already.
 Matrix3d turn_upright(const Vector3d& up) {
   if (up.z() > std::cos(radians(kNearlyLevelDeg))) return Matrix3d::Identity();
@@ -122,7 +114,7 @@ PreparedScan prepare_scan(const Scan& scan, const PrepareOptions& options, Monit
     prepared.upright = true;
     prepared.upright_from_scan = turn_upright(*up);
     if (!prepared.upright_from_scan.isIdentity()) {
-      const Scan copy = turned(scan, prepared.upright_from_scan);
+      const Scan copy = moved(scan, {prepared.upright_from_scan, Vector3d::Zero()});
       prepare(copy, options.extract, prepared, monitor);
       look_around(copy, options, prepared, monitor);
       return prepared;

@@ -138,7 +138,7 @@ Hypothesis to_hypothesis(const JudgedPose& pose, const PreparedPair& pair) {
   hypothesis.rms_m = pose.refined.rms_m;
   hypothesis.matched_planes = static_cast<int>(pose.refined.matches.size());
   hypothesis.matched_openings = static_cast<int>(pose.refined.openings.size());
-  hypothesis.explained_share = pose.score.explained_share;
+  if (pair.source.model || pair.target.model) hypothesis.explained_share = pose.score.explained_share;
   hypothesis.room = room_of(pose.refined.target_from_source, pair);
   return hypothesis;
 }
@@ -204,7 +204,7 @@ void polish(std::vector<JudgedPose>& poses, const ScanView& source, const ScanVi
 }
 
 /// How an attempt proposes its poses.
-enum class Proposal { held, sliding, segments };
+enum class Proposal { held, sliding };
 
 /// Steps of one attempt: poses from planes, coarse looks, refinement.
 std::vector<JudgedPose> attempt(const PreparedScan& source, const PreparedScan& target, bool gravity_known,
@@ -215,8 +215,7 @@ std::vector<JudgedPose> attempt(const PreparedScan& source, const PreparedScan& 
   proposing.model = source.model ? ModelSide::source : target.model ? ModelSide::target : ModelSide::none;
   const Features& from = source.extracted.features;
   const Features& to = target.extracted.features;
-  if (proposal == Proposal::segments) proposing.method = Method::segments;
-  std::vector<PoseCandidate> candidates = proposal != Proposal::sliding
+  std::vector<PoseCandidate> candidates = proposal == Proposal::held
                                               ? propose_poses(from, to, proposing)
                                               : propose_sliding_poses(from, to, proposing);
   clock.end();
@@ -239,6 +238,7 @@ void tell(const Verdict& verdict, const std::vector<JudgedPose>& poses, const Pr
   const PreparedScan& from = pair.source;
   const PreparedScan& to = pair.target;
   result.outcome = verdict.outcome;
+  result.judged_poses = poses.size();
   result.reason = verdict.reason;
   result.unobserved = verdict.unobserved;
   for (UnobservedFreedom& freedom : result.unobserved)
@@ -268,10 +268,8 @@ ExtractOptions features_for_registration() {
   return options;
 }
 
-PrepareOptions prepare_options(const RegisterOptions& options, bool with_model) {
-  const bool lines =
-      options.method == Method::segments || (with_model && options.method == Method::automatic);
-  return {options.extract, options.gravity, lines};
+PrepareOptions prepare_options(const RegisterOptions& options) {
+  return {options.extract, options.gravity, options.method == Method::segments};
 }
 
 void RegisterOptions::check() const {
@@ -314,9 +312,6 @@ RegistrationResult register_prepared(const PreparedPair& pair, const RegisterOpt
   }
   const bool planes = options.method == Method::automatic || options.method == Method::polygons;
   if (verdict.outcome == Outcome::no_match && level && planes && !model) try_again(true, Proposal::sliding);
-  // Where the planes of a scan propose no place in a model, its edges may (2023, IV).
-  const bool lines = options.method == Method::automatic && model;
-  if (poses.empty() && lines) try_again(level, Proposal::segments);
   tell(verdict, poses, pair, options, result);
   return result;
 }

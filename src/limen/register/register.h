@@ -36,8 +36,8 @@ struct RegisterOptions {
   void check() const;
 };
 
-/// How the scans of a pair are to be prepared; `with_model`: the other side is a model.
-PrepareOptions prepare_options(const RegisterOptions& options, bool with_model = false);
+/// How the scans of a pair are to be prepared.
+PrepareOptions prepare_options(const RegisterOptions& options);
 
 /// Two scans made ready with `prepare_options`, or one and a model, either way round.
 struct PreparedPair {
@@ -57,6 +57,7 @@ struct RegisterInput {
 };
 
 /// Registers scans with scans or with a model, either way round, for any starting pose: the one-call door.
+/// Where the planes of a scan propose no place at all in a model, its edges do (2023, IV).
 /// Throws Error where both sides are models or one is empty.
 RegistrationResult register_inputs(const RegisterInput& source, const RegisterInput& target,
                                    const RegisterOptions& options = {}, Monitor& monitor = silent_monitor());

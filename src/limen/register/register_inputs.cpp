@@ -50,21 +50,32 @@ bool is_model(const BimModel& /*model*/) {
 }
 
 template <typename Source, typename Target>
-RegistrationResult prepare_and_register(const Source& source, const Target& target,
-                                        const RegisterOptions& options, Monitor& monitor) {
-  options.check();
+RegistrationResult prepare_and_register_once(const Source& source, const Target& target,
+                                             const RegisterOptions& options, Monitor& monitor) {
   std::vector<StageTime> stages;
   StageClock clock(stages, monitor);
   PreparedPair pair;
   clock.begin("source features");
-  pair.source = prepare(source, prepare_options(options, is_model(target)), monitor);
+  pair.source = prepare(source, prepare_options(options), monitor);
   clock.end();
   clock.begin("target features");
-  pair.target = prepare(target, prepare_options(options, is_model(source)), monitor);
+  pair.target = prepare(target, prepare_options(options), monitor);
   clock.end();
   RegistrationResult result = register_prepared(pair, options, monitor);
   result.stages.insert(result.stages.begin(), stages.begin(), stages.end());
   return result;
+}
+
+template <typename Source, typename Target>
+RegistrationResult prepare_and_register(const Source& source, const Target& target,
+                                        const RegisterOptions& options, Monitor& monitor) {
+  options.check();
+  RegistrationResult result = prepare_and_register_once(source, target, options, monitor);
+  const bool in_model = is_model(source) || is_model(target);
+  if (!in_model || options.method != Method::automatic || result.judged_poses > 0) return result;
+  RegisterOptions by_edges = options;
+  by_edges.method = Method::segments;
+  return prepare_and_register_once(source, target, by_edges, monitor);
 }
 
 }  // namespace

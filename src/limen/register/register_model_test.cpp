@@ -42,7 +42,7 @@ TEST(RegisterToModel, FindsTheRoom) {
     const RegistrationResult result = register_to_model(made.scans[0], model);
     EXPECT_EQ(result.outcome, Outcome::registered) << result.reason;
     EXPECT_TRUE(near(result.best.target_from_source, world_from_scan(made.truth, 0))) << "seed " << seed;
-    EXPECT_GT(result.best.explained_share, 0.9);
+    EXPECT_GT(result.best.explained_share.value(), 0.9);
   }
 }
 

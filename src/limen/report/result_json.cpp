@@ -43,7 +43,7 @@ Json evidence_json(const Hypothesis& pose) {
     json["matched_segments"] = pose.matched_segments;
     json["agreeing_length_m"] = pose.agreeing_length_m;
   }
-  if (pose.explained_share < 1.0) json["explained_share"] = pose.explained_share;
+  if (pose.explained_share) json["explained_share"] = *pose.explained_share;
   if (!pose.room.empty()) json["room"] = pose.room;
   return json;
 }

@@ -13,8 +13,9 @@ namespace limen {
 
 /// How a building differs from its model.
 struct AsBuiltOptions {
-  bool on = false;                 ///< false: everything stands where the model has it
-  double moved_share = 0.25;       ///< of walls, columns, doors, windows (1 to 5 cm) and slabs (0.5 to 2 cm)
+  bool on = false;  ///< false: everything stands where the model has it
+  /// Of walls, columns, plates, doors, windows (by 1 to 5 cm) and slabs (by 0.5 to 2 cm).
+  double moved_share = 0.25;
   double missing_share = 0.15;     ///< of doors, furniture and what bears no load
   double furniture_per_m2 = 0.25;  ///< pieces that the model does not have, in the scanned rooms
   /// At most this share of what the stations see along one direction has moved along it: the model's frame

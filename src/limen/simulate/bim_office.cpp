@@ -19,7 +19,7 @@ constexpr double kSouth = 5.5;  // the corridor's walls: y of the sides that loo
 constexpr double kNorth = 7.5;
 constexpr double kOffice = 3.6;  // width of an office
 
-/// A rectangle on the ground.
+/// A rectangle on the ground, or in the frame of a wall.
 struct Plot {
   double x0, y0, x1, y1;
   [[nodiscard]] Polygon polygon() const { return {{{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}}, {}}; }
@@ -79,8 +79,7 @@ class OfficeBuilder {
       const PlaneFrame face{{corner.x(), corner.y(), base_ + hole.sill},
                             Vector3d(-along.x(), -along.y(), 0.0),
                             Vector3d::UnitZ()};
-      const Polygon outline{{{0.0, 0.0}, {hole.width, 0.0}, {hole.width, hole.height}, {0.0, hole.height}},
-                            {}};
+      const Polygon outline = Plot{0.0, 0.0, hole.width, hole.height}.polygon();
       const int filling = hole.sill > 0.0 ? add_window(face, hole) : add_door(face, hole, thickness);
       recipe_.openings.push_back({wall, filling, {face, outline, thickness}});
     }
@@ -97,14 +96,14 @@ class OfficeBuilder {
     constexpr double kPane = 0.024;
     const int panes = hole.width > 1.5 ? 2 : 1;
     const double clear = (hole.width - (panes + 1) * kBar) / panes;
-    Polygon frame{{{0.0, 0.0}, {hole.width, 0.0}, {hole.width, hole.height}, {0.0, hole.height}}, {}};
+    Polygon frame = Plot{0.0, 0.0, hole.width, hole.height}.polygon();
     std::vector<BimPrism> solids(1);
     for (int i = 0; i < panes; ++i) {
       const double u = kBar + i * (clear + kBar);
       const double top = hole.height - kBar;
       frame.holes.push_back({{u, kBar}, {u, top}, {u + clear, top}, {u + clear, kBar}});
-      const Polygon pane{{{u, kBar}, {u + clear, kBar}, {u + clear, top}, {u, top}}, {}};
-      solids.push_back({deeper(face, 0.12 + 0.5 * (kDepth - kPane)), pane, kPane});
+      solids.push_back(
+          {deeper(face, 0.12 + 0.5 * (kDepth - kPane)), Plot{u, kBar, u + clear, top}.polygon(), kPane});
     }
     solids[0] = {deeper(face, 0.12), frame, kDepth};
     return add(BimKind::window, "IfcWindow", "Window " + std::to_string(++windows_), std::move(solids));
@@ -118,7 +117,7 @@ class OfficeBuilder {
     const double l = kLining;
     const Polygon lining{
         {{0.0, 0.0}, {l, 0.0}, {l, h - l}, {w - l, h - l}, {w - l, 0.0}, {w, 0.0}, {w, h}, {0.0, h}}, {}};
-    const Polygon leaf{{{l, 0.0}, {w - l, 0.0}, {w - l, h - l}, {l, h - l}}, {}};
+    const Polygon leaf = Plot{l, 0.0, w - l, h - l}.polygon();
     const double depth = std::min(0.1, thickness);
     const double start = 0.5 * (thickness - depth);
     return add(BimKind::door, "IfcDoor", "Door " + std::to_string(++doors_),

@@ -3,31 +3,16 @@
 #include "limen/simulate/bim_scene.h"
 
 #include <algorithm>
-#include <cmath>
-#include <numbers>
+#include <utility>
 
 #include "limen/base/error.h"
+#include "limen/simulate/station_scan.h"
 
 namespace limen {
 namespace {
 
 /// Streams of the seed, so that one choice does not disturb another.
 enum Stream : std::uint64_t { kDoors = 5001, kPlaces, kChanges, kClutter, kFrames };
-
-Matrix3d heading(RandomStream& random) {
-  return rotation_exp({0.0, 0.0, random.uniform(0.0, 2.0 * std::numbers::pi)});
-}
-
-/// Uniform over all orientations.
-Matrix3d any_orientation(RandomStream& random) {
-  const Eigen::Quaterniond q(random.normal(), random.normal(), random.normal(), random.normal());
-  return nearest_rotation(q.normalized().toRotationMatrix());
-}
-
-/// The nearest multiple of 2^-16 m, so that adding a whole number of metres is exact.
-Vector3d rounded(const Vector3d& x) {
-  return (x * 65536.0).array().round().matrix() / 65536.0;
-}
 
 /// Scans a model and writes down what is true.
 class BimSimulation {
@@ -47,7 +32,7 @@ class BimSimulation {
       monitor_.advance(static_cast<double>(i), static_cast<double>(stations_.size()));
       add_station(caster, i, random);
     }
-    keep_seen_planes();
+    case_.truth = of_seen_planes(std::move(case_.truth));
     return std::move(case_);
   }
 
@@ -57,21 +42,22 @@ class BimSimulation {
     BuiltState doors = as_planned(model_);
     RandomStream door_random(o_.seed, kDoors);
     open_doors(model_, o_.open_door_share, door_random, doors);
-    const BimMesh planned = build_mesh(model_, matter, doors);
+    BimMesh planned = build_mesh(model_, matter, doors);
     if (planned.mesh.triangles().empty())
       throw Error("the model has no surface to be scanned", model_.name, "look at it with limen info");
     RandomStream place_random(o_.seed, kPlaces);
     stations_ = place_bim_stations(rooms_, RayCaster(planned.mesh), o_.stations, o_.room, place_random);
-    BuiltState state = doors;
-    if (o_.as_built.on) {
-      RandomStream change_random(o_.seed, kChanges);
-      state = as_built(model_, o_.as_built, doors, stations_, planned, change_random);
-    }
-    built_ = build_mesh(model_, matter, state);
     told_.as_built = o_.as_built.on;
     told_.file = model_.name;
+    if (!o_.as_built.on) {
+      told_.changes = changes_of(model_, doors, doors);
+      built_ = std::move(planned);
+      return;
+    }
+    RandomStream change_random(o_.seed, kChanges);
+    const BuiltState state = as_built(model_, o_.as_built, doors, stations_, planned, change_random);
     told_.changes = changes_of(model_, doors, state);
-    if (!o_.as_built.on) return;
+    built_ = build_mesh(model_, matter, state);
     RandomStream clutter_random(o_.seed, kClutter);
     told_.furniture = add_clutter(built_, stations_, o_.as_built.furniture_per_m2, clutter_random);
   }
@@ -90,20 +76,14 @@ class BimSimulation {
 
   void add_station(const RayCaster& caster, std::size_t number, RandomStream& random) {
     Rigid3 local_from_scan;
-    local_from_scan.rotation = o_.any_rotation ? any_orientation(random) : heading(random);
+    local_from_scan.rotation = station_rotation(o_.any_rotation, random);
     local_from_scan.translation = rounded(stations_[number].position);
     // The head stands upright whatever frame the points are given in.
-    const Rigid3 head{heading(random), local_from_scan.translation};
+    const Rigid3 head{any_heading(random), local_from_scan.translation};
     const Sweep result = sweep_of(caster, head, mix64(o_.seed * 1000 + number + 77));
-    Scan scan;
-    scan.name = (number < 9 ? "scan_0" : "scan_") + std::to_string(number + 1);
-    scan.centres = {Vector3d::Zero()};
+    Scan scan = station_scan((number < 9 ? "scan_0" : "scan_") + std::to_string(number + 1), result,
+                             inverse(local_from_scan));
     scan.level = !o_.any_rotation;
-    const Rigid3 scan_from_local = inverse(local_from_scan);
-    for (const Echo& echo : result.echoes) {
-      scan.points.push_back(scan_from_local * echo.point);
-      scan.intensities.push_back(echo.intensity);
-    }
     ScanTruth truth{.name = scan.name,
                     .room = case_.truth.model->rooms[number].space,
                     .local_from_scan = local_from_scan,
@@ -112,46 +92,21 @@ class BimSimulation {
     record(std::move(scan), std::move(truth), result);
   }
 
-  /// As many pulses as give about the asked number of points: a thin sweep measures the share that returns.
   [[nodiscard]] Sweep sweep_of(const RayCaster& caster, const Rigid3& head, std::uint64_t seed) const {
-    const ScanPattern thin = station_pattern(head, 20000);
-    const Sweep trial = sweep(caster, {}, thin, o_.scanner, seed);
-    const double share = std::max(0.02, static_cast<double>(trial.echoes.size()) /
-                                            static_cast<double>(thin.lines * thin.pulses_per_line));
-    const auto pulses = static_cast<std::size_t>(std::lround(static_cast<double>(o_.points) / share));
-    return sweep(caster, {}, station_pattern(head, pulses), o_.scanner, seed);
+    return sweep_of_points(
+        o_.points, [&](std::size_t pulses) { return station_pattern(head, pulses); },
+        [&](const ScanPattern& fired) { return sweep(caster, {}, fired, o_.scanner, seed); });
   }
 
   void record(Scan scan, ScanTruth truth, const Sweep& result) {
-    std::vector<std::size_t> inliers(case_.truth.planes.size(), 0);
     for (const Echo& echo : result.echoes) {
       const bool mixed = echo.surface < 0;
       const auto surface = static_cast<std::size_t>(std::max(0, echo.surface));
-      const int plane = mixed ? -1 : merged_.plane_of_surface[surface];
-      truth.plane_of_point.push_back(plane);
+      truth.plane_of_point.push_back(mixed ? -1 : merged_.plane_of_surface[surface]);
       truth.element_of_point.push_back(mixed ? -1 : built_.element_of_surface[surface]);
-      if (plane >= 0) ++inliers[static_cast<std::size_t>(plane)];
     }
-    for (std::size_t i = 0; i < inliers.size(); ++i) case_.truth.planes[i].inliers.push_back(inliers[i]);
     case_.scans.push_back(std::move(scan));
     case_.truth.scans.push_back(std::move(truth));
-  }
-
-  /// Drops planes nobody saw a point of, and renumbers.
-  void keep_seen_planes() {
-    Truth& truth = case_.truth;
-    std::vector<std::int32_t> renumbered(truth.planes.size(), -1);
-    std::vector<TruePlane> seen;
-    for (std::size_t i = 0; i < truth.planes.size(); ++i) {
-      const auto& counts = truth.planes[i].inliers;
-      if (std::none_of(counts.begin(), counts.end(), [](std::size_t n) { return n > 0; })) continue;
-      renumbered[i] = static_cast<std::int32_t>(seen.size());
-      seen.push_back(std::move(truth.planes[i]));
-    }
-    truth.planes = std::move(seen);
-    for (ScanTruth& scan : truth.scans)
-      for (std::int32_t& plane : scan.plane_of_point)
-        if (plane >= 0) plane = renumbered[static_cast<std::size_t>(plane)];
   }
 
   const BimModel& model_;

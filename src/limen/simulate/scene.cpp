@@ -4,29 +4,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
 
 #include "limen/base/error.h"
 #include "limen/simulate/recipes.h"
+#include "limen/simulate/station_scan.h"
 #include "limen/simulate/stations.h"
 
 namespace limen {
 namespace {
-
-/// A random orientation, uniform over all.
-Matrix3d any_orientation(RandomStream& random) {
-  Eigen::Quaterniond q(random.normal(), random.normal(), random.normal(), random.normal());
-  return nearest_rotation(q.normalized().toRotationMatrix());
-}
-
-Matrix3d heading(double angle) {
-  return rotation_exp({0.0, 0.0, angle});
-}
-
-/// The nearest multiple of 2^-16 m, so that adding a whole number of metres is exact.
-Vector3d rounded(const Vector3d& x) {
-  return (x * 65536.0).array().round().matrix() / 65536.0;
-}
 
 /// A slow, smooth error of a trajectory with zero mean over its duration: a few waves per axis.
 class Drift {
@@ -74,7 +61,7 @@ class Simulation {
         caster_(recipe_.world.mesh),
         merged_(merge_planes(recipe_.world.mesh)),
         random_(options.seed, 1000) {
-    world_from_scene_.rotation = heading(random_.uniform(0.0, 2.0 * std::numbers::pi));
+    world_from_scene_.rotation = any_heading(random_);
     if (recipe_.national_grid) origin_ = Vector3d(1050000.0, 6840000.0, 150.0);
   }
 
@@ -87,7 +74,7 @@ class Simulation {
     }
     monitor_.throw_if_cancelled();
     if (recipe_.path) add_mobile();
-    keep_seen_planes();
+    case_.truth = of_seen_planes(std::move(case_.truth));
     return std::move(case_);
   }
 
@@ -112,25 +99,18 @@ class Simulation {
 
   void add_station(const Station& station, std::size_t number) {
     Rigid3 local_from_scan;
-    local_from_scan.rotation =
-        o_.any_rotation ? any_orientation(random_) : heading(random_.uniform(0.0, 2.0 * std::numbers::pi));
+    local_from_scan.rotation = station_rotation(o_.any_rotation, random_);
     local_from_scan.translation = rounded(world_from_scene_ * station.position);
     const Rigid3 scene_from_scan = inverse(world_from_scene_) * local_from_scan;
     // The head stands upright whatever frame the points are given in.
-    const Rigid3 head{heading(random_.uniform(0.0, 2.0 * std::numbers::pi)), scene_from_scan.translation};
+    const Rigid3 head{any_heading(random_), scene_from_scan.translation};
     const std::size_t points = o_.points_indoor > 0 ? o_.points_indoor : recipe_.points_indoor;
     const std::uint64_t seed = mix64(o_.seed * 1000 + number);
     const auto pattern = [&](std::size_t pulses) { return station_pattern(head, pulses); };
     const Sweep result = sweep_of(pattern, points, seed);
-    Scan scan;
-    scan.name = number < 10 ? "indoor_0" + std::to_string(number) : "indoor_" + std::to_string(number);
-    scan.centres = {Vector3d::Zero()};
+    Scan scan = station_scan((number < 10 ? "indoor_0" : "indoor_") + std::to_string(number), result,
+                             inverse(scene_from_scan));
     scan.level = !o_.any_rotation;
-    const Rigid3 scan_from_scene = inverse(scene_from_scan);
-    for (const Echo& echo : result.echoes) {
-      scan.points.push_back(scan_from_scene * echo.point);
-      scan.intensities.push_back(echo.intensity);
-    }
     ScanTruth truth{.name = scan.name,
                     .room = static_cast<int>(station.room),
                     .local_from_scan = local_from_scan,
@@ -170,47 +150,21 @@ class Simulation {
     record(std::move(scan), std::move(truth), result);
   }
 
-  /// Fires as many pulses as give about `points` echoes: a thin sweep measures the share that comes back.
-  template <typename MakePattern>
-  [[nodiscard]] Sweep sweep_of(const MakePattern& pattern, std::size_t points, std::uint64_t seed) const {
-    const ScanPattern thin = pattern(20000);
-    const Sweep trial = sweep(caster_, recipe_.world.openings, thin, o_.scanner, seed);
-    const double share = std::max(0.02, static_cast<double>(trial.echoes.size()) /
-                                            static_cast<double>(thin.lines * thin.pulses_per_line));
-    const auto pulses = static_cast<std::size_t>(std::lround(static_cast<double>(points) / share));
-    return sweep(caster_, recipe_.world.openings, pattern(pulses), o_.scanner, seed);
+  [[nodiscard]] Sweep sweep_of(const std::function<ScanPattern(std::size_t)>& pattern, std::size_t points,
+                               std::uint64_t seed) const {
+    return sweep_of_points(points, pattern, [&](const ScanPattern& fired) {
+      return sweep(caster_, recipe_.world.openings, fired, o_.scanner, seed);
+    });
   }
 
   void record(Scan scan, ScanTruth truth, const Sweep& result) {
-    std::vector<std::size_t> inliers(case_.truth.planes.size(), 0);
-    for (const Echo& echo : result.echoes) {
-      const int plane =
-          echo.surface < 0 ? -1 : merged_.plane_of_surface[static_cast<std::size_t>(echo.surface)];
-      truth.plane_of_point.push_back(plane);
-      if (plane >= 0) ++inliers[static_cast<std::size_t>(plane)];
-    }
-    for (std::size_t i = 0; i < inliers.size(); ++i) case_.truth.planes[i].inliers.push_back(inliers[i]);
+    for (const Echo& echo : result.echoes)
+      truth.plane_of_point.push_back(
+          echo.surface < 0 ? -1 : merged_.plane_of_surface[static_cast<std::size_t>(echo.surface)]);
     for (std::size_t i = 0; i < result.sights.size(); ++i)
       case_.truth.openings[i].sights.push_back(result.sights[i]);
     case_.scans.push_back(std::move(scan));
     case_.truth.scans.push_back(std::move(truth));
-  }
-
-  /// Drops planes nobody saw a point of, and renumbers.
-  void keep_seen_planes() {
-    Truth& truth = case_.truth;
-    std::vector<std::int32_t> renumbered(truth.planes.size(), -1);
-    std::vector<TruePlane> seen;
-    for (std::size_t i = 0; i < truth.planes.size(); ++i) {
-      const auto& counts = truth.planes[i].inliers;
-      if (std::none_of(counts.begin(), counts.end(), [](std::size_t n) { return n > 0; })) continue;
-      renumbered[i] = static_cast<std::int32_t>(seen.size());
-      seen.push_back(std::move(truth.planes[i]));
-    }
-    truth.planes = std::move(seen);
-    for (ScanTruth& scan : truth.scans)
-      for (std::int32_t& plane : scan.plane_of_point)
-        if (plane >= 0) plane = renumbered[static_cast<std::size_t>(plane)];
   }
 
   const SceneOptions& o_;

@@ -150,6 +150,9 @@ struct Truth {
   std::optional<ModelTruth> model = std::nullopt;  ///< of a scanned model; its coordinates are the world's
 };
 
+/// Counts the points of each scan on every plane, drops the planes nobody saw a point of, and renumbers.
+Truth of_seen_planes(Truth truth);
+
 /// The scan's own coordinates (local_origin included) to world coordinates.
 inline Rigid3 world_from_scan(const Truth& truth, std::size_t scan) {
   Rigid3 pose = truth.scans[scan].local_from_scan;
