@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -21,6 +22,9 @@ class AtomicFile {
 
   /// Appends; throws Error where the disk is full.
   void write(std::string_view bytes);
+  /// Replaces bytes that were written before, at `offset` from the beginning: a header whose counts are known
+  /// only in the end. Throws Error where the destination is a pipe.
+  void overwrite(std::uint64_t offset, std::string_view bytes);
   /// Brings the bytes to the disk and the file to its name. Call it once, last.
   void commit();
 
