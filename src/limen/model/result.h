@@ -3,11 +3,13 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "limen/geometry/rigid.h"
+#include "limen/model/registration_picture.h"
 
 namespace limen {
 
@@ -92,7 +94,9 @@ struct RegistrationResult {
   std::vector<MatchedOpenings> openings;
   std::vector<MeasuredThickness> thickness;  ///< of the walls between the scans, most openings first
   std::size_t judged_poses = 0;              ///< poses that were refined and judged
+  std::size_t rivals = 0;                    ///< alternatives that cannot be told from `best`
   std::vector<StageTime> stages;
+  std::shared_ptr<const RegistrationPicture> picture;  ///< null unless it was asked for
 };
 
 }  // namespace limen

@@ -251,6 +251,7 @@ void tell(const Verdict& verdict, const std::vector<JudgedPose>& poses, const Pr
   result.matches = best.refined.matches;
   result.openings = matched_openings(best.refined);
   result.thickness = measure_thickness(upright, from.extracted.features, to.extracted.features);
+  result.rivals = verdict.rivals.size();
   // Every pose that cannot be told from the best is listed, and then some.
   for (std::size_t k = 1; k < verdict.ranking.size(); ++k) {
     const std::size_t pose = verdict.ranking[k];

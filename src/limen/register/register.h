@@ -32,6 +32,7 @@ struct RegisterOptions {
   VerdictOptions verdict;
   int refined_poses = 32;  ///< candidates that are refined and judged
   int alternatives = 8;    ///< different poses reported besides the best
+  bool picture = false;    ///< keep what a report draws
 
   void check() const;
 };

@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
+#include <utility>
+
 #include "limen/base/error.h"
 #include "limen/register/prepare_model.h"
 #include "limen/register/register.h"
@@ -49,6 +51,28 @@ bool is_model(const BimModel& /*model*/) {
   return true;
 }
 
+/// The features turned back from the upright frame into the scan's own.
+PicturedSide pictured(PreparedScan&& prepared) {
+  const Matrix3d back = prepared.upright_from_scan.transpose();
+  PicturedSide side;
+  side.features = std::move(prepared.extracted.features);
+  side.features.samples.clear();
+  side.upright = prepared.upright;
+  if (prepared.upright) side.up = back.col(2);
+  if (back.isIdentity()) return side;
+  for (PlanarPolygon& polygon : side.features.planes) {
+    polygon.plane.normal = back * polygon.plane.normal;
+    polygon.frame = {back * polygon.frame.origin, back * polygon.frame.u, back * polygon.frame.v};
+    polygon.centroid = back * polygon.centroid;
+  }
+  for (Opening& opening : side.features.openings) {
+    for (Vector3d& corner : opening.corners) corner = back * corner;
+    for (Vector3d& corner : opening.outline) corner = back * corner;
+  }
+  for (Segment& segment : side.features.segments) segment = {back * segment.a, back * segment.b};
+  return side;
+}
+
 template <typename Source, typename Target>
 RegistrationResult prepare_and_register_once(const Source& source, const Target& target,
                                              const RegisterOptions& options, Monitor& monitor) {
@@ -63,6 +87,10 @@ RegistrationResult prepare_and_register_once(const Source& source, const Target&
   clock.end();
   RegistrationResult result = register_prepared(pair, options, monitor);
   result.stages.insert(result.stages.begin(), stages.begin(), stages.end());
+  if (options.picture) {
+    result.picture = std::make_shared<const RegistrationPicture>(
+        RegistrationPicture{pictured(std::move(pair.source)), pictured(std::move(pair.target))});
+  }
   return result;
 }
 

@@ -329,6 +329,7 @@ RegistrationResult register_segments(const SegmentSet& source, const SegmentSet&
   result.best = hypothesis_of(work.poses().front(), swapped, source, target);
   const std::size_t listed =
       std::min(std::max(work.rivals(), kListedOthers), static_cast<std::size_t>(options.alternatives));
+  result.rivals = std::min(work.rivals(), listed);
   for (std::size_t k = 1; k < work.poses().size() && k <= listed; ++k) {
     result.alternatives.push_back(hypothesis_of(work.poses()[k], swapped, source, target));
   }
