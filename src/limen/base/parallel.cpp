@@ -10,6 +10,8 @@
 #include <mutex>
 #include <thread>
 
+#include "limen/base/progress.h"
+
 namespace limen {
 namespace {
 
@@ -29,6 +31,7 @@ struct Job {
   std::size_t size = 0;
   std::size_t grain = 1;
   const std::function<void(std::size_t, std::size_t)>* body = nullptr;
+  const Monitor* monitor = CancelScope::current();
   std::atomic<std::size_t> next_piece{0};
   std::mutex failure_mutex;
   std::size_t failed_piece = 0;
@@ -36,6 +39,7 @@ struct Job {
 
   void run() {
     const std::size_t pieces = (size + grain - 1) / grain;
+    const CancelScope scope(monitor);
     inside_parallel = true;
     for (std::size_t piece = next_piece++; piece < pieces; piece = next_piece++) run_piece(piece);
     inside_parallel = false;
@@ -43,6 +47,7 @@ struct Job {
 
   void run_piece(std::size_t piece) {
     try {
+      CancelScope::check();
       (*body)(piece * grain, std::min(size, (piece + 1) * grain));
     } catch (...) {
       const std::scoped_lock lock(failure_mutex);
@@ -132,8 +137,10 @@ void parallel_for(std::size_t size, std::size_t grain,
   const int helpers =
       static_cast<int>(std::min<std::size_t>(pieces, static_cast<std::size_t>(thread_count()))) - 1;
   if (inside_parallel || helpers <= 0) {
-    for (std::size_t piece = 0; piece < pieces; ++piece)
+    for (std::size_t piece = 0; piece < pieces; ++piece) {
+      CancelScope::check();
       body(piece * grain, std::min(size, (piece + 1) * grain));
+    }
     return;
   }
   Job job;

@@ -16,7 +16,7 @@ void set_thread_count(int count);
 
 /// Calls body(begin, end) over [0, size) in fixed pieces of `grain`, on all threads. The pieces do not depend
 /// on the thread count. A call from inside another runs serially. The exception of the lowest piece is
-/// rethrown.
+/// rethrown. Between pieces it heeds the calling thread's CancelScope (progress.h).
 void parallel_for(std::size_t size, std::size_t grain,
                   const std::function<void(std::size_t begin, std::size_t end)>& body);
 

@@ -7,6 +7,9 @@
 
 namespace limen {
 
+/// What the units of a stage are: a rate can be told of points and bytes, not of steps.
+enum class WorkUnit { steps, points, bytes };
+
 /// What long work tells its caller, and how the caller stops it. The default hears nothing.
 class Monitor {
  public:
@@ -19,6 +22,8 @@ class Monitor {
   virtual void begin_stage(std::string_view /*name*/) {}
   /// `done` of `total` units of the current stage; may be called from one thread at a time.
   virtual void advance(double /*done*/, double /*total*/) {}
+  /// What advance() counts until the next stage begins; steps where nothing is said.
+  virtual void set_unit(WorkUnit /*unit*/) {}
 
   void cancel() noexcept { cancelled_.store(true, std::memory_order_relaxed); }
   [[nodiscard]] bool cancelled() const noexcept { return cancelled_.load(std::memory_order_relaxed); }
@@ -27,6 +32,27 @@ class Monitor {
 
  private:
   std::atomic<bool> cancelled_{false};
+};
+
+/// While it lives, everything that the calling thread does, and the pieces of its parallel work, can be
+/// stopped through `monitor`: parallel_for looks before each piece, and so do long loops that have no monitor
+/// of their own, by check(). The innermost scope counts.
+class CancelScope {
+ public:
+  explicit CancelScope(const Monitor& monitor) : CancelScope(&monitor) {}
+  /// The scope of another thread, or none.
+  explicit CancelScope(const Monitor* monitor);
+  ~CancelScope();
+  CancelScope(const CancelScope&) = delete;
+  CancelScope& operator=(const CancelScope&) = delete;
+
+  /// The calling thread's; null where there is none.
+  static const Monitor* current() noexcept;
+  /// Throws Error(Fault::cancelled) once the scope's monitor was cancelled. Costs about a nanosecond.
+  static void check();
+
+ private:
+  const Monitor* outer_;
 };
 
 /// A monitor nobody listens to.
