@@ -1,0 +1,87 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <cstring>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "limen/geometry/rigid.h"
+
+namespace limen {
+
+/// A number of a LAS file (little-endian) at `at`, which must lie in `bytes`.
+template <typename Value>
+Value las_number(std::string_view bytes, std::size_t at) {
+  Value value;
+  std::memcpy(&value, bytes.data() + at, sizeof value);
+  return value;
+}
+
+/// Places of the LAS header that are read and patched, bytes from the beginning.
+namespace las_at {
+inline constexpr std::size_t kGlobalEncoding = 6;
+inline constexpr std::size_t kMinorVersion = 25;
+inline constexpr std::size_t kHeaderSize = 94;
+inline constexpr std::size_t kPointsBegin = 96;
+inline constexpr std::size_t kRecordCount = 100;
+inline constexpr std::size_t kPointFormat = 104;
+inline constexpr std::size_t kPointLength = 105;
+inline constexpr std::size_t kLegacyCount = 107;
+inline constexpr std::size_t kLegacyReturns = 111;
+inline constexpr std::size_t kScale = 131;
+inline constexpr std::size_t kOffset = 155;
+inline constexpr std::size_t kBounds = 179;     ///< max x, min x, max y, min y, max z, min z
+inline constexpr std::size_t kWaveforms = 227;  ///< from 1.3
+inline constexpr std::size_t kLongRecords = 235;
+inline constexpr std::size_t kLongRecordCount = 243;
+inline constexpr std::size_t kCount = 247;
+inline constexpr std::size_t kReturns = 255;
+}  // namespace las_at
+
+/// A variable length record, the long kind too.
+struct LasRecord {
+  std::string user;          ///< "LASF_Projection"
+  std::uint16_t number = 0;  ///< record id
+  std::string_view body;
+  std::size_t begin = 0;  ///< of its own head in the file, bytes
+  std::size_t end = 0;    ///< of its body
+  bool extended = false;  ///< behind the points
+};
+
+/// The header of a LAS or LAZ file, checked against the length of the file.
+struct LasHeader {
+  int minor = 0;  ///< version 1.minor
+  std::uint16_t global_encoding = 0;
+  std::size_t size = 0;
+  std::size_t points_begin = 0;
+  int point_format = 0;     ///< 0 to 10
+  bool compressed = false;  ///< LAZ
+  std::size_t point_bytes = 0;
+  std::uint64_t points = 0;
+  Vector3d scale = Vector3d::Ones();
+  Vector3d offset = Vector3d::Zero();
+  Vector3d low = Vector3d::Zero();  ///< as the file says; never trusted
+  Vector3d high = Vector3d::Zero();
+  std::uint64_t waveforms = 0;     ///< where the waveform packets begin, or 0
+  std::uint64_t long_records = 0;  ///< where the extended records begin, or 0
+  std::vector<LasRecord> records;  ///< in the order of the file
+  std::vector<std::string> notes;  ///< what was odd and is passed over
+
+  /// The first record of that name; nullptr where there is none.
+  [[nodiscard]] const LasRecord* find(std::string_view user, std::uint16_t number) const;
+};
+
+/// True where the bytes begin like a LAS or LAZ file.
+bool looks_like_las(std::string_view bytes);
+
+/// Reads the header and the variable length records. Throws Error where something in it cannot be, or where
+/// the points of an uncompressed file do not fit into it.
+LasHeader parse_las_header(std::string_view bytes, const std::string& name);
+
+/// Texts of the coordinate system (OGC WKT) that the file carries, as they are.
+std::vector<std::string> las_coordinate_systems(const LasHeader& header);
+
+}  // namespace limen
