@@ -18,10 +18,11 @@ gtest_discover_tests(limen_unit_tests PROPERTIES LABELS unit DISCOVERY_MODE PRE_
 
 file(GLOB LIMEN_ACCEPTANCE_TESTS CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/tests/*_test.cpp)
 if(LIMEN_ACCEPTANCE_TESTS)
-  add_executable(limen_acceptance_tests ${LIMEN_ACCEPTANCE_TESTS})
+  add_executable(limen_acceptance_tests ${LIMEN_ACCEPTANCE_TESTS} tests/fuzz/readers.cpp)
   target_link_libraries(limen_acceptance_tests PRIVATE limen limen_simulate limen_cli limen_options fmt::fmt
     nlohmann_json::nlohmann_json GTest::gtest_main)
-  target_compile_definitions(limen_acceptance_tests PRIVATE LIMEN_PROGRAM="$<TARGET_FILE:limen_program>")
+  target_compile_definitions(limen_acceptance_tests PRIVATE LIMEN_PROGRAM="$<TARGET_FILE:limen_program>"
+    LIMEN_CORPUS="${PROJECT_SOURCE_DIR}/tests/corpus")
   # g++ 12 warns of "literal" + string where nothing overlaps (its bug 105651).
   target_compile_options(limen_acceptance_tests PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>)
   add_dependencies(limen_acceptance_tests limen_program)

@@ -62,19 +62,31 @@ ReadOptions side_options(const RegisterCommandOptions& options, const std::strin
                      : read_options(own, name, options.gravity);
 }
 
+std::string spaced(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : " ") + word;
+  return text;
+}
+
 OptionList reported(const RegisterCommandOptions& options) {
   OptionList list = {{"method", options.method}, {"gravity", options.gravity}};
   if (!options.origin.empty()) list.emplace_back("origin", options.origin);
   if (!options.source_origin.empty()) list.emplace_back("source_origin", options.source_origin);
   if (!options.target_origin.empty()) list.emplace_back("target_origin", options.target_origin);
+  if (!options.source_with.empty()) list.emplace_back("source_with", spaced(options.source_with));
+  if (!options.target_with.empty()) list.emplace_back("target_with", spaced(options.target_with));
   if (options.wall_thickness_m > 0) list.emplace_back("wall_thickness_m", options.wall_thickness_m);
   return list;
 }
 
 /// Two lists of segments are registered as such by any method that could mean them.
 bool takes_segments(const RegisterCommandOptions& options) {
-  return (options.method == "segments" || options.method == "auto") &&
-         are_segment_files(options.source, options.target);
+  if (options.method != "segments" && options.method != "auto") return false;
+  if (!are_segment_files(options.source, options.target)) return false;
+  if (options.source_with.empty() && options.target_with.empty()) return true;
+  throw Error("two lists of segments are registered as they are, without further scans",
+              options.source_with.empty() ? "--target-with" : "--source-with",
+              "leave the option out, or give scans as SOURCE and TARGET");
 }
 
 RegistrationReport register_files(const RegisterCommandOptions& options, const Session& session) {

@@ -1,0 +1,134 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "readers.h"
+
+#include <filesystem>
+#include <string>
+
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include "limen/base/error.h"
+#include "limen/io/ifc_stream.h"
+#include "limen/io/ifc_structure.h"
+#include "limen/io/read_bim.h"
+#include "limen/io/read_mesh_ply.h"
+#include "limen/io/read_obj.h"
+#include "limen/io/read_pcd.h"
+#include "limen/io/read_ply.h"
+#include "limen/io/read_ptx.h"
+#include "limen/io/read_segments.h"
+#include "limen/io/read_xyz.h"
+#include "limen/io/step_file.h"
+#include "limen/io/zip_member.h"
+#include "limen/report/pose_file.h"
+
+namespace limen {
+namespace {
+
+constexpr const char* kName = "strange";
+
+/// A file in memory, for readers that take a path.
+class MemoryFile {
+ public:
+  explicit MemoryFile(std::string_view bytes) : descriptor_(memfd_create(kName, MFD_CLOEXEC)) {
+    while (!bytes.empty()) {
+      const ssize_t written = write(descriptor_, bytes.data(), bytes.size());
+      if (written <= 0) throw Error("no room for a file in memory", kName, "free memory", Fault::internal);
+      bytes.remove_prefix(static_cast<std::size_t>(written));
+    }
+  }
+  ~MemoryFile() { close(descriptor_); }
+  MemoryFile(const MemoryFile&) = delete;
+  MemoryFile& operator=(const MemoryFile&) = delete;
+  [[nodiscard]] std::filesystem::path path() const { return "/proc/self/fd/" + std::to_string(descriptor_); }
+
+ private:
+  int descriptor_;
+};
+
+void check(const ScanFile& file) {
+  for (const Scan& scan : file.scans) scan.check();
+}
+
+void ply(std::string_view bytes) {
+  check(read_ply(bytes, kName));
+}
+void pcd(std::string_view bytes) {
+  check(read_pcd(bytes, kName));
+}
+void ptx(std::string_view bytes) {
+  check(read_ptx(bytes, kName));
+}
+void xyz(std::string_view bytes) {
+  check(read_xyz(bytes, kName));
+}
+
+/// Up to the finished model, faces merged: the long way of a mesh.
+void mesh(std::string_view bytes) {
+  if (!looks_like_obj(bytes) && !looks_like_mesh_ply(bytes)) return;
+  const MemoryFile file(bytes);
+  read_bim(file.path());
+}
+
+void step(std::string_view bytes) {
+  const StepFile file(bytes);
+  const IfcStructure structure = read_ifc_structure(file);
+  for (const StepEntity& entity : file.entities()) with_parts(structure, entity.id);
+}
+
+void ifc_shapes(std::string_view bytes) {
+  parse_ifc_stream(bytes);
+}
+
+void zip(std::string_view bytes) {
+  constexpr std::size_t kMost = 1 << 20;
+  for (const ZipMember& member : zip_members(bytes)) unpacked(bytes, member, kName, kMost);
+}
+
+void segments(std::string_view bytes) {
+  const MemoryFile file(bytes);
+  is_segment_file(file.path());
+  read_segments(file.path());
+}
+
+void pose(std::string_view bytes) {
+  const MemoryFile file(bytes);
+  PoseFile result;
+  result.source_path = "a.ply";
+  result.target_path = "b.ply";
+  try {
+    read_true_pose(file.path(), result);
+  } catch (const Error& error) {
+    if (error.fault() != Fault::input) throw;
+  }
+  read_pose_file(file.path());
+}
+
+}  // namespace
+
+const std::vector<FuzzedReader>& fuzzed_readers() {
+  static const std::vector<FuzzedReader> kReaders{
+      {"ply", ply},
+      {"pcd", pcd},
+      {"ptx", ptx},
+      {"xyz", xyz},
+      {"mesh", mesh},
+      {"step", step},
+      {"ifc_shapes", ifc_shapes},
+      {"zip", zip},
+      {"segments", segments},
+      {"pose", pose},
+  };
+  return kReaders;
+}
+
+void read_strange(const FuzzedReader& reader, std::string_view bytes) {
+  try {
+    reader.read(bytes);
+  } catch (const Error& error) {
+    if (error.fault() != Fault::input) throw;
+  }
+}
+
+}  // namespace limen
