@@ -72,20 +72,28 @@ Vector3d vector_of(const pugi::xml_node& node, const Place& place) {
           number_of(node, "z", 0.0, place)};
 }
 
-void read_pose(const pugi::xml_node& node, E57Scan& scan, const Place& place) {
-  if (!node) return;
+/// A pose and the length of its quaternion.
+struct Pose {
+  std::optional<Rigid3> pose;
+  double quaternion_length = 1.0;
+};
+
+Pose pose_of(const pugi::xml_node& node, const Place& place) {
+  if (!node) return {};
+  Pose result;
   Rigid3 pose;
   pose.translation = vector_of(node.child("translation"), place);
   if (const pugi::xml_node rotation = node.child("rotation")) {
     const Vector3d axis = vector_of(rotation, place);
     const Eigen::Quaterniond q(number_of(rotation, "w", 0.0, place), axis.x(), axis.y(), axis.z());
-    scan.quaternion_length = q.norm();
-    if (!(scan.quaternion_length > 1e-9 && scan.quaternion_length < 1e9)) {
+    result.quaternion_length = q.norm();
+    if (!(result.quaternion_length > 1e-9 && result.quaternion_length < 1e9)) {
       throw Error("the pose's quaternion is zero or absurd: it is no rotation", place.text, kExportAgain);
     }
     pose.rotation = q.normalized().toRotationMatrix();
   }
-  scan.pose = pose;
+  result.pose = pose;
+  return result;
 }
 
 void read_bounds(const pugi::xml_node& node, E57Column& column, const Place& place) {
@@ -160,7 +168,9 @@ void read_colour_limits(const pugi::xml_node& limits, E57Scan& scan, const Place
 E57Scan scan_of(const pugi::xml_node& node, const Place& place) {
   E57Scan scan;
   scan.name = trimmed(node.child("name").child_value());
-  read_pose(node.child("pose"), scan, place.inside("pose"));
+  const Pose pose = pose_of(node.child("pose"), place.inside("pose"));
+  scan.pose = pose.pose;
+  scan.quaternion_length = pose.quaternion_length;
   read_colour_limits(node.child("colorLimits"), scan, place.inside("colorLimits"));
   scan.acquisition_start_s =
       number_of(node.child("acquisitionStart"), "dateTimeValue", 0.0, place.inside("acquisitionStart"));
@@ -272,8 +282,13 @@ E57Document parse_e57_document(std::string_view xml, const std::string& name) {
   E57Document document;
   document.coordinates = trimmed(root.child("coordinateMetadata").child_value());
   document.library = trimmed(root.child("e57LibraryVersion").child_value());
-  for (const pugi::xml_node& child : root.child("images2D").children())
-    document.images += child.type() == pugi::node_element ? 1 : 0;
+  for (const pugi::xml_node& child : root.child("images2D").children()) {
+    if (child.type() != pugi::node_element) continue;
+    const Place place{fmt::format("{}, image {}", name, document.images.size() + 1)};
+    const bool projected = child.child("pinholeRepresentation") || child.child("sphericalRepresentation") ||
+                           child.child("cylindricalRepresentation");
+    document.images.push_back({pose_of(child.child("pose"), place.inside("pose")).pose, projected});
+  }
   for (const pugi::xml_node& child : root.child("data3D").children()) {
     if (child.type() != pugi::node_element) continue;
     document.scans.push_back(scan_of(child, {fmt::format("{}, scan {}", name, document.scans.size() + 1)}));

@@ -50,10 +50,16 @@ struct E57Scan {
   std::vector<E57Column> columns;
 };
 
+/// One image: only where it is.
+struct E57Image {
+  std::optional<Rigid3> pose;  ///< file from image
+  bool projected = false;      ///< it has a projection, so that its place matters (no pose: the identity)
+};
+
 /// The description (XML) of an E57 file.
 struct E57Document {
   std::vector<E57Scan> scans;
-  std::size_t images = 0;
+  std::vector<E57Image> images;
   std::string coordinates;  ///< its coordinate system (WKT) or nothing
   std::string library;      ///< what wrote it
 };

@@ -142,7 +142,7 @@ std::unique_ptr<PointFile> open_e57(std::string_view bytes, const std::string& n
   E57Document document = parse_e57_document(e57_xml(pages), name);
   auto source = std::make_shared<E57Source>(E57Source{std::move(pages), std::move(document), {}});
   if (source->document.scans.empty()) {
-    const std::size_t images = source->document.images;
+    const std::size_t images = source->document.images.size();
     throw Error(images == 0 ? "the file holds no scans"
                             : fmt::format("the file holds {} images but no scans", images),
                 name, "export the scans");
@@ -151,8 +151,8 @@ std::unique_ptr<PointFile> open_e57(std::string_view bytes, const std::string& n
     source->clouds.push_back(facts_of(source->document.scans[k], cloud_name(*source, k)));
   }
   std::vector<std::string>& notes = source->clouds.front().notes;
-  if (source->document.images > 0)
-    notes.push_back(fmt::format("{} images are passed over", source->document.images));
+  if (!source->document.images.empty())
+    notes.push_back(fmt::format("{} images are passed over", source->document.images.size()));
   if (source->pages.surplus() > 0)
     notes.push_back(
         fmt::format("{} bytes after the end that the file gives are passed over", source->pages.surplus()));
