@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "limen/base/error.h"
+#include "limen/io/laz_records.h"
 
 namespace limen {
 namespace {
@@ -32,7 +32,7 @@ class PlainRecords : public LasRecords {
 
 std::unique_ptr<LasRecords> open_las_records(std::string_view bytes, const std::string& name,
                                              const LasHeader& header) {
-  if (header.compressed) throw Error("LAZ is not read yet", name, "unpack it to LAS");
+  if (header.compressed) return open_laz_records(bytes, name, header);
   return std::make_unique<PlainRecords>(bytes.data() + header.points_begin, header.points,
                                         header.point_bytes);
 }

@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "limen/io/las_header.h"
+#include "limen/io/laz_items.h"
+
+namespace limen {
+
+/// A chunk of points that is coded by itself.
+struct LazChunkPlace {
+  std::uint64_t begin = 0;  ///< bytes from the beginning of the file
+  std::uint64_t end = 0;
+  std::uint64_t points = 0;
+};
+
+/// How the points of a LAZ file are coded.
+struct LazInfo {
+  bool layered = false;  ///< formats 6 to 10
+  std::vector<laz::ItemPlan> items;
+  std::vector<LazChunkPlace> chunks;
+  std::uint64_t end = 0;  ///< where what belongs to the points ends, the table of chunks too
+};
+
+/// The LASzip record of a LAZ file; nullptr where there is none.
+const LasRecord* find_laszip_record(const LasHeader& header);
+
+/// Reads the LASzip record and the table of chunks; all chunks lie in the file and their points add up.
+/// A file coded as one run has one chunk. Throws Error where that is not so.
+LazInfo parse_laz_info(std::string_view bytes, const std::string& name, const LasHeader& header);
+
+}  // namespace limen
