@@ -13,6 +13,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstring>
+#include <ctime>
 #include <exception>
 #include <string>
 #include <vector>
@@ -35,29 +36,42 @@ struct Options {
   std::vector<std::string> files;
 };
 
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+/// A moment, and what the processors have worked until then.
+struct Moment {
+  std::chrono::steady_clock::time_point wall = std::chrono::steady_clock::now();
+  std::clock_t work = std::clock();
+};
+
+/// Seconds since a moment.
+struct Times {
+  double wall = 0.0;
+  double work = 0.0;
+};
+
+Times since(const Moment& start) {
+  return {std::chrono::duration<double>(std::chrono::steady_clock::now() - start.wall).count(),
+          static_cast<double>(std::clock() - start.work) / CLOCKS_PER_SEC};
 }
 
 /// What the records of a file hold.
 struct Content {
   std::uint64_t points = 0;
-  std::uint64_t hash = 1469598103934665603ULL;  ///< FNV-1a, bytes
+  std::uint64_t hash = 14695981039346656037ULL;  ///< FNV-1a, bytes
   std::array<std::int64_t, 3> sum{};
-  std::array<std::int32_t, 3> low{INT32_MAX, INT32_MAX, INT32_MAX};
-  std::array<std::int32_t, 3> high{INT32_MIN, INT32_MIN, INT32_MIN};
+  std::array<std::int32_t, 3> low{};
+  std::array<std::int32_t, 3> high{};
 
   void add(const char* record, std::size_t bytes) {
-    ++points;
     for (std::size_t k = 0; k < bytes; ++k)
       hash = (hash ^ static_cast<unsigned char>(record[k])) * 1099511628211ULL;
     for (std::size_t k = 0; k < 3; ++k) {
       std::int32_t value = 0;
       std::memcpy(&value, record + 4 * k, sizeof value);
       sum[k] += value;
-      low[k] = std::min(low[k], value);
-      high[k] = std::max(high[k], value);
+      low[k] = points == 0 ? value : std::min(low[k], value);
+      high[k] = points == 0 ? value : std::max(high[k], value);
     }
+    ++points;
   }
 };
 
@@ -74,26 +88,27 @@ Content content_of(std::string_view bytes, const std::string& name, const LasHea
 }
 
 /// Decodes all records and looks at one byte of each.
-double time_of_records(std::string_view bytes, const std::string& name, const LasHeader& header) {
-  const auto start = std::chrono::steady_clock::now();
+Times time_of_records(std::string_view bytes, const std::string& name, const LasHeader& header) {
+  const Moment start;
   unsigned seen = 0;
   const auto records = open_las_records(bytes, name, header);
   for (LasPiece piece = records->next(kPiece); piece.count > 0; piece = records->next(kPiece)) {
     for (std::size_t i = 0; i < piece.count; ++i)
       seen += static_cast<unsigned char>(piece.data[i * header.point_bytes]);
   }
-  return seconds_since(start) + (seen == 0x80000000U ? 1e-9 : 0.0);
+  if (seen == 0x80000000U) fmt::print(" ");  // the loop must not be left out
+  return since(start);
 }
 
 /// Reads the file in one piece and makes a scan of it.
-double time_of_scan(std::string_view bytes, const std::string& name) {
-  const auto start = std::chrono::steady_clock::now();
+Times time_of_scan(std::string_view bytes, const std::string& name) {
+  const Moment start;
   const auto file = open_las(bytes, name);
   const auto stream = file->read(0);
   const auto table = stream->next(file->clouds()[0].points);
-  if (!table) return 0.0;
+  if (!table) return {};
   const ScanFile read = with_scan({}, *table, file->clouds()[0].table, {});
-  return seconds_since(start) + (read.scans.empty() ? 1e-9 : 0.0);
+  return read.scans.empty() ? Times{} : since(start);
 }
 
 void tell(const std::string& name, const Options& options) {
@@ -107,10 +122,14 @@ void tell(const std::string& name, const Options& options) {
   if (!options.brief) {
     const double megabytes = static_cast<double>(header.point_bytes * content.points) / 1e6;
     const double millions = static_cast<double>(content.points) / 1e6;
-    const double records = time_of_records(file.bytes(), name, header);
-    fmt::print(" records {:.2f} M points/s {:.0f} MB/s", millions / records, megabytes / records);
-    const double scan = options.scan ? time_of_scan(file.bytes(), name) : 0.0;
-    if (scan > 0.0) fmt::print(" scan {:.2f} M points/s {:.0f} MB/s", millions / scan, megabytes / scan);
+    const auto rates = [&](const char* what, const Times& times) {
+      if (times.wall <= 0.0) return;
+      fmt::print(" {} {:.2f} M points/s {:.0f} MB/s, per core {:.2f} M points/s {:.0f} MB/s", what,
+                 millions / times.wall, megabytes / times.wall, millions / times.work,
+                 megabytes / times.work);
+    };
+    rates("records", time_of_records(file.bytes(), name, header));
+    if (options.scan) rates("scan", time_of_scan(file.bytes(), name));
   }
   fmt::print("\n");
 }
