@@ -22,6 +22,7 @@
 #include "limen/cli/register_segment_files.h"
 #include "limen/cli/scan_options.h"
 #include "limen/register/register.h"
+#include "limen/report/html_report.h"
 #include "limen/report/result_json.h"
 
 namespace limen {
@@ -39,6 +40,13 @@ struct RegisterCommandOptions {
   std::vector<std::string> source_with;
   std::vector<std::string> target_with;
   double wall_thickness_m = 0.0;
+  bool no_report = false;
+};
+
+/// A registration and what its page draws.
+struct Registered {
+  RegistrationReport report;
+  ReportScene scene;
 };
 
 Method method_of(const std::string& name) {
@@ -89,7 +97,7 @@ bool takes_segments(const RegisterCommandOptions& options) {
               "leave the option out, or give scans as SOURCE and TARGET");
 }
 
-RegistrationReport register_files(const RegisterCommandOptions& options, const Session& session) {
+Registered register_files(const RegisterCommandOptions& options, const Session& session) {
   const ReadOptions source_options = side_options(options, options.source_origin, "--source-origin");
   const ReadOptions target_options = side_options(options, options.target_origin, "--target-origin");
   const auto start = std::chrono::steady_clock::now();
@@ -103,14 +111,27 @@ RegistrationReport register_files(const RegisterCommandOptions& options, const S
   registering.method = method_of(options.method);
   registering.wall_thickness_m = options.wall_thickness_m;
   registering.seed = session.common.seed;
-  RegistrationReport report;
+  registering.picture = !options.no_report;
+  Registered registered;
+  RegistrationReport& report = registered.report;
   report.result = register_inputs(source.input, target.input, registering, *session.monitor);
   report.result.stages.insert(report.result.stages.begin(), {"reading", reading.count()});
   report.source = std::move(source.summary);
   report.target = std::move(target.summary);
   report.options = reported(options);
   report.seed = session.common.seed;
-  return report;
+  if (report.result.picture)
+    registered.scene = make_scene(source.input, target.input, *report.result.picture);
+  return registered;
+}
+
+Registered register_segment_lists(const RegisterCommandOptions& options, const Session& session) {
+  Registered registered;
+  registered.report =
+      register_segment_files(options.source, options.target, gravity_of(options.gravity), session);
+  registered.report.options = reported(options);
+  if (registered.report.result.picture) registered.scene = make_scene(*registered.report.result.picture);
+  return registered;
 }
 
 /// result.json comes last: where it is, the folder is complete. A transform of an earlier run must not
@@ -177,15 +198,17 @@ int status_of(Outcome outcome) {
 int run(const RegisterCommandOptions& options, const Session& session) {
   const bool segments = takes_segments(options);
   const OutputFolder folder(options.folder);
-  RegistrationReport report;
-  if (segments) {
-    report = register_segment_files(options.source, options.target, gravity_of(options.gravity), session);
-    report.options = reported(options);
-  } else {
-    report = register_files(options, session);
-  }
+  const Registered registered =
+      segments ? register_segment_lists(options, session) : register_files(options, session);
+  const RegistrationReport& report = registered.report;
   const std::string json = result_json(report);
   session.monitor->throw_if_cancelled();
+  if (options.no_report) {
+    remove_report(folder.path());
+  } else {
+    session.monitor->begin_stage("report");
+    write_report(folder.path(), report, registered.scene);
+  }
   write_results(folder.path(), report, json);
   session.say(summary(report, options.folder));
   session.answer(json);
@@ -227,7 +250,7 @@ void add_register_command(CLI::App& app, Session& session) {
       ->required();
   command->add_option("TARGET", options->target, "The scan, model or list of segments that stays")
       ->required();
-  command->add_option("-o,--output", options->folder, "Folder for result.json and transform.txt")
+  command->add_option("-o,--output", options->folder, "Folder for report.html, result.json and transform.txt")
       ->required()
       ->type_name("DIR");
   command
@@ -238,6 +261,8 @@ void add_register_command(CLI::App& app, Session& session) {
                     "Thickness of the outer walls where it is known; else it is measured, or named as open");
   add_with_option(*command, "--source-with", options->source_with, "SOURCE");
   add_with_option(*command, "--target-with", options->target_with, "TARGET");
+  command->add_flag("--no-report", options->no_report,
+                    "Write neither report.html nor the sections, only result.json and transform.txt");
   add_gravity_option(*command, options->gravity, true);
   add_origin_options(*command, *options);
 }

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "limen/base/error.h"
+#include "limen/cli/file_hash.h"
 #include "limen/cli/scan_options.h"
 #include "limen/io/read_bim.h"
 #include "limen/report/pose_file.h"
@@ -18,6 +19,7 @@ Side read_model_side(const SideOptions& options, const Session& session) {
   Side side;
   side.input.model = read_model_input(options.path, session);
   side.summary = summarise(options.path, *side.input.model);
+  side.summary.sha256 = sha256_of_file(options.path);
   return side;
 }
 
@@ -34,6 +36,7 @@ Side read_side(const SideOptions& options, const Session& session) {
   Side side;
   side.input.scans.push_back({read_input(options.path, options.reading, session), {}});
   side.summary = summarise(options.path, side.input.scans.front().scan);
+  side.summary.sha256 = sha256_of_file(options.path);
   for (std::size_t k = 0; k + 1 < options.with.size(); k += 2) {
     const Rigid3 pose = pose_in_group(options.with[k + 1]);
     side.input.scans.push_back({read_input(options.with[k], options.reading, session), pose});

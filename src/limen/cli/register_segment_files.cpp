@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "limen/base/error.h"
+#include "limen/cli/file_hash.h"
 #include "limen/io/read_segments.h"
 #include "limen/register/register_segments.h"
 
@@ -22,8 +23,16 @@ InputSummary summary_of(const std::string& path, const SegmentSet& set) {
   }
   InputSummary summary = summarise(path, ends);
   summary.kind = "segments";
+  summary.sha256 = sha256_of_file(path);
   summary.elements = set.segments.size();
   return summary;
+}
+
+PicturedSide pictured(const SegmentSet& set) {
+  PicturedSide side;
+  side.features.local_origin = set.local_origin;
+  side.features.segments = set.segments;
+  return side;
 }
 
 }  // namespace
@@ -52,6 +61,8 @@ RegistrationReport register_segment_files(const std::string& source, const std::
   RegistrationReport report;
   report.result = register_segments(from, to, options, *session.monitor);
   report.result.stages.insert(report.result.stages.begin(), {"reading", reading.count()});
+  report.result.picture =
+      std::make_shared<const RegistrationPicture>(RegistrationPicture{pictured(from), pictured(to)});
   report.source = summary_of(source, from);
   report.target = summary_of(target, to);
   report.seed = session.common.seed;

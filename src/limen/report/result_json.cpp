@@ -99,6 +99,7 @@ Json input_json(const InputSummary& input) {
   } else {
     json[input.kind == "model" ? "elements" : "segments"] = input.elements;
   }
+  if (!input.sha256.empty()) json["sha256"] = input.sha256;
   if (!input.with.empty()) json["with"] = input.with;
   json["low"] = json_of(input.low);
   json["high"] = json_of(input.high);

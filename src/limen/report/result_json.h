@@ -20,6 +20,7 @@ namespace limen {
 struct InputSummary {
   std::string path;                    ///< as the user wrote it
   std::string kind = "scan";           ///< or "model", or "segments"
+  std::string sha256;                  ///< of the file's bytes, 64 hexadecimal digits; empty where not taken
   std::vector<std::string> with;       ///< further scans of the group
   std::size_t elements = 0;            ///< of a model, or segments
   std::size_t points = 0;              ///< that could be used

@@ -1,0 +1,14 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace limen {
+
+/// SHA-256 of a file's bytes, 64 hexadecimal digits, read piece by piece; empty where `path` is not a regular
+/// file (a pipe can be read once only). Throws Error where it cannot be read.
+std::string sha256_of_file(const std::filesystem::path& path);
+
+}  // namespace limen

@@ -1,0 +1,52 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "limen/model/registration_picture.h"
+#include "limen/register/register.h"
+
+namespace limen {
+
+/// Corners of a flat piece of a model, counter-clockwise from its front.
+using Triangle3 = std::array<Vector3d, 3>;
+
+/// One side of a registration as a report draws it; everything about `origin`, metres.
+struct SceneSide {
+  Vector3d origin = Vector3d::Zero();  ///< world = origin + x
+  std::vector<Vector3d> points;        ///< thinned
+  std::vector<std::uint8_t> colours;   ///< 3 per point (red, green, blue) or empty
+  std::vector<float> intensities;      ///< per point or empty, in the file's unit
+  std::vector<Triangle3> faces;        ///< of a model, large ones first
+  PicturedSide pictured;               ///< planes, openings, segments
+};
+
+/// Both sides of a registration.
+struct ReportScene {
+  SceneSide source;
+  SceneSide target;
+};
+
+struct ReportSceneOptions {
+  std::size_t max_points = 300000;  ///< per side
+  std::size_t max_faces = 60000;    ///< triangles per side
+
+  void check() const;
+};
+
+/// What a report draws of scans or models: their points, thinned evenly over the surface, or faces.
+ReportScene make_scene(const RegisterInput& source, const RegisterInput& target,
+                       const RegistrationPicture& picture, const ReportSceneOptions& options = {});
+
+/// The same of lists of segments: nothing but what `picture` holds.
+ReportScene make_scene(const RegistrationPicture& picture);
+
+/// Indices, ascending, of at most `most` points spread evenly over the surface they show: one for each cube
+/// of a grid as coarse as it has to be.
+std::vector<std::uint32_t> spread_evenly(const std::vector<Vector3d>& points, std::size_t most);
+
+}  // namespace limen

@@ -1,0 +1,121 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/report/html_words.h"
+
+#include <cctype>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "limen/base/angles.h"
+
+namespace limen {
+namespace {
+
+constexpr double kShareOfAxis = 0.1;  // an open direction with less than this along an axis leaves it alone
+
+std::string capitalised(std::string text) {
+  if (!text.empty()) text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
+  return text;
+}
+
+/// "the two scans", "the scan and the model", "the two lists of segments"
+std::string both_sides(const RegistrationReport& report) {
+  if (report.source.kind == "segments") return "the two lists of segments";
+  const bool model = report.source.kind == "model" || report.target.kind == "model";
+  return model ? "the scan and the model" : "the two scans";
+}
+
+/// "place" in a model, "way" between scans.
+std::string places(const RegistrationReport& report, std::size_t count) {
+  const bool model = report.source.kind == "model" || report.target.kind == "model";
+  return fmt::format("{} {}", count, model ? "places" : "ways");
+}
+
+std::string expectation(const RegistrationResult& result) {
+  double shift = 0.0;
+  double turn = 0.0;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!is_open(result, false, axis)) shift = std::max(shift, result.sigma.translation_m[axis]);
+    if (!is_open(result, true, axis)) turn = std::max(turn, result.sigma.rotation_rad[axis]);
+  }
+  return fmt::format(
+      "You can expect {} in position and {} in direction (one standard deviation of the worst axis{}).",
+      length_words(shift), angle_words(turn), result.unobserved.empty() ? "" : " that is held");
+}
+
+VerdictWords registered_words(const RegistrationReport& report) {
+  const RegistrationResult& result = report.result;
+  VerdictWords words{
+      "Registered: " + both_sides(report) + " fit in one way only", {expectation(result)}, "✓"};
+  if (!result.best.room.empty()) words.sentences.push_back("The scanner stood in " + result.best.room + ".");
+  return words;
+}
+
+VerdictWords ambiguous_words(const RegistrationReport& report) {
+  const RegistrationResult& result = report.result;
+  VerdictWords words{"", {}, "?"};
+  if (result.rivals == 0) {
+    words.headline = "Not decided: the best fit is not sure enough";
+    words.sentences.push_back(capitalised(result.reason) + ".");
+  } else {
+    words.headline = fmt::format("Not decided: {} fit about equally well", places(report, result.rivals + 1));
+    words.sentences.push_back(
+        "Look through them below; a further scan, or a place known by other means, decides.");
+  }
+  return words;
+}
+
+VerdictWords open_words(const RegistrationReport& report) {
+  const RegistrationResult& result = report.result;
+  VerdictWords words{"Not fully held: the data leaves a direction open", {}, "↔"};
+  for (const UnobservedFreedom& freedom : result.unobserved)
+    words.sentences.push_back(capitalised(freedom.name) + " is not held by the data.");
+  if (result.unobserved.size() > 1)
+    words.headline =
+        fmt::format("Not fully held: the data leaves {} directions open", result.unobserved.size());
+  words.sentences.push_back(expectation(result));
+  return words;
+}
+
+}  // namespace
+
+bool is_open(const RegistrationResult& result, bool rotation, int axis) {
+  for (const UnobservedFreedom& freedom : result.unobserved) {
+    if (freedom.rotation == rotation && std::abs(freedom.direction[axis]) > kShareOfAxis) return true;
+  }
+  return false;
+}
+
+std::string length_words(double metres) {
+  const double size = std::abs(metres);
+  if (!std::isfinite(metres)) return "—";
+  if (size < 0.0995) return fmt::format("{:.{}f} mm", 1e3 * metres, size < 0.00995 ? 1 : 0);
+  if (size < 0.995) return fmt::format("{:.1f} cm", 1e2 * metres);
+  return fmt::format("{:.2f} m", metres);
+}
+
+std::string angle_words(double angle_rad) {
+  if (!std::isfinite(angle_rad)) return "—";
+  const double size = std::abs(degrees(angle_rad));
+  return fmt::format("{:.{}f}°", degrees(angle_rad), size < 0.0995 ? 4 : size < 9.95 ? 2 : 1);
+}
+
+VerdictWords verdict_words(const RegistrationReport& report) {
+  switch (report.result.outcome) {
+    case Outcome::registered:
+      return registered_words(report);
+    case Outcome::ambiguous:
+      return ambiguous_words(report);
+    case Outcome::under_constrained:
+      return open_words(report);
+    case Outcome::no_match:
+      break;
+  }
+  return {"No match: " + both_sides(report) + " show nothing in common that fits together",
+          {capitalised(report.result.reason) + ".",
+           "Below they stand side by side, each upright as far as known."},
+          "✕"};
+}
+
+}  // namespace limen

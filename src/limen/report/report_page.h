@@ -1,0 +1,18 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string_view>
+
+namespace limen {
+
+// The page's own sources (report/page), built into the library: no file is looked for when it runs.
+
+/// HTML with {{name}} where parts go.
+std::string_view report_pattern();
+/// CSS
+std::string_view report_style();
+/// JavaScript: all files of report/page, in the order in which they build on one another.
+std::string_view report_script();
+
+}  // namespace limen
