@@ -136,7 +136,7 @@ class SymbolModel {
   std::array<std::uint16_t, kSearched ? 1 : kLookups> lookup_;
 };
 
-/// Decodes symbols from bytes that the caller keeps. Behind their end it goes on with zeros; overrun() tells.
+/// Decodes symbols from bytes that the caller keeps. Behind their end it goes on with zeros; sound() tells.
 class Decoder {
  public:
   Decoder() = default;
@@ -188,9 +188,11 @@ class Decoder {
     return low | (static_cast<std::uint64_t>(word()) << 32U);
   }
 
-  /// More bytes were needed than are there. A whole message needs none of these, but for some that writers
-  /// leave out.
-  [[nodiscard]] bool overrun() const { return missing_ > 4; }
+  /// No more bytes were needed than are there, and in the end none are left but a few that writers add.
+  /// Damaged bytes decode to something, but to another length.
+  [[nodiscard]] bool sound(bool at_end) const {
+    return missing_ <= kSlack && (!at_end || end_ - at_ <= static_cast<std::ptrdiff_t>(kSlack));
+  }
 
  private:
   std::uint32_t few_bits(unsigned count) {
@@ -211,6 +213,8 @@ class Decoder {
       length_ <<= 8U;
     }
   }
+
+  static constexpr std::uint64_t kSlack = 8;  ///< bytes that writers may add or leave out
 
   std::uint32_t value_ = 0;
   std::uint32_t length_ = 0xFFFFFFFFU;

@@ -54,8 +54,12 @@ std::unique_ptr<laz::LayerItem> make_layer_item(const ItemPlan& plan) {
 /// Formats 0 to 5: the first point as it is, then one message of all parts of all points.
 class PointwiseChunk : public LazChunk {
  public:
-  PointwiseChunk(const LazInfo& info, std::string_view bytes)
-      : stride_(record_bytes(info)), first_(bytes.data()), decoder_(bytes.substr(stride_)) {
+  PointwiseChunk(const LazInfo& info, std::string_view bytes, std::uint64_t points)
+      : stride_(record_bytes(info)),
+        first_(bytes.data()),
+        left_(points),
+        ends_(info.chunk_ends_known),
+        decoder_(bytes.substr(stride_)) {
     std::size_t at = 0;
     for (const ItemPlan& plan : info.items) {
       parts_.push_back({at, make_point_item(plan)});
@@ -76,9 +80,10 @@ class PointwiseChunk : public LazChunk {
         continue;
       }
       for (const Part& part : parts_) part.item->decode(decoder_, records + part.at);
-      if (decoder_.overrun()) return false;
+      if (!decoder_.sound(false)) return false;
     }
-    return true;
+    left_ -= count;
+    return decoder_.sound(ends_ && left_ == 0);
   }
 
  private:
@@ -89,6 +94,8 @@ class PointwiseChunk : public LazChunk {
 
   std::size_t stride_;
   const char* first_;
+  std::uint64_t left_;
+  bool ends_;
   laz::Decoder decoder_;
   std::vector<Part> parts_;
   bool known_ = true;
@@ -111,6 +118,7 @@ class LayeredChunk : public LazChunk {
   bool start(std::string_view bytes, std::uint64_t points) {
     const std::size_t head = stride_ + 4 + 4 * layers_;
     if (bytes.size() < head || las_number<std::uint32_t>(bytes, stride_) != points) return false;
+    left_ = points;
     const unsigned channel = (static_cast<unsigned char>(first_[15]) >> 4U) & 3U;
     std::size_t length_at = stride_ + 4;
     std::size_t at = head;
@@ -128,6 +136,7 @@ class LayeredChunk : public LazChunk {
   }
 
   bool decode(char* records, std::size_t count) override {
+    left_ -= count;
     if (first_ != nullptr && count > 0) {
       std::memcpy(records, std::exchange(first_, nullptr), stride_);
       records += stride_;
@@ -138,12 +147,13 @@ class LayeredChunk : public LazChunk {
       steps_.resize(now);
       for (const Part& part : parts_) {
         part.item->decode({records + part.at, stride_}, steps_);
-        if (part.item->overrun()) return false;
+        if (!part.item->sound(false)) return false;
       }
       records += now * stride_;
       count -= now;
     }
-    return true;
+    return left_ > 0 ||
+           std::all_of(parts_.begin(), parts_.end(), [](const Part& part) { return part.item->sound(true); });
   }
 
  private:
@@ -156,6 +166,7 @@ class LayeredChunk : public LazChunk {
 
   std::size_t stride_;
   const char* first_;
+  std::uint64_t left_ = 0;
   std::size_t layers_ = 0;
   std::vector<Part> parts_;
   std::vector<laz::PointStep> steps_;
@@ -172,7 +183,7 @@ std::unique_ptr<LazChunk> open_laz_chunk(const LazInfo& info, const LazChunkPlac
     if (!chunk->start(bytes, place.points)) return nullptr;
     return chunk;
   }
-  auto chunk = std::make_unique<PointwiseChunk>(info, bytes);
+  auto chunk = std::make_unique<PointwiseChunk>(info, bytes, place.points);
   if (!chunk->known()) return nullptr;
   return chunk;
 }

@@ -77,7 +77,7 @@ class GpsTimeDecoder {
     if (multiple < 0) context = multiple > kLeast ? 5 : 6;
     const std::int32_t difference = differences_.decode(decoder, wrapping_product(multiple, step), context);
     // A sequence whose steps fit no usual multiple four times over has a new step.
-    const bool odd = multiple == 0 || multiple == kMost || multiple < 0;
+    const bool odd = multiple == 0 || multiple == kMost || multiple == kLeast;
     if (odd && ++odd_[now_] > 3) {
       steps_[now_] = difference;
       odd_[now_] = 0;

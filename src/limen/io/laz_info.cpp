@@ -157,7 +157,7 @@ void parse_table(const Source& source, const Compression& compression, LazInfo& 
     const std::uint64_t here = variable ? static_cast<std::uint32_t>(points)
                                         : std::min<std::uint64_t>(left, compression.chunk_points);
     const auto bytes = static_cast<std::uint32_t>(length);
-    if (bytes > place - at || here > left || decoder.overrun()) {
+    if (bytes > place - at || here > left || !decoder.sound(false)) {
       source.damaged(fmt::format("compressed chunk {} of {} ({} points in {} bytes) cannot be", k + 1, count,
                                  here, bytes));
     }
@@ -186,6 +186,7 @@ LazInfo parse_laz_info(std::string_view bytes, const std::string& name, const La
   const Compression compression = parse_compression(source, record->body);
   LazInfo info;
   info.layered = compression.compressor == 3;
+  info.chunk_ends_known = compression.compressor != 1;
   info.items = parse_items(source, record->body);
   check_items(source, info);
   info.end = bytes.size();

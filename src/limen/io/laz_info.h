@@ -22,7 +22,8 @@ struct LazChunkPlace {
 
 /// How the points of a LAZ file are coded.
 struct LazInfo {
-  bool layered = false;  ///< formats 6 to 10
+  bool layered = false;           ///< formats 6 to 10
+  bool chunk_ends_known = false;  ///< false: one run that ends somewhere in the file
   std::vector<laz::ItemPlan> items;
   std::vector<LazChunkPlace> chunks;
   std::uint64_t end = 0;  ///< where what belongs to the points ends, the table of chunks too

@@ -87,7 +87,8 @@ class LayerItem {
   virtual void start(const char* raw, unsigned channel, const std::vector<std::string_view>& bytes) = 0;
   /// Writes the part of the next points. Item point14 fills the steps, the others follow them.
   virtual void decode(const RecordPlace& out, std::vector<PointStep>& steps) = 0;
-  [[nodiscard]] virtual bool overrun() const = 0;
+  /// As far as the bytes can tell.
+  [[nodiscard]] virtual bool sound(bool at_end) const = 0;
 };
 
 /// Versions 3 and 4 of the parts of formats 6 to 10. They differ in what a value is predicted from where

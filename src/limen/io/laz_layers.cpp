@@ -52,7 +52,7 @@ class Layer {
     }
     decoder_ = decoder;
   }
-  [[nodiscard]] bool overrun() const { return decoder_.overrun(); }
+  [[nodiscard]] bool sound(bool at_end) const { return decoder_.sound(at_end); }
 
  private:
   int version_ = 3;
@@ -120,7 +120,9 @@ class Colours14 : public LayerItem {
     colours_.decode(out.first, out.stride, steps);
     if (with_infrared_) infrared_.decode(out.first + 6, out.stride, steps);
   }
-  [[nodiscard]] bool overrun() const override { return colours_.overrun() || infrared_.overrun(); }
+  [[nodiscard]] bool sound(bool at_end) const override {
+    return colours_.sound(at_end) && infrared_.sound(at_end);
+  }
 
  private:
   int version_;
@@ -141,11 +143,11 @@ class Bytes14 : public LayerItem {
   void decode(const RecordPlace& out, std::vector<PointStep>& steps) override {
     for (std::size_t k = 0; k < bytes_.size(); ++k) bytes_[k].decode(out.first + k, out.stride, steps);
   }
-  [[nodiscard]] bool overrun() const override {
+  [[nodiscard]] bool sound(bool at_end) const override {
     for (const auto& byte : bytes_) {
-      if (byte.overrun()) return true;
+      if (!byte.sound(at_end)) return false;
     }
-    return false;
+    return true;
   }
 
  private:
@@ -164,7 +166,7 @@ class WavePackets14 : public LayerItem {
   void decode(const RecordPlace& out, std::vector<PointStep>& steps) override {
     packets_.decode(out.first, out.stride, steps);
   }
-  [[nodiscard]] bool overrun() const override { return packets_.overrun(); }
+  [[nodiscard]] bool sound(bool at_end) const override { return packets_.sound(at_end); }
 
  private:
   int version_;

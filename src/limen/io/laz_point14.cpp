@@ -106,7 +106,7 @@ class PlaceLayer {
     }
     decoder_ = decoder;
   }
-  [[nodiscard]] bool overrun() const { return decoder_.overrun(); }
+  [[nodiscard]] bool sound(bool at_end) const { return decoder_.sound(at_end); }
 
  private:
   void begin(unsigned channel, const PlaceState& last) {
@@ -214,7 +214,7 @@ class ValueLayer {
     }
     decoder_ = decoder;
   }
-  [[nodiscard]] bool overrun() const { return decoder_.overrun(); }
+  [[nodiscard]] bool sound(bool at_end) const { return decoder_.sound(at_end); }
 
  private:
   void begin(unsigned channel, Value last) {
@@ -365,10 +365,10 @@ class Point14 : public LayerItem {
     time_.decode(out, steps, to(kTime));
   }
 
-  [[nodiscard]] bool overrun() const override {
-    return place_.overrun() || height_.overrun() || class_.overrun() || flags_.overrun() ||
-           intensity_.overrun() || angle_.overrun() || user_.overrun() || source_.overrun() ||
-           time_.overrun();
+  [[nodiscard]] bool sound(bool at_end) const override {
+    return place_.sound(at_end) && height_.sound(at_end) && class_.sound(at_end) && flags_.sound(at_end) &&
+           intensity_.sound(at_end) && angle_.sound(at_end) && user_.sound(at_end) && source_.sound(at_end) &&
+           time_.sound(at_end);
   }
 
  private:
