@@ -41,6 +41,11 @@ inline constexpr std::size_t kCount = 247;
 inline constexpr std::size_t kReturns = 255;
 }  // namespace las_at
 
+/// Name of the record that holds the optical centre of a static scan, written by limen: three float64,
+/// metres.
+inline constexpr const char* kLasCentreUser = "limen";
+inline constexpr std::uint16_t kLasCentreNumber = 1;
+
 /// A variable length record, the long kind too.
 struct LasRecord {
   std::string user;          ///< "LASF_Projection"

@@ -50,6 +50,14 @@ std::string told_time(const LasHeader& header) {
              : "GPS times are seconds of the GPS week, as the file says";
 }
 
+std::optional<Vector3d> told_centre(const LasHeader& header) {
+  const LasRecord* record = header.find(kLasCentreUser, kLasCentreNumber);
+  if (record == nullptr || record->body.size() < 24) return {};
+  Vector3d centre;
+  for (int k = 0; k < 3; ++k) centre[k] = las_number<double>(record->body, 8 * static_cast<std::size_t>(k));
+  return centre.allFinite() ? std::optional(centre) : std::nullopt;
+}
+
 class LasFile : public PointFile {
  public:
   LasFile(std::string_view bytes, const std::string& name)
@@ -57,6 +65,7 @@ class LasFile : public PointFile {
     CloudFacts facts;
     facts.table.name = name;
     facts.points = header_.points;
+    facts.table.centre = told_centre(header_);
     for (const LasField& value : layout_.fields) facts.fields.push_back(value.field.name);
     facts.notes = header_.notes;
     facts.notes.insert(facts.notes.end(), layout_.notes.begin(), layout_.notes.end());
