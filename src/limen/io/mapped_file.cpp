@@ -51,7 +51,10 @@ MappedFile::MappedFile(const std::filesystem::path& path) {
     if (size_ > 0) {
       void* address = mmap(nullptr, size_, PROT_READ, MAP_PRIVATE, file.value(), 0);
       mapped_ = address != MAP_FAILED;
-      if (mapped_) data_ = static_cast<const char*>(address);
+      if (mapped_) {
+        data_ = static_cast<const char*>(address);
+        madvise(address, size_, MADV_SEQUENTIAL);  // advice only: no harm where it is not taken
+      }
     }
   }
   if (!mapped_) read_stream(file.value(), name);
@@ -60,6 +63,10 @@ MappedFile::MappedFile(const std::filesystem::path& path) {
 
 MappedFile::~MappedFile() {
   if (mapped_) munmap(const_cast<char*>(data_), size_);
+}
+
+void MappedFile::forget() const {
+  if (mapped_) madvise(const_cast<char*>(data_), size_, MADV_DONTNEED);
 }
 
 void MappedFile::read_stream(int descriptor, const std::string& name) {

@@ -21,6 +21,10 @@ class MappedFile {
 
   [[nodiscard]] std::string_view bytes() const { return {data_, size_}; }
 
+  /// Gives the memory of what was read so far back to the system; bytes that are looked at again are read
+  /// again. Call it now and then while passing through a large file.
+  void forget() const;
+
  private:
   void read_stream(int descriptor, const std::string& name);
 

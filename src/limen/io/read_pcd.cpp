@@ -4,163 +4,22 @@
 
 #include <algorithm>
 #include <bit>
-#include <cstring>
-#include <memory>
-#include <optional>
+#include <cstdint>
 #include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 
+#include "limen/base/angles.h"
 #include "limen/base/error.h"
-#include "limen/io/lzf.h"
+#include "limen/io/pcd_header.h"
 #include "limen/io/record_table.h"
 #include "limen/io/scan_builder.h"
+#include "limen/io/table_stream.h"
 #include "limen/io/text_numbers.h"
 
 namespace limen {
 namespace {
-
-constexpr std::size_t kMostFields = 1000;
-constexpr std::size_t kMostCount = 100000;
-const char* const kRemedy = "the PCD header is damaged: export the file again";
-
-using Tokens = std::vector<std::string_view>;
-
-struct PcdField {
-  std::string name;
-  std::size_t size = 4;
-  char type = 'F';
-  std::size_t count = 1;
-};
-
-struct PcdHeader {
-  std::vector<PcdField> fields;
-  std::size_t width = 0;
-  std::size_t height = 0;
-  std::optional<std::size_t> points;
-  std::optional<Vector3d> viewpoint;
-  std::string data;
-  std::size_t lines = 0;
-  std::size_t body = 0;
-
-  [[nodiscard]] std::size_t record_bytes() const {
-    std::size_t bytes = 0;
-    for (const PcdField& field : fields) bytes += field.size * field.count;
-    return bytes;
-  }
-};
-
-/// The tokens of one header line, where it stands, and how to complain about it.
-struct Line {
-  Tokens tokens;
-  std::size_t number;
-  const std::string& name;
-
-  [[noreturn]] void fail(const std::string& what) const {
-    throw Error(what, fmt::format("{}, line {}", name, number), kRemedy);
-  }
-  [[nodiscard]] std::size_t count(std::size_t k) const {
-    const auto value = k < tokens.size() ? parse_count(tokens[k]) : std::nullopt;
-    if (!value) fail(fmt::format("{} needs whole numbers", tokens[0]));
-    return *value;
-  }
-  /// One token per field is wanted after the first.
-  void require_per_field(const PcdHeader& header) const {
-    if (tokens.size() == header.fields.size() + 1) return;
-    fail(fmt::format("{} has {} values for {} fields", tokens[0], tokens.size() - 1, header.fields.size()));
-  }
-};
-
-void read_fields(const Line& line, PcdHeader& header) {
-  if (line.tokens.size() < 2 || line.tokens.size() > kMostFields)
-    line.fail("FIELDS needs the names of the fields");
-  header.fields.clear();
-  for (std::size_t k = 1; k < line.tokens.size(); ++k) header.fields.push_back({lower_case(line.tokens[k])});
-}
-
-void read_per_field(const Line& line, PcdHeader& header) {
-  line.require_per_field(header);
-  for (std::size_t k = 0; k < header.fields.size(); ++k) {
-    PcdField& field = header.fields[k];
-    if (line.tokens[0] == "TYPE") {
-      field.type = line.tokens[k + 1][0];
-    } else if (line.tokens[0] == "SIZE") {
-      field.size = line.count(k + 1);
-      if (field.size == 0 || field.size > 8) line.fail("SIZE must be 1, 2, 4 or 8");
-    } else {
-      field.count = line.count(k + 1);
-      if (field.count > kMostCount) line.fail("COUNT is absurdly large");
-    }
-  }
-}
-
-std::optional<Vector3d> viewpoint_of(const Line& line) {
-  if (line.tokens.size() < 4) return {};
-  Vector3d x;
-  for (int k = 0; k < 3; ++k) {
-    const auto number = parse_number(line.tokens[static_cast<std::size_t>(k) + 1]);
-    if (!number || !(std::abs(*number) < 1e8)) return {};
-    x[k] = *number;
-  }
-  return x;
-}
-
-/// Takes one line; returns true at DATA, the last one.
-bool read_line(const Line& line, PcdHeader& header) {
-  const std::string_view word = line.tokens[0];
-  if (word == "FIELDS" || word == "COLUMNS") {
-    read_fields(line, header);
-  } else if (word == "SIZE" || word == "TYPE" || word == "COUNT") {
-    read_per_field(line, header);
-  } else if (word == "WIDTH") {
-    header.width = line.count(1);
-  } else if (word == "HEIGHT") {
-    header.height = line.count(1);
-  } else if (word == "POINTS") {
-    header.points = line.count(1);
-  } else if (word == "VIEWPOINT") {
-    header.viewpoint = viewpoint_of(line);
-  } else if (word == "DATA") {
-    header.data = line.tokens.size() > 1 ? lower_case(line.tokens[1]) : "";
-    return true;
-  } else if (word != "VERSION") {
-    line.fail(fmt::format("unknown word \"{}\"", word.substr(0, 40)));
-  }
-  return false;
-}
-
-PcdHeader parse_header(std::string_view bytes, const std::string& name) {
-  PcdHeader header;
-  while (header.body < bytes.size() && header.lines < 1000) {
-    const TextLine text = first_line(bytes.substr(header.body));
-    header.body += text.bytes;
-    const Line line{split_tokens(text.text), ++header.lines, name};
-    if (line.tokens.empty() || line.tokens[0].front() == '#') continue;
-    if (!read_line(line, header)) continue;
-    if (header.fields.empty()) line.fail("the header has no line FIELDS");
-    return header;
-  }
-  throw Error("the header has no line DATA", fmt::format("{}, line {}", name, header.lines), kRemedy);
-}
-
-Scalar scalar_of(const PcdField& field, const std::string& name) {
-  const auto pick = [&](Scalar one, Scalar two, Scalar four, Scalar eight) -> std::optional<Scalar> {
-    if (field.size == 1) return one;
-    if (field.size == 2) return two;
-    if (field.size == 4) return four;
-    if (field.size == 8) return eight;
-    return {};
-  };
-  std::optional<Scalar> scalar;
-  if (field.type == 'I') scalar = pick(Scalar::int8, Scalar::int16, Scalar::int32, Scalar::int64);
-  if (field.type == 'U') scalar = pick(Scalar::uint8, Scalar::uint16, Scalar::uint32, Scalar::uint64);
-  if (field.type == 'F' && field.size == 4) scalar = Scalar::float32;
-  if (field.type == 'F' && field.size == 8) scalar = Scalar::float64;
-  if (scalar) return *scalar;
-  throw Error(fmt::format("field {} has the unknown type {} of {} bytes", field.name, field.type, field.size),
-              name, kRemedy);
-}
 
 bool packs_colour(const PcdField& field) {
   return (field.name == "rgb" || field.name == "rgba") && field.size == 4;
@@ -176,23 +35,18 @@ void add_field(RecordTable& table, const PcdField& field, const Field& placed) {
     table.fields.push_back({names[k], Scalar::uint8, placed.data + k, placed.stride});
 }
 
-/// Points in memory: where the values of each field lie.
-struct Layout {
-  const char* data;
-  bool by_field;  ///< all x, then all y, ... (compressed), else point after point
-};
-
-RecordTable table_of_bytes(const PcdHeader& header, std::size_t points, const Layout& layout,
+RecordTable table_of_bytes(const PcdHeader& header, std::size_t points, const PcdBody& layout,
                            const std::string& name) {
   RecordTable table;
   table.rows = points;
+  table.keeper = layout.expanded;
   table.swapped = std::endian::native == std::endian::big;
   const char* at = layout.data;
   for (const PcdField& field : header.fields) {
     const std::size_t bytes = field.size * field.count;
     if (field.name != "_") {
       add_field(table, field,
-                {field.name, scalar_of(field, name), at, layout.by_field ? bytes : header.record_bytes()});
+                {field.name, pcd_scalar(field, name), at, layout.by_field ? bytes : header.record_bytes()});
     }
     at += layout.by_field ? bytes * points : bytes;
   }
@@ -224,77 +78,64 @@ void split_colours(const PcdHeader& header, std::vector<std::string>& names, std
   for (const char* colour : {"red", "green", "blue"}) names.emplace_back(colour);
 }
 
-RecordTable table_of_text(std::string_view bytes, const PcdHeader& header, std::size_t points,
-                          const std::string& name) {
-  std::vector<std::string> names;
+/// The rows of a text body.
+TextCloud text_of(std::string_view bytes, const PcdHeader& header, const std::string& name) {
+  TextCloud cloud;
   for (const PcdField& field : header.fields) {
-    for (std::size_t k = 0; k < field.count; ++k) names.push_back(field.count == 1 ? field.name : "_");
+    for (std::size_t k = 0; k < field.count; ++k) cloud.names.push_back(field.count == 1 ? field.name : "_");
   }
-  TextRows wanted;
-  wanted.columns = names.size();
-  wanted.rows = points;
-  wanted.first_line_number = header.lines + 1;
-  ParsedRows parsed = parse_rows(bytes.substr(header.body), wanted, name);
-  split_colours(header, names, parsed.numbers);
-  return table_of_numbers(std::make_shared<std::vector<double>>(std::move(parsed.numbers)), names);
+  cloud.text = bytes.substr(header.body);
+  cloud.file = name;
+  cloud.wanted.columns = cloud.names.size();
+  cloud.wanted.rows = header.point_count(name);
+  cloud.wanted.first_line_number = header.lines + 1;
+  cloud.change = [header, names = cloud.names](std::vector<double>& numbers) {
+    std::vector<std::string> wider = names;
+    split_colours(header, wider, numbers);
+    return wider;
+  };
+  return cloud;
 }
 
-[[noreturn]] void too_few(std::size_t points, std::size_t room, const std::string& name) {
-  throw Error(fmt::format("the header promises {} points, the file has room for {}", points, room), name,
-              "get the whole file, or correct the count");
+RecordTable table_of_text(std::string_view bytes, const PcdHeader& header, const std::string& name) {
+  const TextCloud cloud = text_of(bytes, header, name);
+  std::vector<double> numbers = parse_rows(cloud.text, cloud.wanted, name).numbers;
+  const std::vector<std::string> names = cloud.change(numbers);
+  return table_of_numbers(std::make_shared<std::vector<double>>(std::move(numbers)), names);
 }
 
-std::size_t count_points(const PcdHeader& header, const std::string& name) {
-  if (header.points && *header.points > 0) return *header.points;
-  if (header.height > 0 && header.width > SIZE_MAX / header.height) too_few(SIZE_MAX, 0, name);
-  const std::size_t points = header.width * std::max<std::size_t>(1, header.height);
-  if (points == 0) throw Error("there are no points: POINTS 0", name, "check how the file was exported");
-  return points;
+RecordTable table_of(std::string_view bytes, const PcdHeader& header, const std::string& name) {
+  if (header.data == "ascii") return table_of_text(bytes, header, name);
+  if (header.data == "binary" || header.data == "binary_compressed")
+    return table_of_bytes(header, header.point_count(name), open_pcd_body(bytes, header, name), name);
+  throw Error(fmt::format("unknown PCD data \"{}\" (known: ascii, binary, binary_compressed)", header.data),
+              fmt::format("{}, line {}", name, header.lines), "export the file again");
 }
 
-/// The bytes of a compressed body.
-std::string expand_body(std::string_view body, std::size_t wanted, const std::string& name) {
-  std::uint32_t sizes[2] = {0, 0};
-  if (body.size() >= sizeof sizes) std::memcpy(sizes, body.data(), sizeof sizes);
-  if (body.size() < sizeof sizes || sizes[0] > body.size() - sizeof sizes) {
-    throw Error("the compressed points end before their time", name, "get the whole file");
+TableFacts facts_of(const PcdHeader& header, const std::string& name) {
+  TableFacts facts;
+  facts.name = name;
+  if (header.height > 1 && header.width > 0 && header.width == header.point_count(name) / header.height) {
+    facts.columns = header.width;
   }
-  auto expanded = expand_lzf(body.substr(sizeof sizes, sizes[0]), sizes[1]);
-  if (!expanded) throw Error("the compressed points are damaged", name, "export the file again");
-  if (expanded->size() < wanted) {
-    throw Error(
-        fmt::format("the header promises {} bytes of points, the file holds {}", wanted, expanded->size()),
-        name, "get the whole file, or correct the count");
-  }
-  return std::move(*expanded);
+  if (header.viewpoint && !header.viewpoint->translation.isZero())
+    facts.possible_centre = header.viewpoint->translation;
+  return facts;
 }
 
-/// What every encoding gives: a table, and the memory it may point into.
-struct Body {
-  std::shared_ptr<const std::string> expanded;
-  RecordTable table;
-};
+std::vector<std::string> field_names(const PcdHeader& header) {
+  std::vector<std::string> names;
+  for (const PcdField& field : header.fields) names.push_back(field.name);
+  return names;
+}
 
-Body read_body(std::string_view bytes, const PcdHeader& header, const std::string& name) {
-  const std::size_t points = count_points(header, name);
-  const std::string_view body = bytes.substr(header.body);
-  const std::size_t stride = header.record_bytes();
-  Body read;
-  if (header.data == "ascii") {
-    read.table = table_of_text(bytes, header, points, name);
-  } else if (header.data == "binary") {
-    const std::size_t room = stride == 0 ? 0 : body.size() / stride;
-    if (points > room) too_few(points, room, name);
-    read.table = table_of_bytes(header, points, {body.data(), false}, name);
-  } else if (header.data == "binary_compressed") {
-    if (stride == 0 || points > UINT32_MAX / stride) too_few(points, 0, name);
-    read.expanded = std::make_shared<const std::string>(expand_body(body, points * stride, name));
-    read.table = table_of_bytes(header, points, {read.expanded->data(), true}, name);
-  } else {
-    throw Error(fmt::format("unknown PCD data \"{}\" (known: ascii, binary, binary_compressed)", header.data),
-                fmt::format("{}, line {}", name, header.lines), "export the file again");
-  }
-  return read;
+std::vector<std::string> notes_of(const PcdHeader& header) {
+  constexpr double kTurnedRad = 1e-6;
+  if (!header.viewpoint || rotation_angle(header.viewpoint->rotation) < kTurnedRad) return {};
+  return {fmt::format(
+      "the view point of the file is turned by {:.3f} degrees: the points are taken to lie in the "
+      "file's frame, as they are",
+      degrees(rotation_angle(header.viewpoint->rotation)))};
 }
 
 }  // namespace
@@ -314,18 +155,24 @@ bool looks_like_pcd(std::string_view bytes) {
 }
 
 ScanFile read_pcd(std::string_view bytes, const std::string& name, const ReadOptions& options) {
-  const PcdHeader header = parse_header(bytes, name);
-  const Body body = read_body(bytes, header, name);
-  TableFacts facts;
-  facts.name = name;
-  if (header.height > 1 && header.width > 0 && header.width == body.table.rows / header.height) {
-    facts.columns = header.width;
-  }
-  if (header.viewpoint && !header.viewpoint->isZero()) facts.possible_centre = header.viewpoint;
+  const PcdHeader header = parse_pcd_header(bytes, name);
+  const RecordTable table = table_of(bytes, header, name);
   ScanFile file;
   file.format = "PCD, " + header.data;
-  for (const PcdField& field : header.fields) file.fields.push_back(field.name);
-  return with_scan(std::move(file), body.table, facts, options);
+  file.fields = field_names(header);
+  file.notes = notes_of(header);
+  return with_scan(std::move(file), table, facts_of(header, name), options);
+}
+
+std::unique_ptr<PointFile> open_pcd(std::string_view bytes, const std::string& name) {
+  auto header = std::make_shared<const PcdHeader>(parse_pcd_header(bytes, name));
+  CloudSource cloud;
+  cloud.facts = {facts_of(*header, name), header->point_count(name), field_names(*header), notes_of(*header)};
+  cloud.open = [bytes, name, header] {
+    return header->data == "ascii" ? stream_of_text(text_of(bytes, *header, name))
+                                   : stream_of_table(table_of(bytes, *header, name));
+  };
+  return make_point_file("PCD, " + header->data, {std::move(cloud)});
 }
 
 }  // namespace limen

@@ -14,6 +14,7 @@
 #include "limen/io/ply_header.h"
 #include "limen/io/record_table.h"
 #include "limen/io/scan_builder.h"
+#include "limen/io/table_stream.h"
 #include "limen/io/text_numbers.h"
 
 namespace limen {
@@ -87,24 +88,30 @@ RecordTable table_of_listed_records(const PlySource& source, std::size_t start) 
   return table_of_numbers(std::move(numbers), names);
 }
 
-/// Numbers of a text body; each record is one line.
-RecordTable table_of_text(const PlySource& source) {
+/// The rows of a text body; each record is one line.
+TextCloud text_of(const PlySource& source) {
   const PlyElement& vertex = source.vertex();
-  TextRows wanted;
-  wanted.rows = vertex.count;
-  wanted.first_line_number = source.header.lines.size() + 1;
+  TextCloud cloud;
+  cloud.text = source.bytes.substr(source.header.body);
+  cloud.file = source.name;
+  cloud.wanted.rows = vertex.count;
+  cloud.wanted.first_line_number = source.header.lines.size() + 1;
   for (std::size_t k = 0; k < source.which; ++k) {
-    if (!source.header.elements[k].properties.empty()) wanted.skip += source.header.elements[k].count;
+    if (!source.header.elements[k].properties.empty()) cloud.wanted.skip += source.header.elements[k].count;
   }
-  std::vector<std::string> names;
   for (const PlyProperty& property : vertex.properties) {
     if (property.count_type) break;  // what follows a list has no fixed place in the line
-    names.push_back(lower_case(property.name));
+    cloud.names.push_back(lower_case(property.name));
   }
-  wanted.columns = names.size();
-  if (names.empty()) return {};
-  ParsedRows parsed = parse_rows(source.bytes.substr(source.header.body), wanted, source.name);
-  return table_of_numbers(std::make_shared<std::vector<double>>(std::move(parsed.numbers)), names);
+  cloud.wanted.columns = cloud.names.size();
+  return cloud;
+}
+
+RecordTable table_of_text(const PlySource& source) {
+  const TextCloud cloud = text_of(source);
+  if (cloud.names.empty()) return {};
+  ParsedRows parsed = parse_rows(cloud.text, cloud.wanted, cloud.file);
+  return table_of_numbers(std::make_shared<std::vector<double>>(std::move(parsed.numbers)), cloud.names);
 }
 
 RecordTable table_of(const PlySource& source) {
@@ -112,6 +119,22 @@ RecordTable table_of(const PlySource& source) {
   const std::size_t start = ply_element_start(source.bytes, source.header, source.which, source.name);
   if (source.vertex().has_lists()) return table_of_listed_records(source, start);
   return table_of_records(source, start);
+}
+
+TableFacts facts_of(const PlySource& source) {
+  TableFacts facts;
+  facts.name = source.name;
+  facts.offset = source.header.offset;
+  facts.has_offset = source.header.has_offset;
+  facts.centre = source.header.centre;
+  facts.centre_unknown = source.header.centre_unknown;
+  return facts;
+}
+
+std::vector<std::string> field_names(const PlyElement& element) {
+  std::vector<std::string> names;
+  for (const PlyProperty& property : element.properties) names.push_back(property.name);
+  return names;
 }
 
 const char* format_name(PlyEncoding encoding) {
@@ -136,16 +159,26 @@ bool looks_like_ply(std::string_view bytes) {
 ScanFile read_ply(std::string_view bytes, const std::string& name, const ReadOptions& options) {
   const PlyHeader header = parse_ply_header(bytes, name);
   const PlySource source{bytes, name, header, header.vertex(name)};
-  TableFacts facts;
-  facts.name = name;
-  facts.offset = header.offset;
-  facts.has_offset = header.has_offset;
-  facts.centre = header.centre;
-  facts.centre_unknown = header.centre_unknown;
   ScanFile file;
   file.format = format_name(header.encoding);
-  for (const PlyProperty& property : source.vertex().properties) file.fields.push_back(property.name);
-  return with_scan(std::move(file), table_of(source), facts, options);
+  file.fields = field_names(source.vertex());
+  return with_scan(std::move(file), table_of(source), facts_of(source), options);
+}
+
+std::unique_ptr<PointFile> open_ply(std::string_view bytes, const std::string& name) {
+  auto header = std::make_shared<const PlyHeader>(parse_ply_header(bytes, name));
+  const std::size_t which = header->vertex(name);
+  const PlySource source{bytes, name, *header, which};
+  CloudSource cloud;
+  cloud.facts.table = facts_of(source);
+  cloud.facts.points = source.vertex().count;
+  cloud.facts.fields = field_names(source.vertex());
+  cloud.open = [bytes, name, header, which] {
+    const PlySource again{bytes, name, *header, which};
+    const bool rows_of_text = header->encoding == PlyEncoding::ascii && !text_of(again).names.empty();
+    return rows_of_text ? stream_of_text(text_of(again)) : stream_of_table(table_of(again));
+  };
+  return make_point_file(format_name(header->encoding), {std::move(cloud)});
 }
 
 }  // namespace limen

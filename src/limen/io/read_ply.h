@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
 #include <string>
 #include <string_view>
 
+#include "limen/io/point_file.h"
 #include "limen/io/read_scan.h"
 
 namespace limen {
@@ -17,5 +19,8 @@ bool looks_like_ply(std::string_view bytes);
 /// scan_index, theta, red green blue, intensity or reflectance. `name` is for messages.
 /// Throws Error that names the file and the line or byte.
 ScanFile read_ply(std::string_view bytes, const std::string& name, const ReadOptions& options = {});
+
+/// The same file as a cloud that is read in pieces; `bytes` must outlive it.
+std::unique_ptr<PointFile> open_ply(std::string_view bytes, const std::string& name);
 
 }  // namespace limen

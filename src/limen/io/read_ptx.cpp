@@ -17,6 +17,7 @@
 #include "limen/base/parallel.h"
 #include "limen/io/record_table.h"
 #include "limen/io/scan_builder.h"
+#include "limen/io/table_stream.h"
 #include "limen/io/text_numbers.h"
 
 namespace limen {
@@ -155,6 +156,15 @@ struct Station {
   std::size_t line;
 };
 
+TableFacts facts_of(const Station& station) {
+  TableFacts facts;
+  facts.name = station.name;
+  facts.column_length = station.header.rows;
+  const bool placed = to_matrix(station.header.world_from_scan) != Matrix4d::Identity();
+  if (placed) facts.centre = station.header.world_from_scan.translation;
+  return facts;
+}
+
 ScanFile with_station(ScanFile file, const Station& station, const ReadOptions& options) {
   const std::size_t points = station.header.columns * station.header.rows;
   const std::vector<std::string> names = names_of(first_line(station.text).text);
@@ -170,14 +180,49 @@ ScanFile with_station(ScanFile file, const Station& station, const ReadOptions& 
     file.dropped += missing;
     return file;
   }
-  TableFacts facts;
-  facts.name = station.name;
-  facts.column_length = station.header.rows;
+  TableFacts facts = facts_of(station);
   facts.missing = missing;
-  const bool placed = to_matrix(station.header.world_from_scan) != Matrix4d::Identity();
-  if (placed) facts.centre = station.header.world_from_scan.translation;
   file.fields = names;
   return with_scan(std::move(file), table_of_numbers(std::move(numbers), names), facts, options);
+}
+
+/// The scans of a file one after the other, not read yet.
+std::vector<Station> stations_of(std::string_view bytes, const std::string& name) {
+  std::vector<Station> stations;
+  Cursor cursor{bytes};
+  for (cursor.skip_blank(); !cursor.rest.empty(); cursor.skip_blank()) {
+    Station station;
+    station.header = take_header(cursor, name);
+    station.line = cursor.line;
+    station.text = take_lines(cursor, station.header.columns * station.header.rows);
+    station.name = name;
+    cursor.skip_blank();
+    if (!stations.empty() || !cursor.rest.empty())
+      station.name += fmt::format(", scan {}", stations.size() + 1);
+    stations.push_back(std::move(station));
+  }
+  return stations;
+}
+
+/// A scan as a cloud that is read in pieces.
+CloudSource source_of(const Station& station) {
+  TextCloud text;
+  text.text = station.text;
+  text.file = station.name;
+  text.names = names_of(first_line(station.text).text);
+  text.wanted.columns = text.names.size();
+  text.wanted.rows = station.header.columns * station.header.rows;
+  text.wanted.first_line_number = station.line;
+  text.change = [names = text.names, pose = station.header.world_from_scan](std::vector<double>& numbers) {
+    move_to_world(numbers, names.size(), pose);
+    return names;
+  };
+  CloudSource source;
+  source.facts.table = facts_of(station);
+  source.facts.points = *text.wanted.rows;
+  source.facts.fields = text.names;
+  source.open = [text] { return stream_of_text(text); };
+  return source;
 }
 
 }  // namespace
@@ -195,21 +240,17 @@ bool looks_like_ptx(std::string_view bytes) {
 ScanFile read_ptx(std::string_view bytes, const std::string& name, const ReadOptions& options) {
   ScanFile file;
   file.format = "PTX";
-  Cursor cursor{bytes};
-  std::size_t stations = 0;
-  for (cursor.skip_blank(); !cursor.rest.empty(); cursor.skip_blank()) {
-    Station station;
-    station.header = take_header(cursor, name);
-    station.line = cursor.line;
-    station.text = take_lines(cursor, station.header.columns * station.header.rows);
-    station.name = name;
-    cursor.skip_blank();
-    if (stations++ > 0 || !cursor.rest.empty()) station.name += fmt::format(", scan {}", stations);
+  for (const Station& station : stations_of(bytes, name))
     file = with_station(std::move(file), station, options);
-  }
   if (file.scans.empty())
     throw Error("there are no points: all returns are missing", name, "export the file again");
   return file;
+}
+
+std::unique_ptr<PointFile> open_ptx(std::string_view bytes, const std::string& name) {
+  std::vector<CloudSource> clouds;
+  for (const Station& station : stations_of(bytes, name)) clouds.push_back(source_of(station));
+  return make_point_file("PTX", std::move(clouds));
 }
 
 }  // namespace limen

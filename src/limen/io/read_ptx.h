@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
 #include <string>
 #include <string_view>
 
+#include "limen/io/point_file.h"
 #include "limen/io/read_scan.h"
 
 namespace limen {
@@ -17,5 +19,8 @@ bool looks_like_ptx(std::string_view bytes);
 /// only where that can be the scanner), and columns and rows as topology. Missing returns (0 0 0) are left
 /// out. `name` is for messages. Throws Error that names the file, the scan and the line.
 ScanFile read_ptx(std::string_view bytes, const std::string& name, const ReadOptions& options = {});
+
+/// The same file, each scan of it a cloud that is read in pieces; `bytes` must outlive it.
+std::unique_ptr<PointFile> open_ptx(std::string_view bytes, const std::string& name);
 
 }  // namespace limen

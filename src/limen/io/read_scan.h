@@ -3,7 +3,9 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -13,6 +15,8 @@
 
 namespace limen {
 
+class Trajectory;
+
 /// What a user may say about a scan file that the file itself does not.
 struct ReadOptions {
   /// Optical centre in the coordinates of the points as `limen info` tells them (an offset that the file
@@ -20,6 +24,11 @@ struct ReadOptions {
   /// the scanner (the points lie around it and none is closer than a scanner can measure), else unknown.
   std::optional<Vector3d> origin;
   bool level = true;  ///< the file's z axis points up (--gravity up)
+  /// A file whose scans would take more than this is thinned while it is read, and a note tells so; 0: never.
+  std::uint64_t memory_bytes = 0;
+  /// From where a moving scanner saw its points, by their time; counts before what the file says, not before
+  /// `origin`. Empty: none.
+  std::shared_ptr<const Trajectory> trajectory = {};
 
   /// Throws Error where the origin is not finite.
   void check() const;

@@ -14,6 +14,7 @@
 #include "limen/base/error.h"
 #include "limen/io/record_table.h"
 #include "limen/io/scan_builder.h"
+#include "limen/io/table_stream.h"
 #include "limen/io/text_numbers.h"
 
 namespace limen {
@@ -133,6 +134,14 @@ Names names_by_position(const std::vector<double>& numbers, std::size_t columns)
   return names;
 }
 
+/// Bytes of the first `count` lines.
+std::size_t first_lines(std::string_view text, std::size_t count) {
+  std::size_t bytes = 0;
+  for (std::size_t k = 0; k < count && bytes < text.size(); ++k)
+    bytes += first_line(text.substr(bytes)).bytes;
+  return bytes;
+}
+
 void require_rows(const TextHeader& header, const std::string& name) {
   if (header.odd_number > 0) {
     std::string shown;
@@ -151,6 +160,35 @@ void require_rows(const TextHeader& header, const std::string& name) {
   }
 }
 
+/// The rows of a file, with the names of their columns.
+TextCloud text_of(std::string_view bytes, const TextHeader& header, const std::string& name) {
+  TextCloud cloud;
+  cloud.text = bytes.substr(header.body);
+  cloud.file = name;
+  cloud.wanted.columns = leading_numbers(header.row);
+  if (!header.names.empty()) cloud.wanted.columns = std::min(cloud.wanted.columns, header.names.size());
+  cloud.wanted.first_line_number = header.lines + 1;
+  cloud.wanted.counts_allowed = header.counted;
+  cloud.names = header.names;
+  if (cloud.names.empty()) {
+    const std::size_t sample = first_lines(cloud.text, 2 * kSample);
+    const ParsedRows parsed = parse_rows(cloud.text.substr(0, sample), cloud.wanted, name);
+    cloud.names = names_by_position(parsed.numbers, cloud.wanted.columns);
+  }
+  cloud.names.resize(cloud.wanted.columns);
+  return cloud;
+}
+
+const char* format_name(const TextHeader& header) {
+  return header.counted ? "PTS text" : "XYZ text";
+}
+
+/// Lines of a text, which are no fewer than its rows.
+std::size_t line_count(std::string_view text) {
+  const auto ends = static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
+  return ends + (!text.empty() && text.back() != '\n' ? 1 : 0);
+}
+
 }  // namespace
 
 bool looks_like_xyz(std::string_view bytes) {
@@ -163,21 +201,15 @@ bool looks_like_xyz(std::string_view bytes) {
 ScanFile read_xyz(std::string_view bytes, const std::string& name, const ReadOptions& options) {
   const TextHeader header = parse_text_header(bytes);
   require_rows(header, name);
-  TextRows wanted;
-  wanted.columns = leading_numbers(header.row);
-  if (!header.names.empty()) wanted.columns = std::min(wanted.columns, header.names.size());
-  wanted.first_line_number = header.lines + 1;
-  wanted.counts_allowed = header.counted;
-  ParsedRows parsed = parse_rows(bytes.substr(header.body), wanted, name);
+  const TextCloud cloud = text_of(bytes, header, name);
+  ParsedRows parsed = parse_rows(cloud.text, cloud.wanted, name);
   if (header.counted && parsed.promised > parsed.rows) {
     throw Error(fmt::format("the file ends after {} of {} points", parsed.rows, parsed.promised), name,
                 "get the whole file, or correct the count");
   }
-  Names names = header.names.empty() ? names_by_position(parsed.numbers, wanted.columns) : header.names;
-  names.resize(wanted.columns);
   ScanFile file;
-  file.format = header.counted ? "PTS text" : "XYZ text";
-  file.fields = names;
+  file.format = format_name(header);
+  file.fields = cloud.names;
   if (header.counted && parsed.promised < parsed.rows) {
     file.notes.push_back(
         fmt::format("the count says {}, the file holds {} points", parsed.promised, parsed.rows));
@@ -185,7 +217,19 @@ ScanFile read_xyz(std::string_view bytes, const std::string& name, const ReadOpt
   TableFacts facts;
   facts.name = name;
   auto numbers = std::make_shared<std::vector<double>>(std::move(parsed.numbers));
-  return with_scan(std::move(file), table_of_numbers(std::move(numbers), names), facts, options);
+  return with_scan(std::move(file), table_of_numbers(std::move(numbers), cloud.names), facts, options);
+}
+
+std::unique_ptr<PointFile> open_xyz(std::string_view bytes, const std::string& name) {
+  const TextHeader header = parse_text_header(bytes);
+  require_rows(header, name);
+  const TextCloud text = text_of(bytes, header, name);
+  CloudSource cloud;
+  cloud.facts.table.name = name;
+  cloud.facts.points = line_count(text.text);
+  cloud.facts.fields = text.names;
+  cloud.open = [text] { return stream_of_text(text); };
+  return make_point_file(format_name(header), {std::move(cloud)});
 }
 
 }  // namespace limen

@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
 #include <string>
 #include <string_view>
 
+#include "limen/io/point_file.h"
 #include "limen/io/read_scan.h"
 
 namespace limen {
@@ -18,5 +20,8 @@ bool looks_like_xyz(std::string_view bytes);
 /// with intensity, 7 with intensity red green blue, 6 with red green blue where these are whole numbers up to
 /// 255; further columns are passed over. `name` is for messages. Throws Error that names file and line.
 ScanFile read_xyz(std::string_view bytes, const std::string& name, const ReadOptions& options = {});
+
+/// The same file as a cloud that is read in pieces; `bytes` must outlive it.
+std::unique_ptr<PointFile> open_xyz(std::string_view bytes, const std::string& name);
 
 }  // namespace limen

@@ -210,6 +210,7 @@ ParsedRows parse_rows(std::string_view text, const TextRows& wanted, const std::
     lines += piece.lines;
     result.promised += piece.promised;
   }
+  result.lines = lines;
   const std::size_t there = rows - std::min(rows, wanted.skip);
   result.rows = wanted.rows.value_or(there);
   if (result.rows > there) {

@@ -41,6 +41,7 @@ struct ParsedRows {
   std::vector<double> numbers;  ///< row after row
   std::size_t rows = 0;
   std::size_t promised = 0;  ///< sum of the counts
+  std::size_t lines = 0;     ///< of the text, rows or not
 };
 
 /// Reads rows of numbers on all threads. Lines of which holds_row() is false are passed over.
