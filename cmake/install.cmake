@@ -22,3 +22,22 @@ configure_package_config_file(cmake/limenConfig.cmake.in ${PROJECT_BINARY_DIR}/l
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/limenConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/limenConfig.cmake ${PROJECT_BINARY_DIR}/limenConfigVersion.cmake
         DESTINATION ${LIMEN_PACKAGE_DIR})
+
+# The manual page and the shells' completions are printed by the program itself, so that they cannot differ
+# from it.
+set(LIMEN_PRINTED_DIR ${PROJECT_BINARY_DIR}/printed)
+file(MAKE_DIRECTORY ${LIMEN_PRINTED_DIR})
+set(LIMEN_PRINTED ${LIMEN_PRINTED_DIR}/limen.1 ${LIMEN_PRINTED_DIR}/limen.bash ${LIMEN_PRINTED_DIR}/_limen
+    ${LIMEN_PRINTED_DIR}/limen.fish)
+add_custom_command(OUTPUT ${LIMEN_PRINTED}
+  COMMAND limen_program man > ${LIMEN_PRINTED_DIR}/limen.1
+  COMMAND limen_program completion bash > ${LIMEN_PRINTED_DIR}/limen.bash
+  COMMAND limen_program completion zsh > ${LIMEN_PRINTED_DIR}/_limen
+  COMMAND limen_program completion fish > ${LIMEN_PRINTED_DIR}/limen.fish
+  DEPENDS limen_program COMMENT "Printing the manual page and the completions")
+add_custom_target(limen_printed ALL DEPENDS ${LIMEN_PRINTED})
+install(FILES ${LIMEN_PRINTED_DIR}/limen.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
+install(FILES ${LIMEN_PRINTED_DIR}/limen.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions
+        RENAME limen)
+install(FILES ${LIMEN_PRINTED_DIR}/_limen DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions)
+install(FILES ${LIMEN_PRINTED_DIR}/limen.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)

@@ -3,6 +3,7 @@
 #include "limen/cli/command.h"
 
 #include <cmath>
+#include <cstdio>
 #include <utility>
 
 #include <CLI/App.hpp>
@@ -15,9 +16,9 @@
 namespace limen {
 namespace {
 
-void print(std::FILE* stream, std::string_view text) {
-  if (text.empty()) return;
-  fmt::print(stream, "{}{}", text, text.back() == '\n' ? "" : "\n");
+/// The text with a line end; nothing stays nothing.
+std::string ended(std::string_view text) {
+  return fmt::format("{}{}", text, text.empty() || text.back() == '\n' ? "" : "\n");
 }
 
 std::string not_a_seed(const std::string& text) {
@@ -30,19 +31,23 @@ std::string not_a_seed(const std::string& text) {
 void Session::say(std::string_view text) const {
   if (common.quiet || common.json) return;
   wipe_progress();
-  print(stdout, text);
+  print_out(ended(text));
 }
 
 void Session::answer(std::string_view json_text) const {
   if (!common.json) return;
   wipe_progress();
-  print(stdout, json_text);
+  print_out(ended(json_text));
 }
 
 void Session::note(std::string_view text) const {
   if (common.quiet) return;
-  wipe_progress();
-  print(stderr, fmt::format("limen: {}", text));
+  const std::string line = ended(fmt::format("limen: {}", text));
+  if (auto* terminal = dynamic_cast<TerminalMonitor*>(monitor.get())) {
+    terminal->print(line);
+  } else {
+    std::fputs(line.c_str(), stderr);
+  }
 }
 
 void Session::wipe_progress() const {
@@ -50,13 +55,14 @@ void Session::wipe_progress() const {
 }
 
 void add_common_options(CLI::App& app, Session& session) {
-  const std::string group = "Common options";
+  const std::string group = kCommonGroup;
   CommonOptions& common = session.common;
   app.add_flag("-q,--quiet", common.quiet, "Neither progress nor summary; errors are still told")
       ->group(group);
   app.add_flag("--json", common.json, "The result as JSON on stdout, everything else on stderr")
       ->group(group);
-  app.add_option("--threads", common.threads, "Threads to use; 0: all of the machine. Never changes a result")
+  app.add_option("--threads", common.threads,
+                 "Threads to use; they never change a result (default 0: all of the machine)")
       ->check(CLI::Range(0, 4096))
       ->type_name("N")
       ->group(group);

@@ -26,6 +26,9 @@ enum ExitStatus : int {
   kExitInterrupted = 130,  ///< stopped by the user
 };
 
+/// The heading of the options that every command has.
+inline constexpr const char* kCommonGroup = "Common options";
+
 /// The options that every command has.
 struct CommonOptions {
   bool quiet = false;      ///< neither progress nor summary
@@ -47,8 +50,7 @@ struct Session {
   void answer(std::string_view json_text) const;
   /// A remark: one line to stderr, or nowhere with --quiet.
   void note(std::string_view text) const;
-
- private:
+  /// Takes the progress line away, before something else is printed.
   void wipe_progress() const;
 };
 

@@ -3,6 +3,7 @@
 #include "limen/cli/program.h"
 
 #include <algorithm>
+#include <csignal>
 #include <cstdio>
 #include <iostream>
 #include <memory>
@@ -19,11 +20,13 @@
 #include "limen/base/parallel.h"
 #include "limen/base/version.h"
 #include "limen/cli/command.h"
+#include "limen/cli/completion_command.h"
 #include "limen/cli/deviation_command.h"
 #include "limen/cli/evaluate_command.h"
 #include "limen/cli/info_command.h"
 #include "limen/cli/openings_command.h"
 #include "limen/cli/planes_command.h"
+#include "limen/cli/program_help.h"
 #include "limen/cli/register_command.h"
 #include "limen/cli/segments_command.h"
 #include "limen/cli/terminal.h"
@@ -44,8 +47,9 @@ std::string one_line(std::string text) {
 }
 
 int fail(const std::string& message, int status) {
-  std::cout.flush();
-  fmt::print(stderr, "limen: error: {}\n", one_line(message));
+  std::fflush(stdout);
+  // Not fmt::print: a terminal that is gone is no reason to throw.
+  std::fputs(fmt::format("limen: error: {}\n", one_line(message)).c_str(), stderr);
   return status;
 }
 
@@ -85,29 +89,45 @@ void add_commands(CLI::App& app, Session& session) {
 #ifdef LIMEN_WITH_SIMULATOR
   add_simulate_command(app, session);
 #endif
+  add_completion_command(app, session);
+}
+
+/// The work itself, stoppable by the user; what it printed has arrived when it returns.
+int run_guarded(Session& session) {
+  const InterruptGuard guard(*session.monitor);
+  const CancelScope scope(*session.monitor);
+  const int status = session.action();
+  session.monitor->throw_if_cancelled();
+  flush_out();
+  return status;
+}
+
+int fail_as(const Session& session, const std::string& message, int status) {
+  // Work that was stopped may end in other ways than it should: a helper that heard the same signal, say.
+  const bool stopped = session.monitor && session.monitor->cancelled();
+  session.wipe_progress();
+  return stopped ? fail("interrupted", kExitInterrupted) : fail(message, status);
 }
 
 /// Runs what the command line asked for; every exception becomes one line and a status.
 int run_action(Session& session) {
+  constexpr int kReaderGone = 128 + SIGPIPE;
   try {
     set_thread_count(session.common.threads);
     session.monitor = make_monitor(session.common.quiet);
-    const InterruptGuard guard(*session.monitor);
-    const int status = session.action();
+    const int status = run_guarded(session);
     session.monitor.reset();
-    if (std::fflush(stdout) != 0) {
-      return fail("standard output: cannot be written (free some room, or read all of it)", kExitBadInput);
-    }
     return status;
+  } catch (const ReaderGone&) {
+    session.monitor.reset();
+    return kReaderGone;
   } catch (const Error& error) {
-    session.monitor.reset();
-    return fail(error.what(), status_of(error.fault()));
+    return fail_as(session, error.what(), status_of(error.fault()));
   } catch (const std::bad_alloc&) {
-    session.monitor.reset();
-    return fail("out of memory (give fewer points or a larger machine)", kExitInternal);
+    return fail_as(session, "out of memory (give fewer points or a larger machine)", kExitInternal);
   } catch (const std::exception& error) {
-    session.monitor.reset();
-    return fail(fmt::format("{} (this is a fault of limen: please report it)", error.what()), kExitInternal);
+    return fail_as(session, fmt::format("{} (this is a fault of limen: please report it)", error.what()),
+                   kExitInternal);
   }
 }
 
@@ -115,8 +135,12 @@ int run_action(Session& session) {
 
 int run_program(int argc, char** argv) {
   Session session;
-  CLI::App app("limen registers laser scans of one building, indoors and outdoors, by its planar polygons.",
-               "limen");
+  CLI::App app(
+      "limen finds how laser scans of one building fit together, indoors and outdoors, and where in a "
+      "building model a scan was taken. It needs no targets and no starting pose.",
+      "limen");
+  app.formatter(make_help_formatter());
+  app.set_help_flag("-h,--help", "Tell the usage and exit");
   app.set_version_flag("--version", fmt::format("limen {}", kVersion), "Tell the version and exit");
   app.require_subcommand(1);
   add_common_options(app, session);

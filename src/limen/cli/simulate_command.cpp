@@ -165,7 +165,8 @@ void add_simulate_command(CLI::App& app, Session& session) {
   SceneOptions& scene = options->scene;
   command
       ->add_option("NAME", scene.name,
-                   "The scene: " + known_scenes() + " (a BIM model); or a model file (IFC, OBJ, PLY)")
+                   "A model file (IFC, OBJ, PLY), or a scene (office is a BIM model): " + known_scenes())
+      ->type_name(fmt::format("FILE:{{{},{}}}", fmt::join(scene_names(), ","), kOffice))
       ->required();
   command->add_option("-o,--output", options->output, "The folder for scans, task.json and truth/truth.json")
       ->required()
