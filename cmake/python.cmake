@@ -1,0 +1,33 @@
+# SPDX-FileCopyrightText: The limen authors
+# SPDX-License-Identifier: Apache-2.0
+# The compiled part of the Python package, beside its Python files in <build>/python/limen: a folder that
+# can stand on PYTHONPATH. python/limen_build.py makes a wheel of it.
+find_package(Python3 COMPONENTS Interpreter Development.Module REQUIRED)
+find_path(PYBIND11_INCLUDE_DIR pybind11/pybind11.h REQUIRED)
+set(LIMEN_PYTHON_DIR ${PROJECT_BINARY_DIR}/python/limen)
+file(GLOB LIMEN_PYTHON_SOURCES CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/python/src/*.cpp)
+if(NOT LIMEN_BUILD_SIMULATOR)
+  list(FILTER LIMEN_PYTHON_SOURCES EXCLUDE REGEX "/simulation\\.cpp$")
+endif()
+
+Python3_add_library(limen_python MODULE WITH_SOABI ${LIMEN_PYTHON_SOURCES})
+set_target_properties(limen_python PROPERTIES OUTPUT_NAME _limen CXX_VISIBILITY_PRESET hidden
+  LIBRARY_OUTPUT_DIRECTORY ${LIMEN_PYTHON_DIR})
+target_include_directories(limen_python SYSTEM PRIVATE ${PYBIND11_INCLUDE_DIR} ${Python3_INCLUDE_DIRS})
+target_link_libraries(limen_python PRIVATE limen limen_options fmt::fmt)
+if(LIMEN_BUILD_SIMULATOR)
+  set_target_properties(limen_simulate PROPERTIES POSITION_INDEPENDENT_CODE ON)
+  target_link_libraries(limen_python PRIVATE limen_simulate)
+  target_compile_definitions(limen_python PRIVATE LIMEN_WITH_SIMULATOR=1)
+endif()
+
+file(GLOB LIMEN_PYTHON_FILES CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/python/limen/*)
+add_custom_target(limen_python_package ALL
+  COMMAND ${CMAKE_COMMAND} -E copy_if_different ${LIMEN_PYTHON_FILES} ${LIMEN_PYTHON_DIR}
+  DEPENDS limen_python COMMENT "Gathering the Python package")
+if(LIMEN_BUILD_IFC)
+  # Looked for beside the module first.
+  add_dependencies(limen_python_package limen_ifc)
+  add_custom_command(TARGET limen_python_package POST_BUILD
+    COMMAND ${CMAKE_COMMAND} -E copy_if_different $<TARGET_FILE:limen_ifc> ${LIMEN_PYTHON_DIR})
+endif()

@@ -1,0 +1,70 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <pybind11/eigen.h>
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include "limen/base/error.h"
+#include "limen/geometry/rigid.h"
+
+namespace limen::python {
+
+namespace py = pybind11;
+
+using DoubleArray = py::array_t<double, py::array::c_style | py::array::forcecast>;
+
+/// A read-only array that shows the values where they are and keeps `owner` alive.
+template <typename Value>
+py::array view(const std::vector<Value>& values, std::vector<py::ssize_t> shape, py::handle owner) {
+  py::array_t<Value> array(std::move(shape), values.data(), owner);
+  array.attr("flags").attr("writeable") = false;
+  return array;
+}
+
+/// The same of points: (n, 3) float64.
+inline py::array view(const std::vector<Vector3d>& points, py::handle owner) {
+  static_assert(sizeof(Vector3d) == 3 * sizeof(double), "points lie without gaps");
+  const double* first = points.empty() ? nullptr : points.front().data();
+  py::array_t<double> array({static_cast<py::ssize_t>(points.size()), py::ssize_t{3}}, first, owner);
+  array.attr("flags").attr("writeable") = false;
+  return array;
+}
+
+/// A new array of points, each with `shift` added: (n, 3) float64.
+inline py::array points_array(const std::vector<Vector3d>& points, const Vector3d& shift = Vector3d::Zero()) {
+  py::array_t<double> array({static_cast<py::ssize_t>(points.size()), py::ssize_t{3}});
+  auto out = array.mutable_unchecked<2>();
+  for (py::ssize_t i = 0; i < out.shape(0); ++i) {
+    for (py::ssize_t k = 0; k < 3; ++k) out(i, k) = points[static_cast<std::size_t>(i)][k] + shift[k];
+  }
+  return array;
+}
+
+/// (n, 3), less `origin`. Throws Error where the shape is another or a value is not finite.
+std::vector<Vector3d> points_from(const DoubleArray& array, const Vector3d& origin, const char* name);
+
+/// One value per point. Throws Error where the number is another.
+template <typename Value>
+std::vector<Value> values_from(const py::object& values, std::size_t count, const char* name) {
+  if (values.is_none()) return {};
+  const auto array = values.cast<py::array_t<Value, py::array::c_style | py::array::forcecast>>();
+  if (static_cast<std::size_t>(array.size()) != count) {
+    throw Error(std::string(name) + " has " + std::to_string(array.size()) + " values, but must have " +
+                    std::to_string(count),
+                "", "give as many as there are points");
+  }
+  return {array.data(), array.data() + array.size()};
+}
+
+inline Rigid3 rigid_from(const Matrix4d& matrix) {
+  return from_matrix(matrix);
+}
+
+}  // namespace limen::python

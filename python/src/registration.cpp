@@ -1,0 +1,144 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "module.h"
+#include "numpy_views.h"
+#include "work.h"
+
+#include "limen/base/atomic_file.h"
+#include "limen/register/register.h"
+#include "limen/report/result_json.h"
+
+namespace limen::python {
+namespace {
+
+/// One side as Python gives it: scans with their places, or a model.
+struct PythonSide {
+  std::vector<std::pair<const Scan*, Rigid3>> scans;
+  const BimModel* model = nullptr;
+};
+
+PythonSide side_from(const py::object& given) {
+  PythonSide side;
+  if (py::isinstance<BimModel>(given)) {
+    side.model = &given.cast<const BimModel&>();
+    return side;
+  }
+  for (const py::handle entry : given) {
+    const auto pair = entry.cast<std::pair<py::object, Matrix4d>>();
+    side.scans.emplace_back(&pair.first.cast<const Scan&>(), rigid_from(pair.second));
+  }
+  return side;
+}
+
+RegisterInput input_of(const PythonSide& side) {
+  RegisterInput input;
+  for (const auto& [scan, pose] : side.scans) input.scans.push_back({*scan, pose});
+  if (side.model != nullptr) input.model = *side.model;
+  return input;
+}
+
+InputSummary summary_of(const PythonSide& side) {
+  if (side.model != nullptr) return summarise(side.model->name, *side.model);
+  if (side.scans.empty()) return {};
+  InputSummary summary = summarise(side.scans.front().first->name, *side.scans.front().first);
+  for (std::size_t k = 1; k < side.scans.size(); ++k) {
+    summary.with.push_back(side.scans[k].first->name);
+    summary.points += side.scans[k].first->size();
+  }
+  return summary;
+}
+
+py::dict hypothesis_dict(const Hypothesis& it) {
+  py::dict told;
+  told["target_from_source"] = to_matrix(it.target_from_source);
+  told["score"] = it.score;
+  told["agreeing_m2"] = it.agreeing_m2;
+  told["contradicted_m2"] = it.contradicted_m2;
+  told["rms_m"] = it.rms_m;
+  told["matched_planes"] = it.matched_planes;
+  told["matched_openings"] = it.matched_openings;
+  told["explained_share"] = it.explained_share;
+  told["room"] = it.room;
+  return told;
+}
+
+template <typename Item, typename Convert>
+py::list list_of(const std::vector<Item>& items, const Convert& convert) {
+  py::list list;
+  for (const Item& item : items) list.append(convert(item));
+  return list;
+}
+
+py::dict result_dict(const RegistrationResult& result) {
+  py::dict told;
+  told["outcome"] = to_string(result.outcome);
+  told["reason"] = result.reason;
+  told["best"] = result.outcome == Outcome::no_match ? py::object(py::none()) : hypothesis_dict(result.best);
+  told["sigma"] = py::make_tuple(result.sigma.rotation_rad, result.sigma.translation_m, result.sigma.centre);
+  told["unobserved"] = list_of(result.unobserved, [](const UnobservedFreedom& it) {
+    return py::make_tuple(it.name, it.rotation, it.direction);
+  });
+  told["alternatives"] = list_of(result.alternatives, hypothesis_dict);
+  told["matches"] = list_of(result.matches, [](const PlaneMatch& it) {
+    return py::make_tuple(it.source, it.target, it.distance_m, it.angle_rad, it.overlap_m2);
+  });
+  told["openings"] = list_of(result.openings, [](const MatchedOpenings& it) {
+    return py::make_tuple(it.source, it.target, it.shift_across_m, it.shift_up_m);
+  });
+  told["thickness"] = list_of(result.thickness, [](const MeasuredThickness& it) {
+    return py::make_tuple(it.value_m, it.sigma_m, it.openings);
+  });
+  told["stages"] =
+      list_of(result.stages, [](const StageTime& it) { return py::make_tuple(it.name, it.seconds); });
+  return told;
+}
+
+/// The files that limen register writes; result.json comes last.
+void save(const RegistrationReport& report, const std::filesystem::path& path) {
+  const OutputFolder folder(path);
+  if (report.result.outcome == Outcome::no_match) {
+    std::filesystem::remove(folder.path() / "transform.txt");
+  } else {
+    write_file(folder.path() / "transform.txt", transform_text(report.result.best.target_from_source));
+  }
+  write_file(folder.path() / "result.json", result_json(report));
+}
+
+RegistrationReport register_sides(const PythonSide& source, const PythonSide& target,
+                                  const RegisterOptions& options, Monitor& monitor) {
+  RegistrationReport report;
+  report.source = summary_of(source);
+  report.target = summary_of(target);
+  report.seed = options.seed;
+  report.result = register_inputs(input_of(source), input_of(target), options, monitor);
+  return report;
+}
+
+}  // namespace
+
+void bind_registration(py::module_& module) {
+  py::class_<RegistrationReport>(module, "RegistrationReport")
+      .def("values", [](const RegistrationReport& report) { return result_dict(report.result); })
+      .def("json", &result_json)
+      .def("save", &save, py::arg("folder"));
+  module.def(
+      "register", [](const py::object& source, const py::object& target, const RegisterOptions& options,
+                     const std::string& method, const std::string& gravity, const py::object& progress) {
+        options.check();
+        const PythonSide from = side_from(source);
+        const PythonSide to = side_from(target);
+        RegistrationReport report =
+            run(progress, [&](Monitor& monitor) { return register_sides(from, to, options, monitor); });
+        report.options = {{"method", method}, {"gravity", gravity}};
+        if (options.wall_thickness_m > 0)
+          report.options.emplace_back("wall_thickness_m", options.wall_thickness_m);
+        return report;
+      });
+}
+
+}  // namespace limen::python

@@ -1,0 +1,227 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+#include <memory>
+
+#include "module.h"
+#include "numpy_views.h"
+#include "work.h"
+
+#include "limen/io/read_bim.h"
+#include "limen/io/read_scan.h"
+#include "limen/io/scan_builder.h"
+#include "limen/io/transform_cloud.h"
+#include "limen/io/write_ply.h"
+
+namespace limen::python {
+
+std::vector<Vector3d> points_from(const DoubleArray& array, const Vector3d& origin, const char* name) {
+  if (array.ndim() != 2 || array.shape(1) != 3)
+    throw Error(std::string(name) + " has another shape than (n, 3)", "",
+                "give one row of x, y, z per point");
+  const auto in = array.unchecked<2>();
+  std::vector<Vector3d> points(static_cast<std::size_t>(in.shape(0)));
+  for (py::ssize_t i = 0; i < in.shape(0); ++i) {
+    Vector3d& x = points[static_cast<std::size_t>(i)];
+    x = Vector3d(in(i, 0), in(i, 1), in(i, 2)) - origin;
+    if (!x.allFinite())
+      throw Error("a coordinate is not finite", std::string(name) + "[" + std::to_string(i) + "]",
+                  "leave such points out: points[numpy.isfinite(points).all(axis=1)]");
+  }
+  return points;
+}
+
+namespace {
+
+/// The origin near the middle of world coordinates.
+Vector3d origin_of(const DoubleArray& points) {
+  Vector3d low = Vector3d::Zero();
+  Vector3d high = Vector3d::Zero();
+  if (points.ndim() == 2 && points.shape(0) > 0 && points.shape(1) == 3) {
+    const auto in = points.unchecked<2>();
+    low = high = Vector3d(in(0, 0), in(0, 1), in(0, 2));
+    for (py::ssize_t i = 1; i < in.shape(0); ++i) {
+      const Vector3d x(in(i, 0), in(i, 1), in(i, 2));
+      low = low.cwiseMin(x);
+      high = high.cwiseMax(x);
+    }
+  }
+  const Vector3d middle = 0.5 * (low + high);
+  return middle.allFinite() ? round_origin_near(middle) : Vector3d::Zero();
+}
+
+std::vector<Vector3d> centres_from(const py::object& centres, const Vector3d& origin, std::size_t points) {
+  if (centres.is_none()) return {};
+  auto array = centres.cast<DoubleArray>();
+  if (array.ndim() == 1 && array.size() == 3) array = array.reshape({1, 3});
+  std::vector<Vector3d> list = points_from(array, origin, "centres");
+  if (list.size() != 1 && list.size() != points)
+    throw Error(
+        "there are " + std::to_string(list.size()) + " centres for " + std::to_string(points) + " points", "",
+        "give one place, or one row per point");
+  return list;
+}
+
+/// What Scan(...) is given beside the points.
+struct ScanParts {
+  py::object centres, times, intensities, colours, lines, indices, local_origin;
+};
+
+Scan make_scan(const DoubleArray& points, const ScanParts& parts, std::string name, bool level) {
+  Scan scan;
+  scan.name = std::move(name);
+  scan.level = level;
+  if (parts.local_origin.is_none()) {
+    scan.local_origin = origin_of(points);
+    scan.points = points_from(points, scan.local_origin, "points");
+    scan.centres = centres_from(parts.centres, scan.local_origin, scan.size());
+  } else {
+    scan.local_origin = parts.local_origin.cast<Vector3d>();
+    scan.points = points_from(points, Vector3d::Zero(), "points");
+    scan.centres = centres_from(parts.centres, Vector3d::Zero(), scan.size());
+  }
+  if (scan.points.empty()) throw Error("there are no points", scan.name, "give at least one");
+  scan.times_s = values_from<double>(parts.times, scan.size(), "times");
+  scan.intensities = values_from<float>(parts.intensities, scan.size(), "intensities");
+  scan.colours = values_from<std::uint8_t>(parts.colours, 3 * scan.size(), "colours");
+  scan.topology.line = values_from<std::int32_t>(parts.lines, scan.size(), "lines");
+  scan.topology.index = values_from<std::int32_t>(parts.indices, scan.size(), "indices");
+  if (scan.topology.line.size() != scan.topology.index.size())
+    throw Error("lines and indices belong together", scan.name, "give both, or neither");
+  scan.check();
+  return scan;
+}
+
+template <typename Value>
+py::object values_or_none(const std::vector<Value>& values, std::vector<py::ssize_t> shape,
+                          const py::object& owner) {
+  if (values.empty()) return py::none();
+  return view(values, std::move(shape), owner);
+}
+
+py::ssize_t rows(const Scan& scan) {
+  return static_cast<py::ssize_t>(scan.size());
+}
+
+void bind_scan(py::module_& module) {
+  using Held = std::shared_ptr<Scan>;
+  py::class_<Scan, Held> scan(module, "Scan");
+  scan.def(py::init([](const DoubleArray& points, py::object centres, py::object times,
+                       py::object intensities, py::object colours, py::object lines, py::object indices,
+                       std::string name, bool level, py::object local_origin) {
+             const ScanParts parts{std::move(centres),     std::move(times), std::move(intensities),
+                                   std::move(colours),     std::move(lines), std::move(indices),
+                                   std::move(local_origin)};
+             return std::make_shared<Scan>(make_scan(points, parts, std::move(name), level));
+           }),
+           py::arg("points"), py::kw_only(), py::arg("centres") = py::none(), py::arg("times") = py::none(),
+           py::arg("intensities") = py::none(), py::arg("colours") = py::none(),
+           py::arg("lines") = py::none(), py::arg("indices") = py::none(), py::arg("name") = "",
+           py::arg("level") = ReadOptions{}.level, py::arg("local_origin") = py::none());
+  const auto shown = [&scan](const char* name, auto getter) {
+    scan.def_property_readonly(
+        name, [getter](const py::object& self) { return getter(self.cast<const Scan&>(), self); });
+  };
+  shown("points", [](const Scan& it, const py::object& self) { return view(it.points, self); });
+  shown("centres", [](const Scan& it, const py::object& self) -> py::object {
+    if (!it.centre_known()) return py::none();
+    return view(it.centres, self);
+  });
+  shown("times",
+        [](const Scan& it, const py::object& self) { return values_or_none(it.times_s, {rows(it)}, self); });
+  shown("intensities", [](const Scan& it, const py::object& self) {
+    return values_or_none(it.intensities, {rows(it)}, self);
+  });
+  shown("colours", [](const Scan& it, const py::object& self) {
+    return values_or_none(it.colours, {rows(it), 3}, self);
+  });
+  shown("lines", [](const Scan& it, const py::object& self) {
+    return values_or_none(it.topology.line, {rows(it)}, self);
+  });
+  shown("indices", [](const Scan& it, const py::object& self) {
+    return values_or_none(it.topology.index, {rows(it)}, self);
+  });
+  scan.def_property_readonly("world_points",
+                             [](const Scan& it) { return points_array(it.points, it.local_origin); });
+  scan.def_property_readonly("local_origin", [](const Scan& it) { return it.local_origin; });
+  scan.def_property_readonly("mobile", &Scan::mobile);
+  scan.def_readwrite("name", &Scan::name);
+  scan.def_readwrite("level", &Scan::level);
+  scan.def("__len__", &Scan::size);
+  scan.def(
+      "save", [](const Scan& it, const std::filesystem::path& path) { write_ply(path, it); },
+      py::arg("path"));
+}
+
+void bind_model(py::module_& module) {
+  py::class_<BimModel, std::shared_ptr<BimModel>> model(module, "Model");
+  model.def_readonly("name", &BimModel::name);
+  model.def_readonly("schema", &BimModel::schema);
+  model.def_readonly("warnings", &BimModel::warnings);
+  model.def_readonly("georeferenced", &BimModel::georeferenced);
+  model.def_property_readonly("local_origin", [](const BimModel& it) { return it.local_origin; });
+  model.def_property_readonly("faces", [](const BimModel& it) { return it.faces.size(); });
+  model.def_property_readonly("openings", [](const BimModel& it) { return it.openings.size(); });
+  model.def_property_readonly("spaces", [](const BimModel& it) {
+    py::list names;
+    for (const BimSpace& space : it.spaces) names.append(space.name);
+    return names;
+  });
+  model.def("_elements", [](const BimModel& it) {
+    py::list elements;
+    for (const BimElement& element : it.elements)
+      elements.append(
+          py::make_tuple(to_string(element.kind), element.type, element.guid, element.name, element.storey));
+    return elements;
+  });
+}
+
+py::dict transform_file(const std::filesystem::path& input, const Matrix4d& pose,
+                        const std::filesystem::path& output, const py::object& progress) {
+  const Rigid3 target_from_source = rigid_from(pose);
+  const TransformedCloud cloud = run(progress, [&](Monitor& monitor) {
+    return transform_cloud(input, target_from_source, output, {}, monitor);
+  });
+  py::dict told;
+  told["points"] = cloud.points;
+  told["format"] = cloud.format;
+  told["notes"] = cloud.notes;
+  return told;
+}
+
+}  // namespace
+
+void bind_scans(py::module_& module) {
+  bind_scan(module);
+  bind_model(module);
+  module.attr("LEVEL") = ReadOptions{}.level;
+  module.def(
+      "read_scan",
+      [](const std::filesystem::path& path, const std::optional<Vector3d>& origin, bool level,
+         const py::object& progress) {
+        const ReadOptions options{origin, level};
+        return std::make_shared<Scan>(
+            run(progress, [&](Monitor& monitor) { return limen::read_scan(path, options, monitor); }));
+      },
+      py::arg("path"), py::arg("origin"), py::arg("level"), py::arg("progress"));
+  module.def(
+      "read_model",
+      [](const std::filesystem::path& path, const py::object& progress) {
+        return std::make_shared<BimModel>(
+            run(progress, [&](Monitor& monitor) { return read_bim(path, monitor); }));
+      },
+      py::arg("path"), py::arg("progress"));
+  module.def("is_model_file", &is_bim_file, py::arg("path"));
+  module.def("transform_file", &transform_file);
+  module.def("transform_scan", [](const Scan& scan, const Matrix4d& pose) {
+    return std::make_shared<Scan>(transformed(scan, rigid_from(pose)));
+  });
+  module.def("transform_points", [](const DoubleArray& points, const Matrix4d& pose) {
+    const Rigid3 target_from_source = rigid_from(pose);
+    std::vector<Vector3d> moved = points_from(points, Vector3d::Zero(), "points");
+    for (Vector3d& x : moved) x = target_from_source * x;
+    return points_array(moved);
+  });
+}
+
+}  // namespace limen::python
