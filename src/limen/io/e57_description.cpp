@@ -24,8 +24,9 @@ std::string text_element(std::string_view name, std::string text) {
     const auto byte = static_cast<unsigned char>(c);
     if (byte < 32 && c != '\n' && c != '\t') c = ' ';
   }
-  for (std::size_t at = 0; (at = text.find("]]>", at)) != std::string::npos;)
-    text.replace(at, 3, "]]]]><![CDATA[>");
+  constexpr std::string_view kSplit = "]]]]><![CDATA[>";
+  for (std::size_t at = 0; (at = text.find("]]>", at)) != std::string::npos; at += kSplit.size())
+    text.replace(at, 3, kSplit);
   return fmt::format("<{} type=\"String\"><![CDATA[{}]]></{}>\n", name, text, name);
 }
 

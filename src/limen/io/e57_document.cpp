@@ -35,6 +35,15 @@ std::string_view trimmed(std::string_view text) {
   return text;
 }
 
+/// All text in an element, which may be in several pieces.
+std::string text_of(const pugi::xml_node& node) {
+  std::string text;
+  for (const pugi::xml_node& child : node.children()) {
+    if (child.type() == pugi::node_pcdata || child.type() == pugi::node_cdata) text += child.value();
+  }
+  return std::string(trimmed(text));
+}
+
 /// A finite number; `fallback` where the text is empty.
 double number_in(std::string_view text, double fallback, const Place& place) {
   text = trimmed(text);
@@ -167,14 +176,14 @@ void read_colour_limits(const pugi::xml_node& limits, E57Scan& scan, const Place
 
 E57Scan scan_of(const pugi::xml_node& node, const Place& place) {
   E57Scan scan;
-  scan.name = trimmed(node.child("name").child_value());
+  scan.name = text_of(node.child("name"));
   const Pose pose = pose_of(node.child("pose"), place.inside("pose"));
   scan.pose = pose.pose;
   scan.quaternion_length = pose.quaternion_length;
   read_colour_limits(node.child("colorLimits"), scan, place.inside("colorLimits"));
   scan.acquisition_start_s =
       number_of(node.child("acquisitionStart"), "dateTimeValue", 0.0, place.inside("acquisitionStart"));
-  scan.centre_word = trimmed(node.child("limen:opticalCentre").child_value());
+  scan.centre_word = text_of(node.child("limen:opticalCentre"));
   const pugi::xml_node points = node.child("points");
   if (!points) throw Error("the scan has no points element", place.text, kExportAgain);
   if (std::string_view(points.attribute("type").value()) != "CompressedVector") {
@@ -223,6 +232,7 @@ unsigned e57_bits(std::int64_t minimum, std::int64_t maximum) {
 }
 
 std::string e57_escaped_name(std::string_view name) {
+  if (name == "_x_") return "_x5f_x_";  // "_x_" stands for no name at all
   std::string escaped;
   for (std::size_t i = 0; i < name.size(); ++i) {
     if (is_name_byte(name[i], i == 0) && escaped_at(name, i) < 0) {
@@ -280,8 +290,8 @@ E57Document parse_e57_document(std::string_view xml, const std::string& name) {
   const pugi::xml_node root = tree.child("e57Root");
   if (!root) throw Error("the description (XML) holds no e57Root", name, kExportAgain);
   E57Document document;
-  document.coordinates = trimmed(root.child("coordinateMetadata").child_value());
-  document.library = trimmed(root.child("e57LibraryVersion").child_value());
+  document.coordinates = text_of(root.child("coordinateMetadata"));
+  document.library = text_of(root.child("e57LibraryVersion"));
   for (const pugi::xml_node& child : root.child("images2D").children()) {
     if (child.type() != pugi::node_element) continue;
     const Place place{fmt::format("{}, image {}", name, document.images.size() + 1)};
