@@ -12,6 +12,8 @@
 #include "limen/io/ifc_stream.h"
 #include "limen/io/ifc_structure.h"
 #include "limen/io/read_bim.h"
+#include "limen/io/read_e57.h"
+#include "limen/io/read_las.h"
 #include "limen/io/read_mesh_ply.h"
 #include "limen/io/read_obj.h"
 #include "limen/io/read_pcd.h"
@@ -47,6 +49,16 @@ class MemoryFile {
   int descriptor_;
 };
 
+/// Does what may throw Error for the input.
+template <typename Action>
+void may_fail(const Action& action) {
+  try {
+    action();
+  } catch (const Error& error) {
+    if (error.fault() != Fault::input) throw;
+  }
+}
+
 void check(const ScanFile& file) {
   for (const Scan& scan : file.scans) scan.check();
 }
@@ -62,6 +74,30 @@ void ptx(std::string_view bytes) {
 }
 void xyz(std::string_view bytes) {
   check(read_xyz(bytes, kName));
+}
+
+/// All clouds of a file, piece by piece. What says that it holds very many points need not be read to its
+/// end.
+void read_clouds(const PointFile& file) {
+  constexpr std::size_t kRows = 300;
+  constexpr int kMostPieces = 200;
+  for (std::size_t i = 0; i < file.clouds().size() && i < 20; ++i) {
+    const auto stream = file.read(i);
+    for (int piece = 0; piece < kMostPieces; ++piece) {
+      const auto rows = stream->next(kRows);
+      if (!rows) break;
+      std::vector<double> numbers(rows->rows);
+      for (const Field& field : rows->fields) load_numbers(*rows, field, {0, rows->rows}, numbers.data());
+      if (rows->rows > 0) may_fail([&] { with_scan({}, *rows, file.clouds()[i].table, {}); });
+    }
+  }
+}
+
+void e57(std::string_view bytes) {
+  read_clouds(*open_e57(bytes, kName));
+}
+void las(std::string_view bytes) {
+  read_clouds(*open_las(bytes, kName));
 }
 
 /// Up to the finished model, faces merged: the long way of a mesh.
@@ -97,11 +133,7 @@ void pose(std::string_view bytes) {
   PoseFile result;
   result.source_path = "a.ply";
   result.target_path = "b.ply";
-  try {
-    read_true_pose(file.path(), result);
-  } catch (const Error& error) {
-    if (error.fault() != Fault::input) throw;
-  }
+  may_fail([&] { read_true_pose(file.path(), result); });
   read_pose_file(file.path());
 }
 
@@ -109,26 +141,15 @@ void pose(std::string_view bytes) {
 
 const std::vector<FuzzedReader>& fuzzed_readers() {
   static const std::vector<FuzzedReader> kReaders{
-      {"ply", ply},
-      {"pcd", pcd},
-      {"ptx", ptx},
-      {"xyz", xyz},
-      {"mesh", mesh},
-      {"step", step},
-      {"ifc_shapes", ifc_shapes},
-      {"zip", zip},
-      {"segments", segments},
-      {"pose", pose},
+      {"ply", ply}, {"pcd", pcd},           {"ptx", ptx},   {"xyz", xyz},   {"e57", e57},
+      {"las", las}, {"laz", las},           {"mesh", mesh}, {"step", step}, {"ifc_shapes", ifc_shapes},
+      {"zip", zip}, {"segments", segments}, {"pose", pose},
   };
   return kReaders;
 }
 
 void read_strange(const FuzzedReader& reader, std::string_view bytes) {
-  try {
-    reader.read(bytes);
-  } catch (const Error& error) {
-    if (error.fault() != Fault::input) throw;
-  }
+  may_fail([&] { reader.read(bytes); });
 }
 
 }  // namespace limen
