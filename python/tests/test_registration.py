@@ -1,0 +1,197 @@
+# SPDX-FileCopyrightText: The limen authors
+# SPDX-License-Identifier: Apache-2.0
+import json
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+import unittest
+from pathlib import Path
+
+import limen
+import numpy as np
+
+
+class Registered(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.case = limen.simulate("room", points_indoor=60_000, stations=2)
+        cls.result = limen.register(*cls.case.scans)
+
+    def test_the_true_pose_is_found(self):
+        self.assertTrue(self.result.registered, self.result.reason)
+        error = self.result.target_from_source @ np.linalg.inv(self.case.target_from_source(0, 1))
+        self.assertLess(np.linalg.norm(error[:3, 3]), 0.005)
+        self.assertLess(np.abs(error[:3, :3] - np.eye(3)).max(), 0.001)
+        self.assertGreater(self.result.best.matched_planes, 5)
+        self.assertTrue((self.result.sigma.translation_m < 0.01).all())
+        self.assertEqual(self.result.stages[-1][0], "refinement")
+
+    def test_points_are_moved(self):
+        source, target = self.case.scans
+        moved = self.result.apply(source.world_points)
+        np.testing.assert_allclose(moved, limen.transform(source.world_points, self.result.target_from_source))
+
+    def test_files_are_those_of_the_program(self):
+        with tempfile.TemporaryDirectory() as folder:
+            self.result.save(Path(folder) / "result")
+            told = json.loads((Path(folder) / "result" / "result.json").read_text())
+            self.assertEqual(told, self.result.to_dict())
+            self.assertEqual(told["outcome"], "registered")
+            np.testing.assert_array_equal(told["target_from_source"], self.result.target_from_source)
+            text = np.loadtxt(Path(folder) / "result" / "transform.txt")
+            np.testing.assert_array_equal(text, self.result.target_from_source)
+
+    def test_the_same_input_gives_the_same_pose(self):
+        limen.set_threads(1)
+        try:
+            again = limen.register(*self.case.scans)
+        finally:
+            limen.set_threads(0)
+        np.testing.assert_array_equal(again.target_from_source, self.result.target_from_source)
+
+    def test_files_and_groups_are_taken(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "source.ply"
+            self.case.scans[0].save(path)
+            result = limen.register(path, [(self.case.scans[1], np.eye(4))])
+        np.testing.assert_allclose(result.target_from_source, self.result.target_from_source, atol=1e-9)
+
+    def test_options_reach_the_work(self):
+        result = limen.register(*self.case.scans, method="polygons", seed=3)
+        self.assertEqual(result.to_dict()["options"]["method"], "polygons")
+        self.assertEqual(result.to_dict()["seed"], 3)
+        self.assertEqual(result.best.matched_openings, 0)
+        few = limen.register(*self.case.scans, options=limen.RegisterOptions(refined_poses=1, alternatives=0))
+        self.assertEqual(few.alternatives, [])
+        with self.assertRaises(limen.Error):
+            limen.register(*self.case.scans, options=limen.RegisterOptions(refined_poses=0))
+        with self.assertRaises(limen.Error):
+            limen.register(*self.case.scans, method="guess")
+
+    def test_nothing_in_common(self):
+        grain = np.random.default_rng(1).uniform(-1, 1, (2000, 3))
+        result = limen.register(limen.Scan(points=grain, centres=(0, 0, 0)), self.case.scans[1])
+        self.assertEqual(result.outcome, "no_match")
+        self.assertIsNone(result.target_from_source)
+        with self.assertRaises(ValueError):
+            result.apply(grain)
+        self.assertIn("no_match", result._repr_html_())
+
+    def test_in_a_notebook(self):
+        page = self.result._repr_html_()
+        for part in ("<b>registered</b>", "<svg", "translation", "matched"):
+            self.assertIn(part, page)
+        self.assertLess(len(page), 1_000_000)
+        self.assertIn("registered", repr(self.result))
+
+
+class Found(unittest.TestCase):
+    def test_planes_openings_and_segments(self):
+        case = limen.simulate("room", points_indoor=100_000, stations=1, curtain_share=0.0)
+        scan = case.scans[0]
+        features = limen.extract_features(scan)
+        self.assertGreater(len(features.planes), 6)
+        self.assertGreater(len(features.openings), 0)
+        self.assertEqual(features.segments.shape[1:], (2, 3))
+        self.assertEqual(features.labels.shape, (len(scan),))
+        plane = features.planes[0]
+        on_it = scan.world_points[features.labels == 0]
+        self.assertEqual(len(on_it), plane.inliers)
+        self.assertLess(np.abs(on_it @ plane.normal - plane.offset).mean(), 0.01)
+        self.assertLess(np.abs(plane.outline @ plane.normal - plane.offset).max(), 1e-9)
+        self.assertAlmostEqual(features.openings[0].width_m, np.linalg.norm(np.diff(features.openings[0].corners[:2], axis=0)))
+        self.assertIn("<svg", features._repr_html_())
+        bare = limen.extract_features(scan, openings=False, segments=False)
+        self.assertEqual((len(bare.openings), len(bare.segments)), (0, 0))
+
+    def test_options_are_those_of_cpp(self):
+        options = limen.ExtractOptions()
+        options.grow.min_inliers = 5000
+        case = limen.simulate("room", points_indoor=60_000, stations=1)
+        few = limen.extract_features(case.scans[0], options, openings=False, segments=False)
+        self.assertTrue(all(plane.inliers >= 4000 for plane in few.planes))
+        self.assertLess(len(few.planes), 8)
+        with self.assertRaises(TypeError):
+            limen.ExtractOptions(min_inliers=3)
+        self.assertIn("min_inliers=5000", repr(options))
+
+
+class AgainstAModel(unittest.TestCase):
+    def test_deviation(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "wall.obj"
+            path.write_text("o wall\nv 0 2 0\nv 4 2 0\nv 4 2 3\nv 0 2 3\nf 1 2 3 4\n")
+            grid = np.stack(np.meshgrid(np.linspace(0.1, 3.9, 200), [2.01], np.linspace(0.1, 2.9, 150)), -1).reshape(-1, 3)
+            scan = limen.Scan(points=grid, centres=(2, -3, 1.5))
+            result = limen.deviation(scan, path)
+            self.assertEqual(result.elements[0].presence, "found")
+            self.assertAlmostEqual(abs(result.elements[0].median_m), 0.01, places=6)
+            self.assertEqual(result.distance_m.shape, (len(grid),))
+            self.assertIn("1 elements found", repr(result))
+            self.assertIn("wall", result._repr_html_())
+            result.save(Path(folder) / "out")
+            self.assertEqual(sorted(p.name for p in (Path(folder) / "out").iterdir()),
+                             ["deviation.csv", "deviation.json", "deviation.ply"])
+
+
+class LongWork(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.case = limen.simulate("room", points_indoor=300_000, stations=2)
+
+    def test_progress_is_told(self):
+        heard = []
+        limen.register(*self.case.scans, progress=lambda stage, done, total: heard.append((stage, done, total)))
+        self.assertTrue({"hypotheses", "scoring", "refinement"} <= {stage for stage, _, _ in heard})
+        self.assertTrue(all(0 <= done <= total or total == 0 for _, done, total in heard))
+
+    def test_what_progress_throws_stops_the_work(self):
+        def stop(stage, done, total):
+            raise LookupError(stage)
+
+        with self.assertRaises(LookupError):
+            limen.register(*self.case.scans, progress=stop)
+        limen.extract_features(self.case.scans[0], openings=False, segments=False)
+
+    def test_other_threads_run_meanwhile(self):
+        ticks = []
+        done = threading.Event()
+
+        def tick():
+            while not done.is_set():
+                ticks.append(time.monotonic())
+                time.sleep(0.01)
+
+        thread = threading.Thread(target=tick)
+        thread.start()
+        begun = time.monotonic()
+        limen.register(*self.case.scans)
+        taken = time.monotonic() - begun
+        done.set()
+        thread.join()
+        self.assertGreater(len(ticks), 0.2 * taken / 0.01)
+
+    def test_an_interrupt_is_keyboard_interrupt(self):
+        script = (
+            "import limen, sys\n"
+            "def tell(*what):\n    print('working', flush=True)\n"
+            "try:\n    limen.simulate('museum', points_indoor=5_000_000, progress=tell)\n"
+            "except KeyboardInterrupt:\n    print('stopped'); sys.exit(7)\n"
+        )
+        process = subprocess.Popen([sys.executable, "-c", script], stdout=subprocess.PIPE, text=True, env=os.environ)
+        self.assertEqual(process.stdout.readline(), "working\n")
+        time.sleep(0.3)
+        pressed = time.monotonic()
+        process.send_signal(signal.SIGINT)
+        rest = process.communicate(timeout=60)[0]
+        self.assertLess(time.monotonic() - pressed, 2.0)
+        self.assertTrue(rest.endswith("stopped\n"), rest)
+        self.assertEqual(process.returncode, 7)
+
+
+if __name__ == "__main__":
+    unittest.main()
