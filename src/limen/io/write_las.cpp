@@ -29,6 +29,7 @@ constexpr double kCoarsestStep = 1e-4;
 constexpr double kAngleStep = 0.006;
 constexpr double kSecondsOfWeek = 604800.0;
 constexpr double kRoundOffset = 100.0;
+constexpr std::int32_t kBlank = INT32_MIN;  ///< stored for what is no number, until the row is left out
 
 template <typename Value>
 void put(std::string& bytes, std::size_t at, Value value) {
@@ -61,6 +62,7 @@ struct Summary {
   double earliest = std::numeric_limits<double>::infinity();
   double latest = -std::numeric_limits<double>::infinity();
   bool outside = false;  ///< a coordinate that the steps cannot reach
+  bool blank = false;    ///< a coordinate that is no number
 
   void add(const Summary& other) {
     points += other.points;
@@ -72,6 +74,7 @@ struct Summary {
     earliest = std::min(earliest, other.earliest);
     latest = std::max(latest, other.latest);
     outside = outside || other.outside;
+    blank = blank || other.blank;
   }
 };
 
@@ -218,7 +221,7 @@ class LasWriter : public CloudWriter {
 
   void write_block(const RecordTable& rows, RowRange range) {
     records_.assign((range.end - range.begin) * slots_.point_bytes, '\0');
-    const Summary summary = parallel_reduce(
+    Summary summary = parallel_reduce(
         range.end - range.begin, kPiece, Summary{},
         [&](std::size_t begin, std::size_t end) {
           Summary piece;
@@ -232,15 +235,33 @@ class LasWriter : public CloudWriter {
           sum.add(piece);
           return sum;
         });
+    if (summary.blank) leave_out_blanks(summary);
     if (summary.outside) {
-      throw Error(
-          fmt::format("a point is not finite or lies more than {:.0f} km from {:.0f} {:.0f} {:.0f}, which "
-                      "steps of {} m cannot reach",
-                      step_ * 2147483.648, offset_.x(), offset_.y(), offset_.z(), step_),
-          name_, "write PLY, or leave out stray points");
+      throw Error(fmt::format("a point lies more than {:.0f} km from {:.0f} {:.0f} {:.0f}, which "
+                              "steps of {} m cannot reach",
+                              step_ * 2147483.648, offset_.x(), offset_.y(), offset_.z(), step_),
+                  name_, "write PLY, or leave out stray points");
     }
     summary_.add(summary);
     file_.write({records_.data(), records_.size()});
+  }
+
+  /// Takes out the records with a coordinate that was no number.
+  void leave_out_blanks(Summary& summary) {
+    const std::size_t bytes = slots_.point_bytes;
+    std::size_t kept = 0;
+    for (std::size_t at = 0; at < records_.size(); at += bytes) {
+      std::array<std::int32_t, 3> place{};
+      std::memcpy(place.data(), &records_[at], sizeof place);
+      if (std::find(place.begin(), place.end(), kBlank) != place.end()) {
+        --summary.points;
+        --summary.returns[static_cast<unsigned char>(records_[at + 14]) & 15U];
+        continue;
+      }
+      if (kept != at) std::memcpy(&records_[kept], &records_[at], bytes);
+      kept += bytes;
+    }
+    records_.resize(kept);
   }
 
   void encode(const RecordTable& rows, RowRange range, char* records, Summary& summary) const {
@@ -305,9 +326,14 @@ class LasWriter : public CloudWriter {
     bool inside = true;
     strip.store(slot.at, [&](double value) {
       const double steps = std::nearbyint((value - offset) * steps_per_m);
-      const bool here = steps >= -2147483648.0 && steps <= 2147483647.0;
-      inside = inside && here;
-      const auto stored = static_cast<std::int32_t>(here ? steps : 0.0);
+      const bool here = std::abs(steps) <= 2147483647.0;
+      if (!here) {
+        const bool number = std::isfinite(value);
+        inside = inside && !number;
+        summary.blank = summary.blank || !number;
+        return kBlank;
+      }
+      const auto stored = static_cast<std::int32_t>(steps);
       low = std::min(low, stored);
       high = std::max(high, stored);
       return stored;
