@@ -251,7 +251,7 @@ PolygonMesh welded(const PolygonMesh& mesh, double snap_m) {
   constexpr std::uint32_t kNone = 0xffffffffU;
   std::vector<std::uint32_t> now(mesh.points.size(), kNone);
   for (std::size_t i = 0; i < mesh.points.size(); ++i) {
-    if (mesh.points[i].cwiseAbs().maxCoeff() < kFarthest_m) now[i] = table.index_of(mesh.points[i]);
+    if ((mesh.points[i].array().abs() < kFarthest_m).all()) now[i] = table.index_of(mesh.points[i]);
   }
   PolygonMesh result;
   result.points = table.take_points();

@@ -22,7 +22,7 @@ namespace limen {
 namespace {
 
 bool packs_colour(const PcdField& field) {
-  return (field.name == "rgb" || field.name == "rgba") && field.size == 4;
+  return (field.name == "rgb" || field.name == "rgba") && field.size == 4 && field.count == 1;
 }
 
 /// A field and, where it packs a colour, the three in it. The bytes of a packed colour are blue, green, red.
