@@ -8,7 +8,7 @@ Box3 box_of(const PolygonMesh& mesh) {
   constexpr double kFarthest_m = 1e9;
   Box3 box;
   for (const std::uint32_t corner : mesh.corners) {
-    if (mesh.points[corner].cwiseAbs().maxCoeff() < kFarthest_m) box.add(mesh.points[corner]);
+    if ((mesh.points[corner].array().abs() < kFarthest_m).all()) box.add(mesh.points[corner]);
   }
   return box;
 }
