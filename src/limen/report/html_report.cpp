@@ -38,30 +38,37 @@ std::string filled_in(std::string_view pattern, const Parts& parts) {
   return text.append(pattern.substr(at));
 }
 
-/// A heading with what follows, or nothing where nothing follows.
-std::string section(const char* heading, const std::string& content, const char* remark = "") {
+/// A heading with what follows, or nothing where nothing follows. `kept`: on the printed sheet too.
+std::string section(const char* heading, const std::string& content, const char* remark = "",
+                    bool kept = false) {
   if (content.empty()) return {};
   const std::string note = *remark == '\0' ? "" : fmt::format("<p class=\"note\">{}</p>\n", remark);
-  return fmt::format("<section class=\"card\"><h2>{}</h2>\n{}{}</section>\n", heading, content, note);
+  return fmt::format("<section class=\"card{}\"><h2>{}</h2>\n{}{}</section>\n", kept ? " keep" : "", heading,
+                     content, note);
 }
 
 std::string sentences(const VerdictWords& words) {
   std::string text;
   for (const std::string& sentence : words.sentences) text += "<p>" + escaped(sentence) + "</p>\n";
+  if (!words.reason.empty()) text += "<p class=\"reason\">" + escaped(words.reason) + ".</p>\n";
   return text;
+}
+
+std::string agreement(const RegistrationReport& report) {
+  std::string text = section("Planes that agree", planes_table(report),
+                             "Distance along the target plane's normal at the middle of the overlap.");
+  text += section("Openings that agree", openings_table(report));
+  return text + section("Walls between the scans", thickness_table(report));
 }
 
 std::string tables(const RegistrationReport& report) {
   std::string text =
       section("How well each freedom is held", sigma_table(report),
-              "Shifts are of the point known best, turns of the whole; both in the target's frame.");
-  text += section("Key numbers", key_table(report));
+              "Shifts are of the point known best, turns of the whole; both in the target's frame.", true);
+  text += section("Key numbers", key_table(report), "", true);
   text += section("Poses", alternatives_table(report),
                   "The best first; each is another place, not a finer version of the best.");
-  text += section("Planes that agree", planes_table(report),
-                  "Distance along the target plane's normal at the middle of the overlap.");
-  text += section("Openings that agree", openings_table(report));
-  text += section("Walls between the scans", thickness_table(report));
+  if (report.result.outcome != Outcome::no_match) text += agreement(report);
   text += section("Inputs", inputs_table(report));
   text += section("Time", stages_table(report));
   return text + section("How it was run", options_table(report));
@@ -91,7 +98,6 @@ ReportPages report_pages(const RegistrationReport& report, const ReportScene& sc
                        {"symbol", words.symbol},
                        {"headline", escaped(words.headline)},
                        {"sentences", sentences(words)},
-                       {"reason", escaped(report.result.reason)},
                        {"source", escaped(report.source.path)},
                        {"target", escaped(report.target.path)},
                        {"key", key_table(report)},

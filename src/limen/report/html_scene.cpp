@@ -3,6 +3,7 @@
 #include "limen/report/html_scene.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include "limen/base/error.h"
@@ -13,8 +14,9 @@
 namespace limen {
 namespace {
 
-constexpr double kFirstCellM = 0.005;
-constexpr double kCellGrowth = 1.25;
+constexpr double kFirstCellM = 0.01;
+constexpr double kLeastGrowth = 1.15;  // of the cells from try to try
+constexpr double kMostGrowth = 2.0;
 
 /// A set of cells, open addressing: asked a million times per scan.
 class CellSet {
@@ -126,9 +128,14 @@ void ReportSceneOptions::check() const {
 std::vector<std::uint32_t> spread_evenly(const std::vector<Vector3d>& points, std::size_t most) {
   std::vector<std::uint32_t> kept(points.size());
   std::iota(kept.begin(), kept.end(), 0U);
-  for (double cell = kFirstCellM; kept.size() > most; cell *= kCellGrowth) {
+  double cell = kFirstCellM;
+  while (kept.size() > most) {
     CellSet cells(kept.size());
     std::erase_if(kept, [&](std::uint32_t i) { return !cells.insert(cell_key(cell_of(points[i], cell))); });
+    // The number of points on surfaces falls with the square of the cells' width.
+    const double excess =
+        static_cast<double>(kept.size()) / static_cast<double>(std::max<std::size_t>(most, 1));
+    cell *= std::clamp(std::sqrt(excess), kLeastGrowth, kMostGrowth);
   }
   return kept;
 }

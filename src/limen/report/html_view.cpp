@@ -9,6 +9,7 @@ namespace limen {
 namespace {
 
 constexpr std::size_t kEnough = 20000;
+constexpr double kCountedMore = 30.0;
 constexpr double kEyeM = 1.4;  // above the floor: through windows and doors
 
 /// Box of the central 94 % of the places along each axis.
@@ -43,8 +44,9 @@ void add_direction(const Vector3d& normal, double area_m2, const Vector3d& up, c
   sum += area_m2 * Vector2d(std::cos(angle), std::sin(angle));
 }
 
-/// Turned so that the walls run along the axes; the target's own axes where it has no walls.
-Matrix3d along_walls(const SceneSide& side) {
+/// Turned so that the walls run along the axes, the side's own axes where it has no walls. `counted`: planes
+/// that count more than all others.
+Matrix3d along_walls(const SceneSide& side, const std::vector<int>& counted = {}) {
   const Vector3d up = side.pictured.up;
   const Vector3d near_x = std::abs(up.x()) < 0.9 ? Vector3d::UnitX() : Vector3d::UnitY();
   Matrix3d level;
@@ -54,6 +56,12 @@ Matrix3d along_walls(const SceneSide& side) {
   Vector2d sum = Vector2d::Zero();
   for (const PlanarPolygon& polygon : side.pictured.features.planes)
     add_direction(polygon.plane.normal, polygon.area_m2, up, level, sum);
+  for (const int index : counted) {
+    const auto& planes = side.pictured.features.planes;
+    if (index < 0 || static_cast<std::size_t>(index) >= planes.size()) continue;
+    const PlanarPolygon& polygon = planes[static_cast<std::size_t>(index)];
+    add_direction(polygon.plane.normal, kCountedMore * polygon.area_m2, up, level, sum);
+  }
   for (const Segment& segment : side.pictured.features.segments)
     add_direction(segment.direction(), segment.length(), up, level, sum);
   if (sum.norm() < 1e-6) return level;
@@ -107,7 +115,9 @@ std::vector<Vector3d> places_of(const SceneSide& side) {
 
 SceneView make_view(const ReportScene& scene, const RegistrationResult& result) {
   SceneView view;
-  view.view_from_target = along_walls(scene.target);
+  std::vector<int> matched;
+  for (const PlaneMatch& match : result.matches) matched.push_back(match.target);
+  view.view_from_target = along_walls(scene.target, matched);
   view.matched = result.outcome != Outcome::no_match;
   view.target_from_source =
       view.matched ? to_local(result.best.target_from_source, scene.source.origin, scene.target.origin)

@@ -19,6 +19,13 @@ std::string capitalised(std::string text) {
   return text;
 }
 
+/// "m2" of messages as "m²".
+std::string square_metres(std::string text) {
+  for (std::size_t at = text.find(" m2"); at != std::string::npos; at = text.find(" m2", at + 1))
+    text.replace(at, 3, " m²");
+  return text;
+}
+
 /// "the two scans", "the scan and the model", "the two lists of segments"
 std::string both_sides(const RegistrationReport& report) {
   if (report.source.kind == "segments") return "the two lists of segments";
@@ -46,29 +53,33 @@ std::string expectation(const RegistrationResult& result) {
 
 VerdictWords registered_words(const RegistrationReport& report) {
   const RegistrationResult& result = report.result;
-  VerdictWords words{
-      "Registered: " + both_sides(report) + " fit in one way only", {expectation(result)}, "✓"};
+  VerdictWords words{"Registered: " + both_sides(report) + " fit in one way only",
+                     {expectation(result)},
+                     square_metres(result.reason),
+                     "✓"};
   if (!result.best.room.empty()) words.sentences.push_back("The scanner stood in " + result.best.room + ".");
   return words;
 }
 
 VerdictWords ambiguous_words(const RegistrationReport& report) {
   const RegistrationResult& result = report.result;
-  VerdictWords words{"", {}, "?"};
+  VerdictWords words{"", {}, "", "?"};
   if (result.rivals == 0) {
     words.headline = "Not decided: the best fit is not sure enough";
-    words.sentences.push_back(capitalised(result.reason) + ".");
+    words.sentences.push_back(capitalised(square_metres(result.reason)) + ".");
   } else {
     words.headline = fmt::format("Not decided: {} fit about equally well", places(report, result.rivals + 1));
     words.sentences.push_back(
         "Look through them below; a further scan, or a place known by other means, decides.");
+    words.reason = square_metres(result.reason);
   }
   return words;
 }
 
 VerdictWords open_words(const RegistrationReport& report) {
   const RegistrationResult& result = report.result;
-  VerdictWords words{"Not fully held: the data leaves a direction open", {}, "↔"};
+  VerdictWords words{
+      "Not fully held: the data leaves a direction open", {}, square_metres(result.reason), "↔"};
   for (const UnobservedFreedom& freedom : result.unobserved)
     words.sentences.push_back(capitalised(freedom.name) + " is not held by the data.");
   if (result.unobserved.size() > 1)
@@ -113,8 +124,9 @@ VerdictWords verdict_words(const RegistrationReport& report) {
       break;
   }
   return {"No match: " + both_sides(report) + " show nothing in common that fits together",
-          {capitalised(report.result.reason) + ".",
-           "Below they stand side by side, each upright as far as known."},
+          {capitalised(square_metres(report.result.reason)) + ".",
+           "Below they stand side by side, each upright as far as is known."},
+          "",
           "✕"};
 }
 

@@ -152,18 +152,18 @@ std::string foot(const Paper& paper) {
       fmt::format("<path class=\"ls-b\" d=\"M12 {0:.1f}v-6M12 {0:.1f}H{1:.1f}v-6\"/>\n", y, end);
   text +=
       fmt::format("<text class=\"ls-soft\" x=\"{:.1f}\" y=\"{:.1f}\">{:g} m</text>\n", end + 7.0, y, metres);
-  const double key = paper.width() - 190.0;
-  text += fmt::format("<path class=\"ls-w ls-t\" d=\"M{0:.1f} {1:.1f}h28\"/>", key, y - 4.0);
-  text += fmt::format("<text class=\"ls-soft\" x=\"{:.1f}\" y=\"{:.1f}\">target</text>\n", key + 34.0, y);
-  text += fmt::format("<path class=\"ls-w ls-s\" d=\"M{0:.1f} {1:.1f}h28\"/>", key + 92.0, y - 4.0);
-  text += fmt::format("<text class=\"ls-soft\" x=\"{:.1f}\" y=\"{:.1f}\">source</text>\n", key + 126.0, y);
+  const auto entry = [&](double x, const char* colour, const char* name) {
+    text += fmt::format("<path class=\"ls-w {}\" d=\"M{:.1f} {:.1f}h28\"/>", colour, x, y - 4.0);
+    text += fmt::format("<text class=\"ls-soft\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n", x + 34.0, y, name);
+  };
+  entry(paper.width() - 246.0, "ls-t", "target");
+  entry(paper.width() - 122.0, "ls-s", "source");
   return text;
 }
 
 std::string title_of(SectionSide side, double thickness_m, bool matched) {
-  static constexpr const char* kTitles[] = {"Plan, seen from above", "Section, seen from the front",
-                                            "Section, seen from the side"};
-  const std::string place = matched ? "" : " — not registered: side by side";
+  static constexpr const char* kTitles[] = {"Plan", "Section from the front", "Section from the side"};
+  const std::string place = matched ? "" : ", side by side";
   return fmt::format("{}, {:.1f} m thick{}", kTitles[static_cast<int>(side)], thickness_m, place);
 }
 

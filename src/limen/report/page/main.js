@@ -209,7 +209,7 @@ const makeGpu = (gl, scene) => {
     const { cloud } = parts[name];
     if (!cloud || cloud.shape !== 'faces' || !frame.state.layers[name].cloud) return;
     programs.faces.use();
-    programs.faces.set({ ...frame.look, viewFromNumbers: times(frame.places[name], scene[name].fromNumbers), tint, alpha: frame.state.cut.on ? 0.35 : 0.13 });
+    programs.faces.set({ ...frame.look, viewFromNumbers: times(frame.places[name], scene[name].fromNumbers), tint, alpha: frame.state.cut.on ? 0.3 : 0.09 });
     gl.bindVertexArray(cloud.array);
     gl.drawArrays(gl.TRIANGLES, 0, cloud.count);
   };
@@ -224,10 +224,6 @@ const makeGpu = (gl, scene) => {
     gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, lines.count);
   };
   const shade = (frame) => {
-    gl.bindFramebuffer(gl.FRAMEBUFFER, null);
-    gl.viewport(0, 0, ...frame.size);
-    gl.clearColor(0, 0, 0, 0);
-    gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
     programs.shade.use();
     gl.activeTexture(gl.TEXTURE0);
     gl.bindTexture(gl.TEXTURE_2D, picture.colours);
@@ -244,7 +240,8 @@ const makeGpu = (gl, scene) => {
     const { planes, openings, segments, walls, picked } = parts[name];
     if (layers.planes) drawLines(planes, frame, place, { colour, width: 1.2, alpha: 0.75, dash });
     if (layers.segments) drawLines(segments, frame, place, { colour, width: 1.6, dash });
-    if (layers.openings) drawLines(openings, frame, place, { colour, width: 2.4, dash });
+    const glass = scene[name].shape === 'faces';
+    if (layers.openings) drawLines(openings, frame, place, { colour, width: glass ? 1.4 : 2.4, alpha: glass ? 0.55 : 1, dash });
     if (layers.walls && frame.state.cut.on) drawLines(walls, frame, place, { colour, width: 2.6, dash, whole: true });
     if (frame.picked?.side.side === name && frame.picked.plane >= 0) {
       picked.replace(outlineOf(scene[name].planes[frame.picked.plane]));
@@ -259,10 +256,15 @@ const makeGpu = (gl, scene) => {
     picture.begin(...frame.size);
     for (const name of ['target', 'source']) drawPoints(name, frame, tints[name]);
     gl.disable(gl.DEPTH_TEST);
-    shade(frame);
     gl.enable(gl.BLEND);
     gl.blendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
+    gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+    gl.viewport(0, 0, ...frame.size);
+    gl.clearColor(0, 0, 0, 0);
+    gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
+    // A model is glass: points in it are seen through its walls.
     for (const name of ['target', 'source']) drawFaces(name, frame, tints[name]);
+    shade(frame);
     for (const name of ['target', 'source']) drawSideLines(name, frame, tints[name]);
     if (frame.state.after) drawLines(open, frame, frame.places.target, { colour: frame.ink, width: 2, whole: true });
   };
@@ -318,7 +320,7 @@ const bindKeys = (canvas, actions) => {
   };
   document.addEventListener('keydown', (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey) return;
-    const field = event.target.closest?.('select, input:not([type="checkbox"]):not([type="radio"]), textarea');
+    const field = event.target.closest?.('select, textarea');
     const letter = letters[event.key.toLowerCase()];
     if (letter && !field) { letter(); event.preventDefault(); return; }
     if (event.target !== canvas) return;

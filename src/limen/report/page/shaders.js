@@ -49,9 +49,11 @@ void main() {
   bool behind = seeThrough && mark.x > 0u && normal.w > 0.5 && dot(viewFromSide * normal.xyz, towards) < -0.03;
   if (behind || cutAway(x)) { gl_Position = vec4(2.0, 2.0, 2.0, 1.0); gl_PointSize = 0.0; }
   float grey = dot(own.rgb, vec3(0.3, 0.59, 0.11));
-  colour = tint * (0.72 + 0.4 * grey);
+  // Planes are lit by where they face, so that corners show.
+  float light = mark.x > 0u ? 0.68 + 0.36 * abs(dot(viewFromSide * normal.xyz, vec3(0.36, -0.6, 0.71))) : 0.9;
+  colour = tint * (0.8 + 0.3 * grey) * light;
   if (colouring == 1) colour = own.rgb;
-  if (colouring == 2) colour = mark.y > 0u ? ramp(abs(float(mark.y) - 128.0) / 127.0) : plain;
+  if (colouring == 2) colour = mark.y > 0u ? ramp(abs(float(mark.y) - 128.0) / 127.0) : plain * light;
 }`;
 
 const kPointFragment = `#version 300 es
@@ -172,8 +174,8 @@ void main() {
     ivec2 other = clamp(at + ivec2(round(reach * vec2(cos(angle), sin(angle)))), ivec2(0), last);
     if (texelFetch(depths, other, 0).r >= 1.0) continue;
     float there = metresAt(other);
-    sum += max(0.0, parallel ? (here - there) / height * 0.6 : log2(here) - log2(there));
+    sum += clamp(parallel ? (here - there) / height * 0.6 : log2(here) - log2(there), 0.0, 0.03);
   }
   float shade = exp(-sum * 9.0);
-  pixel = vec4(mix(shadow, texelFetch(colours, at, 0).rgb, 0.25 + 0.75 * shade), 1.0);
+  pixel = vec4(mix(shadow, texelFetch(colours, at, 0).rgb, 0.4 + 0.6 * shade), 1.0);
 }`;

@@ -1,0 +1,55 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+
+// A browser of this machine and the pages of one run of limen.
+import { execFileSync } from 'node:child_process';
+import { existsSync, mkdtempSync, rmSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { pathToFileURL } from 'node:url';
+
+const kFlags = ['--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run', '--disable-background-networking',
+  '--disable-component-update', '--disable-sync'];
+const kWebgl = ['--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'];
+
+/** The first Chromium found, or null. LIMEN_CHROMIUM names another. */
+export const findChromium = () => [process.env.LIMEN_CHROMIUM, '/usr/bin/chromium', '/usr/bin/chromium-headless-shell',
+  '/usr/lib/chromium/headless_shell', '/usr/bin/google-chrome'].find((path) => path && existsSync(path)) ?? null;
+
+/** A browser with an empty profile; close() removes it. `webgl`: false leaves WebGL out. */
+export const openBrowser = async (playwright, { webgl = true } = {}) => {
+  const profile = mkdtempSync(join(tmpdir(), 'limen-browser-'));
+  const context = await playwright.chromium.launchPersistentContext(profile, {
+    executablePath: findChromium(), headless: true,
+    args: [...kFlags, ...(webgl ? kWebgl : ['--disable-3d-apis', '--disable-webgl2'])],
+    ignoreDefaultArgs: webgl ? [] : ['--enable-unsafe-swiftshader'],
+    viewport: { width: 1280, height: 900 }, reducedMotion: 'reduce',
+  });
+  return { context, close: async () => { await context.close(); rmSync(profile, { recursive: true, force: true }); } };
+};
+
+/** A page of a report with everything it says and asks for: `heard.problems` must stay empty. */
+export const openReport = async (context, file, { ready = true, viewport, scheme = 'light' } = {}) => {
+  const page = await context.newPage();
+  if (viewport) await page.setViewportSize(viewport);
+  await page.emulateMedia({ colorScheme: scheme, reducedMotion: 'reduce' });
+  const heard = { problems: [], requests: [] };
+  page.on('console', (message) => {
+    if (['error', 'warning'].includes(message.type()) && !/GPU stall|performance/i.test(message.text())) heard.problems.push(message.text());
+  });
+  page.on('pageerror', (error) => heard.problems.push(String(error.stack ?? error)));
+  page.on('request', (request) => heard.requests.push(request.url()));
+  await page.goto(pathToFileURL(file).href);
+  if (ready) await page.waitForSelector('html[data-ready]', { timeout: 60000 });
+  if (ready) await page.waitForFunction(() => +document.getElementById('canvas').dataset.frames > 0);
+  return { page, heard };
+};
+
+/** Runs limen; any of its answers is fine, only bad input and faults are not. */
+export const limen = (program, ...words) => {
+  try {
+    execFileSync(program, [...words, '--quiet'], { stdio: ['ignore', 'ignore', 'inherit'] });
+  } catch (error) {
+    if (![3, 4].includes(error.status)) throw error;
+  }
+};
