@@ -2,6 +2,17 @@
 # SPDX-License-Identifier: Apache-2.0
 # The compiled part of the Python package, beside its Python files in <build>/python/limen: a folder that
 # can stand on PYTHONPATH. python/limen_build.py makes a wheel of it.
+# The first python3 that has NumPy: another one may come first on the PATH.
+if(NOT Python3_EXECUTABLE)
+  find_program(LIMEN_PATH_PYTHON python3)
+  foreach(candidate IN ITEMS ${LIMEN_PATH_PYTHON} /usr/bin/python3)
+    execute_process(COMMAND ${candidate} -c "import numpy" RESULT_VARIABLE status OUTPUT_QUIET ERROR_QUIET)
+    if(status EQUAL 0)
+      set(Python3_EXECUTABLE ${candidate} CACHE FILEPATH "The Python that the package is built for")
+      break()
+    endif()
+  endforeach()
+endif()
 find_package(Python3 COMPONENTS Interpreter Development.Module REQUIRED)
 find_path(PYBIND11_INCLUDE_DIR pybind11/pybind11.h REQUIRED)
 set(LIMEN_PYTHON_DIR ${PROJECT_BINARY_DIR}/python/limen)

@@ -39,3 +39,12 @@ add_test(NAME installed_package
                  -DCOMPILER=${CMAKE_CXX_COMPILER} "-DFLAGS=${CMAKE_CXX_FLAGS}"
                  -P ${PROJECT_SOURCE_DIR}/cmake/test_install.cmake)
 set_tests_properties(installed_package PROPERTIES LABELS acceptance)
+
+if(LIMEN_BUILD_PYTHON)
+  include(cmake/python_tests.cmake)
+endif()
+
+# Needs node, playwright-core and a Chromium; says so and is skipped where one is missing.
+add_test(NAME report_in_browser
+         COMMAND ${PROJECT_SOURCE_DIR}/tests/browser/run $<TARGET_FILE:limen_program>)
+set_tests_properties(report_in_browser PROPERTIES LABELS acceptance SKIP_RETURN_CODE 77 TIMEOUT 600)

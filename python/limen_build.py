@@ -3,8 +3,8 @@
 """What pip calls to build limen (PEP 517, PEP 660): CMake compiles, this makes the wheel. Needs nothing but
 Python, so that `pip install .` works without a network.
 
-LIMEN_PYTHON_BUILD_DIR names a build folder to use instead of build/python; config settings
-(`pip install . -C cmake=-DLIMEN_BUILD_IFC=OFF`) go to CMake.
+Config settings (`pip install . -C cmake=-DLIMEN_BUILD_IFC=OFF`) go to CMake. LIMEN_PYTHON_BUILD_DIR names a
+build folder that is configured already, with LIMEN_BUILD_PYTHON, to use as it is.
 """
 
 from __future__ import annotations
@@ -63,12 +63,14 @@ def _settings(config_settings: dict | None) -> list[str]:
 
 def _build(config_settings: dict | None) -> Path:
     """Compiles; returns the folder of the gathered package."""
-    build = Path(os.environ.get("LIMEN_PYTHON_BUILD_DIR") or ROOT / "build" / "python")
-    configure = ["cmake", "-S", str(ROOT), "-B", str(build)]
-    if not (build / "CMakeCache.txt").exists():
-        configure += ["-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release", "-DLIMEN_BUILD_TESTS=OFF"]
-    configure += ["-DLIMEN_BUILD_PYTHON=ON", f"-DPython3_EXECUTABLE={sys.executable}"]
-    subprocess.run(configure + _settings(config_settings), check=True)
+    configured = os.environ.get("LIMEN_PYTHON_BUILD_DIR")
+    build = Path(configured or ROOT / "build" / "python")
+    if not configured:
+        configure = ["cmake", "-S", str(ROOT), "-B", str(build), "-DLIMEN_BUILD_PYTHON=ON", "-DLIMEN_BUILD_TESTS=OFF"]
+        configure += ["-DCMAKE_BUILD_TYPE=Release", f"-DPython3_EXECUTABLE={sys.executable}"]
+        if not (build / "CMakeCache.txt").exists():
+            configure += ["-G", "Ninja"]
+        subprocess.run(configure + _settings(config_settings), check=True)
     jobs = str(os.cpu_count() or 1)
     subprocess.run(
         ["cmake", "--build", str(build), "--target", "limen_python_package", "--parallel", jobs], check=True
