@@ -28,6 +28,7 @@ struct DeviationCommand {
   std::string model;
   std::string folder;
   std::string result;
+  ReadingChoice reading;
   std::string origin;
   std::vector<std::string> with;
   bool identity = false;
@@ -151,7 +152,7 @@ int run(const DeviationCommand& command, const Session& session) {
   DeviationReport report;
   report.model_from_scan = read_pose(command, session, report);
   session.monitor->begin_stage("reading");
-  const ReadOptions reading = read_options(command.origin, "--origin", "up");
+  const ReadOptions reading = with_choice(read_options(command.origin, "--origin", "up"), command.reading);
   const Side scan_side = read_side({command.scan, command.with, reading}, session);
   const Side model_side = read_side({command.model, {}, {}}, session);
   if (scan_side.input.model)
@@ -191,6 +192,8 @@ void add_pose_options(CLI::App& command, DeviationCommand& options) {
   command
       .add_option("--origin", options.origin, "From where SCAN was taken, in the coordinates of its points")
       ->type_name("x,y,z");
+  add_memory_option(command, options.reading.memory);
+  add_trajectory_options(command, options.reading);
 }
 
 }  // namespace

@@ -16,6 +16,7 @@
 
 #include "limen/base/random.h"
 #include "limen/cli/model_info.h"
+#include "limen/cli/scan_options.h"
 #include "limen/io/read_bim.h"
 #include "limen/io/read_scan.h"
 #include "limen/report/json_values.h"
@@ -158,7 +159,13 @@ std::string text_of(const Json& file) {
   return text;
 }
 
-int run(const std::string& path, const Session& session) {
+struct InfoCommand {
+  std::string path;
+  ReadingChoice reading;
+};
+
+int run(const InfoCommand& command, const Session& session) {
+  const std::string& path = command.path;
   session.monitor->begin_stage("reading");
   if (is_bim_file(path)) {
     const Json model = json_of_model(path, read_bim(path, *session.monitor));
@@ -166,7 +173,8 @@ int run(const std::string& path, const Session& session) {
     session.answer(to_text(model));
     return kExitOk;
   }
-  const Json json = json_of_file(path, read_scan_file(path, {}, *session.monitor));
+  const Json json =
+      json_of_file(path, read_scan_file(path, with_choice({}, command.reading), *session.monitor));
   session.say(text_of(json));
   session.answer(to_text(json));
   return kExitOk;
@@ -175,10 +183,12 @@ int run(const std::string& path, const Session& session) {
 }  // namespace
 
 void add_info_command(CLI::App& app, Session& session) {
-  auto path = std::make_shared<std::string>();
+  auto options = std::make_shared<InfoCommand>();
   CLI::App* command = add_command(app, session, "info", "Tell what a scan or a model file holds",
-                                  [path, &session] { return run(*path, session); });
-  command->add_option("FILE", *path, "A scan or a model of any format limen reads")->required();
+                                  [options, &session] { return run(*options, session); });
+  command->add_option("FILE", options->path, "A scan or a model of any format limen reads")->required();
+  add_memory_option(*command, options->reading.memory);
+  add_trajectory_options(*command, options->reading);
 }
 
 }  // namespace limen

@@ -30,6 +30,7 @@ struct OpeningsCommand {
   std::string output;
   std::string origin;
   std::string gravity = "up";
+  ReadingChoice reading;
   OpeningOptions openings;
 };
 
@@ -86,7 +87,8 @@ int run(const OpeningsCommand& command, const Session& session) {
   command.openings.check();
   refuse_same_file(command.output, command.scan);
   if (is_bim_file(command.scan)) return run_model(command, session);
-  const ReadOptions reading = read_options(command.origin, "--origin", command.gravity);
+  const ReadOptions reading =
+      with_choice(read_options(command.origin, "--origin", command.gravity), command.reading);
   session.monitor->begin_stage("reading");
   const Scan scan = read_input(command.scan, reading, session);
   if (!scan.centre_known()) {
@@ -113,7 +115,8 @@ void add_openings_command(CLI::App& app, Session& session) {
   auto options = std::make_shared<OpeningsCommand>();
   CLI::App* command = add_command(app, session, "openings", "Find the windows and doors of a scan or a model",
                                   [options, &session] { return run(*options, session); });
-  add_feature_options(*command, {options->scan, options->output, options->origin, options->gravity});
+  add_feature_options(*command,
+                      {options->scan, options->output, options->origin, options->gravity, options->reading});
   OpeningOptions& o = options->openings;
   add_length_option(*command, "--min-width-m", o.min_width_m,
                     "Width of the narrowest opening (default 0.35)");

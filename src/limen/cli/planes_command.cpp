@@ -31,6 +31,7 @@ struct PlanesOptions {
   std::string output;
   std::string origin;
   std::string gravity = "up";
+  ReadingChoice reading;
   std::string detector = "auto";
   std::string threshold = "auto";
   ExtractOptions extract;
@@ -95,7 +96,8 @@ int run(PlanesOptions options, const Session& session) {
   options.extract.check();
   refuse_same_file(options.output, options.scan);
   if (is_bim_file(options.scan)) return run_model(options, session);
-  const ReadOptions reading = read_options(options.origin, "--origin", options.gravity);
+  const ReadOptions reading =
+      with_choice(read_options(options.origin, "--origin", options.gravity), options.reading);
   session.monitor->begin_stage("reading");
   const Scan scan = read_input(options.scan, reading, session);
   session.monitor->begin_stage("planes");
@@ -113,7 +115,8 @@ void add_planes_command(CLI::App& app, Session& session) {
   CLI::App* command =
       add_command(app, session, "planes", "Find the planes of a scan or a model and their outlines",
                   [options, &session] { return run(*options, session); });
-  add_feature_options(*command, {options->scan, options->output, options->origin, options->gravity});
+  add_feature_options(*command,
+                      {options->scan, options->output, options->origin, options->gravity, options->reading});
   std::vector<std::string> names;
   for (const auto& [name, detector] : detectors()) names.push_back(name);
   command

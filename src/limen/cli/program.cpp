@@ -30,6 +30,7 @@
 #include "limen/cli/register_command.h"
 #include "limen/cli/segments_command.h"
 #include "limen/cli/terminal.h"
+#include "limen/cli/thin_command.h"
 #include "limen/cli/transform_command.h"
 
 #ifdef LIMEN_WITH_SIMULATOR
@@ -84,6 +85,7 @@ void add_commands(CLI::App& app, Session& session) {
   add_segments_command(app, session);
   add_register_command(app, session);
   add_transform_command(app, session);
+  add_thin_command(app, session);
   add_evaluate_command(app, session);
   add_deviation_command(app, session);
 #ifdef LIMEN_WITH_SIMULATOR

@@ -41,6 +41,9 @@ struct RegisterCommandOptions {
   std::vector<std::string> target_with;
   double wall_thickness_m = 0.0;
   bool no_report = false;
+  std::string memory;
+  ReadingChoice source_reading;
+  ReadingChoice target_reading;
 };
 
 /// A registration and what its page draws.
@@ -65,9 +68,11 @@ Gravity gravity_of(const std::string& name) {
 
 /// The options of one side: what is said of it alone counts before what is said of both.
 ReadOptions side_options(const RegisterCommandOptions& options, const std::string& own,
-                         const std::string& name) {
-  return own.empty() ? read_options(options.origin, "--origin", options.gravity)
-                     : read_options(own, name, options.gravity);
+                         const std::string& name, ReadingChoice reading) {
+  reading.memory = options.memory;
+  return with_choice(own.empty() ? read_options(options.origin, "--origin", options.gravity)
+                                 : read_options(own, name, options.gravity),
+                     reading);
 }
 
 std::string spaced(const std::vector<std::string>& words) {
@@ -83,6 +88,11 @@ OptionList reported(const RegisterCommandOptions& options) {
   if (!options.target_origin.empty()) list.emplace_back("target_origin", options.target_origin);
   if (!options.source_with.empty()) list.emplace_back("source_with", spaced(options.source_with));
   if (!options.target_with.empty()) list.emplace_back("target_with", spaced(options.target_with));
+  if (!options.memory.empty()) list.emplace_back("memory", options.memory);
+  if (!options.source_reading.trajectory.empty())
+    list.emplace_back("source_trajectory", options.source_reading.trajectory);
+  if (!options.target_reading.trajectory.empty())
+    list.emplace_back("target_trajectory", options.target_reading.trajectory);
   if (options.wall_thickness_m > 0) list.emplace_back("wall_thickness_m", options.wall_thickness_m);
   return list;
 }
@@ -98,8 +108,10 @@ bool takes_segments(const RegisterCommandOptions& options) {
 }
 
 Registered register_files(const RegisterCommandOptions& options, const Session& session) {
-  const ReadOptions source_options = side_options(options, options.source_origin, "--source-origin");
-  const ReadOptions target_options = side_options(options, options.target_origin, "--target-origin");
+  const ReadOptions source_options =
+      side_options(options, options.source_origin, "--source-origin", options.source_reading);
+  const ReadOptions target_options =
+      side_options(options, options.target_origin, "--target-origin", options.target_reading);
   const auto start = std::chrono::steady_clock::now();
   session.monitor->begin_stage("reading");
   Side source = read_side({options.source, options.source_with, source_options}, session);
@@ -265,6 +277,9 @@ void add_register_command(CLI::App& app, Session& session) {
                     "Write neither report.html nor the sections, only result.json and transform.txt");
   add_gravity_option(*command, options->gravity, true);
   add_origin_options(*command, *options);
+  add_memory_option(*command, options->memory);
+  add_trajectory_options(*command, options->source_reading, "source-");
+  add_trajectory_options(*command, options->target_reading, "target-");
 }
 
 }  // namespace limen

@@ -37,9 +37,12 @@ Side read_side(const SideOptions& options, const Session& session) {
   side.input.scans.push_back({read_input(options.path, options.reading, session), {}});
   side.summary = summarise(options.path, side.input.scans.front().scan);
   side.summary.sha256 = sha256_of_file(options.path);
+  // The trajectory is that of the side's own scan.
+  ReadOptions reading = options.reading;
+  reading.trajectory.reset();
   for (std::size_t k = 0; k + 1 < options.with.size(); k += 2) {
     const Rigid3 pose = pose_in_group(options.with[k + 1]);
-    side.input.scans.push_back({read_input(options.with[k], options.reading, session), pose});
+    side.input.scans.push_back({read_input(options.with[k], reading, session), pose});
     side.summary.with.push_back(options.with[k]);
     side.summary.points += side.input.scans.back().scan.size();
   }

@@ -32,6 +32,7 @@ struct SegmentsCommand {
   std::string output;
   std::string origin;
   std::string gravity = "up";
+  ReadingChoice reading;
   SegmentOptions segments;
   double sampled_m = 0.0;
 };
@@ -105,7 +106,8 @@ int run(const SegmentsCommand& command, const Session& session) {
   command.segments.check();
   refuse_same_file(command.output, command.scan);
   if (is_bim_file(command.scan)) return run_model(command, session);
-  const ReadOptions reading = read_options(command.origin, "--origin", command.gravity);
+  const ReadOptions reading =
+      with_choice(read_options(command.origin, "--origin", command.gravity), command.reading);
   session.monitor->begin_stage("reading");
   Scan scan = read_input(command.scan, reading, session);
   const InputSummary input = summarise(command.scan, scan);
@@ -124,7 +126,8 @@ void add_segments_command(CLI::App& app, Session& session) {
   CLI::App* command = add_command(app, session, "segments",
                                   "Find the 3-D line segments of a scan or a building model: its edges",
                                   [options, &session] { return run(*options, session); });
-  add_feature_options(*command, {options->scan, options->output, options->origin, options->gravity});
+  add_feature_options(*command,
+                      {options->scan, options->output, options->origin, options->gravity, options->reading});
   SegmentOptions& o = options->segments;
   add_length_option(*command, "--min-length-m", o.min_length_m,
                     "Length of the shortest segment (default 0.2)");

@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
@@ -24,6 +25,7 @@ struct TransformOptions {
   std::string cloud;
   std::string output;
   bool invert = false;
+  std::vector<std::string> merge;
 };
 
 std::string as_json(const TransformOptions& options, const TransformedCloud& cloud) {
@@ -52,8 +54,10 @@ int run(const TransformOptions& options, const Session& session) {
   refuse_same_file(options.output, options.cloud);
   refuse_same_file(options.output, options.result);
   const Rigid3 target_from_source = read_pose(options, session);
+  for (const std::string& other : options.merge) refuse_same_file(options.output, other);
+  const CancelScope scope(*session.monitor);
   const TransformedCloud cloud =
-      transform_cloud(options.cloud, target_from_source, options.output, {}, *session.monitor);
+      merge_clouds({options.cloud, target_from_source}, options.merge, options.output, *session.monitor);
   for (const std::string& note : cloud.notes) session.note(note);
   session.say(fmt::format("{} points moved; written to {}\n", cloud.points, options.output));
   session.answer(as_json(options, cloud));
@@ -64,12 +68,22 @@ int run(const TransformOptions& options, const Session& session) {
 
 void add_transform_command(CLI::App& app, Session& session) {
   auto options = std::make_shared<TransformOptions>();
-  CLI::App* command = add_command(app, session, "transform", "Move a cloud by a pose and write it as PLY",
-                                  [options, &session] { return run(*options, session); });
+  CLI::App* command =
+      add_command(app, session, "transform", "Move a cloud by a found pose, and merge it with others",
+                  [options, &session] { return run(*options, session); });
   command->add_option("RESULT", options->result, "result.json, or a text of 4 x 4 numbers")->required();
   command->add_option("CLOUD", options->cloud, "The cloud to move, of any format limen reads")->required();
-  command->add_option("OUT", options->output, "The PLY file to write; a PLY keeps all its values")
+  command
+      ->add_option("OUT", options->output,
+                   "The file to write: of CLOUD's own format, which keeps all of it, or .ply, .las, .e57")
       ->required();
+  command
+      ->add_option(
+          "--merge", options->merge,
+          "A cloud that lies in the target's frame already, written to OUT too; may be given several times")
+      ->type_name("FILE")
+      ->type_size(1)
+      ->take_all();
   command->add_flag("--invert", options->invert, "Move from the target's frame to the source's instead");
 }
 

@@ -4,6 +4,8 @@
 
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "limen/base/error.h"
 #include "limen/io/join_scans.h"
 #include "limen/io/open_points.h"
@@ -12,6 +14,7 @@
 #include "limen/io/read_ply.h"
 #include "limen/io/read_ptx.h"
 #include "limen/io/read_xyz.h"
+#include "limen/io/trajectory.h"
 
 namespace limen {
 namespace {
@@ -34,6 +37,20 @@ ScanFile read_at_once(const OpenPoints& input, const ReadOptions& options, Monit
   return read_clouds(input, options, monitor);
 }
 
+/// The scans with the optical centres that the trajectory gives.
+ScanFile followed(ScanFile file, const Trajectory& trajectory) {
+  for (Scan& scan : file.scans) {
+    FollowedScan with = with_trajectory(scan, trajectory);
+    if (with.left_out > 0) {
+      file.notes.push_back(
+          fmt::format("{} points at times that the trajectory does not cover are left out", with.left_out));
+    }
+    file.dropped += with.left_out;
+    scan = std::move(with.scan);
+  }
+  return file;
+}
+
 }  // namespace
 
 void ReadOptions::check() const {
@@ -52,6 +69,7 @@ ScanFile read_scan_file(const std::filesystem::path& path, const ReadOptions& op
   const bool large = options.memory_bytes > 0 && scan_bytes(input) > options.memory_bytes;
   ScanFile read = large ? read_thinned(input, options, monitor) : read_at_once(input, options, monitor);
   monitor.throw_if_cancelled();
+  if (options.trajectory && !options.origin) return followed(std::move(read), *options.trajectory);
   return read;
 }
 

@@ -220,6 +220,12 @@ ScanFile read_xyz(std::string_view bytes, const std::string& name, const ReadOpt
   return with_scan(std::move(file), table_of_numbers(std::move(numbers), cloud.names), facts, options);
 }
 
+TextLayout text_layout(std::string_view bytes, const std::string& name) {
+  const TextHeader header = parse_text_header(bytes);
+  require_rows(header, name);
+  return {header.body, header.counted, text_of(bytes, header, name).names};
+}
+
 std::unique_ptr<PointFile> open_xyz(std::string_view bytes, const std::string& name) {
   const TextHeader header = parse_text_header(bytes);
   require_rows(header, name);

@@ -262,7 +262,7 @@ std::string settle_centre(Scan& scan, const TableFacts& facts, const ReadOptions
     scan.centres = {*options.origin - scan.local_origin};
     return {};
   }
-  if (!scan.centres.empty()) return {};
+  if (!scan.centres.empty() || options.trajectory) return {};
   if (facts.centre_unknown) return "the file says that its optical centre is not known";
   if (facts.centre) {
     scan.centres = {facts.offset + *facts.centre - scan.local_origin};

@@ -2,34 +2,84 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limen/io/transform_cloud.h"
 
-#include <set>
+#include <deque>
+#include <iterator>
 #include <utility>
 
 #include <fmt/format.h>
 
-#include "limen/io/join_scans.h"
-#include "limen/io/mapped_file.h"
-#include "limen/io/read_ply.h"
+#include "limen/base/error.h"
+#include "limen/io/e57_poses.h"
+#include "limen/io/las_transform.h"
+#include "limen/io/open_points.h"
+#include "limen/io/ply_writer.h"
 #include "limen/io/record_table.h"
 #include "limen/io/scan_builder.h"
+#include "limen/io/transform_pcd.h"
 #include "limen/io/transform_ply.h"
-#include "limen/io/write_ply.h"
+#include "limen/io/transform_text.h"
+#include "limen/io/write_clouds.h"
 
 namespace limen {
 namespace {
 
-/// Names of the values per point that a Scan has no place for.
-std::string values_left_out(const std::vector<std::string>& fields) {
-  static const std::set<std::string> kKept{"x",         "y",           "z",         "x_origin",  "y_origin",
-                                           "z_origin",  "gps_time",    "gpstime",   "time",      "t",
-                                           "red",       "green",       "blue",      "r",         "g",
-                                           "b",         "rgb",         "rgba",      "scan_line", "scan_index",
-                                           "intensity", "reflectance", "timestamp", "amplitude", "_"};
-  std::string names;
-  for (const std::string& field : fields) {
-    if (kKept.count(lower_case(field)) == 0) names += (names.empty() ? "" : ", ") + field;
+/// Whether a file of this name is of the format: its own endings, and for PLY also none.
+bool has_ending_of(PointFormat format, const std::filesystem::path& path) {
+  const std::string ending = lower_case(path.extension().string());
+  switch (format) {
+    case PointFormat::ply:
+      return ending == ".ply" || ending.empty();
+    case PointFormat::pcd:
+      return ending == ".pcd";
+    case PointFormat::ptx:
+      return ending == ".ptx";
+    case PointFormat::e57:
+      return ending == ".e57";
+    case PointFormat::las:
+      return ending == ".las";
+    case PointFormat::text:
+      return ending == ".pts" || ending == ".xyz" || ending == ".txt" || ending == ".csv" || ending == ".asc";
   }
-  return names;
+  return false;
+}
+
+/// Moves the file as it is.
+TransformedCloud move_in_format(const OpenPoints& input, const Rigid3& pose,
+                                const std::filesystem::path& output, const ReadOptions& options,
+                                Monitor& monitor) {
+  const NamedBytes bytes{input.bytes(), input.name()};
+  switch (input.format()) {
+    case PointFormat::ply:
+      return transform_ply(bytes, pose, output, options);
+    case PointFormat::pcd:
+      return transform_pcd(bytes, pose, output);
+    case PointFormat::ptx:
+      return transform_ptx(bytes, pose, output);
+    case PointFormat::text:
+      return transform_text(bytes, pose, output);
+    case PointFormat::las:
+      return transform_las(input.bytes(), input.name(), pose, output, monitor);
+    case PointFormat::e57:
+      break;
+  }
+  const MovedE57 moved = replace_e57_poses(input.bytes(), input.name(), pose, output);
+  return {moved.points, input.file().format(), moved.notes};
+}
+
+TransformedCloud write_joined(std::vector<PlacedCloud> clouds, bool several_files,
+                              const std::filesystem::path& output, Monitor& monitor) {
+  const OpenPoints& first = *clouds.front().input;
+  const JoinedClouds joined(std::move(clouds), several_files);
+  const WrittenClouds written = write_clouds(joined, output, monitor);
+  return {written.written, first.file().format(), written.notes};
+}
+
+void require_known_ending(const std::filesystem::path& output, const OpenPoints& input) {
+  if (is_cloud_ending(output)) return;
+  const std::string ending = lower_case(output.extension().string());
+  throw Error(fmt::format("{} is not written as \"{}\"", input.file().format(), ending), output.string(),
+              ending == ".laz" ? "name the output .las"
+                               : "name the output .ply, .las or .e57, or give it the ending of the input");
 }
 
 }  // namespace
@@ -48,21 +98,31 @@ TransformedCloud transform_cloud(const std::filesystem::path& input, const Rigid
                                  const std::filesystem::path& output, const ReadOptions& options,
                                  Monitor& monitor) {
   monitor.begin_stage("transform");
-  const MappedFile file(input);
-  if (looks_like_ply(file.bytes())) {
-    return transform_ply({file.bytes(), input.string()}, target_from_source, output, options);
+  const OpenPoints open(input);
+  if (has_ending_of(open.format(), output))
+    return move_in_format(open, target_from_source, output, options, monitor);
+  require_known_ending(output, open);
+  return write_joined(placed_clouds(open, target_from_source, options.origin, monitor), false, output,
+                      monitor);
+}
+
+TransformedCloud merge_clouds(const CloudToMove& moved, const std::vector<std::string>& others,
+                              const std::filesystem::path& output, Monitor& monitor) {
+  if (others.empty()) return transform_cloud(moved.path, moved.target_from_source, output, {}, monitor);
+  if (others.size() > 255) throw Error("more than 256 clouds cannot be told apart", "--merge", "merge fewer");
+  monitor.begin_stage("merging");
+  std::deque<OpenPoints> files;
+  std::vector<PlacedCloud> clouds;
+  for (std::size_t k = 0; k <= others.size(); ++k) {
+    const OpenPoints& file = k == 0 ? files.emplace_back(moved.path) : files.emplace_back(others[k - 1]);
+    for (PlacedCloud placed :
+         placed_clouds(file, k == 0 ? moved.target_from_source : Rigid3{}, {}, monitor)) {
+      placed.source = static_cast<std::uint8_t>(k);
+      clouds.push_back(placed);
+    }
   }
-  ScanFile read = read_scan_file(input, options, monitor);
-  TransformedCloud result;
-  result.format = read.format;
-  if (read.dropped > 0)
-    result.notes.push_back(fmt::format("{} rows that are no points are left out", read.dropped));
-  const std::string lost = values_left_out(read.fields);
-  if (!lost.empty()) result.notes.push_back("these values per point are not kept: " + lost);
-  const Scan joined = read.scans.size() == 1 ? std::move(read.scans.front()) : join_scans(read.scans);
-  result.points = joined.size();
-  write_ply(output, transformed(joined, target_from_source));
-  return result;
+  require_known_ending(output, files.front());
+  return write_joined(std::move(clouds), true, output, monitor);
 }
 
 }  // namespace limen
