@@ -82,7 +82,7 @@ TEST(LazArithmetic, SymbolsBitsAndIntegersComeBack) {
 TEST(LazRecords, EveryFormatComesBack) {
   for (int format = 0; format <= 10; ++format) {
     for (const std::size_t extra : {std::size_t{0}, std::size_t{5}}) {
-      const Parts parts = some(format, 5000, extra);
+      const Parts parts = some(format, 2500, extra);
       for (const int version : {3, 4}) {
         Packing packing;
         packing.chunk = 1100;
@@ -159,13 +159,13 @@ TEST(LazRecords, AnyShortenedOrChangedFileIsReadOrRefused) {
     for (std::size_t length = 0; length < whole.size(); length += 13)
       EXPECT_NE(error_of(whole.substr(0, length)), "no error") << length;
     int refused = 0;
-    for (int trial = 0; trial < 1500; ++trial) {
+    for (int trial = 0; trial < 400; ++trial) {
       std::string bytes = whole;
       for (std::uint32_t k = random.below(4) + 1; k > 0; --k)
         bytes[random.below(static_cast<std::uint32_t>(bytes.size()))] = static_cast<char>(random.below(256));
       refused += error_of(bytes) == "no error" ? 0 : 1;
     }
-    EXPECT_GT(refused, 500);
+    EXPECT_GT(refused, 100);
   }
 }
 
