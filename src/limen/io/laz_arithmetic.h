@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <string_view>
 
 /// Adaptive arithmetic decoding as LAZ uses it.
@@ -208,6 +210,18 @@ class Decoder {
     return 0;
   }
   void refill() {
+    if (end_ - at_ >= 4) {
+      // As many bytes as the length has leading zero bytes, without a branch that depends on the data.
+      const auto digits = static_cast<unsigned>(std::countl_zero(length_)) & ~7U;
+      std::uint32_t next = 0;
+      std::memcpy(&next, at_, sizeof next);
+      next = __builtin_bswap32(next);
+      value_ = static_cast<std::uint32_t>((std::uint64_t{value_} << digits) |
+                                          (std::uint64_t{next} >> (32U - digits)));
+      length_ <<= digits;
+      at_ += digits / 8U;
+      return;
+    }
     while (length_ < (1U << 24U)) {
       value_ = (value_ << 8U) | next_byte();
       length_ <<= 8U;
