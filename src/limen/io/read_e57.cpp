@@ -152,7 +152,7 @@ std::unique_ptr<PointFile> open_e57(std::string_view bytes, const std::string& n
   }
   std::vector<std::string>& notes = source->clouds.front().notes;
   if (!source->document.images.empty())
-    notes.push_back(fmt::format("{} images are passed over", source->document.images.size()));
+    notes.push_back(fmt::format("images are passed over: {}", source->document.images.size()));
   if (source->pages.surplus() > 0)
     notes.push_back(
         fmt::format("{} bytes after the end that the file gives are passed over", source->pages.surplus()));

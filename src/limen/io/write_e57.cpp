@@ -125,31 +125,32 @@ E57Column coordinate_column(const char* name, double resolution_m) {
   return column;
 }
 
-/// Whole numbers as they are; false where a number does not lie in the file as one.
-bool load_integer(const char* from, Scalar type, std::int64_t& out) {
-  const auto load = [&](auto value) {
-    std::memcpy(&value, from, sizeof value);
-    out = static_cast<std::int64_t>(value);
-    return true;
-  };
+template <typename Value>
+std::int64_t load_as(const char* from) {
+  Value value{};
+  std::memcpy(&value, from, sizeof value);
+  return static_cast<std::int64_t>(value);
+}
+
+/// An integer as it lies in memory. One from 2^63 on becomes negative, which lies outside its column's
+/// bounds.
+std::int64_t load_integer(const char* from, Scalar type) {
   switch (type) {
-    case Scalar::int8:
-      return load(std::int8_t{});
     case Scalar::uint8:
-      return load(std::uint8_t{});
+      return load_as<std::uint8_t>(from);
     case Scalar::int16:
-      return load(std::int16_t{});
+      return load_as<std::int16_t>(from);
     case Scalar::uint16:
-      return load(std::uint16_t{});
+      return load_as<std::uint16_t>(from);
     case Scalar::int32:
-      return load(std::int32_t{});
+      return load_as<std::int32_t>(from);
     case Scalar::uint32:
-      return load(std::uint32_t{});
+      return load_as<std::uint32_t>(from);
     case Scalar::int64:
-    case Scalar::uint64:  // from 2^63 on it becomes negative, which lies outside the column's bounds
-      return load(std::int64_t{});
+    case Scalar::uint64:
+      return load_as<std::int64_t>(from);
     default:
-      return false;
+      return static_cast<std::int64_t>(load_number(from, type, false));  // int8
   }
 }
 
@@ -276,8 +277,7 @@ void E57Writer::encode_column(const RecordTable& rows, std::size_t k) {
   if (encoder.column().storage == E57Storage::integer && field.plain() && is_integer(field.type) &&
       !rows.swapped) {
     for (std::size_t i = 0; i < rows.rows; ++i) {
-      std::int64_t value = 0;
-      (void)load_integer(field.data + i * field.stride, field.type, value);
+      const std::int64_t value = load_integer(field.data + i * field.stride, field.type);
       if (!encoder.append_integer(value)) refuse(k, i, static_cast<double>(value));
     }
     return;
