@@ -167,6 +167,7 @@ class E57Writer : public CloudWriter {
   void finish() override;
 
  private:
+  void plan_encoders();
   void check_table(const RecordTable& rows) const;
   void encode_points(const RecordTable& rows);
   void encode_column(const RecordTable& rows, std::size_t k);
@@ -192,19 +193,30 @@ E57Writer::E57Writer(const std::filesystem::path& path, CloudPlan plan)
   const bool sound = plan_.columns.size() >= 3 && lower_case(plan_.columns[0].name) == "x" &&
                      lower_case(plan_.columns[1].name) == "y" && lower_case(plan_.columns[2].name) == "z";
   if (!sound) throw Error("the first columns are not x, y and z", name_, "", Fault::internal);
-  std::vector<std::string> taken;
+  plan_encoders();
   std::size_t bits = 0;
+  for (const E57Encoder& encoder : encoders_) bits += encoder.column().bits;
+  const std::size_t room = kLargestPacket - 8 - 2 * std::min<std::size_t>(encoders_.size(), 16384);
+  packet_rows_ = room / (kRowStep / 8 * bits) * kRowStep;
+  if (packet_rows_ == 0) {
+    throw Error(fmt::format("{} values per point are too many for an E57 file", plan_.columns.size()), name_,
+                "write the points as PLY");
+  }
+  file_.append(std::string(kSectionHeaderBytes, '\0'));
+}
+
+void E57Writer::plan_encoders() {
+  static constexpr std::array<const char*, 3> kCoordinates{"cartesianX", "cartesianY", "cartesianZ"};
+  std::vector<std::string> taken;
   for (std::size_t k = 0; k < plan_.columns.size(); ++k) {
-    static constexpr std::array<const char*, 3> kCoordinates{"cartesianX", "cartesianY", "cartesianZ"};
-    E57Column column;
     if (k < 3) {
-      column = coordinate_column(kCoordinates[k], plan_.resolution_m);
-    } else {
-      column.name = file_name_of(plan_.columns[k], taken);
-      const bool moved = shift_of(lower_case(plan_.columns[k].name)) != 0.0;
-      set_storage(column, moved ? Scalar::float64 : plan_.columns[k].type);
+      encoders_.emplace_back(coordinate_column(kCoordinates[k], plan_.resolution_m));
+      continue;
     }
-    bits += column.bits;
+    E57Column column;
+    column.name = file_name_of(plan_.columns[k], taken);
+    const bool moved = shift_of(lower_case(plan_.columns[k].name)) != 0.0;
+    set_storage(column, moved ? Scalar::float64 : plan_.columns[k].type);
     encoders_.emplace_back(std::move(column));
   }
   E57Column state;
@@ -214,13 +226,6 @@ E57Writer::E57Writer(const std::filesystem::path& path, CloudPlan plan)
   state.maximum = 2;
   state.bits = 2;
   encoders_.emplace_back(std::move(state));
-  const std::size_t room = kLargestPacket - 8 - 2 * std::min<std::size_t>(encoders_.size(), 16384);
-  packet_rows_ = room / (kRowStep / 8 * (bits + 2)) * kRowStep;
-  if (packet_rows_ == 0) {
-    throw Error(fmt::format("{} values per point are too many for an E57 file", plan_.columns.size()), name_,
-                "write the points as PLY");
-  }
-  file_.append(std::string(kSectionHeaderBytes, '\0'));
 }
 
 /// What is taken off a column of the plan: coordinates of optical centres are stored about the pose too.
