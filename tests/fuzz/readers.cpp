@@ -25,6 +25,7 @@
 #include "limen/io/read_ply.h"
 #include "limen/io/read_ptx.h"
 #include "limen/io/read_segments.h"
+#include "limen/io/read_trajectory.h"
 #include "limen/io/read_xyz.h"
 #include "limen/io/step_file.h"
 #include "limen/io/zip_member.h"
@@ -150,6 +151,16 @@ void segments(std::string_view bytes) {
   read_segments(file.path());
 }
 
+/// As the content says, and as a text of named columns.
+void trajectory(std::string_view bytes) {
+  const MemoryFile file(bytes);
+  may_fail([&] { read_trajectory(file.path()); });
+  TrajectoryOptions named;
+  named.columns = {"time", "x", "y", "z", "roll", "pitch", "heading"};
+  named.lever_arm_m = {0.1, 0.2, -0.3};
+  read_trajectory(file.path(), named);
+}
+
 void pose(std::string_view bytes) {
   const MemoryFile file(bytes);
   PoseFile result;
@@ -163,9 +174,13 @@ void pose(std::string_view bytes) {
 
 const std::vector<FuzzedReader>& fuzzed_readers() {
   static const std::vector<FuzzedReader> kReaders{
-      {"ply", ply}, {"pcd", pcd},           {"ptx", ptx},   {"xyz", xyz},   {"e57", e57},
-      {"las", las}, {"laz", las},           {"mesh", mesh}, {"step", step}, {"ifc_shapes", ifc_shapes},
-      {"zip", zip}, {"segments", segments}, {"pose", pose},
+      {"ply", ply},   {"pcd", pcd},
+      {"ptx", ptx},   {"xyz", xyz},
+      {"e57", e57},   {"las", las},
+      {"laz", las},   {"mesh", mesh},
+      {"step", step}, {"ifc_shapes", ifc_shapes},
+      {"zip", zip},   {"segments", segments},
+      {"pose", pose}, {"trajectory", trajectory},
   };
   return kReaders;
 }

@@ -151,7 +151,14 @@ void give_name(Columns& columns, std::string& name) {
   }
 }
 
+/// Bytes without a name that are worth a column each: more are padding, or a damaged header.
+constexpr std::size_t kMostUnnamed = 64;
+
 void add_extra(Columns& columns, const ExtraValue& value, std::size_t place, std::size_t& unnamed) {
+  if (!value.described && unnamed + value.elements > kMostUnnamed) {
+    unnamed += value.elements;
+    return;
+  }
   for (std::size_t k = 0; k < value.elements; ++k) {
     LasField column{place + k * size_of(value.type), {}};
     const bool named = value.described && !value.name.empty();
@@ -206,6 +213,10 @@ LasLayout las_layout(const LasHeader& header) {
   rest.described = false;
   rest.elements = header.point_bytes - place;
   add_extra(columns, rest, place, unnamed);
+  if (unnamed > kMostUnnamed) {
+    layout.notes.push_back(
+        fmt::format("of {} bytes per point that nothing describes not all are taken as values", unnamed));
+  }
   layout.fields = std::move(columns.all());
   return layout;
 }
