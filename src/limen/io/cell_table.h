@@ -36,6 +36,8 @@ class CellTable {
     const Slot& slot = slots_[find(key)];
     return slot.index != kEmpty && slot.lot <= lot;
   }
+  /// Asks the machine to bring the slot of a cell near: it is looked at soon.
+  void expect(std::uint64_t key) const { __builtin_prefetch(&slots_[home(key)]); }
   [[nodiscard]] std::size_t size() const { return size_; }
   void clear() {
     slots_.assign(slots_.size(), Slot{});
@@ -52,10 +54,13 @@ class CellTable {
 
   static std::size_t slots_for(std::size_t room) { return room + room / 2 + 16; }
 
+  [[nodiscard]] std::size_t home(std::uint64_t key) const {
+    return static_cast<std::size_t>((static_cast<unsigned __int128>(key) * slots_.size()) >> 64U);
+  }
   /// The slot of the key, or the empty one where it would stand.
   [[nodiscard]] std::size_t find(std::uint64_t key) const {
     const std::size_t count = slots_.size();
-    auto at = static_cast<std::size_t>((static_cast<unsigned __int128>(key) * count) >> 64U);
+    std::size_t at = home(key);
     while (slots_[at].index != kEmpty && slots_[at].key != key) at = at + 1 == count ? 0 : at + 1;
     return at;
   }

@@ -24,7 +24,8 @@ void PackedRows::require_columns(const RecordTable& like) {
     columns_ = like.fields;
     for (const Field& field : columns_) {
       at_.push_back(record_bytes_);
-      record_bytes_ += size_of(field.type);
+      bytes_of_.push_back(size_of(field.type));
+      record_bytes_ += bytes_of_.back();
     }
   }
   bool same = like.fields.size() == columns_.size() && like.swapped == swapped_;
@@ -37,7 +38,7 @@ void PackedRows::write(char* to, const RecordTable& table, std::size_t row) cons
     const Field& field = table.fields[k];
     const char* const from = field.data + row * field.stride;
     // Fixed sizes: each copy is one move of the machine.
-    switch (size_of(columns_[k].type)) {
+    switch (bytes_of_[k]) {
       case 1:
         to[at_[k]] = *from;
         break;

@@ -39,6 +39,7 @@ class PackedRows {
 
   std::vector<Field> columns_;   ///< what they are; data and stride of no meaning
   std::vector<std::size_t> at_;  ///< of each column in a record
+  std::vector<std::size_t> bytes_of_;
   bool swapped_ = false;
   std::size_t record_bytes_ = 0;
   std::vector<char> bytes_;

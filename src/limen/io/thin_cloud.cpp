@@ -27,8 +27,10 @@ constexpr double kLargestM = 1e8;
 /// While the cloud comes in there may be so many times more cells than points are wanted: the last choice
 /// then comes close to the number.
 constexpr double kMoreCells = 2.2;
-/// Cubes grow twofold while little of the cloud is seen, later by the root of two.
-constexpr double kEarlyShare = 0.25;
+/// Cubes grow by the root of two at least, and not by more than this at once.
+constexpr double kFastestGrowth = 4.0;
+/// So many cells ahead are brought near before they are looked at.
+constexpr std::size_t kAhead = 12;
 /// The last choice keeps at least this share of the points wanted.
 constexpr double kCloseEnough = 0.95;
 /// Bytes of a cell beside its record: its two slots, its row.
@@ -109,7 +111,7 @@ struct Found {
 /// Neighbouring rows share cells: a small memory of the last ones spares most looks into the large table.
 class RecentCells {
  public:
-  RecentCells(const CellTable& cells, std::vector<Candidate>& out) : cells_(cells), out_(out) {
+  explicit RecentCells(std::vector<Candidate>& out) : out_(out) {
     slots_.fill({0, ~std::uint64_t{0}, kNone});
   }
   void add(const Candidate& candidate) {
@@ -130,10 +132,9 @@ class RecentCells {
   static constexpr std::size_t kNone = ~std::size_t{0};
 
   void pass_on(const Candidate& slot) {
-    if (slot.row != kNone && !cells_.has_better(slot.key, slot.lot)) out_.push_back(slot);
+    if (slot.row != kNone) out_.push_back(slot);
   }
 
-  const CellTable& cells_;
   std::vector<Candidate>& out_;
   std::array<Candidate, kSlots> slots_;
 };
@@ -203,7 +204,7 @@ class CloudThinner::Cells {
 
   [[nodiscard]] Found look_at(const RecordTable& piece, RowRange rows, const Grid& grid) const {
     Found found;
-    RecentCells recent(cells_, found.candidates);
+    RecentCells recent(found.candidates);
     for_each_point(piece, Coordinates(piece), rows, [&](std::size_t row, double x, double y, double z) {
       if (usable(x, y, z)) {
         recent.add({grid.key(x, y, z), lot_of(read_ + row), row});
@@ -212,7 +213,19 @@ class CloudThinner::Cells {
       }
     });
     recent.flush();
+    keep_hopeful(found.candidates);
     return found;
+  }
+
+  /// Takes out the candidates whose cells are held by better points already.
+  void keep_hopeful(std::vector<Candidate>& candidates) const {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < candidates.size(); ++i) {
+      if (i + kAhead < candidates.size()) cells_.expect(candidates[i + kAhead].key);
+      const Candidate candidate = candidates[i];
+      if (!cells_.has_better(candidate.key, candidate.lot)) candidates[kept++] = candidate;
+    }
+    candidates.resize(kept);
   }
 
   void take(const RecordTable& piece, RowRange rows) {
@@ -222,10 +235,16 @@ class CloudThinner::Cells {
     parallel_for(count, kPiece, [&](std::size_t begin, std::size_t end) {
       found[begin / kPiece] = look_at(piece, {rows.begin + begin, rows.begin + end}, grid);
     });
+    const std::size_t before = rows_.size();
     for (const Found& part : found) {
       unusable_ += part.unusable;
-      for (const Candidate& candidate : part.candidates) settle(piece, candidate);
+      for (std::size_t i = 0; i < part.candidates.size(); ++i) {
+        if (i + kAhead < part.candidates.size()) cells_.expect(part.candidates[i + kAhead].key);
+        settle(piece, part.candidates[i]);
+      }
     }
+    const auto left = static_cast<double>(expected_ - std::min(expected_, read_ + rows.end));
+    more_ahead_ = static_cast<double>(rows_.size() - before) * left / static_cast<double>(count);
   }
 
   void settle(const RecordTable& piece, const Candidate& candidate) {
@@ -240,10 +259,12 @@ class CloudThinner::Cells {
     }
   }
 
+  /// Larger cubes: so much larger that those to come, if they come as those of the last rows did, fit too.
   void grow() {
-    const double share =
-        static_cast<double>(read_) / static_cast<double>(std::max<std::uint64_t>(1, expected_));
-    regrid(spacing_m_ * (share < kEarlyShare ? 2.0 : std::sqrt(2.0)));
+    const double foreseen =
+        (static_cast<double>(rows_.size()) + more_ahead_) / static_cast<double>(most_cells_);
+    regrid(spacing_m_ * std::clamp(std::sqrt(foreseen), std::sqrt(2.0), kFastestGrowth));
+    more_ahead_ = 0.0;
   }
 
   [[nodiscard]] std::vector<std::uint64_t> keys_at(double spacing_m) const {
@@ -263,6 +284,7 @@ class CloudThinner::Cells {
     const std::vector<std::uint64_t> keys = keys_at(spacing_m);
     cells_.clear();
     for (std::size_t i = 0; i < keys.size(); ++i) {
+      if (i + kAhead < keys.size()) cells_.expect(keys[i + kAhead]);
       const CellTable::Place place = cells_.put(keys[i], lot_of(rows_[i]));
       if (place.outcome == CellTable::Outcome::worse) continue;
       packed_.copy(i, place.index);
@@ -324,6 +346,7 @@ class CloudThinner::Cells {
   std::size_t rows_at_once_ = kStreamRows;
   std::uint64_t read_ = 0;
   std::uint64_t unusable_ = 0;
+  double more_ahead_ = 0.0;  ///< cells that the rest of the cloud would add at the rate of the last rows
   CellTable cells_;
   PackedRows packed_;
   std::vector<std::uint64_t> rows_;  ///< of the cloud, for each row of packed_
