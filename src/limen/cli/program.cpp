@@ -99,7 +99,6 @@ int run_guarded(Session& session) {
   const InterruptGuard guard(*session.monitor);
   const CancelScope scope(*session.monitor);
   const int status = session.action();
-  session.monitor->throw_if_cancelled();
   flush_out();
   return status;
 }

@@ -35,6 +35,27 @@ struct SimulateOptions {
   bool as_built = false;
 };
 
+/// Files of a case that is complete only with its last one: without it none is left.
+class CaseFiles {
+ public:
+  CaseFiles() = default;
+  ~CaseFiles() {
+    std::error_code ignored;
+    for (const std::filesystem::path& path : written_) std::filesystem::remove(path, ignored);
+  }
+  CaseFiles(const CaseFiles&) = delete;
+  CaseFiles& operator=(const CaseFiles&) = delete;
+
+  /// Names a file that is about to be written; one that was there before stays.
+  const std::filesystem::path& add(const std::filesystem::path& path) {
+    return std::filesystem::exists(path) ? path : written_.emplace_back(path);
+  }
+  void keep() { written_.clear(); }
+
+ private:
+  std::vector<std::filesystem::path> written_;
+};
+
 std::string summary(const SimulatedCase& simulated, const std::string& folder) {
   std::string text;
   for (const Scan& scan : simulated.scans) {
@@ -46,9 +67,10 @@ std::string summary(const SimulatedCase& simulated, const std::string& folder) {
 }
 
 /// The known poses of further stations in the first one's frame, one file each.
-void write_station_poses(const SimulatedCase& simulated, const std::filesystem::path& folder) {
+void write_station_poses(const SimulatedCase& simulated, const std::filesystem::path& folder,
+                         CaseFiles& files) {
   for (std::size_t i = 1; simulated.truth.model && i < simulated.scans.size(); ++i)
-    write_file(folder / fmt::format("source_from_{}.txt", simulated.scans[i].name),
+    write_file(files.add(folder / fmt::format("source_from_{}.txt", simulated.scans[i].name)),
                transform_text(true_target_from_source(simulated.truth, i, 0)));
 }
 
@@ -74,7 +96,7 @@ BimSceneOptions bim_options(const SimulateOptions& options) {
 
 /// Scans a model file, or the built-in one, which is written beside the scans.
 SimulatedCase simulate_model(const SimulateOptions& options, const std::filesystem::path& folder,
-                             Monitor& monitor) {
+                             CaseFiles& files, Monitor& monitor) {
   const BimSceneOptions bim = bim_options(options);
   if (options.scene.name != kOffice) {
     const std::filesystem::path path(options.scene.name);
@@ -86,7 +108,7 @@ SimulatedCase simulate_model(const SimulateOptions& options, const std::filesyst
   BimModel model = model_of(recipe);
   model.name = "model.ifc";
   SimulatedCase simulated = simulate_bim(model, bim, monitor);
-  write_file(folder / model.name,
+  write_file(files.add(folder / model.name),
              ifc_text(recipe, options.units == "mm" ? IfcUnit::millimetre : IfcUnit::metre));
   return simulated;
 }
@@ -134,17 +156,19 @@ int run(SimulateOptions& options, const Session& session) {
   // Made before the long work: a place that cannot be written to is told at once.
   const OutputFolder folder(options.output);
   const OutputFolder truth_folder(folder.path() / "truth");
-  const SimulatedCase simulated = model ? simulate_model(options, folder.path(), *session.monitor)
+  CaseFiles files;
+  const SimulatedCase simulated = model ? simulate_model(options, folder.path(), files, *session.monitor)
                                         : simulate(options.scene, *session.monitor);
   session.monitor->begin_stage("writing");
   for (const Scan& scan : simulated.scans) {
     session.monitor->throw_if_cancelled();
-    write_ply(folder.path() / (scan.name + ".ply"), scan);
+    write_ply(files.add(folder.path() / (scan.name + ".ply")), scan);
   }
   const std::string task = task_json(simulated);
-  write_station_poses(simulated, folder.path());
-  write_file(truth_folder.path() / "truth.json", truth_json(simulated.truth));
-  write_file(folder.path() / "task.json", task);
+  write_station_poses(simulated, folder.path(), files);
+  write_file(files.add(truth_folder.path() / "truth.json"), truth_json(simulated.truth));
+  write_file(files.add(folder.path() / "task.json"), task);
+  files.keep();
   session.say(summary(simulated, options.output));
   session.answer(task);
   return kExitOk;

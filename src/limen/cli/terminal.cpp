@@ -116,6 +116,8 @@ void TerminalMonitor::begin_stage(std::string_view name) {
 
 void TerminalMonitor::advance(double done, double total) {
   const std::scoped_lock lock(mutex_);
+  // Work that begins anew within a stage lets the bar stand rather than jump back.
+  if (total > 0.0 && state_.total > 0.0 && done / total < state_.done / state_.total) return;
   state_.done = done;
   state_.total = total;
 }

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "limen/base/error.h"
+#include "limen/base/stage_part.h"
 
 namespace limen {
 namespace {
@@ -47,7 +48,9 @@ double automatic_threshold(const Scan& scan, const GrowOptions& grow,
   GrowOptions trial = grow;
   trial.min_inliers = std::max(50, grow.min_inliers / 2);
   trial.inlier_threshold_m = 0.0;
-  const GrownPlanes first = grow_planes(part, trial, monitor);
+  const double trials = 1.0 + static_cast<double>(options.factors.size());
+  StagePart first_part(monitor, 0.0, 1.0 / trials);
+  const GrownPlanes first = grow_planes(part, trial, first_part);
   ThresholdOptions choice;
   choice.min_inliers = static_cast<std::size_t>(trial.min_inliers);
   choice.thresholds_m.clear();
@@ -58,10 +61,13 @@ double automatic_threshold(const Scan& scan, const GrowOptions& grow,
   }
   if (choice.thresholds_m.size() < 2 || first.planes.fits.empty()) return first.inlier_threshold_m;
   const Extent extent = extent_of(part.points);
+  double tried = 0.0;
   const auto detector = [&](double threshold_m) {
     if (threshold_m == first.inlier_threshold_m) return detected(first);
     trial.inlier_threshold_m = threshold_m;
-    return detected(grow_planes(part, trial, monitor));
+    tried = std::min(tried + 1.0, trials - 1.0);
+    StagePart next_part(monitor, tried / trials, (tried + 1.0) / trials);
+    return detected(grow_planes(part, trial, next_part));
   };
   return choose_threshold({part.size(), extent.high - extent.low}, detector, choice).threshold_m;
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "limen/base/stage_part.h"
 #include "limen/extract/automatic_threshold.h"
 #include "limen/extract/msac_planes.h"
 #include "limen/extract/topology_planes.h"
@@ -82,10 +83,13 @@ DetectedPlanes detect_planes(const Scan& scan, const DetectOptions& options, con
       options.detector == PlaneDetector::automatic ? detector_for(scan) : options.detector;
   if (scan.size() == 0) return {};
   GrowOptions used = grow;
-  used.inlier_threshold_m = threshold_for(scan, options.threshold, grow, monitor);
+  constexpr double kThresholdShare = 0.4;  // of the work, about
+  StagePart choosing(monitor, 0.0, kThresholdShare);
+  used.inlier_threshold_m = threshold_for(scan, options.threshold, grow, choosing);
+  StagePart finding(monitor, kThresholdShare, 1.0);
   DetectedPlanes detected;
   detected.detector = detector;
-  detected.planes = planes_by(detector, scan, options, used, monitor);
+  detected.planes = planes_by(detector, scan, options, used, finding);
   detected.noise_m = noise_about(detected.planes);
   return detected;
 }

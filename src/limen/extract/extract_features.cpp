@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "limen/base/error.h"
+#include "limen/base/stage_part.h"
 #include "limen/extract/automatic_threshold.h"
 #include "limen/extract/split_planes.h"
 
@@ -72,15 +73,17 @@ void add_interior(const Scan& scan, const ExtractOptions& options, ExtractedFeat
   const Scan part = subset(scan, left);
   GrowOptions grow = options.grow;
   grow.min_inliers = options.interior.min_inliers;
+  StagePart choosing(monitor, 0.0, 0.5);
   if (scan.mobile()) {
     AutomaticThresholdOptions by_noise;
     by_noise.factors = {1.0};
     grow.inlier_threshold_m =
-        std::min(features.inlier_threshold_m, automatic_threshold(part, grow, by_noise, monitor));
+        std::min(features.inlier_threshold_m, automatic_threshold(part, grow, by_noise, choosing));
   } else {
     grow.inlier_threshold_m = features.inlier_threshold_m;
   }
-  PlaneLabels grown = grow_planes(part, grow, monitor).planes;
+  StagePart growing(monitor, 0.5, 1.0);
+  PlaneLabels grown = grow_planes(part, grow, growing).planes;
   if (scan.mobile()) grown = split_planes(part, grown);
   const auto first = static_cast<std::int32_t>(features.planes.size());
   for (std::size_t k = 0; k < left.size(); ++k) {
@@ -136,15 +139,24 @@ void ExtractOptions::check() const {
 
 ExtractedFeatures extract_features(const Scan& scan, const ExtractOptions& options, Monitor& monitor) {
   options.check();
-  DetectedPlanes detected = detect_planes(scan, options.detect, options.grow, monitor);
+  const CancelScope scope(monitor);
+  // Shares of the work, about.
+  constexpr double kDetected = 0.6;
+  constexpr double kOutlined = 0.75;
+  constexpr double kSeenThrough = 0.95;
+  StagePart detecting(monitor, 0.0, kDetected);
+  DetectedPlanes detected = detect_planes(scan, options.detect, options.grow, detecting);
   ExtractedFeatures extracted;
   Features& features = extracted.features;
   features.local_origin = scan.local_origin;
   features.noise_m = detected.noise_m;
   features.inlier_threshold_m = detected.planes.inlier_threshold_m;
-  features.planes = make_polygons(scan, detected.planes, options.polygons, monitor);
+  StagePart outlining(monitor, kDetected, kOutlined);
+  features.planes = make_polygons(scan, detected.planes, options.polygons, outlining);
   extracted.labels = std::move(detected.planes.labels);
-  if (scan.centre_known() && options.interior.enabled) add_interior(scan, options, extracted, monitor);
+  StagePart seeing_through(monitor, kOutlined, kSeenThrough);
+  if (scan.centre_known() && options.interior.enabled) add_interior(scan, options, extracted, seeing_through);
+  monitor.advance(kSeenThrough, 1.0);
   features.samples = sample_surface(scan, extracted.labels, features.planes, options.samples);
   if (scan.mobile()) features.drift_m = drift_of(features);
   return extracted;

@@ -65,9 +65,11 @@ class PlaneGrower {
     merge();
     const SettleOptions settling{.threshold_m = threshold_m_};
     for (int k = 0; k < kSettlings; ++k) {
+      monitor.advance(kSteps - kSettlings - 1 + k, kSteps);
       labels_ = settled(scene, labels_, sums_, settling);
       merge();
     }
+    monitor.advance(kSteps - 1, kSteps);
     dissolve(explained_shares(scene, labels_, sums_, settling));
     labels_ = settled(scene, labels_, sums_, settling);
     merge();
@@ -87,7 +89,7 @@ class PlaneGrower {
     for (int level = coarsest + 1; level <= coarsest + kSparseLevels; ++level) levels.push_back(level);
     for (std::size_t k = 0; k < levels.size(); ++k) {
       monitor.throw_if_cancelled();
-      monitor.advance(static_cast<double>(k), static_cast<double>(levels.size()));
+      monitor.advance(kGrowSteps * static_cast<double>(k) / static_cast<double>(levels.size()), kSteps);
       grower.grow_level(levels[k], active, labels_);
       std::erase_if(active, [&](std::uint32_t position) { return labels_[position] >= 0; });
     }
@@ -156,6 +158,10 @@ class PlaneGrower {
     });
     return grown;
   }
+
+  // Of progress: growing, then the settlings and the last look.
+  static constexpr double kGrowSteps = 4.0;
+  static constexpr double kSteps = kGrowSteps + kSettlings + 1.0;
 
   GrowOptions options_;
   MortonOrder sorted_;

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "limen/base/angles.h"
+#include "limen/base/stage_part.h"
 #include "limen/extract/estimate_centre.h"
 #include "limen/extract/openings.h"
 #include "limen/extract/panorama.h"
@@ -49,11 +50,15 @@ Matrix3d turn_upright(const Vector3d& up) {
   return Eigen::Quaterniond::FromTwoVectors(up, Vector3d::UnitZ()).toRotationMatrix();
 }
 
+constexpr double kExtracted = 0.75;  // shares of the work, about, by which progress is told
+constexpr double kSpaceKnown = 0.85;
+
 /// Everything but the question of the vertical: z points up where `upright`.
 void prepare(const Scan& scan, const ExtractOptions& options, PreparedScan& prepared, Monitor& monitor) {
   ExtractOptions used = options;
   used.interior.enabled = options.interior.enabled && (prepared.upright || scan.mobile());
-  prepared.extracted = extract_features(scan, used, monitor);
+  StagePart extracting(monitor, 0.0, kExtracted);
+  prepared.extracted = extract_features(scan, used, extracting);
 }
 
 /// The optical centre, the view of space, what is seen through openings, the openings, and the segments.
@@ -77,6 +82,7 @@ void look_around(const Scan& scan, const PrepareOptions& options, PreparedScan& 
   } else {
     prepared.space = std::make_unique<VoxelMap>(*seen, features);
   }
+  monitor.advance(kSpaceKnown, 1.0);
   if (prepared.upright && seen->centre_known())
     features.openings = find_openings(*seen, prepared.extracted, Vector3d::UnitZ(), {}, monitor);
   if (options.segments) features.segments = find_segments(*seen, prepared.extracted, {}, monitor);
@@ -95,6 +101,7 @@ void PreparedScan::settle_reach() {
 }
 
 PreparedScan prepare_scan(const Scan& scan, const PrepareOptions& options, Monitor& monitor) {
+  const CancelScope scope(monitor);
   PreparedScan prepared;
   prepared.upright = options.gravity == Gravity::up;
   prepared.mobile = scan.mobile();

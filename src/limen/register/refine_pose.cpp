@@ -11,6 +11,7 @@
 #include <Eigen/LU>
 
 #include "limen/base/error.h"
+#include "limen/base/progress.h"
 #include "limen/register/pose_contacts.h"
 
 namespace limen {
@@ -32,6 +33,7 @@ class Refiner {
     RefinedPose refined;
     refined.target_from_source = start;
     for (int round = 0; round < options_.rounds; ++round) {
+      CancelScope::check();
       const double share = static_cast<double>(round) / std::max(1, options_.rounds - 1);
       const double gate =
           options_.first_gate_m * std::pow(options_.last_gate_m / options_.first_gate_m, share);

@@ -98,6 +98,7 @@ template <typename Source, typename Target>
 RegistrationResult prepare_and_register(const Source& source, const Target& target,
                                         const RegisterOptions& options, Monitor& monitor) {
   options.check();
+  const CancelScope scope(monitor);
   RegistrationResult result = prepare_and_register_once(source, target, options, monitor);
   const bool in_model = is_model(source) || is_model(target);
   if (!in_model || options.method != Method::automatic || result.judged_poses > 0) return result;

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "limen/base/progress.h"
 #include "limen/register/asked_samples.h"
 #include "limen/register/match_openings.h"
 
@@ -68,6 +69,7 @@ bool asks_wall(const SurfaceSample& sample, const ScanView& scan, const ScanView
 /// Asks `judge` about every sample of `scan`.
 PoseScore one_way(const ScanView& scan, const ScanView& judge, const Rigid3& judge_from_scan,
                   const ScoreOptions& options) {
+  CancelScope::check();
   PoseScore score;
   if (judge.space == nullptr) return score;
   const std::vector<SurfaceSample>& samples = scan.features->samples;
@@ -138,6 +140,7 @@ AskedSamples asked_for_both(const ScanView& scan, const ScanView& judge, const R
 
 void add_contrast(const ScanView& scan, const ScanView& judge, const Rigid3& first, const Rigid3& second,
                   const ScoreOptions& options, PoseContrast& contrast) {
+  CancelScope::check();
   if (judge.space == nullptr) return;
   const std::vector<SurfaceSample>& samples = scan.features->samples;
   const AskedSamples asked = asked_for_both(scan, judge, first, second, options);
