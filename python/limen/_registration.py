@@ -119,9 +119,10 @@ class Registration:
             raise ValueError("nothing in common was found: there is no pose to apply")
         return _limen.transform_points(np.asarray(points, dtype=np.float64), self.best.target_from_source)
 
-    def save(self, folder: Path) -> None:
-        """Write result.json and, unless nothing was found, transform.txt, as `limen register` does."""
-        self._report.save(os.fspath(folder))
+    def save(self, folder: Path, *, report: bool = True) -> None:
+        """Write result.json, transform.txt (unless nothing was found) and the page report.html with its sections,
+        as `limen register` does."""
+        self._report.save(os.fspath(folder), report)
 
     def to_dict(self) -> dict[str, Any]:
         """All that result.json holds."""

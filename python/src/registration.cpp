@@ -11,6 +11,7 @@
 
 #include "limen/base/atomic_file.h"
 #include "limen/register/register.h"
+#include "limen/report/html_report.h"
 #include "limen/report/result_json.h"
 
 namespace limen::python {
@@ -98,9 +99,21 @@ py::dict result_dict(const RegistrationResult& result) {
   return told;
 }
 
+/// A registration and what its report draws.
+struct Registered {
+  RegistrationReport report;
+  ReportScene scene;
+};
+
 /// The files that limen register writes; result.json comes last.
-void save(const RegistrationReport& report, const std::filesystem::path& path) {
+void save(const Registered& registered, const std::filesystem::path& path, bool with_report) {
+  const RegistrationReport& report = registered.report;
   const OutputFolder folder(path);
+  if (with_report) {
+    write_report(folder.path(), report, registered.scene);
+  } else {
+    remove_report(folder.path());
+  }
   if (report.result.outcome == Outcome::no_match) {
     std::filesystem::remove(folder.path() / "transform.txt");
   } else {
@@ -109,35 +122,40 @@ void save(const RegistrationReport& report, const std::filesystem::path& path) {
   write_file(folder.path() / "result.json", result_json(report));
 }
 
-RegistrationReport register_sides(const PythonSide& source, const PythonSide& target,
-                                  const RegisterOptions& options, Monitor& monitor) {
-  RegistrationReport report;
+Registered register_sides(const PythonSide& source, const PythonSide& target, RegisterOptions options,
+                          Monitor& monitor) {
+  options.picture = true;
+  Registered registered;
+  RegistrationReport& report = registered.report;
   report.source = summary_of(source);
   report.target = summary_of(target);
   report.seed = options.seed;
-  report.result = register_inputs(input_of(source), input_of(target), options, monitor);
-  return report;
+  const RegisterInput from = input_of(source);
+  const RegisterInput to = input_of(target);
+  report.result = register_inputs(from, to, options, monitor);
+  if (report.result.picture) registered.scene = make_scene(from, to, *report.result.picture);
+  return registered;
 }
 
 }  // namespace
 
 void bind_registration(py::module_& module) {
-  py::class_<RegistrationReport>(module, "RegistrationReport")
-      .def("values", [](const RegistrationReport& report) { return result_dict(report.result); })
-      .def("json", &result_json)
-      .def("save", &save, py::arg("folder"));
+  py::class_<Registered>(module, "RegistrationReport")
+      .def("values", [](const Registered& it) { return result_dict(it.report.result); })
+      .def("json", [](const Registered& it) { return result_json(it.report); })
+      .def("save", &save, py::arg("folder"), py::arg("with_report"));
   module.def(
       "register", [](const py::object& source, const py::object& target, const RegisterOptions& options,
                      const std::string& method, const std::string& gravity, const py::object& progress) {
         options.check();
         const PythonSide from = side_from(source);
         const PythonSide to = side_from(target);
-        RegistrationReport report =
+        Registered registered =
             run(progress, [&](Monitor& monitor) { return register_sides(from, to, options, monitor); });
-        report.options = {{"method", method}, {"gravity", gravity}};
-        if (options.wall_thickness_m > 0)
-          report.options.emplace_back("wall_thickness_m", options.wall_thickness_m);
-        return report;
+        OptionList& told = registered.report.options;
+        told = {{"method", method}, {"gravity", gravity}};
+        if (options.wall_thickness_m > 0) told.emplace_back("wall_thickness_m", options.wall_thickness_m);
+        return registered;
       });
 }
 

@@ -42,6 +42,11 @@ class Registered(unittest.TestCase):
             self.assertEqual(told, self.result.to_dict())
             self.assertEqual(told["outcome"], "registered")
             np.testing.assert_array_equal(told["target_from_source"], self.result.target_from_source)
+            self.assertIn("<html", (Path(folder) / "result" / "report.html").read_text(encoding="utf-8"))
+            self.result.save(Path(folder) / "result", report=False)
+            self.assertEqual(
+                sorted(path.name for path in (Path(folder) / "result").iterdir()), ["result.json", "transform.txt"]
+            )
             text = np.loadtxt(Path(folder) / "result" / "transform.txt")
             np.testing.assert_array_equal(text, self.result.target_from_source)
 
