@@ -172,6 +172,8 @@ std::vector<Segment> from_json(std::string_view text, const std::string& name) {
     const auto end = text.begin() + static_cast<std::ptrdiff_t>(std::min(error.byte, text.size()));
     const auto line = static_cast<std::size_t>(std::count(text.begin(), end, '\n')) + 1;
     throw Error("is not JSON", place(name, line), "correct the file, or write it anew");
+  } catch (const json::out_of_range&) {
+    throw Error("has a number that is too large", name, "correct the file, or write it anew");
   }
   for (const char* key : {"segments", "openings"}) {
     if (!object.contains(key)) continue;

@@ -97,6 +97,7 @@ TEST(ReadSegments, FaultsAreNamedWithTheirLine) {
             "is not a point of three numbers | " + file + ": segments[0].b");
   EXPECT_EQ(error(R"({"openings": [{"corners": [[1,2,3]]}]})"),
             "has no four corners | " + file + ": openings[0]");
+  EXPECT_EQ(error(R"({"segments": 1e999})"), "has a number that is too large | " + file);
   EXPECT_EQ(error(R"({"segments": []})"), "holds no segment | " + file);
   EXPECT_EQ(error(R"({"segments": 7})"), "segments is not a list | " + file);
   EXPECT_EQ(error("1 0 0 0 1 0 0 1 4 34 1 2 3 4\n1 0 0 0 1 0 0 1 4 34 1 2 3 4\n1 0 0 0 1 0 0 1 4 34 1 2 3 "
