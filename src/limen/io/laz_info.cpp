@@ -22,6 +22,13 @@ constexpr std::uint32_t kVariable = 0xFFFFFFFFU;  ///< chunks tell their points 
 constexpr std::size_t kRecordHead = 34;
 constexpr std::size_t kItemBytes = 6;
 
+/// The adaptive models give no symbol more than all but a 32768th per other symbol: a point takes at least
+/// 0.007 bits. A count beyond that is damaged, and must not make anybody reserve memory for it.
+bool can_hold(std::uint64_t bytes, std::uint64_t points) {
+  constexpr std::uint64_t kPointsPerByte = 4096;
+  return points / kPointsPerByte <= bytes;
+}
+
 /// What the LASzip record says.
 struct Compression {
   unsigned compressor = 0;  ///< 1: one run, 2: chunks, 3: layered chunks
@@ -157,7 +164,7 @@ void parse_table(const Source& source, const Compression& compression, LazInfo& 
     const std::uint64_t here = variable ? static_cast<std::uint32_t>(points)
                                         : std::min<std::uint64_t>(left, compression.chunk_points);
     const auto bytes = static_cast<std::uint32_t>(length);
-    if (bytes > place - at || here > left || !decoder.sound(false)) {
+    if (bytes > place - at || here > left || !can_hold(bytes, here) || !decoder.sound(false)) {
       source.damaged(fmt::format("compressed chunk {} of {} ({} points in {} bytes) cannot be", k + 1, count,
                                  here, bytes));
     }
@@ -192,6 +199,9 @@ LazInfo parse_laz_info(std::string_view bytes, const std::string& name, const La
   info.end = bytes.size();
   if (header.points == 0) return info;
   if (compression.compressor == 1) {
+    if (!can_hold(bytes.size() - header.points_begin, header.points))
+      source.damaged(
+          fmt::format("{} points cannot be in {} bytes", header.points, bytes.size() - header.points_begin));
     info.chunks.push_back({header.points_begin, bytes.size(), header.points});
   } else {
     parse_table(source, compression, info);

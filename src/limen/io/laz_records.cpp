@@ -25,6 +25,8 @@ class LazRecords : public LasRecords {
         info_(parse_laz_info(bytes, name_, header)) {}
 
   LasPiece next(std::size_t most_rows) override {
+    // What a damaged count promises may have no room in memory.
+    most_rows = std::min(most_rows, kMostRows);
     if (!open_ && at_ == info_.chunks.size()) return {};
     const bool some = open_ != nullptr || info_.chunks[at_].points > most_rows;
     const std::size_t count = some ? decode_some(most_rows) : decode_whole(most_rows);
@@ -32,6 +34,8 @@ class LazRecords : public LasRecords {
   }
 
  private:
+  static constexpr std::size_t kMostRows = std::size_t{1} << 24U;
+
   [[noreturn]] void damaged(std::size_t chunk) const {
     throw Error(fmt::format("compressed chunk {} of {} is damaged (bytes {} to {})", chunk + 1,
                             info_.chunks.size(), info_.chunks[chunk].begin, info_.chunks[chunk].end),

@@ -149,6 +149,14 @@ TEST(LazRecords, DamageIsTold) {
   EXPECT_NE(error_of(far), "no error");
 }
 
+TEST(LazRecords, ACountThatNoBytesCanHold) {
+  Packing one_run;
+  one_run.one_run = true;
+  std::string bytes = testing_laz::file(some(1, 100), one_run);
+  testing_las::put(bytes, 247, std::uint64_t{1} << 40U);
+  EXPECT_EQ(error_of(bytes).substr(0, 30), "1099511627776 points cannot be");
+}
+
 TEST(LazRecords, AnyShortenedOrChangedFileIsReadOrRefused) {
   RandomStream random(9);
   for (const int format : {0, 5, 6, 10}) {
