@@ -126,6 +126,16 @@ TEST(E57Poses, DescriptionsBeforeThePoints) {
   EXPECT_EQ(payloads(after.bytes, 1024).substr(xml_end), payloads(before, 1024).substr(xml_end));
 }
 
+TEST(E57Poses, ByteOrderMarksStay) {
+  Layout layout;
+  layout.marked = true;
+  const std::string before = file_of({scan(kPose), scan("")}, layout);
+  const Moved after = moved(before, motion());
+  expect_moved(before, after);
+  EXPECT_EQ(without_poses(xml_in(after.bytes)), without_poses(xml_in(before)));
+  EXPECT_EQ(xml_in(after.bytes).substr(0, 4), "\xEF\xBB\xBF<");
+}
+
 TEST(E57Poses, ImagesMoveToo) {
   Layout layout;
   layout.images =

@@ -103,6 +103,7 @@ struct Layout {
   std::uint64_t packet_seed = 0;  ///< not 0: streams advance unequally, index and empty packets between them
   std::size_t packet_bytes = 600;
   bool xml_first = false;  ///< the description before the points
+  bool marked = false;     ///< a byte order mark before the description
   std::string images = "";
   std::string root = "";  ///< further elements of the root
 };
@@ -167,7 +168,8 @@ inline std::string scan_element(const ScanParts& scan, std::uint64_t offset) {
 
 inline std::string xml_of(const std::vector<ScanParts>& scans, const std::vector<std::uint64_t>& offsets,
                           const Layout& layout) {
-  std::string xml =
+  std::string xml = layout.marked ? "\xEF\xBB\xBF" : "";
+  xml +=
       "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<!-- kept -->\n<e57Root type=\"Structure\" "
       "xmlns=\"http://www.astm.org/COMMIT/E57/2010-e57-v1.0\">\n" +
       layout.root + "<data3D type=\"Vector\">\n";
