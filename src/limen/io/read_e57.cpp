@@ -159,4 +159,11 @@ std::unique_ptr<PointFile> open_e57(std::string_view bytes, const std::string& n
   return std::make_unique<E57File>(std::move(source));
 }
 
+std::vector<std::string> e57_coordinate_systems(std::string_view bytes, const std::string& name) {
+  const E57Pages pages(bytes, name);
+  E57Document document = parse_e57_document(e57_xml(pages), name);
+  if (document.coordinates.empty()) return {};
+  return {std::move(document.coordinates)};
+}
+
 }  // namespace limen

@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "limen/io/point_file.h"
 
@@ -23,5 +24,8 @@ bool looks_like_e57(std::string_view bytes);
 /// are verified. Throws Error that names the file, the place and what can be done, here for the head and the
 /// description, in PointStream::next for the points.
 std::unique_ptr<PointFile> open_e57(std::string_view bytes, const std::string& name);
+
+/// The coordinate system that an E57 file names (usually WKT), or nothing. Throws Error as open_e57.
+std::vector<std::string> e57_coordinate_systems(std::string_view bytes, const std::string& name);
 
 }  // namespace limen

@@ -240,7 +240,7 @@ TEST(WriteE57, CentresAndCoordinateSystems) {
   EXPECT_EQ(file->clouds()[0].table.pose->translation, *plan.centre);
   const E57Pages pages(known, "out.e57");
   const E57Document document = parse_e57_document(e57_xml(pages), "out.e57");
-  EXPECT_EQ(document.coordinates, plan.georeference[0]);
+  EXPECT_EQ(e57_coordinate_systems(known, "out.e57"), plan.georeference);
   EXPECT_EQ(document.scans[0].name, plan.name);
   plan.centre.reset();
   for (const char* name : {"x_origin", "y_origin", "z_origin"})
