@@ -3,8 +3,9 @@
 """What pip calls to build limen (PEP 517, PEP 660): CMake compiles, this makes the wheel. Needs nothing but
 Python, so that `pip install .` works without a network.
 
-Config settings (`pip install . -C cmake=-DLIMEN_BUILD_IFC=OFF`) go to CMake. LIMEN_PYTHON_BUILD_DIR names a
-build folder that is configured already, with LIMEN_BUILD_PYTHON, to use as it is.
+Config settings (`pip install . --config-settings=cmake=-DLIMEN_BUILD_IFC=OFF`) go to CMake.
+LIMEN_PYTHON_BUILD_DIR names a build folder that is configured already, with LIMEN_BUILD_PYTHON, to use as it
+is.
 """
 
 from __future__ import annotations

@@ -23,7 +23,7 @@ TEST(ProgressLine, ShowsStageBarShareRateAndRemainingTime) {
 
 TEST(ProgressLine, ABlockHasEightSteps) {
   EXPECT_EQ(progress_line({"planes", WorkUnit::steps, 9, 16, 0.1, {}}, {30, true}),
-            "planes       ▕█████▏   ▏  56 %");
+            "planes       ▕████▌   ▏  56 %");
 }
 
 TEST(ProgressLine, NeverFillsTheLastColumn) {
