@@ -19,7 +19,8 @@ constexpr std::array<std::size_t, 11> kInfraredAt{0, 0, 0, 0, 0, 0, 0, 0, 36, 0,
 constexpr std::array<std::size_t, 11> kWavePacketAt{0, 0, 0, 0, 28, 34, 0, 0, 0, 30, 38};
 
 constexpr std::size_t kExtraDescription = 192;
-constexpr double kScanAngleStep = 0.006;  // degrees, formats 6 to 10
+constexpr std::size_t kMostDescribed = 1000;  ///< more extra values are damage
+constexpr double kScanAngleStep = 0.006;      // degrees, formats 6 to 10
 
 std::size_t at(const std::array<std::size_t, 11>& places, int point_format) {
   return places[static_cast<std::size_t>(point_format)];
@@ -198,7 +199,7 @@ LasLayout las_layout(const LasHeader& header) {
   std::size_t unnamed = 0;
   const LasRecord* about = header.find("LASF_Spec", 4);
   const std::size_t count = about == nullptr ? 0 : about->body.size() / kExtraDescription;
-  for (std::size_t k = 0; k < count; ++k) {
+  for (std::size_t k = 0; k < std::min(count, kMostDescribed); ++k) {
     const ExtraValue value = extra_value(about->body.substr(k * kExtraDescription, kExtraDescription));
     const std::size_t bytes = value.elements * size_of(value.type);
     if (bytes > header.point_bytes - place) {

@@ -162,6 +162,17 @@ TEST(ReadLas, ExtraBytesBeyondTheRecordAreTold) {
   EXPECT_EQ(opened->clouds()[0].notes.at(0), "1 extra values per point are described, 0 of them are there");
 }
 
+TEST(ReadLas, ManyUndescribedBytesAreToldNotGiven) {
+  Parts parts = some(4, 6);
+  parts.extra = 60000;
+  parts.points = std::string(point_bytes(parts), '\0');
+  const std::string bytes = file(parts);
+  const auto opened = open_las(bytes, "test");
+  EXPECT_LT(opened->clouds()[0].fields.size(), 100U);
+  EXPECT_EQ(opened->clouds()[0].notes.at(0),
+            "of 60000 bytes per point that nothing describes not all are taken as values");
+}
+
 TEST(ReadLas, TimesAreTold) {
   Parts parts = some(2, 1);
   std::string bytes = file(parts);
