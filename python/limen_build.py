@@ -59,7 +59,7 @@ def _wheel_file() -> str:
 
 def _settings(config_settings: dict | None) -> list[str]:
     given = (config_settings or {}).get("cmake", [])
-    return shlex.split(given) if isinstance(given, str) else [word for it in given for word in shlex.split(it)]
+    return [word for text in ([given] if isinstance(given, str) else given) for word in shlex.split(text)]
 
 
 def _build(config_settings: dict | None) -> Path:
@@ -67,8 +67,9 @@ def _build(config_settings: dict | None) -> Path:
     configured = os.environ.get("LIMEN_PYTHON_BUILD_DIR")
     build = Path(configured or ROOT / "build" / "python")
     if not configured:
-        configure = ["cmake", "-S", str(ROOT), "-B", str(build), "-DLIMEN_BUILD_PYTHON=ON", "-DLIMEN_BUILD_TESTS=OFF"]
-        configure += ["-DCMAKE_BUILD_TYPE=Release", f"-DPython3_EXECUTABLE={sys.executable}"]
+        configure = ["cmake", "-S", str(ROOT), "-B", str(build), "-DCMAKE_BUILD_TYPE=Release"]
+        configure += ["-DLIMEN_BUILD_PYTHON=ON", "-DLIMEN_BUILD_TESTS=OFF"]
+        configure += [f"-DPython3_EXECUTABLE={sys.executable}"]
         if not (build / "CMakeCache.txt").exists():
             configure += ["-G", "Ninja"]
         subprocess.run(configure + _settings(config_settings), check=True)
@@ -84,7 +85,8 @@ def _package_files(package: Path) -> list[Path]:
     suffix = sysconfig.get_config_var("EXT_SUFFIX")
     module = f"_limen{suffix}"
     names = {module, "limen_ifc", "py.typed"}
-    wanted = [path for path in sorted(package.iterdir()) if path.name in names or path.suffix in (".py", ".pyi")]
+    files = sorted(package.iterdir())
+    wanted = [path for path in files if path.name in names or path.suffix in (".py", ".pyi")]
     if module not in (path.name for path in wanted):
         raise SystemExit(f"limen_build: {package} has no module for this Python")
     return wanted
@@ -165,7 +167,8 @@ def _source_files() -> list[Path]:
         return [Path(os.fsdecode(name)) for name in listed.stdout.split(b"\0") if name]
     left_out = {".git", "__pycache__"}
     files = [path.relative_to(ROOT) for path in sorted(ROOT.rglob("*")) if path.is_file()]
-    return [path for path in files if not left_out & set(path.parts) and not path.parts[0].startswith("build")]
+    files = [path for path in files if not left_out & set(path.parts)]
+    return [path for path in files if not path.parts[0].startswith("build")]
 
 
 def build_sdist(sdist_directory, config_settings=None):

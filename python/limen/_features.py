@@ -75,7 +75,13 @@ class Features:
 
     def _repr_html_(self) -> str:
         rows = [
-            (k, f"{p.inliers:,}", f"{p.area_m2:.2f}", f"{1e3 * p.rms_m:.1f}", "{:.3f} {:.3f} {:.3f}".format(*p.normal))
+            (
+                k,
+                f"{p.inliers:,}",
+                f"{p.area_m2:.2f}",
+                f"{1e3 * p.rms_m:.1f}",
+                "{:.3f} {:.3f} {:.3f}".format(*p.normal),
+            )
             for k, p in enumerate(self.planes[:10])
         ]
         walls = [_closed(p.outline) for p in self.planes if abs(p.normal[2]) < 0.5 and len(p.outline)]

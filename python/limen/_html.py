@@ -58,7 +58,8 @@ def top_view(clouds: Sequence[Array] = (), lines: Sequence[Sequence[Array]] = ()
     for cloud, colour in zip(clouds, COLOURS):
         dots = "".join(f"M{x:g} {y:g}h.01" for x, y in place(cloud[:, :2]))
         parts.append(
-            f'<path d="{dots}" stroke="{colour}" stroke-width="2" stroke-linecap="round" opacity=".6" fill="none"/>'
+            f'<path d="{dots}" stroke="{colour}" stroke-width="2" stroke-linecap="round" '
+            'opacity=".6" fill="none"/>'
         )
     for group, colour in zip(lines, COLOURS):
         strokes = "".join("M" + "L".join(f"{x:g} {y:g}" for x, y in place(line[:, :2])) for line in group)

@@ -112,7 +112,12 @@ class PolygonOptions:
     min_hole_m2: float
     simplify_m: float
     def __init__(
-        self, *, alpha_m: float = ..., min_part_m2: float = ..., min_hole_m2: float = ..., simplify_m: float = ...
+        self,
+        *,
+        alpha_m: float = ...,
+        min_part_m2: float = ...,
+        min_hole_m2: float = ...,
+        simplify_m: float = ...,
     ) -> None: ...
     def check(self) -> None: ...
 

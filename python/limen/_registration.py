@@ -120,8 +120,8 @@ class Registration:
         return _limen.transform_points(np.asarray(points, dtype=np.float64), self.best.target_from_source)
 
     def save(self, folder: Path, *, report: bool = True) -> None:
-        """Write result.json, transform.txt (unless nothing was found) and the page report.html with its sections,
-        as `limen register` does."""
+        """Write result.json, transform.txt (unless nothing was found) and the page report.html with its
+        sections, as `limen register` does."""
         self._report.save(os.fspath(folder), report)
 
     def to_dict(self) -> dict[str, Any]:
@@ -144,7 +144,8 @@ class Registration:
             rows += [("not fixed", freedom.name) for freedom in self.unobserved]
             surface = f"{self.best.agreeing_m2:.1f} m2, {self.best.contradicted_m2:.2f} m2 against"
             rows.append(("agreeing surface", surface))
-            rows.append(("matched", f"{self.best.matched_planes} planes, {self.best.matched_openings} openings"))
+            matched = f"{self.best.matched_planes} planes, {self.best.matched_openings} openings"
+            rows.append(("matched", matched))
             if self.best.room:
                 rows.append(("room", self.best.room))
         rows += [("wall", f"{wall.value_m:.3f} m thick") for wall in self.thickness[:3]]
@@ -199,7 +200,7 @@ def register(
 
     Either side is a Scan, a Model, a file of either, or a list of (scan, pose) known to one another.
     method: auto, polygons, openings, hybrid or segments. gravity: auto, up or unknown.
-    `options` has all that the keywords have and more; keywords that are not at their defaults count before it.
+    `options` has all that the keywords have and more; keywords that are not at their defaults count first.
     """
     chosen = _DEFAULTS if options is None else options
     asked = RegisterOptions()

@@ -98,7 +98,8 @@ def _scan_html(scan: Scan) -> str:
 
 
 def _model_repr(model: Model) -> str:
-    return f"<limen.Model {model.name!r}: {model.schema}, {len(model.elements)} elements, {model.faces} faces>"
+    held = f"{len(model.elements)} elements, {model.faces} faces"
+    return f"<limen.Model {model.name!r}: {model.schema}, {held}>"
 
 
 def _elements(model: Model) -> list[Element]:

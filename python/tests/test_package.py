@@ -102,7 +102,8 @@ class Installed(unittest.TestCase):
         self.assertTrue(done.stdout.startswith(str(self.python.parent.parent)), done.stdout)
 
     def test_a_model_is_read_by_the_program_in_the_wheel(self):
-        here = self.run_python("import limen, os; print(os.path.join(os.path.dirname(limen.__file__), 'limen_ifc'))")
+        script = "import limen, os; print(os.path.join(os.path.dirname(limen.__file__), 'limen_ifc'))"
+        here = self.run_python(script)
         self.assertTrue(os.access(here.stdout.strip(), os.X_OK), here.stdout)
 
     def test_the_examples_of_the_manual_run(self):
@@ -121,7 +122,8 @@ class Source(unittest.TestCase):
             with tarfile.open(Path(folder) / name) as archive:
                 names = set(archive.getnames())
             top = name[: -len(".tar.gz")]
-            for path in ("pyproject.toml", "python/limen_build.py", "CMakeLists.txt", "src/limen_main.cpp", "PKG-INFO"):
+            wanted = ("pyproject.toml", "python/limen_build.py", "CMakeLists.txt", "src/limen_main.cpp", "PKG-INFO")
+            for path in wanted:
                 self.assertIn(f"{top}/{path}", names)
             self.assertFalse([it for it in names if "/build" in it and it.startswith(f"{top}/build")])
 

@@ -1,7 +1,6 @@
 # SPDX-FileCopyrightText: The limen authors
 # SPDX-License-Identifier: Apache-2.0
 import json
-import os
 import signal
 import subprocess
 import sys
@@ -33,7 +32,8 @@ class Registered(unittest.TestCase):
     def test_points_are_moved(self):
         source, target = self.case.scans
         moved = self.result.apply(source.world_points)
-        np.testing.assert_allclose(moved, limen.transform(source.world_points, self.result.target_from_source))
+        expected = limen.transform(source.world_points, self.result.target_from_source)
+        np.testing.assert_allclose(moved, expected)
 
     def test_files_are_those_of_the_program(self):
         with tempfile.TemporaryDirectory() as folder:
@@ -44,9 +44,8 @@ class Registered(unittest.TestCase):
             np.testing.assert_array_equal(told["target_from_source"], self.result.target_from_source)
             self.assertIn("<html", (Path(folder) / "result" / "report.html").read_text(encoding="utf-8"))
             self.result.save(Path(folder) / "result", report=False)
-            self.assertEqual(
-                sorted(path.name for path in (Path(folder) / "result").iterdir()), ["result.json", "transform.txt"]
-            )
+            names = sorted(path.name for path in (Path(folder) / "result").iterdir())
+            self.assertEqual(names, ["result.json", "transform.txt"])
             text = np.loadtxt(Path(folder) / "result" / "transform.txt")
             np.testing.assert_array_equal(text, self.result.target_from_source)
 
@@ -108,7 +107,8 @@ class Found(unittest.TestCase):
         self.assertEqual(len(on_it), plane.inliers)
         self.assertLess(np.abs(on_it @ plane.normal - plane.offset).mean(), 0.01)
         self.assertLess(np.abs(plane.outline @ plane.normal - plane.offset).max(), 1e-9)
-        self.assertAlmostEqual(features.openings[0].width_m, np.linalg.norm(np.diff(features.openings[0].corners[:2], axis=0)))
+        opening = features.openings[0]
+        self.assertAlmostEqual(opening.width_m, np.linalg.norm(np.diff(opening.corners[:2], axis=0)))
         self.assertIn("<svg", features._repr_html_())
         bare = limen.extract_features(scan, openings=False, segments=False)
         self.assertEqual((len(bare.openings), len(bare.segments)), (0, 0))
@@ -130,7 +130,8 @@ class AgainstAModel(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / "wall.obj"
             path.write_text("o wall\nv 0 2 0\nv 4 2 0\nv 4 2 3\nv 0 2 3\nf 1 2 3 4\n")
-            grid = np.stack(np.meshgrid(np.linspace(0.1, 3.9, 200), [2.01], np.linspace(0.1, 2.9, 150)), -1).reshape(-1, 3)
+            axes = np.meshgrid(np.linspace(0.1, 3.9, 200), [2.01], np.linspace(0.1, 2.9, 150))
+            grid = np.stack(axes, -1).reshape(-1, 3)
             scan = limen.Scan(points=grid, centres=(2, -3, 1.5))
             result = limen.deviation(scan, path)
             self.assertEqual(result.elements[0].presence, "found")
@@ -150,7 +151,7 @@ class LongWork(unittest.TestCase):
 
     def test_progress_is_told(self):
         heard = []
-        limen.register(*self.case.scans, progress=lambda stage, done, total: heard.append((stage, done, total)))
+        limen.register(*self.case.scans, progress=lambda *told: heard.append(told))
         self.assertTrue({"hypotheses", "scoring", "refinement"} <= {stage for stage, _, _ in heard})
         self.assertTrue(all(0 <= done <= total or total == 0 for _, done, total in heard))
 
@@ -187,7 +188,7 @@ class LongWork(unittest.TestCase):
             "try:\n    limen.simulate('museum', points_indoor=5_000_000, progress=tell)\n"
             "except KeyboardInterrupt:\n    print('stopped'); sys.exit(7)\n"
         )
-        process = subprocess.Popen([sys.executable, "-c", script], stdout=subprocess.PIPE, text=True, env=os.environ)
+        process = subprocess.Popen([sys.executable, "-c", script], stdout=subprocess.PIPE, text=True)
         self.assertEqual(process.stdout.readline(), "working\n")
         time.sleep(0.3)
         pressed = time.monotonic()

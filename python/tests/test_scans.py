@@ -106,7 +106,8 @@ class Files(unittest.TestCase):
             path = Path(folder) / "box.obj"
             path.write_text("o wall\nv 0 0 0\nv 4 0 0\nv 4 0 3\nv 0 0 3\nf 1 2 3 4\n")
             model = limen.read_model(path)
-            self.assertEqual((model.schema, model.faces, model.elements[0].name or model.elements[0].type), ("OBJ", 1, "wall"))
+            wall = model.elements[0]
+            self.assertEqual((model.schema, model.faces, wall.name or wall.type), ("OBJ", 1, "wall"))
             self.assertIn("OBJ", repr(model))
 
 
@@ -123,7 +124,8 @@ class Moving(unittest.TestCase):
     def test_a_file_is_moved(self):
         with tempfile.TemporaryDirectory() as folder:
             limen.Scan(points=cube()).save(Path(folder) / "a.ply")
-            self.assertEqual(limen.transform_file(Path(folder) / "a.ply", self.POSE, Path(folder) / "b.ply"), 1000)
+            count = limen.transform_file(Path(folder) / "a.ply", self.POSE, Path(folder) / "b.ply")
+            self.assertEqual(count, 1000)
             moved = limen.read_scan(Path(folder) / "b.ply").world_points
             np.testing.assert_allclose(moved, limen.transform(cube(), self.POSE), atol=1e-12)
 

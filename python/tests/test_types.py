@@ -50,17 +50,18 @@ class Stub(unittest.TestCase):
             if not isinstance(node, ast.ClassDef) or not node.name.endswith("Options"):
                 continue
             options = getattr(_limen, node.name)()
-            self.assertEqual(
-                list(options._fields), [part.target.id for part in node.body if isinstance(part, ast.AnnAssign)]
-            )
+            fields = [part.target.id for part in node.body if isinstance(part, ast.AnnAssign)]
+            self.assertEqual(list(options._fields), fields)
             for part in node.body:
                 if isinstance(part, ast.AnnAssign) and isinstance(part.annotation, ast.Name):
                     value = getattr(options, part.target.id)
-                    self.assertEqual(type(value).__name__, part.annotation.id, f"{node.name}.{part.target.id}")
+                    where = f"{node.name}.{part.target.id}"
+                    self.assertEqual(type(value).__name__, part.annotation.id, where)
 
     def test_functions_take_what_the_stub_says(self):
         for node in stub():
-            if isinstance(node, ast.FunctionDef) and node.name not in ("set_threads", "threads", "scene_names"):
+            untyped = ("set_threads", "threads", "scene_names")
+            if isinstance(node, ast.FunctionDef) and node.name not in untyped:
                 first_line = getattr(_limen, node.name).__doc__.splitlines()[0]
                 arguments = first_line[first_line.index("(") + 1 : first_line.rindex(")")]
                 count = arguments.count(": ")
