@@ -209,7 +209,6 @@ std::string scene_elements(const RegistrationReport& report, const ReportScene& 
                {"poses", poses_json(result, scene)},
                {"rivals", result.rivals},
                {"open", open_json(result)},
-               {"centre", json_of(Vector3d(result.sigma.centre - scene.target.origin))},
                {"matches", matches_json(result)}};
   for (Eigen::Index k = 0; k < 3; ++k)
     json["axes"].push_back(json_of(Vector3d(view.view_from_target.row(k).transpose())));

@@ -253,6 +253,7 @@ TEST(ReportPage, TakesSidesWithoutAnything) {
 
 TEST(ReportWords, LengthsAndAngles) {
   EXPECT_EQ(length_words(0.00031), "0.3 mm");
+  EXPECT_EQ(length_words(-0.00001), "0.0 mm");
   EXPECT_EQ(length_words(0.0123), "12 mm");
   EXPECT_EQ(length_words(-0.25), "-25.0 cm");
   EXPECT_EQ(length_words(1.5), "1.50 m");

@@ -111,12 +111,14 @@ std::string sigma_table(const RegistrationReport& report) {
   const RegistrationResult& result = report.result;
   const Rigid3& pose = result.best.target_from_source;
   const Vector3d turn = rotation_log(pose.rotation);
+  // Of the point that is known best: far from it the smallest turn is a long way.
+  const Vector3d shift = result.sigma.centre - inverse(pose) * result.sigma.centre;
   std::string rows;
   static constexpr const char* kAxes[] = {"x", "y", "z"};
   for (int axis = 0; axis < 3; ++axis) {
     const bool open = is_open(result, false, axis);
     rows += "<tr>" + cell(fmt::format("Shift along {}", kAxes[axis]), "th", " scope=\"row\"") +
-            cell(fmt::format("{:.4f} m", pose.translation[axis])) +
+            cell(fmt::format("{:.4f} m", shift[axis])) +
             cell(open ? "◇ not held by the data" : "± " + length_words(result.sigma.translation_m[axis])) +
             "</tr>\n";
   }
@@ -127,7 +129,7 @@ std::string sigma_table(const RegistrationReport& report) {
             cell(open ? "◇ not held by the data" : "± " + angle_words(result.sigma.rotation_rad[axis])) +
             "</tr>\n";
   }
-  return table({"Freedom, target's axes", "Value", "One standard deviation"}, rows, "sigma");
+  return table({"Freedom", "Value", "Standard deviation"}, rows, "sigma");
 }
 
 std::string alternatives_table(const RegistrationReport& report) {
@@ -148,7 +150,8 @@ std::string alternatives_table(const RegistrationReport& report) {
     } else {
       rows += cell(area_words(pose.agreeing_m2)) + cell(area_words(pose.contradicted_m2));
     }
-    rows += cell(length_words(pose.rms_m)) + cell(fmt::format("{:.1f}", pose.score)) +
+    // Poses that were never judged to the end have none.
+    rows += cell(pose.rms_m > 0 ? length_words(pose.rms_m) : "—") + cell(fmt::format("{:.1f}", pose.score)) +
             cell(escaped(pose.room)) + "</tr>\n";
   }
   return table({"Pose", segments ? "Segments" : "Agrees", segments ? "Length" : "Contradicted", "Residual",

@@ -46,9 +46,10 @@ std::string expectation(const RegistrationResult& result) {
     if (!is_open(result, false, axis)) shift = std::max(shift, result.sigma.translation_m[axis]);
     if (!is_open(result, true, axis)) turn = std::max(turn, result.sigma.rotation_rad[axis]);
   }
+  const std::string position = shift < 0.00005 ? "less than 0.1 mm" : length_words(shift);
   return fmt::format(
       "You can expect {} in position and {} in direction (one standard deviation of the worst axis{}).",
-      length_words(shift), angle_words(turn), result.unobserved.empty() ? "" : " that is held");
+      position, angle_words(turn), result.unobserved.empty() ? "" : " that is held");
 }
 
 VerdictWords registered_words(const RegistrationReport& report) {
@@ -78,8 +79,7 @@ VerdictWords ambiguous_words(const RegistrationReport& report) {
 
 VerdictWords open_words(const RegistrationReport& report) {
   const RegistrationResult& result = report.result;
-  VerdictWords words{
-      "Not fully held: the data leaves a direction open", {}, square_metres(result.reason), "↔"};
+  VerdictWords words{"Not fully held: the data leaves a direction open", {}, "", "↔"};
   for (const UnobservedFreedom& freedom : result.unobserved)
     words.sentences.push_back(capitalised(freedom.name) + " is not held by the data.");
   if (result.unobserved.size() > 1)
@@ -101,6 +101,7 @@ bool is_open(const RegistrationResult& result, bool rotation, int axis) {
 std::string length_words(double metres) {
   const double size = std::abs(metres);
   if (!std::isfinite(metres)) return "—";
+  if (size < 0.00005) return "0.0 mm";
   if (size < 0.0995) return fmt::format("{:.{}f} mm", 1e3 * metres, size < 0.00995 ? 1 : 0);
   if (size < 0.995) return fmt::format("{:.1f} cm", 1e2 * metres);
   return fmt::format("{:.2f} m", metres);

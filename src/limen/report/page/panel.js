@@ -105,7 +105,7 @@ const numbersOf = (pose) => {
   const words = [];
   if (pose.segments) words.push(`${pose.segments} segments, ${pose.length.toFixed(1)} m in common`);
   else words.push(`${pose.agreeing.toFixed(1)} m² agree`, `${pose.contradicted.toFixed(1)} m² contradicted`);
-  words.push(`residual ${millimetres(pose.rms)}`);
+  if (pose.rms > 0) words.push(`residual ${millimetres(pose.rms)}`);
   if (pose.room) words.push(pose.room);
   return words.join(' · ');
 };

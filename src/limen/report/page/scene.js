@@ -55,18 +55,19 @@ const cutLines = (side, normal, offset) => {
   return out;
 };
 
-/** Lines to both sides of `centre` along every direction that is open, with arrow heads. Target's frame. */
+/** Arrows both ways from the middle along every direction that is open. Target's frame. */
 const openLines = (scene) => {
   const out = [];
+  const centre = turn(inverseRigid(scene.viewFromTarget), scaled(add(scene.low, scene.high), 0.5));
   const reach = 0.3 * norm(sub(scene.high, scene.low));
   const up = scene.axes[2];
   for (const { rotation, direction } of scene.open) {
     if (rotation) continue;
     const aside = scaled(Math.abs(dot(up, direction)) > 0.9 ? scene.axes[0] : up, 0.05 * reach);
     for (const way of [1, -1]) {
-      const tip = add(scene.centre, scaled(direction, way * reach));
-      const back = add(scene.centre, scaled(direction, way * 0.9 * reach));
-      out.push(...scene.centre, ...tip, ...tip, ...add(back, aside), ...tip, ...sub(back, aside));
+      const tip = add(centre, scaled(direction, way * reach));
+      const back = add(centre, scaled(direction, way * 0.9 * reach));
+      out.push(...centre, ...tip, ...tip, ...add(back, aside), ...tip, ...sub(back, aside));
     }
   }
   return out;
