@@ -24,6 +24,11 @@ using testing_io::TemporaryFolder;
 
 /// Numbers of one column, as doubles, and how they lie in memory.
 struct Given {
+  Given(std::string name, Scalar type, std::vector<double> numbers) : values(std::move(numbers)) {
+    plan.name = std::move(name);
+    plan.type = type;
+  }
+
   ColumnPlan plan;
   std::vector<double> values;
 };
@@ -96,9 +101,11 @@ std::vector<double> noise(std::size_t count, double low, double high, std::uint6
 }
 
 std::vector<Given> points(std::size_t count) {
-  return {{{"x"}, noise(count, 1e6, 1e6 + 100, 1)},
-          {{"y"}, noise(count, 6.8e6, 6.8e6 + 100, 2)},
-          {{"z"}, noise(count, -5, 5, 3)}};
+  std::vector<Given> columns;
+  columns.emplace_back("x", Scalar::float64, noise(count, 1e6, 1e6 + 100, 1));
+  columns.emplace_back("y", Scalar::float64, noise(count, 6.8e6, 6.8e6 + 100, 2));
+  columns.emplace_back("z", Scalar::float64, noise(count, -5, 5, 3));
+  return columns;
 }
 
 CloudPlan plan_of(const std::vector<Given>& columns) {
@@ -147,20 +154,20 @@ void expect_near(const std::vector<double>& a, const std::vector<double>& b, dou
 TEST(WriteE57, EveryTypeAndNameComesBack) {
   const std::size_t n = 5003;
   std::vector<Given> columns = points(n);
-  columns.push_back({{"Intensity", Scalar::uint16}, noise(n, 0, 65536, 4, true)});
-  columns.push_back({{"red", Scalar::uint8}, noise(n, 0, 256, 5, true)});
-  columns.push_back({{"green", Scalar::uint8}, noise(n, 0, 256, 6, true)});
-  columns.push_back({{"blue", Scalar::uint8}, noise(n, 0, 256, 7, true)});
-  columns.push_back({{"GPS_time", Scalar::float64}, noise(n, 3e8, 3e8 + 60, 8)});
-  columns.push_back({{"scan_line", Scalar::int32}, noise(n, -9, 3000, 9, true)});
-  columns.push_back({{"scan_index", Scalar::int32}, noise(n, 0, 3000, 10, true)});
-  columns.push_back({{"nx", Scalar::float32}, noise(n, 0, 1, 11, true)});
-  columns.push_back({{"Odd name (%)", Scalar::int8}, noise(n, -128, 128, 12, true)});
-  columns.push_back({{"_x20_", Scalar::int16}, noise(n, -32768, 32768, 13, true)});
-  columns.push_back({{"9lives", Scalar::uint32}, noise(n, 0, 4294967296.0, 14, true)});
-  columns.push_back({{"big", Scalar::int64}, noise(n, -9e15, 9e15, 15, true)});
-  columns.push_back({{"great", Scalar::uint64}, noise(n, 0, 9e15, 16, true)});
-  columns.push_back({{"reflectance", Scalar::float32}, noise(n, 0, 50, 17, true)});
+  columns.emplace_back("Intensity", Scalar::uint16, noise(n, 0, 65536, 4, true));
+  columns.emplace_back("red", Scalar::uint8, noise(n, 0, 256, 5, true));
+  columns.emplace_back("green", Scalar::uint8, noise(n, 0, 256, 6, true));
+  columns.emplace_back("blue", Scalar::uint8, noise(n, 0, 256, 7, true));
+  columns.emplace_back("GPS_time", Scalar::float64, noise(n, 3e8, 3e8 + 60, 8));
+  columns.emplace_back("scan_line", Scalar::int32, noise(n, -9, 3000, 9, true));
+  columns.emplace_back("scan_index", Scalar::int32, noise(n, 0, 3000, 10, true));
+  columns.emplace_back("nx", Scalar::float32, noise(n, 0, 1, 11, true));
+  columns.emplace_back("Odd name (%)", Scalar::int8, noise(n, -128, 128, 12, true));
+  columns.emplace_back("_x20_", Scalar::int16, noise(n, -32768, 32768, 13, true));
+  columns.emplace_back("9lives", Scalar::uint32, noise(n, 0, 4294967296.0, 14, true));
+  columns.emplace_back("big", Scalar::int64, noise(n, -9e15, 9e15, 15, true));
+  columns.emplace_back("great", Scalar::uint64, noise(n, 0, 9e15, 16, true));
+  columns.emplace_back("reflectance", Scalar::float32, noise(n, 0, 50, 17, true));
   const TemporaryFolder folder;
   const auto back = read_back(written(folder, columns, plan_of(columns)));
   EXPECT_EQ(back.size(), columns.size());
@@ -196,7 +203,7 @@ TEST(WriteE57, IntegersOfAnEighthOfTheResolution) {
 
 TEST(WriteE57, PointsThatAreNoNumbersStayAtTheirRows) {
   std::vector<Given> columns = points(200);
-  columns.push_back({{"intensity", Scalar::float32}, noise(200, 0, 9, 4, true)});
+  columns.emplace_back("intensity", Scalar::float32, noise(200, 0, 9, 4, true));
   columns[1].values[17] = std::numeric_limits<double>::quiet_NaN();
   columns[2].values[199] = std::numeric_limits<double>::infinity();
   for (const double resolution_m : {0.0, 0.001}) {
@@ -214,7 +221,7 @@ TEST(WriteE57, PointsThatAreNoNumbersStayAtTheirRows) {
 
 TEST(WriteE57, TheSameBytesForAnyPiecesAndThreads) {
   std::vector<Given> columns = points(20011);
-  columns.push_back({{"class", Scalar::uint8}, noise(20011, 0, 256, 4, true)});
+  columns.emplace_back("class", Scalar::uint8, noise(20011, 0, 256, 4, true));
   const TemporaryFolder folder;
   const std::string whole = written(folder, columns, plan_of(columns));
   EXPECT_EQ(written(folder, columns, plan_of(columns), 1009), whole);
@@ -244,7 +251,7 @@ TEST(WriteE57, CentresAndCoordinateSystems) {
   EXPECT_EQ(document.scans[0].name, plan.name);
   plan.centre.reset();
   for (const char* name : {"x_origin", "y_origin", "z_origin"})
-    columns.push_back({{name, Scalar::float32}, noise(n, 1, 2, 21, true)});
+    columns.emplace_back(name, Scalar::float32, noise(n, 1, 2, 21, true));
   columns[3].values.assign(n, 1000003.0);
   for (std::size_t k = 3; k < 6; ++k) plan.columns.push_back(columns[k].plan);
   const auto back = read_back(written(folder, columns, plan));
@@ -256,11 +263,11 @@ TEST(WriteE57, ColoursOfOtherKinds) {
   std::vector<Given> columns = points(n);
   const TemporaryFolder folder;
   for (const char* name : {"red", "green", "blue"})
-    columns.push_back({{name, Scalar::uint16}, noise(n, 0, 65536, 22, true)});
+    columns.emplace_back(name, Scalar::uint16, noise(n, 0, 65536, 22, true));
   auto back = read_back(written(folder, columns, plan_of(columns)));
   EXPECT_EQ(back.at("green"), columns[4].values);
   for (std::size_t k = 3; k < 6; ++k)
-    columns[k] = {{columns[k].plan.name, Scalar::float32}, noise(n, 0, 1, k)};
+    columns[k] = Given(columns[k].plan.name, Scalar::float32, noise(n, 0, 1, k));
   back = read_back(written(folder, columns, plan_of(columns)));
   for (std::size_t i = 0; i < n; ++i) EXPECT_NEAR(back.at("blue")[i], 255 * columns[5].values[i], 1e-4);
 }
@@ -273,7 +280,7 @@ TEST(WriteE57, NothingIsLeftWhereARowDoesNotFit) {
   plan.resolution_m = 0.001;
   EXPECT_THROW((void)written(folder, columns, plan), Error);
   columns = points(100);
-  columns.push_back({{"n", Scalar::uint64}, std::vector<double>(100, 1.0)});
+  columns.emplace_back("n", Scalar::uint64, std::vector<double>(100, 1.0));
   columns[3].values[99] = 1e19;
   EXPECT_THROW((void)written(folder, columns, plan_of(columns)), Error);
   EXPECT_EQ(folder.files(), 0U);
@@ -281,7 +288,8 @@ TEST(WriteE57, NothingIsLeftWhereARowDoesNotFit) {
   plan.columns.erase(plan.columns.begin());
   EXPECT_THROW((void)make_e57_writer(folder / "out.e57", plan), Error);
   std::vector<Given> wide = points(10);
-  for (int k = 0; k < 200; ++k) wide.push_back({{"c" + std::to_string(k)}, std::vector<double>(10, 1.0)});
+  for (int k = 0; k < 200; ++k)
+    wide.emplace_back(fmt::format("c{}", k), Scalar::float64, std::vector<double>(10, 1.0));
   EXPECT_THROW((void)make_e57_writer(folder / "out.e57", plan_of(wide)), Error);
   EXPECT_EQ(folder.files(), 0U);
 }
