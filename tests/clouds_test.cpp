@@ -67,7 +67,7 @@ TEST_F(CloudsTest, ThinOfFewPointsKeepsThemAll) {
 
 TEST_F(CloudsTest, ThinSaysWhatIsWrong) {
   write_floor("floor.csv", 20);
-  EXPECT_NE(run({"thin", "floor.csv", "out.ply"}).err.find("most_points"), std::string::npos);
+  EXPECT_NE(run({"thin", "floor.csv", "out.ply"}).err.find("--points"), std::string::npos);
   EXPECT_NE(run({"thin", "floor.csv", "out.laz", "--points", "10"}).err.find("name the output .las"),
             std::string::npos);
   EXPECT_NE(run({"thin", "floor.csv", "floor.csv", "--points", "10"}).err.find("over the input"),

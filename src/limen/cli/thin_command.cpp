@@ -41,6 +41,9 @@ std::string as_json(const ThinCommand& command, const WrittenClouds& written, co
 
 int run(ThinCommand command, const Session& session) {
   command.thinning.memory_bytes = parse_memory(command.memory);
+  if (command.thinning.most_points == 0 && command.thinning.spacing_m == 0.0 && command.memory.empty())
+    throw Error("it is not said how many points to keep", "limen thin",
+                "give --points, --spacing-m or --memory");
   command.thinning.check();
   refuse_same_file(command.output, command.cloud);
   const OpenPoints input(command.cloud);

@@ -164,7 +164,6 @@ void JoinedClouds::settle_centres() {
   const bool known = std::any_of(clouds_.begin(), clouds_.end(),
                                  [](const PlacedCloud& placed) { return placed.centre.has_value(); });
   if (has_column() || (known && clouds_.size() > 1)) {
-    centre_per_point_ = true;
     for (const std::string& name : kOrigin) add_column(name, Scalar::float64);
   } else if (known) {
     plan_.centre = clouds_[0].target_from_world * *clouds_[0].centre;

@@ -44,7 +44,6 @@ class JoinedClouds {
 
   std::vector<PlacedCloud> clouds_;
   bool tell_source_;
-  bool centre_per_point_ = false;
   CloudPlan plan_;
   std::vector<std::string> notes_;
 };
