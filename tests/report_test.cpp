@@ -1,0 +1,71 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+// The report that `limen register` writes, as a script meets it; tests/browser looks at the page itself.
+#include <regex>
+
+#include "run_program.h"
+#include <nlohmann/json.hpp>
+
+namespace limen {
+namespace {
+
+using Json = nlohmann::json;
+
+class ReportTest : public ProgramTest {
+ protected:
+  void SetUp() override {
+    ProgramTest::SetUp();
+    ASSERT_EQ(run({"simulate", "room", "-o", "room", "--points-indoor", "40000"}).status, 0);
+  }
+  [[nodiscard]] ProgramRun register_rooms(std::vector<std::string> more = {}) const {
+    std::vector<std::string> words = {"register", "room/indoor_00.ply", "room/indoor_01.ply", "-o", "out"};
+    words.insert(words.end(), more.begin(), more.end());
+    return run(words);
+  }
+  [[nodiscard]] std::string page() const { return read_whole(work() / "out/report.html"); }
+};
+
+TEST_F(ReportTest, StandsBesideEveryResult) {
+  ASSERT_EQ(register_rooms().status, 0);
+  for (const char* name : {"report.html", "section_top.svg", "section_front.svg", "section_side.svg"})
+    EXPECT_TRUE(std::filesystem::exists(work() / "out" / name)) << name;
+  EXPECT_NE(page().find("Registered: the two scans fit in one way only"), std::string::npos);
+  const Json inputs = Json::parse(read_whole(work() / "out/result.json"))["inputs"];
+  const std::string hash = inputs["source"]["sha256"];
+  EXPECT_TRUE(std::regex_match(hash, std::regex("[0-9a-f]{64}")));
+  EXPECT_NE(page().find(hash), std::string::npos);
+  EXPECT_NE(hash, inputs["target"]["sha256"]);
+}
+
+TEST_F(ReportTest, IsLeftOutAndTakenAwayWhereNotWanted) {
+  ASSERT_EQ(register_rooms().status, 0);
+  ASSERT_EQ(register_rooms({"--no-report"}).status, 0);
+  EXPECT_FALSE(std::filesystem::exists(work() / "out/report.html"));
+  EXPECT_FALSE(std::filesystem::exists(work() / "out/section_top.svg"));
+  EXPECT_TRUE(std::filesystem::exists(work() / "out/result.json"));
+}
+
+TEST_F(ReportTest, TellsOfNoMatchAndOfSegments) {
+  ASSERT_EQ(run({"segments", "room/indoor_00.ply", "-o", "a.json"}).status, 0);
+  ASSERT_EQ(run({"register", "a.json", "a.json", "-o", "out"}).status, 0);
+  EXPECT_NE(page().find("the two lists of segments fit in one way only"), std::string::npos);
+  write_whole(work() / "few.json", "{\"segments\": [{\"a\": [0, 0, 0], \"b\": [1, 0, 0]}]}");
+  const ProgramRun none = run({"register", "few.json", "a.json", "-o", "out"});
+  ASSERT_EQ(none.status, 4) << none.err;
+  EXPECT_NE(page().find("No match: the two lists of segments"), std::string::npos);
+  EXPECT_FALSE(std::filesystem::exists(work() / "out/transform.txt"));
+}
+
+TEST_F(ReportTest, DiffersBetweenRunsInTheSecondsOnly) {
+  const auto without_times = [](const std::string& text) {
+    const std::size_t from = text.find("<table id=\"stages\"");
+    return text.substr(0, from) + text.substr(text.find("</table>", from));
+  };
+  ASSERT_EQ(register_rooms({"--threads", "1"}).status, 0);
+  const std::string one = without_times(page());
+  ASSERT_EQ(register_rooms({"--threads", "3"}).status, 0);
+  EXPECT_EQ(one, without_times(page()));
+}
+
+}  // namespace
+}  // namespace limen
