@@ -85,7 +85,7 @@ RecordTable PackedRows::table_at(const char* first, std::size_t rows) const {
   table.swapped = swapped_;
   table.fields = columns_;
   for (std::size_t k = 0; k < columns_.size(); ++k) {
-    table.fields[k].data = first + at_[k];
+    table.fields[k].data = rows == 0 ? nullptr : first + at_[k];
     table.fields[k].stride = record_bytes_;
   }
   return table;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -212,6 +213,26 @@ TEST(TransformCloud, PcdKeepsItsFieldsAndMovesItsViewPoint) {
       const Vector3d wanted = pose * (before.local_origin + before.points[i]);
       ASSERT_LT((after.local_origin + after.points[i] - wanted).norm(), tolerance);
     }
+  }
+}
+
+TEST(TransformCloud, LeavesNothingBehindWhereRowsAreMissing) {
+  const TemporaryFolder folder;
+  const std::string head = "2\n2\n1 2 3\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n1 2 3 1\n";
+  const std::string pcd = rich_pcd("ascii", room_points(5, 9));
+  const std::string binary = rich_pcd("binary", room_points(5, 9));
+  const std::pair<const char*, std::string> broken[] = {{"in.ptx", head + "1 2 3 0.5\n"},
+                                                        {"in.pcd", pcd.substr(0, pcd.size() - 40)},
+                                                        {"in2.pcd", binary.substr(0, binary.size() - 40)},
+                                                        {"in.pts", "3\n1 2 3\n4 5 6\n"},
+                                                        {"in.xyz", "1 2 3\n4 5\n"}};
+  std::size_t files = 0;
+  for (const auto& [name, bytes] : broken) {
+    const auto in = folder.write(name, bytes);
+    ++files;
+    EXPECT_THROW(transform_cloud(in, Rigid3{}, folder / ("out" + in.extension().string())), Error) << name;
+    EXPECT_THROW(transform_cloud(in, Rigid3{}, folder / "out.ply"), Error) << name;
+    EXPECT_EQ(folder.files(), files) << name;
   }
 }
 

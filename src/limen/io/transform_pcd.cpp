@@ -13,6 +13,7 @@
 #include "limen/base/atomic_file.h"
 #include "limen/base/error.h"
 #include "limen/io/pcd_header.h"
+#include "limen/io/read_pcd.h"
 #include "limen/io/text_numbers.h"
 #include "limen/io/transform_text.h"
 
@@ -186,6 +187,12 @@ TransformedCloud transform_pcd(const NamedBytes& input, const Rigid3& target_fro
   if (header.data == "binary_compressed")
     result.notes.emplace_back("the points were compressed; they are written as plain binary numbers");
   const bool text = header.data == "ascii";
+  if (text) {
+    // Reading all rows proves the file before anything is written.
+    const auto stream = open_pcd(input.bytes, input.name)->read(0);
+    while (stream->next(kRowsAtOnce)) {
+    }
+  }
   const PcdBody body = text ? PcdBody{} : open_pcd_body(input.bytes, header, input.name);
   AtomicFile file(output);
   file.write(header_text(input.bytes, header, moved, target_from_source));

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "limen/base/atomic_file.h"
+#include "limen/base/error.h"
 #include "limen/io/read_ptx.h"
 #include "limen/io/text_numbers.h"
 #include "limen/io/transform_text.h"
@@ -64,8 +65,9 @@ std::string moved_header(const HeaderText& header, std::string_view rest, const 
   return text;
 }
 
-/// Bytes of the next `rows` lines that are not blank, and of blank ones behind them.
-std::size_t bytes_of_rows(std::string_view text, std::size_t rows) {
+/// Bytes of the next `rows` lines that are not blank, and of blank ones behind them. Throws Error where the
+/// text ends before.
+std::size_t bytes_of_rows(std::string_view text, std::size_t rows, const std::string& name) {
   std::size_t at = 0;
   while (at < text.size()) {
     const std::size_t newline = text.find('\n', at);
@@ -74,6 +76,10 @@ std::size_t bytes_of_rows(std::string_view text, std::size_t rows) {
     if (!blank && rows == 0) break;
     if (!blank) --rows;
     at = stop;
+  }
+  if (rows > 0) {
+    throw Error(fmt::format("the file ends {} points before its time", rows), name,
+                "get the whole file, or correct the count");
   }
   return at;
 }
@@ -87,14 +93,14 @@ TransformedCloud transform_ptx(const NamedBytes& input, const Rigid3& target_fro
   result.format = whole->format();
   AtomicFile file(output);
   std::string_view rest = input.bytes;
-  const std::size_t before = bytes_of_rows(rest, 0);
+  const std::size_t before = bytes_of_rows(rest, 0, input.name);
   file.write(rest.substr(0, before));
   rest.remove_prefix(before);
   for (const CloudFacts& cloud : whole->clouds()) {
     const HeaderText header = header_at(rest);
     file.write(moved_header(header, rest, target_from_source));
     rest.remove_prefix(header.bytes);
-    const std::size_t rows = bytes_of_rows(rest, cloud.points);
+    const std::size_t rows = bytes_of_rows(rest, cloud.points, input.name);
     file.write(rest.substr(0, rows));
     rest.remove_prefix(rows);
     result.points += cloud.points;
