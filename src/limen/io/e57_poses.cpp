@@ -200,16 +200,21 @@ void write_page(AtomicFile& file, std::string_view payload) {
 }
 
 /// Copies pages as they are, their check sums verified.
-void copy_pages(AtomicFile& file, const E57Pages& pages, std::uint64_t begin, std::uint64_t end) {
+void copy_pages(AtomicFile& file, const E57Pages& pages, std::uint64_t begin, std::uint64_t end,
+                Monitor& monitor) {
   constexpr std::uint64_t kAtOnce = 4096;
   for (; begin < end; begin += std::min(kAtOnce, end - begin)) {
     const std::uint64_t stop = begin + std::min(kAtOnce, end - begin);
     pages.check(begin, stop);
     file.write(pages.raw(begin, stop));
+    monitor.throw_if_cancelled();
+    monitor.advance(static_cast<double>(stop * pages.head().page_bytes),
+                    static_cast<double>(pages.page_count() * pages.head().page_bytes));
   }
 }
 
-void write_replaced(const E57Pages& pages, Replacement changed, const std::filesystem::path& output) {
+void write_replaced(const E57Pages& pages, Replacement changed, const std::filesystem::path& output,
+                    Monitor& monitor) {
   const std::uint64_t payload = pages.payload();
   const std::string head = e57_head_bytes(changed.head);
   AtomicFile file(output);
@@ -219,18 +224,19 @@ void write_replaced(const E57Pages& pages, Replacement changed, const std::files
     pages.check(0, 1);
     std::string first = payload_of(pages, 0, payload);
     write_page(file, first.replace(0, head.size(), head));
-    copy_pages(file, pages, 1, changed.first);
+    copy_pages(file, pages, 1, changed.first, monitor);
   }
   for (std::size_t at = 0; at < changed.payload.size(); at += payload)
     write_page(file, std::string_view(changed.payload).substr(at, payload));
-  copy_pages(file, pages, changed.last, pages.page_count());
+  copy_pages(file, pages, changed.last, pages.page_count(), monitor);
   file.commit();
 }
 
 }  // namespace
 
 MovedE57 replace_e57_poses(std::string_view bytes, const std::string& name, const Rigid3& target_from_source,
-                           const std::filesystem::path& output) {
+                           const std::filesystem::path& output, Monitor& monitor) {
+  monitor.set_unit(WorkUnit::bytes);
   const E57Pages pages(bytes, name);
   const std::string xml = e57_xml(pages);
   const E57Document document = parse_e57_document(xml, name);
@@ -252,7 +258,7 @@ MovedE57 replace_e57_poses(std::string_view bytes, const std::string& name, cons
   if (check.scans.size() != result.scans || check.images.size() != result.images) {
     throw Error("the description (XML) did not survive its editing", name, "", Fault::internal);
   }
-  write_replaced(pages, replacement_of(pages, std::move(moved)), output);
+  write_replaced(pages, replacement_of(pages, std::move(moved)), output, monitor);
   return result;
 }
 

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "limen/base/progress.h"
 #include "limen/geometry/rigid.h"
 
 namespace limen {
@@ -27,6 +28,6 @@ struct MovedE57 {
 /// file appears whole or not at all. Throws Error for damaged pages (by number and byte) and for what cannot
 /// be read or written.
 MovedE57 replace_e57_poses(std::string_view bytes, const std::string& name, const Rigid3& target_from_source,
-                           const std::filesystem::path& output);
+                           const std::filesystem::path& output, Monitor& monitor = silent_monitor());
 
 }  // namespace limen

@@ -62,7 +62,7 @@ TransformedCloud move_in_format(const OpenPoints& input, const Rigid3& pose,
     case PointFormat::e57:
       break;
   }
-  const MovedE57 moved = replace_e57_poses(input.bytes(), input.name(), pose, output);
+  const MovedE57 moved = replace_e57_poses(input.bytes(), input.name(), pose, output, monitor);
   return {moved.points, input.file().format(), moved.notes};
 }
 
