@@ -85,6 +85,15 @@ bool has_column(const CloudPlan& plan, const Place& place) {
                      [&](const ColumnPlan& column) { return bears(place, lower_case(column.name)); });
 }
 
+/// A standard value beside the more exact one that readers give its name: it is made anew from that one.
+bool is_rounded_twin(const CloudPlan& plan, const std::string& name) {
+  static constexpr std::string_view kStandard = "las_";
+  if (name.substr(0, kStandard.size()) != kStandard) return false;
+  const std::string_view exact_name = std::string_view(name).substr(kStandard.size());
+  return std::any_of(plan.columns.begin(), plan.columns.end(),
+                     [&](const ColumnPlan& column) { return lower_case(column.name) == exact_name; });
+}
+
 /// One description of extra bytes.
 std::string description_of(const ColumnPlan& column) {
   static constexpr std::array<char, 10> kTypes{2, 1, 4, 3, 6, 5, 8, 7, 9, 10};  // in the order of Scalar
@@ -138,6 +147,7 @@ LasSlots las_slots(const CloudPlan& plan, const std::string& name) {
   Places places(infrared);
   for (std::size_t k = 0; k < plan.columns.size(); ++k) {
     const ColumnPlan& column = plan.columns[k];
+    if (is_rounded_twin(plan, lower_case(column.name))) continue;
     const std::optional<LasSlot> slot = places.take(lower_case(column.name), k);
     if (slot) slots.slots.push_back(*slot);
     if (slot && exact(slot->store, column.type)) continue;
