@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "limen/base/error.h"
-#include "limen/io/las_test_support.h"
+#include "limen/io/synthetic_las.h"
 
 namespace limen {
 namespace {

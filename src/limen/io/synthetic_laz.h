@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "limen/io/las_test_support.h"
-#include "limen/io/laz_layer_encoders.h"
+#include "limen/io/synthetic_las.h"
+#include "limen/io/synthetic_laz_layers.h"
 
 /// LAZ files for tests.
 namespace limen::testing_laz {

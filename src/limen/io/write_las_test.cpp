@@ -10,7 +10,7 @@
 
 #include "limen/base/error.h"
 #include "limen/base/parallel.h"
-#include "limen/io/las_test_support.h"
+#include "limen/io/synthetic_las.h"
 
 namespace limen {
 namespace {

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "limen/io/laz_item_encoders.h"
+#include "limen/io/synthetic_laz_items.h"
 
 /// Encoders of layered chunks (formats 6 to 10), for tests.
 namespace limen::testing_laz {
