@@ -30,7 +30,7 @@ TEST_P(Corpus, BringsNoReaderDown) {
 }
 
 INSTANTIATE_TEST_SUITE_P(EveryReader, Corpus, testing::ValuesIn(fuzzed_readers()),
-                         [](const auto& info) { return std::string(info.param.name); });
+                         [](const auto& reader) { return std::string(reader.param.name); });
 
 }  // namespace
 }  // namespace limen

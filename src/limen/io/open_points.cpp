@@ -106,6 +106,7 @@ OpenPoints::OpenPoints(const std::filesystem::path& path)
       file_(open_as(format_, bytes_->bytes(), path.string())) {
   if (format_ == PointFormat::las)
     georeference_ = las_coordinate_systems(parse_las_header(bytes_->bytes(), path.string()));
+  if (format_ == PointFormat::e57) georeference_ = e57_coordinate_systems(bytes_->bytes(), path.string());
 }
 
 std::uint64_t OpenPoints::points() const {
