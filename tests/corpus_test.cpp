@@ -3,6 +3,7 @@
 // Every file of tests/corpus meets its reader: none may crash it or make it blame itself.
 #include <algorithm>
 #include <filesystem>
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,11 @@
 #include <gtest/gtest.h>
 
 namespace limen {
+
+void PrintTo(const FuzzedReader& reader, std::ostream* out) {  // NOLINT: the name is GoogleTest's
+  *out << reader.name;
+}
+
 namespace {
 
 namespace fs = std::filesystem;

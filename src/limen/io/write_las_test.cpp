@@ -97,7 +97,7 @@ TEST(WriteLas, OtherColumnsBecomeExtraBytesOfTheirType) {
 
 TEST(WriteLas, AStandardValueIsMadeAnewFromTheMoreExactOne) {
   const CloudPlan plan = plan_with({{"intensity", Scalar::float32}, {"las_intensity", Scalar::uint16}});
-  const std::string bytes = written(plan, {{1, 2, 3, 0.25, 7}});
+  const std::string bytes = written(plan, {{652000, 6861000, 3, 0.25, 7}});
   EXPECT_EQ(column(bytes, "intensity").at(0), 0.25);
   EXPECT_EQ(column(bytes, "las_intensity").at(0), 16384);
   EXPECT_TRUE(column(bytes, "las_las_intensity").empty());
