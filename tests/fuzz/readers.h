@@ -7,7 +7,8 @@
 
 namespace limen {
 
-/// A reader as a stranger's bytes meet it: it returns, or throws Error for the input. Anything else is a fault.
+/// A reader as a stranger's bytes meet it: it returns, or throws Error for the input. Anything else is a
+/// fault.
 struct FuzzedReader {
   std::string_view name;  ///< also of its folder in tests/corpus
   void (*read)(std::string_view bytes);
