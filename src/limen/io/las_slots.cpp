@@ -57,8 +57,12 @@ constexpr std::array<Place, 21> kPlaces{{
 constexpr Place kInfrared{"nir ", LasStore::word, 36, {}, 0};
 
 bool bears(const Place& place, const std::string& name) {
-  const std::size_t at = place.names.find(name + " ");
-  return at != std::string_view::npos && (at == 0 || place.names[at - 1] == ' ');
+  const std::string word = name + " ";
+  for (std::size_t at = place.names.find(word); at != std::string_view::npos;
+       at = place.names.find(word, at + 1)) {
+    if (at == 0 || place.names[at - 1] == ' ') return true;
+  }
+  return false;
 }
 
 /// Every number of the type can be stored there without loss.

@@ -95,6 +95,14 @@ TEST(WriteLas, OtherColumnsBecomeExtraBytesOfTheirType) {
   EXPECT_EQ(column(bytes, "return_number").at(0), 1.0);
 }
 
+TEST(WriteLas, TimesGoToTheirPlaceByAnyName) {
+  for (const char* name : {"GPS_time", "gpstime", "time", "t", "timestamp"}) {
+    const std::string bytes = written(plan_with({{name, Scalar::float64}}), {{652000, 6861000, 3, 12.5}});
+    EXPECT_EQ(column(bytes, "gps_time"), std::vector<double>{12.5}) << name;
+    EXPECT_EQ(parse_las_header(bytes, "test").point_bytes, 30U) << name;
+  }
+}
+
 TEST(WriteLas, AStandardValueIsMadeAnewFromTheMoreExactOne) {
   const CloudPlan plan = plan_with({{"intensity", Scalar::float32}, {"las_intensity", Scalar::uint16}});
   const std::string bytes = written(plan, {{652000, 6861000, 3, 0.25, 7}});
