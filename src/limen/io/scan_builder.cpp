@@ -317,8 +317,8 @@ ScanFile with_scan(ScanFile file, const RecordTable& table, const TableFacts& fa
   check_extent(scan);
   scan.level = options.level;
   if (unusable > facts.missing) {
-    file.notes.push_back(
-        fmt::format("{} points without finite coordinates are left out", unusable - facts.missing));
+    file.notes.push_back(fmt::format("{} points without finite coordinates below 100 000 km are left out",
+                                     unusable - facts.missing));
   }
   std::string note = settle_centre(scan, facts, options);
   if (!note.empty()) file.notes.push_back(std::move(note));
