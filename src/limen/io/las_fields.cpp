@@ -147,7 +147,7 @@ void give_name(Columns& columns, std::string& name) {
     if (other.field.name != name) continue;
     const bool coordinate = name == "x" || name == "y" || name == "z";
     std::string& renamed = coordinate ? name : other.field.name;
-    renamed = (coordinate ? "extra_" : "las_") + renamed;
+    renamed.insert(0, coordinate ? "extra_" : "las_");
     return;
   }
 }
