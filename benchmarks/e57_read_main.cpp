@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Reads E57 files piece by piece and prints, for each scan and field, how many values are numbers, their sum
 // and extremes; then how long it took.
-//   bench_e57_read [--rows N] [--raw] FILE.e57...     --raw: in the scans' own frames; --rows: of each piece
+//   bench_e57_read [--rows N] [--raw] [--one-thread] FILE.e57...
+//   --rows: of each piece; --raw: in the scans' own frames
 #include <algorithm>
 #include <chrono>
 #include <cmath>

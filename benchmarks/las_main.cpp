@@ -5,7 +5,8 @@
 // hash of the decoded records, sums and extremes of the stored integers x y z, and the times of
 //   records   decoding the records (for LAS: touching them), all threads
 //   scan      all the way to a Scan
-// `--records-only` leaves out the scan, `--brief` the times (then two runs can be compared).
+// `--records-only` leaves out the scan, `--brief` the times (then two runs can be compared), `--one-thread`
+// uses one thread.
 
 #include <algorithm>
 #include <array>

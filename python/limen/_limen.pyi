@@ -245,8 +245,6 @@ def register(
     source: Union[Model, Sequence[tuple[Scan, Array]]],
     target: Union[Model, Sequence[tuple[Scan, Array]]],
     options: RegisterOptions,
-    method: str,
-    gravity: str,
     progress: Optional[Progress],
 ) -> RegistrationReport: ...
 def deviation(

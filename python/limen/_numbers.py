@@ -12,7 +12,8 @@ import numpy.typing as npt
 
 Path = Union[str, "os.PathLike[str]"]
 Array = npt.NDArray[Any]
-#: Called as progress(stage, done, total) about ten times a second; total is 0 where it is not known.
+#: Called as progress(stage, done, total) when a stage begins, and ten times a second at most while it lasts;
+#: total is 0 where it is not known.
 Progress = Callable[[str, float, float], object]
 
 

@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import copy
 import json
 import os
 from dataclasses import dataclass, field
@@ -202,19 +203,17 @@ def register(
     method: auto, polygons, openings, hybrid or segments. gravity: auto, up or unknown.
     `options` has all that the keywords have and more; keywords that are not at their defaults count first.
     """
-    chosen = _DEFAULTS if options is None else options
-    asked = RegisterOptions()
-    for name in ("extract", "refined_poses", "alternatives"):
-        setattr(asked, name, getattr(chosen, name))
+    asked = copy.copy(_DEFAULTS if options is None else options)
     for name, value in (
         ("method", method),
         ("gravity", gravity),
         ("wall_thickness_m", wall_thickness_m),
         ("seed", seed),
     ):
-        setattr(asked, name, value if value != getattr(_DEFAULTS, name) else getattr(chosen, name))
+        if value != getattr(_DEFAULTS, name):
+            setattr(asked, name, value)
     from_side, to_side = _loaded(source), _loaded(target)
-    report = _limen.register(from_side, to_side, asked, asked.method, asked.gravity, progress)
+    report = _limen.register(from_side, to_side, asked, progress)
     told = report.values()
     return Registration(
         outcome=told["outcome"],

@@ -93,7 +93,7 @@ void bind_deviation(py::module_& module) {
                 const DeviationOptions& options, const py::object& progress) {
                options.check();
                MeasuredDeviation measured{{}, std::move(scan), std::move(model)};
-               measured.report.model_from_scan = rigid_from(pose);
+               measured.report.model_from_scan = from_matrix(pose);
                measured.report.measured = options;
                measured.report.scan = summarise(measured.scan->name, *measured.scan);
                measured.report.model = summarise(measured.model->name, *measured.model);

@@ -63,8 +63,4 @@ std::vector<Value> values_from(const py::object& values, std::size_t count, cons
   return {array.data(), array.data() + array.size()};
 }
 
-inline Rigid3 rigid_from(const Matrix4d& matrix) {
-  return from_matrix(matrix);
-}
-
 }  // namespace limen::python

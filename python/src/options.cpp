@@ -69,6 +69,7 @@ class Binder {
       }
       return made.cast<Options>();
     }));
+    class_.def("__copy__", [](const Options& options) { return options; });
     class_.def("__repr__", [](const py::object& self) {
       py::list parts;
       for (const py::handle field : self.attr("_fields"))

@@ -1,8 +1,6 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
 #include <filesystem>
-#include <memory>
-#include <optional>
 #include <utility>
 
 #include "module.h"
@@ -31,7 +29,7 @@ PythonSide side_from(const py::object& given) {
   }
   for (const py::handle entry : given) {
     const auto pair = entry.cast<std::pair<py::object, Matrix4d>>();
-    side.scans.emplace_back(&pair.first.cast<const Scan&>(), rigid_from(pair.second));
+    side.scans.emplace_back(&pair.first.cast<const Scan&>(), from_matrix(pair.second));
   }
   return side;
 }
@@ -144,19 +142,20 @@ void bind_registration(py::module_& module) {
       .def("values", [](const Registered& it) { return result_dict(it.report.result); })
       .def("json", [](const Registered& it) { return result_json(it.report); })
       .def("save", &save, py::arg("folder"), py::arg("with_report"));
-  module.def(
-      "register", [](const py::object& source, const py::object& target, const RegisterOptions& options,
-                     const std::string& method, const std::string& gravity, const py::object& progress) {
-        options.check();
-        const PythonSide from = side_from(source);
-        const PythonSide to = side_from(target);
-        Registered registered =
-            run(progress, [&](Monitor& monitor) { return register_sides(from, to, options, monitor); });
-        OptionList& told = registered.report.options;
-        told = {{"method", method}, {"gravity", gravity}};
-        if (options.wall_thickness_m > 0) told.emplace_back("wall_thickness_m", options.wall_thickness_m);
-        return registered;
-      });
+  module.def("register", [](const py::object& source, const py::object& target, const py::object& asked,
+                            const py::object& progress) {
+    const auto& options = asked.cast<const RegisterOptions&>();
+    options.check();
+    const PythonSide from = side_from(source);
+    const PythonSide to = side_from(target);
+    Registered registered =
+        run(progress, [&](Monitor& monitor) { return register_sides(from, to, options, monitor); });
+    OptionList& told = registered.report.options;
+    for (const char* name : {"method", "gravity"})
+      told.emplace_back(name, asked.attr(name).cast<std::string>());
+    if (options.wall_thickness_m > 0) told.emplace_back("wall_thickness_m", options.wall_thickness_m);
+    return registered;
+  });
 }
 
 }  // namespace limen::python

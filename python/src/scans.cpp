@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
-#include <cmath>
 #include <memory>
 
 #include "module.h"
@@ -178,7 +177,7 @@ void bind_model(py::module_& module) {
 
 py::dict transform_file(const std::filesystem::path& input, const Matrix4d& pose,
                         const std::filesystem::path& output, const py::object& progress) {
-  const Rigid3 target_from_source = rigid_from(pose);
+  const Rigid3 target_from_source = from_matrix(pose);
   const TransformedCloud cloud = run(progress, [&](Monitor& monitor) {
     return transform_cloud(input, target_from_source, output, {}, monitor);
   });
@@ -214,10 +213,10 @@ void bind_scans(py::module_& module) {
   module.def("is_model_file", &is_bim_file, py::arg("path"));
   module.def("transform_file", &transform_file);
   module.def("transform_scan", [](const Scan& scan, const Matrix4d& pose) {
-    return std::make_shared<Scan>(transformed(scan, rigid_from(pose)));
+    return std::make_shared<Scan>(transformed(scan, from_matrix(pose)));
   });
   module.def("transform_points", [](const DoubleArray& points, const Matrix4d& pose) {
-    const Rigid3 target_from_source = rigid_from(pose);
+    const Rigid3 target_from_source = from_matrix(pose);
     std::vector<Vector3d> moved = points_from(points, Vector3d::Zero(), "points");
     for (Vector3d& x : moved) x = target_from_source * x;
     return points_array(moved);

@@ -5,7 +5,6 @@
 #include "module.h"
 #include "numpy_views.h"
 #include "work.h"
-#include <fmt/format.h>
 
 #include "limen/report/truth_json.h"
 #include "limen/simulate/scene.h"
@@ -40,14 +39,13 @@ void bind_simulation(py::module_& module) {
   module.def("scene_names", &scene_names);
   module.def("simulate", [](const std::string& name, const py::dict& given, const py::object& progress) {
     const SceneOptions options = options_from(name, given);
-    const auto made = std::make_shared<SimulatedCase>(
-        run(progress, [&](Monitor& monitor) { return limen::simulate(options, monitor); }));
+    SimulatedCase made = run(progress, [&](Monitor& monitor) { return limen::simulate(options, monitor); });
     py::list scans;
-    for (Scan& scan : made->scans) scans.append(std::make_shared<Scan>(std::move(scan)));
+    for (Scan& scan : made.scans) scans.append(std::make_shared<Scan>(std::move(scan)));
     py::list poses;
-    for (std::size_t k = 0; k < made->truth.scans.size(); ++k)
-      poses.append(to_matrix(world_from_scan(made->truth, k)));
-    return py::make_tuple(scans, poses, truth_json(made->truth));
+    for (std::size_t k = 0; k < made.truth.scans.size(); ++k)
+      poses.append(to_matrix(world_from_scan(made.truth, k)));
+    return py::make_tuple(scans, poses, truth_json(made.truth));
   });
 }
 

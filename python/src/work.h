@@ -16,8 +16,8 @@ namespace limen::python {
 
 namespace py = pybind11;
 
-/// Tells a Python function (stage, done, total) how the work goes, ten times a second at most. What the
-/// function throws stops the work and is thrown again by run().
+/// Tells a Python function (stage, done, total) how the work goes: when a stage begins, and ten times a
+/// second at most while it lasts. What the function throws stops the work and is thrown again by run().
 class CallbackMonitor : public Monitor {
  public:
   explicit CallbackMonitor(py::object callback) : callback_(std::move(callback)) {}

@@ -69,6 +69,10 @@ class Registered(unittest.TestCase):
         self.assertEqual(result.to_dict()["options"]["method"], "polygons")
         self.assertEqual(result.to_dict()["seed"], 3)
         self.assertEqual(result.best.matched_openings, 0)
+        chosen = limen.RegisterOptions(method="polygons", seed=4)
+        mixed = limen.register(*self.case.scans, options=chosen, seed=3).to_dict()
+        self.assertEqual((mixed["options"]["method"], mixed["seed"]), ("polygons", 3))
+        self.assertEqual(chosen.seed, 4, "what the caller gave stays as it is")
         few = limen.register(*self.case.scans, options=limen.RegisterOptions(refined_poses=1, alternatives=0))
         self.assertEqual(few.alternatives, [])
         with self.assertRaises(limen.Error):

@@ -87,10 +87,12 @@ describe('a registered pair', () => {
     const best = await page.locator('#matrix').innerText();
     const numbers = await page.locator('#numbers').innerText();
     assert.equal(best.trim(), readFileSync(join(folder, 'registered', 'transform.txt'), 'utf8').trim());
+    assert.match(await page.locator('#matrix-pose').innerText(), /^The best pose, as in transform\.txt/);
     const first = await pixels(page);
     const other = await settled(page, () => page.keyboard.press('n'));
     assert.match(await page.locator('#pose').innerText(), /Alternative 1/);
     assert.notEqual(await page.locator('#matrix').innerText(), best);
+    assert.match(await page.locator('#matrix-pose').innerText(), /^Alternative 1, not the pose of transform\.txt/);
     assert.notEqual(await page.locator('#numbers').innerText(), numbers);
     assert.notEqual(other.sum, first.sum);
     await settled(page, () => page.click('#alternatives button[data-pose="2"]'));

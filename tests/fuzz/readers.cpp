@@ -69,19 +69,6 @@ void check(const ScanFile& file) {
   for (const Scan& scan : file.scans) scan.check();
 }
 
-void ply(std::string_view bytes) {
-  check(read_ply(bytes, kName));
-}
-void pcd(std::string_view bytes) {
-  check(read_pcd(bytes, kName));
-}
-void ptx(std::string_view bytes) {
-  check(read_ptx(bytes, kName));
-}
-void xyz(std::string_view bytes) {
-  check(read_xyz(bytes, kName));
-}
-
 /// All clouds of a file, piece by piece. What says that it holds very many points need not be read to its
 /// end.
 void read_clouds(const PointFile& file) {
@@ -97,6 +84,23 @@ void read_clouds(const PointFile& file) {
       if (rows->rows > 0) may_fail([&] { with_scan({}, *rows, file.clouds()[i].table, {}); });
     }
   }
+}
+
+void ply(std::string_view bytes) {
+  may_fail([&] { read_clouds(*open_ply(bytes, kName)); });
+  check(read_ply(bytes, kName));
+}
+void pcd(std::string_view bytes) {
+  may_fail([&] { read_clouds(*open_pcd(bytes, kName)); });
+  check(read_pcd(bytes, kName));
+}
+void ptx(std::string_view bytes) {
+  may_fail([&] { read_clouds(*open_ptx(bytes, kName)); });
+  check(read_ptx(bytes, kName));
+}
+void xyz(std::string_view bytes) {
+  may_fail([&] { read_clouds(*open_xyz(bytes, kName)); });
+  check(read_xyz(bytes, kName));
 }
 
 /// With check sums that are right, so that what lies behind them is reached.

@@ -50,6 +50,7 @@ struct Job {
       CancelScope::check();
       (*body)(piece * grain, std::min(size, (piece + 1) * grain));
     } catch (...) {
+      next_piece = size;  // pieces nobody has begun are higher than this one: they would change nothing
       const std::scoped_lock lock(failure_mutex);
       if (!failure || piece < failed_piece) {
         failure = std::current_exception();

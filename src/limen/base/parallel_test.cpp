@@ -3,6 +3,8 @@
 #include "limen/base/parallel.h"
 
 #include <atomic>
+#include <stdexcept>
+#include <string>
 
 #include <gtest/gtest.h>
 
@@ -31,6 +33,22 @@ TEST_P(Threads, ACancelledScopeStopsTheLoop) {
                Error);
   EXPECT_GE(done, 1);
   EXPECT_LE(done, GetParam());
+}
+
+TEST_P(Threads, AfterAFailureNothingNewIsBegun) {
+  std::atomic<int> begun{0};
+  const auto fail = [&](std::size_t begin, std::size_t) {
+    ++begun;
+    throw std::runtime_error(std::to_string(begin));
+  };
+  try {
+    parallel_for(10000, 1, fail);
+    ADD_FAILURE() << "nothing was thrown";
+  } catch (const std::runtime_error& error) {
+    EXPECT_STREQ(error.what(), "0");
+  }
+  EXPECT_GE(begun, 1);
+  EXPECT_LE(begun, GetParam());
 }
 
 TEST_P(Threads, AScopeHoldsInsideThePieces) {

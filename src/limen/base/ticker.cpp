@@ -14,10 +14,7 @@ struct Ticker::State {
 
   void run(const std::stop_token& stop) {
     std::unique_lock lock(mutex);
-    while (!wake.wait_for(lock, stop, period, [&stop] { return stop.stop_requested(); })) {
-      if (stop.stop_requested()) return;
-      tick();
-    }
+    while (!wake.wait_for(lock, stop, period, [&stop] { return stop.stop_requested(); })) tick();
   }
 
   std::chrono::milliseconds period;

@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limen/cli/program_help.h"
 
-#include <algorithm>
-
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 #include <fmt/format.h>
+
+#include "limen/cli/command.h"
 
 namespace limen {
 namespace {
@@ -93,7 +93,7 @@ std::string help_text(const CommandDoc& command, const std::vector<CommandDoc>& 
   }
   text += section("Options", command,
                   [](const OptionDoc& option) { return !option.positional && !option.common; });
-  text += section("Common options", command, [](const OptionDoc& option) { return option.common; });
+  text += section(kCommonGroup, command, [](const OptionDoc& option) { return option.common; });
   if (command.name.empty()) {
     text += "\nExit status:\n";
     for (const StatusDoc& it : status_docs()) text += entry(fmt::to_string(it.status), it.meaning);

@@ -56,7 +56,6 @@ FoundSegments segments_of(Scan scan, const SegmentsCommand& command, const Sessi
     found.centre = estimated ? "estimated" : "unknown: of borders, only those of holes are taken";
   }
   found.segments = find_segments(scan, extracted, command.segments, *session.monitor);
-  session.monitor->throw_if_cancelled();
   return found;
 }
 

@@ -3,12 +3,10 @@
 #include "limen/cli/terminal.h"
 
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <cerrno>
 #include <cstdio>
 #include <cstdlib>
-#include <iterator>
 
 #include <fmt/format.h>
 #include <sys/ioctl.h>

@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <csignal>
+#include <iterator>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -63,7 +64,7 @@ class InterruptGuard {
   static constexpr int kSignals[] = {SIGINT, SIGTERM, SIGHUP, SIGPIPE};
 
  private:
-  struct sigaction before_[4] = {};
+  struct sigaction before_[std::size(kSignals)] = {};
 };
 
 /// Thrown where the reader of stdout is gone: the program then ends without a word, as SIGPIPE would end it.

@@ -255,9 +255,6 @@ void E57Fields::decode_part(const E57Streams& streams, const Plan& plan, RowRang
 
 /// Spherical coordinates become Cartesian; invalid ones become not a number.
 void E57Fields::mend_coordinates(const E57Streams& streams, RowRange rows, Piece& piece) const {
-  std::vector<double> state;
-  if (state_ >= 0) state = values(streams, state_, rows);
-  const auto invalid = [&](std::size_t i) { return state_ >= 0 && state[i - rows.begin] != 0.0; };
   if (spherical()) {
     const std::vector<double> range = values(streams, ball_[0], rows);
     const std::vector<double> azimuth = values(streams, ball_[1], rows);
@@ -272,10 +269,12 @@ void E57Fields::mend_coordinates(const E57Streams& streams, RowRange rows, Piece
       x[2][i] = range[j] * std::sin(elevation[j]);
     }
   }
+  if (state_ < 0) return;
+  const std::vector<double> state = values(streams, state_, rows);
   for (std::size_t k = 0; k < 3; ++k) {
     char* const column = piece.columns[k].get();
     for (std::size_t i = rows.begin; i < rows.end; ++i) {
-      if (!invalid(i)) continue;
+      if (state[i - rows.begin] == 0.0) continue;
       if (plans_[k].type == Scalar::float32) {
         reinterpret_cast<float*>(column)[i] = std::numeric_limits<float>::quiet_NaN();
       } else {

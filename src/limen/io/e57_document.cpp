@@ -291,7 +291,6 @@ E57Document parse_e57_document(std::string_view xml, const std::string& name) {
   if (!root) throw Error("the description (XML) holds no e57Root", name, kExportAgain);
   E57Document document;
   document.coordinates = text_of(root.child("coordinateMetadata"));
-  document.library = text_of(root.child("e57LibraryVersion"));
   for (const pugi::xml_node& child : root.child("images2D").children()) {
     if (child.type() != pugi::node_element) continue;
     const Place place{fmt::format("{}, image {}", name, document.images.size() + 1)};

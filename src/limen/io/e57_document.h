@@ -61,7 +61,6 @@ struct E57Document {
   std::vector<E57Scan> scans;
   std::vector<E57Image> images;
   std::string coordinates;  ///< its coordinate system (WKT) or nothing
-  std::string library;      ///< what wrote it
 };
 
 /// The bytes of the description, their check sums verified. Throws Error.

@@ -18,9 +18,7 @@ constexpr std::array<std::size_t, 11> kColoursAt{0, 0, 20, 28, 0, 28, 0, 30, 30,
 constexpr std::array<std::size_t, 11> kInfraredAt{0, 0, 0, 0, 0, 0, 0, 0, 36, 0, 36};
 constexpr std::array<std::size_t, 11> kWavePacketAt{0, 0, 0, 0, 28, 34, 0, 0, 0, 30, 38};
 
-constexpr std::size_t kExtraDescription = 192;
 constexpr std::size_t kMostDescribed = 1000;  ///< more extra values are damage
-constexpr double kScanAngleStep = 0.006;      // degrees, formats 6 to 10
 
 std::size_t at(const std::array<std::size_t, 11>& places, int point_format) {
   return places[static_cast<std::size_t>(point_format)];
@@ -70,7 +68,7 @@ void add_long_head(Columns& columns) {
   columns.add(16, "classification", Scalar::uint8);
   columns.add(17, "user_data", Scalar::uint8);
   columns.add(18, "scan_angle", Scalar::int16);
-  columns.last().field.scale = kScanAngleStep;
+  columns.last().field.scale = kLasAngleStep;
   columns.add(20, "point_source_id", Scalar::uint16);
 }
 
@@ -198,9 +196,9 @@ LasLayout las_layout(const LasHeader& header) {
   std::size_t place = las_point_bytes(header.point_format);
   std::size_t unnamed = 0;
   const LasRecord* about = header.find("LASF_Spec", 4);
-  const std::size_t count = about == nullptr ? 0 : about->body.size() / kExtraDescription;
+  const std::size_t count = about == nullptr ? 0 : about->body.size() / kLasDescriptionBytes;
   for (std::size_t k = 0; k < std::min(count, kMostDescribed); ++k) {
-    const ExtraValue value = extra_value(about->body.substr(k * kExtraDescription, kExtraDescription));
+    const ExtraValue value = extra_value(about->body.substr(k * kLasDescriptionBytes, kLasDescriptionBytes));
     const std::size_t bytes = value.elements * size_of(value.type);
     if (bytes > header.point_bytes - place) {
       layout.notes.push_back(

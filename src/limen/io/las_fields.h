@@ -23,6 +23,11 @@ inline bool las_is_long_format(int point_format) {
   return point_format >= 6;
 }
 
+/// Degrees per step of the scan angle, formats 6 to 10.
+inline constexpr double kLasAngleStep = 0.006;
+/// Bytes of one description of extra bytes.
+inline constexpr std::size_t kLasDescriptionBytes = 192;
+
 /// One value of a record.
 struct LasField {
   std::size_t at = 0;  ///< byte within the record

@@ -4,6 +4,8 @@
 
 #include <array>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -15,7 +17,6 @@
 namespace limen {
 namespace {
 
-constexpr std::size_t kRecordHead = 54;
 constexpr std::size_t kLongRecordHead = 60;
 constexpr std::array<std::size_t, 5> kHeaderBytes{227, 227, 227, 235, 375};
 
@@ -37,16 +38,20 @@ std::string text_at(std::string_view bytes, std::size_t at, std::size_t length) 
   return std::string(field.substr(0, field.find('\0')));
 }
 
-Vector3d vector_at(std::string_view bytes, std::size_t at, std::size_t step = 8) {
-  return {las_number<double>(bytes, at), las_number<double>(bytes, at + step),
-          las_number<double>(bytes, at + 2 * step)};
-}
-
-LasRecord record_at(std::string_view bytes, std::size_t at, bool extended) {
+/// The record that begins at `at`; nothing where it does not fit into `room` bytes.
+std::optional<LasRecord> record_at(std::string_view bytes, std::size_t at, std::uint64_t room,
+                                   bool extended) {
+  const std::size_t head = extended ? kLongRecordHead : kLasRecordHead;
+  if (room < head) return {};
+  const std::uint64_t length = extended ? las_number<std::uint64_t>(bytes, at + 20)
+                                        : std::uint64_t{las_number<std::uint16_t>(bytes, at + 20)};
+  if (length > room - head) return {};
   LasRecord record;
   record.user = text_at(bytes, at + 2, 16);
   record.number = las_number<std::uint16_t>(bytes, at + 18);
+  record.body = bytes.substr(at + head, length);
   record.begin = at;
+  record.end = at + head + length;
   record.extended = extended;
   return record;
 }
@@ -55,19 +60,16 @@ LasRecord record_at(std::string_view bytes, std::size_t at, bool extended) {
 void parse_records(const Source& source, std::uint32_t promised, LasHeader& header) {
   std::size_t at = header.size;
   for (std::uint32_t k = 0; k < promised; ++k) {
-    const std::size_t room = header.points_begin - at;
-    const std::size_t length = room < kRecordHead ? 0 : las_number<std::uint16_t>(source.bytes, at + 20);
-    if (room < kRecordHead || length > room - kRecordHead) {
+    std::optional<LasRecord> record = record_at(source.bytes, at, header.points_begin - at, false);
+    if (!record) {
       header.notes.push_back(fmt::format(
           "the header promises {} variable length records, {} of them fit before the points; the rest is "
           "passed over",
           promised, k));
       return;
     }
-    LasRecord record = record_at(source.bytes, at, false);
-    record.body = source.bytes.substr(at + kRecordHead, length);
-    record.end = at = at + kRecordHead + length;
-    header.records.push_back(std::move(record));
+    at = record->end;
+    header.records.push_back(std::move(*record));
   }
 }
 
@@ -81,9 +83,8 @@ void parse_long_records(const Source& source, LasHeader& header) {
   for (std::uint32_t k = 0; k < promised; ++k) {
     const std::uint64_t size = source.bytes.size();
     const std::uint64_t room = at < header.points_begin || at > size ? 0 : size - at;
-    const std::uint64_t length =
-        room < kLongRecordHead ? 0 : las_number<std::uint64_t>(source.bytes, at + 20);
-    if (room < kLongRecordHead || length > room - kLongRecordHead) {
+    std::optional<LasRecord> record = record_at(source.bytes, at, room, true);
+    if (!record) {
       header.notes.push_back(
           fmt::format("the header promises {} extended records behind the points, {} of them are there; the "
                       "rest is passed over",
@@ -91,10 +92,8 @@ void parse_long_records(const Source& source, LasHeader& header) {
       if (k == 0) header.long_records = 0;
       return;
     }
-    LasRecord record = record_at(source.bytes, at, true);
-    record.body = source.bytes.substr(at + kLongRecordHead, length);
-    record.end = at = at + kLongRecordHead + length;
-    header.records.push_back(std::move(record));
+    at = record->end;
+    header.records.push_back(std::move(*record));
   }
 }
 
@@ -149,10 +148,10 @@ void parse_count(const Source& source, LasHeader& header) {
 }
 
 void parse_grid(const Source& source, LasHeader& header) {
-  header.scale = vector_at(source.bytes, las_at::kScale);
-  header.offset = vector_at(source.bytes, las_at::kOffset);
-  header.high = vector_at(source.bytes, las_at::kBounds, 16);
-  header.low = vector_at(source.bytes, las_at::kBounds + 8, 16);
+  header.scale = las_vector(source.bytes, las_at::kScale);
+  header.offset = las_vector(source.bytes, las_at::kOffset);
+  header.high = las_vector(source.bytes, las_at::kBounds, 16);
+  header.low = las_vector(source.bytes, las_at::kBounds + 8, 16);
   for (int k = 0; k < 3; ++k) {
     if (!std::isfinite(header.scale[k]) || header.scale[k] == 0.0 || !std::isfinite(header.offset[k])) {
       source.damaged(
@@ -194,6 +193,11 @@ LasHeader parse_las_header(std::string_view bytes, const std::string& name) {
                 name, "get the whole file, or correct the count");
   }
   return header;
+}
+
+std::string las_format_name(const LasHeader& header) {
+  return fmt::format("{} 1.{}, point format {}", header.compressed ? "LAZ" : "LAS", header.minor,
+                     header.point_format);
 }
 
 std::vector<std::string> las_coordinate_systems(const LasHeader& header) {

@@ -20,6 +20,20 @@ Value las_number(std::string_view bytes, std::size_t at) {
   return value;
 }
 
+/// Three of them, `step` bytes from one to the next.
+inline Vector3d las_vector(std::string_view bytes, std::size_t at, std::size_t step = 8) {
+  return {las_number<double>(bytes, at), las_number<double>(bytes, at + step),
+          las_number<double>(bytes, at + 2 * step)};
+}
+/// Writes a number over the bytes at `at`, which must be there.
+template <typename Value>
+void put_las_number(std::string& bytes, std::size_t at, Value value) {
+  std::memcpy(bytes.data() + at, &value, sizeof value);
+}
+inline void put_las_vector(std::string& bytes, std::size_t at, const Vector3d& values) {
+  for (int k = 0; k < 3; ++k) put_las_number(bytes, at + 8 * static_cast<std::size_t>(k), values[k]);
+}
+
 /// Places of the LAS header that are read and patched, bytes from the beginning.
 namespace las_at {
 inline constexpr std::size_t kGlobalEncoding = 6;
@@ -30,7 +44,6 @@ inline constexpr std::size_t kRecordCount = 100;
 inline constexpr std::size_t kPointFormat = 104;
 inline constexpr std::size_t kPointLength = 105;
 inline constexpr std::size_t kLegacyCount = 107;
-inline constexpr std::size_t kLegacyReturns = 111;
 inline constexpr std::size_t kScale = 131;
 inline constexpr std::size_t kOffset = 155;
 inline constexpr std::size_t kBounds = 179;     ///< max x, min x, max y, min y, max z, min z
@@ -41,6 +54,8 @@ inline constexpr std::size_t kCount = 247;
 inline constexpr std::size_t kReturns = 255;
 }  // namespace las_at
 
+/// Bytes of a variable length record before its body.
+inline constexpr std::size_t kLasRecordHead = 54;
 /// Name of the record that holds the optical centre of a static scan, written by limen: three float64,
 /// metres.
 inline constexpr const char* kLasCentreUser = "limen";
@@ -85,6 +100,9 @@ bool looks_like_las(std::string_view bytes);
 /// Reads the header and the variable length records. Throws Error where something in it cannot be, or where
 /// the points of an uncompressed file do not fit into it.
 LasHeader parse_las_header(std::string_view bytes, const std::string& name);
+
+/// "LAZ 1.4, point format 6".
+std::string las_format_name(const LasHeader& header);
 
 /// Texts of the coordinate system (OGC WKT) that the file carries, as they are.
 std::vector<std::string> las_coordinate_systems(const LasHeader& header);

@@ -18,7 +18,6 @@
 namespace limen {
 namespace {
 
-constexpr std::size_t kDescription = 192;
 constexpr std::size_t kNameBytes = 32;
 constexpr std::size_t kMostRecord = 0xFFFF;
 
@@ -101,7 +100,7 @@ bool is_rounded_twin(const CloudPlan& plan, const std::string& name) {
 /// One description of extra bytes.
 std::string description_of(const ColumnPlan& column) {
   static constexpr std::array<char, 10> kTypes{2, 1, 4, 3, 6, 5, 8, 7, 9, 10};  // in the order of Scalar
-  std::string about(kDescription, '\0');
+  std::string about(kLasDescriptionBytes, '\0');
   about[2] = kTypes[static_cast<std::size_t>(column.type)];
   const std::string name = column.name.substr(0, kNameBytes);
   std::copy(name.begin(), name.end(), about.begin() + 4);
@@ -132,8 +131,8 @@ class Places {
 };
 
 void check_columns(const CloudPlan& plan, const std::string& name) {
-  for (std::size_t k = 0; k < 3; ++k) {
-    if (has_column(plan, kPlaces[k])) continue;
+  for (const Place& place : kPlaces) {
+    if (place.store != LasStore::coordinate || has_column(plan, place)) continue;
     throw Error("points without x, y and z cannot be written as LAS", name, "write another format");
   }
 }
@@ -142,8 +141,9 @@ void check_columns(const CloudPlan& plan, const std::string& name) {
 
 LasSlots las_slots(const CloudPlan& plan, const std::string& name) {
   check_columns(plan, name);
-  const bool coloured =
-      has_column(plan, kPlaces[18]) || has_column(plan, kPlaces[19]) || has_column(plan, kPlaces[20]);
+  const bool coloured = std::any_of(kPlaces.begin(), kPlaces.end(), [&](const Place& place) {
+    return place.store == LasStore::colour && has_column(plan, place);
+  });
   const bool infrared = has_column(plan, kInfrared);
   LasSlots slots;
   slots.point_format = infrared ? 8 : (coloured ? 7 : 6);

@@ -8,6 +8,7 @@
 #include <cstring>
 #include <limits>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -34,11 +35,6 @@ struct Motion {
   const Rigid3& target_from_source;
   Monitor& monitor;
 };
-
-template <typename Value>
-void put(std::string& bytes, std::size_t at, Value value) {
-  std::memcpy(bytes.data() + at, &value, sizeof value);
-}
 
 using Place = std::array<std::int32_t, 3>;
 
@@ -133,7 +129,7 @@ Reach move_records(const Motion& motion, const LasGrid& grid, std::vector<char>&
 
 /// Records that describe how the points were packed; they are packed no more.
 bool describes_packing(const LasRecord& record) {
-  return (record.user == "laszip encoded" && record.number == 22204) || record.user == "copc";
+  return (record.user == kLasZipUser && record.number == kLasZipNumber) || record.user == "copc";
 }
 
 /// A record as it is to be written; the scanner's position moves.
@@ -141,11 +137,8 @@ std::string written_record(const Motion& motion, const LasRecord& record) {
   std::string written(motion.bytes.substr(record.begin, record.end - record.begin));
   if (record.user != kLasCentreUser || record.number != kLasCentreNumber || record.body.size() < 24)
     return written;
-  Vector3d centre;
-  for (int k = 0; k < 3; ++k) centre[k] = las_number<double>(record.body, 8 * static_cast<std::size_t>(k));
-  centre = motion.target_from_source * centre;
-  const std::size_t body = written.size() - record.body.size();
-  for (int k = 0; k < 3; ++k) put(written, body + 8 * static_cast<std::size_t>(k), centre[k]);
+  put_las_vector(written, written.size() - record.body.size(),
+                 motion.target_from_source * las_vector(record.body, 0));
   return written;
 }
 
@@ -165,23 +158,24 @@ std::string beginning(const Motion& motion, const LasGrid& grid) {
     }
   }
   text += motion.bytes.substr(end, header.points_begin - end);
-  put(text, las_at::kRecordCount, las_number<std::uint32_t>(motion.bytes, las_at::kRecordCount) - taken_out);
-  put(text, las_at::kPointsBegin, static_cast<std::uint32_t>(text.size()));
+  put_las_number(text, las_at::kRecordCount,
+                 las_number<std::uint32_t>(motion.bytes, las_at::kRecordCount) - taken_out);
+  put_las_number(text, las_at::kPointsBegin, static_cast<std::uint32_t>(text.size()));
   text[las_at::kPointFormat] = static_cast<char>(header.point_format);
-  for (int k = 0; k < 3; ++k) {
-    put(text, las_at::kScale + 8 * static_cast<std::size_t>(k), grid.scale[k]);
-    put(text, las_at::kOffset + 8 * static_cast<std::size_t>(k), grid.offset[k]);
-  }
+  put_las_vector(text, las_at::kScale, grid.scale);
+  put_las_vector(text, las_at::kOffset, grid.offset);
   return text;
 }
 
 /// What lies behind the points, and where in it waveforms and extended records begin.
 struct Tail {
-  std::string text;        ///< extended records alone, where some were taken out
-  std::string_view bytes;  ///< else all, as it is
+  std::string_view all;             ///< as it is
+  std::optional<std::string> kept;  ///< extended records alone, where some were taken out
   std::optional<std::uint64_t> waveforms;
   std::optional<std::uint64_t> long_records;
   std::optional<std::uint32_t> long_record_count;  ///< where it changes
+
+  [[nodiscard]] std::string_view bytes() const { return kept ? std::string_view(*kept) : all; }
 };
 
 std::uint64_t end_of_points(const Motion& motion) {
@@ -199,9 +193,11 @@ Tail tail_of(const Motion& motion) {
   const LasHeader& header = motion.header;
   const std::uint64_t begin = end_of_points(motion);
   Tail tail;
+  tail.all = motion.bytes.substr(begin);
   const auto inside = [&](std::uint64_t place) {
     return place >= begin && place < motion.bytes.size() && place > 0;
   };
+  std::string kept;
   std::uint32_t count = 0;
   bool taken_out = false;
   for (const LasRecord& record : header.records) {
@@ -209,7 +205,7 @@ Tail tail_of(const Motion& motion) {
     const bool packing = header.compressed && describes_packing(record);
     taken_out = taken_out || packing;
     if (packing) continue;
-    tail.text += written_record(motion, record);
+    kept += written_record(motion, record);
     ++count;
   }
   if (inside(header.long_records)) tail.long_records = header.long_records - begin;
@@ -217,16 +213,14 @@ Tail tail_of(const Motion& motion) {
   if (taken_out && !tail.waveforms) {
     tail.long_records = 0;
     tail.long_record_count = count;
-    tail.bytes = tail.text;
-  } else {
-    tail.bytes = motion.bytes.substr(begin);
+    tail.kept = std::move(kept);
   }
   return tail;
 }
 
 void overwrite_number(AtomicFile& file, std::size_t at, auto value) {
   std::string bytes(sizeof value, '\0');
-  put(bytes, 0, value);
+  put_las_number(bytes, 0, value);
   file.overwrite(at, bytes);
 }
 
@@ -274,7 +268,7 @@ std::optional<std::uint64_t> write_moved(const Motion& motion, const LasGrid& gr
     motion.monitor.advance(static_cast<double>(reach.points), static_cast<double>(motion.header.points));
   }
   const Tail tail = tail_of(motion);
-  file.write(tail.bytes);
+  file.write(tail.bytes());
   patch_header(file, motion, tail, text.size() + reach.points * motion.header.point_bytes);
   patch_bounds(file, grid, reach);
   file.commit();
@@ -332,8 +326,7 @@ TransformedCloud transform_las(std::string_view bytes, const std::string& name,
     throw Error("the moved coordinates are not finite or too large to be stored", name, "check the pose");
   TransformedCloud result;
   result.points = static_cast<std::size_t>(*points);
-  result.format = fmt::format("{} 1.{}, point format {}", header.compressed ? "LAZ" : "LAS", header.minor,
-                              header.point_format);
+  result.format = las_format_name(header);
   result.notes = notes_of(motion, grid);
   return result;
 }

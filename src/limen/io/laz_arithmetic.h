@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <memory>
 #include <string_view>
 
 /// Adaptive arithmetic decoding as LAZ uses it.
@@ -235,6 +236,23 @@ class Decoder {
   const unsigned char* at_ = nullptr;
   const unsigned char* end_ = nullptr;
   std::uint64_t missing_ = 0;
+};
+
+/// A model for each value of something, made when it is first met.
+template <unsigned symbols, unsigned values>
+class ModelPerValue {
+ public:
+  unsigned decode(Decoder& decoder, unsigned value) {
+    std::unique_ptr<SymbolModel<symbols>>& model = models_[value];
+    if (!model) {
+      model = std::make_unique<SymbolModel<symbols>>();
+      model->reset();
+    }
+    return decoder.symbol(*model);
+  }
+
+ private:
+  std::array<std::unique_ptr<SymbolModel<symbols>>, values> models_;
 };
 
 }  // namespace limen::laz

@@ -176,18 +176,13 @@ void parse_table(const Source& source, const Compression& compression, LazInfo& 
     source.damaged(fmt::format("the header promises {} points, the compressed chunks hold {}",
                                source.header.points, source.header.points - left));
   }
-  info.end = place;
 }
 
 }  // namespace
 
-const LasRecord* find_laszip_record(const LasHeader& header) {
-  return header.find("laszip encoded", 22204);
-}
-
 LazInfo parse_laz_info(std::string_view bytes, const std::string& name, const LasHeader& header) {
   const Source source{bytes, name, header};
-  const LasRecord* record = find_laszip_record(header);
+  const LasRecord* record = header.find(kLasZipUser, kLasZipNumber);
   if (record == nullptr || record->body.size() < kRecordHead)
     source.damaged("the points are compressed, but no LASzip record says how");
   const Compression compression = parse_compression(source, record->body);
@@ -196,7 +191,6 @@ LazInfo parse_laz_info(std::string_view bytes, const std::string& name, const La
   info.chunk_ends_known = compression.compressor != 1;
   info.items = parse_items(source, record->body);
   check_items(source, info);
-  info.end = bytes.size();
   if (header.points == 0) return info;
   if (compression.compressor == 1) {
     if (!can_hold(bytes.size() - header.points_begin, header.points))

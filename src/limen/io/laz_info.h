@@ -26,11 +26,11 @@ struct LazInfo {
   bool chunk_ends_known = false;  ///< false: one run that ends somewhere in the file
   std::vector<laz::ItemPlan> items;
   std::vector<LazChunkPlace> chunks;
-  std::uint64_t end = 0;  ///< where what belongs to the points ends, the table of chunks too
 };
 
-/// The LASzip record of a LAZ file; nullptr where there is none.
-const LasRecord* find_laszip_record(const LasHeader& header);
+/// Name of the record that tells how the points are packed.
+inline constexpr const char* kLasZipUser = "laszip encoded";
+inline constexpr std::uint16_t kLasZipNumber = 22204;
 
 /// Reads the LASzip record and the table of chunks; all chunks lie in the file and their points add up.
 /// A file coded as one run has one chunk. Throws Error where that is not so.

@@ -36,21 +36,8 @@ constexpr std::array<std::array<std::uint8_t, 8>, 8> kReturnContexts{{
     {8, 9, 10, 11, 12, 13, 14, 15},
 }};
 
-/// Bytes that are predicted by the same byte of the last point: a model for each value of that.
-class ByteAfterByte {
- public:
-  std::uint8_t decode(Decoder& decoder, std::uint8_t last) {
-    std::unique_ptr<SymbolModel<256>>& model = models_[last];
-    if (!model) {
-      model = std::make_unique<SymbolModel<256>>();
-      model->reset();
-    }
-    return static_cast<std::uint8_t>(decoder.symbol(*model));
-  }
-
- private:
-  std::array<std::unique_ptr<SymbolModel<256>>, 256> models_;
-};
+/// Bytes that are predicted by the same byte of the last point.
+using ByteAfterByte = ModelPerValue<256, 256>;
 
 std::uint8_t byte_at(const std::array<char, kBytes>& point, std::size_t at) {
   return static_cast<std::uint8_t>(point[at]);

@@ -47,23 +47,6 @@ constexpr std::array<std::array<std::uint8_t, 16>, 16> kReturnContexts{{
     {5, 3, 3, 4, 4, 4, 4, 4, 4, 4, 4, 4, 4, 4, 5, 5},
 }};
 
-/// A model for each value of something, made when it is first met.
-template <unsigned symbols, unsigned values>
-class ModelPerValue {
- public:
-  unsigned decode(Decoder& decoder, unsigned value) {
-    std::unique_ptr<SymbolModel<symbols>>& model = models_[value];
-    if (!model) {
-      model = std::make_unique<SymbolModel<symbols>>();
-      model->reset();
-    }
-    return decoder.symbol(*model);
-  }
-
- private:
-  std::array<std::unique_ptr<SymbolModel<symbols>>, values> models_;
-};
-
 /// What the first layer predicts from, per scanner channel.
 struct PlaceState {
   std::int32_t x = 0;

@@ -6,9 +6,6 @@
 #include <utility>
 #include <vector>
 
-#include <fmt/format.h>
-
-#include "limen/base/error.h"
 #include "limen/io/las_fields.h"
 #include "limen/io/las_records.h"
 
@@ -53,8 +50,7 @@ std::string told_time(const LasHeader& header) {
 std::optional<Vector3d> told_centre(const LasHeader& header) {
   const LasRecord* record = header.find(kLasCentreUser, kLasCentreNumber);
   if (record == nullptr || record->body.size() < 24) return {};
-  Vector3d centre;
-  for (int k = 0; k < 3; ++k) centre[k] = las_number<double>(record->body, 8 * static_cast<std::size_t>(k));
+  const Vector3d centre = las_vector(record->body, 0);
   return centre.allFinite() ? std::optional(centre) : std::nullopt;
 }
 
@@ -76,10 +72,7 @@ class LasFile : public PointFile {
     clouds_.push_back(std::move(facts));
   }
 
-  [[nodiscard]] std::string format() const override {
-    return fmt::format("{} 1.{}, point format {}", header_.compressed ? "LAZ" : "LAS", header_.minor,
-                       header_.point_format);
-  }
+  [[nodiscard]] std::string format() const override { return las_format_name(header_); }
   [[nodiscard]] const std::vector<CloudFacts>& clouds() const override { return clouds_; }
   [[nodiscard]] std::unique_ptr<PointStream> read(std::size_t /*index*/) const override {
     return std::make_unique<LasStream>(open_las_records(bytes_, name_, header_), layout_,

@@ -175,8 +175,8 @@ std::unique_ptr<PointFile> open_ply(std::string_view bytes, const std::string& n
   cloud.facts.fields = field_names(source.vertex());
   cloud.open = [bytes, name, header, which] {
     const PlySource again{bytes, name, *header, which};
-    const bool rows_of_text = header->encoding == PlyEncoding::ascii && !text_of(again).names.empty();
-    return rows_of_text ? stream_of_text(text_of(again)) : stream_of_table(table_of(again));
+    return header->encoding == PlyEncoding::ascii ? stream_of_text(text_of(again))
+                                                  : stream_of_table(table_of(again));
   };
   return make_point_file(format_name(header->encoding), {std::move(cloud)});
 }

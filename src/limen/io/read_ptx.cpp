@@ -107,11 +107,18 @@ PtxHeader take_header(Cursor& cursor, const std::string& name) {
   return {side_of(lines[0][0], where), side_of(lines[1][0], where), pose_of(transposed, where)};
 }
 
-/// The text of the next `rows` lines that are not empty; less where the file ends.
-std::string_view take_lines(Cursor& cursor, std::size_t rows) {
+/// Lines of points, and empty ones among them.
+struct PointLines {
+  std::string_view text;
+  std::size_t points = 0;
+};
+
+/// The next `rows` lines that are not empty; less where the file ends.
+PointLines take_lines(Cursor& cursor, std::size_t rows) {
   std::size_t end = 0;
   std::size_t lines = 0;
-  for (std::size_t taken = 0; taken < rows && end < cursor.rest.size(); ++lines) {
+  std::size_t taken = 0;
+  for (; taken < rows && end < cursor.rest.size(); ++lines) {
     const std::size_t newline = cursor.rest.find('\n', end);
     const std::size_t stop = newline == std::string_view::npos ? cursor.rest.size() : newline + 1;
     if (stop - end > 3 || !split_tokens(cursor.rest.substr(end, stop - end - 1)).empty()) ++taken;
@@ -120,7 +127,7 @@ std::string_view take_lines(Cursor& cursor, std::size_t rows) {
   const std::string_view text = cursor.rest.substr(0, end);
   cursor.rest.remove_prefix(end);
   cursor.line += lines;
-  return text;
+  return {text, taken};
 }
 
 /// Moves the points to the world and makes missing returns not-a-number; returns how many those were.
@@ -152,8 +159,11 @@ std::vector<std::string> names_of(std::string_view first_row) {
 struct Station {
   std::string name;
   PtxHeader header;
-  std::string_view text;
-  std::size_t line;
+  std::size_t at;  ///< byte of the file at which its header begins
+  PointLines rows;
+  std::size_t line;  ///< of the file at which they begin
+
+  [[nodiscard]] std::size_t points() const { return header.columns * header.rows; }
 };
 
 TableFacts facts_of(const Station& station) {
@@ -166,14 +176,14 @@ TableFacts facts_of(const Station& station) {
 }
 
 ScanFile with_station(ScanFile file, const Station& station, const ReadOptions& options) {
-  const std::size_t points = station.header.columns * station.header.rows;
-  const std::vector<std::string> names = names_of(first_line(station.text).text);
+  const std::size_t points = station.points();
+  const std::vector<std::string> names = names_of(first_line(station.rows.text).text);
   TextRows wanted;
   wanted.columns = names.size();
   wanted.rows = points;
   wanted.first_line_number = station.line;
   auto numbers =
-      std::make_shared<std::vector<double>>(parse_rows(station.text, wanted, station.name).numbers);
+      std::make_shared<std::vector<double>>(parse_rows(station.rows.text, wanted, station.name).numbers);
   const std::size_t missing = move_to_world(*numbers, names.size(), station.header.world_from_scan);
   if (missing > 0) file.notes.push_back(fmt::format("{}: {} missing returns", station.name, missing));
   if (missing == points) {
@@ -192,9 +202,10 @@ std::vector<Station> stations_of(std::string_view bytes, const std::string& name
   Cursor cursor{bytes};
   for (cursor.skip_blank(); !cursor.rest.empty(); cursor.skip_blank()) {
     Station station;
+    station.at = bytes.size() - cursor.rest.size();
     station.header = take_header(cursor, name);
     station.line = cursor.line;
-    station.text = take_lines(cursor, station.header.columns * station.header.rows);
+    station.rows = take_lines(cursor, station.points());
     station.name = name;
     cursor.skip_blank();
     if (!stations.empty() || !cursor.rest.empty())
@@ -207,11 +218,11 @@ std::vector<Station> stations_of(std::string_view bytes, const std::string& name
 /// A scan as a cloud that is read in pieces.
 CloudSource source_of(const Station& station) {
   TextCloud text;
-  text.text = station.text;
+  text.text = station.rows.text;
   text.file = station.name;
-  text.names = names_of(first_line(station.text).text);
+  text.names = names_of(first_line(station.rows.text).text);
   text.wanted.columns = text.names.size();
-  text.wanted.rows = station.header.columns * station.header.rows;
+  text.wanted.rows = station.points();
   text.wanted.first_line_number = station.line;
   text.change = [names = text.names, pose = station.header.world_from_scan](std::vector<double>& numbers) {
     move_to_world(numbers, names.size(), pose);
@@ -219,7 +230,7 @@ CloudSource source_of(const Station& station) {
   };
   CloudSource source;
   source.facts.table = facts_of(station);
-  source.facts.points = *text.wanted.rows;
+  source.facts.points = station.points();
   source.facts.fields = text.names;
   source.open = [text] { return stream_of_text(text); };
   return source;
@@ -251,6 +262,20 @@ std::unique_ptr<PointFile> open_ptx(std::string_view bytes, const std::string& n
   std::vector<CloudSource> clouds;
   for (const Station& station : stations_of(bytes, name)) clouds.push_back(source_of(station));
   return make_point_file("PTX", std::move(clouds));
+}
+
+std::vector<PtxPlace> ptx_places(std::string_view bytes, const std::string& name) {
+  std::vector<PtxPlace> places;
+  for (const Station& station : stations_of(bytes, name)) {
+    if (station.rows.points < station.points()) {
+      throw Error(
+          fmt::format("the file ends {} points before its time", station.points() - station.rows.points),
+          name, "get the whole file, or correct the count");
+    }
+    const auto body = static_cast<std::size_t>(station.rows.text.data() - bytes.data());
+    places.push_back({station.at, body, station.points()});
+  }
+  return places;
 }
 
 }  // namespace limen

@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "limen/io/point_file.h"
 #include "limen/io/read_scan.h"
@@ -22,5 +24,14 @@ ScanFile read_ptx(std::string_view bytes, const std::string& name, const ReadOpt
 
 /// The same file, each scan of it a cloud that is read in pieces; `bytes` must outlive it.
 std::unique_ptr<PointFile> open_ptx(std::string_view bytes, const std::string& name);
+
+/// Where a scan of a PTX file lies in its text.
+struct PtxPlace {
+  std::size_t header = 0;  ///< byte at which its ten header lines begin
+  std::size_t body = 0;    ///< byte behind them
+  std::size_t points = 0;  ///< lines of points that follow
+};
+/// The places of all scans, in their order. Throws Error where a header is damaged or points are missing.
+std::vector<PtxPlace> ptx_places(std::string_view bytes, const std::string& name);
 
 }  // namespace limen

@@ -129,6 +129,7 @@ std::unique_ptr<PointStream> stream_of_table(RecordTable table) {
 }
 
 std::unique_ptr<PointStream> stream_of_text(TextCloud cloud) {
+  if (cloud.names.empty()) return stream_of_table({});
   return std::make_unique<TextStream>(std::move(cloud));
 }
 

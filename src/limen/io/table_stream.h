@@ -26,8 +26,8 @@ struct TextCloud {
   std::function<std::vector<std::string>(std::vector<double>& numbers)> change = {};
 };
 
-/// The rows of a text piece after piece. Where `wanted.rows` or counts in the text promise more rows than
-/// there are, an Error comes at the end.
+/// The rows of a text piece after piece, none where there are no columns. Where `wanted.rows` or counts in
+/// the text promise more rows than there are, an Error comes at the end.
 std::unique_ptr<PointStream> stream_of_text(TextCloud cloud);
 
 /// One cloud and how it is read.

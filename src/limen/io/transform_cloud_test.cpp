@@ -174,6 +174,27 @@ TEST(TransformCloud, PtxKeepsItsPointsAndMovesItsScanners) {
   }
 }
 
+TEST(TransformCloud, PtxFindsItsScansBehindEmptyLinesAsTheReaderDoes) {
+  const TemporaryFolder folder;
+  const std::string rows = "1 2 3 0.5\n4 5 6 0.25\n";
+  const std::string head = "1\n2\n1 2 3\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n1 2 3 1\n";
+  const auto in = folder.write("in.ptx", "     \n" + head + rows + "      \n" + head + rows + "     \n");
+  transform_cloud(in, Rigid3{Matrix3d::Identity(), {10, 20, 30}}, folder / "out.ptx");
+  const std::string moved = "1\n2\n11 22 33\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n11 22 33 1\n";
+  EXPECT_EQ(slurp(folder / "out.ptx"), "     \n" + moved + rows + "      \n" + moved + rows + "     \n");
+  const auto cut = folder.write("cut.ptx", head + rows + head + "1 2 3 0.5\n");
+  EXPECT_THROW(transform_cloud(cut, Rigid3{}, folder / "cut_out.ptx"), Error);
+  EXPECT_FALSE(std::filesystem::exists(folder / "cut_out.ptx"));
+}
+
+TEST(TransformCloud, ATextWithoutColumnsIsToldAsSuch) {
+  const TemporaryFolder folder;
+  const auto in = folder.write("in.pcd",
+                               "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 0 0 0\nWIDTH 1\n"
+                               "HEIGHT 1\nPOINTS 1\nDATA ascii\n1 2 3\n");
+  EXPECT_THROW(transform_cloud(in, Rigid3{}, folder / "out.ply"), Error);
+}
+
 /// A PCD with a number before and an array behind the coordinates.
 std::string rich_pcd(const std::string& data, const std::vector<Vector3d>& points) {
   std::string pcd = fmt::format(

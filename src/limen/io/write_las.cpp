@@ -14,6 +14,7 @@
 #include "limen/base/atomic_file.h"
 #include "limen/base/error.h"
 #include "limen/base/parallel.h"
+#include "limen/io/las_fields.h"
 #include "limen/io/las_header.h"
 #include "limen/io/las_slots.h"
 
@@ -26,21 +27,15 @@ constexpr std::size_t kStrip = 1024;    ///< values that stay in the cache
 constexpr std::size_t kBlock = 262144;  ///< rows that are encoded before they are written
 constexpr double kFinestStep = 1e-5;
 constexpr double kCoarsestStep = 1e-4;
-constexpr double kAngleStep = 0.006;
 constexpr double kSecondsOfWeek = 604800.0;
 constexpr double kRoundOffset = 100.0;
 constexpr std::int32_t kBlank = INT32_MIN;  ///< stored for what is no number, until the row is left out
 
-template <typename Value>
-void put(std::string& bytes, std::size_t at, Value value) {
-  std::memcpy(bytes.data() + at, &value, sizeof value);
-}
-
 std::string record_of(const std::string& user, std::uint16_t number, const std::string& body) {
-  std::string record(54, '\0');
+  std::string record(kLasRecordHead, '\0');
   std::copy(user.begin(), user.end(), record.begin() + 2);
-  put(record, 18, number);
-  put(record, 20, static_cast<std::uint16_t>(body.size()));
+  put_las_number(record, 18, number);
+  put_las_number(record, 20, static_cast<std::uint16_t>(body.size()));
   return record + body;
 }
 
@@ -170,7 +165,7 @@ class LasWriter : public CloudWriter {
     add("LASF_Spec", 4, slots_.extra_bytes);
     if (plan_.centre) {
       std::string centre(24, '\0');
-      for (int k = 0; k < 3; ++k) put(centre, 8 * static_cast<std::size_t>(k), (*plan_.centre)[k]);
+      put_las_vector(centre, 0, *plan_.centre);
       add(kLasCentreUser, kLasCentreNumber, centre);
     }
     std::string header(kHeaderBytes, '\0');
@@ -178,16 +173,14 @@ class LasWriter : public CloudWriter {
     header[las_at::kMinorVersion - 1] = 1;
     header[las_at::kMinorVersion] = 4;
     header.replace(58, 5, "limen");
-    put(header, las_at::kGlobalEncoding, kWktBit);
-    put(header, las_at::kHeaderSize, static_cast<std::uint16_t>(kHeaderBytes));
-    put(header, las_at::kPointsBegin, static_cast<std::uint32_t>(kHeaderBytes + records.size()));
-    put(header, las_at::kRecordCount, count);
+    put_las_number(header, las_at::kGlobalEncoding, kWktBit);
+    put_las_number(header, las_at::kHeaderSize, static_cast<std::uint16_t>(kHeaderBytes));
+    put_las_number(header, las_at::kPointsBegin, static_cast<std::uint32_t>(kHeaderBytes + records.size()));
+    put_las_number(header, las_at::kRecordCount, count);
     header[las_at::kPointFormat] = static_cast<char>(slots_.point_format);
-    put(header, las_at::kPointLength, static_cast<std::uint16_t>(slots_.point_bytes));
-    for (std::size_t k = 0; k < 3; ++k) {
-      put(header, las_at::kScale + 8 * k, step_);
-      put(header, las_at::kOffset + 8 * k, offset_[static_cast<int>(k)]);
-    }
+    put_las_number(header, las_at::kPointLength, static_cast<std::uint16_t>(slots_.point_bytes));
+    put_las_vector(header, las_at::kScale, Vector3d::Constant(step_));
+    put_las_vector(header, las_at::kOffset, offset_);
     return header + records;
   }
 
@@ -304,7 +297,7 @@ class LasWriter : public CloudWriter {
         return strip.store(slot.at, [&](double v) { return clamped<std::uint16_t>(spread * v + 0.5); });
       case LasStore::angle:
         return strip.store(slot.at,
-                           [](double v) { return clamped<std::int16_t>(std::nearbyint(v / kAngleStep)); });
+                           [](double v) { return clamped<std::int16_t>(std::nearbyint(v / kLasAngleStep)); });
       case LasStore::time:
         for (std::size_t i = 0; i < strip.count; ++i) {
           summary.earliest = std::min(summary.earliest, strip.values[i]);
@@ -346,7 +339,7 @@ class LasWriter : public CloudWriter {
   void patch_header() {
     const auto patch = [&](std::size_t at, auto value) {
       std::string bytes(sizeof value, '\0');
-      put(bytes, 0, value);
+      put_las_number(bytes, 0, value);
       file_.overwrite(at, bytes);
     };
     patch(las_at::kCount, summary_.points);

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "limen/base/error.h"
+#include "limen/match/polygon_distance.h"
 #include "limen/register/prepare_model.h"
 #include "limen/register/register.h"
 #include "limen/register/stage_clock.h"
@@ -53,18 +54,14 @@ bool is_model(const BimModel& /*model*/) {
 
 /// The features turned back from the upright frame into the scan's own.
 PicturedSide pictured(PreparedScan&& prepared) {
-  const Matrix3d back = prepared.upright_from_scan.transpose();
+  const Rigid3 back{prepared.upright_from_scan.transpose(), Vector3d::Zero()};
   PicturedSide side;
   side.features = std::move(prepared.extracted.features);
   side.features.samples.clear();
   side.upright = prepared.upright;
-  if (prepared.upright) side.up = back.col(2);
-  if (back.isIdentity()) return side;
-  for (PlanarPolygon& polygon : side.features.planes) {
-    polygon.plane.normal = back * polygon.plane.normal;
-    polygon.frame = {back * polygon.frame.origin, back * polygon.frame.u, back * polygon.frame.v};
-    polygon.centroid = back * polygon.centroid;
-  }
+  if (prepared.upright) side.up = back.rotation.col(2);
+  if (back.rotation.isIdentity()) return side;
+  for (PlanarPolygon& polygon : side.features.planes) polygon = transformed(back, polygon);
   for (Opening& opening : side.features.openings) {
     for (Vector3d& corner : opening.corners) corner = back * corner;
     for (Vector3d& corner : opening.outline) corner = back * corner;
@@ -104,7 +101,9 @@ RegistrationResult prepare_and_register(const Source& source, const Target& targ
   if (!in_model || options.method != Method::automatic || result.judged_poses > 0) return result;
   RegisterOptions by_edges = options;
   by_edges.method = Method::segments;
-  return prepare_and_register_once(source, target, by_edges, monitor);
+  RegistrationResult second = prepare_and_register_once(source, target, by_edges, monitor);
+  second.stages.insert(second.stages.begin(), result.stages.begin(), result.stages.end());
+  return second;
 }
 
 }  // namespace

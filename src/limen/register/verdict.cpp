@@ -108,6 +108,23 @@ void VerdictOptions::check() const {
   if (!(max_sigma_m > 0)) throw_bad_option("max_sigma_m", max_sigma_m, "more than 0");
   if (!(max_sigma_deg > 0)) throw_bad_option("max_sigma_deg", max_sigma_deg, "more than 0");
   if (!(min_held_m2 > 0)) throw_bad_option("min_held_m2", min_held_m2, "more than 0");
+  // Nothing is more or less than a number that is none: such a bound would let any pose pass.
+  const std::pair<const char*, double> bounds[] = {{"full_evidence_m2", full_evidence_m2},
+                                                   {"max_unopened_contradiction", max_unopened_contradiction},
+                                                   {"unopened_allowance_m2", unopened_allowance_m2},
+                                                   {"max_model_contradiction", max_model_contradiction},
+                                                   {"model_allowance_m2", model_allowance_m2},
+                                                   {"max_rival_contradiction", max_rival_contradiction},
+                                                   {"excess_contradiction_m2", excess_contradiction_m2},
+                                                   {"excess_contradiction_share", excess_contradiction_share},
+                                                   {"min_rival_value", min_rival_value},
+                                                   {"clear_lead_m2", clear_lead_m2},
+                                                   {"min_lead_m2", min_lead_m2},
+                                                   {"same_rotation_deg", same_rotation_deg},
+                                                   {"same_shift_m", same_shift_m}};
+  for (const auto& [name, value] : bounds) {
+    if (!(value >= 0)) throw_bad_option(name, value, "0 or more");
+  }
 }
 
 std::vector<UnobservedFreedom> unobserved_freedoms(const RefinedPose& pose, double min_held_m2) {
@@ -179,8 +196,7 @@ Verdict judge(const std::vector<JudgedPose>& poses, const ContrastFunction& cont
   if (verdict.ranking.empty()) {
     verdict.reason = fmt::format(
         "at best {:.0f} % of the walls that the scan saw are in the model: it was taken elsewhere, or much "
-        "was "
-        "built otherwise",
+        "was built otherwise",
         100.0 * explained);
     return verdict;
   }

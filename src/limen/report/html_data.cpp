@@ -9,6 +9,7 @@
 #include "limen/geometry/polygon_clip.h"
 #include "limen/report/html_bytes.h"
 #include "limen/report/html_residuals.h"
+#include "limen/report/html_words.h"
 #include "limen/report/json_values.h"
 
 namespace limen {
@@ -105,8 +106,7 @@ Json segments_json(const Features& features) {
 }
 
 Json side_json(const InputSummary& input, const SceneSide& side, const QuantisedPoints& points) {
-  return {{"kind", input.kind},
-          {"name", input.path.substr(input.path.find_last_of('/') + 1)},
+  return {{"name", file_name(input)},
           {"origin", json_of(side.origin)},
           {"low", json_of(points.low)},
           {"step", json_of(points.step)},
@@ -126,7 +126,6 @@ Json pose_json(const Hypothesis& pose, const ReportScene& scene) {
           {"agreeing", pose.agreeing_m2},
           {"contradicted", pose.contradicted_m2},
           {"rms", pose.rms_m},
-          {"score", pose.score},
           {"segments", pose.matched_segments},
           {"length", pose.agreeing_length_m},
           {"room", pose.room}};
@@ -198,8 +197,7 @@ std::string scene_elements(const RegistrationReport& report, const ReportScene& 
   const QuantisedPoints source = quantised(scene.source);
   const QuantisedPoints target = quantised(scene.target);
   const std::vector<std::uint8_t> source_planes = plane_of_points(scene.source);
-  Json json = {{"outcome", to_string(result.outcome)},
-               {"source", side_json(report.source, scene.source, source)},
+  Json json = {{"source", side_json(report.source, scene.source, source)},
                {"target", side_json(report.target, scene.target, target)},
                {"axes", Json::array()},
                {"low", json_of(view.low)},
@@ -207,7 +205,6 @@ std::string scene_elements(const RegistrationReport& report, const ReportScene& 
                {"cut", json_of(view.cut)},
                {"beside", json_of(to_matrix(view.target_from_source))},
                {"poses", poses_json(result, scene)},
-               {"rivals", result.rivals},
                {"open", open_json(result)},
                {"matches", matches_json(result)}};
   for (Eigen::Index k = 0; k < 3; ++k)

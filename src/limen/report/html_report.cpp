@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limen/report/html_report.h"
 
-#include <array>
 #include <map>
 
 #include <fmt/format.h>
@@ -80,8 +79,9 @@ std::string matrix_card(const RegistrationReport& report) {
                  "<pre id=\"matrix\" tabindex=\"0\" aria-label=\"4 by 4 matrix, metres\">" +
                      transform_text(report.result.best.target_from_source) +
                      "</pre>\n<button type=\"button\" id=\"copy\">Copy</button> "
-                     "<span id=\"copied\" role=\"status\"></span>\n",
-                 "Four rows of four, metres, as in transform.txt.");
+                     "<span id=\"copied\" role=\"status\"></span>\n"
+                     "<p class=\"note\" id=\"matrix-pose\">The best pose, as in transform.txt.</p>\n",
+                 "Four rows of four, metres.");
 }
 
 }  // namespace

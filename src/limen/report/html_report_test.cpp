@@ -192,6 +192,9 @@ TEST(ReportPage, EveryOutcomeHasItsPage) {
       report.result.unobserved = {{false, Vector3d::UnitY(), "shift along (0.00, 1.00, 0.00)"}};
     const ReportPages pages = report_pages(report, scene);
     EXPECT_NE(pages.page.find(words), std::string::npos) << words;
+    EXPECT_NE(pages.page.find(std::string("<body data-outcome=\"") + to_string(outcome) + "\">"),
+              std::string::npos);
+    EXPECT_EQ(pages.page.find("Registered:") == std::string::npos, outcome != Outcome::registered);
     EXPECT_EQ(pages.page.find("{{"), std::string::npos);
     EXPECT_EQ(count_of(pages.page, "<svg xmlns"), 3U);
     EXPECT_EQ(pages.page.find("id=\"matrix\"") == std::string::npos, outcome == Outcome::no_match);
@@ -249,6 +252,22 @@ TEST(ReportPage, TakesSidesWithoutAnything) {
   const ReportPages pages = report_pages(report_of(Outcome::no_match), {});
   EXPECT_NE(pages.page.find("No match"), std::string::npos);
   EXPECT_TRUE(is_well_formed(pages.top));
+}
+
+TEST(ReportWords, PromiseNothingOfWhatIsOpen) {
+  RegistrationReport report = report_of(Outcome::under_constrained);
+  const auto last = [&report] { return verdict_words(report).sentences.back(); };
+  report.result.unobserved = {{false, Vector3d::UnitX(), "shift along x"}};
+  EXPECT_EQ(last(),
+            "You can expect 0.2 mm in position and 0.0006° in direction (one standard deviation of the worst "
+            "axis that is held).");
+  // A diagonal wall: no axis is held, though one direction is.
+  report.result.unobserved = {{false, Vector3d(1, 1, 0).normalized(), "shift along a wall"},
+                              {false, Vector3d::UnitZ(), "shift along the vertical"}};
+  EXPECT_EQ(last(),
+            "You can expect 0.0006° in direction (one standard deviation of the worst axis that is held).");
+  report.result.unobserved.push_back({true, Vector3d(1, 1, 1).normalized(), "turn"});
+  EXPECT_EQ(last(), "Turn is not held by the data.");
 }
 
 TEST(ReportWords, LengthsAndAngles) {

@@ -63,7 +63,7 @@ std::uint8_t plane_of(const Vector3d& x, const std::vector<NearPlane>& planes) {
   return best;
 }
 
-/// Target plane of every source plane byte, in the source's local frame; null where it was not matched.
+/// The target plane that a source plane was matched with, the one of most overlap; source's local frame.
 struct MatchedPlane {
   bool matched = false;
   double overlap_m2 = 0.0;

@@ -41,19 +41,6 @@ class CellSet {
   std::vector<std::int64_t> slots_;
 };
 
-/// Points of one scan in the frame of its side.
-struct PlacedPoints {
-  const Scan* scan = nullptr;
-  Rigid3 side_from_scan;
-};
-
-std::vector<PlacedPoints> placed(const RegisterInput& input, const Vector3d& origin) {
-  std::vector<PlacedPoints> list;
-  for (const PlacedScan& one : input.scans)
-    list.push_back({&one.scan, to_local(one.group_from_scan, one.scan.local_origin, origin)});
-  return list;
-}
-
 void add_points(const RegisterInput& input, std::size_t most, SceneSide& side) {
   struct Origin {
     const Scan* scan;
@@ -67,12 +54,14 @@ void add_points(const RegisterInput& input, std::size_t most, SceneSide& side) {
   std::vector<Origin> origins;
   bool coloured = total > 0;
   bool measured = total > 0;
-  for (const PlacedPoints& one : placed(input, side.origin)) {
-    coloured = coloured && (one.scan->size() == 0 || !one.scan->colours.empty());
-    measured = measured && (one.scan->size() == 0 || !one.scan->intensities.empty());
-    for (std::size_t i = 0; i < one.scan->size(); i += stride) {
-      points.push_back(one.side_from_scan * one.scan->points[i]);
-      origins.push_back({one.scan, i});
+  for (const PlacedScan& one : input.scans) {
+    const Scan& scan = one.scan;
+    const Rigid3 side_from_scan = to_local(one.group_from_scan, scan.local_origin, side.origin);
+    coloured = coloured && (scan.size() == 0 || !scan.colours.empty());
+    measured = measured && (scan.size() == 0 || !scan.intensities.empty());
+    for (std::size_t i = 0; i < scan.size(); i += stride) {
+      points.push_back(side_from_scan * scan.points[i]);
+      origins.push_back({&scan, i});
     }
   }
   for (const std::uint32_t kept : spread_evenly(points, most)) {

@@ -3,7 +3,6 @@
 #include "limen/report/html_tables.h"
 
 #include <algorithm>
-#include <map>
 
 #include <fmt/format.h>
 
@@ -62,10 +61,6 @@ std::string evidence_rows(const Hypothesis& pose) {
   return rows;
 }
 
-std::string input_name(const InputSummary& input) {
-  return escaped(input.path.substr(input.path.find_last_of('/') + 1));
-}
-
 std::string size_of(const InputSummary& input) {
   if (input.kind == "scan") return fmt::format("{} points", input.points);
   return fmt::format("{} {}", input.elements, input.kind == "model" ? "elements" : "segments");
@@ -91,8 +86,8 @@ std::string input_row(const char* side, const InputSummary& input) {
 
 std::string key_table(const RegistrationReport& report) {
   const RegistrationResult& result = report.result;
-  std::string rows = row("Source", input_name(report.source) + ", " + size_of(report.source));
-  rows += row("Target", input_name(report.target) + ", " + size_of(report.target));
+  std::string rows = row("Source", escaped(file_name(report.source)) + ", " + size_of(report.source));
+  rows += row("Target", escaped(file_name(report.target)) + ", " + size_of(report.target));
   if (!found(report)) return facts(rows, "key");
   if (!result.best.room.empty()) rows += row("Room", escaped(result.best.room));
   rows += evidence_rows(result.best);

@@ -19,6 +19,19 @@ struct ViewBox {
   [[nodiscard]] double diagonal() const { return (high - low).norm(); }
 };
 
+/// Places of a side: its points, else corners of its faces, else ends of its segments.
+std::vector<Vector3d> places_of(const SceneSide& side) {
+  if (!side.points.empty()) return side.points;
+  std::vector<Vector3d> places;
+  for (const Triangle3& face : side.faces) places.insert(places.end(), face.begin(), face.end());
+  if (!places.empty()) return places;
+  for (const Segment& segment : side.pictured.features.segments) {
+    places.push_back(segment.a);
+    places.push_back(segment.b);
+  }
+  return places;
+}
+
 ViewBox box_around(const std::vector<Vector3d>& places, const Rigid3& view_from_places) {
   ViewBox box;
   if (places.empty()) return box;
@@ -100,18 +113,6 @@ Rigid3 beside(const ReportScene& scene, const Matrix3d& view_from_target) {
 }
 
 }  // namespace
-
-std::vector<Vector3d> places_of(const SceneSide& side) {
-  if (!side.points.empty()) return side.points;
-  std::vector<Vector3d> places;
-  for (const Triangle3& face : side.faces) places.insert(places.end(), face.begin(), face.end());
-  if (!places.empty()) return places;
-  for (const Segment& segment : side.pictured.features.segments) {
-    places.push_back(segment.a);
-    places.push_back(segment.b);
-  }
-  return places;
-}
 
 SceneView make_view(const ReportScene& scene, const RegistrationResult& result) {
   SceneView view;

@@ -19,7 +19,4 @@ struct SceneView {
 };
 SceneView make_view(const ReportScene& scene, const RegistrationResult& result);
 
-/// Places of a side: its points, else corners of faces and planes, ends of segments.
-std::vector<Vector3d> places_of(const SceneSide& side);
-
 }  // namespace limen

@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limen/report/html_words.h"
 
+#include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -39,17 +41,27 @@ std::string places(const RegistrationReport& report, std::size_t count) {
   return fmt::format("{} {}", count, model ? "places" : "ways");
 }
 
-std::string expectation(const RegistrationResult& result) {
-  double shift = 0.0;
-  double turn = 0.0;
+/// The largest standard deviation of the shifts or turns that are held; none where none is.
+std::optional<double> worst_held(const RegistrationResult& result, bool rotation) {
+  const Vector3d& sigma = rotation ? result.sigma.rotation_rad : result.sigma.translation_m;
+  std::optional<double> worst;
   for (int axis = 0; axis < 3; ++axis) {
-    if (!is_open(result, false, axis)) shift = std::max(shift, result.sigma.translation_m[axis]);
-    if (!is_open(result, true, axis)) turn = std::max(turn, result.sigma.rotation_rad[axis]);
+    if (!is_open(result, rotation, axis)) worst = std::max(worst.value_or(0.0), sigma[axis]);
   }
-  const std::string position = shift < 0.00005 ? "less than 0.1 mm" : length_words(shift);
-  return fmt::format(
-      "You can expect {} in position and {} in direction (one standard deviation of the worst axis{}).",
-      position, angle_words(turn), result.unobserved.empty() ? "" : " that is held");
+  return worst;
+}
+
+/// Empty where no axis is held.
+std::string expectation(const RegistrationResult& result) {
+  const std::optional<double> shift = worst_held(result, false);
+  const std::optional<double> turn = worst_held(result, true);
+  std::string words;
+  if (shift) words = (*shift < 0.00005 ? "less than 0.1 mm" : length_words(*shift)) + " in position";
+  if (shift && turn) words += " and ";
+  if (turn) words += angle_words(*turn) + " in direction";
+  if (words.empty()) return {};
+  return fmt::format("You can expect {} (one standard deviation of the worst axis{}).", words,
+                     result.unobserved.empty() ? "" : " that is held");
 }
 
 VerdictWords registered_words(const RegistrationReport& report) {
@@ -85,7 +97,8 @@ VerdictWords open_words(const RegistrationReport& report) {
   if (result.unobserved.size() > 1)
     words.headline =
         fmt::format("Not fully held: the data leaves {} directions open", result.unobserved.size());
-  words.sentences.push_back(expectation(result));
+  const std::string expected = expectation(result);
+  if (!expected.empty()) words.sentences.push_back(expected);
   return words;
 }
 
@@ -96,6 +109,10 @@ bool is_open(const RegistrationResult& result, bool rotation, int axis) {
     if (freedom.rotation == rotation && std::abs(freedom.direction[axis]) > kShareOfAxis) return true;
   }
   return false;
+}
+
+std::string file_name(const InputSummary& input) {
+  return input.path.substr(input.path.find_last_of('/') + 1);
 }
 
 std::string length_words(double metres) {

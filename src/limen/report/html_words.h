@@ -18,6 +18,9 @@ struct VerdictWords {
 };
 VerdictWords verdict_words(const RegistrationReport& report);
 
+/// The last part of the input's path.
+std::string file_name(const InputSummary& input);
+
 /// "0.3 mm", "12 mm", "1.25 m"
 std::string length_words(double metres);
 /// "0.0021°"

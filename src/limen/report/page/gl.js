@@ -126,7 +126,7 @@ const makePicture = (gl) => {
   return { begin, colours, depths };
 };
 
-/** "#1f6fb4" or "rgb(…)" of a style's variable as three shares. */
+/** "#1f6fb4" of a style's variable as three shares; grey where it is told otherwise. */
 const styleColour = (name) => {
   const text = getComputedStyle(document.documentElement).getPropertyValue(name).trim();
   const digits = /^#([0-9a-f]{2})([0-9a-f]{2})([0-9a-f]{2})/i.exec(text);

@@ -100,10 +100,13 @@ const startViewer = (gl, canvas) => {
     element('scale-text').textContent = metres(length) + (camera.parallel ? '' : ' in the middle');
     const apart = !state.after || (motion !== null);
     for (const [name, viewFromSide] of [['source', place], ['target', scene.viewFromTarget]]) {
+      const tag = element(`tag-${name}`);
+      tag.hidden = !apart;
+      if (!apart) continue;
       const box = name === 'target' && scene.poses.length ? { low: scene.low, high: scene.high } : boxOf(scene[name], viewFromSide);
       const top = scaled(add(box.low, box.high), 0.5);
       top[2] = box.high[2];
-      put(element(`tag-${name}`), top, apart);
+      put(tag, top, true);
     }
     put(element('pin'), picked ? pinPlace() : [0, 0, 0], picked !== null);
     showLegend(scene, state, residual);
@@ -287,7 +290,6 @@ const bindControls = (scene, actions) => {
   on('next', 'click', () => actions.choosePose(actions.state.pose + 1));
   on('size', 'input', (event) => { actions.state.size = +event.target.value; actions.redraw(); });
   on('backs', 'change', (event) => { actions.state.seeThrough = event.target.checked; actions.redraw(); });
-  on('copy', 'click', copyMatrix);
   element('poses').hidden = scene.poses.length < 2;
   element('toggle').hidden = scene.poses.length === 0;
   for (const button of document.querySelectorAll('[data-view]')) button.addEventListener('click', () => actions.chooseView(button.dataset.view));
@@ -336,7 +338,7 @@ const bindKeys = (canvas, actions) => {
 const start = () => {
   const canvas = element('canvas');
   const gl = canvas.getContext('webgl2', { antialias: true, alpha: true, preserveDrawingBuffer: true });
-  element('copy')?.addEventListener('click', gl ? () => {} : copyMatrix);
+  element('copy')?.addEventListener('click', copyMatrix);
   if (!gl) { element('fallback').hidden = false; return; }
   element('viewer').hidden = false;
   try {

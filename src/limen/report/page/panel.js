@@ -88,6 +88,10 @@ const rampCss = () => `linear-gradient(90deg, ${kRamp.map((c) => `rgb(${c.map((x
 
 const showLegend = (scene, state, residual) => {
   const legend = element('legend');
+  // Asked for every frame; what has not changed is not told again.
+  const told = `${state.colouring} ${residual}`;
+  if (legend.dataset.told === told) return;
+  legend.dataset.told = told;
   legend.replaceChildren();
   if (state.colouring === 'residual' && residual) {
     legend.append(made('span', {}, 'Residual 0', made('span', { class: 'ramp', style: `background:${rampCss()}` }),
@@ -114,7 +118,11 @@ const showPose = (scene, state) => {
   const count = scene.poses.length;
   element('pose').value = state.pose === 0 ? `Best${count > 1 ? ` of ${count}` : ''}` : `Alternative ${state.pose} / ${count - 1}`;
   element('numbers').textContent = count && state.after ? numbersOf(scene.poses[state.pose]) : '';
-  if (count && element('matrix')) element('matrix').textContent = scene.poses[state.pose].text;
+  if (count) {
+    element('matrix').textContent = scene.poses[state.pose].text;
+    element('matrix-pose').textContent = state.pose === 0 ? 'The best pose, as in transform.txt.'
+      : `Alternative ${state.pose}, not the pose of transform.txt.`;
+  }
   for (const row of document.querySelectorAll('tr[data-pose]')) {
     row.setAttribute('aria-selected', String(+row.dataset.pose === state.pose));
   }
