@@ -18,7 +18,7 @@
 
 #include "limen/base/angles.h"
 #include "limen/base/random.h"
-#include "limen/io/read_scan.h"
+#include "limen/io/cloud/read_scan.h"
 #include "limen/register/register.h"
 #include "limen/simulate/scene.h"
 

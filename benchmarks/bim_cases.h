@@ -18,11 +18,11 @@
 
 #include "limen/base/angles.h"
 #include "limen/base/error.h"
-#include "limen/io/read_bim.h"
+#include "limen/bim/read_bim.h"
 #include "limen/model/result.h"
 #include "limen/register/register.h"
-#include "limen/simulate/bim_office.h"
-#include "limen/simulate/bim_scene.h"
+#include "limen/simulate/model/bim_office.h"
+#include "limen/simulate/model/bim_scene.h"
 
 namespace limen::bim_cases {
 

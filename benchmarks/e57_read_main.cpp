@@ -16,8 +16,8 @@
 #include <fmt/format.h>
 
 #include "limen/base/parallel.h"
-#include "limen/io/mapped_file.h"
-#include "limen/io/read_e57.h"
+#include "limen/files/mapped_file.h"
+#include "limen/io/e57/read_e57.h"
 
 namespace {
 

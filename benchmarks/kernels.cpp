@@ -5,11 +5,11 @@
 #include <benchmark/benchmark.h>
 
 #include "limen/base/random.h"
-#include "limen/extract/extract_features.h"
+#include "limen/extract/features/extract_features.h"
 #include "limen/geometry/alpha_shape.h"
-#include "limen/match/enumerate_poses.h"
-#include "limen/register/prepare_scan.h"
-#include "limen/register/refine_pose.h"
+#include "limen/match/planes/enumerate_poses.h"
+#include "limen/register/prepare/prepare_scan.h"
+#include "limen/register/refine/refine_pose.h"
 #include "limen/simulate/scene.h"
 
 namespace {

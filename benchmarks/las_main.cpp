@@ -22,10 +22,10 @@
 #include <fmt/format.h>
 
 #include "limen/base/parallel.h"
-#include "limen/io/las_records.h"
-#include "limen/io/mapped_file.h"
-#include "limen/io/read_las.h"
-#include "limen/io/scan_builder.h"
+#include "limen/files/mapped_file.h"
+#include "limen/io/las/las_records.h"
+#include "limen/io/las/read_las.h"
+#include "limen/io/table/scan_builder.h"
 
 namespace {
 

@@ -29,7 +29,7 @@
 #include <fmt/format.h>
 
 #include "limen/base/parallel.h"
-#include "limen/extract/openings.h"
+#include "limen/extract/openings/openings.h"
 #include "limen/simulate/scene.h"
 
 namespace {

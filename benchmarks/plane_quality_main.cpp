@@ -38,7 +38,7 @@
 #include <fmt/format.h>
 
 #include "limen/base/parallel.h"
-#include "limen/extract/detect_planes.h"
+#include "limen/extract/planes/detect_planes.h"
 #include "limen/simulate/scene.h"
 
 namespace {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "limen/base/angles.h"
-#include "limen/extract/plane_labels.h"
+#include "limen/extract/planes/plane_labels.h"
 #include "limen/simulate/scene.h"
 
 // Which true plane each detected plane stands for. The words are defined in plane_quality_main.cpp.

@@ -25,8 +25,8 @@
 
 #include "limen/base/error.h"
 #include "limen/base/parallel.h"
-#include "limen/extract/extract_features.h"
-#include "limen/extract/segments.h"
+#include "limen/extract/features/extract_features.h"
+#include "limen/extract/segments/segments.h"
 #include "limen/simulate/scene.h"
 
 namespace {

@@ -14,8 +14,8 @@
 #include "limen/base/error.h"
 #include "limen/geometry/polygon_clip.h"
 #include "limen/geometry/segment.h"
-#include "limen/simulate/ray_caster.h"
 #include "limen/simulate/recipes.h"
+#include "limen/simulate/scanner/ray_caster.h"
 
 // The true edges of a simulated building, and which of them a scan saw. The words are defined in
 // segment_quality_main.cpp.

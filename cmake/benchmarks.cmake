@@ -10,6 +10,8 @@ foreach(source IN LISTS LIMEN_BENCHMARKS)
   add_executable(${target} ${source})
   target_link_libraries(${target} PRIVATE limen limen_options fmt::fmt nlohmann_json::nlohmann_json
     CLI11::CLI11 $<$<BOOL:${LIMEN_BUILD_SIMULATOR}>:limen_simulate>)
+  target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
+  target_precompile_headers(${target} REUSE_FROM limen)
   if(NOT source MATCHES "_main\\.cpp$")
     target_link_libraries(${target} PRIVATE benchmark::benchmark_main)
   endif()

@@ -11,8 +11,7 @@ if(LIMEN_BUILD_IFC)
 endif()
 # Headers that need the libraries we build with, but do not ask of users, stay at home.
 install(DIRECTORY src/limen DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.h"
-        PATTERN "cli" EXCLUDE PATTERN "simulate" EXCLUDE PATTERN "json_values.h" EXCLUDE
-        PATTERN "test_support.h" EXCLUDE PATTERN "synthetic_*.h" EXCLUDE)
+        PATTERN "cli" EXCLUDE PATTERN "simulate" EXCLUDE PATTERN "json_values.h" EXCLUDE)
 install(FILES ${PROJECT_BINARY_DIR}/generated/limen/base/version.h
         DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/limen/base)
 install(FILES LICENSE README.md CHANGELOG.md CITATION.cff DESTINATION ${CMAKE_INSTALL_DOCDIR})

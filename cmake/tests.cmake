@@ -7,7 +7,13 @@ if(NOT LIMEN_BUILD_SIMULATOR)
   message(FATAL_ERROR "The tests need the simulator: configure with -DLIMEN_BUILD_SIMULATOR=ON or -DLIMEN_BUILD_TESTS=OFF")
 endif()
 
+# What many tests include is compiled once.
+set(LIMEN_TEST_HEADERS <Eigen/Core> <Eigen/Geometry> <Eigen/LU> <algorithm> <array> <cmath> <cstdint> <filesystem>
+  <functional> <memory> <optional> <string> <string_view> <utility> <vector> <fmt/format.h> <gtest/gtest.h>)
+
 add_executable(limen_unit_tests ${LIMEN_UNIT_TESTS})
+target_include_directories(limen_unit_tests PRIVATE ${PROJECT_SOURCE_DIR}/tests)
+target_precompile_headers(limen_unit_tests PRIVATE ${LIMEN_TEST_HEADERS})
 target_link_libraries(limen_unit_tests PRIVATE limen limen_simulate limen_cli limen_options fmt::fmt
   nlohmann_json::nlohmann_json GTest::gtest_main)
 if(LIMEN_BUILD_IFC)
@@ -21,6 +27,8 @@ if(LIMEN_ACCEPTANCE_TESTS)
   add_executable(limen_acceptance_tests ${LIMEN_ACCEPTANCE_TESTS} tests/fuzz/readers.cpp)
   target_link_libraries(limen_acceptance_tests PRIVATE limen limen_simulate limen_cli limen_options fmt::fmt
     nlohmann_json::nlohmann_json GTest::gtest_main)
+  target_include_directories(limen_acceptance_tests PRIVATE ${PROJECT_SOURCE_DIR}/tests)
+  target_precompile_headers(limen_acceptance_tests PRIVATE ${LIMEN_TEST_HEADERS})
   target_compile_definitions(limen_acceptance_tests PRIVATE LIMEN_PROGRAM="$<TARGET_FILE:limen_program>"
     LIMEN_CORPUS="${PROJECT_SOURCE_DIR}/tests/corpus")
   # g++ 12 warns of "literal" + string where nothing overlaps (its bug 105651).

@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "run_program.h"
+#include "support/synthetic_segments.h"
 #include <nlohmann/json.hpp>
 
-#include "limen/match/synthetic_segments.h"
 #include "limen/register/register_segments.h"
 
 namespace limen {

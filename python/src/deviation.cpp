@@ -7,7 +7,7 @@
 #include "work.h"
 
 #include "limen/base/atomic_file.h"
-#include "limen/report/deviation_report.h"
+#include "limen/report/deviation/deviation_report.h"
 
 namespace limen::python {
 namespace {

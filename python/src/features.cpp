@@ -6,13 +6,13 @@
 #include "numpy_views.h"
 #include "work.h"
 
-#include "limen/extract/estimate_centre.h"
-#include "limen/extract/extract_features.h"
-#include "limen/extract/model_features.h"
-#include "limen/extract/openings.h"
-#include "limen/extract/segments.h"
-#include "limen/report/features_json.h"
-#include "limen/report/segments_json.h"
+#include "limen/sight/estimate_centre.h"
+#include "limen/extract/features/extract_features.h"
+#include "limen/extract/model/model_features.h"
+#include "limen/extract/openings/openings.h"
+#include "limen/extract/segments/segments.h"
+#include "limen/report/json/features_json.h"
+#include "limen/report/json/segments_json.h"
 
 namespace limen::python {
 namespace {

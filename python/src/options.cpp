@@ -10,9 +10,9 @@
 #include <fmt/format.h>
 
 #include "limen/deviation/deviation.h"
-#include "limen/extract/extract_features.h"
-#include "limen/extract/openings.h"
-#include "limen/extract/segments.h"
+#include "limen/extract/features/extract_features.h"
+#include "limen/extract/openings/openings.h"
+#include "limen/extract/segments/segments.h"
 #include "limen/register/register.h"
 
 namespace limen::python {

@@ -9,8 +9,8 @@
 
 #include "limen/base/atomic_file.h"
 #include "limen/register/register.h"
-#include "limen/report/html_report.h"
-#include "limen/report/result_json.h"
+#include "limen/report/html/html_report.h"
+#include "limen/report/json/result_json.h"
 
 namespace limen::python {
 namespace {

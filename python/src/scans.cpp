@@ -6,11 +6,11 @@
 #include "numpy_views.h"
 #include "work.h"
 
-#include "limen/io/read_bim.h"
-#include "limen/io/read_scan.h"
-#include "limen/io/scan_builder.h"
-#include "limen/io/transform_cloud.h"
-#include "limen/io/write_ply.h"
+#include "limen/bim/read_bim.h"
+#include "limen/io/cloud/read_scan.h"
+#include "limen/io/table/scan_builder.h"
+#include "limen/io/cloud/transform_cloud.h"
+#include "limen/io/ply/write_ply.h"
 
 namespace limen::python {
 

@@ -6,7 +6,7 @@
 #include "numpy_views.h"
 #include "work.h"
 
-#include "limen/report/truth_json.h"
+#include "limen/report/json/truth_json.h"
 #include "limen/simulate/scene.h"
 
 namespace limen::python {

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "limen/io/ifc_stream_format.h"
+#include "limen/bim/ifc/ifc_stream_format.h"
 
 namespace limen::ifc {
 

@@ -5,10 +5,10 @@
 #include <fstream>
 
 #include <limen/base/version.h>
-#include <limen/extract/extract_features.h>
+#include <limen/extract/features/extract_features.h>
 #include <limen/geometry/rigid.h>
-#include <limen/io/read_scan.h>
-#include <limen/report/result_json.h>
+#include <limen/io/cloud/read_scan.h>
+#include <limen/report/json/result_json.h>
 
 /// Reads a file it wrote itself, finds its one plane and reports a pose: touches every library that limen
 /// leans on.

@@ -7,7 +7,7 @@
 
 #include "limen/base/angles.h"
 #include "limen/base/parallel.h"
-#include "limen/extract/point_normals.h"
+#include "limen/extract/cells/point_normals.h"
 
 namespace limen {
 namespace {

@@ -9,11 +9,11 @@
 
 #include "limen/base/error.h"
 #include "limen/base/parallel.h"
-#include "limen/register/measure_thickness.h"
-#include "limen/register/model_rooms.h"
-#include "limen/register/propose.h"
-#include "limen/register/select_poses.h"
-#include "limen/register/stage_clock.h"
+#include "limen/register/prepare/model_rooms.h"
+#include "limen/register/prepare/stage_clock.h"
+#include "limen/register/propose/propose.h"
+#include "limen/register/propose/select_poses.h"
+#include "limen/register/refine/measure_thickness.h"
 
 namespace limen {
 namespace {

@@ -7,13 +7,13 @@
 #include <vector>
 
 #include "limen/base/progress.h"
-#include "limen/extract/extract_features.h"
-#include "limen/match/enumerate_poses.h"
+#include "limen/extract/features/extract_features.h"
+#include "limen/match/planes/enumerate_poses.h"
 #include "limen/model/result.h"
-#include "limen/register/prepare_group.h"
-#include "limen/register/propose.h"
-#include "limen/register/refine_pose.h"
-#include "limen/register/verdict.h"
+#include "limen/register/judge/verdict.h"
+#include "limen/register/prepare/prepare_group.h"
+#include "limen/register/propose/propose.h"
+#include "limen/register/refine/refine_pose.h"
 
 namespace limen {
 

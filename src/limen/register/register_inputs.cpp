@@ -3,10 +3,10 @@
 #include <utility>
 
 #include "limen/base/error.h"
-#include "limen/match/polygon_distance.h"
-#include "limen/register/prepare_model.h"
+#include "limen/match/planes/polygon_distance.h"
+#include "limen/register/prepare/prepare_model.h"
+#include "limen/register/prepare/stage_clock.h"
 #include "limen/register/register.h"
-#include "limen/register/stage_clock.h"
 
 namespace limen {
 namespace {

@@ -2,13 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 
+#include "support/synthetic_model.h"
 #include <gtest/gtest.h>
 
 #include "limen/base/angles.h"
 #include "limen/base/error.h"
-#include "limen/model/synthetic_model.h"
 #include "limen/register/register.h"
-#include "limen/simulate/bim_scene.h"
+#include "limen/simulate/model/bim_scene.h"
 
 namespace limen {
 namespace {

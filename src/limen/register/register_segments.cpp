@@ -12,8 +12,8 @@
 #include "limen/base/angles.h"
 #include "limen/base/error.h"
 #include "limen/base/parallel.h"
-#include "limen/match/segment_distance.h"
-#include "limen/register/verdict.h"
+#include "limen/match/segments/segment_distance.h"
+#include "limen/register/judge/verdict.h"
 
 namespace limen {
 namespace {

@@ -3,11 +3,11 @@
 #pragma once
 
 #include "limen/base/progress.h"
-#include "limen/match/enumerate_segment_poses.h"
+#include "limen/match/segments/enumerate_segment_poses.h"
 #include "limen/model/result.h"
 #include "limen/model/segment_set.h"
-#include "limen/register/prepare_scan.h"
-#include "limen/register/refine_segments.h"
+#include "limen/register/prepare/prepare_scan.h"
+#include "limen/register/refine/refine_segments.h"
 
 namespace limen {
 

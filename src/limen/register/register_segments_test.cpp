@@ -4,11 +4,11 @@
 
 #include <limits>
 
+#include "support/synthetic_segments.h"
 #include <gtest/gtest.h>
 
 #include "limen/base/error.h"
 #include "limen/base/parallel.h"
-#include "limen/match/synthetic_segments.h"
 
 namespace limen {
 namespace {

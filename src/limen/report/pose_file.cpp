@@ -12,7 +12,7 @@
 #include <fmt/format.h>
 
 #include "limen/base/error.h"
-#include "limen/report/json_values.h"
+#include "limen/report/json/json_values.h"
 
 namespace limen {
 namespace {

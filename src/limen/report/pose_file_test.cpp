@@ -10,8 +10,8 @@
 
 #include "limen/base/error.h"
 #include "limen/report/evaluation.h"
-#include "limen/report/json_values.h"
-#include "limen/report/result_json.h"
+#include "limen/report/json/json_values.h"
+#include "limen/report/json/result_json.h"
 
 namespace limen {
 namespace {

@@ -3,7 +3,7 @@
 //
 // Rooms in a row that repeat to the last chair, with nothing outside: shifts by a room cannot be told apart.
 #include "limen/base/angles.h"
-#include "limen/simulate/furniture.h"
+#include "limen/simulate/buildings/furniture.h"
 #include "limen/simulate/recipe_parts.h"
 #include "limen/simulate/street.h"
 

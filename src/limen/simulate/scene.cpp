@@ -9,7 +9,7 @@
 
 #include "limen/base/error.h"
 #include "limen/simulate/recipes.h"
-#include "limen/simulate/station_scan.h"
+#include "limen/simulate/scanner/station_scan.h"
 #include "limen/simulate/stations.h"
 
 namespace limen {

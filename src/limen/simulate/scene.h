@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "limen/base/progress.h"
-#include "limen/simulate/scanner.h"
-#include "limen/simulate/truth.h"
+#include "limen/simulate/scanner/scanner.h"
+#include "limen/simulate/truth/truth.h"
 
 namespace limen {
 

@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include "limen/simulate/ray_caster.h"
 #include "limen/simulate/recipes.h"
+#include "limen/simulate/scanner/ray_caster.h"
 
 namespace limen {
 

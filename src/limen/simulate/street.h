@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "limen/simulate/building.h"
-#include "limen/simulate/scanner.h"
+#include "limen/simulate/buildings/building.h"
+#include "limen/simulate/scanner/scanner.h"
 
 namespace limen {
 

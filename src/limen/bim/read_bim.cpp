@@ -1,0 +1,75 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/bim/read_bim.h"
+
+#include <array>
+#include <string>
+#include <string_view>
+#include <system_error>
+
+#include "limen/base/error.h"
+#include "limen/bim/build/bim_builder.h"
+#include "limen/bim/ifc/read_ifc.h"
+#include "limen/bim/mesh/read_mesh_ply.h"
+#include "limen/bim/mesh/read_obj.h"
+#include "limen/files/mapped_file.h"
+
+namespace limen {
+namespace {
+
+/// A format that is read, told by its bytes.
+struct Format {
+  bool (*matches)(std::string_view bytes);
+  RawModel (*read)(std::string_view bytes, const std::string& name, Monitor& monitor);
+};
+
+RawModel obj(std::string_view bytes, const std::string& name, Monitor& /*monitor*/) {
+  return read_obj(bytes, name);
+}
+RawModel mesh_ply(std::string_view bytes, const std::string& name, Monitor& /*monitor*/) {
+  return read_mesh_ply(bytes, name);
+}
+
+constexpr std::array<Format, 4> kFormats{{
+    {looks_like_step, read_ifc},
+    {looks_like_ifczip, read_ifczip},
+    {looks_like_mesh_ply, mesh_ply},
+    {looks_like_obj, obj},
+}};
+
+const Format* format_of(std::string_view bytes) {
+  for (const Format& format : kFormats) {
+    if (format.matches(bytes)) return &format;
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+bool is_bim_file(const std::filesystem::path& path) {
+  std::error_code ignored;
+  // A pipe can be read only once: whoever reads it will see what it is.
+  if (!std::filesystem::is_regular_file(path, ignored)) return false;
+  try {
+    const MappedFile file(path);
+    return format_of(file.bytes()) != nullptr;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
+BimModel read_bim(const std::filesystem::path& path, Monitor& monitor) {
+  const std::string name = path.string();
+  monitor.throw_if_cancelled();
+  const MappedFile file(path);
+  const Format* format = format_of(file.bytes());
+  if (format == nullptr) {
+    throw Error("this is no model that can be read", name,
+                "give an IFC file (IFC2X3 or IFC4, .ifc or .ifczip), or a mesh as OBJ or PLY with faces");
+  }
+  RawModel raw = format->read(file.bytes(), name, monitor);
+  monitor.throw_if_cancelled();
+  return built(std::move(raw), monitor);
+}
+
+}  // namespace limen

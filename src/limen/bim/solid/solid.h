@@ -1,0 +1,49 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "limen/bim/solid/polygon_mesh.h"
+
+namespace limen {
+
+enum class SolidOperation : std::uint8_t {
+  mesh,       ///< no operation: the closed mesh itself
+  unite,      ///< all children together
+  intersect,  ///< what all children share
+  subtract    ///< the first child without all others
+};
+
+/// A solid as a model file builds it up: a mesh, or an operation of others. Metres.
+struct Solid {
+  SolidOperation operation = SolidOperation::mesh;
+  PolygonMesh mesh;  ///< of a mesh
+  std::vector<Solid> children;
+};
+
+/// Axis-aligned box in space; empty: low > high.
+struct Box3 {
+  Vector3d low = Vector3d::Constant(1e300);
+  Vector3d high = Vector3d::Constant(-1e300);
+
+  void add(const Vector3d& x) {
+    low = low.cwiseMin(x);
+    high = high.cwiseMax(x);
+  }
+  [[nodiscard]] bool empty() const { return low.x() > high.x(); }
+  [[nodiscard]] bool touches(const Box3& other, double margin_m) const {
+    return (low.array() <= other.high.array() + margin_m).all() &&
+           (other.low.array() <= high.array() + margin_m).all();
+  }
+};
+
+/// The box of the polygons' corners; corners that are not finite do not count.
+Box3 box_of(const PolygonMesh& mesh);
+Box3 box_of(const Solid& solid);
+
+/// The same solid with each point x at scale * x - shift.
+void move(Solid& solid, double scale, const Vector3d& shift);
+
+}  // namespace limen

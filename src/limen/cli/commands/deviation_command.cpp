@@ -1,0 +1,221 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/cli/commands/deviation_command.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <fmt/format.h>
+
+#include "limen/base/atomic_file.h"
+#include "limen/base/error.h"
+#include "limen/cli/inputs/register_inputs.h"
+#include "limen/cli/inputs/scan_options.h"
+#include "limen/report/deviation/deviation_report.h"
+#include "limen/report/pose_file.h"
+
+namespace limen {
+namespace {
+
+struct DeviationCommand {
+  std::string scan;
+  std::string model;
+  std::string folder;
+  std::string result;
+  ReadingChoice reading;
+  std::string origin;
+  std::vector<std::string> with;
+  bool identity = false;
+  bool inverse = false;
+  double colour_limit_m = 0.05;
+  DeviationOptions measuring;
+};
+
+/// The scans of a group as one, about the first one's origin, with the optical centre of every point where
+/// all of them are known.
+Scan joined(const RegisterInput& input) {
+  const auto& scans = input.scans;
+  if (scans.size() == 1) return scans.front().scan;
+  Scan all;
+  all.name = scans.front().scan.name;
+  all.local_origin = scans.front().scan.local_origin;
+  const bool centres =
+      std::all_of(scans.begin(), scans.end(), [](const auto& it) { return it.scan.centre_known(); });
+  for (const auto& it : scans) {
+    const Rigid3 pose = to_local(it.group_from_scan, it.scan.local_origin, all.local_origin);
+    for (std::size_t i = 0; i < it.scan.size(); ++i) {
+      all.points.push_back(pose * it.scan.points[i]);
+      if (centres) all.centres.push_back(pose * it.scan.centre(i));
+    }
+  }
+  return all;
+}
+
+bool same_name(const std::string& a, const std::string& b) {
+  return std::filesystem::path(a).filename() == std::filesystem::path(b).filename();
+}
+
+/// Whether the result has the model as its source: told by its inputs, or by the user.
+bool model_is_source(const DeviationCommand& command, const PoseFile& pose, const Session& session) {
+  if (command.inverse) return true;
+  if (same_name(pose.source_path, command.scan) || same_name(pose.target_path, command.model)) return false;
+  if (same_name(pose.source_path, command.model) || same_name(pose.target_path, command.scan)) return true;
+  session.note(
+      fmt::format("{} does not name these files: its pose is taken to move the scan to the model (--inverse: "
+                  "the other way)",
+                  command.result));
+  return false;
+}
+
+/// The pose of the scan in the model, both in their world coordinates.
+Rigid3 read_pose(const DeviationCommand& command, const Session& session, DeviationReport& report) {
+  if (command.result.empty()) return {};
+  const PoseFile pose = read_pose_file(command.result);
+  if (!pose.target_from_source) {
+    throw Error("holds no pose: nothing in common was found", command.result,
+                "give the result of a registration that found one");
+  }
+  report.result_path = command.result;
+  if (pose.outcome) {
+    report.result_outcome = to_string(*pose.outcome);
+    if (*pose.outcome != Outcome::registered)
+      session.note(fmt::format("the pose in {} is {}: check it", command.result, report.result_outcome));
+  }
+  return model_is_source(command, pose, session) ? inverse(*pose.target_from_source)
+                                                 : *pose.target_from_source;
+}
+
+void check(const DeviationCommand& command) {
+  command.measuring.check();
+  if (!command.result.empty() && command.identity)
+    throw Error("--result and --identity exclude each other", "", "give one of them");
+  if (command.result.empty() && !command.identity) {
+    throw Error("the pose of the scan in the model is not given", "",
+                "give --result with the result.json of limen register, or --identity where both are in one "
+                "frame");
+  }
+}
+
+std::string line_of(const ElementDeviation& it, const BimElement& element) {
+  const std::string name = element.name.empty() ? element.type : element.name;
+  if (it.presence == Presence::not_found) {
+    return fmt::format("{:<12} {:<32.32} not found: rays passed through {:.2f} m2\n", to_string(element.kind),
+                       name, it.passed_m2);
+  }
+  return fmt::format("{:<12} {:<32.32} {:7.1f} {:7.1f}  {:<6} {:7.1f} {:3.0f} %\n", to_string(element.kind),
+                     name, 1e3 * it.median_m, 1e3 * it.p95_m, it.loa > 0 ? fmt::format("LOA{}", it.loa) : "-",
+                     1e3 * it.shift.shift_m.norm(), 100.0 * it.covered_share);
+}
+
+/// Elements that are missing or deviate most.
+std::string element_lines(const DeviationReport& report, const BimModel& model) {
+  constexpr std::size_t kShown = 20;
+  std::vector<const ElementDeviation*> shown;
+  for (const ElementDeviation& it : report.deviation.elements) {
+    if (it.presence != Presence::not_judged) shown.push_back(&it);
+  }
+  const auto urgency = [](const ElementDeviation* it) {
+    return it->presence == Presence::not_found ? 1e3 + it->passed_m2 : it->shift.shift_m.norm();
+  };
+  std::stable_sort(shown.begin(), shown.end(), [&](const ElementDeviation* a, const ElementDeviation* b) {
+    return urgency(a) > urgency(b);
+  });
+  std::string text =
+      "                                              median   95 %   class    shift covered   (mm)\n";
+  for (std::size_t k = 0; k < std::min(kShown, shown.size()); ++k)
+    text += line_of(*shown[k], model.elements[static_cast<std::size_t>(shown[k]->element)]);
+  if (shown.size() > kShown) text += fmt::format("... {} more\n", shown.size() - kShown);
+  return text;
+}
+
+std::string summary(const DeviationReport& report, const BimModel& model, const std::string& folder) {
+  const Deviation& deviation = report.deviation;
+  std::size_t count[3] = {0, 0, 0};
+  for (const ElementDeviation& it : deviation.elements) ++count[static_cast<std::size_t>(it.presence)];
+  std::string text = fmt::format("{} points, {} on faces of the model, {} far from all of them\n",
+                                 deviation.distance_m.size(), deviation.matched, deviation.far);
+  text += fmt::format("{} elements found, {} not found, {} not judged; {} pieces not in the model\n",
+                      count[0], count[1], count[2], deviation.unmodelled.size());
+  text += element_lines(report, model);
+  return text + fmt::format("written to {}\n", folder);
+}
+
+int run(const DeviationCommand& command, const Session& session) {
+  check(command);
+  const OutputFolder folder(command.folder);
+  DeviationReport report;
+  report.model_from_scan = read_pose(command, session, report);
+  session.monitor->begin_stage("reading");
+  const ReadOptions reading = with_choice(read_options(command.origin, "--origin", "up"), command.reading);
+  const Side scan_side = read_side({command.scan, command.with, reading}, session);
+  const Side model_side = read_side({command.model, {}, {}}, session);
+  if (scan_side.input.model)
+    throw Error("is a building model", command.scan, "give the scan first, then the model");
+  if (!model_side.input.model)
+    throw Error("is no building model", command.model, "give an IFC, OBJ or PLY model");
+  const BimModel& model = *model_side.input.model;
+  const Scan scan = joined(scan_side.input);
+  if (!scan.centre_known())
+    session.note("it is not known from where the scan was taken: give --origin, else nothing can be missed");
+  report.scan = scan_side.summary;
+  report.model = model_side.summary;
+  report.measured = command.measuring;
+  const Rigid3 pose = to_local(report.model_from_scan, scan.local_origin, model.local_origin);
+  report.deviation = measure_deviation(scan, model, pose, command.measuring, *session.monitor);
+  session.monitor->throw_if_cancelled();
+  session.monitor->begin_stage("writing");
+  const std::string json = deviation_json(report, model);
+  write_deviation_ply(folder.path() / "deviation.ply", scan, report, command.colour_limit_m);
+  write_file(folder.path() / "deviation.csv", deviation_csv(report, model));
+  write_file(folder.path() / "deviation.json", json);
+  session.say(summary(report, model, command.folder));
+  session.answer(json);
+  return kExitOk;
+}
+
+void add_pose_options(CLI::App& command, DeviationCommand& options) {
+  command.add_option("--result", options.result, "result.json of limen register, or a text of 4 x 4 numbers")
+      ->type_name("FILE");
+  command.add_flag("--identity", options.identity, "Scan and model are in one frame already");
+  command.add_flag("--inverse", options.inverse, "The pose in --result moves the model to the scan");
+  command
+      .add_option("--with", options.with,
+                  "A further scan and the file of its pose in SCAN's frame; may be given several times")
+      ->type_size(2)
+      ->type_name("SCAN POSE");
+  command
+      .add_option("--origin", options.origin, "From where SCAN was taken, in the coordinates of its points")
+      ->type_name("x,y,z");
+  add_memory_option(command, options.reading.memory);
+  add_trajectory_options(command, options.reading);
+}
+
+}  // namespace
+
+void add_deviation_command(CLI::App& app, Session& session) {
+  auto options = std::make_shared<DeviationCommand>();
+  CLI::App* command = add_command(app, session, "deviation", "Measure a registered scan against its model",
+                                  [options, &session] { return run(*options, session); });
+  command->add_option("SCAN", options->scan, "A scan of any format limen reads")->required();
+  command->add_option("MODEL", options->model, "The building model: IFC, OBJ, or PLY with faces")->required();
+  command
+      ->add_option("-o,--output", options->folder,
+                   "Folder for deviation.json, deviation.csv and deviation.ply")
+      ->required()
+      ->type_name("DIR");
+  add_pose_options(*command, *options);
+  add_length_option(*command, "--max-distance-m", options->measuring.max_distance_m,
+                    "Matter farther from every face is not the model's (default 0.10)");
+  add_length_option(*command, "--tile-m", options->measuring.tile_m,
+                    "Edge of the tiles by which coverage is counted (default 0.05)");
+  add_length_option(*command, "--colour-limit-m", options->colour_limit_m,
+                    "Deviation of full colour in deviation.ply (default 0.05)");
+}
+
+}  // namespace limen

@@ -1,0 +1,194 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/cli/commands/info_command.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <fmt/format.h>
+
+#include "limen/base/random.h"
+#include "limen/bim/read_bim.h"
+#include "limen/cli/inputs/model_info.h"
+#include "limen/cli/inputs/scan_options.h"
+#include "limen/io/cloud/read_scan.h"
+#include "limen/report/json/json_values.h"
+
+namespace limen {
+namespace {
+
+/// Points in the cube of a typical point; `side_m` is the cube's.
+double points_per_cube(const Scan& scan, double side_m) {
+  std::vector<std::uint64_t> keys;
+  keys.reserve(scan.size());
+  for (const Vector3d& point : scan.points) {
+    std::uint64_t key = 0;
+    for (int k = 0; k < 3; ++k)
+      key = mix64(key ^ static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(point[k] / side_m))));
+    keys.push_back(key);
+  }
+  std::sort(keys.begin(), keys.end());
+  std::vector<std::size_t> counts;
+  for (std::size_t begin = 0; begin < keys.size();) {
+    std::size_t end = begin;
+    while (end < keys.size() && keys[end] == keys[begin]) ++end;
+    counts.push_back(end - begin);
+    begin = end;
+  }
+  // Each point counts once, so that a few far and thin places do not speak for the whole.
+  std::sort(counts.begin(), counts.end());
+  std::size_t passed = 0;
+  for (const std::size_t count : counts) {
+    passed += count;
+    if (2 * passed >= keys.size()) return static_cast<double>(count);
+  }
+  return 0.0;
+}
+
+/// Points per square metre of surface round a typical point, roughly: from cubes just large enough to hold
+/// some points.
+double surface_density(const Scan& scan) {
+  constexpr double kEnough = 8.0;
+  constexpr double kLargestM = 5.0;
+  double side_m = 0.05;
+  double count = points_per_cube(scan, side_m);
+  while (count < kEnough && side_m < kLargestM) {
+    side_m *= 2.0;
+    count = points_per_cube(scan, side_m);
+  }
+  return count / (side_m * side_m);
+}
+
+std::int32_t line_count(const ScanTopology& topology) {
+  std::vector<std::int32_t> lines = topology.line;
+  std::sort(lines.begin(), lines.end());
+  return static_cast<std::int32_t>(std::unique(lines.begin(), lines.end()) - lines.begin());
+}
+
+std::vector<std::string> attributes_of(const Scan& scan) {
+  std::vector<std::string> names;
+  if (!scan.times_s.empty()) names.emplace_back("time");
+  if (!scan.intensities.empty()) names.emplace_back("intensity");
+  if (!scan.colours.empty()) names.emplace_back("colour");
+  return names;
+}
+
+Json json_of_centre(const Scan& scan) {
+  if (!scan.centre_known()) return "unknown";
+  if (scan.mobile()) return "per point";
+  return json_of(Vector3d(scan.local_origin + scan.centres[0]));
+}
+
+Json json_of_scan(const Scan& scan) {
+  const Extent extent = extent_of(scan.points);
+  Json json;
+  json["name"] = scan.name;
+  json["points"] = scan.size();
+  json["low"] = json_of(Vector3d(scan.local_origin + extent.low));
+  json["high"] = json_of(Vector3d(scan.local_origin + extent.high));
+  json["local_origin"] = json_of(scan.local_origin);
+  json["optical_centre"] = json_of_centre(scan);
+  json["scan_lines"] = scan.topology.known() ? Json(line_count(scan.topology)) : Json();
+  json["attributes"] = attributes_of(scan);
+  if (!scan.times_s.empty()) {
+    const auto [first, last] = std::minmax_element(scan.times_s.begin(), scan.times_s.end());
+    json["time_s"] = Json::array({*first, *last});
+  }
+  json["points_per_m2"] = surface_density(scan);
+  return json;
+}
+
+Json json_of_file(const std::string& path, const ScanFile& file) {
+  Json json;
+  json["file"] = path;
+  json["format"] = file.format;
+  json["fields"] = file.fields;
+  json["left_out"] = file.dropped;
+  json["notes"] = file.notes;
+  json["scans"] = Json::array();
+  for (const Scan& scan : file.scans) json["scans"].push_back(json_of_scan(scan));
+  return json;
+}
+
+std::string joined(const Json& words) {
+  std::string text;
+  for (const Json& word : words) text += (text.empty() ? "" : ", ") + word.get<std::string>();
+  return text.empty() ? "none" : text;
+}
+
+std::string point_text(const Json& point) {
+  return fmt::format("{:.3f} {:.3f} {:.3f}", point[0].get<double>(), point[1].get<double>(),
+                     point[2].get<double>());
+}
+
+std::string scan_text(const Json& scan) {
+  const Json& low = scan["low"];
+  const Json& high = scan["high"];
+  const auto side = [&](std::size_t k) { return high[k].get<double>() - low[k].get<double>(); };
+  std::string text = fmt::format("points          {}\n", scan["points"].get<std::size_t>());
+  text += fmt::format("from            {}\nto              {}\n", point_text(low), point_text(high));
+  text += fmt::format("size            {:.3f} x {:.3f} x {:.3f} m\n", side(0), side(1), side(2));
+  text += fmt::format("density         about {:.0f} points per m2\n", scan["points_per_m2"].get<double>());
+  const Json& centre = scan["optical_centre"];
+  text +=
+      fmt::format("optical centre  {}\n", centre.is_array() ? point_text(centre) : centre.get<std::string>());
+  text +=
+      fmt::format("scan lines      {}\n",
+                  scan["scan_lines"].is_null() ? "unknown" : fmt::to_string(scan["scan_lines"].get<int>()));
+  text += fmt::format("attributes      {}\n", joined(scan["attributes"]));
+  return text + fmt::format("local origin    {}\n", point_text(scan["local_origin"]));
+}
+
+std::string text_of(const Json& file) {
+  std::string text =
+      fmt::format("file            {}\nformat          {}\nfields          {}\n",
+                  file["file"].get<std::string>(), file["format"].get<std::string>(), joined(file["fields"]));
+  const bool several = file["scans"].size() > 1;
+  for (std::size_t i = 0; i < file["scans"].size(); ++i) {
+    if (several) text += fmt::format("\nscan {} of {}\n", i + 1, file["scans"].size());
+    text += scan_text(file["scans"][i]);
+  }
+  for (const Json& note : file["notes"]) text += fmt::format("note            {}\n", note.get<std::string>());
+  return text;
+}
+
+struct InfoCommand {
+  std::string path;
+  ReadingChoice reading;
+};
+
+int run(const InfoCommand& command, const Session& session) {
+  const std::string& path = command.path;
+  session.monitor->begin_stage("reading");
+  if (is_bim_file(path)) {
+    const Json model = json_of_model(path, read_bim(path, *session.monitor));
+    session.say(text_of_model(model));
+    session.answer(to_text(model));
+    return kExitOk;
+  }
+  const Json json =
+      json_of_file(path, read_scan_file(path, with_choice({}, command.reading), *session.monitor));
+  session.say(text_of(json));
+  session.answer(to_text(json));
+  return kExitOk;
+}
+
+}  // namespace
+
+void add_info_command(CLI::App& app, Session& session) {
+  auto options = std::make_shared<InfoCommand>();
+  CLI::App* command = add_command(app, session, "info", "Tell what a scan or a model file holds",
+                                  [options, &session] { return run(*options, session); });
+  command->add_option("FILE", options->path, "A scan or a model of any format limen reads")->required();
+  add_memory_option(*command, options->reading.memory);
+  add_trajectory_options(*command, options->reading);
+}
+
+}  // namespace limen

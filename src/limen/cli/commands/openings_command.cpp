@@ -1,0 +1,129 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/cli/commands/openings_command.h"
+
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <fmt/format.h>
+
+#include "limen/base/atomic_file.h"
+#include "limen/base/error.h"
+#include "limen/bim/read_bim.h"
+#include "limen/cli/inputs/scan_options.h"
+#include "limen/extract/model/model_features.h"
+#include "limen/extract/openings/openings.h"
+#include "limen/match/planes/enumerate_rotations.h"
+#include "limen/report/json/features_json.h"
+
+namespace limen {
+namespace {
+
+struct OpeningsCommand {
+  std::string scan;
+  std::string output;
+  std::string origin;
+  std::string gravity = "up";
+  ReadingChoice reading;
+  OpeningOptions openings;
+};
+
+/// Openings with the vertical that shows most of them, among the main directions of the scan's planes. Where
+/// two show as many, the one with more level surface; a scanner stands nearer to the floor than to the
+/// ceiling.
+std::vector<Opening> openings_any_way_up(const Scan& scan, const ExtractedFeatures& extracted,
+                                         const OpeningOptions& options, Monitor& monitor) {
+  constexpr double kSameDirectionDeg = 5.0;
+  std::vector<Opening> best;
+  for (const AxisDirection& axis : axis_directions(extracted.features, kSameDirectionDeg)) {
+    std::vector<double> heights;
+    for (const PlanarPolygon& polygon : extracted.features.planes)
+      heights.push_back(axis.direction.dot(polygon.centroid));
+    const auto [low, high] = std::minmax_element(heights.begin(), heights.end());
+    const bool upright = axis.direction.dot(scan.centre(0)) < 0.5 * (*low + *high);
+    const Vector3d up = upright ? axis.direction : Vector3d(-axis.direction);
+    for (const Vector3d& tried : {up, Vector3d(-up)}) {
+      std::vector<Opening> found = find_openings(scan, extracted, tried, options, monitor);
+      if (found.size() > best.size()) best = std::move(found);
+    }
+  }
+  return best;
+}
+
+std::string summary(const std::vector<Opening>& openings, const std::string& output) {
+  std::string text = fmt::format("{} openings\n", openings.size());
+  if (!openings.empty())
+    text += "   width m   height m      rays   view      sides known to, mm (lower, right, upper, left)\n";
+  constexpr std::size_t kShown = 20;
+  for (std::size_t i = 0; i < std::min(kShown, openings.size()); ++i) {
+    const Opening& it = openings[i];
+    const auto side = [&](std::size_t k) {
+      return it.edge_sigma_m[k] < 1.0 ? fmt::format("{:6.1f}", 1e3 * it.edge_sigma_m[k]) : "unseen";
+    };
+    text += fmt::format("{:10.3f} {:10.3f} {:9}   {:8}  {} {} {} {}\n",
+                        (it.corners[1] - it.corners[0]).norm(), (it.corners[3] - it.corners[0]).norm(),
+                        it.evidence, to_string(it.view), side(0), side(1), side(2), side(3));
+  }
+  if (openings.size() > kShown) text += fmt::format("... {} more\n", openings.size() - kShown);
+  return text + fmt::format("written to {}\n", output);
+}
+
+int run_model(const OpeningsCommand& command, const Session& session) {
+  const BimModel model = read_model_input(command.scan, session);
+  session.monitor->begin_stage("openings");
+  AtomicFile file(command.output);
+  const Features features = model_features(model).features;
+  const std::string json = openings_json(features, summarise(command.scan, model));
+  return deliver(file, json, summary(features.openings, command.output), session);
+}
+
+int run(const OpeningsCommand& command, const Session& session) {
+  command.openings.check();
+  refuse_same_file(command.output, command.scan);
+  if (is_bim_file(command.scan)) return run_model(command, session);
+  const ReadOptions reading =
+      with_choice(read_options(command.origin, "--origin", command.gravity), command.reading);
+  session.monitor->begin_stage("reading");
+  const Scan scan = read_input(command.scan, reading, session);
+  if (!scan.centre_known()) {
+    throw Error("it is not known from where the scan was taken", command.scan,
+                "give the place of the scanner with --origin x,y,z");
+  }
+  // Opened before the long work: a place that cannot be written to is told at once.
+  AtomicFile file(command.output);
+  session.monitor->begin_stage("planes");
+  ExtractOptions extract;
+  extract.detect.seed = session.common.seed;
+  ExtractedFeatures extracted = extract_features(scan, extract, *session.monitor);
+  session.monitor->begin_stage("openings");
+  extracted.features.openings =
+      scan.level ? find_openings(scan, extracted, Vector3d::UnitZ(), command.openings, *session.monitor)
+                 : openings_any_way_up(scan, extracted, command.openings, *session.monitor);
+  const std::string json = openings_json(extracted.features, summarise(command.scan, scan));
+  return deliver(file, json, summary(extracted.features.openings, command.output), session);
+}
+
+}  // namespace
+
+void add_openings_command(CLI::App& app, Session& session) {
+  auto options = std::make_shared<OpeningsCommand>();
+  CLI::App* command = add_command(app, session, "openings", "Find the windows and doors of a scan or a model",
+                                  [options, &session] { return run(*options, session); });
+  add_feature_options(*command,
+                      {options->scan, options->output, options->origin, options->gravity, options->reading});
+  OpeningOptions& o = options->openings;
+  add_length_option(*command, "--min-width-m", o.min_width_m,
+                    "Width of the narrowest opening (default 0.35)");
+  add_length_option(*command, "--min-height-m", o.min_height_m,
+                    "Height of the lowest opening (default 0.35)");
+  add_length_option(*command, "--max-width-m", o.max_width_m, "Width of the widest opening (default 6)");
+  add_length_option(*command, "--max-height-m", o.max_height_m, "Height of the highest opening (default 6)");
+}
+
+}  // namespace limen

@@ -1,0 +1,140 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/cli/commands/planes_command.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <fmt/format.h>
+
+#include "limen/base/atomic_file.h"
+#include "limen/base/error.h"
+#include "limen/bim/read_bim.h"
+#include "limen/cli/inputs/scan_options.h"
+#include "limen/extract/features/extract_features.h"
+#include "limen/extract/model/model_features.h"
+#include "limen/report/json/features_json.h"
+
+namespace limen {
+namespace {
+
+struct PlanesOptions {
+  std::string scan;
+  std::string output;
+  std::string origin;
+  std::string gravity = "up";
+  ReadingChoice reading;
+  std::string detector = "auto";
+  std::string threshold = "auto";
+  ExtractOptions extract;
+};
+
+const std::map<std::string, PlaneDetector>& detectors() {
+  static const std::map<std::string, PlaneDetector> names = {{"auto", PlaneDetector::automatic},
+                                                             {"grow", PlaneDetector::grow},
+                                                             {"scan_lines", PlaneDetector::scan_lines},
+                                                             {"msac", PlaneDetector::msac}};
+  return names;
+}
+
+/// A rule by its name, else a length in metres.
+void set_threshold(const std::string& text, ExtractOptions& extract) {
+  static const std::map<std::string, ThresholdRule> rules = {{"auto", ThresholdRule::automatic},
+                                                             {"noise", ThresholdRule::noise},
+                                                             {"a_contrario", ThresholdRule::a_contrario}};
+  const auto rule = rules.find(text);
+  if (rule != rules.end()) {
+    extract.detect.threshold = rule->second;
+    return;
+  }
+  double& metres = extract.grow.inlier_threshold_m;
+  const char* const end = text.data() + text.size();
+  const auto [rest, error] = std::from_chars(text.data(), end, metres);
+  if (error != std::errc() || rest != end || !(metres >= 0.0) || !std::isfinite(metres)) {
+    throw Error(fmt::format("--threshold-m is \"{}\", but must be a length in metres or a rule", text), "",
+                "write auto, noise, a_contrario or a number as 0.01");
+  }
+}
+
+std::string summary(const Features& features, const PlanesOptions& options) {
+  std::string text =
+      fmt::format("{} planes (points within {:.1f} mm; noise {:.1f} mm)\n", features.planes.size(),
+                  1e3 * features.inlier_threshold_m, 1e3 * features.noise_m);
+  if (!features.planes.empty()) text += "      points    area m2   rms mm   normal\n";
+  constexpr std::size_t kShown = 10;
+  for (std::size_t i = 0; i < std::min(kShown, features.planes.size()); ++i) {
+    const PlanarPolygon& plane = features.planes[i];
+    const Vector3d& n = plane.plane.normal;
+    text += fmt::format("{:12} {:10.2f} {:8.2f}   {:6.3f} {:6.3f} {:6.3f}\n", plane.inliers, plane.area_m2,
+                        1e3 * plane.rms_m, n.x(), n.y(), n.z());
+  }
+  if (features.planes.size() > kShown) text += fmt::format("... {} more\n", features.planes.size() - kShown);
+  return text + fmt::format("written to {}\n", options.output);
+}
+
+int run_model(const PlanesOptions& options, const Session& session) {
+  const BimModel model = read_model_input(options.scan, session);
+  session.monitor->begin_stage("planes");
+  AtomicFile file(options.output);
+  const Features features = model_features(model).features;
+  const std::string json = features_json(features, summarise(options.scan, model));
+  return deliver(file, json, summary(features, options), session);
+}
+
+int run(PlanesOptions options, const Session& session) {
+  options.extract.detect.detector = detectors().at(options.detector);
+  options.extract.detect.seed = session.common.seed;
+  set_threshold(options.threshold, options.extract);
+  options.extract.check();
+  refuse_same_file(options.output, options.scan);
+  if (is_bim_file(options.scan)) return run_model(options, session);
+  const ReadOptions reading =
+      with_choice(read_options(options.origin, "--origin", options.gravity), options.reading);
+  session.monitor->begin_stage("reading");
+  const Scan scan = read_input(options.scan, reading, session);
+  session.monitor->begin_stage("planes");
+  // Opened before the long work: a place that cannot be written to is told at once.
+  AtomicFile file(options.output);
+  const Features features = extract_features(scan, options.extract, *session.monitor).features;
+  const std::string json = features_json(features, summarise(options.scan, scan));
+  return deliver(file, json, summary(features, options), session);
+}
+
+}  // namespace
+
+void add_planes_command(CLI::App& app, Session& session) {
+  auto options = std::make_shared<PlanesOptions>();
+  CLI::App* command =
+      add_command(app, session, "planes", "Find the planes of a scan or a model and their outlines",
+                  [options, &session] { return run(*options, session); });
+  add_feature_options(*command,
+                      {options->scan, options->output, options->origin, options->gravity, options->reading});
+  std::vector<std::string> names;
+  for (const auto& [name, detector] : detectors()) names.push_back(name);
+  command
+      ->add_option(
+          "--detector", options->detector,
+          "How planes are found (default auto, which is grow); scan_lines needs a scan whose lines are "
+          "known; msac is slow")
+      ->check(CLI::IsMember(names));
+  command
+      ->add_option("--threshold-m,--inlier-threshold-m", options->threshold,
+                   "Farthest a point may lie from its plane: metres, or a rule: auto (default), noise, "
+                   "a_contrario; 0 is auto")
+      ->type_name("METRES|RULE");
+  command
+      ->add_option("--min-inliers", options->extract.grow.min_inliers, "Points a plane needs (default 200)")
+      ->type_name("N");
+  add_length_option(*command, "--alpha-m", options->extract.polygons.alpha_m,
+                    "Radius of the outlines' alpha shape; 0: from the spacing of the points (default)");
+}
+
+}  // namespace limen

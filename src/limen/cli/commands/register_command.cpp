@@ -1,0 +1,285 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/cli/commands/register_command.h"
+
+#include <chrono>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <fmt/format.h>
+
+#include "limen/base/angles.h"
+#include "limen/base/atomic_file.h"
+#include "limen/base/error.h"
+#include "limen/cli/inputs/register_inputs.h"
+#include "limen/cli/inputs/register_segment_files.h"
+#include "limen/cli/inputs/scan_options.h"
+#include "limen/register/register.h"
+#include "limen/report/html/html_report.h"
+#include "limen/report/json/result_json.h"
+
+namespace limen {
+namespace {
+
+struct RegisterCommandOptions {
+  std::string source;
+  std::string target;
+  std::string folder;
+  std::string method = "auto";
+  std::string gravity = "auto";
+  std::string origin;
+  std::string source_origin;
+  std::string target_origin;
+  std::vector<std::string> source_with;
+  std::vector<std::string> target_with;
+  double wall_thickness_m = 0.0;
+  bool no_report = false;
+  std::string memory;
+  ReadingChoice source_reading;
+  ReadingChoice target_reading;
+};
+
+/// A registration and what its page draws.
+struct Registered {
+  RegistrationReport report;
+  ReportScene scene;
+};
+
+Method method_of(const std::string& name) {
+  static const std::map<std::string, Method> methods = {{"auto", Method::automatic},
+                                                        {"polygons", Method::polygons},
+                                                        {"openings", Method::openings},
+                                                        {"hybrid", Method::hybrid},
+                                                        {"segments", Method::segments}};
+  return methods.at(name);
+}
+
+Gravity gravity_of(const std::string& name) {
+  if (name == "up") return Gravity::up;
+  return name == "unknown" ? Gravity::unknown : Gravity::automatic;
+}
+
+/// The options of one side: what is said of it alone counts before what is said of both.
+ReadOptions side_options(const RegisterCommandOptions& options, const std::string& own,
+                         const std::string& name, ReadingChoice reading) {
+  reading.memory = options.memory;
+  return with_choice(own.empty() ? read_options(options.origin, "--origin", options.gravity)
+                                 : read_options(own, name, options.gravity),
+                     reading);
+}
+
+std::string spaced(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : " ") + word;
+  return text;
+}
+
+OptionList reported(const RegisterCommandOptions& options) {
+  OptionList list = {{"method", options.method}, {"gravity", options.gravity}};
+  if (!options.origin.empty()) list.emplace_back("origin", options.origin);
+  if (!options.source_origin.empty()) list.emplace_back("source_origin", options.source_origin);
+  if (!options.target_origin.empty()) list.emplace_back("target_origin", options.target_origin);
+  if (!options.source_with.empty()) list.emplace_back("source_with", spaced(options.source_with));
+  if (!options.target_with.empty()) list.emplace_back("target_with", spaced(options.target_with));
+  if (!options.memory.empty()) list.emplace_back("memory", options.memory);
+  if (!options.source_reading.trajectory.empty())
+    list.emplace_back("source_trajectory", options.source_reading.trajectory);
+  if (!options.target_reading.trajectory.empty())
+    list.emplace_back("target_trajectory", options.target_reading.trajectory);
+  if (options.wall_thickness_m > 0) list.emplace_back("wall_thickness_m", options.wall_thickness_m);
+  return list;
+}
+
+/// Two lists of segments are registered as such by any method that could mean them.
+bool takes_segments(const RegisterCommandOptions& options) {
+  if (options.method != "segments" && options.method != "auto") return false;
+  if (!are_segment_files(options.source, options.target)) return false;
+  if (options.source_with.empty() && options.target_with.empty()) return true;
+  throw Error("two lists of segments are registered as they are, without further scans",
+              options.source_with.empty() ? "--target-with" : "--source-with",
+              "leave the option out, or give scans as SOURCE and TARGET");
+}
+
+Registered register_files(const RegisterCommandOptions& options, const Session& session) {
+  const ReadOptions source_options =
+      side_options(options, options.source_origin, "--source-origin", options.source_reading);
+  const ReadOptions target_options =
+      side_options(options, options.target_origin, "--target-origin", options.target_reading);
+  const auto start = std::chrono::steady_clock::now();
+  session.monitor->begin_stage("reading");
+  Side source = read_side({options.source, options.source_with, source_options}, session);
+  Side target = read_side({options.target, options.target_with, target_options}, session);
+  const std::chrono::duration<double> reading = std::chrono::steady_clock::now() - start;
+
+  RegisterOptions registering;
+  registering.gravity = gravity_of(options.gravity);
+  registering.method = method_of(options.method);
+  registering.wall_thickness_m = options.wall_thickness_m;
+  registering.seed = session.common.seed;
+  registering.picture = !options.no_report;
+  Registered registered;
+  RegistrationReport& report = registered.report;
+  report.result = register_inputs(source.input, target.input, registering, *session.monitor);
+  report.result.stages.insert(report.result.stages.begin(), {"reading", reading.count()});
+  report.source = std::move(source.summary);
+  report.target = std::move(target.summary);
+  report.options = reported(options);
+  report.seed = session.common.seed;
+  if (report.result.picture)
+    registered.scene = make_scene(source.input, target.input, *report.result.picture);
+  return registered;
+}
+
+Registered register_segment_lists(const RegisterCommandOptions& options, const Session& session) {
+  Registered registered;
+  registered.report =
+      register_segment_files(options.source, options.target, gravity_of(options.gravity), session);
+  registered.report.options = reported(options);
+  if (registered.report.result.picture) registered.scene = make_scene(*registered.report.result.picture);
+  return registered;
+}
+
+/// result.json comes last: where it is, the folder is complete. A transform of an earlier run must not
+/// outlive a run that found none.
+void write_results(const std::filesystem::path& folder, const RegistrationReport& report,
+                   const std::string& json) {
+  if (report.result.outcome == Outcome::no_match) {
+    std::filesystem::remove(folder / "transform.txt");
+  } else {
+    write_file(folder / "transform.txt", transform_text(report.result.best.target_from_source));
+  }
+  write_file(folder / "result.json", json);
+}
+
+std::string pose_summary(const RegistrationReport& report) {
+  const Hypothesis& best = report.result.best;
+  const PoseSigma& sigma = report.result.sigma;
+  const Vector3d& t = best.target_from_source.translation;
+  std::string text =
+      fmt::format("rotation    {:.4f} deg\n", degrees(rotation_angle(best.target_from_source.rotation)));
+  text += fmt::format("translation {:.4f} {:.4f} {:.4f} m\n", t.x(), t.y(), t.z());
+  // Where a freedom is open its sigma is a large number that tells a reader nothing.
+  if (report.result.unobserved.empty()) {
+    text += fmt::format("sigma       {:.5f} deg, {:.2f} mm (the largest of three)\n",
+                        degrees(sigma.rotation_rad.maxCoeff()), 1e3 * sigma.translation_m.maxCoeff());
+  }
+  for (const UnobservedFreedom& freedom : report.result.unobserved) {
+    text += fmt::format("not fixed   {}\n", freedom.name);
+  }
+  for (const MeasuredThickness& wall : report.result.thickness) {
+    if (wall.sigma_m > 0.1) continue;
+    text += fmt::format("wall        {:.3f} m thick, sigma {:.1f} mm, by {} opening{}\n", wall.value_m,
+                        1e3 * wall.sigma_m, wall.openings, wall.openings == 1 ? "" : "s");
+  }
+  if (!best.room.empty()) text += fmt::format("room        {}\n", best.room);
+  if (!report.result.alternatives.empty()) {
+    text +=
+        fmt::format("others      {} different poses, see alternatives\n", report.result.alternatives.size());
+  }
+  return text;
+}
+
+std::string summary(const RegistrationReport& report, const std::string& folder) {
+  std::string text = fmt::format("{}: {}\n", to_string(report.result.outcome), report.result.reason);
+  if (report.result.outcome != Outcome::no_match) text += pose_summary(report);
+  double seconds = 0.0;
+  for (const StageTime& stage : report.result.stages) seconds += stage.seconds;
+  return text + fmt::format("in {:.2f} s; written to {}\n", seconds, folder);
+}
+
+int status_of(Outcome outcome) {
+  switch (outcome) {
+    case Outcome::registered:
+      return kExitOk;
+    case Outcome::ambiguous:
+    case Outcome::under_constrained:
+      return kExitUndecided;
+    case Outcome::no_match:
+      return kExitNoMatch;
+  }
+  return kExitInternal;
+}
+
+int run(const RegisterCommandOptions& options, const Session& session) {
+  const bool segments = takes_segments(options);
+  const OutputFolder folder(options.folder);
+  const Registered registered =
+      segments ? register_segment_lists(options, session) : register_files(options, session);
+  const RegistrationReport& report = registered.report;
+  const std::string json = result_json(report);
+  session.monitor->throw_if_cancelled();
+  if (options.no_report) {
+    remove_report(folder.path());
+  } else {
+    session.monitor->begin_stage("report");
+    write_report(folder.path(), report, registered.scene);
+  }
+  write_results(folder.path(), report, json);
+  session.say(summary(report, options.folder));
+  session.answer(json);
+  return status_of(report.result.outcome);
+}
+
+void add_with_option(CLI::App& command, const char* name, std::vector<std::string>& with, const char* side) {
+  command
+      .add_option(
+          name, with,
+          fmt::format("Another scan that is known in {0}'s frame, and the file of its pose there (4 x 4 "
+                      "numbers, or a result.json); may be given several times",
+                      side))
+      ->type_size(2)
+      ->type_name("SCAN POSE")
+      ->take_all();
+}
+
+void add_origin_options(CLI::App& command, RegisterCommandOptions& options) {
+  const auto add = [&command](const char* name, std::string& text, const char* description) {
+    command.add_option(name, text, description)->type_name("x,y,z");
+  };
+  add("--source-origin", options.source_origin,
+      "From where SOURCE was taken, in the coordinates of its points, metres");
+  add("--target-origin", options.target_origin, "The same for TARGET");
+  add("--origin", options.origin, "The same for both, where they were taken from one place of their frames");
+}
+
+}  // namespace
+
+void add_register_command(CLI::App& app, Session& session) {
+  auto options = std::make_shared<RegisterCommandOptions>();
+  CLI::App* command =
+      add_command(app, session, "register",
+                  "Find the pose of a scan in another or in a building model; status 0: registered, "
+                  "3: ambiguous or under-constrained, 4: no match",
+                  [options, &session] { return run(*options, session); });
+  command->add_option("SOURCE", options->source, "The scan, model or list of segments to be moved")
+      ->required();
+  command->add_option("TARGET", options->target, "The scan, model or list of segments that stays")
+      ->required();
+  command->add_option("-o,--output", options->folder, "Folder for report.html, result.json and transform.txt")
+      ->required()
+      ->type_name("DIR");
+  command
+      ->add_option("--method", options->method,
+                   "What to match: auto (default), polygons, openings, hybrid (both), or segments")
+      ->check(CLI::IsMember({"auto", "polygons", "openings", "hybrid", "segments"}));
+  add_length_option(*command, "--wall-thickness-m,--wall-thickness", options->wall_thickness_m,
+                    "Thickness of the outer walls where it is known; else it is measured, or named as open");
+  add_with_option(*command, "--source-with", options->source_with, "SOURCE");
+  add_with_option(*command, "--target-with", options->target_with, "TARGET");
+  command->add_flag("--no-report", options->no_report,
+                    "Write neither report.html nor the sections, only result.json and transform.txt");
+  add_gravity_option(*command, options->gravity, true);
+  add_origin_options(*command, *options);
+  add_memory_option(*command, options->memory);
+  add_trajectory_options(*command, options->source_reading, "source-");
+  add_trajectory_options(*command, options->target_reading, "target-");
+}
+
+}  // namespace limen

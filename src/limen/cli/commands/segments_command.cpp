@@ -1,0 +1,146 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/cli/commands/segments_command.h"
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <fmt/format.h>
+
+#include "limen/base/atomic_file.h"
+#include "limen/bim/read_bim.h"
+#include "limen/cli/inputs/scan_options.h"
+#include "limen/extract/model/model_edges.h"
+#include "limen/extract/model/model_surface.h"
+#include "limen/extract/model/sample_model.h"
+#include "limen/extract/segments/segments.h"
+#include "limen/report/json/segments_json.h"
+#include "limen/sight/estimate_centre.h"
+
+namespace limen {
+namespace {
+
+struct SegmentsCommand {
+  std::string scan;
+  std::string output;
+  std::string origin;
+  std::string gravity = "up";
+  ReadingChoice reading;
+  SegmentOptions segments;
+  double sampled_m = 0.0;
+};
+
+/// What the segments of a scan are taken from, and how it is known from where the scan was taken.
+struct FoundSegments {
+  std::vector<Segment> segments;
+  const char* centre = "known";
+};
+
+FoundSegments segments_of(Scan scan, const SegmentsCommand& command, const Session& session) {
+  session.monitor->begin_stage("planes");
+  ExtractOptions extract;
+  extract.detect.seed = session.common.seed;
+  const ExtractedFeatures extracted = extract_features(scan, extract, *session.monitor);
+  session.monitor->begin_stage("segments");
+  FoundSegments found;
+  if (!scan.centre_known()) {
+    const std::optional<EstimatedCentre> estimated = estimate_centre(extracted.features);
+    if (estimated) scan.centres = {estimated->centre};
+    found.centre = estimated ? "estimated" : "unknown: of borders, only those of holes are taken";
+  }
+  found.segments = find_segments(scan, extracted, command.segments, *session.monitor);
+  return found;
+}
+
+/// The edges of a model: exactly as drawn, or (2023, IV-A) those that points spread over it show.
+FoundSegments segments_of(const BimModel& model, const SegmentsCommand& command, const Session& session) {
+  FoundSegments found;
+  found.centre = "of no meaning to a model";
+  session.monitor->begin_stage("segments");
+  if (command.sampled_m > 0) {
+    ModelSamplingOptions sampling;
+    sampling.spacing_m = command.sampled_m;
+    sampling.seed = session.common.seed;
+    found.segments = sampled_model_segments(model, sampling, command.segments);
+    return found;
+  }
+  ModelEdgeOptions exact;
+  exact.min_length_m = command.segments.min_length_m;
+  found.segments = sharp_edges(visible_surface(model).polygons, exact);
+  return found;
+}
+
+std::string summary(const FoundSegments& found, const std::string& output) {
+  double total_m = 0.0;
+  for (const Segment& segment : found.segments) total_m += segment.length();
+  std::string text = fmt::format("{} segments, {:.1f} m in all; the scanner's place is {}\n",
+                                 found.segments.size(), total_m, found.centre);
+  if (!found.segments.empty()) text += "  length m   direction\n";
+  constexpr std::size_t kShown = 10;
+  for (std::size_t i = 0; i < std::min(kShown, found.segments.size()); ++i) {
+    const Vector3d d = found.segments[i].direction();
+    text +=
+        fmt::format("{:10.3f}   {:6.3f} {:6.3f} {:6.3f}\n", found.segments[i].length(), d.x(), d.y(), d.z());
+  }
+  if (found.segments.size() > kShown) text += fmt::format("... {} more\n", found.segments.size() - kShown);
+  return text + fmt::format("written to {}\n", output);
+}
+
+int run_model(const SegmentsCommand& command, const Session& session) {
+  const BimModel model = read_model_input(command.scan, session);
+  AtomicFile file(command.output);
+  const FoundSegments found = segments_of(model, command, session);
+  const std::string json = segments_json(found.segments, model.local_origin, summarise(command.scan, model));
+  return deliver(file, json, summary(found, command.output), session);
+}
+
+int run(const SegmentsCommand& command, const Session& session) {
+  command.segments.check();
+  refuse_same_file(command.output, command.scan);
+  if (is_bim_file(command.scan)) return run_model(command, session);
+  const ReadOptions reading =
+      with_choice(read_options(command.origin, "--origin", command.gravity), command.reading);
+  session.monitor->begin_stage("reading");
+  Scan scan = read_input(command.scan, reading, session);
+  const InputSummary input = summarise(command.scan, scan);
+  const Vector3d local_origin = scan.local_origin;
+  // Opened before the long work: a place that cannot be written to is told at once.
+  AtomicFile file(command.output);
+  const FoundSegments found = segments_of(std::move(scan), command, session);
+  const std::string json = segments_json(found.segments, local_origin, input);
+  return deliver(file, json, summary(found, command.output), session);
+}
+
+}  // namespace
+
+void add_segments_command(CLI::App& app, Session& session) {
+  auto options = std::make_shared<SegmentsCommand>();
+  CLI::App* command = add_command(app, session, "segments",
+                                  "Find the 3-D line segments of a scan or a building model: its edges",
+                                  [options, &session] { return run(*options, session); });
+  add_feature_options(*command,
+                      {options->scan, options->output, options->origin, options->gravity, options->reading});
+  SegmentOptions& o = options->segments;
+  add_length_option(*command, "--min-length-m", o.min_length_m,
+                    "Length of the shortest segment (default 0.2)");
+  add_length_option(*command, "--join-gap-m", o.join_gap_m,
+                    "Pieces of one line are joined across gaps up to this (default 0.15)");
+  add_length_option(*command, "--max-border-sigma-m", o.max_border_sigma_m,
+                    "Borders of surfaces whose place is known less well are left out (default 0.006)");
+  add_length_option(
+      *command, "--sampled-m", options->sampled_m,
+      "Of a model: take the edges that points this far apart on its surface show, instead of the "
+      "exact ones");
+  command
+      ->add_option("--min-angle-deg", o.min_angle_deg, "Between two surfaces that make an edge (default 12)")
+      ->type_name("DEGREES");
+}
+
+}  // namespace limen

@@ -1,0 +1,219 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/cli/commands/simulate_command.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <fmt/format.h>
+
+#include "limen/base/atomic_file.h"
+#include "limen/base/error.h"
+#include "limen/bim/read_bim.h"
+#include "limen/io/ply/write_ply.h"
+#include "limen/report/json/result_json.h"
+#include "limen/report/json/truth_json.h"
+#include "limen/simulate/model/bim_office.h"
+#include "limen/simulate/model/bim_scene.h"
+#include "limen/simulate/model/write_ifc.h"
+#include "limen/simulate/scene.h"
+
+namespace limen {
+namespace {
+
+struct SimulateOptions {
+  std::string output;
+  SceneOptions scene;
+  std::string room = "any";  ///< the remaining ones are of models
+  std::string units = "m";
+  bool as_built = false;
+};
+
+/// Files of a case that is complete only with its last one: without it none is left.
+class CaseFiles {
+ public:
+  CaseFiles() = default;
+  ~CaseFiles() {
+    std::error_code ignored;
+    for (const std::filesystem::path& path : written_) std::filesystem::remove(path, ignored);
+  }
+  CaseFiles(const CaseFiles&) = delete;
+  CaseFiles& operator=(const CaseFiles&) = delete;
+
+  /// Names a file that is about to be written; one that was there before stays.
+  const std::filesystem::path& add(const std::filesystem::path& path) {
+    return std::filesystem::exists(path) ? path : written_.emplace_back(path);
+  }
+  void keep() { written_.clear(); }
+
+ private:
+  std::vector<std::filesystem::path> written_;
+};
+
+std::string summary(const SimulatedCase& simulated, const std::string& folder) {
+  std::string text;
+  for (const Scan& scan : simulated.scans) {
+    text += fmt::format("{:<16} {:>9} points, {}\n", scan.name + ".ply", scan.size(),
+                        scan.mobile() ? "mobile, world coordinates" : "station, its own frame");
+  }
+  if (simulated.truth.model) text += fmt::format("{:<16} the model\n", simulated.truth.model->file);
+  return text + fmt::format("written to {} with task.json; the truth is in truth/truth.json\n", folder);
+}
+
+/// The known poses of further stations in the first one's frame, one file each.
+void write_station_poses(const SimulatedCase& simulated, const std::filesystem::path& folder,
+                         CaseFiles& files) {
+  for (std::size_t i = 1; simulated.truth.model && i < simulated.scans.size(); ++i)
+    write_file(files.add(folder / fmt::format("source_from_{}.txt", simulated.scans[i].name)),
+               transform_text(true_target_from_source(simulated.truth, i, 0)));
+}
+
+RoomChoice room_choice(const std::string& room) {
+  if (room == "unique") return RoomChoice::unique;
+  return room == "repeated" ? RoomChoice::repeated : RoomChoice::any;
+}
+
+constexpr const char* kOffice = "office";
+
+BimSceneOptions bim_options(const SimulateOptions& options) {
+  BimSceneOptions bim;
+  bim.seed = options.scene.seed;
+  bim.stations = std::max<std::size_t>(1, options.scene.stations);
+  if (options.scene.points_indoor > 0) bim.points = options.scene.points_indoor;
+  bim.any_rotation = options.scene.any_rotation;
+  bim.room = room_choice(options.room);
+  bim.as_built.on = options.as_built;
+  bim.scanner = options.scene.scanner;
+  bim.check();
+  return bim;
+}
+
+/// Scans a model file, or the built-in one, which is written beside the scans.
+SimulatedCase simulate_model(const SimulateOptions& options, const std::filesystem::path& folder,
+                             CaseFiles& files, Monitor& monitor) {
+  const BimSceneOptions bim = bim_options(options);
+  if (options.scene.name != kOffice) {
+    const std::filesystem::path path(options.scene.name);
+    BimModel model = read_bim(path, monitor);
+    model.name = path.filename().string();
+    return simulate_bim(model, bim, monitor);
+  }
+  const BimRecipe recipe = office_recipe();
+  BimModel model = model_of(recipe);
+  model.name = "model.ifc";
+  SimulatedCase simulated = simulate_bim(model, bim, monitor);
+  write_file(files.add(folder / model.name),
+             ifc_text(recipe, options.units == "mm" ? IfcUnit::millimetre : IfcUnit::metre));
+  return simulated;
+}
+
+/// A model is meant where the name is no scene's but that of an existing file, or the built-in model's.
+bool means_model(const std::string& name) {
+  const std::vector<std::string> scenes = scene_names();
+  if (std::find(scenes.begin(), scenes.end(), name) != scenes.end()) return false;
+  std::error_code error;
+  return name == kOffice || std::filesystem::exists(name, error);
+}
+
+std::string known_scenes() {
+  std::string known;
+  for (const std::string& name : scene_names()) known += (known.empty() ? "" : ", ") + name;
+  return known + ", " + kOffice;
+}
+
+/// An option that would be passed over without a word is a mistake.
+void check_options(const SimulateOptions& options, bool model) {
+  const SceneOptions& scene = options.scene;
+  const auto refuse = [](bool given, const std::string& option, const char* what) {
+    if (given) throw Error(option + " is for " + what + " only", "limen simulate", "leave it out");
+  };
+  if (model) {
+    refuse(scene.points_outdoor > 0, "--points-outdoor", "scenes");
+    refuse(scene.facades > 0, "--facades", "scenes");
+    refuse(scene.curtain_share >= 0.0, "--curtain-share", "scenes");
+    refuse(scene.drift_m > 0.0, "--drift-m", "scenes");
+    refuse(options.units != "m" && scene.name != kOffice, "--units", kOffice);
+    return;
+  }
+  refuse(options.as_built, "--as-built", "models");
+  refuse(options.room != "any", "--room", "models");
+  refuse(options.units != "m", "--units", kOffice);
+  if (scene.name.find_first_of("./") != std::string::npos)
+    throw Error("there is no such file", scene.name, "give a model file, or one of: " + known_scenes());
+  scene.check();
+}
+
+int run(SimulateOptions& options, const Session& session) {
+  options.scene.seed = session.common.seed;
+  const bool model = means_model(options.scene.name);
+  check_options(options, model);
+  // Made before the long work: a place that cannot be written to is told at once.
+  const OutputFolder folder(options.output);
+  const OutputFolder truth_folder(folder.path() / "truth");
+  CaseFiles files;
+  const SimulatedCase simulated = model ? simulate_model(options, folder.path(), files, *session.monitor)
+                                        : simulate(options.scene, *session.monitor);
+  session.monitor->begin_stage("writing");
+  for (const Scan& scan : simulated.scans) {
+    session.monitor->throw_if_cancelled();
+    write_ply(files.add(folder.path() / (scan.name + ".ply")), scan);
+  }
+  const std::string task = task_json(simulated);
+  write_station_poses(simulated, folder.path(), files);
+  write_file(files.add(truth_folder.path() / "truth.json"), truth_json(simulated.truth));
+  write_file(files.add(folder.path() / "task.json"), task);
+  files.keep();
+  session.say(summary(simulated, options.output));
+  session.answer(task);
+  return kExitOk;
+}
+
+void add_count_option(CLI::App& command, const std::string& name, std::size_t& count,
+                      const std::string& description) {
+  command.add_option(name, count, description + "; 0: the scene's own (default)")->type_name("N");
+}
+
+}  // namespace
+
+void add_simulate_command(CLI::App& app, Session& session) {
+  auto options = std::make_shared<SimulateOptions>();
+  CLI::App* command =
+      add_command(app, session, "simulate", "Scan a made-up building or a model; the truth is known exactly",
+                  [options, &session] { return run(*options, session); });
+  SceneOptions& scene = options->scene;
+  command
+      ->add_option("NAME", scene.name,
+                   "A model file (IFC, OBJ, PLY), or a scene (office is a BIM model): " + known_scenes())
+      ->type_name(fmt::format("FILE:{{{},{}}}", fmt::join(scene_names(), ","), kOffice))
+      ->required();
+  command->add_option("-o,--output", options->output, "The folder for scans, task.json and truth/truth.json")
+      ->required()
+      ->type_name("DIR");
+  add_count_option(*command, "--points-indoor", scene.points_indoor, "Points of each station, about");
+  add_count_option(*command, "--points-outdoor", scene.points_outdoor, "Points of the mobile scan, about");
+  add_count_option(*command, "--stations", scene.stations, "Number of stations");
+  add_count_option(*command, "--facades", scene.facades,
+                   "Facades the first station's room has open windows in (museum, townhouse, villa)");
+  command->add_flag("--any-rotation", scene.any_rotation, "Give stations any rotation, not only any heading");
+  command
+      ->add_option("--curtain-share", scene.curtain_share,
+                   "Share of the windows with a drawn curtain or blind")
+      ->type_name("SHARE");
+  add_length_option(*command, "--noise-m", scene.scanner.noise_m,
+                    "Range noise, one standard deviation (default 0.003)");
+  command->add_flag("--as-built", options->as_built,
+                    "Of a model: some elements moved by 1 to 5 cm, some missing, furniture added");
+  command->add_option("--room", options->room, "Of a model: scan a room that is unique in it, or repeated")
+      ->check(CLI::IsMember({"any", "unique", "repeated"}));
+  command->add_option("--units", options->units, "Unit of office's model.ifc")
+      ->check(CLI::IsMember({"m", "mm"}));
+  add_length_option(*command, "--drift-m", scene.drift_m, "Slow error of the mobile scan's path (default 0)");
+}
+
+}  // namespace limen

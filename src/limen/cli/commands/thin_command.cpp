@@ -1,0 +1,83 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/cli/commands/thin_command.h"
+
+#include <memory>
+#include <string>
+
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <fmt/format.h>
+
+#include "limen/base/error.h"
+#include "limen/cli/inputs/scan_options.h"
+#include "limen/io/cloud/open_points.h"
+#include "limen/io/cloud/write_clouds.h"
+#include "limen/io/ply/ply_writer.h"
+#include "limen/report/json/json_values.h"
+
+namespace limen {
+namespace {
+
+struct ThinCommand {
+  std::string cloud;
+  std::string output;
+  ThinOptions thinning;
+  std::string memory;
+};
+
+std::string as_json(const ThinCommand& command, const WrittenClouds& written, const OpenPoints& input) {
+  Json json;
+  json["input"] = command.cloud;
+  json["output"] = command.output;
+  json["format"] = input.file().format();
+  json["points_read"] = written.read;
+  json["points_written"] = written.written;
+  json["spacing_m"] = written.spacing_m > 0.0 ? Json(written.spacing_m) : Json();
+  json["notes"] = written.notes;
+  return to_text(json);
+}
+
+int run(ThinCommand command, const Session& session) {
+  command.thinning.memory_bytes = parse_memory(command.memory);
+  if (command.thinning.most_points == 0 && command.thinning.spacing_m == 0.0 && command.memory.empty())
+    throw Error("it is not said how many points to keep", "limen thin",
+                "give --points, --spacing-m or --memory");
+  command.thinning.check();
+  refuse_same_file(command.output, command.cloud);
+  const OpenPoints input(command.cloud);
+  const CancelScope scope(*session.monitor);
+  session.monitor->begin_stage("thinning");
+  const JoinedClouds clouds(placed_clouds(input, {}), input.file().clouds().size() > 1);
+  const bool few = command.thinning.spacing_m == 0.0 && command.thinning.most_points > 0 &&
+                   clouds.plan().most_points <= command.thinning.most_points;
+  const WrittenClouds written =
+      few ? write_clouds(clouds, command.output, *session.monitor)
+          : write_thinned(clouds, command.thinning, command.output, *session.monitor);
+  for (const std::string& note : written.notes) session.note(note);
+  std::string text = fmt::format("{} of {} points kept", written.written, written.read);
+  if (written.spacing_m > 0.0) text += fmt::format(", about {:.4f} m apart", written.spacing_m);
+  session.say(text + fmt::format("; written to {}\n", command.output));
+  session.answer(as_json(command, written, input));
+  return kExitOk;
+}
+
+}  // namespace
+
+void add_thin_command(CLI::App& app, Session& session) {
+  auto options = std::make_shared<ThinCommand>();
+  CLI::App* command = add_command(app, session, "thin", "Keep an even part of a cloud of any size",
+                                  [options, &session] { return run(*options, session); });
+  command->add_option("CLOUD", options->cloud, "A cloud of any format limen reads")->required();
+  command->add_option("OUT", options->output, "The file to write: .ply, .las or .e57")->required();
+  command
+      ->add_option("--points", options->thinning.most_points,
+                   "Keep so many points, or a little less; the spacing follows")
+      ->type_name("N");
+  add_length_option(*command, "--spacing-m", options->thinning.spacing_m,
+                    "Keep one point per cube of this side");
+  add_memory_option(*command, options->memory);
+}
+
+}  // namespace limen

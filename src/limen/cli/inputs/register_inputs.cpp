@@ -1,0 +1,52 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/cli/inputs/register_inputs.h"
+
+#include <utility>
+
+#include "limen/base/error.h"
+#include "limen/bim/read_bim.h"
+#include "limen/cli/inputs/scan_options.h"
+#include "limen/files/file_hash.h"
+#include "limen/report/pose_file.h"
+
+namespace limen {
+namespace {
+
+Side read_model_side(const SideOptions& options, const Session& session) {
+  if (!options.with.empty())
+    throw Error("is a building model", options.path, "further scans can only stand by a scan");
+  Side side;
+  side.input.model = read_model_input(options.path, session);
+  side.summary = summarise(options.path, *side.input.model);
+  side.summary.sha256 = sha256_of_file(options.path);
+  return side;
+}
+
+Rigid3 pose_in_group(const std::string& path) {
+  const PoseFile file = read_pose_file(path);
+  if (file.target_from_source) return *file.target_from_source;
+  throw Error("holds no pose", path, "give four rows of four numbers, or the result.json of a registration");
+}
+
+}  // namespace
+
+Side read_side(const SideOptions& options, const Session& session) {
+  if (is_bim_file(options.path)) return read_model_side(options, session);
+  Side side;
+  side.input.scans.push_back({read_input(options.path, options.reading, session), {}});
+  side.summary = summarise(options.path, side.input.scans.front().scan);
+  side.summary.sha256 = sha256_of_file(options.path);
+  // The trajectory is that of the side's own scan.
+  ReadOptions reading = options.reading;
+  reading.trajectory.reset();
+  for (std::size_t k = 0; k + 1 < options.with.size(); k += 2) {
+    const Rigid3 pose = pose_in_group(options.with[k + 1]);
+    side.input.scans.push_back({read_input(options.with[k], reading, session), pose});
+    side.summary.with.push_back(options.with[k]);
+    side.summary.points += side.input.scans.back().scan.size();
+  }
+  return side;
+}
+
+}  // namespace limen

@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "limen/cli/terminal/command.h"
+#include "limen/io/cloud/read_scan.h"
+#include "limen/register/register.h"
+#include "limen/report/json/result_json.h"
+
+namespace limen {
+
+/// What the user says of one side of a registration.
+struct SideOptions {
+  std::string path;
+  std::vector<std::string> with;  ///< further scans of this side, each with the file of its pose
+  ReadOptions reading;            ///< of scans
+};
+
+/// One side as it was read, and what the report says of it.
+struct Side {
+  RegisterInput input;
+  InputSummary summary;
+};
+
+/// Reads a scan, a group of scans or a building model, by content. Warnings of a model are noted.
+Side read_side(const SideOptions& options, const Session& session);
+
+}  // namespace limen

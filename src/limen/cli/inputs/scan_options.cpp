@@ -1,0 +1,170 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/cli/inputs/scan_options.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+#include <utility>
+
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <fmt/format.h>
+
+#include "limen/base/error.h"
+#include "limen/bim/read_bim.h"
+#include "limen/io/cloud/join_scans.h"
+#include "limen/io/trajectory/read_trajectory.h"
+
+namespace limen {
+
+Vector3d parse_point(const std::string& text, const std::string& option) {
+  Vector3d point;
+  const char* at = text.data();
+  const char* const end = at + text.size();
+  bool good = true;
+  for (Eigen::Index i = 0; i < 3 && good; ++i) {
+    if (at != end && *at == '+') ++at;
+    const auto [rest, error] = std::from_chars(at, end, point[i]);
+    const bool last = i == 2;
+    good =
+        error == std::errc() && std::isfinite(point[i]) && (last ? rest == end : rest != end && *rest == ',');
+    at = last ? rest : rest + 1;
+  }
+  if (!good) {
+    throw Error(fmt::format("{} is \"{}\", but must be three numbers", option, text), "",
+                "write x,y,z in metres without spaces, as 1.5,-2,0");
+  }
+  return point;
+}
+
+void add_gravity_option(CLI::App& command, std::string& gravity, bool with_auto) {
+  const std::vector<std::string> known = with_auto ? std::vector<std::string>{"auto", "up", "unknown"}
+                                                   : std::vector<std::string>{"up", "unknown"};
+  std::string description = "up: the z axis of the files points up; unknown: it may point anywhere";
+  if (with_auto) description += "; auto: up where floors and walls say so";
+  command.add_option("--gravity", gravity, fmt::format("{} (default {})", description, gravity))
+      ->check(CLI::IsMember(known));
+}
+
+std::uint64_t parse_memory(const std::string& text) {
+  if (text.empty()) return 0;
+  double number = 0.0;
+  const char* const end = text.data() + text.size();
+  const auto [rest, error] = std::from_chars(text.data(), end, number);
+  std::string unit(rest, end);
+  if (!unit.empty() && (unit.back() == 'B' || unit.back() == 'b')) unit.pop_back();
+  double factor = unit.empty() ? 1.0 : 0.0;
+  if (unit == "K" || unit == "k") factor = 1e3;
+  if (unit == "M" || unit == "m") factor = 1e6;
+  if (unit == "G" || unit == "g") factor = 1e9;
+  const double bytes = number * factor;
+  if (error == std::errc() && bytes >= 1e6 && bytes < 1e15) return static_cast<std::uint64_t>(bytes);
+  throw Error(fmt::format("--memory is \"{}\", but must be a size of 1M or more", text), "",
+              "write it as 500M, 1G or 2.5G");
+}
+
+void add_memory_option(CLI::App& command, std::string& memory) {
+  command
+      .add_option("--memory", memory,
+                  "Memory for a scan, as 500M or 2.5G: one that needs more is thinned while it is read")
+      ->type_name("SIZE");
+}
+
+void add_trajectory_options(CLI::App& command, ReadingChoice& choice, const std::string& side) {
+  const std::string name = "--" + side + "trajectory";
+  command
+      .add_option(name, choice.trajectory,
+                  "From where a moving scanner measured: SBET, or text with times and places")
+      ->type_name("FILE");
+  command
+      .add_option(name + "-columns", choice.columns,
+                  "Columns of the text, as time,x,y,z; else its header line tells them")
+      ->type_name("NAMES");
+  command
+      .add_option(
+          "--" + side + "utm-zone", choice.utm_zone,
+          "Zone for latitudes and longitudes, as 32N; auto (default): of the first; local: east, north, up")
+      ->type_name("ZONE");
+  command.add_option(name + "-time-offset-s", choice.time_offset_s, "Added to the times of the trajectory")
+      ->type_name("S");
+  command
+      .add_option("--" + side + "lever-arm", choice.lever_arm,
+                  "From the trajectory's point to the scanner: forward, right, down, metres")
+      ->type_name("x,y,z");
+}
+
+ReadOptions with_choice(ReadOptions options, const ReadingChoice& choice) {
+  options.memory_bytes = parse_memory(choice.memory);
+  if (choice.trajectory.empty()) return options;
+  TrajectoryOptions reading;
+  std::string names = choice.columns;
+  for (std::size_t comma = 0; !names.empty(); names.erase(0, comma + 1)) {
+    comma = std::min(names.find(','), names.size() - 1);
+    const std::size_t length = names[comma] == ',' ? comma : comma + 1;
+    reading.columns.push_back(names.substr(0, length));
+  }
+  reading.utm_zone = choice.utm_zone;
+  reading.time_offset_s = choice.time_offset_s;
+  if (!choice.lever_arm.empty()) reading.lever_arm_m = parse_point(choice.lever_arm, "--lever-arm");
+  options.trajectory = std::make_shared<const Trajectory>(read_trajectory(choice.trajectory, reading));
+  return options;
+}
+
+void add_feature_options(CLI::App& command, const FeatureOptions& options) {
+  command.add_option("SCAN", options.scan, "A scan of any format limen reads")->required();
+  command.add_option("-o,--output", options.output, "The JSON file to write")->required()->type_name("FILE");
+  command
+      .add_option("--origin", options.origin,
+                  "From where the scan was taken, in the coordinates of its points, metres")
+      ->type_name("x,y,z");
+  add_gravity_option(command, options.gravity);
+  add_memory_option(command, options.reading.memory);
+  add_trajectory_options(command, options.reading);
+}
+
+ReadOptions read_options(const std::string& origin, const std::string& option, const std::string& gravity) {
+  ReadOptions options;
+  if (!origin.empty()) options.origin = parse_point(origin, option);
+  options.level = gravity != "unknown";
+  return options;
+}
+
+Scan read_input(const std::string& path, const ReadOptions& options, const Session& session) {
+  const bool told = options.memory_bytes > 0 || options.trajectory;
+  if (!told) return read_scan(path, options, *session.monitor);
+  ScanFile file = read_scan_file(path, options, *session.monitor);
+  for (const std::string& note : file.notes) session.note(note);
+  if (file.scans.size() == 1) return std::move(file.scans.front());
+  Scan joined = join_scans(file.scans);
+  joined.name = path;
+  return joined;
+}
+
+BimModel read_model_input(const std::string& path, const Session& session) {
+  session.monitor->begin_stage("reading");
+  BimModel model = read_bim(path, *session.monitor);
+  for (const std::string& warning : model.warnings) session.note(fmt::format("{}: {}", path, warning));
+  return model;
+}
+
+int deliver(AtomicFile& file, const std::string& json, const std::string& summary, const Session& session) {
+  session.monitor->throw_if_cancelled();
+  file.write(json);
+  file.commit();
+  session.say(summary);
+  session.answer(json);
+  return kExitOk;
+}
+
+void refuse_same_file(const std::string& output, const std::string& input) {
+  std::error_code missing;
+  if (std::filesystem::equivalent(output, input, missing)) {
+    throw Error("would be written over the input", output, "give the result another name");
+  }
+}
+
+}  // namespace limen

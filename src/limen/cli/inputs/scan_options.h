@@ -1,0 +1,69 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "limen/base/atomic_file.h"
+#include "limen/cli/terminal/command.h"
+#include "limen/io/cloud/read_scan.h"
+#include "limen/model/bim_model.h"
+
+namespace limen {
+
+/// "x,y,z" as three numbers. Throws Error that names `option`.
+Vector3d parse_point(const std::string& text, const std::string& option);
+
+/// Adds --gravity up|unknown, and auto where that is offered: whether the z axis of the files points up.
+void add_gravity_option(CLI::App& command, std::string& gravity, bool with_auto = false);
+
+/// What the user says of how scans are to be read, beside their origin.
+struct ReadingChoice {
+  std::string memory;      ///< "1G" or empty
+  std::string trajectory;  ///< a file or empty
+  std::string columns;     ///< "time,x,y,z" or empty
+  std::string utm_zone = "auto";
+  std::string lever_arm;  ///< "x,y,z" or empty
+  double time_offset_s = 0.0;
+};
+
+/// "500M", "2.5G" or a number of bytes; 0 for an empty text. Throws Error for anything else.
+std::uint64_t parse_memory(const std::string& text);
+/// Adds --memory.
+void add_memory_option(CLI::App& command, std::string& memory);
+/// Adds --trajectory and what belongs to it; `side` stands before the name ("source-") or is empty.
+void add_trajectory_options(CLI::App& command, ReadingChoice& choice, const std::string& side = "");
+/// What read_options() gave, with the choice; reads the trajectory.
+ReadOptions with_choice(ReadOptions options, const ReadingChoice& choice);
+
+/// What every command that takes features from a scan to a file asks for.
+struct FeatureOptions {
+  std::string& scan;
+  std::string& output;
+  std::string& origin;
+  std::string& gravity;
+  ReadingChoice& reading;
+};
+/// Adds SCAN, --output, --origin, --gravity, --memory and --trajectory with what belongs to it.
+void add_feature_options(CLI::App& command, const FeatureOptions& options);
+
+/// What the user said of a scan: `origin` "x,y,z" or empty (`option` names it in messages), `gravity`
+/// "auto", "up" or "unknown".
+ReadOptions read_options(const std::string& origin, const std::string& option, const std::string& gravity);
+
+/// Reads the one scan of a file, and notes where it was thinned or cut.
+Scan read_input(const std::string& path, const ReadOptions& options, const Session& session);
+
+/// Reads a building model and notes its warnings.
+BimModel read_model_input(const std::string& path, const Session& session);
+
+/// The end of a command that takes features: `json` goes into the file and to who asked for it, `summary` to
+/// a reader. Returns the exit status.
+int deliver(AtomicFile& file, const std::string& json, const std::string& summary, const Session& session);
+
+/// Throws Error where `output` is the file `input`: a result never replaces what it was made from.
+void refuse_same_file(const std::string& output, const std::string& input);
+
+}  // namespace limen

@@ -1,0 +1,93 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/cli/terminal/command.h"
+
+#include <cmath>
+#include <cstdio>
+#include <utility>
+
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <fmt/format.h>
+
+#include "limen/cli/terminal/terminal.h"
+
+namespace limen {
+namespace {
+
+/// The text with a line end; nothing stays nothing.
+std::string ended(std::string_view text) {
+  return fmt::format("{}{}", text, text.empty() || text.back() == '\n' ? "" : "\n");
+}
+
+std::string not_a_seed(const std::string& text) {
+  const bool digits = !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;
+  return digits ? "" : fmt::format("{} is not a whole number of 0 or more", text);
+}
+
+}  // namespace
+
+void Session::say(std::string_view text) const {
+  if (common.quiet || common.json) return;
+  wipe_progress();
+  print_out(ended(text));
+}
+
+void Session::answer(std::string_view json_text) const {
+  if (!common.json) return;
+  wipe_progress();
+  print_out(ended(json_text));
+}
+
+void Session::note(std::string_view text) const {
+  if (common.quiet) return;
+  const std::string line = ended(fmt::format("limen: {}", text));
+  if (auto* terminal = dynamic_cast<TerminalMonitor*>(monitor.get())) {
+    terminal->print(line);
+  } else {
+    std::fputs(line.c_str(), stderr);
+  }
+}
+
+void Session::wipe_progress() const {
+  if (auto* terminal = dynamic_cast<TerminalMonitor*>(monitor.get())) terminal->wipe();
+}
+
+void add_common_options(CLI::App& app, Session& session) {
+  const std::string group = kCommonGroup;
+  CommonOptions& common = session.common;
+  app.add_flag("-q,--quiet", common.quiet, "Neither progress nor summary; errors are still told")
+      ->group(group);
+  app.add_flag("--json", common.json, "The result as JSON on stdout, everything else on stderr")
+      ->group(group);
+  app.add_option("--threads", common.threads,
+                 "Threads to use; they never change a result (default 0: all of the machine)")
+      ->check(CLI::Range(0, 4096))
+      ->type_name("N")
+      ->group(group);
+  app.add_option("--seed", common.seed, "Seed of every random choice (default 1)")
+      ->check(not_a_seed)
+      ->type_name("N")
+      ->group(group);
+}
+
+void add_length_option(CLI::App& app, const std::string& name, double& length_m,
+                       const std::string& description) {
+  const auto finite = [](const std::string& text) -> std::string {
+    double number = 0.0;
+    const bool good = CLI::detail::lexical_cast(text, number) && std::isfinite(number) && number >= 0.0;
+    return good ? "" : fmt::format("{} is not a length in metres", text);
+  };
+  app.add_option(name, length_m, description)->check(finite)->type_name("M");
+}
+
+CLI::App* add_command(CLI::App& app, Session& session, const std::string& name,
+                      const std::string& description, std::function<int()> run) {
+  CLI::App* command = app.add_subcommand(name, description);
+  add_common_options(*command, session);
+  command->callback([&session, run = std::move(run)] { session.action = run; });
+  return command;
+}
+
+}  // namespace limen

@@ -1,0 +1,136 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/extract/cells/morton_order.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+
+#include "limen/base/parallel.h"
+#include "limen/model/scan.h"
+
+namespace limen {
+namespace {
+
+constexpr std::uint32_t kMiddle = 1U << 20U;
+constexpr std::size_t kPieces = 16;
+constexpr std::uint32_t kDigitBits = 11;
+constexpr std::uint32_t kDigits = 1U << kDigitBits;
+
+std::uint64_t spread(std::uint64_t v) {
+  v &= 0x1fffff;
+  v = (v | (v << 32U)) & 0x1f00000000ffffULL;
+  v = (v | (v << 16U)) & 0x1f0000ff0000ffULL;
+  v = (v | (v << 8U)) & 0x100f00f00f00f00fULL;
+  v = (v | (v << 4U)) & 0x10c30c30c30c30c3ULL;
+  return (v | (v << 2U)) & 0x1249249249249249ULL;
+}
+
+std::uint32_t gather(std::uint64_t v) {
+  v &= 0x1249249249249249ULL;
+  v = (v | (v >> 2U)) & 0x10c30c30c30c30c3ULL;
+  v = (v | (v >> 4U)) & 0x100f00f00f00f00fULL;
+  v = (v | (v >> 8U)) & 0x1f0000ff0000ffULL;
+  v = (v | (v >> 16U)) & 0x1f00000000ffffULL;
+  v = (v | (v >> 32U)) & 0x1fffffULL;
+  return static_cast<std::uint32_t>(v);
+}
+
+struct Item {
+  std::uint64_t code;
+  std::uint32_t index;
+};
+
+std::uint32_t cell_coordinate(double x, double cell_m) {
+  return static_cast<std::uint32_t>(std::clamp(std::floor(x / cell_m), 0.0, 2.0 * kMiddle - 1.0));
+}
+
+/// Where cell 0 begins along one axis: the lowest point, or, where stray points stretch the extent past 2^21
+/// cells, half of those below the median.
+double first_cell(const std::vector<Vector3d>& points, const Extent& extent, int axis, double cell_m) {
+  if (extent.high[axis] - extent.low[axis] < 2.0 * kMiddle * cell_m) return extent.low[axis];
+  std::vector<double> values;
+  for (std::size_t i = 0; i < points.size(); i += 1 + points.size() / 1001) values.push_back(points[i][axis]);
+  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2),
+                   values.end());
+  return values[values.size() / 2] - kMiddle * cell_m;
+}
+
+/// One stable pass of a radix sort on `shift`'s digit; pieces keep their order, whoever works on them.
+void radix_pass(const std::vector<Item>& from, std::vector<Item>& to, std::uint32_t shift) {
+  const std::size_t n = from.size();
+  const std::size_t grain = (n + kPieces - 1) / kPieces;
+  std::vector<std::array<std::uint32_t, kDigits>> starts(kPieces);
+  parallel_for(n, grain, [&](std::size_t begin, std::size_t end) {
+    std::array<std::uint32_t, kDigits>& count = starts[begin / grain];
+    count.fill(0);
+    for (std::size_t i = begin; i < end; ++i) ++count[(from[i].code >> shift) & (kDigits - 1)];
+  });
+  const std::size_t used = (n + grain - 1) / grain;
+  std::uint32_t total = 0;
+  for (std::uint32_t digit = 0; digit < kDigits; ++digit) {
+    for (std::size_t piece = 0; piece < used; ++piece) {
+      const std::uint32_t count = starts[piece][digit];
+      starts[piece][digit] = total;
+      total += count;
+    }
+  }
+  parallel_for(n, grain, [&](std::size_t begin, std::size_t end) {
+    std::array<std::uint32_t, kDigits>& next = starts[begin / grain];
+    for (std::size_t i = begin; i < end; ++i) to[next[(from[i].code >> shift) & (kDigits - 1)]++] = from[i];
+  });
+}
+
+/// Digits above the highest bit in which any two codes differ need no pass.
+std::uint32_t differing_bits(const std::vector<Item>& items) {
+  std::uint64_t differ = 0;
+  for (const Item& item : items) differ |= item.code ^ items.front().code;
+  return static_cast<std::uint32_t>(std::bit_width(differ));
+}
+
+}  // namespace
+
+std::uint64_t morton_encode(std::uint32_t x, std::uint32_t y, std::uint32_t z) {
+  return spread(x) | (spread(y) << 1U) | (spread(z) << 2U);
+}
+
+CellIndex morton_decode(std::uint64_t code) {
+  return {gather(code), gather(code >> 1U), gather(code >> 2U)};
+}
+
+MortonOrder morton_order(const std::vector<Vector3d>& points, double cell_m) {
+  MortonOrder sorted;
+  sorted.cell_m = cell_m;
+  if (points.empty()) return sorted;
+  const Extent extent = extent_of(points);
+  for (int axis = 0; axis < 3; ++axis) sorted.anchor[axis] = first_cell(points, extent, axis, cell_m);
+  std::vector<Item> items(points.size());
+  parallel_for(points.size(), 65536, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const Vector3d x = points[i] - sorted.anchor;
+      items[i] = {morton_encode(cell_coordinate(x.x(), cell_m), cell_coordinate(x.y(), cell_m),
+                                cell_coordinate(x.z(), cell_m)),
+                  static_cast<std::uint32_t>(i)};
+    }
+  });
+  std::vector<Item> other(items.size());
+  const std::uint32_t bits = differing_bits(items);
+  for (std::uint32_t shift = 0; shift < bits; shift += kDigitBits) {
+    radix_pass(items, other, shift);
+    items.swap(other);
+  }
+  sorted.order.resize(points.size());
+  sorted.codes.resize(points.size());
+  sorted.points.resize(points.size());
+  parallel_for(points.size(), 65536, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      sorted.order[k] = items[k].index;
+      sorted.codes[k] = items[k].code;
+      sorted.points[k] = points[items[k].index] - sorted.anchor;
+    }
+  });
+  return sorted;
+}
+
+}  // namespace limen

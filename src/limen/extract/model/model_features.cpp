@@ -1,0 +1,124 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/extract/model/model_features.h"
+
+#include <cmath>
+
+#include "limen/base/error.h"
+#include "limen/base/parallel.h"
+#include "limen/geometry/polygon_clip.h"
+
+namespace limen {
+namespace {
+
+constexpr int kSubtiles = 4;            // per tile edge: those inside give area and mean
+constexpr float kExact = 1e6F;          // points that a sample of a model is worth
+constexpr double kDrawnSigmaM = 0.005;  // by how much an opening is built otherwise than drawn
+constexpr double kInWallM = 0.01;
+
+std::vector<SurfaceSample> samples_of(const PlanarPolygon& polygon, std::int32_t index, double tile_m) {
+  const Box2 box = box_of(polygon.parts);
+  const double step = tile_m / kSubtiles;
+  std::vector<SurfaceSample> samples;
+  const auto first = [&](double x) { return std::floor(x / tile_m); };
+  for (double row = first(box.low.y()); row * tile_m < box.high.y(); ++row) {
+    for (double column = first(box.low.x()); column * tile_m < box.high.x(); ++column) {
+      Vector2d sum = Vector2d::Zero();
+      int inside = 0;
+      for (int k = 0; k < kSubtiles * kSubtiles; ++k) {
+        const int below = k / kSubtiles;
+        const int beside = k % kSubtiles;
+        const Vector2d p(column * tile_m + (beside + 0.5) * step, row * tile_m + (below + 0.5) * step);
+        if (!contains(polygon.parts.front(), p)) continue;
+        sum += p;
+        ++inside;
+      }
+      if (inside == 0) continue;
+      samples.push_back({polygon.frame.to_space(sum / inside), polygon.plane.normal, index,
+                         static_cast<float>(inside * step * step), kExact});
+    }
+  }
+  return samples;
+}
+
+void add_samples(double tile_m, Features& features) {
+  std::vector<std::vector<SurfaceSample>> found(features.planes.size());
+  parallel_for(features.planes.size(), 16, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      found[i] = samples_of(features.planes[i], static_cast<std::int32_t>(i), tile_m);
+  });
+  for (const std::vector<SurfaceSample>& samples : found)
+    features.samples.insert(features.samples.end(), samples.begin(), samples.end());
+}
+
+/// The polygon in whose plane the rectangle lies and whose outline surrounds or touches it; -1: none.
+int wall_of(const Vector3d (&corners)[4], const Vector3d& normal, const Features& features) {
+  const Vector3d middle = 0.25 * (corners[0] + corners[1] + corners[2] + corners[3]);
+  for (std::size_t i = 0; i < features.planes.size(); ++i) {
+    const PlanarPolygon& wall = features.planes[i];
+    if (wall.plane.normal.dot(normal) < 0.999) continue;
+    if (std::abs(wall.plane.signed_distance(middle)) > kInWallM) continue;
+    const Box2 box = box_of(wall.parts);
+    for (const Vector3d& corner : corners) {
+      const Vector2d p = wall.frame.to_plane(corner);
+      if ((p.array() >= box.low.array() - kInWallM).all() && (p.array() <= box.high.array() + kInWallM).all())
+        return static_cast<int>(i);
+    }
+  }
+  return -1;
+}
+
+void add_opening(const Vector3d (&corners)[4], const Vector3d& normal, double thickness_m,
+                 Features& features) {
+  Opening opening;
+  for (std::size_t k = 0; k < 4; ++k) {
+    opening.corners[k] = corners[k];
+    opening.edge_sigma_m[k] = kDrawnSigmaM;
+  }
+  opening.facade = wall_of(corners, normal, features);
+  if (opening.facade < 0) return;
+  opening.evidence = 1;
+  opening.reveal_depth_m = thickness_m;
+  opening.reveal_sigma_m = kDrawnSigmaM;
+  opening.reveal_complete = thickness_m > 0;
+  features.openings.push_back(opening);
+}
+
+/// Both faces of every upright opening.
+void add_openings(const BimModel& model, Features& features) {
+  for (const BimOpening& opening : model.openings) {
+    if (std::abs(opening.normal.z()) > 0.1) continue;
+    add_opening(opening.corners, opening.normal, opening.thickness_m, features);
+    const Vector3d through = -opening.thickness_m * opening.normal;
+    // Seen from the other side left is right.
+    const Vector3d behind[4] = {opening.corners[1] + through, opening.corners[0] + through,
+                                opening.corners[3] + through, opening.corners[2] + through};
+    add_opening(behind, -opening.normal, opening.thickness_m, features);
+  }
+}
+
+}  // namespace
+
+void ModelFeatureOptions::check() const {
+  surface.check();
+  if (!(min_plane_m2 > 0)) throw_bad_option("min_plane_m2", min_plane_m2, "more than 0");
+  if (!(tile_m > 0)) throw_bad_option("tile_m", tile_m, "more than 0");
+}
+
+ModelFeatures model_features(const BimModel& model, const ModelFeatureOptions& options) {
+  options.check();
+  ModelSurface surface = visible_surface(model, options.surface);
+  ModelFeatures made;
+  made.features.local_origin = model.local_origin;
+  made.features.segments = sharp_edges(surface.polygons, options.edges);
+  for (std::size_t i = 0; i < surface.polygons.size(); ++i) {
+    if (surface.polygons[i].area_m2 < options.min_plane_m2) break;  // largest first
+    made.features.planes.push_back(std::move(surface.polygons[i]));
+    made.elements.push_back(surface.elements[i]);
+  }
+  add_samples(options.tile_m, made.features);
+  add_openings(model, made.features);
+  return made;
+}
+
+}  // namespace limen

@@ -1,0 +1,242 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/extract/model/model_surface.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <tuple>
+
+#include <Eigen/Geometry>
+
+#include "limen/base/error.h"
+#include "limen/base/parallel.h"
+#include "limen/extract/model/cross_section.h"
+#include "limen/geometry/polygon_clip.h"
+
+namespace limen {
+namespace {
+
+using Box = Eigen::AlignedBox3d;
+
+Box box_of(const BimFace& face) {
+  Box box;
+  for (const Vector2d& p : face.outline.outer) box.extend(face.frame.to_space(p));
+  return box;
+}
+
+/// The faces of one element.
+struct Body {
+  Box box;
+  std::vector<const BimFace*> faces;
+};
+
+std::vector<Body> bodies_of(const BimModel& model) {
+  std::vector<Body> bodies(model.elements.size());
+  for (const BimFace& face : model.faces) {
+    const auto element = static_cast<std::size_t>(face.element);
+    if (!is_built_matter(model, model.elements[element])) continue;
+    bodies[element].faces.push_back(&face);
+    bodies[element].box.extend(box_of(face));
+  }
+  return bodies;
+}
+
+/// Where the matter of other elements stands right before the face, in the face's coordinates.
+std::vector<Polygon> matter_before(const BimFace& face, const std::vector<Body>& bodies, double front_m) {
+  Box box = box_of(face);
+  box.min().array() -= 2.0 * front_m;
+  box.max().array() += 2.0 * front_m;
+  PlaneFrame front = face.frame;
+  front.origin += front_m * face.plane.normal;
+  std::vector<Polygon> matter;
+  for (std::size_t k = 0; k < bodies.size(); ++k) {
+    if (static_cast<std::int32_t>(k) == face.element || bodies[k].faces.empty()) continue;
+    if (!bodies[k].box.intersects(box)) continue;
+    const std::vector<Polygon> section = cross_section(bodies[k].faces, front);
+    matter.insert(matter.end(), section.begin(), section.end());
+  }
+  return matter;
+}
+
+/// What is left of one face.
+struct Rest {
+  const BimFace* face = nullptr;
+  std::vector<Polygon> parts;
+};
+
+std::vector<Rest> uncovered(const BimModel& model, const ModelSurfaceOptions& options) {
+  const std::vector<Body> bodies = bodies_of(model);
+  std::vector<Rest> rests(model.faces.size());
+  parallel_for(model.faces.size(), 16, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const BimFace& face = model.faces[i];
+      if (bodies[static_cast<std::size_t>(face.element)].faces.empty()) continue;
+      const std::vector<Polygon> matter = matter_before(face, bodies, options.front_m);
+      rests[i].face = &face;
+      rests[i].parts =
+          matter.empty() ? std::vector<Polygon>{face.outline} : difference({face.outline}, matter);
+    }
+  });
+  std::erase_if(rests, [](const Rest& rest) { return rest.parts.empty(); });
+  return rests;
+}
+
+/// Faces that lie in one plane and look the same way.
+struct Sheet {
+  Plane plane;
+  PlaneFrame frame;
+  std::vector<const Rest*> rests;
+};
+
+/// Groups faces by plane: found by the cells of normal and offset around.
+class SheetMaker {
+ public:
+  explicit SheetMaker(double same_plane_m) : same_plane_m_(same_plane_m) {}
+
+  void add(const Rest& rest) {
+    const BimFace& face = *rest.face;
+    const auto [x, y, z] = cell_of(face.plane.normal);
+    for (int dx = -1; dx <= 1; ++dx) {
+      for (int dy = -1; dy <= 1; ++dy) {
+        for (int dz = -1; dz <= 1; ++dz) {
+          if (join({x + dx, y + dy, z + dz}, rest)) return;
+        }
+      }
+    }
+    sheets_.push_back({face.plane, face.frame, {&rest}});
+    by_cell_[{x, y, z}].emplace(face.plane.offset, sheets_.size() - 1);
+  }
+
+  [[nodiscard]] const std::vector<Sheet>& sheets() const { return sheets_; }
+
+ private:
+  using Cell = std::tuple<int, int, int>;
+  static constexpr double kCell = 0.01;
+  static constexpr double kOffsetReachM =
+      0.05;  // of planes whose normals differ a little, far from the origin
+
+  static Cell cell_of(const Vector3d& normal) {
+    const auto part = [](double x) { return static_cast<int>(std::floor(x / kCell)); };
+    return {part(normal.x()), part(normal.y()), part(normal.z())};
+  }
+
+  [[nodiscard]] bool lies_in(const BimFace& face, const Sheet& sheet) const {
+    if (face.plane.normal.dot(sheet.plane.normal) < 0.9999) return false;
+    return std::all_of(face.outline.outer.begin(), face.outline.outer.end(), [&](const Vector2d& p) {
+      return std::abs(sheet.plane.signed_distance(face.frame.to_space(p))) <= same_plane_m_;
+    });
+  }
+
+  bool join(const Cell& cell, const Rest& rest) {
+    const auto found = by_cell_.find(cell);
+    if (found == by_cell_.end()) return false;
+    const double offset = rest.face->plane.offset;
+    for (auto it = found->second.lower_bound(offset - kOffsetReachM);
+         it != found->second.end() && it->first <= offset + kOffsetReachM; ++it) {
+      Sheet& sheet = sheets_[it->second];
+      if (!lies_in(*rest.face, sheet)) continue;
+      sheet.rests.push_back(&rest);
+      return true;
+    }
+    return false;
+  }
+
+  double same_plane_m_;
+  std::vector<Sheet> sheets_;
+  std::map<Cell, std::multimap<double, std::size_t>> by_cell_;
+};
+
+PlanarPolygon polygon_of(const Sheet& sheet, Polygon part) {
+  PlanarPolygon polygon;
+  polygon.plane = sheet.plane;
+  polygon.frame = sheet.frame;
+  polygon.area_m2 = area(part);
+  const Box2 box = box_of(std::vector<Polygon>{part});
+  polygon.centroid = sheet.frame.to_space(0.5 * (box.low + box.high));
+  polygon.oriented = true;
+  polygon.parts.push_back(std::move(part));
+  return polygon;
+}
+
+/// The element that gives most of a polygon: that whose rest overlaps it most.
+std::int32_t owner_of(const Polygon& part, const std::vector<std::vector<Polygon>>& moved,
+                      const Sheet& sheet) {
+  std::map<std::int32_t, double> shares;
+  for (std::size_t k = 0; k < moved.size(); ++k)
+    shares[sheet.rests[k]->face->element] += intersection_area({part}, moved[k]);
+  std::int32_t owner = sheet.rests.front()->face->element;
+  for (const auto& [element, share] : shares) {
+    if (share > shares[owner]) owner = element;
+  }
+  return owner;
+}
+
+void add_sheet(const Sheet& sheet, double min_area_m2, ModelSurface& surface) {
+  std::vector<std::vector<Polygon>> moved;
+  std::vector<Polygon> all;
+  for (const Rest* rest : sheet.rests) {
+    moved.push_back(projected(rest->parts, rest->face->frame, sheet.frame));
+    all.insert(all.end(), moved.back().begin(), moved.back().end());
+  }
+  if (sheet.rests.size() > 1 || all.size() > 1) all = merged(all);
+  for (Polygon& part : all) {
+    if (area(part) < min_area_m2) continue;
+    const bool alone = sheet.rests.size() == 1;
+    surface.elements.push_back(alone ? sheet.rests.front()->face->element : owner_of(part, moved, sheet));
+    surface.polygons.push_back(polygon_of(sheet, std::move(part)));
+  }
+}
+
+}  // namespace
+
+void ModelSurfaceOptions::check() const {
+  if (!(front_m > 0)) throw_bad_option("front_m", front_m, "more than 0");
+  if (!(same_plane_m > 0)) throw_bad_option("same_plane_m", same_plane_m, "more than 0");
+  if (!(min_area_m2 >= 0)) throw_bad_option("min_area_m2", min_area_m2, "0 or more");
+}
+
+bool is_built_matter(const BimModel& model, const BimElement& element) {
+  switch (element.kind) {
+    case BimKind::wall:
+    case BimKind::slab:
+    case BimKind::roof:
+    case BimKind::column:
+    case BimKind::beam:
+    case BimKind::stair:
+    case BimKind::covering:
+    case BimKind::terrain:
+      return true;
+    case BimKind::other:
+      return std::all_of(model.elements.begin(), model.elements.end(),
+                         [](const BimElement& e) { return e.kind == BimKind::other; });
+    default:
+      return false;
+  }
+}
+
+ModelSurface visible_surface(const BimModel& model, const ModelSurfaceOptions& options) {
+  options.check();
+  const std::vector<Rest> rests = uncovered(model, options);
+  std::vector<const Rest*> order;
+  for (const Rest& rest : rests) order.push_back(&rest);
+  std::stable_sort(order.begin(), order.end(),
+                   [](const Rest* a, const Rest* b) { return a->face->area_m2 > b->face->area_m2; });
+  SheetMaker maker(options.same_plane_m);
+  for (const Rest* rest : order) maker.add(*rest);
+  ModelSurface all;
+  for (const Sheet& sheet : maker.sheets()) add_sheet(sheet, options.min_area_m2, all);
+  std::vector<std::size_t> by_area(all.polygons.size());
+  for (std::size_t i = 0; i < by_area.size(); ++i) by_area[i] = i;
+  std::stable_sort(by_area.begin(), by_area.end(), [&](std::size_t a, std::size_t b) {
+    return all.polygons[a].area_m2 > all.polygons[b].area_m2;
+  });
+  ModelSurface sorted;
+  for (const std::size_t i : by_area) {
+    sorted.polygons.push_back(std::move(all.polygons[i]));
+    sorted.elements.push_back(all.elements[i]);
+  }
+  return sorted;
+}
+
+}  // namespace limen

@@ -1,0 +1,112 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/extract/model/sample_model.h"
+
+#include <algorithm>
+#include <cmath>
+#include <unordered_map>
+
+#include <fmt/format.h>
+
+#include "limen/base/error.h"
+#include "limen/base/random.h"
+#include "limen/extract/model/model_surface.h"
+#include "limen/geometry/cell_key.h"
+#include "limen/geometry/polygon_clip.h"
+
+namespace limen {
+namespace {
+
+/// Points that keep their distance, in cubes as wide as that: only neighbouring cubes have to be asked.
+class Disks {
+ public:
+  explicit Disks(double spacing_m) : spacing_m_(spacing_m) {}
+
+  /// Whether `x` is far enough from all others; then it is kept.
+  bool add(const Vector3d& x) {
+    const Vector3d cell = cell_of(x, spacing_m_);
+    // Its own cube first: late darts mostly end there.
+    if (taken(cell_key(cell), x)) return false;
+    for (int k = 0; k < 27; ++k) {
+      if (k != 13 && taken(cell_key(cell + way_to_cell(k)), x)) return false;
+    }
+    const auto [place, fresh] = last_.try_emplace(cell_key(cell), points_.size());
+    before_.push_back(fresh ? kNone : place->second);
+    place->second = points_.size();
+    points_.push_back(x);
+    return true;
+  }
+
+  [[nodiscard]] std::vector<Vector3d>& points() { return points_; }
+
+ private:
+  static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
+
+  /// Whether a point of that cube is too near.
+  [[nodiscard]] bool taken(std::int64_t key, const Vector3d& x) const {
+    const auto found = last_.find(key);
+    if (found == last_.end()) return false;
+    for (std::size_t i = found->second; i != kNone; i = before_[i]) {
+      if ((points_[i] - x).squaredNorm() < spacing_m_ * spacing_m_) return true;
+    }
+    return false;
+  }
+
+  double spacing_m_;
+  std::vector<Vector3d> points_;
+  std::vector<std::size_t> before_;                     // of each point: the one before it in its cube
+  std::unordered_map<std::int64_t, std::size_t> last_;  // of each cube: its last point
+};
+
+/// Darts thrown at the polygon's box, as many per area as `per_m2` says.
+void throw_darts(const PlanarPolygon& polygon, double per_m2, RandomStream random, Disks& disks) {
+  const Box2 box = box_of(polygon.parts);
+  const Vector2d size = box.high - box.low;
+  const auto darts = static_cast<std::size_t>(std::ceil(per_m2 * size.prod()));
+  for (std::size_t k = 0; k < darts; ++k) {
+    const double u = random.uniform();
+    const double v = random.uniform();
+    const Vector2d p = box.low + Vector2d(u * size.x(), v * size.y());
+    if (contains(polygon.parts.front(), p)) disks.add(polygon.frame.to_space(p));
+  }
+}
+
+}  // namespace
+
+void ModelSamplingOptions::check() const {
+  if (!(spacing_m > 0)) throw_bad_option("spacing_m", spacing_m, "more than 0");
+  if (!(trials > 0)) throw_bad_option("trials", trials, "more than 0");
+}
+
+Scan sample_model(const BimModel& model, const ModelSamplingOptions& options) {
+  options.check();
+  const ModelSurface surface = visible_surface(model);
+  const double per_m2 = options.trials / (options.spacing_m * options.spacing_m);
+  double darts = 0.0;
+  for (const PlanarPolygon& polygon : surface.polygons) {
+    const Box2 box = box_of(polygon.parts);
+    darts += per_m2 * (box.high - box.low).prod();
+  }
+  if (darts > static_cast<double>(options.most)) {
+    throw Error(fmt::format("points {} m apart are too many for its surface", options.spacing_m), model.name,
+                fmt::format("give a spacing of {:.2f} m or more",
+                            options.spacing_m * std::sqrt(darts / static_cast<double>(options.most))));
+  }
+  Disks disks(options.spacing_m);
+  for (std::size_t i = 0; i < surface.polygons.size(); ++i)
+    throw_darts(surface.polygons[i], per_m2, RandomStream(options.seed, i), disks);
+  Scan scan;
+  scan.name = model.name;
+  scan.local_origin = model.local_origin;
+  scan.points = std::move(disks.points());
+  scan.level = true;
+  return scan;
+}
+
+std::vector<Segment> sampled_model_segments(const BimModel& model, const ModelSamplingOptions& sampling,
+                                            const SegmentOptions& options) {
+  const Scan scan = sample_model(model, sampling);
+  return find_segments(scan, extract_features(scan), options);
+}
+
+}  // namespace limen

@@ -1,0 +1,97 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/extract/planes/detect_planes.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "limen/base/stage_part.h"
+#include "limen/extract/planes/automatic_threshold.h"
+#include "limen/extract/planes/msac_planes.h"
+#include "limen/extract/planes/topology_planes.h"
+
+namespace limen {
+namespace {
+
+constexpr double kMobileThresholdM = 0.025;  // least inlier threshold for the façades of a mobile scan
+
+double noise_about(const PlaneLabels& planes) {
+  std::vector<std::size_t> counts(planes.fits.size(), 0);
+  for (const std::int32_t label : planes.labels) {
+    if (label >= 0) ++counts[static_cast<std::size_t>(label)];
+  }
+  double squares = 0.0;
+  double total = 0.0;
+  for (std::size_t k = 0; k < counts.size(); ++k) {
+    const auto count = static_cast<double>(counts[k]);
+    squares += count * planes.fits[k].rms_m * planes.fits[k].rms_m;
+    total += count;
+  }
+  return total > 0.0 ? std::sqrt(squares / total) : 0.0;
+}
+
+/// 0 leaves the choice to the detector.
+double threshold_for(const Scan& scan, ThresholdRule rule, const GrowOptions& grow, Monitor& monitor) {
+  if (grow.inlier_threshold_m > 0.0) return grow.inlier_threshold_m;
+  if (rule == ThresholdRule::automatic && !scan.mobile()) return automatic_threshold(scan, grow, {}, monitor);
+  if (rule == ThresholdRule::automatic) {
+    // A street is too wide for the choice on a subset, and façades have relief of centimetres, whatever the
+    // noise.
+    AutomaticThresholdOptions by_noise;
+    by_noise.factors = {1.0};
+    return std::max(kMobileThresholdM, automatic_threshold(scan, grow, by_noise, monitor));
+  }
+  if (rule == ThresholdRule::a_contrario) return a_contrario_threshold(scan, grow, {}, monitor);
+  return 0.0;
+}
+
+PlaneLabels from_scan_lines(const Scan& scan, const DetectOptions& options, const GrowOptions& grow,
+                            Monitor& monitor) {
+  TopologyPlaneOptions lines;
+  lines.inlier_threshold_m = grow.inlier_threshold_m;
+  lines.min_inliers = std::max(12, grow.min_inliers);
+  lines.seed = options.seed;
+  return extract_topology_planes(scan, lines, monitor);
+}
+
+PlaneLabels from_msac(const Scan& scan, const DetectOptions& options, const GrowOptions& grow,
+                      Monitor& monitor) {
+  MsacPlaneOptions msac;
+  if (grow.inlier_threshold_m > 0.0) msac.inlier_threshold_m = grow.inlier_threshold_m;
+  msac.min_inliers = grow.min_inliers;
+  msac.seed = options.seed;
+  return msac_planes(scan, msac, monitor);
+}
+
+PlaneLabels planes_by(PlaneDetector detector, const Scan& scan, const DetectOptions& options,
+                      const GrowOptions& grow, Monitor& monitor) {
+  if (detector == PlaneDetector::scan_lines) return from_scan_lines(scan, options, grow, monitor);
+  if (detector == PlaneDetector::msac) return from_msac(scan, options, grow, monitor);
+  return grow_planes(scan, grow, monitor).planes;
+}
+
+}  // namespace
+
+PlaneDetector detector_for(const Scan& /*scan*/) {
+  return PlaneDetector::grow;
+}
+
+DetectedPlanes detect_planes(const Scan& scan, const DetectOptions& options, const GrowOptions& grow,
+                             Monitor& monitor) {
+  grow.check();
+  const PlaneDetector detector =
+      options.detector == PlaneDetector::automatic ? detector_for(scan) : options.detector;
+  if (scan.size() == 0) return {};
+  GrowOptions used = grow;
+  constexpr double kThresholdShare = 0.4;  // of the work, about
+  StagePart choosing(monitor, 0.0, kThresholdShare);
+  used.inlier_threshold_m = threshold_for(scan, options.threshold, grow, choosing);
+  StagePart finding(monitor, kThresholdShare, 1.0);
+  DetectedPlanes detected;
+  detected.detector = detector;
+  detected.planes = planes_by(detector, scan, options, used, finding);
+  detected.noise_m = noise_about(detected.planes);
+  return detected;
+}
+
+}  // namespace limen

@@ -1,0 +1,50 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+#include "limen/base/progress.h"
+#include "limen/extract/planes/grow_planes.h"
+#include "limen/extract/planes/plane_labels.h"
+#include "limen/model/scan.h"
+
+namespace limen {
+
+enum class PlaneDetector {
+  automatic,   ///< the one that measured best: see detector_for
+  grow,        ///< cubes, coarse to fine: needs nothing but points (grow_planes.h)
+  scan_lines,  ///< 2021, section 2.1: needs the scan's lines (topology_planes.h)
+  msac         ///< 2021, section 2.2: the published baseline, slow (msac_planes.h)
+};
+
+/// Where the inlier threshold comes from when GrowOptions::inlier_threshold_m is 0.
+enum class ThresholdRule {
+  automatic,   ///< a contrario among multiples of what the noise asks for (automatic_threshold.h); mobile
+               ///< scans: what the noise asks for, at least 25 mm
+  noise,       ///< the detector's own: 3.3 times the noise it finds
+  a_contrario  ///< 2021, 3.1.1: among 5, 10, 15, 20, 30 and 50 mm, whatever the noise
+};
+
+struct DetectOptions {
+  PlaneDetector detector = PlaneDetector::automatic;
+  ThresholdRule threshold = ThresholdRule::automatic;
+  std::uint64_t seed = 1;  ///< of the detectors that draw samples
+};
+
+struct DetectedPlanes {
+  PlaneLabels planes;
+  double noise_m = 0.0;                          ///< root mean square distance of the inliers to their planes
+  PlaneDetector detector = PlaneDetector::grow;  ///< the detector used; never automatic
+};
+
+/// The detector that `automatic` stands for: grow for every scan so far. Where the scan's lines are known
+/// scan_lines is faster, but not better (docs/planes.md).
+PlaneDetector detector_for(const Scan& scan);
+
+/// Planes by the detector asked for. `grow.inlier_threshold_m` and `grow.min_inliers` hold for each of them.
+/// Throws Error where scan_lines is asked for and the scan's lines are not known.
+DetectedPlanes detect_planes(const Scan& scan, const DetectOptions& options = {},
+                             const GrowOptions& grow = {}, Monitor& monitor = silent_monitor());
+
+}  // namespace limen

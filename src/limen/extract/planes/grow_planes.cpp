@@ -1,0 +1,193 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/extract/planes/grow_planes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "limen/base/angles.h"
+#include "limen/base/error.h"
+#include "limen/base/parallel.h"
+#include "limen/extract/cells/cell_grid.h"
+#include "limen/extract/cells/point_normals.h"
+#include "limen/extract/planes/grow_regions.h"
+#include "limen/extract/planes/merge_planes.h"
+#include "limen/extract/planes/settle_planes.h"
+
+namespace limen {
+namespace {
+
+constexpr double kJoinAngleDeg = 3.0;  // normals of two pieces of one plane
+constexpr int kSparseLevels = 3;       // coarser than the first cubes, for what lies far from the scanner
+constexpr int kSettlings = 2;
+constexpr double kSettleCellM = 0.08;  // points choose among the planes of their cube and those around
+constexpr double kExplained = 0.65;    // of a plane's points: others would take them
+constexpr std::size_t kPiece = 131072;
+
+double noise_of(const CellGrid& grid) {
+  std::vector<double> thickness;
+  for (const Cell& cell : grid.cells()) {
+    if (cell.count() >= 12 && cell.spread_m > 5.0 * cell.thickness_m && cell.spread_m > 0.1 * grid.edge_m()) {
+      thickness.push_back(cell.thickness_m);
+    }
+  }
+  if (thickness.size() < 20) return 0.005;
+  const auto middle = thickness.begin() + static_cast<std::ptrdiff_t>(thickness.size() / 2);
+  std::nth_element(thickness.begin(), middle, thickness.end());
+  return *middle;
+}
+
+std::vector<std::uint32_t> all_positions(std::size_t size) {
+  std::vector<std::uint32_t> positions(size);
+  std::iota(positions.begin(), positions.end(), 0U);
+  return positions;
+}
+
+class PlaneGrower {
+ public:
+  PlaneGrower(const Scan& scan, const GrowOptions& options)
+      : options_(options),
+        sorted_(morton_order(scan.points, options.finest_cell_m)),
+        labels_(scan.size(), -1) {
+    const CellGrid grid(sorted_, all_positions(scan.size()), level_of(0.16, options_.finest_cell_m));
+    noise_m_ = noise_of(grid);
+    threshold_m_ = options_.inlier_threshold_m > 0 ? options_.inlier_threshold_m
+                                                   : std::clamp(3.3 * noise_m_, 0.008, 0.03);
+  }
+
+  GrownPlanes run(Monitor& monitor) {
+    grow(monitor);
+    monitor.throw_if_cancelled();
+    const PointNormals normals(sorted_, kGateShare * threshold_m_);
+    const SettleGrid grid(sorted_, kSettleCellM);
+    const SettleScene scene{sorted_, normals, grid};
+    merge();
+    const SettleOptions settling{.threshold_m = threshold_m_};
+    for (int k = 0; k < kSettlings; ++k) {
+      monitor.advance(kSteps - kSettlings - 1 + k, kSteps);
+      labels_ = settled(scene, labels_, sums_, settling);
+      merge();
+    }
+    monitor.advance(kSteps - 1, kSteps);
+    dissolve(explained_shares(scene, labels_, sums_, settling));
+    labels_ = settled(scene, labels_, sums_, settling);
+    merge();
+    return finish();
+  }
+
+ private:
+  /// Coarse to fine, each level on what the levels before left; then coarser than all, for sparse planes.
+  void grow(Monitor& monitor) {
+    RegionGrower grower(sorted_, {.threshold_m = threshold_m_,
+                                  .min_inliers = options_.min_inliers,
+                                  .max_angle_deg = options_.max_angle_deg});
+    std::vector<std::uint32_t> active = all_positions(labels_.size());
+    const int coarsest = level_of(options_.coarsest_cell_m, options_.finest_cell_m);
+    std::vector<int> levels;
+    for (int level = coarsest; level >= 0; --level) levels.push_back(level);
+    for (int level = coarsest + 1; level <= coarsest + kSparseLevels; ++level) levels.push_back(level);
+    for (std::size_t k = 0; k < levels.size(); ++k) {
+      monitor.throw_if_cancelled();
+      monitor.advance(kGrowSteps * static_cast<double>(k) / static_cast<double>(levels.size()), kSteps);
+      grower.grow_level(levels[k], active, labels_);
+      std::erase_if(active, [&](std::uint32_t position) { return labels_[position] >= 0; });
+    }
+    sums_.resize(grower.planes());
+  }
+
+  /// Sums per plane; pieces of one plane that were found apart become one.
+  void merge() {
+    sum_up();
+    MergedPieces merged = merge_planes(sums_, radians(kJoinAngleDeg), kGateShare * threshold_m_);
+    sums_ = std::move(merged.planes);
+    for (std::int32_t& label : labels_) {
+      if (label >= 0) label = merged.target[static_cast<std::size_t>(label)];
+    }
+  }
+
+  /// Planes that cut through the edges of others give their points back.
+  void dissolve(const std::vector<double>& explained) {
+    for (std::int32_t& label : labels_) {
+      if (label >= 0 && explained[static_cast<std::size_t>(label)] > kExplained) label = -1;
+    }
+  }
+
+  void sum_up() {
+    using Sums = std::vector<PointMoments>;
+    sums_ = parallel_reduce(
+        labels_.size(), kPiece, Sums(sums_.size()),
+        [&](std::size_t begin, std::size_t end) {
+          Sums sums(sums_.size());
+          for (std::size_t k = begin; k < end; ++k) {
+            if (labels_[k] >= 0) sums[static_cast<std::size_t>(labels_[k])].add(sorted_.points[k]);
+          }
+          return sums;
+        },
+        [](Sums a, const Sums& b) {
+          for (std::size_t i = 0; i < a.size(); ++i) a[i] += b[i];
+          return a;
+        });
+  }
+
+  [[nodiscard]] GrownPlanes finish() const {
+    GrownPlanes grown;
+    grown.noise_m = noise_m_;
+    grown.inlier_threshold_m = threshold_m_;
+    grown.planes.inlier_threshold_m = threshold_m_;
+    std::vector<std::size_t> kept;
+    for (std::size_t i = 0; i < sums_.size(); ++i) {
+      if (sums_[i].count >= options_.min_inliers) kept.push_back(i);
+    }
+    std::stable_sort(kept.begin(), kept.end(),
+                     [&](std::size_t a, std::size_t b) { return sums_[a].count > sums_[b].count; });
+    std::vector<std::int32_t> final_label(sums_.size(), -1);
+    for (const std::size_t i : kept) {
+      final_label[i] = static_cast<std::int32_t>(grown.planes.fits.size());
+      PlaneFit fit = fit_plane(sums_[i]);
+      fit.plane = shifted(fit.plane, -sorted_.anchor);
+      fit.centroid += sorted_.anchor;
+      grown.planes.fits.push_back(fit);
+    }
+    grown.planes.labels.assign(labels_.size(), -1);
+    parallel_for(labels_.size(), kPiece, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k) {
+        if (labels_[k] >= 0)
+          grown.planes.labels[sorted_.order[k]] = final_label[static_cast<std::size_t>(labels_[k])];
+      }
+    });
+    return grown;
+  }
+
+  // Of progress: growing, then the settlings and the last look.
+  static constexpr double kGrowSteps = 4.0;
+  static constexpr double kSteps = kGrowSteps + kSettlings + 1.0;
+
+  GrowOptions options_;
+  MortonOrder sorted_;
+  std::vector<std::int32_t> labels_;  ///< by position along the curve
+  std::vector<PointMoments> sums_;    ///< by label, about the curve's anchor
+  double threshold_m_ = 0.01;
+  double noise_m_ = 0.0;
+};
+
+}  // namespace
+
+void GrowOptions::check() const {
+  if (!(inlier_threshold_m >= 0)) throw_bad_option("inlier_threshold_m", inlier_threshold_m, "0 or more");
+  if (min_inliers < 3) throw_bad_option("min_inliers", min_inliers, "3 or more");
+  if (!(finest_cell_m > 0)) throw_bad_option("finest_cell_m", finest_cell_m, "more than 0");
+  if (!(coarsest_cell_m >= finest_cell_m)) {
+    throw_bad_option("coarsest_cell_m", coarsest_cell_m, "at least finest_cell_m");
+  }
+  if (!(max_angle_deg > 0 && max_angle_deg < 45))
+    throw_bad_option("max_angle_deg", max_angle_deg, "within (0, 45)");
+}
+
+GrownPlanes grow_planes(const Scan& scan, const GrowOptions& options, Monitor& monitor) {
+  options.check();
+  if (scan.size() == 0) return {};
+  return PlaneGrower(scan, options).run(monitor);
+}
+
+}  // namespace limen

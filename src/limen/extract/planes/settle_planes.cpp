@@ -1,0 +1,186 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/extract/planes/settle_planes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "limen/base/angles.h"
+#include "limen/base/parallel.h"
+#include "limen/extract/cells/cell_grid.h"
+
+namespace limen {
+namespace {
+
+/// A plane with some points in a cube.
+struct Support {
+  std::int32_t plane = -1;
+  std::uint32_t count = 0;
+};
+
+/// Planes by cube, those with most points first; cubes are runs of the curve.
+class SupportGrid {
+ public:
+  SupportGrid(const SettleGrid& grid, const std::vector<std::int32_t>& labels, std::uint32_t min_support)
+      : grid_(grid), planes_(grid.runs().size()) {
+    parallel_for(planes_.size(), 256, [&](std::size_t begin, std::size_t end) {
+      std::vector<Support> support;
+      for (std::size_t i = begin; i < end; ++i) {
+        support.clear();
+        for (std::uint32_t k = runs().begin(i); k < runs().end(i); ++k) count(labels[k], support);
+        for (const Support& s : support) {
+          if (s.count >= min_support) planes_[i].push_back(s.plane);
+        }
+      }
+    });
+  }
+
+  [[nodiscard]] const CellRuns& runs() const { return grid_.runs(); }
+
+  /// Planes in a cube and those around it, each once.
+  void near(std::size_t cube, std::vector<std::int32_t>& planes) const {
+    planes.clear();
+    const auto add = [&](std::size_t i) {
+      for (const std::int32_t plane : planes_[i]) {
+        if (std::find(planes.begin(), planes.end(), plane) == planes.end()) planes.push_back(plane);
+      }
+    };
+    add(cube);
+    for (const std::int32_t i : grid_.around(cube)) add(static_cast<std::size_t>(i));
+  }
+
+ private:
+  static void count(std::int32_t label, std::vector<Support>& support) {
+    if (label < 0) return;
+    for (Support& s : support) {
+      if (s.plane != label) continue;
+      ++s.count;
+      return;
+    }
+    support.push_back({label, 1});
+  }
+
+  const SettleGrid& grid_;
+  std::vector<std::vector<std::int32_t>> planes_;
+};
+
+/// Which planes a point may belong to.
+class Candidates {
+ public:
+  Candidates(const SettleScene& scene, const std::vector<std::int32_t>& labels, std::vector<Plane> planes,
+             const SettleOptions& options)
+      : sorted_(scene.sorted),
+        normals_(scene.normals),
+        labels_(labels),
+        planes_(std::move(planes)),
+        grid_(scene.grid, labels, options.min_support),
+        threshold_m_(options.threshold_m),
+        min_cosine_(std::cos(radians(options.max_angle_deg))) {}
+
+  [[nodiscard]] const SupportGrid& grid() const { return grid_; }
+  [[nodiscard]] double distance(std::uint32_t k, std::int32_t plane) const {
+    return std::abs(planes_[static_cast<std::size_t>(plane)].signed_distance(sorted_.points[k]));
+  }
+  /// The surface at point k faces along with the plane, as far as is known.
+  [[nodiscard]] bool fits(std::uint32_t k, std::int32_t plane) const {
+    const Vector3d* const normal = normals_.at(k);
+    return normal == nullptr ||
+           std::abs(normal->dot(planes_[static_cast<std::size_t>(plane)].normal)) >= min_cosine_;
+  }
+  [[nodiscard]] std::int32_t nearest(std::uint32_t k, const std::vector<std::int32_t>& near) const {
+    // Far from the others of its plane a point keeps it, unless the surface there faces another way.
+    std::int32_t best = labels_[k] >= 0 && fits(k, labels_[k]) ? labels_[k] : -1;
+    double smallest = threshold_m_;
+    for (const std::int32_t i : near) {
+      const double d = distance(k, i);
+      if (d >= smallest || !fits(k, i)) continue;
+      smallest = d;
+      best = i;
+    }
+    return best;
+  }
+
+ private:
+  const MortonOrder& sorted_;
+  const PointNormals& normals_;
+  const std::vector<std::int32_t>& labels_;
+  std::vector<Plane> planes_;
+  SupportGrid grid_;
+  double threshold_m_;
+  double min_cosine_;
+};
+
+std::vector<Plane> planes_of(const std::vector<PointMoments>& sums) {
+  std::vector<Plane> planes;
+  for (const PointMoments& sum : sums) planes.push_back(sum.count >= 3.0 ? fit_plane(sum).plane : Plane{});
+  return planes;
+}
+
+}  // namespace
+
+SettleGrid::SettleGrid(const MortonOrder& sorted, double cell_m)
+    : runs_(sorted, level_of(cell_m, sorted.cell_m)), begins_(runs_.size() + 1, 0) {
+  constexpr std::size_t kCubes = 4096;
+  std::vector<std::vector<std::int32_t>> pieces((runs_.size() + kCubes - 1) / kCubes);
+  parallel_for(runs_.size(), kCubes, [&](std::size_t begin, std::size_t end) {
+    std::vector<std::int32_t>& piece = pieces[begin / kCubes];
+    for (std::size_t i = begin; i < end; ++i) {
+      const CellNeighbours near = runs_.neighbours(i);
+      piece.insert(piece.end(), near.begin(), near.end());
+      begins_[i + 1] = static_cast<std::size_t>(near.end() - near.begin());
+    }
+  });
+  std::partial_sum(begins_.begin(), begins_.end(), begins_.begin());
+  neighbours_.reserve(begins_.back());
+  for (const auto& piece : pieces) neighbours_.insert(neighbours_.end(), piece.begin(), piece.end());
+}
+
+std::vector<double> explained_shares(const SettleScene& scene, const std::vector<std::int32_t>& labels,
+                                     const std::vector<PointMoments>& sums, const SettleOptions& options) {
+  const Candidates candidates(scene, labels, planes_of(sums), options);
+  using Counts = std::vector<double>;
+  Counts shares = parallel_reduce(
+      candidates.grid().runs().size(), 8192, Counts(sums.size(), 0.0),
+      [&](std::size_t begin, std::size_t end) {
+        Counts counts(sums.size(), 0.0);
+        std::vector<std::int32_t> near;
+        for (std::size_t i = begin; i < end; ++i) {
+          candidates.grid().near(i, near);
+          for (std::uint32_t k = candidates.grid().runs().begin(i); k < candidates.grid().runs().end(i);
+               ++k) {
+            if (labels[k] < 0) continue;
+            const auto own = static_cast<std::size_t>(labels[k]);
+            counts[own] += std::any_of(near.begin(), near.end(), [&](std::int32_t other) {
+              return sums[static_cast<std::size_t>(other)].count > sums[own].count &&
+                     candidates.distance(k, other) < options.threshold_m && candidates.fits(k, other);
+            });
+          }
+        }
+        return counts;
+      },
+      [](Counts a, const Counts& b) {
+        for (std::size_t i = 0; i < a.size(); ++i) a[i] += b[i];
+        return a;
+      });
+  for (std::size_t i = 0; i < shares.size(); ++i) shares[i] /= std::max(1.0, sums[i].count);
+  return shares;
+}
+
+std::vector<std::int32_t> settled(const SettleScene& scene, const std::vector<std::int32_t>& labels,
+                                  const std::vector<PointMoments>& sums, const SettleOptions& options) {
+  const Candidates candidates(scene, labels, planes_of(sums), options);
+  const CellRuns& runs = candidates.grid().runs();
+  std::vector<std::int32_t> result = labels;
+  parallel_for(runs.size(), 256, [&](std::size_t begin, std::size_t end) {
+    std::vector<std::int32_t> near;
+    for (std::size_t i = begin; i < end; ++i) {
+      candidates.grid().near(i, near);
+      if (near.empty()) continue;
+      for (std::uint32_t k = runs.begin(i); k < runs.end(i); ++k) result[k] = candidates.nearest(k, near);
+    }
+  });
+  return result;
+}
+
+}  // namespace limen

@@ -1,0 +1,205 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/extract/segments/segments.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "limen/base/angles.h"
+#include "limen/base/error.h"
+#include "limen/base/parallel.h"
+#include "limen/extract/segments/segments_borders.h"
+#include "limen/extract/segments/segments_creases.h"
+#include "limen/extract/segments/segments_image.h"
+#include "limen/extract/segments/segments_merge.h"
+#include "limen/extract/segments/segments_points.h"
+#include "limen/extract/segments/segments_sight.h"
+
+namespace limen {
+namespace {
+
+constexpr double kShortestRun = 0.5;  // of an outline, in units of the shortest segment
+constexpr double kBeyond = 0.5;       // how far a border is looked for beyond its run, in units of the run
+constexpr int kSmooth = 2;            // bins to either side that a place's sight is smoothed over
+
+std::vector<std::unique_ptr<PlaneImage>> images_of(const Scan& scan, const std::vector<PlanarPolygon>& planes,
+                                                   const std::vector<std::int32_t>& labels,
+                                                   Monitor& monitor) {
+  const std::vector<std::vector<std::uint32_t>> points = points_of(labels, planes.size());
+  std::vector<std::unique_ptr<PlaneImage>> images(planes.size());
+  parallel_for(planes.size(), 1, [&](std::size_t k, std::size_t /*end*/) {
+    monitor.throw_if_cancelled();
+    images[k] = std::make_unique<PlaneImage>(scan.points, points[k], planes[k].frame, planes[k].area_m2);
+  });
+  return images;
+}
+
+/// The borders of one plane.
+class BorderFinder {
+ public:
+  BorderFinder(const Features& features, const BorderSight& sight, const std::vector<char>& ambiguous,
+               const SegmentOptions& options)
+      : features_(features), sight_(sight), ambiguous_(ambiguous), o_(options) {}
+
+  [[nodiscard]] std::vector<DetectedEdge> run(std::size_t plane, const PlaneImage& image) const {
+    std::vector<DetectedEdge> edges;
+    for (const StraightRun& run : straight_runs(image, kShortestRun * o_.min_length_m)) {
+      if (!sight_.knows() && !run.hole) continue;
+      // An outline is cut where it wavers: the points may go on along the line.
+      const double beyond_m = std::max(o_.join_gap_m, kBeyond * (run.line.end_m - run.line.begin_m));
+      const std::optional<BorderFit> fit = fit_border(image, run, beyond_m, ambiguous_);
+      if (!fit || fit->sigma_m > o_.max_border_sigma_m ||
+          fit->angle_sigma_rad > radians(o_.max_border_angle_deg))
+        continue;
+      add_edges(plane, image, *fit, edges);
+    }
+    return edges;
+  }
+
+ private:
+  /// Which bins of a border are edge of the surface.
+  [[nodiscard]] std::vector<char> true_bins(std::size_t plane, const PlaneImage& image,
+                                            const BorderFit& fit) const {
+    std::vector<int> says(fit.bins.size(), 0);
+    const Vector2d inward = fit.line.inward();
+    for (std::size_t k = 0; k < fit.bins.size(); ++k) {
+      const BorderBin& bin = fit.bins[k];
+      if (!bin.fits) continue;
+      BorderPlace place;
+      place.plane = features_.planes[plane].plane;
+      place.edge = image.frame().to_space(fit.line.at(bin.t, 0.0));
+      place.outward = -(inward.x() * image.frame().u + inward.y() * image.frame().v);
+      place.step_m = std::max(0.005, 2.0 * fit.shortfall_m);
+      place.point = bin.point;
+      says[k] = is_edge(sight_.look(place)) ? 1 : -1;
+    }
+    std::vector<char> edge(fit.bins.size(), 0);
+    for (std::size_t k = 0; k < says.size(); ++k) {
+      int sum = 0;
+      const std::size_t last = std::min(says.size() - 1, k + kSmooth);
+      for (std::size_t i = k < kSmooth ? 0 : k - kSmooth; i <= last; ++i) sum += says[i];
+      edge[k] = says[k] != 0 && sum > 0 ? 1 : 0;
+    }
+    return edge;
+  }
+
+  static bool is_edge(Beyond beyond) {
+    return beyond == Beyond::open || beyond == Beyond::silent || beyond == Beyond::touching ||
+           beyond == Beyond::unknown;
+  }
+
+  void add_edges(std::size_t plane, const PlaneImage& image, const BorderFit& fit,
+                 std::vector<DetectedEdge>& edges) const {
+    const std::vector<char> edge = true_bins(plane, image, fit);
+    const double half = 0.5 * fit.bin_m;
+    double begin = 0.0;
+    double last = -1e9;
+    int count = 0;
+    const auto finish = [&] {
+      // A stretch must be well filled: bins that fit here and there are chance.
+      if (count > 0 && 2.0 * count * fit.bin_m >= last - begin) {
+        DetectedEdge found;
+        found.kind = EdgeKind::border;
+        found.planes = {static_cast<std::int32_t>(plane), -1};
+        found.sigma_m = fit.sigma_m;
+        found.segment = {image.frame().to_space(fit.line.at(begin - half, 0.0)),
+                         image.frame().to_space(fit.line.at(last + half, 0.0))};
+        edges.push_back(found);
+      }
+      count = 0;
+    };
+    for (std::size_t k = 0; k < edge.size(); ++k) {
+      if (edge[k] == 0) continue;
+      const double t = fit.bins[k].t;
+      if (count > 0 && t - last > std::max(o_.join_gap_m, 4.0 * fit.bin_m)) finish();
+      if (count == 0) begin = t;
+      last = t;
+      ++count;
+    }
+    finish();
+  }
+
+  const Features& features_;
+  const BorderSight& sight_;
+  const std::vector<char>& ambiguous_;
+  const SegmentOptions& o_;
+};
+
+/// What borders are found from.
+struct BorderScene {
+  const Scan& scan;
+  const ExtractedFeatures& extracted;
+  const std::vector<std::unique_ptr<PlaneImage>>& images;
+  const std::vector<char>& ambiguous;
+};
+
+std::vector<DetectedEdge> find_borders(const BorderScene& scene, const SegmentOptions& options,
+                                       Monitor& monitor) {
+  constexpr double kLeastSame_m = 0.02;
+  const Features& features = scene.extracted.features;
+  const BorderSight sight(scene.scan, scene.extracted,
+                          std::max(kLeastSame_m, 1.5 * features.inlier_threshold_m));
+  const BorderFinder finder(features, sight, scene.ambiguous, options);
+  std::vector<std::vector<DetectedEdge>> found(scene.images.size());
+  parallel_for(found.size(), 1, [&](std::size_t k, std::size_t /*end*/) {
+    monitor.throw_if_cancelled();
+    found[k] = finder.run(k, *scene.images[k]);
+  });
+  std::vector<DetectedEdge> edges;
+  for (const auto& part : found) edges.insert(edges.end(), part.begin(), part.end());
+  return edges;
+}
+
+}  // namespace
+
+void SegmentOptions::check() const {
+  if (!(min_length_m > 0.0)) throw_bad_option("min_length_m", min_length_m, "greater than 0");
+  if (!(min_angle_deg > 0.0 && min_angle_deg <= 90.0))
+    throw_bad_option("min_angle_deg", min_angle_deg, "greater than 0, at most 90");
+  if (min_plane_points < 0) throw_bad_option("min_plane_points", min_plane_points, "0 or more");
+  if (!(join_gap_m >= 0.0)) throw_bad_option("join_gap_m", join_gap_m, "0 or more");
+  if (!(max_border_sigma_m > 0.0))
+    throw_bad_option("max_border_sigma_m", max_border_sigma_m, "greater than 0");
+  if (!(max_border_angle_deg > 0.0))
+    throw_bad_option("max_border_angle_deg", max_border_angle_deg, "greater than 0");
+}
+
+std::vector<DetectedEdge> find_edges(const Scan& scan, const ExtractedFeatures& extracted,
+                                     const SegmentOptions& options, Monitor& monitor) {
+  options.check();
+  std::vector<std::unique_ptr<PlaneImage>> images =
+      images_of(scan, extracted.features.planes, extracted.labels, monitor);
+  const ExtractedFeatures more = with_small_planes(scan, extracted, completed_labels(scan, extracted, images),
+                                                   options.min_plane_points, monitor);
+  images = images_of(scan, more.features.planes, more.labels, monitor);
+  const Creases creases = find_creases(more.features, images, options, scan.size());
+  std::vector<DetectedEdge> edges;
+  if (options.creases) edges = creases.edges;
+  if (options.borders) {
+    const std::vector<DetectedEdge> borders =
+        find_borders({scan, more, images, creases.ambiguous}, options, monitor);
+    edges.insert(edges.end(), borders.begin(), borders.end());
+  }
+  MergeOptions merge;
+  merge.join_gap_m = options.join_gap_m;
+  merge.min_length_m = options.min_length_m;
+  edges = merged_edges(std::move(edges), merge);
+  const auto planes = static_cast<std::int32_t>(extracted.features.planes.size());
+  for (DetectedEdge& edge : edges)
+    for (std::int32_t& plane : edge.planes)
+      if (plane >= planes) plane = -1;
+  return edges;
+}
+
+std::vector<Segment> find_segments(const Scan& scan, const ExtractedFeatures& extracted,
+                                   const SegmentOptions& options, Monitor& monitor) {
+  std::vector<Segment> segments;
+  for (const DetectedEdge& edge : find_edges(scan, extracted, options, monitor))
+    segments.push_back(edge.segment);
+  return segments;
+}
+
+}  // namespace limen

@@ -1,0 +1,182 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/extract/surface/interior_points.h"
+
+#include <algorithm>
+#include <iterator>
+#include <limits>
+
+#include "limen/base/error.h"
+#include "limen/base/parallel.h"
+#include "limen/extract/surface/outline_raster.h"
+
+namespace limen {
+namespace {
+
+constexpr std::size_t kBlock = 256;  // consecutive rays that are rejected together
+constexpr std::size_t kBlocksPerPiece = 64;
+constexpr double kBoxSlack_m = 1e-6;
+
+/// A wall made ready for many rays.
+struct Target {
+  std::int32_t index = -1;
+  Plane plane;
+  PlaneFrame frame;
+  bool one_sided = false;
+  OutlineRaster outline;
+  Extent box;  ///< of the outline in space
+};
+
+Extent box_of(const PlaneFrame& frame, const std::vector<Polygon>& outline) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  Extent box{Vector3d::Constant(kInfinity), Vector3d::Constant(-kInfinity)};
+  for (const Polygon& polygon : outline) {
+    for (const Vector2d& p : polygon.outer) {
+      box.low = box.low.cwiseMin(frame.to_space(p));
+      box.high = box.high.cwiseMax(frame.to_space(p));
+    }
+  }
+  box.low.array() -= kBoxSlack_m;
+  box.high.array() += kBoxSlack_m;
+  return box;
+}
+
+std::vector<Target> make_targets(const std::vector<PlanarPolygon>& polygons, const std::vector<int>& walls,
+                                 const InteriorPointOptions& options) {
+  std::vector<Target> targets;
+  for (const int wall : walls) {
+    const PlanarPolygon& polygon = polygons.at(static_cast<std::size_t>(wall));
+    OutlineRaster outline(wall_outline(polygons, wall, options.outline));
+    if (outline.box().empty()) continue;
+    const Extent box = box_of(polygon.frame, outline.polygons());
+    targets.push_back({wall, polygon.plane, polygon.frame, polygon.oriented, std::move(outline), box});
+  }
+  return targets;
+}
+
+/// Bounds of the rays of one block: their optical centres, their points.
+struct Block {
+  Extent centres;
+  Extent points;
+};
+
+Block bounds_of(const Scan& scan, std::size_t begin, std::size_t end) {
+  Block block{{scan.centre(begin), scan.centre(begin)}, {scan.points[begin], scan.points[begin]}};
+  for (std::size_t i = begin; i < end; ++i) {
+    block.centres.low = block.centres.low.cwiseMin(scan.centre(i));
+    block.centres.high = block.centres.high.cwiseMax(scan.centre(i));
+    block.points.low = block.points.low.cwiseMin(scan.points[i]);
+    block.points.high = block.points.high.cwiseMax(scan.points[i]);
+  }
+  return block;
+}
+
+/// Lowest and highest signed distance of a box to a plane.
+std::pair<double, double> distances(const Plane& plane, const Extent& box) {
+  const double middle = plane.signed_distance(0.5 * (box.low + box.high));
+  const double reach = plane.normal.cwiseAbs().dot(0.5 * (box.high - box.low));
+  return {middle - reach, middle + reach};
+}
+
+bool may_cross(const Block& block, const Target& target, double min_depth_m) {
+  const Vector3d low = block.centres.low.cwiseMin(block.points.low);
+  const Vector3d high = block.centres.high.cwiseMax(block.points.high);
+  if ((low.array() > target.box.high.array()).any() || (high.array() < target.box.low.array()).any())
+    return false;
+  const auto [centre_low, centre_high] = distances(target.plane, block.centres);
+  const auto [point_low, point_high] = distances(target.plane, block.points);
+  if (centre_high > 0.0 && point_low <= -min_depth_m) return true;
+  return !target.one_sided && centre_low < 0.0 && point_high >= min_depth_m;
+}
+
+/// The crossing of one ray with one wall; `wall` stays -1 where there is none. `share` of the ray comes
+/// before.
+struct Hit {
+  Crossing crossing;
+  double share = 2.0;
+};
+
+Hit cross(const Scan& scan, std::size_t point, const Target& target, const InteriorPointOptions& options) {
+  const Vector3d& centre = scan.centre(point);
+  const Vector3d& x = scan.points[point];
+  double before = target.plane.signed_distance(centre);
+  double behind = -target.plane.signed_distance(x);
+  if (!target.one_sided && before < 0.0) {
+    before = -before;
+    behind = -behind;
+  }
+  Hit hit;
+  if (!(before > 0.0) || !(behind >= options.min_depth_m)) return hit;
+  const double share = before / (before + behind);
+  const double beyond_m = (1.0 - share) * (x - centre).norm();
+  if (!(beyond_m >= options.min_beyond_m)) return hit;
+  const Vector2d at = target.frame.to_plane(centre + share * (x - centre));
+  if (!target.outline.contains(at)) return hit;
+  hit.crossing = {static_cast<std::uint32_t>(point), target.index, at, beyond_m, behind};
+  hit.share = share;
+  return hit;
+}
+
+std::vector<Crossing> trace_block(const Scan& scan, std::size_t begin, std::size_t end,
+                                  const std::vector<Target>& targets, const InteriorPointOptions& options) {
+  std::vector<const Target*> near;
+  const Block block = bounds_of(scan, begin, end);
+  for (const Target& target : targets) {
+    if (may_cross(block, target, options.min_depth_m)) near.push_back(&target);
+  }
+  std::vector<Crossing> found;
+  for (std::size_t i = begin; i < end && !near.empty(); ++i) {
+    Hit first;
+    for (const Target* target : near) {
+      const Hit hit = cross(scan, i, *target, options);
+      if (hit.share < first.share) first = hit;
+    }
+    if (first.crossing.wall >= 0) found.push_back(first.crossing);
+  }
+  return found;
+}
+
+}  // namespace
+
+void InteriorPointOptions::check() const {
+  if (!(min_beyond_m >= 0.0)) throw_bad_option("min_beyond_m", min_beyond_m, "at least 0");
+  if (!(min_depth_m > 0.0)) throw_bad_option("min_depth_m", min_depth_m, "greater than 0");
+  outline.check();
+}
+
+std::vector<Crossing> find_interior_points(const Scan& scan, const std::vector<PlanarPolygon>& polygons,
+                                           const std::vector<int>& walls, const InteriorPointOptions& options,
+                                           Monitor& monitor) {
+  options.check();
+  if (scan.size() == 0) return {};
+  if (!scan.centre_known()) {
+    throw Error("the optical centre is not known", scan.name, "give it with --origin, or a file that has it");
+  }
+  const std::vector<Target> targets = make_targets(polygons, walls, options);
+  using Crossings = std::vector<Crossing>;
+  return parallel_reduce(
+      scan.size(), kBlock * kBlocksPerPiece, Crossings{},
+      [&](std::size_t begin, std::size_t end) {
+        monitor.throw_if_cancelled();
+        Crossings found;
+        for (std::size_t at = begin; at < end; at += kBlock) {
+          const Crossings part = trace_block(scan, at, std::min(at + kBlock, end), targets, options);
+          found.insert(found.end(), part.begin(), part.end());
+        }
+        return found;
+      },
+      [](Crossings a, const Crossings& b) {
+        a.insert(a.end(), b.begin(), b.end());
+        return a;
+      });
+}
+
+std::vector<std::uint32_t> point_indices(const std::vector<Crossing>& crossings) {
+  std::vector<std::uint32_t> indices;
+  indices.reserve(crossings.size());
+  std::transform(crossings.begin(), crossings.end(), std::back_inserter(indices),
+                 [](const Crossing& crossing) { return crossing.point; });
+  return indices;
+}
+
+}  // namespace limen

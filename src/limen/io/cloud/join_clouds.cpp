@@ -1,0 +1,222 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/io/cloud/join_clouds.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "limen/base/error.h"
+#include "limen/io/table/moved_columns.h"
+
+namespace limen {
+namespace {
+
+const std::array<std::string, 3> kPoint{"x", "y", "z"};
+const std::array<std::string, 3> kOrigin{"x_origin", "y_origin", "z_origin"};
+const std::string kSource = "source_cloud";
+
+/// The motion from the numbers of a cloud to the frame of the output.
+Rigid3 motion_of(const PlacedCloud& placed) {
+  const TableFacts& facts = placed.input->file().clouds()[placed.cloud].table;
+  Rigid3 world_from_numbers = facts.pose.value_or(Rigid3{});
+  world_from_numbers.translation += facts.offset;
+  const bool still = to_matrix(placed.target_from_world).isIdentity(0.0);
+  return still ? world_from_numbers : placed.target_from_world * world_from_numbers;
+}
+
+/// The first rows of a cloud, which tell its columns; none where it is empty.
+std::optional<RecordTable> first_rows(const PlacedCloud& placed, std::unique_ptr<PointStream>& stream) {
+  constexpr std::size_t kFew = 1000;
+  stream = placed.input->file().read(placed.cloud);
+  return stream->next(kFew);
+}
+
+/// The type a column has in a file that keeps its values.
+Scalar kept_type(const Field& field) {
+  if (field.scale != 1.0 || field.offset != 0.0) return Scalar::float64;
+  if (field.bits.count == 0) return field.type;
+  if (field.bits.count <= 8) return Scalar::uint8;
+  if (field.bits.count <= 16) return Scalar::uint16;
+  return field.bits.count <= 32 ? Scalar::uint32 : Scalar::uint64;
+}
+
+/// Bits of whole numbers that a type holds; the sign counts as one.
+int digits_of(Scalar type) {
+  if (type == Scalar::float32) return 24;
+  if (type == Scalar::float64) return 53;
+  return 8 * static_cast<int>(size_of(type));
+}
+
+bool is_signed(Scalar type) {
+  return type == Scalar::int8 || type == Scalar::int16 || type == Scalar::int32 || type == Scalar::int64;
+}
+
+/// A type for the values of two columns of one name.
+Scalar common_type(Scalar a, Scalar b) {
+  if (a == b) return a;
+  if (!is_integer(a) || !is_integer(b)) {
+    const bool fits = digits_of(a) <= 24 && digits_of(b) <= 24;
+    return fits ? Scalar::float32 : Scalar::float64;
+  }
+  if (is_signed(a) == is_signed(b)) return digits_of(a) > digits_of(b) ? a : b;
+  const Scalar without = is_signed(a) ? b : a;
+  const int digits = std::max(digits_of(is_signed(a) ? a : b), 2 * digits_of(without));
+  if (digits <= 16) return Scalar::int16;
+  if (digits <= 32) return Scalar::int32;
+  return digits <= 64 ? Scalar::int64 : Scalar::float64;
+}
+
+/// The name as the file has it, where it differs from the column's in case only.
+std::string written_name(const std::string& column, const CloudFacts& facts) {
+  for (const std::string& field : facts.fields) {
+    if (lower_case(field) == column) return field;
+  }
+  return column;
+}
+
+double resolution_of(const RecordTable& table) {
+  double finest = 0.0;
+  for (const std::string& name : kPoint) {
+    const Field* field = table.find({name});
+    if (field == nullptr || !is_integer(field->type)) return 0.0;
+    finest = finest == 0.0 ? std::abs(field->scale) : std::min(finest, std::abs(field->scale));
+  }
+  return finest;
+}
+
+/// The first point with finite coordinates, moved.
+std::optional<Vector3d> first_point(const RecordTable& table, const Rigid3& motion) {
+  for (std::size_t i = 0; i < table.rows; ++i) {
+    Vector3d x;
+    for (int k = 0; k < 3; ++k)
+      load_numbers(table, *table.find({kPoint[static_cast<std::size_t>(k)]}), {i, i + 1}, &x[k]);
+    if (x.allFinite()) return motion * x;
+  }
+  return {};
+}
+
+}  // namespace
+
+JoinedClouds::JoinedClouds(std::vector<PlacedCloud> clouds, bool tell_source)
+    : clouds_(std::move(clouds)), tell_source_(tell_source) {
+  for (const std::string& name : kPoint) plan_.columns.push_back({name, Scalar::float64});
+  std::vector<PlacedCloud> full;
+  bool near_known = false;
+  for (const PlacedCloud& placed : clouds_) {
+    const CloudFacts& facts = placed.input->file().clouds()[placed.cloud];
+    std::unique_ptr<PointStream> stream;
+    const std::optional<RecordTable> table = first_rows(placed, stream);
+    if (!table) continue;
+    add_columns(*table, facts);
+    const double resolution = resolution_of(*table);
+    const bool finer = full.empty() || resolution < plan_.resolution_m;
+    if (finer) plan_.resolution_m = resolution;
+    const auto near = near_known ? std::nullopt : first_point(*table, motion_of(placed));
+    if (near) plan_.near = *near;
+    near_known = near_known || near;
+    plan_.most_points += facts.points;
+    full.push_back(placed);
+  }
+  if (full.empty()) throw Error("there are no points", clouds_.front().input->name(), "check the input");
+  clouds_ = std::move(full);
+  plan_.name = clouds_.front().input->path().stem().string();
+  plan_.georeference = clouds_.front().input->georeference();
+  settle_centres();
+  if (tell_source_) add_column(kSource, Scalar::uint8);
+}
+
+void JoinedClouds::add_column(const std::string& name, Scalar type) {
+  const std::string lower = lower_case(name);
+  for (ColumnPlan& column : plan_.columns) {
+    if (lower_case(column.name) != lower) continue;
+    column.type = common_type(column.type, type);
+    return;
+  }
+  plan_.columns.push_back({name, type});
+}
+
+void JoinedClouds::add_columns(const RecordTable& table, const CloudFacts& facts) {
+  for (const std::string& name : kPoint) {
+    if (table.find({name}) == nullptr)
+      throw Error("the points have no " + name, facts.table.name, "export the points with x, y and z");
+  }
+  const bool split_colour = table.find({"red"}) != nullptr;
+  for (const Field& field : table.fields) {
+    if (field.name == "_" || field.name == kSource) continue;
+    // Colours packed into one number come as three columns too.
+    if (split_colour && (field.name == "rgb" || field.name == "rgba")) continue;
+    const bool moves = std::find(kPoint.begin(), kPoint.end(), field.name) != kPoint.end() ||
+                       std::find(kOrigin.begin(), kOrigin.end(), field.name) != kOrigin.end();
+    add_column(written_name(field.name, facts), moves ? Scalar::float64 : kept_type(field));
+  }
+}
+
+/// One centre is told by the plan, several by columns.
+void JoinedClouds::settle_centres() {
+  const auto has_column = [&] {
+    return std::any_of(plan_.columns.begin(), plan_.columns.end(),
+                       [](const ColumnPlan& column) { return lower_case(column.name) == kOrigin[0]; });
+  };
+  const bool known = std::any_of(clouds_.begin(), clouds_.end(),
+                                 [](const PlacedCloud& placed) { return placed.centre.has_value(); });
+  if (has_column() || (known && clouds_.size() > 1)) {
+    for (const std::string& name : kOrigin) add_column(name, Scalar::float64);
+  } else if (known) {
+    plan_.centre = clouds_[0].target_from_world * *clouds_[0].centre;
+  }
+}
+
+/// Reads one cloud after the other.
+class JoinedStream : public PointStream {
+ public:
+  JoinedStream(const std::vector<PlacedCloud>& clouds, const CloudPlan& plan, bool tell_source)
+      : clouds_(clouds), plan_(plan), tell_source_(tell_source) {}
+
+  std::optional<RecordTable> next(std::size_t most_rows) override {
+    for (; at_ < clouds_.size(); ++at_, stream_.reset()) {
+      const PlacedCloud& placed = clouds_[at_];
+      if (!stream_) stream_ = placed.input->file().read(placed.cloud);
+      placed.input->forget();
+      const std::optional<RecordTable> piece = stream_->next(most_rows);
+      if (piece) return moved(*piece, placed);
+    }
+    return {};
+  }
+
+ private:
+  [[nodiscard]] RecordTable moved(const RecordTable& piece, const PlacedCloud& placed) const {
+    ColumnMover mover(piece, motion_of(placed));
+    std::optional<Vector3d> centre;
+    if (placed.centre) centre = placed.target_from_world * *placed.centre;
+    for (const ColumnPlan& column : plan_.columns) {
+      const std::string name = lower_case(column.name);
+      const auto origin = std::find(kOrigin.begin(), kOrigin.end(), name);
+      if (tell_source_ && name == kSource) {
+        mover.add_constant(name, placed.source);
+      } else if (piece.find({name}) != nullptr) {
+        mover.add(name);
+      } else if (origin != kOrigin.end() && centre) {
+        mover.add_constant(name, (*centre)[origin - kOrigin.begin()]);
+      } else {
+        mover.add_constant(name, is_integer(column.type) ? 0.0 : std::nan(""));
+      }
+    }
+    return mover.table();
+  }
+
+  const std::vector<PlacedCloud>& clouds_;
+  const CloudPlan& plan_;
+  bool tell_source_;
+  std::size_t at_ = 0;
+  std::unique_ptr<PointStream> stream_;
+};
+
+std::unique_ptr<PointStream> JoinedClouds::read() const {
+  return std::make_unique<JoinedStream>(clouds_, plan_, tell_source_);
+}
+
+}  // namespace limen

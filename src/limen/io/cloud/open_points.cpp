@@ -1,0 +1,118 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/io/cloud/open_points.h"
+
+#include <algorithm>
+#include <array>
+
+#include <fmt/format.h>
+
+#include "limen/base/error.h"
+#include "limen/io/e57/read_e57.h"
+#include "limen/io/las/las_header.h"
+#include "limen/io/las/read_las.h"
+#include "limen/io/pcd/read_pcd.h"
+#include "limen/io/ply/read_ply.h"
+#include "limen/io/ptx/read_ptx.h"
+#include "limen/io/text/read_xyz.h"
+
+namespace limen {
+namespace {
+
+/// How a format is told by its bytes, and the endings that are asked where bytes do not tell.
+struct Known {
+  PointFormat format;
+  bool (*matches)(std::string_view bytes);
+  std::string_view endings;
+};
+
+/// Plain text comes last: a damaged PTX looks like it.
+constexpr std::array<Known, 6> kKnown{{
+    {PointFormat::e57, looks_like_e57, ".e57 "},
+    {PointFormat::las, looks_like_las, ".las .laz "},
+    {PointFormat::ply, looks_like_ply, ".ply "},
+    {PointFormat::pcd, looks_like_pcd, ".pcd "},
+    {PointFormat::ptx, looks_like_ptx, ".ptx "},
+    {PointFormat::text, looks_like_xyz, ".pts .xyz .txt .csv .asc "},
+}};
+
+/// Formats that are known but not read: the user is told the way round.
+struct Stranger {
+  std::string_view begins;
+  const char* name;
+};
+constexpr std::array<Stranger, 4> kStrangers{{
+    {"ISO-10303-21", "IFC or STEP"},
+    {"PK\x03\x04", "a ZIP archive"},
+    {"\x1f\x8b", "a gzip archive"},
+    {"{", "JSON"},
+}};
+
+[[noreturn]] void unknown_format(std::string_view bytes, const std::string& name) {
+  std::string what = "unknown format";
+  for (const Stranger& stranger : kStrangers) {
+    if (bytes.substr(0, stranger.begins.size()) == stranger.begins) {
+      what = fmt::format("this is {}, which is not read as a scan", stranger.name);
+    }
+  }
+  throw Error(what, name, "export the scan as E57, LAS, LAZ, PLY, PCD, PTX, PTS or XYZ text");
+}
+
+bool is_stranger(std::string_view bytes) {
+  return std::any_of(kStrangers.begin(), kStrangers.end(), [&](const Stranger& stranger) {
+    return bytes.substr(0, stranger.begins.size()) == stranger.begins;
+  });
+}
+
+std::unique_ptr<PointFile> open_as(PointFormat format, std::string_view bytes, const std::string& name) {
+  switch (format) {
+    case PointFormat::ply:
+      return open_ply(bytes, name);
+    case PointFormat::pcd:
+      return open_pcd(bytes, name);
+    case PointFormat::ptx:
+      return open_ptx(bytes, name);
+    case PointFormat::e57:
+      return open_e57(bytes, name);
+    case PointFormat::las:
+      return open_las(bytes, name);
+    case PointFormat::text:
+      break;
+  }
+  return open_xyz(bytes, name);
+}
+
+}  // namespace
+
+PointFormat point_format_of(std::string_view bytes, const std::filesystem::path& path) {
+  const std::string ending = lower_case(path.extension().string()) + " ";
+  const Known& text = kKnown.back();
+  for (const Known& known : kKnown) {
+    if (&known != &text && known.matches(bytes)) return known.format;
+  }
+  if (!is_stranger(bytes)) {
+    for (const Known& known : kKnown) {
+      if (ending != " " && known.endings.find(ending) != std::string_view::npos) return known.format;
+    }
+    if (text.matches(bytes)) return text.format;
+  }
+  unknown_format(bytes, path.string());
+}
+
+OpenPoints::OpenPoints(const std::filesystem::path& path)
+    : path_(path),
+      bytes_(std::make_unique<MappedFile>(path)),
+      format_(point_format_of(bytes_->bytes(), path)),
+      file_(open_as(format_, bytes_->bytes(), path.string())) {
+  if (format_ == PointFormat::las)
+    georeference_ = las_coordinate_systems(parse_las_header(bytes_->bytes(), path.string()));
+  if (format_ == PointFormat::e57) georeference_ = e57_coordinate_systems(bytes_->bytes(), path.string());
+}
+
+std::uint64_t OpenPoints::points() const {
+  std::uint64_t points = 0;
+  for (const CloudFacts& cloud : file_->clouds()) points += cloud.points;
+  return points;
+}
+
+}  // namespace limen

@@ -1,0 +1,209 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/io/cloud/read_cloud.h"
+
+#include <algorithm>
+#include <set>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "limen/base/error.h"
+#include "limen/io/cloud/thin_cloud.h"
+#include "limen/io/table/packed_rows.h"
+#include "limen/io/table/scan_builder.h"
+
+namespace limen {
+namespace {
+
+/// Counts what was read of a file, over all its clouds.
+class Reading {
+ public:
+  Reading(const OpenPoints& input, Monitor& monitor)
+      : input_(input), monitor_(monitor), total_(static_cast<double>(input.points())) {
+    monitor_.set_unit(WorkUnit::points);
+  }
+  void passed(std::size_t rows) {
+    monitor_.throw_if_cancelled();
+    done_ += static_cast<double>(rows);
+    monitor_.advance(done_, std::max(done_, total_));
+  }
+  void forget() const { input_.forget(); }
+
+ private:
+  const OpenPoints& input_;
+  Monitor& monitor_;
+  double total_;
+  double done_ = 0.0;
+};
+
+/// Whether all columns lie in the file itself, so that any number of rows costs nothing.
+bool lies_in_file(const RecordTable& table, std::string_view bytes) {
+  return std::all_of(table.fields.begin(), table.fields.end(), [&](const Field& field) {
+    return field.data >= bytes.data() && field.data < bytes.data() + bytes.size();
+  });
+}
+
+/// All rows of a cloud as one table; none where the cloud is empty.
+std::optional<RecordTable> whole_table(const OpenPoints& input, std::size_t cloud, Reading& reading) {
+  const std::uint64_t points = input.file().clouds()[cloud].points;
+  std::unique_ptr<PointStream> stream = input.file().read(cloud);
+  std::optional<RecordTable> first = stream->next(kStreamRows);
+  if (!first) return {};
+  if (first->rows < points && lies_in_file(*first, input.bytes())) {
+    stream = input.file().read(cloud);
+    first = stream->next(points);
+  }
+  if (first->rows >= points) {
+    reading.passed(first->rows);
+    // A stream may point into itself: it stays as long as the table.
+    first->keeper = std::make_shared<std::pair<std::shared_ptr<const void>, std::unique_ptr<PointStream>>>(
+        first->keeper, std::move(stream));
+    return first;
+  }
+  auto rows = std::make_shared<PackedRows>();
+  rows->require_columns(*first);
+  rows->reserve(points);
+  for (std::optional<RecordTable> piece = std::move(first); piece; piece = stream->next(kStreamRows)) {
+    rows->require_columns(*piece);
+    rows->append_all(*piece);
+    reading.passed(piece->rows);
+  }
+  RecordTable table = rows->view();
+  table.keeper = std::move(rows);
+  return table;
+}
+
+bool has(const std::set<std::string>& fields, std::initializer_list<const char*> names) {
+  return std::any_of(names.begin(), names.end(), [&](const char* name) { return fields.count(name) > 0; });
+}
+
+/// Bytes of one point of a scan with these values.
+std::size_t bytes_per_point(const CloudFacts& facts) {
+  std::set<std::string> fields;
+  for (const std::string& field : facts.fields) fields.insert(lower_case(field));
+  std::size_t bytes = sizeof(Vector3d);
+  if (has(fields, {"x_origin"})) bytes += sizeof(Vector3d);
+  if (has(fields, {"gps_time", "gpstime", "time", "timestamp", "t", "scalar_gps_time"}))
+    bytes += sizeof(double);
+  if (has(fields, {"intensity", "reflectance", "amplitude", "scalar_intensity"})) bytes += sizeof(float);
+  if (has(fields, {"red", "r", "rgb", "rgba", "diffuse_red", "colorred"})) bytes += 3;
+  const bool lines = has(fields, {"scan_line", "scanline", "column_index", "columnindex", "theta"});
+  if (lines || facts.table.columns > 1 || facts.table.column_length > 1) bytes += 2 * sizeof(std::int32_t);
+  return bytes;
+}
+
+/// A part of `memory` for one of the clouds of a file.
+ThinOptions share_of(const OpenPoints& input, std::size_t cloud, std::uint64_t memory) {
+  const CloudFacts& facts = input.file().clouds()[cloud];
+  const double share =
+      static_cast<double>(facts.points) / static_cast<double>(std::max<std::uint64_t>(1, input.points()));
+  const double bytes = share * static_cast<double>(memory);
+  ThinOptions thinning;
+  thinning.most_points = std::max<std::uint64_t>(
+      1, static_cast<std::uint64_t>(bytes / static_cast<double>(bytes_per_point(facts)) / 2));
+  thinning.memory_bytes = std::max<std::uint64_t>(1, memory / 2);
+  return thinning;
+}
+
+ThinnedCloud thinned_cloud(const OpenPoints& input, std::size_t cloud, const ThinOptions& thinning,
+                           Reading& reading) {
+  CloudThinner thinner(thinning, input.file().clouds()[cloud].points);
+  const std::unique_ptr<PointStream> stream = input.file().read(cloud);
+  while (const std::optional<RecordTable> piece = stream->next(kStreamRows)) {
+    thinner.add(*piece);
+    reading.passed(piece->rows);
+    reading.forget();
+  }
+  return thinner.finish();
+}
+
+/// What a file says of a cloud still holds for some of its points, but not their order.
+TableFacts without_order(TableFacts facts) {
+  facts.columns = 0;
+  facts.column_length = 0;
+  return facts;
+}
+
+/// Scan lines cannot be told from the angles of some of the points.
+RecordTable without_angles(RecordTable table) {
+  for (Field& field : table.fields) {
+    if (field.name == "theta" || field.name == "scalar_theta") field.name = std::string(1, '_');
+  }
+  return table;
+}
+
+ScanFile begun(const OpenPoints& input) {
+  ScanFile file;
+  file.format = input.file().format();
+  for (const CloudFacts& facts : input.file().clouds()) {
+    if (file.fields.size() < facts.fields.size()) file.fields = facts.fields;
+    file.notes.insert(file.notes.end(), facts.notes.begin(), facts.notes.end());
+  }
+  return file;
+}
+
+void require_scans(const ScanFile& file, const OpenPoints& input) {
+  if (!file.scans.empty()) return;
+  throw Error("there are no points", input.name(), "check how the file was exported");
+}
+
+}  // namespace
+
+ScanFile read_clouds(const OpenPoints& input, const ReadOptions& options, Monitor& monitor) {
+  ScanFile file = begun(input);
+  Reading reading(input, monitor);
+  for (std::size_t k = 0; k < input.file().clouds().size(); ++k) {
+    const TableFacts& facts = input.file().clouds()[k].table;
+    const std::optional<RecordTable> table = whole_table(input, k, reading);
+    if (table) {
+      file = with_scan(std::move(file), *table, facts, options);
+    } else if (input.file().clouds().size() > 1) {
+      file.notes.push_back(fmt::format("{} holds no points", facts.name));
+    }
+  }
+  require_scans(file, input);
+  return file;
+}
+
+std::uint64_t scan_bytes(const OpenPoints& input) {
+  std::uint64_t bytes = 0;
+  for (const CloudFacts& facts : input.file().clouds()) bytes += facts.points * bytes_per_point(facts);
+  return bytes;
+}
+
+ScanFile read_thinned(const OpenPoints& input, const ReadOptions& options, Monitor& monitor) {
+  ScanFile file = begun(input);
+  Reading reading(input, monitor);
+  for (std::size_t k = 0; k < input.file().clouds().size(); ++k) {
+    const CloudFacts& facts = input.file().clouds()[k];
+    if (facts.points == 0) continue;
+    const ThinnedCloud thinned = thinned_cloud(input, k, share_of(input, k, options.memory_bytes), reading);
+    file.notes.push_back(
+        fmt::format("{}: to stay within the memory, thinned from {} points to {}, about {:.3f} m apart",
+                    facts.table.name, thinned.read, thinned.table.rows, thinned.spacing_m));
+    file.dropped += thinned.unusable;
+    file = with_scan(std::move(file), without_angles(thinned.table), without_order(facts.table), options);
+    file.scans.back().topology = {};
+  }
+  require_scans(file, input);
+  return file;
+}
+
+std::optional<Vector3d> settled_centre(const OpenPoints& input, std::size_t cloud, Monitor& monitor) {
+  const CloudFacts& facts = input.file().clouds()[cloud];
+  if (facts.table.centre_unknown) return {};
+  if (facts.table.centre) return facts.table.offset + *facts.table.centre;
+  constexpr std::uint64_t kEnough = 100000;
+  ThinOptions thinning;
+  thinning.most_points = kEnough;
+  Reading reading(input, monitor);
+  const ThinnedCloud some = thinned_cloud(input, cloud, thinning, reading);
+  if (some.table.rows == 0) return {};
+  const ScanFile file = with_scan({}, without_angles(some.table), without_order(facts.table), {});
+  const Scan& scan = file.scans.front();
+  if (!scan.centre_known() || scan.mobile()) return {};
+  return scan.local_origin + scan.centres[0];
+}
+
+}  // namespace limen

@@ -1,0 +1,89 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/io/cloud/read_scan.h"
+
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "limen/base/error.h"
+#include "limen/io/cloud/join_scans.h"
+#include "limen/io/cloud/open_points.h"
+#include "limen/io/cloud/read_cloud.h"
+#include "limen/io/pcd/read_pcd.h"
+#include "limen/io/ply/read_ply.h"
+#include "limen/io/ptx/read_ptx.h"
+#include "limen/io/text/read_xyz.h"
+#include "limen/io/trajectory/trajectory.h"
+
+namespace limen {
+namespace {
+
+/// Formats that are small enough to be read from memory at once, by their own readers.
+ScanFile read_at_once(const OpenPoints& input, const ReadOptions& options, Monitor& monitor) {
+  switch (input.format()) {
+    case PointFormat::ply:
+      return read_ply(input.bytes(), input.name(), options);
+    case PointFormat::pcd:
+      return read_pcd(input.bytes(), input.name(), options);
+    case PointFormat::ptx:
+      return read_ptx(input.bytes(), input.name(), options);
+    case PointFormat::text:
+      return read_xyz(input.bytes(), input.name(), options);
+    case PointFormat::e57:
+    case PointFormat::las:
+      break;
+  }
+  return read_clouds(input, options, monitor);
+}
+
+/// The scans with the optical centres that the trajectory gives.
+ScanFile followed(ScanFile file, const Trajectory& trajectory) {
+  for (Scan& scan : file.scans) {
+    FollowedScan with = with_trajectory(scan, trajectory);
+    if (with.left_out > 0) {
+      file.notes.push_back(
+          fmt::format("{} points at times that the trajectory does not cover are left out", with.left_out));
+    }
+    file.dropped += with.left_out;
+    scan = std::move(with.scan);
+  }
+  return file;
+}
+
+}  // namespace
+
+void ReadOptions::check() const {
+  if (!origin) return;
+  for (int k = 0; k < 3; ++k) {
+    const double value = (*origin)[k];
+    if (!(value > -1e8 && value < 1e8)) throw_bad_option("origin", value, "a finite coordinate in metres");
+  }
+}
+
+ScanFile read_scan_file(const std::filesystem::path& path, const ReadOptions& options, Monitor& monitor) {
+  options.check();
+  monitor.throw_if_cancelled();
+  const CancelScope scope(monitor);
+  const OpenPoints input(path);
+  const bool large = options.memory_bytes > 0 && scan_bytes(input) > options.memory_bytes;
+  ScanFile read = large ? read_thinned(input, options, monitor) : read_at_once(input, options, monitor);
+  monitor.throw_if_cancelled();
+  if (options.trajectory && !options.origin) return followed(std::move(read), *options.trajectory);
+  return read;
+}
+
+std::vector<Scan> read_scans(const std::filesystem::path& path, const ReadOptions& options,
+                             Monitor& monitor) {
+  return read_scan_file(path, options, monitor).scans;
+}
+
+Scan read_scan(const std::filesystem::path& path, const ReadOptions& options, Monitor& monitor) {
+  std::vector<Scan> scans = read_scans(path, options, monitor);
+  if (scans.size() == 1) return std::move(scans.front());
+  Scan joined = join_scans(scans);
+  joined.name = path.string();
+  return joined;
+}
+
+}  // namespace limen

@@ -1,0 +1,27 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "limen/base/progress.h"
+#include "limen/io/table/scan_file.h"
+#include "limen/model/scan.h"
+
+namespace limen {
+/// Reads a file with all that is known about it; the format is recognised by content, then by extension.
+/// Throws Error that names file, place and remedy for anything that cannot be read.
+ScanFile read_scan_file(const std::filesystem::path& path, const ReadOptions& options = {},
+                        Monitor& monitor = silent_monitor());
+
+/// Reads every scan of a file. Most formats hold one, PTX holds several.
+std::vector<Scan> read_scans(const std::filesystem::path& path, const ReadOptions& options = {},
+                             Monitor& monitor = silent_monitor());
+
+/// Reads a file of one scan; several static stations of a PTX are joined into one scan with per-point
+/// centres.
+Scan read_scan(const std::filesystem::path& path, const ReadOptions& options = {},
+               Monitor& monitor = silent_monitor());
+
+}  // namespace limen

@@ -1,0 +1,129 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/io/cloud/transform_cloud.h"
+
+#include <deque>
+#include <iterator>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "limen/base/error.h"
+#include "limen/io/cloud/cloud_writers.h"
+#include "limen/io/cloud/open_points.h"
+#include "limen/io/cloud/write_clouds.h"
+#include "limen/io/e57/e57_poses.h"
+#include "limen/io/las/las_transform.h"
+#include "limen/io/pcd/transform_pcd.h"
+#include "limen/io/ply/transform_ply.h"
+#include "limen/io/ptx/transform_ptx.h"
+#include "limen/io/table/record_table.h"
+#include "limen/io/table/scan_builder.h"
+#include "limen/io/text/transform_text.h"
+
+namespace limen {
+namespace {
+
+/// Whether a file of this name is of the format: its own endings, and for PLY also none.
+bool has_ending_of(PointFormat format, const std::filesystem::path& path) {
+  const std::string ending = lower_case(path.extension().string());
+  switch (format) {
+    case PointFormat::ply:
+      return ending == ".ply" || ending.empty();
+    case PointFormat::pcd:
+      return ending == ".pcd";
+    case PointFormat::ptx:
+      return ending == ".ptx";
+    case PointFormat::e57:
+      return ending == ".e57";
+    case PointFormat::las:
+      return ending == ".las";
+    case PointFormat::text:
+      return ending == ".pts" || ending == ".xyz" || ending == ".txt" || ending == ".csv" || ending == ".asc";
+  }
+  return false;
+}
+
+/// Moves the file as it is.
+TransformedCloud move_in_format(const OpenPoints& input, const Rigid3& pose,
+                                const std::filesystem::path& output, const ReadOptions& options,
+                                Monitor& monitor) {
+  const NamedBytes bytes{input.bytes(), input.name()};
+  switch (input.format()) {
+    case PointFormat::ply:
+      return transform_ply(bytes, pose, output, options);
+    case PointFormat::pcd:
+      return transform_pcd(bytes, pose, output);
+    case PointFormat::ptx:
+      return transform_ptx(bytes, pose, output);
+    case PointFormat::text:
+      return transform_text(bytes, pose, output);
+    case PointFormat::las:
+      return transform_las(input.bytes(), input.name(), pose, output, monitor);
+    case PointFormat::e57:
+      break;
+  }
+  const MovedE57 moved = replace_e57_poses(input.bytes(), input.name(), pose, output, monitor);
+  return {moved.points, input.file().format(), moved.notes};
+}
+
+TransformedCloud write_joined(std::vector<PlacedCloud> clouds, bool several_files,
+                              const std::filesystem::path& output, Monitor& monitor) {
+  const OpenPoints& first = *clouds.front().input;
+  const JoinedClouds joined(std::move(clouds), several_files);
+  const WrittenClouds written = write_clouds(joined, output, monitor);
+  return {written.written, first.file().format(), written.notes};
+}
+
+void require_known_ending(const std::filesystem::path& output, const OpenPoints& input) {
+  if (is_cloud_ending(output)) return;
+  const std::string ending = lower_case(output.extension().string());
+  throw Error(fmt::format("{} is not written as \"{}\"", input.file().format(), ending), output.string(),
+              ending == ".laz" ? "name the output .las"
+                               : "name the output .ply, .las or .e57, or give it the ending of the input");
+}
+
+}  // namespace
+
+Scan transformed(const Scan& scan, const Rigid3& target_from_source) {
+  Scan moved = scan;
+  if (scan.points.empty()) return moved;
+  moved.local_origin = round_origin_near(target_from_source * (scan.local_origin + scan.points.front()));
+  const Rigid3 local = to_local(target_from_source, scan.local_origin, moved.local_origin);
+  for (Vector3d& point : moved.points) point = local * point;
+  for (Vector3d& centre : moved.centres) centre = local * centre;
+  return moved;
+}
+
+TransformedCloud transform_cloud(const std::filesystem::path& input, const Rigid3& target_from_source,
+                                 const std::filesystem::path& output, const ReadOptions& options,
+                                 Monitor& monitor) {
+  monitor.begin_stage("transform");
+  const OpenPoints open(input);
+  if (has_ending_of(open.format(), output))
+    return move_in_format(open, target_from_source, output, options, monitor);
+  require_known_ending(output, open);
+  return write_joined(placed_clouds(open, target_from_source, options.origin, monitor), false, output,
+                      monitor);
+}
+
+TransformedCloud merge_clouds(const CloudToMove& moved, const std::vector<std::string>& others,
+                              const std::filesystem::path& output, Monitor& monitor) {
+  if (others.empty()) return transform_cloud(moved.path, moved.target_from_source, output, {}, monitor);
+  if (others.size() > 255) throw Error("more than 256 clouds cannot be told apart", "--merge", "merge fewer");
+  monitor.begin_stage("merging");
+  std::deque<OpenPoints> files;
+  std::vector<PlacedCloud> clouds;
+  for (std::size_t k = 0; k <= others.size(); ++k) {
+    const OpenPoints& file = k == 0 ? files.emplace_back(moved.path) : files.emplace_back(others[k - 1]);
+    for (PlacedCloud placed :
+         placed_clouds(file, k == 0 ? moved.target_from_source : Rigid3{}, {}, monitor)) {
+      placed.source = static_cast<std::uint8_t>(k);
+      clouds.push_back(placed);
+    }
+  }
+  require_known_ending(output, files.front());
+  return write_joined(std::move(clouds), true, output, monitor);
+}
+
+}  // namespace limen

@@ -1,0 +1,46 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "limen/base/progress.h"
+#include "limen/io/table/transformed_cloud.h"
+
+namespace limen {
+
+/// Moves a point file by `target_from_source`; the ending of `output` tells its format.
+///
+/// Where that is the format of the input, all of the file is kept but what has to move:
+///  - PLY: encoding, comments, other elements, every value; moved coordinates become double, a comment with
+///  an
+///    offset is taken out, since it is added;
+///  - LAS, LAZ: written as LAS of the same version and point format with all its records;
+///  - E57: only the poses of the scans differ;
+///  - PTX: matrix and scanner lines are replaced, the points stay in the scanner's frame;
+///  - PCD: x y z become double, the view point moves, all fields are kept; compressed points become plain
+///  ones;
+///  - PTS, XYZ and other text: the numbers of x y z (origins, normals) in each line are replaced.
+/// To .ply, .las and .e57 from any other format every column goes with its type; points stream.
+/// The file appears whole or not at all; throws Error for what cannot be read or written.
+TransformedCloud transform_cloud(const std::filesystem::path& input, const Rigid3& target_from_source,
+                                 const std::filesystem::path& output, const ReadOptions& options = {},
+                                 Monitor& monitor = silent_monitor());
+
+/// A file and how it comes into the frame of the output.
+struct CloudToMove {
+  std::filesystem::path path;
+  Rigid3 target_from_source;
+};
+/// Moves a cloud, and writes it and `others`, which lie in the target's frame already, to one .ply, .las or
+/// .e57 with the columns of all; `source_cloud` tells which file a point is from, 0 being the moved one.
+/// Without others it is transform_cloud.
+TransformedCloud merge_clouds(const CloudToMove& moved, const std::vector<std::string>& others,
+                              const std::filesystem::path& output, Monitor& monitor = silent_monitor());
+
+/// The scan in the target frame, about a local origin near its points there.
+Scan transformed(const Scan& scan, const Rigid3& target_from_source);
+
+}  // namespace limen

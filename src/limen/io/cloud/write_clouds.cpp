@@ -1,0 +1,120 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/io/cloud/write_clouds.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "limen/io/cloud/cloud_writers.h"
+#include "limen/io/cloud/read_cloud.h"
+#include "limen/io/table/packed_rows.h"
+
+namespace limen {
+namespace {
+
+/// Files up to this size are looked into for the place of the scanner.
+constexpr std::uint64_t kFewPoints = 20000000;
+
+bool has_origins(const CloudFacts& facts) {
+  return std::any_of(facts.fields.begin(), facts.fields.end(),
+                     [](const std::string& field) { return lower_case(field) == "x_origin"; });
+}
+
+/// The rows whose coordinates are finite, of tables whose first three columns are x, y and z.
+class FiniteRows {
+ public:
+  /// The table itself where all of it is finite.
+  RecordTable of(const RecordTable& table) {
+    std::vector<char> good(table.rows, 1);
+    std::vector<double> numbers(table.rows);
+    for (std::size_t k = 0; k < 3; ++k) {
+      load_numbers(table, table.fields[k], {0, table.rows}, numbers.data());
+      for (std::size_t i = 0; i < table.rows; ++i)
+        good[i] = good[i] != 0 && std::isfinite(numbers[i]) ? 1 : 0;
+    }
+    const auto bad = static_cast<std::uint64_t>(std::count(good.begin(), good.end(), 0));
+    if (bad == 0) return table;
+    left_out_ += bad;
+    PackedRows rows;
+    rows.require_columns(table);
+    for (std::size_t i = 0; i < table.rows; ++i) {
+      if (good[i] != 0) rows.append(table, i);
+    }
+    packed_ = std::move(rows);
+    return packed_.view();
+  }
+  [[nodiscard]] std::uint64_t left_out() const { return left_out_; }
+
+ private:
+  PackedRows packed_;
+  std::uint64_t left_out_ = 0;
+};
+
+}  // namespace
+
+std::vector<PlacedCloud> placed_clouds(const OpenPoints& input, const Rigid3& target_from_world,
+                                       const std::optional<Vector3d>& origin, Monitor& monitor) {
+  std::vector<PlacedCloud> placed;
+  for (std::size_t k = 0; k < input.file().clouds().size(); ++k) {
+    const CloudFacts& facts = input.file().clouds()[k];
+    PlacedCloud cloud{&input, k, target_from_world, origin,
+                      static_cast<std::uint8_t>(std::min<std::size_t>(k, 255))};
+    const bool told = facts.table.centre || facts.points <= kFewPoints;
+    if (!origin && told && facts.points > 0 && !has_origins(facts))
+      cloud.centre = settled_centre(input, k, monitor);
+    placed.push_back(cloud);
+  }
+  return placed;
+}
+
+WrittenClouds write_clouds(const JoinedClouds& clouds, const std::filesystem::path& output,
+                           Monitor& monitor) {
+  const auto total = static_cast<double>(clouds.plan().most_points);
+  const std::unique_ptr<CloudWriter> writer = make_cloud_writer(output, clouds.plan());
+  const std::unique_ptr<PointStream> stream = clouds.read();
+  monitor.set_unit(WorkUnit::points);
+  WrittenClouds result;
+  result.notes = clouds.notes();
+  FiniteRows finite;
+  while (const std::optional<RecordTable> piece = stream->next(kStreamRows / 4)) {
+    writer->write(finite.of(*piece));
+    result.read += piece->rows;
+    monitor.throw_if_cancelled();
+    monitor.advance(static_cast<double>(result.read), total);
+  }
+  writer->finish();
+  result.written = result.read - finite.left_out();
+  if (finite.left_out() > 0)
+    result.notes.push_back(
+        fmt::format("{} points without finite coordinates are left out", finite.left_out()));
+  return result;
+}
+
+WrittenClouds write_thinned(const JoinedClouds& clouds, const ThinOptions& thinning,
+                            const std::filesystem::path& output, Monitor& monitor) {
+  CloudThinner thinner(thinning, clouds.plan().most_points);
+  monitor.set_unit(WorkUnit::points);
+  const std::unique_ptr<PointStream> stream = clouds.read();
+  std::uint64_t read = 0;
+  while (const std::optional<RecordTable> piece = stream->next(kStreamRows)) {
+    thinner.add(*piece);
+    read += piece->rows;
+    monitor.throw_if_cancelled();
+    monitor.advance(static_cast<double>(read), static_cast<double>(clouds.plan().most_points));
+  }
+  const ThinnedCloud thinned = thinner.finish();
+  CloudPlan plan = clouds.plan();
+  plan.most_points = thinned.table.rows;
+  const std::unique_ptr<CloudWriter> writer = make_cloud_writer(output, plan);
+  writer->write(thinned.table);
+  writer->finish();
+  WrittenClouds result{thinned.read, thinned.table.rows, thinned.spacing_m, clouds.notes()};
+  if (thinned.unusable > 0)
+    result.notes.push_back(
+        fmt::format("{} points without finite coordinates are left out", thinned.unusable));
+  return result;
+}
+
+}  // namespace limen

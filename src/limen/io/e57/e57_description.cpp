@@ -1,0 +1,140 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/io/e57/e57_description.h"
+
+#include <algorithm>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include "limen/base/random.h"
+#include "limen/base/version.h"
+
+namespace limen {
+namespace {
+
+constexpr std::string_view kHead =
+    "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
+    "<e57Root type=\"Structure\" xmlns=\"http://www.astm.org/COMMIT/E57/2010-e57-v1.0\""
+    " xmlns:nor=\"http://www.libe57.org/E57_NOR_surface_normals.txt\"";
+
+/// Text as CDATA; what XML cannot hold becomes a blank.
+std::string text_element(std::string_view name, std::string text) {
+  for (char& c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte < 32 && c != '\n' && c != '\t') c = ' ';
+  }
+  constexpr std::string_view kSplit = "]]]]><![CDATA[>";
+  for (std::size_t at = 0; (at = text.find("]]>", at)) != std::string::npos; at += kSplit.size())
+    text.replace(at, 3, kSplit);
+  return fmt::format("<{} type=\"String\"><![CDATA[{}]]></{}>\n", name, text, name);
+}
+
+std::string float_element(std::string_view name, double value) {
+  return fmt::format("<{} type=\"Float\">{}</{}>\n", name, e57_number(value), name);
+}
+
+std::string guid_of(std::uint64_t digest) {
+  const std::uint64_t a = mix64(digest);
+  const std::uint64_t b = mix64(a);
+  return fmt::format("{{{:08X}-{:04X}-{:04X}-{:04X}-{:012X}}}", a >> 32U, (a >> 16U) & 0xFFFFU, a & 0xFFFFU,
+                     b >> 48U, b & 0xFFFFFFFFFFFFU);
+}
+
+std::string pose_xml(const Vector3d& shift) {
+  std::string xml = "<pose type=\"Structure\">\n<rotation type=\"Structure\">\n";
+  xml +=
+      float_element("w", 1.0) + float_element("x", 0.0) + float_element("y", 0.0) + float_element("z", 0.0);
+  xml += "</rotation>\n<translation type=\"Structure\">\n";
+  xml += float_element("x", shift.x()) + float_element("y", shift.y()) + float_element("z", shift.z());
+  return xml + "</translation>\n</pose>\n";
+}
+
+std::string bounds_xml(const std::array<E57Range, 3>& bounds) {
+  if (!bounds[0].known()) return {};
+  std::string xml = "<cartesianBounds type=\"Structure\">\n";
+  for (std::size_t k = 0; k < 3; ++k) {
+    xml += float_element(fmt::format("{}Minimum", "xyz"[k]), bounds[k].low);
+    xml += float_element(fmt::format("{}Maximum", "xyz"[k]), bounds[k].high);
+  }
+  return xml + "</cartesianBounds>\n";
+}
+
+/// The range of the values' kind, not of the values: 0 to 1, 255 or 65535.
+double colour_top(double largest, bool integer) {
+  if (largest > 255.0) return 65535.0;
+  return largest > 1.0 || integer ? 255.0 : 1.0;
+}
+
+std::string limits_xml(const E57Description& about) {
+  std::string colours;
+  std::string intensity;
+  double largest = 0.0;
+  bool integer = false;
+  for (std::size_t k = 0; k < about.columns.size(); ++k) {
+    if (about.columns[k].name.rfind("color", 0) != 0) continue;
+    integer = integer || about.columns[k].storage == E57Storage::integer;
+    if (about.ranges[k].known()) largest = std::max(largest, about.ranges[k].high);
+  }
+  for (std::size_t k = 0; k < about.columns.size(); ++k) {
+    const std::string& name = about.columns[k].name;
+    if (name.rfind("color", 0) == 0) {
+      colours += float_element(name + "Minimum", 0.0);
+      colours += float_element(name + "Maximum", colour_top(largest, integer));
+    } else if (name == "intensity" && about.ranges[k].known()) {
+      intensity += float_element("intensityMinimum", about.ranges[k].low);
+      intensity += float_element("intensityMaximum", about.ranges[k].high);
+    }
+  }
+  std::string xml;
+  if (!colours.empty()) xml += "<colorLimits type=\"Structure\">\n" + colours + "</colorLimits>\n";
+  if (!intensity.empty())
+    xml += "<intensityLimits type=\"Structure\">\n" + intensity + "</intensityLimits>\n";
+  return xml;
+}
+
+std::string column_xml(const E57Column& column) {
+  if (column.storage == E57Storage::float32) {
+    return fmt::format("<{} type=\"Float\" precision=\"single\"/>\n", column.name);
+  }
+  if (column.storage == E57Storage::float64) return fmt::format("<{} type=\"Float\"/>\n", column.name);
+  const bool scaled = column.scale != 1.0;
+  const std::string scale = scaled ? fmt::format(" scale=\"{}\"", e57_number(column.scale)) : "";
+  return fmt::format("<{} type=\"{}\" minimum=\"{}\" maximum=\"{}\"{}/>\n", column.name,
+                     scaled ? "ScaledInteger" : "Integer", column.minimum, column.maximum, scale);
+}
+
+std::string scan_xml(const E57Description& about) {
+  std::string xml = "<vectorChild type=\"Structure\">\n";
+  xml += text_element("guid", guid_of(about.digest + 1)) + text_element("name", about.name);
+  xml += text_element("limen:opticalCentre", about.centre_known ? "known" : "unknown");
+  xml += pose_xml(about.shift) + bounds_xml(about.bounds) + limits_xml(about);
+  xml += fmt::format("<points type=\"CompressedVector\" fileOffset=\"{}\" recordCount=\"{}\">\n",
+                     about.section, about.points);
+  xml += "<prototype type=\"Structure\">\n";
+  for (const E57Column& column : about.columns) xml += column_xml(column);
+  xml += "</prototype>\n<codecs type=\"Vector\" allowHeterogeneousChildren=\"1\"></codecs>\n</points>\n";
+  return xml + "</vectorChild>\n";
+}
+
+}  // namespace
+
+std::string e57_number(double value) {
+  return fmt::format("{:.17g}", value);
+}
+
+std::string e57_description_xml(const E57Description& about) {
+  std::string xml(kHead);
+  xml += fmt::format(" xmlns:limen=\"{}\">\n", kE57LimenSpace);
+  xml += text_element("formatName", "ASTM E57 3D Imaging Data File");
+  xml += text_element("guid", guid_of(about.digest));
+  xml += "<versionMajor type=\"Integer\">1</versionMajor>\n<versionMinor type=\"Integer\">0</versionMinor>\n";
+  xml += text_element("e57LibraryVersion", fmt::format("limen {}", kVersion));
+  std::string coordinates;
+  for (const std::string& text : about.georeference) coordinates += (coordinates.empty() ? "" : "\n") + text;
+  xml += text_element("coordinateMetadata", coordinates);
+  xml += "<data3D type=\"Vector\" allowHeterogeneousChildren=\"1\">\n" + scan_xml(about) + "</data3D>\n";
+  return xml + "<images2D type=\"Vector\" allowHeterogeneousChildren=\"1\"></images2D>\n</e57Root>\n";
+}
+
+}  // namespace limen

@@ -1,0 +1,24 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "limen/base/progress.h"
+#include "limen/geometry/rigid.h"
+#include "limen/io/table/transformed_cloud.h"
+
+namespace limen {
+
+/// Moves a LAS or LAZ file in memory and writes it as LAS of the same version and point format. Coordinates
+/// move; scale, offset and bounding box follow; every other value of the points and every record around them
+/// is kept byte for byte, but for what describes the compression. Steps are not coarser than the old ones
+/// where the range allows. Points stream, the file may be larger than memory.
+/// The file appears whole or not at all; throws Error for what cannot be read or written.
+TransformedCloud transform_las(std::string_view bytes, const std::string& name,
+                               const Rigid3& target_from_source, const std::filesystem::path& output,
+                               Monitor& monitor = silent_monitor());
+
+}  // namespace limen

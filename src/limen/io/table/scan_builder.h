@@ -1,0 +1,37 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "limen/io/table/record_table.h"
+#include "limen/io/table/scan_file.h"
+
+namespace limen {
+
+/// What a file says beside its table of points.
+struct TableFacts {
+  std::string name;                    ///< of the file, for messages
+  Vector3d offset = Vector3d::Zero();  ///< added to points and centres, metres
+  /// The frame of the file from that of x y z, offset not yet added; turns points and per-point centres.
+  std::optional<Rigid3> pose;
+  bool has_offset = false;                  ///< the file carries an offset: its 0,0,0 is no scanner
+  std::optional<Vector3d> centre;           ///< optical centre, offset not yet added, metres
+  bool centre_unknown = false;              ///< the file says that it does not know its centre
+  std::optional<Vector3d> possible_centre;  ///< taken only where it can be the scanner
+  std::size_t missing = 0;                  ///< rows that the reader has told as missing returns already
+  std::size_t columns = 0;                  ///< points stored row by row, so many in a row; 0: not so
+  std::size_t column_length = 0;            ///< points stored column by column, so many in one; 0: not so
+};
+
+/// Makes a scan of a table: picks the local origin, finds the columns by their names, leaves out what is not
+/// finite, recovers the topology. Appends to `notes` and `dropped` of `file` and adds the scan to it.
+/// Throws Error where x, y or z is missing or no point is usable.
+ScanFile with_scan(ScanFile file, const RecordTable& table, const TableFacts& facts,
+                   const ReadOptions& options);
+
+/// A round number (100 m) near `x`, or 0,0,0 where all coordinates are below 10 km.
+Vector3d round_origin_near(const Vector3d& x);
+
+}  // namespace limen

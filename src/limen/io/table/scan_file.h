@@ -1,0 +1,44 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "limen/model/scan.h"
+
+namespace limen {
+
+class Trajectory;
+
+/// What a user may say about a scan file that the file itself does not.
+struct ReadOptions {
+  /// Optical centre in the coordinates of the points as `limen info` tells them (an offset that the file
+  /// carries in a comment is part of them), metres. Empty: what the file says, else 0,0,0 where that can be
+  /// the scanner (the points lie around it and none is closer than a scanner can measure), else unknown.
+  std::optional<Vector3d> origin;
+  bool level = true;  ///< the file's z axis points up (--gravity up)
+  /// A file whose scans would take more than this is thinned while it is read, and a note tells so; 0: never.
+  std::uint64_t memory_bytes = 0;
+  /// From where a moving scanner saw its points, by their time; counts before what the file says, not before
+  /// `origin`. Empty: none.
+  std::shared_ptr<const Trajectory> trajectory = {};
+
+  /// Throws Error where the origin is not finite.
+  void check() const;
+};
+
+/// The scans of a file and what is worth telling about it.
+struct ScanFile {
+  std::string format;               ///< in a user's words: "PLY, binary, little-endian"
+  std::vector<std::string> fields;  ///< names of the values per point, as the file has them
+  std::vector<Scan> scans;
+  std::size_t dropped = 0;         ///< points left out: not finite, or missing returns
+  std::vector<std::string> notes;  ///< sentences about what was assumed or left out
+};
+
+}  // namespace limen

@@ -1,0 +1,48 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/match/openings/distinct_poses.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "limen/base/angles.h"
+
+namespace limen {
+
+std::vector<OpeningPose> distinct_poses(std::vector<OpeningPose> poses, const Vector3d& middle,
+                                        const OpeningPoseOptions& options) {
+  std::stable_sort(poses.begin(), poses.end(),
+                   [](const OpeningPose& a, const OpeningPose& b) { return a.distance < b.distance; });
+  const double cell = options.same_shift_m + options.same_thickness_m;
+  std::vector<OpeningPose> kept;
+  std::vector<Vector3d> middles;
+  std::map<long, std::vector<std::size_t>> by_x;  // of kept, in cells wider than twins can lie apart
+  const auto twins = [&](const OpeningPose& pose, const Vector3d& moved, std::size_t other) {
+    const Vector3d off = moved - middles[other];
+    const double across = off.dot(pose.wall_normal);
+    if (std::abs(across) >= options.same_thickness_m) return false;
+    if ((off - across * pose.wall_normal).norm() >= options.same_shift_m) return false;
+    const Matrix3d turn =
+        kept[other].target_from_source.rotation.transpose() * pose.target_from_source.rotation;
+    return rotation_angle(turn) < radians(options.same_rotation_deg);
+  };
+  for (OpeningPose& pose : poses) {
+    const Vector3d moved = pose.target_from_source * middle;
+    const long place = std::lround(std::floor(moved.x() / cell));
+    bool known = false;
+    for (long k = place - 1; k <= place + 1 && !known; ++k) {
+      const auto near = by_x.find(k);
+      if (near == by_x.end()) continue;
+      known = std::any_of(near->second.begin(), near->second.end(),
+                          [&](std::size_t other) { return twins(pose, moved, other); });
+    }
+    if (known) continue;
+    by_x[place].push_back(kept.size());
+    middles.push_back(moved);
+    kept.push_back(std::move(pose));
+  }
+  return kept;
+}
+
+}  // namespace limen

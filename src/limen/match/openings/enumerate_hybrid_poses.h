@@ -1,0 +1,71 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "limen/match/openings/enumerate_opening_poses.h"
+
+// Monasse, Djahel, Vallet, "Registration for urban modeling based on linear and planar features", 2023,
+// section III-B: openings fix the rotation and two shifts, planes the third.
+//
+// Departures from the printed text:
+// - the two walls are parallel as soon as the rotation is right, and parallel planes have no line of
+//   intersection to turn about: rotations come from frames (outward normal, up);
+// - the indoor normal opposes the outdoor one;
+// - as printed, the vector from A to B lays the inner face of the wall on its outer face. Here the third
+// shift
+//   is the one that lays planes seen by both scans (the back wall of a room seen through its windows) on each
+//   other; the wall's thickness follows from it, and must be a possible one;
+// - all pairs of planes vote instead of a random pair.
+
+namespace limen {
+
+struct HybridPoseOptions {
+  OpeningPoseOptions openings;
+  std::optional<double> wall_thickness_m;  ///< given by the user: then no other assumption is made, > 0
+  double plane_parallel_deg = 6.0;         ///< planes that meet differ by no more
+  double min_normal_cosine = 0.5;    ///< planes more oblique to the wall do not hold the shift across it
+  double offset_tolerance_m = 0.06;  ///< shifts nearer than this are one
+  double min_overlap_m2 = 0.05;      ///< of the planes that propose a shift, bounding rectangles
+  int max_shifts = 6;                ///< along the normal, per opening pose
+  int max_poses = 1200;
+
+  void check() const;
+};
+
+/// How the shift across the wall came about.
+enum class ThicknessSource : std::uint8_t {
+  assumed,   ///< nothing: the pose is free along the wall's normal
+  user,      ///< the user's wall thickness
+  reveals,   ///< sides of openings that reach from face to face
+  openings,  ///< openings in another wall
+  planes,    ///< planes that both scans saw
+  same_face  ///< both scans saw the same face of the wall: there is no thickness between them
+};
+const char* to_string(ThicknessSource source);
+
+/// A pose proposed by openings and planes, in the scans' local frames.
+struct HybridPose {
+  Rigid3 target_from_source;
+  double support_m2 = 0.0;    ///< overlap of planes that agree along the normal, bounding rectangles
+  int free_translations = 0;  ///< 1 where nothing held the shift along the wall's normal
+  double thickness_m = 0.0;   ///< of the wall at this pose
+  ThicknessSource thickness_source = ThicknessSource::assumed;
+  OpeningPose opening;  ///< the pose it came from
+};
+
+/// Poses from openings and planes. A pose stands in the list by the better of its two places, by the distance
+/// of its openings and by the overlap of its planes, counted for each of the two cases of sides apart; equal
+/// places go by distance. Where the user gave a thickness, that shift comes first of its opening pose's. A
+/// pose whose normal nothing holds is listed with assumed thicknesses and `free_translations` 1.
+/// Deterministic. Throws Error for bad options.
+std::vector<HybridPose> enumerate_hybrid_poses(const Features& source, const Features& target,
+                                               const HybridPoseOptions& options = {});
+/// The same from opening poses at hand.
+std::vector<HybridPose> enumerate_hybrid_poses(const Features& source, const Features& target,
+                                               const std::vector<OpeningPose>& opening_poses,
+                                               const HybridPoseOptions& options = {});
+
+}  // namespace limen

@@ -1,0 +1,201 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/match/openings/match_openings.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include <Eigen/LU>
+
+namespace limen {
+namespace {
+
+constexpr double kUnseenSigmaM = 0.9;   // an edge with this deviation or more was not seen
+constexpr double kFloorSigmaM = 0.003;  // real edges are not straighter than this
+constexpr double kSillSigmaM = 0.008;   // sills slope
+constexpr double kSplaySigmaM = 0.05;   // how much wider an opening may be on one side of the wall, each way
+constexpr double kNothing = 1e3;        // deviation of what is not known
+
+/// A rectangle in the target's frame, on the axes of the target's wall.
+struct Rectangle {
+  Vector3d origin;  // lower left corner
+  Vector3d across;
+  Vector3d up;
+  double width = 0.0;
+  double height = 0.0;
+};
+
+Rectangle rectangle_of(const Opening& opening, const Rigid3& pose) {
+  Rectangle r;
+  r.origin = pose * opening.corners[0];
+  const Vector3d side = pose * opening.corners[1] - r.origin;
+  const Vector3d rise = pose * opening.corners[3] - r.origin;
+  r.width = side.norm();
+  r.height = rise.norm();
+  r.across = side / std::max(1e-9, r.width);
+  r.up = rise / std::max(1e-9, r.height);
+  return r;
+}
+
+/// Place of an edge along an axis, and its deviation.
+struct Edge {
+  double at = 0.0;
+  double sigma = kNothing;
+};
+
+/// Edges as seen from the target's side: bottom, right, top, left.
+using Edges = std::array<Edge, 4>;
+
+Edges edges_of(const Opening& opening, const Rectangle& own, const Rectangle& axes) {
+  const bool mirrored = own.across.dot(axes.across) < 0.0;
+  const Vector3d middle = own.origin + 0.5 * (own.width * own.across + own.height * own.up) - axes.origin;
+  const double u = axes.across.dot(middle);
+  const double v = axes.up.dot(middle);
+  Edges edges;
+  edges[0] = {v - 0.5 * own.height, opening.edge_sigma_m[0]};
+  edges[1] = {u + 0.5 * own.width, opening.edge_sigma_m[mirrored ? 3 : 1]};
+  edges[2] = {v + 0.5 * own.height, opening.edge_sigma_m[2]};
+  edges[3] = {u - 0.5 * own.width, opening.edge_sigma_m[mirrored ? 1 : 3]};
+  return edges;
+}
+
+/// What two opposed edges say of the shift, each off by the shift plus or minus its part of the splay.
+struct Shift {
+  double value = 0.0;
+  double sigma = kNothing;
+};
+
+Shift shift_of(const Edge& low, const Edge& high, double low_splay, double high_splay) {
+  // Least squares over (shift, splay), the splay near zero a priori: with both edges it cancels.
+  Matrix3d normal = Matrix3d::Zero();
+  Vector3d right = Vector3d::Zero();
+  const auto add = [&](const Vector3d& row, double value, double sigma) {
+    const double weight = 1.0 / (sigma * sigma);
+    normal += weight * row * row.transpose();
+    right += weight * value * row;
+  };
+  add({1.0, 1.0, 0.0}, low.at, low.sigma);
+  add({1.0, 0.0, -1.0}, high.at, high.sigma);
+  add({0.0, 1.0, 0.0}, 0.0, low_splay);
+  add({0.0, 0.0, 1.0}, 0.0, high_splay);
+  // Both sides of an opening splay alike, nearly.
+  add({0.0, 1.0, -1.0}, 0.0, std::abs(low_splay - high_splay) < 1e-9 ? 0.004 : kNothing);
+  add({1.0, 0.0, 0.0}, 0.0, kNothing);
+  const Matrix3d covariance = normal.inverse();
+  const Vector3d solution = covariance * right;
+  return {solution.x(), std::sqrt(covariance(0, 0))};
+}
+
+double trust_of(const Opening& opening) {
+  switch (opening.view) {
+    case OpeningView::through:
+      return 1.0;
+    case OpeningView::recess:
+      return 0.7;
+    case OpeningView::hole:
+      return 0.3;
+  }
+  return 0.3;
+}
+
+Edge difference(const Edge& target, const Edge& source) {
+  if (target.sigma >= kUnseenSigmaM || source.sigma >= kUnseenSigmaM) return {};
+  return {target.at - source.at, std::hypot(target.sigma, source.sigma, kFloorSigmaM)};
+}
+
+/// Whether the two walls can be one: from its two sides, or from the same.
+bool walls_agree(OpeningMatch& match, const Rectangle& a, const Rectangle& b,
+                 const OpeningMatchOptions& options) {
+  const Vector3d source_normal = a.across.cross(a.up);  // towards the source's scanner
+  const Vector3d target_normal = b.across.cross(b.up);
+  const double cosine = source_normal.dot(target_normal);
+  if (std::abs(cosine) < std::cos(options.max_angle_rad)) return false;
+  if (a.up.dot(b.up) < std::cos(options.max_angle_rad)) return false;
+  const Vector3d middle = a.origin + 0.5 * (a.width * a.across + a.height * a.up);
+  match.gap_m = -target_normal.dot(middle - b.origin);
+  match.opposite = cosine < 0.0;
+  if (!match.opposite) return std::abs(match.gap_m) <= options.max_same_face_m;
+  return match.gap_m >= options.min_gap_m && match.gap_m <= options.max_gap_m;
+}
+
+std::optional<OpeningMatch> match_of(const Opening& source, const Rectangle& a, const Opening& target,
+                                     const Rectangle& b, const OpeningMatchOptions& options) {
+  OpeningMatch match;
+  if (!walls_agree(match, a, b, options)) return std::nullopt;
+  const Edges from = edges_of(source, a, b);
+  const Edges to = edges_of(target, b, b);
+  std::array<Edge, 4> off;
+  for (std::size_t k = 0; k < 4; ++k) off[k] = difference(to[k], from[k]);
+  const auto both = [&](std::size_t low, std::size_t high) {
+    return off[low].sigma < kUnseenSigmaM && off[high].sigma < kUnseenSigmaM;
+  };
+  const auto alike = [&](double own, double other, std::size_t low, std::size_t high) {
+    return !both(low, high) ||
+           std::abs(own - other) <= options.max_size_difference_m + off[low].sigma + off[high].sigma;
+  };
+  if (!alike(a.height, b.height, 0, 2) || !alike(a.width, b.width, 3, 1)) return std::nullopt;
+  const double splay = match.opposite ? kSplaySigmaM : kFloorSigmaM;
+  const Shift across = shift_of(off[3], off[1], splay, splay);
+  // The splay of the sides is a hint at that of the head.
+  const double widening = both(3, 1) ? 0.5 * std::abs(a.width - b.width) : splay;
+  const Shift up = shift_of(off[0], off[2], kSillSigmaM, kSillSigmaM + std::min(splay, widening));
+  if (across.sigma > kUnseenSigmaM && up.sigma > kUnseenSigmaM) return std::nullopt;
+  match.shift_across_m = across.sigma > kUnseenSigmaM ? 0.0 : across.value;
+  match.shift_up_m = up.sigma > kUnseenSigmaM ? 0.0 : up.value;
+  if (std::hypot(match.shift_across_m, match.shift_up_m) > options.gate_m) return std::nullopt;
+  match.sigma_across_m = across.sigma;
+  match.sigma_up_m = up.sigma;
+  // Rectangles that nowhere overlap are not one opening, whatever a single edge says.
+  const Vector3d gap = (a.origin + 0.5 * (a.width * a.across + a.height * a.up)) -
+                       (b.origin + 0.5 * (b.width * b.across + b.height * b.up));
+  if (std::abs(gap.dot(b.across)) > 0.5 * (a.width + b.width)) return std::nullopt;
+  if (std::abs(gap.dot(b.up)) > 0.5 * (a.height + b.height)) return std::nullopt;
+  match.at = b.origin + 0.5 * (b.width * b.across + b.height * b.up);
+  match.across = b.across;
+  match.up = b.up;
+  match.tilt_rad = std::asin(std::clamp(a.up.cross(b.up).dot(b.across.cross(b.up)), -1.0, 1.0));
+  match.area_m2 = std::min(a.width * a.height, b.width * b.height);
+  match.trust = std::min(trust_of(source), trust_of(target));
+  return match;
+}
+
+}  // namespace
+
+std::vector<OpeningMatch> match_openings(const Features& source, const Features& target,
+                                         const Rigid3& target_from_source,
+                                         const OpeningMatchOptions& options) {
+  std::vector<Rectangle> targets;
+  targets.reserve(target.openings.size());
+  for (const Opening& opening : target.openings) targets.push_back(rectangle_of(opening, {}));
+  std::vector<OpeningMatch> all;
+  for (std::size_t i = 0; i < source.openings.size(); ++i) {
+    const Rectangle a = rectangle_of(source.openings[i], target_from_source);
+    const double reach = options.max_gap_m + a.width + a.height + options.gate_m;
+    for (std::size_t k = 0; k < targets.size(); ++k) {
+      if ((targets[k].origin - a.origin).squaredNorm() >
+          (reach + targets[k].width) * (reach + targets[k].width)) {
+        continue;
+      }
+      if (auto match = match_of(source.openings[i], a, target.openings[k], targets[k], options)) {
+        match->source = static_cast<int>(i);
+        match->target = static_cast<int>(k);
+        all.push_back(*match);
+      }
+    }
+  }
+  std::stable_sort(all.begin(), all.end(), [](const OpeningMatch& a, const OpeningMatch& b) {
+    return std::hypot(a.shift_across_m, a.shift_up_m) < std::hypot(b.shift_across_m, b.shift_up_m);
+  });
+  std::vector<OpeningMatch> matches;
+  for (const OpeningMatch& match : all) {
+    const bool taken = std::any_of(matches.begin(), matches.end(), [&](const OpeningMatch& other) {
+      return other.source == match.source || other.target == match.target;
+    });
+    if (!taken) matches.push_back(match);
+  }
+  return matches;
+}
+
+}  // namespace limen

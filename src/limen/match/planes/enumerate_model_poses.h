@@ -1,0 +1,35 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "limen/match/planes/enumerate_poses.h"
+
+namespace limen {
+
+struct ModelPoseOptions {
+  bool gravity_known = true;           ///< both z axes point up: only turns about the vertical are tried
+  double gravity_tolerance_deg = 4.0;  ///< by how much a level scanner may be off
+  double direction_deg = 5.0;          ///< normals nearer than this are one direction
+  int anchors = 4;                     ///< planes of the scan tried per direction, largest first, >= 1
+  int max_scan_planes = 24;            ///< largest planes of the scan that are looked at, >= 1
+  double min_plane_m2 = 0.3;           ///< smaller pieces of the model are not tried, > 0
+  double same_shift_m = 0.08;          ///< poses nearer than about this are one, > 0
+  int max_poses = 60000;               ///< poses returned, those that most anchors agree on first, >= 1
+
+  void check() const;
+};
+
+/// Poses that lay three planes of a scan, facing three directions, on three of a model, wherever their
+/// outlines then overlap: every place of a whole building where a room may be, for any starting pose. The
+/// planes must be oriented where `oriented` says so. `support_m2` is the number of anchors that agree; score
+/// them all.
+///
+/// This is 2021, section 3.2.2, turned round: not the shifts of each axis apart, for a building has hundreds
+/// on each, but three planes at a time that meet near one another. Cost: for every pair of anchors the pairs
+/// of the model's planes of their directions, most of which end at the first test of boxes.
+std::vector<PoseCandidate> enumerate_model_poses(const Features& scan, const Features& model,
+                                                 const ModelPoseOptions& options = {});
+
+}  // namespace limen

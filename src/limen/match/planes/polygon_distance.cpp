@@ -1,0 +1,129 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/match/planes/polygon_distance.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "limen/base/error.h"
+#include "limen/geometry/polygon_clip.h"
+
+namespace limen {
+namespace {
+
+/// A polygon of the other scan that may meet the one in question, and the weight of equation 10.
+struct Candidate {
+  std::size_t index = 0;
+  double weight = 0.0;
+};
+
+bool may_agree(const PlanarPolygon& a, const PlanarPolygon& b, const AgreementOptions& options) {
+  if (angle_between(a.plane, b.plane) > options.max_angle_rad) return false;
+  return !(options.same_side && a.oriented && b.oriented) || a.plane.normal.dot(b.plane.normal) > 0.0;
+}
+
+std::vector<Candidate> candidates(const PlanarPolygon& a, const std::vector<PlanarPolygon>& scan,
+                                  const AgreementOptions& options) {
+  std::vector<Candidate> found;
+  for (std::size_t i = 0; i < scan.size(); ++i) {
+    if (!may_agree(a, scan[i], options)) continue;
+    const double ratio = bisector_distance(a, scan[i]) / options.max_distance_m;
+    if (ratio < 1.0) found.push_back({i, 1.0 - ratio * ratio});
+  }
+  std::stable_sort(found.begin(), found.end(),
+                   [](const Candidate& p, const Candidate& q) { return p.weight > q.weight; });
+  return found;
+}
+
+}  // namespace
+
+PlanarPolygon transformed(const Rigid3& b_from_a, const PlanarPolygon& polygon_in_a) {
+  PlanarPolygon moved = polygon_in_a;
+  moved.plane = transformed(b_from_a, polygon_in_a.plane);
+  moved.frame.origin = b_from_a * polygon_in_a.frame.origin;
+  moved.frame.u = b_from_a.rotation * polygon_in_a.frame.u;
+  moved.frame.v = b_from_a.rotation * polygon_in_a.frame.v;
+  moved.centroid = b_from_a * polygon_in_a.centroid;
+  return moved;
+}
+
+double angle_between(const Plane& a, const Plane& b) {
+  // acos |n1 . n2|, written so that small angles keep their digits.
+  return std::atan2(a.normal.cross(b.normal).norm(), std::abs(a.normal.dot(b.normal)));
+}
+
+Plane bisector(const Plane& a, const Plane& b) {
+  const Plane aligned = a.normal.dot(b.normal) < 0.0 ? b.flipped() : b;
+  const Vector3d sum = a.normal + aligned.normal;  // at least sqrt(2) long
+  return {sum.normalized(), (a.offset + aligned.offset) / sum.norm()};
+}
+
+double bisector_distance(const PlanarPolygon& a, const PlanarPolygon& b) {
+  const Plane middle = bisector(a.plane, b.plane);
+  return std::abs(middle.signed_distance(a.centroid)) + std::abs(middle.signed_distance(b.centroid));  // (7)
+}
+
+ProjectedPair project_to_bisector(const PlanarPolygon& a, const PlanarPolygon& b) {
+  ProjectedPair pair;
+  pair.frame = make_frame(bisector(a.plane, b.plane), a.frame.origin);
+  pair.a = projected(a.parts, a.frame, pair.frame);
+  pair.b = projected(b.parts, b.frame, pair.frame);
+  return pair;
+}
+
+double overlap_area(const PlanarPolygon& a, const PlanarPolygon& b) {
+  const ProjectedPair pair = project_to_bisector(a, b);
+  return intersection_area(pair.a, pair.b);
+}
+
+double overlap_ratio(const PlanarPolygon& a, const PlanarPolygon& b) {
+  const ProjectedPair pair = project_to_bisector(a, b);
+  const double common = intersection_area(pair.a, pair.b);
+  if (common <= 0.0) return 0.0;
+  const double smaller = std::min(union_area(pair.a), union_area(pair.b));
+  return smaller > 0.0 ? std::min(1.0, common / smaller) : 0.0;  // (8)
+}
+
+void AgreementOptions::check() const {
+  if (!(max_distance_m > 0.0)) throw_bad_option("max_distance_m", max_distance_m, "greater than 0");
+  if (!(max_angle_rad > 0.0) || max_angle_rad > 0.5 * std::numbers::pi) {
+    throw_bad_option("max_angle_rad", max_angle_rad, "in (0, pi/2]");
+  }
+}
+
+double agreement(const PlanarPolygon& a, const std::vector<PlanarPolygon>& scan,
+                 const AgreementOptions& options) {
+  options.check();
+  const std::vector<Candidate> found = candidates(a, scan, options);
+  if (found.size() == 1) return found[0].weight * overlap_area(a, scan[found[0].index]);
+  // Heaviest first: each adds only what the ones before it left open.
+  std::vector<Polygon> covered;
+  double covered_m2 = 0.0;
+  double total = 0.0;
+  for (const Candidate& candidate : found) {
+    const ProjectedPair pair = project_to_bisector(a, scan[candidate.index]);
+    const std::vector<Polygon> common = intersection(pair.a, pair.b);
+    if (common.empty()) continue;
+    covered = merged(covered, projected(common, pair.frame, a.frame));
+    const double now_m2 = area(covered);
+    total += candidate.weight * std::max(0.0, now_m2 - covered_m2);  // (10)
+    covered_m2 = now_m2;
+  }
+  return total;
+}
+
+double robust_error(const PlanarPolygon& a, const std::vector<PlanarPolygon>& scan,
+                    const AgreementOptions& options) {
+  return std::max(0.0, area(a.parts) - agreement(a, scan, options));  // (9)
+}
+
+double scan_agreement(const std::vector<PlanarPolygon>& a, const std::vector<PlanarPolygon>& b,
+                      const AgreementOptions& options) {
+  double total = 0.0;
+  for (const PlanarPolygon& polygon : a) total += agreement(polygon, b, options);
+  for (const PlanarPolygon& polygon : b) total += agreement(polygon, a, options);
+  return 0.5 * total;
+}
+
+}  // namespace limen

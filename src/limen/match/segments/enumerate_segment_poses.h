@@ -1,0 +1,53 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "limen/geometry/segment.h"
+#include "limen/match/planes/enumerate_poses.h"
+
+// Monasse, Djahel, Vallet, "Registration for urban modeling based on linear and planar features", 2023,
+// sections IV-B (rotations from clusters of directions), IV-C (double pairs of segments) and IV-D (closed
+// form).
+//
+// Departures from the printed text:
+// - (9) associates each cluster with the nearest of the other set, which presumes a good start and may take
+//   one cluster twice: here every association of two directions with two, both signs, one to one, and the
+//   least-squares rotation over all directions that then agree. Known gravity keeps the vertical vertical;
+// - any number of directions, not three;
+// - the double pairs of IV-C are not drawn at random. Two parallel segments of one direction fix two
+//   components of the shift: every such pair votes in a plane of shifts, one plane per direction. A place
+//   in one plane (the first pair) is completed by the component that most pairs of the other directions want
+//   (the second pair). The printed tests on a double pair - |d_v . d_h| and the distance of the two lines
+//   agree in both sets - hold for all pairs that vote for one shift;
+// - (8) is taken in pieces: each piece of the smaller set counts its length times 1 - (d / max_distance_m)^2,
+//   d its distance to the nearest segment of the other set in its direction.
+
+namespace limen {
+
+struct SegmentPoseOptions {
+  bool gravity_known = true;           ///< both z axes point up: only turns about the vertical are tried
+  double gravity_tolerance_deg = 4.0;  ///< by how much a level set may be off
+  double direction_deg = 5.0;          ///< segments that differ by less are parallel
+  double max_distance_m = 0.15;        ///< d of (8): pieces farther apart do not match
+  double cell_m = 0.06;                ///< of the planes of shifts; wider for sets beyond 90 m
+  int max_segments = 400;              ///< longest segments of the smaller set that vote
+  int max_peaks = 400;                 ///< places of each plane of shifts that are completed
+  int max_poses = 2000;                ///< poses returned
+  double same_rotation_deg = 2.0;      ///< poses nearer than both bounds are one
+  double same_shift_m = 0.15;
+
+  void check() const;
+};
+
+/// Poses that lay segments of the source on segments of the target, for any starting pose. Best first, no two
+/// alike; every place where the smaller set repeats in the larger one is among them. `support_m2` of a pose
+/// is in metres here: covered length of the smaller set, weighted as in (8). `free_translations` is 1 where
+/// all segments in common have one direction: the shift along it is made up then. Deterministic, and
+/// independent of threads.
+std::vector<PoseCandidate> enumerate_segment_poses(const std::vector<Segment>& source,
+                                                   const std::vector<Segment>& target,
+                                                   const SegmentPoseOptions& options = {});
+
+}  // namespace limen

@@ -1,0 +1,47 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "limen/geometry/segment.h"
+#include "limen/match/planes/enumerate_rotations.h"
+
+namespace limen {
+
+/// A set of segments as votes need it.
+struct VotingSegments {
+  std::vector<Vector3d> middles;
+  std::vector<Vector3d> directions;  ///< unit
+  std::vector<double> lengths_m;
+
+  VotingSegments() = default;
+  /// The `most` longest ones, longest first.
+  VotingSegments(const std::vector<Segment>& segments, std::size_t most);
+  [[nodiscard]] std::size_t size() const { return middles.size(); }
+  [[nodiscard]] double total_length_m() const;
+};
+
+struct VoteOptions {
+  double direction_deg = 5.0;
+  double cell_m = 0.06;
+  std::size_t max_peaks = 400;
+  std::size_t max_shifts = 600;  ///< returned
+};
+
+/// A shift that pairs of parallel segments vote for.
+struct VotedShift {
+  Vector3d translation = Vector3d::Zero();  ///< of target_from_source
+  double votes_m = 0.0;                     ///< length of the pairs that agree
+  int free_translations = 0;                ///< components that no pair fixes
+};
+
+/// The shifts under one rotation (2023, IV-C, see enumerate_segment_poses.h), most votes first.
+/// `directions`: of the target. Empty where no direction is common.
+std::vector<VotedShift> vote_shifts(const VotingSegments& source, const VotingSegments& target,
+                                    const Matrix3d& rotation, const std::vector<AxisDirection>& directions,
+                                    const VoteOptions& options);
+
+}  // namespace limen

@@ -1,0 +1,39 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/match/solvers/translation_from_planes.h"
+
+#include <cmath>
+
+#include "limen/base/error.h"
+
+namespace limen {
+
+void TranslationOptions::check() const {
+  if (!(min_information > 0.0 && min_information < 1.0 / 3.0)) {
+    throw_bad_option("min_information", min_information, "in (0, 1/3)");
+  }
+}
+
+TranslationFit translation_from_planes(const Matrix3d& target_from_source_rotation,
+                                       const std::vector<PlanePair>& pairs, const Vector3d& start,
+                                       const TranslationOptions& options) {
+  options.check();
+  const auto gap = [&](const PlanePair& pair, const Vector3d& translation) {
+    return -pair.target.signed_distance(target_from_source_rotation * pair.source_point + translation);
+  };
+  TranslationSums sums;
+  for (const PlanePair& pair : pairs) {
+    sums.information +=
+        pair.weight * pair.target.normal * pair.target.normal.transpose();   // (22), both sides
+    sums.right_side += pair.weight * gap(pair, start) * pair.target.normal;  // times N^T
+    sums.weight += pair.weight;
+  }
+  TranslationFit fit = solve_translation(sums, start, options.min_information);
+  if (!(sums.weight > 0.0)) return fit;
+  double sum = 0.0;
+  for (const PlanePair& pair : pairs) sum += pair.weight * std::pow(gap(pair, fit.translation), 2);
+  fit.rms_m = std::sqrt(sum / sums.weight);
+  return fit;
+}
+
+}  // namespace limen

@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+
+#include "limen/register/prepare/scan_view.h"
+
+namespace limen {
+
+struct ScoreOptions {
+  double surface_m = 0.06;  ///< surfaces nearer than this agree
+  double free_m = 0.10;     ///< matter this far inside seen free space is contradicted
+  double opening_m = 0.25;  ///< openings nearer than this within their wall agree
+  bool openings = true;     ///< openings count
+  std::size_t samples = 0;  ///< asked of each scan, about; 0: all
+  bool ask_model = true;    ///< the scan is asked about a model's surface as well, not only the model
+};
+
+inline constexpr double kContradictionWeight = 4.0;
+
+/// How well a pose explains both scans, asked both ways and averaged: m^2 of each scan's surface that the
+/// other confirms (clipped, weighted 1 - d^2 / t^2: 2021, eq. 9-10 over the seen surface itself), and m^2
+/// standing where the other's rays passed free. An opening that both scans see counts with its area.
+struct PoseScore {
+  double agreeing_m2 = 0.0;
+  double planar_m2 = 0.0;  ///< of agreeing_m2: on planes
+  double contradicted_m2 = 0.0;
+  double tested_m2 = 0.0;   ///< surface that the other scan could have judged
+  double opening_m2 = 0.0;  ///< of agreeing_m2: openings seen from both sides
+  /// Agreeing surface, each plane counting for no more than 5 m^2, however large: that two façades lie in one
+  /// plane is one coincidence, not many.
+  double evidence_m2 = 0.0;
+  /// Against a model: share of the scan's upright planar surface that lies on the model. Floors and ceilings
+  /// say little: any room has them.
+  double explained_share = 1.0;
+
+  /// What poses are ranked by, m^2. One contradicted square metre outweighs several agreeing ones: surfaces
+  /// meet by chance, but matter cannot stand where a ray passed.
+  [[nodiscard]] double value() const { return evidence_m2 - kContradictionWeight * contradicted_m2; }
+};
+
+/// What tells two poses apart, m^2: surface that speaks for the one more than for the other. Surface that
+/// agrees under both poses, however much of it there is, tells nothing.
+struct PoseContrast {
+  double for_first_m2 = 0.0;
+  double for_second_m2 = 0.0;
+};
+
+PoseContrast contrast_poses(const ScanView& source, const ScanView& target, const Rigid3& first,
+                            const Rigid3& second, const ScoreOptions& options);
+
+PoseScore score_pose(const ScanView& source, const ScanView& target, const Rigid3& target_from_source,
+                     const ScoreOptions& options);
+
+}  // namespace limen

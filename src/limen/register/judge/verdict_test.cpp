@@ -1,0 +1,154 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/register/judge/verdict.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "limen/base/error.h"
+
+namespace limen {
+namespace {
+
+/// A pose held by one square metre in each direction, with the given surfaces.
+JudgedPose pose(double agreeing_m2, double contradicted_m2, double shift_m) {
+  JudgedPose judged;
+  judged.refined.target_from_source.translation.x() = shift_m;
+  judged.refined.centre.x() = shift_m;
+  judged.refined.geometry_m2 = Matrix6d::Identity();
+  judged.refined.information = 1e8 * Matrix6d::Identity();
+  judged.score = {agreeing_m2, agreeing_m2, contradicted_m2, 100.0, 0.0, agreeing_m2};
+  return judged;
+}
+
+/// What tells two poses apart: all of each.
+Verdict judge_all(const std::vector<JudgedPose>& poses) {
+  return judge(poses, [&](std::size_t a, std::size_t b) {
+    return PoseContrast{poses[a].score.agreeing_m2, poses[b].score.agreeing_m2};
+  });
+}
+
+TEST(Verdict, OneGoodPoseIsRegistered) {
+  EXPECT_EQ(judge_all({pose(30, 0.5, 0), pose(20, 9, 3)}).outcome, Outcome::registered);
+}
+
+TEST(Verdict, NothingToJudgeIsNoMatch) {
+  const Verdict verdict = judge_all({});
+  EXPECT_EQ(verdict.outcome, Outcome::no_match);
+  EXPECT_FALSE(verdict.reason.empty());
+}
+
+TEST(Verdict, TwoGoodPosesAreAmbiguous) {
+  EXPECT_EQ(judge_all({pose(30, 0, 0), pose(29, 0, 2)}).outcome, Outcome::ambiguous);
+}
+
+TEST(Verdict, SurfaceThatAgreesUnderBothPosesTellsNothing) {
+  // Both poses agree on 80 m2; of what tells them apart, 3 m2 speak for the first and 0.2 m2 for the second.
+  const std::vector<JudgedPose> poses{pose(83, 0, 0), pose(80, 0.5, 0.12)};
+  const auto contrast = [](std::size_t, std::size_t) { return PoseContrast{3.0, 0.2}; };
+  EXPECT_EQ(judge(poses, contrast).outcome, Outcome::registered);
+  const auto even = [](std::size_t, std::size_t) { return PoseContrast{3.0, 2.0}; };
+  EXPECT_EQ(judge(poses, even).outcome, Outcome::ambiguous);
+}
+
+TEST(Verdict, WallsThatAreNotInTheModelForbidAPose) {
+  JudgedPose foreign = pose(30, 0, 0);
+  foreign.score.explained_share = 0.5;  // a corner in a larger room
+  EXPECT_EQ(judge_all({foreign}).outcome, Outcome::no_match);
+  // Nor does it stand in the way of a right one.
+  const Verdict verdict = judge_all({foreign, pose(28, 0, 3)});
+  EXPECT_EQ(verdict.outcome, Outcome::registered);
+  EXPECT_EQ(verdict.ranking.front(), 1U);
+}
+
+TEST(Verdict, TheSamePoseTwiceIsNoRival) {
+  const Verdict verdict = judge_all({pose(30, 0, 0), pose(30, 0, 0.01)});
+  EXPECT_EQ(verdict.outcome, Outcome::registered);
+  EXPECT_EQ(verdict.ranking.size(), 1U);
+}
+
+TEST(Verdict, AnImpossiblePoseIsNoRival) {
+  // It agrees more, but a third of it stands where the other scan saw free space.
+  EXPECT_EQ(judge_all({pose(20, 0, 0), pose(60, 11, 2)}).outcome, Outcome::registered);
+}
+
+TEST(Verdict, ContradictedPoseIsNoMatch) {
+  EXPECT_EQ(judge_all({pose(30, 6, 0)}).outcome, Outcome::no_match);
+}
+
+TEST(Verdict, LittleEvidenceBearsLittleContradiction) {
+  EXPECT_EQ(judge_all({pose(4, 0.3, 0)}).outcome, Outcome::no_match);
+  EXPECT_EQ(judge_all({pose(4, 0.05, 0)}).outcome, Outcome::registered);
+}
+
+TEST(Verdict, TooLittleSurfaceIsNoMatch) {
+  EXPECT_EQ(judge_all({pose(1, 0, 0)}).outcome, Outcome::no_match);
+}
+
+TEST(Verdict, AnOpenShiftIsNamed) {
+  JudgedPose open = pose(30, 0, 0);
+  open.refined.geometry_m2(4, 4) = 0.0;
+  const Verdict verdict = judge_all({open});
+  ASSERT_EQ(verdict.outcome, Outcome::under_constrained);
+  ASSERT_EQ(verdict.unobserved.size(), 1U);
+  EXPECT_FALSE(verdict.unobserved[0].rotation);
+  EXPECT_NEAR(std::abs(verdict.unobserved[0].direction.y()), 1.0, 1e-9);
+  EXPECT_NE(verdict.reason.find("shift along"), std::string::npos);
+}
+
+TEST(Verdict, ThroughAWallWithoutAnOpeningContradictionWeighsMore) {
+  VerdictOptions options;
+  options.through_wall = true;
+  const auto outcome = [&](const JudgedPose& pose) {
+    return judge(
+               {pose}, [](std::size_t, std::size_t) { return PoseContrast{}; }, options)
+        .outcome;
+  };
+  EXPECT_EQ(outcome(pose(40, 1.0, 0)), Outcome::registered);
+  EXPECT_EQ(outcome(pose(40, 2.0, 0)), Outcome::ambiguous);
+  JudgedPose opened = pose(40, 2.0, 0);
+  opened.score.opening_m2 = 3.0;
+  EXPECT_EQ(outcome(opened), Outcome::registered);
+}
+
+TEST(Verdict, AShiftThatIsHardlyKnownIsNamed) {
+  JudgedPose loose = pose(30, 0, 0);
+  loose.refined.information(4, 4) = 1.0 / (0.024 * 0.024);
+  const Verdict verdict = judge_all({loose});
+  EXPECT_EQ(verdict.outcome, Outcome::under_constrained);
+  ASSERT_EQ(verdict.unobserved.size(), 1U);
+  EXPECT_NEAR(verdict.unobserved[0].direction.y(), 1.0, 1e-9);
+  EXPECT_NE(verdict.unobserved[0].name.find("24 mm"), std::string::npos);
+}
+
+TEST(Verdict, RivalsAlongAnOpenShiftAreTheSameAnswer) {
+  JudgedPose open = pose(30, 0, 0);
+  open.refined.geometry_m2(3, 3) = 0.0;
+  EXPECT_EQ(judge_all({open, pose(29, 0, 2)}).outcome, Outcome::under_constrained);
+  JudgedPose elsewhere = pose(29, 0, 0);
+  elsewhere.refined.target_from_source.translation.y() = 2;
+  EXPECT_EQ(judge_all({open, elsewhere}).outcome, Outcome::ambiguous);
+}
+
+TEST(Verdict, APoseThatMayTurnIsNoAnswer) {
+  JudgedPose loose = pose(30, 0, 0);
+  loose.refined.geometry_m2(2, 2) = 0.0;
+  EXPECT_EQ(judge_all({loose}).outcome, Outcome::no_match);
+}
+
+TEST(Verdict, AShiftHeldOnlyThroughATurnIsOpen) {
+  // Coupling: what holds the shift is the same tile that would have to hold the turn.
+  JudgedPose coupled = pose(30, 0, 0);
+  coupled.refined.geometry_m2(2, 4) = coupled.refined.geometry_m2(4, 2) = 0.9999;
+  EXPECT_FALSE(unobserved_freedoms(coupled.refined, 0.03).empty());
+}
+
+TEST(Verdict, OptionsNameTheirBound) {
+  VerdictOptions options;
+  options.max_rival_share = 1.5;
+  EXPECT_THROW(judge({}, {}, options), Error);
+}
+
+}  // namespace
+}  // namespace limen

@@ -1,0 +1,23 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "limen/register/prepare/prepare_scan.h"
+
+namespace limen {
+
+/// A scan and its known place among others: x_in_group = group_from_scan * x, world coordinates, metres.
+struct PlacedScan {
+  Scan scan;
+  Rigid3 group_from_scan;
+};
+
+/// Several scans known to one another, made ready as if they were one: planes, openings and samples of all,
+/// surfaces seen from several stations once, and what all scanners know of space. The group's frame is that
+/// of the first scan if its pose is the identity. Throws Error for an empty list.
+PreparedScan prepare_group(const std::vector<PlacedScan>& scans, const PrepareOptions& options = {},
+                           Monitor& monitor = silent_monitor());
+
+}  // namespace limen

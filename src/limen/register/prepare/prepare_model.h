@@ -1,0 +1,15 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "limen/extract/model/model_features.h"
+#include "limen/register/prepare/prepare_scan.h"
+
+namespace limen {
+
+/// A model made ready for registration, as a scan is: its visible surface, openings and edges, its surfaces
+/// as a view of space, and its rooms by name. `labels` stay empty.
+PreparedScan prepare_model(const BimModel& model, const ModelFeatureOptions& options = {},
+                           Monitor& monitor = silent_monitor());
+
+}  // namespace limen

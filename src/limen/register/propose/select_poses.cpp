@@ -1,0 +1,68 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/register/propose/select_poses.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "limen/base/parallel.h"
+
+namespace limen {
+namespace {
+
+constexpr std::size_t kFirstLook = 800;  // samples asked per scan when thousands of poses are compared
+constexpr std::size_t kMany = 2500;      // poses that get a first look
+constexpr std::size_t kGlance = 150;     // samples asked of each scan when there are more
+constexpr std::size_t kGlimpse = 40;     // and when there are tens of thousands
+constexpr std::size_t kVeryMany = 8000;
+// In a model a pose is not looked into further where its value is a smaller share of the best one's; the
+// fewer samples were asked, the smaller.
+constexpr double kGlanceShare = 0.3;
+constexpr double kFirstShare = 0.35;
+constexpr double kModelShare = 0.45;
+
+}  // namespace
+
+std::vector<PoseCandidate> best_of(const std::vector<PoseCandidate>& candidates, const ScanView& source,
+                                   const ScanView& target, const Look& look) {
+  ScoreOptions coarse;
+  coarse.samples = look.samples;
+  coarse.openings = look.openings;
+  coarse.ask_model = look.ask_model;
+  std::vector<double> values(candidates.size());
+  parallel_for(candidates.size(), 8, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const PoseScore score = score_pose(source, target, candidates[i].target_from_source, coarse);
+      values[i] = score.evidence_m2 - look.contradiction_weight * score.contradicted_m2;
+    }
+  });
+  std::vector<std::size_t> order(candidates.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return values[a] > values[b]; });
+  if (order.size() > look.most) order.resize(look.most);
+  std::vector<PoseCandidate> best;
+  for (const std::size_t i : order) {
+    if (look.min_share > 0 && values[i] < look.min_share * values[order.front()]) break;
+    best.push_back(candidates[i]);
+  }
+  return best;
+}
+
+std::vector<PoseCandidate> select_poses(const std::vector<PoseCandidate>& candidates, const ScanView& source,
+                                        const ScanView& target, std::size_t most, bool openings) {
+  const bool model = source.model || target.model;
+  std::vector<PoseCandidate> left = candidates;
+  if (model && left.size() > kVeryMany)
+    left = best_of(left, source, target, {kGlimpse, kVeryMany, 0.0, false, false});
+  if (left.size() > kMany) {
+    left = best_of(left, source, target,
+                   {kGlance, kMany, 0.25, openings && !model, !model, model ? kGlanceShare : 0.0});
+  }
+  left =
+      best_of(left, source, target, {kFirstLook, 8 * most, 1.0, openings, true, model ? kFirstShare : 0.0});
+  return best_of(left, source, target,
+                 {kSecondLook, most, kContradictionWeight, openings, true, model ? kModelShare : 0.0});
+}
+
+}  // namespace limen

@@ -1,0 +1,278 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/register/refine/refine_pose.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+
+#include "limen/base/error.h"
+#include "limen/base/progress.h"
+#include "limen/register/refine/pose_contacts.h"
+
+namespace limen {
+namespace {
+
+using Vector6d = Eigen::Matrix<double, 6, 1>;
+
+constexpr double kWeakShare = 1e-4;   // of the information: less is the planes' error
+constexpr double kMaxCentreM = 20.0;  // the best known point is sought this far from the matched surface
+constexpr double kBuiltM = 0.002;     // by how much a wall stands elsewhere than drawn, at least: 1 sigma
+constexpr double kGateSigma = 0.2;    // deviation of a tile far from the goal, as a share of the gate
+
+class Refiner {
+ public:
+  Refiner(const ScanView& source, const ScanView& target, const RefineOptions& options)
+      : source_(source), target_(target), options_(options) {}
+
+  [[nodiscard]] RefinedPose run(const Rigid3& start) const {
+    RefinedPose refined;
+    refined.target_from_source = start;
+    for (int round = 0; round < options_.rounds; ++round) {
+      CancelScope::check();
+      const double share = static_cast<double>(round) / std::max(1, options_.rounds - 1);
+      const double gate =
+          options_.first_gate_m * std::pow(options_.last_gate_m / options_.first_gate_m, share);
+      const double opening_gate =
+          options_.first_opening_gate_m *
+          std::pow(options_.last_opening_gate_m / options_.first_opening_gate_m, share);
+      const Contacts contacts =
+          find_contacts(source_, target_, refined.target_from_source, {gate, opening_gate}, options_);
+      if (contacts.all.size() < 4) break;
+      adjust(contacts.all, kGateSigma * (gate - options_.last_gate_m), refined);
+    }
+    summarise(refined);
+    return refined;
+  }
+
+ private:
+  static Vector3d middle_of(const std::vector<Contact>& contacts) {
+    Vector3d sum = Vector3d::Zero();
+    for (const Contact& contact : contacts) sum += contact.at;
+    return sum / static_cast<double>(contacts.size());
+  }
+
+  static Vector6d row_of(const Contact& contact, const Vector3d& centre) {
+    Vector6d row;
+    if (contact.turn) {
+      row << contact.normal, Vector3d::Zero();
+    } else {
+      row << (contact.at - centre).cross(contact.normal), contact.normal;
+    }
+    return row;
+  }
+
+  /// Tukey's weight: nothing counts beyond the gate.
+  static double robust_weight(double residual, double gate) {
+    const double x = residual / gate;
+    return std::abs(x) >= 1.0 ? 0.0 : (1.0 - x * x) * (1.0 - x * x);
+  }
+
+  /// Sums of one kind of evidence.
+  struct NormalEquations {
+    Matrix6d normal = Matrix6d::Zero();
+    Vector6d right = Vector6d::Zero();
+
+    void add(const Vector6d& row, double residual, double weight) {
+      normal += weight * row * row.transpose();
+      right += weight * residual * row;
+    }
+  };
+
+  /// Planes of one direction seem to hold the others a little, by the errors of their normals: what is that
+  /// weak is left out, so that the pose stays where it is there, or goes where openings want it.
+  static NormalEquations without_weak(const NormalEquations& planes) {
+    // Turns are measured by what they move at the typical lever, so that they compare with shifts.
+    const double lever = std::sqrt(planes.normal.topLeftCorner<3, 3>().trace() /
+                                   std::max(1e-12, planes.normal.bottomRightCorner<3, 3>().trace()));
+    Vector6d unit;
+    unit << Vector3d::Constant(1.0 / std::max(0.1, lever)), Vector3d::Ones();
+    const Matrix6d scaled = unit.asDiagonal() * planes.normal * unit.asDiagonal();
+    const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(scaled);
+    NormalEquations kept;
+    for (Eigen::Index k = 0; k < 6; ++k) {
+      if (solver.eigenvalues()[k] < kWeakShare * scaled.trace()) continue;
+      const Vector6d d = solver.eigenvectors().col(k);
+      const Vector6d back = d.cwiseQuotient(unit);
+      kept.normal += solver.eigenvalues()[k] * back * back.transpose();
+      kept.right += d.dot(unit.cwiseProduct(planes.right)) * back;
+    }
+    return kept;
+  }
+
+  /// One Gauss-Newton step. Far from the goal a tile says no more than `plane_sigma_m` allows: else the first
+  /// ones that happen to meet would outweigh every opening.
+  static void adjust(const std::vector<Contact>& contacts, double plane_sigma_m, RefinedPose& refined) {
+    const Vector3d centre = middle_of(contacts);
+    NormalEquations planes;
+    NormalEquations openings;
+    for (const Contact& contact : contacts) {
+      const bool plane = contact.source_plane >= 0;
+      const double sigma = plane ? std::hypot(contact.sigma_m, plane_sigma_m) : contact.sigma_m;
+      (plane ? planes : openings)
+          .add(row_of(contact, centre), contact.residual_m,
+               robust_weight(contact.residual_m, contact.gate_m) / (sigma * sigma));
+    }
+    const NormalEquations held = without_weak(planes);
+    const Matrix6d normal = held.normal + openings.normal;
+    const double damping = 1e-9 * normal.trace();
+    const Vector6d step = (normal + damping * Matrix6d::Identity()).ldlt().solve(held.right + openings.right);
+    const Rigid3 move{rotation_exp(step.head<3>()), Vector3d::Zero()};
+    Rigid3& pose = refined.target_from_source;
+    pose.rotation = nearest_rotation(move.rotation * pose.rotation);
+    pose.translation = move.rotation * (pose.translation - centre) + centre + step.tail<3>();
+  }
+
+  /// What the tiles of one pair of planes say together.
+  struct PairSums {
+    Matrix6d information = Matrix6d::Zero();
+    Vector6d shared = Vector6d::Zero();  // sum of weight times row: how a common offset of the pair acts
+    double weight = 0.0;
+    double weighted_residual = 0.0;
+    double area_m2 = 0.0;
+    double distance = 0.0;  // area times distance
+    int tiles = 0;
+  };
+
+  /// Deviation common to all tiles of a pair of planes: the planes' own errors, a scanner's drift. Taken from
+  /// how the pairs' mean residuals scatter, not less than a tenth of the noise, or than builders err.
+  [[nodiscard]] double pair_offset_m(const std::map<std::pair<int, int>, PairSums>& pairs) const {
+    double squares = 0.0;
+    double areas = 0.0;
+    for (const auto& [key, pair] : pairs) {
+      const double mean = pair.weighted_residual / pair.weight;
+      squares += pair.area_m2 * mean * mean;
+      areas += pair.area_m2;
+    }
+    const auto count = static_cast<double>(pairs.size());
+    const double freedoms = count / std::max(1.0, count - 3.0);
+    const double noise = std::max(source_.features->noise_m, target_.features->noise_m);
+    const double least = source_.model || target_.model ? kBuiltM : 0.1 * noise;
+    return std::max(std::sqrt(freedoms * squares / areas), least);
+  }
+
+  void summarise(RefinedPose& refined) const {
+    const Contacts found = find_contacts(source_, target_, refined.target_from_source,
+                                         {options_.last_gate_m, options_.last_opening_gate_m}, options_);
+    refined.openings = found.openings;
+    if (found.all.empty()) return;
+    refined.centre = middle_of(found.all);
+    std::vector<Contact> contacts;
+    std::vector<Contact> others;
+    for (const Contact& contact : found.all)
+      (contact.source_plane >= 0 ? contacts : others).push_back(contact);
+    refined.matched_tiles = static_cast<int>(contacts.size());
+    add_openings(others, refined);
+    if (!contacts.empty()) add_planes(contacts, refined);
+    move_centre(refined);
+  }
+
+  /// Moves `centre` to the point whose place is known best: there turns and shifts hardly depend on each
+  /// other, so that a far-off patch of ground does not make a well-held shift look open.
+  static void move_centre(RefinedPose& refined) {
+    const Matrix6d covariance = covariance_of(refined);
+    const Matrix3d turns = covariance.topLeftCorner<3, 3>();
+    const Matrix3d mixed = covariance.bottomLeftCorner<3, 3>();  // shifts by turns
+    // The mean square of shift + turn x c is least at:
+    const Vector3d twist(mixed(1, 2) - mixed(2, 1), mixed(2, 0) - mixed(0, 2), mixed(0, 1) - mixed(1, 0));
+    const Matrix3d square = turns.trace() * Matrix3d::Identity() - turns;
+    Vector3d c = -square.ldlt().solve(twist);
+    if (!c.allFinite()) return;
+    if (c.norm() > kMaxCentreM) c *= kMaxCentreM / c.norm();
+    Matrix6d move = Matrix6d::Identity();
+    move.bottomLeftCorner<3, 3>() << 0, -c.z(), c.y(), c.z(), 0, -c.x(), -c.y(), c.x(), 0;
+    refined.information = move.transpose() * refined.information * move;
+    refined.geometry_m2 = move.transpose() * refined.geometry_m2 * move;
+    refined.centre += c;
+  }
+
+  /// What openings and faces of walls hold, each on its own deviation; more where they disagree among
+  /// themselves.
+  static void add_openings(const std::vector<Contact>& contacts, RefinedPose& refined) {
+    double squares = 0.0;
+    for (const Contact& contact : contacts)
+      squares += std::pow(std::min(3.0, std::abs(contact.residual_m) / contact.sigma_m), 2);
+    const double factor =
+        std::max(1.0, squares / std::max<double>(1.0, static_cast<double>(contacts.size()) - 3.0));
+    for (const Contact& contact : contacts) {
+      const Vector6d row = row_of(contact, refined.centre);
+      refined.information += row * row.transpose() / (factor * contact.sigma_m * contact.sigma_m);
+      refined.geometry_m2 += contact.area_m2 * row * row.transpose();
+    }
+  }
+
+  /// What the tiles of matched planes hold.
+  void add_planes(const std::vector<Contact>& contacts, RefinedPose& refined) const {
+    double sum = 0.0;
+    double weights = 0.0;
+    std::map<std::pair<int, int>, PairSums> pairs;
+    for (const Contact& contact : contacts) {
+      // Each piece of surface is met twice, once from either scan.
+      const double weight = 0.5 / (contact.sigma_m * contact.sigma_m);
+      const Vector6d row = row_of(contact, refined.centre);
+      PairSums& pair = pairs[{contact.source_plane, contact.target_plane}];
+      pair.information += weight * row * row.transpose();
+      pair.shared += weight * row;
+      pair.weight += weight;
+      pair.weighted_residual += weight * contact.residual_m;
+      pair.area_m2 += 0.5 * contact.area_m2;
+      pair.distance += 0.5 * contact.area_m2 * -contact.residual_m;
+      ++pair.tiles;
+      refined.geometry_m2 += 0.5 * contact.area_m2 * row * row.transpose();
+      sum += weight * contact.residual_m * contact.residual_m;
+      weights += weight;
+    }
+    refined.rms_m = std::sqrt(sum / weights);
+    // The residuals themselves say how good the weights were.
+    const double factor =
+        std::max(sum / std::max(1.0, 0.5 * static_cast<double>(contacts.size()) - 6.0), 1e-6);
+    const double offset = pair_offset_m(pairs);
+    for (const auto& [key, pair] : pairs) {
+      // A common offset of unknown size takes its share of what the pair says about shifts along its normal.
+      const double offset_weight = offset * offset / (1.0 + offset * offset * pair.weight / factor);
+      refined.information += pair.information / factor -
+                             offset_weight * pair.shared * pair.shared.transpose() / (factor * factor);
+    }
+    for (const auto& [key, pair] : pairs) {
+      if (pair.tiles < 2) continue;
+      const Vector3d turned = refined.target_from_source.rotation *
+                              source_.features->planes[static_cast<std::size_t>(key.first)].plane.normal;
+      const double cosine =
+          std::abs(turned.dot(target_.features->planes[static_cast<std::size_t>(key.second)].plane.normal));
+      refined.matches.push_back({key.first, key.second, pair.distance / pair.area_m2,
+                                 std::acos(std::min(1.0, cosine)), pair.area_m2});
+    }
+    std::stable_sort(refined.matches.begin(), refined.matches.end(),
+                     [](const PlaneMatch& a, const PlaneMatch& b) { return a.overlap_m2 > b.overlap_m2; });
+  }
+
+  const ScanView& source_;
+  const ScanView& target_;
+  const RefineOptions& options_;
+};
+
+}  // namespace
+
+void RefineOptions::check() const {
+  if (!(last_gate_m > 0)) throw_bad_option("last_gate_m", last_gate_m, "more than 0");
+  if (!(first_gate_m >= last_gate_m)) throw_bad_option("first_gate_m", first_gate_m, "at least last_gate_m");
+  if (rounds < 0) throw_bad_option("rounds", rounds, "0 or more");
+  if (!(flatness_m >= 0)) throw_bad_option("flatness_m", flatness_m, "0 or more");
+}
+
+Matrix6d covariance_of(const RefinedPose& pose) {
+  const Matrix6d damped = pose.information + 1e-6 * Matrix6d::Identity();
+  return damped.inverse();
+}
+
+RefinedPose refine_pose(const ScanView& source, const ScanView& target, const Rigid3& start,
+                        const RefineOptions& options) {
+  options.check();
+  return Refiner(source, target, options).run(start);
+}
+
+}  // namespace limen

@@ -1,0 +1,60 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include "limen/report/deviation/deviation_report.h"
+
+namespace limen {
+namespace {
+
+/// A field, quoted where it must be.
+std::string field(std::string_view text) {
+  if (text.find_first_of(",\"\r\n") == std::string_view::npos) return std::string(text);
+  std::string quoted = "\"";
+  for (const char c : text) {
+    if (c == '"') quoted += '"';
+    quoted += c;
+  }
+  return quoted + '"';
+}
+
+std::string directions(const std::vector<Vector3d>& open) {
+  std::string text;
+  for (const Vector3d& d : open)
+    text += fmt::format("{}({:.2f} {:.2f} {:.2f})", text.empty() ? "" : " ", d.x(), d.y(), d.z());
+  return text;
+}
+
+/// The figures of an element that points lie on.
+std::string figures(const ElementDeviation& it) {
+  if (it.points == 0) return ",,,,,,,,,,,,";
+  const ElementShift& shift = it.shift;
+  std::string text =
+      fmt::format("{:.5f},{:.5f},{:.5f},{:.5f},", it.median_m, it.mean_m, it.sigma_m, it.p95_m);
+  text += it.loa > 0 ? fmt::format("LOA{},", it.loa) : ",";
+  for (Eigen::Index k = 0; k < 3; ++k) text += fmt::format("{:.5f},", shift.shift_m[k] + 0.0);
+  for (Eigen::Index k = 0; k < 3; ++k) text += fmt::format("{:.5f},", shift.sigma_m[k]);
+  return text + fmt::format("{},{}", shift.held, directions(shift.open));
+}
+
+}  // namespace
+
+std::string deviation_csv(const DeviationReport& report, const BimModel& model) {
+  std::string text =
+      "element,kind,type,guid,name,storey,presence,points,area_m2,covered_m2,passed_m2,covered_share,"
+      "median_m,mean_m,sigma_m,p95_m,loa,shift_x_m,shift_y_m,shift_z_m,shift_sigma_x_m,shift_sigma_y_m,"
+      "shift_sigma_z_m,shift_held,shift_open\r\n";
+  for (const ElementDeviation& it : report.deviation.elements) {
+    const BimElement& element = model.elements[static_cast<std::size_t>(it.element)];
+    text += fmt::format("{},{},{},{},{},{},{},{},", it.element, to_string(element.kind), field(element.type),
+                        field(element.guid), field(element.name), field(element.storey),
+                        to_string(it.presence), it.points);
+    text += fmt::format("{:.4f},{:.4f},{:.4f},{:.4f},{}\r\n", it.area_m2, it.covered_m2, it.passed_m2,
+                        it.covered_share, figures(it));
+  }
+  return text;
+}
+
+}  // namespace limen

@@ -1,0 +1,222 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/report/html/html_data.h"
+
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "limen/geometry/polygon_clip.h"
+#include "limen/report/html/html_bytes.h"
+#include "limen/report/html/html_residuals.h"
+#include "limen/report/html/html_words.h"
+#include "limen/report/json/json_values.h"
+
+namespace limen {
+namespace {
+
+constexpr std::size_t kMostCorners = 30000;  // of outlines, per side
+constexpr std::size_t kMostSegments = 20000;
+constexpr std::size_t kMostPoses = 200;
+
+/// Tenths of a millimetre are enough to draw.
+double rounded(double metres) {
+  return std::round(1e4 * metres) / 1e4 + 0.0;
+}
+
+void append(Json& list, const Vector3d& x) {
+  for (Eigen::Index axis = 0; axis < 3; ++axis) list.push_back(rounded(x[axis]));
+}
+
+Json flat(const Ring& ring) {
+  Json list = Json::array();
+  for (const Vector2d& p : ring) {
+    list.push_back(rounded(p.x()));
+    list.push_back(rounded(p.y()));
+  }
+  return list;
+}
+
+std::size_t corners_of(const std::vector<std::vector<Polygon>>& outlines) {
+  std::size_t count = 0;
+  for (const std::vector<Polygon>& parts : outlines) {
+    for (const Polygon& part : parts) {
+      count += part.outer.size();
+      for (const Ring& hole : part.holes) count += hole.size();
+    }
+  }
+  return count;
+}
+
+/// Outlines as fine as the page has room for.
+std::vector<std::vector<Polygon>> outlines_of(const Features& features) {
+  std::vector<std::vector<Polygon>> outlines;
+  for (const PlanarPolygon& plane : features.planes) outlines.push_back(plane.parts);
+  for (double tolerance = 0.01; corners_of(outlines) > kMostCorners && tolerance < 1.0; tolerance *= 2.0) {
+    for (std::vector<Polygon>& parts : outlines) parts = simplified(parts, tolerance);
+  }
+  return outlines;
+}
+
+Json planes_json(const Features& features) {
+  Json list = Json::array();
+  const std::vector<std::vector<Polygon>> outlines = outlines_of(features);
+  for (std::size_t k = 0; k < features.planes.size(); ++k) {
+    const PlanarPolygon& plane = features.planes[k];
+    Json parts = Json::array();
+    for (const Polygon& part : outlines[k]) {
+      Json rings = Json::array({flat(part.outer)});
+      for (const Ring& hole : part.holes) rings.push_back(flat(hole));
+      parts.push_back(std::move(rings));
+    }
+    list.push_back({{"o", json_of(plane.frame.origin)},
+                    {"u", json_of(plane.frame.u)},
+                    {"v", json_of(plane.frame.v)},
+                    {"n", json_of(plane.plane.normal)},
+                    {"d", plane.plane.offset},
+                    {"facing", plane.oriented},
+                    {"area", plane.area_m2},
+                    {"rms", plane.rms_m},
+                    {"parts", std::move(parts)}});
+  }
+  return list;
+}
+
+Json openings_json(const Features& features) {
+  Json list = Json::array();
+  for (const Opening& opening : features.openings) {
+    Json corners = Json::array();
+    if (opening.outline.size() > 2) {
+      for (const Vector3d& corner : opening.outline) append(corners, corner);
+    } else {
+      for (const Vector3d& corner : opening.corners) append(corners, corner);
+    }
+    list.push_back(std::move(corners));
+  }
+  return list;
+}
+
+Json segments_json(const Features& features) {
+  Json list = Json::array();
+  for (std::size_t k = 0; k < features.segments.size() && k < kMostSegments; ++k) {
+    append(list, features.segments[k].a);
+    append(list, features.segments[k].b);
+  }
+  return list;
+}
+
+Json side_json(const InputSummary& input, const SceneSide& side, const QuantisedPoints& points) {
+  return {{"name", file_name(input)},
+          {"origin", json_of(side.origin)},
+          {"low", json_of(points.low)},
+          {"step", json_of(points.step)},
+          {"count", side.points.empty() ? 3 * side.faces.size() : side.points.size()},
+          {"shape", !side.points.empty() ? "points"
+                    : side.faces.empty() ? "none"
+                                         : "faces"},
+          {"planes", planes_json(side.pictured.features)},
+          {"openings", openings_json(side.pictured.features)},
+          {"segments", segments_json(side.pictured.features)}};
+}
+
+Json pose_json(const Hypothesis& pose, const ReportScene& scene) {
+  const Rigid3 local = to_local(pose.target_from_source, scene.source.origin, scene.target.origin);
+  return {{"matrix", json_of(to_matrix(local))},
+          {"text", transform_text(pose.target_from_source)},
+          {"agreeing", pose.agreeing_m2},
+          {"contradicted", pose.contradicted_m2},
+          {"rms", pose.rms_m},
+          {"segments", pose.matched_segments},
+          {"length", pose.agreeing_length_m},
+          {"room", pose.room}};
+}
+
+Json poses_json(const RegistrationResult& result, const ReportScene& scene) {
+  Json list = Json::array();
+  if (result.outcome == Outcome::no_match) return list;
+  list.push_back(pose_json(result.best, scene));
+  for (const Hypothesis& pose : result.alternatives) {
+    if (list.size() == kMostPoses) break;
+    list.push_back(pose_json(pose, scene));
+  }
+  return list;
+}
+
+Json open_json(const RegistrationResult& result) {
+  Json list = Json::array();
+  for (const UnobservedFreedom& freedom : result.unobserved)
+    list.push_back({{"rotation", freedom.rotation}, {"direction", json_of(freedom.direction)}});
+  return list;
+}
+
+Json matches_json(const RegistrationResult& result) {
+  Json list = Json::array();
+  for (const PlaneMatch& match : result.matches)
+    list.push_back({match.source, match.target, match.distance_m});
+  return list;
+}
+
+std::string element(const char* type, const std::string& id, const std::string& content) {
+  return fmt::format("<script type=\"{}\" id=\"{}\">{}</script>\n", type, id, content);
+}
+
+std::string blob(const std::string& id, const std::vector<std::uint8_t>& bytes) {
+  if (bytes.empty()) return {};
+  return element("text/plain", id, base64(bytes));
+}
+
+/// JSON that cannot end the element it stands in, nor open a comment there.
+std::string json_element(const Json& json) {
+  std::string safe;
+  for (const char c : json.dump(-1, ' ', false, Json::error_handler_t::replace)) {
+    if (c == '<') {
+      safe += "\\u003c";
+    } else {
+      safe += c;
+    }
+  }
+  return element("application/json", "scene", safe);
+}
+
+std::string side_blobs(const std::string& name, const SceneSide& side, const QuantisedPoints& points,
+                       const std::vector<std::uint8_t>& planes) {
+  std::string text = blob(name + "-points", bytes_of(points.numbers));
+  text += blob(name + "-planes", planes);
+  if (!side.colours.empty()) return text + blob(name + "-colours", bytes_of(packed_colours(side.colours)));
+  return text + blob(name + "-intensities", stretched(side.intensities));
+}
+
+}  // namespace
+
+std::string scene_elements(const RegistrationReport& report, const ReportScene& scene,
+                           const SceneView& view) {
+  const RegistrationResult& result = report.result;
+  const auto quantised = [](const SceneSide& side) {
+    return side.points.empty() ? quantise(side.faces) : quantise(side.points);
+  };
+  const QuantisedPoints source = quantised(scene.source);
+  const QuantisedPoints target = quantised(scene.target);
+  const std::vector<std::uint8_t> source_planes = plane_of_points(scene.source);
+  Json json = {{"source", side_json(report.source, scene.source, source)},
+               {"target", side_json(report.target, scene.target, target)},
+               {"axes", Json::array()},
+               {"low", json_of(view.low)},
+               {"high", json_of(view.high)},
+               {"cut", json_of(view.cut)},
+               {"beside", json_of(to_matrix(view.target_from_source))},
+               {"poses", poses_json(result, scene)},
+               {"open", open_json(result)},
+               {"matches", matches_json(result)}};
+  for (Eigen::Index k = 0; k < 3; ++k)
+    json["axes"].push_back(json_of(Vector3d(view.view_from_target.row(k).transpose())));
+  std::string blobs = side_blobs("source", scene.source, source, source_planes) +
+                      side_blobs("target", scene.target, target, plane_of_points(scene.target));
+  if (view.matched && !result.matches.empty()) {
+    const PointResiduals residuals = point_residuals(scene, result, source_planes);
+    json["residual_range"] = residuals.range_m;
+    blobs += blob("source-residuals", residuals.values);
+  }
+  return json_element(json) + blobs;
+}
+
+}  // namespace limen

@@ -1,0 +1,131 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/report/html/html_report.h"
+
+#include <map>
+
+#include <fmt/format.h>
+
+#include "limen/base/atomic_file.h"
+#include "limen/base/version.h"
+#include "limen/report/html/html_bytes.h"
+#include "limen/report/html/html_data.h"
+#include "limen/report/html/html_tables.h"
+#include "limen/report/html/html_words.h"
+#include "limen/report/html/report_page.h"
+#include "limen/report/html/section_svg.h"
+
+namespace limen {
+namespace {
+
+using Parts = std::map<std::string, std::string>;
+
+/// `pattern` with every {{name}} replaced by the part of that name, in one pass: what a part holds is never
+/// looked into.
+std::string filled_in(std::string_view pattern, const Parts& parts) {
+  std::string text;
+  std::size_t at = 0;
+  while (true) {
+    const std::size_t open = pattern.find("{{", at);
+    const std::size_t close = open == std::string_view::npos ? open : pattern.find("}}", open);
+    if (close == std::string_view::npos) break;
+    text += pattern.substr(at, open - at);
+    const auto part = parts.find(std::string(pattern.substr(open + 2, close - open - 2)));
+    if (part != parts.end()) text += part->second;
+    at = close + 2;
+  }
+  return text.append(pattern.substr(at));
+}
+
+/// A heading with what follows, or nothing where nothing follows. `kept`: on the printed sheet too.
+std::string section(const char* heading, const std::string& content, const char* remark = "",
+                    bool kept = false) {
+  if (content.empty()) return {};
+  const std::string note = *remark == '\0' ? "" : fmt::format("<p class=\"note\">{}</p>\n", remark);
+  return fmt::format("<section class=\"card{}\"><h2>{}</h2>\n{}{}</section>\n", kept ? " keep" : "", heading,
+                     content, note);
+}
+
+std::string sentences(const VerdictWords& words) {
+  std::string text;
+  for (const std::string& sentence : words.sentences) text += "<p>" + escaped(sentence) + "</p>\n";
+  if (!words.reason.empty()) text += "<p class=\"reason\">" + escaped(words.reason) + ".</p>\n";
+  return text;
+}
+
+std::string agreement(const RegistrationReport& report) {
+  std::string text = section("Planes that agree", planes_table(report),
+                             "Distance along the target plane's normal at the middle of the overlap.");
+  text += section("Openings that agree", openings_table(report));
+  return text + section("Walls between the scans", thickness_table(report));
+}
+
+std::string tables(const RegistrationReport& report) {
+  std::string text =
+      section("How well each freedom is held", sigma_table(report),
+              "Shifts are of the point known best, turns of the whole; both in the target's frame.", true);
+  text += section("Key numbers", key_table(report), "", true);
+  text += section("Poses", alternatives_table(report),
+                  "The best first; each is another place, not a finer version of the best.");
+  if (report.result.outcome != Outcome::no_match) text += agreement(report);
+  text += section("Inputs", inputs_table(report));
+  text += section("Time", stages_table(report));
+  return text + section("How it was run", options_table(report));
+}
+
+std::string matrix_card(const RegistrationReport& report) {
+  if (report.result.outcome == Outcome::no_match) return {};
+  return section("Transform, source to target",
+                 "<pre id=\"matrix\" tabindex=\"0\" aria-label=\"4 by 4 matrix, metres\">" +
+                     transform_text(report.result.best.target_from_source) +
+                     "</pre>\n<button type=\"button\" id=\"copy\">Copy</button> "
+                     "<span id=\"copied\" role=\"status\"></span>\n"
+                     "<p class=\"note\" id=\"matrix-pose\">The best pose, as in transform.txt.</p>\n",
+                 "Four rows of four, metres.");
+}
+
+}  // namespace
+
+ReportPages report_pages(const RegistrationReport& report, const ReportScene& scene) {
+  const SceneView view = make_view(scene, report.result);
+  ReportPages pages;
+  pages.top = section_svg(scene, view, SectionSide::top);
+  pages.front = section_svg(scene, view, SectionSide::front);
+  pages.side = section_svg(scene, view, SectionSide::side);
+  const VerdictWords words = verdict_words(report);
+  const Parts parts = {{"title", escaped(words.headline)},
+                       {"outcome", to_string(report.result.outcome)},
+                       {"symbol", words.symbol},
+                       {"headline", escaped(words.headline)},
+                       {"sentences", sentences(words)},
+                       {"source", escaped(report.source.path)},
+                       {"target", escaped(report.target.path)},
+                       {"key", key_table(report)},
+                       {"sigma", sigma_table(report)},
+                       {"tables", tables(report) + matrix_card(report)},
+                       {"top", pages.top},
+                       {"front", pages.front},
+                       {"side", pages.side},
+                       {"version", kVersion},
+                       {"style", std::string(report_style())},
+                       {"script", std::string(report_script())},
+                       {"scene", scene_elements(report, scene, view)}};
+  pages.page = filled_in(report_pattern(), parts);
+  return pages;
+}
+
+void write_report(const std::filesystem::path& folder, const RegistrationReport& report,
+                  const ReportScene& scene) {
+  const ReportPages pages = report_pages(report, scene);
+  write_file(folder / "section_top.svg", pages.top);
+  write_file(folder / "section_front.svg", pages.front);
+  write_file(folder / "section_side.svg", pages.side);
+  write_file(folder / "report.html", pages.page);
+}
+
+void remove_report(const std::filesystem::path& folder) {
+  for (const char* name : {"report.html", "section_top.svg", "section_front.svg", "section_side.svg"})
+    std::filesystem::remove(folder / name);
+}
+
+}  // namespace limen

@@ -1,0 +1,30 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "limen/report/html/html_scene.h"
+#include "limen/report/json/result_json.h"
+
+namespace limen {
+
+/// What a reader opens of one registration: a page that needs nothing but itself, and its three sections.
+struct ReportPages {
+  std::string page;  ///< HTML
+  std::string top;   ///< SVG
+  std::string front;
+  std::string side;
+};
+ReportPages report_pages(const RegistrationReport& report, const ReportScene& scene);
+
+/// Writes report.html, section_top.svg, section_front.svg and section_side.svg into `folder`. Throws Error
+/// where that fails.
+void write_report(const std::filesystem::path& folder, const RegistrationReport& report,
+                  const ReportScene& scene);
+
+/// Removes what an earlier run left of them.
+void remove_report(const std::filesystem::path& folder);
+
+}  // namespace limen

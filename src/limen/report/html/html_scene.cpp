@@ -1,0 +1,142 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/report/html/html_scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "limen/base/error.h"
+#include "limen/base/random.h"
+#include "limen/geometry/cell_key.h"
+#include "limen/geometry/triangulate.h"
+
+namespace limen {
+namespace {
+
+constexpr double kFirstCellM = 0.01;
+constexpr double kLeastGrowth = 1.15;  // of the cells from try to try
+constexpr double kMostGrowth = 2.0;
+
+/// A set of cells, open addressing: asked a million times per scan.
+class CellSet {
+ public:
+  explicit CellSet(std::size_t members) {
+    std::size_t size = 1024;
+    while (size < 2 * members) size *= 2;
+    slots_.assign(size, -1);
+  }
+  /// Whether the cell was new.
+  bool insert(std::int64_t cell) {
+    std::size_t slot = mix64(static_cast<std::uint64_t>(cell)) & (slots_.size() - 1);
+    while (slots_[slot] != -1) {
+      if (slots_[slot] == cell) return false;
+      slot = (slot + 1) & (slots_.size() - 1);
+    }
+    slots_[slot] = cell;
+    return true;
+  }
+
+ private:
+  std::vector<std::int64_t> slots_;
+};
+
+void add_points(const RegisterInput& input, std::size_t most, SceneSide& side) {
+  struct Origin {
+    const Scan* scan;
+    std::size_t index;
+  };
+  std::size_t total = 0;
+  for (const PlacedScan& one : input.scans) total += one.scan.size();
+  // Far more points than are wanted: every n-th first, for the grid's sake.
+  const std::size_t stride = std::max<std::size_t>(1, total / (3 * std::max<std::size_t>(most, 1)));
+  std::vector<Vector3d> points;
+  std::vector<Origin> origins;
+  bool coloured = total > 0;
+  bool measured = total > 0;
+  for (const PlacedScan& one : input.scans) {
+    const Scan& scan = one.scan;
+    const Rigid3 side_from_scan = to_local(one.group_from_scan, scan.local_origin, side.origin);
+    coloured = coloured && (scan.size() == 0 || !scan.colours.empty());
+    measured = measured && (scan.size() == 0 || !scan.intensities.empty());
+    for (std::size_t i = 0; i < scan.size(); i += stride) {
+      points.push_back(side_from_scan * scan.points[i]);
+      origins.push_back({&scan, i});
+    }
+  }
+  for (const std::uint32_t kept : spread_evenly(points, most)) {
+    const Origin& from = origins[kept];
+    side.points.push_back(points[kept]);
+    for (std::size_t c = 0; coloured && c < 3; ++c)
+      side.colours.push_back(from.scan->colours[3 * from.index + c]);
+    if (measured) side.intensities.push_back(from.scan->intensities[from.index]);
+  }
+}
+
+void add_faces(const BimModel& model, std::size_t most, SceneSide& side) {
+  std::vector<std::uint32_t> order(model.faces.size());
+  std::iota(order.begin(), order.end(), 0U);
+  std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return model.faces[a].area_m2 > model.faces[b].area_m2;
+  });
+  const Vector3d shift = model.local_origin - side.origin;
+  for (const std::uint32_t index : order) {
+    const BimFace& face = model.faces[index];
+    for (const Triangle2& piece : triangulate(face.outline)) {
+      if (side.faces.size() == most) return;
+      side.faces.push_back({shift + face.frame.to_space(piece[0]), shift + face.frame.to_space(piece[1]),
+                            shift + face.frame.to_space(piece[2])});
+    }
+  }
+}
+
+SceneSide make_side(const PicturedSide& pictured) {
+  SceneSide side;
+  side.origin = pictured.features.local_origin;
+  side.pictured = pictured;
+  return side;
+}
+
+SceneSide make_side(const RegisterInput& input, const PicturedSide& pictured,
+                    const ReportSceneOptions& options) {
+  SceneSide side = make_side(pictured);
+  if (input.model) {
+    add_faces(*input.model, options.max_faces, side);
+  } else {
+    add_points(input, options.max_points, side);
+  }
+  return side;
+}
+
+}  // namespace
+
+void ReportSceneOptions::check() const {
+  if (max_points < 1) throw_bad_option("max_points", static_cast<double>(max_points), "1 or more");
+}
+
+std::vector<std::uint32_t> spread_evenly(const std::vector<Vector3d>& points, std::size_t most) {
+  std::vector<std::uint32_t> kept(points.size());
+  std::iota(kept.begin(), kept.end(), 0U);
+  double cell = kFirstCellM;
+  while (kept.size() > most) {
+    CellSet cells(kept.size());
+    std::erase_if(kept, [&](std::uint32_t i) { return !cells.insert(cell_key(cell_of(points[i], cell))); });
+    // The number of points on surfaces falls with the square of the cells' width.
+    const double excess =
+        static_cast<double>(kept.size()) / static_cast<double>(std::max<std::size_t>(most, 1));
+    cell *= std::clamp(std::sqrt(excess), kLeastGrowth, kMostGrowth);
+  }
+  return kept;
+}
+
+ReportScene make_scene(const RegisterInput& source, const RegisterInput& target,
+                       const RegistrationPicture& picture, const ReportSceneOptions& options) {
+  options.check();
+  return {make_side(source, picture.source, options), make_side(target, picture.target, options)};
+}
+
+ReportScene make_scene(const RegistrationPicture& picture) {
+  return {make_side(picture.source), make_side(picture.target)};
+}
+
+}  // namespace limen

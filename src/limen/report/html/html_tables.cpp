@@ -1,0 +1,250 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/report/html/html_tables.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "limen/base/angles.h"
+#include "limen/base/version.h"
+#include "limen/report/html/html_bytes.h"
+#include "limen/report/html/html_words.h"
+
+namespace limen {
+namespace {
+
+constexpr std::size_t kMostRows = 200;
+
+std::string cell(const std::string& text, const char* tag = "td", const char* attributes = "") {
+  return fmt::format("<{0}{1}>{2}</{0}>", tag, attributes, text);
+}
+
+std::string row(const std::string& head, const std::string& value) {
+  return "<tr>" + cell(head, "th", " scope=\"row\"") + cell(value) + "</tr>\n";
+}
+
+/// A table with a head line; rows are ready HTML.
+std::string table(const std::vector<std::string>& heads, const std::string& rows, const char* id) {
+  std::string text = fmt::format("<div class=\"scroll\"><table id=\"{}\"><thead><tr>", id);
+  for (const std::string& head : heads) text += cell(head, "th", " scope=\"col\"");
+  return text + "</tr></thead><tbody>\n" + rows + "</tbody></table></div>\n";
+}
+
+std::string facts(const std::string& rows, const char* id) {
+  return fmt::format("<table class=\"facts\" id=\"{}\"><tbody>\n{}</tbody></table>\n", id, rows);
+}
+
+std::string area_words(double area_m2) {
+  return fmt::format("{:.1f} m²", area_m2);
+}
+
+bool found(const RegistrationReport& report) {
+  return report.result.outcome != Outcome::no_match;
+}
+
+std::string evidence_rows(const Hypothesis& pose) {
+  std::string rows;
+  if (pose.matched_segments > 0) {
+    rows += row("Segments in common",
+                fmt::format("{} with {:.1f} m", pose.matched_segments, pose.agreeing_length_m));
+    return rows + row("Residual (root mean square)", length_words(pose.rms_m));
+  }
+  rows += row("Overlap: surface that agrees", area_words(pose.agreeing_m2));
+  rows += row("Overlap: surface contradicted", area_words(pose.contradicted_m2));
+  rows += row("Residual (root mean square)", length_words(pose.rms_m));
+  rows += row("Planes matched", fmt::format("{}", pose.matched_planes));
+  rows += row("Openings matched", fmt::format("{}", pose.matched_openings));
+  if (pose.explained_share)
+    rows +=
+        row("Walls of the scan found in the model", fmt::format("{:.0f} %", 100.0 * *pose.explained_share));
+  return rows;
+}
+
+std::string size_of(const InputSummary& input) {
+  if (input.kind == "scan") return fmt::format("{} points", input.points);
+  return fmt::format("{} {}", input.elements, input.kind == "model" ? "elements" : "segments");
+}
+
+std::string hash_of(const std::string& sha256) {
+  if (sha256.empty()) return "—";
+  return "<code class=\"hash\">" + sha256 + "</code>";
+}
+
+std::string input_row(const char* side, const InputSummary& input) {
+  const Vector3d extent = input.high - input.low;
+  std::string path = escaped(input.path);
+  for (const std::string& with : input.with) path += "<br>with " + escaped(with);
+  std::string kind = input.kind == "scan" ? (input.mobile ? "mobile scan" : "static scan") : input.kind;
+  if (input.kind == "scan" && !input.centre_known) kind = "scan, station unknown";
+  return "<tr>" + cell(side, "th", " scope=\"row\"") + cell(path) + cell(kind) + cell(size_of(input)) +
+         cell(fmt::format("{:.1f} × {:.1f} × {:.1f} m", extent.x(), extent.y(), extent.z())) +
+         cell(hash_of(input.sha256)) + "</tr>\n";
+}
+
+}  // namespace
+
+std::string key_table(const RegistrationReport& report) {
+  const RegistrationResult& result = report.result;
+  std::string rows = row("Source", escaped(file_name(report.source)) + ", " + size_of(report.source));
+  rows += row("Target", escaped(file_name(report.target)) + ", " + size_of(report.target));
+  if (!found(report)) return facts(rows, "key");
+  if (!result.best.room.empty()) rows += row("Room", escaped(result.best.room));
+  rows += evidence_rows(result.best);
+  for (const MeasuredThickness& wall : result.thickness) {
+    if (wall.sigma_m > 0.1) continue;
+    rows += row("Wall thickness", fmt::format("{:.3f} m ± {}", wall.value_m, length_words(wall.sigma_m)));
+    break;
+  }
+  if (!result.alternatives.empty())
+    rows += row("Other poses looked at", fmt::format("{}", result.alternatives.size()));
+  return facts(rows, "key");
+}
+
+std::string sigma_table(const RegistrationReport& report) {
+  if (!found(report)) return {};
+  const RegistrationResult& result = report.result;
+  const Rigid3& pose = result.best.target_from_source;
+  const Vector3d turn = rotation_log(pose.rotation);
+  // Of the point that is known best: far from it the smallest turn is a long way.
+  const Vector3d shift = result.sigma.centre - inverse(pose) * result.sigma.centre;
+  std::string rows;
+  static constexpr const char* kAxes[] = {"x", "y", "z"};
+  for (int axis = 0; axis < 3; ++axis) {
+    const bool open = is_open(result, false, axis);
+    rows += "<tr>" + cell(fmt::format("Shift along {}", kAxes[axis]), "th", " scope=\"row\"") +
+            cell(fmt::format("{:.4f} m", shift[axis])) +
+            cell(open ? "◇ not held by the data" : "± " + length_words(result.sigma.translation_m[axis])) +
+            "</tr>\n";
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    const bool open = is_open(result, true, axis);
+    rows += "<tr>" + cell(fmt::format("Turn about {}", kAxes[axis]), "th", " scope=\"row\"") +
+            cell(fmt::format("{:.4f}°", degrees(turn[axis]))) +
+            cell(open ? "◇ not held by the data" : "± " + angle_words(result.sigma.rotation_rad[axis])) +
+            "</tr>\n";
+  }
+  return table({"Freedom", "Value", "Standard deviation"}, rows, "sigma");
+}
+
+std::string alternatives_table(const RegistrationReport& report) {
+  if (!found(report) || report.result.alternatives.empty()) return {};
+  std::vector<Hypothesis> poses = {report.result.best};
+  poses.insert(poses.end(), report.result.alternatives.begin(), report.result.alternatives.end());
+  const bool segments = report.result.best.matched_segments > 0;
+  std::string rows;
+  for (std::size_t k = 0; k < poses.size() && k < kMostRows; ++k) {
+    const Hypothesis& pose = poses[k];
+    const std::string name = k == 0 ? "Best" : fmt::format("Alternative {}", k);
+    rows += fmt::format("<tr data-pose=\"{}\">", k) +
+            cell(fmt::format("<button type=\"button\" class=\"link\" data-pose=\"{}\">{}</button>", k, name),
+                 "th", " scope=\"row\"");
+    if (segments) {
+      rows += cell(fmt::format("{}", pose.matched_segments)) +
+              cell(fmt::format("{:.1f} m", pose.agreeing_length_m));
+    } else {
+      rows += cell(area_words(pose.agreeing_m2)) + cell(area_words(pose.contradicted_m2));
+    }
+    // Poses that were never judged to the end have none.
+    rows += cell(pose.rms_m > 0 ? length_words(pose.rms_m) : "—") + cell(fmt::format("{:.1f}", pose.score)) +
+            cell(escaped(pose.room)) + "</tr>\n";
+  }
+  return table({"Pose", segments ? "Segments" : "Agrees", segments ? "Length" : "Contradicted", "Residual",
+                "Score", "Room"},
+               rows, "alternatives");
+}
+
+std::string planes_table(const RegistrationReport& report) {
+  std::vector<PlaneMatch> matches = report.result.matches;
+  if (matches.empty()) return {};
+  std::stable_sort(matches.begin(), matches.end(),
+                   [](const PlaneMatch& a, const PlaneMatch& b) { return a.overlap_m2 > b.overlap_m2; });
+  std::string rows;
+  for (std::size_t k = 0; k < matches.size() && k < kMostRows; ++k) {
+    const PlaneMatch& match = matches[k];
+    rows +=
+        fmt::format("<tr data-source-plane=\"{}\" data-target-plane=\"{}\">", match.source, match.target) +
+        cell(fmt::format("{} – {}", match.source, match.target), "th", " scope=\"row\"") +
+        cell(length_words(match.distance_m)) + cell(angle_words(match.angle_rad)) +
+        cell(area_words(match.overlap_m2)) + "</tr>\n";
+  }
+  return table({"Planes, source – target", "Distance", "Angle", "Overlap"}, rows, "planes");
+}
+
+std::string openings_table(const RegistrationReport& report) {
+  if (report.result.openings.empty()) return {};
+  std::string rows;
+  for (std::size_t k = 0; k < report.result.openings.size() && k < kMostRows; ++k) {
+    const MatchedOpenings& match = report.result.openings[k];
+    rows += "<tr>" + cell(fmt::format("{} – {}", match.source, match.target), "th", " scope=\"row\"") +
+            cell(length_words(match.shift_across_m)) + cell(length_words(match.shift_up_m)) + "</tr>\n";
+  }
+  return table({"Openings, source – target", "Apart, across", "Apart, upwards"}, rows, "openings");
+}
+
+std::string thickness_table(const RegistrationReport& report) {
+  std::string rows;
+  for (const MeasuredThickness& wall : report.result.thickness) {
+    const bool known = wall.sigma_m <= 0.1;
+    rows += "<tr>" +
+            cell(fmt::format("{} – {}", wall.source_plane, wall.target_plane), "th", " scope=\"row\"") +
+            cell(known ? fmt::format("{:.3f} m", wall.value_m) : "◇ not held by the data") +
+            cell(known ? "± " + length_words(wall.sigma_m) : "") + cell(fmt::format("{}", wall.openings)) +
+            "</tr>\n";
+  }
+  if (rows.empty()) return {};
+  return table({"Wall, source – target plane", "Thickness", "One standard deviation", "Openings"}, rows,
+               "thickness");
+}
+
+std::string inputs_table(const RegistrationReport& report) {
+  return table({"", "File", "Kind", "Holds", "Extent", "SHA-256"},
+               input_row("Source", report.source) + input_row("Target", report.target), "inputs");
+}
+
+std::string stages_table(const RegistrationReport& report) {
+  std::vector<StageTime> stages;
+  double total = 0.0;
+  for (const StageTime& stage : report.result.stages) {
+    const auto known = std::find_if(stages.begin(), stages.end(),
+                                    [&stage](const StageTime& one) { return one.name == stage.name; });
+    if (known == stages.end()) {
+      stages.push_back(stage);
+    } else {
+      known->seconds += stage.seconds;
+    }
+    total += stage.seconds;
+  }
+  if (stages.empty()) return {};
+  std::string rows;
+  for (const StageTime& stage : stages) {
+    const double share = total > 0 ? 100.0 * stage.seconds / total : 0.0;
+    rows += "<tr>" + cell(escaped(stage.name), "th", " scope=\"row\"") +
+            cell(fmt::format("{:.2f} s", stage.seconds)) +
+            cell(fmt::format("<span class=\"bar\" style=\"width:{:.1f}%\"></span>", share), "td",
+                 " class=\"bars\" aria-hidden=\"true\"") +
+            "</tr>\n";
+  }
+  rows += "<tr>" + cell("All", "th", " scope=\"row\"") + cell(fmt::format("{:.2f} s", total)) + cell("") +
+          "</tr>\n";
+  return table({"Stage", "Time", ""}, rows, "stages");
+}
+
+std::string options_table(const RegistrationReport& report) {
+  std::string rows = row("limen", kVersion) + row("seed", fmt::format("{}", report.seed));
+  for (const auto& [name, value] : report.options) {
+    const std::string text = std::visit(
+        [](const auto& plain) {
+          if constexpr (std::is_same_v<std::decay_t<decltype(plain)>, std::string>) {
+            return escaped(plain);
+          } else {
+            return fmt::format("{}", plain);
+          }
+        },
+        value);
+    rows += row(escaped(name), text);
+  }
+  return facts(rows, "options");
+}
+
+}  // namespace limen

@@ -1,0 +1,91 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/report/json/features_json.h"
+
+#include "limen/base/version.h"
+#include "limen/report/json/json_values.h"
+
+namespace limen {
+namespace {
+
+Json ring_json(const Ring& ring, const PlanarPolygon& polygon, const Vector3d& local_origin) {
+  Json points = Json::array();
+  for (const Vector2d& p : ring) {
+    const Vector3d x_in_world = local_origin + polygon.frame.to_space(p);
+    points.push_back(json_of(x_in_world));
+  }
+  return points;
+}
+
+Json outline_json(const Polygon& part, const PlanarPolygon& polygon, const Vector3d& local_origin) {
+  Json rings = Json::array();
+  rings.push_back(ring_json(part.outer, polygon, local_origin));
+  for (const Ring& hole : part.holes) rings.push_back(ring_json(hole, polygon, local_origin));
+  return rings;
+}
+
+Json plane_json(const PlanarPolygon& polygon, const Vector3d& local_origin) {
+  Json json;
+  json["normal"] = json_of(polygon.plane.normal);
+  json["offset"] = shifted(polygon.plane, -local_origin).offset;
+  json["inliers"] = polygon.inliers;
+  json["rms_m"] = polygon.rms_m;
+  json["area_m2"] = polygon.area_m2;
+  json["oriented"] = polygon.oriented;
+  Json parts = Json::array();
+  for (const Polygon& part : polygon.parts) parts.push_back(outline_json(part, polygon, local_origin));
+  json["outline"] = parts.empty() ? Json::array() : parts.front();
+  if (!parts.empty()) parts.erase(0);
+  json["parts"] = std::move(parts);
+  return json;
+}
+
+Json opening_json(const Opening& opening, const Vector3d& local_origin) {
+  Json json;
+  json["corners"] = Json::array();
+  for (const Vector3d& corner : opening.corners)
+    json["corners"].push_back(json_of(Vector3d(local_origin + corner)));
+  json["facade"] = opening.facade;
+  json["evidence"] = opening.evidence;
+  json["view"] = to_string(opening.view);
+  json["edge_sigma_m"] = opening.edge_sigma_m;
+  json["reveal_depth_m"] = opening.reveal_depth_m;
+  json["reveal_sigma_m"] = opening.reveal_sigma_m;
+  json["reveal_complete"] = opening.reveal_complete;
+  json["outline"] = Json::array();
+  for (const Vector3d& point : opening.outline)
+    json["outline"].push_back(json_of(Vector3d(local_origin + point)));
+  return json;
+}
+
+Json json_of_features(const Features& features, const InputSummary& input) {
+  Json json;
+  json["input"] = {{"path", input.path}, {"points", input.points}, {"centre_known", input.centre_known}};
+  json["inlier_threshold_m"] = features.inlier_threshold_m;
+  json["noise_m"] = features.noise_m;
+  json["planes"] = Json::array();
+  for (const PlanarPolygon& polygon : features.planes) {
+    json["planes"].push_back(plane_json(polygon, features.local_origin));
+  }
+  return json;
+}
+
+}  // namespace
+
+std::string features_json(const Features& features, const InputSummary& input) {
+  Json json = json_of_features(features, input);
+  json["version"] = kVersion;
+  return to_text(json);
+}
+
+std::string openings_json(const Features& features, const InputSummary& input) {
+  Json json = json_of_features(features, input);
+  json["openings"] = Json::array();
+  for (const Opening& opening : features.openings) {
+    json["openings"].push_back(opening_json(opening, features.local_origin));
+  }
+  json["version"] = kVersion;
+  return to_text(json);
+}
+
+}  // namespace limen

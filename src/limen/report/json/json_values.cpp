@@ -1,0 +1,72 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/report/json/json_values.h"
+
+#include <algorithm>
+
+namespace limen {
+namespace {
+
+bool fits_one_line(const Json& array) {
+  return std::none_of(array.begin(), array.end(), [](const Json& item) { return item.is_structured(); });
+}
+
+std::string one_line(const Json& array) {
+  std::string text = "[";
+  for (const Json& item : array) {
+    if (text.size() > 1) text += ", ";
+    text += item.dump();
+  }
+  text += ']';
+  return text;
+}
+
+void append_indented(std::string& text, const Json& value, std::size_t indent) {
+  if (!value.is_structured() || value.empty()) {
+    text += value.dump();
+    return;
+  }
+  if (value.is_array() && fits_one_line(value)) {
+    text += one_line(value);
+    return;
+  }
+  text += value.is_object() ? '{' : '[';
+  bool first = true;
+  for (const auto& item : value.items()) {
+    if (!first) text += ',';
+    first = false;
+    text += '\n';
+    text.append(indent + 2, ' ');
+    if (value.is_object()) {
+      text += Json(item.key()).dump();
+      text += ": ";
+    }
+    append_indented(text, item.value(), indent + 2);
+  }
+  text += '\n';
+  text.append(indent, ' ');
+  text += value.is_object() ? '}' : ']';
+}
+
+}  // namespace
+
+Json json_of(const Vector3d& vector) {
+  return Json::array({vector.x(), vector.y(), vector.z()});
+}
+
+Json json_of(const Matrix4d& matrix) {
+  Json rows = Json::array();
+  for (int i = 0; i < 4; ++i) {
+    rows.push_back(Json::array({matrix(i, 0), matrix(i, 1), matrix(i, 2), matrix(i, 3)}));
+  }
+  return rows;
+}
+
+std::string to_text(const Json& value) {
+  std::string text;
+  append_indented(text, value, 0);
+  text += '\n';
+  return text;
+}
+
+}  // namespace limen

@@ -1,0 +1,195 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/report/json/truth_json.h"
+
+#include <bit>
+
+#include "limen/report/json/json_values.h"
+
+namespace limen {
+namespace {
+
+std::string file_of(const std::string& scan_name) {
+  return scan_name + ".ply";
+}
+
+const char* kind_of(bool mobile) {
+  return mobile ? "mobile" : "station";
+}
+
+Json scans_json(const Truth& truth) {
+  Json scans = Json::array();
+  for (std::size_t i = 0; i < truth.scans.size(); ++i) {
+    const ScanTruth& scan = truth.scans[i];
+    Json json;
+    json["name"] = scan.name;
+    json["file"] = file_of(scan.name);
+    json["kind"] = kind_of(scan.mobile);
+    json["points"] = scan.plane_of_point.size();
+    json["room"] = scan.room >= 0 ? Json(scan.room) : Json(nullptr);
+    json["drift_m"] = scan.drift_m;
+    json["world_from_scan"] = json_of(to_matrix(world_from_scan(truth, i)));
+    if (truth.model) json["target_from_source"] = json["world_from_scan"];  // the target is the model
+    scans.push_back(std::move(json));
+  }
+  return scans;
+}
+
+Json pairs_json(const Truth& truth) {
+  Json pairs = Json::array();
+  for (std::size_t source = 0; source < truth.scans.size(); ++source) {
+    for (std::size_t target = 0; target < truth.scans.size(); ++target) {
+      if (source == target) continue;
+      Json json;
+      json["source"] = file_of(truth.scans[source].name);
+      json["target"] = file_of(truth.scans[target].name);
+      json["target_from_source"] = json_of(to_matrix(true_target_from_source(truth, source, target)));
+      pairs.push_back(std::move(json));
+    }
+  }
+  return pairs;
+}
+
+Json planes_json(const Truth& truth) {
+  Json planes = Json::array();
+  for (std::size_t i = 0; i < truth.planes.size(); ++i) {
+    const TruePlane& plane = truth.planes[i];
+    Json json;
+    json["id"] = i;
+    json["class"] = to_string(plane.element);
+    json["normal"] = json_of(plane.plane.normal);
+    json["offset"] = shifted(plane.plane, -truth.local_origin).offset;
+    json["local_offset"] = plane.plane.offset;
+    json["area_m2"] = plane.area_m2;
+    json["inliers"] = plane.inliers;
+    planes.push_back(std::move(json));
+  }
+  return planes;
+}
+
+template <typename Points>
+Json points_json(const Points& points, const Vector3d& origin) {
+  Json json = Json::array();
+  for (const Vector3d& corner : points) json.push_back(json_of(Vector3d(corner + origin)));
+  return json;
+}
+
+Json sights_json(const TrueOpening& opening, const Truth& truth) {
+  Json sights = Json::array();
+  for (std::size_t i = 0; i < opening.sights.size(); ++i) {
+    const OpeningSight& sight = opening.sights[i];
+    if (sight.crossed + sight.parts == 0) continue;
+    Json json;
+    json["scan"] = truth.scans[i].name;
+    json["crossed"] = sight.crossed;
+    json["through"] = sight.through;
+    json["parts"] = sight.parts;
+    json["share_through"] = std::popcount(sight.cells) / 64.0;
+    sights.push_back(std::move(json));
+  }
+  return sights;
+}
+
+Json openings_json(const Truth& truth) {
+  Json openings = Json::array();
+  for (std::size_t i = 0; i < truth.openings.size(); ++i) {
+    const TrueOpening& opening = truth.openings[i];
+    Json json;
+    json["id"] = i;
+    json["kind"] = opening.kind;
+    json["exterior"] = opening.exterior;
+    json["glazed"] = opening.glazed;
+    json["curtained"] = opening.curtained;
+    json["rooms"] = opening.rooms;
+    json["normal"] = json_of(opening.normal);
+    json["thickness_m"] = opening.thickness_m;
+    json["width_m"] = (opening.outer[1] - opening.outer[0]).norm();
+    json["height_m"] = (opening.outer[3] - opening.outer[0]).norm();
+    json["outer"] = points_json(opening.outer, truth.local_origin);
+    json["inner"] = points_json(opening.inner, truth.local_origin);
+    json["head"] = opening.head;
+    if (opening.head != "rectangular") {
+      json["outer_outline"] = points_json(opening.outer_outline, truth.local_origin);
+      json["inner_outline"] = points_json(opening.inner_outline, truth.local_origin);
+    }
+    json["seen"] = sights_json(opening, truth);
+    openings.push_back(std::move(json));
+  }
+  return openings;
+}
+
+Json room_json(const ModelRoom& room, const std::string& scan) {
+  Json json;
+  json["scan"] = scan;
+  json["space"] = room.space >= 0 ? Json(room.space) : Json(nullptr);
+  json["guid"] = room.guid;
+  json["name"] = room.name;
+  json["length_m"] = room.length_m;
+  json["width_m"] = room.width_m;
+  json["height_m"] = room.height_m;
+  json["area_m2"] = room.area_m2;
+  json["repeated"] = !room.like.empty();
+  json["like"] = room.like;
+  return json;
+}
+
+Json model_json(const Truth& truth) {
+  const ModelTruth& model = *truth.model;
+  Json json;
+  json["file"] = model.file;
+  json["as_built"] = model.as_built;
+  json["furniture"] = model.furniture;
+  json["rooms"] = Json::array();
+  for (std::size_t i = 0; i < model.rooms.size(); ++i)
+    json["rooms"].push_back(room_json(model.rooms[i], truth.scans[i].name));
+  json["changes"] = Json::array();
+  for (const ModelChange& change : model.changes) {
+    Json item;
+    item["element"] = change.element;
+    item["guid"] = change.guid;
+    item["kind"] = change.kind;
+    item["state"] = to_string(change.state);
+    if (change.state == ModelState::moved) item["shift_m"] = json_of(change.shift_m);
+    json["changes"].push_back(std::move(item));
+  }
+  return json;
+}
+
+}  // namespace
+
+std::string truth_json(const Truth& truth) {
+  Json json;
+  json["scene"] = truth.scene;
+  json["seed"] = truth.seed;
+  json["units"] = "m";
+  json["local_origin"] = json_of(truth.local_origin);
+  if (truth.model) json["model"] = model_json(truth);
+  json["scans"] = scans_json(truth);
+  json["pairs"] = pairs_json(truth);
+  json["planes"] = planes_json(truth);
+  json["openings"] = openings_json(truth);
+  return to_text(json);
+}
+
+std::string task_json(const SimulatedCase& simulated) {
+  Json json;
+  json["units"] = "m";
+  json["scans"] = Json::array();
+  for (const Scan& scan : simulated.scans)
+    json["scans"].push_back(
+        {{"file", file_of(scan.name)}, {"kind", kind_of(scan.mobile())}, {"level", scan.level}});
+  if (simulated.truth.model) {
+    json["source"] = file_of(simulated.scans.front().name);
+    json["target"] = simulated.truth.model->file;
+    return to_text(json);
+  }
+  // A mobile scan is the one that is already where it belongs.
+  if (simulated.scans.size() > 1) {
+    const bool outdoor = simulated.scans.back().mobile();
+    json["source"] = file_of(simulated.scans.front().name);
+    json["target"] = file_of((outdoor ? simulated.scans.back() : simulated.scans[1]).name);
+  }
+  return to_text(json);
+}
+
+}  // namespace limen

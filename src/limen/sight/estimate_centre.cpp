@@ -1,0 +1,168 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/sight/estimate_centre.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Cholesky>
+
+#include "limen/base/parallel.h"
+
+namespace limen {
+namespace {
+
+constexpr std::size_t kMinTiles = 150;
+constexpr std::size_t kMaxUps = 6;
+constexpr double kMaxMisfit = 0.08;
+
+struct Tile {
+  Vector3d mean;
+  Plane plane;
+  double log_density = 0.0;
+};
+
+std::vector<Tile> full_tiles(const Features& features) {
+  float largest = 0.0F;
+  for (const SurfaceSample& sample : features.samples) {
+    if (sample.plane >= 0) largest = std::max(largest, sample.area_m2);
+  }
+  std::vector<Tile> tiles;
+  for (const SurfaceSample& sample : features.samples) {
+    if (sample.plane < 0 || sample.area_m2 < 0.99F * largest || sample.count < 10) continue;
+    tiles.push_back({sample.mean, features.planes[static_cast<std::size_t>(sample.plane)].plane,
+                     std::log(static_cast<double>(sample.count / sample.area_m2))});
+  }
+  return tiles;
+}
+
+/// Log of the density the model gives at a tile, less the unknown rate.
+double model(const Tile& tile, const Vector3d& centre, const Vector3d& up) {
+  const Vector3d ray = tile.mean - centre;
+  const double range = std::max(0.1, ray.norm());
+  const double height = std::max(0.01, std::abs(tile.plane.signed_distance(centre)));
+  const double cosine = ray.cross(up).norm() / range;
+  return std::log(height) - 3.0 * std::log(range) - std::log(std::max(0.05, cosine));
+}
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// Median absolute deviation of the log density from the model, the rate being its median.
+double misfit(const std::vector<Tile>& tiles, const Vector3d& centre, const Vector3d& up, std::size_t step) {
+  std::vector<double> residuals;
+  for (std::size_t i = 0; i < tiles.size(); i += step) {
+    residuals.push_back(tiles[i].log_density - model(tiles[i], centre, up));
+  }
+  const double rate = median(residuals);
+  for (double& r : residuals) r = std::abs(r - rate);
+  return median(std::move(residuals));
+}
+
+/// The best of a grid of half a metre over the middle of the tiles.
+Vector3d search(const std::vector<Tile>& tiles, const Vector3d& up) {
+  std::vector<double> values[3];
+  for (const Tile& tile : tiles) {
+    for (int axis = 0; axis < 3; ++axis) values[axis].push_back(tile.mean[axis]);
+  }
+  Vector3d low;
+  Vector3d high;
+  for (int axis = 0; axis < 3; ++axis) {
+    std::sort(values[axis].begin(), values[axis].end());
+    low[axis] = values[axis][values[axis].size() / 20];
+    high[axis] = values[axis][values[axis].size() - 1 - values[axis].size() / 20];
+  }
+  const Vector3d steps = ((high - low) / 0.5).array().ceil().min(40.0).max(1.0).matrix();
+  std::vector<Vector3d> candidates;
+  for (int x = 0; x <= steps.x(); ++x) {
+    for (int y = 0; y <= steps.y(); ++y) {
+      for (int z = 0; z <= steps.z(); ++z) {
+        candidates.emplace_back(low + Vector3d(x, y, z).cwiseQuotient(steps).cwiseProduct(high - low));
+      }
+    }
+  }
+  std::vector<double> costs(candidates.size());
+  parallel_for(candidates.size(), 64, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      costs[i] = misfit(tiles, candidates[i], up, 1 + tiles.size() / 250);
+    }
+  });
+  return candidates[static_cast<std::size_t>(std::min_element(costs.begin(), costs.end()) - costs.begin())];
+}
+
+/// Gauss-Newton with Cauchy weights over centre and rate, derivatives by differences.
+Vector3d refine(const std::vector<Tile>& tiles, Vector3d centre, const Vector3d& up) {
+  std::vector<double> residuals(tiles.size());
+  for (std::size_t i = 0; i < tiles.size(); ++i)
+    residuals[i] = tiles[i].log_density - model(tiles[i], centre, up);
+  double rate = median(residuals);
+  for (int round = 0; round < 25; ++round) {
+    const double scale = std::max(0.05, misfit(tiles, centre, up, 1));
+    Eigen::Matrix4d normal = Eigen::Matrix4d::Identity() * 1e-6;
+    Eigen::Vector4d right = Eigen::Vector4d::Zero();
+    for (const Tile& tile : tiles) {
+      const double at = model(tile, centre, up);
+      const double residual = tile.log_density - rate - at;
+      const double weight = 1.0 / (1.0 + residual * residual / (4.0 * scale * scale));
+      Eigen::Vector4d slope;
+      for (int axis = 0; axis < 3; ++axis) {
+        slope[axis] = (model(tile, centre + 1e-4 * Vector3d::Unit(axis), up) - at) / 1e-4;
+      }
+      slope[3] = 1.0;
+      normal += weight * slope * slope.transpose();
+      right += weight * residual * slope;
+    }
+    Eigen::Vector4d step = normal.ldlt().solve(right);
+    const double length = step.head<3>().norm();
+    if (length > 0.3) step *= 0.3 / length;
+    centre += step.head<3>();
+    rate += step[3];
+    if (length < 1e-4) break;
+  }
+  return centre;
+}
+
+/// z, and the normals of the largest planes that are not alike.
+std::vector<Vector3d> possible_ups(const Features& features) {
+  std::vector<Vector3d> ups{Vector3d::UnitZ()};
+  std::vector<const PlanarPolygon*> planes;
+  for (const PlanarPolygon& plane : features.planes) planes.push_back(&plane);
+  std::stable_sort(planes.begin(), planes.end(),
+                   [](const PlanarPolygon* a, const PlanarPolygon* b) { return a->area_m2 > b->area_m2; });
+  for (const PlanarPolygon* plane : planes) {
+    const Vector3d& n = plane->plane.normal;
+    const bool known =
+        std::any_of(ups.begin(), ups.end(), [&](const Vector3d& up) { return std::abs(up.dot(n)) > 0.996; });
+    if (!known) ups.push_back(n);
+    if (ups.size() == kMaxUps) break;
+  }
+  return ups;
+}
+
+}  // namespace
+
+std::optional<EstimatedCentre> estimate_centre(const Features& features) {
+  const std::vector<Tile> tiles = full_tiles(features);
+  if (tiles.size() < kMinTiles) return std::nullopt;
+  const std::vector<Vector3d> ups = possible_ups(features);
+  // The coarse place hardly depends on the axis.
+  const Vector3d start = search(tiles, ups.front());
+  EstimatedCentre best;
+  best.misfit = kMaxMisfit;
+  bool found = false;
+  for (const Vector3d& up : ups) {
+    const Vector3d centre = refine(tiles, start, up);
+    if (!centre.allFinite()) continue;
+    const double cost = misfit(tiles, centre, up, 1);
+    if (cost >= best.misfit) continue;
+    best = {centre, up, cost};
+    found = true;
+  }
+  if (!found) return std::nullopt;
+  return best;
+}
+
+}  // namespace limen

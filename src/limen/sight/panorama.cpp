@@ -1,0 +1,110 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/sight/panorama.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "limen/base/parallel.h"
+
+namespace limen {
+namespace {
+
+constexpr double kPointsPerPixel = 2.0;
+
+}  // namespace
+
+Panorama::Panorama(const Scan& scan, const std::vector<std::int32_t>& labels, const Features& features,
+                   const Vector3d& centre)
+    : facets_(facets_of(features)), centre_(centre) {
+  const double wanted = std::sqrt(static_cast<double>(scan.size()) / (6.0 * kPointsPerPixel));
+  edge_ = static_cast<std::size_t>(std::clamp(wanted, 24.0, 384.0));
+  pixels_.resize(6 * edge_ * edge_);
+  fill(scan, labels);
+  erode();
+}
+
+std::size_t Panorama::pixel_at(const Vector3d& direction) const {
+  Eigen::Index axis = 0;
+  const double largest = direction.cwiseAbs().maxCoeff(&axis);
+  const double scale = 0.5 * static_cast<double>(edge_) / largest;
+  const auto cell = [&](double x) {
+    const double c = x * scale + 0.5 * static_cast<double>(edge_);
+    return std::min(edge_ - 1, static_cast<std::size_t>(std::max(0.0, c)));
+  };
+  const std::size_t face = 2 * static_cast<std::size_t>(axis) + (direction[axis] < 0 ? 1 : 0);
+  return (face * edge_ + cell(direction[(axis + 1) % 3])) * edge_ + cell(direction[(axis + 2) % 3]);
+}
+
+void Panorama::fill(const Scan& scan, const std::vector<std::int32_t>& labels) {
+  for (std::size_t i = 0; i < scan.size(); ++i) {
+    const Vector3d ray = scan.points[i] - centre_;
+    const auto range = static_cast<float>(ray.norm());
+    if (!(range > 0.01F)) continue;
+    Pixel& pixel = pixels_[pixel_at(ray)];
+    if (pixel.near_m == 0.0F || range < pixel.near_m) {
+      pixel.near_m = range;
+      pixel.near_plane = labels[i];
+    }
+    if (range > pixel.far_m) {
+      pixel.far_m = range;
+      pixel.far_plane = labels[i];
+    }
+  }
+}
+
+void Panorama::erode() {
+  const auto n = static_cast<std::ptrdiff_t>(edge_);
+  parallel_for(6 * edge_, edge_, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t row = begin; row < end; ++row) {
+      const auto face = static_cast<std::ptrdiff_t>(row / edge_);
+      const auto y = static_cast<std::ptrdiff_t>(row % edge_);
+      for (std::ptrdiff_t x = 0; x < n; ++x) {
+        float clear = 1e30F;
+        for (std::ptrdiff_t v = std::max<std::ptrdiff_t>(0, y - 1); v <= std::min(n - 1, y + 1); ++v) {
+          for (std::ptrdiff_t u = std::max<std::ptrdiff_t>(0, x - 1); u <= std::min(n - 1, x + 1); ++u) {
+            const float near = pixels_[static_cast<std::size_t>((face * n + v) * n + u)].near_m;
+            if (near > 0.0F) clear = std::min(clear, near);
+          }
+        }
+        pixels_[row * edge_ + static_cast<std::size_t>(x)].clear_m = clear < 1e30F ? clear : 0.0F;
+      }
+    }
+  });
+}
+
+bool Panorama::on_surface(const SightQuery& query, const Vector3d& ray, const Pixel& pixel,
+                          Sight& sight) const {
+  const double range = ray.norm();
+  const auto test = [&](float measured, std::int32_t plane) {
+    if (plane < 0) {
+      if (!query.normal.isZero() || std::abs(range - measured) > query.surface_m) return false;
+      sight = {SightKind::surface, -1, range - static_cast<double>(measured)};
+      return true;
+    }
+    const std::optional<double> distance = distance_if_same(query, facets_[static_cast<std::size_t>(plane)]);
+    if (!distance) return false;
+    // The plane must have been measured near here, not only somewhere else along it.
+    if (std::abs(range - measured) > 0.3 + 0.03 * range) return false;
+    sight = {SightKind::surface, plane, *distance};
+    return true;
+  };
+  return test(pixel.near_m, pixel.near_plane) ||
+         (pixel.far_plane != pixel.near_plane && test(pixel.far_m, pixel.far_plane));
+}
+
+Sight Panorama::look(const SightQuery& query) const {
+  Sight sight;
+  const Vector3d ray = query.at - centre_;
+  const double range = ray.norm();
+  if (range < 0.05) return {SightKind::free, -1, 0.0};
+  const Pixel& pixel = pixels_[pixel_at(ray)];
+  if (pixel.clear_m == 0.0F) return sight;
+  if (pixel.near_m > 0.0F && on_surface(query, ray, pixel, sight)) return sight;
+  if (range < pixel.clear_m - query.free_m) return {SightKind::free, -1, 0.0};
+  if (pixel.near_m > 0.0F && range > pixel.far_m) return {SightKind::hidden, -1, 0.0};
+  return sight;
+}
+
+}  // namespace limen

@@ -1,0 +1,44 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "limen/sight/space_view.h"
+
+namespace limen {
+
+/// The depth image of a static station on the six faces of a cube: answers in constant time what the scanner
+/// saw at a place.
+class Panorama : public SpaceView {
+ public:
+  /// `labels[i]` is the plane of point i in `features.planes`.
+  Panorama(const Scan& scan, const std::vector<std::int32_t>& labels, const Features& features,
+           const Vector3d& centre);
+
+  [[nodiscard]] Sight look(const SightQuery& query) const override;
+  [[nodiscard]] const Vector3d& centre() const { return centre_; }
+
+ private:
+  struct Pixel {
+    float near_m = 0.0F;  ///< closest return; 0: none
+    float far_m = 0.0F;
+    float clear_m = 0.0F;  ///< closest return of the 3 x 3 pixels around: rays passed freely up to here
+    std::int32_t near_plane = -1;
+    std::int32_t far_plane = -1;
+  };
+
+  [[nodiscard]] std::size_t pixel_at(const Vector3d& direction) const;
+  void fill(const Scan& scan, const std::vector<std::int32_t>& labels);
+  void erode();
+  [[nodiscard]] bool on_surface(const SightQuery& query, const Vector3d& ray, const Pixel& pixel,
+                                Sight& sight) const;
+
+  std::vector<Facet> facets_;
+  Vector3d centre_;
+  std::size_t edge_ = 0;  ///< pixels per cube edge
+  std::vector<Pixel> pixels_;
+};
+
+}  // namespace limen

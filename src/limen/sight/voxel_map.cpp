@@ -1,0 +1,195 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/sight/voxel_map.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "limen/base/error.h"
+
+namespace limen {
+namespace {
+
+constexpr std::int32_t kBlockBits = 3;
+constexpr std::size_t kBlockCubes = 512;
+constexpr std::size_t kMaxRays = 400000;  // of a scan, evenly chosen, that free space
+
+/// The extent of all but the strays: the lowest and highest thousandth are left out, half a metre is added.
+Extent robust_extent(const std::vector<Vector3d>& points) {
+  Extent extent;
+  std::vector<double> values;
+  for (int axis = 0; axis < 3; ++axis) {
+    values.clear();
+    for (std::size_t i = 0; i < points.size(); i += 1 + points.size() / 20000)
+      values.push_back(points[i][axis]);
+    std::sort(values.begin(), values.end());
+    extent.low[axis] = values[values.size() / 1000] - 0.5;
+    extent.high[axis] = values[values.size() - 1 - values.size() / 1000] + 0.5;
+  }
+  return extent;
+}
+
+std::size_t place_in_block(const std::array<std::int32_t, 3>& key) {
+  return (static_cast<std::size_t>(key[2] & 7) << 6U) | (static_cast<std::size_t>(key[1] & 7) << 3U) |
+         static_cast<std::size_t>(key[0] & 7);
+}
+
+}  // namespace
+
+void VoxelMapOptions::check() const {
+  if (!(edge_m > 0)) throw_bad_option("edge_m", edge_m, "more than 0");
+  if (!(margin_m >= edge_m)) throw_bad_option("margin_m", margin_m, "at least edge_m");
+}
+
+VoxelMap::VoxelMap(const Scan& scan, const Features& features, const VoxelMapOptions& options)
+    : facets_(facets_of(features)), edge_(options.edge_m) {
+  options.check();
+  if (scan.size() == 0) return;
+  const Extent extent = robust_extent(scan.points);
+  low_ = extent.low;
+  const Vector3d sides = extent.high - extent.low;
+  const double volume = sides.prod();
+  edge_ = std::max(edge_, std::cbrt(volume / static_cast<double>(options.max_cubes)));
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    size_[axis] = 1 + static_cast<std::int32_t>(sides[static_cast<Eigen::Index>(axis)] / edge_);
+  }
+  for (std::size_t axis = 0; axis < 3; ++axis) blocks_[axis] = (size_[axis] >> kBlockBits) + 1;
+  block_at_.assign(static_cast<std::size_t>(blocks_[0]) * static_cast<std::size_t>(blocks_[1]) *
+                       static_cast<std::size_t>(blocks_[2]),
+                   -1);
+  enter(features);
+  if (scan.centre_known()) carve(scan, std::max(options.margin_m, 2.0 * edge_));
+}
+
+VoxelMap::Key VoxelMap::key_of(const Vector3d& x) const {
+  const Vector3d cell = ((x - low_) / edge_).array().floor().max(-2.0).min(1e6).matrix();
+  return {static_cast<std::int32_t>(cell.x()), static_cast<std::int32_t>(cell.y()),
+          static_cast<std::int32_t>(cell.z())};
+}
+
+std::int64_t VoxelMap::index_of(const Key& key) const {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (key[axis] < 0 || key[axis] >= size_[axis]) return -1;
+  }
+  return (static_cast<std::int64_t>(key[2]) * size_[1] + key[1]) * size_[0] + key[0];
+}
+
+std::size_t VoxelMap::block_of(const Key& key) const {
+  return (static_cast<std::size_t>(key[2] >> kBlockBits) * static_cast<std::size_t>(blocks_[1]) +
+          static_cast<std::size_t>(key[1] >> kBlockBits)) *
+             static_cast<std::size_t>(blocks_[0]) +
+         static_cast<std::size_t>(key[0] >> kBlockBits);
+}
+
+const VoxelMap::Cube* VoxelMap::find(const Key& key) const {
+  const std::int32_t block = block_at_[block_of(key)];
+  if (block < 0) return nullptr;
+  const std::int32_t cube = cube_at_[static_cast<std::size_t>(block) * kBlockCubes + place_in_block(key)];
+  return cube < 0 ? nullptr : &cubes_[static_cast<std::size_t>(cube)];
+}
+
+VoxelMap::Cube& VoxelMap::obtain(const Key& key) {
+  std::int32_t& block = block_at_[block_of(key)];
+  if (block < 0) {
+    block = static_cast<std::int32_t>(cube_at_.size() / kBlockCubes);
+    cube_at_.resize(cube_at_.size() + kBlockCubes, -1);
+  }
+  std::int32_t& cube = cube_at_[static_cast<std::size_t>(block) * kBlockCubes + place_in_block(key)];
+  if (cube < 0) {
+    cube = static_cast<std::int32_t>(cubes_.size());
+    cubes_.emplace_back();
+  }
+  return cubes_[static_cast<std::size_t>(cube)];
+}
+
+void VoxelMap::enter(const Features& features) {
+  const auto add_plane = [](Cube& cube, std::int32_t plane) {
+    for (std::int32_t& slot : cube.planes) {
+      if (slot == plane) return;
+      if (slot < 0) {
+        slot = plane;
+        return;
+      }
+    }
+  };
+  for (const SurfaceSample& sample : features.samples) {
+    const Key at = key_of(sample.mean);
+    for (std::int32_t step = 0; step < 27; ++step) {
+      const Key key{at[0] + step % 3 - 1, at[1] + step / 3 % 3 - 1, at[2] + step / 9 - 1};
+      if (index_of(key) < 0) continue;
+      Cube& cube = obtain(key);
+      if (sample.plane >= 0) {
+        add_plane(cube, sample.plane);
+      } else if (step == 13) {
+        cube.clutter = true;
+      }
+    }
+  }
+}
+
+void VoxelMap::carve(const Scan& scan, double margin_m) {
+  free_.assign(static_cast<std::size_t>(size_[0]) * static_cast<std::size_t>(size_[1]) *
+                   static_cast<std::size_t>(size_[2]),
+               false);
+  const std::size_t step = 1 + scan.size() / kMaxRays;
+  for (std::size_t i = 0; i < scan.size(); i += step) {
+    const Vector3d ray = scan.points[i] - scan.centre(i);
+    const double range = ray.norm();
+    if (range <= margin_m) continue;
+    carve_ray(scan.centre(i), scan.points[i] - ray * (margin_m / range));
+  }
+}
+
+void VoxelMap::carve_ray(const Vector3d& from, const Vector3d& to) {
+  const double length = (to - from).norm();
+  const auto steps = static_cast<int>(length / (0.5 * edge_));
+  std::int64_t last = -1;
+  for (int k = 0; k <= steps; ++k) {
+    const std::int64_t index =
+        index_of(key_of(from + (to - from) * (static_cast<double>(k) / std::max(1, steps))));
+    if (index >= 0 && index != last) free_[static_cast<std::size_t>(index)] = true;
+    last = index;
+  }
+}
+
+bool VoxelMap::is_free(const Vector3d& x) const {
+  const std::int64_t index = index_of(key_of(x));
+  return index >= 0 && free_[static_cast<std::size_t>(index)];
+}
+
+bool VoxelMap::passed_freely(const SightQuery& query) const {
+  if (free_.empty() || !is_free(query.at)) return false;
+  // A ray that grazes a surface frees the cube it stands in, but not the cubes on both sides of it.
+  if (!query.normal.isZero()) {
+    return is_free(query.at + edge_ * query.normal) && is_free(query.at - edge_ * query.normal);
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    const Vector3d step = edge_ * Vector3d::Unit(axis);
+    if (!is_free(query.at + step) || !is_free(query.at - step)) return false;
+  }
+  return true;
+}
+
+Sight VoxelMap::look(const SightQuery& query) const {
+  const Key key = key_of(query.at);
+  if (index_of(key) < 0) return {};
+  const Cube* const found = find(key);
+  if (found == nullptr) {
+    return {passed_freely(query) ? SightKind::free : SightKind::unseen, -1, 0.0};
+  }
+  Sight best;
+  double nearest = query.surface_m;
+  for (const std::int32_t plane : found->planes) {
+    if (plane < 0) break;
+    const std::optional<double> distance = distance_if_same(query, facets_[static_cast<std::size_t>(plane)]);
+    if (!distance || std::abs(*distance) > nearest) continue;
+    nearest = std::abs(*distance);
+    best = {SightKind::surface, plane, *distance};
+  }
+  if (best.kind == SightKind::unseen && query.normal.isZero() && found->clutter) {
+    best = {SightKind::surface, -1, 0.0};
+  }
+  return best;
+}
+
+}  // namespace limen

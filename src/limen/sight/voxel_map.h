@@ -1,0 +1,62 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "limen/sight/space_view.h"
+
+namespace limen {
+
+struct VoxelMapOptions {
+  double edge_m = 0.25;               ///< of the cubes; grows where the scene is too large for the memory
+  std::size_t max_cubes = 1U << 28U;  ///< of the whole extent, one bit each
+  double margin_m = 0.6;              ///< rays count as free up to this far before their point
+
+  void check() const;
+};
+
+/// Space in cubes, for scans that see from many places (mobile, several stations) or from an unknown one:
+/// which surfaces were measured near a cube, and which cubes rays passed through. Coarser than a panorama,
+/// and silent where it does not know: no ray of an unknown optical centre frees a cube.
+class VoxelMap : public SpaceView {
+ public:
+  VoxelMap(const Scan& scan, const Features& features, const VoxelMapOptions& options = {});
+
+  [[nodiscard]] Sight look(const SightQuery& query) const override;
+
+ private:
+  static constexpr std::size_t kPlanes = 4;
+  /// What was measured in a cube or next to it.
+  struct Cube {
+    std::array<std::int32_t, kPlanes> planes{-1, -1, -1, -1};
+    bool clutter = false;
+  };
+
+  using Key = std::array<std::int32_t, 3>;
+  [[nodiscard]] Key key_of(const Vector3d& x) const;
+  [[nodiscard]] std::int64_t index_of(const Key& key) const;  ///< -1 outside
+  [[nodiscard]] bool is_free(const Vector3d& x) const;
+  [[nodiscard]] bool passed_freely(const SightQuery& query) const;
+  [[nodiscard]] std::size_t block_of(const Key& key) const;
+  [[nodiscard]] const Cube* find(const Key& key) const;
+  Cube& obtain(const Key& key);  ///< `key` lies inside
+  void enter(const Features& features);
+  void carve(const Scan& scan, double margin_m);
+  void carve_ray(const Vector3d& from, const Vector3d& to);
+
+  std::vector<Facet> facets_;
+  double edge_ = 0.25;
+  Vector3d low_ = Vector3d::Zero();
+  Key size_{0, 0, 0};
+  // Cubes with surface, found by blocks of 8 x 8 x 8: few of them hold any.
+  Key blocks_{0, 0, 0};
+  std::vector<std::int32_t> block_at_;  ///< number of the block in `cube_at_`, or -1
+  std::vector<std::int32_t> cube_at_;   ///< 512 per block: index into `cubes_`, or -1
+  std::vector<Cube> cubes_;
+  std::vector<bool> free_;
+};
+
+}  // namespace limen

@@ -1,0 +1,42 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "limen/base/random.h"
+#include "limen/simulate/model/bim_mesh.h"
+#include "limen/simulate/model/bim_stations.h"
+#include "limen/simulate/truth/truth.h"
+
+namespace limen {
+
+/// How a building differs from its model.
+struct AsBuiltOptions {
+  bool on = false;  ///< false: everything stands where the model has it
+  /// Of walls, columns, plates, doors, windows (by 1 to 5 cm) and slabs (by 0.5 to 2 cm).
+  double moved_share = 0.25;
+  double missing_share = 0.15;     ///< of doors, furniture and what bears no load
+  double furniture_per_m2 = 0.25;  ///< pieces that the model does not have, in the scanned rooms
+  /// At most this share of what the stations see along one direction has moved along it: the model's frame
+  /// stays what most of the building says.
+  double most_moved_share = 0.4;
+
+  void check() const;
+};
+
+/// Closes some doors and leaves others open.
+void open_doors(const BimModel& model, double open_share, RandomStream& random, BuiltState& built);
+
+/// Moves and drops elements; windows and doors go with their wall. `planned` is what the stations would see
+/// of the model as it is, its doors set.
+BuiltState as_built(const BimModel& model, const AsBuiltOptions& options, const BuiltState& doors,
+                    const std::vector<BimStation>& stations, const BimMesh& planned, RandomStream& random);
+
+/// The differences between the model and what was built, in the order of the elements.
+std::vector<ModelChange> changes_of(const BimModel& model, const BuiltState& doors, const BuiltState& built);
+
+/// Adds boxes on the floors about the stations: cupboards, tables, crates, clutter on top. Returns how many.
+int add_clutter(BimMesh& built, const std::vector<BimStation>& stations, double per_m2, RandomStream& random);
+
+}  // namespace limen

@@ -1,0 +1,140 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "limen/simulate/model/bim_changes.h"
+#include "limen/simulate/scanner/ray_caster.h"
+
+namespace limen {
+namespace {
+
+constexpr double kFree = 0.8;  // m about a tripod
+
+/// Puts boxes on floors that rays from a station find.
+class Clutterer {
+ public:
+  Clutterer(BimMesh& built, const std::vector<BimStation>& stations, RandomStream& random)
+      : built_(built), stations_(stations), random_(random), empty_(built.mesh), caster_(empty_) {}
+
+  int fill(const BimStation& station, double per_m2) {
+    const int wanted = std::clamp(static_cast<int>(std::lround(per_m2 * floor_area(station))), 1, 40);
+    int placed = 0;
+    for (int attempt = 0; attempt < 40 * wanted && placed < wanted; ++attempt)
+      placed += place_piece(station) ? 1 : 0;
+    return placed;
+  }
+
+ private:
+  /// About: what a ring of rays at the station's height encloses.
+  [[nodiscard]] double floor_area(const BimStation& station) const {
+    Ring ring;
+    for (int i = 0; i < 72; ++i) {
+      const double azimuth = 2.0 * std::numbers::pi * i / 72;
+      const Vector3d direction(std::cos(azimuth), std::sin(azimuth), 0.0);
+      const RayHit hit = caster_.cast(station.position, direction);
+      const double range = hit.found() ? std::min(hit.range_m, 8.0) : 8.0;
+      ring.emplace_back(range * direction.x(), range * direction.y());
+    }
+    return signed_area(ring);
+  }
+
+  bool place_piece(const BimStation& station) {
+    const double azimuth = random_.uniform(0.0, 2.0 * std::numbers::pi);
+    const double tilt = -random_.uniform(0.1, 1.0);
+    const Vector3d direction(std::cos(tilt) * std::cos(azimuth), std::cos(tilt) * std::sin(azimuth),
+                             std::sin(tilt));
+    const RayHit hit = caster_.cast(station.position, direction);
+    if (!hit.found() || hit.inside || hit.range_m > 12.0) return false;
+    if (built_.mesh.surfaces()[static_cast<std::size_t>(hit.surface)].plane.normal.z() < 0.999) return false;
+    const Vector3d foot = station.position + hit.range_m * direction;
+    if (station.position.z() - foot.z() < 1.2) return false;
+    const bool large = random_.uniform() < 0.4;
+    const Vector3d size(random_.uniform(0.3, large ? 1.8 : 0.7), random_.uniform(0.3, large ? 0.7 : 0.6),
+                        random_.uniform(0.3, large ? 2.0 : 0.9));
+    const BoxPlace place{foot, random_.uniform() < 0.7 ? heading_of_wall(foot) : random_.uniform(0.0, 3.1)};
+    if (!fits(place, size)) return false;
+    add(place, size);
+    if (size.z() < 1.1 && random_.uniform() < 0.6) {
+      const Vector3d small = {size.x() * random_.uniform(0.2, 0.6), size.y() * random_.uniform(0.2, 0.7),
+                              random_.uniform(0.08, 0.4)};
+      add({foot + Vector3d(0.0, 0.0, size.z()), place.yaw_rad}, small);
+    }
+    return true;
+  }
+
+  /// Along the nearest wall.
+  [[nodiscard]] double heading_of_wall(const Vector3d& foot) const {
+    double nearest = 1e300;
+    double heading = 0.0;
+    for (int i = 0; i < 16; ++i) {
+      const double azimuth = 2.0 * std::numbers::pi * i / 16;
+      const RayHit hit =
+          caster_.cast(foot + Vector3d(0.0, 0.0, 1.0), Vector3d(std::cos(azimuth), std::sin(azimuth), 0.0));
+      if (!hit.found() || hit.range_m >= nearest) continue;
+      const Vector3d normal = built_.mesh.surfaces()[static_cast<std::size_t>(hit.surface)].plane.normal;
+      if (std::abs(normal.z()) > 0.3) continue;
+      nearest = hit.range_m;
+      heading = std::atan2(normal.x(), -normal.y());
+    }
+    return heading;
+  }
+
+  /// Clear of walls, of tripods and of the other pieces.
+  [[nodiscard]] bool fits(const BoxPlace& place, const Vector3d& size) const {
+    const double reach = 0.5 * std::hypot(size.x(), size.y());
+    for (const BimStation& station : stations_) {
+      const Vector3d apart = station.position - place.base;
+      if (std::abs(apart.z()) < 2.5 && apart.head<2>().norm() < reach + kFree) return false;
+    }
+    for (const auto& [base, other] : pieces_)
+      if ((base - place.base).head<2>().norm() < reach + other) return false;
+    for (const double height : {0.05, 0.5, 0.98}) {
+      const Vector3d middle = place.base + Vector3d(0.0, 0.0, height * size.z());
+      for (int i = 0; i < 16; ++i) {
+        const double azimuth = place.yaw_rad + 2.0 * std::numbers::pi * i / 16;
+        const double x = std::abs(std::cos(2.0 * std::numbers::pi * i / 16)) / (0.5 * size.x());
+        const double y = std::abs(std::sin(2.0 * std::numbers::pi * i / 16)) / (0.5 * size.y());
+        const RayHit hit = caster_.cast(middle, Vector3d(std::cos(azimuth), std::sin(azimuth), 0.0));
+        if (hit.found() && (hit.inside || hit.range_m < 1.0 / std::max(x, y) + 0.02)) return false;
+      }
+    }
+    const RayHit up = caster_.cast(place.base, Vector3d::UnitZ(), 1e-3);
+    return !up.found() || up.range_m > size.z() + 0.5;
+  }
+
+  void add(const BoxPlace& place, const Vector3d& size) {
+    Surface wood = surface_of(Element::furniture);
+    wood.reflectivity = random_.uniform(0.2, 0.75);
+    built_.mesh.add_box(place, size, wood);
+    built_.element_of_surface.resize(built_.mesh.surfaces().size(), -1);
+    pieces_.emplace_back(place.base, 0.5 * std::hypot(size.x(), size.y()));
+  }
+
+  BimMesh& built_;
+  const std::vector<BimStation>& stations_;
+  RandomStream& random_;
+  Mesh empty_;  ///< the building without the boxes: a caster's mesh must not grow
+  RayCaster caster_;
+  std::vector<std::pair<Vector3d, double>> pieces_;
+};
+
+}  // namespace
+
+int add_clutter(BimMesh& built, const std::vector<BimStation>& stations, double per_m2,
+                RandomStream& random) {
+  if (per_m2 <= 0.0) return 0;
+  Clutterer clutterer(built, stations, random);
+  std::vector<int> filled;
+  int count = 0;
+  for (const BimStation& station : stations) {
+    // One filling per room; of places in no named room, the first.
+    if (std::find(filled.begin(), filled.end(), station.room) != filled.end()) continue;
+    filled.push_back(station.room);
+    count += clutterer.fill(station, per_m2);
+  }
+  return count;
+}
+
+}  // namespace limen

@@ -1,0 +1,212 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/simulate/model/bim_stations.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include "limen/base/error.h"
+#include "limen/geometry/polygon_clip.h"
+
+namespace limen {
+namespace {
+
+constexpr double kLeastArea = 5.0;        // m^2
+constexpr double kLeastHeight = 2.0;      // m
+constexpr double kClearance = 0.5;        // m
+constexpr double kBetween = 1.0;          // m, from one station to the next
+constexpr double kHighestCeiling = 12.0;  // m above the scanner
+constexpr int kRays = 128;
+constexpr double kEnclosed = 0.75;  ///< share of the rays that must end somewhere; in a named room
+constexpr double kEnclosedUnnamed = 0.95;
+constexpr double kFarthestWall = 25.0;  // m, where no room is named
+
+/// Finds places by trial: rays dispose.
+class BimSurveyor {
+ public:
+  BimSurveyor(const std::vector<BimRoom>& rooms, const RayCaster& caster, RandomStream& random)
+      : rooms_(rooms), caster_(caster), random_(random), directions_(spread_directions(kRays)) {
+    for (const Vector3d& vertex : caster.mesh().vertices()) {
+      low_ = low_.cwiseMin(vertex);
+      high_ = high_.cwiseMax(vertex);
+    }
+  }
+
+  [[nodiscard]] std::optional<BimStation> first(RoomChoice choice) {
+    if (rooms_.empty()) return anywhere();
+    std::vector<std::size_t> order;
+    for (std::size_t i = 0; i < rooms_.size(); ++i)
+      if (rooms_[i].area_m2 >= kLeastArea && rooms_[i].height_m >= kLeastHeight && is_chosen(i, choice))
+        order.push_back(i);
+    // Shuffled: another seed scans another room.
+    for (std::size_t i = order.size(); i > 1; --i)
+      std::swap(order[i - 1], order[random_.below(static_cast<std::uint32_t>(i))]);
+    for (const std::size_t room : order)
+      if (std::optional<BimStation> station = in_room(room)) return station;
+    return choice == RoomChoice::any ? anywhere() : std::nullopt;
+  }
+
+  /// Another one in sight of the first.
+  [[nodiscard]] std::optional<BimStation> next(const std::vector<BimStation>& others) {
+    const bool elsewhere = random_.uniform() < 0.5;
+    for (int attempt = 0; attempt < 3000; ++attempt) {
+      const std::optional<BimStation> station = in_sight_of(others.front());
+      if (!station) continue;
+      // A room seen through a door is asked for; where there is none, the same room will do.
+      if (elsewhere && attempt < 1500 && station->room == others.front().room) continue;
+      const bool apart = std::all_of(others.begin(), others.end(), [&](const BimStation& other) {
+        return (other.position - station->position).norm() >= kBetween;
+      });
+      if (apart) return station;
+    }
+    return std::nullopt;
+  }
+
+ private:
+  [[nodiscard]] bool is_chosen(std::size_t room, RoomChoice choice) const {
+    if (choice == RoomChoice::any) return true;
+    const bool repeated = std::any_of(rooms_.begin(), rooms_.end(), [&](const BimRoom& other) {
+      return &other != &rooms_[room] && alike(rooms_[room], other);
+    });
+    return repeated == (choice == RoomChoice::repeated);
+  }
+
+  [[nodiscard]] std::optional<BimStation> in_room(std::size_t index) {
+    const BimRoom& room = rooms_[index];
+    const Box2 box = box_of(room.outline);
+    for (int attempt = 0; attempt < 400; ++attempt) {
+      const Vector2d at(random_.uniform(box.low.x(), box.high.x()),
+                        random_.uniform(box.low.y(), box.high.y()));
+      if (room_at({at.x(), at.y(), room.floor_m + 1.0}) != static_cast<int>(index)) continue;
+      // From the middle of the height: the floor may lie a little above or below the named space's bottom.
+      const auto place = on_floor({at.x(), at.y(), room.floor_m + 0.5 * std::min(room.height_m, 3.0)});
+      if (place && clear(*place, kEnclosed)) return BimStation{*place, static_cast<int>(index)};
+    }
+    return std::nullopt;
+  }
+
+  /// A place in a model that names no rooms.
+  [[nodiscard]] std::optional<BimStation> anywhere() {
+    for (int attempt = 0; attempt < 20000; ++attempt) {
+      Vector3d at;
+      for (int axis = 0; axis < 3; ++axis) at[axis] = random_.uniform(low_[axis], high_[axis]);
+      const auto place = on_floor(at);
+      if (place && walls_near(*place) && clear(*place, kEnclosedUnnamed))
+        return BimStation{*place, room_at(*place)};
+    }
+    return std::nullopt;
+  }
+
+  /// A random place along a random sight from a station.
+  [[nodiscard]] std::optional<BimStation> in_sight_of(const BimStation& from) {
+    const double azimuth = random_.uniform(0.0, 2.0 * std::numbers::pi);
+    const Vector3d direction(std::cos(azimuth), std::sin(azimuth), 0.0);
+    const RayHit hit = caster_.cast(from.position, direction);
+    if (!hit.found() || hit.range_m < kBetween + kClearance) return std::nullopt;
+    const double range = random_.uniform(kBetween, hit.range_m - kClearance);
+    const auto place = on_floor(from.position + range * direction);
+    // Stairs up or down are another storey: still in sight, but not for this purpose.
+    if (!place || std::abs(place->z() - from.position.z()) > 0.45) return std::nullopt;
+    const int room = room_at(*place);
+    if (!rooms_.empty() && room < 0) return std::nullopt;
+    if (!clear(*place, rooms_.empty() ? kEnclosedUnnamed : kEnclosed)) return std::nullopt;
+    return BimStation{*place, room};
+  }
+
+  /// A tripod's height above the floor below `at`.
+  [[nodiscard]] std::optional<Vector3d> on_floor(const Vector3d& at) {
+    const RayHit down = caster_.cast(at, -Vector3d::UnitZ());
+    if (!down.found() || down.inside || down.cosine < 0.98 || down.range_m > 4.0) return std::nullopt;
+    const double height = random_.uniform(1.4, 1.8);
+    const Vector3d foot = at - down.range_m * Vector3d::UnitZ();
+    const RayHit up = caster_.cast(foot, Vector3d::UnitZ(), 1e-3);
+    if (!up.found() || up.inside || up.range_m < std::max(kLeastHeight, height + 0.2)) return std::nullopt;
+    if (up.range_m > kHighestCeiling) return std::nullopt;
+    return foot + height * Vector3d::UnitZ();
+  }
+
+  [[nodiscard]] int room_at(const Vector3d& x) const {
+    const Vector2d at = x.head<2>();
+    for (std::size_t i = 0; i < rooms_.size(); ++i) {
+      const BimRoom& room = rooms_[i];
+      if (x.z() < room.floor_m - 0.1 || x.z() > room.floor_m + room.height_m) continue;
+      const auto inside = [&](const Polygon& part) { return contains(part, at); };
+      if (std::any_of(room.outline.begin(), room.outline.end(), inside)) return static_cast<int>(i);
+    }
+    return -1;
+  }
+
+  /// Walls on nearly all sides, and enough floor between them.
+  [[nodiscard]] bool walls_near(const Vector3d& p) const {
+    constexpr int kFan = 48;
+    Ring seen;
+    for (int i = 0; i < kFan; ++i) {
+      const double azimuth = 2.0 * std::numbers::pi * i / kFan;
+      const Vector3d direction(std::cos(azimuth), std::sin(azimuth), 0.0);
+      const RayHit hit = caster_.cast(p, direction);
+      if (hit.found() && !hit.inside && hit.range_m < kFarthestWall)
+        seen.emplace_back(hit.range_m * direction.x(), hit.range_m * direction.y());
+    }
+    return seen.size() >= kFan - 4 && signed_area(seen) >= kLeastArea;
+  }
+
+  /// Nothing within reach of the tripod, matter around, and never inside of matter.
+  [[nodiscard]] bool clear(const Vector3d& p, double enclosed) const {
+    for (const double tilt : {-0.7, -0.3, 0.0, 0.3}) {
+      for (int i = 0; i < 24; ++i) {
+        const double azimuth = 2.0 * std::numbers::pi * i / 24;
+        const Vector3d direction(std::cos(tilt) * std::cos(azimuth), std::cos(tilt) * std::sin(azimuth),
+                                 std::sin(tilt));
+        const RayHit hit = caster_.cast(p, direction);
+        if (hit.found() && (hit.inside || hit.range_m * std::cos(tilt) < kClearance)) return false;
+      }
+    }
+    int ended = 0;
+    for (const Vector3d& direction : directions_) {
+      const RayHit hit = caster_.cast(p, direction);
+      if (hit.inside) return false;
+      ended += hit.found() ? 1 : 0;
+    }
+    return ended >= enclosed * kRays;
+  }
+
+  const std::vector<BimRoom>& rooms_;
+  const RayCaster& caster_;
+  RandomStream& random_;
+  std::vector<Vector3d> directions_;
+  Vector3d low_ = Vector3d::Constant(1e300);
+  Vector3d high_ = Vector3d::Constant(-1e300);
+};
+
+}  // namespace
+
+std::vector<Vector3d> spread_directions(int count) {
+  std::vector<Vector3d> directions;
+  const double golden = std::numbers::pi * (3.0 - std::sqrt(5.0));
+  for (int i = 0; i < count; ++i) {
+    const double z = 1.0 - 2.0 * (i + 0.5) / count;
+    const double radius = std::sqrt(1.0 - z * z);
+    directions.emplace_back(radius * std::cos(golden * i), radius * std::sin(golden * i), z);
+  }
+  return directions;
+}
+
+std::vector<BimStation> place_bim_stations(const std::vector<BimRoom>& rooms, const RayCaster& caster,
+                                           std::size_t count, RoomChoice choice, RandomStream& random) {
+  BimSurveyor surveyor(rooms, caster, random);
+  std::vector<BimStation> stations;
+  while (stations.size() < count) {
+    const auto station = stations.empty() ? surveyor.first(choice) : surveyor.next(stations);
+    if (!station) {
+      throw Error(stations.empty() ? "no room of the model has space for a scanner of this kind"
+                                   : "the rooms have no space for so many scanners in sight of one another",
+                  "limen simulate", "choose another --seed, --room or number of --stations");
+    }
+    stations.push_back(*station);
+  }
+  return stations;
+}
+
+}  // namespace limen
