@@ -192,7 +192,6 @@ std::vector<Vector2d> offset_chain(const Ring& envelope, std::size_t first, std:
 
 Trajectory add_street(World& world, std::size_t building, const StreetOptions& o, RandomStream& random) {
   const Ring envelope = world.buildings[building].plan.envelope;
-  const auto chain = [&](double distance) { return offset_chain(envelope, o.first_edge, o.edges, distance); };
   Mesh& mesh = world.mesh;
   for (std::size_t edge = o.first_edge; edge < o.first_edge + o.edges; ++edge) {
     if (!o.bare) add_pavement(mesh, envelope, edge);
@@ -200,8 +199,14 @@ Trajectory add_street(World& world, std::size_t building, const StreetOptions& o
     world.buildings[building].street_normals.push_back(right_of(along.normalized()));
   }
   if (!o.bare) line_street(world, envelope, o, random);
+  return drive_past(envelope, o.first_edge, o.edges, o.path_m, o.antenna_m);
+}
+
+Trajectory drive_past(const Ring& envelope, std::size_t first, std::size_t count, double distance_m,
+                      double antenna_m) {
   Trajectory trajectory;
-  for (const Vector2d& p : driven(chain(o.path_m), 11.0)) trajectory.points.push_back(lifted(p, o.antenna_m));
+  for (const Vector2d& p : driven(offset_chain(envelope, first, count, distance_m), 11.0))
+    trajectory.points.push_back(lifted(p, antenna_m));
   return trajectory;
 }
 

@@ -16,6 +16,7 @@
 #include "limen/base/atomic_file.h"
 #include "limen/base/error.h"
 #include "limen/bim/read_bim.h"
+#include "limen/cli/commands/simulate_project.h"
 #include "limen/io/ply/write_ply.h"
 #include "limen/report/json/result_json.h"
 #include "limen/report/json/truth_json.h"
@@ -23,6 +24,7 @@
 #include "limen/simulate/model/bim_scene.h"
 #include "limen/simulate/model/write_ifc.h"
 #include "limen/simulate/scene.h"
+#include "limen/simulate/whole/whole_building.h"
 
 namespace limen {
 namespace {
@@ -33,6 +35,9 @@ struct SimulateOptions {
   std::string room = "any";  ///< the remaining ones are of models
   std::string units = "m";
   bool as_built = false;
+  bool project = false;  ///< a whole building
+  int passes = -1;
+  bool styles = false;
 };
 
 /// Files of a case that is complete only with its last one: without it none is left.
@@ -149,8 +154,38 @@ void check_options(const SimulateOptions& options, bool model) {
   scene.check();
 }
 
+/// A whole building, scan by scan.
+int run_project(const SimulateOptions& options, const Session& session) {
+  const SceneOptions& scene = options.scene;
+  const auto refuse = [](bool given, const std::string& option) {
+    if (given)
+      throw Error(option + " is not for whole buildings", "limen simulate --project", "leave it out");
+  };
+  refuse(scene.facades > 0, "--facades");
+  refuse(scene.curtain_share >= 0.0, "--curtain-share");
+  refuse(options.as_built, "--as-built");
+  refuse(options.room != "any", "--room");
+  refuse(options.units != "m", "--units");
+  ProjectSceneOptions project;
+  project.name = scene.name;
+  project.seed = session.common.seed;
+  project.stations = scene.stations;
+  project.passes = options.passes;
+  if (scene.points_indoor > 0) project.points_station = scene.points_indoor;
+  project.points_pass = scene.points_outdoor;
+  project.any_rotation = scene.any_rotation;
+  if (scene.drift_m >= 0.0) project.drift_m = scene.drift_m;
+  project.scanner = scene.scanner;
+  project.styles = options.styles;
+  return run_simulate_project(project, options.output, session);
+}
+
 int run(SimulateOptions& options, const Session& session) {
+  if (options.project) return run_project(options, session);
   options.scene.seed = session.common.seed;
+  options.scene.drift_m = std::max(0.0, options.scene.drift_m);
+  if (options.passes >= 0)
+    throw Error("--passes is for whole buildings only", "limen simulate", "add --project");
   const bool model = means_model(options.scene.name);
   check_options(options, model);
   // Made before the long work: a place that cannot be written to is told at once.
@@ -187,6 +222,7 @@ void add_simulate_command(CLI::App& app, Session& session) {
       add_command(app, session, "simulate", "Scan a made-up building or a model; the truth is known exactly",
                   [options, &session] { return run(*options, session); });
   SceneOptions& scene = options->scene;
+  scene.drift_m = -1.0;  // what is not given is not the same for scenes and whole buildings
   command
       ->add_option("NAME", scene.name,
                    "A model file (IFC, OBJ, PLY), or a scene (office is a BIM model): " + known_scenes())
@@ -213,7 +249,15 @@ void add_simulate_command(CLI::App& app, Session& session) {
       ->check(CLI::IsMember({"any", "unique", "repeated"}));
   command->add_option("--units", options->units, "Unit of office's model.ifc")
       ->check(CLI::IsMember({"m", "mm"}));
-  add_length_option(*command, "--drift-m", scene.drift_m, "Slow error of the mobile scan's path (default 0)");
+  add_length_option(*command, "--drift-m", scene.drift_m,
+                    "Slow error of the mobile scan's path (default 0, with --project 0.008)");
+  command->add_flag("--project", options->project,
+                    fmt::format("Scan a whole building, one file a station and pass: {}",
+                                fmt::join(whole_building_names(), ", ")));
+  command->add_option("--passes", options->passes, "With --project: street passes, each along two façades")
+      ->type_name("N");
+  command->add_flag("--styles", options->styles,
+                    "With --project: noise, density, view, tilt, origin, glass and people at random");
 }
 
 }  // namespace limen

@@ -47,7 +47,10 @@ class Builder {
   std::size_t run() {
     choose_bay_variations();
     add_windows();
-    if (o_.interior_doors) add_doors();
+    if (!plan_.doors.empty())
+      add_planned_doors();
+    else if (o_.interior_doors)
+      add_doors();
     add_shell(world_.mesh, {plan_, faces_, holes_, spandrels_}, o_.ornament_share, random_);
     for (std::size_t room = 0; room < plan_.rooms.size(); ++room)
       if (stairs_rise(plan_, room)) building_.occupied[room].push_back({stairs_area(plan_.rooms[room]), 0.0});
@@ -158,6 +161,57 @@ class Builder {
       std::replace(group.begin(), group.end(), b, a);
       add_door(*pair);
     }
+  }
+
+  /// Doors where the plan wants them, each in the wall that is nearest of those the two rooms share.
+  void add_planned_doors() {
+    for (const PlannedDoor& door : plan_.doors) {
+      const WallPair* best = nullptr;
+      double nearest = 1.0;
+      for (const WallPair& pair : pairs_) {
+        const std::array<int, 2> rooms = {faces_[pair.inner].room, faces_[pair.outer].room};
+        const auto a = static_cast<int>(door.rooms[0]);
+        const auto b = static_cast<int>(door.rooms[1]);
+        if (rooms != std::array<int, 2>{a, b} && rooms != std::array<int, 2>{b, a}) continue;
+        const double off = std::abs(faces_[pair.outer].normal().dot(door.at - faces_[pair.outer].a));
+        if (off >= nearest) continue;
+        nearest = off;
+        best = &pair;
+      }
+      if (best != nullptr) add_planned_door(door, *best);
+    }
+  }
+
+  void add_planned_door(const PlannedDoor& door, WallPair pair) {
+    // The leaf swings into pair.inner: a room, not the passage before it.
+    const auto passage = [&](std::size_t face) {
+      return use_of(face) == RoomUse::corridor || use_of(face) == RoomUse::stairs;
+    };
+    if (passage(pair.inner) && !passage(pair.outer)) {
+      std::swap(pair.inner, pair.outer);
+      back_to_back(faces_[pair.inner], faces_[pair.outer], pair);
+    }
+    const WallFace& outer = faces_[pair.outer];
+    const double width = door.width_m > 0.0 ? door.width_m : o_.door_width_m;
+    const double middle = (outer.a - outer.b).normalized().dot(door.at - outer.b);
+    const double low = pair.begin_m + 0.05;
+    const double high = pair.end_m - 0.05 - width;
+    if (high < low) return;
+    OpeningShape shape = door_leaf(pair, width);
+    const double left = std::clamp(middle - 0.5 * width, low, high);
+    shape.hinge_left = left - pair.begin_m < pair.end_m - left - width;
+    place(shape, pair, {left, faces_[pair.inner].low_m});
+  }
+
+  [[nodiscard]] OpeningShape door_leaf(const WallPair& pair, double width) {
+    OpeningShape shape;
+    shape.kind = random_.uniform() < o_.open_door_share ? OpeningKind::open_door : OpeningKind::closed_door;
+    shape.width_m = width;
+    const WallFace& inner = faces_[pair.inner];
+    shape.height_m =
+        std::min(o_.door_height_m, std::min(inner.high_m, faces_[pair.outer].high_m) - inner.low_m - 0.1);
+    shape.leaf_angle_rad = radians(random_.uniform(80.0, 115.0));
+    return shape;
   }
 
   void add_door(const WallPair& pair) {

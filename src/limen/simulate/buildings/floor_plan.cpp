@@ -272,8 +272,13 @@ FloorPlan make_floor_plan(const PlanOptions& options, RandomStream& random) {
 FloorPlan moved(const FloorPlan& plan, const Vector2d& origin, double angle_rad) {
   FloorPlan result = plan;
   const auto move = [&](Vector2d& p) { p = origin + turned(p, angle_rad); };
-  for (Room& room : result.rooms)
+  for (Room& room : result.rooms) {
     for (Vector2d& p : room.outline) move(p);
+    move(room.design_origin);
+    room.design_x = turned(room.design_x, angle_rad);
+    room.design_y = turned(room.design_y, angle_rad);
+  }
+  for (PlannedDoor& door : result.doors) move(door.at);
   for (Vector2d& p : result.envelope) move(p);
   for (WindowAxis& axis : result.axes) move(axis.at);
   return result;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "limen/base/random.h"
@@ -19,6 +20,12 @@ struct Room {
   double ceiling_m = 2.7;
   int storey = 0;
   RoomUse use = RoomUse::living;
+  int design = -1;        ///< rooms of one design are built alike, perhaps mirrored; -1: a room of its own
+  int unit = -1;          ///< the flat, house or bay it belongs to; -1: none
+  bool mirrored = false;  ///< the design's left is right here
+  Vector2d design_origin = Vector2d::Zero();  ///< the plan's point where the design's own frame has (0, 0)
+  Vector2d design_x = Vector2d::UnitX();      ///< the design's axes in the plan
+  Vector2d design_y = Vector2d::UnitY();
 };
 
 /// An upright face of a room or of the outside: seen from the left of a -> b.
@@ -65,6 +72,13 @@ struct WindowAxis {
   int bay = 0;
 };
 
+/// A door between two rooms, where it is not left to chance.
+struct PlannedDoor {
+  std::array<std::size_t, 2> rooms{};
+  Vector2d at = Vector2d::Zero();  ///< the middle of its width, near the wall between the rooms
+  double width_m = 0.0;            ///< 0: as the building's other doors
+};
+
 /// Rooms and envelope of one building.
 struct FloorPlan {
   std::vector<Room> rooms;
@@ -72,6 +86,8 @@ struct FloorPlan {
   double base_m = 0.0;
   double roof_m = 3.0;
   std::vector<WindowAxis> axes;
+  std::vector<PlannedDoor> doors =
+      {};  ///< empty: doors are chosen at random, so that all rooms can be reached
 
   /// Faces of all rooms, then of the envelope.
   [[nodiscard]] std::vector<WallFace> faces() const;

@@ -30,11 +30,19 @@ PanelRect stair_well(const Vector2d& size) {
   return {0.05, 1.1, 1.2, size.y() - 0.9};
 }
 
+/// A plan may have more than one staircase: the rooms of one lie above one another. With a single one they
+/// are the same even where the partition differs from storey to storey.
+bool same_shaft(const FloorPlan& plan, const Room& room, const Room& other) {
+  if (plan.doors.empty()) return true;
+  return (room.outline[0] - other.outline[0]).norm() < 0.01;
+}
+
 /// The stair room `step` storeys above, or null.
 const Room* stairs_beyond(const FloorPlan& plan, const Room& room, int step) {
   if (room.use != RoomUse::stairs) return nullptr;
   for (const Room& other : plan.rooms)
-    if (other.use == RoomUse::stairs && other.storey == room.storey + step) return &other;
+    if (other.use == RoomUse::stairs && other.storey == room.storey + step && same_shaft(plan, room, other))
+      return &other;
   return nullptr;
 }
 

@@ -10,20 +10,20 @@
 
 namespace limen {
 
-ScanPattern station_pattern(const Rigid3& scene_from_scanner, std::size_t pulses) {
-  constexpr double kLow = -60.0;
-  constexpr double kHigh = 90.0;
-  const double step =
-      std::sqrt(360.0 * (kHigh - kLow) / static_cast<double>(std::max<std::size_t>(pulses, 1)));
+ScanPattern station_pattern(const Rigid3& scene_from_scanner, std::size_t pulses, const FieldOfView& view) {
+  const double low = view.low_deg;
+  const double high = view.high_deg;
+  const double span = view.span_deg;
+  const double step = std::sqrt(span * (high - low) / static_cast<double>(std::max<std::size_t>(pulses, 1)));
   ScanPattern pattern;
-  pattern.lines = std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(360.0 / step)));
+  pattern.lines = std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(span / step)));
   pattern.pulses_per_line =
-      std::max<std::size_t>(1, static_cast<std::size_t>(std::lround((kHigh - kLow) / step)));
+      std::max<std::size_t>(1, static_cast<std::size_t>(std::lround((high - low) / step)));
   const auto lines = static_cast<double>(pattern.lines);
   const auto rows = static_cast<double>(pattern.pulses_per_line);
   pattern.pulse = [=](std::size_t line, std::size_t index) {
-    const double azimuth = radians(360.0 * static_cast<double>(line) / lines);
-    const double elevation = radians(kLow + (kHigh - kLow) * (static_cast<double>(index) + 0.5) / rows);
+    const double azimuth = radians(span * static_cast<double>(line) / lines);
+    const double elevation = radians(low + (high - low) * (static_cast<double>(index) + 0.5) / rows);
     const Vector3d direction(std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth),
                              std::sin(elevation));
     return Pulse{scene_from_scanner.translation, scene_from_scanner.rotation * direction, 0.0};

@@ -17,6 +17,7 @@ struct Return {
   double range_m = -1.0;
   double cosine = 0.0;
   int surface = -1;
+  bool mirrored = false;  ///< seen in a pane: not where it seems to be
   [[nodiscard]] bool found() const { return surface >= 0; }
 };
 
@@ -74,7 +75,7 @@ class LineScanner {
     const Return result = follow(pulse.origin, direction, random, passage);
     if (!result.found()) return result;
     const int own = caster_.mesh().surfaces()[static_cast<std::size_t>(result.surface)].opening;
-    if (own >= 0) ++into.sights[static_cast<std::size_t>(own)].parts;
+    if (own >= 0 && !result.mirrored) ++into.sights[static_cast<std::size_t>(own)].parts;
     for (std::size_t i = 0; i < passage.count; ++i) {
       OpeningSight& sight = into.sights[static_cast<std::size_t>(passage.openings[i])];
       ++sight.crossed;
@@ -87,21 +88,33 @@ class LineScanner {
   }
 
   /// Follows a ray through panes and free openings to the surface that sends it back.
-  Return follow(const Vector3d& origin, const Vector3d& direction, RandomStream& random,
-                Passage& passage) const {
+  Return follow(Vector3d origin, Vector3d direction, RandomStream& random, Passage& passage) const {
     double from = 0.05;
+    double before = 0.0;  // the way to the pane that threw the ray back
     for (int step = 0; step < 12; ++step) {
-      const RayHit hit = caster_.cast(origin, direction, from);
+      RayHit hit = caster_.cast(origin, direction, from);
       if (!hit.found() || hit.inside || hit.range_m > o_.max_range_m) return {};
       const Surface& surface = caster_.mesh().surfaces()[static_cast<std::size_t>(hit.surface)];
       const bool glass = surface.element == Element::glass;
-      if (!glass && surface.element != Element::portal) return accepted(hit, surface, random);
+      if (!glass && surface.element != Element::portal) {
+        hit.range_m += before;
+        Return result = accepted(hit, surface, random);
+        result.mirrored = before > 0.0;
+        return result;
+      }
       if (glass) {
         const double fate = random.uniform();
-        if (fate < o_.glass_return_share) return {hit.range_m, hit.cosine, hit.surface};
+        if (before == 0.0 && fate < o_.glass_return_share) return {hit.range_m, hit.cosine, hit.surface};
         if (fate < o_.glass_return_share + o_.glass_loss_share) return {};
+        if (before == 0.0 && fate < o_.glass_return_share + o_.glass_loss_share + o_.glass_mirror_share) {
+          before = hit.range_m;
+          origin += hit.range_m * direction;
+          direction -= 2.0 * surface.plane.normal.dot(direction) * surface.plane.normal;
+          from = 1e-3;
+          continue;
+        }
       }
-      if (surface.opening >= 0) passage.add(surface.opening, hit.range_m);
+      if (surface.opening >= 0 && before == 0.0) passage.add(surface.opening, hit.range_m);
       from = hit.range_m + 1e-3;
     }
     return {};
@@ -120,7 +133,7 @@ class LineScanner {
                Sweep& into) const {
     RandomStream random(seed_, (line << 24U) + i + (std::uint64_t{1} << 60U));
     double range = returns[i].range_m;
-    int surface = returns[i].surface;
+    int surface = returns[i].mirrored ? -1 : returns[i].surface;
     // A beam that touches both sides of a depth edge measures something in between.
     if (i + 1 < returns.size() && returns[i + 1].found()) {
       const double step = returns[i + 1].range_m - range;
@@ -168,7 +181,8 @@ void ScannerOptions::check() const {
   if (!(noise_m >= 0.0 && noise_m < 0.5)) throw_bad_option("noise_m", noise_m, "0 <= noise_m < 0.5");
   if (!(angle_jitter_rad >= 0.0 && angle_jitter_rad < 0.1))
     throw_bad_option("angle_jitter_rad", angle_jitter_rad, "0 <= angle_jitter_rad < 0.1");
-  for (const double share : {mixed_pixel_share, loss_share, glass_return_share, glass_loss_share})
+  for (const double share :
+       {mixed_pixel_share, loss_share, glass_return_share, glass_loss_share, glass_mirror_share})
     if (!(share >= 0.0 && share <= 1.0)) throw_bad_option("share", share, "between 0 and 1");
   if (!(max_range_m > 0.1)) throw_bad_option("max_range_m", max_range_m, "above 0.1");
 }

@@ -19,6 +19,7 @@ struct ScannerOptions {
   double loss_share = 0.003;         ///< of all echoes, for no reason
   double glass_return_share = 0.05;  ///< of the rays on a pane that come back from it
   double glass_loss_share = 0.03;    ///< that come back from nowhere
+  double glass_mirror_share = 0.0;   ///< that are thrown back as by a mirror, and end on what it shows
   double max_range_m = 120.0;
   double least_signal =
       2.5e-4;  ///< reflectivity * cos(incidence) * (10 m / range)^2 that still gives an echo
@@ -60,9 +61,17 @@ struct Sweep {
 Sweep sweep(const RayCaster& caster, const std::vector<TrueOpening>& openings, const ScanPattern& pattern,
             const ScannerOptions& options, std::uint64_t seed);
 
-/// A tripod scanner's raster: columns of constant azimuth, elevations from -60 to +90 degrees, about
-/// `pulses` in all. `scene_from_scanner` places it.
-ScanPattern station_pattern(const Rigid3& scene_from_scanner, std::size_t pulses);
+/// What a tripod scanner looks at, about its own axis.
+struct FieldOfView {
+  double low_deg = -60.0;  ///< elevations
+  double high_deg = 90.0;
+  double span_deg = 360.0;  ///< azimuths from 0 on
+};
+
+/// A tripod scanner's raster: columns of constant azimuth, about `pulses` in all. `scene_from_scanner` places
+/// it.
+ScanPattern station_pattern(const Rigid3& scene_from_scanner, std::size_t pulses,
+                            const FieldOfView& view = {});
 
 /// A vehicle's path: points in the scene's frame, straight in between, driven at constant speed.
 struct Trajectory {

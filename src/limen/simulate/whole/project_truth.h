@@ -1,0 +1,69 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "limen/geometry/rigid.h"
+
+namespace limen {
+
+/// A room of a whole building that was scanned.
+struct ProjectRoom {
+  int storey = 0;
+  int unit = -1;  ///< flat, house or bay; -1: of the whole building (corridors)
+  std::string use;
+  double area_m2 = 0.0;
+  int alike = -1;         ///< rooms of the same number are built alike, perhaps mirrored; -1: like no other
+  bool mirrored = false;  ///< against the design of that number
+  bool furnished_alike = false;  ///< with the design's furniture, placed by hand
+};
+
+/// What is true of one scan of a project.
+struct ProjectScan {
+  std::string name;  ///< of the file, less its ending
+  bool mobile = false;
+  std::size_t points = 0;
+  int room = -1;            ///< index into ProjectTruth::rooms; -1: the street
+  double drift_m = 0.0;     ///< error of the trajectory that was put in, one standard deviation per axis
+  double surface_m2 = 0.0;  ///< of the building and its surroundings, seen by it
+  Rigid3 local_from_scan;   ///< scan frame to world less ProjectTruth::local_origin
+  Vector3d scanner = Vector3d::Zero();  ///< of a station, in its own frame; not always told in the file
+};
+
+/// Surface that two scans both saw.
+struct SharedSurface {
+  std::size_t a = 0;  ///< a < b
+  std::size_t b = 0;
+  double m2 = 0.0;
+};
+
+/// The exact truth of a project. Coordinates are about local_origin: x_in_world = local_origin + x.
+struct ProjectTruth {
+  std::string building;
+  std::uint64_t seed = 0;
+  Vector3d local_origin = Vector3d::Zero();
+  std::vector<ProjectRoom> rooms;
+  std::vector<ProjectScan> scans;
+  std::vector<SharedSurface> shared;  ///< sorted; pairs that share nothing are left out
+};
+
+/// Scan frame to world; a mobile scan's points are given in the world already.
+inline Rigid3 world_from_scan(const ProjectTruth& truth, std::size_t scan) {
+  Rigid3 pose = truth.scans[scan].local_from_scan;
+  if (!truth.scans[scan].mobile) pose.translation += truth.local_origin;
+  return pose;
+}
+
+/// Whether two stations stand in different rooms that are built alike.
+inline bool are_twins(const ProjectTruth& truth, std::size_t a, std::size_t b) {
+  const int first = truth.scans[a].room;
+  const int second = truth.scans[b].room;
+  if (first < 0 || second < 0 || first == second) return false;
+  const int alike = truth.rooms[static_cast<std::size_t>(first)].alike;
+  return alike >= 0 && alike == truth.rooms[static_cast<std::size_t>(second)].alike;
+}
+
+}  // namespace limen
