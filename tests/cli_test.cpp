@@ -201,6 +201,49 @@ TEST_F(CliTest, NoMatchTakesAwayTheTransformOfAnEarlierRun) {
   EXPECT_TRUE(json["target_from_source"].is_null());
 }
 
+/// A result about line.xyz and plane.xyz: the identity, and one alternative 0.25 m along x.
+class ResultChoiceTest : public CliTest {
+ protected:
+  void SetUp() override {
+    CliTest::SetUp();
+    std::string line;
+    for (int i = 0; i < 1000; ++i) line += std::to_string(0.01 * i) + " 0 0\n";
+    write_whole(work() / "line.xyz", line);
+    write_whole(work() / "other.xyz", line + "10 0 0\n");
+    write_whole(work() / "third.xyz", line + "10 0 0\n10 0 1\n");
+    ASSERT_EQ(run({"register", "line.xyz", "other.xyz", "-o", "out"}).status, 4);
+    Json json = Json::parse(read_whole(work() / "out" / "result.json"));
+    const Json identity = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}};
+    json["outcome"] = "registered";
+    json["target_from_source"] = identity;
+    json["alternatives"] = Json::array({{{"target_from_source", identity}}});
+    json["alternatives"][0]["target_from_source"][0][3] = 0.25;
+    write_whole(work() / "result.json", json.dump());
+  }
+};
+
+TEST_F(ResultChoiceTest, APoseMovesOnlyWhatItWasFoundFor) {
+  EXPECT_EQ(run({"transform", "result.json", "line.xyz", "a.xyz"}).status, 0);
+  const ProgramRun stranger = run({"transform", "result.json", "third.xyz", "b.xyz"});
+  EXPECT_EQ(stranger.status, 2);
+  EXPECT_NE(stranger.err.find("third.xyz"), std::string::npos) << stranger.err;
+  EXPECT_NE(stranger.err.find("--force"), std::string::npos) << stranger.err;
+  EXPECT_FALSE(std::filesystem::exists(work() / "b.xyz"));
+  EXPECT_EQ(run({"transform", "result.json", "third.xyz", "b.xyz", "--force"}).status, 0);
+  const ProgramRun other_side = run({"transform", "result.json", "other.xyz", "c.xyz"});
+  EXPECT_EQ(other_side.status, 2);
+  EXPECT_NE(other_side.err.find("--invert"), std::string::npos) << other_side.err;
+  EXPECT_EQ(run({"transform", "result.json", "other.xyz", "c.xyz", "--invert"}).status, 0);
+}
+
+TEST_F(ResultChoiceTest, AnAlternativeIsChosenByItsNumber) {
+  ASSERT_EQ(run({"transform", "result.json", "line.xyz", "a.xyz", "--alternative", "1"}).status, 0);
+  EXPECT_EQ(read_whole(work() / "a.xyz").substr(0, 4), "0.25");
+  const ProgramRun none = run({"transform", "result.json", "line.xyz", "b.xyz", "--alternative", "2"});
+  EXPECT_EQ(none.status, 2);
+  EXPECT_NE(none.err.find("holds 1 alternative, not 2"), std::string::npos) << none.err;
+}
+
 TEST_F(CliTest, InfoAnswersInJson) {
   write_room("room.xyz");
   const ProgramRun done = run({"info", "room.xyz", "--json"});

@@ -108,8 +108,20 @@ void take_inputs(const Json& object, PoseFile& pose) {
   const Json source = inputs.value("source", Json::object());
   const Json target = inputs.value("target", Json::object());
   if (source.is_object()) pose.source_path = text_at(source, "path");
+  if (source.is_object()) pose.source_sha256 = text_at(source, "sha256");
+  if (target.is_object()) pose.target_sha256 = text_at(target, "sha256");
   if (source.is_object()) pose.source_middle = vector_at(source, "middle");
   if (target.is_object()) pose.target_path = text_at(target, "path");
+}
+
+void take_alternatives(const Json& object, const fs::path& path, PoseFile& pose) {
+  const Json list = object.value("alternatives", Json::array());
+  if (!list.is_array()) return;
+  for (const Json& item : list) {
+    if (!item.is_object() || !item.contains("target_from_source")) continue;
+    const std::string where = fmt::format("alternative {}", pose.alternatives.size() + 1);
+    pose.alternatives.push_back(pose_from(item["target_from_source"], where, path));
+  }
 }
 
 PoseFile pose_from_object(const Json& object, const fs::path& path) {
@@ -117,6 +129,7 @@ PoseFile pose_from_object(const Json& object, const fs::path& path) {
   pose.outcome = outcome_at(object);
   pose.sigma = sigma_at(object);
   take_inputs(object, pose);
+  take_alternatives(object, path, pose);
   for (const char* key : {"target_from_source", "transform"}) {
     if (!object.contains(key)) continue;
     const bool none = object[key].is_null() && pose.outcome == Outcome::no_match;
@@ -185,6 +198,19 @@ PoseFile read_pose_file(const fs::path& path) {
   PoseFile pose;
   pose.target_from_source = pose_from_text(text, path);
   return pose;
+}
+
+Rigid3 chosen_pose(const PoseFile& file, int choice, const fs::path& path) {
+  if (choice > 0) {
+    const auto index = static_cast<std::size_t>(choice) - 1;
+    if (index < file.alternatives.size()) return file.alternatives[index];
+    throw Error(fmt::format("holds {} alternative{}, not {}", file.alternatives.size(),
+                            file.alternatives.size() == 1 ? "" : "s", choice),
+                path.string(), "look at its alternatives and choose one of them by its number");
+  }
+  if (file.target_from_source) return *file.target_from_source;
+  throw Error("holds no pose: nothing in common was found", path.string(),
+              "give the result of a registration that found one");
 }
 
 Rigid3 read_true_pose(const fs::path& path, const PoseFile& result) {

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "limen/model/result.h"
 
@@ -18,7 +19,14 @@ struct PoseFile {
   std::optional<Vector3d> source_middle;  ///< middle of the source's extent, metres, source world
   std::string source_path;                ///< as it was given to register; empty where unknown
   std::string target_path;
+  std::string source_sha256;  ///< of the registered file's bytes, 64 hexadecimal digits; empty where unknown
+  std::string target_sha256;
+  std::vector<Rigid3> alternatives;  ///< the other poses, in the order of the file
 };
+
+/// The pose number `choice` of a file: 0 is its answer, 1 and more its alternatives in their order. Throws
+/// Error where the file holds no pose, or fewer; `path` names it in messages.
+Rigid3 chosen_pose(const PoseFile& file, int choice, const std::filesystem::path& path);
 
 /// Reads result.json (or any JSON object with `target_from_source` or `transform`, four rows of four), or a
 /// text of 16 numbers in four rows. Throws Error that names the file and the fault, also where the matrix is

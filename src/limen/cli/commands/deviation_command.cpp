@@ -33,6 +33,8 @@ struct DeviationCommand {
   std::vector<std::string> with;
   bool identity = false;
   bool inverse = false;
+  bool force = false;
+  int alternative = 0;
   double colour_limit_m = 0.05;
   DeviationOptions measuring;
 };
@@ -74,21 +76,30 @@ bool model_is_source(const DeviationCommand& command, const PoseFile& pose, cons
 }
 
 /// The pose of the scan in the model, both in their world coordinates.
-Rigid3 read_pose(const DeviationCommand& command, const Session& session, DeviationReport& report) {
+Rigid3 model_from_scan(const DeviationCommand& command, const PoseFile& pose, const Session& session,
+                       DeviationReport& report) {
   if (command.result.empty()) return {};
-  const PoseFile pose = read_pose_file(command.result);
-  if (!pose.target_from_source) {
-    throw Error("holds no pose: nothing in common was found", command.result,
-                "give the result of a registration that found one");
-  }
+  const Rigid3 target_from_source = chosen_pose(pose, command.alternative, command.result);
   report.result_path = command.result;
   if (pose.outcome) {
     report.result_outcome = to_string(*pose.outcome);
-    if (*pose.outcome != Outcome::registered)
+    if (*pose.outcome != Outcome::registered && command.alternative == 0)
       session.note(fmt::format("the pose in {} is {}: check it", command.result, report.result_outcome));
   }
-  return model_is_source(command, pose, session) ? inverse(*pose.target_from_source)
-                                                 : *pose.target_from_source;
+  return model_is_source(command, pose, session) ? inverse(target_from_source) : target_from_source;
+}
+
+/// A pose holds for what was registered. Throws Error where a file's bytes are those of neither side.
+void check_inputs(const DeviationCommand& command, const PoseFile& pose, const DeviationReport& report) {
+  if (command.force || pose.source_sha256.empty() || pose.target_sha256.empty()) return;
+  for (const InputSummary* input : {&report.scan, &report.model}) {
+    const std::string& hash = input->sha256;
+    if (hash.empty() || hash == pose.source_sha256 || hash == pose.target_sha256) continue;
+    throw Error(
+        fmt::format("is not a file that {} is about: its SHA-256 is neither the source's nor the target's",
+                    command.result),
+        input->path, "give the registered file, or --force where it lies in the same frame");
+  }
 }
 
 void check(const DeviationCommand& command) {
@@ -150,7 +161,8 @@ int run(const DeviationCommand& command, const Session& session) {
   check(command);
   const OutputFolder folder(command.folder);
   DeviationReport report;
-  report.model_from_scan = read_pose(command, session, report);
+  const PoseFile pose_file = command.result.empty() ? PoseFile{} : read_pose_file(command.result);
+  report.model_from_scan = model_from_scan(command, pose_file, session, report);
   session.monitor->begin_stage("reading");
   const ReadOptions reading = with_choice(read_options(command.origin, "--origin", "up"), command.reading);
   const Side scan_side = read_side({command.scan, command.with, reading}, session);
@@ -165,6 +177,7 @@ int run(const DeviationCommand& command, const Session& session) {
     session.note("it is not known from where the scan was taken: give --origin, else nothing can be missed");
   report.scan = scan_side.summary;
   report.model = model_side.summary;
+  check_inputs(command, pose_file, report);
   report.measured = command.measuring;
   const Rigid3 pose = to_local(report.model_from_scan, scan.local_origin, model.local_origin);
   report.deviation = measure_deviation(scan, model, pose, command.measuring, *session.monitor);
@@ -183,6 +196,10 @@ void add_pose_options(CLI::App& command, DeviationCommand& options) {
   command.add_option("--result", options.result, "result.json of limen register, or a text of 4 x 4 numbers")
       ->type_name("FILE");
   command.add_flag("--identity", options.identity, "Scan and model are in one frame already");
+  add_alternative_option(command, options.alternative);
+  command.add_flag(
+      "--force", options.force,
+      "Measure although a file is not the one that was registered: a copy in the same frame, say");
   command.add_flag("--inverse", options.inverse, "The pose in --result moves the model to the scan");
   command
       .add_option("--with", options.with,

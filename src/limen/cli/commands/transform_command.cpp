@@ -13,6 +13,7 @@
 
 #include "limen/base/error.h"
 #include "limen/cli/inputs/scan_options.h"
+#include "limen/files/file_hash.h"
 #include "limen/io/cloud/transform_cloud.h"
 #include "limen/report/json/json_values.h"
 #include "limen/report/pose_file.h"
@@ -25,6 +26,8 @@ struct TransformOptions {
   std::string cloud;
   std::string output;
   bool invert = false;
+  bool force = false;
+  int alternative = 0;
   std::vector<std::string> merge;
 };
 
@@ -38,16 +41,34 @@ std::string as_json(const TransformOptions& options, const TransformedCloud& clo
   return to_text(json);
 }
 
+/// A pose moves what it was found for. Throws Error where the file's bytes are those of neither side, or of
+/// the side that stays.
+void check_cloud(const TransformOptions& options, const PoseFile& pose) {
+  const std::string& wanted = options.invert ? pose.target_sha256 : pose.source_sha256;
+  const std::string& other = options.invert ? pose.source_sha256 : pose.target_sha256;
+  if (options.force || wanted.empty()) return;
+  const std::string hash = sha256_of_file(options.cloud);
+  if (hash.empty() || hash == wanted) return;
+  if (hash == other) {
+    throw Error(fmt::format("is the {} of {}, which stays where it is", options.invert ? "source" : "target",
+                            options.result),
+                options.cloud,
+                options.invert ? "leave --invert out, or give --force" : "give --invert, or --force");
+  }
+  throw Error(
+      fmt::format("is not a file that {} is about: its SHA-256 is neither the source's nor the target's",
+                  options.result),
+      options.cloud, "give the registered file, or --force where it lies in the same frame");
+}
+
 Rigid3 read_pose(const TransformOptions& options, const Session& session) {
   const PoseFile pose = read_pose_file(options.result);
-  if (!pose.target_from_source) {
-    throw Error("holds no pose: nothing in common was found", options.result,
-                "give the result of a registration that found one");
-  }
-  if (pose.outcome && *pose.outcome != Outcome::registered) {
+  const Rigid3 target_from_source = chosen_pose(pose, options.alternative, options.result);
+  check_cloud(options, pose);
+  if (options.alternative == 0 && pose.outcome && *pose.outcome != Outcome::registered) {
     session.note(fmt::format("the pose in {} is {}: check it", options.result, to_string(*pose.outcome)));
   }
-  return options.invert ? inverse(*pose.target_from_source) : *pose.target_from_source;
+  return options.invert ? inverse(target_from_source) : target_from_source;
 }
 
 int run(const TransformOptions& options, const Session& session) {
@@ -85,6 +106,10 @@ void add_transform_command(CLI::App& app, Session& session) {
       ->type_size(1)
       ->take_all();
   command->add_flag("--invert", options->invert, "Move from the target's frame to the source's instead");
+  add_alternative_option(*command, options->alternative);
+  command->add_flag(
+      "--force", options->force,
+      "Move CLOUD although it is not the file that was registered: a copy in the same frame, say");
 }
 
 }  // namespace limen

@@ -159,7 +159,8 @@ _limen() {
 }
 
 std::string zsh_completion(const ProgramDoc& doc) {
-  std::string text = std::string("#compdef limen\n") + kHead;
+  std::string text = "#compdef limen\n";
+  text += kHead;
   text += "\n_limen() {\n  local -a commands\n  commands=(\n";
   for (const CommandDoc& command : doc.commands)
     text += fmt::format("    '{}:{}'\n", command.name, quoted(command.description, "'\\''"));

@@ -74,6 +74,14 @@ void add_memory_option(CLI::App& command, std::string& memory) {
       ->type_name("SIZE");
 }
 
+void add_alternative_option(CLI::App& command, int& alternative) {
+  command
+      .add_option("--alternative", alternative,
+                  "Take this one of the result's alternatives, by its number from 1, instead of its answer")
+      ->type_name("N")
+      ->check(CLI::NonNegativeNumber);
+}
+
 void add_trajectory_options(CLI::App& command, ReadingChoice& choice, const std::string& side) {
   const std::string name = "--" + side + "trajectory";
   command

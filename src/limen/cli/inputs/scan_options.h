@@ -59,6 +59,9 @@ Scan read_input(const std::string& path, const ReadOptions& options, const Sessi
 /// Reads a building model and notes its warnings.
 BimModel read_model_input(const std::string& path, const Session& session);
 
+/// Adds --alternative N: which pose of a result is meant, 0 being its answer.
+void add_alternative_option(CLI::App& command, int& alternative);
+
 /// The end of a command that takes features: `json` goes into the file and to who asked for it, `summary` to
 /// a reader. Returns the exit status.
 int deliver(AtomicFile& file, const std::string& json, const std::string& summary, const Session& session);
