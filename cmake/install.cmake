@@ -9,9 +9,10 @@ install(TARGETS limen_program RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 if(LIMEN_BUILD_IFC)
   install(TARGETS limen_ifc RUNTIME DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/limen)
 endif()
-# Headers that need the libraries we build with, but do not ask of users, stay at home.
-install(DIRECTORY src/limen DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.h"
-        PATTERN "cli" EXCLUDE PATTERN "simulate" EXCLUDE PATTERN "json_values.h" EXCLUDE)
+# The public headers are those that limen/limen.h names; what they include goes with them, nothing else.
+install(CODE "set(LIMEN_HEADER_ROOT \"${PROJECT_SOURCE_DIR}/src\")
+set(LIMEN_HEADER_DESTINATION \"${CMAKE_INSTALL_INCLUDEDIR}\")
+include(\"${PROJECT_SOURCE_DIR}/cmake/install_headers.cmake\")")
 install(FILES ${PROJECT_BINARY_DIR}/generated/limen/base/version.h
         DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/limen/base)
 install(FILES LICENSE README.md CHANGELOG.md CITATION.cff DESTINATION ${CMAKE_INSTALL_DOCDIR})
@@ -23,18 +24,17 @@ install(FILES ${PROJECT_BINARY_DIR}/limenConfig.cmake ${PROJECT_BINARY_DIR}/lime
         DESTINATION ${LIMEN_PACKAGE_DIR})
 
 # The manual page and the shells' completions are printed by the program itself, so that they cannot differ
-# from it.
+# from it; a part of building it, so that whatever has the program can be installed.
 set(LIMEN_PRINTED_DIR ${PROJECT_BINARY_DIR}/printed)
 file(MAKE_DIRECTORY ${LIMEN_PRINTED_DIR})
-set(LIMEN_PRINTED ${LIMEN_PRINTED_DIR}/limen.1 ${LIMEN_PRINTED_DIR}/limen.bash ${LIMEN_PRINTED_DIR}/_limen
-    ${LIMEN_PRINTED_DIR}/limen.fish)
-add_custom_command(OUTPUT ${LIMEN_PRINTED}
+add_custom_command(TARGET limen_program POST_BUILD
   COMMAND limen_program man > ${LIMEN_PRINTED_DIR}/limen.1
   COMMAND limen_program completion bash > ${LIMEN_PRINTED_DIR}/limen.bash
   COMMAND limen_program completion zsh > ${LIMEN_PRINTED_DIR}/_limen
   COMMAND limen_program completion fish > ${LIMEN_PRINTED_DIR}/limen.fish
-  DEPENDS limen_program COMMENT "Printing the manual page and the completions")
-add_custom_target(limen_printed ALL DEPENDS ${LIMEN_PRINTED})
+  BYPRODUCTS ${LIMEN_PRINTED_DIR}/limen.1 ${LIMEN_PRINTED_DIR}/limen.bash ${LIMEN_PRINTED_DIR}/_limen
+    ${LIMEN_PRINTED_DIR}/limen.fish
+  COMMENT "Printing the manual page and the completions")
 install(FILES ${LIMEN_PRINTED_DIR}/limen.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
 install(FILES ${LIMEN_PRINTED_DIR}/limen.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions
         RENAME limen)

@@ -35,7 +35,9 @@ endif()
 file(GLOB LIMEN_PYTHON_FILES CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/python/limen/*)
 add_custom_target(limen_python_package ALL
   COMMAND ${CMAKE_COMMAND} -E copy_if_different ${LIMEN_PYTHON_FILES} ${LIMEN_PYTHON_DIR}
+  COMMAND ${CMAKE_COMMAND} -E copy_if_different $<TARGET_FILE:limen_program> ${LIMEN_PYTHON_DIR}/limen_program
   DEPENDS limen_python COMMENT "Gathering the Python package")
+add_dependencies(limen_python_package limen_program)
 if(LIMEN_BUILD_IFC)
   # Looked for beside the module first.
   add_dependencies(limen_python_package limen_ifc)

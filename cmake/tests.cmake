@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: The limen authors
 # SPDX-License-Identifier: Apache-2.0
 find_package(GTest REQUIRED)
+find_package(rapidcheck REQUIRED)
 include(GoogleTest)
 
 if(NOT LIMEN_BUILD_SIMULATOR)
@@ -15,7 +16,7 @@ add_executable(limen_unit_tests ${LIMEN_UNIT_TESTS})
 target_include_directories(limen_unit_tests PRIVATE ${PROJECT_SOURCE_DIR}/tests)
 target_precompile_headers(limen_unit_tests PRIVATE ${LIMEN_TEST_HEADERS})
 target_link_libraries(limen_unit_tests PRIVATE limen limen_simulate limen_cli limen_options fmt::fmt
-  nlohmann_json::nlohmann_json GTest::gtest_main)
+  nlohmann_json::nlohmann_json rapidcheck GTest::gtest_main)
 if(LIMEN_BUILD_IFC)
   target_compile_definitions(limen_unit_tests PRIVATE LIMEN_WITH_IFC=1)
   add_dependencies(limen_unit_tests limen_ifc)
@@ -38,7 +39,8 @@ if(LIMEN_ACCEPTANCE_TESTS)
 endif()
 
 add_test(NAME floors COMMAND ${PROJECT_SOURCE_DIR}/scripts/check_floors)
-set_tests_properties(floors PROPERTIES LABELS unit)
+add_test(NAME floors_are_checked COMMAND ${PROJECT_SOURCE_DIR}/tests/tools/check_floors_test)
+set_tests_properties(floors floors_are_checked PROPERTIES LABELS unit)
 
 add_test(NAME installed_package
          COMMAND ${CMAKE_COMMAND} -DBUILD_DIR=${PROJECT_BINARY_DIR}

@@ -25,6 +25,8 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 #: Of every file in a wheel: the same sources give the same bytes.
 TIME = (2026, 1, 1, 0, 0, 0)
+#: Beside the module: what `limen` starts, and what reads IFC.
+PROGRAMS = ("limen_ifc", "limen_program")
 
 
 def _version() -> str:
@@ -57,6 +59,10 @@ def _wheel_file() -> str:
     return f"Wheel-Version: 1.0\nGenerator: limen_build\nRoot-Is-Purelib: false\nTag: {_tag()}\n"
 
 
+def _entry_points() -> str:
+    return "[console_scripts]\nlimen = limen.__main__:main\n"
+
+
 def _settings(config_settings: dict | None) -> list[str]:
     given = (config_settings or {}).get("cmake", [])
     return [word for text in ([given] if isinstance(given, str) else given) for word in shlex.split(text)]
@@ -81,10 +87,10 @@ def _build(config_settings: dict | None) -> Path:
 
 
 def _package_files(package: Path) -> list[Path]:
-    """The Python files, the module of this Python, and the program that reads IFC."""
+    """The Python files, the module of this Python, the program, and the one that reads IFC."""
     suffix = sysconfig.get_config_var("EXT_SUFFIX")
     module = f"_limen{suffix}"
-    names = {module, "limen_ifc", "py.typed"}
+    names = {module, *PROGRAMS, "py.typed"}
     files = sorted(package.iterdir())
     wanted = [path for path in files if path.name in names or path.suffix in (".py", ".pyi")]
     if module not in (path.name for path in wanted):
@@ -110,6 +116,7 @@ class _Wheel:
     def close(self, info: str) -> None:
         self.add(f"{info}/METADATA", _metadata().encode())
         self.add(f"{info}/WHEEL", _wheel_file().encode())
+        self.add(f"{info}/entry_points.txt", _entry_points().encode())
         self.add(f"{info}/LICENSE", (ROOT / "LICENSE").read_bytes())
         name = f"{info}/RECORD"
         content = "\n".join(self._record + [f"{name},,"]) + "\n"
@@ -134,6 +141,7 @@ def prepare_metadata_for_build_wheel(metadata_directory, config_settings=None):
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "METADATA").write_text(_metadata(), encoding="utf-8")
     (folder / "WHEEL").write_text(_wheel_file(), encoding="utf-8")
+    (folder / "entry_points.txt").write_text(_entry_points(), encoding="utf-8")
     return _info()
 
 
@@ -145,7 +153,7 @@ def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
     name = f"limen-{_version()}-{_tag()}.whl"
     wheel = _Wheel(Path(wheel_directory) / name)
     for path in _package_files(package):
-        wheel.add(f"limen/{path.name}", path.read_bytes(), executable=path.name == "limen_ifc")
+        wheel.add(f"limen/{path.name}", path.read_bytes(), executable=path.name in PROGRAMS)
     wheel.close(_info())
     return name
 

@@ -57,12 +57,13 @@ class Wheel(unittest.TestCase):
             expected = base64.urlsafe_b64encode(hashlib.sha256(content).digest()).rstrip(b"=").decode()
             self.assertEqual((digest, size), (f"sha256={expected}", str(len(content))))
 
-    def test_it_holds_module_types_and_the_reader_of_ifc(self):
+    def test_it_holds_module_types_and_programs(self):
         names = set(self.wheel.namelist())
         suffix = sysconfig.get_config_var("EXT_SUFFIX")
-        for name in ("__init__.py", "py.typed", "_limen.pyi", f"_limen{suffix}", "limen_ifc"):
+        for name in ("__init__.py", "py.typed", "_limen.pyi", f"_limen{suffix}", "limen_ifc", "limen_program"):
             self.assertIn(f"limen/{name}", names)
-        self.assertEqual(self.wheel.getinfo("limen/limen_ifc").external_attr >> 16 & 0o111, 0o111)
+        for name in ("limen_ifc", "limen_program"):
+            self.assertEqual(self.wheel.getinfo(f"limen/{name}").external_attr >> 16 & 0o111, 0o111)
 
     def test_the_same_build_gives_the_same_bytes(self):
         with tempfile.TemporaryDirectory() as folder:
@@ -100,6 +101,13 @@ class Installed(unittest.TestCase):
         done = self.run_python("import limen; print(limen.__file__); print(limen.scene_names()[0])")
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertTrue(done.stdout.startswith(str(self.python.parent.parent)), done.stdout)
+
+    def test_the_command_comes_with_it(self):
+        for command in ([str(self.python.parent / "limen")], [str(self.python), "-m", "limen"]):
+            done = subprocess.run(
+                [*command, "--version"], capture_output=True, text=True, check=False, env=self.environment
+            )
+            self.assertEqual((done.returncode, done.stdout.split()[0]), (0, "limen"), done.stderr)
 
     def test_a_model_is_read_by_the_program_in_the_wheel(self):
         script = "import limen, os; print(os.path.join(os.path.dirname(limen.__file__), 'limen_ifc'))"

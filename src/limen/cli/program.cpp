@@ -78,7 +78,7 @@ int status_of(Fault fault) {
   return kExitInternal;
 }
 
-void add_commands(CLI::App& app, Session& session) {
+void add_commands(CommandLine& app, Session& session) {
   add_info_command(app, session);
   add_planes_command(app, session);
   add_openings_command(app, session);
@@ -144,8 +144,9 @@ int run_program(int argc, char** argv) {
   app.set_help_flag("-h,--help", "Tell the usage and exit");
   app.set_version_flag("--version", fmt::format("limen {}", kVersion), "Tell the version and exit");
   app.require_subcommand(1);
-  add_common_options(app, session);
-  add_commands(app, session);
+  CommandLine line(app);
+  add_common_options(line, session);
+  add_commands(line, session);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -5,10 +5,6 @@
 #include <memory>
 #include <string>
 
-#include <CLI/App.hpp>
-#include <CLI/Config.hpp>
-#include <CLI/Formatter.hpp>
-
 #include "limen/cli/help/completion.h"
 #include "limen/cli/help/program_help.h"
 #include "limen/cli/terminal/terminal.h"
@@ -34,18 +30,16 @@ int deliver_text(const std::string& text, const Session& session) {
 
 }  // namespace
 
-void add_completion_command(CLI::App& app, Session& session) {
+void add_completion_command(CommandLine& app, Session& session) {
   auto shell = std::make_shared<std::string>();
-  CLI::App* completion =
+  CommandLine* completion =
       add_command(app, session, "completion", "Print the script that lets a shell complete limen's commands",
                   [shell, &app, &session] {
-                    return deliver_text(completion_of(*shell, describe_program(app)), session);
+                    return deliver_text(completion_of(*shell, describe_program(app.parser())), session);
                   });
-  completion->add_option("SHELL", *shell, "For which shell")
-      ->required()
-      ->check(CLI::IsMember({"bash", "zsh", "fish"}));
+  completion->add_option("SHELL", *shell, "For which shell")->required()->one_of({"bash", "zsh", "fish"});
   add_command(app, session, "man", "Print the manual page", [&app, &session] {
-    return deliver_text(man_page(describe_program(app)), session);
+    return deliver_text(man_page(describe_program(app.parser())), session);
   })->group("");
 }
 

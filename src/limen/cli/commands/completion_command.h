@@ -8,6 +8,6 @@ namespace limen {
 
 /// limen completion SHELL: prints the completion script; and, not listed in the help, limen man: prints the
 /// manual page. Both are made from the commands that `app` has when they run.
-void add_completion_command(CLI::App& app, Session& session);
+void add_completion_command(CommandLine& app, Session& session);
 
 }  // namespace limen

@@ -8,9 +8,6 @@
 #include <string>
 #include <vector>
 
-#include <CLI/App.hpp>
-#include <CLI/Config.hpp>
-#include <CLI/Formatter.hpp>
 #include <fmt/format.h>
 
 #include "limen/base/atomic_file.h"
@@ -192,7 +189,7 @@ int run(const DeviationCommand& command, const Session& session) {
   return kExitOk;
 }
 
-void add_pose_options(CLI::App& command, DeviationCommand& options) {
+void add_pose_options(CommandLine& command, DeviationCommand& options) {
   command.add_option("--result", options.result, "result.json of limen register, or a text of 4 x 4 numbers")
       ->type_name("FILE");
   command.add_flag("--identity", options.identity, "Scan and model are in one frame already");
@@ -215,10 +212,10 @@ void add_pose_options(CLI::App& command, DeviationCommand& options) {
 
 }  // namespace
 
-void add_deviation_command(CLI::App& app, Session& session) {
+void add_deviation_command(CommandLine& app, Session& session) {
   auto options = std::make_shared<DeviationCommand>();
-  CLI::App* command = add_command(app, session, "deviation", "Measure a registered scan against its model",
-                                  [options, &session] { return run(*options, session); });
+  CommandLine* command = add_command(app, session, "deviation", "Measure a registered scan against its model",
+                                     [options, &session] { return run(*options, session); });
   command->add_option("SCAN", options->scan, "A scan of any format limen reads")->required();
   command->add_option("MODEL", options->model, "The building model: IFC, OBJ, or PLY with faces")->required();
   command

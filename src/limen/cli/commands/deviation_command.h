@@ -7,6 +7,6 @@
 namespace limen {
 
 /// `limen deviation SCAN MODEL --result RESULT -o DIR`: what was built differently from its model.
-void add_deviation_command(CLI::App& app, Session& session);
+void add_deviation_command(CommandLine& app, Session& session);
 
 }  // namespace limen

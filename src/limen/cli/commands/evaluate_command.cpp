@@ -5,9 +5,6 @@
 #include <memory>
 #include <string>
 
-#include <CLI/App.hpp>
-#include <CLI/Config.hpp>
-#include <CLI/Formatter.hpp>
 #include <fmt/format.h>
 
 #include "limen/base/angles.h"
@@ -25,10 +22,6 @@ struct EvaluateOptions {
   std::string truth;
 };
 
-Json optional_json(const std::optional<double>& value) {
-  return value ? Json(*value) : Json();
-}
-
 std::string as_json(const PoseFile& result, const std::optional<PoseError>& error) {
   Json json;
   json["outcome"] = result.outcome ? Json(to_string(*result.outcome)) : Json();
@@ -37,9 +30,10 @@ std::string as_json(const PoseFile& result, const std::optional<PoseError>& erro
   json["measured_at"] = error ? json_of(error->measured_at) : Json();
   json["rotation_error_vector_rad"] = error ? json_of(error->rotation_vector_rad) : Json();
   json["translation_error_vector_m"] = error ? json_of(error->shift_m) : Json();
-  const std::optional<double> sigmas = error ? error->largest_sigmas : std::nullopt;
-  json["largest_error_in_sigmas"] = optional_json(sigmas);
-  json["within_sigma"] = sigmas ? Json(*sigmas <= kWithinSigmas) : Json();
+  const bool measured = error && error->largest_sigmas;
+  const double sigmas = measured ? *error->largest_sigmas : 0.0;
+  json["largest_error_in_sigmas"] = measured ? Json(sigmas) : Json();
+  json["within_sigma"] = measured ? Json(sigmas <= kWithinSigmas) : Json();
   return to_text(json);
 }
 
@@ -71,10 +65,10 @@ int run(const EvaluateOptions& options, const Session& session) {
 
 }  // namespace
 
-void add_evaluate_command(CLI::App& app, Session& session) {
+void add_evaluate_command(CommandLine& app, Session& session) {
   auto options = std::make_shared<EvaluateOptions>();
-  CLI::App* command = add_command(app, session, "evaluate", "Compare a pose with the true one",
-                                  [options, &session] { return run(*options, session); });
+  CommandLine* command = add_command(app, session, "evaluate", "Compare a pose with the true one",
+                                     [options, &session] { return run(*options, session); });
   command->add_option("RESULT", options->result, "result.json, or a text of 4 x 4 numbers")->required();
   command
       ->add_option(

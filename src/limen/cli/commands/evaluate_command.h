@@ -7,6 +7,6 @@
 namespace limen {
 
 /// `limen evaluate RESULT TRUTH`: how far a pose is from the true one.
-void add_evaluate_command(CLI::App& app, Session& session);
+void add_evaluate_command(CommandLine& app, Session& session);
 
 }  // namespace limen

@@ -9,9 +9,6 @@
 #include <string>
 #include <vector>
 
-#include <CLI/App.hpp>
-#include <CLI/Config.hpp>
-#include <CLI/Formatter.hpp>
 #include <fmt/format.h>
 
 #include "limen/base/random.h"
@@ -182,10 +179,10 @@ int run(const InfoCommand& command, const Session& session) {
 
 }  // namespace
 
-void add_info_command(CLI::App& app, Session& session) {
+void add_info_command(CommandLine& app, Session& session) {
   auto options = std::make_shared<InfoCommand>();
-  CLI::App* command = add_command(app, session, "info", "Tell what a scan or a model file holds",
-                                  [options, &session] { return run(*options, session); });
+  CommandLine* command = add_command(app, session, "info", "Tell what a scan or a model file holds",
+                                     [options, &session] { return run(*options, session); });
   command->add_option("FILE", options->path, "A scan or a model of any format limen reads")->required();
   add_memory_option(*command, options->reading.memory);
   add_trajectory_options(*command, options->reading);

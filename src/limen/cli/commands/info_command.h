@@ -7,6 +7,6 @@
 namespace limen {
 
 /// `limen info FILE`: what a scan file holds and what limen makes of it.
-void add_info_command(CLI::App& app, Session& session);
+void add_info_command(CommandLine& app, Session& session);
 
 }  // namespace limen

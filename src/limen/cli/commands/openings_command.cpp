@@ -8,9 +8,6 @@
 #include <string>
 #include <vector>
 
-#include <CLI/App.hpp>
-#include <CLI/Config.hpp>
-#include <CLI/Formatter.hpp>
 #include <fmt/format.h>
 
 #include "limen/base/atomic_file.h"
@@ -111,10 +108,11 @@ int run(const OpeningsCommand& command, const Session& session) {
 
 }  // namespace
 
-void add_openings_command(CLI::App& app, Session& session) {
+void add_openings_command(CommandLine& app, Session& session) {
   auto options = std::make_shared<OpeningsCommand>();
-  CLI::App* command = add_command(app, session, "openings", "Find the windows and doors of a scan or a model",
-                                  [options, &session] { return run(*options, session); });
+  CommandLine* command =
+      add_command(app, session, "openings", "Find the windows and doors of a scan or a model",
+                  [options, &session] { return run(*options, session); });
   add_feature_options(*command,
                       {options->scan, options->output, options->origin, options->gravity, options->reading});
   OpeningOptions& o = options->openings;

@@ -7,6 +7,6 @@
 namespace limen {
 
 /// `limen openings SCAN -o FILE.json`: windows and doors of a scan.
-void add_openings_command(CLI::App& app, Session& session);
+void add_openings_command(CommandLine& app, Session& session);
 
 }  // namespace limen

@@ -10,9 +10,6 @@
 #include <string>
 #include <vector>
 
-#include <CLI/App.hpp>
-#include <CLI/Config.hpp>
-#include <CLI/Formatter.hpp>
 #include <fmt/format.h>
 
 #include "limen/base/atomic_file.h"
@@ -110,9 +107,9 @@ int run(PlanesOptions options, const Session& session) {
 
 }  // namespace
 
-void add_planes_command(CLI::App& app, Session& session) {
+void add_planes_command(CommandLine& app, Session& session) {
   auto options = std::make_shared<PlanesOptions>();
-  CLI::App* command =
+  CommandLine* command =
       add_command(app, session, "planes", "Find the planes of a scan or a model and their outlines",
                   [options, &session] { return run(*options, session); });
   add_feature_options(*command,
@@ -124,7 +121,7 @@ void add_planes_command(CLI::App& app, Session& session) {
           "--detector", options->detector,
           "How planes are found (default auto, which is grow); scan_lines needs a scan whose lines are "
           "known; msac is slow")
-      ->check(CLI::IsMember(names));
+      ->one_of(names);
   command
       ->add_option("--threshold-m,--inlier-threshold-m", options->threshold,
                    "Farthest a point may lie from its plane: metres, or a rule: auto (default), noise, "

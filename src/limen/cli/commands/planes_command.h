@@ -7,6 +7,6 @@
 namespace limen {
 
 /// `limen planes SCAN -o FILE.json`: planes of a scan and their outlines.
-void add_planes_command(CLI::App& app, Session& session);
+void add_planes_command(CommandLine& app, Session& session);
 
 }  // namespace limen

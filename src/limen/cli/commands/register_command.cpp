@@ -10,9 +10,6 @@
 #include <utility>
 #include <vector>
 
-#include <CLI/App.hpp>
-#include <CLI/Config.hpp>
-#include <CLI/Formatter.hpp>
 #include <fmt/format.h>
 
 #include "limen/base/angles.h"
@@ -227,7 +224,8 @@ int run(const RegisterCommandOptions& options, const Session& session) {
   return status_of(report.result.outcome);
 }
 
-void add_with_option(CLI::App& command, const char* name, std::vector<std::string>& with, const char* side) {
+void add_with_option(CommandLine& command, const char* name, std::vector<std::string>& with,
+                     const char* side) {
   command
       .add_option(
           name, with,
@@ -239,7 +237,7 @@ void add_with_option(CLI::App& command, const char* name, std::vector<std::strin
       ->take_all();
 }
 
-void add_origin_options(CLI::App& command, RegisterCommandOptions& options) {
+void add_origin_options(CommandLine& command, RegisterCommandOptions& options) {
   const auto add = [&command](const char* name, std::string& text, const char* description) {
     command.add_option(name, text, description)->type_name("x,y,z");
   };
@@ -251,9 +249,9 @@ void add_origin_options(CLI::App& command, RegisterCommandOptions& options) {
 
 }  // namespace
 
-void add_register_command(CLI::App& app, Session& session) {
+void add_register_command(CommandLine& app, Session& session) {
   auto options = std::make_shared<RegisterCommandOptions>();
-  CLI::App* command =
+  CommandLine* command =
       add_command(app, session, "register",
                   "Find the pose of a scan in another or in a building model; status 0: registered, "
                   "3: ambiguous or under-constrained, 4: no match",
@@ -268,7 +266,7 @@ void add_register_command(CLI::App& app, Session& session) {
   command
       ->add_option("--method", options->method,
                    "What to match: auto (default), polygons, openings, hybrid (both), or segments")
-      ->check(CLI::IsMember({"auto", "polygons", "openings", "hybrid", "segments"}));
+      ->one_of({"auto", "polygons", "openings", "hybrid", "segments"});
   add_length_option(*command, "--wall-thickness-m,--wall-thickness", options->wall_thickness_m,
                     "Thickness of the outer walls where it is known; else it is measured, or named as open");
   add_with_option(*command, "--source-with", options->source_with, "SOURCE");

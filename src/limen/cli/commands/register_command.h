@@ -7,6 +7,6 @@
 namespace limen {
 
 /// `limen register SOURCE TARGET -o DIR`: the pose of one scan in the other.
-void add_register_command(CLI::App& app, Session& session);
+void add_register_command(CommandLine& app, Session& session);
 
 }  // namespace limen

@@ -9,9 +9,6 @@
 #include <utility>
 #include <vector>
 
-#include <CLI/App.hpp>
-#include <CLI/Config.hpp>
-#include <CLI/Formatter.hpp>
 #include <fmt/format.h>
 
 #include "limen/base/atomic_file.h"
@@ -120,11 +117,11 @@ int run(const SegmentsCommand& command, const Session& session) {
 
 }  // namespace
 
-void add_segments_command(CLI::App& app, Session& session) {
+void add_segments_command(CommandLine& app, Session& session) {
   auto options = std::make_shared<SegmentsCommand>();
-  CLI::App* command = add_command(app, session, "segments",
-                                  "Find the 3-D line segments of a scan or a building model: its edges",
-                                  [options, &session] { return run(*options, session); });
+  CommandLine* command = add_command(app, session, "segments",
+                                     "Find the 3-D line segments of a scan or a building model: its edges",
+                                     [options, &session] { return run(*options, session); });
   add_feature_options(*command,
                       {options->scan, options->output, options->origin, options->gravity, options->reading});
   SegmentOptions& o = options->segments;

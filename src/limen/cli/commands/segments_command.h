@@ -7,6 +7,6 @@
 namespace limen {
 
 /// `limen segments SCAN -o FILE.json`: the 3-D line segments of a scan.
-void add_segments_command(CLI::App& app, Session& session);
+void add_segments_command(CommandLine& app, Session& session);
 
 }  // namespace limen

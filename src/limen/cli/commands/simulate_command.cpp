@@ -8,9 +8,6 @@
 #include <string>
 #include <vector>
 
-#include <CLI/App.hpp>
-#include <CLI/Config.hpp>
-#include <CLI/Formatter.hpp>
 #include <fmt/format.h>
 
 #include "limen/base/atomic_file.h"
@@ -209,16 +206,16 @@ int run(SimulateOptions& options, const Session& session) {
   return kExitOk;
 }
 
-void add_count_option(CLI::App& command, const std::string& name, std::size_t& count,
+void add_count_option(CommandLine& command, const std::string& name, std::size_t& count,
                       const std::string& description) {
   command.add_option(name, count, description + "; 0: the scene's own (default)")->type_name("N");
 }
 
 }  // namespace
 
-void add_simulate_command(CLI::App& app, Session& session) {
+void add_simulate_command(CommandLine& app, Session& session) {
   auto options = std::make_shared<SimulateOptions>();
-  CLI::App* command =
+  CommandLine* command =
       add_command(app, session, "simulate", "Scan a made-up building or a model; the truth is known exactly",
                   [options, &session] { return run(*options, session); });
   SceneOptions& scene = options->scene;
@@ -246,9 +243,8 @@ void add_simulate_command(CLI::App& app, Session& session) {
   command->add_flag("--as-built", options->as_built,
                     "Of a model: some elements moved by 1 to 5 cm, some missing, furniture added");
   command->add_option("--room", options->room, "Of a model: scan a room that is unique in it, or repeated")
-      ->check(CLI::IsMember({"any", "unique", "repeated"}));
-  command->add_option("--units", options->units, "Unit of office's model.ifc")
-      ->check(CLI::IsMember({"m", "mm"}));
+      ->one_of({"any", "unique", "repeated"});
+  command->add_option("--units", options->units, "Unit of office's model.ifc")->one_of({"m", "mm"});
   add_length_option(*command, "--drift-m", scene.drift_m,
                     "Slow error of the mobile scan's path (default 0, with --project 0.008)");
   command->add_flag("--project", options->project,

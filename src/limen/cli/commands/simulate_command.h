@@ -7,6 +7,6 @@
 namespace limen {
 
 /// `limen simulate NAME -o DIR`: scans of a made-up building, and the truth about them.
-void add_simulate_command(CLI::App& app, Session& session);
+void add_simulate_command(CommandLine& app, Session& session);
 
 }  // namespace limen

@@ -5,9 +5,6 @@
 #include <memory>
 #include <string>
 
-#include <CLI/App.hpp>
-#include <CLI/Config.hpp>
-#include <CLI/Formatter.hpp>
 #include <fmt/format.h>
 
 #include "limen/base/error.h"
@@ -65,10 +62,10 @@ int run(ThinCommand command, const Session& session) {
 
 }  // namespace
 
-void add_thin_command(CLI::App& app, Session& session) {
+void add_thin_command(CommandLine& app, Session& session) {
   auto options = std::make_shared<ThinCommand>();
-  CLI::App* command = add_command(app, session, "thin", "Keep an even part of a cloud of any size",
-                                  [options, &session] { return run(*options, session); });
+  CommandLine* command = add_command(app, session, "thin", "Keep an even part of a cloud of any size",
+                                     [options, &session] { return run(*options, session); });
   command->add_option("CLOUD", options->cloud, "A cloud of any format limen reads")->required();
   command->add_option("OUT", options->output, "The file to write: .ply, .las or .e57")->required();
   command

@@ -7,6 +7,6 @@
 namespace limen {
 
 /// `limen thin CLOUD OUT`: fewer points, evenly spread, of a file of any size.
-void add_thin_command(CLI::App& app, Session& session);
+void add_thin_command(CommandLine& app, Session& session);
 
 }  // namespace limen

@@ -6,9 +6,6 @@
 #include <string>
 #include <vector>
 
-#include <CLI/App.hpp>
-#include <CLI/Config.hpp>
-#include <CLI/Formatter.hpp>
 #include <fmt/format.h>
 
 #include "limen/base/error.h"
@@ -87,9 +84,9 @@ int run(const TransformOptions& options, const Session& session) {
 
 }  // namespace
 
-void add_transform_command(CLI::App& app, Session& session) {
+void add_transform_command(CommandLine& app, Session& session) {
   auto options = std::make_shared<TransformOptions>();
-  CLI::App* command =
+  CommandLine* command =
       add_command(app, session, "transform", "Move a cloud by a found pose, and merge it with others",
                   [options, &session] { return run(*options, session); });
   command->add_option("RESULT", options->result, "result.json, or a text of 4 x 4 numbers")->required();

@@ -7,6 +7,6 @@
 namespace limen {
 
 /// `limen transform RESULT CLOUD OUT`: the cloud in the target's frame.
-void add_transform_command(CLI::App& app, Session& session);
+void add_transform_command(CommandLine& app, Session& session);
 
 }  // namespace limen

@@ -9,9 +9,6 @@
 #include <memory>
 #include <utility>
 
-#include <CLI/App.hpp>
-#include <CLI/Config.hpp>
-#include <CLI/Formatter.hpp>
 #include <fmt/format.h>
 
 #include "limen/base/error.h"
@@ -41,13 +38,13 @@ Vector3d parse_point(const std::string& text, const std::string& option) {
   return point;
 }
 
-void add_gravity_option(CLI::App& command, std::string& gravity, bool with_auto) {
+void add_gravity_option(CommandLine& command, std::string& gravity, bool with_auto) {
   const std::vector<std::string> known = with_auto ? std::vector<std::string>{"auto", "up", "unknown"}
                                                    : std::vector<std::string>{"up", "unknown"};
   std::string description = "up: the z axis of the files points up; unknown: it may point anywhere";
   if (with_auto) description += "; auto: up where floors and walls say so";
   command.add_option("--gravity", gravity, fmt::format("{} (default {})", description, gravity))
-      ->check(CLI::IsMember(known));
+      ->one_of(known);
 }
 
 std::uint64_t parse_memory(const std::string& text) {
@@ -67,22 +64,22 @@ std::uint64_t parse_memory(const std::string& text) {
               "write it as 500M, 1G or 2.5G");
 }
 
-void add_memory_option(CLI::App& command, std::string& memory) {
+void add_memory_option(CommandLine& command, std::string& memory) {
   command
       .add_option("--memory", memory,
                   "Memory for a scan, as 500M or 2.5G: one that needs more is thinned while it is read")
       ->type_name("SIZE");
 }
 
-void add_alternative_option(CLI::App& command, int& alternative) {
+void add_alternative_option(CommandLine& command, int& alternative) {
   command
       .add_option("--alternative", alternative,
                   "Take this one of the result's alternatives, by its number from 1, instead of its answer")
       ->type_name("N")
-      ->check(CLI::NonNegativeNumber);
+      ->in_range(0, 1000000);
 }
 
-void add_trajectory_options(CLI::App& command, ReadingChoice& choice, const std::string& side) {
+void add_trajectory_options(CommandLine& command, ReadingChoice& choice, const std::string& side) {
   const std::string name = "--" + side + "trajectory";
   command
       .add_option(name, choice.trajectory,
@@ -122,7 +119,7 @@ ReadOptions with_choice(ReadOptions options, const ReadingChoice& choice) {
   return options;
 }
 
-void add_feature_options(CLI::App& command, const FeatureOptions& options) {
+void add_feature_options(CommandLine& command, const FeatureOptions& options) {
   command.add_option("SCAN", options.scan, "A scan of any format limen reads")->required();
   command.add_option("-o,--output", options.output, "The JSON file to write")->required()->type_name("FILE");
   command

@@ -17,7 +17,7 @@ namespace limen {
 Vector3d parse_point(const std::string& text, const std::string& option);
 
 /// Adds --gravity up|unknown, and auto where that is offered: whether the z axis of the files points up.
-void add_gravity_option(CLI::App& command, std::string& gravity, bool with_auto = false);
+void add_gravity_option(CommandLine& command, std::string& gravity, bool with_auto = false);
 
 /// What the user says of how scans are to be read, beside their origin.
 struct ReadingChoice {
@@ -32,9 +32,9 @@ struct ReadingChoice {
 /// "500M", "2.5G" or a number of bytes; 0 for an empty text. Throws Error for anything else.
 std::uint64_t parse_memory(const std::string& text);
 /// Adds --memory.
-void add_memory_option(CLI::App& command, std::string& memory);
+void add_memory_option(CommandLine& command, std::string& memory);
 /// Adds --trajectory and what belongs to it; `side` stands before the name ("source-") or is empty.
-void add_trajectory_options(CLI::App& command, ReadingChoice& choice, const std::string& side = "");
+void add_trajectory_options(CommandLine& command, ReadingChoice& choice, const std::string& side = "");
 /// What read_options() gave, with the choice; reads the trajectory.
 ReadOptions with_choice(ReadOptions options, const ReadingChoice& choice);
 
@@ -47,7 +47,7 @@ struct FeatureOptions {
   ReadingChoice& reading;
 };
 /// Adds SCAN, --output, --origin, --gravity, --memory and --trajectory with what belongs to it.
-void add_feature_options(CLI::App& command, const FeatureOptions& options);
+void add_feature_options(CommandLine& command, const FeatureOptions& options);
 
 /// What the user said of a scan: `origin` "x,y,z" or empty (`option` names it in messages), `gravity`
 /// "auto", "up" or "unknown".
@@ -60,7 +60,7 @@ Scan read_input(const std::string& path, const ReadOptions& options, const Sessi
 BimModel read_model_input(const std::string& path, const Session& session);
 
 /// Adds --alternative N: which pose of a result is meant, 0 being its answer.
-void add_alternative_option(CLI::App& command, int& alternative);
+void add_alternative_option(CommandLine& command, int& alternative);
 
 /// The end of a command that takes features: `json` goes into the file and to who asked for it, `summary` to
 /// a reader. Returns the exit status.

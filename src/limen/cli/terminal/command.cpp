@@ -2,13 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limen/cli/terminal/command.h"
 
+#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <utility>
 
-#include <CLI/App.hpp>
-#include <CLI/Config.hpp>
-#include <CLI/Formatter.hpp>
 #include <fmt/format.h>
 
 #include "limen/cli/terminal/terminal.h"
@@ -54,7 +52,7 @@ void Session::wipe_progress() const {
   if (auto* terminal = dynamic_cast<TerminalMonitor*>(monitor.get())) terminal->wipe();
 }
 
-void add_common_options(CLI::App& app, Session& session) {
+void add_common_options(CommandLine& app, Session& session) {
   const std::string group = kCommonGroup;
   CommonOptions& common = session.common;
   app.add_flag("-q,--quiet", common.quiet, "Neither progress nor summary; errors are still told")
@@ -63,7 +61,7 @@ void add_common_options(CLI::App& app, Session& session) {
       ->group(group);
   app.add_option("--threads", common.threads,
                  "Threads to use; they never change a result (default 0: all of the machine)")
-      ->check(CLI::Range(0, 4096))
+      ->in_range(0, 4096)
       ->type_name("N")
       ->group(group);
   app.add_option("--seed", common.seed, "Seed of every random choice (default 1)")
@@ -72,21 +70,23 @@ void add_common_options(CLI::App& app, Session& session) {
       ->group(group);
 }
 
-void add_length_option(CLI::App& app, const std::string& name, double& length_m,
+void add_length_option(CommandLine& app, const std::string& name, double& length_m,
                        const std::string& description) {
   const auto finite = [](const std::string& text) -> std::string {
     double number = 0.0;
-    const bool good = CLI::detail::lexical_cast(text, number) && std::isfinite(number) && number >= 0.0;
+    const char* end = text.data() + text.size();
+    const auto read = std::from_chars(text.data() + (text.starts_with('+') ? 1 : 0), end, number);
+    const bool good = read.ec == std::errc() && read.ptr == end && std::isfinite(number) && number >= 0.0;
     return good ? "" : fmt::format("{} is not a length in metres", text);
   };
   app.add_option(name, length_m, description)->check(finite)->type_name("M");
 }
 
-CLI::App* add_command(CLI::App& app, Session& session, const std::string& name,
-                      const std::string& description, std::function<int()> run) {
-  CLI::App* command = app.add_subcommand(name, description);
+CommandLine* add_command(CommandLine& app, Session& session, const std::string& name,
+                         const std::string& description, std::function<int()> run) {
+  CommandLine* command =
+      app.add_command(name, description, [&session, run = std::move(run)] { session.action = run; });
   add_common_options(*command, session);
-  command->callback([&session, run = std::move(run)] { session.action = run; });
   return command;
 }
 

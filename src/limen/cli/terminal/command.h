@@ -9,10 +9,7 @@
 #include <string_view>
 
 #include "limen/base/progress.h"
-
-namespace CLI {
-class App;
-}
+#include "limen/cli/terminal/command_line.h"
 
 namespace limen {
 
@@ -57,16 +54,16 @@ struct Session {
 /// Adds the subcommand `name` with its common options. The command adds its own to what is returned; its
 /// `run` is called after parsing and returns an exit status.
 ///
-/// One command is one file pair with one function `void add_<name>_command(CLI::App& app, Session& session)`;
-/// program.cpp lists them.
-CLI::App* add_command(CLI::App& app, Session& session, const std::string& name,
-                      const std::string& description, std::function<int()> run);
+/// One command is one file pair with one function `void add_<name>_command(CommandLine& app, Session&
+/// session)`; program.cpp lists them.
+CommandLine* add_command(CommandLine& app, Session& session, const std::string& name,
+                         const std::string& description, std::function<int()> run);
 
 /// Adds an option that takes a length in metres, finite and not negative.
-void add_length_option(CLI::App& app, const std::string& name, double& length_m,
+void add_length_option(CommandLine& app, const std::string& name, double& length_m,
                        const std::string& description);
 
 /// Adds --quiet, --json, --threads and --seed.
-void add_common_options(CLI::App& app, Session& session);
+void add_common_options(CommandLine& app, Session& session);
 
 }  // namespace limen
