@@ -13,6 +13,7 @@
 #include "limen/base/atomic_file.h"
 #include "limen/base/error.h"
 #include "limen/bim/read_bim.h"
+#include "limen/cli/commands/case_files.h"
 #include "limen/cli/commands/simulate_project.h"
 #include "limen/io/ply/write_ply.h"
 #include "limen/report/json/result_json.h"
@@ -35,27 +36,6 @@ struct SimulateOptions {
   bool project = false;  ///< a whole building
   int passes = -1;
   bool styles = false;
-};
-
-/// Files of a case that is complete only with its last one: without it none is left.
-class CaseFiles {
- public:
-  CaseFiles() = default;
-  ~CaseFiles() {
-    std::error_code ignored;
-    for (const std::filesystem::path& path : written_) std::filesystem::remove(path, ignored);
-  }
-  CaseFiles(const CaseFiles&) = delete;
-  CaseFiles& operator=(const CaseFiles&) = delete;
-
-  /// Names a file that is about to be written; one that was there before stays.
-  const std::filesystem::path& add(const std::filesystem::path& path) {
-    return std::filesystem::exists(path) ? path : written_.emplace_back(path);
-  }
-  void keep() { written_.clear(); }
-
- private:
-  std::vector<std::filesystem::path> written_;
 };
 
 std::string summary(const SimulatedCase& simulated, const std::string& folder) {

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "limen/base/atomic_file.h"
+#include "limen/cli/commands/case_files.h"
 #include "limen/io/ply/write_ply.h"
 #include "limen/report/json/project_truth_json.h"
 
@@ -31,12 +32,15 @@ int run_simulate_project(const ProjectSceneOptions& options, const std::string& 
   options.check();
   const OutputFolder folder(output);
   const OutputFolder truth_folder(folder.path() / "truth");
-  const ProjectTruth truth = simulate_project(
-      options, [&](const Scan& scan) { write_ply(folder.path() / (scan.name + ".ply"), scan); },
-      *session.monitor);
+  CaseFiles files;
+  const auto keep = [&](const Scan& scan) {
+    write_ply(files.add(folder.path() / (scan.name + ".ply")), scan);
+  };
+  const ProjectTruth truth = simulate_project(options, keep, *session.monitor);
   const std::string task = project_task_json(truth);
-  write_file(truth_folder.path() / "project.json", project_truth_json(truth));
-  write_file(folder.path() / "task.json", task);
+  write_file(files.add(truth_folder.path() / "project.json"), project_truth_json(truth));
+  write_file(files.add(folder.path() / "task.json"), task);
+  files.keep();
   session.say(summary(truth, output));
   session.answer(task);
   return kExitOk;
