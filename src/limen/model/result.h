@@ -29,9 +29,24 @@ struct UnobservedFreedom {
   std::string name;                        ///< in a user's words: "shift along (0.00, 1.00, 0.00)"
 };
 
+using Matrix6d = Eigen::Matrix<double, 6, 6>;
+
+/// How well a pose is known, in the target frame, about `centre`.
+struct PoseSigma {
+  Vector3d rotation_rad = Vector3d::Zero();   ///< one standard deviation about x, y, z
+  Vector3d translation_m = Vector3d::Zero();  ///< along x, y, z, of the point `centre`
+  Vector3d centre = Vector3d::Zero();         ///< the point known best, near the common surface; target world
+  /// Of (rotation, translation of `centre`), radians and metres; its diagonal is the squares of the above. A
+  /// trajectory's error is in it.
+  Matrix6d covariance = Matrix6d::Zero();
+};
+
 /// A candidate pose and how well it explains both scans.
 struct Hypothesis {
-  Rigid3 target_from_source;     ///< world to world, metres
+  Rigid3 target_from_source;  ///< world to world, metres
+  PoseSigma sigma;            ///< how well it is known, were it the right one
+  std::optional<double>
+      probability;               ///< that the scans were taken so, among all that may be; not of segments
   double score = 0.0;            ///< higher is better, m^2 of agreeing surface less the contradicted one
   double agreeing_m2 = 0.0;      ///< surface of each scan met by the other, symmetrised
   double contradicted_m2 = 0.0;  ///< surface of one scan standing where the other's rays passed free
@@ -76,24 +91,26 @@ struct StageTime {
   double seconds = 0.0;
 };
 
-/// One standard deviation of each degree of freedom of the pose, in the target frame, about `centre`.
-struct PoseSigma {
-  Vector3d rotation_rad = Vector3d::Zero();   ///< about x, y, z
-  Vector3d translation_m = Vector3d::Zero();  ///< along x, y, z, of the point `centre`
-  Vector3d centre = Vector3d::Zero();         ///< the point known best, near the common surface; target world
+/// What else may explain two scans than one of the poses found; with the poses' own probabilities the sum
+/// is 1.
+struct OtherExplanations {
+  double nothing_shared = 0.0;  ///< the scans show different places
+  double twin = 0.0;            ///< different places built alike, which the best pose lays on one another
+  double unlisted_pose = 0.0;   ///< they share a place, under a pose that was not proposed
 };
 
 struct RegistrationResult {
   Outcome outcome = Outcome::no_match;
   std::string reason;  ///< one sentence for a user: why this verdict
   Hypothesis best;     ///< meaningless for no_match
-  PoseSigma sigma;
+  PoseSigma sigma;     ///< of `best`
   std::vector<UnobservedFreedom> unobserved;
   std::vector<Hypothesis> alternatives;  ///< different poses, best first, without `best`
   std::vector<PlaneMatch> matches;
   std::vector<MatchedOpenings> openings;
   std::vector<MeasuredThickness> thickness;  ///< of the walls between the scans, most openings first
   std::size_t judged_poses = 0;              ///< poses that were refined and judged
+  std::optional<OtherExplanations> others;   ///< where poses have probabilities
   std::size_t rivals = 0;                    ///< alternatives that cannot be told from `best`
   std::vector<StageTime> stages;
   std::shared_ptr<const RegistrationPicture> picture;  ///< null unless it was asked for

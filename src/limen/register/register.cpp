@@ -9,6 +9,9 @@
 
 #include "limen/base/error.h"
 #include "limen/base/parallel.h"
+#include "limen/register/judge/individual_matter.h"
+#include "limen/register/judge/posterior.h"
+#include "limen/register/judge/twin_odds.h"
 #include "limen/register/prepare/model_rooms.h"
 #include "limen/register/prepare/stage_clock.h"
 #include "limen/register/propose/propose.h"
@@ -127,11 +130,31 @@ std::string room_of(const Rigid3& target_from_source, const PreparedPair& pair) 
                  (pair.source.model ? inverse(target_from_source) : target_from_source) * station);
 }
 
+/// Over what length a trajectory's error changes: its size over this is the turn it may cause.
+constexpr double kDriftLengthM = 5.0;
+
+/// What the data hold, and what the trajectory may be off where this place was scanned: the matched surface
+/// is seen within seconds, so that the error is one for all of it and does not average out.
+PoseSigma sigma_of(const RefinedPose& pose, const Vector3d& target_origin, double drift_m) {
+  PoseSigma sigma;
+  sigma.centre = pose.centre + target_origin;
+  sigma.covariance = covariance_of(pose);
+  const double drift_rad = drift_m / kDriftLengthM;
+  sigma.covariance.diagonal().head<3>().array() += drift_rad * drift_rad;
+  sigma.covariance.diagonal().tail<3>().array() += drift_m * drift_m;
+  const Eigen::Matrix<double, 6, 1> deviation = sigma.covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
+  sigma.rotation_rad = deviation.head<3>();
+  sigma.translation_m = deviation.tail<3>();
+  return sigma;
+}
+
 Hypothesis to_hypothesis(const JudgedPose& pose, const PreparedPair& pair) {
   Hypothesis hypothesis;
   hypothesis.target_from_source =
       to_world(pose.refined.target_from_source, pair.source.extracted.features.local_origin,
                pair.target.extracted.features.local_origin);
+  hypothesis.sigma = sigma_of(pose.refined, pair.target.extracted.features.local_origin,
+                              drift_m(pair.source.view(), pair.target.view()));
   hypothesis.score = pose.score.value();
   hypothesis.agreeing_m2 = pose.score.agreeing_m2;
   hypothesis.contradicted_m2 = pose.score.contradicted_m2;
@@ -141,22 +164,6 @@ Hypothesis to_hypothesis(const JudgedPose& pose, const PreparedPair& pair) {
   if (pair.source.model || pair.target.model) hypothesis.explained_share = pose.score.explained_share;
   hypothesis.room = room_of(pose.refined.target_from_source, pair);
   return hypothesis;
-}
-
-/// Over what length a trajectory's error changes: its size over this is the turn it may cause.
-constexpr double kDriftLengthM = 5.0;
-
-/// What the data hold, and what the trajectory may be off where this place was scanned: the matched surface
-/// is seen within seconds, so that the error is one for all of it and does not average out.
-PoseSigma sigma_of(const RefinedPose& pose, const Vector3d& target_origin, double drift_m) {
-  PoseSigma sigma;
-  sigma.centre = pose.centre + target_origin;
-  const Matrix6d covariance = covariance_of(pose);
-  for (Eigen::Index k = 0; k < 3; ++k) {
-    sigma.rotation_rad[k] = std::hypot(std::sqrt(std::max(0.0, covariance(k, k))), drift_m / kDriftLengthM);
-    sigma.translation_m[k] = std::hypot(std::sqrt(std::max(0.0, covariance(k + 3, k + 3))), drift_m);
-  }
-  return sigma;
 }
 
 void refine_and_score(JudgedPose& pose, const ScanView& source, const ScanView& target,
@@ -232,9 +239,36 @@ std::vector<JudgedPose> attempt(const PreparedScan& source, const PreparedScan& 
   return judged;
 }
 
+/// Places in the ranking of the poses that are told besides the best: all that cannot be told from it, and
+/// then some.
+std::vector<std::size_t> told_alternatives(const Verdict& verdict, const RegisterOptions& options) {
+  std::vector<std::size_t> told;
+  for (std::size_t k = 1; k < verdict.ranking.size(); ++k) {
+    const std::size_t pose = verdict.ranking[k];
+    const bool rival = std::find(verdict.rivals.begin(), verdict.rivals.end(), pose) != verdict.rivals.end();
+    if (rival || told.size() < static_cast<std::size_t>(options.alternatives)) told.push_back(pose);
+  }
+  return told;
+}
+
+/// Probabilities of the best pose and of `others`, and of what else may be.
+Posterior posterior_of(const std::vector<JudgedPose>& poses, std::size_t best,
+                       const std::vector<std::size_t>& others, const ContrastFunction& contrast, double twin,
+                       bool model) {
+  PosteriorEvidence evidence;
+  evidence.best_value_m2 = poses[best].score.value();
+  evidence.twin = twin;
+  evidence.model = model;
+  for (const std::size_t other : others) {
+    const PoseContrast apart = contrast(best, other);
+    evidence.leads_m2.push_back(apart.for_first_m2 - apart.for_second_m2);
+  }
+  return posterior(evidence);
+}
+
 /// The result in the scans' own frames.
-void tell(const Verdict& verdict, const std::vector<JudgedPose>& poses, const PreparedPair& pair,
-          const RegisterOptions& options, RegistrationResult& result) {
+void tell(const Verdict& verdict, const std::vector<JudgedPose>& poses, const ContrastFunction& contrast,
+          double twin, const PreparedPair& pair, const RegisterOptions& options, RegistrationResult& result) {
   const PreparedScan& from = pair.source;
   const PreparedScan& to = pair.target;
   result.outcome = verdict.outcome;
@@ -244,21 +278,29 @@ void tell(const Verdict& verdict, const std::vector<JudgedPose>& poses, const Pr
   for (UnobservedFreedom& freedom : result.unobserved)
     freedom.direction = to.upright_from_scan.transpose() * freedom.direction;
   if (verdict.ranking.empty()) return;
+  const std::vector<std::size_t> others = told_alternatives(verdict, options);
+  const Posterior all =
+      posterior_of(poses, verdict.ranking.front(), others, contrast, twin, from.model || to.model);
   const RefinedPose& upright = poses[verdict.ranking.front()].refined;
   const JudgedPose best = in_own_frames(poses[verdict.ranking.front()], from, to);
   result.best = to_hypothesis(best, pair);
-  result.sigma = sigma_of(best.refined, to.extracted.features.local_origin, drift_m(from.view(), to.view()));
+  result.best.probability = all.poses.front();
+  result.others = all.others;
+  result.sigma = result.best.sigma;
   result.matches = best.refined.matches;
   result.openings = matched_openings(best.refined);
   result.thickness = measure_thickness(upright, from.extracted.features, to.extracted.features);
   result.rivals = verdict.rivals.size();
-  // Every pose that cannot be told from the best is listed, and then some.
-  for (std::size_t k = 1; k < verdict.ranking.size(); ++k) {
-    const std::size_t pose = verdict.ranking[k];
-    const bool rival = std::find(verdict.rivals.begin(), verdict.rivals.end(), pose) != verdict.rivals.end();
-    if (!rival && result.alternatives.size() >= static_cast<std::size_t>(options.alternatives)) continue;
-    result.alternatives.push_back(to_hypothesis(in_own_frames(poses[pose], from, to), pair));
+  for (std::size_t k = 0; k < others.size(); ++k) {
+    result.alternatives.push_back(to_hypothesis(in_own_frames(poses[others[k]], from, to), pair));
+    result.alternatives.back().probability = all.poses[k + 1];
   }
+}
+
+/// Whether two rooms built alike could be taken for one: of a model, or of the house seen from the street,
+/// the other places are searched as well, and are rivals.
+bool may_be_twin(const PreparedScan& from, const PreparedScan& to) {
+  return !from.model && !to.model && !from.mobile && !to.mobile;
 }
 
 }  // namespace
@@ -313,7 +355,14 @@ RegistrationResult register_prepared(const PreparedPair& pair, const RegisterOpt
   }
   const bool planes = options.method == Method::automatic || options.method == Method::polygons;
   if (verdict.outcome == Outcome::no_match && level && planes && !model) try_again(true, Proposal::sliding);
-  tell(verdict, poses, pair, options, result);
+  double twin = 0.0;
+  if (!verdict.ranking.empty() && verdict.outcome != Outcome::no_match && may_be_twin(from, to)) {
+    const IndividualMatter individual =
+        individual_matter(from.view(), to.view(), poses[verdict.ranking.front()].refined.target_from_source);
+    twin = probability_of_twin(individual, judging.twin);
+    verdict = with_twin(std::move(verdict), individual, twin, judging);
+  }
+  tell(verdict, poses, contrast, twin, pair, options, result);
   return result;
 }
 

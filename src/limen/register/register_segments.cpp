@@ -250,28 +250,28 @@ RefinedPose inverted(const RefinedPose& pose) {
   return back;
 }
 
+PoseSigma sigma_of(const RefinedPose& pose, const Vector3d& local_origin) {
+  PoseSigma sigma;
+  sigma.covariance = covariance_of(pose);
+  const Eigen::Matrix<double, 6, 1> deviation = sigma.covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
+  sigma.rotation_rad = deviation.head<3>();
+  sigma.translation_m = deviation.tail<3>();
+  sigma.centre = local_origin + pose.centre;
+  return sigma;
+}
+
 Hypothesis hypothesis_of(const Judged& judged, bool swapped, const SegmentSet& source,
                          const SegmentSet& target) {
   Hypothesis hypothesis;
   const Rigid3& pose = judged.fit.pose.target_from_source;
   hypothesis.target_from_source =
       to_world(swapped ? inverse(pose) : pose, source.local_origin, target.local_origin);
+  hypothesis.sigma = sigma_of(swapped ? inverted(judged.fit.pose) : judged.fit.pose, target.local_origin);
   hypothesis.score = judged.score_m;
   hypothesis.rms_m = judged.fit.pose.rms_m;
   hypothesis.matched_segments = judged.fit.matched_segments;
   hypothesis.agreeing_length_m = judged.fit.matched_m;
   return hypothesis;
-}
-
-PoseSigma sigma_of(const RefinedPose& pose, const Vector3d& local_origin) {
-  const Matrix6d covariance = covariance_of(pose);
-  PoseSigma sigma;
-  for (Eigen::Index k = 0; k < 3; ++k) {
-    sigma.rotation_rad[k] = std::sqrt(std::max(0.0, covariance(k, k)));
-    sigma.translation_m[k] = std::sqrt(std::max(0.0, covariance(k + 3, k + 3)));
-  }
-  sigma.centre = local_origin + pose.centre;
-  return sigma;
 }
 
 /// Runs one step, timed and named.
@@ -325,8 +325,8 @@ RegistrationResult register_segments(const SegmentSet& source, const SegmentSet&
   for (UnobservedFreedom& freedom : result.unobserved) {
     if (swapped) freedom.direction = best.target_from_source.rotation * freedom.direction;
   }
-  result.sigma = sigma_of(best, target.local_origin);
   result.best = hypothesis_of(work.poses().front(), swapped, source, target);
+  result.sigma = result.best.sigma;
   const std::size_t listed =
       std::min(std::max(work.rivals(), kListedOthers), static_cast<std::size_t>(options.alternatives));
   result.rivals = std::min(work.rivals(), listed);

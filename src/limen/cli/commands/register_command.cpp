@@ -37,6 +37,7 @@ struct RegisterCommandOptions {
   std::vector<std::string> source_with;
   std::vector<std::string> target_with;
   double wall_thickness_m = 0.0;
+  double risk = VerdictOptions{}.risk;
   bool no_report = false;
   std::string memory;
   ReadingChoice source_reading;
@@ -91,6 +92,7 @@ OptionList reported(const RegisterCommandOptions& options) {
   if (!options.target_reading.trajectory.empty())
     list.emplace_back("target_trajectory", options.target_reading.trajectory);
   if (options.wall_thickness_m > 0) list.emplace_back("wall_thickness_m", options.wall_thickness_m);
+  if (options.risk != VerdictOptions{}.risk) list.emplace_back("risk", options.risk);
   return list;
 }
 
@@ -109,6 +111,9 @@ Registered register_files(const RegisterCommandOptions& options, const Session& 
       side_options(options, options.source_origin, "--source-origin", options.source_reading);
   const ReadOptions target_options =
       side_options(options, options.target_origin, "--target-origin", options.target_reading);
+  VerdictOptions verdict;
+  verdict.risk = options.risk;
+  verdict.check();
   const auto start = std::chrono::steady_clock::now();
   session.monitor->begin_stage("reading");
   Side source = read_side({options.source, options.source_with, source_options}, session);
@@ -119,6 +124,7 @@ Registered register_files(const RegisterCommandOptions& options, const Session& 
   registering.gravity = gravity_of(options.gravity);
   registering.method = method_of(options.method);
   registering.wall_thickness_m = options.wall_thickness_m;
+  registering.verdict = verdict;
   registering.seed = session.common.seed;
   registering.picture = !options.no_report;
   Registered registered;
@@ -269,6 +275,12 @@ void add_register_command(CommandLine& app, Session& session) {
       ->one_of({"auto", "polygons", "openings", "hybrid", "segments"});
   add_length_option(*command, "--wall-thickness-m,--wall-thickness", options->wall_thickness_m,
                     "Thickness of the outer walls where it is known; else it is measured, or named as open");
+  command
+      ->add_option(
+          "--risk", options->risk,
+          "Tell `registered` only where a twin (another room built alike) is less probable than this "
+          "(default 0.001)")
+      ->type_name("P");
   add_with_option(*command, "--source-with", options->source_with, "SOURCE");
   add_with_option(*command, "--target-with", options->target_with, "TARGET");
   command->add_flag("--no-report", options->no_report,

@@ -16,6 +16,8 @@
 namespace limen {
 namespace {
 
+constexpr double kLikelyTwin = 0.5;  // then even an open freedom is the lesser thing to tell
+
 bool same_pose(const RefinedPose& a, const RefinedPose& b, const VerdictOptions& options) {
   const Matrix3d turn = a.target_from_source.rotation.transpose() * b.target_from_source.rotation;
   if (rotation_angle(turn) > radians(options.same_rotation_deg)) return false;
@@ -105,6 +107,8 @@ void VerdictOptions::check() const {
   if (!(max_rival_share > 0 && max_rival_share < 1)) {
     throw_bad_option("max_rival_share", max_rival_share, "within (0, 1)");
   }
+  if (!(risk > 0 && risk < 0.5)) throw_bad_option("risk", risk, "within (0, 0.5)");
+  twin.check();
   if (!(max_sigma_m > 0)) throw_bad_option("max_sigma_m", max_sigma_m, "more than 0");
   if (!(max_sigma_deg > 0)) throw_bad_option("max_sigma_deg", max_sigma_deg, "more than 0");
   if (!(min_held_m2 > 0)) throw_bad_option("min_held_m2", min_held_m2, "more than 0");
@@ -259,6 +263,17 @@ Verdict judge(const std::vector<JudgedPose>& poses, const ContrastFunction& cont
   verdict.reason =
       fmt::format("{:.1f} m2 of surface agree, {:.1f} m2 are contradicted, no different pose comes near",
                   best.score.agreeing_m2, best.score.contradicted_m2);
+  return verdict;
+}
+
+Verdict with_twin(Verdict verdict, const IndividualMatter& individual, double probability,
+                  const VerdictOptions& options) {
+  const bool registered = verdict.outcome == Outcome::registered && probability > options.risk;
+  const bool open = verdict.outcome == Outcome::under_constrained && probability > kLikelyTwin;
+  if (!registered && !open) return verdict;
+  verdict.outcome = Outcome::ambiguous;
+  verdict.unobserved.clear();
+  verdict.reason = twin_words(individual, probability);
   return verdict;
 }
 

@@ -8,6 +8,7 @@
 
 #include "limen/model/result.h"
 #include "limen/register/judge/score_pose.h"
+#include "limen/register/judge/twin_odds.h"
 #include "limen/register/refine/refine_pose.h"
 
 namespace limen {
@@ -19,6 +20,8 @@ struct JudgedPose {
 };
 
 struct VerdictOptions {
+  double risk = 0.001;              ///< `registered` may be wrong with this probability at most
+  TwinOptions twin;                 ///< of two rooms built alike
   double min_agreeing_m2 = 2.5;     ///< common planar surface that a pose must show
   double max_contradiction = 0.10;  ///< contradicted over agreeing surface
   double full_evidence_m2 = 10.0;  ///< with less agreeing surface, proportionally less contradiction is borne
@@ -68,6 +71,11 @@ struct Verdict {
 using ContrastFunction = std::function<PoseContrast(std::size_t first, std::size_t second)>;
 Verdict judge(const std::vector<JudgedPose>& poses, const ContrastFunction& contrast,
               const VerdictOptions& options = {});
+
+/// The verdict once it is known how probable it is that the scans show two places built alike: what a twin
+/// explains as well is not registered.
+Verdict with_twin(Verdict verdict, const IndividualMatter& individual, double probability,
+                  const VerdictOptions& options = {});
 
 /// Distinct poses, best value first: indices.
 std::vector<std::size_t> rank(const std::vector<JudgedPose>& poses, const VerdictOptions& options = {});

@@ -27,7 +27,11 @@ struct PreparedScan {
   std::vector<Vector3d> stations;    ///< optical centres of static stations, prepared frame
   Eigen::AlignedBox3d reach;         ///< around the samples, prepared frame
 
-  [[nodiscard]] ScanView view() const { return {&extracted.features, space.get(), reach, model, mobile}; }
+  [[nodiscard]] ScanView view() const {
+    ScanView view{&extracted.features, space.get(), reach, model, mobile, mobile || !stations.empty()};
+    if (!stations.empty()) view.station = stations.front();
+    return view;
+  }
   /// Sets `reach` from the samples.
   void settle_reach();
 };

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
+
 #include <Eigen/Geometry>
 
 #include "limen/model/features.h"
@@ -16,6 +18,8 @@ struct ScanView {
   Eigen::AlignedBox3d reach = {};    ///< around its samples
   bool model = false;                ///< a building model: everything, of which the other saw a part
   bool mobile = false;               ///< seen from many places along a path
+  bool knows_free = true;            ///< where the scanner stood is known, so that its rays tell what is free
+  std::optional<Vector3d> station = {};  ///< of a static scan: where the (first) scanner stood
 };
 
 }  // namespace limen

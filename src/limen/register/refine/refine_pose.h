@@ -10,8 +10,6 @@
 
 namespace limen {
 
-using Matrix6d = Eigen::Matrix<double, 6, 6>;
-
 struct RefineOptions {
   double first_gate_m = 0.12;  ///< surfaces nearer than this are matched in the first round
   double last_gate_m = 0.015;  ///< and in the last

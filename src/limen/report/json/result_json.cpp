@@ -16,10 +16,25 @@ Json pose_json(const Rigid3& target_from_source) {
   return json_of(to_matrix(target_from_source));
 }
 
+Json covariance_json(const Matrix6d& covariance) {
+  Json rows = Json::array();
+  for (Eigen::Index i = 0; i < 6; ++i) {
+    Json row = Json::array();
+    for (Eigen::Index j = 0; j < 6; ++j) row.push_back(covariance(i, j));
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
 Json sigma_json(const PoseSigma& sigma) {
   return {{"rotation_rad", json_of(sigma.rotation_rad)},
           {"translation_m", json_of(sigma.translation_m)},
-          {"centre", json_of(sigma.centre)}};
+          {"centre", json_of(sigma.centre)},
+          {"covariance", covariance_json(sigma.covariance)}};
+}
+
+Json probability_json(const std::optional<double>& probability) {
+  return probability ? Json(*probability) : Json();
 }
 
 Json unobserved_json(const std::vector<UnobservedFreedom>& freedoms) {
@@ -51,8 +66,10 @@ Json evidence_json(const Hypothesis& pose) {
 Json alternatives_json(const std::vector<Hypothesis>& alternatives) {
   Json list = Json::array();
   for (const Hypothesis& pose : alternatives) {
-    list.push_back(
-        {{"target_from_source", pose_json(pose.target_from_source)}, {"evidence", evidence_json(pose)}});
+    list.push_back({{"target_from_source", pose_json(pose.target_from_source)},
+                    {"probability", probability_json(pose.probability)},
+                    {"sigma", sigma_json(pose.sigma)},
+                    {"evidence", evidence_json(pose)}});
   }
   return list;
 }
@@ -182,6 +199,12 @@ std::string result_json(const RegistrationReport& report) {
   json["reason"] = result.reason;
   json["target_from_source"] = found ? pose_json(result.best.target_from_source) : Json();
   json["sigma"] = found ? sigma_json(result.sigma) : Json();
+  json["probability"] = found ? probability_json(result.best.probability) : Json();
+  if (result.others) {
+    json["probability_of_nothing_shared"] = result.others->nothing_shared;
+    json["probability_of_twin"] = result.others->twin;
+    json["probability_of_unlisted_pose"] = result.others->unlisted_pose;
+  }
   json["evidence"] = found ? evidence_json(result.best) : Json();
   json["unobserved"] = unobserved_json(result.unobserved);
   json["alternatives"] = alternatives_json(result.alternatives);

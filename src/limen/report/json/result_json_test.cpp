@@ -47,6 +47,22 @@ TEST(ResultJson, HoldsTheContract) {
   EXPECT_EQ(json["inputs"]["source"]["path"], "a \"quoted\" name.ply");
 }
 
+TEST(ResultJson, TellsTheCovarianceOfEveryPose) {
+  RegistrationReport report = some_report();
+  report.result.sigma.covariance(0, 5) = 1e-9;
+  report.result.alternatives[1].sigma.covariance(3, 3) = 4e-6;
+  report.result.alternatives[1].probability = 0.25;
+  report.result.others = OtherExplanations{0.125, 0.5, 0.0};
+  const Json json = Json::parse(result_json(report));
+  EXPECT_EQ(json["sigma"]["covariance"].size(), 6U);
+  EXPECT_EQ(json["sigma"]["covariance"][0][5], 1e-9);
+  EXPECT_EQ(json["alternatives"][1]["sigma"]["covariance"][3][3], 4e-6);
+  EXPECT_EQ(json["alternatives"][1]["probability"], 0.25);
+  EXPECT_EQ(json["probability_of_nothing_shared"], 0.125);
+  EXPECT_EQ(json["probability_of_twin"], 0.5);
+  EXPECT_TRUE(json["probability"].is_null());
+}
+
 TEST(ResultJson, KeepsEveryDigit) {
   const Json json = Json::parse(result_json(some_report()));
   const Matrix4d expected = to_matrix(grid_pose());

@@ -1,0 +1,37 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "limen/register/prepare/scan_view.h"
+
+namespace limen {
+
+/// Observations of one kind: how many independent ones there are, and what share of them agrees.
+struct Observations {
+  double count = 0.0;  ///< pieces of surface a correlation length apart count as one each; denser ones do not
+  double share = 0.0;  ///< of their surface that agrees, in [0, 1]
+
+  [[nodiscard]] double agreeing() const { return count * share; }
+};
+
+/// What two scans say of matter that is not the building's: furniture, clutter, things that stand about.
+/// Rooms built alike agree on walls, slabs, columns, frames by design; on this matter only by chance, or
+/// because they are furnished alike.
+struct IndividualMatter {
+  /// Pieces that the other scan saw either as matter or as free space.
+  Observations matter;
+  /// Upright faces of furniture: of those that the other scan has within a few centimetres, the share that it
+  /// has within what noise explains. Furniture put up alike by hand agrees to centimetres only.
+  Observations faces;
+  /// Share of `matter` that agrees when one room's things are shifted about in the other: chance.
+  double chance = 0.0;
+  /// A wall stands between the two stations: what they have in common is seen through an opening.
+  bool apart = false;
+};
+
+/// Asks each scan about the other's individual matter under a pose (upright frames): pieces of surface on no
+/// plane, or on a plane smaller than a wall, off all large planes of both scans. Neither side is a model.
+IndividualMatter individual_matter(const ScanView& source, const ScanView& target,
+                                   const Rigid3& target_from_source);
+
+}  // namespace limen

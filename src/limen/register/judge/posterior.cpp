@@ -1,0 +1,47 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/register/judge/posterior.h"
+
+#include <cmath>
+
+#include "limen/base/error.h"
+
+namespace limen {
+
+void PosteriorOptions::check() const {
+  if (!(nats_per_m2 > 0)) throw_bad_option("nats_per_m2", nats_per_m2, "more than 0");
+  if (!(search_nats >= 0)) throw_bad_option("search_nats", search_nats, "0 or more");
+  if (!(model_search_nats >= 0)) throw_bad_option("model_search_nats", model_search_nats, "0 or more");
+  if (!(prior_shared > 0 && prior_shared < 1))
+    throw_bad_option("prior_shared", prior_shared, "within (0, 1)");
+  if (!(unlisted >= 0 && unlisted < 1)) throw_bad_option("unlisted", unlisted, "within [0, 1)");
+}
+
+Posterior posterior(const PosteriorEvidence& evidence, const PosteriorOptions& options) {
+  options.check();
+  // Weights against the best pose, whose likelihood is 1; the best wrong pose is as likely as the right one
+  // where its value is what a search reaches by chance.
+  const double search = evidence.model ? options.model_search_nats : options.search_nats;
+  const double chance = std::exp(search - options.nats_per_m2 * evidence.best_value_m2);
+  Posterior posterior;
+  double total = 0.0;
+  const auto add_pose = [&](double lead_m2) {
+    const double weight =
+        options.prior_shared * (1.0 - options.unlisted) * std::exp(-options.nats_per_m2 * lead_m2);
+    posterior.poses.push_back(weight * (1.0 - evidence.twin));
+    posterior.others.twin += weight * evidence.twin;
+    total += weight;
+  };
+  add_pose(0.0);
+  for (const double lead : evidence.leads_m2) add_pose(lead);
+  posterior.others.unlisted_pose = options.prior_shared * options.unlisted * chance;
+  posterior.others.nothing_shared = (1.0 - options.prior_shared) * chance;
+  total += posterior.others.unlisted_pose + posterior.others.nothing_shared;
+  for (double& pose : posterior.poses) pose /= total;
+  posterior.others.twin /= total;
+  posterior.others.unlisted_pose /= total;
+  posterior.others.nothing_shared /= total;
+  return posterior;
+}
+
+}  // namespace limen

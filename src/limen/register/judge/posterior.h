@@ -1,0 +1,43 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "limen/model/result.h"
+
+namespace limen {
+
+struct PosteriorOptions {
+  /// Evidence per m^2 of `PoseScore::value`. Pieces of surface 0.25 m apart are one observation: one in 0.4
+  /// m^2. One that stands in seen free space does so with probability 0.03 under the right pose (it was
+  /// moved) and 0.6 under a wrong one: 3 nats, or 7.6 per m^2, which weighs four times what agrees weighs.
+  double nats_per_m2 = 1.9;
+  /// What the best of all wrong poses reaches by chance: the logarithm of how many a search can tell apart
+  /// (evidence times Laplace volume over search volume, for poses that are all held to about a centimetre).
+  double search_nats = 9.5;
+  double model_search_nats = 11.5;  ///< a whole building is searched
+  double prior_shared = 0.5;        ///< of the pairs that are given, those that show a common place
+  double unlisted = 0.1;            ///< of the pairs that share a place, those whose pose is not proposed
+
+  void check() const;
+};
+
+/// Probabilities of the poses, in the order given, and of everything else; all of them sum to 1.
+struct Posterior {
+  std::vector<double> poses;
+  OtherExplanations others;
+};
+
+/// What the judge knows of a pair.
+struct PosteriorEvidence {
+  double best_value_m2 = 0.0;    ///< `PoseScore::value` of the best pose
+  std::vector<double> leads_m2;  ///< by how much surface speaks for the best against each other pose
+  double twin = 0.0;             ///< probability that the best pose lays a place on its twin
+  bool model = false;
+};
+
+/// Bayes' rule over the poses found, a twin, a pose not proposed, and nothing shared.
+Posterior posterior(const PosteriorEvidence& evidence, const PosteriorOptions& options = {});
+
+}  // namespace limen

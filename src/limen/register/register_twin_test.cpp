@@ -1,0 +1,131 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Rooms built alike, to the last window: one room scanned twice is registered, two of them are not.
+#include <array>
+
+#include <gtest/gtest.h>
+
+#include "limen/register/register.h"
+#include "limen/simulate/buildings/furniture.h"
+#include "limen/simulate/recipe_parts.h"
+#include "limen/simulate/scanner/ray_caster.h"
+#include "limen/simulate/scanner/station_scan.h"
+#include "limen/simulate/stations.h"
+
+namespace limen {
+namespace {
+
+enum class Furniture { own, alike, none };
+
+constexpr std::size_t kPoints = 80000;
+
+/// A row of rooms of one width with windows at the same places.
+Recipe equal_rooms(RandomStream& random) {
+  PlanOptions plan;
+  const double bay = random.uniform(2.4, 3.0);
+  plan.main_bays_m.assign(8, bay);
+  plan.south_depth_m = 5.0;
+  plan.bays_per_room = 2;
+  plan.regular = true;
+  plan.use = RoomUse::office;
+  const double more = plan.outer_wall_m - 0.5 * plan.inner_wall_m;
+  plan.main_bays_m.front() += more;
+  plan.main_bays_m.back() += more;
+  FloorPlan made = make_floor_plan(plan, random);
+  std::vector<WindowAxis> axes;
+  for (WindowAxis axis : made.axes)
+    if (axis.bay < 200 && axis.at.y() < 0.5 * plan.south_depth_m) axes.push_back(axis);
+  axes.front().at.x() += 0.5 * more;
+  axes.back().at.x() -= 0.5 * more;
+  for (WindowAxis& axis : axes) axis.bay_m = bay;
+  made.axes = axes;
+  FacadeOptions facade;
+  facade.curtain_share = 0.0;
+  facade.interior_doors = false;
+  facade.entrance = false;
+  facade.ornament_share = 0.0;
+  Recipe recipe;
+  add_building(recipe.world, made, facade, random);
+  return recipe;
+}
+
+/// Rooms 1 and 2 with furniture of their own, or with the same pieces 3 cm off their places.
+void furnish_both(World& world, Furniture furniture, RandomStream& random) {
+  if (furniture == Furniture::none) return;
+  const std::size_t surfaces = world.mesh.surfaces().size();
+  const std::size_t triangles = world.mesh.triangles().size();
+  furnish(world, 0, 1, 0.4, random);
+  if (furniture == Furniture::own) return furnish(world, 0, 2, 0.4, random);
+  Building& building = world.buildings[0];
+  const Vector2d shift = building.plan.rooms[2].outline[0] - building.plan.rooms[1].outline[0];
+  world.mesh.add_shifted(surfaces, {triangles, world.mesh.triangles().size()},
+                         {shift.x() + 0.03, shift.y() - 0.025, 0.0});
+  for (Footprint copy : building.occupied[1]) {
+    for (Vector2d& corner : copy.area) corner += shift;
+    building.occupied[2].push_back(copy);
+  }
+}
+
+/// Two stations in room 1 and one in room 2.
+struct TwinCase {
+  std::array<Scan, 3> scans;
+  std::array<Rigid3, 3> scene_from_scan;
+};
+
+TwinCase twin_case(std::uint64_t seed, Furniture furniture) {
+  RandomStream random(seed, 0);
+  Recipe recipe = equal_rooms(random);
+  furnish_both(recipe.world, furniture, random);
+  recipe.station_rooms = {1, 1, 2};
+  const RayCaster caster(recipe.world.mesh);
+  const std::vector<Station> stations = place_stations(recipe, caster, random);
+  TwinCase made;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Rigid3 head{any_heading(random), stations.at(i).position};
+    const Sweep echoes = sweep_of_points(
+        kPoints, [&](std::size_t pulses) { return station_pattern(head, pulses); },
+        [&](const ScanPattern& pattern) {
+          return sweep(caster, recipe.world.openings, pattern, {}, 10 * seed + i);
+        });
+    made.scans[i] = station_scan("station", echoes, inverse(head));
+    made.scans[i].level = true;
+    made.scene_from_scan[i] = head;
+  }
+  return made;
+}
+
+TEST(RegisterTwins, OneRoomScannedTwiceIsRegistered) {
+  const TwinCase rooms = twin_case(4, Furniture::own);
+  const RegistrationResult result = register_scans(rooms.scans[1], rooms.scans[0]);
+  EXPECT_EQ(result.outcome, Outcome::registered) << result.reason;
+  const Rigid3 truth = inverse(rooms.scene_from_scan[0]) * rooms.scene_from_scan[1];
+  EXPECT_LT((result.best.target_from_source.translation - truth.translation).norm(), 0.01);
+  ASSERT_TRUE(result.others);
+  EXPECT_LT(result.others->twin, 0.001);
+}
+
+TEST(RegisterTwins, TwoRoomsBuiltAlikeAreNot) {
+  const TwinCase rooms = twin_case(2, Furniture::own);
+  EXPECT_NE(register_scans(rooms.scans[2], rooms.scans[0]).outcome, Outcome::registered);
+}
+
+TEST(RegisterTwins, NorAreTwoFurnishedAlike) {
+  const TwinCase rooms = twin_case(3, Furniture::alike);
+  EXPECT_EQ(register_scans(rooms.scans[1], rooms.scans[0]).outcome, Outcome::registered);
+  const RegistrationResult twins = register_scans(rooms.scans[2], rooms.scans[0]);
+  EXPECT_EQ(twins.outcome, Outcome::ambiguous) << twins.reason;
+  ASSERT_TRUE(twins.others);
+  EXPECT_GT(twins.others->twin, 0.5);
+}
+
+TEST(RegisterTwins, BareRoomsCannotBeTold) {
+  const TwinCase rooms = twin_case(5, Furniture::none);
+  for (const std::size_t source : {1U, 2U}) {
+    const RegistrationResult result = register_scans(rooms.scans[source], rooms.scans[0]);
+    EXPECT_NE(result.outcome, Outcome::registered) << source;
+  }
+}
+
+}  // namespace
+}  // namespace limen
