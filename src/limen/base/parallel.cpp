@@ -10,6 +10,8 @@
 #include <mutex>
 #include <thread>
 
+#include <pthread.h>
+
 #include "limen/base/progress.h"
 
 namespace limen {
@@ -63,10 +65,9 @@ struct Job {
 /// Threads that wait for the current job; they live as long as the process.
 class Pool {
  public:
-  static Pool& instance() {
-    static Pool pool;
-    return pool;
-  }
+  Pool() = default;
+  Pool(const Pool&) = delete;
+  Pool& operator=(const Pool&) = delete;
 
   void run(Job& job, int helpers) {
     const std::scoped_lock only_one(caller_mutex_);
@@ -120,6 +121,25 @@ class Pool {
   std::vector<std::jthread> threads_;
 };
 
+/// The process's pool. A forked child has none of its parent's threads, and its parent's locks in whatever
+/// state they were: it begins with a pool of its own and leaves the inherited one alone.
+class PoolOfProcess {
+ public:
+  static Pool& get() {
+    static const PoolOfProcess owner;
+    return *current;
+  }
+
+ private:
+  PoolOfProcess() {
+    current = new Pool;
+    pthread_atfork(nullptr, nullptr, [] { current = new Pool; });
+  }
+  ~PoolOfProcess() { delete current; }
+
+  static inline Pool* current = nullptr;
+};
+
 }  // namespace
 
 int thread_count() {
@@ -148,7 +168,7 @@ void parallel_for(std::size_t size, std::size_t grain,
   job.size = size;
   job.grain = grain;
   job.body = &body;
-  Pool::instance().run(job, helpers);
+  PoolOfProcess::get().run(job, helpers);
   if (job.failure) std::rethrow_exception(job.failure);
 }
 

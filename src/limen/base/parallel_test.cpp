@@ -5,8 +5,11 @@
 #include <atomic>
 #include <stdexcept>
 #include <string>
+#include <thread>
 
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include "limen/base/error.h"
 #include "limen/base/progress.h"
@@ -75,6 +78,61 @@ TEST(CancelScope, EndsWithItsBlockAndTheInnermostCounts) {
   }
   EXPECT_EQ(CancelScope::current(), nullptr);
   EXPECT_NO_THROW(CancelScope::check());
+}
+
+/// The sum of 0 ... 9999, on all threads.
+std::size_t sum_in_parallel() {
+  return parallel_reduce(
+      std::size_t{10000}, std::size_t{10}, std::size_t{0},
+      [](std::size_t begin, std::size_t end) {
+        std::size_t sum = 0;
+        for (std::size_t i = begin; i < end; ++i) sum += i;
+        return sum;
+      },
+      [](std::size_t a, std::size_t b) { return a + b; });
+}
+
+/// What a child that does `work` after a fork ends with; -1 where it does not end within 20 s.
+template <typename Work>
+int status_of_child(const Work& work) {
+  const pid_t child = fork();
+  if (child == 0) {
+    alarm(20);  // its default is to end the process
+    work();
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+TEST_P(Threads, AForkedChildHasThreadsOfItsOwn) {
+#if defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "the thread sanitizer allows no threads after a fork of a process with threads";
+#endif
+  constexpr std::size_t kSum = 49995000;
+  ASSERT_EQ(sum_in_parallel(), kSum);
+  EXPECT_EQ(status_of_child([] {
+              // So does a child of the child.
+              const int below = status_of_child([] { _exit(sum_in_parallel() == kSum ? 7 : 1); });
+              _exit(below == 7 && sum_in_parallel() == kSum ? 8 : 1);
+            }),
+            8);
+  EXPECT_EQ(sum_in_parallel(), kSum);
+}
+
+TEST_P(Threads, AChildForkedAmidWorkHasThreadsOfItsOwn) {
+#if defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "the thread sanitizer allows no threads after a fork of a process with threads";
+#endif
+  std::atomic<bool> stop{false};
+  std::thread other([&] {
+    while (!stop) sum_in_parallel();
+  });
+  for (int i = 0; i < 20; ++i) {
+    EXPECT_EQ(status_of_child([] { _exit(sum_in_parallel() == 49995000U ? 8 : 1); }), 8);
+  }
+  stop = true;
+  other.join();
 }
 
 }  // namespace
