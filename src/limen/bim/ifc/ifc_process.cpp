@@ -6,6 +6,7 @@
 #include <array>
 #include <cerrno>
 #include <chrono>
+#include <cmath>
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
@@ -16,12 +17,13 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <poll.h>
-#include <spawn.h>
+#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include "limen/base/error.h"
+#include "limen/base/text.h"
 
 extern char** environ;
 
@@ -31,17 +33,12 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-/// A stream of a house is some megabytes; what is longer than this is no answer but a fault.
-constexpr std::size_t kLongestOutput = std::size_t{1} << 32U;
 constexpr int kTick_ms = 50;
+constexpr int kNotStarted = 127;
 
 [[noreturn]] void cannot_start(const std::string& what) {
   throw Error("the program that reads IFC shapes cannot be started: " + what, "limen_ifc",
               "check the installation and the machine's limits", Fault::internal);
-}
-
-std::string reason_of(int error_number) {
-  return std::generic_category().message(error_number);
 }
 
 class Descriptor {
@@ -87,14 +84,6 @@ class Child {
   Child(const Child&) = delete;
   Child& operator=(const Child&) = delete;
 
-  void limit_memory(double bytes) const {
-    const auto most = static_cast<rlim_t>(bytes);
-    const rlimit limit{most, most};
-    prlimit(id_, RLIMIT_AS, &limit, nullptr);
-    const rlimit none{0, 0};
-    prlimit(id_, RLIMIT_CORE, &none, nullptr);
-  }
-
   void kill() const { ::kill(id_, SIGKILL); }
 
   /// Waits for the end and tells how it was.
@@ -115,32 +104,52 @@ class Child {
   pid_t id_;
 };
 
-pid_t start(const fs::path& program, const std::vector<std::string>& arguments, int input, int output) {
-  posix_spawn_file_actions_t actions;
-  if (posix_spawn_file_actions_init(&actions) != 0) cannot_start("no memory");
-  posix_spawn_file_actions_adddup2(&actions, input, STDIN_FILENO);
-  posix_spawn_file_actions_adddup2(&actions, output, STDOUT_FILENO);
-  posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
-  posix_spawnattr_t attributes;
-  posix_spawnattr_init(&attributes);
+/// What the child may take, worked out beforehand: between fork and exec hardly anything may be called.
+struct Bounds {
+  rlim_t memory_bytes = 0;
+  rlim_t cpu_s = 0;
+};
+
+/// In the child, before the program runs: its ends, its bounds, and that it dies with us. Calls only what may
+/// be called after a fork of a process with threads.
+[[noreturn]] void become(char* const* words, int input, int output, const Bounds& bounds, pid_t parent) {
   // A process group of its own: the terminal's interrupt reaches limen, which then stops the child.
-  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
-  posix_spawnattr_setpgroup(&attributes, 0);
+  setpgid(0, 0);
+  const rlimit memory{bounds.memory_bytes, bounds.memory_bytes};
+  const rlimit cpu{bounds.cpu_s, bounds.cpu_s};
+  const rlimit none{0, 0};
+  const int nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC);
+  const bool ready = prctl(PR_SET_PDEATHSIG, SIGKILL) == 0 && setrlimit(RLIMIT_CPU, &cpu) == 0 &&
+                     setrlimit(RLIMIT_CORE, &none) == 0 && dup2(input, STDIN_FILENO) >= 0 &&
+                     dup2(output, STDOUT_FILENO) >= 0 && dup2(nowhere, STDERR_FILENO) >= 0 &&
+                     setrlimit(RLIMIT_AS, &memory) == 0;
+  // Whoever dies before we asked to be told of it is no parent any more.
+  if (ready && getppid() == parent) execve(words[0], words, environ);
+  _exit(kNotStarted);
+}
+
+pid_t start(const fs::path& program, const std::vector<std::string>& arguments, int input, int output,
+            const Bounds& bounds) {
   std::vector<std::string> words{program.string()};
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<char*> pointers;
   for (std::string& word : words) pointers.push_back(word.data());
   pointers.push_back(nullptr);
-  pid_t id = -1;
-  const int error = posix_spawn(&id, words[0].c_str(), &actions, &attributes, pointers.data(), environ);
-  posix_spawn_file_actions_destroy(&actions);
-  posix_spawnattr_destroy(&attributes);
-  if (error != 0) cannot_start(reason_of(error));
+  const pid_t parent = getpid();
+  const pid_t id = fork();
+  if (id < 0) cannot_start(reason_of(errno));
+  if (id == 0) become(pointers.data(), input, output, bounds, parent);
   return id;
 }
 
+/// How long the child may be silent and how much it may say.
+struct Patience {
+  double silence_s = 0.0;
+  double output_bytes = 0.0;
+};
+
 /// Reads until the child closes its end. Returns why reading was given up, or nothing.
-std::string read_all(int descriptor, double silence_s, Monitor& monitor, std::string& output) {
+std::string read_all(int descriptor, const Patience& patience, Monitor& monitor, std::string& output) {
   std::string piece(std::size_t{1} << 16U, '\0');
   Clock::time_point heard = Clock::now();
   for (;;) {
@@ -149,8 +158,8 @@ std::string read_all(int descriptor, double silence_s, Monitor& monitor, std::st
     const int ready = poll(&wanted, 1, kTick_ms);
     if (ready < 0 && errno != EINTR) return "could not be heard";
     if (ready <= 0) {
-      if (std::chrono::duration<double>(Clock::now() - heard).count() > silence_s)
-        return fmt::format("was stopped after {:.0f} s without progress", silence_s);
+      if (std::chrono::duration<double>(Clock::now() - heard).count() > patience.silence_s)
+        return fmt::format("was stopped after {:.0f} s without progress", patience.silence_s);
       continue;
     }
     const ssize_t got = read(descriptor, piece.data(), piece.size());
@@ -158,7 +167,8 @@ std::string read_all(int descriptor, double silence_s, Monitor& monitor, std::st
     if (got <= 0) return {};
     heard = Clock::now();
     output.append(piece, 0, static_cast<std::size_t>(got));
-    if (output.size() > kLongestOutput) return "was stopped since it wrote without end";
+    if (static_cast<double>(output.size()) > patience.output_bytes)
+      return fmt::format("was stopped since it wrote more than {:.0f} MB", 1e-6 * patience.output_bytes);
   }
 }
 
@@ -184,6 +194,25 @@ std::vector<fs::path> own_folders() {
   return folders;
 }
 
+/// A bound of the system's; nobody may ask for more than was given to us.
+rlim_t within_own(int resource, double wanted) {
+  rlimit own{};
+  const auto most = static_cast<rlim_t>(std::ceil(wanted));
+  return getrlimit(static_cast<__rlimit_resource_t>(resource), &own) == 0 ? std::min(most, own.rlim_max)
+                                                                          : most;
+}
+
+Bounds bounds_of(const IfcProcessOptions& options, double megabytes) {
+  return {within_own(RLIMIT_AS, 1e6 * (options.memory_mb + options.memory_mb_per_mb * megabytes)),
+          within_own(RLIMIT_CPU, options.cpu_s + options.cpu_s_per_mb * megabytes)};
+}
+
+Patience patience_of(const IfcProcessOptions& options, double megabytes) {
+  const double output_mb =
+      std::min(options.output_mb + options.output_mb_per_mb * megabytes, options.most_output_mb);
+  return {options.silence_s + options.silence_s_per_mb * megabytes, output_mb * 1e6};
+}
+
 bool runs(const fs::path& path) {
   return !path.empty() && access(path.c_str(), X_OK) == 0 && fs::is_regular_file(path);
 }
@@ -193,6 +222,11 @@ bool runs(const fs::path& path) {
 void IfcProcessOptions::check() const {
   if (!(silence_s > 0.0)) throw_bad_option("silence_s", silence_s, "above 0");
   if (!(silence_s_per_mb >= 0.0)) throw_bad_option("silence_s_per_mb", silence_s_per_mb, "at least 0");
+  if (!(cpu_s > 0.0)) throw_bad_option("cpu_s", cpu_s, "above 0");
+  if (!(cpu_s_per_mb >= 0.0)) throw_bad_option("cpu_s_per_mb", cpu_s_per_mb, "at least 0");
+  if (!(output_mb > 0.0)) throw_bad_option("output_mb", output_mb, "above 0");
+  if (!(output_mb_per_mb >= 0.0)) throw_bad_option("output_mb_per_mb", output_mb_per_mb, "at least 0");
+  if (!(most_output_mb > 0.0)) throw_bad_option("most_output_mb", most_output_mb, "above 0");
   if (!(memory_mb > 0.0)) throw_bad_option("memory_mb", memory_mb, "above 0");
   if (!(memory_mb_per_mb >= 0.0)) throw_bad_option("memory_mb_per_mb", memory_mb_per_mb, "at least 0");
 }
@@ -230,15 +264,15 @@ IfcRun run_ifc_helper(std::string_view bytes, const std::vector<std::int64_t>& s
     arguments.emplace_back("--skip");
     arguments.push_back(fmt::format("{}", id));
   }
-  Child child(start(program, arguments, input.descriptor(), in.value()));
-  in.reset();
   const double megabytes = static_cast<double>(bytes.size()) * 1e-6;
-  child.limit_memory((options.memory_mb + options.memory_mb_per_mb * megabytes) * 1e6);
+  Child child(start(program, arguments, input.descriptor(), in.value(), bounds_of(options, megabytes)));
+  in.reset();
   IfcRun run;
-  const double silence_s = options.silence_s + options.silence_s_per_mb * megabytes;
-  const std::string given_up = read_all(out.value(), silence_s, monitor, run.output);
+  const std::string given_up = read_all(out.value(), patience_of(options, megabytes), monitor, run.output);
   if (!given_up.empty()) child.kill();
   const int status = child.wait();
+  if (run.output.empty() && WIFEXITED(status) && WEXITSTATUS(status) == kNotStarted)
+    cannot_start(program.string() + " cannot be run");
   run.ended_how = given_up.empty() ? how_ended(status) : given_up;
   run.finished = given_up.empty() && WIFEXITED(status);
   return run;

@@ -12,10 +12,15 @@
 
 namespace limen {
 
-/// Bounds within which limen_ifc works.
+/// Bounds within which limen_ifc works. Those of memory and computing hold from its first instruction on.
 struct IfcProcessOptions {
   double silence_s = 15.0;          ///< it is stopped where it says nothing for so long, > 0
   double silence_s_per_mb = 0.5;    ///< and so much longer for each megabyte of the file, >= 0
+  double cpu_s = 120.0;             ///< seconds it may compute altogether, > 0
+  double cpu_s_per_mb = 20.0;       ///< and so much more for each megabyte of the file, >= 0
+  double output_mb = 64.0;          ///< it is stopped where it writes more than this, > 0
+  double output_mb_per_mb = 200.0;  ///< and so much for each megabyte of the file, >= 0
+  double most_output_mb = 2000.0;   ///< but never more than this, > 0
   double memory_mb = 3000.0;        ///< address space it may take, > 0
   double memory_mb_per_mb = 100.0;  ///< and so much more for each megabyte of the file, >= 0
 
@@ -34,8 +39,8 @@ struct IfcRun {
 std::filesystem::path find_ifc_helper();
 
 /// Runs limen_ifc on the bytes of an IFC file; entities in `skip` are left out. It is killed when it is
-/// silent too long, when it takes too much memory, and when the monitor is cancelled (then Error). Throws
-/// Error where it cannot be started.
+/// silent too long, computes too long, writes or takes too much, when the monitor is cancelled (then Error),
+/// and when this process ends, however it does. Throws Error where it cannot be started.
 IfcRun run_ifc_helper(std::string_view bytes, const std::vector<std::int64_t>& skip,
                       const IfcProcessOptions& options = {}, Monitor& monitor = silent_monitor());
 

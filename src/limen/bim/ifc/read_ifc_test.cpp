@@ -393,7 +393,9 @@ TEST_F(ReadIfc, SilenceAndCancelEndTheHelper) {
   const auto path = folder.write("fake", "#!/bin/sh\nexec sleep 100\n");
   std::filesystem::permissions(path, std::filesystem::perms::owner_all);
   setenv("LIMEN_IFC_HELPER", path.c_str(), 1);
-  const IfcRun run = run_ifc_helper("x", {}, {0.2, 0.0, 3000.0, 0.0});
+  IfcProcessOptions impatient;
+  impatient.silence_s = 0.2;
+  const IfcRun run = run_ifc_helper("x", {}, impatient);
   EXPECT_FALSE(run.finished);
   EXPECT_NE(run.ended_how.find("without progress"), std::string::npos);
   Monitor monitor;

@@ -1,0 +1,20 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace limen {
+
+/// With the letters of ASCII in one case; all other bytes stay.
+std::string lower_case(std::string_view text);
+std::string upper_case(std::string_view text);
+
+/// Without spaces, tabs and ends of lines at either end.
+std::string_view trimmed(std::string_view text);
+
+/// What the system says of an error number (errno), in words.
+std::string reason_of(int error_number);
+
+}  // namespace limen
