@@ -5,14 +5,20 @@
 #include <atomic>
 #include <cerrno>
 #include <cstring>
+#include <deque>
+#include <mutex>
+#include <set>
 #include <utility>
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include "limen/base/error.h"
+#include "limen/base/guarded_mapping.h"
+#include "limen/base/text.h"
 
 namespace limen {
 namespace {
@@ -20,15 +26,57 @@ namespace {
 namespace fs = std::filesystem;
 constexpr std::size_t kBufferBytes = std::size_t{1} << 20U;
 
+constexpr std::string_view kMark = ".limen-";
+constexpr std::string_view kEnding = ".part";
+
 /// Beside the destination, so that the rename stays within one file system; unique in this machine.
 fs::path hidden_name_beside(const fs::path& path) {
   static std::atomic<unsigned> counter{0};
-  const std::string name = fmt::format(".{}.{}-{}.part", path.filename().string(), getpid(), counter++);
+  const std::string name =
+      fmt::format(".{}{}{}-{}{}", path.filename().string(), kMark, getpid(), counter++, kEnding);
   return path.parent_path() / name;
 }
 
-std::string reason_of(int error_number) {
-  return std::generic_category().message(error_number);
+/// Whether hidden_name_beside() makes such names: .NAME.limen-12-0.part
+bool is_hidden_name(std::string_view name) {
+  if (name.size() < kEnding.size() || name.front() != '.') return false;
+  if (name.substr(name.size() - kEnding.size()) != kEnding) return false;
+  name.remove_suffix(kEnding.size());
+  const std::size_t mark = name.rfind(kMark);
+  if (mark == std::string_view::npos || mark < 2) return false;
+  const std::string_view numbers = name.substr(mark + kMark.size());
+  const std::size_t dash = numbers.find('-');
+  const auto count = [](std::string_view text) {
+    return !text.empty() && text.find_first_not_of("0123456789") == std::string_view::npos;
+  };
+  return dash != std::string_view::npos && count(numbers.substr(0, dash)) && count(numbers.substr(dash + 1));
+}
+
+/// Removes the file where it is ours and nobody holds its lock.
+void remove_if_left_behind(const fs::path& path) {
+  const int descriptor = open(path.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+  if (descriptor < 0) return;
+  struct stat status {};
+  const bool ours = fstat(descriptor, &status) == 0 && S_ISREG(status.st_mode) &&
+                    status.st_uid == geteuid() && status.st_nlink == 1;
+  if (ours && flock(descriptor, LOCK_EX | LOCK_NB) == 0) unlink(path.c_str());
+  close(descriptor);
+}
+
+/// Once for each folder: a process looks only for what others left behind.
+void remove_left_behind(const fs::path& folder) {
+  static std::mutex mutex;
+  static std::set<std::string> seen;
+  std::error_code stop;
+  const std::string name = fs::weakly_canonical(folder.empty() ? "." : folder, stop).string();
+  {
+    const std::scoped_lock lock(mutex);
+    if (stop || !seen.insert(name).second) return;
+  }
+  fs::directory_iterator entry(name, stop);
+  for (; !stop && entry != fs::directory_iterator(); entry.increment(stop)) {
+    if (is_hidden_name(entry->path().filename().string())) remove_if_left_behind(entry->path());
+  }
 }
 
 }  // namespace
@@ -44,12 +92,31 @@ AtomicFile::AtomicFile(fs::path path) : path_(std::move(path)) {
     throw Error("is a folder, not a file", path_.string(), "name a file to write to");
   }
   const bool replace = !fs::exists(status) || fs::is_regular_file(status);
-  if (replace) beside_ = hidden_name_beside(path_);
-  const char* name = replace ? beside_.c_str() : path_.c_str();
-  descriptor_ = open(name, replace ? O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC : O_WRONLY | O_CLOEXEC, 0666);
+  if (replace) {
+    remove_left_behind(path_.parent_path());
+    open_beside();
+  } else {
+    descriptor_ = open(path_.c_str(), O_WRONLY | O_CLOEXEC);
+  }
   if (descriptor_ < 0) {
     beside_.clear();
     fail("cannot be written");
+  }
+}
+
+/// The hidden file, locked. Between its making and its locking another process may take it for one that was
+/// left behind: then the lock is not to be had, or the name is gone, and another file is made.
+void AtomicFile::open_beside() {
+  constexpr int kTries = 10;
+  for (int i = 0; i < kTries; ++i) {
+    beside_ = hidden_name_beside(path_);
+    descriptor_ = open(beside_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (descriptor_ < 0) return;
+    struct stat status {};
+    const bool locked = flock(descriptor_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK;
+    if (locked && fstat(descriptor_, &status) == 0 && status.st_nlink > 0) return;
+    close_quietly();
+    errno = EBUSY;
   }
 }
 
@@ -73,9 +140,14 @@ void AtomicFile::overwrite(std::uint64_t offset, std::string_view bytes) {
   }
 }
 
-void AtomicFile::commit() {
+void AtomicFile::settle() {
   flush();
   if (!beside_.empty() && fsync(descriptor_) != 0) fail("cannot be brought to the disk");
+}
+
+void AtomicFile::commit() {
+  settle();
+  require_inputs_whole();
   if (close(std::exchange(descriptor_, -1)) != 0) fail("cannot be written");
   if (beside_.empty()) return;
   if (std::rename(beside_.c_str(), path_.c_str()) != 0) fail("cannot be put in place");
@@ -109,6 +181,15 @@ void write_file(const fs::path& path, std::string_view bytes) {
   file.commit();
 }
 
+void write_files(const std::vector<FileToWrite>& files) {
+  std::deque<AtomicFile> open;
+  for (const FileToWrite& file : files) {
+    open.emplace_back(file.path).write(file.bytes);
+    open.back().settle();
+  }
+  for (AtomicFile& file : open) file.commit();
+}
+
 OutputFolder::OutputFolder(fs::path path) : path_(std::move(path)) {
   std::error_code error;
   fs::path missing = fs::absolute(path_, error).lexically_normal();
@@ -139,6 +220,7 @@ OutputFolder::~OutputFolder() {
 }
 
 void OutputFolder::prove_writable() const {
+  remove_left_behind(path_);
   const fs::path probe = hidden_name_beside(path_ / "probe");
   const int descriptor = open(probe.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   if (descriptor < 0) {

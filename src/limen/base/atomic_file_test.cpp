@@ -2,10 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limen/base/atomic_file.h"
 
+#include <csignal>
 #include <fstream>
 #include <sstream>
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include "limen/base/error.h"
@@ -105,6 +108,77 @@ TEST_F(AtomicFileTest, OutputFolderBelowAFileIsRefused) {
   write_file(folder_ / "file", "x");
   EXPECT_THROW(OutputFolder{folder_ / "file"}, Error);
   EXPECT_THROW(OutputFolder{folder_ / "file" / "below"}, Error);
+}
+
+/// A child that writes to `path` and is killed on its way.
+void write_and_be_killed(const fs::path& path) {
+  const pid_t child = fork();
+  if (child == 0) {
+    AtomicFile file(path);
+    file.write(std::string(3 << 20, 'x'));
+    kill(getpid(), SIGKILL);
+  }
+  waitpid(child, nullptr, 0);
+}
+
+TEST_F(AtomicFileTest, WhatAKilledProcessLeftIsRemovedByTheNext) {
+  write_and_be_killed(folder_ / "a.txt");
+  ASSERT_EQ(entries(), 1);  // the hidden file
+  write_file(folder_ / "b.txt", "new");
+  EXPECT_EQ(entries(), 1);
+  EXPECT_EQ(text_of("b.txt"), "new");
+}
+
+TEST_F(AtomicFileTest, OutputFolderRemovesWhatAKilledProcessLeft) {
+  write_and_be_killed(folder_ / "a.txt");
+  const OutputFolder out(folder_);
+  EXPECT_EQ(entries(), 0);
+}
+
+TEST_F(AtomicFileTest, FilesOfOthersAreLeftAlone) {
+  for (const char* name : {".a.part", "a.limen-1-0.part", ".limen-1-0.part", ".a.limen-x-0.part",
+                           ".a.limen-1.part", ".a.limen-1-0.party", ".a.txt.12-0.part"})
+    std::ofstream(folder_ / name) << "a user's own";
+  fs::create_directories(folder_ / ".b.limen-1-0.part");
+  fs::create_symlink(folder_ / ".a.part", folder_ / ".c.limen-1-0.part");
+  const long before = entries();
+  AtomicFile unfinished(folder_ / "d.txt");
+  const pid_t child = fork();
+  if (child == 0) {
+    // Under another name the folder is looked into once more.
+    fs::rename(folder_, folder_.string() + "2");
+    write_file(folder_.string() + "2/e.txt", "");
+    fs::remove(folder_.string() + "2/e.txt");
+    fs::rename(folder_.string() + "2", folder_);
+    _exit(0);
+  }
+  waitpid(child, nullptr, 0);
+  unfinished.write("whole");
+  unfinished.commit();
+  EXPECT_EQ(text_of("d.txt"), "whole");
+  EXPECT_EQ(entries(), before + 1);
+}
+
+TEST_F(AtomicFileTest, FilesThatBelongTogetherAppearTogetherOrNotAtAll) {
+  write_files({{folder_ / "a.txt", "one"}, {folder_ / "b.txt", "two"}});
+  EXPECT_EQ(text_of("a.txt") + text_of("b.txt"), "onetwo");
+  const pid_t child = fork();
+  if (child == 0) {
+    signal(SIGXFSZ, SIG_IGN);
+    const rlimit small{1000, 1000};
+    setrlimit(RLIMIT_FSIZE, &small);
+    try {
+      write_files({{folder_ / "a.txt", "new"}, {folder_ / "b.txt", std::string(5000, 'x')}});
+    } catch (const Error&) {
+      _exit(8);
+    }
+    _exit(1);
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  EXPECT_EQ(WEXITSTATUS(status), 8);
+  EXPECT_EQ(text_of("a.txt") + text_of("b.txt"), "onetwo");
+  EXPECT_EQ(entries(), 2);
 }
 
 }  // namespace

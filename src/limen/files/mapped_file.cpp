@@ -3,21 +3,16 @@
 #include "limen/files/mapped_file.h"
 
 #include <cerrno>
-#include <system_error>
 
 #include <fcntl.h>
-#include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include "limen/base/error.h"
+#include "limen/base/text.h"
 
 namespace limen {
 namespace {
-
-std::string reason_of(int error_number) {
-  return std::generic_category().message(error_number);
-}
 
 class Descriptor {
  public:
@@ -46,27 +41,14 @@ MappedFile::MappedFile(const std::filesystem::path& path) {
     throw Error("cannot be examined: " + reason_of(errno), name, "check the path and its permissions");
   }
   if (S_ISDIR(status.st_mode)) throw Error("is a folder, not a file", name, "name the file in it");
-  if (S_ISREG(status.st_mode)) {
+  if (S_ISREG(status.st_mode) && status.st_size > 0) {
     size_ = static_cast<std::size_t>(status.st_size);
-    if (size_ > 0) {
-      void* address = mmap(nullptr, size_, PROT_READ, MAP_PRIVATE, file.value(), 0);
-      mapped_ = address != MAP_FAILED;
-      if (mapped_) {
-        data_ = static_cast<const char*>(address);
-        madvise(address, size_, MADV_SEQUENTIAL);  // advice only: no harm where it is not taken
-      }
-    }
+    const int kept = fcntl(file.value(), F_DUPFD_CLOEXEC, 0);
+    if (kept >= 0) mapping_ = std::make_unique<const GuardedMapping>(kept, size_, name);
+    if (mapping_) data_ = mapping_->data();
   }
-  if (!mapped_) read_stream(file.value(), name);
+  if (data_ == nullptr) read_stream(file.value(), name);
   if (size_ == 0) throw Error("the file is empty", name, "check how it was written or copied");
-}
-
-MappedFile::~MappedFile() {
-  if (mapped_) munmap(const_cast<char*>(data_), size_);
-}
-
-void MappedFile::forget() const {
-  if (mapped_) madvise(const_cast<char*>(data_), size_, MADV_DONTNEED);
 }
 
 void MappedFile::read_stream(int descriptor, const std::string& name) {

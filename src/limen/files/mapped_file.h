@@ -4,18 +4,21 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <string_view>
+
+#include "limen/base/guarded_mapping.h"
 
 namespace limen {
 
 /// The bytes of a file, read-only, as long as the object lives: mapped where the file is a regular one, read
-/// into memory where it is not (a pipe).
+/// into memory where it is not (a pipe). Where the file becomes shorter meanwhile, what is missing reads as
+/// zeros, and require_inputs_whole() tells of it (base/guarded_mapping.h).
 class MappedFile {
  public:
   /// Throws Error where the path is missing, a folder, unreadable or empty.
   explicit MappedFile(const std::filesystem::path& path);
-  ~MappedFile();
   MappedFile(const MappedFile&) = delete;
   MappedFile& operator=(const MappedFile&) = delete;
 
@@ -23,14 +26,16 @@ class MappedFile {
 
   /// Gives the memory of what was read so far back to the system; bytes that are looked at again are read
   /// again. Call it now and then while passing through a large file.
-  void forget() const;
+  void forget() const {
+    if (mapping_) mapping_->forget();
+  }
 
  private:
   void read_stream(int descriptor, const std::string& name);
 
   const char* data_ = nullptr;
   std::size_t size_ = 0;
-  bool mapped_ = false;
+  std::unique_ptr<const GuardedMapping> mapping_;
   std::string read_;  ///< holds the bytes where they are not mapped
 };
 

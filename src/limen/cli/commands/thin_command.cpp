@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "limen/base/error.h"
+#include "limen/base/guarded_mapping.h"
 #include "limen/cli/inputs/scan_options.h"
 #include "limen/io/cloud/open_points.h"
 #include "limen/io/cloud/write_clouds.h"
@@ -49,9 +50,10 @@ int run(ThinCommand command, const Session& session) {
   const JoinedClouds clouds(placed_clouds(input, {}), input.file().clouds().size() > 1);
   const bool few = command.thinning.spacing_m == 0.0 && command.thinning.most_points > 0 &&
                    clouds.plan().most_points <= command.thinning.most_points;
-  const WrittenClouds written =
-      few ? write_clouds(clouds, command.output, *session.monitor)
-          : write_thinned(clouds, command.thinning, command.output, *session.monitor);
+  const WrittenClouds written = with_whole_inputs([&] {
+    return few ? write_clouds(clouds, command.output, *session.monitor)
+               : write_thinned(clouds, command.thinning, command.output, *session.monitor);
+  });
   for (const std::string& note : written.notes) session.note(note);
   std::string text = fmt::format("{} of {} points kept", written.written, written.read);
   if (written.spacing_m > 0.0) text += fmt::format(", about {:.4f} m apart", written.spacing_m);

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "limen/base/error.h"
+#include "limen/base/guarded_mapping.h"
 #include "limen/io/cloud/join_scans.h"
 #include "limen/io/cloud/open_points.h"
 #include "limen/io/cloud/read_cloud.h"
@@ -66,8 +67,10 @@ ScanFile read_scan_file(const std::filesystem::path& path, const ReadOptions& op
   monitor.throw_if_cancelled();
   const CancelScope scope(monitor);
   const OpenPoints input(path);
-  const bool large = options.memory_bytes > 0 && scan_bytes(input) > options.memory_bytes;
-  ScanFile read = large ? read_thinned(input, options, monitor) : read_at_once(input, options, monitor);
+  ScanFile read = with_whole_inputs([&] {
+    const bool large = options.memory_bytes > 0 && scan_bytes(input) > options.memory_bytes;
+    return large ? read_thinned(input, options, monitor) : read_at_once(input, options, monitor);
+  });
   monitor.throw_if_cancelled();
   if (options.trajectory && !options.origin) return followed(std::move(read), *options.trajectory);
   return read;

@@ -9,6 +9,8 @@
 #include <fmt/format.h>
 
 #include "limen/base/error.h"
+#include "limen/base/guarded_mapping.h"
+#include "limen/base/text.h"
 #include "limen/io/cloud/cloud_writers.h"
 #include "limen/io/cloud/open_points.h"
 #include "limen/io/cloud/write_clouds.h"
@@ -100,11 +102,13 @@ TransformedCloud transform_cloud(const std::filesystem::path& input, const Rigid
                                  Monitor& monitor) {
   monitor.begin_stage("transform");
   const OpenPoints open(input);
-  if (has_ending_of(open.format(), output))
-    return move_in_format(open, target_from_source, output, options, monitor);
-  require_known_ending(output, open);
-  return write_joined(placed_clouds(open, target_from_source, options.origin, monitor), false, output,
-                      monitor);
+  return with_whole_inputs([&] {
+    if (has_ending_of(open.format(), output))
+      return move_in_format(open, target_from_source, output, options, monitor);
+    require_known_ending(output, open);
+    return write_joined(placed_clouds(open, target_from_source, options.origin, monitor), false, output,
+                        monitor);
+  });
 }
 
 TransformedCloud merge_clouds(const CloudToMove& moved, const std::vector<std::string>& others,
@@ -123,7 +127,7 @@ TransformedCloud merge_clouds(const CloudToMove& moved, const std::vector<std::s
     }
   }
   require_known_ending(output, files.front());
-  return write_joined(std::move(clouds), true, output, monitor);
+  return with_whole_inputs([&] { return write_joined(std::move(clouds), true, output, monitor); });
 }
 
 }  // namespace limen
