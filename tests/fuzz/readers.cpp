@@ -3,7 +3,9 @@
 #include "readers.h"
 
 #include <cstdint>
+#include <ctime>
 #include <filesystem>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -189,8 +191,22 @@ const std::vector<FuzzedReader>& fuzzed_readers() {
   return kReaders;
 }
 
+double seconds_allowed(std::size_t bytes) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__) || defined(__clang__)
+  constexpr double kSlower = 20.0;  // sanitizers; the fuzzers are built with clang
+#else
+  constexpr double kSlower = 1.0;
+#endif
+  return kSlower * (0.25 + 4e-6 * static_cast<double>(bytes));
+}
+
 void read_strange(const FuzzedReader& reader, std::string_view bytes) {
+  const std::clock_t begin = std::clock();  // computing, of all threads: others on the machine do not count
   may_fail([&] { reader.read(bytes); });
+  const double taken_s = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
+  if (taken_s <= seconds_allowed(bytes.size())) return;
+  throw std::runtime_error("the reader " + std::string(reader.name) + " computed " + std::to_string(taken_s) +
+                           " s for " + std::to_string(bytes.size()) + " bytes");
 }
 
 }  // namespace limen

@@ -53,21 +53,23 @@ bool is_bim_file(const std::filesystem::path& path) {
   try {
     const MappedFile file(path);
     return format_of(file.bytes()) != nullptr;
-  } catch (const Error&) {
+  } catch (const Error& error) {
+    if (error.fault() != Fault::input) throw;
     return false;
   }
 }
 
 BimModel read_bim(const std::filesystem::path& path, Monitor& monitor) {
   const std::string name = path.string();
-  monitor.throw_if_cancelled();
+  const CancelScope scope(monitor);
+  CancelScope::check();
   const MappedFile file(path);
   const Format* format = format_of(file.bytes());
   if (format == nullptr) {
     throw Error("this is no model that can be read", name,
                 "give an IFC file (IFC2X3 or IFC4, .ifc or .ifczip), or a mesh as OBJ or PLY with faces");
   }
-  RawModel raw = format->read(file.bytes(), name, monitor);
+  RawModel raw = with_whole_inputs([&] { return format->read(file.bytes(), name, monitor); });
   monitor.throw_if_cancelled();
   return built(std::move(raw), monitor);
 }

@@ -44,6 +44,7 @@ Rigid3 rigid_from(const Matrix4d& matrix, const fs::path& path) {
   try {
     return from_matrix(matrix, kRigidTolerance);
   } catch (const Error& error) {
+    if (error.fault() != Fault::input) throw;
     throw Error(error.problem(), path.string(), error.remedy());
   }
 }

@@ -80,6 +80,7 @@ Outcome outcome_of(const std::vector<Solid>& shapes, const std::vector<const Sol
       outcome.warning =
           fmt::format("{} of its solids are not closed: sides of openings may be missing", made.open_cutters);
   } catch (const Error& error) {
+    if (error.fault() != Fault::input) throw;
     outcome.warning = fmt::format("its surface could not be made ({})", error.problem());
   }
   return outcome;

@@ -114,7 +114,8 @@ std::optional<BimOpening> box_of_opening(const RawModel& raw, const RawOpening& 
     try {
       box = box_through(uncut[static_cast<std::size_t>(host)], opening, Extent::outline);
       if (!box) box = box_through(uncut[static_cast<std::size_t>(host)], opening, Extent::rectangle);
-    } catch (const Error&) {
+    } catch (const Error& error) {
+      if (error.fault() != Fault::input) throw;
       continue;  // the element's warning tells of its geometry
     }
     if (!box) continue;
@@ -138,7 +139,8 @@ std::vector<BimOpening> opening_boxes(const RawModel& raw) {
       if (wanted[i] == 0) continue;
       try {
         uncut[i] = solid_faces(raw.elements[i].shapes).faces;
-      } catch (const Error&) {
+      } catch (const Error& error) {
+        if (error.fault() != Fault::input) throw;
         uncut[i].clear();  // told of where its faces are made
       }
     }

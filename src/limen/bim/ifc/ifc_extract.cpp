@@ -8,6 +8,8 @@
 #include <unordered_set>
 #include <vector>
 
+#include "limen/base/progress.h"
+
 namespace limen {
 namespace {
 
@@ -71,15 +73,15 @@ class ArgumentWriter {
   ArgumentWriter(const StepFile& file, std::string& text) : file_(file), text_(text) {}
 
   void write(std::string_view arguments) {
+    const StepComments comments(arguments);
     for (std::size_t at = 0; at < arguments.size(); ++at) {
       const char c = arguments[at];
       if (c == '\'') {
         at = write_text(arguments, at);
       } else if (c == '#') {
         at = write_reference(arguments, at);
-      } else if (c == '/' && arguments.substr(at, 2) == "/*") {
-        const std::size_t end = arguments.find("*/", at + 2);
-        at = end == std::string_view::npos ? at + 1 : end + 1;
+      } else if (comments.begins_at(at)) {
+        at = comments.behind(at) - 1;
       } else if (c > ' ' && c < 127) {
         text_ += c;
       }
@@ -149,6 +151,7 @@ std::string text_of_shapes(const StepFile& file) {
   const std::unordered_set<std::int64_t> ids = needed(file);
   ArgumentWriter writer(file, text);
   for (const StepEntity& entity : file.entities()) {
+    CancelScope::check();
     if (ids.count(entity.id) == 0 || !is_ifc_type(entity.type)) continue;
     text += '#';
     text += std::to_string(entity.id);

@@ -4,18 +4,23 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <set>
 
 #include <fmt/format.h>
 
+#include "limen/base/progress.h"
+#include "limen/base/text.h"
 #include "limen/bim/ifc/ifc_types.h"
 
 namespace limen {
 namespace {
 
 using Arguments = std::vector<std::string_view>;
+
+/// A wall has layers, a stair its flights. A file of which every element is part of the last would otherwise
+/// take time quadratic in its length.
+constexpr std::size_t kMostParts = 500;
 
 /// Prefixes of SI units.
 double factor_of_prefix(const std::string& prefix) {
@@ -35,10 +40,14 @@ double factor_of_prefix(const std::string& prefix) {
   return 1.0;
 }
 
-std::string upper_case(std::string_view text) {
-  std::string result(text);
-  for (char& c : result) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
-  return result;
+/// Every element of a storey carries its name: no more than this of it, and no character by half.
+std::string shortened(std::string name) {
+  constexpr std::size_t kLongestName = 200;
+  if (name.size() <= kLongestName) return name;
+  std::size_t end = kLongestName;
+  while (end > 0 && (static_cast<unsigned char>(name[end]) & 0xc0U) == 0x80U) --end;
+  name.resize(end);
+  return name;
 }
 
 /// Reads the structure in one pass over relations, then over what they relate.
@@ -47,10 +56,16 @@ class StructureReader {
   explicit StructureReader(const StepFile& file) : file_(file) {}
 
   IfcStructure read() {
-    for (const StepEntity& entity : file_.entities()) read_relation(entity);
+    for (const StepEntity& entity : file_.entities()) {
+      CancelScope::check();
+      read_relation(entity);
+    }
     read_units();
     read_map();
-    for (const StepEntity& entity : file_.entities()) read_object(entity);
+    for (const StepEntity& entity : file_.entities()) {
+      CancelScope::check();
+      read_object(entity);
+    }
     for (IfcVoid& gap : structure_.voids) {
       const auto filling = filling_of_.find(gap.opening);
       if (filling != filling_of_.end()) gap.filling = filling->second;
@@ -88,7 +103,10 @@ class StructureReader {
     const Arguments arguments = step_arguments(entity.arguments);
     const std::optional<std::int64_t> first = step_reference(argument(arguments, 4));
     const std::optional<std::int64_t> second = step_reference(argument(arguments, 5));
-    if (type == "IFCRELVOIDSELEMENT" && first && second) structure_.voids.push_back({*second, *first, 0, {}});
+    if (type == "IFCRELVOIDSELEMENT" && first && second) {
+      structure_.voids.push_back({*second, *first, 0, {}});
+      host_of_.emplace(*second, *first);
+    }
     if (type == "IFCRELFILLSELEMENT" && first && second) {
       filling_of_.emplace(*first, *second);
       opening_of_.emplace(*second, *first);
@@ -129,8 +147,11 @@ class StructureReader {
       warn("the file has no project: it is damaged");
       assignments = assignments_;
     }
+    std::set<std::int64_t> asked;  // nothing is read twice, however often it is named
     for (const std::int64_t assignment : assignments) {
+      if (!asked.insert(assignment).second) continue;
       for (const std::int64_t unit : step_references(argument(arguments_of(assignment), 0))) {
+        if (!asked.insert(unit).second) continue;
         const std::optional<double> metres = metres_of_unit(unit);
         if (!metres) continue;
         structure_.metres_per_unit = *metres;
@@ -143,7 +164,8 @@ class StructureReader {
   /// Metres per unit of the map's coordinates: the target's own, else the project's.
   double metres_of_map(std::int64_t target) const {
     const Arguments arguments = arguments_of(target);
-    for (std::size_t k = arguments.size(); k > 0; --k) {
+    constexpr std::size_t kMostArguments = 12;  // of a coordinate system there are seven
+    for (std::size_t k = std::min(arguments.size(), kMostArguments); k > 0; --k) {
       const std::optional<std::int64_t> unit = step_reference(arguments[k - 1]);
       const std::optional<double> metres = unit ? metres_of_unit(*unit) : std::nullopt;
       if (metres) return *metres;
@@ -185,15 +207,22 @@ class StructureReader {
     return 1.0;
   }
 
+  const std::string& name_of_storey(std::int64_t id) {
+    const auto [place, is_new] = storey_names_.try_emplace(id);
+    if (is_new) {
+      const Arguments arguments = arguments_of(id);
+      place->second = step_text(argument(arguments, 2));
+      if (place->second.empty()) place->second = step_text(argument(arguments, 7));
+      place->second = shortened(std::move(place->second));
+    }
+    return place->second;
+  }
+
   /// The name of the storey that holds an object, over what it is part of, stands in, or fills.
-  std::string storey_of(std::int64_t id) const {
+  std::string storey_of(std::int64_t id) {
     constexpr int kLongestWay = 20;
     for (int step = 0; step < kLongestWay; ++step) {
-      if (type_of(id) == "IFCBUILDINGSTOREY") {
-        const Arguments arguments = arguments_of(id);
-        const std::string name = step_text(argument(arguments, 2));
-        return name.empty() ? step_text(argument(arguments, 7)) : name;
-      }
+      if (type_of(id) == "IFCBUILDINGSTOREY") return name_of_storey(id);
       const std::int64_t above = above_of(id);
       if (above == 0) return {};
       id = above;
@@ -202,12 +231,9 @@ class StructureReader {
   }
 
   std::int64_t above_of(std::int64_t id) const {
-    for (const auto* way : {&container_of_, &whole_of_, &opening_of_}) {
+    for (const auto* way : {&container_of_, &whole_of_, &opening_of_, &host_of_}) {
       const auto found = way->find(id);
       if (found != way->end()) return found->second;
-    }
-    for (const IfcVoid& gap : structure_.voids) {
-      if (gap.opening == id) return gap.host;
     }
     return 0;
   }
@@ -255,8 +281,10 @@ class StructureReader {
   std::vector<std::int64_t> maps_;
   std::map<std::int64_t, std::int64_t> filling_of_;    ///< opening -> what stands in it
   std::map<std::int64_t, std::int64_t> opening_of_;    ///< the other way
+  std::map<std::int64_t, std::int64_t> host_of_;       ///< opening -> what it is cut out of
   std::map<std::int64_t, std::int64_t> container_of_;  ///< object -> storey or space
   std::map<std::int64_t, std::int64_t> whole_of_;      ///< part -> whole
+  std::map<std::int64_t, std::string> storey_names_;   ///< of the storeys asked for so far
 };
 
 }  // namespace
@@ -268,11 +296,11 @@ IfcStructure read_ifc_structure(const StepFile& file) {
 std::vector<std::int64_t> with_parts(const IfcStructure& structure, std::int64_t element) {
   std::vector<std::int64_t> all{element};
   std::set<std::int64_t> seen{element};
-  for (std::size_t at = 0; at < all.size(); ++at) {
+  for (std::size_t at = 0; at < all.size() && all.size() < kMostParts; ++at) {
     const auto parts = structure.parts.find(all[at]);
     if (parts == structure.parts.end()) continue;
     for (const std::int64_t part : parts->second) {
-      if (seen.insert(part).second) all.push_back(part);
+      if (all.size() < kMostParts && seen.insert(part).second) all.push_back(part);
     }
   }
   return all;

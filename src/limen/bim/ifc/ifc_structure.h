@@ -47,7 +47,7 @@ struct IfcStructure {
 
 IfcStructure read_ifc_structure(const StepFile& file);
 
-/// The parts of an element and their parts, itself first.
+/// The parts of an element and their parts, itself first; of very many the first 500.
 std::vector<std::int64_t> with_parts(const IfcStructure& structure, std::int64_t element);
 
 }  // namespace limen

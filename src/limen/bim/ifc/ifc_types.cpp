@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <map>
 #include <utility>
 
+#include "limen/base/text.h"
 #include "limen/files/text_numbers.h"
 #include "limen/io/table/record_table.h"
 
@@ -32,12 +32,6 @@ constexpr std::string_view kElementTypes =
     "CableCarrierFitting CableSegment AirTerminal AirTerminalBox WasteTerminal "
     "FireSuppressionTerminal StackTerminal Sensor Alarm Controller Actuator "
     "CommunicationsAppliance AudioVisualAppliance ";
-
-std::string upper_case(std::string_view text) {
-  std::string result(text);
-  for (char& c : result) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
-  return result;
-}
 
 }  // namespace
 

@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 #include "limen/base/error.h"
+#include "limen/base/text.h"
 #include "limen/bim/ifc/ifc_extract.h"
 #include "limen/bim/ifc/ifc_process.h"
 #include "limen/bim/ifc/ifc_stream.h"

@@ -4,22 +4,19 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <charconv>
 
+#include "limen/base/progress.h"
+#include "limen/base/text.h"
 #include "limen/files/text_numbers.h"
 
 namespace limen {
 namespace {
 
+constexpr std::size_t kLongestType = 100;
+
 bool blank(char c) {
   return c == ' ' || c == '\t' || c == '\r' || c == '\n';
-}
-
-std::string_view trimmed(std::string_view text) {
-  while (!text.empty() && blank(text.front())) text.remove_prefix(1);
-  while (!text.empty() && blank(text.back())) text.remove_suffix(1);
-  return text;
 }
 
 bool digit(char c) {
@@ -47,25 +44,15 @@ std::size_t behind_text(std::string_view bytes, std::size_t at) {
   return std::min(end + 1, bytes.size());
 }
 
-/// Passes over a comment; one that never closes is no comment.
-std::size_t behind_comment(std::string_view bytes, std::size_t at) {
-  const std::size_t end = bytes.find("*/", at + 2);
-  return end == std::string_view::npos ? at + 2 : end + 2;
-}
-
-bool comment_at(std::string_view bytes, std::size_t at) {
-  return bytes[at] == '/' && at + 1 < bytes.size() && bytes[at + 1] == '*';
-}
-
 /// The end of the statement that begins at `at`: the place of its semicolon, or, where that is lost, the end
 /// of the line before the next entity.
-std::size_t end_of_statement(std::string_view bytes, std::size_t at) {
+std::size_t end_of_statement(std::string_view bytes, const StepComments& comments, std::size_t at) {
   while (at < bytes.size() && bytes[at] != ';') {
     if (bytes[at] == '\n' && entity_at(bytes, at + 1)) return at;
     if (bytes[at] == '\'') {
       at = behind_text(bytes, at);
-    } else if (comment_at(bytes, at)) {
-      at = behind_comment(bytes, at);
+    } else if (comments.begins_at(at)) {
+      at = comments.behind(at);
     } else {
       ++at;
     }
@@ -73,12 +60,12 @@ std::size_t end_of_statement(std::string_view bytes, std::size_t at) {
   return std::min(at, bytes.size());
 }
 
-std::size_t begin_of_statement(std::string_view bytes, std::size_t at) {
+std::size_t begin_of_statement(std::string_view bytes, const StepComments& comments, std::size_t at) {
   while (at < bytes.size()) {
     if (blank(bytes[at])) {
       ++at;
-    } else if (comment_at(bytes, at)) {
-      at = behind_comment(bytes, at);
+    } else if (comments.begins_at(at)) {
+      at = comments.behind(at);
     } else {
       break;
     }
@@ -95,35 +82,30 @@ bool is_keyword(const std::string& word) {
   return std::find(kWords.begin(), kWords.end(), word) != kWords.end();
 }
 
-/// Empty where an entity has several types at once.
+/// Empty where an entity has several types at once; the longest of IFC has 51 characters.
 bool is_type_name(std::string_view type) {
-  return std::all_of(type.begin(), type.end(), [](char c) {
-    return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || digit(c) || c == '_';
-  });
+  return type.size() <= kLongestType && std::all_of(type.begin(), type.end(), [](char c) {
+           return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || digit(c) || c == '_';
+         });
 }
 
 /// True where every bracket in the arguments has its partner and every text its end.
 bool brackets_match(std::string_view arguments) {
+  const StepComments comments(arguments);
   int depth = 0;
   std::size_t at = 0;
   while (at < arguments.size() && depth >= 0) {
     if (arguments[at] == '\'') {
       at = arguments.find('\'', at + 1);
       if (at == std::string_view::npos) return false;
-    } else if (comment_at(arguments, at)) {
-      at = behind_comment(arguments, at) - 1;
+    } else if (comments.begins_at(at)) {
+      at = comments.behind(at) - 1;
     } else {
       depth += arguments[at] == '(' ? 1 : arguments[at] == ')' ? -1 : 0;
     }
     ++at;
   }
   return depth == 0;
-}
-
-std::string upper_case(std::string_view text) {
-  std::string result(text);
-  for (char& c : result) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
-  return result;
 }
 
 void append_utf8(std::uint32_t code, std::string& text) {
@@ -252,11 +234,24 @@ class TextDecoder {
 
 }  // namespace
 
+StepComments::StepComments(std::string_view bytes) : bytes_(bytes), last_end_(bytes.rfind("*/")) {}
+
+bool StepComments::begins_at(std::size_t at) const {
+  return bytes_[at] == '/' && at + 1 < bytes_.size() && bytes_[at + 1] == '*';
+}
+
+std::size_t StepComments::behind(std::size_t at) const {
+  if (last_end_ == std::string_view::npos || last_end_ < at + 2) return at + 2;
+  return bytes_.find("*/", at + 2) + 2;
+}
+
 StepFile::StepFile(std::string_view bytes) {
+  const StepComments comments(bytes);
   std::size_t at = 0;
   while (at < bytes.size()) {
-    at = begin_of_statement(bytes, at);
-    const std::size_t end = end_of_statement(bytes, at);
+    CancelScope::check();
+    at = begin_of_statement(bytes, comments, at);
+    const std::size_t end = end_of_statement(bytes, comments, at);
     if (at < end) read_statement(bytes.substr(at, end - at));
     at = end + 1;
   }
@@ -304,6 +299,7 @@ void StepFile::read_statement(std::string_view statement) {
 }
 
 std::vector<std::string_view> step_arguments(std::string_view arguments) {
+  const StepComments comments(arguments);
   std::vector<std::string_view> result;
   std::size_t begin = 0;
   std::size_t at = 0;
@@ -314,8 +310,8 @@ std::vector<std::string_view> step_arguments(std::string_view arguments) {
       at = behind_text(arguments, at);
       continue;
     }
-    if (comment_at(arguments, at)) {
-      at = behind_comment(arguments, at);
+    if (comments.begins_at(at)) {
+      at = comments.behind(at);
       continue;
     }
     depth += c == '(' ? 1 : c == ')' ? -1 : 0;

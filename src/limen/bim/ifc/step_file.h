@@ -19,6 +19,22 @@ struct StepEntity {
   std::string_view arguments;  ///< between the outer brackets
 };
 
+/// The comments of a piece of STEP text. Where the last one ends is looked up once, so that passing over any
+/// number of comments that never close takes time linear in the text.
+class StepComments {
+ public:
+  /// `bytes` must outlive the object.
+  explicit StepComments(std::string_view bytes);
+  [[nodiscard]] bool begins_at(std::size_t at) const;
+  /// The place behind the comment that begins at `at`; one that never closes is no comment, but two
+  /// characters.
+  [[nodiscard]] std::size_t behind(std::size_t at) const;
+
+ private:
+  std::string_view bytes_;
+  std::size_t last_end_;  ///< of the last "*/"
+};
+
 /// The entities of a STEP physical file (ISO 10303-21), without knowledge of what they mean. Statements that
 /// are damaged are counted and passed over.
 class StepFile {

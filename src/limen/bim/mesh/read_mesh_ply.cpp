@@ -11,6 +11,8 @@
 #include <fmt/format.h>
 
 #include "limen/base/error.h"
+#include "limen/base/progress.h"
+#include "limen/base/text.h"
 #include "limen/files/text_numbers.h"
 #include "limen/io/ply/ply_header.h"
 #include "limen/io/table/record_table.h"
@@ -46,6 +48,7 @@ class RecordWalker {
     if (!text && element.least_bytes() == 0) return;
     Record record(element.properties.size());
     for (std::size_t i = 0; i < element.count; ++i) {
+      CancelScope::check();
       if (text) {
         read_text(element, record);
       } else {
@@ -151,7 +154,8 @@ bool looks_like_mesh_ply(std::string_view bytes) {
   try {
     const PlyHeader header = parse_ply_header(bytes, "");
     return std::any_of(header.elements.begin(), header.elements.end(), holds_faces);
-  } catch (const Error&) {
+  } catch (const Error& error) {
+    if (error.fault() != Fault::input) throw;
     return false;
   }
 }

@@ -13,6 +13,8 @@
 #include <fmt/format.h>
 
 #include "limen/base/error.h"
+#include "limen/base/progress.h"
+#include "limen/base/text.h"
 #include "limen/bim/ifc/ifc_types.h"
 #include "limen/files/text_numbers.h"
 
@@ -38,18 +40,13 @@ std::string_view take_word(std::string_view& line) {
   return word;
 }
 
-std::string_view trimmed(std::string_view text) {
-  while (!text.empty() && blank(text.front())) text.remove_prefix(1);
-  while (!text.empty() && blank(text.back())) text.remove_suffix(1);
-  return text;
-}
-
 class ObjReader {
  public:
   explicit ObjReader(const std::string& name) : name_(name) {}
 
   RawModel read(std::string_view bytes) {
     while (!bytes.empty()) {
+      CancelScope::check();
       const TextLine line = first_line(bytes);
       bytes.remove_prefix(line.bytes);
       ++number_;

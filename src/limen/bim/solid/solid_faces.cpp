@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "limen/base/progress.h"
 #include "limen/bim/solid/solid_section.h"
 #include "limen/geometry/polygon_clip.h"
 
@@ -74,7 +75,10 @@ class Operation {
   [[nodiscard]] std::vector<BimFace> faces() const {
     std::vector<BimFace> result;
     for (std::size_t i = 0; i < leaves_.size(); ++i) {
-      for (const BimFace& face : leaves_[i].faces) add_parts(i, face, result);
+      for (const BimFace& face : leaves_[i].faces) {
+        CancelScope::check();
+        add_parts(i, face, result);
+      }
     }
     return result;
   }

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "limen/base/error.h"
+#include "limen/base/text.h"
 #include "limen/io/e57/write_e57.h"
 #include "limen/io/las/write_las.h"
 #include "limen/io/ply/ply_writer.h"

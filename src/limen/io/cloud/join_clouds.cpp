@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "limen/base/error.h"
+#include "limen/base/text.h"
 #include "limen/io/table/moved_columns.h"
 
 namespace limen {

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "limen/base/error.h"
+#include "limen/base/text.h"
 #include "limen/io/e57/read_e57.h"
 #include "limen/io/las/las_header.h"
 #include "limen/io/las/read_las.h"

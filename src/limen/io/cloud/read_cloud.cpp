@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "limen/base/error.h"
+#include "limen/base/text.h"
 #include "limen/io/cloud/thin_cloud.h"
 #include "limen/io/table/packed_rows.h"
 #include "limen/io/table/scan_builder.h"

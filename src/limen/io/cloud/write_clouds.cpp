@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "limen/base/text.h"
 #include "limen/io/cloud/cloud_writers.h"
 #include "limen/io/cloud/read_cloud.h"
 #include "limen/io/table/packed_rows.h"

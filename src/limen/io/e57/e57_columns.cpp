@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "limen/base/parallel.h"
+#include "limen/base/text.h"
 
 namespace limen {
 namespace {

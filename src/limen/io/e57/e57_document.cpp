@@ -11,6 +11,7 @@
 #include <pugixml.hpp>
 
 #include "limen/base/error.h"
+#include "limen/base/text.h"
 #include "limen/files/text_numbers.h"
 
 namespace limen {
@@ -27,13 +28,6 @@ struct Place {
   std::string text;
   [[nodiscard]] Place inside(std::string_view part) const { return {fmt::format("{}, {}", text, part)}; }
 };
-
-std::string_view trimmed(std::string_view text) {
-  const auto blank = [](char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; };
-  while (!text.empty() && blank(text.front())) text.remove_prefix(1);
-  while (!text.empty() && blank(text.back())) text.remove_suffix(1);
-  return text;
-}
 
 /// All text in an element, which may be in several pieces.
 std::string text_of(const pugi::xml_node& node) {

@@ -17,6 +17,7 @@
 #include "limen/base/error.h"
 #include "limen/base/parallel.h"
 #include "limen/base/random.h"
+#include "limen/base/text.h"
 #include "limen/io/e57/e57_crc.h"
 #include "limen/io/e57/e57_description.h"
 #include "limen/io/e57/e57_encode.h"

@@ -12,6 +12,7 @@
 
 #include "limen/base/error.h"
 #include "limen/base/parallel.h"
+#include "limen/base/text.h"
 #include "limen/io/e57/e57_document.h"
 #include "limen/io/e57/read_e57.h"
 

@@ -9,6 +9,8 @@
 
 #include <fmt/format.h>
 
+#include "limen/base/text.h"
+
 namespace limen {
 namespace {
 

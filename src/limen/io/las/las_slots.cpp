@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 #include "limen/base/error.h"
+#include "limen/base/text.h"
 #include "limen/io/las/las_fields.h"
 
 namespace limen {

@@ -11,6 +11,7 @@
 
 #include "limen/base/error.h"
 #include "limen/base/parallel.h"
+#include "limen/base/text.h"
 
 namespace limen {
 namespace {

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "limen/base/error.h"
+#include "limen/base/text.h"
 #include "limen/files/lzf.h"
 #include "limen/files/text_numbers.h"
 

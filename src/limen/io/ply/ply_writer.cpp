@@ -17,6 +17,7 @@
 #include "limen/base/atomic_file.h"
 #include "limen/base/error.h"
 #include "limen/base/parallel.h"
+#include "limen/base/text.h"
 
 namespace limen {
 namespace {

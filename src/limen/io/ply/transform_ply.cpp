@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "limen/base/atomic_file.h"
+#include "limen/base/text.h"
 #include "limen/files/text_numbers.h"
 #include "limen/io/ply/ply_header.h"
 #include "limen/io/ply/read_ply.h"

@@ -75,6 +75,7 @@ Rigid3 pose_of(const Matrix4d& transposed, const std::string& where) {
   try {
     pose = from_matrix(transposed.transpose(), kRigidTolerance);
   } catch (const Error& error) {
+    if (error.fault() != Fault::input) throw;
     throw Error("the matrix of the scan is not a rigid motion: " + error.problem(), where,
                 "export the scan without scale or shear");
   }

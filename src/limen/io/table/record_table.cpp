@@ -157,12 +157,4 @@ double load_number(const char* bytes, Scalar type, bool swapped) {
   return number;
 }
 
-std::string lower_case(std::string_view text) {
-  std::string lower(text);
-  for (char& c : lower) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  }
-  return lower;
-}
-
 }  // namespace limen

@@ -79,6 +79,4 @@ void load_numbers(const RecordTable& table, const Field& field, RowRange rows, d
 /// One number from its bytes; `swapped` as in RecordTable.
 double load_number(const char* bytes, Scalar type, bool swapped);
 
-std::string lower_case(std::string_view text);
-
 }  // namespace limen

@@ -204,12 +204,13 @@ SegmentSet localised(const std::vector<Segment>& segments) {
 }  // namespace
 
 bool is_segment_file(const std::filesystem::path& path) {
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(path, error)) return false;  // a pipe can be read only once
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(path, ignored)) return false;  // a pipe can be read only once
   try {
     const MappedFile file(path);
     return form_of(file.bytes()) != Form::unknown;
-  } catch (const Error&) {
+  } catch (const Error& error) {
+    if (error.fault() != Fault::input) throw;
     return false;
   }
 }
@@ -220,8 +221,9 @@ SegmentSet read_segments(const std::filesystem::path& path) {
   if (file.bytes().size() > kMostBytes) throw Error("is far too large for a list of segments", name, kRemedy);
   const Form form = form_of(file.bytes());
   if (form == Form::unknown) throw Error("holds no segments that limen can read", name, kRemedy);
-  const std::vector<Segment> segments =
-      form == Form::keyed ? from_json(file.bytes(), name) : from_text(file.bytes(), form, name);
+  const std::vector<Segment> segments = with_whole_inputs([&] {
+    return form == Form::keyed ? from_json(file.bytes(), name) : from_text(file.bytes(), form, name);
+  });
   SegmentSet set;
   if (!segments.empty()) set = localised(segments);
   if (set.segments.empty()) throw Error("holds no segment", name, kRemedy);

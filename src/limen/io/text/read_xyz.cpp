@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "limen/base/error.h"
+#include "limen/base/text.h"
 #include "limen/files/text_numbers.h"
 #include "limen/io/table/record_table.h"
 #include "limen/io/table/scan_builder.h"

@@ -14,6 +14,7 @@
 
 #include "limen/base/angles.h"
 #include "limen/base/error.h"
+#include "limen/base/text.h"
 #include "limen/files/mapped_file.h"
 #include "limen/files/text_numbers.h"
 #include "limen/io/table/record_table.h"
@@ -257,8 +258,10 @@ Trajectory read_trajectory(const std::filesystem::path& path, const TrajectoryOp
   options.check();
   const MappedFile file(path);
   const std::string name = path.string();
-  std::vector<Entry> entries =
-      is_binary(file.bytes(), path) ? read_sbet(file.bytes(), name) : read_text(file.bytes(), options, name);
+  std::vector<Entry> entries = with_whole_inputs([&] {
+    return is_binary(file.bytes(), path) ? read_sbet(file.bytes(), name)
+                                         : read_text(file.bytes(), options, name);
+  });
   if (!options.lever_arm_m.isZero() && !entries.empty() && !entries.front().attitude) {
     throw Error("the trajectory has no attitude, so a lever arm cannot be turned", name,
                 "give roll, pitch and heading too, or leave --lever-arm out");

@@ -3,12 +3,12 @@
 #include "limen/simulate/model/write_ifc.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <vector>
 
 #include <fmt/format.h>
 
+#include "limen/base/text.h"
 #include "limen/geometry/polygon_clip.h"
 
 namespace limen {
@@ -148,9 +148,7 @@ class IfcWriter {
 
   std::string write_element(std::size_t index) {
     const RecipeElement& element = recipe_.elements[index];
-    std::string type = element.type;
-    std::transform(type.begin(), type.end(), type.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+    const std::string type = upper_case(element.type);
     const std::string at =
         local_placement(storey_placements_[static_cast<std::size_t>(element.storey)], PlaneFrame{});
     placements_.push_back(at);
