@@ -4,6 +4,7 @@
 
 #include "limen/base/error.h"
 #include "limen/match/planes/polygon_distance.h"
+#include "limen/model/plausible_size.h"
 #include "limen/register/prepare/prepare_model.h"
 #include "limen/register/prepare/stage_clock.h"
 #include "limen/register/register.h"
@@ -70,6 +71,11 @@ PicturedSide pictured(PreparedScan&& prepared) {
   return side;
 }
 
+void require_plausible_size(const RegisterInput& input) {
+  if (input.model) limen::require_plausible_size(*input.model);
+  for (const PlacedScan& placed : input.scans) limen::require_plausible_size(placed.scan);
+}
+
 template <typename Source, typename Target>
 RegistrationResult prepare_and_register_once(const Source& source, const Target& target,
                                              const RegisterOptions& options, Monitor& monitor) {
@@ -95,6 +101,8 @@ template <typename Source, typename Target>
 RegistrationResult prepare_and_register(const Source& source, const Target& target,
                                         const RegisterOptions& options, Monitor& monitor) {
   options.check();
+  require_plausible_size(source);
+  require_plausible_size(target);
   const CancelScope scope(monitor);
   RegistrationResult result = prepare_and_register_once(source, target, options, monitor);
   const bool in_model = is_model(source) || is_model(target);

@@ -1,0 +1,90 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/model/plausible_size.h"
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "limen/base/error.h"
+
+namespace limen {
+namespace {
+
+constexpr double kSmallestScanM = 0.1;
+constexpr double kLongestScanM = 1e5;   // a day of a mobile scanner
+constexpr double kThickestScanM = 1e3;  // the least of its three sides; of a city less
+constexpr double kSmallestModelM = 0.5;
+constexpr double kMostModelM2 = 2e6;  // ten times the surface of a large hospital
+constexpr std::size_t kLookedAt = 100000;
+constexpr std::size_t kLeftOut = 100;  // one point in so many, at either end of an axis
+constexpr const char* kUnits =
+    "limen takes the numbers of a file that names no unit as metres: check the unit, and scale or export it "
+    "again in metres";
+
+/// What the numbers are likely to be where the truth is a building of some metres to some hundred metres.
+std::string guess(double side_m) {
+  if (side_m < 0.5) return "are they kilometres?";
+  return side_m > 2000.0 ? "are they millimetres?" : "are they centimetres?";
+}
+
+std::string told(double metres) {
+  return metres >= 1e4 ? fmt::format("{:.4g} km", 1e-3 * metres) : fmt::format("{:.4g} m", metres);
+}
+
+/// Extent of the points along one axis, the outermost left out.
+double side_of(const std::vector<Vector3d>& points, int axis) {
+  const std::size_t stride = 1 + points.size() / kLookedAt;
+  std::vector<double> values;
+  for (std::size_t i = 0; i < points.size(); i += stride) values.push_back(points[i][axis]);
+  const auto out = static_cast<std::ptrdiff_t>(values.size() / kLeftOut);
+  std::nth_element(values.begin(), values.begin() + out, values.end());
+  const double low = values[static_cast<std::size_t>(out)];
+  std::nth_element(values.begin(), values.end() - 1 - out, values.end());
+  return *(values.end() - 1 - out) - low;
+}
+
+double longest_side_of(const BimModel& model) {
+  Vector3d low = Vector3d::Constant(1e300);
+  Vector3d high = Vector3d::Constant(-1e300);
+  for (const BimFace& face : model.faces) {
+    for (const Vector2d& p : face.outline.outer) {
+      const Vector3d x = face.frame.to_space(p);
+      low = low.cwiseMin(x);
+      high = high.cwiseMax(x);
+    }
+  }
+  return (high - low).maxCoeff();
+}
+
+}  // namespace
+
+void require_plausible_size(const Scan& scan) {
+  if (scan.points.empty()) return;
+  const Vector3d sides(side_of(scan.points, 0), side_of(scan.points, 1), side_of(scan.points, 2));
+  const double longest = sides.maxCoeff();
+  if (longest >= kSmallestScanM && longest <= kLongestScanM && sides.minCoeff() <= kThickestScanM) return;
+  throw Error(fmt::format("the points measure {} x {} x {}, which no scan of a building does: {}",
+                          told(sides.x()), told(sides.y()), told(sides.z()), guess(longest)),
+              scan.name, kUnits);
+}
+
+void require_plausible_size(const BimModel& model) {
+  if (model.faces.empty()) return;
+  const double side = longest_side_of(model);
+  double area_m2 = 0.0;
+  for (const BimFace& face : model.faces) area_m2 += face.area_m2;
+  if (side >= kSmallestModelM && area_m2 <= kMostModelM2) return;
+  throw Error(
+      fmt::format("the model measures {} from end to end and has {:.3g} m2 of surface, which no building "
+                  "does (1 unit of the file = {:.6g} m): {}",
+                  told(side), area_m2, model.metres_per_unit, guess(side)),
+      model.name,
+      side < kSmallestModelM ? kUnits
+                             : "check the unit of the file and export it again in metres, or leave out "
+                               "what lies around the building");
+}
+
+}  // namespace limen
