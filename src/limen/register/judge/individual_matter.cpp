@@ -68,6 +68,18 @@ class BuiltPlanes {
     return found;
   }
 
+  /// Whether the way from `a` to `b` leads through a wall, or an opening of it.
+  [[nodiscard]] bool between(const Vector3d& a, const Vector3d& b) const {
+    return std::any_of(parts_.begin(), parts_.end(), [&](const Part& part) {
+      const double from = part.plane.signed_distance(a);
+      const double to = part.plane.signed_distance(b);
+      if (from * to >= 0.0) return false;
+      const Vector3d crossing = a + (b - a) * (from / (from - to));
+      const Vector2d margin = Vector2d::Constant(kBesideWallM);
+      return Box2{part.box.low - margin, part.box.high + margin}.contains(part.frame.to_plane(crossing));
+    });
+  }
+
  private:
   struct Part {
     Plane plane;
@@ -196,10 +208,10 @@ std::vector<Told> told_of_matter(const Side& source, const Side& target, const R
   return told;
 }
 
-/// Whether the one's station stands behind a wall of the other.
-bool stands_behind(const Side& scan, const Side& judge, const Rigid3& judge_from_scan) {
-  const std::optional<Vector3d>& station = scan.view.station;
-  return station && judge.built.place(judge_from_scan * *station) == BuiltPlanes::Place::behind;
+/// Whether a wall of `judge` stands between the two stations.
+bool wall_between(const Side& scan, const Side& judge, const Rigid3& judge_from_scan) {
+  if (!scan.view.station || !judge.view.station) return false;
+  return judge.built.between(judge_from_scan * *scan.view.station, *judge.view.station);
 }
 
 /// How often things meet things when one room's are shifted about in the other, at their heights.
@@ -237,8 +249,8 @@ IndividualMatter individual_matter(const ScanView& source_view, const ScanView& 
   const Side target(target_view);
   individual.matter = observations(told_of_matter(source, target, target_from_source));
   individual.chance = chance_of(source, target, target_from_source);
-  individual.apart = stands_behind(source, target, target_from_source) ||
-                     stands_behind(target, source, inverse(target_from_source));
+  individual.apart = wall_between(source, target, target_from_source) ||
+                     wall_between(target, source, inverse(target_from_source));
   const double fine = fine_m(source_view, target_view);
   std::vector<Told> faces;
   ask_faces(source, target, target_from_source, target_from_source, fine, faces);
