@@ -6,13 +6,14 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <unordered_map>
+#include <utility>
 
 #include <Eigen/LU>
 
 #include "limen/base/angles.h"
 #include "limen/base/error.h"
 #include "limen/base/parallel.h"
+#include "limen/base/progress.h"
 #include "limen/geometry/cell_key.h"
 #include "limen/match/planes/enumerate_rotations.h"
 
@@ -66,10 +67,12 @@ void narrow(const Box& a, const Box& b, const Vector3d& base, const Vector3d& al
   }
 }
 
-/// A plane of the model that an anchor may lie on, and the shift along its normal that brings it there.
+/// A plane of the model that an anchor may lie on, the shift along its normal that brings it there, and all
+/// shifts at which the boxes of both meet.
 struct Partner {
   const BoxedPlane* plane = nullptr;
   double shift = 0.0;
+  Box meeting;
 };
 
 struct Anchor {
@@ -77,28 +80,140 @@ struct Anchor {
   std::vector<Partner> partners;
 };
 
+/// The shifts at which box `a` meets box `b`; a little more, so that no rounding makes it less.
+Box meeting_shifts(const Box& a, const Box& b) {
+  constexpr double kRoundingM = 1e-6;
+  const Vector3d more = Vector3d::Constant(kMeetM + kRoundingM);
+  return {b.min() - a.max() - more, b.max() - a.min() + more};
+}
+
+/// The partners of an anchor, to be found by where they cross a line of shifts: those that face exactly one
+/// way lie along it in the order of their offsets.
+class PartnersInOrder {
+ public:
+  explicit PartnersInOrder(const std::vector<Partner>& partners) {
+    for (std::uint32_t i = 0; i < partners.size(); ++i)
+      row_of(partners[i].plane->normal).by_shift.emplace_back(partners[i].shift, i);
+    for (Row& row : rows_) std::sort(row.by_shift.begin(), row.by_shift.end());
+  }
+
+  /// Partners that may cross the stretch, in their own order; none that crosses it is left out.
+  [[nodiscard]] std::vector<std::uint32_t> crossing(const Vector3d& base, const Vector3d& along,
+                                                    const Stretch& stretch) const {
+    const Vector3d begin = base + stretch.from * along;
+    const Vector3d end = base + stretch.to * along;
+    const double slack = 1e-9 + kOneWay * (begin.norm() + end.norm());
+    std::vector<std::uint32_t> found;
+    for (const Row& row : rows_) {
+      const double at_begin = row.normal.dot(begin);
+      const double at_end = row.normal.dot(end);
+      const double most = std::max(at_begin, at_end) + slack;
+      auto place = std::lower_bound(row.by_shift.begin(), row.by_shift.end(),
+                                    std::make_pair(std::min(at_begin, at_end) - slack, std::uint32_t{0}));
+      for (; place != row.by_shift.end() && place->first <= most; ++place) found.push_back(place->second);
+    }
+    std::sort(found.begin(), found.end());
+    return found;
+  }
+
+ private:
+  static constexpr double kOneWay = 1e-6;  // normals that differ by less face one way
+
+  struct Row {
+    Vector3d normal;
+    std::vector<std::pair<double, std::uint32_t>> by_shift;
+  };
+
+  Row& row_of(const Vector3d& normal) {
+    for (Row& row : rows_) {
+      if ((row.normal - normal).squaredNorm() < kOneWay * kOneWay) return row;
+    }
+    rows_.push_back({normal, {}});
+    return rows_.back();
+  }
+
+  std::vector<Row> rows_;
+};
+
+/// An anchor of the direction that is looked up for every pair of the others.
+struct ThirdAnchor {
+  const Anchor* anchor = nullptr;
+  PartnersInOrder partners;
+};
+
+/// A shift under one of the rotations, and the triples of planes that agree on it.
+struct Found {
+  Vector3d translation;
+  std::int32_t votes = 0;
+  std::uint32_t rotation = 0;
+};
+
+/// Leaves the `most` that most agree on, of equal ones those found first, in the order they are in.
+void keep_most(std::vector<Found>& found, std::size_t most) {
+  if (found.size() <= most) return;
+  std::vector<std::size_t> with_votes;
+  for (const Found& it : found) {
+    const auto votes = static_cast<std::size_t>(it.votes);
+    if (votes >= with_votes.size()) with_votes.resize(votes + 1, 0);
+    ++with_votes[votes];
+  }
+  std::size_t level = with_votes.size() - 1;
+  std::size_t room = most;
+  for (; with_votes[level] <= room; --level) room -= with_votes[level];
+  std::erase_if(found, [&](const Found& it) {
+    const auto votes = static_cast<std::size_t>(it.votes);
+    if (votes != level) return votes < level;
+    if (room == 0) return true;
+    --room;
+    return false;
+  });
+}
+
 /// Poses found under one rotation, near ones counted together.
 class Ballot {
  public:
-  explicit Ballot(double cell_m) : cell_m_(cell_m) {}
+  explicit Ballot(double cell_m) : cell_m_(cell_m), slots_(kFirstSlots, kFree) {}
 
   void add(const Vector3d& translation) {
     const std::int64_t key = cell_key((translation / cell_m_).array().round());
-    const auto [place, fresh] = place_.try_emplace(key, found_.size());
-    if (fresh) found_.push_back({translation, 0});
-    ++found_[place->second].votes;
+    std::uint32_t& slot = slot_of(key);
+    if (slot != kFree) {
+      ++found_[slot].votes;
+      return;
+    }
+    slot = static_cast<std::uint32_t>(found_.size());
+    found_.push_back({translation, 1, 0});
+    keys_.push_back(key);
+    if (2 * found_.size() > slots_.size()) enlarge();
   }
 
-  struct Found {
-    Vector3d translation;
-    int votes = 0;
-  };
-  [[nodiscard]] const std::vector<Found>& found() const { return found_; }
+  [[nodiscard]] std::vector<Found> most_voted(std::size_t most) && {
+    keep_most(found_, most);
+    found_.shrink_to_fit();
+    return std::move(found_);
+  }
 
  private:
+  static constexpr std::size_t kFirstSlots = 1024;
+  static constexpr std::uint32_t kFree = 0xffffffffU;
+
+  /// Where the key is, or would be: a table of numbers into found_, the next free place taken.
+  std::uint32_t& slot_of(std::int64_t key) {
+    const std::uint64_t mixed = static_cast<std::uint64_t>(key) * 0x9E3779B97F4A7C15ULL;
+    std::size_t at = static_cast<std::size_t>(mixed >> 32U) & (slots_.size() - 1);
+    while (slots_[at] != kFree && keys_[slots_[at]] != key) at = (at + 1) & (slots_.size() - 1);
+    return slots_[at];
+  }
+
+  void enlarge() {
+    slots_.assign(2 * slots_.size(), kFree);
+    for (std::uint32_t i = 0; i < keys_.size(); ++i) slot_of(keys_[i]) = i;
+  }
+
   double cell_m_;
   std::vector<Found> found_;
-  std::unordered_map<std::int64_t, std::size_t> place_;
+  std::vector<std::int64_t> keys_;    // of what was found
+  std::vector<std::uint32_t> slots_;  // a power of two, half of them free at least
 };
 
 class Enumerator {
@@ -115,17 +230,17 @@ class Enumerator {
       largest_.resize(static_cast<std::size_t>(options.max_scan_planes));
   }
 
-  [[nodiscard]] std::vector<PoseCandidate> poses_of(const Matrix3d& rotation) const {
+  /// The shifts under one rotation.
+  [[nodiscard]] std::vector<Found> shifts_of(const Matrix3d& rotation) const {
     const std::array<std::vector<Anchor>, 3> anchors = anchors_of(rotation);
     if (std::any_of(anchors.begin(), anchors.end(), [](const auto& list) { return list.empty(); })) return {};
+    std::vector<ThirdAnchor> thirds;
+    for (const Anchor& c : anchors[2]) thirds.push_back({&c, PartnersInOrder(c.partners)});
     Ballot ballot(options_.same_shift_m);
     for (const Anchor& a : anchors[0]) {
-      for (const Anchor& b : anchors[1]) vote_pairs(a, b, anchors[2], ballot);
+      for (const Anchor& b : anchors[1]) vote_pairs(a, b, thirds, ballot);
     }
-    std::vector<PoseCandidate> poses;
-    for (const Ballot::Found& found : ballot.found())
-      poses.push_back({{rotation, found.translation}, static_cast<double>(found.votes), 0});
-    return poses;
+    return std::move(ballot).most_voted(static_cast<std::size_t>(options_.max_poses));
   }
 
  private:
@@ -173,19 +288,22 @@ class Enumerator {
       const double cosine = anchor.plane.normal.dot(plane.normal);
       const bool oriented = anchor.plane.polygon->oriented && plane.polygon->oriented;
       if ((oriented ? cosine : std::abs(cosine)) < near) continue;
-      anchor.partners.push_back(
-          {&plane, plane.polygon->plane.offset - plane.normal.dot(anchor.plane.middle)});
+      anchor.partners.push_back({&plane, plane.polygon->plane.offset - plane.normal.dot(anchor.plane.middle),
+                                 meeting_shifts(anchor.plane.box, plane.box)});
     }
   }
 
-  void vote_pairs(const Anchor& a, const Anchor& b, const std::vector<Anchor>& thirds, Ballot& ballot) const {
+  static void vote_pairs(const Anchor& a, const Anchor& b, const std::vector<ThirdAnchor>& thirds,
+                         Ballot& ballot) {
     const Vector3d reach = a.plane.box.merged(b.plane.box).sizes();
     for (const Partner& p : a.partners) {
+      CancelScope::check();
       Box around = p.plane->box;
       around.min() -= reach;
       around.max() += reach;
       for (const Partner& q : b.partners) {
-        if (!around.intersects(q.plane->box)) continue;
+        // One shift has to bring both pairs together.
+        if (!p.meeting.intersects(q.meeting) || !around.intersects(q.plane->box)) continue;
         vote(a, p, b, q, thirds, ballot);
       }
     }
@@ -193,7 +311,7 @@ class Enumerator {
 
   /// Two pairs leave a line of shifts open; every third pair that is met on it closes it.
   static void vote(const Anchor& a, const Partner& p, const Anchor& b, const Partner& q,
-                   const std::vector<Anchor>& thirds, Ballot& ballot) {
+                   const std::vector<ThirdAnchor>& thirds, Ballot& ballot) {
     Matrix3d rows;
     rows.row(0) = p.plane->normal.transpose();
     rows.row(1) = q.plane->normal.transpose();
@@ -207,14 +325,15 @@ class Enumerator {
     narrow(a.plane.box, p.plane->box, base, along, stretch);
     narrow(b.plane.box, q.plane->box, base, along, stretch);
     if (stretch.empty()) return;
-    for (const Anchor& c : thirds) {
-      for (const Partner& r : c.partners) {
+    for (const ThirdAnchor& c : thirds) {
+      for (const std::uint32_t i : c.partners.crossing(base, along, stretch)) {
+        const Partner& r = c.anchor->partners[i];
         const double slope = r.plane->normal.dot(along);
         if (std::abs(slope) < kMinDeterminant) continue;
         const double s = (r.shift - r.plane->normal.dot(base)) / slope;
         if (s < stretch.from || s > stretch.to) continue;
         Stretch at{s, s};
-        narrow(c.plane.box, r.plane->box, base, along, at);
+        narrow(c.anchor->plane.box, r.plane->box, base, along, at);
         if (!at.empty()) ballot.add(base + s * along);
       }
     }
@@ -245,18 +364,28 @@ std::vector<PoseCandidate> enumerate_model_poses(const Features& scan, const Fea
   const std::vector<Matrix3d> rotations = enumerate_rotations(
       axis_directions(scan, options.direction_deg), axis_directions(model, options.direction_deg), turning);
   const Enumerator enumerator(scan, model, options);
-  std::vector<std::vector<PoseCandidate>> found(rotations.size());
-  parallel_for(rotations.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) found[i] = enumerator.poses_of(rotations[i]);
-  });
-  std::vector<PoseCandidate> all;
-  for (const std::vector<PoseCandidate>& poses : found) all.insert(all.end(), poses.begin(), poses.end());
-  std::stable_sort(all.begin(), all.end(), [](const PoseCandidate& a, const PoseCandidate& b) {
-    return a.support_m2 > b.support_m2;
-  });
-  if (all.size() > static_cast<std::size_t>(options.max_poses))
-    all.resize(static_cast<std::size_t>(options.max_poses));
-  return all;
+  // Some rotations at a time: of a large building each has a hundred thousand shifts.
+  constexpr std::size_t kAtOnce = 16;
+  const auto most = static_cast<std::size_t>(options.max_poses);
+  std::vector<Found> all;
+  for (std::size_t first = 0; first < rotations.size(); first += kAtOnce) {
+    std::vector<std::vector<Found>> found(std::min(kAtOnce, rotations.size() - first));
+    parallel_for(found.size(), 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) found[i] = enumerator.shifts_of(rotations[first + i]);
+    });
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      for (Found& shift : found[i]) shift.rotation = static_cast<std::uint32_t>(first + i);
+      all.insert(all.end(), found[i].begin(), found[i].end());
+      if (all.size() > 2 * most) keep_most(all, most);
+    }
+  }
+  keep_most(all, most);
+  std::stable_sort(all.begin(), all.end(), [](const Found& a, const Found& b) { return a.votes > b.votes; });
+  std::vector<PoseCandidate> poses;
+  poses.reserve(all.size());
+  for (const Found& it : all)
+    poses.push_back({{rotations[it.rotation], it.translation}, static_cast<double>(it.votes), 0});
+  return poses;
 }
 
 }  // namespace limen

@@ -8,7 +8,9 @@ AskedSamples asked_samples(const ScanView& scan, const ScanView& judge, const Ri
                            std::size_t most) {
   const std::vector<SurfaceSample>& samples = scan.features->samples;
   AskedSamples asked;
-  if (scan.model) {
+  if (scan.model && scan.runs != nullptr) {
+    asked.indices = scan.runs->within(judge.reach, judge_from_scan, samples);
+  } else if (scan.model) {
     for (std::uint32_t i = 0; i < samples.size(); ++i) {
       if (judge.reach.contains(judge_from_scan * samples[i].mean)) asked.indices.push_back(i);
     }

@@ -98,6 +98,7 @@ void PreparedScan::settle_reach() {
   for (const SurfaceSample& sample : extracted.features.samples) reach.extend(sample.mean);
   reach.min().array() -= kReachM;
   reach.max().array() += kReachM;
+  if (model) runs = SampleRuns(extracted.features.samples);
 }
 
 PreparedScan prepare_scan(const Scan& scan, const PrepareOptions& options, Monitor& monitor) {

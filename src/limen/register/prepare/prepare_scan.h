@@ -27,12 +27,15 @@ struct PreparedScan {
   std::vector<Vector3d> stations;    ///< optical centres of static stations, prepared frame
   Eigen::AlignedBox3d reach;         ///< around the samples, prepared frame
 
+  SampleRuns runs;  ///< of a model
+
   [[nodiscard]] ScanView view() const {
     ScanView view{&extracted.features, space.get(), reach, model, mobile, mobile || !stations.empty()};
     if (!stations.empty()) view.station = stations.front();
+    if (model) view.runs = &runs;
     return view;
   }
-  /// Sets `reach` from the samples.
+  /// Sets `reach` from the samples, and of a model `runs`.
   void settle_reach();
 };
 

@@ -7,6 +7,7 @@
 #include <Eigen/Geometry>
 
 #include "limen/model/features.h"
+#include "limen/register/prepare/sample_runs.h"
 #include "limen/sight/space_view.h"
 
 namespace limen {
@@ -20,6 +21,9 @@ struct ScanView {
   bool mobile = false;               ///< seen from many places along a path
   bool knows_free = true;            ///< where the scanner stood is known, so that its rays tell what is free
   std::optional<Vector3d> station = {};  ///< of a static scan: where the (first) scanner stood
+  /// Of a model: its samples in runs, so that those within some reach are found without a look at each. Null:
+  /// every sample is looked at.
+  const SampleRuns* runs = nullptr;
 };
 
 }  // namespace limen
