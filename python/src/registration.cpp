@@ -103,21 +103,12 @@ struct Registered {
   ReportScene scene;
 };
 
-/// The files that limen register writes; result.json comes last.
+/// The files that limen register writes, the numbers first.
 void save(const Registered& registered, const std::filesystem::path& path, bool with_report) {
-  const RegistrationReport& report = registered.report;
   const OutputFolder folder(path);
-  if (with_report) {
-    write_report(folder.path(), report, registered.scene);
-  } else {
-    remove_report(folder.path());
-  }
-  if (report.result.outcome == Outcome::no_match) {
-    std::filesystem::remove(folder.path() / "transform.txt");
-  } else {
-    write_file(folder.path() / "transform.txt", transform_text(report.result.best.target_from_source));
-  }
-  write_file(folder.path() / "result.json", result_json(report));
+  remove_report(folder.path());
+  write_numbers(folder.path(), registered.report);
+  if (with_report) write_report(folder.path(), registered.report, registered.scene);
 }
 
 Registered register_sides(const PythonSide& source, const PythonSide& target, RegisterOptions options,

@@ -135,6 +135,7 @@ int run_action(Session& session) {
 }  // namespace
 
 int run_program(int argc, char** argv) {
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is told of as a disk that is full
   Session session;
   CLI::App app(
       "limen finds how laser scans of one building fit together, indoors and outdoors, and where in a "

@@ -14,6 +14,7 @@
 #include "limen/base/error.h"
 #include "limen/cli/inputs/register_inputs.h"
 #include "limen/cli/inputs/scan_options.h"
+#include "limen/model/plausible_size.h"
 #include "limen/report/deviation/deviation_report.h"
 #include "limen/report/pose_file.h"
 
@@ -170,6 +171,8 @@ int run(const DeviationCommand& command, const Session& session) {
     throw Error("is no building model", command.model, "give an IFC, OBJ or PLY model");
   const BimModel& model = *model_side.input.model;
   const Scan scan = joined(scan_side.input);
+  require_plausible_size(scan);
+  require_plausible_size(model);
   if (!scan.centre_known())
     session.note("it is not known from where the scan was taken: give --origin, else nothing can be missed");
   report.scan = scan_side.summary;
@@ -181,9 +184,11 @@ int run(const DeviationCommand& command, const Session& session) {
   session.monitor->throw_if_cancelled();
   session.monitor->begin_stage("writing");
   const std::string json = deviation_json(report, model);
+  const std::string table = deviation_csv(report, model);
+  // The numbers first: the cloud is a thousand times larger. An earlier run's must not stand beside them.
+  std::filesystem::remove(folder.path() / "deviation.ply");
+  write_files({{folder.path() / "deviation.csv", table}, {folder.path() / "deviation.json", json}});
   write_deviation_ply(folder.path() / "deviation.ply", scan, report, command.colour_limit_m);
-  write_file(folder.path() / "deviation.csv", deviation_csv(report, model));
-  write_file(folder.path() / "deviation.json", json);
   session.say(summary(report, model, command.folder));
   session.answer(json);
   return kExitOk;

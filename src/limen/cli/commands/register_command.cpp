@@ -149,16 +149,18 @@ Registered register_segment_lists(const RegisterCommandOptions& options, const S
   return registered;
 }
 
-/// result.json comes last: where it is, the folder is complete. A transform of an earlier run must not
-/// outlive a run that found none.
-void write_results(const std::filesystem::path& folder, const RegistrationReport& report,
-                   const std::string& json) {
-  if (report.result.outcome == Outcome::no_match) {
-    std::filesystem::remove(folder / "transform.txt");
-  } else {
-    write_file(folder / "transform.txt", transform_text(report.result.best.target_from_source));
+/// The page, for which the numbers are not given up: where it has no room that is told, and the status stays
+/// that of the outcome.
+void write_page(const std::filesystem::path& folder, const Registered& registered, const Session& session) {
+  session.monitor->begin_stage("report");
+  try {
+    write_report(folder, registered.report, registered.scene);
+  } catch (const Error& error) {
+    if (error.fault() != Fault::input) throw;
+    session.warn(fmt::format(
+        "there is no report: {}; result.json{} written and whole", error.what(),
+        registered.report.result.outcome == Outcome::no_match ? " is" : " and transform.txt are"));
   }
-  write_file(folder / "result.json", json);
 }
 
 std::string pose_summary(const RegistrationReport& report) {
@@ -218,13 +220,9 @@ int run(const RegisterCommandOptions& options, const Session& session) {
   const RegistrationReport& report = registered.report;
   const std::string json = result_json(report);
   session.monitor->throw_if_cancelled();
-  if (options.no_report) {
-    remove_report(folder.path());
-  } else {
-    session.monitor->begin_stage("report");
-    write_report(folder.path(), report, registered.scene);
-  }
-  write_results(folder.path(), report, json);
+  remove_report(folder.path());  // an earlier run's page must not stand beside other numbers
+  write_numbers(folder.path(), report);
+  if (!options.no_report) write_page(folder.path(), registered, session);
   session.say(summary(report, options.folder));
   session.answer(json);
   return status_of(report.result.outcome);

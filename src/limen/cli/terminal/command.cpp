@@ -39,8 +39,14 @@ void Session::answer(std::string_view json_text) const {
 }
 
 void Session::note(std::string_view text) const {
-  if (common.quiet) return;
-  const std::string line = ended(fmt::format("limen: {}", text));
+  if (!common.quiet) tell_line(ended(fmt::format("limen: {}", text)));
+}
+
+void Session::warn(std::string_view text) const {
+  tell_line(ended(fmt::format("limen: warning: {}", text)));
+}
+
+void Session::tell_line(const std::string& line) const {
   if (auto* terminal = dynamic_cast<TerminalMonitor*>(monitor.get())) {
     terminal->print(line);
   } else {

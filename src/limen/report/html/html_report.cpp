@@ -117,10 +117,10 @@ ReportPages report_pages(const RegistrationReport& report, const ReportScene& sc
 void write_report(const std::filesystem::path& folder, const RegistrationReport& report,
                   const ReportScene& scene) {
   const ReportPages pages = report_pages(report, scene);
-  write_file(folder / "section_top.svg", pages.top);
-  write_file(folder / "section_front.svg", pages.front);
-  write_file(folder / "section_side.svg", pages.side);
-  write_file(folder / "report.html", pages.page);
+  write_files({{folder / "section_top.svg", pages.top},
+               {folder / "section_front.svg", pages.front},
+               {folder / "section_side.svg", pages.side},
+               {folder / "report.html", pages.page}});
 }
 
 void remove_report(const std::filesystem::path& folder) {

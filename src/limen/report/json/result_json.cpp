@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "limen/base/atomic_file.h"
 #include "limen/base/version.h"
 #include "limen/report/json/json_values.h"
 
@@ -228,6 +229,17 @@ std::string transform_text(const Rigid3& target_from_source) {
                         matrix(i, 2) + 0.0, matrix(i, 3) + 0.0);
   }
   return text;
+}
+
+void write_numbers(const std::filesystem::path& folder, const RegistrationReport& report) {
+  const std::string json = result_json(report);
+  if (report.result.outcome == Outcome::no_match) {
+    write_file(folder / "result.json", json);
+    std::filesystem::remove(folder / "transform.txt");
+    return;
+  }
+  const std::string transform = transform_text(report.result.best.target_from_source);
+  write_files({{folder / "transform.txt", transform}, {folder / "result.json", json}});
 }
 
 }  // namespace limen

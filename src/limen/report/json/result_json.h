@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <string>
 #include <utility>
 #include <variant>
@@ -52,5 +53,9 @@ std::string result_json(const RegistrationReport& report);
 
 /// The 4 x 4 matrix as CloudCompare reads it: four lines of four numbers of 17 digits.
 std::string transform_text(const Rigid3& target_from_source);
+
+/// Writes result.json and, but for no_match, transform.txt: both, or none where Error is thrown. A transform
+/// of an earlier run does not outlive a run that found none.
+void write_numbers(const std::filesystem::path& folder, const RegistrationReport& report);
 
 }  // namespace limen
