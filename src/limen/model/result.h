@@ -10,6 +10,7 @@
 
 #include "limen/geometry/rigid.h"
 #include "limen/model/registration_picture.h"
+#include "limen/model/scanner_place.h"
 
 namespace limen {
 
@@ -112,6 +113,8 @@ struct RegistrationResult {
   std::size_t judged_poses = 0;              ///< poses that were refined and judged
   std::optional<OtherExplanations> others;   ///< where poses have probabilities
   std::size_t rivals = 0;                    ///< alternatives that cannot be told from `best`
+  ScannerPlace source_place;                 ///< where the scanner of each side stood, and who says so
+  ScannerPlace target_place;
   std::vector<StageTime> stages;
   std::shared_ptr<const RegistrationPicture> picture;  ///< null unless it was asked for
 };

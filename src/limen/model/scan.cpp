@@ -46,6 +46,7 @@ Scan subset(const Scan& scan, const std::vector<std::uint32_t>& indices) {
   part.name = scan.name;
   part.local_origin = scan.local_origin;
   part.level = scan.level;
+  part.centre_source = scan.centre_source;
   part.points = pick(scan.points, indices);
   part.centres = scan.mobile() ? pick(scan.centres, indices) : scan.centres;
   part.topology.line = pick(scan.topology.line, indices);
@@ -79,19 +80,11 @@ Extent extent_of(const std::vector<Vector3d>& points) {
       });
 }
 
-bool is_near_origin(const Scan& scan) {
+Vector3d origin_near(const Scan& scan) {
   const Extent extent = extent_of(scan.points);
-  return (0.5 * (extent.low + extent.high)).norm() < kFarM;
-}
-
-Scan recentred(Scan scan) {
-  if (is_near_origin(scan)) return scan;
-  const Extent extent = extent_of(scan.points);
-  const Vector3d shift = (0.5 * (extent.low + extent.high)).array().round().matrix();
-  for (Vector3d& x : scan.points) x -= shift;
-  for (Vector3d& x : scan.centres) x -= shift;
-  scan.local_origin += shift;
-  return scan;
+  const Vector3d middle = 0.5 * (extent.low + extent.high);
+  if (middle.norm() < kFarM) return scan.local_origin;
+  return scan.local_origin + middle.array().round().matrix();
 }
 
 }  // namespace limen

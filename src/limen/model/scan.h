@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "limen/geometry/rigid.h"
+#include "limen/model/scanner_place.h"
 
 namespace limen {
 
@@ -29,6 +30,8 @@ struct Scan {
   /// Optical centres, metres, about local_origin. Empty: unknown; one: a static station; one per point:
   /// mobile.
   std::vector<Vector3d> centres;
+  /// Who says so, of a static station; a claim that is tested before it is believed.
+  PlaceSource centre_source = PlaceSource::told_by_file;
   ScanTopology topology;
   std::vector<double> times_s;        ///< per point or empty (GPS time, seconds)
   std::vector<float> intensities;     ///< per point or empty, in the file's unit
@@ -54,10 +57,9 @@ Scan subset(const Scan& scan, const std::vector<std::uint32_t>& indices);
 /// The scan's points and optical centres moved about the local origin, which stays.
 Scan moved(Scan scan, const Rigid3& motion);
 
-/// The same scan about a local origin near its points: unchanged where they lie within 1 km of it already.
-/// Turns about a far origin would amplify the smallest angle.
-bool is_near_origin(const Scan& scan);
-Scan recentred(Scan scan);
+/// A round place near the points, world: the local origin where they lie within 1 km of it. Turns about a far
+/// origin would amplify the smallest angle.
+Vector3d origin_near(const Scan& scan);
 
 /// Axis-aligned extent of the points about local_origin; two zero vectors for an empty scan.
 struct Extent {

@@ -312,7 +312,11 @@ ExtractOptions features_for_registration() {
 }
 
 PrepareOptions prepare_options(const RegisterOptions& options) {
-  return {options.extract, options.gravity, options.method == Method::segments};
+  PrepareOptions preparing;
+  preparing.extract = options.extract;
+  preparing.gravity = options.gravity;
+  preparing.segments = options.method == Method::segments;
+  return preparing;
 }
 
 void RegisterOptions::check() const {

@@ -3,7 +3,6 @@
 #include <utility>
 
 #include "limen/base/error.h"
-#include "limen/match/planes/polygon_distance.h"
 #include "limen/model/plausible_size.h"
 #include "limen/register/prepare/prepare_model.h"
 #include "limen/register/prepare/stage_clock.h"
@@ -12,31 +11,13 @@
 namespace limen {
 namespace {
 
-/// Scans about origins near their points: turns about a far origin would amplify the smallest angle.
-std::vector<PlacedScan> near_origins(const std::vector<PlacedScan>& scans) {
-  std::vector<PlacedScan> near;
-  for (const PlacedScan& placed : scans)
-    near.push_back(
-        {is_near_origin(placed.scan) ? placed.scan : recentred(placed.scan), placed.group_from_scan});
-  return near;
-}
-
-bool all_near(const std::vector<PlacedScan>& scans) {
-  for (const PlacedScan& placed : scans) {
-    if (!is_near_origin(placed.scan)) return false;
-  }
-  return true;
-}
-
 PreparedScan prepare(const RegisterInput& input, const PrepareOptions& options, Monitor& monitor) {
   if (input.model) return prepare_model(*input.model, {}, monitor);
-  if (all_near(input.scans)) return prepare_group(input.scans, options, monitor);
-  return prepare_group(near_origins(input.scans), options, monitor);
+  return prepare_group(input.scans, options, monitor);
 }
 
 PreparedScan prepare(const Scan& scan, const PrepareOptions& options, Monitor& monitor) {
-  return is_near_origin(scan) ? prepare_scan(scan, options, monitor)
-                              : prepare_scan(recentred(scan), options, monitor);
+  return prepare_scan(scan, options, monitor);
 }
 
 PreparedScan prepare(const BimModel& model, const PrepareOptions& /*of scans*/, Monitor& monitor) {
@@ -53,21 +34,11 @@ bool is_model(const BimModel& /*model*/) {
   return true;
 }
 
-/// The features turned back from the upright frame into the scan's own.
 PicturedSide pictured(PreparedScan&& prepared) {
-  const Rigid3 back{prepared.upright_from_scan.transpose(), Vector3d::Zero()};
   PicturedSide side;
-  side.features = std::move(prepared.extracted.features);
-  side.features.samples.clear();
   side.upright = prepared.upright;
-  if (prepared.upright) side.up = back.rotation.col(2);
-  if (back.rotation.isIdentity()) return side;
-  for (PlanarPolygon& polygon : side.features.planes) polygon = transformed(back, polygon);
-  for (Opening& opening : side.features.openings) {
-    for (Vector3d& corner : opening.corners) corner = back * corner;
-    for (Vector3d& corner : opening.outline) corner = back * corner;
-  }
-  for (Segment& segment : side.features.segments) segment = {back * segment.a, back * segment.b};
+  if (prepared.upright) side.up = prepared.upright_from_scan.row(2).transpose();
+  side.features = in_own_frame(std::move(prepared));
   return side;
 }
 
@@ -89,6 +60,8 @@ RegistrationResult prepare_and_register_once(const Source& source, const Target&
   pair.target = prepare(target, prepare_options(options), monitor);
   clock.end();
   RegistrationResult result = register_prepared(pair, options, monitor);
+  result.source_place = pair.source.place;
+  result.target_place = pair.target.place;
   result.stages.insert(result.stages.begin(), stages.begin(), stages.end());
   if (options.picture) {
     result.picture = std::make_shared<const RegistrationPicture>(

@@ -93,14 +93,25 @@ Vector3d search(const std::vector<Tile>& tiles, const Vector3d& up) {
   return candidates[static_cast<std::size_t>(std::min_element(costs.begin(), costs.end()) - costs.begin())];
 }
 
+/// A centre and what the residuals leave open of it.
+struct Settled {
+  Vector3d centre;
+  double sigma_m = 0.0;
+};
+
+/// Neighbouring tiles err alike (speckle, furniture before them, thinning): so many of them are one.
+constexpr double kTilesAlike = 4.0;
+
 /// Gauss-Newton with Cauchy weights over centre and rate, derivatives by differences.
-Vector3d refine(const std::vector<Tile>& tiles, Vector3d centre, const Vector3d& up) {
+Settled refine(const std::vector<Tile>& tiles, Vector3d centre, const Vector3d& up) {
   std::vector<double> residuals(tiles.size());
   for (std::size_t i = 0; i < tiles.size(); ++i)
     residuals[i] = tiles[i].log_density - model(tiles[i], centre, up);
   double rate = median(residuals);
+  double sigma_m = 0.0;
   for (int round = 0; round < 25; ++round) {
-    const double scale = std::max(0.05, misfit(tiles, centre, up, 1));
+    const double spread = misfit(tiles, centre, up, 1);
+    const double scale = std::max(0.05, spread);
     Eigen::Matrix4d normal = Eigen::Matrix4d::Identity() * 1e-6;
     Eigen::Vector4d right = Eigen::Vector4d::Zero();
     for (const Tile& tile : tiles) {
@@ -120,9 +131,25 @@ Vector3d refine(const std::vector<Tile>& tiles, Vector3d centre, const Vector3d&
     if (length > 0.3) step *= 0.3 / length;
     centre += step.head<3>();
     rate += step[3];
+    const Eigen::Matrix4d inverse = normal.inverse();
+    sigma_m = 1.4826 * spread * std::sqrt(kTilesAlike * inverse.diagonal().head<3>().maxCoeff());
     if (length < 1e-4) break;
   }
-  return centre;
+  return {centre, sigma_m};
+}
+
+/// The best of the axes, from one start.
+EstimatedCentre refined_over(const std::vector<Tile>& tiles, const Vector3d& start,
+                             const std::vector<Vector3d>& ups) {
+  EstimatedCentre best;
+  best.misfit = 1e9;
+  for (const Vector3d& up : ups) {
+    const Settled settled = refine(tiles, start, up);
+    if (!settled.centre.allFinite()) continue;
+    const double cost = misfit(tiles, settled.centre, up, 1);
+    if (cost < best.misfit) best = {settled.centre, up, cost, settled.sigma_m};
+  }
+  return best;
 }
 
 /// z, and the normals of the largest planes that are not alike.
@@ -149,20 +176,26 @@ std::optional<EstimatedCentre> estimate_centre(const Features& features) {
   if (tiles.size() < kMinTiles) return std::nullopt;
   const std::vector<Vector3d> ups = possible_ups(features);
   // The coarse place hardly depends on the axis.
-  const Vector3d start = search(tiles, ups.front());
-  EstimatedCentre best;
-  best.misfit = kMaxMisfit;
-  bool found = false;
-  for (const Vector3d& up : ups) {
-    const Vector3d centre = refine(tiles, start, up);
-    if (!centre.allFinite()) continue;
-    const double cost = misfit(tiles, centre, up, 1);
-    if (cost >= best.misfit) continue;
-    best = {centre, up, cost};
-    found = true;
-  }
-  if (!found) return std::nullopt;
+  const EstimatedCentre best = refined_over(tiles, search(tiles, ups.front()), ups);
+  if (best.misfit >= kMaxMisfit) return std::nullopt;
   return best;
+}
+
+std::optional<TestedCentre> test_centre(const Features& features, const Vector3d& claim) {
+  const std::vector<Tile> tiles = full_tiles(features);
+  if (tiles.size() < kMinTiles) return std::nullopt;
+  const std::vector<Vector3d> ups = possible_ups(features);
+  TestedCentre tested;
+  tested.claim_misfit = 1e9;
+  Vector3d axis = Vector3d::UnitZ();
+  for (const Vector3d& up : ups) {
+    const double cost = misfit(tiles, claim, up, 1);
+    if (cost >= tested.claim_misfit) continue;
+    tested.claim_misfit = cost;
+    axis = up;
+  }
+  tested.nearby = refined_over(tiles, claim, {axis});
+  return tested;
 }
 
 }  // namespace limen

@@ -16,6 +16,7 @@
 #include "limen/cli/inputs/model_info.h"
 #include "limen/cli/inputs/scan_options.h"
 #include "limen/io/cloud/read_scan.h"
+#include "limen/register/prepare/scan_frame.h"
 #include "limen/report/json/json_values.h"
 
 namespace limen {
@@ -77,10 +78,18 @@ std::vector<std::string> attributes_of(const Scan& scan) {
   return names;
 }
 
-Json json_of_centre(const Scan& scan) {
-  if (!scan.centre_known()) return "unknown";
-  if (scan.mobile()) return "per point";
-  return json_of(Vector3d(scan.local_origin + scan.centres[0]));
+Json json_of_centre(const ScannerPlace& place) {
+  if (place.source == PlaceSource::unknown || place.source == PlaceSource::per_point)
+    return to_string(place.source);
+  return json_of(place.centre);
+}
+
+/// World.
+ScannerPlace place_of(const Scan& scan) {
+  ScannerPlace place = find_scan_frame(scan, Gravity::automatic).place;
+  place.centre += scan.local_origin;
+  if (place.refuted) *place.refuted += scan.local_origin;
+  return place;
 }
 
 Json json_of_scan(const Scan& scan) {
@@ -91,7 +100,9 @@ Json json_of_scan(const Scan& scan) {
   json["low"] = json_of(Vector3d(scan.local_origin + extent.low));
   json["high"] = json_of(Vector3d(scan.local_origin + extent.high));
   json["local_origin"] = json_of(scan.local_origin);
-  json["optical_centre"] = json_of_centre(scan);
+  const ScannerPlace place = place_of(scan);
+  json["optical_centre"] = json_of_centre(place);
+  json["scanner"] = json_of(place);
   json["scan_lines"] = scan.topology.known() ? Json(line_count(scan.topology)) : Json();
   json["attributes"] = attributes_of(scan);
   if (!scan.times_s.empty()) {
@@ -125,6 +136,20 @@ std::string point_text(const Json& point) {
                      point[2].get<double>());
 }
 
+/// In a user's words how the scanner's place is known.
+std::string who_says(const Json& scanner) {
+  const std::string source = scanner["source"];
+  if (source == "unknown" || source == "per point") return "";
+  const char* const borne_out = scanner["confirmed"].get<bool>() ? ", as the points bear out" : "";
+  if (source == "assumed") return fmt::format(" (assumed{})", borne_out);
+  if (source == "file") return fmt::format(" (told by the file{})", borne_out);
+  if (source == "user") return " (told by the user)";
+  const std::string text =
+      fmt::format(" (estimated from the points, sigma {:.0f} mm", 1e3 * scanner["sigma_m"].get<double>());
+  if (!scanner.contains("refuted")) return text + ")";
+  return text + fmt::format("; it cannot have been {})", point_text(scanner["refuted"]));
+}
+
 std::string scan_text(const Json& scan) {
   const Json& low = scan["low"];
   const Json& high = scan["high"];
@@ -134,8 +159,9 @@ std::string scan_text(const Json& scan) {
   text += fmt::format("size            {:.3f} x {:.3f} x {:.3f} m\n", side(0), side(1), side(2));
   text += fmt::format("density         about {:.0f} points per m2\n", scan["points_per_m2"].get<double>());
   const Json& centre = scan["optical_centre"];
-  text +=
-      fmt::format("optical centre  {}\n", centre.is_array() ? point_text(centre) : centre.get<std::string>());
+  text += fmt::format("optical centre  {}{}\n",
+                      centre.is_array() ? point_text(centre) : centre.get<std::string>(),
+                      who_says(scan["scanner"]));
   text +=
       fmt::format("scan lines      {}\n",
                   scan["scan_lines"].is_null() ? "unknown" : fmt::to_string(scan["scan_lines"].get<int>()));

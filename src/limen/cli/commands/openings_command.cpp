@@ -16,7 +16,6 @@
 #include "limen/cli/inputs/scan_options.h"
 #include "limen/extract/model/model_features.h"
 #include "limen/extract/openings/openings.h"
-#include "limen/match/planes/enumerate_rotations.h"
 #include "limen/report/json/features_json.h"
 
 namespace limen {
@@ -26,32 +25,10 @@ struct OpeningsCommand {
   std::string scan;
   std::string output;
   std::string origin;
-  std::string gravity = "up";
+  std::string gravity = "auto";
   ReadingChoice reading;
   OpeningOptions openings;
 };
-
-/// Openings with the vertical that shows most of them, among the main directions of the scan's planes. Where
-/// two show as many, the one with more level surface; a scanner stands nearer to the floor than to the
-/// ceiling.
-std::vector<Opening> openings_any_way_up(const Scan& scan, const ExtractedFeatures& extracted,
-                                         const OpeningOptions& options, Monitor& monitor) {
-  constexpr double kSameDirectionDeg = 5.0;
-  std::vector<Opening> best;
-  for (const AxisDirection& axis : axis_directions(extracted.features, kSameDirectionDeg)) {
-    std::vector<double> heights;
-    for (const PlanarPolygon& polygon : extracted.features.planes)
-      heights.push_back(axis.direction.dot(polygon.centroid));
-    const auto [low, high] = std::minmax_element(heights.begin(), heights.end());
-    const bool upright = axis.direction.dot(scan.centre(0)) < 0.5 * (*low + *high);
-    const Vector3d up = upright ? axis.direction : Vector3d(-axis.direction);
-    for (const Vector3d& tried : {up, Vector3d(-up)}) {
-      std::vector<Opening> found = find_openings(scan, extracted, tried, options, monitor);
-      if (found.size() > best.size()) best = std::move(found);
-    }
-  }
-  return best;
-}
 
 std::string summary(const std::vector<Opening>& openings, const std::string& output) {
   std::string text = fmt::format("{} openings\n", openings.size());
@@ -88,22 +65,21 @@ int run(const OpeningsCommand& command, const Session& session) {
       with_choice(read_options(command.origin, "--origin", command.gravity), command.reading);
   session.monitor->begin_stage("reading");
   const Scan scan = read_input(command.scan, reading, session);
-  if (!scan.centre_known()) {
-    throw Error("it is not known from where the scan was taken", command.scan,
-                "give the place of the scanner with --origin x,y,z");
-  }
   // Opened before the long work: a place that cannot be written to is told at once.
   AtomicFile file(command.output);
-  session.monitor->begin_stage("planes");
-  ExtractOptions extract;
-  extract.detect.seed = session.common.seed;
-  ExtractedFeatures extracted = extract_features(scan, extract, *session.monitor);
   session.monitor->begin_stage("openings");
-  extracted.features.openings =
-      scan.level ? find_openings(scan, extracted, Vector3d::UnitZ(), command.openings, *session.monitor)
-                 : openings_any_way_up(scan, extracted, command.openings, *session.monitor);
-  const std::string json = openings_json(extracted.features, summarise(command.scan, scan));
-  return deliver(file, json, summary(extracted.features.openings, command.output), session);
+  PrepareOptions preparing;
+  preparing.extract.detect.seed = session.common.seed;
+  preparing.gravity = gravity_of(command.gravity);
+  preparing.openings = command.openings;
+  InputSummary input = summarise(command.scan, scan);
+  const Features features = features_of(scan, preparing, input, session);
+  if (input.place.source == PlaceSource::unknown) {
+    throw Error("it is not known from where the scan was taken, and its points do not show it", command.scan,
+                "give the place of the scanner with --origin x,y,z");
+  }
+  const std::string json = openings_json(features, input);
+  return deliver(file, json, summary(features.openings, command.output), session);
 }
 
 }  // namespace

@@ -16,7 +16,6 @@
 #include "limen/base/error.h"
 #include "limen/bim/read_bim.h"
 #include "limen/cli/inputs/scan_options.h"
-#include "limen/extract/features/extract_features.h"
 #include "limen/extract/model/model_features.h"
 #include "limen/report/json/features_json.h"
 
@@ -27,7 +26,7 @@ struct PlanesOptions {
   std::string scan;
   std::string output;
   std::string origin;
-  std::string gravity = "up";
+  std::string gravity = "auto";
   ReadingChoice reading;
   std::string detector = "auto";
   std::string threshold = "auto";
@@ -100,8 +99,13 @@ int run(PlanesOptions options, const Session& session) {
   session.monitor->begin_stage("planes");
   // Opened before the long work: a place that cannot be written to is told at once.
   AtomicFile file(options.output);
-  const Features features = extract_features(scan, options.extract, *session.monitor).features;
-  const std::string json = features_json(features, summarise(options.scan, scan));
+  PrepareOptions preparing;
+  preparing.extract = options.extract;
+  preparing.gravity = gravity_of(options.gravity);
+  preparing.planes_only = true;
+  InputSummary input = summarise(options.scan, scan);
+  const Features features = features_of(scan, preparing, input, session);
+  const std::string json = features_json(features, input);
   return deliver(file, json, summary(features, options), session);
 }
 

@@ -59,11 +59,6 @@ Method method_of(const std::string& name) {
   return methods.at(name);
 }
 
-Gravity gravity_of(const std::string& name) {
-  if (name == "up") return Gravity::up;
-  return name == "unknown" ? Gravity::unknown : Gravity::automatic;
-}
-
 /// The options of one side: what is said of it alone counts before what is said of both.
 ReadOptions side_options(const RegisterCommandOptions& options, const std::string& own,
                          const std::string& name, ReadingChoice reading) {
@@ -133,6 +128,8 @@ Registered register_files(const RegisterCommandOptions& options, const Session& 
   report.result.stages.insert(report.result.stages.begin(), {"reading", reading.count()});
   report.source = std::move(source.summary);
   report.target = std::move(target.summary);
+  note_place(report.source, report.result.source_place, session);
+  note_place(report.target, report.result.target_place, session);
   report.options = reported(options);
   report.seed = session.common.seed;
   if (report.result.picture)

@@ -19,7 +19,6 @@
 #include "limen/extract/model/sample_model.h"
 #include "limen/extract/segments/segments.h"
 #include "limen/report/json/segments_json.h"
-#include "limen/sight/estimate_centre.h"
 
 namespace limen {
 namespace {
@@ -28,31 +27,35 @@ struct SegmentsCommand {
   std::string scan;
   std::string output;
   std::string origin;
-  std::string gravity = "up";
+  std::string gravity = "auto";
   ReadingChoice reading;
   SegmentOptions segments;
   double sampled_m = 0.0;
 };
 
-/// What the segments of a scan are taken from, and how it is known from where the scan was taken.
+/// Segments, and how it is known from where the scan was taken.
 struct FoundSegments {
   std::vector<Segment> segments;
+  Vector3d local_origin = Vector3d::Zero();
   const char* centre = "known";
 };
 
-FoundSegments segments_of(Scan scan, const SegmentsCommand& command, const Session& session) {
-  session.monitor->begin_stage("planes");
-  ExtractOptions extract;
-  extract.detect.seed = session.common.seed;
-  const ExtractedFeatures extracted = extract_features(scan, extract, *session.monitor);
+FoundSegments segments_of(const Scan& scan, const SegmentsCommand& command, InputSummary& input,
+                          const Session& session) {
   session.monitor->begin_stage("segments");
+  PrepareOptions preparing;
+  preparing.extract.detect.seed = session.common.seed;
+  preparing.gravity = gravity_of(command.gravity);
+  preparing.planes_only = true;
+  preparing.segments = true;
+  preparing.edges = command.segments;
+  Features features = features_of(scan, preparing, input, session);
   FoundSegments found;
-  if (!scan.centre_known()) {
-    const std::optional<EstimatedCentre> estimated = estimate_centre(extracted.features);
-    if (estimated) scan.centres = {estimated->centre};
-    found.centre = estimated ? "estimated" : "unknown: of borders, only those of holes are taken";
-  }
-  found.segments = find_segments(scan, extracted, command.segments, *session.monitor);
+  found.segments = std::move(features.segments);
+  found.local_origin = features.local_origin;
+  if (input.place.source == PlaceSource::estimated) found.centre = "estimated";
+  if (input.place.source == PlaceSource::unknown)
+    found.centre = "unknown: of borders, only those of holes are taken";
   return found;
 }
 
@@ -105,13 +108,12 @@ int run(const SegmentsCommand& command, const Session& session) {
   const ReadOptions reading =
       with_choice(read_options(command.origin, "--origin", command.gravity), command.reading);
   session.monitor->begin_stage("reading");
-  Scan scan = read_input(command.scan, reading, session);
-  const InputSummary input = summarise(command.scan, scan);
-  const Vector3d local_origin = scan.local_origin;
+  const Scan scan = read_input(command.scan, reading, session);
+  InputSummary input = summarise(command.scan, scan);
   // Opened before the long work: a place that cannot be written to is told at once.
   AtomicFile file(command.output);
-  const FoundSegments found = segments_of(std::move(scan), command, session);
-  const std::string json = segments_json(found.segments, local_origin, input);
+  const FoundSegments found = segments_of(scan, command, input, session);
+  const std::string json = segments_json(found.segments, found.local_origin, input);
   return deliver(file, json, summary(found, command.output), session);
 }
 

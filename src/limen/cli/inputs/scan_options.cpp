@@ -126,7 +126,7 @@ void add_feature_options(CommandLine& command, const FeatureOptions& options) {
       .add_option("--origin", options.origin,
                   "From where the scan was taken, in the coordinates of its points, metres")
       ->type_name("x,y,z");
-  add_gravity_option(command, options.gravity);
+  add_gravity_option(command, options.gravity, true);
   add_memory_option(command, options.reading.memory);
   add_trajectory_options(command, options.reading);
 }
@@ -154,6 +154,35 @@ BimModel read_model_input(const std::string& path, const Session& session) {
   BimModel model = read_bim(path, *session.monitor);
   for (const std::string& warning : model.warnings) session.note(fmt::format("{}: {}", path, warning));
   return model;
+}
+
+Gravity gravity_of(const std::string& name) {
+  if (name == "up") return Gravity::up;
+  return name == "unknown" ? Gravity::unknown : Gravity::automatic;
+}
+
+void note_place(InputSummary& summary, const ScannerPlace& place, const Session& session) {
+  if (summary.kind != "scan") return;
+  summary.place = place;
+  if (!place.refuted) return;
+  const Vector3d& said = *place.refuted;
+  const std::string where = fmt::format("{:.3f} {:.3f} {:.3f}", said.x(), said.y(), said.z());
+  if (place.source == PlaceSource::told_by_user) {
+    session.note(
+        fmt::format("{}: the points do not look as if they were seen from {}, which was told; it is kept",
+                    summary.path, where));
+    return;
+  }
+  session.note(
+      fmt::format("{}: the scanner did not stand at {}; by the points it stood at {:.3f} {:.3f} {:.3f}",
+                  summary.path, where, place.centre.x(), place.centre.y(), place.centre.z()));
+}
+
+Features features_of(const Scan& scan, const PrepareOptions& options, InputSummary& summary,
+                     const Session& session) {
+  PreparedScan prepared = prepare_scan(scan, options, *session.monitor);
+  note_place(summary, prepared.place, session);
+  return in_own_frame(std::move(prepared));
 }
 
 int deliver(AtomicFile& file, const std::string& json, const std::string& summary, const Session& session) {

@@ -10,6 +10,8 @@
 #include "limen/cli/terminal/command.h"
 #include "limen/io/cloud/read_scan.h"
 #include "limen/model/bim_model.h"
+#include "limen/register/prepare/prepare_scan.h"
+#include "limen/report/json/result_json.h"
 
 namespace limen {
 
@@ -61,6 +63,18 @@ BimModel read_model_input(const std::string& path, const Session& session);
 
 /// Adds --alternative N: which pose of a result is meant, 0 being its answer.
 void add_alternative_option(CommandLine& command, int& alternative);
+
+/// "up", "unknown", else automatic.
+Gravity gravity_of(const std::string& name);
+
+/// Enters where the scanner of a scan was found to have stood; notes a place that was said and cannot be
+/// right.
+void note_place(InputSummary& summary, const ScannerPlace& place, const Session& session);
+
+/// What is made of a scan for a command that takes features: frame, planes and what `options` ask for; its
+/// place is noted and entered. Everything about the returned features' local origin, in the scan's own frame.
+Features features_of(const Scan& scan, const PrepareOptions& options, InputSummary& summary,
+                     const Session& session);
 
 /// The end of a command that takes features: `json` goes into the file and to who asked for it, `summary` to
 /// a reader. Returns the exit status.

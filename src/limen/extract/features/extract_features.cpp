@@ -162,11 +162,4 @@ ExtractedFeatures extract_features(const Scan& scan, const ExtractOptions& optio
   return extracted;
 }
 
-void add_seen_through(const Scan& scan, const ExtractOptions& options, ExtractedFeatures& extracted,
-                      Monitor& monitor) {
-  add_interior(scan, options, extracted, monitor);
-  Features& features = extracted.features;
-  features.samples = sample_surface(scan, extracted.labels, features.planes, options.samples);
-}
-
 }  // namespace limen

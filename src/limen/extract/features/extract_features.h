@@ -47,9 +47,4 @@ struct ExtractedFeatures {
 ExtractedFeatures extract_features(const Scan& scan, const ExtractOptions& options = {},
                                    Monitor& monitor = silent_monitor());
 
-/// Adds the planes seen through the walls' openings and marks them, then takes the samples anew: for a scan
-/// whose optical centre became known only after extract_features.
-void add_seen_through(const Scan& scan, const ExtractOptions& options, ExtractedFeatures& extracted,
-                      Monitor& monitor = silent_monitor());
-
 }  // namespace limen

@@ -260,6 +260,7 @@ std::string told(const Vector3d& x) {
 std::string settle_centre(Scan& scan, const TableFacts& facts, const ReadOptions& options) {
   if (options.origin) {
     scan.centres = {*options.origin - scan.local_origin};
+    scan.centre_source = PlaceSource::told_by_user;
     return {};
   }
   if (!scan.centres.empty() || options.trajectory) return {};
@@ -272,6 +273,8 @@ std::string settle_centre(Scan& scan, const TableFacts& facts, const ReadOptions
     const Vector3d candidate = facts.offset + *facts.possible_centre - scan.local_origin;
     if (can_be_scanner(scan.points, candidate)) {
       scan.centres = {candidate};
+      // PCD writes 0 0 0 where nobody said anything.
+      if (facts.possible_centre->isZero()) scan.centre_source = PlaceSource::assumed;
       return "the scanner is taken to stand at the view point of the file, " +
              told(candidate + scan.local_origin);
     }
@@ -279,6 +282,7 @@ std::string settle_centre(Scan& scan, const TableFacts& facts, const ReadOptions
   const bool zero_is_near = !facts.has_offset && scan.local_origin.isZero();
   if (zero_is_near && can_be_scanner(scan.points, Vector3d::Zero())) {
     scan.centres = {Vector3d::Zero()};
+    scan.centre_source = PlaceSource::assumed;
     return "the scanner is taken to stand at 0 0 0";
   }
   return "the optical centre is not known: 0 0 0 cannot be the scanner (give it with --origin if you know "

@@ -104,26 +104,21 @@ class Joiner {
   std::vector<JoinedSpace::Member> views_;
 };
 
-/// All parts in one upright frame where one of the scans shows which way is up.
+/// All parts in one frame: that of the first scan that shows which way is up, else that of the first.
 std::vector<PreparedScan> prepare_parts(const std::vector<Scan>& scans, const PrepareOptions& options,
                                         Monitor& monitor) {
+  std::vector<ScanFrame> frames;
+  for (const Scan& scan : scans) frames.push_back(find_scan_frame(scan, options.gravity, monitor));
+  const auto upright =
+      std::find_if(frames.begin(), frames.end(), [](const ScanFrame& it) { return it.upright; });
+  const ScanFrame common = upright == frames.end() ? frames.front() : *upright;
   std::vector<PreparedScan> parts;
-  for (const Scan& scan : scans) {
-    parts.push_back(prepare_scan(scan, options, monitor));
-    if (parts.back().upright) break;
-  }
-  if (!parts.back().upright) return parts;
-  PrepareOptions level = options;
-  level.gravity = Gravity::up;
-  const Matrix3d upright = parts.back().upright_from_scan;
-  const std::size_t known = parts.size() - 1;
-  std::vector<PreparedScan> all;
   for (std::size_t k = 0; k < scans.size(); ++k) {
-    all.push_back(k == known ? std::move(parts.back())
-                             : prepare_scan(moved(scans[k], {upright, Vector3d::Zero()}), level, monitor));
-    all.back().upright_from_scan = upright;
+    ScanFrame frame = common;
+    frame.place = frames[k].place;
+    parts.push_back(prepare_in_frame(scans[k], frame, options, monitor));
   }
-  return all;
+  return parts;
 }
 
 }  // namespace
@@ -134,22 +129,24 @@ PreparedScan prepare_group(const std::vector<PlacedScan>& scans, const PrepareOp
   if (scans.size() == 1 && to_matrix(scans.front().group_from_scan).isIdentity())
     return prepare_scan(scans.front().scan, options, monitor);
   const PlacedScan& first = scans.front();
-  const Vector3d origin = (first.group_from_scan * first.scan.local_origin).array().round();
+  // Near the points: turns about a far origin would amplify the smallest angle.
+  const Vector3d origin = (first.group_from_scan * origin_near(first.scan)).array().round();
   std::vector<Scan> placed;
   for (const PlacedScan& scan : scans) placed.push_back(placed_about(scan, origin));
   std::vector<PreparedScan> parts = prepare_parts(placed, options, monitor);
   PreparedScan group;
   group.upright = parts.front().upright;
   group.upright_from_scan = parts.front().upright_from_scan;
+  group.place = parts.front().place;
+  const Vector3d local_origin = parts.front().extracted.features.local_origin;
   Joiner joiner;
   for (PreparedScan& part : parts) {
     group.mobile = group.mobile || part.mobile;
-    group.centre_estimated = group.centre_estimated || part.centre_estimated;
     group.stations.insert(group.stations.end(), part.stations.begin(), part.stations.end());
     joiner.add(part);
   }
   group.extracted.features = joiner.features();
-  group.extracted.features.local_origin = origin;
+  group.extracted.features.local_origin = local_origin;
   group.space = joiner.space();
   group.settle_reach();
   return group;

@@ -2,94 +2,45 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limen/register/prepare/prepare_scan.h"
 
-#include <cmath>
-#include <optional>
+#include <utility>
 
-#include "limen/base/angles.h"
 #include "limen/base/stage_part.h"
-#include "limen/extract/features/scanner_up.h"
-#include "limen/extract/openings/openings.h"
-#include "limen/extract/segments/segments.h"
-#include "limen/match/planes/enumerate_rotations.h"
-#include "limen/sight/estimate_centre.h"
+#include "limen/match/planes/polygon_distance.h"
 #include "limen/sight/panorama.h"
 #include "limen/sight/voxel_map.h"
 
 namespace limen {
 namespace {
 
-constexpr double kLevelDeg = 1.0;
-constexpr double kNearlyLevelDeg = 3.0;  // a level scanner may be off by this: its own z is as good
-constexpr double kLevelShare = 0.1;      // of the planes' area that must be horizontal
-
-bool looks_level(const Features& features) {
-  double total = 0.0;
-  double horizontal = 0.0;
-  for (const AxisDirection& axis : axis_directions(features, 5.0)) {
-    total += axis.weight_m2;
-    if (std::abs(axis.direction.z()) > std::cos(radians(kLevelDeg))) horizontal += axis.weight_m2;
-  }
-  return horizontal > kLevelShare * total;
-}
-
-/// Turns the normals to the side of `centre`, now that it is known.
-void orient(Features& features, const Vector3d& centre) {
-  for (PlanarPolygon& polygon : features.planes) {
-    polygon.oriented = std::abs(polygon.plane.signed_distance(centre)) > 0.02;
-    if (polygon.plane.signed_distance(centre) < 0) polygon = flipped(polygon);
-  }
-  for (SurfaceSample& sample : features.samples) {
-    if (sample.plane >= 0)
-      sample.normal = features.planes[static_cast<std::size_t>(sample.plane)].plane.normal;
-  }
-}
-
-/// The smallest turn that brings `up` to z; none where it is there already.
-Matrix3d turn_upright(const Vector3d& up) {
-  if (up.z() > std::cos(radians(kNearlyLevelDeg))) return Matrix3d::Identity();
-  return Eigen::Quaterniond::FromTwoVectors(up, Vector3d::UnitZ()).toRotationMatrix();
-}
-
-constexpr double kExtracted = 0.75;  // shares of the work, about, by which progress is told
+constexpr double kFramed = 0.1;  // shares of the work, about, by which progress is told
+constexpr double kExtracted = 0.75;
 constexpr double kSpaceKnown = 0.85;
+constexpr double kReachM = 0.3;  // beyond the samples
 
-/// Everything but the question of the vertical: z points up where `upright`.
-void prepare(const Scan& scan, const ExtractOptions& options, PreparedScan& prepared, Monitor& monitor) {
-  ExtractOptions used = options;
-  used.interior.enabled = options.interior.enabled && (prepared.upright || scan.mobile());
-  StagePart extracting(monitor, 0.0, kExtracted);
-  prepared.extracted = extract_features(scan, used, extracting);
-}
-
-/// The optical centre, the view of space, what is seen through openings, the openings, and the segments.
-void look_around(const Scan& scan, const PrepareOptions& options, PreparedScan& prepared, Monitor& monitor) {
+/// The view of space, the openings, and the segments of a scan in its frame.
+void look_around(const Scan& laid, const PrepareOptions& options, PreparedScan& prepared, Monitor& monitor) {
   Features& features = prepared.extracted.features;
-  Scan placed;
-  const Scan* seen = &scan;
-  if (!scan.centre_known()) {
-    if (const std::optional<EstimatedCentre> estimated = estimate_centre(features)) {
-      prepared.centre_estimated = true;
-      orient(features, estimated->centre);
-      placed = scan;
-      placed.centres = {estimated->centre};
-      seen = &placed;
-      if (prepared.upright) add_seen_through(placed, options.extract, prepared.extracted, monitor);
-    }
-  }
-  if (seen->centres.size() == 1) {
-    prepared.space = std::make_unique<Panorama>(*seen, prepared.extracted.labels, features, seen->centre(0));
-    prepared.stations = seen->centres;
+  if (laid.centres.size() == 1) prepared.stations = laid.centres;
+  if (options.planes_only) {
+    // No look at space.
+  } else if (laid.centres.size() == 1) {
+    prepared.space = std::make_unique<Panorama>(laid, prepared.extracted.labels, features, laid.centre(0));
   } else {
-    prepared.space = std::make_unique<VoxelMap>(*seen, features);
+    prepared.space = std::make_unique<VoxelMap>(laid, features);
   }
   monitor.advance(kSpaceKnown, 1.0);
-  if (prepared.upright && seen->centre_known())
-    features.openings = find_openings(*seen, prepared.extracted, Vector3d::UnitZ(), {}, monitor);
-  if (options.segments) features.segments = find_segments(*seen, prepared.extracted, {}, monitor);
+  if (!options.planes_only && prepared.upright && laid.centre_known())
+    features.openings = find_openings(laid, prepared.extracted, Vector3d::UnitZ(), options.openings, monitor);
+  if (options.segments) features.segments = find_segments(laid, prepared.extracted, options.edges, monitor);
   prepared.settle_reach();
 }
 
-constexpr double kReachM = 0.3;  // beyond the samples
+ScannerPlace in_world(ScannerPlace place, const Vector3d& local_origin) {
+  if (place.source != PlaceSource::unknown && place.source != PlaceSource::per_point)
+    place.centre += local_origin;
+  if (place.refuted) *place.refuted += local_origin;
+  return place;
+}
 
 }  // namespace
 
@@ -101,36 +52,41 @@ void PreparedScan::settle_reach() {
   if (model) runs = SampleRuns(extracted.features.samples);
 }
 
-PreparedScan prepare_scan(const Scan& scan, const PrepareOptions& options, Monitor& monitor) {
+PreparedScan prepare_in_frame(const Scan& scan, const ScanFrame& frame, const PrepareOptions& options,
+                              Monitor& monitor) {
   const CancelScope scope(monitor);
   PreparedScan prepared;
-  prepared.upright = options.gravity == Gravity::up;
+  prepared.upright = frame.upright;
+  prepared.upright_from_scan = frame.frame_from_scan;
+  prepared.place = in_world(frame.place, scan.local_origin);
   prepared.mobile = scan.mobile();
-  if (options.gravity != Gravity::unknown) {
-    prepare(scan, options.extract, prepared, monitor);
-    if (!prepared.upright && looks_level(prepared.extracted.features)) {
-      prepared.upright = true;
-      if (scan.centres.size() == 1) add_seen_through(scan, options.extract, prepared.extracted, monitor);
-    }
-    if (prepared.upright) {
-      look_around(scan, options, prepared, monitor);
-      return prepared;
-    }
+  const Scan laid = laid_in(scan, frame);
+  ExtractOptions extract = options.extract;
+  extract.interior.enabled = extract.interior.enabled && (prepared.upright || prepared.mobile);
+  {
+    StagePart extracting(monitor, kFramed, kExtracted);
+    prepared.extracted = extract_features(laid, extract, extracting);
   }
-  const std::optional<Vector3d> up = find_scanner_up(scan, monitor);
-  if (up) {
-    prepared.upright = true;
-    prepared.upright_from_scan = turn_upright(*up);
-    if (!prepared.upright_from_scan.isIdentity()) {
-      const Scan copy = moved(scan, {prepared.upright_from_scan, Vector3d::Zero()});
-      prepare(copy, options.extract, prepared, monitor);
-      look_around(copy, options, prepared, monitor);
-      return prepared;
-    }
-  }
-  if (up || options.gravity == Gravity::unknown) prepare(scan, options.extract, prepared, monitor);
-  look_around(scan, options, prepared, monitor);
+  look_around(laid, options, prepared, monitor);
   return prepared;
+}
+
+PreparedScan prepare_scan(const Scan& scan, const PrepareOptions& options, Monitor& monitor) {
+  return prepare_in_frame(scan, find_scan_frame(scan, options.gravity, monitor), options, monitor);
+}
+
+Features in_own_frame(PreparedScan&& prepared) {
+  const Rigid3 back{prepared.upright_from_scan.transpose(), Vector3d::Zero()};
+  Features features = std::move(prepared.extracted.features);
+  features.samples.clear();
+  if (back.rotation.isIdentity()) return features;
+  for (PlanarPolygon& polygon : features.planes) polygon = transformed(back, polygon);
+  for (Opening& opening : features.openings) {
+    for (Vector3d& corner : opening.corners) corner = back * corner;
+    for (Vector3d& corner : opening.outline) corner = back * corner;
+  }
+  for (Segment& segment : features.segments) segment = {back * segment.a, back * segment.b};
+  return features;
 }
 
 }  // namespace limen

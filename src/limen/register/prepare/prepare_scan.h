@@ -7,19 +7,22 @@
 
 #include "limen/base/progress.h"
 #include "limen/extract/features/extract_features.h"
+#include "limen/extract/openings/openings.h"
+#include "limen/extract/segments/segments.h"
 #include "limen/model/bim_model.h"
 #include "limen/model/method.h"
+#include "limen/register/prepare/scan_frame.h"
 #include "limen/register/prepare/scan_view.h"
 
 namespace limen {
 
-/// A scan made ready for registration: features, labels, and its view of space, all in a frame that is turned
-/// upright about the scan's local origin where the scan's own is not.
+/// A scan made ready for registration: features, labels, and its view of space, all in the frame that its
+/// data fix (scan_frame.h): turned by `upright_from_scan` about `extracted.features.local_origin`.
 struct PreparedScan {
-  ExtractedFeatures extracted;
+  ExtractedFeatures extracted;  ///< labels and samples: of the points in the frame's own order
   Matrix3d upright_from_scan = Matrix3d::Identity();
   std::unique_ptr<SpaceView> space;  ///< a panorama for a static station, else a map of cubes
-  bool centre_estimated = false;     ///< the scan did not say where the scanner was
+  ScannerPlace place;                ///< where the (first) scanner stood, world
   bool mobile = false;               ///< seen from many places along a path
   bool upright = false;              ///< z of the prepared frame points up
   bool model = false;                ///< a building model instead of a scan
@@ -42,12 +45,21 @@ struct PreparedScan {
 struct PrepareOptions {
   ExtractOptions extract;
   Gravity gravity = Gravity::automatic;
-  bool segments = false;  ///< line segments as well
+  bool planes_only = false;  ///< neither openings nor a view of space
+  bool segments = false;     ///< line segments as well
+  OpeningOptions openings;   ///< which openings are looked for
+  SegmentOptions edges;      ///< which segments are
 };
 
-/// Features of `scan`, openings included where the vertical and the optical centre are known; the centre is
-/// estimated where the scan does not say.
+/// Features of `scan` in its frame, openings included where the vertical and the scanner's place are known.
 PreparedScan prepare_scan(const Scan& scan, const PrepareOptions& options = {},
                           Monitor& monitor = silent_monitor());
+
+/// The same in a frame that is known already.
+PreparedScan prepare_in_frame(const Scan& scan, const ScanFrame& frame, const PrepareOptions& options = {},
+                              Monitor& monitor = silent_monitor());
+
+/// The features turned back into the scan's own frame, about the same local origin; samples are left out.
+Features in_own_frame(PreparedScan&& prepared);
 
 }  // namespace limen

@@ -61,6 +61,7 @@ Json opening_json(const Opening& opening, const Vector3d& local_origin) {
 Json json_of_features(const Features& features, const InputSummary& input) {
   Json json;
   json["input"] = {{"path", input.path}, {"points", input.points}, {"centre_known", input.centre_known}};
+  if (input.kind == "scan") json["input"]["scanner"] = json_of(input.place);
   json["inlier_threshold_m"] = features.inlier_threshold_m;
   json["noise_m"] = features.noise_m;
   json["planes"] = Json::array();

@@ -62,6 +62,17 @@ Json json_of(const Matrix4d& matrix) {
   return rows;
 }
 
+Json json_of(const ScannerPlace& place) {
+  Json json = {{"source", to_string(place.source)}};
+  if (place.source != PlaceSource::unknown && place.source != PlaceSource::per_point) {
+    json["place"] = json_of(place.centre);
+    json["confirmed"] = place.confirmed;
+  }
+  if (place.sigma_m) json["sigma_m"] = *place.sigma_m;
+  if (place.refuted) json["refuted"] = json_of(*place.refuted);
+  return json;
+}
+
 std::string to_text(const Json& value) {
   std::string text;
   append_indented(text, value, 0);

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "limen/geometry/rigid.h"
+#include "limen/model/scanner_place.h"
 
 namespace limen {
 
@@ -17,6 +18,8 @@ using Json = nlohmann::ordered_json;
 Json json_of(const Vector3d& vector);
 /// Four rows of four numbers.
 Json json_of(const Matrix4d& matrix);
+/// Where a scanner stood and how that is known: `source` always, the rest where it means something.
+Json json_of(const ScannerPlace& place);
 
 /// JSON text for readers and programs: two spaces per level, arrays of plain values on one line, the shortest
 /// digits that give back every double bit for bit, a line end last. Numbers that are not finite become null.

@@ -125,6 +125,7 @@ Json input_json(const InputSummary& input) {
   if (input.kind != "scan") return json;
   json["centre_known"] = input.centre_known;
   json["mobile"] = input.mobile;
+  json["scanner"] = json_of(input.place);
   return json;
 }
 
@@ -172,6 +173,8 @@ InputSummary summarise(const std::string& path, const Scan& scan) {
   summary.high = scan.local_origin + extent.high;
   summary.middle = scan.local_origin + middle_of(scan.points);
   summary.centre_known = scan.centre_known();
+  if (scan.centre_known()) summary.place.source = scan.mobile() ? PlaceSource::per_point : scan.centre_source;
+  if (scan.centres.size() == 1) summary.place.centre = scan.local_origin + scan.centres.front();
   summary.mobile = scan.mobile();
   return summary;
 }

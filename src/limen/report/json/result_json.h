@@ -14,6 +14,7 @@
 #include "limen/model/features.h"
 #include "limen/model/result.h"
 #include "limen/model/scan.h"
+#include "limen/model/scanner_place.h"
 
 namespace limen {
 
@@ -30,6 +31,7 @@ struct InputSummary {
   Vector3d middle = Vector3d::Zero();  ///< of the central 90 % along each axis: where errors are measured
   bool centre_known = false;           ///< it is known from where the points were seen
   bool mobile = false;                 ///< the scanner moved
+  ScannerPlace place;                  ///< of a scan: where the scanner stood, and how that is known
 };
 InputSummary summarise(const std::string& path, const Scan& scan);
 InputSummary summarise(const std::string& path, const BimModel& model);

@@ -11,6 +11,7 @@ std::string segments_json(const std::vector<Segment>& segments, const Vector3d& 
                           const InputSummary& input) {
   Json json;
   json["input"] = {{"path", input.path}, {"points", input.points}, {"centre_known", input.centre_known}};
+  if (input.kind == "scan") json["input"]["scanner"] = json_of(input.place);
   json["segments"] = Json::array();
   for (const Segment& segment : segments) {
     Json ends;

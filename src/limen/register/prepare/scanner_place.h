@@ -1,0 +1,26 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "limen/model/scan.h"
+#include "limen/register/prepare/frame_planes.h"
+
+namespace limen {
+
+/// Where the scanner of `scan` stood, about its local origin: what is claimed is tested and kept, or replaced
+/// by what the data show, or unknown. `sample`: an even share of the scan's points with its claim; `planes`:
+/// its large planes.
+///
+/// The data speak by the density of the points on planes (sight/estimate_centre.h), and a place that many
+/// seen surfaces hide from what else was seen cannot be the scanner's. A place is only refuted by a better
+/// one.
+ScannerPlace find_scanner_place(const Scan& scan, const std::vector<FramePlane>& planes,
+                                const Matrix3d& axes);
+
+/// A place that the data told, told again with better planes; any other place as it is.
+ScannerPlace refined_place(const ScannerPlace& place, const Scan& scan, const std::vector<FramePlane>& planes,
+                           const Matrix3d& axes);
+
+}  // namespace limen
