@@ -161,6 +161,7 @@ int run(SimulateOptions& options, const Session& session) {
   if (options.project) return run_project(options, session);
   options.scene.seed = session.common.seed;
   options.scene.drift_m = std::max(0.0, options.scene.drift_m);
+  if (options.styles) throw Error("--styles is for whole buildings only", "limen simulate", "add --project");
   if (options.passes >= 0)
     throw Error("--passes is for whole buildings only", "limen simulate", "add --project");
   const bool model = means_model(options.scene.name);
