@@ -40,6 +40,7 @@ struct Pair {
   std::size_t facades = 0;
   PreparedPair prepared = {};
   double preparing_s = 0.0;
+  bool with_segments = false;  ///< `prepared` is
 
   [[nodiscard]] const Scan& station() const { return made.scans.front(); }
   [[nodiscard]] const Scan& street() const { return made.scans.back(); }
@@ -55,9 +56,13 @@ Pair make_pair(PairPlan plan) {
   }
 }
 
-/// Features are taken once for all methods; their time counts for each.
-void prepare(Pair& pair) {
-  const RegisterOptions options;
+/// Features are taken once for all methods that need the same; their time counts for each.
+void prepare(Pair& pair, const std::string& method) {
+  RegisterOptions options;
+  options.method = method_of(method);
+  const bool segments = options.method == Method::segments;
+  if (pair.prepared.source.space && segments == pair.with_segments) return;
+  pair.with_segments = segments;
   const auto start = std::chrono::steady_clock::now();
   pair.prepared.source = prepare_scan(pair.station(), prepare_options(options));
   pair.prepared.target = prepare_scan(pair.street(), prepare_options(options));
@@ -170,8 +175,8 @@ int run_all(const Request& request) {
   print_header();
   for (const PairPlan& plan : plan_pairs(kKinds, request.selection)) {
     Pair pair = make_pair(plan);
-    prepare(pair);
     for (const std::string& method : methods) {
+      prepare(pair, method);
       rows.push_back(run(pair, method));
       print(rows.back());
     }

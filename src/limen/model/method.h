@@ -6,13 +6,27 @@ namespace limen {
 
 /// What poses are proposed from.
 enum class Method {
-  automatic,  ///< all there is
+  automatic,  ///< planes and openings; segments where a model's planes propose no place
   polygons,   ///< planar polygons (2021)
   openings,   ///< openings (2022)
   hybrid,     ///< openings, and planes for the shift across the wall (2023, III)
   segments    ///< line segments (2023, IV)
 };
 const char* to_string(Method method);
+
+/// The papers' own methods, run as they are published.
+enum class PublishedMethod {
+  threshold_2021,  ///< polygons within thresholds at the start (2021, 3.2.1)
+  cluster_2021,    ///< polygons clustered by direction and offset (2021, 3.2.2)
+  openings_2022,   ///< edges of openings (2022, 3)
+  hybrid_2023,     ///< corners of openings and planes across their wall (2023, III)
+  segments_2023    ///< line segments (2023, IV)
+};
+inline constexpr PublishedMethod kPublishedMethods[] = {
+    PublishedMethod::threshold_2021, PublishedMethod::cluster_2021, PublishedMethod::openings_2022,
+    PublishedMethod::hybrid_2023, PublishedMethod::segments_2023};
+/// "2021-threshold", "2021-cluster", "2022", "2023-hybrid", "2023-segments".
+const char* to_string(PublishedMethod method);
 
 /// What is known of the vertical.
 enum class Gravity {

@@ -6,11 +6,13 @@
 
 namespace limen {
 
-/// A pose proposed by matching planes, in the scans' local frames.
+/// A pose proposed by matching features, in the scans' local frames.
 struct PoseCandidate {
   Rigid3 target_from_source;
-  double support_m2 = 0.0;    ///< overlap of the planes that agree, from their bounding rectangles
-  int free_translations = 0;  ///< shifts that no pair of planes fixed (0 to 3)
+  /// By what its proposer puts it before others of the same list, higher first. No measure: poses of
+  /// different proposers are not compared by it, they are scored.
+  double precedence = 0.0;
+  int free_translations = 0;  ///< shifts that no pair of features fixed (0 to 3)
 };
 
 }  // namespace limen

@@ -75,6 +75,7 @@ struct MatchedOpenings {
   int target = -1;              ///< index into the target's openings
   double shift_across_m = 0.0;  ///< of the target's rectangle against the source's, within the wall
   double shift_up_m = 0.0;
+  bool by_outline = false;  ///< both scans saw it arched or round, of one shape
 };
 
 /// The thickness of a wall that one scan saw from inside and the other from outside.
@@ -100,11 +101,20 @@ struct OtherExplanations {
   double unlisted_pose = 0.0;   ///< they share a place, under a pose that was not proposed
 };
 
+/// What a published method says of its own pose.
+struct PublishedScore {
+  std::string method;  ///< "2021-cluster"
+  double value = 0.0;  ///< what the method chose its pose by
+  std::string unit;    ///< of `value`: "m2" or "m3"
+  bool lower_is_better = false;
+  std::size_t hypotheses = 0;  ///< poses that it compared
+};
+
 struct RegistrationResult {
   Outcome outcome = Outcome::no_match;
   std::string reason;  ///< one sentence for a user: why this verdict
   Hypothesis best;     ///< meaningless for no_match
-  PoseSigma sigma;     ///< of `best`
+  PoseSigma sigma;     ///< of `best`; not told by a published method
   std::vector<UnobservedFreedom> unobserved;
   std::vector<Hypothesis> alternatives;  ///< different poses, best first, without `best`
   std::vector<PlaneMatch> matches;
@@ -116,6 +126,7 @@ struct RegistrationResult {
   ScannerPlace source_place;                 ///< where the scanner of each side stood, and who says so
   ScannerPlace target_place;
   std::vector<StageTime> stages;
+  std::optional<PublishedScore> published;  ///< set where a published method was asked for and found a pose
   std::shared_ptr<const RegistrationPicture> picture;  ///< null unless it was asked for
 };
 

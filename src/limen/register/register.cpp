@@ -16,6 +16,7 @@
 #include "limen/register/prepare/stage_clock.h"
 #include "limen/register/propose/propose.h"
 #include "limen/register/propose/select_poses.h"
+#include "limen/register/published/register_published.h"
 #include "limen/register/refine/measure_thickness.h"
 
 namespace limen {
@@ -47,7 +48,7 @@ JudgedPose in_own_frames(const JudgedPose& upright, const PreparedScan& source, 
 std::vector<MatchedOpenings> matched_openings(const RefinedPose& pose) {
   std::vector<MatchedOpenings> list;
   for (const OpeningMatch& match : pose.openings)
-    list.push_back({match.source, match.target, match.shift_across_m, match.shift_up_m});
+    list.push_back({match.source, match.target, match.shift_across_m, match.shift_up_m, match.by_outline});
   return list;
 }
 
@@ -312,8 +313,11 @@ ExtractOptions features_for_registration() {
 }
 
 PrepareOptions prepare_options(const RegisterOptions& options) {
+  if (options.as_published)
+    return published_preparation(*options.as_published, options.gravity, options.seed);
   PrepareOptions preparing;
   preparing.extract = options.extract;
+  preparing.extract.detect.seed = options.seed;
   preparing.gravity = options.gravity;
   preparing.segments = options.method == Method::segments;
   return preparing;
@@ -333,6 +337,9 @@ void RegisterOptions::check() const {
 RegistrationResult register_prepared(const PreparedPair& pair, const RegisterOptions& options,
                                      Monitor& monitor) {
   options.check();
+  if (options.as_published)
+    return register_as_published(pair, {*options.as_published, options.wall_thickness_m, options.seed},
+                                 monitor);
   const PreparedScan& from = pair.source;
   const PreparedScan& to = pair.target;
   RegistrationResult result;

@@ -12,6 +12,7 @@
 #include "limen/model/result.h"
 #include "limen/register/judge/verdict.h"
 #include "limen/register/prepare/prepare_group.h"
+#include "limen/register/prepare/prepared_pair.h"
 #include "limen/register/propose/propose.h"
 #include "limen/register/refine/refine_pose.h"
 
@@ -23,9 +24,10 @@ ExtractOptions features_for_registration();
 
 struct RegisterOptions {
   Method method = Method::automatic;
+  std::optional<PublishedMethod> as_published = {};  ///< this paper's own method instead (published/)
   Gravity gravity = Gravity::automatic;
   double wall_thickness_m = 0.0;  ///< of the outer walls, as the user knows it; 0: not known
-  std::uint64_t seed = 1;
+  std::uint64_t seed = 1;         ///< of what is drawn: by msac, scan_lines, and published methods
   ExtractOptions extract = features_for_registration();
   PoseEnumerationOptions enumerate;
   RefineOptions refine;
@@ -39,12 +41,6 @@ struct RegisterOptions {
 
 /// How the scans of a pair are to be prepared.
 PrepareOptions prepare_options(const RegisterOptions& options);
-
-/// Two scans made ready with `prepare_options`, or one and a model, either way round.
-struct PreparedPair {
-  PreparedScan source;
-  PreparedScan target;
-};
 
 /// The part behind the door: everything but the features, so that a scan is prepared once for many partners
 /// or methods.

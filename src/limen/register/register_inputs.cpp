@@ -3,25 +3,29 @@
 #include <utility>
 
 #include "limen/base/error.h"
+#include "limen/extract/model/sample_model.h"
 #include "limen/model/plausible_size.h"
 #include "limen/register/prepare/prepare_model.h"
 #include "limen/register/prepare/stage_clock.h"
+#include "limen/register/published/register_published.h"
 #include "limen/register/register.h"
 
 namespace limen {
 namespace {
 
+PreparedScan prepare(const BimModel& model, const PrepareOptions& options, Monitor& monitor) {
+  PreparedScan prepared = prepare_model(model, {}, monitor);
+  if (options.sampled_model) prepared.extracted.features.segments = sampled_model_segments(model);
+  return prepared;
+}
+
 PreparedScan prepare(const RegisterInput& input, const PrepareOptions& options, Monitor& monitor) {
-  if (input.model) return prepare_model(*input.model, {}, monitor);
+  if (input.model) return prepare(*input.model, options, monitor);
   return prepare_group(input.scans, options, monitor);
 }
 
 PreparedScan prepare(const Scan& scan, const PrepareOptions& options, Monitor& monitor) {
   return prepare_scan(scan, options, monitor);
-}
-
-PreparedScan prepare(const BimModel& model, const PrepareOptions& /*of scans*/, Monitor& monitor) {
-  return prepare_model(model, {}, monitor);
 }
 
 bool is_model(const RegisterInput& input) {
@@ -77,8 +81,12 @@ RegistrationResult prepare_and_register(const Source& source, const Target& targ
   require_plausible_size(source);
   require_plausible_size(target);
   const CancelScope scope(monitor);
-  RegistrationResult result = prepare_and_register_once(source, target, options, monitor);
   const bool in_model = is_model(source) || is_model(target);
+  if (options.as_published) {
+    check_sides(*options.as_published, in_model);
+    return prepare_and_register_once(source, target, options, monitor);
+  }
+  RegistrationResult result = prepare_and_register_once(source, target, options, monitor);
   if (!in_model || options.method != Method::automatic || result.judged_poses > 0) return result;
   RegisterOptions by_edges = options;
   by_edges.method = Method::segments;

@@ -76,7 +76,7 @@ class SegmentRegistration {
     enumerating.gravity_known = options_.gravity == Gravity::up;
     candidates_ = enumerate_segment_poses(moved_, fixed_, enumerating);
     const auto worst = std::find_if(candidates_.begin(), candidates_.end(), [&](const PoseCandidate& c) {
-      return c.support_m2 < 0.5 * candidates_.front().support_m2;
+      return c.precedence < 0.5 * candidates_.front().precedence;
     });
     candidates_.erase(worst, candidates_.end());
     if (candidates_.size() > static_cast<std::size_t>(options_.refined_poses))

@@ -30,6 +30,7 @@ struct RegisterCommandOptions {
   std::string target;
   std::string folder;
   std::string method = "auto";
+  std::string as_published;
   std::string gravity = "auto";
   std::string origin;
   std::string source_origin;
@@ -59,6 +60,18 @@ Method method_of(const std::string& name) {
   return methods.at(name);
 }
 
+std::optional<PublishedMethod> published_of(const std::string& name) {
+  for (const PublishedMethod method : kPublishedMethods)
+    if (name == to_string(method)) return method;
+  return std::nullopt;
+}
+
+std::vector<std::string> published_names() {
+  std::vector<std::string> names;
+  for (const PublishedMethod method : kPublishedMethods) names.emplace_back(to_string(method));
+  return names;
+}
+
 /// The options of one side: what is said of it alone counts before what is said of both.
 ReadOptions side_options(const RegisterCommandOptions& options, const std::string& own,
                          const std::string& name, ReadingChoice reading) {
@@ -76,6 +89,7 @@ std::string spaced(const std::vector<std::string>& words) {
 
 OptionList reported(const RegisterCommandOptions& options) {
   OptionList list = {{"method", options.method}, {"gravity", options.gravity}};
+  if (!options.as_published.empty()) list.emplace_back("as_published", options.as_published);
   if (!options.origin.empty()) list.emplace_back("origin", options.origin);
   if (!options.source_origin.empty()) list.emplace_back("source_origin", options.source_origin);
   if (!options.target_origin.empty()) list.emplace_back("target_origin", options.target_origin);
@@ -95,6 +109,10 @@ OptionList reported(const RegisterCommandOptions& options) {
 bool takes_segments(const RegisterCommandOptions& options) {
   if (options.method != "segments" && options.method != "auto") return false;
   if (!are_segment_files(options.source, options.target)) return false;
+  if (!options.as_published.empty()) {
+    throw Error("published methods register scans, not lists of segments", "--as-published",
+                "leave the option out, or give scans as SOURCE and TARGET");
+  }
   if (options.source_with.empty() && options.target_with.empty()) return true;
   throw Error("two lists of segments are registered as they are, without further scans",
               options.source_with.empty() ? "--target-with" : "--source-with",
@@ -118,6 +136,7 @@ Registered register_files(const RegisterCommandOptions& options, const Session& 
   RegisterOptions registering;
   registering.gravity = gravity_of(options.gravity);
   registering.method = method_of(options.method);
+  registering.as_published = published_of(options.as_published);
   registering.wall_thickness_m = options.wall_thickness_m;
   registering.verdict = verdict;
   registering.seed = session.common.seed;
@@ -168,7 +187,7 @@ std::string pose_summary(const RegistrationReport& report) {
       fmt::format("rotation    {:.4f} deg\n", degrees(rotation_angle(best.target_from_source.rotation)));
   text += fmt::format("translation {:.4f} {:.4f} {:.4f} m\n", t.x(), t.y(), t.z());
   // Where a freedom is open its sigma is a large number that tells a reader nothing.
-  if (report.result.unobserved.empty()) {
+  if (report.result.unobserved.empty() && !report.result.published) {
     text += fmt::format("sigma       {:.5f} deg, {:.2f} mm (the largest of three)\n",
                         degrees(sigma.rotation_rad.maxCoeff()), 1e3 * sigma.translation_m.maxCoeff());
   }
@@ -210,6 +229,10 @@ int status_of(Outcome outcome) {
 }
 
 int run(const RegisterCommandOptions& options, const Session& session) {
+  if (!options.as_published.empty() && options.method != "auto") {
+    throw Error("--as-published and --method both choose a method", "--as-published " + options.as_published,
+                "give one of them");
+  }
   const bool segments = takes_segments(options);
   const OutputFolder folder(options.folder);
   const Registered registered =
@@ -268,6 +291,10 @@ void add_register_command(CommandLine& app, Session& session) {
       ->add_option("--method", options->method,
                    "What to match: auto (default), polygons, openings, hybrid (both), or segments")
       ->one_of({"auto", "polygons", "openings", "hybrid", "segments"});
+  command
+      ->add_option("--as-published", options->as_published,
+                   "Run a paper's own method instead, for comparison: one pose and no verdict, status 3")
+      ->one_of(published_names());
   add_length_option(*command, "--wall-thickness-m,--wall-thickness", options->wall_thickness_m,
                     "Thickness of the outer walls where it is known; else it is measured, or named as open");
   command

@@ -42,6 +42,8 @@ double threshold_for(const Scan& scan, ThresholdRule rule, const GrowOptions& gr
     return std::max(kMobileThresholdM, automatic_threshold(scan, grow, by_noise, monitor));
   }
   if (rule == ThresholdRule::a_contrario) return a_contrario_threshold(scan, grow, {}, monitor);
+  if (rule == ThresholdRule::published)
+    return a_contrario_threshold(scan, grow, {.criterion = ThresholdCriterion::published}, monitor);
   return 0.0;
 }
 
@@ -79,8 +81,10 @@ PlaneDetector detector_for(const Scan& /*scan*/) {
 DetectedPlanes detect_planes(const Scan& scan, const DetectOptions& options, const GrowOptions& grow,
                              Monitor& monitor) {
   grow.check();
-  const PlaneDetector detector =
-      options.detector == PlaneDetector::automatic ? detector_for(scan) : options.detector;
+  PlaneDetector detector = options.detector;
+  if (detector == PlaneDetector::automatic) detector = detector_for(scan);
+  if (detector == PlaneDetector::published)
+    detector = scan.topology.known() ? PlaneDetector::scan_lines : PlaneDetector::msac;
   if (scan.size() == 0) return {};
   GrowOptions used = grow;
   constexpr double kThresholdShare = 0.4;  // of the work, about

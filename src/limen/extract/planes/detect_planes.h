@@ -15,15 +15,17 @@ enum class PlaneDetector {
   automatic,   ///< the one that measured best: see detector_for
   grow,        ///< cubes, coarse to fine: needs nothing but points (grow_planes.h)
   scan_lines,  ///< 2021, section 2.1: needs the scan's lines (topology_planes.h)
-  msac         ///< 2021, section 2.2: the published baseline, slow (msac_planes.h)
+  msac,        ///< 2021, section 2.2: the published baseline, slow (msac_planes.h)
+  published    ///< 2021, section 2: scan_lines where the scan's lines are known, else msac
 };
 
 /// Where the inlier threshold comes from when GrowOptions::inlier_threshold_m is 0.
 enum class ThresholdRule {
-  automatic,   ///< a contrario among multiples of what the noise asks for (automatic_threshold.h); mobile
-               ///< scans: what the noise asks for, at least 25 mm
-  noise,       ///< the detector's own: 3.3 times the noise it finds
-  a_contrario  ///< 2021, 3.1.1: among 5, 10, 15, 20, 30 and 50 mm, whatever the noise
+  automatic,    ///< a contrario among multiples of what the noise asks for (automatic_threshold.h); mobile
+                ///< scans: what the noise asks for, at least 25 mm
+  noise,        ///< the detector's own: 3.3 times the noise it finds
+  a_contrario,  ///< 2021, 3.1.1: among 5, 10, 15, 20, 30 and 50 mm, whatever the noise
+  published     ///< the same by equations 3 to 6 as they are printed (threshold.h)
 };
 
 struct DetectOptions {
@@ -35,7 +37,7 @@ struct DetectOptions {
 struct DetectedPlanes {
   PlaneLabels planes;
   double noise_m = 0.0;                          ///< root mean square distance of the inliers to their planes
-  PlaneDetector detector = PlaneDetector::grow;  ///< the detector used; never automatic
+  PlaneDetector detector = PlaneDetector::grow;  ///< the detector used; never automatic or published
 };
 
 /// The detector that `automatic` stands for: grow for every scan so far. Where the scan's lines are known

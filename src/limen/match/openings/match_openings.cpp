@@ -5,9 +5,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <optional>
 
 #include <Eigen/LU>
+
+#include "limen/match/openings/outline_fit.h"
 
 namespace limen {
 namespace {
@@ -17,6 +20,7 @@ constexpr double kFloorSigmaM = 0.003;  // real edges are not straighter than th
 constexpr double kSillSigmaM = 0.008;   // sills slope
 constexpr double kSplaySigmaM = 0.05;   // how much wider an opening may be on one side of the wall, each way
 constexpr double kNothing = 1e3;        // deviation of what is not known
+constexpr double kOtherShapeM = 0.045;  // outlines that differ by more on average are not of one opening
 
 /// A rectangle in the target's frame, on the axes of the target's wall.
 struct Rectangle {
@@ -105,6 +109,58 @@ Edge difference(const Edge& target, const Edge& source) {
   return {target.at - source.at, std::hypot(target.sigma, source.sigma, kFloorSigmaM)};
 }
 
+/// The outline in the axes of the target's rectangle, counter-clockwise there.
+Ring outline_of(const Opening& opening, const Rigid3& pose, const Rectangle& axes) {
+  Ring ring;
+  for (const Vector3d& x : opening.outline) {
+    const Vector3d from_corner = pose * x - axes.origin;
+    ring.emplace_back(axes.across.dot(from_corner), axes.up.dot(from_corner));
+  }
+  if (signed_area(ring) < 0.0) std::reverse(ring.begin(), ring.end());
+  return ring;
+}
+
+/// A lower corner of the box that the outline does not reach: bent all round, not only at the head.
+bool bent_all_round(const Ring& ring) {
+  constexpr double kOfWidth = 0.1;
+  Vector2d low = ring.front();
+  Vector2d high = ring.front();
+  for (const Vector2d& p : ring) {
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+  const double nearest =
+      std::accumulate(ring.begin(), ring.end(), 1e300,
+                      [&](double least, const Vector2d& p) { return std::min(least, (p - low).norm()); });
+  return nearest > kOfWidth * (high - low).minCoeff();
+}
+
+/// The better known one: edges and outline come from the same samples, so that they do not add up.
+Shift surer(const Shift& a, const Shift& b) {
+  return a.sigma <= b.sigma ? a : b;
+}
+
+/// Both outlines of an opening that is no rectangle.
+struct Outlines {
+  Ring source;
+  Ring target;
+  std::optional<OutlineFit> fit;
+
+  [[nodiscard]] bool both() const { return fit.has_value(); }
+};
+
+Outlines outlines_of(const Opening& source, const Rigid3& pose, const Opening& target, const Rectangle& axes,
+                     bool opposite) {
+  Outlines outlines;
+  if (source.outline.empty() || target.outline.empty()) return outlines;
+  outlines.source = outline_of(source, pose, axes);
+  outlines.target = outline_of(target, {}, axes);
+  OutlineFitOptions options;
+  options.growth_sigma_m = opposite ? kSplaySigmaM : kFloorSigmaM;
+  outlines.fit = fit_outlines(outlines.source, outlines.target, options);
+  return outlines;
+}
+
 /// Whether the two walls can be one: from its two sides, or from the same.
 bool walls_agree(OpeningMatch& match, const Rectangle& a, const Rectangle& b,
                  const OpeningMatchOptions& options) {
@@ -120,8 +176,9 @@ bool walls_agree(OpeningMatch& match, const Rectangle& a, const Rectangle& b,
   return match.gap_m >= options.min_gap_m && match.gap_m <= options.max_gap_m;
 }
 
-std::optional<OpeningMatch> match_of(const Opening& source, const Rectangle& a, const Opening& target,
-                                     const Rectangle& b, const OpeningMatchOptions& options) {
+std::optional<OpeningMatch> match_of(const Opening& source, const Rectangle& a, const Rigid3& pose,
+                                     const Opening& target, const Rectangle& b,
+                                     const OpeningMatchOptions& options) {
   OpeningMatch match;
   if (!walls_agree(match, a, b, options)) return std::nullopt;
   const Edges from = edges_of(source, a, b);
@@ -136,11 +193,22 @@ std::optional<OpeningMatch> match_of(const Opening& source, const Rectangle& a, 
            std::abs(own - other) <= options.max_size_difference_m + off[low].sigma + off[high].sigma;
   };
   if (!alike(a.height, b.height, 0, 2) || !alike(a.width, b.width, 3, 1)) return std::nullopt;
+  const Outlines outlines = outlines_of(source, pose, target, b, match.opposite);
+  if (outlines.both()) {
+    if (outlines.fit->rms_m > kOtherShapeM) return std::nullopt;
+    // A bent side has no place; the outline has.
+    off[2] = {};
+    if (bent_all_round(outlines.target)) off = {};
+  }
   const double splay = match.opposite ? kSplaySigmaM : kFloorSigmaM;
-  const Shift across = shift_of(off[3], off[1], splay, splay);
+  Shift across = shift_of(off[3], off[1], splay, splay);
   // The splay of the sides is a hint at that of the head.
   const double widening = both(3, 1) ? 0.5 * std::abs(a.width - b.width) : splay;
-  const Shift up = shift_of(off[0], off[2], kSillSigmaM, kSillSigmaM + std::min(splay, widening));
+  Shift up = shift_of(off[0], off[2], kSillSigmaM, kSillSigmaM + std::min(splay, widening));
+  if (outlines.both()) {
+    across = surer(across, {outlines.fit->shift_m.x(), outlines.fit->sigma_m.x()});
+    up = surer(up, {outlines.fit->shift_m.y(), outlines.fit->sigma_m.y()});
+  }
   if (across.sigma > kUnseenSigmaM && up.sigma > kUnseenSigmaM) return std::nullopt;
   match.shift_across_m = across.sigma > kUnseenSigmaM ? 0.0 : across.value;
   match.shift_up_m = up.sigma > kUnseenSigmaM ? 0.0 : up.value;
@@ -158,6 +226,7 @@ std::optional<OpeningMatch> match_of(const Opening& source, const Rectangle& a, 
   match.tilt_rad = std::asin(std::clamp(a.up.cross(b.up).dot(b.across.cross(b.up)), -1.0, 1.0));
   match.area_m2 = std::min(a.width * a.height, b.width * b.height);
   match.trust = std::min(trust_of(source), trust_of(target));
+  match.by_outline = outlines.both();
   return match;
 }
 
@@ -178,7 +247,8 @@ std::vector<OpeningMatch> match_openings(const Features& source, const Features&
           (reach + targets[k].width) * (reach + targets[k].width)) {
         continue;
       }
-      if (auto match = match_of(source.openings[i], a, target.openings[k], targets[k], options)) {
+      if (auto match =
+              match_of(source.openings[i], a, target_from_source, target.openings[k], targets[k], options)) {
         match->source = static_cast<int>(i);
         match->target = static_cast<int>(k);
         all.push_back(*match);

@@ -23,11 +23,12 @@ struct OpeningMatch {
   double shift_up_m = 0.0;
   double sigma_across_m = 1.0;
   double sigma_up_m = 1.0;
-  double area_m2 = 0.0;   ///< of the smaller rectangle
-  double trust = 1.0;     ///< in (0, 1]: less for openings that were not seen through
-  double gap_m = 0.0;     ///< of the source's rectangle behind the target's wall plane
-  double tilt_rad = 0.0;  ///< by which the source's rectangle must turn about across x up to stand upright
-  bool opposite = false;  ///< seen from the two sides of the wall
+  double area_m2 = 0.0;     ///< of the smaller rectangle
+  double trust = 1.0;       ///< in (0, 1]: less for openings that were not seen through
+  double gap_m = 0.0;       ///< of the source's rectangle behind the target's wall plane
+  double tilt_rad = 0.0;    ///< by which the source's rectangle must turn about across x up to stand upright
+  bool opposite = false;    ///< seen from the two sides of the wall
+  bool by_outline = false;  ///< both saw it arched or round: its shape agrees, and holds the shift
 };
 
 struct OpeningMatchOptions {
@@ -39,7 +40,9 @@ struct OpeningMatchOptions {
   double max_angle_rad = 0.1;     ///< between the walls
 };
 
-/// One-to-one matches, nearest first. `target_from_source`: local frames.
+/// One-to-one matches, nearest first. Openings that both scans saw arched or round match only where their
+/// outlines have one shape, and these then hold the shift; where one saw a rectangle, rectangles are
+/// compared. `target_from_source`: local frames.
 std::vector<OpeningMatch> match_openings(const Features& source, const Features& target,
                                          const Rigid3& target_from_source,
                                          const OpeningMatchOptions& options = {});

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limen/match/openings/match_openings.h"
 
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include "limen/register/judge/verdict.h"
@@ -73,6 +75,61 @@ TEST(MatchOpenings, TheSplaySaysNothingOfThePose) {
     EXPECT_NEAR(match.shift_across_m, 0.0, 1e-6);
     EXPECT_LT(match.sigma_across_m, 0.01);
   }
+}
+
+/// The outline of an arched window in its rectangle: straight to `spring`, then half an ellipse.
+void arch(Opening& opening, double spring) {
+  const Vector3d side = opening.corners[1] - opening.corners[0];
+  const Vector3d rise = opening.corners[3] - opening.corners[0];
+  opening.outline = {opening.corners[0], opening.corners[1]};
+  for (int k = 0; k <= 16; ++k) {
+    const double angle = 3.14159265 * k / 16;
+    opening.outline.push_back(opening.corners[0] + 0.5 * (1.0 + std::cos(angle)) * side +
+                              (spring + (1.0 - spring) * std::sin(angle)) * rise);
+  }
+}
+
+/// The outline of a round window in its rectangle.
+void oval(Opening& opening) {
+  const Vector3d side = 0.5 * (opening.corners[1] - opening.corners[0]);
+  const Vector3d rise = 0.5 * (opening.corners[3] - opening.corners[0]);
+  opening.outline.clear();
+  for (int k = 0; k < 32; ++k) {
+    const double angle = 3.14159265 * k / 16;
+    opening.outline.push_back(opening.corners[0] + (1.0 + std::cos(angle)) * side +
+                              (1.0 + std::sin(angle)) * rise);
+  }
+}
+
+TEST(MatchOpenings, TheCrownOfAnArchHoldsTheHeight) {
+  Features in = inside();
+  Features out = outside();
+  // Neither sill nor head has a straight edge that was seen.
+  for (Features* side : {&in, &out}) {
+    arch(side->openings[0], 0.6);
+    side->openings[0].edge_sigma_m[0] = side->openings[0].edge_sigma_m[2] = 1.0;
+  }
+  const Rigid3 off{Matrix3d::Identity(), {0.0, 0.0, 0.05}};
+  const std::vector<OpeningMatch> matches = match_openings(in, out, off);
+  ASSERT_EQ(matches.size(), 2U);
+  const OpeningMatch& match = matches[0].source == 0 ? matches[0] : matches[1];
+  EXPECT_TRUE(match.by_outline);
+  EXPECT_NEAR(match.shift_up_m, -0.05, 0.003);
+  EXPECT_LT(match.sigma_up_m, 0.02);
+}
+
+TEST(MatchOpenings, OutlinesOfAnotherShapeContradict) {
+  Features in = inside();
+  Features out = outside();
+  arch(in.openings[0], 0.6);
+  arch(out.openings[0], 0.6);
+  EXPECT_EQ(match_openings(in, out, {}).size(), 2U);
+  // The same rectangle, bent all round.
+  oval(out.openings[0]);
+  const std::vector<OpeningMatch> matches = match_openings(in, out, {});
+  ASSERT_EQ(matches.size(), 1U);
+  EXPECT_EQ(matches[0].source, 1);
+  EXPECT_FALSE(matches[0].by_outline);
 }
 
 TEST(MatchOpenings, OneSeenEdgeTellsLess) {

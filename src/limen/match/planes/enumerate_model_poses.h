@@ -23,7 +23,7 @@ struct ModelPoseOptions {
 
 /// Poses that lay three planes of a scan, facing three directions, on three of a model, wherever their
 /// outlines then overlap: every place of a whole building where a room may be, for any starting pose. The
-/// planes must be oriented where `oriented` says so. `support_m2` is the number of anchors that agree; score
+/// planes must be oriented where `oriented` says so. `precedence` is the number of anchors that agree; score
 /// them all.
 ///
 /// This is 2021, section 3.2.2, turned round: not the shifts of each axis apart, for a building has hundreds

@@ -91,7 +91,7 @@ TEST(EnumerateModelPoses, TheRoomIsAmongThem) {
   const std::vector<PoseCandidate> poses = enumerate_model_poses(scan_of_room(tilted_pose()), model, options);
   EXPECT_TRUE(holds(poses, truth));
   EXPECT_TRUE(std::is_sorted(poses.begin(), poses.end(), [](const PoseCandidate& a, const PoseCandidate& b) {
-    return a.support_m2 > b.support_m2;
+    return a.precedence > b.precedence;
   }));
 }
 
@@ -105,7 +105,7 @@ TEST(EnumerateModelPoses, TheMostAreKept) {
   ASSERT_GT(all.size(), 20U);
   ASSERT_EQ(best.size(), 20U);
   for (std::size_t i = 0; i < best.size(); ++i) {
-    EXPECT_EQ(best[i].support_m2, all[i].support_m2);
+    EXPECT_EQ(best[i].precedence, all[i].precedence);
     EXPECT_EQ(best[i].target_from_source.translation, all[i].target_from_source.translation);
   }
 }

@@ -239,7 +239,7 @@ class PoseEnumerator {
 
   static void keep_best(std::vector<PoseCandidate>& poses, std::size_t most) {
     std::stable_sort(poses.begin(), poses.end(), [](const PoseCandidate& a, const PoseCandidate& b) {
-      return a.support_m2 > b.support_m2;
+      return a.precedence > b.precedence;
     });
     if (poses.size() > most) poses.resize(most);
   }
@@ -359,16 +359,16 @@ class PoseEnumerator {
           pose.target_from_source = {rotation, solve * Vector3d(a.value, b.value, c.value)};
           for (const AxisPairs& along : axes) {
             if (along.pairs.empty()) continue;
-            pose.support_m2 +=
+            pose.precedence +=
                 along.support(pose.target_from_source.translation, options_.offset_tolerance_m);
           }
           pose.free_translations = open;
-          if (pose.support_m2 > least) poses.push_back(pose);
+          if (pose.precedence > least) poses.push_back(pose);
         }
       }
       if (poses.size() > 2 * most) {
         keep_best(poses, most);
-        least = poses.back().support_m2;
+        least = poses.back().precedence;
       }
     }
     return distinct(poses);

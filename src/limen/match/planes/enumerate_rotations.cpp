@@ -43,7 +43,7 @@ Matrix3d refined(const Matrix3d& start, const std::vector<AxisDirection>& source
       if (nearest == nullptr) continue;
       const double sign = turned.dot(nearest->direction) < 0 ? -1.0 : 1.0;
       correlation +=
-          std::min(a.weight_m2, nearest->weight_m2) * sign * nearest->direction * a.direction.transpose();
+          std::min(a.weight, nearest->weight) * sign * nearest->direction * a.direction.transpose();
       used.push_back(turned);
     }
     // Two independent directions are needed; with exactly two the third row follows from the determinant.
@@ -81,12 +81,12 @@ std::vector<AxisDirection> axis_directions(const Features& features, double clus
     });
     Cluster& cluster = near != clusters.end() ? *near : clusters.emplace_back();
     cluster.outer += plane.area_m2 * plane.plane.normal * plane.plane.normal.transpose();
-    cluster.axis.weight_m2 += plane.area_m2;
+    cluster.axis.weight += plane.area_m2;
     const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(cluster.outer);
     cluster.axis.direction = solver.eigenvectors().col(2);
   }
   std::stable_sort(clusters.begin(), clusters.end(),
-                   [](const Cluster& a, const Cluster& b) { return a.axis.weight_m2 > b.axis.weight_m2; });
+                   [](const Cluster& a, const Cluster& b) { return a.axis.weight > b.axis.weight; });
   std::vector<AxisDirection> axes;
   for (const Cluster& cluster : clusters) axes.push_back(cluster.axis);
   return axes;

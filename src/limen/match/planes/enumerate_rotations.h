@@ -8,10 +8,10 @@
 
 namespace limen {
 
-/// A direction shared by planes, sign left open.
+/// A direction shared by planes or segments, sign left open.
 struct AxisDirection {
   Vector3d direction = Vector3d::UnitZ();
-  double weight_m2 = 0.0;
+  double weight = 0.0;  ///< within its set: area of the planes, or length of the segments, that have it
 };
 
 struct RotationOptions {

@@ -85,9 +85,9 @@ TEST(AxisDirections, ClustersBySlopeAndWeighsByArea) {
   add({1, 0.3, 0}, 4);
   const std::vector<AxisDirection> axes = axis_directions(features, 5.0);
   ASSERT_EQ(axes.size(), 3U);
-  EXPECT_DOUBLE_EQ(axes[0].weight_m2, 20.0);
+  EXPECT_DOUBLE_EQ(axes[0].weight, 20.0);
   EXPECT_NEAR(std::abs(axes[0].direction.y()), 0.005, 1e-4);
-  EXPECT_DOUBLE_EQ(axes[1].weight_m2, 5.0);
+  EXPECT_DOUBLE_EQ(axes[1].weight, 5.0);
 }
 
 }  // namespace

@@ -40,9 +40,9 @@ std::vector<AxisDirection> directions_of(const std::vector<Segment>& segments, d
     total += cluster.weight;
   }
   std::stable_sort(directions.begin(), directions.end(),
-                   [](const AxisDirection& a, const AxisDirection& b) { return a.weight_m2 > b.weight_m2; });
+                   [](const AxisDirection& a, const AxisDirection& b) { return a.weight > b.weight; });
   std::erase_if(directions,
-                [total](const AxisDirection& d) { return d.weight_m2 < kMinDirectionShare * total; });
+                [total](const AxisDirection& d) { return d.weight < kMinDirectionShare * total; });
   if (directions.size() > kDirections) directions.resize(kDirections);
   return directions;
 }
@@ -128,7 +128,7 @@ class Enumerator {
       const bool met = std::any_of(target_axes_.begin(), target_axes_.end(), [&](const AxisDirection& b) {
         return std::abs(turned.dot(b.direction)) >= near;
       });
-      if (met) sum += a.weight_m2;
+      if (met) sum += a.weight;
     }
     return sum;
   }
@@ -153,7 +153,7 @@ class Enumerator {
     sort_best_first(poses);
     poses.resize(std::min(poses.size(), std::max(kLeastSecondLook, poses.size() / kSecondLook)));
     for (PoseCandidate& pose : poses) fit(turned, pose);
-    std::erase_if(poses, [](const PoseCandidate& pose) { return !(pose.support_m2 > 0.0); });
+    std::erase_if(poses, [](const PoseCandidate& pose) { return !(pose.precedence > 0.0); });
     return poses;
   }
 
@@ -184,12 +184,12 @@ class Enumerator {
       if ((moved - shift).norm() > options_.max_distance_m) break;
       shift = moved;
     }
-    pose.support_m2 = support(turned, shift, 1);
+    pose.precedence = support(turned, shift, 1);
   }
 
   static void sort_best_first(std::vector<PoseCandidate>& poses) {
     std::stable_sort(poses.begin(), poses.end(), [](const PoseCandidate& a, const PoseCandidate& b) {
-      return a.support_m2 > b.support_m2;
+      return a.precedence > b.precedence;
     });
   }
 

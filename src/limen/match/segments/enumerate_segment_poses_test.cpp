@@ -105,8 +105,8 @@ TEST(EnumerateSegmentPoses, ThePosesAreDistinctSortedAndTheSameForAnyThreads) {
   const Vector3d middle = middle_of(it.scan);
   for (std::size_t i = 0; i < one.size(); ++i) {
     EXPECT_EQ(to_matrix(one[i].target_from_source), to_matrix(three[i].target_from_source));
-    EXPECT_EQ(one[i].support_m2, three[i].support_m2);
-    EXPECT_LE(one[i].support_m2, one[i > 0 ? i - 1 : 0].support_m2);
+    EXPECT_EQ(one[i].precedence, three[i].precedence);
+    EXPECT_LE(one[i].precedence, one[i > 0 ? i - 1 : 0].precedence);
     for (std::size_t j = 0; j < std::min<std::size_t>(i, 50); ++j) {
       const double shift = (one[i].target_from_source * middle - one[j].target_from_source * middle).norm();
       const double turn =

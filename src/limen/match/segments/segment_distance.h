@@ -54,8 +54,8 @@ struct SegmentDistanceOptions {
   double max_distance_m = 0.15;          ///< d of both texts: segments farther apart do not match, > 0
   double max_angle_rad = radians(10.0);  ///< segments that differ by more do not match, in (0, pi/2)
   SegmentWeight weight = SegmentWeight::length;
-  bool whole_segments = false;          ///< the four end points are those of the whole segments, as printed
-  std::optional<Vector3d> wall_normal;  ///< unit: this direction is taken out of all distances and lengths
+  bool whole_segments = false;  ///< the four end points are those of the whole segments, as printed
+  std::optional<Vector3d> wall_normal = {};  ///< unit: taken out of all distances and lengths
 
   void check() const;
 };

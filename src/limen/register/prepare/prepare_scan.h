@@ -49,6 +49,7 @@ struct PrepareOptions {
   bool segments = false;     ///< line segments as well
   OpeningOptions openings;   ///< which openings are looked for
   SegmentOptions edges;      ///< which segments are
+  bool sampled_model = false;  ///< a model's from points spread over it (2023, IV-A), not its exact edges
 };
 
 /// Features of `scan` in its frame, openings included where the vertical and the scanner's place are known.

@@ -108,21 +108,23 @@ std::string sigma_table(const RegistrationReport& report) {
   const Vector3d turn = rotation_log(pose.rotation);
   // Of the point that is known best: far from it the smallest turn is a long way.
   const Vector3d shift = result.sigma.centre - inverse(pose) * result.sigma.centre;
+  const auto deviation = [&result](bool open, const std::string& words) {
+    if (open) return std::string("◇ not held by the data");
+    return result.published ? std::string("not told by the method") : "± " + words;
+  };
   std::string rows;
   static constexpr const char* kAxes[] = {"x", "y", "z"};
   for (int axis = 0; axis < 3; ++axis) {
     const bool open = is_open(result, false, axis);
     rows += "<tr>" + cell(fmt::format("Shift along {}", kAxes[axis]), "th", " scope=\"row\"") +
             cell(fmt::format("{:.4f} m", shift[axis])) +
-            cell(open ? "◇ not held by the data" : "± " + length_words(result.sigma.translation_m[axis])) +
-            "</tr>\n";
+            cell(deviation(open, length_words(result.sigma.translation_m[axis]))) + "</tr>\n";
   }
   for (int axis = 0; axis < 3; ++axis) {
     const bool open = is_open(result, true, axis);
     rows += "<tr>" + cell(fmt::format("Turn about {}", kAxes[axis]), "th", " scope=\"row\"") +
             cell(fmt::format("{:.4f}°", degrees(turn[axis]))) +
-            cell(open ? "◇ not held by the data" : "± " + angle_words(result.sigma.rotation_rad[axis])) +
-            "</tr>\n";
+            cell(deviation(open, angle_words(result.sigma.rotation_rad[axis]))) + "</tr>\n";
   }
   return table({"Freedom", "Value", "Standard deviation"}, rows, "sigma");
 }

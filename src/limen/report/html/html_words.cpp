@@ -89,6 +89,17 @@ VerdictWords ambiguous_words(const RegistrationReport& report) {
   return words;
 }
 
+VerdictWords published_words(const RegistrationResult& result) {
+  VerdictWords words{
+      fmt::format("The pose of the published method {}, without a verdict", result.published->method),
+      {},
+      square_metres(result.reason),
+      "?"};
+  for (const UnobservedFreedom& freedom : result.unobserved)
+    words.sentences.push_back(capitalised(freedom.name) + " is assumed by the method.");
+  return words;
+}
+
 VerdictWords open_words(const RegistrationReport& report) {
   const RegistrationResult& result = report.result;
   VerdictWords words{"Not fully held: the data leaves a direction open", {}, "", "↔"};
@@ -131,6 +142,7 @@ std::string angle_words(double angle_rad) {
 }
 
 VerdictWords verdict_words(const RegistrationReport& report) {
+  if (report.result.published) return published_words(report.result);
   switch (report.result.outcome) {
     case Outcome::registered:
       return registered_words(report);

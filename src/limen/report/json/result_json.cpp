@@ -48,6 +48,14 @@ Json unobserved_json(const std::vector<UnobservedFreedom>& freedoms) {
   return list;
 }
 
+Json published_json(const PublishedScore& published) {
+  return {{"method", published.method},
+          {"criterion", published.value},
+          {"unit", published.unit},
+          {"lower_is_better", published.lower_is_better},
+          {"hypotheses", published.hypotheses}};
+}
+
 Json evidence_json(const Hypothesis& pose) {
   Json json = {{"score", pose.score},
                {"agreeing_m2", pose.agreeing_m2},
@@ -93,7 +101,8 @@ Json openings_json(const std::vector<MatchedOpenings>& matches) {
     list.push_back({{"source_opening", match.source},
                     {"target_opening", match.target},
                     {"shift_across_m", match.shift_across_m},
-                    {"shift_up_m", match.shift_up_m}});
+                    {"shift_up_m", match.shift_up_m},
+                    {"by_outline", match.by_outline}});
   }
   return list;
 }
@@ -202,14 +211,15 @@ std::string result_json(const RegistrationReport& report) {
   json["outcome"] = to_string(result.outcome);
   json["reason"] = result.reason;
   json["target_from_source"] = found ? pose_json(result.best.target_from_source) : Json();
-  json["sigma"] = found ? sigma_json(result.sigma) : Json();
-  json["probability"] = found ? probability_json(result.best.probability) : Json();
+  json["sigma"] = found && !result.published ? sigma_json(result.sigma) : Json();
+  json["probability"] = found && !result.published ? probability_json(result.best.probability) : Json();
   if (result.others) {
     json["probability_of_nothing_shared"] = result.others->nothing_shared;
     json["probability_of_twin"] = result.others->twin;
     json["probability_of_unlisted_pose"] = result.others->unlisted_pose;
   }
   json["evidence"] = found ? evidence_json(result.best) : Json();
+  if (result.published) json["published"] = published_json(*result.published);
   json["unobserved"] = unobserved_json(result.unobserved);
   json["alternatives"] = alternatives_json(result.alternatives);
   json["matches"] = matches_json(result.matches);

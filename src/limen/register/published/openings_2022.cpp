@@ -1,0 +1,63 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/register/published/openings_2022.h"
+
+#include "limen/match/solvers/rigid_from_lines.h"
+#include "limen/register/published/best_trial.h"
+#include "limen/register/published/wall_edges.h"
+
+namespace limen {
+namespace {
+
+struct Drawn {
+  Rigid3 target_from_source;
+  Vector3d wall_normal = Vector3d::UnitX();  // of the target's wall
+};
+
+Line line_of(const Segment& segment, double sign) {
+  return {segment.a, sign * segment.direction()};
+}
+
+/// 3.2: the wall pair, then one vertical and one horizontal edge of each; 3.3: the pose.
+Drawn draw(const std::vector<WallEdges>& source, const std::vector<WallEdges>& target, RandomStream& random) {
+  const WallEdges& from = drawn(source, random);
+  const WallEdges& to = drawn(target, random);
+  LinePair vertical;
+  vertical.source = line_of(drawn(from.vertical, random), 1.0);
+  vertical.target = line_of(drawn(to.vertical, random), 1.0);
+  LinePair horizontal;
+  horizontal.source = line_of(drawn(from.horizontal, random), 1.0);
+  // Seen from its other side the wall's right is left.
+  horizontal.target = line_of(drawn(to.horizontal, random), -1.0);
+  return {rigid_from_lines(vertical, horizontal), to.normal};  // (15) to (19)
+}
+
+}  // namespace
+
+PublishedAnswer register_openings_2022(const PublishedInput& input, const Openings2022Options& options) {
+  // 2: the openings of both scans, four segments each.
+  const std::vector<WallEdges> source = wall_edges(input.source, input.upright);
+  const std::vector<WallEdges> target = wall_edges(input.target, input.upright);
+  if (source.empty() || target.empty())
+    return {std::nullopt, "a scan without openings has nothing that the method could match"};
+  // 3.1: the distance between the two sets of segments, (3) to (14).
+  const std::vector<Segment> edges = all_edges(source);
+  const SegmentSetMeasure measure(all_edges(target), options.distance);
+  const auto cost = [&](const Drawn& pose) { return measure.to(edges, pose.target_from_source).distance; };
+  // 3.2: random trials.
+  const auto drawing = [&](RandomStream& random) {
+    return std::optional<Drawn>(draw(source, target, random));
+  };
+  const std::optional<BestTrial> best = best_trial(options.trials, input.seed, drawing, cost);
+  if (!best) return {std::nullopt, "no trial gave a pose"};
+  RandomStream again(input.seed, best->trial);
+  const Drawn chosen = draw(source, target, again);
+  PublishedPose pose;
+  pose.target_from_source = chosen.target_from_source;
+  pose.criterion = best->cost;
+  pose.hypotheses = best->judged;
+  pose.not_held = {chosen.wall_normal};
+  return {pose, {}};
+}
+
+}  // namespace limen
