@@ -25,10 +25,12 @@
 #include "limen/cli/commands/info_command.h"
 #include "limen/cli/commands/openings_command.h"
 #include "limen/cli/commands/planes_command.h"
+#include "limen/cli/commands/project_command.h"
 #include "limen/cli/commands/register_command.h"
 #include "limen/cli/commands/segments_command.h"
 #include "limen/cli/commands/thin_command.h"
 #include "limen/cli/commands/transform_command.h"
+#include "limen/cli/commands/transform_project.h"
 #include "limen/cli/help/program_help.h"
 #include "limen/cli/terminal/command.h"
 #include "limen/cli/terminal/terminal.h"
@@ -84,7 +86,9 @@ void add_commands(CommandLine& app, Session& session) {
   add_openings_command(app, session);
   add_segments_command(app, session);
   add_register_command(app, session);
+  add_project_command(app, session);
   add_transform_command(app, session);
+  add_transform_project_command(app, session);
   add_thin_command(app, session);
   add_evaluate_command(app, session);
   add_deviation_command(app, session);
@@ -136,6 +140,9 @@ int run_action(Session& session) {
 
 int run_program(int argc, char** argv) {
   std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is told of as a disk that is full
+  std::string project_move = kProjectMove;
+  std::vector<char*> words(argv, argv + argc);
+  if (asked_project_move(argc, argv)) words[1] = project_move.data();
   Session session;
   CLI::App app(
       "limen finds how laser scans of one building fit together, indoors and outdoors, and where in a "
@@ -149,7 +156,7 @@ int run_program(int argc, char** argv) {
   add_common_options(line, session);
   add_commands(line, session);
   try {
-    app.parse(argc, argv);
+    app.parse(argc, words.data());
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error, std::cout, std::cerr);
     return fail(usage_error(app, error), kExitBadInput);

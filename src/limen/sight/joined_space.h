@@ -16,7 +16,7 @@ class JoinedSpace : public SpaceView {
  public:
   /// One scanner's view, with the joint index of each of its planes.
   struct Member {
-    std::unique_ptr<SpaceView> view;
+    std::shared_ptr<const SpaceView> view;
     std::vector<std::int32_t> joint_plane;
   };
   explicit JoinedSpace(std::vector<Member> members);

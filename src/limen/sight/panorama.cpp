@@ -6,6 +6,7 @@
 #include <cmath>
 #include <optional>
 
+#include "limen/base/error.h"
 #include "limen/base/parallel.h"
 
 namespace limen {
@@ -23,6 +24,37 @@ Panorama::Panorama(const Scan& scan, const std::vector<std::int32_t>& labels, co
   pixels_.resize(6 * edge_ * edge_);
   fill(scan, labels);
   erode();
+}
+
+Panorama::Panorama(const PanoramaState& state, const Features& features)
+    : facets_(facets_of(features)), centre_(state.centre), edge_(state.edge) {
+  const std::size_t count = state.near_m.size();
+  const auto is_plane = [&](std::int32_t plane) {
+    return plane >= -1 && plane < static_cast<std::int32_t>(facets_.size());
+  };
+  const bool fits = edge_ > 0 && edge_ < 100000 && count == 6 * edge_ * edge_ &&
+                    state.far_m.size() == count && state.near_plane.size() == count &&
+                    state.far_plane.size() == count &&
+                    std::all_of(state.near_plane.begin(), state.near_plane.end(), is_plane) &&
+                    std::all_of(state.far_plane.begin(), state.far_plane.end(), is_plane);
+  if (!fits) throw Error("the panorama does not fit its scan", "kept features", "have them made again");
+  pixels_.resize(count);
+  for (std::size_t k = 0; k < count; ++k)
+    pixels_[k] = {state.near_m[k], state.far_m[k], 0.0F, state.near_plane[k], state.far_plane[k]};
+  erode();
+}
+
+PanoramaState Panorama::state() const {
+  PanoramaState state;
+  state.centre = centre_;
+  state.edge = edge_;
+  for (const Pixel& pixel : pixels_) {
+    state.near_m.push_back(pixel.near_m);
+    state.far_m.push_back(pixel.far_m);
+    state.near_plane.push_back(pixel.near_plane);
+    state.far_plane.push_back(pixel.far_plane);
+  }
+  return state;
 }
 
 std::size_t Panorama::pixel_at(const Vector3d& direction) const {

@@ -9,6 +9,16 @@
 
 namespace limen {
 
+/// What a panorama knows beside the planes, to be kept and taken back: one entry per pixel in each list.
+struct PanoramaState {
+  Vector3d centre = Vector3d::Zero();
+  std::uint64_t edge = 0;  ///< pixels per cube edge
+  std::vector<float> near_m;
+  std::vector<float> far_m;
+  std::vector<std::int32_t> near_plane;
+  std::vector<std::int32_t> far_plane;
+};
+
 /// The depth image of a static station on the six faces of a cube: answers in constant time what the scanner
 /// saw at a place.
 class Panorama : public SpaceView {
@@ -16,7 +26,10 @@ class Panorama : public SpaceView {
   /// `labels[i]` is the plane of point i in `features.planes`.
   Panorama(const Scan& scan, const std::vector<std::int32_t>& labels, const Features& features,
            const Vector3d& centre);
+  /// The same panorama again; `features` are those it was made with. Throws Error where the lists do not fit.
+  Panorama(const PanoramaState& state, const Features& features);
 
+  [[nodiscard]] PanoramaState state() const;
   [[nodiscard]] Sight look(const SightQuery& query) const override;
   [[nodiscard]] const Vector3d& centre() const { return centre_; }
 

@@ -53,12 +53,43 @@ VoxelMap::VoxelMap(const Scan& scan, const Features& features, const VoxelMapOpt
   for (std::size_t axis = 0; axis < 3; ++axis) {
     size_[axis] = 1 + static_cast<std::int32_t>(sides[static_cast<Eigen::Index>(axis)] / edge_);
   }
+  make_blocks();
+  enter(features);
+  if (scan.centre_known()) carve(scan, std::max(options.margin_m, 2.0 * edge_));
+}
+
+VoxelMap::VoxelMap(const VoxelMapState& state, const Features& features)
+    : facets_(facets_of(features)), edge_(state.edge_m), low_(state.low), size_(state.size) {
+  constexpr std::int32_t kMostCubes = 1 << 20;
+  double cubes = 1.0;
+  for (const std::int32_t size : size_) cubes *= size >= 0 && size <= kMostCubes ? size : 1e300;
+  const bool fits =
+      edge_ > 0 && cubes <= 1e10 &&
+      (state.free_bits.empty() || state.free_bits.size() == (static_cast<std::size_t>(cubes) + 7) / 8);
+  if (!fits) throw Error("the map of cubes does not fit its scan", "kept features", "have them made again");
+  if (cubes == 0.0) return;
+  make_blocks();
+  enter(features);
+  if (state.free_bits.empty()) return;
+  free_.resize(static_cast<std::size_t>(cubes));
+  for (std::size_t k = 0; k < free_.size(); ++k) free_[k] = ((state.free_bits[k / 8] >> (k % 8)) & 1U) != 0;
+}
+
+VoxelMapState VoxelMap::state() const {
+  VoxelMapState state{edge_, low_, size_, {}};
+  state.free_bits.assign((free_.size() + 7) / 8, 0);
+  for (std::size_t k = 0; k < free_.size(); ++k) {
+    if (free_[k])
+      state.free_bits[k / 8] = static_cast<std::uint8_t>(state.free_bits[k / 8] | (1U << (k % 8)));
+  }
+  return state;
+}
+
+void VoxelMap::make_blocks() {
   for (std::size_t axis = 0; axis < 3; ++axis) blocks_[axis] = (size_[axis] >> kBlockBits) + 1;
   block_at_.assign(static_cast<std::size_t>(blocks_[0]) * static_cast<std::size_t>(blocks_[1]) *
                        static_cast<std::size_t>(blocks_[2]),
                    -1);
-  enter(features);
-  if (scan.centre_known()) carve(scan, std::max(options.margin_m, 2.0 * edge_));
 }
 
 VoxelMap::Key VoxelMap::key_of(const Vector3d& x) const {

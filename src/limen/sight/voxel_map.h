@@ -18,13 +18,24 @@ struct VoxelMapOptions {
   void check() const;
 };
 
+/// What a map of cubes knows beside the features, to be kept and taken back.
+struct VoxelMapState {
+  double edge_m = 0.25;
+  Vector3d low = Vector3d::Zero();
+  std::array<std::int32_t, 3> size{0, 0, 0};  ///< cubes along each axis
+  std::vector<std::uint8_t> free_bits;        ///< one bit per cube, empty where no ray freed any
+};
+
 /// Space in cubes, for scans that see from many places (mobile, several stations) or from an unknown one:
 /// which surfaces were measured near a cube, and which cubes rays passed through. Coarser than a panorama,
 /// and silent where it does not know: no ray of an unknown optical centre frees a cube.
 class VoxelMap : public SpaceView {
  public:
   VoxelMap(const Scan& scan, const Features& features, const VoxelMapOptions& options = {});
+  /// The same map again; `features` are those it was made with. Throws Error where the sizes do not fit.
+  VoxelMap(const VoxelMapState& state, const Features& features);
 
+  [[nodiscard]] VoxelMapState state() const;
   [[nodiscard]] Sight look(const SightQuery& query) const override;
 
  private:
@@ -43,6 +54,7 @@ class VoxelMap : public SpaceView {
   [[nodiscard]] std::size_t block_of(const Key& key) const;
   [[nodiscard]] const Cube* find(const Key& key) const;
   Cube& obtain(const Key& key);  ///< `key` lies inside
+  void make_blocks();
   void enter(const Features& features);
   void carve(const Scan& scan, double margin_m);
   void carve_ray(const Vector3d& from, const Vector3d& to);

@@ -130,4 +130,33 @@ TransformedCloud merge_clouds(const CloudToMove& moved, const std::vector<std::s
   return with_whole_inputs([&] { return write_joined(std::move(clouds), true, output, monitor); });
 }
 
+TransformedCloud move_stations(const std::vector<StationToMove>& stations,
+                               const std::filesystem::path& output, Monitor& monitor) {
+  if (stations.empty()) throw Error("there is no scan to move", output.string(), "give at least one");
+  if (stations.size() > 256)
+    throw Error("more than 256 clouds cannot be told apart", output.string(),
+                "write each scan to a file of its own");
+  monitor.begin_stage("merging");
+  std::deque<OpenPoints> files;
+  std::vector<PlacedCloud> clouds;
+  for (std::size_t k = 0; k < stations.size(); ++k) {
+    const StationToMove& station = stations[k];
+    if (files.empty() || files.back().path() != station.path) files.emplace_back(station.path);
+    const std::vector<PlacedCloud> all = placed_clouds(files.back(), station.target_from_source, {}, monitor);
+    std::size_t with_points = 0;
+    bool found = false;
+    for (PlacedCloud placed : all) {
+      if (files.back().file().clouds()[placed.cloud].points == 0 || with_points++ != station.cloud) continue;
+      placed.source = static_cast<std::uint8_t>(k);
+      clouds.push_back(placed);
+      found = true;
+    }
+    if (!found)
+      throw Error(fmt::format("has no scan {}", station.cloud), station.path.string(),
+                  "give the file that the project was made from");
+  }
+  require_known_ending(output, files.front());
+  return write_joined(std::move(clouds), stations.size() > 1, output, monitor);
+}
+
 }  // namespace limen

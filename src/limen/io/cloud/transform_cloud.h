@@ -40,6 +40,18 @@ struct CloudToMove {
 TransformedCloud merge_clouds(const CloudToMove& moved, const std::vector<std::string>& others,
                               const std::filesystem::path& output, Monitor& monitor = silent_monitor());
 
+/// One cloud of a file and how it comes into the frame of the output.
+struct StationToMove {
+  std::filesystem::path path;
+  std::size_t cloud = 0;  ///< of the file, those without points not counted
+  Rigid3 target_from_source;
+};
+/// Clouds of one file or several, each moved by a pose of its own, in one .ply, .las or .e57 with the columns
+/// of all; `source_cloud` tells which station a point is from where there are several. Throws Error where a
+/// file has no such cloud, or there are more than 256.
+TransformedCloud move_stations(const std::vector<StationToMove>& stations,
+                               const std::filesystem::path& output, Monitor& monitor = silent_monitor());
+
 /// The scan in the target frame, about a local origin near its points there.
 Scan transformed(const Scan& scan, const Rigid3& target_from_source);
 

@@ -60,7 +60,7 @@ class Joiner {
     }
     return std::move(all_);
   }
-  std::unique_ptr<SpaceView> space() { return std::make_unique<JoinedSpace>(std::move(views_)); }
+  std::shared_ptr<const SpaceView> space() { return std::make_shared<JoinedSpace>(std::move(views_)); }
 
  private:
   static bool same(const PlanarPolygon& a, const PlanarPolygon& b, const std::vector<Polygon>& b_in_a) {

@@ -21,7 +21,7 @@ namespace limen {
 struct PreparedScan {
   ExtractedFeatures extracted;  ///< labels and samples: of the points in the frame's own order
   Matrix3d upright_from_scan = Matrix3d::Identity();
-  std::unique_ptr<SpaceView> space;  ///< a panorama for a static station, else a map of cubes
+  std::shared_ptr<const SpaceView> space;  ///< a panorama for a static station, else a map of cubes
   ScannerPlace place;                ///< where the (first) scanner stood, world
   bool mobile = false;               ///< seen from many places along a path
   bool upright = false;              ///< z of the prepared frame points up

@@ -1,0 +1,175 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/cli/commands/project_command.h"
+
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "limen/base/angles.h"
+#include "limen/base/atomic_file.h"
+#include "limen/base/error.h"
+#include "limen/cli/inputs/scan_options.h"
+#include "limen/project/project.h"
+#include "limen/report/json/json_values.h"
+#include "limen/report/project/project_json.h"
+#include "limen/report/project/project_page.h"
+
+namespace limen {
+namespace {
+
+struct ProjectCommandOptions {
+  std::vector<std::string> scans;
+  std::vector<std::string> models;
+  std::string list;
+  std::string folder;
+  std::string gravity = "auto";
+  std::string pairs = "auto";
+  std::string memory;
+  bool apart = false;
+};
+
+/// The names in a list: one a line, relative to the list's folder; empty lines and those that begin with #
+/// do not count.
+std::vector<std::string> names_in(const std::string& path) {
+  std::ifstream stream(path);
+  if (!stream) throw Error("cannot be read", path, "give a text file with the name of a scan on each line");
+  std::vector<std::string> names;
+  for (std::string line; std::getline(stream, line);) {
+    while (!line.empty() && (line.back() == '\r' || line.back() == ' ' || line.back() == '\t'))
+      line.pop_back();
+    if (line.empty() || line.front() == '#') continue;
+    const std::filesystem::path name(line);
+    names.push_back(name.is_absolute() ? line : (std::filesystem::path(path).parent_path() / name).string());
+  }
+  return names;
+}
+
+ProjectOptions project_options(const ProjectCommandOptions& options, const Session& session) {
+  ProjectOptions project;
+  project.registering.gravity = options.gravity == "up"        ? Gravity::up
+                                : options.gravity == "unknown" ? Gravity::unknown
+                                                               : Gravity::automatic;
+  project.registering.seed = session.common.seed;
+  ReadingChoice reading;
+  reading.memory = options.memory;
+  project.reading = with_choice(read_options("", "--origin", options.gravity), reading);
+  project.all_pairs = options.pairs == "all";
+  project.stations_apart = options.apart;
+  return project;
+}
+
+OptionList reported(const ProjectCommandOptions& options, const Session& session) {
+  OptionList list = {{"gravity", options.gravity}, {"pairs", options.pairs}};
+  if (options.apart) list.emplace_back("stations_apart", true);
+  if (!options.memory.empty()) list.emplace_back("memory", options.memory);
+  list.emplace_back("seed", static_cast<std::int64_t>(session.common.seed));
+  return list;
+}
+
+std::string scan_line(const ProjectScan& scan) {
+  std::string name = scan.file;
+  if (scan.index > 0) name += fmt::format(" #{}", scan.index);
+  std::string line = fmt::format("{:<17} {}", scan.readable ? to_string(scan.state) : "unreadable", name);
+  if (scan.readable && scan.state == NodeState::registered) {
+    line += fmt::format("  (sigma {:.1f} mm, {:.3f} deg)", 1e3 * scan.sigma.translation_m.maxCoeff(),
+                        degrees(scan.sigma.rotation_rad.maxCoeff()));
+  } else {
+    line += ": " + scan.reason;
+  }
+  return line + "\n";
+}
+
+std::string summary(const ProjectResult& result, const std::string& folder) {
+  std::string text = fmt::format("{}: {}\n", to_string(result.outcome), result.reason);
+  for (const ProjectScan& scan : result.scans) text += scan_line(scan);
+  for (const ProjectQuestion& question : result.questions) text += "question: " + question.text + "\n";
+  std::size_t counts[5] = {};
+  for (const ProjectLink& link : result.links) ++counts[static_cast<std::size_t>(link.solved.state)];
+  text += fmt::format(
+      "links       {} verified, {} bridges, {} ambiguous, {} rejected, {} weak, of {} pairs tried\n",
+      counts[0], counts[1], counts[2], counts[3], counts[4], result.pairs_tried);
+  return text + fmt::format("written to {}\n", folder);
+}
+
+int status_of(ProjectOutcome outcome) {
+  switch (outcome) {
+    case ProjectOutcome::registered:
+      return kExitOk;
+    case ProjectOutcome::partial:
+      return kExitUndecided;
+    case ProjectOutcome::no_match:
+      break;
+  }
+  return kExitNoMatch;
+}
+
+int tell_status(const std::string& folder, const Session& session) {
+  const ProjectStatus status = project_status(folder);
+  Json json = {{"stage", status.stage},
+               {"files", status.scans},
+               {"files_ready", status.ready},
+               {"pairs", status.pairs},
+               {"pairs_tried", status.tried}};
+  session.say(fmt::format("stage {}: {} of {} files ready, {} of {} pairs tried\n", status.stage,
+                          status.ready, status.scans, status.tried, status.pairs));
+  session.answer(to_text(json));
+  return kExitOk;
+}
+
+int run(ProjectCommandOptions options, const Session& session) {
+  if (options.folder.empty() && options.scans.size() == 2 && options.scans.front() == "status")
+    return tell_status(options.scans.back(), session);
+  if (options.folder.empty()) throw Error("there is no folder to write to", "--output", "give one: -o DIR");
+  if (!options.list.empty()) {
+    for (std::string& name : names_in(options.list)) options.scans.push_back(std::move(name));
+  }
+  const OutputFolder folder(options.folder);
+  const ProjectResult result = run_project({options.scans, options.models}, folder.path(),
+                                           project_options(options, session), *session.monitor);
+  const std::string json = project_json(result, reported(options, session));
+  session.monitor->throw_if_cancelled();
+  write_file(folder.path() / "report.html", project_page(result));
+  // Last: where it is, the folder is complete.
+  write_file(folder.path() / "project.json", json);
+  for (const std::string& note : result.notes) session.note(note);
+  session.say(summary(result, options.folder));
+  session.answer(json);
+  return status_of(result.outcome);
+}
+
+}  // namespace
+
+void add_project_command(CommandLine& app, Session& session) {
+  auto options = std::make_shared<ProjectCommandOptions>();
+  CommandLine* command =
+      add_command(app, session, "project",
+                  "Put any number of scans, and building models, into one frame; `project status DIR` tells "
+                  "how far one is; status 0: all registered, 3: some, 4: none",
+                  [options, &session] { return run(*options, session); });
+  command->add_option("SCAN", options->scans, "The scans, in any order and any frames; models too");
+  command->add_option("--model", options->models, "A building model; may be given several times")
+      ->type_name("MODEL")
+      ->type_size(1)
+      ->take_all();
+  command->add_option("--scans", options->list, "A text file with the name of a scan on each line")
+      ->type_name("FILE");
+  command
+      ->add_option("-o,--output", options->folder,
+                   "Folder for project.json, report.html and what is kept for later runs")
+      ->type_name("DIR");
+  command
+      ->add_option("--pairs", options->pairs,
+                   "Which pairs are tried: auto (default, those that may share something) or all")
+      ->one_of({"auto", "all"});
+  command->add_flag("--stations-apart", options->apart,
+                    "The scans of one file are not known to one another, whatever the file says");
+  add_gravity_option(*command, options->gravity, true);
+  add_memory_option(*command, options->memory);
+}
+
+}  // namespace limen

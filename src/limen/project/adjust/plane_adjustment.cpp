@@ -1,0 +1,262 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/project/adjust/plane_adjustment.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/SparseCholesky>
+
+#include "limen/base/progress.h"
+
+namespace limen {
+namespace {
+
+constexpr int kSteps = 12;
+constexpr double kDone = 1e-9;
+constexpr double kMissed =
+    9.0;  // mean squared deviations at which an observation has lost three quarters of its weight
+constexpr double kTiny = 1e-9;
+
+/// F with F F^T = the weighted moments [p; 1][p; 1]^T, p in the node's frame.
+Eigen::Matrix4d factor_of(const PlaneObservation& observation) {
+  const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(observation.moments.covariance());
+  const double count = std::min(observation.moments.count, observation.most_points);
+  Eigen::Matrix4d factor = Eigen::Matrix4d::Zero();
+  factor.topLeftCorner<3, 3>() =
+      solver.eigenvectors() * solver.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
+  factor.topRightCorner<3, 1>() = observation.anchor + observation.moments.mean();
+  factor(3, 3) = 1.0;
+  return std::sqrt(count) / observation.sigma_m * factor;
+}
+
+class JointSolver {
+ public:
+  explicit JointSolver(const JointProblem& problem) : problem_(problem) {
+    for (const bool fixed : problem.fixed) place_.push_back(fixed ? -1 : size_++);
+    for (const PoseEdge& edge : problem.edges) information_.emplace_back(edge.pose.covariance.inverse());
+    seen_by_.resize(static_cast<std::size_t>(problem.planes));
+    for (std::size_t k = 0; k < problem.observations.size(); ++k)
+      seen_by_[static_cast<std::size_t>(problem.observations[k].plane)].push_back(k);
+    solution_.frame_from_node = problem.frame_from_node;
+    solution_.weights.assign(problem.observations.size(), 1.0);
+  }
+
+  JointSolution run() {
+    if (size_ > 0) {
+      for (int step = 0; step < kSteps; ++step) {
+        CancelScope::check();
+        fit_planes();
+        weigh();
+        if (move() < kDone) break;
+      }
+      fit_planes();
+      weigh();
+      build();
+    }
+    tell();
+    return std::move(solution_);
+  }
+
+ private:
+  using Wide = Eigen::Matrix<double, 6, 3>;
+
+  [[nodiscard]] const Rigid3& pose(int node) const {
+    return solution_.frame_from_node[static_cast<std::size_t>(node)];
+  }
+  [[nodiscard]] int place(int node) const { return place_[static_cast<std::size_t>(node)]; }
+
+  /// Each plane anew from all that is seen of it, about its centroid.
+  void fit_planes() {
+    planes_.assign(seen_by_.size(), {});
+    for (std::size_t p = 0; p < seen_by_.size(); ++p) {
+      if (seen_by_[p].empty()) continue;
+      const PlaneObservation& first = problem_.observations[seen_by_[p].front()];
+      const Vector3d about = pose(first.node) * first.anchor;
+      PointMoments all;
+      for (const std::size_t k : seen_by_[p]) add_moments(k, about, all);
+      const PlaneFit fit = fit_plane(all);
+      const PlaneFrame frame = make_frame(fit.plane, fit.centroid);
+      planes_[p] = {about + fit.centroid, fit.plane.normal, 0.0, frame.u, frame.v};
+    }
+  }
+
+  /// The points of an observation in the frame about `about`, weighted.
+  void add_moments(std::size_t k, const Vector3d& about, PointMoments& all) const {
+    const PlaneObservation& seen = problem_.observations[k];
+    const Rigid3& node = pose(seen.node);
+    const double count =
+        std::min(seen.moments.count, seen.most_points) * solution_.weights[k] / (seen.sigma_m * seen.sigma_m);
+    const Vector3d mean = node * (seen.anchor + seen.moments.mean()) - about;
+    const Matrix3d spread = node.rotation * seen.moments.covariance() * node.rotation.transpose();
+    all.count += count;
+    all.sum += count * mean;
+    all.outer += count * (spread + mean * mean.transpose());
+  }
+
+  void weigh() {
+    for (std::size_t k = 0; k < problem_.observations.size(); ++k) {
+      const PlaneObservation& seen = problem_.observations[k];
+      const PlaneResidual residual =
+          plane_residual(seen, pose(seen.node), planes_[static_cast<std::size_t>(seen.plane)]);
+      const double mean = residual.value.squaredNorm() / std::min(seen.moments.count, seen.most_points);
+      const double ratio = kMissed / (kMissed + mean);
+      solution_.weights[k] = ratio * ratio;
+    }
+  }
+
+  void build() {
+    entries_.clear();
+    right_ = Eigen::VectorXd::Zero(6 * size_);
+    for (int k = 0; k < 6 * size_; ++k) entries_.emplace_back(k, k, kTiny);
+    for (std::size_t e = 0; e < problem_.edges.size(); ++e) add_edge(problem_.edges[e], information_[e]);
+    for (std::size_t p = 0; p < seen_by_.size(); ++p) add_plane(p);
+    Eigen::SparseMatrix<double> normal(6 * size_, 6 * size_);
+    normal.setFromTriplets(entries_.begin(), entries_.end());
+    solver_.compute(normal);
+  }
+
+  double move() {
+    build();
+    const Eigen::VectorXd delta = solver_.solve(right_);
+    if (!delta.allFinite()) return 0.0;
+    double largest = 0.0;
+    for (std::size_t i = 0; i < place_.size(); ++i) {
+      if (place_[i] < 0) continue;
+      const Vector6d d = delta.segment<6>(6 * place_[i]);
+      Rigid3& node = solution_.frame_from_node[i];
+      node.rotation = nearest_rotation(rotation_exp(d.head<3>()) * node.rotation);
+      node.translation += d.tail<3>();
+      largest = std::max(largest, d.cwiseAbs().maxCoeff());
+    }
+    return largest;
+  }
+
+  void add_block(int row, int column, const Matrix6d& block) {
+    if (place(row) < 0 || place(column) < 0) return;
+    for (int i = 0; i < 6; ++i) {
+      for (int j = 0; j < 6; ++j)
+        entries_.emplace_back(6 * place(row) + i, 6 * place(column) + j, block(i, j));
+    }
+  }
+  void add_right(int row, const Vector6d& part) {
+    if (place(row) >= 0) right_.segment<6>(6 * place(row)) += part;
+  }
+
+  void add_edge(const PoseEdge& edge, const Matrix6d& information) {
+    const EdgeResidual line = edge_residual(edge, pose(edge.source), pose(edge.target));
+    const Matrix6d of_source = line.by_source.transpose() * information;
+    const Matrix6d of_target = line.by_target.transpose() * information;
+    add_block(edge.source, edge.source, of_source * line.by_source);
+    add_block(edge.target, edge.target, of_target * line.by_target);
+    add_block(edge.source, edge.target, of_source * line.by_target);
+    add_block(edge.target, edge.source, of_target * line.by_source);
+    add_right(edge.source, -of_source * line.value);
+    add_right(edge.target, -of_target * line.value);
+  }
+
+  /// Adds what a plane says of the poses that see it, the plane itself eliminated.
+  void add_plane(std::size_t p) {
+    const std::vector<std::size_t>& seen = seen_by_[p];
+    if (seen.size() < 2) return;
+    Matrix3d own = kTiny * Matrix3d::Identity();
+    Vector3d own_right = Vector3d::Zero();
+    std::vector<Wide> mixed;
+    for (const std::size_t k : seen) {
+      const PlaneObservation& observation = problem_.observations[k];
+      const double weight = solution_.weights[k];
+      const PlaneResidual residual = plane_residual(observation, pose(observation.node), planes_[p]);
+      own += weight * residual.by_plane.transpose() * residual.by_plane;
+      own_right -= weight * residual.by_plane.transpose() * residual.value;
+      mixed.push_back(weight * residual.by_pose.transpose() * residual.by_plane);
+      add_block(observation.node, observation.node, weight * residual.by_pose.transpose() * residual.by_pose);
+      add_right(observation.node, -weight * residual.by_pose.transpose() * residual.value);
+    }
+    const Matrix3d inverted = own.inverse();
+    for (std::size_t i = 0; i < seen.size(); ++i) {
+      const int node = problem_.observations[seen[i]].node;
+      const Wide half = mixed[i] * inverted;
+      add_right(node, -half * own_right);
+      for (std::size_t j = 0; j < seen.size(); ++j)
+        add_block(node, problem_.observations[seen[j]].node, -half * mixed[j].transpose());
+    }
+  }
+
+  void tell() {
+    solution_.covariance.assign(place_.size(), Matrix6d::Zero());
+    if (size_ == 0) return;
+    double sum = 0.0;
+    double count = -6.0 * size_;
+    for (std::size_t k = 0; k < problem_.observations.size(); ++k) {
+      const PlaneObservation& seen = problem_.observations[k];
+      const std::size_t plane = static_cast<std::size_t>(seen.plane);
+      if (seen_by_[plane].size() < 2) continue;
+      // What a plane's own thickness leaves is no contradiction between scans.
+      const PlaneResidual residual = plane_residual(seen, pose(seen.node), planes_[plane]);
+      sum += solution_.weights[k] * (residual.value.squaredNorm() - own_misfit(seen));
+      count += 3.0 * solution_.weights[k];
+    }
+    for (const std::vector<std::size_t>& seen : seen_by_) count -= seen.size() < 2 ? 0.0 : 3.0;
+    if (count > 0.0) solution_.variance_factor = sum / count;
+    const double scale = std::max(1.0, solution_.variance_factor);
+    for (std::size_t i = 0; i < place_.size(); ++i) {
+      CancelScope::check();
+      if (place_[i] < 0) continue;
+      Eigen::MatrixXd unit = Eigen::MatrixXd::Zero(6 * size_, 6);
+      unit.block<6, 6>(6 * place_[i], 0).setIdentity();
+      solution_.covariance[i] = scale * solver_.solve(unit).middleRows<6>(6 * place_[i]);
+    }
+  }
+
+  /// Weighted squared distances of an observation's points to the plane that fits them best.
+  static double own_misfit(const PlaneObservation& seen) {
+    const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(seen.moments.covariance(), Eigen::EigenvaluesOnly);
+    return std::max(0.0, solver.eigenvalues()[0]) * std::min(seen.moments.count, seen.most_points) /
+           (seen.sigma_m * seen.sigma_m);
+  }
+
+  const JointProblem& problem_;
+  JointSolution solution_;
+  std::vector<int> place_;
+  int size_ = 0;
+  std::vector<Matrix6d> information_;
+  std::vector<std::vector<std::size_t>> seen_by_;
+  std::vector<AnchoredPlane> planes_;
+  std::vector<Eigen::Triplet<double>> entries_;
+  Eigen::VectorXd right_;
+  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver_;
+};
+
+}  // namespace
+
+PlaneResidual plane_residual(const PlaneObservation& observation, const Rigid3& frame_from_node,
+                             const AnchoredPlane& plane) {
+  // distance(p) = n . (R p + t - a) - o = w . [p; 1]
+  const Matrix3d back = frame_from_node.rotation.transpose();
+  const Vector3d from_anchor = frame_from_node.translation - plane.anchor;
+  const Eigen::Matrix4d factor = factor_of(observation).transpose();
+  const auto row = [&](const Vector3d& direction, double constant) {
+    Eigen::Vector4d w;
+    w << back * direction, constant;
+    return Eigen::Vector4d(factor * w);
+  };
+  PlaneResidual residual;
+  residual.value = row(plane.normal, plane.normal.dot(from_anchor) - plane.offset);
+  for (Eigen::Index k = 0; k < 3; ++k) {
+    // A turn about the node's origin moves p by e x (R p): n . (e x R p) = (n x e) . R p.
+    residual.by_pose.col(k) = row(plane.normal.cross(Vector3d::Unit(k)), 0.0);
+    residual.by_pose.col(3 + k) = row(Vector3d::Zero(), plane.normal[k]);
+  }
+  residual.by_plane.col(0) = row(plane.u, plane.u.dot(from_anchor));
+  residual.by_plane.col(1) = row(plane.v, plane.v.dot(from_anchor));
+  residual.by_plane.col(2) = row(Vector3d::Zero(), -1.0);
+  return residual;
+}
+
+JointSolution adjust_jointly(const JointProblem& problem) {
+  return JointSolver(problem).run();
+}
+
+}  // namespace limen

@@ -1,0 +1,286 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "limen/base/angles.h"
+#include "limen/project/project_graph.h"
+#include "limen/project/project_state.h"
+
+namespace limen {
+namespace {
+
+class Assembler {
+ public:
+  Assembler(const std::vector<ProjectNode>& nodes, const std::vector<TriedPair>& pairs, ProjectResult& result)
+      : nodes_(nodes), pairs_(pairs), result_(result) {}
+
+  void run() {
+    const ProjectGraph made = make_graph(nodes_, pairs_);
+    graph_ = made.graph;
+    pair_of_ = made.pair_of;
+    solved_ = solve_graph(graph_);
+    if (nodes_.size() == 1) {
+      // A scan alone is its own frame.
+      solved_.nodes.front().state = NodeState::registered;
+      solved_.nodes.front().component = 0;
+      solved_.components = 1;
+    }
+    result_.variance_factor = adjust_planes(nodes_, pairs_, made, solved_);
+    settle_frame();
+    for (std::size_t n = 0; n < nodes_.size(); ++n) tell_scan(n);
+    for (std::size_t k = 0; k < graph_.links.size(); ++k) tell_link(k);
+    result_.loops = solved_.loops;
+    result_.components = solved_.components;
+    for (const GraphQuestion& question : solved_.questions) tell_question(question);
+    fill_copies();
+    settle_outcome();
+  }
+
+ private:
+  [[nodiscard]] const ScanDigest& digest(int node) const {
+    return nodes_[static_cast<std::size_t>(node)].digest;
+  }
+  [[nodiscard]] std::string name_of(int node) const {
+    const ProjectScan& scan = result_.scans[nodes_[static_cast<std::size_t>(node)].scan];
+    const bool several = nodes_[static_cast<std::size_t>(node)].grouped || scan.index > 0;
+    return several ? fmt::format("{} #{}", scan.file, scan.index) : scan.file;
+  }
+
+  /// The first node of each component that stands firmly lends it its world.
+  void settle_frame() {
+    frame_node_.assign(static_cast<std::size_t>(std::max(1, solved_.components)), -1);
+    for (const bool firm : {true, false}) {
+      for (int n = 0; n < graph_.nodes; ++n) {
+        const SolvedNode& node = solved_.nodes[static_cast<std::size_t>(n)];
+        if (node.component < 0 || (firm && node.state != NodeState::registered)) continue;
+        int& frame = frame_node_[static_cast<std::size_t>(node.component)];
+        if (frame < 0) frame = n;
+      }
+    }
+    result_.frame_kind = "none";
+    if (solved_.components == 0) return;
+    const auto n = static_cast<std::size_t>(frame_node_.front());
+    result_.frame_scan = static_cast<int>(nodes_[n].scan);
+    result_.frame_kind = nodes_[n].digest.mobile  ? "mobile"
+                         : nodes_[n].digest.model ? "model"
+                         : nodes_[n].grouped      ? "file"
+                                                  : "station";
+  }
+
+  [[nodiscard]] Rigid3 world_pose(const Rigid3& solved, int node, int frame) const {
+    const Rigid3 local = inverse(solved_.nodes[static_cast<std::size_t>(frame)].frame_from_node) * solved;
+    return to_world(local, digest(node).local_origin, digest(frame).local_origin);
+  }
+
+  void tell_scan(std::size_t n) {
+    ProjectScan& scan = result_.scans[nodes_[n].scan];
+    const SolvedNode& node = solved_.nodes[n];
+    scan.component = node.component;
+    scan.state = node.state;
+    if (node.component < 0) {
+      scan.reason = "has nothing in common with any other scan that could be told for sure";
+      return;
+    }
+    const int frame = frame_node_[static_cast<std::size_t>(node.component)];
+    scan.frame_from_scan = world_pose(node.frame_from_node, static_cast<int>(n), frame);
+    for (const Rigid3& other : node.alternatives)
+      scan.alternatives.push_back(world_pose(other, static_cast<int>(n), frame));
+    for (const Vector3d& station : nodes_[n].digest.stations)
+      scan.stations.push_back(*scan.frame_from_scan * (nodes_[n].digest.local_origin + station));
+    tell_sigma(node, static_cast<int>(n), frame, scan);
+    tell_walls(nodes_[n].digest, scan);
+    // Only the first component has the project's frame.
+    if (node.component > 0 && scan.state != NodeState::floating) {
+      scan.state = NodeState::floating;
+      scan.reason = fmt::format(
+          "stands firmly with the other scans of component {}, but nothing joins them to the "
+          "project's frame",
+          node.component);
+      return;
+    }
+    scan.reason = reason_of(n);
+  }
+
+  void tell_sigma(const SolvedNode& node, int n, int frame, ProjectScan& scan) const {
+    const ScanDigest& own = digest(n);
+    const Vector3d at = own.stations.empty() ? own.middle : own.stations.front();
+    const Rigid3 frame_from_solved = inverse(solved_.nodes[static_cast<std::size_t>(frame)].frame_from_node);
+    const LinkPose pose{node.frame_from_node, node.covariance, node.frame_from_node.translation, 0.0};
+    const Matrix6d moved =
+        moved_covariance(pose, frame_from_solved, frame_from_solved * node.frame_from_node * at);
+    for (Eigen::Index k = 0; k < 3; ++k) {
+      scan.sigma.rotation_rad[k] = std::sqrt(std::max(0.0, moved(k, k)));
+      scan.sigma.translation_m[k] = std::sqrt(std::max(0.0, moved(k + 3, k + 3)));
+    }
+    scan.sigma.centre = *scan.frame_from_scan * (own.local_origin + at);
+  }
+
+  /// The upright planes: as long as tiles spread along them.
+  static void tell_walls(const ScanDigest& digest, ProjectScan& scan) {
+    constexpr double kUpright = 0.1;
+    constexpr double kWallM2 = 1.5;
+    constexpr double kMostM = 40.0;
+    for (const PlaneDigest& plane : digest.planes) {
+      const Vector3d normal = scan.frame_from_scan->rotation * plane.plane.normal;
+      if (std::abs(normal.z()) > kUpright || plane.area_m2 < kWallM2 || plane.moments.count < 3) continue;
+      const Vector3d along = Vector3d(-normal.y(), normal.x(), 0).normalized();
+      const Vector3d in_scan = scan.frame_from_scan->rotation.transpose() * along;
+      // Evenly spread tiles: the half length is the root of three deviations squared.
+      const double half = std::sqrt(3.0 * std::max(0.0, in_scan.dot(plane.moments.covariance() * in_scan)));
+      if (half > kMostM) continue;
+      const Vector3d middle =
+          *scan.frame_from_scan * (digest.local_origin + plane.centroid + plane.moments.mean());
+      scan.walls.push_back({middle - half * along, middle + half * along});
+    }
+  }
+
+  [[nodiscard]] std::string reason_of(std::size_t n) const {
+    std::size_t verified = 0;
+    std::size_t bridges = 0;
+    for (std::size_t k = 0; k < graph_.links.size(); ++k) {
+      const GraphLink& link = graph_.links[k];
+      if (link.source != static_cast<int>(n) && link.target != static_cast<int>(n)) continue;
+      verified += solved_.links[k].state == LinkState::verified ? 1 : 0;
+      bridges += solved_.links[k].state == LinkState::bridge ? 1 : 0;
+    }
+    switch (solved_.nodes[n].state) {
+      case NodeState::registered:
+        if (verified > 0)
+          return fmt::format("held by {} link{} checked by loops", verified, verified == 1 ? "" : "s");
+        if (bridges == 0) return "is alone";
+        return fmt::format("held by {} link{} that no loop checks", bridges, bridges == 1 ? "" : "s");
+      case NodeState::ambiguous:
+        return "stands in another place just as well: see alternatives and questions";
+      case NodeState::under_constrained:
+        return "its links leave a direction free, or hold it loosely";
+      case NodeState::floating:
+        break;
+    }
+    return "is joined to nothing";
+  }
+
+  void tell_link(std::size_t k) {
+    const GraphLink& link = graph_.links[k];
+    const ScanDigest& source = digest(link.source);
+    const ScanDigest& target = digest(link.target);
+    ProjectLink told;
+    told.source = static_cast<int>(nodes_[static_cast<std::size_t>(link.source)].scan);
+    told.target = static_cast<int>(nodes_[static_cast<std::size_t>(link.target)].scan);
+    told.solved = solved_.links[k];
+    const auto taken = static_cast<std::size_t>(std::max(0, told.solved.pose));
+    const auto world = [&](const LinkPose& pose) {
+      return to_world(pose.target_from_source, source.local_origin, target.local_origin);
+    };
+    told.target_from_source = world(link.poses[taken]);
+    told.agreeing_m2 = link.poses[taken].agreeing_m2;
+    const Vector6d sigma = link.poses[taken].covariance.diagonal().cwiseSqrt();
+    told.sigma = {sigma.head<3>(), sigma.tail<3>(), link.poses[taken].centre + target.local_origin};
+    for (std::size_t p = 0; p < link.poses.size(); ++p) {
+      if (p != taken) told.alternatives.push_back({world(link.poses[p]), link.poses[p].agreeing_m2});
+    }
+    told.given = link.trust == LinkTrust::given;
+    if (pair_of_[k] >= 0) {
+      const RegistrationResult& pair = pairs_[static_cast<std::size_t>(pair_of_[k])].result;
+      told.pair = pair.outcome;
+      told.reason = pair.reason;
+    } else {
+      told.pair = Outcome::registered;
+      told.reason = "given by the file";
+    }
+    result_.links.push_back(std::move(told));
+  }
+
+  [[nodiscard]] std::string words_of(const std::vector<int>& links) const {
+    std::string text;
+    for (std::size_t k = 0; k < links.size() && k < 3; ++k) {
+      const GraphLink& link = graph_.links[static_cast<std::size_t>(links[k])];
+      text += fmt::format("{}{} with {}", k == 0 ? "" : ", ", name_of(link.source), name_of(link.target));
+    }
+    if (links.size() > 3) text += fmt::format(" and {} more", links.size() - 3);
+    return text;
+  }
+
+  void tell_question(const GraphQuestion& question) {
+    ProjectQuestion told;
+    // Of one part there may be doubts about many places; its scans list them all.
+    for (const GraphQuestion& other : solved_.questions) {
+      if (&other == &question) break;
+      if (other.moved == question.moved && other.current == question.current) return;
+    }
+    std::string scans;
+    for (std::size_t k = 0; k < question.moved.size(); ++k) {
+      told.scans.push_back(static_cast<int>(nodes_[static_cast<std::size_t>(question.moved[k])].scan));
+      if (k < 3) scans += (k == 0 ? "" : ", ") + name_of(question.moved[k]);
+    }
+    if (question.moved.size() > 3) scans += fmt::format(" and {} more", question.moved.size() - 3);
+    told.current = question.current;
+    told.rival = question.rival;
+    if (question.rival.empty() && question.current.empty()) {
+      told.text = fmt::format(
+          "{} could stand in two places that the scans cannot tell apart: one more scan that "
+          "sees both it and a neighbour would settle it",
+          scans);
+    } else {
+      told.text = fmt::format(
+          "where does {} stand? For its place: {}. For another: {}. Which of these links is right?", scans,
+          question.current.empty() ? "nothing" : words_of(question.current),
+          question.rival.empty() ? "nothing" : words_of(question.rival));
+    }
+    result_.questions.push_back(std::move(told));
+  }
+
+  void fill_copies() {
+    for (ProjectScan& copy : result_.scans) {
+      if (copy.copy_of.empty() || !copy.readable) continue;
+      for (const ProjectScan& scan : result_.scans) {
+        if (scan.file != copy.copy_of || scan.index != copy.index) continue;
+        const std::string file = copy.file;
+        const std::string of = copy.copy_of;
+        copy = scan;
+        copy.file = file;
+        copy.copy_of = of;
+        copy.reason = "holds the same bytes as " + of + ", and stands where that stands";
+        break;
+      }
+    }
+  }
+
+  void settle_outcome() {
+    std::size_t all = 0;
+    std::size_t registered = 0;
+    std::size_t unreadable = 0;
+    for (const ProjectScan& scan : result_.scans) {
+      ++all;
+      registered += scan.readable && scan.state == NodeState::registered ? 1 : 0;
+      unreadable += scan.readable ? 0 : 1;
+    }
+    result_.outcome = registered == all        ? ProjectOutcome::registered
+                      : solved_.components > 0 ? ProjectOutcome::partial
+                                               : ProjectOutcome::no_match;
+    result_.reason = fmt::format("{} of {} scans stand in one frame", registered, all);
+    if (unreadable > 0) result_.reason += fmt::format(", {} could not be read", unreadable);
+    if (!result_.questions.empty())
+      result_.reason += fmt::format("; {} question{} open", result_.questions.size(),
+                                    result_.questions.size() == 1 ? " is" : "s are");
+  }
+
+  const std::vector<ProjectNode>& nodes_;
+  const std::vector<TriedPair>& pairs_;
+  ProjectResult& result_;
+  PoseGraph graph_;
+  SolvedGraph solved_;
+  std::vector<int> pair_of_;     ///< of each link: index into pairs_, -1: given
+  std::vector<int> frame_node_;  ///< of each component
+};
+
+}  // namespace
+
+void assemble(const std::vector<ProjectNode>& nodes, const std::vector<TriedPair>& pairs,
+              ProjectResult& result) {
+  Assembler(nodes, pairs, result).run();
+}
+
+}  // namespace limen

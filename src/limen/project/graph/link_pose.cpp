@@ -1,0 +1,46 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/project/graph/link_pose.h"
+
+#include <Eigen/Cholesky>
+
+namespace limen {
+namespace {
+
+Matrix3d skew(const Vector3d& v) {
+  Matrix3d m;
+  m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
+  return m;
+}
+
+}  // namespace
+
+LinkPose reversed(const LinkPose& pose) {
+  const Rigid3 back = inverse(pose.target_from_source);
+  LinkPose other{back, Matrix6d::Identity(), back * pose.centre, pose.agreeing_m2};
+  other.covariance = moved_covariance(pose, back, other.centre);
+  return other;
+}
+
+Matrix6d moved_covariance(const LinkPose& pose, const Rigid3& b_from_target, const Vector3d& at) {
+  // A motion (w, v about c) is (R w, R v + R w x (at - c')) about `at`, c' = the centre in b.
+  Matrix6d jacobian = Matrix6d::Zero();
+  jacobian.topLeftCorner<3, 3>() = b_from_target.rotation;
+  jacobian.bottomRightCorner<3, 3>() = b_from_target.rotation;
+  jacobian.bottomLeftCorner<3, 3>() = -skew(at - b_from_target * pose.centre) * b_from_target.rotation;
+  return jacobian * pose.covariance * jacobian.transpose();
+}
+
+Vector6d misfit(const LinkPose& measured, const Rigid3& predicted) {
+  const Vector3d in_source = inverse(measured.target_from_source) * measured.centre;
+  Vector6d e;
+  e.head<3>() = rotation_log(predicted.rotation * measured.target_from_source.rotation.transpose());
+  e.tail<3>() = predicted * in_source - measured.centre;
+  return e;
+}
+
+double chi_square(const Vector6d& misfit, const Matrix6d& covariance) {
+  return misfit.dot(covariance.ldlt().solve(misfit));
+}
+
+}  // namespace limen

@@ -1,0 +1,45 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "limen/project/graph/link_pose.h"
+
+namespace limen {
+
+/// One accepted pose between two nodes.
+struct PoseEdge {
+  int source = -1;
+  int target = -1;
+  LinkPose pose;
+};
+
+/// By how much an edge misses the poses of its ends, and the derivatives by small motions of them (turn about
+/// the node's own origin, shift; frame axes).
+struct EdgeResidual {
+  Vector6d value;
+  Matrix6d by_source;
+  Matrix6d by_target;
+};
+EdgeResidual edge_residual(const PoseEdge& edge, const Rigid3& frame_from_source,
+                           const Rigid3& frame_from_target);
+
+struct PoseAdjustment {
+  std::vector<Rigid3> frame_from_node;
+  std::vector<Matrix6d> covariance;       ///< of a turn about the node's origin and a shift; frame axes
+  std::vector<Matrix6d> edge_covariance;  ///< of the adjusted pose of each edge, as in LinkPose
+  std::vector<double> weights;            ///< robust weight of each edge, 0 .. 1
+};
+
+struct PoseAdjustmentOptions {
+  bool robust = true;       ///< graduated Geman-McClure weights; else plain least squares
+  bool covariance = false;  ///< fill the covariances
+};
+
+/// Least squares over edges (Gauss-Newton, sparse Cholesky). Nodes with `fixed[i]` keep their pose; every
+/// other node must be joined to a fixed one by edges.
+PoseAdjustment adjust_poses(const std::vector<Rigid3>& start, const std::vector<bool>& fixed,
+                            const std::vector<PoseEdge>& edges, const PoseAdjustmentOptions& options = {});
+
+}  // namespace limen

@@ -1,0 +1,103 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "limen/project/graph/link_pose.h"
+
+namespace limen {
+
+/// What is known of how a link's pose came about.
+enum class LinkTrust {
+  given,  ///< the files say so
+  sure,   ///< one pose explains the pair clearly better than every other
+  open,   ///< several poses explain the pair: the first is the best, the others are as likely
+  weak    ///< the pose leaves a direction free
+};
+
+/// What a pair of nodes says of their poses; no pose is thrown away.
+struct GraphLink {
+  int source = -1;
+  int target = -1;
+  LinkTrust trust = LinkTrust::sure;
+  std::vector<LinkPose> poses;  ///< at least one; best first
+};
+
+/// Nodes are scans and models: 0 .. nodes - 1, the lower ones first where one has to be chosen.
+struct PoseGraph {
+  int nodes = 0;
+  std::vector<GraphLink> links;
+};
+
+/// What became of a link.
+enum class LinkState {
+  verified,   ///< at least one loop that it is part of closes
+  bridge,     ///< accepted, but part of no loop: nothing can check it
+  ambiguous,  ///< another pose, here or elsewhere, explains as much
+  rejected,   ///< contradicts the loops
+  weak        ///< leaves a direction free, or agrees with too little to count
+};
+const char* to_string(LinkState state);
+
+struct SolvedLink {
+  LinkState state = LinkState::weak;
+  int pose = -1;                ///< index of the accepted pose; -1: none
+  double loop_error_m = 0.0;    ///< shift between the measured pose and that of the solution ...
+  double loop_error_rad = 0.0;  ///< ... and turn; without meaning where the two ends are not joined
+  double chi_square = 0.0;      ///< the same in standard deviations, squared; 6 freedoms
+  double redundancy = 0.0;      ///< share of the link's six numbers that the others check, 0 .. 6
+};
+
+enum class NodeState {
+  registered,
+  ambiguous,          ///< stands elsewhere just as well
+  under_constrained,  ///< held, but some direction is free
+  floating            ///< joined to nothing
+};
+const char* to_string(NodeState state);
+
+struct SolvedNode {
+  NodeState state = NodeState::floating;
+  int component = -1;                      ///< 0: the largest; -1: joined to nothing
+  Rigid3 frame_from_node;                  ///< in the frame of the first node of its component
+  Matrix6d covariance = Matrix6d::Zero();  ///< of a turn about the node's origin and a shift; frame axes, SI
+  std::vector<Rigid3> alternatives;        ///< other poses that explain as much; frame
+};
+
+/// Two ways to put one part of a component against the rest that the data cannot tell apart.
+struct GraphQuestion {
+  std::vector<int> moved;    ///< nodes that would move
+  std::vector<int> current;  ///< links that speak for the present place only
+  std::vector<int> rival;    ///< links that speak for the other place only
+  Rigid3 frame_from_frame;   ///< how they would move
+};
+
+/// A loop of three or four links that was tested.
+struct GraphLoop {
+  std::vector<int> links;
+  double error_m = 0.0;
+  double error_rad = 0.0;
+  double chi_square = 0.0;
+  bool closes = false;
+};
+
+struct SolvedGraph {
+  std::vector<SolvedNode> nodes;
+  std::vector<SolvedLink> links;
+  std::vector<GraphLoop> loops;
+  std::vector<GraphQuestion> questions;
+  int components = 0;  ///< of two nodes or more
+};
+
+/// Puts all nodes that the links hold together into one frame per component.
+///
+/// Loops of three links vote for the poses that close them; parts are joined in the order of their votes, the
+/// links between two parts deciding together; least squares with a robust weight (Geman-McClure, made strict
+/// step by step) over what was accepted; what then misses its covariance is rejected. In the end every pose
+/// that was not taken is tried again: where the links that speak for it alone are not clearly fewer than
+/// those that speak against it alone, the part that it would move is ambiguous.
+SolvedGraph solve_graph(const PoseGraph& graph);
+
+}  // namespace limen

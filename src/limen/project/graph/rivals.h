@@ -1,0 +1,26 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "limen/project/graph/pose_graph.h"
+
+namespace limen {
+
+/// A solution to be put to the test.
+struct AcceptedPoses {
+  std::vector<Rigid3> frame_from_node;
+  std::vector<int> component;  ///< of each node, -1: none
+  std::vector<int> pose;       ///< of each link: the accepted one, -1: none
+};
+
+/// Every pose that was not accepted would move one of its ends, and with it all that hangs together with that
+/// end: the smallest cut of the accepted links that the movement breaks (those that can follow it by another
+/// of their poses cost nothing) divides the component; tried are the cut next to either end, and the one
+/// between what is linked to one end and the other. Links on the cut speak for the present place, the
+/// other place, or both; those that see the same surface count once. Listed are the movements for which the
+/// other place has more than a third of the present one's links.
+std::vector<GraphQuestion> rival_places(const PoseGraph& graph, const AcceptedPoses& accepted);
+
+}  // namespace limen

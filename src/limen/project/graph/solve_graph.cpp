@@ -1,0 +1,350 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <map>
+#include <utility>
+
+#include "limen/base/progress.h"
+#include "limen/project/graph/grow_parts.h"
+#include "limen/project/graph/loops.h"
+#include "limen/project/graph/pose_adjustment.h"
+#include "limen/project/graph/pose_graph.h"
+#include "limen/project/graph/rivals.h"
+
+namespace limen {
+namespace {
+
+constexpr int kRounds = 4;           // of accepting links and adjusting
+constexpr double kFirstGate = 16.0;  // times the bound, before the first adjustment
+constexpr std::size_t kLoopsPerLink = 8;
+constexpr double kFixedM = 0.05;  // a weak link's node that is known this well by several is held after all
+constexpr double kFixedRad = 0.01;
+
+/// Marks every edge that is part of no cycle (Tarjan 1974), without recursion.
+std::vector<bool> bridges_of(int nodes, const std::vector<PoseEdge>& edges) {
+  std::vector<std::vector<std::pair<int, std::size_t>>> arms(static_cast<std::size_t>(nodes));
+  for (std::size_t e = 0; e < edges.size(); ++e) {
+    if (edges[e].source == edges[e].target) continue;
+    arms[static_cast<std::size_t>(edges[e].source)].emplace_back(edges[e].target, e);
+    arms[static_cast<std::size_t>(edges[e].target)].emplace_back(edges[e].source, e);
+  }
+  std::vector<bool> bridge(edges.size(), false);
+  std::vector<int> order(arms.size(), -1);
+  std::vector<int> low(arms.size(), 0);
+  struct Visit {
+    std::size_t node;
+    std::size_t by;
+    std::size_t next;
+  };
+  int count = 0;
+  for (std::size_t root = 0; root < arms.size(); ++root) {
+    if (order[root] >= 0) continue;
+    std::vector<Visit> stack{{root, edges.size(), 0}};
+    order[root] = low[root] = count++;
+    while (!stack.empty()) {
+      Visit& top = stack.back();
+      if (top.next < arms[top.node].size()) {
+        const auto [to, edge] = arms[top.node][top.next++];
+        const auto other = static_cast<std::size_t>(to);
+        if (edge == top.by) continue;
+        if (order[other] >= 0) {
+          low[top.node] = std::min(low[top.node], order[other]);
+        } else {
+          order[other] = low[other] = count++;
+          stack.push_back({other, edge, 0});
+        }
+        continue;
+      }
+      const Visit done = top;
+      stack.pop_back();
+      if (stack.empty()) continue;
+      Visit& parent = stack.back();
+      low[parent.node] = std::min(low[parent.node], low[done.node]);
+      if (low[done.node] > order[parent.node]) bridge[done.by] = true;
+    }
+  }
+  return bridge;
+}
+
+class Solver {
+ public:
+  explicit Solver(const PoseGraph& graph) : graph_(graph) {
+    solved_.nodes.resize(static_cast<std::size_t>(graph.nodes));
+    solved_.links.resize(graph.links.size());
+  }
+
+  SolvedGraph run() {
+    grown_ = grow_parts(graph_, loop_votes(graph_));
+    accepted_.frame_from_node = grown_.part_from_node;
+    accepted_.component = grown_.part;
+    accepted_.pose.assign(graph_.links.size(), -1);
+    for (int round = 0; round < kRounds; ++round) {
+      accept(round == 0 ? kFirstGate : round + 1 < kRounds ? 4.0 : 1.0);
+      settle_components();
+      adjust(false);
+    }
+    accept(1.0);
+    settle_components();
+    adjust(true);
+    number_components();
+    judge_nodes();
+    solved_.questions = rival_places(graph_, accepted_);
+    heed_questions();
+    judge_links();
+    solved_.loops = tested_loops(graph_, accepted_.pose, kLoopsPerLink);
+    return std::move(solved_);
+  }
+
+ private:
+  [[nodiscard]] Rigid3 predicted(const GraphLink& link) const {
+    return inverse(at(link.target)) * at(link.source);
+  }
+  [[nodiscard]] const Rigid3& at(int node) const {
+    return accepted_.frame_from_node[static_cast<std::size_t>(node)];
+  }
+  [[nodiscard]] int component(int node) const { return accepted_.component[static_cast<std::size_t>(node)]; }
+
+  /// Of each link within a part the pose nearest to the present ones, where it is near enough.
+  void accept(double gate) {
+    for (std::size_t k = 0; k < graph_.links.size(); ++k) {
+      const GraphLink& link = graph_.links[k];
+      accepted_.pose[k] = -1;
+      if (component(link.source) != component(link.target)) continue;
+      double best = gate * kChiSquareBound;
+      // Of a sure link the other poses are there to be told, not to be taken.
+      const std::size_t count = link.trust <= LinkTrust::sure ? 1 : link.poses.size();
+      for (std::size_t p = 0; p < count; ++p) {
+        const double squared = chi_square(misfit(link.poses[p], predicted(link)), link.poses[p].covariance);
+        if (squared > best) continue;
+        best = squared;
+        accepted_.pose[k] = static_cast<int>(p);
+      }
+    }
+  }
+
+  void settle_components() {
+    std::vector<int> root(static_cast<std::size_t>(graph_.nodes));
+    for (std::size_t i = 0; i < root.size(); ++i) root[i] = static_cast<int>(i);
+    const auto find = [&](int i) {
+      while (root[static_cast<std::size_t>(i)] != i) i = root[static_cast<std::size_t>(i)];
+      return i;
+    };
+    for (std::size_t k = 0; k < graph_.links.size(); ++k) {
+      if (accepted_.pose[k] < 0) continue;
+      const int a = find(graph_.links[k].source);
+      const int b = find(graph_.links[k].target);
+      root[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
+    }
+    for (int i = 0; i < graph_.nodes; ++i) accepted_.component[static_cast<std::size_t>(i)] = find(i);
+  }
+
+  [[nodiscard]] std::vector<PoseEdge> edges() const {
+    std::vector<PoseEdge> list;
+    for (std::size_t k = 0; k < graph_.links.size(); ++k) {
+      if (accepted_.pose[k] < 0) continue;
+      const GraphLink& link = graph_.links[k];
+      list.push_back({link.source, link.target, link.poses[static_cast<std::size_t>(accepted_.pose[k])]});
+    }
+    return list;
+  }
+
+  /// The same without those that leave a direction free: a loop through one of them checks little. They stay
+  /// in the list, from a node to itself, so that numbers agree.
+  [[nodiscard]] std::vector<PoseEdge> firm_edges() const {
+    std::vector<PoseEdge> list = edges();
+    std::size_t edge = 0;
+    for (std::size_t k = 0; k < graph_.links.size(); ++k) {
+      if (accepted_.pose[k] < 0) continue;
+      if (graph_.links[k].trust == LinkTrust::weak) list[edge].target = list[edge].source;
+      ++edge;
+    }
+    return list;
+  }
+
+  /// The first node of each component that was joined surely keeps its pose.
+  [[nodiscard]] std::vector<int> references() const {
+    std::vector<int> first(static_cast<std::size_t>(graph_.nodes), -1);
+    for (const bool sure : {true, false}) {
+      for (int i = 0; i < graph_.nodes; ++i) {
+        int& reference = first[static_cast<std::size_t>(component(i))];
+        const bool firm = grown_.trust[static_cast<std::size_t>(i)] == JoinTrust::sure;
+        if (reference < 0 && firm == sure) reference = i;
+      }
+    }
+    return first;
+  }
+
+  void adjust(bool last) {
+    const std::vector<int> references_of = references();
+    std::vector<bool> fixed(static_cast<std::size_t>(graph_.nodes), false);
+    for (const int reference : references_of) {
+      if (reference >= 0) fixed[static_cast<std::size_t>(reference)] = true;
+    }
+    // About the reference, so that it is the frame.
+    std::vector<Rigid3> start = accepted_.frame_from_node;
+    for (int i = 0; i < graph_.nodes; ++i) {
+      const int reference = references_of[static_cast<std::size_t>(component(i))];
+      start[static_cast<std::size_t>(i)] = inverse(at(reference)) * at(i);
+    }
+    for (const int reference : references_of) {
+      if (reference >= 0) start[static_cast<std::size_t>(reference)] = Rigid3{};
+    }
+    const std::vector<PoseEdge> list = edges();
+    PoseAdjustment adjusted = adjust_poses(start, fixed, list, {!last, last});
+    accepted_.frame_from_node = std::move(adjusted.frame_from_node);
+    if (!last) return;
+    covariance_ = std::move(adjusted.covariance);
+    bridge_ = bridges_of(graph_.nodes, firm_edges());
+    edge_covariance_ = std::move(adjusted.edge_covariance);
+  }
+
+  /// The largest component first; single nodes belong to none.
+  void number_components() {
+    std::map<int, int> sizes;
+    for (const int root : accepted_.component) ++sizes[root];
+    std::vector<std::pair<int, int>> order;
+    for (const auto& [root, size] : sizes) {
+      if (size > 1) order.emplace_back(-size, root);
+    }
+    std::sort(order.begin(), order.end());
+    std::map<int, int> number;
+    for (std::size_t k = 0; k < order.size(); ++k) number[order[k].second] = static_cast<int>(k);
+    solved_.components = static_cast<int>(order.size());
+    for (int& root : accepted_.component) root = number.count(root) > 0 ? number[root] : -1;
+  }
+
+  void judge_nodes() {
+    for (std::size_t i = 0; i < solved_.nodes.size(); ++i) {
+      SolvedNode& node = solved_.nodes[i];
+      node.component = accepted_.component[i];
+      if (node.component < 0) continue;
+      node.frame_from_node = accepted_.frame_from_node[i];
+      node.covariance = covariance_[i];
+      const Vector6d variances = node.covariance.diagonal();
+      const bool held = variances.head<3>().maxCoeff() < kFixedRad * kFixedRad &&
+                        variances.tail<3>().maxCoeff() < kFixedM * kFixedM;
+      node.state = grown_.trust[i] == JoinTrust::sure   ? NodeState::registered
+                   : grown_.trust[i] == JoinTrust::open ? NodeState::ambiguous
+                                                        : NodeState::under_constrained;
+      if (node.state == NodeState::registered && !held) node.state = NodeState::under_constrained;
+    }
+  }
+
+  /// What might stand elsewhere is ambiguous: the side of the cut without the first node of the component.
+  void heed_questions() {
+    for (GraphQuestion& question : solved_.questions) {
+      const int home = accepted_.component[static_cast<std::size_t>(question.moved.front())];
+      std::vector<bool> moves(solved_.nodes.size(), false);
+      for (const int node : question.moved) moves[static_cast<std::size_t>(node)] = true;
+      std::size_t moving = 0;
+      std::size_t all = 0;
+      std::size_t first = solved_.nodes.size();
+      for (std::size_t i = 0; i < solved_.nodes.size(); ++i) {
+        if (accepted_.component[i] != home) continue;
+        first = std::min(first, i);
+        ++all;
+        moving += moves[i] ? 1 : 0;
+      }
+      // The smaller side is the one in doubt.
+      if (2 * moving > all || (2 * moving == all && moves[first])) {
+        question.frame_from_frame = inverse(question.frame_from_frame);
+        question.moved.clear();
+        for (std::size_t i = 0; i < solved_.nodes.size(); ++i) {
+          if (accepted_.component[i] == home && !moves[i]) question.moved.push_back(static_cast<int>(i));
+        }
+      }
+      for (const int moved : question.moved) {
+        SolvedNode& node = solved_.nodes[static_cast<std::size_t>(moved)];
+        node.state = NodeState::ambiguous;
+        node.alternatives.push_back(question.frame_from_frame * node.frame_from_node);
+      }
+      for (const int link : question.current) doubted_[link] = true;
+      for (const int link : question.rival) doubted_[link] = true;
+    }
+  }
+
+  void judge_links() {
+    std::size_t edge = 0;
+    for (std::size_t k = 0; k < graph_.links.size(); ++k) {
+      const GraphLink& link = graph_.links[k];
+      SolvedLink& solved = solved_.links[k];
+      solved.pose = accepted_.pose[k];
+      const bool joined = component(link.source) >= 0 && component(link.source) == component(link.target);
+      if (joined) {
+        const LinkPose& pose = link.poses[static_cast<std::size_t>(std::max(0, solved.pose))];
+        const Vector6d missed = misfit(pose, predicted(link));
+        solved.loop_error_rad = missed.head<3>().norm();
+        solved.loop_error_m = missed.tail<3>().norm();
+        solved.chi_square = chi_square(missed, pose.covariance);
+      }
+      if (solved.pose < 0) {
+        solved.state = link.trust == LinkTrust::weak ? LinkState::weak
+                       : link.trust == LinkTrust::open || doubted_.count(static_cast<int>(k)) > 0
+                           ? LinkState::ambiguous
+                           : LinkState::rejected;
+        continue;
+      }
+      const LinkPose& pose = link.poses[static_cast<std::size_t>(solved.pose)];
+      const Matrix6d part = edge_covariance_[edge] * pose.covariance.inverse();
+      solved.redundancy = std::clamp(6.0 - part.trace(), 0.0, 6.0);
+      const bool bridge = bridge_[edge];
+      ++edge;
+      if (link.trust == LinkTrust::weak) {
+        solved.state = LinkState::weak;
+      } else if (doubted_.count(static_cast<int>(k)) > 0 || (bridge && link.trust == LinkTrust::open)) {
+        solved.state = LinkState::ambiguous;
+      } else {
+        solved.state = bridge ? LinkState::bridge : LinkState::verified;
+      }
+    }
+  }
+
+  const PoseGraph& graph_;
+  GrownParts grown_;
+  AcceptedPoses accepted_;
+  std::vector<Matrix6d> covariance_;
+  std::vector<Matrix6d> edge_covariance_;
+  std::vector<bool> bridge_;
+  std::map<int, bool> doubted_;
+  SolvedGraph solved_;
+};
+
+}  // namespace
+
+const char* to_string(LinkState state) {
+  switch (state) {
+    case LinkState::verified:
+      return "verified";
+    case LinkState::bridge:
+      return "bridge";
+    case LinkState::ambiguous:
+      return "ambiguous";
+    case LinkState::rejected:
+      return "rejected";
+    case LinkState::weak:
+      break;
+  }
+  return "weak";
+}
+
+const char* to_string(NodeState state) {
+  switch (state) {
+    case NodeState::registered:
+      return "registered";
+    case NodeState::ambiguous:
+      return "ambiguous";
+    case NodeState::under_constrained:
+      return "under_constrained";
+    case NodeState::floating:
+      break;
+  }
+  return "floating";
+}
+
+SolvedGraph solve_graph(const PoseGraph& graph) {
+  return Solver(graph).run();
+}
+
+}  // namespace limen

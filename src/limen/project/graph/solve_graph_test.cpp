@@ -1,0 +1,159 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "support/synthetic_graph.h"
+#include <gtest/gtest.h>
+
+#include "limen/project/graph/pose_graph.h"
+
+namespace limen {
+namespace {
+
+bool taken(const SolvedLink& link) {
+  return link.pose >= 0;
+}
+
+/// Poses of two nodes to one another, against the truth: metres at the source's place.
+double error_of(const SyntheticGraph& made, const SolvedGraph& solved, std::size_t a, std::size_t b) {
+  const Rigid3 truth = inverse(made.world_from_node[a]) * made.world_from_node[b];
+  const Rigid3 found = inverse(solved.nodes[a].frame_from_node) * solved.nodes[b].frame_from_node;
+  return (truth.translation - found.translation).norm();
+}
+
+TEST(SolveGraph, TrueLinksAreAllKeptAndCheckedByLoops) {
+  const SyntheticGraph made = synthetic_graph(6, 5, 5, 0.0, 3);
+  const SolvedGraph solved = solve_graph(made.graph);
+  EXPECT_EQ(solved.components, 1);
+  std::size_t verified = 0;
+  for (const SolvedLink& link : solved.links) verified += link.state == LinkState::verified ? 1 : 0;
+  EXPECT_GE(verified + 1, solved.links.size());
+  for (std::size_t n = 1; n < solved.nodes.size(); ++n) {
+    EXPECT_EQ(solved.nodes[n].state, NodeState::registered);
+    EXPECT_LT(error_of(made, solved, 0, n), 0.05);
+  }
+}
+
+TEST(SolveGraph, FalseLinksAreFoundByTheirLoops) {
+  std::size_t kept = 0;
+  std::size_t all_true = 0;
+  for (std::uint64_t seed = 1; seed <= 100; ++seed) {
+    const SyntheticGraph made = synthetic_graph(6, 5, 6, 0.3, seed);
+    const SolvedGraph solved = solve_graph(made.graph);
+    for (std::size_t k = 0; k < made.graph.links.size(); ++k) {
+      if (made.is_false[k]) {
+        EXPECT_NE(solved.links[k].state, LinkState::verified) << "seed " << seed << " link " << k;
+      } else {
+        ++all_true;
+        kept += taken(solved.links[k]) ? 1 : 0;
+      }
+    }
+    for (std::size_t n = 1; n < solved.nodes.size(); ++n) {
+      if (solved.nodes[n].state != NodeState::registered || solved.nodes[0].state != NodeState::registered)
+        continue;
+      if (solved.nodes[n].component == solved.nodes[0].component) {
+        EXPECT_LT(error_of(made, solved, 0, n), 0.08) << "seed " << seed << " node " << n;
+      }
+    }
+  }
+  EXPECT_GE(static_cast<double>(kept), 0.99 * static_cast<double>(all_true));
+}
+
+TEST(SolveGraph, ALinkInNoLoopIsABridge) {
+  SyntheticGraph made = synthetic_graph(3, 1, 2, 0.0, 5);
+  // A fourth node by one link.
+  RandomStream random(5, 1);
+  made.graph.nodes = 4;
+  GraphLink link;
+  link.source = 3;
+  link.target = 0;
+  link.poses = {measured_pose(random_pose(random, 5.0), 10.0, random)};
+  made.graph.links.push_back(link);
+  const SolvedGraph solved = solve_graph(made.graph);
+  EXPECT_EQ(solved.links.back().state, LinkState::bridge);
+  EXPECT_NEAR(solved.links.back().redundancy, 0.0, 1e-6);
+  EXPECT_EQ(solved.links.front().state, LinkState::verified);
+}
+
+TEST(SolveGraph, AnOpenLinkIsSettledByItsLoop) {
+  SyntheticGraph made = synthetic_graph(3, 1, 2, 0.0, 8);
+  ASSERT_EQ(made.graph.links.size(), 3U);
+  RandomStream random(8, 1);
+  GraphLink& link = made.graph.links.back();
+  link.trust = LinkTrust::open;
+  link.poses.insert(link.poses.begin(), measured_pose(random_pose(random, 5.0), 12.0, random));
+  const SolvedGraph solved = solve_graph(made.graph);
+  EXPECT_EQ(solved.links.back().pose, 1);
+  for (const SolvedNode& node : solved.nodes) EXPECT_EQ(node.state, NodeState::registered);
+}
+
+TEST(SolveGraph, AnOpenLinkThatNothingSettlesLeavesItsScanAmbiguous) {
+  SyntheticGraph made = synthetic_graph(3, 1, 2, 0.0, 9);
+  RandomStream random(9, 1);
+  made.graph.nodes = 4;
+  GraphLink link;
+  link.source = 3;
+  link.target = 1;
+  link.trust = LinkTrust::open;
+  link.poses = {measured_pose(random_pose(random, 5.0), 10.0, random),
+                measured_pose(random_pose(random, 5.0), 10.0, random)};
+  made.graph.links.push_back(link);
+  const SolvedGraph solved = solve_graph(made.graph);
+  EXPECT_EQ(solved.nodes[3].state, NodeState::ambiguous);
+  EXPECT_FALSE(solved.nodes[3].alternatives.empty());
+  EXPECT_EQ(solved.nodes[1].state, NodeState::registered);
+  EXPECT_FALSE(solved.questions.empty());
+}
+
+/// Two rooms alike, scanned three times each, and a corridor that sees both: each pair of scans of different
+/// rooms is taken for one room, and all these false links agree with one another.
+TEST(SolveGraph, TwinRoomsLinkedWronglyAreNeverRegisteredBoth) {
+  RandomStream random(4, 1);
+  PoseGraph graph;
+  graph.nodes = 7;
+  std::vector<Rigid3> truth(7);
+  const Vector3d twin(6.8, 0, 0);
+  for (std::size_t k = 0; k < 3; ++k) {
+    truth[k].translation = {static_cast<double>(k), 1.0, 0};
+    truth[k + 3].translation = truth[k].translation + twin;
+  }
+  truth[6].translation = {3, -3, 0};
+  const auto add = [&](int source, int target, bool as_one_room, double agreeing) {
+    Rigid3 from = truth[static_cast<std::size_t>(source)];
+    if (as_one_room && source >= 3) from.translation -= twin;
+    GraphLink link;
+    link.source = source;
+    link.target = target;
+    link.poses = {measured_pose(inverse(truth[static_cast<std::size_t>(target)]) * from, agreeing, random)};
+    graph.links.push_back(link);
+  };
+  for (int a = 0; a < 3; ++a) {
+    for (int b = 0; b < a; ++b) {
+      add(a, b, false, 40.0);
+      add(a + 3, b + 3, false, 40.0);
+    }
+    for (int b = 0; b < 3; ++b) add(a + 3, b, true, 38.0);
+    add(6, a, false, 6.0);
+    add(6, a + 3, false, 6.0);
+  }
+  const SolvedGraph solved = solve_graph(graph);
+  EXPECT_FALSE(solved.questions.empty());
+  for (std::size_t a = 0; a < 7; ++a) {
+    for (std::size_t b = 0; b < a; ++b) {
+      if (solved.nodes[a].state != NodeState::registered || solved.nodes[b].state != NodeState::registered)
+        continue;
+      const Rigid3 found = inverse(solved.nodes[b].frame_from_node) * solved.nodes[a].frame_from_node;
+      const Rigid3 right = inverse(truth[b]) * truth[a];
+      EXPECT_LT((found.translation - right.translation).norm(), 0.05) << a << " and " << b;
+    }
+  }
+}
+
+TEST(SolveGraph, TheSameGraphGivesTheSameBits) {
+  const SyntheticGraph made = synthetic_graph(5, 4, 5, 0.2, 2);
+  const SolvedGraph a = solve_graph(made.graph);
+  const SolvedGraph b = solve_graph(made.graph);
+  for (std::size_t n = 0; n < a.nodes.size(); ++n)
+    EXPECT_EQ(to_matrix(a.nodes[n].frame_from_node), to_matrix(b.nodes[n].frame_from_node));
+}
+
+}  // namespace
+}  // namespace limen

@@ -1,0 +1,50 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "limen/base/progress.h"
+#include "limen/io/table/scan_file.h"
+#include "limen/project/project_result.h"
+#include "limen/register/register.h"
+
+namespace limen {
+
+struct ProjectOptions {
+  RegisterOptions registering;
+  ReadOptions reading;
+  bool all_pairs = false;       ///< every pair is tried, however many there are
+  int pairs_per_scan = 12;      ///< else: as many per scan at most, on average
+  bool stations_apart = false;  ///< scans of one file are not known to one another
+
+  void check() const;
+};
+
+/// Scans and models by their files, in any order.
+struct ProjectInputs {
+  std::vector<std::string> scans;
+  std::vector<std::string> models;
+};
+
+/// Puts any number of scans, and building models, into one frame. Features of scans and results of pairs are
+/// kept under `folder`/store, and only what is missing is made. A file that cannot be read is told in its
+/// scan's reason. The result depends on the names and bytes of the files and the options alone.
+/// Throws Error where there is no scan, or the store cannot be written.
+ProjectResult run_project(const ProjectInputs& inputs, const std::filesystem::path& folder,
+                          const ProjectOptions& options = {}, Monitor& monitor = silent_monitor());
+
+/// How far a project is, from its folder alone.
+struct ProjectStatus {
+  std::string stage;      ///< "features", "pairs", "done"
+  std::size_t scans = 0;  ///< files in the last run
+  std::size_t ready = 0;  ///< files whose features are kept
+  std::size_t pairs = 0;  ///< pairs chosen so far
+  std::size_t tried = 0;  ///< of them: whose result is kept
+};
+/// Throws Error where `folder` holds no project.
+ProjectStatus project_status(const std::filesystem::path& folder);
+
+}  // namespace limen

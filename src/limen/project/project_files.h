@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "limen/base/progress.h"
+#include "limen/project/project.h"
+
+namespace limen {
+
+/// A file of a project.
+struct ProjectFile {
+  std::string path;  ///< as the user wrote it
+  bool model = false;
+  std::string sha256;   ///< empty where it cannot be read
+  std::string copy_of;  ///< the first file with the same bytes; empty: none
+  std::string fault;    ///< why it cannot be read; empty: it can
+};
+
+struct ProjectFiles {
+  std::vector<ProjectFile> files;  ///< by name, each path once
+  std::vector<std::string> notes;
+};
+
+/// The files in an order that does not depend on how they were given, with their hashes. Scans that turn out
+/// to be models are taken as such.
+ProjectFiles list_files(const ProjectInputs& inputs, Monitor& monitor);
+
+/// Text that is compared number by number: "scan 2" stands before "scan 10".
+bool comes_before(const std::string& a, const std::string& b);
+
+}  // namespace limen

@@ -1,0 +1,27 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "limen/project/graph/pose_graph.h"
+#include "limen/project/project_state.h"
+
+namespace limen {
+
+/// Pairs as links of a graph, node by node.
+struct ProjectGraph {
+  PoseGraph graph;
+  std::vector<int> pair_of;  ///< of each link: index of its pair, -1: the file gives it
+};
+
+/// Every pair that found something, with all its poses, and what files say of their own scans.
+ProjectGraph make_graph(const std::vector<ProjectNode>& nodes, const std::vector<TriedPair>& pairs);
+
+/// The solved poses once more, with all planes that accepted links show to be shared (adjust/); nodes that
+/// stand alone stay. Returns the factor by which the planes' deviations miss what was taken for them; 0:
+/// there was nothing to adjust.
+double adjust_planes(const std::vector<ProjectNode>& nodes, const std::vector<TriedPair>& pairs,
+                     const ProjectGraph& made, SolvedGraph& solved);
+
+}  // namespace limen

@@ -1,0 +1,92 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "limen/model/result.h"
+#include "limen/project/graph/pose_graph.h"
+
+namespace limen {
+
+/// What a project found as a whole.
+enum class ProjectOutcome {
+  registered,  ///< every scan stands in one component, and none is in doubt
+  partial,     ///< some do
+  no_match     ///< no scan was joined to another
+};
+const char* to_string(ProjectOutcome outcome);
+
+/// An upright plane as a plan shows it: its two ends.
+struct PlanWall {
+  Vector3d from = Vector3d::Zero();
+  Vector3d to = Vector3d::Zero();
+};
+
+/// One scan (a station, a mobile pass) or one building model.
+struct ProjectScan {
+  std::string file;    ///< as the user wrote it
+  int index = 0;       ///< of the scan within its file, from 0
+  std::string sha256;  ///< of the file's bytes
+  bool model = false;
+  bool mobile = false;
+  bool readable = true;
+  std::string copy_of;  ///< another file of the same bytes; empty: none
+  std::size_t points = 0;
+  NodeState state = NodeState::floating;
+  int component = -1;  ///< 0: the project's; others have a frame of their own; -1: joined to nothing
+  /// World of the component's frame from the scan's world; empty where it was joined to nothing.
+  std::optional<Rigid3> frame_from_scan;
+  PoseSigma sigma;                   ///< against the frame's own scan, frame axes
+  std::vector<Rigid3> alternatives;  ///< of an ambiguous scan: other places that explain as much
+  std::string reason;                ///< one sentence for a user
+  std::vector<Vector3d> stations;    ///< where the scanner stood, world of the component's frame
+  std::vector<PlanWall> walls;       ///< its upright planes from above, the same frame
+};
+
+struct ProjectAlternative {
+  Rigid3 target_from_source;
+  double agreeing_m2 = 0.0;
+};
+
+/// A pair of scans that have something in common.
+struct ProjectLink {
+  int source = -1;  ///< index into ProjectResult::scans
+  int target = -1;
+  Outcome pair = Outcome::no_match;  ///< what the pair alone says
+  bool given = false;                ///< the file says how its scans stand to one another
+  SolvedLink solved;
+  Rigid3 target_from_source;  ///< the accepted pose, else the best of the pair; world to world
+  PoseSigma sigma;
+  double agreeing_m2 = 0.0;
+  std::vector<ProjectAlternative> alternatives;
+  std::string reason;
+};
+
+/// What would settle a doubt.
+struct ProjectQuestion {
+  std::string text;
+  std::vector<int> scans;    ///< that would move
+  std::vector<int> current;  ///< links that speak for the present place
+  std::vector<int> rival;    ///< links that speak for the other
+};
+
+struct ProjectResult {
+  ProjectOutcome outcome = ProjectOutcome::no_match;
+  std::string reason;
+  std::string frame_kind;  ///< "mobile", "model", "file", "station", or "none"
+  int frame_scan = -1;     ///< the scan whose world coordinates are the frame
+  std::vector<ProjectScan> scans;
+  std::vector<ProjectLink> links;
+  std::vector<GraphLoop> loops;  ///< of links, by index
+  std::vector<ProjectQuestion> questions;
+  std::vector<std::string> notes;
+  std::size_t pairs_tried = 0;
+  double variance_factor = 0.0;  ///< of the joint adjustment of planes; 0: there was none
+  int components = 0;
+};
+
+}  // namespace limen

@@ -1,0 +1,23 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "limen/model/result.h"
+#include "limen/register/prepare/prepare_scan.h"
+
+namespace limen {
+
+/// All of a prepared scan or model that registration uses (not the planes of its points), as bytes and back:
+/// a registration with what comes back gives the same bits. Throws Error for a group of scans.
+std::string bytes_of(const PreparedScan& prepared);
+/// `where` stands in messages. Throws Error where the bytes are damaged.
+PreparedScan prepared_from(std::string_view bytes, const std::string& where);
+
+/// The same of a registration; its picture and its stages are left out.
+std::string bytes_of(const RegistrationResult& result);
+RegistrationResult result_from(std::string_view bytes, const std::string& where);
+
+}  // namespace limen

@@ -1,0 +1,76 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/project/store/prepared_bytes.h"
+
+#include <filesystem>
+#include <fstream>
+
+#include "support/synthetic_room.h"
+#include "support/test_support.h"
+#include <gtest/gtest.h>
+
+#include "limen/base/error.h"
+#include "limen/project/store/packed_file.h"
+#include "limen/register/register.h"
+
+namespace limen {
+namespace {
+
+Scan turned_box(double angle_rad) {
+  Scan scan = box_scan(20000, -0.9, 0.9);
+  return moved(std::move(scan), {rotation_exp(Vector3d(0, 0, angle_rad)), Vector3d(0.3, -0.2, 0.0)});
+}
+
+TEST(PreparedBytes, AStationComesBackBitForBit) {
+  const PreparedScan prepared = prepare_scan(turned_box(0.4), prepare_options({}));
+  ASSERT_FALSE(prepared.extracted.features.planes.empty());
+  const std::string bytes = bytes_of(prepared);
+  EXPECT_EQ(bytes_of(prepared_from(bytes, "here")), bytes);
+}
+
+TEST(PreparedBytes, AScanFromManyPlacesComesBackBitForBit) {
+  Scan scan = box_scan(20000, -0.9, 0.9);
+  scan.centres.assign(scan.size(), Vector3d(0.1, 0.0, 0.0));
+  scan.centres.front() = Vector3d::Zero();
+  const std::string bytes = bytes_of(prepare_scan(scan, prepare_options({})));
+  EXPECT_EQ(bytes_of(prepared_from(bytes, "here")), bytes);
+}
+
+TEST(PreparedBytes, ARegistrationFromTheStoreGivesTheSameBits) {
+  const RegisterOptions options;
+  const auto prepared = [&](double angle) {
+    return prepare_scan(turned_box(angle), prepare_options(options));
+  };
+  const auto kept = [&](double angle) { return prepared_from(bytes_of(prepared(angle)), "here"); };
+  const RegistrationResult fresh = register_prepared({prepared(0.0), prepared(0.7)}, options);
+  const RegistrationResult again = register_prepared({kept(0.0), kept(0.7)}, options);
+  EXPECT_FALSE(fresh.reason.empty());
+  EXPECT_EQ(bytes_of(again), bytes_of(fresh));
+  EXPECT_EQ(bytes_of(result_from(bytes_of(fresh), "here")), bytes_of(fresh));
+}
+
+TEST(PreparedBytes, BytesThatEndTooEarlyAreRefused) {
+  const std::string bytes = bytes_of(prepare_scan(turned_box(0.4), prepare_options({})));
+  for (const std::size_t size : {std::size_t{0}, std::size_t{7}, bytes.size() / 3, bytes.size() - 1})
+    EXPECT_THROW((void)prepared_from(std::string_view(bytes).substr(0, size), "here"), Error) << size;
+}
+
+TEST(PackedFile, WhatIsDamagedOrOfAnotherVersionCountsAsMissing) {
+  const std::filesystem::path path = std::filesystem::temp_directory_path() / "limen-packed-file-test";
+  const std::string bytes(5000, 'a');
+  write_packed(path, "TEST", 3, bytes);
+  EXPECT_EQ(read_packed(path, "TEST", 3), bytes);
+  EXPECT_FALSE(read_packed(path, "TEST", 4).has_value());
+  EXPECT_FALSE(read_packed(path, "OTHR", 3).has_value());
+  {
+    std::fstream file(path, std::ios::in | std::ios::out | std::ios::binary);
+    file.seekp(-3, std::ios::end);
+    file.put('x');
+  }
+  EXPECT_FALSE(read_packed(path, "TEST", 3).has_value());
+  std::filesystem::remove(path);
+  EXPECT_FALSE(read_packed(path, "TEST", 3).has_value());
+}
+
+}  // namespace
+}  // namespace limen

@@ -1,0 +1,110 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/report/project/project_json.h"
+
+#include "limen/base/version.h"
+#include "limen/report/json/json_values.h"
+
+namespace limen {
+namespace {
+
+Json sigma_json(const PoseSigma& sigma) {
+  return {{"rotation_rad", json_of(sigma.rotation_rad)},
+          {"translation_m", json_of(sigma.translation_m)},
+          {"centre", json_of(sigma.centre)}};
+}
+
+Json scan_json(const ProjectScan& scan) {
+  Json json = {{"file", scan.file}, {"index", scan.index}, {"kind", scan.model ? "model" : "scan"}};
+  if (!scan.model) {
+    json["mobile"] = scan.mobile;
+    json["points"] = scan.points;
+  }
+  json["sha256"] = scan.sha256;
+  if (!scan.copy_of.empty()) json["copy_of"] = scan.copy_of;
+  json["readable"] = scan.readable;
+  json["state"] = to_string(scan.state);
+  json["component"] = scan.component >= 0 ? Json(scan.component) : Json();
+  // A pose in the frame of another component must not be taken for one in the project's.
+  const bool in_frame = scan.frame_from_scan && scan.component == 0;
+  json["frame_from_scan"] = in_frame ? json_of(to_matrix(*scan.frame_from_scan)) : Json();
+  if (scan.frame_from_scan && !in_frame)
+    json["component_from_scan"] = json_of(to_matrix(*scan.frame_from_scan));
+  json["sigma"] = scan.frame_from_scan ? sigma_json(scan.sigma) : Json();
+  if (!scan.alternatives.empty()) {
+    json["alternatives"] = Json::array();
+    for (const Rigid3& pose : scan.alternatives) json["alternatives"].push_back(json_of(to_matrix(pose)));
+  }
+  json["reason"] = scan.reason;
+  return json;
+}
+
+Json link_json(const ProjectLink& link) {
+  Json json = {{"source", link.source},
+               {"target", link.target},
+               {"state", to_string(link.solved.state)},
+               {"pair", link.given ? "given" : to_string(link.pair)},
+               {"pose", json_of(to_matrix(link.target_from_source))},
+               {"sigma", sigma_json(link.sigma)},
+               {"agreeing_m2", link.agreeing_m2},
+               {"redundancy", link.solved.redundancy},
+               {"loop_error_m", link.solved.loop_error_m},
+               {"loop_error_rad", link.solved.loop_error_rad}};
+  Json alternatives = Json::array();
+  for (const ProjectAlternative& other : link.alternatives)
+    alternatives.push_back(
+        {{"pose", json_of(to_matrix(other.target_from_source))}, {"agreeing_m2", other.agreeing_m2}});
+  json["alternatives"] = std::move(alternatives);
+  json["reason"] = link.reason;
+  return json;
+}
+
+Json loop_json(const GraphLoop& loop) {
+  return {{"links", loop.links},
+          {"error_m", loop.error_m},
+          {"error_rad", loop.error_rad},
+          {"chi_square", loop.chi_square},
+          {"closes", loop.closes}};
+}
+
+Json question_json(const ProjectQuestion& question) {
+  return {{"text", question.text},
+          {"scans", question.scans},
+          {"for_the_present_place", question.current},
+          {"for_another_place", question.rival}};
+}
+
+template <typename List, typename Make>
+Json list_json(const List& list, const Make& make) {
+  Json json = Json::array();
+  for (const auto& item : list) json.push_back(make(item));
+  return json;
+}
+
+}  // namespace
+
+std::string project_json(const ProjectResult& result, const OptionList& options) {
+  Json json;
+  json["outcome"] = to_string(result.outcome);
+  json["reason"] = result.reason;
+  json["frame"] = {
+      {"kind", result.frame_kind},
+      {"scan", result.frame_scan >= 0 ? Json(result.frame_scan) : Json()},
+      {"file", result.frame_scan >= 0 ? Json(result.scans[static_cast<std::size_t>(result.frame_scan)].file)
+                                      : Json()}};
+  json["components"] = result.components;
+  json["scans"] = list_json(result.scans, scan_json);
+  json["links"] = list_json(result.links, link_json);
+  json["loops"] = list_json(result.loops, loop_json);
+  json["questions"] = list_json(result.questions, question_json);
+  json["pairs_tried"] = result.pairs_tried;
+  json["variance_factor"] = result.variance_factor;
+  json["notes"] = result.notes;
+  json["options"] = Json::object();
+  for (const auto& [name, value] : options)
+    std::visit([&json, &key = name](const auto& plain) { json["options"][key] = plain; }, value);
+  json["version"] = kVersion;
+  return to_text(json);
+}
+
+}  // namespace limen

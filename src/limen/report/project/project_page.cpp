@@ -1,0 +1,162 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/report/project/project_page.h"
+
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "limen/base/angles.h"
+#include "limen/base/version.h"
+#include "limen/report/html/html_bytes.h"
+#include "limen/report/project/project_plan.h"
+
+namespace limen {
+namespace {
+
+constexpr const char* kStyle = R"(
+:root { --page: #f5f4f0; --paper: #fff; --ink: #1d2a35; --soft: #5a6873; --line: #dcdfe1; --good: #1f6fb4; --doubt: #c9660a; --bad: #b3261e; --weak: #8a949c; }
+@media (prefers-color-scheme: dark) { :root { --page: #11171c; --paper: #192128; --ink: #e7ecf0; --soft: #9dabb6; --line: #2b3640; --good: #6fb3ec; --doubt: #f3a155; --bad: #ff8a80; --weak: #7b8791; } }
+* { box-sizing: border-box; }
+body { margin: 0; background: var(--page); color: var(--ink); font: 15px/1.5 system-ui, "Segoe UI", "Noto Sans", "Liberation Sans", sans-serif; }
+main { max-width: 1200px; margin: 0 auto; padding: 24px 28px 60px; }
+h1 { font-size: 28px; line-height: 1.2; margin: 0 0 6px; }
+h2 { font-size: 19px; margin: 34px 0 10px; }
+.soft { color: var(--soft); }
+.card, .plan { background: var(--paper); border: 1px solid var(--line); border-radius: 10px; }
+.card { padding: 12px 18px; margin: 10px 0; border-left: 4px solid var(--doubt); }
+.plan { width: 100%; height: auto; display: block; }
+.scroll { overflow-x: auto; background: var(--paper); border: 1px solid var(--line); border-radius: 10px; }
+table { border-collapse: collapse; width: 100%; font-size: 13.5px; }
+th, td { text-align: left; padding: 6px 12px; border-bottom: 1px solid var(--line); vertical-align: top; }
+th { color: var(--soft); font-weight: 600; white-space: nowrap; }
+td.n { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; }
+td.path { overflow-wrap: anywhere; }
+.state { font-weight: 650; white-space: nowrap; }
+.registered, .verified { --c: var(--good); } .ambiguous, .bridge, .under_constrained { --c: var(--doubt); }
+.rejected, .unreadable { --c: var(--bad); } .floating, .weak { --c: var(--weak); }
+.state { color: var(--c); }
+.wall { stroke: var(--soft); stroke-opacity: .35; stroke-width: 1.5; fill: none; }
+.link { stroke: var(--c); stroke-width: 2.5; stroke-opacity: .8; }
+.link.bridge { stroke-dasharray: 9 5; } .link.ambiguous { stroke-dasharray: 3 5; } .link.rejected { stroke-dasharray: 2 8; } .link.weak { stroke-width: 1.2; }
+.node circle { fill: var(--paper); stroke: var(--c); stroke-width: 2.5; } .node text { font: 600 10px system-ui, sans-serif; text-anchor: middle; fill: var(--ink); }
+.sigma { fill: var(--c); fill-opacity: .18; }
+.bar { stroke: var(--ink); stroke-width: 3; } .scale { font: 12px system-ui, sans-serif; fill: var(--ink); }
+)";
+
+std::string state_cell(const char* state) {
+  return fmt::format("<td class=\"state {0}\">{0}</td>", state);
+}
+
+std::string scan_name(const ProjectScan& scan) {
+  return scan.index > 0 ? fmt::format("{} #{}", scan.file, scan.index) : scan.file;
+}
+
+std::string questions(const ProjectResult& result) {
+  if (result.questions.empty()) return {};
+  std::string text = "<h2>Open questions</h2>\n";
+  for (const ProjectQuestion& question : result.questions)
+    text += fmt::format("<p class=\"card\">{}</p>\n", escaped(question.text));
+  return text;
+}
+
+std::string scans_table(const ProjectResult& result) {
+  std::string text =
+      "<h2>Scans</h2>\n<div "
+      "class=\"scroll\"><table><tr><th>no.</th><th>file</th><th>state</th><th>component</th>"
+      "<th>sigma, mm</th><th>sigma, deg</th><th>why</th></tr>\n";
+  for (std::size_t k = 0; k < result.scans.size(); ++k) {
+    const ProjectScan& scan = result.scans[k];
+    text += fmt::format("<tr id=\"scan{0}\"><td class=\"n\">{0}</td><td class=\"path\">{1}{2}</td>", k,
+                        escaped(scan_name(scan)), scan.model ? " <span class=\"soft\">model</span>" : "");
+    text += state_cell(scan.readable ? to_string(scan.state) : "unreadable");
+    text +=
+        fmt::format("<td class=\"n\">{}</td>", scan.component >= 0 ? fmt::format("{}", scan.component) : "");
+    if (scan.frame_from_scan) {
+      text +=
+          fmt::format("<td class=\"n\">{:.1f}</td><td class=\"n\">{:.3f}</td>",
+                      1e3 * scan.sigma.translation_m.maxCoeff(), degrees(scan.sigma.rotation_rad.maxCoeff()));
+    } else {
+      text += "<td></td><td></td>";
+    }
+    text += fmt::format("<td>{}</td></tr>\n", escaped(scan.reason));
+  }
+  return text + "</table></div>\n";
+}
+
+std::string links_table(const ProjectResult& result) {
+  if (result.links.empty()) return {};
+  std::string text =
+      "<h2>Links</h2>\n<div class=\"scroll\"><table><tr><th>no.</th><th>scans</th><th>state</th><th>the pair "
+      "alone</th>"
+      "<th>agreeing, m&sup2;</th><th>misses by, mm</th><th>deg</th><th>redundancy</th><th>other "
+      "poses</th></tr>\n";
+  for (std::size_t k = 0; k < result.links.size(); ++k) {
+    const ProjectLink& link = result.links[k];
+    text += fmt::format(
+        "<tr><td class=\"n\">{0}</td><td><a href=\"#scan{1}\">{1}</a> and <a href=\"#scan{2}\">{2}</a></td>",
+        k, link.source, link.target);
+    text += state_cell(to_string(link.solved.state));
+    text += fmt::format(
+        "<td>{}</td><td class=\"n\">{:.1f}</td><td class=\"n\">{:.1f}</td><td class=\"n\">{:.3f}</td>"
+        "<td class=\"n\">{:.1f} of 6</td><td class=\"n\">{}</td></tr>\n",
+        link.given ? "given" : to_string(link.pair), link.agreeing_m2, 1e3 * link.solved.loop_error_m,
+        degrees(link.solved.loop_error_rad), link.solved.redundancy, link.alternatives.size());
+  }
+  return text + "</table></div>\n";
+}
+
+std::string loops_table(const ProjectResult& result) {
+  if (result.loops.empty()) return {};
+  std::string text =
+      "<h2>Loops</h2>\n<div class=\"scroll\"><table><tr><th>links</th><th>closes</th><th>misses by, "
+      "mm</th><th>deg</th>"
+      "<th>chi squared of 6</th></tr>\n";
+  for (const GraphLoop& loop : result.loops) {
+    std::string links;
+    for (const int link : loop.links) links += fmt::format("{}{}", links.empty() ? "" : ", ", link);
+    text += fmt::format(
+        "<tr><td>{}</td><td>{}</td><td class=\"n\">{:.1f}</td><td class=\"n\">{:.3f}</td><td class=\"n\">"
+        "{:.1f}</td></tr>\n",
+        links, loop.closes ? "yes" : "no", 1e3 * loop.error_m, degrees(loop.error_rad), loop.chi_square);
+  }
+  return text + "</table></div>\n";
+}
+
+std::string notes(const ProjectResult& result) {
+  if (result.notes.empty()) return {};
+  std::string text = "<h2>Notes</h2>\n<ul>\n";
+  for (const std::string& note : result.notes) text += fmt::format("<li>{}</li>\n", escaped(note));
+  return text + "</ul>\n";
+}
+
+std::string frame_words(const ProjectResult& result) {
+  if (result.frame_scan < 0) return "Nothing was joined.";
+  const ProjectScan& scan = result.scans[static_cast<std::size_t>(result.frame_scan)];
+  return fmt::format("The frame is that of {}.", escaped(scan_name(scan)));
+}
+
+}  // namespace
+
+std::string project_page(const ProjectResult& result) {
+  std::string text =
+      "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n<meta name=\"viewport\" "
+      "content=\"width=device-width, initial-scale=1\">\n<title>limen: project</title>\n<style>";
+  text += kStyle;
+  text += fmt::format(
+      "</style></head>\n<body data-outcome=\"{0}\"><main>\n<h1>{0}: {1}</h1>\n<p class=\"soft\">{2} {3} "
+      "pairs "
+      "were tried. limen {4}.</p>\n",
+      to_string(result.outcome), escaped(result.reason), frame_words(result), result.pairs_tried, kVersion);
+  text += questions(result);
+  const std::string plan = project_plan(result);
+  if (!plan.empty())
+    text += "<h2>Plan</h2>\n" + plan +
+            "<p class=\"soft\">Lines: verified links are full, bridges dashed, ambiguous and rejected ones "
+            "dotted. Ellipses are "
+            "one sigma, enlarged 100 times.</p>\n";
+  text += scans_table(result) + links_table(result) + loops_table(result) + notes(result);
+  return text + "</main></body></html>\n";
+}
+
+}  // namespace limen

@@ -1,0 +1,156 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+// limen project from outside: a small simulated building, run again, shuffled, killed.
+#include <algorithm>
+#include <csignal>
+#include <cstdlib>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "run_program.h"
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "limen/geometry/rigid.h"
+
+namespace limen {
+namespace {
+
+using nlohmann::json;
+
+Matrix4d matrix_of(const json& rows) {
+  Matrix4d matrix;
+  for (int i = 0; i < 4; ++i) {
+    for (int j = 0; j < 4; ++j)
+      matrix(i, j) = rows[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)].get<double>();
+  }
+  return matrix;
+}
+
+class Project : public ProgramTest {
+ protected:
+  /// Two stations of one room.
+  std::vector<std::string> simulate() {
+    const ProgramRun made =
+        run({"simulate", "room", "--points-indoor", "60000", "--seed", "1", "-o", "case", "--quiet"});
+    EXPECT_EQ(made.status, 0) << made.err;
+    return {"case/indoor_00.ply", "case/indoor_01.ply"};
+  }
+
+  [[nodiscard]] std::vector<std::string> call(const std::vector<std::string>& scans,
+                                              const std::string& out) const {
+    std::vector<std::string> arguments{"project"};
+    arguments.insert(arguments.end(), scans.begin(), scans.end());
+    arguments.insert(arguments.end(), {"-o", out, "--quiet"});
+    return arguments;
+  }
+
+  [[nodiscard]] std::string text_of(const std::string& out) const {
+    return read_whole(work() / out / "project.json");
+  }
+
+  /// Starts the program and kills it after a while.
+  void run_and_kill(const std::vector<std::string>& arguments, int milliseconds) const {
+    const pid_t child = fork();
+    if (child == 0) {
+      std::vector<char*> words{const_cast<char*>(LIMEN_PROGRAM)};
+      for (const std::string& argument : arguments) words.push_back(const_cast<char*>(argument.c_str()));
+      words.push_back(nullptr);
+      if (chdir(work().c_str()) == 0) execv(LIMEN_PROGRAM, words.data());
+      _exit(127);
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
+    kill(child, SIGKILL);
+    waitpid(child, nullptr, 0);
+  }
+};
+
+TEST_F(Project, StationsStandWhereTheTruthHasThemAndBytesNeverDiffer) {
+  std::vector<std::string> scans = simulate();
+  const ProgramRun done = run(call(scans, "out"));
+  EXPECT_EQ(done.status, 0) << done.err;
+  const json project = json::parse(text_of("out"));
+  ASSERT_EQ(project["scans"].size(), 2U);
+  const json truth = json::parse(read_whole(work() / "case" / "truth" / "truth.json"));
+  std::vector<Matrix4d> frame_from_world;
+  for (std::size_t k = 0; k < 2; ++k) {
+    EXPECT_EQ(project["scans"][k]["state"], "registered");
+    ASSERT_EQ("case/" + truth["scans"][k]["file"].get<std::string>(), project["scans"][k]["file"]);
+    frame_from_world.push_back(matrix_of(project["scans"][k]["frame_from_scan"]) *
+                               matrix_of(truth["scans"][k]["world_from_scan"]).inverse());
+  }
+  // In no loop: accepted, but checked by nothing.
+  EXPECT_EQ(project["links"][0]["state"], "bridge");
+  const Matrix4d difference = frame_from_world[1] * frame_from_world[0].inverse();
+  EXPECT_LT(rotation_angle(difference.topLeftCorner<3, 3>()), 0.002);
+  EXPECT_LT((difference.topRightCorner<3, 1>()).norm(), 0.02);
+
+  // From the store, in another order, with one thread.
+  std::reverse(scans.begin(), scans.end());
+  std::vector<std::string> again = call(scans, "out");
+  again.insert(again.end(), {"--threads", "1"});
+  const std::string before = text_of("out");
+  EXPECT_EQ(run(again).status, done.status);
+  EXPECT_EQ(text_of("out"), before);
+
+  // From nothing, killed on its way.
+  for (const int milliseconds : {300, 1500, 3000}) run_and_kill(call(scans, "killed"), milliseconds);
+  EXPECT_EQ(run(call(scans, "killed")).status, done.status);
+  EXPECT_EQ(text_of("killed"), before);
+
+  const ProgramRun status = run({"project", "status", "out", "--json"});
+  EXPECT_EQ(status.status, 0);
+  EXPECT_EQ(json::parse(status.out)["stage"], "done");
+  EXPECT_NE(read_whole(work() / "out" / "report.html").find("<svg"), std::string::npos);
+
+  const ProgramRun moved = run({"transform", "out/project.json", "-o", "placed", "--as", "ply", "--quiet"});
+  EXPECT_EQ(moved.status, 0) << moved.err;
+  EXPECT_FALSE(std::filesystem::is_empty(work() / "placed"));
+  const ProgramRun merged = run({"transform", "out/project.json", "-o", "all.las", "--merge", "--quiet"});
+  EXPECT_EQ(merged.status, 0) << merged.err;
+  EXPECT_GT(std::filesystem::file_size(work() / "all.las"), 100000U);
+}
+
+TEST_F(Project, ScansThatCannotBeReadAndCopiesAreToldAndStopNothing) {
+  std::vector<std::string> scans = simulate();
+  scans.resize(1);
+  std::filesystem::copy(work() / scans.front(), work() / "copy.ply");
+  write_whole(work() / "broken.ply",
+              "ply\nformat binary_little_endian 1.0\nelement vertex 100\nproperty float x\n");
+  write_whole(work() / "list.txt", "# scans\ncopy.ply\n\nbroken.ply\n");
+  const ProgramRun done = run(
+      {"project", scans.front(), scans.front(), "missing.ply", "--scans", "list.txt", "-o", "out", "--json"});
+  EXPECT_EQ(done.status, 3) << done.err;
+  const json project = json::parse(done.out);
+  std::map<std::string, json> by_name;
+  for (const json& scan : project["scans"]) by_name[scan["file"]] = scan;
+  EXPECT_EQ(by_name.size(), 4U);
+  EXPECT_EQ(by_name["broken.ply"]["readable"], false);
+  EXPECT_EQ(by_name["missing.ply"]["readable"], false);
+  const bool copy_told =
+      by_name["copy.ply"].contains("copy_of") || by_name[scans.front()].contains("copy_of");
+  EXPECT_TRUE(copy_told);
+  EXPECT_NE(done.out.find("more than once"), std::string::npos);
+}
+
+TEST_F(Project, WhatIsMissingIsTold) {
+  const ProgramRun nowhere = run({"project", "a.ply"});
+  EXPECT_EQ(nowhere.status, 2);
+  EXPECT_NE(nowhere.err.find("-o DIR"), std::string::npos);
+  EXPECT_EQ(run({"project", "-o", "out"}).status, 2);
+  EXPECT_FALSE(std::filesystem::exists(work() / "out"));
+  EXPECT_EQ(run({"project", "status", "nothing"}).status, 2);
+  write_whole(work() / "broken.ply", "ply\n");
+  const ProgramRun broken = run({"project", "broken.ply", "-o", "out"});
+  EXPECT_EQ(broken.status, 2);
+  EXPECT_NE(broken.err.find("broken.ply"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace limen
