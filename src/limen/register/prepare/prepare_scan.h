@@ -22,13 +22,13 @@ struct PreparedScan {
   ExtractedFeatures extracted;  ///< labels and samples: of the points in the frame's own order
   Matrix3d upright_from_scan = Matrix3d::Identity();
   std::shared_ptr<const SpaceView> space;  ///< a panorama for a static station, else a map of cubes
-  ScannerPlace place;                ///< where the (first) scanner stood, world
-  bool mobile = false;               ///< seen from many places along a path
-  bool upright = false;              ///< z of the prepared frame points up
-  bool model = false;                ///< a building model instead of a scan
-  std::vector<BimSpace> rooms;       ///< of a model
-  std::vector<Vector3d> stations;    ///< optical centres of static stations, prepared frame
-  Eigen::AlignedBox3d reach;         ///< around the samples, prepared frame
+  ScannerPlace place;                      ///< where the (first) scanner stood, world
+  bool mobile = false;                     ///< seen from many places along a path
+  bool upright = false;                    ///< z of the prepared frame points up
+  bool model = false;                      ///< a building model instead of a scan
+  std::vector<BimSpace> rooms;             ///< of a model
+  std::vector<Vector3d> stations;          ///< optical centres of static stations, prepared frame
+  Eigen::AlignedBox3d reach;               ///< around the samples, prepared frame
 
   SampleRuns runs;  ///< of a model
 
@@ -45,10 +45,10 @@ struct PreparedScan {
 struct PrepareOptions {
   ExtractOptions extract;
   Gravity gravity = Gravity::automatic;
-  bool planes_only = false;  ///< neither openings nor a view of space
-  bool segments = false;     ///< line segments as well
-  OpeningOptions openings;   ///< which openings are looked for
-  SegmentOptions edges;      ///< which segments are
+  bool planes_only = false;    ///< neither openings nor a view of space
+  bool segments = false;       ///< line segments as well
+  OpeningOptions openings;     ///< which openings are looked for
+  SegmentOptions edges;        ///< which segments are
   bool sampled_model = false;  ///< a model's from points spread over it (2023, IV-A), not its exact edges
 };
 
