@@ -38,7 +38,9 @@ TEST(ExpandLzf, RefusesDamage) {
   EXPECT_FALSE(expand_lzf("\x00"s + "x" + "\x20\x05"s, 4));  // reference before the beginning
   EXPECT_FALSE(expand_lzf("\x00"s + "x" + "\xE0"s, 30));     // control byte cut
   EXPECT_FALSE(expand_lzf("", std::size_t{1} << 40U));       // nothing cannot become a terabyte
-  const std::string packed = testing_io::pack_lzf(std::string(500, 'q') + "abcabcabc");
+  std::string plain(500, 'q');
+  plain += "abcabcabc";
+  const std::string packed = testing_io::pack_lzf(plain);
   RandomStream random(2);
   for (int trial = 0; trial < 2000; ++trial) {
     std::string damaged = packed;

@@ -136,7 +136,7 @@ class Run {
       };
       StagePart preparing(part, at(k), at(k + 1));
       record.points.push_back(read.scans[k].size());
-      const Scan scan = recentred(std::move(read.scans[k]));
+      const Scan scan = std::move(read.scans[k]);
       store_.save_features(store_.feature_key(file.sha256, static_cast<int>(k)),
                            prepare_scan(scan, prepare_options(options_.registering), preparing));
     }

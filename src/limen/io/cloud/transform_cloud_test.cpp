@@ -11,6 +11,7 @@
 
 #include "limen/base/angles.h"
 #include "limen/base/error.h"
+#include "limen/io/cloud/read_scan.h"
 #include "limen/io/ply/ply_header.h"
 
 namespace limen {
