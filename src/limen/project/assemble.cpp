@@ -32,6 +32,7 @@ class Assembler {
     settle_frame();
     for (std::size_t n = 0; n < nodes_.size(); ++n) tell_scan(n);
     for (std::size_t k = 0; k < graph_.links.size(); ++k) tell_link(k);
+    tell_twins();
     result_.loops = solved_.loops;
     result_.components = solved_.components;
     for (const GraphQuestion& question : solved_.questions) tell_question(question);
@@ -191,6 +192,25 @@ class Assembler {
       told.reason = "given by the file";
     }
     result_.links.push_back(std::move(told));
+  }
+
+  /// Pairs whose scans are more probably two places built alike: no links, but worth knowing of.
+  void tell_twins() {
+    for (std::size_t k = 0; k < pairs_.size(); ++k) {
+      const RegistrationResult& pair = pairs_[k].result;
+      const bool linked = std::find(pair_of_.begin(), pair_of_.end(), static_cast<int>(k)) != pair_of_.end();
+      if (linked || pair.outcome == Outcome::no_match) continue;
+      ProjectLink told;
+      told.source = static_cast<int>(nodes_[pairs_[k].source].scan);
+      told.target = static_cast<int>(nodes_[pairs_[k].target].scan);
+      told.solved.state = LinkState::rejected;
+      told.target_from_source = pair.best.target_from_source;
+      told.agreeing_m2 = pair.best.agreeing_m2;
+      told.sigma = pair.sigma;
+      told.pair = pair.outcome;
+      told.reason = pair.reason;
+      result_.links.push_back(std::move(told));
+    }
   }
 
   [[nodiscard]] std::string words_of(const std::vector<int>& links) const {

@@ -22,9 +22,11 @@ const double kFloorRad = radians(0.03);
 constexpr double kDrawnM = 0.01;   // by how much a building misses its model
 constexpr double kGivenM = 0.005;  // of poses that a file gives
 const double kGivenRad = radians(0.05);
-constexpr double kRivalShare = 0.5;    // of the best pose's score: a pose with less is no possibility
-constexpr std::size_t kMostPoses = 9;  // of a link
-constexpr double kLooser = 2.0;        // an alternative's deviations against those of the best pose
+constexpr double kRivalShare = 0.5;      // of the best pose's score: a pose with less is no possibility
+constexpr std::size_t kMostPoses = 9;    // of a link
+constexpr double kTwinPossible = 0.001;  // the risk that a pair takes by default
+constexpr double kTwinLikelier = 0.5;    // probability of a twin above which a pair tells nothing
+constexpr double kLooser = 2.0;          // an alternative's deviations against those of the best pose
 
 Vector6d diagonal(const Vector3d& turn, const Vector3d& shift) {
   Vector6d all;
@@ -62,13 +64,16 @@ class GraphMaker {
 
   void add_pair(std::size_t k) {
     const RegistrationResult& found = pairs_[k].result;
-    if (found.outcome == Outcome::no_match) return;
+    // Loops cannot settle what a twin says: rooms built alike laid on one another close their loops too.
+    const double twin = found.others ? found.others->twin : 0.0;
+    if (found.outcome == Outcome::no_match || twin > kTwinLikelier) return;
+    const bool twin_possible = found.outcome == Outcome::ambiguous && twin > kTwinPossible;
     GraphLink link;
     link.source = static_cast<int>(pairs_[k].source);
     link.target = static_cast<int>(pairs_[k].target);
-    link.trust = found.outcome == Outcome::registered  ? LinkTrust::sure
-                 : found.outcome == Outcome::ambiguous ? LinkTrust::open
-                                                       : LinkTrust::weak;
+    link.trust = found.outcome == Outcome::registered                    ? LinkTrust::sure
+                 : found.outcome == Outcome::ambiguous && !twin_possible ? LinkTrust::open
+                                                                         : LinkTrust::weak;
     link.poses.push_back(pose_of(link, found, found.best, 1.0));
     for (const Hypothesis& other : found.alternatives) {
       if (link.poses.size() >= kMostPoses) break;

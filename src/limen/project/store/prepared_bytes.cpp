@@ -240,6 +240,10 @@ std::string bytes_of(const RegistrationResult& result) {
   put_matches(writer, result);
   writer.put_count(result.judged_poses);
   writer.put_count(result.rivals);
+  writer.put(result.others.has_value());
+  const OtherExplanations others = result.others.value_or(OtherExplanations{});
+  for (const double probability : {others.nothing_shared, others.twin, others.unlisted_pose})
+    writer.put(probability);
   return writer.bytes();
 }
 
@@ -261,6 +265,10 @@ RegistrationResult result_from(std::string_view bytes, const std::string& where)
   get_matches(reader, result);
   result.judged_poses = reader.get<std::uint64_t>();
   result.rivals = reader.get<std::uint64_t>();
+  const bool others = reader.get<bool>();
+  OtherExplanations told;
+  for (double* probability : {&told.nothing_shared, &told.twin, &told.unlisted_pose}) reader.get(*probability);
+  if (others) result.others = told;
   return result;
 }
 
