@@ -231,7 +231,7 @@ void add_simulate_command(CommandLine& app, Session& session) {
   command->add_flag("--project", options->project,
                     fmt::format("Scan a whole building, one file a station and pass: {}",
                                 fmt::join(whole_building_names(), ", ")));
-  command->add_option("--passes", options->passes, "With --project: street passes, each along two façades")
+  command->add_option("--passes", options->passes, "With --project: street passes, each along two facades")
       ->type_name("N");
   command->add_flag("--styles", options->styles,
                     "With --project: noise, density, view, tilt, origin, glass and people at random");

@@ -267,7 +267,8 @@ RegistrationResult result_from(std::string_view bytes, const std::string& where)
   result.rivals = reader.get<std::uint64_t>();
   const bool others = reader.get<bool>();
   OtherExplanations told;
-  for (double* probability : {&told.nothing_shared, &told.twin, &told.unlisted_pose}) reader.get(*probability);
+  for (double* probability : {&told.nothing_shared, &told.twin, &told.unlisted_pose})
+    reader.get(*probability);
   if (others) result.others = told;
   return result;
 }
