@@ -67,6 +67,9 @@ class JointSolver {
     return solution_.frame_from_node[static_cast<std::size_t>(node)];
   }
   [[nodiscard]] int place(int node) const { return place_[static_cast<std::size_t>(node)]; }
+  /// The first of the six unknowns of a place, and how many there are in all.
+  [[nodiscard]] static Eigen::Index unknown(int place) { return Eigen::Index{6} * place; }
+  [[nodiscard]] Eigen::Index unknowns() const { return unknown(size_); }
 
   /// Each plane anew from all that is seen of it, about its centroid.
   void fit_planes() {
@@ -109,11 +112,11 @@ class JointSolver {
 
   void build() {
     entries_.clear();
-    right_ = Eigen::VectorXd::Zero(6 * size_);
+    right_ = Eigen::VectorXd::Zero(unknowns());
     for (int k = 0; k < 6 * size_; ++k) entries_.emplace_back(k, k, kTiny);
     for (std::size_t e = 0; e < problem_.edges.size(); ++e) add_edge(problem_.edges[e], information_[e]);
     for (std::size_t p = 0; p < seen_by_.size(); ++p) add_plane(p);
-    Eigen::SparseMatrix<double> normal(6 * size_, 6 * size_);
+    Eigen::SparseMatrix<double> normal(unknowns(), unknowns());
     normal.setFromTriplets(entries_.begin(), entries_.end());
     solver_.compute(normal);
   }
@@ -125,7 +128,7 @@ class JointSolver {
     double largest = 0.0;
     for (std::size_t i = 0; i < place_.size(); ++i) {
       if (place_[i] < 0) continue;
-      const Vector6d d = delta.segment<6>(6 * place_[i]);
+      const Vector6d d = delta.segment<6>(unknown(place_[i]));
       Rigid3& node = solution_.frame_from_node[i];
       node.rotation = nearest_rotation(rotation_exp(d.head<3>()) * node.rotation);
       node.translation += d.tail<3>();
@@ -142,7 +145,7 @@ class JointSolver {
     }
   }
   void add_right(int row, const Vector6d& part) {
-    if (place(row) >= 0) right_.segment<6>(6 * place(row)) += part;
+    if (place(row) >= 0) right_.segment<6>(unknown(place(row))) += part;
   }
 
   void add_edge(const PoseEdge& edge, const Matrix6d& information) {
@@ -204,9 +207,9 @@ class JointSolver {
     for (std::size_t i = 0; i < place_.size(); ++i) {
       CancelScope::check();
       if (place_[i] < 0) continue;
-      Eigen::MatrixXd unit = Eigen::MatrixXd::Zero(6 * size_, 6);
-      unit.block<6, 6>(6 * place_[i], 0).setIdentity();
-      solution_.covariance[i] = scale * solver_.solve(unit).middleRows<6>(6 * place_[i]);
+      Eigen::MatrixXd unit = Eigen::MatrixXd::Zero(unknowns(), 6);
+      unit.block<6, 6>(unknown(place_[i]), 0).setIdentity();
+      solution_.covariance[i] = scale * solver_.solve(unit).middleRows<6>(unknown(place_[i]));
     }
   }
 

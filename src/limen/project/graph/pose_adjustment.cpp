@@ -13,6 +13,11 @@
 namespace limen {
 namespace {
 
+/// The first of the six unknowns of the node at a place.
+Eigen::Index unknown(int place) {
+  return Eigen::Index{6} * place;
+}
+
 Matrix3d skew(const Vector3d& v) {
   Matrix3d m;
   m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
@@ -29,13 +34,13 @@ class Adjuster {
   /// One step; returns its largest shift in metres or radians.
   double step(std::vector<Rigid3>& poses, const std::vector<double>& weights) {
     if (size_ == 0) return 0.0;
-    Eigen::VectorXd right = Eigen::VectorXd::Zero(6 * size_);
+    Eigen::VectorXd right = Eigen::VectorXd::Zero(unknown(size_));
     factor(poses, weights, right);
     const Eigen::VectorXd delta = solver_.solve(right);
     double largest = 0.0;
     for (std::size_t i = 0; i < poses.size(); ++i) {
       if (place_[i] < 0) continue;
-      const Vector6d d = delta.segment<6>(6 * place_[i]);
+      const Vector6d d = delta.segment<6>(unknown(place_[i]));
       poses[i].rotation = nearest_rotation(rotation_exp(d.head<3>()) * poses[i].rotation);
       poses[i].translation += d.tail<3>();
       largest = std::max(largest, d.cwiseAbs().maxCoeff());
@@ -58,15 +63,15 @@ class Adjuster {
       add_right(edge.source, -line.by_source.transpose() * weight * line.value, right);
       add_right(edge.target, -line.by_target.transpose() * weight * line.value, right);
     }
-    Eigen::SparseMatrix<double> normal(6 * size_, 6 * size_);
+    Eigen::SparseMatrix<double> normal(unknown(size_), unknown(size_));
     normal.setFromTriplets(entries.begin(), entries.end());
     solver_.compute(normal);
   }
 
   /// Columns of the inverse for one node.
   [[nodiscard]] Eigen::MatrixXd columns(int node) const {
-    const Eigen::Index at = 6 * place_[static_cast<std::size_t>(node)];
-    Eigen::MatrixXd unit = Eigen::MatrixXd::Zero(6 * size_, 6);
+    const Eigen::Index at = unknown(place_[static_cast<std::size_t>(node)]);
+    Eigen::MatrixXd unit = Eigen::MatrixXd::Zero(unknown(size_), 6);
     unit.block<6, 6>(at, 0).setIdentity();
     return solver_.solve(unit);
   }
@@ -84,7 +89,7 @@ class Adjuster {
     }
   }
   void add_right(int row, const Vector6d& part, Eigen::VectorXd& right) const {
-    if (place(row) >= 0) right.segment<6>(6 * place(row)) += part;
+    if (place(row) >= 0) right.segment<6>(unknown(place(row))) += part;
   }
 
   const std::vector<PoseEdge>& edges_;
@@ -122,7 +127,7 @@ void add_covariances(Adjuster& adjuster, const std::vector<PoseEdge>& edges, Pos
     of_source[static_cast<std::size_t>(edges[e].source)].push_back(e);
   const auto at = [&](const Eigen::MatrixXd& columns, int node) -> Matrix6d {
     if (adjuster.place(node) < 0) return Matrix6d::Zero();
-    return columns.middleRows<6>(6 * adjuster.place(node));
+    return columns.middleRows<6>(unknown(adjuster.place(node)));
   };
   std::vector<Matrix6d> across(edges.size(), Matrix6d::Zero());  // of target against source
   for (std::size_t i = 0; i < nodes; ++i) {

@@ -137,7 +137,7 @@ Hypothesis get_pose(ByteReader& reader) {
   return pose;
 }
 
-constexpr std::size_t kLeastPose = 8 * 60;
+constexpr std::size_t kLeastPose = 480;  // bytes, 60 numbers
 
 void put_matches(ByteWriter& writer, const RegistrationResult& result) {
   writer.put_count(result.matches.size());
