@@ -211,11 +211,11 @@ class RivalSearch {
                                                           : std::pair(link.target, link.source);
     };
     for (const int k : links) {
-      const auto [inside, outside] = ends(k);
+      const std::pair<int, int> own = ends(k);
       const double surface = graph_.links[static_cast<std::size_t>(k)].poses.front().agreeing_m2;
       const bool counted = std::any_of(chosen.begin(), chosen.end(), [&](int other) {
-        const auto [other_inside, other_outside] = ends(other);
-        return same_view(inside, other_inside, surface) && same_view(outside, other_outside, surface);
+        const std::pair<int, int> theirs = ends(other);
+        return same_view(own.first, theirs.first, surface) && same_view(own.second, theirs.second, surface);
       });
       if (!counted) chosen.push_back(k);
     }
