@@ -117,9 +117,9 @@ SurfaceSample get_sample(ByteReader& reader) {
   return sample;
 }
 
-constexpr std::size_t kLeastPlane = 8 * 18;
-constexpr std::size_t kLeastOpening = 8 * 20;
-constexpr std::size_t kLeastSample = 8 * 6;
+constexpr std::size_t kLeastPlane = 144;  // bytes, 18 numbers
+constexpr std::size_t kLeastOpening = 160;
+constexpr std::size_t kLeastSample = 48;
 
 }  // namespace
 
@@ -184,7 +184,7 @@ std::vector<BimSpace> get_rooms(ByteReader& reader) {
     reader.get(room.guid);
     reader.get(room.name);
     reader.get(room.storey);
-    room.faces.resize(reader.get_count(8 * 14));
+    room.faces.resize(reader.get_count(112));
     for (BimFace& face : room.faces) {
       face.plane = get_plane(reader);
       face.frame = get_frame(reader);

@@ -95,7 +95,7 @@ ScanDigest digest_from(std::string_view bytes, const std::string& where) {
   reader.get(digest.middle);
   reader.get(digest.noise_m);
   reader.get(digest.drift_m);
-  digest.planes.resize(reader.get_count(8 * 21));
+  digest.planes.resize(reader.get_count(168));
   for (PlaneDigest& plane : digest.planes) {
     reader.get(plane.plane.normal);
     reader.get(plane.plane.offset);
