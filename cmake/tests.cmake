@@ -42,6 +42,10 @@ add_test(NAME floors COMMAND ${PROJECT_SOURCE_DIR}/scripts/check_floors)
 add_test(NAME floors_are_checked COMMAND ${PROJECT_SOURCE_DIR}/tests/tools/check_floors_test)
 set_tests_properties(floors floors_are_checked PROPERTIES LABELS unit)
 
+# What the first page of the documentation says is run.
+add_test(NAME commands_of_the_first_hour COMMAND ${PROJECT_SOURCE_DIR}/tests/tools/docs_test $<TARGET_FILE:limen_program>)
+set_tests_properties(commands_of_the_first_hour PROPERTIES LABELS acceptance)
+
 add_test(NAME installed_package
          COMMAND ${CMAKE_COMMAND} -DBUILD_DIR=${PROJECT_BINARY_DIR}
                  -DCONSUMER_DIR=${PROJECT_SOURCE_DIR}/tests/consumer

@@ -198,6 +198,39 @@ std::vector<BadUsage> bad_usages() {
       {"MissingTruth", {"evaluate", "pose.txt", "missing.json"}, "missing.json"},
       {"TransformBelowAFile", {"transform", "pose.txt", "good.xyz", "file/moved.ply"}, "file/moved.ply"},
       {"UnknownScene", {"simulate", "atlantis", "-o", "out"}, "atlantis"},
+      {"CommandWithASlip", {"regsiter", "good.xyz", "good.xyz", "-o", "out"}, "did you mean register?"},
+      {"CommandCutShort", {"trans"}, "did you mean transform?"},
+      {"HelpOfNothing", {"help", "regster"}, "did you mean register?"},
+      {"OptionWithASlip", {"planes", "good.xyz", "--ouptut", "x.json"}, "did you mean --output?"},
+      {"OptionOfTheProgram", {"--treads", "3"}, "did you mean --threads?"},
+      {"OptionWithAnEqualSign", {"info", "good.xyz", "--unit=mm"}, "did you mean --units?"},
+      {"UnknownUnit", {"info", "good.xyz", "--units", "furlong"}, "--units"},
+      {"UnitOfTheOtherSide",
+       {"register", "good.xyz", "good.xyz", "-o", "out", "--target-unit", "mm"},
+       "--target-units"},
+      {"NoSuchAlternative",
+       {"transform", "pose.txt", "good.xyz", "moved.ply", "--alternative", "2"},
+       "alternative"},
+      {"NegativeAlternative",
+       {"transform", "pose.txt", "good.xyz", "moved.ply", "--alternative", "-2"},
+       "--alternative"},
+      {"UnwrittenEnding", {"transform", "pose.txt", "good.xyz", "moved.docx"}, "moved.docx"},
+      {"TransformOntoItsInput", {"transform", "pose.txt", "good.xyz", "./good.xyz"}, "good.xyz"},
+      {"DeviationWithoutAModel",
+       {"deviation", "good.xyz", "good.xyz", "--identity", "-o", "out"},
+       "good.xyz"},
+      {"DeviationWithoutAPose", {"deviation", "good.xyz", "house.ifc", "-o", "out"}, "--result"},
+      {"ThinToNothing", {"thin", "good.xyz", "thin.ply"}, "--points"},
+      {"SchemaOfNothing", {"schema", "everything"}, "everything"},
+      {"RiskOfMoreThanAll", {"register", "good.xyz", "good.xyz", "-o", "out", "--risk", "2"}, "risk"},
+      {"MemoryInWords", {"info", "good.xyz", "--memory", "lots"}, "--memory"},
+      {"WithoutItsPose",
+       {"register", "good.xyz", "good.xyz", "-o", "out", "--source-with", "good.xyz"},
+       "--source-with"},
+      {"WithAPoseThatIsNone",
+       {"register", "good.xyz", "good.xyz", "-o", "out", "--source-with", "good.xyz", "file"},
+       "file"},
+      {"CompletionOfAnUnknownShell", {"completion", "csh"}, "csh"},
       {"SimulateBelowAFile", {"simulate", "room", "-o", "file/out"}, "file/out"},
   };
 }
@@ -219,6 +252,22 @@ TEST_P(BadUsageTest, IsOneErrorAndWritesNothing) {
   EXPECT_EQ(std::distance(fs::recursive_directory_iterator(work()), fs::recursive_directory_iterator()), 5);
   EXPECT_EQ(read_whole(work() / "file"), "x");
   EXPECT_EQ(read_whole(work() / "good.xyz"), good);
+}
+
+class BadUnitTest : public ProgramTest {};
+
+TEST_F(BadUnitTest, ARoomInMillimetresIsRefusedInOneLineThatSaysWhatToDo) {
+  std::string text;
+  for (int k = 0; k < 4000; ++k)
+    text += std::to_string(k % 20 * 400) + " " + std::to_string(k / 20 % 20 * 300) + " " +
+            std::to_string(k / 400 * 290) + "\n";
+  write_whole(work() / "mm.xyz", text);
+  expect_one_error(run({"register", "mm.xyz", "mm.xyz", "-o", "out"}), 2, "--source-units");
+  const ProgramRun told = run({"info", "mm.xyz"});
+  EXPECT_EQ(told.status, 0) << told.err;
+  EXPECT_NE(told.out.find("--units mm"), std::string::npos) << told.out;
+  const ProgramRun metres = run({"info", "mm.xyz", "--units", "mm"});
+  EXPECT_NE(metres.out.find("size            7.600 x 5.700 x 2.610 m"), std::string::npos) << metres.out;
 }
 
 INSTANTIATE_TEST_SUITE_P(Usages, BadUsageTest, testing::ValuesIn(bad_usages()), name_of_case);

@@ -1,9 +1,12 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
 // The command line as a script meets it: statuses, what goes to stdout, what to stderr.
+#include <array>
 #include <cmath>
+#include <sstream>
 
 #include "run_program.h"
+#include <Eigen/Core>
 #include <nlohmann/json.hpp>
 
 namespace limen {
@@ -68,6 +71,60 @@ TEST_F(CliTest, HelpEverywhere) {
       EXPECT_NE(help.out.find(option), std::string::npos) << command << " " << option;
     }
   }
+}
+
+TEST_F(CliTest, HelpAndVersionComeByEitherName) {
+  EXPECT_EQ(run({"help"}).out, run({"--help"}).out);
+  EXPECT_EQ(run({"help", "register"}).out, run({"register", "--help"}).out);
+  EXPECT_EQ(run({"-V"}).out, run({"--version"}).out);
+}
+
+TEST_F(CliTest, MillimetresAgainstMillimetres) {
+  ASSERT_EQ(run({"simulate", "room", "-o", "room", "--points-indoor", "40000"}).status, 0);
+  write_whole(work() / "thousand.txt", "1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n");
+  for (const char* name : {"indoor_00", "indoor_01"}) {
+    const std::string metres = std::string(name) + ".csv";
+    ASSERT_EQ(run({"transform", "thousand.txt", std::string("room/") + name + ".ply", metres}).status, 0);
+    std::istringstream rows(read_whole(work() / metres));
+    std::string line;
+    std::getline(rows, line);
+    std::string scaled;
+    double x = 0;
+    double y = 0;
+    double z = 0;
+    char comma = 0;
+    while (std::getline(rows, line)) {
+      std::istringstream(line) >> x >> comma >> y >> comma >> z;
+      scaled +=
+          std::to_string(1000 * x) + " " + std::to_string(1000 * y) + " " + std::to_string(1000 * z) + "\n";
+    }
+    write_whole(work() / (std::string(name) + ".xyz"), scaled);
+  }
+  ASSERT_EQ(run({"register", "indoor_00.xyz", "indoor_01.xyz", "-o", "out", "--source-units", "mm",
+                 "--target-units", "mm"})
+                .status,
+            0);
+  ASSERT_EQ(run({"transform", "out/result.json", "indoor_00.xyz", "moved.xyz"}).status, 0);
+  const auto side = [&](const char* file) {
+    return nlohmann::json::parse(run({"info", file, "--json"}).out)["scans"][0];
+  };
+  // Both clouds are in millimetres and lie on one another.
+  const auto moved = side("moved.xyz");
+  EXPECT_EQ(moved["points"], side("indoor_00.xyz")["points"]);
+  std::istringstream matrix(read_whole(work() / "out/transform.txt"));
+  std::array<double, 16> numbers{};
+  for (double& number : numbers) matrix >> number;
+  const auto pose = nlohmann::json::parse(read_whole(work() / "out/result.json"))["target_from_source"];
+  EXPECT_NEAR(numbers[3], 1000 * pose[0][3].get<double>(), 1e-6);
+  EXPECT_EQ(numbers[0], pose[0][0].get<double>());
+  std::istringstream before(read_whole(work() / "indoor_00.xyz"));
+  std::istringstream after(read_whole(work() / "moved.xyz"));
+  Eigen::Vector3d from;
+  Eigen::Vector3d to;
+  before >> from.x() >> from.y() >> from.z();
+  after >> to.x() >> to.y() >> to.z();
+  const double expected = numbers[0] * from.x() + numbers[1] * from.y() + numbers[2] * from.z() + numbers[3];
+  EXPECT_NEAR(to.x(), expected, 1e-3);
 }
 
 TEST_F(CliTest, Version) {

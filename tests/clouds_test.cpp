@@ -102,7 +102,7 @@ TEST_F(CloudsTest, TransformThereAndBackInEachFormat) {
     EXPECT_EQ(back["scans"][0]["points"], 900) << ending;
     EXPECT_NE(back["fields"].dump().find("\"label\""), std::string::npos) << ending;
   }
-  EXPECT_NE(run({"transform", "pose.txt", "floor.csv", "out.pcd"}).err.find(".ply, .las or .e57"),
+  EXPECT_NE(run({"transform", "pose.txt", "floor.csv", "out.pcd"}).err.find(".ply, .las, .e57, .xyz or .csv"),
             std::string::npos);
 }
 

@@ -13,6 +13,7 @@ Coordinates are metres; poses are 4 x 4 matrices `target_from_source` between wo
 
 from . import _limen
 from ._deviation import Deviation, ElementDeviation, Unmodelled, deviation
+from ._evaluation import Evaluation, evaluate
 from ._features import Features, Opening, Plane, extract_features
 from ._limen import (
     DetectOptions,
@@ -30,6 +31,7 @@ from ._limen import (
     set_threads,
     threads,
 )
+from ._project import Project, ProjectScan, project, read_project
 from ._registration import (
     Hypothesis,
     OpeningMatch,
@@ -40,7 +42,7 @@ from ._registration import (
     Unobserved,
     register,
 )
-from ._scans import Element, read_model, read_scan, transform, transform_file
+from ._scans import Element, read_model, read_scan, thin, transform, transform_file
 
 __all__ = [
     "DetectOptions",
@@ -49,6 +51,7 @@ __all__ = [
     "Element",
     "ElementDeviation",
     "Error",
+    "Evaluation",
     "ExtractOptions",
     "Features",
     "GrowOptions",
@@ -60,6 +63,8 @@ __all__ = [
     "Plane",
     "PlaneMatch",
     "PolygonOptions",
+    "Project",
+    "ProjectScan",
     "RegisterOptions",
     "Registration",
     "Scan",
@@ -70,11 +75,15 @@ __all__ = [
     "Unobserved",
     "__version__",
     "deviation",
+    "evaluate",
     "extract_features",
+    "project",
     "read_model",
+    "read_project",
     "read_scan",
     "register",
     "set_threads",
+    "thin",
     "threads",
     "transform",
     "transform_file",

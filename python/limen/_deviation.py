@@ -13,7 +13,7 @@ import numpy.typing as npt
 
 from . import _html, _limen
 from ._limen import DeviationOptions, Model, Scan
-from ._numbers import Array, Path, Progress, as_pose
+from ._numbers import Array, Path, ProgressOption, as_pose, as_progress
 from ._registration import Registration
 from ._scans import read_model, read_scan
 
@@ -89,7 +89,7 @@ def deviation(
     pose: Optional[Union[npt.ArrayLike, Registration]] = None,
     *,
     options: Optional[DeviationOptions] = None,
-    progress: Optional[Progress] = None,
+    progress: ProgressOption = None,
 ) -> Deviation:
     """Measure a scan against its model. pose: 4 x 4, or the Registration of the scan (source) in the model
     (target); None: both are in one frame already."""
@@ -103,7 +103,7 @@ def deviation(
         model if isinstance(model, Model) else read_model(model),
         matrix,
         options if options is not None else DeviationOptions(),
-        progress,
+        as_progress(progress),
     )
     told = measured.values()
     return Deviation(

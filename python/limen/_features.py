@@ -11,7 +11,7 @@ import numpy as np
 
 from . import _html, _limen
 from ._limen import ExtractOptions, Model, OpeningOptions, Scan, SegmentOptions
-from ._numbers import Array, Progress
+from ._numbers import Array, ProgressOption, as_progress
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,7 +104,7 @@ def extract_features(
     *,
     openings: Union[bool, OpeningOptions] = True,
     segments: Union[bool, SegmentOptions] = True,
-    progress: Optional[Progress] = None,
+    progress: ProgressOption = None,
 ) -> Features:
     """Find the planes of a scan, and its openings and line segments unless they are not wanted.
 
@@ -112,7 +112,7 @@ def extract_features(
     model: what a scanner could see of it, without noise.
     """
     if isinstance(scan, Model):
-        told = _limen.model_features(scan, progress)
+        told = _limen.model_features(scan, as_progress(progress))
     else:
         told = _limen.extract_features(
             scan,

@@ -16,6 +16,8 @@ _HEIGHT = 240.0
 _CELLS = 96
 #: Told apart with every kind of colour vision.
 COLOURS = ("#0072b2", "#d55e00", "#666666")
+#: Source and target, as in the report.
+SIDES = ("#c9660a", "#1f6fb4")
 
 
 def table(rows: Iterable[Sequence[object]], head: Sequence[str] = ()) -> str:
@@ -41,7 +43,9 @@ def occupied_cells(points: Array, most: int = 200_000) -> Array:
     return middles
 
 
-def top_view(clouds: Sequence[Array] = (), lines: Sequence[Sequence[Array]] = ()) -> str:
+def top_view(
+    clouds: Sequence[Array] = (), lines: Sequence[Sequence[Array]] = (), colours: Sequence[str] = COLOURS
+) -> str:
     """Points and polylines from above as SVG: each cloud and each list of lines in a colour of its own."""
     everything = [c[:, :2] for c in clouds if len(c)] + [line[:, :2] for group in lines for line in group]
     if not everything:
@@ -55,13 +59,13 @@ def top_view(clouds: Sequence[Array] = (), lines: Sequence[Sequence[Array]] = ()
         return np.round(shifted, 1)
 
     parts = []
-    for cloud, colour in zip(clouds, COLOURS):
+    for cloud, colour in zip(clouds, colours):
         dots = "".join(f"M{x:g} {y:g}h.01" for x, y in place(cloud[:, :2]))
         parts.append(
             f'<path d="{dots}" stroke="{colour}" stroke-width="2" stroke-linecap="round" '
             'opacity=".6" fill="none"/>'
         )
-    for group, colour in zip(lines, COLOURS):
+    for group, colour in zip(lines, colours):
         strokes = "".join("M" + "L".join(f"{x:g} {y:g}" for x, y in place(line[:, :2])) for line in group)
         parts.append(f'<path d="{strokes}" stroke="{colour}" stroke-width="1.2" fill="none"/>')
     return (

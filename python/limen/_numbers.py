@@ -5,7 +5,8 @@
 from __future__ import annotations
 
 import os
-from typing import Any, Callable, Union
+import sys
+from typing import Any, Callable, Optional, Union
 
 import numpy as np
 import numpy.typing as npt
@@ -15,6 +16,60 @@ Array = npt.NDArray[Any]
 #: Called as progress(stage, done, total) when a stage begins, and ten times a second at most while it lasts;
 #: total is 0 where it is not known.
 Progress = Callable[[str, float, float], object]
+#: True: a bar of tqdm where that is installed, else lines on stderr.
+ProgressOption = Union[Progress, bool, None]
+
+
+class _Bar:
+    """One bar of tqdm for all stages."""
+
+    def __init__(self, tqdm: Any) -> None:
+        self._tqdm = tqdm
+        self._bar: Any = None
+        self._stage = ""
+
+    def __call__(self, stage: str, done: float, total: float) -> None:
+        if self._bar is None or stage != self._stage:
+            self.close()
+            self._stage = stage
+            self._bar = self._tqdm(total=100, desc=stage, unit="%", leave=False)
+        if total > 0:
+            self._bar.n = round(100 * done / total)
+            self._bar.refresh()
+
+    def close(self) -> None:
+        """Take the bar away."""
+        if self._bar is not None:
+            self._bar.close()
+            self._bar = None
+
+    def __del__(self) -> None:
+        self.close()
+
+
+class _Lines:
+    """A line on stderr for each stage."""
+
+    def __init__(self) -> None:
+        self._stage = ""
+
+    def __call__(self, stage: str, done: float, total: float) -> None:
+        if stage != self._stage:
+            self._stage = stage
+            print(f"limen: {stage}", file=sys.stderr, flush=True)
+
+
+def as_progress(progress: ProgressOption) -> Optional[Progress]:
+    """What is called while work goes on: nothing, the caller's own function, or for True a bar."""
+    if progress is None or progress is False:
+        return None
+    if progress is not True:
+        return progress
+    try:
+        from tqdm.auto import tqdm
+    except ImportError:
+        return _Lines()
+    return _Bar(tqdm)
 
 
 def as_pose(pose: npt.ArrayLike) -> Array:

@@ -15,13 +15,14 @@ import numpy.typing as npt
 
 from . import _html, _limen
 from ._limen import Model, RegisterOptions, Scan
-from ._numbers import Array, Path, Progress, as_pose
+from ._numbers import Array, Path, ProgressOption, as_pose, as_progress
 from ._scans import read_model, read_scan
 
 _DEFAULTS = RegisterOptions()
 
-#: What can be registered: a scan, a model, a file of either, or scans with their poses in one frame.
-Side = Union[Scan, Model, Path, Sequence[tuple[Union[Scan, Path], npt.ArrayLike]]]
+#: What can be registered: a scan, a model, a file of either, an array of points (n, 3), or scans with their
+#: poses in one frame.
+Side = Union[Scan, Model, Path, Array, Sequence[tuple[Union[Scan, Path], npt.ArrayLike]]]
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,6 +32,7 @@ class Sigma:
     rotation_rad: Array  #: about x, y, z
     translation_m: Array  #: along x, y, z, of the point `centre`
     centre: Array = field(repr=False)
+    covariance: Array = field(repr=False)  #: 6 x 6, of (rotation, translation of `centre`)
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,6 +57,18 @@ class Hypothesis:
     matched_openings: int
     explained_share: Optional[float] = None  #: against a model: of the walls that the scan saw
     room: str = ""  #: of a model with named rooms: where the first station stands
+    probability: Optional[float] = None  #: that the scans were taken so; not of segments
+    tie: bool = False  #: of an alternative: it cannot be told from the best
+    matched_segments: int = 0
+    sigma: Optional[Sigma] = field(default=None, repr=False)  #: how well it is known, were it the right one
+
+    def apply(self, points: npt.ArrayLike) -> Array:
+        """Move world coordinates of the source, (n, 3), into the target's frame by this pose."""
+        return _limen.transform_points(np.asarray(points, dtype=np.float64), self.target_from_source)
+
+
+def _hypothesis(told: dict[str, Any]) -> Hypothesis:
+    return Hypothesis(**{**told, "sigma": Sigma(*told["sigma"])})
 
 
 @dataclass(frozen=True)
@@ -67,6 +81,16 @@ class PlaneMatch:
     angle_rad: float
     overlap_m2: float
 
+    @property
+    def source_plane(self) -> int:
+        """`source`, by its name in result.json."""
+        return self.source
+
+    @property
+    def target_plane(self) -> int:
+        """`target`, by its name in result.json."""
+        return self.target
+
 
 @dataclass(frozen=True)
 class OpeningMatch:
@@ -77,6 +101,16 @@ class OpeningMatch:
     shift_across_m: float
     shift_up_m: float
 
+    @property
+    def source_opening(self) -> int:
+        """`source`, by its name in result.json."""
+        return self.source
+
+    @property
+    def target_opening(self) -> int:
+        """`target`, by its name in result.json."""
+        return self.target
+
 
 @dataclass(frozen=True)
 class Thickness:
@@ -85,6 +119,35 @@ class Thickness:
     value_m: float
     sigma_m: float
     openings: int
+
+    @property
+    def thickness_m(self) -> float:
+        """`value_m`, by its name in result.json."""
+        return self.value_m
+
+
+class _Kept:
+    """What is left of a report that went through a pickle: its numbers, not its page."""
+
+    def __init__(self, text: str) -> None:
+        self._text = text
+
+    def json(self) -> str:
+        """The text of result.json."""
+        return self._text
+
+    def save(self, folder: str, with_report: bool) -> None:
+        """Write result.json and transform.txt."""
+        if with_report:
+            raise ValueError("the page did not go through the pickle: save(folder, report=False)")
+        os.makedirs(folder, exist_ok=True)
+        with open(os.path.join(folder, "result.json"), "w", encoding="utf-8") as file:
+            file.write(self._text)
+        pose = json.loads(self._text)["target_from_source"]
+        if pose is not None:
+            rows = "".join(" ".join(f"{number:.17g}" for number in row) + "\n" for row in pose)
+            with open(os.path.join(folder, "transform.txt"), "w", encoding="utf-8") as file:
+                file.write(rows)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -125,6 +188,45 @@ class Registration:
         sections, as `limen register` does."""
         self._report.save(os.fspath(folder), report)
 
+    @property
+    def probability(self) -> Optional[float]:
+        """Of the best pose."""
+        return None if self.best is None else self.best.probability
+
+    @property
+    def matched_openings(self) -> list[OpeningMatch]:
+        """`openings`, by their name in result.json."""
+        return self.openings
+
+    @property
+    def wall_thickness(self) -> list[Thickness]:
+        """`thickness`, by its name in result.json."""
+        return self.thickness
+
+    @property
+    def motion(self) -> Optional[dict[str, Any]]:
+        """The pose as a reader sees it: shift_m of the source's middle (`about`), and the turn about it (`axis`,
+        turn_rad); as in result.json."""
+        told: Optional[dict[str, Any]] = self.to_dict()["motion"]
+        return told
+
+    @property
+    def precision(self) -> Optional[dict[str, Any]]:
+        """Within what radius the source's middle and its far end are known (95 %), as in result.json."""
+        told: Optional[dict[str, Any]] = self.to_dict()["precision"]
+        return told
+
+    @property
+    def next_steps(self) -> list[str]:
+        """What to do next, sentences."""
+        return list(self.to_dict()["next_steps"])
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {**self.__dict__, "_report": _Kept(self._report.json())}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state)
+
     def to_dict(self) -> dict[str, Any]:
         """All that result.json holds."""
         told: dict[str, Any] = json.loads(self._report.json())
@@ -136,12 +238,24 @@ class Registration:
     def _repr_html_(self) -> str:
         rows: list[tuple[str, str]] = []
         if self.best is not None:
-            pose = self.best.target_from_source
-            rows.append(("translation", "{:.4f} {:.4f} {:.4f} m".format(*pose[:3, 3])))
-            if not self.unobserved:
-                turn_deg = np.degrees(self.sigma.rotation_rad.max())
-                shift_mm = 1e3 * self.sigma.translation_m.max()
-                rows.append(("sigma", f"{turn_deg:.5f} deg, {shift_mm:.2f} mm"))
+            told = self.to_dict()
+            if self.best.probability is not None:
+                rows.append(("probability", f"{100 * self.best.probability:.2f} %"))
+            motion, precision = told["motion"], told["precision"]
+            shift = "{:.4f} {:.4f} {:.4f} m".format(*motion["shift_m"])
+            rows.append(("shift of the middle", shift))
+            axis = "{:.2f} {:.2f} {:.2f}".format(*motion["axis"])
+            rows.append(("turn about it", f"{np.degrees(motion['turn_rad']):.4f} deg about {axis}"))
+            if precision is not None:
+                middle, far = precision["middle"], precision["far_end"]
+                rows.append(
+                    (
+                        "precision (95 %)",
+                        f"{1e3 * middle['radius_m']:.1f} mm in the middle, {1e3 * far['radius_m']:.1f} mm "
+                        f"at the far end {far['distance_m']:.0f} m away",
+                    )
+                )
+            rows.append(("residuals", f"{1e3 * self.best.rms_m:.1f} mm (root mean square)"))
             rows += [("not fixed", freedom.name) for freedom in self.unobserved]
             surface = f"{self.best.agreeing_m2:.1f} m2, {self.best.contradicted_m2:.2f} m2 against"
             rows.append(("agreeing surface", surface))
@@ -153,18 +267,23 @@ class Registration:
         rows.append(("other poses", str(len(self.alternatives))))
         source, target = self._views
         if self.best is not None and len(source):
-            view = _html.top_view([_html.occupied_cells(self.apply(source)), _html.occupied_cells(target)])
+            cells = [_html.occupied_cells(self.apply(source)), _html.occupied_cells(target)]
+            view = _html.top_view(cells, colours=_html.SIDES)
         else:
             view = ""
-        legend = "<p>source blue, target orange, from above</p>" if view else ""
+        legend = "<p>source orange, target blue, from above</p>" if view else ""
         return (
             f"<div><b>{_html.escape(self.outcome)}</b>: {_html.escape(self.reason)}"
             f"{_html.table(rows)}{view}{legend}</div>"
         )
 
 
-def _loaded(side: Side) -> Union[Model, list[tuple[Scan, Array]]]:
-    """Files are read; a scan alone stands in the origin of its group."""
+def _loaded(
+    side: Side, centre: Optional[npt.ArrayLike] = None
+) -> Union[Model, list[tuple[Scan, Array]]]:
+    """Files are read, arrays become scans; a scan alone stands in the origin of its group."""
+    if isinstance(side, np.ndarray):
+        return [(Scan(points=side, centres=centre), np.eye(4))]
     if isinstance(side, Model):
         return side
     if isinstance(side, Scan):
@@ -194,12 +313,17 @@ def register(
     gravity: str = _DEFAULTS.gravity,
     wall_thickness_m: float = _DEFAULTS.wall_thickness_m,
     seed: int = _DEFAULTS.seed,
+    centre: Optional[npt.ArrayLike] = None,
+    source_centre: Optional[npt.ArrayLike] = None,
+    target_centre: Optional[npt.ArrayLike] = None,
     options: Optional[RegisterOptions] = None,
-    progress: Optional[Progress] = None,
+    progress: ProgressOption = None,
 ) -> Registration:
     """Find the pose of `source` in `target`, from any start, and say whether to trust it.
 
-    Either side is a Scan, a Model, a file of either, or a list of (scan, pose) known to one another.
+    Either side is a Scan, a Model, a file of either, an array of points (n, 3) in metres, or a list of
+    (scan, pose) known to one another. centre: from where arrays were seen, one place or one per point;
+    source_centre and target_centre where the two differ.
     method: auto, polygons, openings, hybrid or segments. gravity: auto, up or unknown.
     `options` has all that the keywords have and more; keywords that are not at their defaults count first.
     """
@@ -212,16 +336,17 @@ def register(
     ):
         if value != getattr(_DEFAULTS, name):
             setattr(asked, name, value)
-    from_side, to_side = _loaded(source), _loaded(target)
-    report = _limen.register(from_side, to_side, asked, progress)
+    from_side = _loaded(source, centre if source_centre is None else source_centre)
+    to_side = _loaded(target, centre if target_centre is None else target_centre)
+    report = _limen.register(from_side, to_side, asked, as_progress(progress))
     told = report.values()
     return Registration(
         outcome=told["outcome"],
         reason=told["reason"],
-        best=None if told["best"] is None else Hypothesis(**told["best"]),
+        best=None if told["best"] is None else _hypothesis(told["best"]),
         sigma=Sigma(*told["sigma"]),
         unobserved=[Unobserved(*it) for it in told["unobserved"]],
-        alternatives=[Hypothesis(**it) for it in told["alternatives"]],
+        alternatives=[_hypothesis(it) for it in told["alternatives"]],
         matches=[PlaneMatch(*it) for it in told["matches"]],
         openings=[OpeningMatch(*it) for it in told["openings"]],
         thickness=[Thickness(*it) for it in told["thickness"]],

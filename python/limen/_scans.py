@@ -6,14 +6,14 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass
-from typing import Optional, Union, overload
+from typing import Any, Optional, Union, overload
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _html, _limen
 from ._limen import Model, Scan
-from ._numbers import Array, Path, Progress, as_pose
+from ._numbers import Array, Path, ProgressOption, as_pose, as_progress
 
 
 @dataclass(frozen=True)
@@ -32,20 +32,22 @@ def read_scan(
     *,
     origin: Optional[npt.ArrayLike] = None,
     level: bool = _limen.LEVEL,
-    progress: Optional[Progress] = None,
+    units: str = "",
+    progress: ProgressOption = None,
 ) -> Scan:
     """Read a scan of any format limen knows; the content decides, not the name.
 
     origin: from where the scan was taken, in the coordinates of its points, metres, where the file does not
-    say. level: the z axis points up. Raises limen.Error for what cannot be read.
+    say. level: the z axis points up. units: of the numbers in the file (m, mm, cm, ft, us-ft, in, km), where it
+    does not say; the scan is in metres. Raises limen.Error for what cannot be read.
     """
     place = None if origin is None else np.asarray(origin, dtype=np.float64)
-    return _limen.read_scan(os.fspath(path), place, level, progress)
+    return _limen.read_scan(os.fspath(path), place, level, units, as_progress(progress))
 
 
-def read_model(path: Path, *, progress: Optional[Progress] = None) -> Model:
-    """Read a building model: IFC (also zipped), OBJ, or PLY with faces."""
-    return _limen.read_model(os.fspath(path), progress)
+def read_model(path: Path, *, units: str = "", progress: ProgressOption = None) -> Model:
+    """Read a building model: IFC (also zipped), OBJ, or PLY with faces. units: of a mesh, which does not say."""
+    return _limen.read_model(os.fspath(path), units, as_progress(progress))
 
 
 @overload
@@ -61,11 +63,25 @@ def transform(cloud: Union[Scan, Array], target_from_source: npt.ArrayLike) -> U
 
 
 def transform_file(
-    path: Path, target_from_source: npt.ArrayLike, output: Path, *, progress: Optional[Progress] = None
+    path: Path, target_from_source: npt.ArrayLike, output: Path, *, progress: ProgressOption = None
 ) -> int:
     """Move a point file with all its values, as `limen transform` does; returns the number of points."""
-    told = _limen.transform_file(os.fspath(path), as_pose(target_from_source), os.fspath(output), progress)
+    pose = as_pose(target_from_source)
+    told = _limen.transform_file(os.fspath(path), pose, os.fspath(output), as_progress(progress))
     return int(told["points"])
+
+
+def thin(
+    path: Path, output: Path, *, points: int = 0, spacing_m: float = 0.0, progress: ProgressOption = None
+) -> int:
+    """Keep an even part of a cloud of any size, as `limen thin` does; returns the number of points kept.
+
+    points: at most so many. spacing_m: one in each cube of that side.
+    """
+    if points <= 0 and spacing_m <= 0:
+        raise ValueError("say how many points to keep: points or spacing_m")
+    told = _limen.thin_file(os.fspath(path), os.fspath(output), points, spacing_m, as_progress(progress))
+    return int(told["points_written"])
 
 
 def _scan_facts(scan: Scan) -> list[tuple[str, str]]:
@@ -106,6 +122,32 @@ def _elements(model: Model) -> list[Element]:
     return [Element(*parts) for parts in model._elements()]
 
 
+def _restored(parts: dict[str, Any], centre_source: int) -> Scan:
+    scan = Scan(**parts)
+    scan._centre_source = centre_source
+    return scan
+
+
+def _scan_reduce(scan: Scan) -> tuple[Any, ...]:
+    parts = {name: getattr(scan, name) for name in _PARTS}
+    return _restored, (parts, scan._centre_source)
+
+
+#: What Scan(...) takes.
+_PARTS = (
+    "points",
+    "centres",
+    "times",
+    "intensities",
+    "colours",
+    "lines",
+    "indices",
+    "name",
+    "level",
+    "local_origin",
+)
+
+setattr(Scan, "__reduce__", _scan_reduce)
 setattr(Scan, "__repr__", _scan_repr)
 setattr(Scan, "_repr_html_", _scan_html)
 setattr(Model, "__repr__", _model_repr)

@@ -12,7 +12,7 @@ import numpy as np
 
 from . import _limen
 from ._limen import Scan
-from ._numbers import Array, Progress
+from ._numbers import Array, ProgressOption, as_progress
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -48,7 +48,7 @@ def simulate(
     curtain_share: Optional[float] = None,
     noise_m: Optional[float] = None,
     drift_m: Optional[float] = None,
-    progress: Optional[Progress] = None,
+    progress: ProgressOption = None,
 ) -> Simulation:
     """Scan a built-in building, one of scene_names(). What is not given is as the scene has it."""
     given = {
@@ -62,5 +62,5 @@ def simulate(
         "noise_m": noise_m,
         "drift_m": drift_m,
     }
-    scans, poses, truth = _limen.simulate(name, given, progress)
+    scans, poses, truth = _limen.simulate(name, given, as_progress(progress))
     return Simulation(scans=scans, truth=json.loads(truth), world_from_scan=poses)

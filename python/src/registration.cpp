@@ -52,6 +52,10 @@ InputSummary summary_of(const PythonSide& side) {
   return summary;
 }
 
+py::tuple sigma_tuple(const PoseSigma& sigma) {
+  return py::make_tuple(sigma.rotation_rad, sigma.translation_m, sigma.centre, sigma.covariance);
+}
+
 py::dict hypothesis_dict(const Hypothesis& it) {
   py::dict told;
   told["target_from_source"] = to_matrix(it.target_from_source);
@@ -63,6 +67,10 @@ py::dict hypothesis_dict(const Hypothesis& it) {
   told["matched_openings"] = it.matched_openings;
   told["explained_share"] = it.explained_share;
   told["room"] = it.room;
+  told["probability"] = it.probability;
+  told["tie"] = it.tie;
+  told["matched_segments"] = it.matched_segments;
+  told["sigma"] = sigma_tuple(it.sigma);
   return told;
 }
 
@@ -78,7 +86,7 @@ py::dict result_dict(const RegistrationResult& result) {
   told["outcome"] = to_string(result.outcome);
   told["reason"] = result.reason;
   told["best"] = result.outcome == Outcome::no_match ? py::object(py::none()) : hypothesis_dict(result.best);
-  told["sigma"] = py::make_tuple(result.sigma.rotation_rad, result.sigma.translation_m, result.sigma.centre);
+  told["sigma"] = sigma_tuple(result.sigma);
   told["unobserved"] = list_of(result.unobserved, [](const UnobservedFreedom& it) {
     return py::make_tuple(it.name, it.rotation, it.direction);
   });

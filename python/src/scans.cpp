@@ -6,10 +6,14 @@
 #include "numpy_views.h"
 #include "work.h"
 
+#include "limen/base/guarded_mapping.h"
+#include "limen/base/length_unit.h"
 #include "limen/bim/read_bim.h"
+#include "limen/io/cloud/open_points.h"
 #include "limen/io/cloud/read_scan.h"
-#include "limen/io/table/scan_builder.h"
 #include "limen/io/cloud/transform_cloud.h"
+#include "limen/io/cloud/write_clouds.h"
+#include "limen/io/table/scan_builder.h"
 #include "limen/io/ply/write_ply.h"
 
 namespace limen::python {
@@ -146,6 +150,10 @@ void bind_scan(py::module_& module) {
   scan.def_property_readonly("mobile", &Scan::mobile);
   scan.def_readwrite("name", &Scan::name);
   scan.def_readwrite("level", &Scan::level);
+  // Who says where the scanner stood: kept by pickles.
+  scan.def_property(
+      "_centre_source", [](const Scan& it) { return static_cast<int>(it.centre_source); },
+      [](Scan& it, int source) { it.centre_source = static_cast<PlaceSource>(source); });
   scan.def("__len__", &Scan::size);
   scan.def(
       "save", [](const Scan& it, const std::filesystem::path& path) { write_ply(path, it); },
@@ -175,6 +183,35 @@ void bind_model(py::module_& module) {
   });
 }
 
+/// Metres per unit of a name; nothing for an empty one. Throws Error for a name that is none.
+std::optional<double> unit_from(const std::string& name) {
+  if (name.empty()) return std::nullopt;
+  if (const std::optional<LengthUnit> unit = length_unit(name)) return unit->metres_per_unit;
+  throw Error(name + " is no unit of length", "units", "give m, mm, cm, ft, us-ft, in or km");
+}
+
+py::dict thin_file(const std::filesystem::path& input, const std::filesystem::path& output,
+                   std::uint64_t points, double spacing_m, const py::object& progress) {
+  ThinOptions thinning;
+  thinning.most_points = points;
+  thinning.spacing_m = spacing_m;
+  thinning.check();
+  const WrittenClouds written = run(progress, [&](Monitor& monitor) {
+    monitor.begin_stage("thinning");
+    const OpenPoints open(input);
+    const JoinedClouds clouds(placed_clouds(open, {}), open.file().clouds().size() > 1);
+    const bool few = spacing_m == 0.0 && clouds.plan().most_points <= points;
+    return with_whole_inputs([&] {
+      return few ? write_clouds(clouds, output, monitor) : write_thinned(clouds, thinning, output, monitor);
+    });
+  });
+  py::dict told;
+  told["points_read"] = written.read;
+  told["points_written"] = written.written;
+  told["spacing_m"] = written.spacing_m;
+  return told;
+}
+
 py::dict transform_file(const std::filesystem::path& input, const Matrix4d& pose,
                         const std::filesystem::path& output, const py::object& progress) {
   const Rigid3 target_from_source = from_matrix(pose);
@@ -197,21 +234,24 @@ void bind_scans(py::module_& module) {
   module.def(
       "read_scan",
       [](const std::filesystem::path& path, const std::optional<Vector3d>& origin, bool level,
-         const py::object& progress) {
-        const ReadOptions options{origin, level};
+         const std::string& units, const py::object& progress) {
+        ReadOptions options{origin, level};
+        options.metres_per_unit = unit_from(units);
         return std::make_shared<Scan>(
             run(progress, [&](Monitor& monitor) { return limen::read_scan(path, options, monitor); }));
       },
-      py::arg("path"), py::arg("origin"), py::arg("level"), py::arg("progress"));
+      py::arg("path"), py::arg("origin"), py::arg("level"), py::arg("units"), py::arg("progress"));
   module.def(
       "read_model",
-      [](const std::filesystem::path& path, const py::object& progress) {
+      [](const std::filesystem::path& path, const std::string& units, const py::object& progress) {
+        const std::optional<double> unit = unit_from(units);
         return std::make_shared<BimModel>(
-            run(progress, [&](Monitor& monitor) { return read_bim(path, monitor); }));
+            run(progress, [&](Monitor& monitor) { return read_bim(path, monitor, unit); }));
       },
-      py::arg("path"), py::arg("progress"));
+      py::arg("path"), py::arg("units"), py::arg("progress"));
   module.def("is_model_file", &is_bim_file, py::arg("path"));
   module.def("transform_file", &transform_file);
+  module.def("thin_file", &thin_file);
   module.def("transform_scan", [](const Scan& scan, const Matrix4d& pose) {
     return std::make_shared<Scan>(transformed(scan, from_matrix(pose)));
   });

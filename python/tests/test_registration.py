@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: The limen authors
 # SPDX-License-Identifier: Apache-2.0
 import json
+import pickle
 import signal
 import subprocess
 import sys
@@ -91,10 +92,77 @@ class Registered(unittest.TestCase):
 
     def test_in_a_notebook(self):
         page = self.result._repr_html_()
-        for part in ("<b>registered</b>", "<svg", "translation", "matched"):
+        for part in ("<b>registered</b>", "<svg", "shift of the middle", "far end", "matched"):
             self.assertIn(part, page)
         self.assertLess(len(page), 1_000_000)
         self.assertIn("registered", repr(self.result))
+
+
+    def test_every_pose_can_be_applied(self):
+        points = self.case.scans[0].world_points[:100]
+        np.testing.assert_allclose(self.result.best.apply(points), self.result.apply(points))
+        other = self.result.alternatives[0]
+        np.testing.assert_allclose(other.apply(points), limen.transform(points, other.target_from_source))
+        self.assertFalse(other.tie)
+        self.assertEqual(other.sigma.covariance.shape, (6, 6))
+        self.assertGreater(self.result.probability, 0.9)
+        np.testing.assert_allclose(
+            np.sqrt(np.diag(self.result.sigma.covariance)[3:]), self.result.sigma.translation_m
+        )
+
+    def test_names_are_those_of_the_file(self):
+        told = self.result.to_dict()
+        match, written = self.result.matches[0], told["matches"][0]
+        for name in ("source_plane", "target_plane", "distance_m", "overlap_m2"):
+            self.assertEqual(getattr(match, name), written[name])
+        self.assertEqual(len(self.result.matched_openings), len(told["matched_openings"]))
+        self.assertEqual(len(self.result.wall_thickness), len(told["wall_thickness"]))
+        self.assertEqual(self.result.precision, told["precision"])
+        self.assertEqual(self.result.motion, told["motion"])
+        self.assertTrue(self.result.next_steps)
+
+    def test_arrays_are_taken_as_they_are(self):
+        source, target = (scan.world_points for scan in self.case.scans)
+        result = limen.register(source, target, centre=(0, 0, 0))
+        np.testing.assert_allclose(result.target_from_source, self.result.target_from_source, atol=1e-3)
+
+    def test_evaluate_is_that_of_the_program(self):
+        truth = self.case.target_from_source(0, 1)
+        error = limen.evaluate(self.result, truth)
+        self.assertLess(error.translation_error_m, 0.005)
+        self.assertLess(error.rotation_error_deg, 0.05)
+        self.assertLess(error.largest_error_in_sigmas, 4.0)
+        with tempfile.TemporaryDirectory() as folder:
+            self.result.save(folder, report=False)
+            np.savetxt(Path(folder) / "truth.txt", truth, fmt="%.17g")
+            words = [sys.executable, "-m", "limen", "evaluate", folder + "/result.json", folder + "/truth.txt", "--json"]
+            told = json.loads(subprocess.run(words, capture_output=True, text=True, check=True).stdout)
+        self.assertAlmostEqual(told["translation_error_m"], error.translation_error_m, places=9)
+        self.assertAlmostEqual(told["rotation_error_deg"], error.rotation_error_deg, places=7)
+        half_turn = np.diag([-1.0, 1.0, -1.0, 1.0])
+        self.assertAlmostEqual(
+            limen.evaluate(self.result, half_turn @ self.result.target_from_source).rotation_error_deg, 180.0
+        )
+
+    def test_pickles(self):
+        scan = self.case.scans[0]
+        again = pickle.loads(pickle.dumps(scan))
+        np.testing.assert_array_equal(again.points, scan.points)
+        np.testing.assert_array_equal(again.local_origin, scan.local_origin)
+        np.testing.assert_array_equal(again.centres, scan.centres)
+        self.assertEqual((again.name, again.level), (scan.name, scan.level))
+        kept = pickle.loads(pickle.dumps(self.result))
+        self.assertEqual(kept.to_dict(), self.result.to_dict())
+        np.testing.assert_array_equal(kept.target_from_source, self.result.target_from_source)
+        self.assertEqual(repr(kept), repr(self.result))
+        with tempfile.TemporaryDirectory() as folder:
+            kept.save(folder, report=False)
+            self.assertEqual(json.loads((Path(folder) / "result.json").read_text()), self.result.to_dict())
+            np.testing.assert_array_equal(
+                np.loadtxt(Path(folder) / "transform.txt"), self.result.target_from_source
+            )
+            with self.assertRaises(ValueError):
+                kept.save(folder)
 
 
 class Found(unittest.TestCase):

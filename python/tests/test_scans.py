@@ -1,6 +1,9 @@
 # SPDX-FileCopyrightText: The limen authors
 # SPDX-License-Identifier: Apache-2.0
+import contextlib
 import gc
+import io
+import json
 import tempfile
 import unittest
 from pathlib import Path
@@ -109,6 +112,56 @@ class Files(unittest.TestCase):
             wall = model.elements[0]
             self.assertEqual((model.schema, model.faces, wall.name or wall.type), ("OBJ", 1, "wall"))
             self.assertIn("OBJ", repr(model))
+
+
+class Units(unittest.TestCase):
+    def test_a_file_in_millimetres_is_read_in_metres(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "a.xyz"
+            np.savetxt(path, 1000.0 * cube(200), fmt="%.3f")
+            scan = limen.read_scan(path, units="mm")
+            np.testing.assert_allclose(scan.world_points, cube(200), atol=1e-6)
+            with self.assertRaises(limen.Error):
+                limen.read_scan(path, units="furlong")
+
+    def test_thin_keeps_one_in_a_cube(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path, out = Path(folder) / "a.xyz", Path(folder) / "b.xyz"
+            np.savetxt(path, cube(5000), fmt="%.6f")
+            kept = limen.thin(path, out, spacing_m=1.0)
+            self.assertEqual(len(limen.read_scan(out)), kept)
+            self.assertLessEqual(kept, 9**3)
+            self.assertGreater(kept, 300)
+            with self.assertRaises(ValueError):
+                limen.thin(path, out)
+
+
+class Progress(unittest.TestCase):
+    def test_true_tells_stages(self):
+        heard = io.StringIO()
+        with contextlib.redirect_stderr(heard):
+            limen.simulate("room", points_indoor=2_000, stations=1, progress=True)
+        self.assertTrue(heard.getvalue())
+
+
+class Projects(unittest.TestCase):
+    def test_read_project_tells_poses_by_file(self):
+        told = {
+            "outcome": "registered",
+            "reason": "all scans stand",
+            "scans": [
+                {"file": "a/one.ply", "state": "registered", "frame_from_scan": np.eye(4).tolist(), "reason": ""},
+                {"file": "a/two.ply", "state": "floating", "frame_from_scan": None, "reason": "alone"},
+            ],
+            "questions": [{"text": "is it here?"}],
+        }
+        with tempfile.TemporaryDirectory() as folder:
+            (Path(folder) / "project.json").write_text(json.dumps(told))
+            found = limen.read_project(folder)
+        np.testing.assert_array_equal(found.pose_of("one.ply"), np.eye(4))
+        self.assertEqual(found.questions, ["is it here?"])
+        with self.assertRaises(KeyError):
+            found.pose_of("two.ply")
 
 
 class Moving(unittest.TestCase):

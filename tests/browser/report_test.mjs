@@ -67,7 +67,7 @@ describe('a registered pair', () => {
 
   test('tells the verdict first and shows something', async () => {
     assert.match(await page.locator('h1').innerText(), /^Registered: the two scans fit in one way only$/);
-    assert.match(await page.locator('.verdict').innerText(), /You can expect [\d.]+ mm in position/);
+    assert.match(await page.locator('.verdict').innerText(), /is known to [\d.]+ mm in its middle and to [\d.]+ [cm]*m at its far end/);
     const seen = await pixels(page);
     assert.ok(seen.drawn > 0.03, `only ${seen.drawn} of the canvas is drawn`);
     assert.ok(seen.orange > 0.02 && seen.orange < 0.98, `${seen.orange} orange: both sides must be there`);

@@ -37,6 +37,17 @@ constexpr std::array<Format, 4> kFormats{{
     {looks_like_obj, obj},
 }};
 
+/// Scales a mesh. Throws Error for a file that tells its unit.
+void set_unit(RawModel& raw, double metres_per_unit, const std::string& name) {
+  if (raw.head.schema != "OBJ" && raw.head.schema != "PLY")
+    throw Error("an IFC file tells its own unit", name, "leave the unit out");
+  raw.head.metres_per_unit = metres_per_unit;
+  if (metres_per_unit == 1.0) return;
+  for (RawElement& element : raw.elements) {
+    for (Solid& solid : element.shapes) move(solid, metres_per_unit, Vector3d::Zero());
+  }
+}
+
 const Format* format_of(std::string_view bytes) {
   for (const Format& format : kFormats) {
     if (format.matches(bytes)) return &format;
@@ -59,7 +70,8 @@ bool is_bim_file(const std::filesystem::path& path) {
   }
 }
 
-BimModel read_bim(const std::filesystem::path& path, Monitor& monitor) {
+BimModel read_bim(const std::filesystem::path& path, Monitor& monitor,
+                  std::optional<double> metres_per_unit) {
   const std::string name = path.string();
   const CancelScope scope(monitor);
   CancelScope::check();
@@ -71,6 +83,7 @@ BimModel read_bim(const std::filesystem::path& path, Monitor& monitor) {
   }
   RawModel raw = with_whole_inputs([&] { return format->read(file.bytes(), name, monitor); });
   monitor.throw_if_cancelled();
+  if (metres_per_unit) set_unit(raw, *metres_per_unit, name);
   return built(std::move(raw), monitor);
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 
 #include "limen/base/progress.h"
 #include "limen/model/bim_model.h"
@@ -15,6 +16,9 @@ bool is_bim_file(const std::filesystem::path& path);
 
 /// Reads a model of any format that limen knows, chosen by content. Throws Error where it cannot be read;
 /// what is damaged or left out of a model that can be read in part stands in BimModel::warnings.
-BimModel read_bim(const std::filesystem::path& path, Monitor& monitor = silent_monitor());
+/// `metres_per_unit`: of a mesh, which says nothing of its unit; empty: 1. An IFC file tells its own, and
+/// another one is refused.
+BimModel read_bim(const std::filesystem::path& path, Monitor& monitor = silent_monitor(),
+                  std::optional<double> metres_per_unit = {});
 
 }  // namespace limen

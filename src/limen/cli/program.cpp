@@ -3,12 +3,14 @@
 #include "limen/cli/program.h"
 
 #include <algorithm>
+#include <cctype>
 #include <csignal>
 #include <cstdio>
 #include <iostream>
 #include <memory>
 #include <new>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <CLI/App.hpp>
@@ -27,12 +29,14 @@
 #include "limen/cli/commands/planes_command.h"
 #include "limen/cli/commands/project_command.h"
 #include "limen/cli/commands/register_command.h"
+#include "limen/cli/commands/schema_command.h"
 #include "limen/cli/commands/segments_command.h"
 #include "limen/cli/commands/thin_command.h"
 #include "limen/cli/commands/transform_command.h"
 #include "limen/cli/commands/transform_project.h"
 #include "limen/cli/help/program_help.h"
 #include "limen/cli/terminal/command.h"
+#include "limen/cli/terminal/nearest_word.h"
 #include "limen/cli/terminal/terminal.h"
 
 #ifdef LIMEN_WITH_SIMULATOR
@@ -56,16 +60,74 @@ int fail(const std::string& message, int status) {
   return status;
 }
 
+std::vector<std::string> command_names(const CLI::App& app) {
+  std::vector<std::string> names = {"help"};
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
+    if (!command->get_group().empty()) names.push_back(command->get_name());
+  }
+  return names;
+}
+
+std::vector<std::string> option_names(const CLI::App& command) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : command.get_options()) {
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  }
+  return names;
+}
+
+/// "outptu is not ...", and what may have been meant.
+std::string unknown_word(const std::string& word, const std::string& what,
+                         const std::vector<std::string>& known) {
+  const std::string meant = nearest_word(word, known);
+  return fmt::format("{} is not {}{}", word, what,
+                     meant.empty() ? "" : fmt::format("; did you mean {}?", meant));
+}
+
+/// The first word that looks like an option and is none of the command's; empty where there is none.
+std::string unknown_option(const CLI::App& command) {
+  for (const std::string& word : command.remaining()) {
+    if (word.size() < 2 || word[0] != '-' ||
+        (word[1] != '-' && std::isalpha(static_cast<unsigned char>(word[1])) == 0))
+      continue;
+    return word.substr(0, word.find('='));
+  }
+  return {};
+}
+
 /// What is wrong with the command line, and where its usage is told.
 std::string usage_error(const CLI::App& app, const CLI::ParseError& error) {
   const std::vector<CLI::App*> chosen = app.get_subcommands();
   if (!chosen.empty()) {
-    return fmt::format("{} (limen {} --help tells the usage)", error.what(), chosen.front()->get_name());
+    const CLI::App& command = *chosen.front();
+    const std::string name =
+        command.get_group().empty() && command.get_name() == kProjectMove ? "transform" : command.get_name();
+    const std::string option = unknown_option(command);
+    const std::string problem =
+        option.empty()
+            ? error.what()
+            : unknown_word(option, fmt::format("an option of limen {}", name), option_names(command));
+    return fmt::format("{} (limen {} --help tells the usage)", problem, name);
   }
   const std::vector<std::string> unknown = app.remaining();
-  const std::string problem = unknown.empty() ? "a command is needed" : unknown.front() + " is not a command";
   const bool about_commands = dynamic_cast<const CLI::RequiredError*>(&error) != nullptr;
-  return fmt::format("{} (limen --help tells the usage)", about_commands ? problem : error.what());
+  std::string problem = about_commands ? "a command is needed" : error.what();
+  if (about_commands && !unknown.empty()) {
+    const bool option = unknown.front().starts_with('-');
+    problem = unknown_word(unknown.front(), option ? "an option of limen" : "a command",
+                           option ? option_names(app) : command_names(app));
+  }
+  return fmt::format("{} (limen --help tells the usage)", problem);
+}
+
+/// `limen help` is `limen --help`, and `limen help COMMAND` is `limen COMMAND --help`.
+std::vector<std::string> without_help_command(int argc, char** argv) {
+  std::vector<std::string> words(argv, argv + argc);
+  if (words.size() < 2 || words[1] != "help") return words;
+  words.erase(words.begin() + 1);
+  words.resize(std::min<std::size_t>(words.size(), 2));
+  words.emplace_back("--help");
+  return words;
 }
 
 int status_of(Fault fault) {
@@ -95,6 +157,7 @@ void add_commands(CommandLine& app, Session& session) {
 #ifdef LIMEN_WITH_SIMULATOR
   add_simulate_command(app, session);
 #endif
+  add_schema_command(app, session);
   add_completion_command(app, session);
 }
 
@@ -140,9 +203,10 @@ int run_action(Session& session) {
 
 int run_program(int argc, char** argv) {
   std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is told of as a disk that is full
-  std::string project_move = kProjectMove;
-  std::vector<char*> words(argv, argv + argc);
-  if (asked_project_move(argc, argv)) words[1] = project_move.data();
+  std::vector<std::string> texts = without_help_command(argc, argv);
+  if (asked_project_move(argc, argv)) texts[1] = kProjectMove;
+  std::vector<char*> words;
+  for (std::string& text : texts) words.push_back(text.data());
   Session session;
   CLI::App app(
       "limen finds how laser scans of one building fit together, indoors and outdoors, and where in a "
@@ -150,13 +214,19 @@ int run_program(int argc, char** argv) {
       "limen");
   app.formatter(make_help_formatter());
   app.set_help_flag("-h,--help", "Tell the usage and exit");
-  app.set_version_flag("--version", fmt::format("limen {}", kVersion), "Tell the version and exit");
+  app.set_version_flag("-V,--version", fmt::format("limen {}", kVersion), "Tell the version and exit");
   app.require_subcommand(1);
   CommandLine line(app);
   add_common_options(line, session);
   add_commands(line, session);
+  if (argc > 2 && std::string_view(argv[1]) == "help") {
+    const std::vector<std::string> known = command_names(app);
+    if (std::find(known.begin(), known.end(), argv[2]) == known.end())
+      return fail(unknown_word(argv[2], "a command", known) + " (limen --help tells the usage)",
+                  kExitBadInput);
+  }
   try {
-    app.parse(argc, words.data());
+    app.parse(static_cast<int>(words.size()), words.data());
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error, std::cout, std::cerr);
     return fail(usage_error(app, error), kExitBadInput);

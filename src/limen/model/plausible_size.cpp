@@ -3,7 +3,9 @@
 #include "limen/model/plausible_size.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -21,8 +23,8 @@ constexpr double kMostModelM2 = 2e6;  // ten times the surface of a large hospit
 constexpr std::size_t kLookedAt = 100000;
 constexpr std::size_t kLeftOut = 100;  // one point in so many, at either end of an axis
 constexpr const char* kUnits =
-    "limen takes the numbers of a file that names no unit as metres: check the unit, and scale or export it "
-    "again in metres";
+    "limen takes the numbers of a file that names no unit as metres: tell the unit (--units, --source-units, "
+    "--target-units: mm, cm, ft, in, us-ft), or export it again in metres";
 
 /// What the numbers are likely to be where the truth is a building of some metres to some hundred metres.
 std::string guess(double side_m) {
@@ -59,13 +61,81 @@ double longest_side_of(const BimModel& model) {
   return (high - low).maxCoeff();
 }
 
+Vector3d sides_of(const Scan& scan) {
+  return {side_of(scan.points, 0), side_of(scan.points, 1), side_of(scan.points, 2)};
+}
+
+bool plausible(const Vector3d& sides) {
+  const double longest = sides.maxCoeff();
+  return longest >= kSmallestScanM && longest <= kLongestScanM && sides.minCoeff() <= kThickestScanM;
+}
+
+constexpr double kSmallSideM = 1.0;  // longest side of a scan that is asked about
+constexpr double kThickM = 80.0;     // least side of one
+constexpr double kStoreysM[] = {1.5, 40.0};
+constexpr double kTypicalStoreyM = 3.0;
+
+/// The unit in which the least side would be nearest to a storey; empty where none brings it near.
+std::string unit_for(double least_m, double longest_m) {
+  std::string best;
+  double nearest = 1e300;
+  for (const auto& [name, factor] : {std::pair{"mm", 0.001}, {"cm", 0.01}, {"in", 0.0254}, {"km", 1000.0}}) {
+    const double height = factor * least_m;
+    if (height < kStoreysM[0] || height > kStoreysM[1] || factor * longest_m > 2000.0) continue;
+    const double apart = std::abs(std::log(height / kTypicalStoreyM));
+    if (apart >= nearest) continue;
+    nearest = apart;
+    best = name;
+  }
+  return best;
+}
+
 }  // namespace
+
+std::string size_hint(const Scan& scan) {
+  if (scan.points.empty()) return {};
+  const Vector3d sides = sides_of(scan);
+  const double longest = sides.maxCoeff();
+  const double least = sides.minCoeff();
+  const bool odd = longest < kSmallSideM || (least > kThickM && longest < 30.0 * least);
+  const std::string unit = odd ? unit_for(least, longest) : "";
+  if (unit.empty()) return {};
+  return fmt::format(
+      "measures {} x {} x {}; are its numbers {}? Then give --units {} (of register --source-units "
+      "or --target-units)",
+      told(sides.x()), told(sides.y()), told(sides.z()), unit, unit);
+}
+
+std::string axes_hint(const BimModel& model) {
+  if (model.schema != "OBJ" && model.schema != "PLY") return {};
+  Vector3d facing = Vector3d::Zero();  // m^2 of faces along each axis
+  Vector3d low = Vector3d::Constant(1e300);
+  Vector3d high = Vector3d::Constant(-1e300);
+  for (const BimFace& face : model.faces) {
+    Eigen::Index axis = 0;
+    if (face.plane.normal.cwiseAbs().maxCoeff(&axis) > 0.9) facing[axis] += face.area_m2;
+    for (const Vector2d& p : face.outline.outer) {
+      const Vector3d x = face.frame.to_space(p);
+      low = low.cwiseMin(x);
+      high = high.cwiseMax(x);
+    }
+  }
+  const Vector3d size = high - low;
+  const bool flat_in_y = size.y() < 0.7 * std::min(size.x(), size.z());
+  const bool floors_face_y = facing.y() > 1.3 * std::max(facing.x(), facing.z());
+  if (!flat_in_y || !floors_face_y) return {};
+  return "its y axis seems to point up: export it with z up, or register with --gravity unknown";
+}
+
+bool has_plausible_size(const Scan& scan) {
+  return scan.points.empty() || plausible(sides_of(scan));
+}
 
 void require_plausible_size(const Scan& scan) {
   if (scan.points.empty()) return;
-  const Vector3d sides(side_of(scan.points, 0), side_of(scan.points, 1), side_of(scan.points, 2));
+  const Vector3d sides = sides_of(scan);
   const double longest = sides.maxCoeff();
-  if (longest >= kSmallestScanM && longest <= kLongestScanM && sides.minCoeff() <= kThickestScanM) return;
+  if (plausible(sides)) return;
   throw Error(fmt::format("the points measure {} x {} x {}, which no scan of a building does: {}",
                           told(sides.x()), told(sides.y()), told(sides.z()), guess(longest)),
               scan.name, kUnits);

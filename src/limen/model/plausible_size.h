@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <string>
+
 #include "limen/model/bim_model.h"
 #include "limen/model/scan.h"
 
@@ -12,6 +14,18 @@ namespace limen {
 /// than a kilometre (a room in millimetres). Points far from the others, up to one in a hundred at either end
 /// of an axis, do not count. Empty scans pass.
 void require_plausible_size(const Scan& scan);
+
+/// Whether require_plausible_size() lets a scan pass.
+bool has_plausible_size(const Scan& scan);
+
+/// A sentence with a question and an option where a scan is far larger or smaller than a building, though not
+/// beyond belief: "measures 312 x 240 x 114 m: were its numbers inches ...". Empty where there is nothing to
+/// ask.
+std::string size_hint(const Scan& scan);
+
+/// A sentence where a mesh looks as if its y axis pointed up: its floors and ceilings face y, which is its
+/// least extent. Empty where there is nothing to ask; an IFC file says where up is.
+std::string axes_hint(const BimModel& model);
 
 /// Throws Error where a model cannot be a building in metres: it is smaller than a chair, or has so much
 /// surface that no computer of today could look at every hand's breadth of it.

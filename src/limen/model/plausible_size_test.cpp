@@ -53,6 +53,48 @@ TEST(PlausibleSize, RoomsStreetsAndSurveysPass) {
   EXPECT_EQ(refusal_of(Scan{}), "");
 }
 
+TEST(PlausibleSize, OddSizesAreAskedAbout) {
+  EXPECT_EQ(size_hint(box_of_points({40.0, 30.0, 9.0})), "");
+  EXPECT_EQ(size_hint(box_of_points({8000.0, 3000.0, 150.0})), "") << "a street in the hills";
+  EXPECT_NE(size_hint(box_of_points({315.0, 240.0, 118.0})).find("--units in"), std::string::npos);
+  EXPECT_NE(size_hint(box_of_points({800.0, 600.0, 290.0})).find("--units cm"), std::string::npos);
+  EXPECT_NE(size_hint(box_of_points({8000.0, 6000.0, 2900.0})).find("--units mm"), std::string::npos);
+  EXPECT_TRUE(has_plausible_size(box_of_points({315.0, 240.0, 118.0})));
+  EXPECT_FALSE(has_plausible_size(box_of_points({8000.0, 6000.0, 2900.0})));
+  EXPECT_EQ(size_hint(Scan{}), "");
+}
+
+/// The six sides of a hall of 20 x 3 x 12 m, height along y or z.
+BimModel hall(bool y_up) {
+  BimModel model;
+  model.schema = "OBJ";
+  const auto add = [&](const Vector3d& normal, const Vector3d& at, double width, double height) {
+    BimFace face;
+    face.plane = {normal, normal.dot(at)};
+    face.frame = make_frame(face.plane, at);
+    const double w = 0.5 * width;
+    const double h = 0.5 * height;
+    face.outline.outer = {{-w, -h}, {w, -h}, {w, h}, {-w, h}};
+    face.area_m2 = width * height;
+    model.faces.push_back(face);
+  };
+  const Vector3d up = y_up ? Vector3d::UnitY() : Vector3d::UnitZ();
+  const Vector3d across = y_up ? Vector3d::UnitZ() : Vector3d::UnitY();
+  add(up, Vector3d::Zero(), 20, 12);
+  add(up, 3.0 * up, 20, 12);
+  add(across, 1.5 * up, 3, 3);
+  add(Vector3d::UnitX(), 1.5 * up, 3, 3);
+  return model;
+}
+
+TEST(PlausibleSize, AMeshWithYUpIsNoticed) {
+  EXPECT_NE(axes_hint(hall(true)).find("y axis"), std::string::npos);
+  EXPECT_EQ(axes_hint(hall(false)), "");
+  BimModel ifc = hall(true);
+  ifc.schema = "IFC4";
+  EXPECT_EQ(axes_hint(ifc), "") << "the file says where up is";
+}
+
 TEST(PlausibleSize, ARoomInMillimetresIsRefusedByName) {
   EXPECT_NE(refusal_of(box_of_points({4000.0, 3000.0, 2500.0})).find("millimetres?"), std::string::npos);
   EXPECT_NE(refusal_of(box_of_points({0.004, 0.003, 0.0025})).find("kilometres?"), std::string::npos);

@@ -40,6 +40,9 @@ struct PoseSigma {
   /// Of (rotation, translation of `centre`), radians and metres; its diagonal is the squares of the above. A
   /// trajectory's error is in it.
   Matrix6d covariance = Matrix6d::Zero();
+  /// The same from the scatter of the points alone, as if no plane stood elsewhere for one scan than for the
+  /// other: what `covariance` has beyond it is how far matched planes disagree. Zero where it is not told.
+  Matrix6d formal_covariance = Matrix6d::Zero();
 };
 
 /// A candidate pose and how well it explains both scans.
@@ -58,6 +61,7 @@ struct Hypothesis {
   double agreeing_length_m = 0.0;         ///< length of the smaller set of segments that lies on the other
   std::optional<double> explained_share;  ///< against a model: of the walls that the scan saw
   std::string room;  ///< of a model with named rooms: where the (first) station then stands
+  bool tie = false;  ///< of an alternative: it cannot be told from the best
 };
 
 /// A pair of planes that agree under the final pose.

@@ -41,6 +41,7 @@ JudgedPose in_own_frames(const JudgedPose& upright, const PreparedScan& source, 
   both.topLeftCorner<3, 3>() = back;
   both.bottomRightCorner<3, 3>() = back;
   pose.information = both * pose.information * both.transpose();
+  pose.formal_information = both * pose.formal_information * both.transpose();
   pose.geometry_m2 = both * pose.geometry_m2 * both.transpose();
   return own;
 }
@@ -140,6 +141,7 @@ PoseSigma sigma_of(const RefinedPose& pose, const Vector3d& target_origin, doubl
   PoseSigma sigma;
   sigma.centre = pose.centre + target_origin;
   sigma.covariance = covariance_of(pose);
+  sigma.formal_covariance = formal_covariance_of(pose);
   const double drift_rad = drift_m / kDriftLengthM;
   sigma.covariance.diagonal().head<3>().array() += drift_rad * drift_rad;
   sigma.covariance.diagonal().tail<3>().array() += drift_m * drift_m;
@@ -295,6 +297,8 @@ void tell(const Verdict& verdict, const std::vector<JudgedPose>& poses, const Co
   for (std::size_t k = 0; k < others.size(); ++k) {
     result.alternatives.push_back(to_hypothesis(in_own_frames(poses[others[k]], from, to), pair));
     result.alternatives.back().probability = all.poses[k + 1];
+    result.alternatives.back().tie =
+        std::find(verdict.rivals.begin(), verdict.rivals.end(), others[k]) != verdict.rivals.end();
   }
 }
 

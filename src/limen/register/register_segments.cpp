@@ -332,6 +332,7 @@ RegistrationResult register_segments(const SegmentSet& source, const SegmentSet&
   result.rivals = std::min(work.rivals(), listed);
   for (std::size_t k = 1; k < work.poses().size() && k <= listed; ++k) {
     result.alternatives.push_back(hypothesis_of(work.poses()[k], swapped, source, target));
+    result.alternatives.back().tie = k <= work.rivals();
   }
   return result;
 }

@@ -27,6 +27,7 @@ struct DeviationCommand {
   std::string folder;
   std::string result;
   ReadingChoice reading;
+  std::string model_units;
   std::string origin;
   std::vector<std::string> with;
   bool identity = false;
@@ -155,6 +156,13 @@ std::string summary(const DeviationReport& report, const BimModel& model, const 
   return text + fmt::format("written to {}\n", folder);
 }
 
+/// The unit that the scan's numbers were told to have when it was registered; nothing where they were metres.
+std::optional<double> registered_unit(const DeviationCommand& command, const PoseFile& pose) {
+  const bool scan_is_target = command.inverse || same_name(pose.target_path, command.scan);
+  const double unit = scan_is_target ? pose.target_metres_per_unit : pose.source_metres_per_unit;
+  return unit == 1.0 ? std::nullopt : std::optional(unit);
+}
+
 int run(const DeviationCommand& command, const Session& session) {
   check(command);
   const OutputFolder folder(command.folder);
@@ -162,9 +170,12 @@ int run(const DeviationCommand& command, const Session& session) {
   const PoseFile pose_file = command.result.empty() ? PoseFile{} : read_pose_file(command.result);
   report.model_from_scan = model_from_scan(command, pose_file, session, report);
   session.monitor->begin_stage("reading");
-  const ReadOptions reading = with_choice(read_options(command.origin, "--origin", "up"), command.reading);
+  ReadOptions reading = with_choice(read_options(command.origin, "--origin", "up"), command.reading);
+  if (!reading.metres_per_unit) reading.metres_per_unit = registered_unit(command, pose_file);
   const Side scan_side = read_side({command.scan, command.with, reading}, session);
-  const Side model_side = read_side({command.model, {}, {}}, session);
+  ReadOptions model_reading;
+  model_reading.metres_per_unit = metres_per_unit_of(command.model_units);
+  const Side model_side = read_side({command.model, {}, model_reading}, session);
   if (scan_side.input.model)
     throw Error("is a building model", command.scan, "give the scan first, then the model");
   if (!model_side.input.model)
@@ -211,6 +222,8 @@ void add_pose_options(CommandLine& command, DeviationCommand& options) {
   command
       .add_option("--origin", options.origin, "From where SCAN was taken, in the coordinates of its points")
       ->type_name("x,y,z");
+  add_units_option(command, options.reading.units);
+  add_units_option(command, options.model_units, "model-");
   add_memory_option(command, options.reading.memory);
   add_trajectory_options(command, options.reading);
 }

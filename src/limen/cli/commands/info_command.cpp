@@ -11,11 +11,13 @@
 
 #include <fmt/format.h>
 
+#include "limen/base/length_unit.h"
 #include "limen/base/random.h"
 #include "limen/bim/read_bim.h"
 #include "limen/cli/inputs/model_info.h"
 #include "limen/cli/inputs/scan_options.h"
 #include "limen/io/cloud/read_scan.h"
+#include "limen/model/plausible_size.h"
 #include "limen/register/prepare/scan_frame.h"
 #include "limen/report/json/json_values.h"
 
@@ -119,7 +121,11 @@ Json json_of_file(const std::string& path, const ScanFile& file) {
   json["format"] = file.format;
   json["fields"] = file.fields;
   json["left_out"] = file.dropped;
+  json["metres_per_unit"] = file.metres_per_unit;
   json["notes"] = file.notes;
+  for (const Scan& scan : file.scans) {
+    if (const std::string hint = size_hint(scan); !hint.empty()) json["notes"].push_back(hint);
+  }
   json["scans"] = Json::array();
   for (const Scan& scan : file.scans) json["scans"].push_back(json_of_scan(scan));
   return json;
@@ -173,6 +179,7 @@ std::string text_of(const Json& file) {
   std::string text =
       fmt::format("file            {}\nformat          {}\nfields          {}\n",
                   file["file"].get<std::string>(), file["format"].get<std::string>(), joined(file["fields"]));
+  text += fmt::format("unit            {}\n", unit_name(file["metres_per_unit"].get<double>()));
   const bool several = file["scans"].size() > 1;
   for (std::size_t i = 0; i < file["scans"].size(); ++i) {
     if (several) text += fmt::format("\nscan {} of {}\n", i + 1, file["scans"].size());
@@ -191,7 +198,8 @@ int run(const InfoCommand& command, const Session& session) {
   const std::string& path = command.path;
   session.monitor->begin_stage("reading");
   if (is_bim_file(path)) {
-    const Json model = json_of_model(path, read_bim(path, *session.monitor));
+    const Json model =
+        json_of_model(path, read_bim(path, *session.monitor, metres_per_unit_of(command.reading.units)));
     session.say(text_of_model(model));
     session.answer(to_text(model));
     return kExitOk;
@@ -210,6 +218,7 @@ void add_info_command(CommandLine& app, Session& session) {
   CommandLine* command = add_command(app, session, "info", "Tell what a scan or a model file holds",
                                      [options, &session] { return run(*options, session); });
   command->add_option("FILE", options->path, "A scan or a model of any format limen reads")->required();
+  add_units_option(*command, options->reading.units);
   add_memory_option(*command, options->reading.memory);
   add_trajectory_options(*command, options->reading);
 }

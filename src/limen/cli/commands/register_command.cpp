@@ -12,7 +12,6 @@
 
 #include <fmt/format.h>
 
-#include "limen/base/angles.h"
 #include "limen/base/atomic_file.h"
 #include "limen/base/error.h"
 #include "limen/cli/inputs/register_inputs.h"
@@ -21,6 +20,7 @@
 #include "limen/register/register.h"
 #include "limen/report/html/html_report.h"
 #include "limen/report/json/result_json.h"
+#include "limen/report/summary/summary_text.h"
 
 namespace limen {
 namespace {
@@ -95,6 +95,8 @@ OptionList reported(const RegisterCommandOptions& options) {
   if (!options.target_origin.empty()) list.emplace_back("target_origin", options.target_origin);
   if (!options.source_with.empty()) list.emplace_back("source_with", spaced(options.source_with));
   if (!options.target_with.empty()) list.emplace_back("target_with", spaced(options.target_with));
+  if (!options.source_reading.units.empty()) list.emplace_back("source_units", options.source_reading.units);
+  if (!options.target_reading.units.empty()) list.emplace_back("target_units", options.target_reading.units);
   if (!options.memory.empty()) list.emplace_back("memory", options.memory);
   if (!options.source_reading.trajectory.empty())
     list.emplace_back("source_trajectory", options.source_reading.trajectory);
@@ -179,42 +181,6 @@ void write_page(const std::filesystem::path& folder, const Registered& registere
   }
 }
 
-std::string pose_summary(const RegistrationReport& report) {
-  const Hypothesis& best = report.result.best;
-  const PoseSigma& sigma = report.result.sigma;
-  const Vector3d& t = best.target_from_source.translation;
-  std::string text =
-      fmt::format("rotation    {:.4f} deg\n", degrees(rotation_angle(best.target_from_source.rotation)));
-  text += fmt::format("translation {:.4f} {:.4f} {:.4f} m\n", t.x(), t.y(), t.z());
-  // Where a freedom is open its sigma is a large number that tells a reader nothing.
-  if (report.result.unobserved.empty() && !report.result.published) {
-    text += fmt::format("sigma       {:.5f} deg, {:.2f} mm (the largest of three)\n",
-                        degrees(sigma.rotation_rad.maxCoeff()), 1e3 * sigma.translation_m.maxCoeff());
-  }
-  for (const UnobservedFreedom& freedom : report.result.unobserved) {
-    text += fmt::format("not fixed   {}\n", freedom.name);
-  }
-  for (const MeasuredThickness& wall : report.result.thickness) {
-    if (wall.sigma_m > 0.1) continue;
-    text += fmt::format("wall        {:.3f} m thick, sigma {:.1f} mm, by {} opening{}\n", wall.value_m,
-                        1e3 * wall.sigma_m, wall.openings, wall.openings == 1 ? "" : "s");
-  }
-  if (!best.room.empty()) text += fmt::format("room        {}\n", best.room);
-  if (!report.result.alternatives.empty()) {
-    text +=
-        fmt::format("others      {} different poses, see alternatives\n", report.result.alternatives.size());
-  }
-  return text;
-}
-
-std::string summary(const RegistrationReport& report, const std::string& folder) {
-  std::string text = fmt::format("{}: {}\n", to_string(report.result.outcome), report.result.reason);
-  if (report.result.outcome != Outcome::no_match) text += pose_summary(report);
-  double seconds = 0.0;
-  for (const StageTime& stage : report.result.stages) seconds += stage.seconds;
-  return text + fmt::format("in {:.2f} s; written to {}\n", seconds, folder);
-}
-
 int status_of(Outcome outcome) {
   switch (outcome) {
     case Outcome::registered:
@@ -243,7 +209,7 @@ int run(const RegisterCommandOptions& options, const Session& session) {
   remove_report(folder.path());  // an earlier run's page must not stand beside other numbers
   write_numbers(folder.path(), report);
   if (!options.no_report) write_page(folder.path(), registered, session);
-  session.say(summary(report, options.folder));
+  session.say(summary_text(report, options.folder));
   session.answer(json);
   return status_of(report.result.outcome);
 }
@@ -309,6 +275,8 @@ void add_register_command(CommandLine& app, Session& session) {
                     "Write neither report.html nor the sections, only result.json and transform.txt");
   add_gravity_option(*command, options->gravity, true);
   add_origin_options(*command, *options);
+  add_units_option(*command, options->source_reading.units, "source-");
+  add_units_option(*command, options->target_reading.units, "target-");
   add_memory_option(*command, options->memory);
   add_trajectory_options(*command, options->source_reading, "source-");
   add_trajectory_options(*command, options->target_reading, "target-");

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "limen/base/error.h"
+#include "limen/base/length_unit.h"
 #include "limen/cli/inputs/scan_options.h"
 #include "limen/files/file_hash.h"
 #include "limen/io/cloud/transform_cloud.h"
@@ -58,9 +59,23 @@ void check_cloud(const TransformOptions& options, const PoseFile& pose) {
       options.cloud, "give the registered file, or --force where it lies in the same frame");
 }
 
+/// A pose in metres for clouds whose numbers are in a unit of their own. Throws Error where the two differ: a
+/// cloud is moved, not scaled.
+Rigid3 in_unit_of_clouds(Rigid3 pose, const PoseFile& file, const std::string& path) {
+  const double unit = file.source_metres_per_unit;
+  if (unit != file.target_metres_per_unit) {
+    throw Error(fmt::format("is about a source in {} and a target in {}, and a cloud is moved, not scaled",
+                            unit_name(unit), unit_name(file.target_metres_per_unit)),
+                path, "bring both to one unit, or take transform.txt, which scales, to a program that can");
+  }
+  pose.translation /= unit;
+  return pose;
+}
+
 Rigid3 read_pose(const TransformOptions& options, const Session& session) {
   const PoseFile pose = read_pose_file(options.result);
-  const Rigid3 target_from_source = chosen_pose(pose, options.alternative, options.result);
+  const Rigid3 target_from_source =
+      in_unit_of_clouds(chosen_pose(pose, options.alternative, options.result), pose, options.result);
   check_cloud(options, pose);
   if (options.alternative == 0 && pose.outcome && *pose.outcome != Outcome::registered) {
     session.note(fmt::format("the pose in {} is {}: check it", options.result, to_string(*pose.outcome)));

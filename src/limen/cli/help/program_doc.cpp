@@ -101,6 +101,7 @@ const std::vector<ExampleDoc>& examples_of(const std::string& command) {
          "limen simulate museum --points-indoor 600000 -o museum"},
         {"A room of a model, with elements moved and missing",
          "limen simulate house.ifc --as-built -o site"}}},
+      {"schema", {{"What a program may rely on in result.json", "limen schema result > result.schema.json"}}},
       {"completion",
        {{"For this shell session", "source <(limen completion bash)"},
         {"For every fish session", "limen completion fish > ~/.config/fish/completions/limen.fish"}}},

@@ -9,6 +9,8 @@
 
 #include <fmt/format.h>
 
+#include "limen/model/plausible_size.h"
+
 namespace limen {
 namespace {
 
@@ -157,6 +159,7 @@ Json json_of_model(const std::string& path, const BimModel& model) {
   json["openings"] = json_of_openings(model);
   json["rooms"] = json_of_rooms(model);
   json["warnings"] = model.warnings;
+  if (const std::string hint = axes_hint(model); !hint.empty()) json["warnings"].push_back(hint);
   return json;
 }
 

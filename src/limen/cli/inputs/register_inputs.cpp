@@ -17,8 +17,9 @@ Side read_model_side(const SideOptions& options, const Session& session) {
   if (!options.with.empty())
     throw Error("is a building model", options.path, "further scans can only stand by a scan");
   Side side;
-  side.input.model = read_model_input(options.path, session);
+  side.input.model = read_model_input(options.path, session, options.reading.metres_per_unit);
   side.summary = summarise(options.path, *side.input.model);
+  if (options.reading.metres_per_unit) side.summary.metres_per_unit = *options.reading.metres_per_unit;
   side.summary.sha256 = sha256_of_file(options.path);
   return side;
 }
@@ -34,8 +35,10 @@ Rigid3 pose_in_group(const std::string& path) {
 Side read_side(const SideOptions& options, const Session& session) {
   if (is_bim_file(options.path)) return read_model_side(options, session);
   Side side;
-  side.input.scans.push_back({read_input(options.path, options.reading, session), {}});
+  InputScan read = read_input_scan(options.path, options.reading, session);
+  side.input.scans.push_back({std::move(read.scan), {}});
   side.summary = summarise(options.path, side.input.scans.front().scan);
+  side.summary.metres_per_unit = read.metres_per_unit;
   side.summary.sha256 = sha256_of_file(options.path);
   // The trajectory is that of the side's own scan.
   ReadOptions reading = options.reading;

@@ -12,9 +12,11 @@
 #include <fmt/format.h>
 
 #include "limen/base/error.h"
+#include "limen/base/length_unit.h"
 #include "limen/bim/read_bim.h"
 #include "limen/io/cloud/join_scans.h"
 #include "limen/io/trajectory/read_trajectory.h"
+#include "limen/model/plausible_size.h"
 
 namespace limen {
 
@@ -102,8 +104,25 @@ void add_trajectory_options(CommandLine& command, ReadingChoice& choice, const s
       ->type_name("x,y,z");
 }
 
+void add_units_option(CommandLine& command, std::string& units, const std::string& side) {
+  std::vector<std::string> names;
+  for (const LengthUnit& unit : length_units()) names.emplace_back(unit.name);
+  command
+      .add_option(
+          "--" + side + "units", units,
+          "Unit of the file's numbers: m, mm, cm, ft, in, us-ft, km (default: what the file says, else "
+          "m); options stay in metres")
+      ->one_of(names);
+}
+
+std::optional<double> metres_per_unit_of(const std::string& units) {
+  const std::optional<LengthUnit> unit = length_unit(units);
+  return unit ? std::optional(unit->metres_per_unit) : std::nullopt;
+}
+
 ReadOptions with_choice(ReadOptions options, const ReadingChoice& choice) {
   options.memory_bytes = parse_memory(choice.memory);
+  options.metres_per_unit = metres_per_unit_of(choice.units);
   if (choice.trajectory.empty()) return options;
   TrajectoryOptions reading;
   std::string names = choice.columns;
@@ -127,6 +146,7 @@ void add_feature_options(CommandLine& command, const FeatureOptions& options) {
                   "From where the scan was taken, in the coordinates of its points, metres")
       ->type_name("x,y,z");
   add_gravity_option(command, options.gravity, true);
+  add_units_option(command, options.reading.units);
   add_memory_option(command, options.reading.memory);
   add_trajectory_options(command, options.reading);
 }
@@ -138,21 +158,39 @@ ReadOptions read_options(const std::string& origin, const std::string& option, c
   return options;
 }
 
-Scan read_input(const std::string& path, const ReadOptions& options, const Session& session) {
+InputScan read_input_scan(const std::string& path, const ReadOptions& options, const Session& session) {
   const bool told = options.memory_bytes > 0 || options.trajectory;
-  if (!told) return read_scan(path, options, *session.monitor);
   ScanFile file = read_scan_file(path, options, *session.monitor);
-  for (const std::string& note : file.notes) session.note(note);
-  if (file.scans.size() == 1) return std::move(file.scans.front());
-  Scan joined = join_scans(file.scans);
-  joined.name = path;
-  return joined;
+  if (told) {
+    for (const std::string& note : file.notes) session.note(note);
+  }
+  if (!options.metres_per_unit && file.metres_per_unit != 1.0)
+    session.note(fmt::format("{}: the file says that 1 unit of its numbers is {:.7g} m ({})", path,
+                             file.metres_per_unit, unit_name(file.metres_per_unit)));
+  InputScan input{Scan{}, file.metres_per_unit};
+  if (file.scans.size() == 1) {
+    input.scan = std::move(file.scans.front());
+  } else {
+    input.scan = join_scans(file.scans);
+    input.scan.name = path;
+  }
+  // What is beyond belief is refused by who works with it, in one line.
+  const std::string hint = has_plausible_size(input.scan) ? size_hint(input.scan) : "";
+  if (!hint.empty()) session.note(fmt::format("{}: {}", path, hint));
+  return input;
 }
 
-BimModel read_model_input(const std::string& path, const Session& session) {
+Scan read_input(const std::string& path, const ReadOptions& options, const Session& session) {
+  return read_input_scan(path, options, session).scan;
+}
+
+BimModel read_model_input(const std::string& path, const Session& session,
+                          std::optional<double> metres_per_unit) {
   session.monitor->begin_stage("reading");
-  BimModel model = read_bim(path, *session.monitor);
+  BimModel model = read_bim(path, *session.monitor, metres_per_unit);
   for (const std::string& warning : model.warnings) session.note(fmt::format("{}: {}", path, warning));
+  if (const std::string hint = axes_hint(model); !hint.empty())
+    session.note(fmt::format("{}: {}", path, hint));
   return model;
 }
 

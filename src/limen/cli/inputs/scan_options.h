@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,7 @@ void add_gravity_option(CommandLine& command, std::string& gravity, bool with_au
 /// What the user says of how scans are to be read, beside their origin.
 struct ReadingChoice {
   std::string memory;      ///< "1G" or empty
+  std::string units;       ///< "mm" or empty: what the file says, else metres
   std::string trajectory;  ///< a file or empty
   std::string columns;     ///< "time,x,y,z" or empty
   std::string utm_zone = "auto";
@@ -37,6 +39,10 @@ std::uint64_t parse_memory(const std::string& text);
 void add_memory_option(CommandLine& command, std::string& memory);
 /// Adds --trajectory and what belongs to it; `side` stands before the name ("source-") or is empty.
 void add_trajectory_options(CommandLine& command, ReadingChoice& choice, const std::string& side = "");
+/// Adds --units; `side` stands before the name ("source-") or is empty.
+void add_units_option(CommandLine& command, std::string& units, const std::string& side = "");
+/// Metres per unit of a name that was given; nothing for an empty text.
+std::optional<double> metres_per_unit_of(const std::string& units);
 /// What read_options() gave, with the choice; reads the trajectory.
 ReadOptions with_choice(ReadOptions options, const ReadingChoice& choice);
 
@@ -55,11 +61,20 @@ void add_feature_options(CommandLine& command, const FeatureOptions& options);
 /// "auto", "up" or "unknown".
 ReadOptions read_options(const std::string& origin, const std::string& option, const std::string& gravity);
 
-/// Reads the one scan of a file, and notes where it was thinned or cut.
+/// Reads the one scan of a file, and notes where it was thinned or cut, what unit its numbers have where they
+/// are not metres, and where it is as large as no building.
 Scan read_input(const std::string& path, const ReadOptions& options, const Session& session);
 
-/// Reads a building model and notes its warnings.
-BimModel read_model_input(const std::string& path, const Session& session);
+/// The same with what it was in the file.
+struct InputScan {
+  Scan scan;
+  double metres_per_unit = 1.0;  ///< of the file's numbers
+};
+InputScan read_input_scan(const std::string& path, const ReadOptions& options, const Session& session);
+
+/// Reads a building model and notes its warnings; `metres_per_unit`: of a mesh, where the user says so.
+BimModel read_model_input(const std::string& path, const Session& session,
+                          std::optional<double> metres_per_unit = {});
 
 /// Adds --alternative N: which pose of a result is meant, 0 being its answer.
 void add_alternative_option(CommandLine& command, int& alternative);

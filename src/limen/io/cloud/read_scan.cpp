@@ -55,6 +55,8 @@ ScanFile followed(ScanFile file, const Trajectory& trajectory) {
 }  // namespace
 
 void ReadOptions::check() const {
+  if (metres_per_unit && !(*metres_per_unit > 0 && *metres_per_unit < 1e6))
+    throw_bad_option("metres_per_unit", *metres_per_unit, "within (0, 1e6)");
   if (!origin) return;
   for (int k = 0; k < 3; ++k) {
     const double value = (*origin)[k];

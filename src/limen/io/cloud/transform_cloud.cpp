@@ -81,8 +81,9 @@ void require_known_ending(const std::filesystem::path& output, const OpenPoints&
   if (is_cloud_ending(output)) return;
   const std::string ending = lower_case(output.extension().string());
   throw Error(fmt::format("{} is not written as \"{}\"", input.file().format(), ending), output.string(),
-              ending == ".laz" ? "name the output .las"
-                               : "name the output .ply, .las or .e57, or give it the ending of the input");
+              ending == ".laz"
+                  ? "name the output .las"
+                  : "name the output .ply, .las, .e57, .xyz or .csv, or give it the ending of the input");
 }
 
 }  // namespace

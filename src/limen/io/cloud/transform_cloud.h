@@ -23,8 +23,9 @@ namespace limen {
 ///  - PCD: x y z become double, the view point moves, all fields are kept; compressed points become plain
 ///  ones;
 ///  - PTS, XYZ and other text: the numbers of x y z (origins, normals) in each line are replaced.
-/// To .ply, .las and .e57 from any other format every column goes with its type; points stream.
-/// The file appears whole or not at all; throws Error for what cannot be read or written.
+/// To .ply, .las, .e57 and text (.xyz, .txt, .asc, .csv) from any other format every column goes with its
+/// type; points stream. The file appears whole or not at all; throws Error for what cannot be read or
+/// written.
 TransformedCloud transform_cloud(const std::filesystem::path& input, const Rigid3& target_from_source,
                                  const std::filesystem::path& output, const ReadOptions& options = {},
                                  Monitor& monitor = silent_monitor());

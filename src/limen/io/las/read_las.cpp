@@ -8,6 +8,7 @@
 
 #include "limen/io/las/las_fields.h"
 #include "limen/io/las/las_records.h"
+#include "limen/io/las/las_unit.h"
 
 namespace limen {
 namespace {
@@ -62,6 +63,7 @@ class LasFile : public PointFile {
     facts.table.name = name;
     facts.points = header_.points;
     facts.table.centre = told_centre(header_);
+    facts.table.metres_per_unit = las_metres_per_unit(header_);
     for (const LasField& value : layout_.fields) facts.fields.push_back(value.field.name);
     facts.notes = header_.notes;
     facts.notes.insert(facts.notes.end(), layout_.notes.begin(), layout_.notes.end());

@@ -59,19 +59,36 @@ bool usable(const Vector3d& x) {
   return (x.array().abs() < kLargestM).all();  // false for NaN too
 }
 
+double unit_of(const TableFacts& facts) {
+  return facts.metres_per_unit.value_or(1.0);
+}
+
+/// What the file says, in metres; `metres_per_unit` stays, for the points are still in its unit.
+TableFacts in_metres(TableFacts facts) {
+  const double unit = unit_of(facts);
+  facts.offset *= unit;
+  if (facts.pose) facts.pose->translation *= unit;
+  if (facts.centre) *facts.centre *= unit;
+  if (facts.possible_centre) *facts.possible_centre *= unit;
+  return facts;
+}
+
 /// The first usable point, world; the search is short unless the file begins with missing returns.
 Vector3d first_usable(const RecordTable& table, const Triple& fields, const TableFacts& facts) {
   for (std::size_t i = 0; i < table.rows; ++i) {
     Vector3d x;
     for (std::size_t k = 0; k < 3; ++k) load_numbers(table, *fields[k], {i, i + 1}, &x[static_cast<int>(k)]);
+    x *= unit_of(facts);
     if (usable(x)) return facts.offset + (facts.pose ? *facts.pose * x : x);
   }
   throw Error("no usable points: every one has a coordinate that is not a number or absurdly large",
               facts.name, "check how the file was exported");
 }
 
-/// Loads three columns as points, moved.
-std::vector<Vector3d> load_points(const RecordTable& table, const Triple& fields, const Rigid3& motion) {
+/// Loads three columns as points, brought from the file's unit to metres and moved.
+std::vector<Vector3d> load_points(const RecordTable& table, const Triple& fields, const Rigid3& motion,
+                                  double metres_per_unit) {
+  const bool scaled = metres_per_unit != 1.0;
   const bool turned = !motion.rotation.isIdentity(0.0);
   std::vector<Vector3d> points(table.rows);
   parallel_for(table.rows, kPiece, [&](std::size_t begin, std::size_t end) {
@@ -80,6 +97,7 @@ std::vector<Vector3d> load_points(const RecordTable& table, const Triple& fields
       for (int k = 0; k < 3; ++k)
         load_numbers(table, *fields[static_cast<std::size_t>(k)], rows, points[strip].data() + k, 3);
       for (std::size_t i = rows.begin; i < rows.end; ++i) {
+        if (scaled) points[i] *= metres_per_unit;
         if (turned) points[i] = motion.rotation * points[i];
         points[i] += motion.translation;
       }
@@ -203,10 +221,10 @@ std::vector<std::uint8_t> load_colours(const RecordTable& table) {
 }
 
 /// Optical centres the file gives per point: one where all are the same, none where it gives none.
-std::vector<Vector3d> load_centres(const RecordTable& table, const Rigid3& motion) {
+std::vector<Vector3d> load_centres(const RecordTable& table, const Rigid3& motion, double metres_per_unit) {
   const Triple fields = find_triple(table, "_origin");
   if (!whole(fields)) return {};
-  std::vector<Vector3d> centres = load_points(table, fields, motion);
+  std::vector<Vector3d> centres = load_points(table, fields, motion, metres_per_unit);
   const bool same =
       std::all_of(centres.begin(), centres.end(), [&](const Vector3d& c) { return c == centres[0]; });
   if (same) centres.resize(1);
@@ -219,8 +237,8 @@ Scan load_scan(const RecordTable& table, const TableFacts& facts, const Triple& 
   scan.local_origin = round_origin_near(first_usable(table, fields, facts));
   Rigid3 motion = facts.pose.value_or(Rigid3{});
   motion.translation += facts.offset - scan.local_origin;
-  scan.points = load_points(table, fields, motion);
-  scan.centres = load_centres(table, motion);
+  scan.points = load_points(table, fields, motion, unit_of(facts));
+  scan.centres = load_centres(table, motion, unit_of(facts));
   scan.times_s = load_column<double>(table, table.find({"gps_time", "gpstime", "time", "t", "timestamp",
                                                         "scalar_gps_time", "scalar_gpstime", "scalar_time"}));
   scan.intensities = load_column<float>(
@@ -304,9 +322,13 @@ Vector3d round_origin_near(const Vector3d& x) {
   return (x / kRoundM).array().round() * kRoundM;
 }
 
-ScanFile with_scan(ScanFile file, const RecordTable& table, const TableFacts& facts,
+ScanFile with_scan(ScanFile file, const RecordTable& table, const TableFacts& said,
                    const ReadOptions& options) {
   options.check();
+  TableFacts facts = said;
+  if (options.metres_per_unit) facts.metres_per_unit = options.metres_per_unit;
+  facts = in_metres(std::move(facts));
+  file.metres_per_unit = unit_of(facts);
   const Triple fields = require_coordinates(table, facts);
   if (table.rows == 0) throw Error("there are no points", facts.name, "check how the file was exported");
   if (table.rows > 0xFFFFFFFFU) {

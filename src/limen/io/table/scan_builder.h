@@ -12,12 +12,13 @@ namespace limen {
 
 /// What a file says beside its table of points.
 struct TableFacts {
-  std::string name;                    ///< of the file, for messages
-  Vector3d offset = Vector3d::Zero();  ///< added to points and centres, metres
+  std::string name;                       ///< of the file, for messages
+  std::optional<double> metres_per_unit;  ///< of all numbers below and of the points, where the file says so
+  Vector3d offset = Vector3d::Zero();     ///< added to points and centres
   /// The frame of the file from that of x y z, offset not yet added; turns points and per-point centres.
   std::optional<Rigid3> pose;
   bool has_offset = false;                  ///< the file carries an offset: its 0,0,0 is no scanner
-  std::optional<Vector3d> centre;           ///< optical centre, offset not yet added, metres
+  std::optional<Vector3d> centre;           ///< optical centre, offset not yet added
   bool centre_unknown = false;              ///< the file says that it does not know its centre
   std::optional<Vector3d> possible_centre;  ///< taken only where it can be the scanner
   std::size_t missing = 0;                  ///< rows that the reader has told as missing returns already

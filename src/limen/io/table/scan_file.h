@@ -22,13 +22,15 @@ struct ReadOptions {
   /// the scanner (the points lie around it and none is closer than a scanner can measure), else unknown.
   std::optional<Vector3d> origin;
   bool level = true;  ///< the file's z axis points up (--gravity up)
+  /// Of the file's numbers, where the user says so; empty: what the file says, else 1.
+  std::optional<double> metres_per_unit = {};
   /// A file whose scans would take more than this is thinned while it is read, and a note tells so; 0: never.
   std::uint64_t memory_bytes = 0;
   /// From where a moving scanner saw its points, by their time; counts before what the file says, not before
   /// `origin`. Empty: none.
   std::shared_ptr<const Trajectory> trajectory = {};
 
-  /// Throws Error where the origin is not finite.
+  /// Throws Error where the origin is not finite or the unit not more than 0.
   void check() const;
 };
 
@@ -37,6 +39,7 @@ struct ScanFile {
   std::string format;               ///< in a user's words: "PLY, binary, little-endian"
   std::vector<std::string> fields;  ///< names of the values per point, as the file has them
   std::vector<Scan> scans;
+  double metres_per_unit = 1.0;    ///< of the file's numbers, already applied: the scans are in metres
   std::size_t dropped = 0;         ///< points left out: not finite, or missing returns
   std::vector<std::string> notes;  ///< sentences about what was assumed or left out
 };

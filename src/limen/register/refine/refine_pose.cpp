@@ -186,6 +186,7 @@ class Refiner {
     Matrix6d move = Matrix6d::Identity();
     move.bottomLeftCorner<3, 3>() << 0, -c.z(), c.y(), c.z(), 0, -c.x(), -c.y(), c.x(), 0;
     refined.information = move.transpose() * refined.information * move;
+    refined.formal_information = move.transpose() * refined.formal_information * move;
     refined.geometry_m2 = move.transpose() * refined.geometry_m2 * move;
     refined.centre += c;
   }
@@ -200,7 +201,9 @@ class Refiner {
         std::max(1.0, squares / std::max<double>(1.0, static_cast<double>(contacts.size()) - 3.0));
     for (const Contact& contact : contacts) {
       const Vector6d row = row_of(contact, refined.centre);
-      refined.information += row * row.transpose() / (factor * contact.sigma_m * contact.sigma_m);
+      const Matrix6d information = row * row.transpose() / (contact.sigma_m * contact.sigma_m);
+      refined.information += information / factor;
+      refined.formal_information += information;
       refined.geometry_m2 += contact.area_m2 * row * row.transpose();
     }
   }
@@ -234,6 +237,7 @@ class Refiner {
     for (const auto& [key, pair] : pairs) {
       // A common offset of unknown size takes its share of what the pair says about shifts along its normal.
       const double offset_weight = offset * offset / (1.0 + offset * offset * pair.weight / factor);
+      refined.formal_information += pair.information / factor;
       refined.information += pair.information / factor -
                              offset_weight * pair.shared * pair.shared.transpose() / (factor * factor);
     }
@@ -255,6 +259,11 @@ class Refiner {
   const RefineOptions& options_;
 };
 
+Matrix6d inverse_of(const Matrix6d& information) {
+  const Matrix6d damped = information + 1e-6 * Matrix6d::Identity();
+  return damped.inverse();
+}
+
 }  // namespace
 
 void RefineOptions::check() const {
@@ -265,8 +274,11 @@ void RefineOptions::check() const {
 }
 
 Matrix6d covariance_of(const RefinedPose& pose) {
-  const Matrix6d damped = pose.information + 1e-6 * Matrix6d::Identity();
-  return damped.inverse();
+  return inverse_of(pose.information);
+}
+
+Matrix6d formal_covariance_of(const RefinedPose& pose) {
+  return inverse_of(pose.formal_information);
 }
 
 RefinedPose refine_pose(const ScanView& source, const ScanView& target, const Rigid3& start,

@@ -33,7 +33,8 @@ struct RefinedPose {
   Vector3d centre = Vector3d::Zero();  ///< the point known best, near the matched surface; target local frame
   Matrix6d information = Matrix6d::Zero();  ///< of (rotation, translation) about `centre`, target axes, SI
   Matrix6d geometry_m2 = Matrix6d::Zero();  ///< the same with m^2 of surface as weights
-  double rms_m = 0.0;                       ///< weighted point-to-plane residual
+  Matrix6d formal_information = Matrix6d::Zero();  ///< as `information`, but every tile errs by itself
+  double rms_m = 0.0;                              ///< weighted point-to-plane residual
   int matched_tiles = 0;
   std::vector<PlaneMatch> matches;     ///< pairs of planes with at least two matched tiles
   std::vector<OpeningMatch> openings;  ///< pairs of openings, at the final pose
@@ -42,6 +43,9 @@ struct RefinedPose {
 /// Covariance of (rotation, translation) about `pose.centre`, target axes, SI; a freedom that nothing holds
 /// has a deviation of 1000 m or radians.
 Matrix6d covariance_of(const RefinedPose& pose);
+
+/// The same of the scatter of the tiles alone: how far the planes of a pair lie apart is left out.
+Matrix6d formal_covariance_of(const RefinedPose& pose);
 
 /// Robust point-to-plane adjustment over all matched surface of both scans, both ways: each tile of one scan
 /// against the plane of the other that its scanner saw there (2021, 3.4: "then refine on all matched

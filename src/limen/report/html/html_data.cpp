@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limen/report/html/html_data.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -9,8 +10,9 @@
 #include "limen/geometry/polygon_clip.h"
 #include "limen/report/html/html_bytes.h"
 #include "limen/report/html/html_residuals.h"
-#include "limen/report/html/html_words.h"
+#include "limen/report/html/html_tables.h"
 #include "limen/report/json/json_values.h"
+#include "limen/report/summary/words.h"
 
 namespace limen {
 namespace {
@@ -119,26 +121,29 @@ Json side_json(const InputSummary& input, const SceneSide& side, const Quantised
           {"segments", segments_json(side.pictured.features)}};
 }
 
-Json pose_json(const Hypothesis& pose, const ReportScene& scene) {
+/// Pose `number` of the report: 0 is the best one. Its tables come with it, for the page shows those of the
+/// pose that is looked at.
+Json pose_json(const RegistrationReport& report, std::size_t number, const ReportScene& scene) {
+  const Hypothesis& pose = number == 0 ? report.result.best : report.result.alternatives[number - 1];
   const Rigid3 local = to_local(pose.target_from_source, scene.source.origin, scene.target.origin);
   return {{"matrix", json_of(to_matrix(local))},
-          {"text", transform_text(pose.target_from_source)},
+          {"text", matrix_text(file_matrix(report, pose.target_from_source))},
           {"agreeing", pose.agreeing_m2},
           {"contradicted", pose.contradicted_m2},
           {"rms", pose.rms_m},
           {"segments", pose.matched_segments},
           {"length", pose.agreeing_length_m},
-          {"room", pose.room}};
+          {"room", pose.room},
+          {"probability", pose.probability ? probability_words(*pose.probability) : ""},
+          {"sigma", sigma_table(report, number)},
+          {"key", key_table(report, number)}};
 }
 
-Json poses_json(const RegistrationResult& result, const ReportScene& scene) {
+Json poses_json(const RegistrationReport& report, const ReportScene& scene) {
   Json list = Json::array();
-  if (result.outcome == Outcome::no_match) return list;
-  list.push_back(pose_json(result.best, scene));
-  for (const Hypothesis& pose : result.alternatives) {
-    if (list.size() == kMostPoses) break;
-    list.push_back(pose_json(pose, scene));
-  }
+  if (report.result.outcome == Outcome::no_match) return list;
+  const std::size_t count = std::min(report.result.alternatives.size() + 1, kMostPoses);
+  for (std::size_t k = 0; k < count; ++k) list.push_back(pose_json(report, k, scene));
   return list;
 }
 
@@ -204,7 +209,7 @@ std::string scene_elements(const RegistrationReport& report, const ReportScene& 
                {"high", json_of(view.high)},
                {"cut", json_of(view.cut)},
                {"beside", json_of(to_matrix(view.target_from_source))},
-               {"poses", poses_json(result, scene)},
+               {"poses", poses_json(report, scene)},
                {"open", open_json(result)},
                {"matches", matches_json(result)}};
   for (Eigen::Index k = 0; k < 3; ++k)

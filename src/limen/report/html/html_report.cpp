@@ -14,6 +14,7 @@
 #include "limen/report/html/html_words.h"
 #include "limen/report/html/report_page.h"
 #include "limen/report/html/section_svg.h"
+#include "limen/report/summary/advice.h"
 
 namespace limen {
 namespace {
@@ -53,21 +54,40 @@ std::string sentences(const VerdictWords& words) {
   return text;
 }
 
+/// What to do next, but for looking at this page.
+std::string steps(const RegistrationReport& report) {
+  std::string items;
+  for (const std::string& step : next_steps(report)) {
+    if (step.find("report.html") == std::string::npos) items += "<li>" + escaped(step) + "</li>\n";
+  }
+  return items.empty() ? items : "<ul>" + items + "</ul>\n";
+}
+
 std::string agreement(const RegistrationReport& report) {
   std::string text = section("Planes that agree", planes_table(report),
-                             "Distance along the target plane's normal at the middle of the overlap.");
-  text += section("Openings that agree", openings_table(report));
+                             "Under the best pose. Distance along the target plane's normal at the middle of "
+                             "the overlap.");
+  text += section("Openings that agree", openings_table(report), "Under the best pose.");
   return text + section("Walls between the scans", thickness_table(report));
 }
 
+/// Replaced where another pose is shown.
+std::string boxed(const char* id, const std::string& content) {
+  return content.empty() ? content : fmt::format("<div id=\"{}\">{}</div>\n", id, content);
+}
+
 std::string tables(const RegistrationReport& report) {
-  std::string text =
-      section("How well each freedom is held", sigma_table(report),
-              "Shifts are of the point known best, turns of the whole; both in the target's frame.", true);
-  text += section("Key numbers", key_table(report), "", true);
+  std::string text = section("Likely causes, the likeliest first", causes_table(report), "", true);
+  text += section("How well each freedom is held", boxed("sigma-of-pose", sigma_table(report)),
+                  "The shift is that of the source's middle, the turn is about it; both along the target's "
+                  "axes, of the pose that is shown.",
+                  true);
+  text += section("Key numbers", boxed("key-of-pose", key_table(report)), "", true);
+  text += section("What to do next", steps(report));
   text += section("Poses", alternatives_table(report),
-                  "The best first; each is another place, not a finer version of the best.");
-  if (report.result.outcome != Outcome::no_match) text += agreement(report);
+                  "The best first; each is another place, not a finer version of the best. =: it cannot be "
+                  "told from the best.");
+  if (report.result.outcome != Outcome::no_match) text += agreement(report);  // of the best pose
   text += section("Inputs", inputs_table(report));
   text += section("Time", stages_table(report));
   return text + section("How it was run", options_table(report));
@@ -77,11 +97,13 @@ std::string matrix_card(const RegistrationReport& report) {
   if (report.result.outcome == Outcome::no_match) return {};
   return section("Transform, source to target",
                  "<pre id=\"matrix\" tabindex=\"0\" aria-label=\"4 by 4 matrix, metres\">" +
-                     transform_text(report.result.best.target_from_source) +
+                     matrix_text(file_matrix(report, report.result.best.target_from_source)) +
                      "</pre>\n<button type=\"button\" id=\"copy\">Copy</button> "
                      "<span id=\"copied\" role=\"status\"></span>\n"
                      "<p class=\"note\" id=\"matrix-pose\">The best pose, as in transform.txt.</p>\n",
-                 "Four rows of four, metres.");
+                 report.source.metres_per_unit == 1.0 && report.target.metres_per_unit == 1.0
+                     ? "Four rows of four, metres."
+                     : "Four rows of four, between the numbers of the files in their own units.");
 }
 
 }  // namespace
@@ -98,10 +120,8 @@ ReportPages report_pages(const RegistrationReport& report, const ReportScene& sc
                        {"symbol", words.symbol},
                        {"headline", escaped(words.headline)},
                        {"sentences", sentences(words)},
-                       {"source", escaped(report.source.path)},
-                       {"target", escaped(report.target.path)},
-                       {"key", key_table(report)},
-                       {"sigma", sigma_table(report)},
+                       {"source", escaped(file_name(report.source))},
+                       {"target", escaped(file_name(report.target))},
                        {"tables", tables(report) + matrix_card(report)},
                        {"top", pages.top},
                        {"front", pages.front},

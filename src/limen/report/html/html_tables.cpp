@@ -9,12 +9,15 @@
 #include "limen/base/angles.h"
 #include "limen/base/version.h"
 #include "limen/report/html/html_bytes.h"
-#include "limen/report/html/html_words.h"
+#include "limen/report/summary/advice.h"
+#include "limen/report/summary/precision.h"
+#include "limen/report/summary/words.h"
 
 namespace limen {
 namespace {
 
 constexpr std::size_t kMostRows = 200;
+constexpr double kOpenSigma = 0.5;  // metres or radians: of an alternative, what is known less well is open
 
 std::string cell(const std::string& text, const char* tag = "td", const char* attributes = "") {
   return fmt::format("<{0}{1}>{2}</{0}>", tag, attributes, text);
@@ -66,6 +69,38 @@ std::string size_of(const InputSummary& input) {
   return fmt::format("{} {}", input.elements, input.kind == "model" ? "elements" : "segments");
 }
 
+const Hypothesis& pose_of(const RegistrationResult& result, std::size_t pose) {
+  return pose == 0 ? result.best : result.alternatives.at(pose - 1);
+}
+
+/// What is measured for the best pose alone.
+std::string best_rows(const RegistrationResult& result) {
+  std::string rows;
+  if (const auto planes = plane_distance_rms(result.matches))
+    rows += row("Between matched planes (root mean square)", length_words(*planes));
+  for (const MeasuredThickness& wall : result.thickness) {
+    if (wall.sigma_m > 0.1) continue;
+    rows += row("Wall thickness", fmt::format("{:.3f} m ± {}", wall.value_m, length_words(wall.sigma_m)));
+    break;
+  }
+  return rows;
+}
+
+std::string precision_row(const std::string& name, const PlacePrecision& place) {
+  return "<tr>" + cell(name, "th", " scope=\"row\"") + cell(length_words(place.radius_m)) +
+         cell(place.formal_radius_m ? length_words(*place.formal_radius_m) : "—") + "</tr>\n";
+}
+
+/// Formal and empirical apart.
+std::string precision_table(const std::optional<PosePrecision>& precision) {
+  if (!precision) return {};
+  const std::string far = fmt::format("Far end, {:.0f} m from there", precision->far_distance_m);
+  return table(
+      {"Place", "Known to (95 %)", "By the points' scatter alone"},
+      precision_row("Middle of the source", precision->middle) + precision_row(far, precision->far_end),
+      "precision");
+}
+
 std::string hash_of(const std::string& sha256) {
   if (sha256.empty()) return "—";
   return "<code class=\"hash\">" + sha256 + "</code>";
@@ -73,8 +108,9 @@ std::string hash_of(const std::string& sha256) {
 
 std::string input_row(const char* side, const InputSummary& input) {
   const Vector3d extent = input.high - input.low;
-  std::string path = escaped(input.path);
-  for (const std::string& with : input.with) path += "<br>with " + escaped(with);
+  std::string path = escaped(file_name(input));
+  for (const std::string& with : input.with)
+    path += "<br>with " + escaped(with.substr(with.find_last_of('/') + 1));
   std::string kind = input.kind == "scan" ? (input.mobile ? "mobile scan" : "static scan") : input.kind;
   if (input.kind == "scan" && !input.centre_known) kind = "scan, station unknown";
   return "<tr>" + cell(side, "th", " scope=\"row\"") + cell(path) + cell(kind) + cell(size_of(input)) +
@@ -84,63 +120,79 @@ std::string input_row(const char* side, const InputSummary& input) {
 
 }  // namespace
 
-std::string key_table(const RegistrationReport& report) {
+std::string key_table(const RegistrationReport& report, std::size_t pose) {
   const RegistrationResult& result = report.result;
   std::string rows = row("Source", escaped(file_name(report.source)) + ", " + size_of(report.source));
   rows += row("Target", escaped(file_name(report.target)) + ", " + size_of(report.target));
   if (!found(report)) return facts(rows, "key");
-  if (!result.best.room.empty()) rows += row("Room", escaped(result.best.room));
-  rows += evidence_rows(result.best);
-  for (const MeasuredThickness& wall : result.thickness) {
-    if (wall.sigma_m > 0.1) continue;
-    rows += row("Wall thickness", fmt::format("{:.3f} m ± {}", wall.value_m, length_words(wall.sigma_m)));
-    break;
-  }
+  const Hypothesis& shown = pose_of(result, pose);
+  if (shown.probability && !result.published)
+    rows += row("Probability", probability_words(*shown.probability));
+  if (!shown.room.empty()) rows += row("Room", escaped(shown.room));
+  rows += evidence_rows(shown);
+  if (pose == 0) rows += best_rows(result);
   if (!result.alternatives.empty())
     rows += row("Other poses looked at", fmt::format("{}", result.alternatives.size()));
   return facts(rows, "key");
 }
 
-std::string sigma_table(const RegistrationReport& report) {
+std::string sigma_table(const RegistrationReport& report, std::size_t pose) {
   if (!found(report)) return {};
   const RegistrationResult& result = report.result;
-  const Rigid3& pose = result.best.target_from_source;
-  const Vector3d turn = rotation_log(pose.rotation);
-  // Of the point that is known best: far from it the smallest turn is a long way.
-  const Vector3d shift = result.sigma.centre - inverse(pose) * result.sigma.centre;
-  const auto deviation = [&result](bool open, const std::string& words) {
+  const Hypothesis& shown = pose_of(result, pose);
+  const PoseMotion motion = motion_of(report, shown);
+  const Vector3d turn = motion.turn_rad * motion.axis;
+  const Vector3d shift_sigma = shift_sigma_of(report, shown);
+  const auto deviation = [&](bool rotation, int axis, double sigma, const std::string& words) {
+    const bool open = pose == 0 ? is_open(result, rotation, axis) : sigma > kOpenSigma;
     if (open) return std::string("◇ not held by the data");
     return result.published ? std::string("not told by the method") : "± " + words;
   };
   std::string rows;
   static constexpr const char* kAxes[] = {"x", "y", "z"};
   for (int axis = 0; axis < 3; ++axis) {
-    const bool open = is_open(result, false, axis);
     rows += "<tr>" + cell(fmt::format("Shift along {}", kAxes[axis]), "th", " scope=\"row\"") +
-            cell(fmt::format("{:.4f} m", shift[axis])) +
-            cell(deviation(open, length_words(result.sigma.translation_m[axis]))) + "</tr>\n";
+            cell(fmt::format("{:.4f} m", motion.shift_m[axis] + 0.0)) +
+            cell(deviation(false, axis, shift_sigma[axis], length_words(shift_sigma[axis]))) + "</tr>\n";
   }
   for (int axis = 0; axis < 3; ++axis) {
-    const bool open = is_open(result, true, axis);
+    const double sigma = shown.sigma.rotation_rad[axis];
     rows += "<tr>" + cell(fmt::format("Turn about {}", kAxes[axis]), "th", " scope=\"row\"") +
-            cell(fmt::format("{:.4f}°", degrees(turn[axis]))) +
-            cell(deviation(open, angle_words(result.sigma.rotation_rad[axis]))) + "</tr>\n";
+            cell(fmt::format("{:.4f}°", degrees(turn[axis]) + 0.0)) +
+            cell(deviation(true, axis, sigma, angle_words(sigma))) + "</tr>\n";
   }
-  return table({"Freedom", "Value", "Standard deviation"}, rows, "sigma");
+  return table({"Freedom", "Value", "Standard deviation"}, rows, "sigma") +
+         precision_table(precision_of(report, shown));
+}
+
+std::string causes_table(const RegistrationReport& report) {
+  std::string rows;
+  for (const LikelyCause& cause : likely_causes(report))
+    rows += "<tr>" + cell(escaped(cause.name), "th", " scope=\"row\"") + cell(escaped(cause.measured)) +
+            cell(escaped(cause.remedy)) + "</tr>\n";
+  if (rows.empty()) return {};
+  return table({"Cause", "Measured", "What to do"}, rows, "causes");
 }
 
 std::string alternatives_table(const RegistrationReport& report) {
   if (!found(report) || report.result.alternatives.empty()) return {};
-  std::vector<Hypothesis> poses = {report.result.best};
-  poses.insert(poses.end(), report.result.alternatives.begin(), report.result.alternatives.end());
-  const bool segments = report.result.best.matched_segments > 0;
+  const RegistrationResult& result = report.result;
+  const bool segments = result.best.matched_segments > 0;
+  const std::size_t count = std::min(result.alternatives.size() + 1, kMostRows);
+  bool rooms = false;
+  bool probable = false;
+  for (std::size_t k = 0; k < count; ++k) {
+    rooms = rooms || !pose_of(result, k).room.empty();
+    probable = probable || (pose_of(result, k).probability && !result.published);
+  }
   std::string rows;
-  for (std::size_t k = 0; k < poses.size() && k < kMostRows; ++k) {
-    const Hypothesis& pose = poses[k];
-    const std::string name = k == 0 ? "Best" : fmt::format("Alternative {}", k);
+  for (std::size_t k = 0; k < count; ++k) {
+    const Hypothesis& pose = pose_of(result, k);
+    const std::string name = k == 0 ? "Best" : fmt::format("Alternative {}{}", k, pose.tie ? " =" : "");
     rows += fmt::format("<tr data-pose=\"{}\">", k) +
             cell(fmt::format("<button type=\"button\" class=\"link\" data-pose=\"{}\">{}</button>", k, name),
                  "th", " scope=\"row\"");
+    if (probable) rows += cell(pose.probability ? probability_words(*pose.probability) : "—");
     if (segments) {
       rows += cell(fmt::format("{}", pose.matched_segments)) +
               cell(fmt::format("{:.1f} m", pose.agreeing_length_m));
@@ -148,12 +200,17 @@ std::string alternatives_table(const RegistrationReport& report) {
       rows += cell(area_words(pose.agreeing_m2)) + cell(area_words(pose.contradicted_m2));
     }
     // Poses that were never judged to the end have none.
-    rows += cell(pose.rms_m > 0 ? length_words(pose.rms_m) : "—") + cell(fmt::format("{:.1f}", pose.score)) +
-            cell(escaped(pose.room)) + "</tr>\n";
+    rows += cell(pose.rms_m > 0 ? length_words(pose.rms_m) : "—");
+    if (rooms) rows += cell(escaped(pose.room));
+    rows += "</tr>\n";
   }
-  return table({"Pose", segments ? "Segments" : "Agrees", segments ? "Length" : "Contradicted", "Residual",
-                "Score", "Room"},
-               rows, "alternatives");
+  std::vector<std::string> heads = {"Pose"};
+  if (probable) heads.emplace_back("Probability");
+  heads.emplace_back(segments ? "Segments" : "Agrees");
+  heads.emplace_back(segments ? "Length" : "Contradicted");
+  heads.emplace_back("Residual");
+  if (rooms) heads.emplace_back("Room");
+  return table(heads, rows, "alternatives");
 }
 
 std::string planes_table(const RegistrationReport& report) {

@@ -2,19 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limen/report/html/html_words.h"
 
-#include <algorithm>
 #include <cctype>
-#include <cmath>
-#include <optional>
 
 #include <fmt/format.h>
 
-#include "limen/base/angles.h"
+#include "limen/report/summary/precision.h"
 
 namespace limen {
 namespace {
-
-constexpr double kShareOfAxis = 0.1;  // an open direction with less than this along an axis leaves it alone
 
 std::string capitalised(std::string text) {
   if (!text.empty()) text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
@@ -31,46 +26,62 @@ std::string square_metres(std::string text) {
 /// "the two scans", "the scan and the model", "the two lists of segments"
 std::string both_sides(const RegistrationReport& report) {
   if (report.source.kind == "segments") return "the two lists of segments";
-  const bool model = report.source.kind == "model" || report.target.kind == "model";
-  return model ? "the scan and the model" : "the two scans";
+  return in_model(report) ? "the scan and the model" : "the two scans";
 }
 
 /// "place" in a model, "way" between scans.
 std::string places(const RegistrationReport& report, std::size_t count) {
-  const bool model = report.source.kind == "model" || report.target.kind == "model";
-  return fmt::format("{} {}", count, model ? "places" : "ways");
+  return fmt::format("{} {}", count, in_model(report) ? "places" : "ways");
 }
 
-/// The largest standard deviation of the shifts or turns that are held; none where none is.
-std::optional<double> worst_held(const RegistrationResult& result, bool rotation) {
-  const Vector3d& sigma = rotation ? result.sigma.rotation_rad : result.sigma.translation_m;
-  std::optional<double> worst;
-  for (int axis = 0; axis < 3; ++axis) {
-    if (!is_open(result, rotation, axis)) worst = std::max(worst.value_or(0.0), sigma[axis]);
+/// How well the best pose is known, and by what; nothing of what is open.
+std::vector<std::string> expectation(const RegistrationReport& report) {
+  const RegistrationResult& result = report.result;
+  std::vector<std::string> sentences;
+  const auto precision = precision_of(report, result.best);
+  if (precision) {
+    const InputSummary& side =
+        report.source.kind == "model" && report.target.kind != "model" ? report.target : report.source;
+    sentences.push_back(fmt::format(
+        "{} is known to {} in its middle and to {} at its far end, {:.0f} m from there (95 %{}).",
+        file_name(side), length_words(precision->middle.radius_m), length_words(precision->far_end.radius_m),
+        precision->far_distance_m, precision->across_open ? ", across what is open" : ""));
   }
-  return worst;
+  if (result.best.rms_m > 0) {
+    std::string words = fmt::format("Residuals: {} of the {}", length_words(result.best.rms_m),
+                                    result.best.matched_segments > 0 ? "edges" : "points");
+    if (const auto planes = plane_distance_rms(result.matches))
+      words += fmt::format(", {} between matched planes", length_words(*planes));
+    words += " (root mean square)";
+    if (precision && precision->middle.formal_radius_m && precision->far_end.formal_radius_m)
+      words += fmt::format("; the points' scatter alone would give {} and {}",
+                           length_words(*precision->middle.formal_radius_m),
+                           length_words(*precision->far_end.formal_radius_m));
+    sentences.push_back(words + ".");
+  }
+  return sentences;
 }
 
-/// Empty where no axis is held.
-std::string expectation(const RegistrationResult& result) {
-  const std::optional<double> shift = worst_held(result, false);
-  const std::optional<double> turn = worst_held(result, true);
-  std::string words;
-  if (shift) words = (*shift < 0.00005 ? "less than 0.1 mm" : length_words(*shift)) + " in position";
-  if (shift && turn) words += " and ";
-  if (turn) words += angle_words(*turn) + " in direction";
-  if (words.empty()) return {};
-  return fmt::format("You can expect {} (one standard deviation of the worst axis{}).", words,
-                     result.unobserved.empty() ? "" : " that is held");
+void append(VerdictWords& words, const std::vector<std::string>& sentences) {
+  words.sentences.insert(words.sentences.end(), sentences.begin(), sentences.end());
+}
+
+/// What the data leaves open, beside a verdict that is about something else.
+void append_open(VerdictWords& words, const RegistrationResult& result) {
+  for (const UnobservedFreedom& freedom : result.unobserved)
+    words.sentences.push_back(capitalised(freedom.name) + " is not held by the data.");
 }
 
 VerdictWords registered_words(const RegistrationReport& report) {
   const RegistrationResult& result = report.result;
-  VerdictWords words{"Registered: " + both_sides(report) + " fit in one way only",
-                     {expectation(result)},
-                     square_metres(result.reason),
-                     "✓"};
-  if (!result.best.room.empty()) words.sentences.push_back("The scanner stood in " + result.best.room + ".");
+  VerdictWords words{"", {}, square_metres(result.reason), "✓"};
+  words.headline = fmt::format("Registered: {} fit in one way only", both_sides(report));
+  if (result.best.probability)
+    words.sentences.push_back(fmt::format("This is the right place with a probability of {}.",
+                                          probability_words(*result.best.probability)));
+  append(words, expectation(report));
+  if (!result.best.room.empty())
+    words.sentences.push_back(fmt::format("The scanner stood in {}.", result.best.room));
   return words;
 }
 
@@ -86,6 +97,7 @@ VerdictWords ambiguous_words(const RegistrationReport& report) {
         "Look through them below; a further scan, or a place known by other means, decides.");
     words.reason = square_metres(result.reason);
   }
+  append_open(words, result);
   return words;
 }
 
@@ -103,43 +115,15 @@ VerdictWords published_words(const RegistrationResult& result) {
 VerdictWords open_words(const RegistrationReport& report) {
   const RegistrationResult& result = report.result;
   VerdictWords words{"Not fully held: the data leaves a direction open", {}, "", "↔"};
-  for (const UnobservedFreedom& freedom : result.unobserved)
-    words.sentences.push_back(capitalised(freedom.name) + " is not held by the data.");
+  append_open(words, result);
   if (result.unobserved.size() > 1)
     words.headline =
         fmt::format("Not fully held: the data leaves {} directions open", result.unobserved.size());
-  const std::string expected = expectation(result);
-  if (!expected.empty()) words.sentences.push_back(expected);
+  append(words, expectation(report));
   return words;
 }
 
 }  // namespace
-
-bool is_open(const RegistrationResult& result, bool rotation, int axis) {
-  for (const UnobservedFreedom& freedom : result.unobserved) {
-    if (freedom.rotation == rotation && std::abs(freedom.direction[axis]) > kShareOfAxis) return true;
-  }
-  return false;
-}
-
-std::string file_name(const InputSummary& input) {
-  return input.path.substr(input.path.find_last_of('/') + 1);
-}
-
-std::string length_words(double metres) {
-  const double size = std::abs(metres);
-  if (!std::isfinite(metres)) return "—";
-  if (size < 0.00005) return "0.0 mm";
-  if (size < 0.0995) return fmt::format("{:.{}f} mm", 1e3 * metres, size < 0.00995 ? 1 : 0);
-  if (size < 0.995) return fmt::format("{:.1f} cm", 1e2 * metres);
-  return fmt::format("{:.2f} m", metres);
-}
-
-std::string angle_words(double angle_rad) {
-  if (!std::isfinite(angle_rad)) return "—";
-  const double size = std::abs(degrees(angle_rad));
-  return fmt::format("{:.{}f}°", degrees(angle_rad), size < 0.0995 ? 4 : size < 9.95 ? 2 : 1);
-}
 
 VerdictWords verdict_words(const RegistrationReport& report) {
   if (report.result.published) return published_words(report.result);

@@ -2,13 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limen/report/json/result_json.h"
 
-#include <algorithm>
-
 #include <fmt/format.h>
 
 #include "limen/base/atomic_file.h"
 #include "limen/base/version.h"
 #include "limen/report/json/json_values.h"
+#include "limen/report/summary/advice.h"
+#include "limen/report/summary/precision.h"
 
 namespace limen {
 namespace {
@@ -28,10 +28,45 @@ Json covariance_json(const Matrix6d& covariance) {
 }
 
 Json sigma_json(const PoseSigma& sigma) {
-  return {{"rotation_rad", json_of(sigma.rotation_rad)},
-          {"translation_m", json_of(sigma.translation_m)},
-          {"centre", json_of(sigma.centre)},
-          {"covariance", covariance_json(sigma.covariance)}};
+  Json json = {{"rotation_rad", json_of(sigma.rotation_rad)},
+               {"translation_m", json_of(sigma.translation_m)},
+               {"centre", json_of(sigma.centre)},
+               {"covariance", covariance_json(sigma.covariance)}};
+  if (!sigma.formal_covariance.isZero(0.0))
+    json["formal_covariance"] = covariance_json(sigma.formal_covariance);
+  return json;
+}
+
+Json place_json(const PlacePrecision& place) {
+  Json json = {{"at", json_of(place.at)}, {"radius_m", place.radius_m}};
+  if (place.formal_radius_m) json["formal_radius_m"] = *place.formal_radius_m;
+  return json;
+}
+
+Json precision_json(const RegistrationReport& report) {
+  const auto precision = precision_of(report, report.result.best);
+  if (!precision) return {};
+  Json json = {{"confidence", kStatedConfidence},
+               {"middle", place_json(precision->middle)},
+               {"far_end", place_json(precision->far_end)}};
+  json["far_end"]["distance_m"] = precision->far_distance_m;
+  json["across_unobserved"] = precision->across_open;
+  return json;
+}
+
+Json motion_json(const RegistrationReport& report) {
+  const PoseMotion motion = motion_of(report, report.result.best);
+  return {{"about", json_of(motion.about)},
+          {"shift_m", json_of(motion.shift_m)},
+          {"axis", json_of(motion.axis)},
+          {"turn_rad", motion.turn_rad}};
+}
+
+Json causes_json(const RegistrationReport& report) {
+  Json list = Json::array();
+  for (const LikelyCause& cause : likely_causes(report))
+    list.push_back({{"cause", cause.name}, {"measured", cause.measured}, {"remedy", cause.remedy}});
+  return list;
 }
 
 Json probability_json(const std::optional<double>& probability) {
@@ -78,6 +113,7 @@ Json alternatives_json(const std::vector<Hypothesis>& alternatives) {
     list.push_back({{"target_from_source", pose_json(pose.target_from_source)},
                     {"probability", probability_json(pose.probability)},
                     {"sigma", sigma_json(pose.sigma)},
+                    {"tie", pose.tie},
                     {"evidence", evidence_json(pose)}});
   }
   return list;
@@ -131,6 +167,9 @@ Json input_json(const InputSummary& input) {
   json["low"] = json_of(input.low);
   json["high"] = json_of(input.high);
   json["middle"] = json_of(input.middle);
+  json["metres_per_unit"] = input.metres_per_unit;
+  json["inner_low"] = json_of(input.inner_low);
+  json["inner_high"] = json_of(input.inner_high);
   if (input.kind != "scan") return json;
   json["centre_known"] = input.centre_known;
   json["mobile"] = input.mobile;
@@ -154,55 +193,21 @@ Json stages_json(const std::vector<StageTime>& stages) {
   return object;
 }
 
-/// Middle of the central 90 % of the points along each axis, about the local origin: a few echoes of the
-/// house across the street, seen through a window, do not move it.
-Vector3d middle_of(const std::vector<Vector3d>& points) {
-  if (points.empty()) return Vector3d::Zero();
-  constexpr std::size_t kEnough = 20000;
-  const std::size_t stride = 1 + points.size() / kEnough;
-  Vector3d middle;
-  for (Eigen::Index axis = 0; axis < 3; ++axis) {
-    std::vector<double> values;
-    for (std::size_t i = 0; i < points.size(); i += stride) values.push_back(points[i][axis]);
-    std::sort(values.begin(), values.end());
-    const std::size_t cut = values.size() / 20;
-    middle[axis] = 0.5 * (values[cut] + values[values.size() - 1 - cut]);
+/// Those of an earlier run, transform_1.txt and so on.
+void remove_alternatives(const std::filesystem::path& folder) {
+  static constexpr std::string_view kStart = "transform_";
+  std::vector<std::filesystem::path> old;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    const std::string name = entry.path().filename().string();
+    const bool ours = name.starts_with(kStart) && name.ends_with(".txt");
+    const std::string number = ours ? name.substr(kStart.size(), name.size() - kStart.size() - 4) : "";
+    if (!number.empty() && number.find_first_not_of("0123456789") == std::string::npos)
+      old.push_back(entry.path());
   }
-  return middle;
+  for (const std::filesystem::path& path : old) std::filesystem::remove(path);
 }
 
 }  // namespace
-
-InputSummary summarise(const std::string& path, const Scan& scan) {
-  const Extent extent = extent_of(scan.points);
-  InputSummary summary;
-  summary.path = path;
-  summary.points = scan.size();
-  summary.low = scan.local_origin + extent.low;
-  summary.high = scan.local_origin + extent.high;
-  summary.middle = scan.local_origin + middle_of(scan.points);
-  summary.centre_known = scan.centre_known();
-  if (scan.centre_known()) summary.place.source = scan.mobile() ? PlaceSource::per_point : scan.centre_source;
-  if (scan.centres.size() == 1) summary.place.centre = scan.local_origin + scan.centres.front();
-  summary.mobile = scan.mobile();
-  return summary;
-}
-
-InputSummary summarise(const std::string& path, const BimModel& model) {
-  std::vector<Vector3d> corners;
-  for (const BimFace& face : model.faces) {
-    for (const Vector2d& p : face.outline.outer) corners.push_back(face.frame.to_space(p));
-  }
-  const Extent extent = extent_of(corners);
-  InputSummary summary;
-  summary.path = path;
-  summary.kind = "model";
-  summary.elements = model.elements.size();
-  summary.low = model.local_origin + extent.low;
-  summary.high = model.local_origin + extent.high;
-  summary.middle = 0.5 * (summary.low + summary.high);
-  return summary;
-}
 
 std::string result_json(const RegistrationReport& report) {
   const RegistrationResult& result = report.result;
@@ -220,6 +225,10 @@ std::string result_json(const RegistrationReport& report) {
   }
   json["evidence"] = found ? evidence_json(result.best) : Json();
   if (result.published) json["published"] = published_json(*result.published);
+  json["motion"] = found ? motion_json(report) : Json();
+  json["precision"] = found ? precision_json(report) : Json();
+  if (const auto planes = plane_distance_rms(result.matches); found && planes)
+    json["evidence"]["plane_distance_rms_m"] = *planes;
   json["unobserved"] = unobserved_json(result.unobserved);
   json["alternatives"] = alternatives_json(result.alternatives);
   json["matches"] = matches_json(result.matches);
@@ -227,6 +236,8 @@ std::string result_json(const RegistrationReport& report) {
   json["wall_thickness"] = thickness_json(result.thickness);
   json["inputs"] = {{"source", input_json(report.source)}, {"target", input_json(report.target)}};
   json["options"] = options_json(report.options);
+  if (!found) json["likely_causes"] = causes_json(report);
+  json["next_steps"] = next_steps(report);
   json["version"] = kVersion;
   json["seed"] = report.seed;
   json["stages"] = stages_json(result.stages);
@@ -234,7 +245,10 @@ std::string result_json(const RegistrationReport& report) {
 }
 
 std::string transform_text(const Rigid3& target_from_source) {
-  const Matrix4d matrix = to_matrix(target_from_source);
+  return matrix_text(to_matrix(target_from_source));
+}
+
+std::string matrix_text(const Matrix4d& matrix) {
   std::string text;
   for (int i = 0; i < 4; ++i) {
     // + 0.0 turns a negative zero into zero.
@@ -244,15 +258,32 @@ std::string transform_text(const Rigid3& target_from_source) {
   return text;
 }
 
+std::string alternative_file(std::size_t number) {
+  return fmt::format("transform_{}.txt", number);
+}
+
 void write_numbers(const std::filesystem::path& folder, const RegistrationReport& report) {
+  const RegistrationResult& result = report.result;
   const std::string json = result_json(report);
-  if (report.result.outcome == Outcome::no_match) {
+  remove_alternatives(folder);
+  if (result.outcome == Outcome::no_match) {
     write_file(folder / "result.json", json);
     std::filesystem::remove(folder / "transform.txt");
     return;
   }
-  const std::string transform = transform_text(report.result.best.target_from_source);
-  write_files({{folder / "transform.txt", transform}, {folder / "result.json", json}});
+  // Held until they are written: write_files() takes views.
+  std::vector<std::pair<std::filesystem::path, std::string>> texts = {
+      {folder / "transform.txt", matrix_text(file_matrix(report, result.best.target_from_source))}};
+  for (std::size_t k = 0; k < result.alternatives.size(); ++k) {
+    if (result.alternatives[k].tie)
+      texts.emplace_back(folder / alternative_file(k + 1),
+                         matrix_text(file_matrix(report, result.alternatives[k].target_from_source)));
+  }
+  texts.emplace_back(folder / "result.json", json);
+  std::vector<FileToWrite> files;
+  files.reserve(texts.size());
+  for (const auto& [path, text] : texts) files.push_back({path, text});
+  write_files(files);
 }
 
 }  // namespace limen

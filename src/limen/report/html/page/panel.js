@@ -110,8 +110,17 @@ const numbersOf = (pose) => {
   if (pose.segments) words.push(`${pose.segments} segments, ${pose.length.toFixed(1)} m in common`);
   else words.push(`${pose.agreeing.toFixed(1)} m² agree`, `${pose.contradicted.toFixed(1)} m² contradicted`);
   if (pose.rms > 0) words.push(`residual ${millimetres(pose.rms)}`);
+  if (pose.probability) words.push(pose.probability);
   if (pose.room) words.push(pose.room);
   return words.join(' · ');
+};
+
+/** Freedoms and numbers of the pose that is shown; what they hold was made safe where the page was written. */
+const showTables = (pose) => {
+  for (const [id, table] of [['sigma-of-pose', pose.sigma], ['key-of-pose', pose.key]]) {
+    const box = element(id);
+    if (box && box.dataset.told !== table) { box.innerHTML = table; box.dataset.told = table; }
+  }
 };
 
 const showPose = (scene, state) => {
@@ -122,6 +131,7 @@ const showPose = (scene, state) => {
     element('matrix').textContent = scene.poses[state.pose].text;
     element('matrix-pose').textContent = state.pose === 0 ? 'The best pose, as in transform.txt.'
       : `Alternative ${state.pose}, not the pose of transform.txt.`;
+    showTables(scene.poses[state.pose]);
   }
   for (const row of document.querySelectorAll('tr[data-pose]')) {
     row.setAttribute('aria-selected', String(+row.dataset.pose === state.pose));

@@ -1,0 +1,266 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/report/summary/advice.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "limen/report/summary/words.h"
+
+namespace limen {
+namespace {
+
+Vector3d inner_size(const InputSummary& side) {
+  const Vector3d inner = side.inner_high - side.inner_low;
+  return inner.isZero(0.0) ? Vector3d(side.high - side.low) : inner;
+}
+
+constexpr double kSureApart = 1.05;  // heights of storeys that differ by less are hardly a chance
+
+/// Evidence for a cause; the largest is told first.
+struct WeighedCause {
+  double weight = 0.0;
+  LikelyCause cause;
+};
+
+/// How far two ratios of lengths lie apart, as a factor of 1 or more.
+double apart(double a, double b) {
+  return a > b ? a / b : b / a;
+}
+
+WeighedCause overlap_cause(const RegistrationReport& report) {
+  const Hypothesis& best = report.result.best;
+  WeighedCause told{2.0, {"overlap", "", ""}};
+  LikelyCause& cause = told.cause;
+  cause.remedy =
+      "take scans that share walls of three directions (a floor, two walls), or a window that both see";
+  if (report.source.kind == "segments") {
+    cause.measured = "too few edges of one list lie on edges of the other";
+    cause.remedy = "give lists that show the same edges of three directions";
+  } else if (best.explained_share) {
+    cause.measured = fmt::format("at best {:.0f} % of the walls that the scan saw are in the model",
+                                 100.0 * *best.explained_share);
+    cause.remedy = "look whether the model is of this building and holds this storey";
+  } else if (best.agreeing_m2 > 0.0) {
+    cause.measured = fmt::format(
+        "where they fit best {:.1f} m2 of surface agree and {:.1f} m2 of one stand where the "
+        "other saw free space",
+        best.agreeing_m2, best.contradicted_m2);
+  } else {
+    cause.measured = "no plane of one can be laid on a plane of the other";
+  }
+  return told;
+}
+
+WeighedCause units_cause(const RegistrationReport& report) {
+  const Vector3d source = inner_size(report.source);
+  const Vector3d target = inner_size(report.target);
+  WeighedCause told{0.5, {"units", "", ""}};
+  told.cause.measured = fmt::format("the source measures {}, the target {} (all but a few points)",
+                                    size_words(source), size_words(target));
+  told.cause.remedy = "where the numbers of a file are not metres give --source-units or --target-units";
+  if (const auto guess = likely_unit(report.source, report.target)) {
+    const char* const side = guess->source ? "source" : "target";
+    const bool sure = guess->apart < kSureApart;
+    told.weight = sure ? 3.0 : 1.7;
+    told.cause.measured += fmt::format("; were the {}'s numbers {}, both would be {} high", side, guess->unit,
+                                       sure ? "equally" : "about equally");
+    told.cause.remedy = fmt::format("{}give --{}-units {}", sure ? "" : "if they are, ", side, guess->unit);
+  }
+  return told;
+}
+
+std::optional<WeighedCause> place_cause(const InputSummary& side, const char* name) {
+  if (side.kind != "scan" || side.mobile) return std::nullopt;
+  WeighedCause told{0.0, {"place of the scanner", "", ""}};
+  told.cause.remedy = fmt::format("where it is known give --{}-origin x,y,z", name);
+  const PlaceSource source = side.place.source;
+  if (side.place.refuted) {
+    const Vector3d& said = *side.place.refuted;
+    told.weight = 2.5;
+    told.cause.measured = fmt::format("the {} was not seen from {:.2f} {:.2f} {:.2f}, as was said", name,
+                                      said.x(), said.y(), said.z());
+  } else if (source == PlaceSource::unknown) {
+    told.weight = 1.5;
+    told.cause.measured =
+        fmt::format("nobody tells from where the {} was taken, and its points do not show it", name);
+  } else if (source == PlaceSource::assumed && !side.place.confirmed) {
+    told.weight = 1.0;
+    told.cause.measured =
+        fmt::format("that the {} was taken from 0,0,0 is assumed, its points do not bear it out", name);
+  } else {
+    return std::nullopt;
+  }
+  return told;
+}
+
+std::optional<WeighedCause> axes_cause(const RegistrationReport& report) {
+  for (const auto& [name, value] : report.options) {
+    const std::string* text = std::get_if<std::string>(&value);
+    if (name != "gravity" || text == nullptr || *text != "up") continue;
+    return WeighedCause{1.8,
+                        {"axes", "both z axes were said to point up (--gravity up)",
+                         "leave --gravity out: limen then finds by itself where up is"}};
+  }
+  return std::nullopt;
+}
+
+WeighedCause pair_cause(const RegistrationReport& report) {
+  if (in_model(report))
+    return {1.2,
+            {"another pair", "one scan alone was sought in the model",
+             "register it with its neighbours first and give them with --source-with, or take limen project "
+             "with --model"}};
+  return {
+      1.2,
+      {"another pair", "these two were registered alone",
+       "give scans that lie between them with --source-with and --target-with, or all with limen project"}};
+}
+
+std::string in_folder(const std::string& folder, const char* name) {
+  return folder.empty() ? name : shell_word((std::filesystem::path(folder) / name).string());
+}
+
+/// The command that moves the source's cloud.
+std::string transform_command(const RegistrationReport& report, const std::string& folder, bool choice) {
+  const bool source_moves = report.source.kind == "scan";
+  const InputSummary& moved = source_moves ? report.source : report.target;
+  return fmt::format("limen transform {}{}{} {} moved.ply", in_folder(folder, "result.json"),
+                     choice ? " --alternative N" : "", source_moves ? "" : " --invert",
+                     shell_word(moved.path));
+}
+
+bool has_report(const RegistrationReport& report) {
+  return report.result.picture != nullptr;
+}
+
+std::vector<std::string> steps_registered(const RegistrationReport& report, const std::string& folder) {
+  std::vector<std::string> steps;
+  if (has_report(report))
+    steps.push_back(fmt::format("look at {}: both sides in space, residuals, sections",
+                                in_folder(folder, "report.html")));
+  if (report.source.kind == "segments") return steps;
+  steps.push_back(fmt::format("move the cloud: {}", transform_command(report, folder, false)));
+  if (in_model(report)) {
+    const bool source_is_model = report.source.kind == "model";
+    const InputSummary& scan = source_is_model ? report.target : report.source;
+    const InputSummary& model = source_is_model ? report.source : report.target;
+    steps.push_back(
+        fmt::format("see what was built otherwise: limen deviation {} {} --result {}{} -o "
+                    "deviation",
+                    shell_word(scan.path), shell_word(model.path), in_folder(folder, "result.json"),
+                    source_is_model ? " --inverse" : ""));
+  }
+  return steps;
+}
+
+std::vector<std::string> steps_ambiguous(const RegistrationReport& report, const std::string& folder) {
+  std::vector<std::string> steps;
+  const bool ties = report.result.rivals > 0;
+  if (has_report(report))
+    steps.push_back(fmt::format("look at {} in {}", ties ? "the poses one by one" : "the pose",
+                                in_folder(folder, "report.html")));
+  if (report.source.kind == "segments") return steps;
+  if (ties)
+    steps.push_back(fmt::format("where you know which is right take it by its number: {}",
+                                transform_command(report, folder, true)));
+  steps.push_back(
+      in_model(report)
+          ? "let a further scan decide, one of a place that the model has once: --source-with SCAN POSE"
+          : "let a further scan decide, one that shows what the places do not have alike: --source-with SCAN "
+            "POSE, or limen project with all scans");
+  return steps;
+}
+
+std::vector<std::string> steps_open(const RegistrationReport& report, const std::string& folder) {
+  std::vector<std::string> steps;
+  if (has_report(report))
+    steps.push_back(fmt::format("see in {} what is open", in_folder(folder, "report.html")));
+  std::string what =
+      "add a scan that shows a wall, a floor or a window across what is open: --source-with "
+      "SCAN POSE, or limen project with all scans";
+  for (const UnobservedFreedom& freedom : report.result.unobserved) {
+    if (freedom.rotation)
+      what = "add a scan that shows surfaces of other directions: --source-with SCAN POSE";
+  }
+  steps.push_back(what);
+  if (report.source.mobile != report.target.mobile && report.result.thickness.empty() &&
+      !report.result.openings.empty())
+    steps.push_back("where the thickness of the outer wall is known give --wall-thickness-m");
+  return steps;
+}
+
+std::vector<std::string> steps_none(const RegistrationReport& report, const std::string& folder) {
+  std::vector<std::string> steps;
+  if (has_report(report))
+    steps.push_back(fmt::format("look at both side by side in {}", in_folder(folder, "report.html")));
+  const std::vector<LikelyCause> causes = likely_causes(report);
+  if (!causes.empty()) steps.push_back(causes.front().remedy);
+  if (report.source.kind == "scan") steps.push_back("see what limen takes the files for: limen info FILE");
+  return steps;
+}
+
+}  // namespace
+
+std::optional<UnitGuess> likely_unit(const InputSummary& source, const InputSummary& target) {
+  if (source.kind == "segments") return std::nullopt;
+  Vector3d from = inner_size(source);
+  Vector3d to = inner_size(target);
+  std::sort(from.data(), from.data() + 3);
+  std::sort(to.data(), to.data() + 3);
+  if (!(from[0] > 0) || !(to[0] > 0)) return std::nullopt;
+  const bool source_larger = from[0] > to[0];
+  const double thickness = apart(from[0], to[0]);  // of storeys, mostly: they hardly differ
+  const double length = source_larger ? from[2] / to[2] : to[2] / from[2];
+  // A model's unit is told by its file.
+  if ((source_larger ? source : target).kind == "model") return std::nullopt;
+  struct Unit {
+    const char* name;
+    double per_metre;
+    double slack;  // factor by which storeys may differ
+  };
+  for (const Unit& unit : {Unit{"mm", 1000.0, 2.0}, Unit{"cm", 100.0, 1.6}, Unit{"in", 39.3701, 1.2},
+                           Unit{"ft", 3.28084, 1.15}}) {
+    if (apart(thickness, unit.per_metre) > unit.slack || apart(length, unit.per_metre) > 2.5) continue;
+    return UnitGuess{source_larger, unit.name, apart(thickness, unit.per_metre)};
+  }
+  return std::nullopt;
+}
+
+std::vector<LikelyCause> likely_causes(const RegistrationReport& report) {
+  if (report.result.outcome != Outcome::no_match) return {};
+  std::vector<WeighedCause> causes = {overlap_cause(report), pair_cause(report)};
+  if (report.source.kind != "segments") causes.push_back(units_cause(report));
+  for (auto cause :
+       {place_cause(report.source, "source"), place_cause(report.target, "target"), axes_cause(report)}) {
+    if (cause) causes.push_back(std::move(*cause));
+  }
+  std::stable_sort(causes.begin(), causes.end(),
+                   [](const WeighedCause& a, const WeighedCause& b) { return a.weight > b.weight; });
+  std::vector<LikelyCause> list;
+  for (WeighedCause& cause : causes) list.push_back(std::move(cause.cause));
+  return list;
+}
+
+std::vector<std::string> next_steps(const RegistrationReport& report, const std::string& folder) {
+  if (report.result.published) {
+    return {"compare it with the verdict of limen's own method: leave --as-published out"};
+  }
+  switch (report.result.outcome) {
+    case Outcome::registered:
+      return steps_registered(report, folder);
+    case Outcome::ambiguous:
+      return steps_ambiguous(report, folder);
+    case Outcome::under_constrained:
+      return steps_open(report, folder);
+    case Outcome::no_match:
+      break;
+  }
+  return steps_none(report, folder);
+}
+
+}  // namespace limen

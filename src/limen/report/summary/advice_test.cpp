@@ -1,0 +1,132 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/report/summary/advice.h"
+
+#include <algorithm>
+
+#include <gtest/gtest.h>
+
+#include "limen/report/summary/summary_text.h"
+
+namespace limen {
+namespace {
+
+InputSummary scan_of(const std::string& path, const Vector3d& size) {
+  InputSummary side;
+  side.path = path;
+  side.high = size;
+  side.inner_high = size;
+  side.middle = 0.5 * size;
+  side.place.source = PlaceSource::told_by_file;
+  side.place.confirmed = true;
+  return side;
+}
+
+RegistrationReport pair_of(Outcome outcome) {
+  RegistrationReport report;
+  report.result.outcome = outcome;
+  report.result.reason = "a reason";
+  report.result.picture = std::make_shared<const RegistrationPicture>();
+  report.source = scan_of("my scans/a.ply", {8, 6, 3});
+  report.target = scan_of("b.ply", {9, 7, 3.1});
+  return report;
+}
+
+bool any_names(const std::vector<std::string>& steps, const std::string& words) {
+  return std::any_of(steps.begin(), steps.end(),
+                     [&words](const std::string& step) { return step.find(words) != std::string::npos; });
+}
+
+TEST(Advice, EveryOutcomeSaysWhatToDoNext) {
+  for (const Outcome outcome :
+       {Outcome::registered, Outcome::ambiguous, Outcome::under_constrained, Outcome::no_match}) {
+    const std::vector<std::string> steps = next_steps(pair_of(outcome), "out");
+    EXPECT_GE(steps.size(), 2U) << to_string(outcome);
+    EXPECT_TRUE(any_names(steps, "out/report.html")) << to_string(outcome);
+    EXPECT_EQ(likely_causes(pair_of(outcome)).empty(), outcome != Outcome::no_match);
+  }
+  RegistrationReport without = pair_of(Outcome::registered);
+  without.result.picture.reset();
+  EXPECT_FALSE(any_names(next_steps(without), "report.html"));
+}
+
+TEST(Advice, CommandsCanBeTakenAsTheyStand) {
+  const RegistrationReport found = pair_of(Outcome::registered);
+  EXPECT_TRUE(
+      any_names(next_steps(found, "out"), "limen transform out/result.json 'my scans/a.ply' moved.ply"));
+  RegistrationReport model = pair_of(Outcome::registered);
+  model.source.kind = "model";
+  EXPECT_TRUE(any_names(next_steps(model, "o"), "limen transform o/result.json --invert b.ply moved.ply"));
+  EXPECT_TRUE(any_names(next_steps(model, "o"),
+                        "limen deviation b.ply 'my scans/a.ply' --result o/result.json --inverse"));
+  RegistrationReport ties = pair_of(Outcome::ambiguous);
+  ties.result.rivals = 2;
+  EXPECT_TRUE(any_names(next_steps(ties, "out"), "--alternative N"));
+}
+
+TEST(Advice, CausesTellWhatWasMeasuredTheLikeliestFirst) {
+  RegistrationReport report = pair_of(Outcome::no_match);
+  report.result.best.agreeing_m2 = 2.2;
+  std::vector<LikelyCause> causes = likely_causes(report);
+  EXPECT_EQ(causes.front().name, "overlap");
+  EXPECT_NE(causes.front().measured.find("2.2 m2"), std::string::npos);
+  report.target.place = {PlaceSource::estimated, {1, 2, 3}, true, 0.01, Vector3d::Zero()};
+  causes = likely_causes(report);
+  EXPECT_EQ(causes.front().name, "place of the scanner");
+  EXPECT_NE(causes.front().remedy.find("--target-origin"), std::string::npos);
+  report.source = scan_of("a.ply", Vector3d(9, 7, 3.1) * 3.28084);
+  causes = likely_causes(report);
+  EXPECT_EQ(causes.front().name, "units");
+  EXPECT_EQ(causes.front().remedy, "give --source-units ft");
+  report.options = {{"gravity", std::string("up")}};
+  causes = likely_causes(report);
+  EXPECT_TRUE(std::any_of(causes.begin(), causes.end(), [](const auto& it) { return it.name == "axes"; }));
+}
+
+TEST(Advice, UnitsAreGuessedFromStoreysThatHardlyDiffer) {
+  const InputSummary room = scan_of("a.ply", {8, 6, 3});
+  EXPECT_FALSE(likely_unit(room, scan_of("b.ply", {40, 30, 12}))) << "a street is no room in feet";
+  const auto perhaps = likely_unit(room, scan_of("b.ply", {20, 20, 9}));
+  ASSERT_TRUE(perhaps);
+  EXPECT_GT(perhaps->apart, 1.05) << "nor is a stairwell, though one may ask";
+  const auto mm = likely_unit(room, scan_of("b.ply", {9000, 6500, 2900}));
+  ASSERT_TRUE(mm);
+  EXPECT_EQ(mm->unit, "mm");
+  EXPECT_FALSE(mm->source);
+  const auto inches = likely_unit(scan_of("b.ply", Vector3d(8, 6, 3) * 39.37), room);
+  ASSERT_TRUE(inches);
+  EXPECT_EQ(inches->unit, "in");
+  EXPECT_TRUE(inches->source);
+}
+
+TEST(SummaryText, ListsWhatThereIsToChoose) {
+  RegistrationReport report = pair_of(Outcome::ambiguous);
+  report.result.rivals = 1;
+  report.result.best.probability = 0.6;
+  report.result.alternatives.resize(3);
+  report.result.alternatives[1].tie = true;
+  report.result.alternatives[1].room = "Room B";
+  report.result.alternatives[1].probability = 0.39;
+  const std::string text = summary_text(report, "out");
+  EXPECT_NE(text.find("others      3 other poses; = cannot be told from the best"), std::string::npos)
+      << text;
+  EXPECT_NE(text.find("    2 =             39.0 %"), std::string::npos) << text;
+  EXPECT_NE(text.find("Room B"), std::string::npos) << text;
+  report.result.alternatives.resize(1);
+  report.result.rivals = 0;
+  EXPECT_NE(summary_text(report, "out").find("1 other pose looked at"), std::string::npos);
+}
+
+TEST(SummaryText, TellsTheShiftOfTheMiddleAndTheHintForLargeCoordinates) {
+  RegistrationReport report = pair_of(Outcome::registered);
+  report.result.best.target_from_source.translation = Vector3d(0.003, 0, 0);
+  EXPECT_NE(
+      summary_text(report, "out").find("shift       0.0030 0.0000 0.0000 m, of the middle of a.ply (3.0 mm)"),
+      std::string::npos);
+  EXPECT_EQ(summary_text(report, "out").find("CloudCompare"), std::string::npos);
+  report.source.middle += Vector3d(1050000, 6840000, 0);
+  EXPECT_NE(summary_text(report, "out").find("CloudCompare"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace limen
