@@ -4,7 +4,7 @@
 // The report page in a browser:  node --test report_test.mjs, with LIMEN_PROGRAM naming the program.
 // LIMEN_SCREENSHOTS names a folder where pictures of the page are left.
 import assert from 'node:assert/strict';
-import { mkdirSync, mkdtempSync, readFileSync, rmSync, statSync, writeFileSync } from 'node:fs';
+import { copyFileSync, mkdirSync, mkdtempSync, readFileSync, rmSync, statSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, describe, test } from 'node:test';
@@ -48,6 +48,11 @@ before(async () => {
   const museum = join(folder, 'museum');
   limen(program, 'simulate', 'museum', '-o', museum, '--points-indoor', '60000', '--points-outdoor', '200000');
   limen(program, 'register', join(museum, 'indoor_00.ply'), join(museum, 'outdoor.ply'), '-o', join(folder, 'registered'));
+  const long = join(museum, 'station_of_the_second_floor_of_the_north_wing_beside_the_great_stairs.ply');
+  copyFileSync(join(museum, 'indoor_00.ply'), long);
+  limen(program, 'register', long, join(museum, 'outdoor.ply'), '-o', join(folder, 'handed_on'), '--language', 'fr',
+    '--title', 'Registration of the north wing, second floor, of the former municipal museum of natural history, stations of October',
+    '--project', '2026-117 Museum refurbishment, lot 3', '--operator', 'Office of surveyors and partners', '--date', '22 November 2026');
   const office = join(folder, 'office');
   limen(program, 'simulate', 'office', '-o', office, '--room', 'repeated', '--points-indoor', '60000');
   limen(program, 'register', join(office, 'scan_01.ply'), join(office, 'model.ifc'), '-o', join(folder, 'in_model'));
@@ -196,7 +201,7 @@ describe('a registered pair', () => {
 
   test('is at most 10 MB and prints on one A4 page', async () => {
     assert.ok(statSync(report('registered')).size <= 10e6);
-    for (const name of ['registered', 'in_model', 'no_match']) {
+    for (const name of ['registered', 'in_model', 'no_match', 'handed_on']) {
       const { page: printed } = await openReport(browser.context, report(name));
       const pdf = await printed.pdf({ preferCSSPageSize: true });
       if (shots) writeFileSync(join(shots, `${name}.pdf`), pdf);
@@ -206,6 +211,30 @@ describe('a registered pair', () => {
       assert.ok(Math.abs(width - 595) < 2 && Math.abs(height - 842) < 2, `${width} x ${height} is not A4`);
       await printed.close();
     }
+  });
+});
+
+describe('a report to hand on', () => {
+  test('has its head, a summary in the language asked for, and no folder in a file name', async () => {
+    const { page, heard } = await openReport(browser.context, report('handed_on'));
+    assert.match(await page.locator('.cover-title').innerText(), /north wing/);
+    assert.match(await page.locator('.cover').innerText(), /Projet\s+2026-117[\s\S]*Opérateur/);
+    assert.match(await page.locator('.summary[lang="fr"]').innerText(), /La probabilité que ce soit la bonne position/);
+    assert.ok((await page.locator('.path').allInnerTexts()).every((name) => !name.includes('/')));
+    assert.equal(await page.title(), await page.locator('.cover-title').innerText());
+    assert.deepEqual(heard.problems, []);
+    await page.close();
+  });
+
+  test('the freedoms and numbers are those of the pose that is shown', async () => {
+    const { page } = await openReport(browser.context, report('in_model'));
+    const told = () => page.locator('#sigma').innerText();
+    const first = await told();
+    await settled(page, () => page.keyboard.press('n'));
+    assert.notEqual(await told(), first);
+    await settled(page, () => page.keyboard.press('p'));
+    assert.equal(await told(), first);
+    await page.close();
   });
 });
 

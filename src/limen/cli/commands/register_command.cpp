@@ -40,6 +40,11 @@ struct RegisterCommandOptions {
   double wall_thickness_m = 0.0;
   double risk = VerdictOptions{}.risk;
   bool no_report = false;
+  std::string title;
+  std::string project;
+  std::string operator_name;
+  std::string date;
+  std::string language = "en";
   std::string memory;
   ReadingChoice source_reading;
   ReadingChoice target_reading;
@@ -169,16 +174,24 @@ Registered register_segment_lists(const RegisterCommandOptions& options, const S
 
 /// The page, for which the numbers are not given up: where it has no room that is told, and the status stays
 /// that of the outcome.
-void write_page(const std::filesystem::path& folder, const Registered& registered, const Session& session) {
+void write_page(const std::filesystem::path& folder, const Registered& registered, const ReportCover& cover,
+                const Session& session) {
   session.monitor->begin_stage("report");
   try {
-    write_report(folder, registered.report, registered.scene);
+    write_report(folder, registered.report, registered.scene, cover);
   } catch (const Error& error) {
     if (error.fault() != Fault::input) throw;
     session.warn(fmt::format(
         "there is no report: {}; result.json{} written and whole", error.what(),
         registered.report.result.outcome == Outcome::no_match ? " is" : " and transform.txt are"));
   }
+}
+
+ReportCover cover_of(const RegisterCommandOptions& options) {
+  const Language language = options.language == "fr"   ? Language::french
+                            : options.language == "de" ? Language::german
+                                                       : Language::english;
+  return {options.title, options.project, options.operator_name, options.date, language};
 }
 
 int status_of(Outcome outcome) {
@@ -208,7 +221,7 @@ int run(const RegisterCommandOptions& options, const Session& session) {
   session.monitor->throw_if_cancelled();
   remove_report(folder.path());  // an earlier run's page must not stand beside other numbers
   write_numbers(folder.path(), report);
-  if (!options.no_report) write_page(folder.path(), registered, session);
+  if (!options.no_report) write_page(folder.path(), registered, cover_of(options), session);
   session.say(summary_text(report, options.folder));
   session.answer(json);
   return status_of(report.result.outcome);
@@ -225,6 +238,20 @@ void add_with_option(CommandLine& command, const char* name, std::vector<std::st
       ->type_size(2)
       ->type_name("SCAN POSE")
       ->take_all();
+}
+
+void add_cover_options(CommandLine& command, RegisterCommandOptions& options) {
+  const auto add = [&command](const char* name, std::string& text, const char* description) {
+    command.add_option(name, text, description)->type_name("TEXT");
+  };
+  add("--title", options.title, "Title of the report");
+  add("--project", options.project, "Project that the report names");
+  add("--operator", options.operator_name, "Who made the registration, for the report");
+  add("--date", options.date, "Date on the report, as it is to be read");
+  command
+      .add_option("--language", options.language,
+                  "Language of a summary in words on the report: en (default), fr, de")
+      ->one_of({"en", "fr", "de"});
 }
 
 void add_origin_options(CommandLine& command, RegisterCommandOptions& options) {
@@ -273,6 +300,7 @@ void add_register_command(CommandLine& app, Session& session) {
   add_with_option(*command, "--target-with", options->target_with, "TARGET");
   command->add_flag("--no-report", options->no_report,
                     "Write neither report.html nor the sections, only result.json and transform.txt");
+  add_cover_options(*command, *options);
   add_gravity_option(*command, options->gravity, true);
   add_origin_options(*command, *options);
   add_units_option(*command, options->source_reading.units, "source-");

@@ -108,17 +108,19 @@ std::string matrix_card(const RegistrationReport& report) {
 
 }  // namespace
 
-ReportPages report_pages(const RegistrationReport& report, const ReportScene& scene) {
+ReportPages report_pages(const RegistrationReport& report, const ReportScene& scene,
+                         const ReportCover& cover) {
   const SceneView view = make_view(scene, report.result);
   ReportPages pages;
   pages.top = section_svg(scene, view, SectionSide::top);
   pages.front = section_svg(scene, view, SectionSide::front);
   pages.side = section_svg(scene, view, SectionSide::side);
   const VerdictWords words = verdict_words(report);
-  const Parts parts = {{"title", escaped(words.headline)},
+  const Parts parts = {{"title", escaped(cover.title.empty() ? words.headline : cover.title)},
                        {"outcome", to_string(report.result.outcome)},
                        {"symbol", words.symbol},
                        {"headline", escaped(words.headline)},
+                       {"cover", cover_html(report, cover)},
                        {"sentences", sentences(words)},
                        {"source", escaped(file_name(report.source))},
                        {"target", escaped(file_name(report.target))},
@@ -135,8 +137,8 @@ ReportPages report_pages(const RegistrationReport& report, const ReportScene& sc
 }
 
 void write_report(const std::filesystem::path& folder, const RegistrationReport& report,
-                  const ReportScene& scene) {
-  const ReportPages pages = report_pages(report, scene);
+                  const ReportScene& scene, const ReportCover& cover) {
+  const ReportPages pages = report_pages(report, scene, cover);
   write_files({{folder / "section_top.svg", pages.top},
                {folder / "section_front.svg", pages.front},
                {folder / "section_side.svg", pages.side},

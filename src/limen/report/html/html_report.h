@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <string>
 
+#include "limen/report/html/html_cover.h"
 #include "limen/report/html/html_scene.h"
 #include "limen/report/json/result_json.h"
 
@@ -17,12 +18,13 @@ struct ReportPages {
   std::string front;
   std::string side;
 };
-ReportPages report_pages(const RegistrationReport& report, const ReportScene& scene);
+ReportPages report_pages(const RegistrationReport& report, const ReportScene& scene,
+                         const ReportCover& cover = {});
 
 /// Writes report.html, section_top.svg, section_front.svg and section_side.svg into `folder`. Throws Error
 /// where that fails.
 void write_report(const std::filesystem::path& folder, const RegistrationReport& report,
-                  const ReportScene& scene);
+                  const ReportScene& scene, const ReportCover& cover = {});
 
 /// Removes what an earlier run left of them.
 void remove_report(const std::filesystem::path& folder);

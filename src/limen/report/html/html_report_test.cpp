@@ -210,6 +210,15 @@ TEST(ReportPage, EveryOutcomeHasItsPage) {
   }
 }
 
+TEST(ReportPage, ThePlanTellsNorthOnAGridElseTheAxis) {
+  ReportScene scene = two_rooms(100);
+  const ReportPages grid = report_pages(report_of(Outcome::registered), scene);
+  EXPECT_NE(grid.top.find(">N</text>"), std::string::npos);
+  EXPECT_EQ(grid.front.find(">N</text>"), std::string::npos);
+  scene.target.origin = Vector3d::Zero();
+  EXPECT_NE(report_pages(report_of(Outcome::registered), scene).top.find(">y</text>"), std::string::npos);
+}
+
 TEST(ReportPage, OpenFreedomsAreNamedInTheTable) {
   RegistrationReport report = report_of(Outcome::under_constrained);
   report.result.unobserved = {{false, Vector3d::UnitY(), "shift along (0.00, 1.00, 0.00)"}};

@@ -77,7 +77,7 @@ const Hypothesis& pose_of(const RegistrationResult& result, std::size_t pose) {
 std::string best_rows(const RegistrationResult& result) {
   std::string rows;
   if (const auto planes = plane_distance_rms(result.matches))
-    rows += row("Between matched planes (root mean square)", length_words(*planes));
+    rows += row("Residual between matched planes", length_words(*planes));
   for (const MeasuredThickness& wall : result.thickness) {
     if (wall.sigma_m > 0.1) continue;
     rows += row("Wall thickness", fmt::format("{:.3f} m ± {}", wall.value_m, length_words(wall.sigma_m)));

@@ -161,6 +161,28 @@ std::string foot(const Paper& paper) {
   return text;
 }
 
+/// Which way the target's y axis points in the plan; on a national grid that is north.
+std::string north_arrow(const ReportScene& scene, const SceneView& view, const Paper& paper) {
+  constexpr double kGridM = 1e5;
+  constexpr double kLongPx = 17.0;
+  const Vector3d y_axis = view.view_from_target.col(1);
+  const Vector2d along = Vector2d(y_axis.x(), -y_axis.y());
+  if (along.norm() < 0.5) return {};  // the target's z axis does not point up
+  const Vector2d d = along.normalized();
+  const Vector2d across(-d.y(), d.x());
+  const Vector2d middle(paper.width() - 34.0, kTitlePx + 34.0);
+  const Vector2d tip = middle + kLongPx * d;
+  const Vector2d left = tip - 9.0 * d + 4.5 * across;
+  const Vector2d right = tip - 9.0 * d - 4.5 * across;
+  const Vector2d name = middle + (kLongPx + 11.0) * d + Vector2d(-5.0, 5.0);
+  const bool grid = scene.target.origin.cwiseAbs().maxCoeff() > kGridM;
+  std::string text = fmt::format("<path class=\"ls-b\" d=\"{}{}{}\"/>\n", line(middle - kLongPx * d, tip),
+                                 line(tip, left), line(tip, right));
+  text += fmt::format("<text class=\"ls-soft\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n", name.x(), name.y(),
+                      grid ? "N" : "y");
+  return text;
+}
+
 std::string title_of(SectionSide side, double thickness_m, bool matched) {
   static constexpr const char* kTitles[] = {"Plan", "Section from the front", "Section from the side"};
   const std::string place = matched ? "" : ", side by side";
@@ -229,7 +251,9 @@ std::string section_svg(const ReportScene& scene, const SceneView& view, Section
   svg += dots(near_cut(scene.source, view_from_source, paper, cut, options), "ls-s");
   svg += cut_lines(scene.target, view_from_target, paper, cut, "ls-t");
   svg += cut_lines(scene.source, view_from_source, paper, cut, "ls-s");
-  return svg + "</g>\n" + foot(paper) + "</svg>\n";
+  svg += "</g>\n";
+  if (side == SectionSide::top) svg += north_arrow(scene, view, paper);
+  return svg + foot(paper) + "</svg>\n";
 }
 
 }  // namespace limen

@@ -1,0 +1,68 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/report/html/html_cover.h"
+
+#include <algorithm>
+
+#include <gtest/gtest.h>
+
+namespace limen {
+namespace {
+
+RegistrationReport found() {
+  RegistrationReport report;
+  report.result.outcome = Outcome::registered;
+  report.result.best.probability = 0.99996;
+  report.result.best.rms_m = 0.0021;
+  report.result.best.sigma.covariance.diagonal() << 1e-10, 1e-10, 1e-10, 1e-8, 1e-8, 1e-8;
+  report.source.path = "scans/room.ply";
+  report.source.inner_high = Vector3d(20, 0, 0);
+  return report;
+}
+
+TEST(ReportCover, SaysTheSameInThreeLanguages) {
+  const std::vector<std::string> english = cover_summary(found(), Language::english);
+  ASSERT_EQ(english.size(), 4U);
+  EXPECT_EQ(english[1], "The probability that this is the right place is more than 99.99 %.");
+  EXPECT_EQ(
+      english[2],
+      "room.ply is known to 0.3 mm in its middle and to 0.6 mm at its far end, 20 m from there (95 %).");
+  const std::vector<std::string> french = cover_summary(found(), Language::french);
+  EXPECT_EQ(french[1], "La probabilité que ce soit la bonne position est de plus de 99,99 %.");
+  EXPECT_EQ(french[2],
+            "room.ply est connu à 0,3 mm près en son milieu et à 0,6 mm près à son extrémité, à 20 m de là "
+            "(95 %).");
+  const std::vector<std::string> german = cover_summary(found(), Language::german);
+  EXPECT_EQ(german[1], "Die Wahrscheinlichkeit, dass dies die richtige Lage ist, beträgt mehr als 99,99 %.");
+  EXPECT_EQ(
+      german[2],
+      "room.ply ist in der Mitte auf 0,3 mm und am fernen Ende, 20 m davon, auf 0,6 mm bekannt (95 %).");
+  EXPECT_EQ(german.size(), english.size());
+  EXPECT_EQ(french.size(), english.size());
+}
+
+TEST(ReportCover, EveryOutcomeHasItsSentence) {
+  for (const Language language : {Language::english, Language::french, Language::german}) {
+    std::vector<std::string> told;
+    for (const Outcome outcome :
+         {Outcome::registered, Outcome::ambiguous, Outcome::under_constrained, Outcome::no_match}) {
+      RegistrationReport report = found();
+      report.result.outcome = outcome;
+      told.push_back(cover_summary(report, language).front());
+    }
+    std::sort(told.begin(), told.end());
+    EXPECT_EQ(std::unique(told.begin(), told.end()), told.end());
+  }
+}
+
+TEST(ReportCover, IsEscapedAndLeftOutWhereNothingIsSaid) {
+  EXPECT_EQ(cover_html(found(), {}), "");
+  const std::string html = cover_html(found(), {"<b>Title</b>", "A & B", "", "", Language::german});
+  EXPECT_EQ(html.find("<b>Title"), std::string::npos);
+  EXPECT_NE(html.find("A &amp; B"), std::string::npos);
+  EXPECT_NE(html.find("lang=\"de\""), std::string::npos);
+  EXPECT_EQ(html.find("Bearbeiter"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace limen
