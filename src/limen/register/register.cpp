@@ -180,7 +180,7 @@ void refine_and_score(JudgedPose& pose, const ScanView& source, const ScanView& 
 /// whether it moved.
 bool settle_open_shifts(JudgedPose& pose, const ScanView& source, const ScanView& target,
                         const RegisterOptions& options) {
-  const ScoreOptions fine = fine_score(source, target, options.method);
+  const PoseScorer score_of(source, target, fine_score(source, target, options.method));
   bool moved_at_all = false;
   for (const UnobservedFreedom& freedom : unobserved_freedoms(pose.refined, options.verdict.min_held_m2)) {
     if (freedom.rotation) return moved_at_all;
@@ -188,7 +188,7 @@ bool settle_open_shifts(JudgedPose& pose, const ScanView& source, const ScanView
     for (int step = -kSettleSteps; step <= kSettleSteps; ++step) {
       Rigid3 moved = start;
       moved.translation += kSettleStepM * step * freedom.direction;
-      const PoseScore score = score_pose(source, target, moved, fine);
+      const PoseScore score = score_of(moved);
       if (score.value() <= pose.score.value()) continue;
       pose.score = score;
       pose.refined.target_from_source = moved;

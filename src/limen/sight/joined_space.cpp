@@ -33,6 +33,10 @@ bool stands_before(const Sight& a, const Sight& b) {
 
 JoinedSpace::JoinedSpace(std::vector<Member> members) : members_(std::move(members)) {}
 
+void JoinedSpace::fetch(std::span<const SightQuery> queries) const {
+  for (const Member& member : members_) member.view->fetch(queries);
+}
+
 Sight JoinedSpace::look(const SightQuery& query) const {
   Sight best;
   best.kind = SightKind::unseen;

@@ -22,6 +22,7 @@ class JoinedSpace : public SpaceView {
   explicit JoinedSpace(std::vector<Member> members);
 
   [[nodiscard]] Sight look(const SightQuery& query) const override;
+  void fetch(std::span<const SightQuery> queries) const override;
 
  private:
   std::vector<Member> members_;

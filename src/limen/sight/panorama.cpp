@@ -126,6 +126,14 @@ bool Panorama::on_surface(const SightQuery& query, const Vector3d& ray, const Pi
          (pixel.far_plane != pixel.near_plane && test(pixel.far_m, pixel.far_plane));
 }
 
+void Panorama::fetch(std::span<const SightQuery> queries) const {
+  for (const SightQuery& query : queries) {
+    const Pixel& pixel = pixels_[pixel_at(query.at - centre_)];
+    __builtin_prefetch(&pixel);
+    __builtin_prefetch(&pixel.far_plane);  // a pixel may lie across two lines of the cache
+  }
+}
+
 Sight Panorama::look(const SightQuery& query) const {
   Sight sight;
   const Vector3d ray = query.at - centre_;

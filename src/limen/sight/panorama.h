@@ -31,6 +31,7 @@ class Panorama : public SpaceView {
 
   [[nodiscard]] PanoramaState state() const;
   [[nodiscard]] Sight look(const SightQuery& query) const override;
+  void fetch(std::span<const SightQuery> queries) const override;
   [[nodiscard]] const Vector3d& centre() const { return centre_; }
 
  private:

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "limen/model/features.h"
@@ -42,6 +43,9 @@ class SpaceView {
   virtual ~SpaceView() = default;
 
   [[nodiscard]] virtual Sight look(const SightQuery& query) const = 0;
+  /// Says that these will be asked about next: what the answers need is fetched from memory ahead, for most
+  /// of a look is waiting for it. The answers are the same without.
+  virtual void fetch(std::span<const SightQuery> /*queries*/) const {}
 };
 
 /// A plane as a view of space needs it.

@@ -93,9 +93,12 @@ void VoxelMap::make_blocks() {
 }
 
 VoxelMap::Key VoxelMap::key_of(const Vector3d& x) const {
-  const Vector3d cell = ((x - low_) / edge_).array().floor().max(-2.0).min(1e6).matrix();
-  return {static_cast<std::int32_t>(cell.x()), static_cast<std::int32_t>(cell.y()),
-          static_cast<std::int32_t>(cell.z())};
+  const auto cell = [&](Eigen::Index axis) {
+    const double at = std::min(std::max((x[axis] - low_[axis]) / edge_, -2.0), 1e6);
+    const auto towards_zero = static_cast<std::int32_t>(at);
+    return at < towards_zero ? towards_zero - 1 : towards_zero;
+  };
+  return {cell(0), cell(1), cell(2)};
 }
 
 std::int64_t VoxelMap::index_of(const Key& key) const {
@@ -199,6 +202,27 @@ bool VoxelMap::passed_freely(const SightQuery& query) const {
     if (!is_free(query.at + step) || !is_free(query.at - step)) return false;
   }
   return true;
+}
+
+void VoxelMap::fetch(std::span<const SightQuery> queries) const {
+  // One step of the way to a cube at a time, for all queries.
+  for (const SightQuery& query : queries) {
+    const Key key = key_of(query.at);
+    if (index_of(key) >= 0) __builtin_prefetch(&block_at_[block_of(key)]);
+  }
+  for (const SightQuery& query : queries) {
+    const Key key = key_of(query.at);
+    if (index_of(key) < 0) continue;
+    const std::int32_t block = block_at_[block_of(key)];
+    if (block >= 0)
+      __builtin_prefetch(&cube_at_[static_cast<std::size_t>(block) * kBlockCubes + place_in_block(key)]);
+  }
+  for (const SightQuery& query : queries) {
+    const Key key = key_of(query.at);
+    if (index_of(key) < 0) continue;
+    const Cube* const cube = find(key);
+    if (cube != nullptr) __builtin_prefetch(cube);
+  }
 }
 
 Sight VoxelMap::look(const SightQuery& query) const {

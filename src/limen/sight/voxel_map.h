@@ -37,6 +37,7 @@ class VoxelMap : public SpaceView {
 
   [[nodiscard]] VoxelMapState state() const;
   [[nodiscard]] Sight look(const SightQuery& query) const override;
+  void fetch(std::span<const SightQuery> queries) const override;
 
  private:
   static constexpr std::size_t kPlanes = 4;

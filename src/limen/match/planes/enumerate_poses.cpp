@@ -3,131 +3,29 @@
 #include "limen/match/planes/enumerate_poses.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <unordered_map>
 
 #include <Eigen/LU>
 
 #include "limen/base/angles.h"
 #include "limen/base/error.h"
 #include "limen/base/parallel.h"
+#include "limen/geometry/cell_key.h"
+#include "limen/match/planes/axis_pairs.h"
 #include "limen/match/planes/enumerate_rotations.h"
+#include "limen/match/planes/least_precedence.h"
 
 namespace limen {
 namespace {
 
-constexpr std::size_t kMaxParts = 6;       // of one plane, largest first
 constexpr double kMinDeterminant = 0.2;    // three axes flatter than this do not fix a shift
 constexpr std::size_t kSlidingAxes = 3;    // heaviest axes that are paired for sliding poses
 constexpr std::size_t kSlidingShifts = 5;  // shifts tried along each
 constexpr double kMaxSweepM = 25.0;        // either way
 constexpr double kSameShiftM = 0.15;       // poses nearer than this are one
-
-/// Axis-aligned rectangle in the coordinates of an axis.
-struct Box {
-  Vector2d low = Vector2d::Constant(1e300);
-  Vector2d high = Vector2d::Constant(-1e300);
-  double fill = 1.0;  // share of the rectangle that the polygon covers
-
-  [[nodiscard]] double overlap_area(const Box& other, const Vector2d& shift) const {
-    const double w =
-        std::min(high.x() + shift.x(), other.high.x()) - std::max(low.x() + shift.x(), other.low.x());
-    const double h =
-        std::min(high.y() + shift.y(), other.high.y()) - std::max(low.y() + shift.y(), other.low.y());
-    return w > 0 && h > 0 ? w * h * fill * other.fill : 0.0;
-  }
-};
-
-/// One direction of the target with in-plane coordinates, and the planes that have it.
-struct Axis {
-  PlaneFrame frame;  // origin 0; u, v span the planes
-  Vector3d direction = Vector3d::UnitZ();
-};
-
-std::vector<Box> boxes_of(const PlanarPolygon& plane, const Matrix3d& rotation, const Axis& axis) {
-  std::vector<Box> boxes;
-  for (const Polygon& part : plane.parts) {
-    if (boxes.size() == kMaxParts) break;
-    Box box;
-    for (const Vector2d& p : part.outer) {
-      const Vector2d q = axis.frame.to_plane(rotation * plane.frame.to_space(p));
-      box.low = box.low.cwiseMin(q);
-      box.high = box.high.cwiseMax(q);
-    }
-    const Vector2d size = box.high - box.low;
-    box.fill = std::min(1.0, area(part) / std::max(1e-9, size.x() * size.y()));
-    boxes.push_back(box);
-  }
-  return boxes;
-}
-
-/// A plane of the source that may be a plane of the target, and the shift along the axis that makes it so.
-struct Pair {
-  double shift = 0.0;
-  std::size_t source = 0;
-  std::size_t target = 0;
-  double limit_m2 = 0.0;  // no more than the smaller of the two can overlap
-};
-
-/// Candidate shift along one axis: pairs within the tolerance of it.
-struct Shift {
-  double value = 0.0;
-  double limit_m2 = 0.0;
-};
-
-/// All pairs along one axis under one rotation, by shift.
-struct AxisPairs {
-  Axis axis;
-  std::vector<Pair> pairs;
-  std::vector<std::vector<Box>> source_boxes;  // per source plane; empty where it is not of this axis
-  std::vector<std::vector<Box>> target_boxes;
-  std::vector<Shift> shifts;
-  double weight_m2 = 0.0;
-
-  [[nodiscard]] double support(const Vector3d& translation, double tolerance) const {
-    const double value = axis.direction.dot(translation);
-    const Vector2d in_plane(axis.frame.u.dot(translation), axis.frame.v.dot(translation));
-    const auto below = [](const Pair& pair, double s) { return pair.shift < s; };
-    double sum = 0.0;
-    for (auto it = std::lower_bound(pairs.begin(), pairs.end(), value - tolerance, below);
-         it != pairs.end() && it->shift <= value + tolerance; ++it) {
-      double overlap = 0.0;
-      for (const Box& a : source_boxes[it->source]) {
-        for (const Box& b : target_boxes[it->target]) overlap += a.overlap_area(b, in_plane);
-      }
-      const double off = (it->shift - value) / tolerance;
-      sum += std::min(overlap, it->limit_m2) * (1.0 - off * off);
-    }
-    return sum;
-  }
-};
-
-/// Shifts that bring most surface together, heaviest first, no two nearer than half the tolerance.
-std::vector<Shift> best_shifts(const std::vector<Pair>& pairs, double tolerance, int most) {
-  std::vector<Shift> all;
-  std::size_t low = 0;
-  for (std::size_t i = 0; i < pairs.size(); ++i) {
-    while (pairs[low].shift < pairs[i].shift - tolerance) ++low;
-    Shift shift;
-    double mean = 0.0;
-    for (std::size_t k = low; k < pairs.size() && pairs[k].shift <= pairs[i].shift + tolerance; ++k) {
-      shift.limit_m2 += pairs[k].limit_m2;
-      mean += pairs[k].limit_m2 * pairs[k].shift;
-    }
-    shift.value = mean / shift.limit_m2;
-    all.push_back(shift);
-  }
-  std::stable_sort(all.begin(), all.end(),
-                   [](const Shift& a, const Shift& b) { return a.limit_m2 > b.limit_m2; });
-  std::vector<Shift> kept;
-  for (const Shift& shift : all) {
-    if (static_cast<int>(kept.size()) == most) break;
-    const bool known = std::any_of(kept.begin(), kept.end(), [&](const Shift& other) {
-      return std::abs(other.value - shift.value) < 0.5 * tolerance;
-    });
-    if (!known) kept.push_back(shift);
-  }
-  return kept;
-}
+constexpr std::size_t kMostOfRotation = 4000;
 
 /// The planes with the largest areas, nothing else; those seen through openings first, for both scans share
 /// them.
@@ -155,8 +53,12 @@ class PoseEnumerator {
   [[nodiscard]] std::vector<PoseCandidate> run() const {
     const std::vector<Matrix3d> rotations = all_rotations();
     std::vector<std::vector<PoseCandidate>> found(rotations.size());
+    LeastPrecedence least(static_cast<std::size_t>(options_.max_poses));
     parallel_for(rotations.size(), 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) found[i] = poses_of(rotations[i]);
+      for (std::size_t i = begin; i < end; ++i) {
+        found[i] = poses_of(rotations[i], least);
+        least.add(found[i]);
+      }
     });
     std::vector<PoseCandidate> all;
     for (const std::vector<PoseCandidate>& poses : found) all.insert(all.end(), poses.begin(), poses.end());
@@ -268,9 +170,9 @@ class PoseEnumerator {
       }
     }
     std::stable_sort(along.pairs.begin(), along.pairs.end(),
-                     [](const Pair& a, const Pair& b) { return a.shift < b.shift; });
+                     [](const PlanePair& a, const PlanePair& b) { return a.shift < b.shift; });
     along.shifts = best_shifts(along.pairs, options_.offset_tolerance_m, options_.max_shifts_per_axis);
-    for (const Shift& shift : along.shifts) along.weight_m2 += shift.limit_m2;
+    for (const AxisShift& shift : along.shifts) along.weight_m2 += shift.limit_m2;
     return along;
   }
 
@@ -301,7 +203,7 @@ class PoseEnumerator {
     double weight = 0.0;
     double sum = 0.0;
     for (const std::size_t k : basis) {
-      for (const Pair& pair : axes[k].pairs) {
+      for (const PlanePair& pair : axes[k].pairs) {
         const Vector3d gap =
             target_.planes[pair.target].centroid - rotation * source_.planes[pair.source].centroid;
         sum += pair.limit_m2 * gap.dot(open.axis.direction);
@@ -312,7 +214,8 @@ class PoseEnumerator {
     return open;
   }
 
-  [[nodiscard]] std::vector<PoseCandidate> poses_of(const Matrix3d& rotation) const {
+  [[nodiscard]] std::vector<PoseCandidate> poses_of(const Matrix3d& rotation,
+                                                    const LeastPrecedence& of_all) const {
     std::vector<AxisPairs> axes;
     for (const AxisDirection& direction : target_axes_) axes.push_back(pairs_along(direction, rotation));
     std::erase_if(axes, [](const AxisPairs& a) { return a.pairs.empty(); });
@@ -325,50 +228,91 @@ class PoseEnumerator {
       axes.push_back(free_axis(axes, basis, rotation));
       basis.push_back(axes.size() - 1);
     }
-    return poses_of_triples(rotation, axes, basis, open);
+    return poses_of_triples(rotation, axes, basis, open, of_all);
+  }
+
+  /// The three axes whose shifts make a pose, with what each of their shifts brings together.
+  struct Basis {
+    std::array<std::size_t, 3> axis{};
+    std::array<std::vector<ShiftSupport>, 3> supports;
+    Matrix3d solve = Matrix3d::Identity();  ///< shift from the three values along the axes
+    double others_m2 = 0.0;                 ///< the most that all other axes can add
+  };
+
+  [[nodiscard]] Basis prepared(const std::vector<AxisPairs>& axes, const std::vector<std::size_t>& of) const {
+    Basis basis;
+    Matrix3d normals;
+    for (std::size_t k = 0; k < 3; ++k) {
+      basis.axis[k] = of[k];
+      normals.row(static_cast<Eigen::Index>(k)) = axes[of[k]].axis.direction.transpose();
+      for (const AxisShift& shift : axes[of[k]].shifts)
+        basis.supports[k].push_back(axes[of[k]].support_at(shift.value, options_.offset_tolerance_m));
+    }
+    basis.solve = normals.inverse();
+    for (std::size_t k = 0; k < axes.size(); ++k) {
+      const bool in_basis = std::find(of.begin(), of.end(), k) != of.end();
+      if (!in_basis && !axes[k].shifts.empty()) basis.others_m2 += axes[k].shifts.front().limit_m2;
+    }
+    return basis;
+  }
+
+  /// The surface that comes together at a shift; 0 once it is plain that it is no more than `least`.
+  /// `limits`: the most that each axis of the basis can add.
+  [[nodiscard]] double precedence_of(const Vector3d& translation, const std::vector<AxisPairs>& axes,
+                                     const Basis& basis, const std::array<std::size_t, 3>& at,
+                                     const Vector3d& limits, double least) const {
+    double bound = limits.sum() + basis.others_m2;
+    double sum = 0.0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const AxisPairs& along = axes[basis.axis[k]];
+      const Vector2d in_plane(along.axis.frame.u.dot(translation), along.axis.frame.v.dot(translation));
+      const double support = basis.supports[k][at[k]].at(in_plane);
+      sum += support;
+      bound += support - limits[static_cast<Eigen::Index>(k)];
+      if (bound <= least) return 0.0;
+    }
+    for (std::size_t k = 0; k < axes.size(); ++k) {
+      if (axes[k].pairs.empty() || std::find(basis.axis.begin(), basis.axis.end(), k) != basis.axis.end())
+        continue;
+      sum += axes[k].support(translation, options_.offset_tolerance_m);
+    }
+    return sum;
   }
 
   [[nodiscard]] std::vector<PoseCandidate> poses_of_triples(const Matrix3d& rotation,
                                                             const std::vector<AxisPairs>& axes,
-                                                            const std::vector<std::size_t>& basis,
-                                                            int open) const {
-    Matrix3d normals;
-    for (Eigen::Index k = 0; k < 3; ++k) {
-      normals.row(k) = axes[basis[static_cast<std::size_t>(k)]].axis.direction.transpose();
-    }
-    const Matrix3d solve = normals.inverse();
+                                                            const std::vector<std::size_t>& basis_axes,
+                                                            int open, const LeastPrecedence& of_all) const {
+    const Basis basis = prepared(axes, basis_axes);
     // Shifts come heaviest first, so that a loop ends where even the limits cannot reach the best so far.
-    double others = 0.0;
-    for (std::size_t k = 0; k < axes.size(); ++k) {
-      const bool in_basis = std::find(basis.begin(), basis.end(), k) != basis.end();
-      if (!in_basis && !axes[k].shifts.empty()) others += axes[k].shifts.front().limit_m2;
-    }
-    const std::vector<Shift>& first = axes[basis[0]].shifts;
-    const std::vector<Shift>& second = axes[basis[1]].shifts;
-    const std::vector<Shift>& third = axes[basis[2]].shifts;
-    const std::size_t most = 2 * static_cast<std::size_t>(options_.max_poses);
-    double least = 0.0;
+    const double others = basis.others_m2;
+    const std::vector<AxisShift>& first = axes[basis.axis[0]].shifts;
+    const std::vector<AxisShift>& second = axes[basis.axis[1]].shifts;
+    const std::vector<AxisShift>& third = axes[basis.axis[2]].shifts;
+    const std::size_t most =
+        std::min<std::size_t>(kMostOfRotation, 2 * static_cast<std::size_t>(options_.max_poses));
+    double least = of_all.value();
     std::vector<PoseCandidate> poses;
-    for (const Shift& a : first) {
+    for (std::size_t i = 0; i < first.size(); ++i) {
+      const AxisShift& a = first[i];
       if (a.limit_m2 + second.front().limit_m2 + third.front().limit_m2 + others <= least) break;
-      for (const Shift& b : second) {
+      for (std::size_t j = 0; j < second.size(); ++j) {
+        const AxisShift& b = second[j];
         if (a.limit_m2 + b.limit_m2 + third.front().limit_m2 + others <= least) break;
-        for (const Shift& c : third) {
+        for (std::size_t k = 0; k < third.size(); ++k) {
+          const AxisShift& c = third[k];
           if (a.limit_m2 + b.limit_m2 + c.limit_m2 + others <= least) break;
           PoseCandidate pose;
-          pose.target_from_source = {rotation, solve * Vector3d(a.value, b.value, c.value)};
-          for (const AxisPairs& along : axes) {
-            if (along.pairs.empty()) continue;
-            pose.precedence +=
-                along.support(pose.target_from_source.translation, options_.offset_tolerance_m);
-          }
+          pose.target_from_source = {rotation, basis.solve * Vector3d(a.value, b.value, c.value)};
+          pose.precedence = precedence_of(pose.target_from_source.translation, axes, basis, {i, j, k},
+                                          {a.limit_m2, b.limit_m2, c.limit_m2}, least);
           pose.free_translations = open;
           if (pose.precedence > least) poses.push_back(pose);
         }
       }
       if (poses.size() > 2 * most) {
         keep_best(poses, most);
-        least = poses.back().precedence;
+        least = std::max(poses.back().precedence, of_all.value());
       }
     }
     return distinct(poses);
@@ -376,14 +320,22 @@ class PoseEnumerator {
 
   /// The best poses of one rotation, no two nearer than kSameShiftM.
   [[nodiscard]] std::vector<PoseCandidate> distinct(std::vector<PoseCandidate>& poses) const {
-    keep_best(poses, 4000);
+    keep_best(poses, kMostOfRotation);
     std::vector<PoseCandidate> kept;
+    std::unordered_map<std::int64_t, std::vector<Vector3d>> known;  // by cubes as wide as poses are apart
     for (const PoseCandidate& pose : poses) {
-      const bool known = std::any_of(kept.begin(), kept.end(), [&](const PoseCandidate& other) {
-        return (other.target_from_source.translation - pose.target_from_source.translation).norm() <
-               kSameShiftM;
-      });
-      if (!known) kept.push_back(pose);
+      const Vector3d& at = pose.target_from_source.translation;
+      const Vector3d cell = cell_of(at, kSameShiftM);
+      bool near = false;
+      for (int k = 0; k < 27 && !near; ++k) {
+        const auto found = known.find(cell_key(cell + way_to_cell(k)));
+        if (found == known.end()) continue;
+        near = std::any_of(found->second.begin(), found->second.end(),
+                           [&](const Vector3d& other) { return (other - at).norm() < kSameShiftM; });
+      }
+      if (near) continue;
+      kept.push_back(pose);
+      known[cell_key(cell)].push_back(at);
       if (kept.size() >= static_cast<std::size_t>(options_.max_poses)) break;
     }
     return kept;

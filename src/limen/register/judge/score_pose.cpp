@@ -11,6 +11,7 @@
 #include "limen/base/progress.h"
 #include "limen/match/openings/match_openings.h"
 #include "limen/register/prepare/asked_samples.h"
+#include "limen/sight/ask_in_batches.h"
 
 namespace limen {
 namespace {
@@ -30,23 +31,63 @@ struct Answer {
   [[nodiscard]] double value() const { return gain_m2 - kContradictionWeight * contradicted_m2(); }
 };
 
-Answer ask(const SurfaceSample& sample, const ScanView& scan, const ScanView& judge,
-           const Rigid3& judge_from_scan, const ScoreOptions& options) {
-  Answer answer;
-  answer.planar = sample.plane >= 0;
+/// What is asked of one scan, gathered: the samples that a look asks lie far apart in memory.
+struct Gathered {
+  std::vector<SurfaceSample> samples;
+  std::vector<char> oriented;  ///< whether the sign of the sample's normal counts
+  double factor = 1.0;         ///< surface that each stands for, as a multiple of its own
+};
+
+Gathered gathered(const ScanView& scan, const AskedSamples& asked) {
+  Gathered all;
+  all.factor = asked.factor;
+  all.samples.reserve(asked.indices.size());
+  all.oriented.reserve(asked.indices.size());
+  for (const std::uint32_t i : asked.indices) {
+    const SurfaceSample& sample = scan.features->samples[i];
+    all.samples.push_back(sample);
+    all.oriented.push_back(static_cast<char>(
+        sample.plane >= 0 && scan.features->planes[static_cast<std::size_t>(sample.plane)].oriented));
+  }
+  return all;
+}
+
+/// What `all` asks of a scanner about its k-th sample.
+SightQuery question(const Gathered& all, std::size_t k, const Rigid3& judge_from_scan,
+                    const ScoreOptions& options) {
+  const SurfaceSample& sample = all.samples[k];
+  const bool planar = sample.plane >= 0;
   SightQuery query;
   query.free_m = options.free_m;
   query.at = judge_from_scan * sample.mean;
-  query.normal = answer.planar ? Vector3d(judge_from_scan.rotation * sample.normal) : Vector3d::Zero();
-  query.oriented = answer.planar && scan.features->planes[static_cast<std::size_t>(sample.plane)].oriented;
-  query.surface_m = answer.planar ? options.surface_m : 1.5 * options.surface_m;
-  answer.sight = judge.space->look(query);
+  if (planar) query.normal = judge_from_scan.rotation * sample.normal;
+  query.oriented = all.oriented[k] != 0;
+  query.surface_m = planar ? options.surface_m : 1.5 * options.surface_m;
+  return query;
+}
+
+Answer answer_of(const SurfaceSample& sample, const SightQuery& query, const Sight& sight) {
+  Answer answer;
+  answer.planar = sample.plane >= 0;
+  answer.sight = sight;
   answer.area_m2 = static_cast<double>(sample.area_m2) * (answer.planar ? 1.0 : kClutterWeight);
-  if (answer.sight.kind == SightKind::surface) {
-    const double off = answer.sight.distance_m / query.surface_m;
+  if (sight.kind == SightKind::surface) {
+    const double off = sight.distance_m / query.surface_m;
     answer.gain_m2 = answer.area_m2 * (1.0 - off * off);
   }
   return answer;
+}
+
+/// Asks `judge` about all of them, in order.
+template <typename Use>
+void ask_all(const Gathered& all, const ScanView& judge, const Rigid3& judge_from_scan,
+             const ScoreOptions& options, const Use& use) {
+  ask_in_batches(
+      *judge.space, all.samples.size(),
+      [&](std::size_t k) { return question(all, k, judge_from_scan, options); },
+      [&](std::size_t k, const SightQuery& query, const Sight& sight) {
+        use(all.samples[k], answer_of(all.samples[k], query, sight));
+      });
 }
 
 /// One plane counts for no more than this, m^2, however large: that two large planes meet is one coincidence,
@@ -66,33 +107,29 @@ bool asks_wall(const SurfaceSample& sample, const ScanView& scan, const ScanView
   return !scan.mobile || model.reach.contains(model_from_scan * sample.mean);
 }
 
-/// Asks `judge` about every sample of `scan`.
-PoseScore one_way(const ScanView& scan, const ScanView& judge, const Rigid3& judge_from_scan,
-                  const ScoreOptions& options) {
+/// Asks `judge` about what was gathered of `scan`.
+PoseScore one_way(const Gathered& asked, const ScanView& scan, const ScanView& judge,
+                  const Rigid3& judge_from_scan, const ScoreOptions& options) {
   CancelScope::check();
   PoseScore score;
-  if (judge.space == nullptr) return score;
-  const std::vector<SurfaceSample>& samples = scan.features->samples;
-  const AskedSamples asked = asked_samples(scan, judge, judge_from_scan, options.samples);
   const double factor = asked.factor;
   // Samples come plane by plane, clutter last.
   std::int32_t plane = -1;
   double of_plane = 0.0;
   double walls = 0.0;
   double explained = 0.0;
-  for (const std::uint32_t i : asked.indices) {
-    const Answer answer = ask(samples[i], scan, judge, judge_from_scan, options);
+  ask_all(asked, judge, judge_from_scan, options, [&](const SurfaceSample& sample, const Answer& answer) {
     const double gain = factor * answer.gain_m2;
     score.agreeing_m2 += gain;
-    if (samples[i].plane != plane) {
+    if (sample.plane != plane) {
       score.evidence_m2 += saturated(of_plane);
       of_plane = 0.0;
-      plane = samples[i].plane;
+      plane = sample.plane;
     }
     if (answer.planar) {
       score.planar_m2 += gain;
       of_plane += gain;
-      if (judge.model && asks_wall(samples[i], scan, judge, judge_from_scan)) {
+      if (judge.model && asks_wall(sample, scan, judge, judge_from_scan)) {
         walls += answer.area_m2;
         if (answer.sight.kind == SightKind::surface) explained += answer.area_m2;
       }
@@ -101,7 +138,7 @@ PoseScore one_way(const ScanView& scan, const ScanView& judge, const Rigid3& jud
     }
     score.contradicted_m2 += factor * answer.contradicted_m2();
     if (answer.sight.kind != SightKind::unseen) score.tested_m2 += factor * answer.area_m2;
-  }
+  });
   score.evidence_m2 += saturated(of_plane);
   if (judge.model) score.explained_share = walls > 0 ? explained / walls : 1.0;
   return score;
@@ -142,20 +179,23 @@ void add_contrast(const ScanView& scan, const ScanView& judge, const Rigid3& fir
                   const ScoreOptions& options, PoseContrast& contrast) {
   CancelScope::check();
   if (judge.space == nullptr) return;
-  const std::vector<SurfaceSample>& samples = scan.features->samples;
-  const AskedSamples asked = asked_for_both(scan, judge, first, second, options);
+  const Gathered asked = gathered(scan, asked_for_both(scan, judge, first, second, options));
   // Both ways are averaged, as in the score.
   const double share = 0.5 * asked.factor;
+  std::vector<Answer> of_first;
+  of_first.reserve(asked.samples.size());
+  ask_all(asked, judge, first, options,
+          [&](const SurfaceSample&, const Answer& answer) { of_first.push_back(answer); });
   std::vector<PoseContrast> planes(scan.features->planes.size());
-  for (const std::uint32_t i : asked.indices) {
-    const Answer in_first = ask(samples[i], scan, judge, first, options);
-    const Answer in_second = ask(samples[i], scan, judge, second, options);
+  std::size_t k = 0;
+  ask_all(asked, judge, second, options, [&](const SurfaceSample& sample, const Answer& in_second) {
+    const Answer& in_first = of_first[k++];
     const double agreeing = share * (in_first.gain_m2 - in_second.gain_m2);
-    add_lead(agreeing, samples[i].plane >= 0 ? planes[static_cast<std::size_t>(samples[i].plane)] : contrast);
+    add_lead(agreeing, sample.plane >= 0 ? planes[static_cast<std::size_t>(sample.plane)] : contrast);
     // Matter where a ray passed is no coincidence: it counts in full.
     add_lead(share * kContradictionWeight * (in_second.contradicted_m2() - in_first.contradicted_m2()),
              contrast);
-  }
+  });
   for (const PoseContrast& plane : planes) {
     contrast.for_first_m2 += saturated(plane.for_first_m2);
     contrast.for_second_m2 += saturated(plane.for_second_m2);
@@ -164,24 +204,46 @@ void add_contrast(const ScanView& scan, const ScanView& judge, const Rigid3& fir
 
 }  // namespace
 
-PoseScore score_pose(const ScanView& source, const ScanView& target, const Rigid3& target_from_source,
-                     const ScoreOptions& options) {
-  PoseScore forth;
-  PoseScore back;
-  if (options.ask_model || !source.model) forth = one_way(source, target, target_from_source, options);
-  if (options.ask_model || !target.model)
-    back = one_way(target, source, inverse(target_from_source), options);
+struct PoseScorer::Asked {
+  Gathered source;
+  Gathered target;
+};
+
+PoseScorer::PoseScorer(const ScanView& source, const ScanView& target, const ScoreOptions& options)
+    : source_(source), target_(target), options_(options), asked_(std::make_unique<Asked>()) {
+  // Of a model only what comes within the scan's reach is asked, which the pose decides.
+  if (!source.model) asked_->source = gathered(source, asked_samples(source, target, {}, options.samples));
+  if (!target.model) asked_->target = gathered(target, asked_samples(target, source, {}, options.samples));
+}
+
+PoseScorer::~PoseScorer() = default;
+
+PoseScore PoseScorer::operator()(const Rigid3& target_from_source) const {
+  const auto scored = [&](const ScanView& scan, const ScanView& judge, const Gathered& fixed,
+                          const Rigid3& judge_from_scan) {
+    if (judge.space == nullptr || (scan.model && !options_.ask_model)) return PoseScore{};
+    if (!scan.model) return one_way(fixed, scan, judge, judge_from_scan, options_);
+    const AskedSamples asked = asked_samples(scan, judge, judge_from_scan, options_.samples);
+    return one_way(gathered(scan, asked), scan, judge, judge_from_scan, options_);
+  };
+  const PoseScore forth = scored(source_, target_, asked_->source, target_from_source);
+  const PoseScore back = scored(target_, source_, asked_->target, inverse(target_from_source));
   PoseScore both;
   both.agreeing_m2 = 0.5 * (forth.agreeing_m2 + back.agreeing_m2);
   both.planar_m2 = 0.5 * (forth.planar_m2 + back.planar_m2);
   both.contradicted_m2 = 0.5 * (forth.contradicted_m2 + back.contradicted_m2);
   both.tested_m2 = 0.5 * (forth.tested_m2 + back.tested_m2);
   both.explained_share = std::min(forth.explained_share, back.explained_share);
-  for (const double gain : opening_gains(source, target, target_from_source, options))
+  for (const double gain : opening_gains(source_, target_, target_from_source, options_))
     both.opening_m2 += gain;
   both.agreeing_m2 += both.opening_m2;
   both.evidence_m2 = 0.5 * (forth.evidence_m2 + back.evidence_m2) + both.opening_m2;
   return both;
+}
+
+PoseScore score_pose(const ScanView& source, const ScanView& target, const Rigid3& target_from_source,
+                     const ScoreOptions& options) {
+  return PoseScorer(source, target, options)(target_from_source);
 }
 
 PoseContrast contrast_poses(const ScanView& source, const ScanView& target, const Rigid3& first,

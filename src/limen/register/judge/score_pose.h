@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 
 #include "limen/register/prepare/scan_view.h"
 
@@ -52,5 +53,24 @@ PoseContrast contrast_poses(const ScanView& source, const ScanView& target, cons
 
 PoseScore score_pose(const ScanView& source, const ScanView& target, const Rigid3& target_from_source,
                      const ScoreOptions& options);
+
+/// score_pose() for many poses of one pair: what does not depend on the pose is gathered once. Keeps copies
+/// of the views, not of what they point to. Any number of threads may ask it at once.
+class PoseScorer {
+ public:
+  PoseScorer(const ScanView& source, const ScanView& target, const ScoreOptions& options);
+  ~PoseScorer();
+  PoseScorer(const PoseScorer&) = delete;
+  PoseScorer& operator=(const PoseScorer&) = delete;
+
+  [[nodiscard]] PoseScore operator()(const Rigid3& target_from_source) const;
+
+ private:
+  struct Asked;
+  ScanView source_;
+  ScanView target_;
+  ScoreOptions options_;
+  std::unique_ptr<Asked> asked_;
+};
 
 }  // namespace limen

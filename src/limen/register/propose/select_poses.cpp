@@ -29,10 +29,11 @@ std::vector<PoseCandidate> best_of(const std::vector<PoseCandidate>& candidates,
   coarse.samples = look.samples;
   coarse.openings = look.openings;
   coarse.ask_model = look.ask_model;
+  const PoseScorer score_of(source, target, coarse);
   std::vector<double> values(candidates.size());
   parallel_for(candidates.size(), 8, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      const PoseScore score = score_pose(source, target, candidates[i].target_from_source, coarse);
+      const PoseScore score = score_of(candidates[i].target_from_source);
       values[i] = score.evidence_m2 - look.contradiction_weight * score.contradicted_m2;
     }
   });

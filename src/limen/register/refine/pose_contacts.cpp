@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "limen/register/prepare/asked_samples.h"
+#include "limen/sight/ask_in_batches.h"
 
 namespace limen {
 namespace {
@@ -46,24 +47,28 @@ class Collector {
   void collect(const ScanView& scan, const ScanView& judge, const Rigid3& judge_from_scan, double gate,
                bool forth, const Rigid3& target_from_source, std::vector<Contact>& contacts) const {
     if (judge.space == nullptr) return;
-    SightQuery query;
-    query.surface_m = gate;
-    query.free_m = 1e9;
     const double noise = std::max(scan.features->noise_m, 0.0005);
     // The nearer the planes, the better their normals have to agree.
     const double least_cosine = std::cos(std::clamp(kAnglePerGate * gate, kLeastAngleRad, kMostAngleRad));
     const std::vector<SurfaceSample>& samples = scan.features->samples;
     const AskedSamples asked = asked_samples(scan, judge, judge_from_scan, options_.samples);
-    for (const std::uint32_t i : asked.indices) {
-      const SurfaceSample& sample = samples[i];
-      if (sample.plane < 0) break;  // clutter follows the planes
+    const auto clutter = std::find_if(asked.indices.begin(), asked.indices.end(),
+                                      [&](std::uint32_t i) { return samples[i].plane < 0; });
+    const auto question = [&](std::size_t k) {
+      const SurfaceSample& sample = samples[asked.indices[k]];
+      SightQuery query;
+      query.surface_m = gate;
+      query.free_m = 1e9;
       query.at = judge_from_scan * sample.mean;
       query.normal = judge_from_scan.rotation * sample.normal;
       query.oriented = scan.features->planes[static_cast<std::size_t>(sample.plane)].oriented;
-      const Sight sight = judge.space->look(query);
-      if (sight.kind != SightKind::surface || sight.plane < 0) continue;
+      return query;
+    };
+    const auto use = [&](std::size_t k, const SightQuery& query, const Sight& sight) {
+      const SurfaceSample& sample = samples[asked.indices[k]];
+      if (sight.kind != SightKind::surface || sight.plane < 0) return;
       const PlanarPolygon& plane = judge.features->planes[static_cast<std::size_t>(sight.plane)];
-      if (std::abs(query.normal.dot(plane.plane.normal)) < least_cosine) continue;
+      if (std::abs(query.normal.dot(plane.plane.normal)) < least_cosine) return;
       Contact contact;
       contact.sigma_m = sigma_of(sample, noise);
       contact.gate_m = gate;
@@ -82,7 +87,9 @@ class Collector {
         contact.target_plane = sample.plane;
       }
       contacts.push_back(contact);
-    }
+    };
+    // Clutter follows the planes.
+    ask_in_batches(*judge.space, static_cast<std::size_t>(clutter - asked.indices.begin()), question, use);
   }
 
   /// What matched openings say: shifts within the wall, turns by the parallel faces, the gap between them.

@@ -1,0 +1,94 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "limen/geometry/plane.h"
+#include "limen/model/features.h"
+
+namespace limen {
+
+/// MatchAxis-aligned rectangle in the coordinates of an axis.
+struct AxisBox {
+  Vector2d low = Vector2d::Constant(1e300);
+  Vector2d high = Vector2d::Constant(-1e300);
+  double fill = 1.0;  // share of the rectangle that the polygon covers
+
+  [[nodiscard]] double overlap_area(const AxisBox& other, const Vector2d& shift) const {
+    const double w =
+        std::min(high.x() + shift.x(), other.high.x()) - std::max(low.x() + shift.x(), other.low.x());
+    const double h =
+        std::min(high.y() + shift.y(), other.high.y()) - std::max(low.y() + shift.y(), other.low.y());
+    return w > 0 && h > 0 ? w * h * fill * other.fill : 0.0;
+  }
+};
+
+/// One direction of the target with in-plane coordinates, and the planes that have it.
+struct MatchAxis {
+  PlaneFrame frame;  // origin 0; u, v span the planes
+  Vector3d direction = Vector3d::UnitZ();
+};
+
+/// The boxes of a plane's largest parts along an axis, the plane turned by `rotation`.
+std::vector<AxisBox> boxes_of(const PlanarPolygon& plane, const Matrix3d& rotation, const MatchAxis& axis);
+
+/// A plane of the source that may be a plane of the target, and the shift along the axis that makes it so.
+struct PlanePair {
+  double shift = 0.0;
+  std::size_t source = 0;
+  std::size_t target = 0;
+  double limit_m2 = 0.0;  // no more than the smaller of the two can overlap
+};
+
+/// Candidate shift along one axis: pairs within the tolerance of it.
+struct AxisShift {
+  double value = 0.0;
+  double limit_m2 = 0.0;
+};
+
+/// Surface that comes together along one axis at one of its shifts, by where the source lies along the axis's
+/// planes: what a loop over all shifts asks again and again, in one piece of memory.
+class ShiftSupport {
+ public:
+  void begin_pair(double limit_m2, double weight) { pairs_.push_back({limit_m2, weight, boxes_.size()}); }
+  void add(const AxisBox& source, const AxisBox& target) { boxes_.push_back({source, target}); }
+
+  /// m^2, at a shift `in_plane` of the source across the axis.
+  [[nodiscard]] double at(const Vector2d& in_plane) const;
+
+ private:
+  struct PairPlace {
+    double limit_m2;
+    double weight;
+    std::size_t first;  // of its boxes
+  };
+  struct BoxPair {
+    AxisBox source;
+    AxisBox target;
+  };
+  std::vector<PairPlace> pairs_;
+  std::vector<BoxPair> boxes_;
+};
+
+/// All pairs along one axis under one rotation, by shift.
+struct AxisPairs {
+  MatchAxis axis;
+  std::vector<PlanePair> pairs;
+  std::vector<std::vector<AxisBox>> source_boxes;  ///< per source plane; empty where it is not of this axis
+  std::vector<std::vector<AxisBox>> target_boxes;
+  std::vector<AxisShift> shifts;
+  double weight_m2 = 0.0;
+
+  /// Surface that comes together at a shift of the source, m^2.
+  [[nodiscard]] double support(const Vector3d& translation, double tolerance) const;
+  /// The same at a shift along the axis, for any shift across it.
+  [[nodiscard]] ShiftSupport support_at(double value, double tolerance) const;
+};
+
+/// Shifts that bring most surface together, heaviest first, no two nearer than half the tolerance; `pairs` by
+/// shift.
+std::vector<AxisShift> best_shifts(const std::vector<PlanePair>& pairs, double tolerance, int most);
+
+}  // namespace limen
