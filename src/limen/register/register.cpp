@@ -24,6 +24,7 @@ namespace {
 
 constexpr int kSettleSteps = 16;  // either way along a shift that the planes leave open
 constexpr double kSettleStepM = 0.02;
+constexpr std::size_t kSettleLooks = 5;  // of those steps that get a look at everything
 constexpr double kCarefulGateM = 0.04;
 constexpr double kAsBuiltM = 0.05;    // by how much built matter may miss its drawing and count
 constexpr std::size_t kPolished = 4;  // poses refined on every sample
@@ -176,18 +177,40 @@ void refine_and_score(JudgedPose& pose, const ScanView& source, const ScanView& 
                         refine_options(source, target, options), fine_score(source, target, options.method));
 }
 
+/// The steps along `direction` at which the surface agrees best, by a part of the samples: few are worth a
+/// look at all of them.
+std::vector<Rigid3> best_steps(const Rigid3& start, const Vector3d& direction, const PoseScorer& glance) {
+  struct Step {
+    Rigid3 pose;
+    double value;
+  };
+  std::vector<Step> steps;
+  for (int step = -kSettleSteps; step <= kSettleSteps; ++step) {
+    Rigid3 moved = start;
+    moved.translation += kSettleStepM * step * direction;
+    steps.push_back({moved, glance(moved).value()});
+  }
+  std::stable_sort(steps.begin(), steps.end(),
+                   [](const Step& a, const Step& b) { return a.value > b.value; });
+  std::vector<Rigid3> best;
+  for (std::size_t k = 0; k < kSettleLooks; ++k) best.push_back(steps[k].pose);
+  return best;
+}
+
 /// Moves a pose along the shifts its planes leave open to where the rest of the surface agrees best; tells
 /// whether it moved.
 bool settle_open_shifts(JudgedPose& pose, const ScanView& source, const ScanView& target,
                         const RegisterOptions& options) {
-  const PoseScorer score_of(source, target, fine_score(source, target, options.method));
+  const std::vector<UnobservedFreedom> open = unobserved_freedoms(pose.refined, options.verdict.min_held_m2);
+  if (open.empty()) return false;
+  ScoreOptions fine = fine_score(source, target, options.method);
+  const PoseScorer score_of(source, target, fine);
+  fine.samples = kSecondLook;
+  const PoseScorer glance(source, target, fine);
   bool moved_at_all = false;
-  for (const UnobservedFreedom& freedom : unobserved_freedoms(pose.refined, options.verdict.min_held_m2)) {
+  for (const UnobservedFreedom& freedom : open) {
     if (freedom.rotation) return moved_at_all;
-    const Rigid3 start = pose.refined.target_from_source;
-    for (int step = -kSettleSteps; step <= kSettleSteps; ++step) {
-      Rigid3 moved = start;
-      moved.translation += kSettleStepM * step * freedom.direction;
+    for (const Rigid3& moved : best_steps(pose.refined.target_from_source, freedom.direction, glance)) {
       const PoseScore score = score_of(moved);
       if (score.value() <= pose.score.value()) continue;
       pose.score = score;

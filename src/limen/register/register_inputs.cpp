@@ -1,8 +1,11 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
 #include <utility>
+#include <vector>
 
 #include "limen/base/error.h"
+#include "limen/base/parallel.h"
+#include "limen/base/stage_shares.h"
 #include "limen/extract/model/sample_model.h"
 #include "limen/model/plausible_size.h"
 #include "limen/register/prepare/prepare_model.h"
@@ -52,9 +55,8 @@ void require_plausible_size(const RegisterInput& input) {
 }
 
 template <typename Source, typename Target>
-RegistrationResult prepare_and_register_once(const Source& source, const Target& target,
-                                             const RegisterOptions& options, Monitor& monitor) {
-  std::vector<StageTime> stages;
+PreparedPair prepare_in_turn(const Source& source, const Target& target, const RegisterOptions& options,
+                             std::vector<StageTime>& stages, Monitor& monitor) {
   StageClock clock(stages, monitor);
   PreparedPair pair;
   clock.begin("source features");
@@ -63,6 +65,33 @@ RegistrationResult prepare_and_register_once(const Source& source, const Target&
   clock.begin("target features");
   pair.target = prepare(target, prepare_options(options), monitor);
   clock.end();
+  return pair;
+}
+
+/// Each on a thread of its own, the same for either: nothing waits for the parts that only one can do.
+template <typename Source, typename Target>
+PreparedPair prepare_at_once(const Source& source, const Target& target, const RegisterOptions& options,
+                             std::vector<StageTime>& stages, Monitor& monitor) {
+  StageClock clock(stages, monitor);
+  clock.begin("source features, target features");
+  PreparedPair pair;
+  StageShares shares(monitor, 2);
+  parallel_for(2, 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t side = begin; side < end; ++side) {
+      if (side == 0) pair.source = prepare(source, prepare_options(options), shares.worker(side));
+      if (side == 1) pair.target = prepare(target, prepare_options(options), shares.worker(side));
+    }
+  });
+  clock.end();
+  return pair;
+}
+
+template <typename Source, typename Target>
+RegistrationResult prepare_and_register_once(const Source& source, const Target& target,
+                                             const RegisterOptions& options, Monitor& monitor) {
+  std::vector<StageTime> stages;
+  PreparedPair pair = thread_count() == 2 ? prepare_at_once(source, target, options, stages, monitor)
+                                          : prepare_in_turn(source, target, options, stages, monitor);
   RegistrationResult result = register_prepared(pair, options, monitor);
   result.source_place = pair.source.place;
   result.target_place = pair.target.place;

@@ -58,15 +58,30 @@ PanoramaState Panorama::state() const {
 }
 
 std::size_t Panorama::pixel_at(const Vector3d& direction) const {
-  Eigen::Index axis = 0;
-  const double largest = direction.cwiseAbs().maxCoeff(&axis);
-  const double scale = 0.5 * static_cast<double>(edge_) / largest;
+  // The face by the largest coordinate, the place on it by the two that follow in turn.
+  std::size_t axis = 0;
+  double largest = std::abs(direction.x());
+  double across = direction.y();
+  double up = direction.z();
+  if (std::abs(direction.y()) > largest) {
+    axis = 1;
+    largest = std::abs(direction.y());
+    across = direction.z();
+    up = direction.x();
+  }
+  if (std::abs(direction.z()) > largest) {
+    axis = 2;
+    largest = std::abs(direction.z());
+    across = direction.x();
+    up = direction.y();
+  }
+  const double half = 0.5 * static_cast<double>(edge_);
+  const double scale = half / largest;
   const auto cell = [&](double x) {
-    const double c = x * scale + 0.5 * static_cast<double>(edge_);
-    return std::min(edge_ - 1, static_cast<std::size_t>(std::max(0.0, c)));
+    return std::min(edge_ - 1, static_cast<std::size_t>(std::max(0.0, x * scale + half)));
   };
-  const std::size_t face = 2 * static_cast<std::size_t>(axis) + (direction[axis] < 0 ? 1 : 0);
-  return (face * edge_ + cell(direction[(axis + 1) % 3])) * edge_ + cell(direction[(axis + 2) % 3]);
+  const std::size_t face = 2 * axis + (direction[static_cast<Eigen::Index>(axis)] < 0 ? 1 : 0);
+  return (face * edge_ + cell(across)) * edge_ + cell(up);
 }
 
 void Panorama::fill(const Scan& scan, const std::vector<std::int32_t>& labels) {
@@ -106,19 +121,18 @@ void Panorama::erode() {
   });
 }
 
-bool Panorama::on_surface(const SightQuery& query, const Vector3d& ray, const Pixel& pixel,
-                          Sight& sight) const {
-  const double range = ray.norm();
+bool Panorama::on_surface(const SightQuery& query, double range, const Pixel& pixel, Sight& sight) const {
   const auto test = [&](float measured, std::int32_t plane) {
+    const double off = range - static_cast<double>(measured);
     if (plane < 0) {
-      if (!query.normal.isZero() || std::abs(range - measured) > query.surface_m) return false;
-      sight = {SightKind::surface, -1, range - static_cast<double>(measured)};
+      if (!query.normal.isZero() || std::abs(off) > query.surface_m) return false;
+      sight = {SightKind::surface, -1, off};
       return true;
     }
+    // The plane must have been measured near here, not only somewhere else along it.
+    if (std::abs(off) > 0.3 + 0.03 * range) return false;
     const std::optional<double> distance = distance_if_same(query, facets_[static_cast<std::size_t>(plane)]);
     if (!distance) return false;
-    // The plane must have been measured near here, not only somewhere else along it.
-    if (std::abs(range - measured) > 0.3 + 0.03 * range) return false;
     sight = {SightKind::surface, plane, *distance};
     return true;
   };
@@ -141,7 +155,7 @@ Sight Panorama::look(const SightQuery& query) const {
   if (range < 0.05) return {SightKind::free, -1, 0.0};
   const Pixel& pixel = pixels_[pixel_at(ray)];
   if (pixel.clear_m == 0.0F) return sight;
-  if (pixel.near_m > 0.0F && on_surface(query, ray, pixel, sight)) return sight;
+  if (pixel.near_m > 0.0F && on_surface(query, range, pixel, sight)) return sight;
   if (range < pixel.clear_m - query.free_m) return {SightKind::free, -1, 0.0};
   if (pixel.near_m > 0.0F && range > pixel.far_m) return {SightKind::hidden, -1, 0.0};
   return sight;

@@ -46,7 +46,7 @@ class Panorama : public SpaceView {
   [[nodiscard]] std::size_t pixel_at(const Vector3d& direction) const;
   void fill(const Scan& scan, const std::vector<std::int32_t>& labels);
   void erode();
-  [[nodiscard]] bool on_surface(const SightQuery& query, const Vector3d& ray, const Pixel& pixel,
+  [[nodiscard]] bool on_surface(const SightQuery& query, double range, const Pixel& pixel,
                                 Sight& sight) const;
 
   std::vector<Facet> facets_;

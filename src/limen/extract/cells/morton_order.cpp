@@ -37,11 +37,6 @@ std::uint32_t gather(std::uint64_t v) {
   return static_cast<std::uint32_t>(v);
 }
 
-struct Item {
-  std::uint64_t code;
-  std::uint32_t index;
-};
-
 std::uint32_t cell_coordinate(double x, double cell_m) {
   return static_cast<std::uint32_t>(std::clamp(std::floor(x / cell_m), 0.0, 2.0 * kMiddle - 1.0));
 }
@@ -58,7 +53,7 @@ double first_cell(const std::vector<Vector3d>& points, const Extent& extent, int
 }
 
 /// One stable pass of a radix sort on `shift`'s digit; pieces keep their order, whoever works on them.
-void radix_pass(const std::vector<Item>& from, std::vector<Item>& to, std::uint32_t shift) {
+void radix_pass(const std::vector<CurvePlace>& from, std::vector<CurvePlace>& to, std::uint32_t shift) {
   const std::size_t n = from.size();
   const std::size_t grain = (n + kPieces - 1) / kPieces;
   std::vector<std::array<std::uint32_t, kDigits>> starts(kPieces);
@@ -83,9 +78,9 @@ void radix_pass(const std::vector<Item>& from, std::vector<Item>& to, std::uint3
 }
 
 /// Digits above the highest bit in which any two codes differ need no pass.
-std::uint32_t differing_bits(const std::vector<Item>& items) {
+std::uint32_t differing_bits(const std::vector<CurvePlace>& items) {
   std::uint64_t differ = 0;
-  for (const Item& item : items) differ |= item.code ^ items.front().code;
+  for (const CurvePlace& item : items) differ |= item.code ^ items.front().code;
   return static_cast<std::uint32_t>(std::bit_width(differ));
 }
 
@@ -99,13 +94,13 @@ CellIndex morton_decode(std::uint64_t code) {
   return {gather(code), gather(code >> 1U), gather(code >> 2U)};
 }
 
-MortonOrder morton_order(const std::vector<Vector3d>& points, double cell_m) {
-  MortonOrder sorted;
-  sorted.cell_m = cell_m;
+CurveOrder along_curve(const std::vector<Vector3d>& points, double cell_m) {
+  CurveOrder sorted;
   if (points.empty()) return sorted;
   const Extent extent = extent_of(points);
   for (int axis = 0; axis < 3; ++axis) sorted.anchor[axis] = first_cell(points, extent, axis, cell_m);
-  std::vector<Item> items(points.size());
+  std::vector<CurvePlace>& items = sorted.places;
+  items.resize(points.size());
   parallel_for(points.size(), 65536, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const Vector3d x = points[i] - sorted.anchor;
@@ -114,20 +109,32 @@ MortonOrder morton_order(const std::vector<Vector3d>& points, double cell_m) {
                   static_cast<std::uint32_t>(i)};
     }
   });
-  std::vector<Item> other(items.size());
+  // Points that were laid along the curve once stay so, also with larger cubes.
+  if (std::is_sorted(items.begin(), items.end(),
+                     [](const CurvePlace& a, const CurvePlace& b) { return a.code < b.code; }))
+    return sorted;
+  std::vector<CurvePlace> other(items.size());
   const std::uint32_t bits = differing_bits(items);
   for (std::uint32_t shift = 0; shift < bits; shift += kDigitBits) {
     radix_pass(items, other, shift);
     items.swap(other);
   }
+  return sorted;
+}
+
+MortonOrder morton_order(const std::vector<Vector3d>& points, double cell_m) {
+  const CurveOrder along = along_curve(points, cell_m);
+  MortonOrder sorted;
+  sorted.cell_m = cell_m;
+  sorted.anchor = along.anchor;
   sorted.order.resize(points.size());
   sorted.codes.resize(points.size());
   sorted.points.resize(points.size());
   parallel_for(points.size(), 65536, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
-      sorted.order[k] = items[k].index;
-      sorted.codes[k] = items[k].code;
-      sorted.points[k] = points[items[k].index] - sorted.anchor;
+      sorted.order[k] = along.places[k].index;
+      sorted.codes[k] = along.places[k].code;
+      sorted.points[k] = points[along.places[k].index] - sorted.anchor;
     }
   });
   return sorted;

@@ -22,6 +22,19 @@ struct MortonOrder {
 /// Sorts `points` along the curve. Cubes outside 2^21 cells per axis are clamped to the border.
 MortonOrder morton_order(const std::vector<Vector3d>& points, double cell_m);
 
+/// A point's place along the curve.
+struct CurvePlace {
+  std::uint64_t code = 0;   ///< its finest cube
+  std::uint32_t index = 0;  ///< of the point
+};
+
+/// The order alone, for those who need no copy of the points. Points of one cube stay in their order.
+struct CurveOrder {
+  std::vector<CurvePlace> places;
+  Vector3d anchor = Vector3d::Zero();  ///< corner of cell 0, 0, 0
+};
+CurveOrder along_curve(const std::vector<Vector3d>& points, double cell_m);
+
 /// Cell coordinates of a code, and back (each 21 bits).
 std::uint64_t morton_encode(std::uint32_t x, std::uint32_t y, std::uint32_t z);
 struct CellIndex {

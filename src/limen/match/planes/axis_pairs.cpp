@@ -41,12 +41,41 @@ double ShiftSupport::at(const Vector2d& in_plane) const {
   return sum;
 }
 
+void AxisPairs::index(double tolerance) {
+  limits_before.assign(1, 0.0);
+  for (const PlanePair& pair : pairs) limits_before.push_back(limits_before.back() + pair.limit_m2);
+  if (pairs.empty()) return;
+  constexpr double kMostSteps = 100000.0;
+  low = pairs.front().shift;
+  const double length = pairs.back().shift - low;
+  step = std::max(tolerance, length / kMostSteps);
+  begins.assign(static_cast<std::size_t>(length / step) + 2, pairs.size());
+  for (std::size_t i = pairs.size(); i-- > 0;)
+    begins[static_cast<std::size_t>((pairs[i].shift - low) / step)] = i;
+  for (std::size_t k = begins.size() - 1; k-- > 0;) begins[k] = std::min(begins[k], begins[k + 1]);
+}
+
+std::size_t AxisPairs::first_from(double value) const {
+  if (pairs.empty() || value <= low) return 0;
+  const double place = (value - low) / step;
+  if (place >= static_cast<double>(begins.size())) return pairs.size();
+  std::size_t at = begins[static_cast<std::size_t>(place)];
+  while (at < pairs.size() && pairs[at].shift < value) ++at;
+  return at;
+}
+
+double AxisPairs::most_near(double value, double tolerance) const {
+  const std::size_t first = first_from(value - tolerance);
+  std::size_t last = first;
+  while (last < pairs.size() && pairs[last].shift <= value + tolerance) ++last;
+  return limits_before[last] - limits_before[first];
+}
+
 double AxisPairs::support(const Vector3d& translation, double tolerance) const {
   const double value = axis.direction.dot(translation);
   const Vector2d in_plane(axis.frame.u.dot(translation), axis.frame.v.dot(translation));
-  const auto below = [](const PlanePair& pair, double s) { return pair.shift < s; };
   double sum = 0.0;
-  for (auto it = std::lower_bound(pairs.begin(), pairs.end(), value - tolerance, below);
+  for (auto it = pairs.begin() + static_cast<std::ptrdiff_t>(first_from(value - tolerance));
        it != pairs.end() && it->shift <= value + tolerance; ++it) {
     double overlap = 0.0;
     for (const AxisBox& a : source_boxes[it->source]) {
@@ -60,8 +89,7 @@ double AxisPairs::support(const Vector3d& translation, double tolerance) const {
 
 ShiftSupport AxisPairs::support_at(double value, double tolerance) const {
   ShiftSupport support;
-  const auto below = [](const PlanePair& pair, double s) { return pair.shift < s; };
-  for (auto it = std::lower_bound(pairs.begin(), pairs.end(), value - tolerance, below);
+  for (auto it = pairs.begin() + static_cast<std::ptrdiff_t>(first_from(value - tolerance));
        it != pairs.end() && it->shift <= value + tolerance; ++it) {
     const double off = (it->shift - value) / tolerance;
     support.begin_pair(it->limit_m2, 1.0 - off * off);

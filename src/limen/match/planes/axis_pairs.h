@@ -52,11 +52,16 @@ struct AxisShift {
 /// planes: what a loop over all shifts asks again and again, in one piece of memory.
 class ShiftSupport {
  public:
-  void begin_pair(double limit_m2, double weight) { pairs_.push_back({limit_m2, weight, boxes_.size()}); }
+  void begin_pair(double limit_m2, double weight) {
+    pairs_.push_back({limit_m2, weight, boxes_.size()});
+    most_m2_ += limit_m2 * weight;
+  }
   void add(const AxisBox& source, const AxisBox& target) { boxes_.push_back({source, target}); }
 
   /// m^2, at a shift `in_plane` of the source across the axis.
   [[nodiscard]] double at(const Vector2d& in_plane) const;
+  /// No shift gives more, m^2.
+  [[nodiscard]] double most() const { return most_m2_; }
 
  private:
   struct PairPlace {
@@ -70,6 +75,7 @@ class ShiftSupport {
   };
   std::vector<PairPlace> pairs_;
   std::vector<BoxPair> boxes_;
+  double most_m2_ = 0.0;
 };
 
 /// All pairs along one axis under one rotation, by shift.
@@ -80,7 +86,18 @@ struct AxisPairs {
   std::vector<std::vector<AxisBox>> target_boxes;
   std::vector<AxisShift> shifts;
   double weight_m2 = 0.0;
+  // Where the pairs begin, in steps along the axis, and their limits summed up.
+  std::vector<std::size_t> begins;
+  double low = 0.0;
+  double step = 1.0;
+  std::vector<double> limits_before;
 
+  /// Makes begins and limits_before of the sorted pairs; `tolerance` of support() and most_near().
+  void index(double tolerance);
+  /// The first pair at `value` or above.
+  [[nodiscard]] std::size_t first_from(double value) const;
+  /// No shift of that value along the axis gives more support, m^2.
+  [[nodiscard]] double most_near(double value, double tolerance) const;
   /// Surface that comes together at a shift of the source, m^2.
   [[nodiscard]] double support(const Vector3d& translation, double tolerance) const;
   /// The same at a shift along the axis, for any shift across it.

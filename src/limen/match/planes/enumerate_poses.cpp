@@ -171,6 +171,7 @@ class PoseEnumerator {
     }
     std::stable_sort(along.pairs.begin(), along.pairs.end(),
                      [](const PlanePair& a, const PlanePair& b) { return a.shift < b.shift; });
+    along.index(options_.offset_tolerance_m);
     along.shifts = best_shifts(along.pairs, options_.offset_tolerance_m, options_.max_shifts_per_axis);
     for (const AxisShift& shift : along.shifts) along.weight_m2 += shift.limit_m2;
     return along;
@@ -236,7 +237,8 @@ class PoseEnumerator {
     std::array<std::size_t, 3> axis{};
     std::array<std::vector<ShiftSupport>, 3> supports;
     Matrix3d solve = Matrix3d::Identity();  ///< shift from the three values along the axes
-    double others_m2 = 0.0;                 ///< the most that all other axes can add
+    std::vector<std::size_t> others;        ///< all other axes
+    double others_m2 = 0.0;                 ///< the most that they can add
   };
 
   [[nodiscard]] Basis prepared(const std::vector<AxisPairs>& axes, const std::vector<std::size_t>& of) const {
@@ -251,31 +253,35 @@ class PoseEnumerator {
     basis.solve = normals.inverse();
     for (std::size_t k = 0; k < axes.size(); ++k) {
       const bool in_basis = std::find(of.begin(), of.end(), k) != of.end();
-      if (!in_basis && !axes[k].shifts.empty()) basis.others_m2 += axes[k].shifts.front().limit_m2;
+      if (in_basis || axes[k].pairs.empty()) continue;
+      basis.others.push_back(k);
+      basis.others_m2 += axes[k].shifts.front().limit_m2;
     }
     return basis;
   }
 
   /// The surface that comes together at a shift; 0 once it is plain that it is no more than `least`.
-  /// `limits`: the most that each axis of the basis can add.
   [[nodiscard]] double precedence_of(const Vector3d& translation, const std::vector<AxisPairs>& axes,
                                      const Basis& basis, const std::array<std::size_t, 3>& at,
-                                     const Vector3d& limits, double least) const {
-    double bound = limits.sum() + basis.others_m2;
+                                     double least) const {
+    const double tolerance = options_.offset_tolerance_m;
+    double bound = 0.0;
+    for (std::size_t k = 0; k < 3; ++k) bound += basis.supports[k][at[k]].most();
+    if (bound + basis.others_m2 <= least) return 0.0;
+    for (const std::size_t k : basis.others)
+      bound += axes[k].most_near(axes[k].axis.direction.dot(translation), tolerance);
+    if (bound <= least) return 0.0;
     double sum = 0.0;
     for (std::size_t k = 0; k < 3; ++k) {
       const AxisPairs& along = axes[basis.axis[k]];
-      const Vector2d in_plane(along.axis.frame.u.dot(translation), along.axis.frame.v.dot(translation));
-      const double support = basis.supports[k][at[k]].at(in_plane);
-      sum += support;
-      bound += support - limits[static_cast<Eigen::Index>(k)];
+      const ShiftSupport& support = basis.supports[k][at[k]];
+      const double here =
+          support.at({along.axis.frame.u.dot(translation), along.axis.frame.v.dot(translation)});
+      sum += here;
+      bound += here - support.most();
       if (bound <= least) return 0.0;
     }
-    for (std::size_t k = 0; k < axes.size(); ++k) {
-      if (axes[k].pairs.empty() || std::find(basis.axis.begin(), basis.axis.end(), k) != basis.axis.end())
-        continue;
-      sum += axes[k].support(translation, options_.offset_tolerance_m);
-    }
+    for (const std::size_t k : basis.others) sum += axes[k].support(translation, tolerance);
     return sum;
   }
 
@@ -304,8 +310,7 @@ class PoseEnumerator {
           if (a.limit_m2 + b.limit_m2 + c.limit_m2 + others <= least) break;
           PoseCandidate pose;
           pose.target_from_source = {rotation, basis.solve * Vector3d(a.value, b.value, c.value)};
-          pose.precedence = precedence_of(pose.target_from_source.translation, axes, basis, {i, j, k},
-                                          {a.limit_m2, b.limit_m2, c.limit_m2}, least);
+          pose.precedence = precedence_of(pose.target_from_source.translation, axes, basis, {i, j, k}, least);
           pose.free_translations = open;
           if (pose.precedence > least) poses.push_back(pose);
         }

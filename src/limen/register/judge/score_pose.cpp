@@ -52,6 +52,13 @@ Gathered gathered(const ScanView& scan, const AskedSamples& asked) {
   return all;
 }
 
+/// The product, written out: it is made millions of times.
+Vector3d turned(const Matrix3d& rotation, const Vector3d& x) {
+  return {rotation(0, 0) * x[0] + rotation(0, 1) * x[1] + rotation(0, 2) * x[2],
+          rotation(1, 0) * x[0] + rotation(1, 1) * x[1] + rotation(1, 2) * x[2],
+          rotation(2, 0) * x[0] + rotation(2, 1) * x[1] + rotation(2, 2) * x[2]};
+}
+
 /// What `all` asks of a scanner about its k-th sample.
 SightQuery question(const Gathered& all, std::size_t k, const Rigid3& judge_from_scan,
                     const ScoreOptions& options) {
@@ -59,8 +66,8 @@ SightQuery question(const Gathered& all, std::size_t k, const Rigid3& judge_from
   const bool planar = sample.plane >= 0;
   SightQuery query;
   query.free_m = options.free_m;
-  query.at = judge_from_scan * sample.mean;
-  if (planar) query.normal = judge_from_scan.rotation * sample.normal;
+  query.at = turned(judge_from_scan.rotation, sample.mean) + judge_from_scan.translation;
+  if (planar) query.normal = turned(judge_from_scan.rotation, sample.normal);
   query.oriented = all.oriented[k] != 0;
   query.surface_m = planar ? options.surface_m : 1.5 * options.surface_m;
   return query;

@@ -6,6 +6,7 @@
 
 #include "limen/base/stage_part.h"
 #include "limen/match/planes/polygon_distance.h"
+#include "limen/register/prepare/laid_scan.h"
 #include "limen/sight/panorama.h"
 #include "limen/sight/voxel_map.h"
 
@@ -60,7 +61,8 @@ PreparedScan prepare_in_frame(const Scan& scan, const ScanFrame& frame, const Pr
   prepared.upright_from_scan = frame.frame_from_scan;
   prepared.place = in_world(frame.place, scan.local_origin);
   prepared.mobile = scan.mobile();
-  const Scan laid = laid_in(scan, frame);
+  // Segments are found along the borders between neighbouring points: all of them.
+  const Scan laid = laid_in(scan, frame, options.segments ? 0 : options.most_points);
   ExtractOptions extract = options.extract;
   extract.interior.enabled = extract.interior.enabled && (prepared.upright || prepared.mobile);
   {

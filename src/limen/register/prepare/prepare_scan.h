@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <vector>
 
@@ -45,10 +46,12 @@ struct PreparedScan {
 struct PrepareOptions {
   ExtractOptions extract;
   Gravity gravity = Gravity::automatic;
-  bool planes_only = false;    ///< neither openings nor a view of space
-  bool segments = false;       ///< line segments as well
-  OpeningOptions openings;     ///< which openings are looked for
-  SegmentOptions edges;        ///< which segments are
+  bool planes_only = false;  ///< neither openings nor a view of space
+  bool segments = false;     ///< line segments as well
+  OpeningOptions openings;   ///< which openings are looked for
+  SegmentOptions edges;      ///< which segments are
+  /// Of a larger scan about so many points are kept, evenly spread, once it lies in its frame; 0: all.
+  std::size_t most_points = 4000000;
   bool sampled_model = false;  ///< a model's from points spread over it (2023, IV-A), not its exact edges
 };
 

@@ -6,12 +6,13 @@
 #include <array>
 #include <cmath>
 #include <complex>
+#include <iterator>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include "limen/base/angles.h"
 #include "limen/base/parallel.h"
-#include "limen/extract/cells/morton_order.h"
 #include "limen/register/prepare/frame_planes.h"
 #include "limen/register/prepare/scan_up.h"
 #include "limen/register/prepare/scanner_place.h"
@@ -28,8 +29,6 @@ constexpr double kHeadingDeg = 0.5;    // walls off by more count less and less
 constexpr double kCornerShare = 0.01;  // of the points that lie beyond the corner along each axis
 /// Of the corner beyond that: the floor and the walls that make it must not lie on the border of cells.
 constexpr double kMarginM = 0.11;
-constexpr double kOrderM = 0.00125;
-constexpr std::size_t kPiece = 65536;
 
 /// Turns about the vertical only: x along `heading` as it is seen from above.
 Matrix3d frame_of(const Vector3d& up, const Vector3d& heading) {
@@ -121,6 +120,25 @@ Matrix3d turned_about_z(const Matrix3d& frame, double angle) {
   return Eigen::AngleAxisd(-angle, Vector3d::UnitZ()).toRotationMatrix() * frame;
 }
 
+/// The value below which `rank` others lie. Those near the lowest are singled out first, by what a part of
+/// them says, so that few have to be sorted; the answer is that of sorting all.
+double ranked(std::vector<double> values, std::size_t rank) {
+  constexpr std::size_t kPart = 64;
+  const auto at = [](std::vector<double>& of, std::size_t place) {
+    const auto it = of.begin() + static_cast<std::ptrdiff_t>(place);
+    std::nth_element(of.begin(), it, of.end());
+    return *it;
+  };
+  if (values.size() < kPart * kPart * kPart) return at(values, rank);
+  std::vector<double> part;
+  part.reserve(values.size() / kPart + 1);
+  for (std::size_t i = 0; i < values.size(); i += kPart) part.push_back(values[i]);
+  const double bound = at(part, std::min(part.size() - 1, 2 * rank / kPart + 100));
+  std::vector<double> low;
+  std::copy_if(values.begin(), values.end(), std::back_inserter(low), [&](double x) { return x <= bound; });
+  return low.size() > rank ? at(low, rank) : at(values, rank);
+}
+
 /// A corner of the extent, a few stray points left out. Of all points: which were looked at must not show.
 Vector3d corner_of(const Matrix3d& frame, const std::vector<Vector3d>& points) {
   Vector3d corner;
@@ -129,10 +147,8 @@ Vector3d corner_of(const Matrix3d& frame, const std::vector<Vector3d>& points) {
       std::vector<double> along;
       along.reserve(points.size());
       for (const Vector3d& x : points) along.push_back(frame.row(k).dot(x));
-      const auto at =
-          along.begin() + static_cast<std::ptrdiff_t>(kCornerShare * static_cast<double>(along.size()));
-      std::nth_element(along.begin(), at, along.end());
-      corner[k] = *at - kMarginM;
+      const auto rank = static_cast<std::size_t>(kCornerShare * static_cast<double>(along.size()));
+      corner[k] = ranked(std::move(along), rank) - kMarginM;
     }
   });
   return frame.transpose() * corner;
@@ -142,31 +158,6 @@ Vector3d corner_of(const Matrix3d& frame, const std::vector<Vector3d>& points) {
 bool keeps_z(const Scan& scan, const Vector3d& up, Gravity gravity) {
   return scan.mobile() && gravity != Gravity::unknown && up.z() > std::cos(radians(kLevelPathDeg));
 }
-
-/// Points in one cube of the curve's order are sorted by their coordinates.
-void settle_ties(MortonOrder& sorted) {
-  for (std::size_t begin = 0; begin < sorted.codes.size();) {
-    std::size_t end = begin + 1;
-    while (end < sorted.codes.size() && sorted.codes[end] == sorted.codes[begin]) ++end;
-    if (end - begin > 1) {
-      std::vector<std::pair<Vector3d, std::uint32_t>> run;
-      for (std::size_t k = begin; k < end; ++k) run.emplace_back(sorted.points[k], sorted.order[k]);
-      std::stable_sort(run.begin(), run.end(), [](const auto& a, const auto& b) {
-        return std::lexicographical_compare(a.first.data(), a.first.data() + 3, b.first.data(),
-                                            b.first.data() + 3);
-      });
-      for (std::size_t k = begin; k < end; ++k) {
-        sorted.points[k] = run[k - begin].first;
-        sorted.order[k] = run[k - begin].second;
-      }
-    }
-    begin = end;
-  }
-}
-
-}  // namespace
-
-namespace {
 
 /// Enough to know about how the scan lies.
 Scan every_third(const Scan& sample) {
@@ -237,38 +228,6 @@ ScanFrame find_scan_frame(const Scan& scan, Gravity gravity, Monitor& monitor) {
   found.frame_from_scan = frame_by(planes, about.row(2).transpose(), sample, gravity);
   found.corner = corner_of(found.frame_from_scan, scan.points);
   return found;
-}
-
-Scan laid_in(const Scan& scan, const ScanFrame& frame) {
-  const auto placed = [&](const Vector3d& x) { return Vector3d(frame.frame_from_scan * (x - frame.corner)); };
-  std::vector<Vector3d> points(scan.size());
-  parallel_for(scan.size(), kPiece, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) points[i] = placed(scan.points[i]);
-  });
-  MortonOrder sorted = morton_order(points, kOrderM);
-  settle_ties(sorted);
-  Scan laid;
-  laid.name = scan.name;
-  laid.local_origin = scan.local_origin + frame.corner;
-  laid.level = frame.upright;
-  laid.centre_source = frame.place.source;
-  laid.points.resize(scan.size());
-  parallel_for(scan.size(), kPiece, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) laid.points[k] = points[sorted.order[k]];
-  });
-  if (scan.mobile()) {
-    laid.centres.resize(scan.size());
-    for (std::size_t k = 0; k < scan.size(); ++k) laid.centres[k] = placed(scan.centres[sorted.order[k]]);
-  } else if (frame.place.source != PlaceSource::unknown) {
-    laid.centres = {placed(frame.place.centre)};
-  }
-  if (scan.topology.known()) {
-    for (const std::uint32_t i : sorted.order) {
-      laid.topology.line.push_back(scan.topology.line[i]);
-      laid.topology.index.push_back(scan.topology.index[i]);
-    }
-  }
-  return laid;
 }
 
 }  // namespace limen

@@ -24,9 +24,4 @@ struct ScanFrame {
 /// of the file is up more often than not. Costs a look at part of the points.
 ScanFrame find_scan_frame(const Scan& scan, Gravity gravity, Monitor& monitor = silent_monitor());
 
-/// The scan in its frame, about local origin + corner, seen from the place found; its points sorted along a
-/// curve through space, so that nothing that follows depends on their order in the file. Times, intensities
-/// and colours are left out.
-Scan laid_in(const Scan& scan, const ScanFrame& frame);
-
 }  // namespace limen
