@@ -13,6 +13,7 @@
 #include <pthread.h>
 
 #include "limen/base/progress.h"
+#include "limen/base/run_both.h"
 
 namespace limen {
 namespace {
@@ -69,8 +70,10 @@ class Pool {
   Pool(const Pool&) = delete;
   Pool& operator=(const Pool&) = delete;
 
-  void run(Job& job, int helpers) {
-    const std::scoped_lock only_one(caller_mutex_);
+  /// False, and nothing done, where the threads work for another caller.
+  bool run(Job& job, int helpers) {
+    const std::unique_lock only_one(caller_mutex_, std::try_to_lock);
+    if (!only_one) return false;
     {
       const std::scoped_lock lock(mutex_);
       while (static_cast<int>(threads_.size()) < helpers) {
@@ -87,6 +90,7 @@ class Pool {
     std::unique_lock lock(mutex_);
     done_.wait(lock, [this] { return busy_ == 0; });
     job_ = nullptr;
+    return true;
   }
 
   ~Pool() {
@@ -157,19 +161,46 @@ void parallel_for(std::size_t size, std::size_t grain,
   const std::size_t pieces = (size + grain - 1) / grain;
   const int helpers =
       static_cast<int>(std::min<std::size_t>(pieces, static_cast<std::size_t>(thread_count()))) - 1;
-  if (inside_parallel || helpers <= 0) {
-    for (std::size_t piece = 0; piece < pieces; ++piece) {
-      CancelScope::check();
-      body(piece * grain, std::min(size, (piece + 1) * grain));
+  if (!inside_parallel && helpers > 0) {
+    Job job;
+    job.size = size;
+    job.grain = grain;
+    job.body = &body;
+    if (PoolOfProcess::get().run(job, helpers)) {
+      if (job.failure) std::rethrow_exception(job.failure);
+      return;
     }
+  }
+  for (std::size_t piece = 0; piece < pieces; ++piece) {
+    CancelScope::check();
+    body(piece * grain, std::min(size, (piece + 1) * grain));
+  }
+}
+
+void run_both(const std::function<void()>& first, const std::function<void()>& second) {
+  if (thread_count() < 2 || inside_parallel) {
+    first();
+    second();
     return;
   }
-  Job job;
-  job.size = size;
-  job.grain = grain;
-  job.body = &body;
-  PoolOfProcess::get().run(job, helpers);
-  if (job.failure) std::rethrow_exception(job.failure);
+  const auto caught = [](const std::function<void()>& work) {
+    try {
+      work();
+    } catch (...) {
+      return std::current_exception();
+    }
+    return std::exception_ptr{};
+  };
+  const Monitor* const monitor = CancelScope::current();
+  std::exception_ptr of_second;
+  std::jthread other([&] {
+    const CancelScope scope(monitor);
+    of_second = caught(second);
+  });
+  const std::exception_ptr of_first = caught(first);
+  other.join();
+  if (of_first) std::rethrow_exception(of_first);
+  if (of_second) std::rethrow_exception(of_second);
 }
 
 }  // namespace limen

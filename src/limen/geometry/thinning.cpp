@@ -20,14 +20,32 @@ bool usable(const Vector2d& p) {
   return std::abs(p.x()) <= kMaxCoordinate_m && std::abs(p.y()) <= kMaxCoordinate_m;
 }
 
-/// Numbers the occupied cells of a square grid in the order of their first points.
+/// Numbers the occupied cells of a square grid in the order of their first points: in a plain array where the
+/// grid is not much larger than the number of points, else in a table of those that are occupied.
 class CellTable {
  public:
   static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
-  explicit CellTable(std::size_t points) { resize(std::max<std::size_t>(64, points / 4)); }
+  CellTable(std::size_t points, std::int64_t columns, std::int64_t rows) {
+    const double cells = static_cast<double>(columns) * static_cast<double>(rows);
+    if (cells <= kCellsPerPoint * static_cast<double>(points)) {
+      columns_ = columns;
+      rows_ = rows;
+      plain_.assign(static_cast<std::size_t>(columns * rows), kNone);
+    } else {
+      resize(std::max<std::size_t>(64, points / 4));
+    }
+  }
 
   std::uint32_t insert(std::int64_t x, std::int64_t y) {
+    if (!plain_.empty()) {
+      std::uint32_t& id = plain_[static_cast<std::size_t>(y * columns_ + x)];
+      if (id == kNone) {
+        id = static_cast<std::uint32_t>(cells_.size());
+        cells_.push_back({x, y});
+      }
+      return id;
+    }
     if (2 * cells_.size() >= slots_.size()) resize(2 * slots_.size());
     const std::size_t slot = slot_of(x, y);
     if (slots_[slot] == kNone) {
@@ -36,7 +54,11 @@ class CellTable {
     }
     return slots_[slot];
   }
-  [[nodiscard]] std::uint32_t find(std::int64_t x, std::int64_t y) const { return slots_[slot_of(x, y)]; }
+  [[nodiscard]] std::uint32_t find(std::int64_t x, std::int64_t y) const {
+    if (plain_.empty()) return slots_[slot_of(x, y)];
+    if (x < 0 || y < 0 || x >= columns_ || y >= rows_) return kNone;
+    return plain_[static_cast<std::size_t>(y * columns_ + x)];
+  }
   [[nodiscard]] std::size_t size() const { return cells_.size(); }
   [[nodiscard]] const std::array<std::int64_t, 2>& cell(std::size_t id) const { return cells_[id]; }
 
@@ -96,6 +118,11 @@ class CellTable {
     }
   }
 
+  static constexpr double kCellsPerPoint = 4.0;
+
+  std::int64_t columns_ = 0;
+  std::int64_t rows_ = 0;
+  std::vector<std::uint32_t> plain_;  ///< per cell of the grid; empty: `slots_` is used
   std::vector<std::uint32_t> slots_;
   std::vector<std::array<std::int64_t, 2>> cells_;
 };
@@ -103,8 +130,12 @@ class CellTable {
 /// What stays of a cell: its point nearest to the middle, or, at the edge, its extremes in eight directions.
 class Representatives {
  public:
-  Representatives(const std::vector<Vector2d>& points, double cell_m, Vector2d origin)
-      : points_(points), cell_m_(cell_m), origin_(std::move(origin)), table_(points.size()) {}
+  Representatives(const std::vector<Vector2d>& points, double cell_m, const Vector2d& low,
+                  const Vector2d& high)
+      : points_(points),
+        cell_m_(cell_m),
+        origin_(low),
+        table_(points.size(), cells_along(low.x(), high.x()), cells_along(low.y(), high.y())) {}
 
   std::vector<std::uint32_t> indices() {
     assign_cells();
@@ -130,6 +161,10 @@ class Representatives {
 
  private:
   enum class Role : char { dropped, inside, edge };
+
+  [[nodiscard]] std::int64_t cells_along(double low, double high) const {
+    return static_cast<std::int64_t>(std::floor((high - low) / cell_m_)) + 1;
+  }
 
   void assign_cells() {
     cell_of_point_.assign(points_.size(), CellTable::kNone);
@@ -201,7 +236,7 @@ std::vector<std::uint32_t> thinned(const std::vector<Vector2d>& points, double c
   if (!any) return {};
   // Cell numbers must fit their integers, whatever the extent.
   const double cell = std::max(cell_m, (high - low).maxCoeff() / 0x1.0p40);
-  return Representatives(points, cell, low).indices();
+  return Representatives(points, cell, low, high).indices();
 }
 
 }  // namespace limen

@@ -5,6 +5,7 @@
 
 #include "limen/base/error.h"
 #include "limen/base/parallel.h"
+#include "limen/base/run_both.h"
 #include "limen/base/stage_shares.h"
 #include "limen/extract/model/sample_model.h"
 #include "limen/model/plausible_size.h"
@@ -68,7 +69,7 @@ PreparedPair prepare_in_turn(const Source& source, const Target& target, const R
   return pair;
 }
 
-/// Each on a thread of its own, the same for either: nothing waits for the parts that only one can do.
+/// Each on a thread of its own: neither waits for the parts of the other that only one thread can do.
 template <typename Source, typename Target>
 PreparedPair prepare_at_once(const Source& source, const Target& target, const RegisterOptions& options,
                              std::vector<StageTime>& stages, Monitor& monitor) {
@@ -76,12 +77,8 @@ PreparedPair prepare_at_once(const Source& source, const Target& target, const R
   clock.begin("source features, target features");
   PreparedPair pair;
   StageShares shares(monitor, 2);
-  parallel_for(2, 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t side = begin; side < end; ++side) {
-      if (side == 0) pair.source = prepare(source, prepare_options(options), shares.worker(side));
-      if (side == 1) pair.target = prepare(target, prepare_options(options), shares.worker(side));
-    }
-  });
+  run_both([&] { pair.source = prepare(source, prepare_options(options), shares.worker(0)); },
+           [&] { pair.target = prepare(target, prepare_options(options), shares.worker(1)); });
   clock.end();
   return pair;
 }
@@ -90,8 +87,8 @@ template <typename Source, typename Target>
 RegistrationResult prepare_and_register_once(const Source& source, const Target& target,
                                              const RegisterOptions& options, Monitor& monitor) {
   std::vector<StageTime> stages;
-  PreparedPair pair = thread_count() == 2 ? prepare_at_once(source, target, options, stages, monitor)
-                                          : prepare_in_turn(source, target, options, stages, monitor);
+  PreparedPair pair = thread_count() > 1 ? prepare_at_once(source, target, options, stages, monitor)
+                                         : prepare_in_turn(source, target, options, stages, monitor);
   RegistrationResult result = register_prepared(pair, options, monitor);
   result.source_place = pair.source.place;
   result.target_place = pair.target.place;

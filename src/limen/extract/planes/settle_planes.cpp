@@ -19,21 +19,29 @@ struct Support {
   std::uint32_t count = 0;
 };
 
-/// Planes by cube, those with most points first; cubes are runs of the curve.
+/// Planes by cube, in the order of their first points; cubes are runs of the curve.
 class SupportGrid {
  public:
   SupportGrid(const SettleGrid& grid, const std::vector<std::int32_t>& labels, std::uint32_t min_support)
-      : grid_(grid), planes_(grid.runs().size()) {
-    parallel_for(planes_.size(), 256, [&](std::size_t begin, std::size_t end) {
+      : grid_(grid), begins_(grid.runs().size() + 1, 0) {
+    constexpr std::size_t kCubes = 1024;
+    std::vector<std::vector<std::int32_t>> pieces((runs().size() + kCubes - 1) / kCubes);
+    parallel_for(runs().size(), kCubes, [&](std::size_t begin, std::size_t end) {
+      std::vector<std::int32_t>& piece = pieces[begin / kCubes];
       std::vector<Support> support;
       for (std::size_t i = begin; i < end; ++i) {
         support.clear();
         for (std::uint32_t k = runs().begin(i); k < runs().end(i); ++k) count(labels[k], support);
+        const std::size_t before = piece.size();
         for (const Support& s : support) {
-          if (s.count >= min_support) planes_[i].push_back(s.plane);
+          if (s.count >= min_support) piece.push_back(s.plane);
         }
+        begins_[i + 1] = piece.size() - before;
       }
     });
+    std::partial_sum(begins_.begin(), begins_.end(), begins_.begin());
+    planes_.reserve(begins_.back());
+    for (const auto& piece : pieces) planes_.insert(planes_.end(), piece.begin(), piece.end());
   }
 
   [[nodiscard]] const CellRuns& runs() const { return grid_.runs(); }
@@ -42,8 +50,8 @@ class SupportGrid {
   void near(std::size_t cube, std::vector<std::int32_t>& planes) const {
     planes.clear();
     const auto add = [&](std::size_t i) {
-      for (const std::int32_t plane : planes_[i]) {
-        if (std::find(planes.begin(), planes.end(), plane) == planes.end()) planes.push_back(plane);
+      for (std::size_t k = begins_[i]; k < begins_[i + 1]; ++k) {
+        if (std::find(planes.begin(), planes.end(), planes_[k]) == planes.end()) planes.push_back(planes_[k]);
       }
     };
     add(cube);
@@ -62,7 +70,8 @@ class SupportGrid {
   }
 
   const SettleGrid& grid_;
-  std::vector<std::vector<std::int32_t>> planes_;
+  std::vector<std::size_t> begins_;  ///< of each cube's planes
+  std::vector<std::int32_t> planes_;
 };
 
 /// Which planes a point may belong to.

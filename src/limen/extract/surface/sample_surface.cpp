@@ -5,6 +5,10 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstdint>
+#include <unordered_map>
+#include <utility>
+#include <vector>
 
 #include "limen/base/error.h"
 #include "limen/base/parallel.h"
@@ -28,39 +32,45 @@ std::int64_t key_of(double u, double v, double w) {
   return (part(w) << 42) | (part(v) << 21) | part(u);
 }
 
-/// Means per key; `keyed` is sorted, so the order is that of the keys.
-std::vector<Tile> tiles_of(const Scan& scan, std::vector<std::pair<std::int64_t, std::uint32_t>>& keyed,
-                           const std::vector<std::uint8_t>& sub) {
-  std::vector<std::uint32_t> at(keyed.size());
-  for (std::uint32_t k = 0; k < at.size(); ++k) at[k] = k;
-  std::sort(at.begin(), at.end(), [&](std::uint32_t a, std::uint32_t b) { return keyed[a] < keyed[b]; });
-  std::vector<Tile> tiles;
-  for (const std::uint32_t k : at) {
-    if (tiles.empty() || tiles.back().key != keyed[k].first) tiles.push_back({keyed[k].first});
-    Tile& tile = tiles.back();
-    tile.count += 1;
-    tile.sum += scan.points[keyed[k].second];
-    if (!sub.empty()) tile.occupied |= 1U << sub[k];
+/// Sums points by key, each tile's in the order they come.
+class Tiles {
+ public:
+  Tile& at(std::int64_t key) {
+    // Neighbours along the curve mostly fall into the same tile.
+    if (!tiles_.empty() && tiles_[last_].key == key) return tiles_[last_];
+    const auto [found, fresh] = place_.try_emplace(key, static_cast<std::uint32_t>(tiles_.size()));
+    if (fresh) tiles_.push_back({key});
+    last_ = found->second;
+    return tiles_[last_];
   }
-  return tiles;
-}
+
+  /// By key.
+  [[nodiscard]] std::vector<Tile> sorted() && {
+    std::sort(tiles_.begin(), tiles_.end(), [](const Tile& a, const Tile& b) { return a.key < b.key; });
+    return std::move(tiles_);
+  }
+
+ private:
+  std::vector<Tile> tiles_;
+  std::unordered_map<std::int64_t, std::uint32_t> place_;
+  std::size_t last_ = 0;
+};
 
 std::vector<SurfaceSample> plane_samples(const Scan& scan, const PlanarPolygon& plane, std::int32_t index,
                                          const std::vector<std::uint32_t>& points, double tile_m) {
-  std::vector<std::pair<std::int64_t, std::uint32_t>> keyed;
-  std::vector<std::uint8_t> sub;
-  keyed.reserve(points.size());
-  sub.reserve(points.size());
+  Tiles tiles;
   for (const std::uint32_t i : points) {
     const Vector2d p = plane.frame.to_plane(scan.points[i]) / tile_m;
-    keyed.emplace_back(key_of(p.x(), p.y(), 0), i);
     const auto fine = [](double x) {
       return std::min(kSubtiles - 1, static_cast<int>((x - std::floor(x)) * kSubtiles));
     };
-    sub.push_back(static_cast<std::uint8_t>(fine(p.y()) * kSubtiles + fine(p.x())));
+    Tile& tile = tiles.at(key_of(p.x(), p.y(), 0));
+    tile.count += 1;
+    tile.sum += scan.points[i];
+    tile.occupied |= 1U << static_cast<std::uint32_t>(fine(p.y()) * kSubtiles + fine(p.x()));
   }
   std::vector<SurfaceSample> samples;
-  for (const Tile& tile : tiles_of(scan, keyed, sub)) {
+  for (const Tile& tile : std::move(tiles).sorted()) {
     const double share = std::popcount(tile.occupied) / static_cast<double>(kSubtiles * kSubtiles);
     samples.push_back({tile.sum / tile.count, plane.plane.normal, index,
                        static_cast<float>(share * tile_m * tile_m), static_cast<float>(tile.count)});
@@ -70,14 +80,16 @@ std::vector<SurfaceSample> plane_samples(const Scan& scan, const PlanarPolygon& 
 
 std::vector<SurfaceSample> clutter_samples(const Scan& scan, const std::vector<std::int32_t>& labels,
                                            double cube_m) {
-  std::vector<std::pair<std::int64_t, std::uint32_t>> keyed;
+  Tiles tiles;
   for (std::uint32_t i = 0; i < scan.size(); ++i) {
     if (labels[i] >= 0) continue;
     const Vector3d p = scan.points[i] / cube_m;
-    keyed.emplace_back(key_of(p.x(), p.y(), p.z()), i);
+    Tile& tile = tiles.at(key_of(p.x(), p.y(), p.z()));
+    tile.count += 1;
+    tile.sum += scan.points[i];
   }
   std::vector<SurfaceSample> samples;
-  for (const Tile& tile : tiles_of(scan, keyed, {})) {
+  for (const Tile& tile : std::move(tiles).sorted()) {
     if (tile.count < 3) continue;  // lone points: mixed pixels, dust
     samples.push_back({tile.sum / tile.count, Vector3d::Zero(), -1, static_cast<float>(cube_m * cube_m),
                        static_cast<float>(tile.count)});

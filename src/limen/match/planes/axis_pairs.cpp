@@ -42,8 +42,8 @@ double ShiftSupport::at(const Vector2d& in_plane) const {
 }
 
 void AxisPairs::index(double tolerance) {
-  limits_before.assign(1, 0.0);
-  for (const PlanePair& pair : pairs) limits_before.push_back(limits_before.back() + pair.limit_m2);
+  begins.clear();
+  most.clear();
   if (pairs.empty()) return;
   constexpr double kMostSteps = 100000.0;
   low = pairs.front().shift;
@@ -53,6 +53,23 @@ void AxisPairs::index(double tolerance) {
   for (std::size_t i = pairs.size(); i-- > 0;)
     begins[static_cast<std::size_t>((pairs[i].shift - low) / step)] = i;
   for (std::size_t k = begins.size() - 1; k-- > 0;) begins[k] = std::min(begins[k], begins[k + 1]);
+
+  // A little wider than the tolerance, so that rounding does no harm.
+  const double reach = 1.001 * tolerance;
+  most_step = std::max(0.25 * tolerance, length / kMostSteps);
+  first_most = low - reach;
+  most.assign(static_cast<std::size_t>((length + 2.0 * reach) / most_step) + 1, 0.0);
+  std::size_t first = 0;
+  std::size_t last = 0;
+  double within = 0.0;
+  for (std::size_t k = 0; k < most.size(); ++k) {
+    const double begin = first_most + static_cast<double>(k) * most_step;
+    while (last < pairs.size() && pairs[last].shift <= begin + most_step + reach)
+      within += pairs[last++].limit_m2;
+    while (first < last && pairs[first].shift < begin - reach) within -= pairs[first++].limit_m2;
+    if (first == last) within = 0.0;
+    most[k] = 1.000001 * within + 1e-9;
+  }
 }
 
 std::size_t AxisPairs::first_from(double value) const {
@@ -62,13 +79,6 @@ std::size_t AxisPairs::first_from(double value) const {
   std::size_t at = begins[static_cast<std::size_t>(place)];
   while (at < pairs.size() && pairs[at].shift < value) ++at;
   return at;
-}
-
-double AxisPairs::most_near(double value, double tolerance) const {
-  const std::size_t first = first_from(value - tolerance);
-  std::size_t last = first;
-  while (last < pairs.size() && pairs[last].shift <= value + tolerance) ++last;
-  return limits_before[last] - limits_before[first];
 }
 
 double AxisPairs::support(const Vector3d& translation, double tolerance) const {

@@ -86,18 +86,25 @@ struct AxisPairs {
   std::vector<std::vector<AxisBox>> target_boxes;
   std::vector<AxisShift> shifts;
   double weight_m2 = 0.0;
-  // Where the pairs begin, in steps along the axis, and their limits summed up.
+  // Where the pairs begin, in steps along the axis.
   std::vector<std::size_t> begins;
   double low = 0.0;
   double step = 1.0;
-  std::vector<double> limits_before;
+  // The most that any value within a finer step can bring together; the first step begins at `first_most`.
+  std::vector<double> most;
+  double first_most = 0.0;
+  double most_step = 1.0;
 
-  /// Makes begins and limits_before of the sorted pairs; `tolerance` of support() and most_near().
+  /// Makes these of the sorted pairs; `tolerance`: that of support() and most_near().
   void index(double tolerance);
   /// The first pair at `value` or above.
   [[nodiscard]] std::size_t first_from(double value) const;
   /// No shift of that value along the axis gives more support, m^2.
-  [[nodiscard]] double most_near(double value, double tolerance) const;
+  [[nodiscard]] double most_near(double value) const {
+    const double place = (value - first_most) / most_step;
+    return place >= 0.0 && place < static_cast<double>(most.size()) ? most[static_cast<std::size_t>(place)]
+                                                                    : 0.0;
+  }
   /// Surface that comes together at a shift of the source, m^2.
   [[nodiscard]] double support(const Vector3d& translation, double tolerance) const;
   /// The same at a shift along the axis, for any shift across it.

@@ -269,7 +269,7 @@ class PoseEnumerator {
     for (std::size_t k = 0; k < 3; ++k) bound += basis.supports[k][at[k]].most();
     if (bound + basis.others_m2 <= least) return 0.0;
     for (const std::size_t k : basis.others)
-      bound += axes[k].most_near(axes[k].axis.direction.dot(translation), tolerance);
+      bound += axes[k].most_near(axes[k].axis.direction.dot(translation));
     if (bound <= least) return 0.0;
     double sum = 0.0;
     for (std::size_t k = 0; k < 3; ++k) {

@@ -1,0 +1,75 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/match/planes/axis_pairs.h"
+
+#include <algorithm>
+
+#include <gtest/gtest.h>
+
+#include "limen/base/random.h"
+
+namespace limen {
+namespace {
+
+constexpr double kTolerance = 0.06;
+
+/// Planes of both scans across one axis, at random.
+AxisPairs random_pairs(std::size_t count) {
+  RandomStream random(7, 1);
+  AxisPairs along;
+  along.axis.frame = make_frame({Vector3d::UnitZ(), 0.0}, Vector3d::Zero());
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto box = [&] {
+      AxisBox made;
+      made.low = Vector2d(random.uniform(-5.0, 4.0), random.uniform(-5.0, 4.0));
+      made.high = made.low + Vector2d(random.uniform(0.2, 3.0), random.uniform(0.2, 3.0));
+      return made;
+    };
+    along.source_boxes.push_back({box(), box()});
+    along.target_boxes.push_back({box()});
+    along.pairs.push_back({random.uniform(-3.0, 3.0), i, i, random.uniform(0.1, 4.0)});
+  }
+  std::sort(along.pairs.begin(), along.pairs.end(),
+            [](const PlanePair& a, const PlanePair& b) { return a.shift < b.shift; });
+  along.index(kTolerance);
+  return along;
+}
+
+TEST(AxisPairs, SupportAtAShiftIsTheSupportThere) {
+  const AxisPairs along = random_pairs(200);
+  RandomStream random(8, 1);
+  double most = 0.0;
+  for (int k = 0; k < 500; ++k) {
+    const Vector3d shift(random.uniform(-3.0, 3.0), random.uniform(-3.0, 3.0), random.uniform(-3.2, 3.2));
+    const double value = along.axis.direction.dot(shift);
+    const ShiftSupport there = along.support_at(value, kTolerance);
+    const Vector2d in_plane(along.axis.frame.u.dot(shift), along.axis.frame.v.dot(shift));
+    EXPECT_EQ(there.at(in_plane), along.support(shift, kTolerance));
+    EXPECT_GE(there.most(), there.at(in_plane));
+    most = std::max(most, there.at(in_plane));
+  }
+  EXPECT_GT(most, 0.0);
+}
+
+TEST(AxisPairs, NothingGivesMoreThanTheBound) {
+  const AxisPairs along = random_pairs(200);
+  RandomStream random(9, 1);
+  for (int k = 0; k < 2000; ++k) {
+    const double value = random.uniform(-3.5, 3.5);
+    EXPECT_GE(along.most_near(value), along.support_at(value, kTolerance).most());
+  }
+  EXPECT_EQ(along.most_near(-9.0), 0.0);
+  EXPECT_EQ(along.most_near(9.0), 0.0);
+}
+
+TEST(AxisPairs, PairsAreFoundFromAnyValue) {
+  const AxisPairs along = random_pairs(50);
+  for (const double value : {-9.0, -3.0, -0.5, 0.0, 0.01, 1.7, 2.99, 9.0}) {
+    const auto wanted = std::count_if(along.pairs.begin(), along.pairs.end(),
+                                      [&](const PlanePair& pair) { return pair.shift < value; });
+    EXPECT_EQ(along.first_from(value), static_cast<std::size_t>(wanted));
+  }
+}
+
+}  // namespace
+}  // namespace limen
