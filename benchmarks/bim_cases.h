@@ -18,6 +18,7 @@
 
 #include "limen/base/angles.h"
 #include "limen/base/error.h"
+#include "limen/base/random.h"
 #include "limen/bim/read_bim.h"
 #include "limen/model/result.h"
 #include "limen/register/register.h"
@@ -26,6 +27,8 @@
 
 namespace limen::bim_cases {
 
+inline constexpr double kMostHidden = 0.7;  // of the walls' length, in furnished rooms
+
 /// One case to be made.
 struct CasePlan {
   std::size_t model = 0;  ///< index into the models on the command line
@@ -33,11 +36,15 @@ struct CasePlan {
   bool as_built = false;
   bool any_rotation = false;
   std::uint64_t seed = 1;
+  bool furnished = false;  ///< as built, and a share of the walls hidden by furniture, 0 to 70 %, by the seed
 
   /// "3 stations, as built, any rotation, seed 2".
   [[nodiscard]] std::string label() const {
     return fmt::format("{} station{}, {}, {}, seed {}", stations, stations == 1 ? "" : "s",
-                       as_built ? "as built" : "as planned", any_rotation ? "any rotation" : "level", seed);
+                       furnished  ? "furnished"
+                       : as_built ? "as built"
+                                  : "as planned",
+                       any_rotation ? "any rotation" : "level", seed);
   }
 };
 
@@ -46,6 +53,7 @@ struct Selection {
   std::size_t at_least = 60;  ///< cases in all: as many seeds as that takes
   std::uint64_t first_seed = 1;
   std::size_t points = 0;  ///< of each station; 0: the simulator's own
+  bool furnished = false;  ///< instead of the usual cases furnished ones, as built
 };
 
 /// All combinations of 1 or 3 stations, as planned or as built, level or any rotation, for every model, with
@@ -60,10 +68,11 @@ inline std::vector<CasePlan> plan_cases(std::size_t models, const Selection& sel
       for (std::size_t k = 0; k < kCombinations; ++k)
         plans.push_back({.model = model,
                          .stations = (k & 1U) != 0 ? std::size_t{3} : std::size_t{1},
-                         .as_built = (k & 2U) != 0,
+                         .as_built = selection.furnished || (k & 2U) != 0,
                          .any_rotation = (k & 4U) != 0,
                          // Another room for each case, not eight times the same.
-                         .seed = selection.first_seed + seed * kCombinations + k});
+                         .seed = selection.first_seed + seed * kCombinations + k,
+                         .furnished = selection.furnished});
   return plans;
 }
 
@@ -80,6 +89,8 @@ inline SimulatedCase make_case(const BimModel& model, CasePlan plan, const Selec
   options.stations = plan.stations;
   options.any_rotation = plan.any_rotation;
   options.as_built.on = plan.as_built;
+  if (plan.furnished)
+    options.as_built.hidden_wall_share = RandomStream(plan.seed, 611).uniform(0.0, kMostHidden);
   if (selection.points > 0) options.points = selection.points;
   for (int attempt = 0;; ++attempt, plan.seed += 1000) {
     options.seed = plan.seed;

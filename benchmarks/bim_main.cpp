@@ -3,6 +3,7 @@
 //
 // Scans simulated in building models, found in these models again: how often, how well, how fast.
 //   bench_bim MODEL... [--at-least 60] [--method auto] [--points N] [--first-seed N] [--only TEXT]
+//             [--furnished] [--foreign]
 #include <chrono>
 #include <cstdio>
 #include <map>
@@ -140,7 +141,10 @@ void run(const Options& options) {
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
     const Judgement judgement = bim_cases::judge(result, made.truth);
     const std::string& name = target.model->name;
-    for (Tally* tally : {&tallies[name], &tallies[plan.as_built ? "~ as built" : "~ as planned"],
+    for (Tally* tally : {&tallies[name],
+                         &tallies[plan.furnished  ? "~ furnished"
+                                  : plan.as_built ? "~ as built"
+                                                  : "~ as planned"],
                          &tallies[plan.any_rotation ? "~ any rotation" : "~ level"],
                          &tallies[plan.stations == 1 ? "~ one station" : "~ three stations"], &all}) {
       tally->add(judgement);
@@ -173,6 +177,8 @@ int main(int argc, char** argv) {
   app.add_option("--points", options.selection.points, "Of each station");
   app.add_option("--method", options.method, "auto, polygons or segments");
   app.add_option("--only", options.only, "Only cases whose label holds this");
+  app.add_flag("--furnished", options.selection.furnished,
+               "Rooms as built, up to 70 % of their walls hidden by furniture");
   app.add_flag("--foreign", options.foreign, "Seek the scans of each model in all others");
   CLI11_PARSE(app, argc, argv);
   try {

@@ -26,9 +26,10 @@ constexpr int kSettleSteps = 16;  // either way along a shift that the planes le
 constexpr double kSettleStepM = 0.02;
 constexpr std::size_t kSettleLooks = 5;  // of those steps that get a look at everything
 constexpr double kCarefulGateM = 0.04;
-constexpr double kAsBuiltM = 0.05;    // by how much built matter may miss its drawing and count
-constexpr std::size_t kPolished = 4;  // poses refined on every sample
-constexpr int kModelPoses = 128;      // refined at least where a scan is sought in a model
+constexpr double kAsBuiltM = 0.05;                 // by how much built matter may miss its drawing and count
+constexpr std::size_t kPolished = 4;               // poses refined on every sample
+constexpr int kModelPoses = 128;                   // refined at least where a scan is sought in a model
+constexpr std::size_t kModelRefineSamples = 1500;  // of each side, for all but the best of them
 
 /// A pose between the upright frames, told between the scans' own.
 JudgedPose in_own_frames(const JudgedPose& upright, const PreparedScan& source, const PreparedScan& target) {
@@ -111,9 +112,15 @@ JudgedPose refined_if_better(const ScanView& source, const ScanView& target, con
 
 std::vector<JudgedPose> refine_all(const std::vector<PoseCandidate>& candidates, const ScanView& source,
                                    const ScanView& target, const RegisterOptions& options) {
-  const ScoreOptions fine = fine_score(source, target, options.method);
+  ScoreOptions fine = fine_score(source, target, options.method);
   RefineOptions quick = refine_options(source, target, options);
   quick.samples = kSecondLook;
+  // A model has ten times the surface that a scan saw of it; the poses that may become the answer are refined
+  // and scored on all of it later.
+  if (source.model || target.model) {
+    quick.samples = kModelRefineSamples;
+    fine.samples = kSecondLook;
+  }
   std::vector<JudgedPose> judged(candidates.size());
   parallel_for(candidates.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
@@ -165,7 +172,7 @@ Hypothesis to_hypothesis(const JudgedPose& pose, const PreparedPair& pair) {
   hypothesis.rms_m = pose.refined.rms_m;
   hypothesis.matched_planes = static_cast<int>(pose.refined.matches.size());
   hypothesis.matched_openings = static_cast<int>(pose.refined.openings.size());
-  if (pair.source.model || pair.target.model) hypothesis.explained_share = pose.score.explained_share;
+  if (pair.source.model || pair.target.model) hypothesis.explained_share = pose.walls.share();
   hypothesis.room = room_of(pose.refined.target_from_source, pair);
   return hypothesis;
 }
@@ -236,6 +243,18 @@ void polish(std::vector<JudgedPose>& poses, const ScanView& source, const ScanVi
   });
 }
 
+/// Asks a model about the walls that a scan saw, under every pose.
+void balance_walls(std::vector<JudgedPose>& poses, const ScanView& source, const ScanView& target) {
+  if (!source.model && !target.model) return;
+  const ModelWalls walls(source.model ? target : source, source.model ? source : target);
+  parallel_for(poses.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const Rigid3& pose = poses[i].refined.target_from_source;
+      poses[i].walls = walls.under(source.model ? inverse(pose) : pose);
+    }
+  });
+}
+
 /// How an attempt proposes its poses.
 enum class Proposal { held, sliding };
 
@@ -245,6 +264,7 @@ std::vector<JudgedPose> attempt(const PreparedScan& source, const PreparedScan& 
   clock.begin("hypotheses");
   ProposalOptions proposing{options.method, options.enumerate, options.wall_thickness_m};
   proposing.planes.gravity_known = gravity_known;
+  proposing.thorough = gravity_known || !(source.upright && target.upright);
   proposing.model = source.model ? ModelSide::source : target.model ? ModelSide::target : ModelSide::none;
   const Features& from = source.extracted.features;
   const Features& to = target.extracted.features;
@@ -261,6 +281,7 @@ std::vector<JudgedPose> attempt(const PreparedScan& source, const PreparedScan& 
   clock.begin("refinement");
   std::vector<JudgedPose> judged = refine_all(candidates, source.view(), target.view(), options);
   polish(judged, source.view(), target.view(), options);
+  balance_walls(judged, source.view(), target.view());
   clock.end();
   return judged;
 }
@@ -278,13 +299,14 @@ std::vector<std::size_t> told_alternatives(const Verdict& verdict, const Registe
 }
 
 /// Probabilities of the best pose and of `others`, and of what else may be.
-Posterior posterior_of(const std::vector<JudgedPose>& poses, std::size_t best,
+Posterior posterior_of(const std::vector<JudgedPose>& poses, const Verdict& verdict,
                        const std::vector<std::size_t>& others, const ContrastFunction& contrast, double twin,
                        bool model) {
+  const std::size_t best = verdict.ranking.front();
   PosteriorEvidence evidence;
   evidence.best_value_m2 = poses[best].score.value();
   evidence.twin = twin;
-  evidence.model = model;
+  if (model) evidence.log_odds_of_model = verdict.log_odds_of_model;
   for (const std::size_t other : others) {
     const PoseContrast apart = contrast(best, other);
     evidence.leads_m2.push_back(apart.for_first_m2 - apart.for_second_m2);
@@ -305,8 +327,7 @@ void tell(const Verdict& verdict, const std::vector<JudgedPose>& poses, const Co
     freedom.direction = to.upright_from_scan.transpose() * freedom.direction;
   if (verdict.ranking.empty()) return;
   const std::vector<std::size_t> others = told_alternatives(verdict, options);
-  const Posterior all =
-      posterior_of(poses, verdict.ranking.front(), others, contrast, twin, from.model || to.model);
+  const Posterior all = posterior_of(poses, verdict, others, contrast, twin, from.model || to.model);
   const RefinedPose& upright = poses[verdict.ranking.front()].refined;
   const JudgedPose best = in_own_frames(poses[verdict.ranking.front()], from, to);
   result.best = to_hypothesis(best, pair);

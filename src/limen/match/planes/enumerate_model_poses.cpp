@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <utility>
 
 #include <Eigen/LU>
@@ -25,6 +26,9 @@ using Box = Eigen::AlignedBox3d;
 constexpr double kMinDeterminant = 0.2;  // three normals flatter than this do not fix a shift
 constexpr double kOtherDirection = 0.8;  // cosine: normals nearer than this are no two directions
 constexpr double kMeetM = 0.15;          // boxes of planes that meet may miss each other by this
+// Along each axis two planes that are one share this much of the shorter: what a scan saw of a wall lies in
+// that wall, or holds it where a scan saw several pieces as one; corners that only touch show nothing.
+constexpr double kCommonShare = 0.3;
 
 /// A plane with the box around it.
 struct BoxedPlane {
@@ -51,11 +55,11 @@ struct Stretch {
   [[nodiscard]] bool empty() const { return from > to; }
 };
 
-/// Narrows `stretch` to the shifts at which box `a` meets box `b`.
-void narrow(const Box& a, const Box& b, const Vector3d& base, const Vector3d& along, Stretch& stretch) {
+/// Narrows `stretch` to those of its shifts that lie in `shifts`.
+void narrow(const Box& shifts, const Vector3d& base, const Vector3d& along, Stretch& stretch) {
   for (Eigen::Index k = 0; k < 3; ++k) {
-    const double low = b.min()[k] - kMeetM - a.max()[k] - base[k];
-    const double high = b.max()[k] + kMeetM - a.min()[k] - base[k];
+    const double low = shifts.min()[k] - base[k];
+    const double high = shifts.max()[k] - base[k];
     if (std::abs(along[k]) < 1e-9) {
       if (low > 0 || high < 0) stretch.to = stretch.from - 1.0;
       continue;
@@ -80,11 +84,21 @@ struct Anchor {
   std::vector<Partner> partners;
 };
 
-/// The shifts at which box `a` meets box `b`; a little more, so that no rounding makes it less.
+/// The shifts at which box `a` has kCommonShare of the smaller in common with box `b`, along each axis.
 Box meeting_shifts(const Box& a, const Box& b) {
-  constexpr double kRoundingM = 1e-6;
-  const Vector3d more = Vector3d::Constant(kMeetM + kRoundingM);
-  return {b.min() - a.max() - more, b.max() - a.min() + more};
+  const Vector3d less = (kCommonShare * a.sizes().cwiseMin(b.sizes())).array() - kMeetM;
+  return {b.min() - a.max() + less, b.max() - a.min() - less};
+}
+
+/// The share of box `a`, shifted, that lies in box `b`. Over planes side by side it adds up to 1 at most.
+double common_share(const Box& a, const Box& b, const Vector3d& shift) {
+  double share = 1.0;
+  for (Eigen::Index k = 0; k < 3; ++k) {
+    const double common =
+        std::min(a.max()[k] + shift[k], b.max()[k]) - std::max(a.min()[k] + shift[k], b.min()[k]);
+    share *= std::clamp((common + kMeetM) / (a.sizes()[k] + kMeetM), 0.0, 1.0);
+  }
+  return share;
 }
 
 /// The partners of an anchor, to be found by where they cross a line of shifts: those that face exactly one
@@ -141,28 +155,27 @@ struct ThirdAnchor {
   PartnersInOrder partners;
 };
 
-/// A shift under one of the rotations, and the triples of planes that agree on it.
+/// A shift under one of the rotations, and how much the triples of planes that agree on it have in common.
 struct Found {
   Vector3d translation;
-  std::int32_t votes = 0;
+  double weight = 0.0;
   std::uint32_t rotation = 0;
 };
 
-/// Leaves the `most` that most agree on, of equal ones those found first, in the order they are in.
+/// Leaves the `most` of the greatest weight, of equal ones those found first, in the order they are in.
 void keep_most(std::vector<Found>& found, std::size_t most) {
   if (found.size() <= most) return;
-  std::vector<std::size_t> with_votes;
-  for (const Found& it : found) {
-    const auto votes = static_cast<std::size_t>(it.votes);
-    if (votes >= with_votes.size()) with_votes.resize(votes + 1, 0);
-    ++with_votes[votes];
-  }
-  std::size_t level = with_votes.size() - 1;
-  std::size_t room = most;
-  for (; with_votes[level] <= room; --level) room -= with_votes[level];
+  std::vector<double> weights;
+  weights.reserve(found.size());
+  for (const Found& it : found) weights.push_back(it.weight);
+  const auto last = weights.begin() + static_cast<std::ptrdiff_t>(most - 1);
+  std::nth_element(weights.begin(), last, weights.end(), std::greater<>());
+  const double least = *last;
+  const auto above = static_cast<std::size_t>(
+      std::count_if(found.begin(), found.end(), [&](const Found& it) { return it.weight > least; }));
+  std::size_t room = most - above;
   std::erase_if(found, [&](const Found& it) {
-    const auto votes = static_cast<std::size_t>(it.votes);
-    if (votes != level) return votes < level;
+    if (it.weight != least) return it.weight < least;
     if (room == 0) return true;
     --room;
     return false;
@@ -174,20 +187,22 @@ class Ballot {
  public:
   explicit Ballot(double cell_m) : cell_m_(cell_m), slots_(kFirstSlots, kFree) {}
 
-  void add(const Vector3d& translation) {
+  void add(const Vector3d& translation, double weight) {
     const std::int64_t key = cell_key((translation / cell_m_).array().round());
     std::uint32_t& slot = slot_of(key);
     if (slot != kFree) {
-      ++found_[slot].votes;
+      Found& known = found_[slot];
+      known.weight += weight;
+      known.translation += weight / known.weight * (translation - known.translation);
       return;
     }
     slot = static_cast<std::uint32_t>(found_.size());
-    found_.push_back({translation, 1, 0});
+    found_.push_back({translation, weight, 0});
     keys_.push_back(key);
     if (2 * found_.size() > slots_.size()) enlarge();
   }
 
-  [[nodiscard]] std::vector<Found> most_voted(std::size_t most) && {
+  [[nodiscard]] std::vector<Found> weightiest(std::size_t most) && {
     keep_most(found_, most);
     found_.shrink_to_fit();
     return std::move(found_);
@@ -240,7 +255,7 @@ class Enumerator {
     for (const Anchor& a : anchors[0]) {
       for (const Anchor& b : anchors[1]) vote_pairs(a, b, thirds, ballot);
     }
-    return std::move(ballot).most_voted(static_cast<std::size_t>(options_.max_poses));
+    return std::move(ballot).weightiest(static_cast<std::size_t>(options_.max_poses));
   }
 
  private:
@@ -322,8 +337,8 @@ class Enumerator {
     const Vector3d base = solve * Vector3d(p.shift, q.shift, 0.0);
     const Vector3d along = solve.col(2);
     Stretch stretch;
-    narrow(a.plane.box, p.plane->box, base, along, stretch);
-    narrow(b.plane.box, q.plane->box, base, along, stretch);
+    narrow(p.meeting, base, along, stretch);
+    narrow(q.meeting, base, along, stretch);
     if (stretch.empty()) return;
     for (const ThirdAnchor& c : thirds) {
       for (const std::uint32_t i : c.partners.crossing(base, along, stretch)) {
@@ -332,9 +347,12 @@ class Enumerator {
         if (std::abs(slope) < kMinDeterminant) continue;
         const double s = (r.shift - r.plane->normal.dot(base)) / slope;
         if (s < stretch.from || s > stretch.to) continue;
-        Stretch at{s, s};
-        narrow(c.anchor->plane.box, r.plane->box, base, along, at);
-        if (!at.empty()) ballot.add(base + s * along);
+        const Vector3d shift = base + s * along;
+        if (!r.meeting.contains(shift)) continue;
+        const double common = std::min({common_share(a.plane.box, p.plane->box, shift),
+                                        common_share(b.plane.box, q.plane->box, shift),
+                                        common_share(c.anchor->plane.box, r.plane->box, shift)});
+        ballot.add(shift, common);
       }
     }
   }
@@ -380,11 +398,11 @@ std::vector<PoseCandidate> enumerate_model_poses(const Features& scan, const Fea
     }
   }
   keep_most(all, most);
-  std::stable_sort(all.begin(), all.end(), [](const Found& a, const Found& b) { return a.votes > b.votes; });
+  std::stable_sort(all.begin(), all.end(),
+                   [](const Found& a, const Found& b) { return a.weight > b.weight; });
   std::vector<PoseCandidate> poses;
   poses.reserve(all.size());
-  for (const Found& it : all)
-    poses.push_back({{rotations[it.rotation], it.translation}, static_cast<double>(it.votes), 0});
+  for (const Found& it : all) poses.push_back({{rotations[it.rotation], it.translation}, it.weight, 0});
   return poses;
 }
 

@@ -16,7 +16,7 @@ struct ModelPoseOptions {
   int max_scan_planes = 24;            ///< largest planes of the scan that are looked at, >= 1
   double min_plane_m2 = 0.3;           ///< smaller pieces of the model are not tried, > 0
   double same_shift_m = 0.08;          ///< poses nearer than about this are one, > 0
-  int max_poses = 60000;               ///< poses returned, those that most anchors agree on first, >= 1
+  int max_poses = 6000;                ///< poses returned, those that most anchors agree on first, >= 1
 
   void check() const;
 };

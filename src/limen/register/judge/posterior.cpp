@@ -11,7 +11,6 @@ namespace limen {
 void PosteriorOptions::check() const {
   if (!(nats_per_m2 > 0)) throw_bad_option("nats_per_m2", nats_per_m2, "more than 0");
   if (!(search_nats >= 0)) throw_bad_option("search_nats", search_nats, "0 or more");
-  if (!(model_search_nats >= 0)) throw_bad_option("model_search_nats", model_search_nats, "0 or more");
   if (!(prior_shared > 0 && prior_shared < 1))
     throw_bad_option("prior_shared", prior_shared, "within (0, 1)");
   if (!(unlisted >= 0 && unlisted < 1)) throw_bad_option("unlisted", unlisted, "within [0, 1)");
@@ -21,8 +20,9 @@ Posterior posterior(const PosteriorEvidence& evidence, const PosteriorOptions& o
   options.check();
   // Weights against the best pose, whose likelihood is 1; the best wrong pose is as likely as the right one
   // where its value is what a search reaches by chance.
-  const double search = evidence.model ? options.model_search_nats : options.search_nats;
-  const double chance = std::exp(search - options.nats_per_m2 * evidence.best_value_m2);
+  const double chance = std::exp(evidence.log_odds_of_model
+                                     ? -*evidence.log_odds_of_model
+                                     : options.search_nats - options.nats_per_m2 * evidence.best_value_m2);
   Posterior posterior;
   double total = 0.0;
   const auto add_pose = [&](double lead_m2) {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "limen/model/result.h"
@@ -16,9 +17,8 @@ struct PosteriorOptions {
   /// What the best of all wrong poses reaches by chance: the logarithm of how many a search can tell apart
   /// (evidence times Laplace volume over search volume, for poses that are all held to about a centimetre).
   double search_nats = 9.5;
-  double model_search_nats = 11.5;  ///< a whole building is searched
-  double prior_shared = 0.5;        ///< of the pairs that are given, those that show a common place
-  double unlisted = 0.1;            ///< of the pairs that share a place, those whose pose is not proposed
+  double prior_shared = 0.5;  ///< of the pairs that are given, those that show a common place
+  double unlisted = 0.1;      ///< of the pairs that share a place, those whose pose is not proposed
 
   void check() const;
 };
@@ -34,7 +34,9 @@ struct PosteriorEvidence {
   double best_value_m2 = 0.0;    ///< `PoseScore::value` of the best pose
   std::vector<double> leads_m2;  ///< by how much surface speaks for the best against each other pose
   double twin = 0.0;             ///< probability that the best pose lays a place on its twin
-  bool model = false;
+  /// Of a scan in a model: logarithm of the odds of the best pose against chance, learned from the other
+  /// poses (model_odds.h).
+  std::optional<double> log_odds_of_model = {};
 };
 
 /// Bayes' rule over the poses found, a twin, a pose not proposed, and nothing shared.

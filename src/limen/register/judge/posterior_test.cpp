@@ -18,31 +18,40 @@ double sum(const Posterior& all) {
 
 TEST(Posterior, EverythingSumsToOne) {
   for (const double value : {0.0, 3.0, 8.0, 40.0}) {
-    EXPECT_NEAR(sum(posterior({value, {0.5, 3.0, 9.0}, 0.2, false})), 1.0, 1e-12) << value;
+    EXPECT_NEAR(sum(posterior({value, {0.5, 3.0, 9.0}, 0.2})), 1.0, 1e-12) << value;
   }
 }
 
 TEST(Posterior, MuchCommonSurfaceLeavesTheBestAlone) {
-  const Posterior all = posterior({30.0, {12.0}, 0.0, false});
+  const Posterior all = posterior({30.0, {12.0}, 0.0});
   EXPECT_GT(all.poses[0], 0.999);
   EXPECT_LT(all.others.nothing_shared, 1e-6);
 }
 
 TEST(Posterior, HardlyAnyCommonSurfaceMeansNothingShared) {
-  EXPECT_GT(posterior({2.0, {0.1}, 0.0, false}).others.nothing_shared, 0.9);
-  // Where more is searched more is reached by chance.
-  EXPECT_GT(posterior({6.0, {}, 0.0, true}).others.nothing_shared,
-            posterior({6.0, {}, 0.0, false}).others.nothing_shared);
+  EXPECT_GT(posterior({2.0, {0.1}, 0.0}).others.nothing_shared, 0.9);
+}
+
+TEST(Posterior, WhatChanceReachesInAModelIsLearnedThere) {
+  double before = 1.0;
+  for (const double odds : {-3.0, 0.0, 3.0, 9.0}) {
+    const double nothing = posterior({30.0, {}, 0.0, odds}).others.nothing_shared;
+    EXPECT_LT(nothing, before);
+    before = nothing;
+  }
+  const OtherExplanations poor = posterior({30.0, {}, 0.0, -3.0}).others;
+  EXPECT_GT(poor.nothing_shared + poor.unlisted_pose, 0.9);
+  EXPECT_LT(before, 1e-3);
 }
 
 TEST(Posterior, PosesThatCannotBeToldApartShare) {
-  const Posterior all = posterior({30.0, {0.0}, 0.0, false});
+  const Posterior all = posterior({30.0, {0.0}, 0.0});
   EXPECT_NEAR(all.poses[0], 0.5, 1e-6);
   EXPECT_EQ(all.poses[0], all.poses[1]);
 }
 
 TEST(Posterior, ATwinTakesItsShare) {
-  const Posterior all = posterior({30.0, {}, 0.25, false});
+  const Posterior all = posterior({30.0, {}, 0.25});
   EXPECT_NEAR(all.others.twin, 0.25, 1e-6);
   EXPECT_NEAR(all.poses[0], 0.75, 1e-6);
 }

@@ -18,8 +18,6 @@ namespace {
 
 constexpr double kClutterWeight = 0.5;  // clutter moves, and its cubes meet less sharply than planes
 
-constexpr double kWallTilt = 0.5;  // |normal . up| of a wall is less
-
 /// What the judge's scanner says to one sample of the other scan.
 struct Answer {
   Sight sight;
@@ -105,26 +103,15 @@ double saturated(double area_m2) {
   return kPlaneLimit_m2 * (1.0 - std::exp(-area_m2 / kPlaneLimit_m2));
 }
 
-/// Whether a sample is of a wall that a model should have: upright, not seen through a window; of a mobile
-/// scan, which sees much else, within the model's extent.
-bool asks_wall(const SurfaceSample& sample, const ScanView& scan, const ScanView& model,
-               const Rigid3& model_from_scan) {
-  if (scan.features->planes[static_cast<std::size_t>(sample.plane)].interior) return false;
-  if (std::abs(model_from_scan.rotation.row(2).dot(sample.normal)) > kWallTilt) return false;
-  return !scan.mobile || model.reach.contains(model_from_scan * sample.mean);
-}
-
-/// Asks `judge` about what was gathered of `scan`.
-PoseScore one_way(const Gathered& asked, const ScanView& scan, const ScanView& judge,
-                  const Rigid3& judge_from_scan, const ScoreOptions& options) {
+/// Asks `judge` about what was gathered of a scan.
+PoseScore one_way(const Gathered& asked, const ScanView& judge, const Rigid3& judge_from_scan,
+                  const ScoreOptions& options) {
   CancelScope::check();
   PoseScore score;
   const double factor = asked.factor;
   // Samples come plane by plane, clutter last.
   std::int32_t plane = -1;
   double of_plane = 0.0;
-  double walls = 0.0;
-  double explained = 0.0;
   ask_all(asked, judge, judge_from_scan, options, [&](const SurfaceSample& sample, const Answer& answer) {
     const double gain = factor * answer.gain_m2;
     score.agreeing_m2 += gain;
@@ -136,10 +123,6 @@ PoseScore one_way(const Gathered& asked, const ScanView& scan, const ScanView& j
     if (answer.planar) {
       score.planar_m2 += gain;
       of_plane += gain;
-      if (judge.model && asks_wall(sample, scan, judge, judge_from_scan)) {
-        walls += answer.area_m2;
-        if (answer.sight.kind == SightKind::surface) explained += answer.area_m2;
-      }
     } else {
       score.evidence_m2 += gain;
     }
@@ -147,7 +130,6 @@ PoseScore one_way(const Gathered& asked, const ScanView& scan, const ScanView& j
     if (answer.sight.kind != SightKind::unseen) score.tested_m2 += factor * answer.area_m2;
   });
   score.evidence_m2 += saturated(of_plane);
-  if (judge.model) score.explained_share = walls > 0 ? explained / walls : 1.0;
   return score;
 }
 
@@ -229,9 +211,9 @@ PoseScore PoseScorer::operator()(const Rigid3& target_from_source) const {
   const auto scored = [&](const ScanView& scan, const ScanView& judge, const Gathered& fixed,
                           const Rigid3& judge_from_scan) {
     if (judge.space == nullptr || (scan.model && !options_.ask_model)) return PoseScore{};
-    if (!scan.model) return one_way(fixed, scan, judge, judge_from_scan, options_);
+    if (!scan.model) return one_way(fixed, judge, judge_from_scan, options_);
     const AskedSamples asked = asked_samples(scan, judge, judge_from_scan, options_.samples);
-    return one_way(gathered(scan, asked), scan, judge, judge_from_scan, options_);
+    return one_way(gathered(scan, asked), judge, judge_from_scan, options_);
   };
   const PoseScore forth = scored(source_, target_, asked_->source, target_from_source);
   const PoseScore back = scored(target_, source_, asked_->target, inverse(target_from_source));
@@ -240,7 +222,6 @@ PoseScore PoseScorer::operator()(const Rigid3& target_from_source) const {
   both.planar_m2 = 0.5 * (forth.planar_m2 + back.planar_m2);
   both.contradicted_m2 = 0.5 * (forth.contradicted_m2 + back.contradicted_m2);
   both.tested_m2 = 0.5 * (forth.tested_m2 + back.tested_m2);
-  both.explained_share = std::min(forth.explained_share, back.explained_share);
   for (const double gain : opening_gains(source_, target_, target_from_source, options_))
     both.opening_m2 += gain;
   both.agreeing_m2 += both.opening_m2;

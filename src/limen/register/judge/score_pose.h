@@ -32,9 +32,6 @@ struct PoseScore {
   /// Agreeing surface, each plane counting for no more than 5 m^2, however large: that two façades lie in one
   /// plane is one coincidence, not many.
   double evidence_m2 = 0.0;
-  /// Against a model: share of the scan's upright planar surface that lies on the model. Floors and ceilings
-  /// say little: any room has them.
-  double explained_share = 1.0;
 
   /// What poses are ranked by, m^2. One contradicted square metre outweighs several agreeing ones: surfaces
   /// meet by chance, but matter cannot stand where a ray passed.

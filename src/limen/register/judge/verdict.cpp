@@ -101,9 +101,7 @@ void add_weak(const Matrix3d& information, double bound, bool rotation,
 void VerdictOptions::check() const {
   if (!(min_agreeing_m2 > 0)) throw_bad_option("min_agreeing_m2", min_agreeing_m2, "more than 0");
   if (!(max_contradiction > 0)) throw_bad_option("max_contradiction", max_contradiction, "more than 0");
-  if (!(min_explained_share >= 0 && min_explained_share <= 1)) {
-    throw_bad_option("min_explained_share", min_explained_share, "within [0, 1]");
-  }
+  model_odds.check();
   if (!(max_rival_share > 0 && max_rival_share < 1)) {
     throw_bad_option("max_rival_share", max_rival_share, "within (0, 1)");
   }
@@ -185,6 +183,46 @@ std::vector<std::size_t> rank(const std::vector<JudgedPose>& poses, const Verdic
   return distinct;
 }
 
+namespace {
+
+/// Leaves those poses of a ranking in a model whose walls the model explains better than chance does, and
+/// tells the odds of the best of them: its walls', and by how much its value exceeds that of the best pose
+/// that chance explains.
+void leave_chance_out(const std::vector<JudgedPose>& poses, const VerdictOptions& options, Verdict& verdict) {
+  std::vector<WallBalance> walls;
+  for (const std::size_t i : verdict.ranking) walls.push_back(poses[i].walls);
+  const std::vector<double> odds = log_odds_of_model(walls, options.model_odds);
+  std::vector<std::size_t> left;
+  double by_chance = 0.0;
+  for (std::size_t k = 0; k < odds.size(); ++k) {
+    const std::size_t pose = verdict.ranking[k];
+    if (odds[k] <= 0) {
+      by_chance = std::max(by_chance, poses[pose].score.value());
+      continue;
+    }
+    if (left.empty()) verdict.log_odds_of_model = odds[k];
+    left.push_back(pose);
+  }
+  verdict.log_odds_of_model +=
+      left.empty() ? odds.front()
+                   : options.model_odds.nats_per_m2 * (poses[left.front()].score.value() - by_chance);
+  const std::size_t best = left.empty() ? verdict.ranking.front() : left.front();
+  verdict.ranking = std::move(left);
+  if (verdict.log_odds_of_model > 0) return;
+  verdict.ranking.clear();
+  verdict.reason = fmt::format(
+      "at best {:.0f} % of the walls that the scan saw are in the model, as chance has it: it was taken "
+      "elsewhere, or much was built otherwise",
+      100.0 * poses[best].walls.share());
+}
+
+/// Whether a pose in a model may agree by chance after all, with more than the bearable probability.
+bool may_be_chance(const Verdict& verdict, const VerdictOptions& options) {
+  return options.in_model && verdict.log_odds_of_model < std::log((1.0 - options.risk) / options.risk);
+}
+
+}  // namespace
+
 Verdict judge(const std::vector<JudgedPose>& poses, const ContrastFunction& contrast,
               const VerdictOptions& options) {
   options.check();
@@ -194,16 +232,8 @@ Verdict judge(const std::vector<JudgedPose>& poses, const ContrastFunction& cont
     verdict.reason = "no planes of the two scans can be laid on one another";
     return verdict;
   }
-  const double explained = poses[verdict.ranking.front()].score.explained_share;
-  std::erase_if(verdict.ranking,
-                [&](std::size_t i) { return poses[i].score.explained_share < options.min_explained_share; });
-  if (verdict.ranking.empty()) {
-    verdict.reason = fmt::format(
-        "at best {:.0f} % of the walls that the scan saw are in the model: it was taken elsewhere, or much "
-        "was built otherwise",
-        100.0 * explained);
-    return verdict;
-  }
+  if (options.in_model) leave_chance_out(poses, options, verdict);
+  if (verdict.ranking.empty()) return verdict;
   const JudgedPose& best = poses[verdict.ranking.front()];
   if (best.score.planar_m2 < options.min_agreeing_m2) {
     verdict.reason =
@@ -244,6 +274,15 @@ Verdict judge(const std::vector<JudgedPose>& poses, const ContrastFunction& cont
         "{:.1f} m2 of the model stand where the scan saw free space: another room, or built "
         "otherwise",
         best.score.contradicted_m2);
+    return verdict;
+  }
+  if (may_be_chance(verdict, options)) {
+    verdict.outcome = Outcome::ambiguous;
+    verdict.reason = fmt::format(
+        "{:.0f} % of the walls that the scan saw are in the model, which chance explains with a probability "
+        "of "
+        "{:.2g}",
+        100.0 * best.walls.share(), 1.0 / (1.0 + std::exp(verdict.log_odds_of_model)));
     return verdict;
   }
   if (unsure_through_wall(best.score, options)) {

@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "limen/model/result.h"
+#include "limen/register/judge/model_odds.h"
+#include "limen/register/judge/model_walls.h"
 #include "limen/register/judge/score_pose.h"
 #include "limen/register/judge/twin_odds.h"
 #include "limen/register/refine/refine_pose.h"
@@ -17,6 +19,7 @@ namespace limen {
 struct JudgedPose {
   RefinedPose refined;
   PoseScore score;
+  WallBalance walls;  ///< of a scan in a model
 };
 
 struct VerdictOptions {
@@ -30,11 +33,7 @@ struct VerdictOptions {
   bool through_wall = false;
   double max_unopened_contradiction = 0.03;  ///< then, over agreeing surface ...
   double unopened_allowance_m2 = 0.2;        ///< ... and this much
-  /// Against a model: share of the walls that a scan saw which must be in it. Floors and ceilings meet those
-  /// of any building, any corner fits into any larger one with half of its walls, and furniture is in no
-  /// model: simulated furnished rooms with a quarter of the elements moved had 0.67 and more, in foreign
-  /// buildings most had less than 0.5, the highest 0.63.
-  double min_explained_share = 0.58;
+  ModelOddsOptions model_odds;               ///< that a model explains a scan's walls by chance
   /// One side is a model: with more contradicted surface than this a pose is not sure.
   bool in_model = false;
   double max_model_contradiction = 0.02;     ///< over agreeing surface ...
@@ -60,8 +59,9 @@ struct VerdictOptions {
 struct Verdict {
   Outcome outcome = Outcome::no_match;
   std::string reason;
-  std::vector<std::size_t> ranking;           ///< indices of distinct poses, best first
-  std::vector<std::size_t> rivals;            ///< those that cannot be told from the best
+  std::vector<std::size_t> ranking;  ///< indices of distinct poses, best first
+  std::vector<std::size_t> rivals;   ///< those that cannot be told from the best
+  double log_odds_of_model = 0.0;    ///< in a model: of the best pose against chance, natural logarithm
   std::vector<UnobservedFreedom> unobserved;  ///< of the best pose
 };
 

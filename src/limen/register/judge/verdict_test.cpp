@@ -52,14 +52,38 @@ TEST(Verdict, SurfaceThatAgreesUnderBothPosesTellsNothing) {
   EXPECT_EQ(judge(poses, even).outcome, Outcome::ambiguous);
 }
 
-TEST(Verdict, WallsThatAreNotInTheModelForbidAPose) {
-  JudgedPose foreign = pose(30, 0, 0);
-  foreign.score.explained_share = 0.5;  // a corner in a larger room
-  EXPECT_EQ(judge_all({foreign}).outcome, Outcome::no_match);
+/// A pose in a model, with a share of fourteen observations of walls on its surface.
+JudgedPose pose_in_model(double agreeing_m2, double shift_m, double share) {
+  JudgedPose judged = pose(agreeing_m2, 0, shift_m);
+  judged.walls = {14.0, 14.0 * share};
+  return judged;
+}
+
+Verdict judge_in_model(const std::vector<JudgedPose>& poses) {
+  VerdictOptions options;
+  options.in_model = true;
+  return judge(
+      poses,
+      [&](std::size_t a, std::size_t b) {
+        return PoseContrast{poses[a].score.agreeing_m2, poses[b].score.agreeing_m2};
+      },
+      options);
+}
+
+TEST(Verdict, WallsThatChanceExplainsForbidAPose) {
+  const JudgedPose corner = pose_in_model(20, 0, 0.5);  // of a larger room
+  EXPECT_EQ(judge_in_model({corner}).outcome, Outcome::no_match);
   // Nor does it stand in the way of a right one.
-  const Verdict verdict = judge_all({foreign, pose(28, 0, 3)});
+  const Verdict verdict = judge_in_model({corner, pose_in_model(30, 3, 0.9)});
   EXPECT_EQ(verdict.outcome, Outcome::registered);
   EXPECT_EQ(verdict.ranking.front(), 1U);
+}
+
+TEST(Verdict, APoseThatHardlyExceedsWhatWrongOnesReachIsNotSure) {
+  const JudgedPose wrong = pose_in_model(29.5, 0, 0.5);
+  EXPECT_EQ(judge_in_model({wrong, pose_in_model(30, 3, 0.85)}).outcome, Outcome::ambiguous);
+  EXPECT_EQ(judge_in_model({wrong, pose_in_model(36, 3, 0.85)}).outcome, Outcome::registered);
+  EXPECT_EQ(judge_in_model({wrong, pose_in_model(27, 3, 0.65)}).outcome, Outcome::no_match);
 }
 
 TEST(Verdict, TheSamePoseTwiceIsNoRival) {

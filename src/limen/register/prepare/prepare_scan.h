@@ -36,6 +36,7 @@ struct PreparedScan {
   [[nodiscard]] ScanView view() const {
     ScanView view{&extracted.features, space.get(), reach, model, mobile, mobile || !stations.empty()};
     if (!stations.empty()) view.station = stations.front();
+    view.stations = &stations;
     if (model) view.runs = &runs;
     return view;
   }

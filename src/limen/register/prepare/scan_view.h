@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include <Eigen/Geometry>
 
@@ -21,6 +22,8 @@ struct ScanView {
   bool mobile = false;               ///< seen from many places along a path
   bool knows_free = true;            ///< where the scanner stood is known, so that its rays tell what is free
   std::optional<Vector3d> station = {};  ///< of a static scan: where the (first) scanner stood
+  /// All of them, of several scans known to one another. Null or empty: not known.
+  const std::vector<Vector3d>* stations = nullptr;
   /// Of a model: its samples in runs, so that those within some reach are found without a look at each. Null:
   /// every sample is looked at.
   const SampleRuns* runs = nullptr;

@@ -13,6 +13,7 @@ namespace limen {
 namespace {
 
 constexpr double kSlideStepM = 0.4;
+constexpr int kFewAnchors = 2;
 
 /// The planes seen through openings alone, or all others.
 Features part_of(const Features& features, bool seen_through) {
@@ -67,6 +68,7 @@ std::vector<PoseCandidate> model_candidates(const Features& source, const Featur
   ModelPoseOptions in_model;
   in_model.gravity_known = options.planes.gravity_known;
   in_model.gravity_tolerance_deg = options.planes.gravity_tolerance_deg;
+  if (!options.thorough) in_model.anchors = kFewAnchors;
   if (options.model == ModelSide::target) return enumerate_model_poses(source, target, in_model);
   std::vector<PoseCandidate> poses = enumerate_model_poses(target, source, in_model);
   for (PoseCandidate& pose : poses) pose.target_from_source = inverse(pose.target_from_source);

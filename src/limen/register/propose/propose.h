@@ -18,6 +18,7 @@ struct ProposalOptions {
   PoseEnumerationOptions planes;
   double wall_thickness_m = 0.0;  ///< as the user knows it; 0: not known
   ModelSide model = ModelSide::none;
+  bool thorough = true;  ///< false: in a model the few largest planes of each direction are tried
 };
 
 /// Poses of the source in the target, local frames, from everything the method allows. The order means

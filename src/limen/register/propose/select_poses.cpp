@@ -15,11 +15,28 @@ constexpr std::size_t kMany = 2500;      // poses that get a first look
 constexpr std::size_t kGlance = 150;     // samples asked of each scan when there are more
 constexpr std::size_t kGlimpse = 40;     // and when there are tens of thousands
 constexpr std::size_t kVeryMany = 8000;
+// Of a model's poses, which come in the order of what their planes have in common, fewer get a closer look.
+constexpr std::size_t kManyInModel = 600;
+constexpr std::size_t kSomeInModel = 128;
 // In a model a pose is not looked into further where its value is a smaller share of the best one's; the
 // fewer samples were asked, the smaller.
 constexpr double kGlanceShare = 0.3;
 constexpr double kFirstShare = 0.35;
 constexpr double kModelShare = 0.45;
+
+/// The same for a scan in a model: the first looks ask the model only, for the scan says little about so much
+/// more surface than it saw.
+std::vector<PoseCandidate> select_in_model(const std::vector<PoseCandidate>& candidates,
+                                           const ScanView& source, const ScanView& target, std::size_t most,
+                                           bool openings) {
+  std::vector<PoseCandidate> left = candidates;
+  if (left.size() > kVeryMany) left = best_of(left, source, target, {kGlimpse, kVeryMany, 0.0, false, false});
+  if (left.size() > kManyInModel)
+    left = best_of(left, source, target, {kGlance, kManyInModel, 0.25, false, false, kGlanceShare});
+  left = best_of(left, source, target, {kFirstLook, kSomeInModel, 1.0, openings, true, kFirstShare});
+  return best_of(left, source, target,
+                 {kSecondLook, most, kContradictionWeight, openings, true, kModelShare});
+}
 
 }  // namespace
 
@@ -44,7 +61,8 @@ std::vector<PoseCandidate> best_of(const std::vector<PoseCandidate>& candidates,
   if (order.size() > look.most) order.resize(look.most);
   std::vector<PoseCandidate> best;
   for (const std::size_t i : order) {
-    if (look.min_share > 0 && values[i] < look.min_share * values[order.front()]) break;
+    const bool poor = look.min_share > 0 && values[i] < look.min_share * values[order.front()];
+    if (poor && best.size() >= look.least) break;
     best.push_back(candidates[i]);
   }
   return best;
@@ -53,17 +71,11 @@ std::vector<PoseCandidate> best_of(const std::vector<PoseCandidate>& candidates,
 std::vector<PoseCandidate> select_poses(const std::vector<PoseCandidate>& candidates, const ScanView& source,
                                         const ScanView& target, std::size_t most, bool openings) {
   const bool model = source.model || target.model;
+  if (model) return select_in_model(candidates, source, target, most, openings);
   std::vector<PoseCandidate> left = candidates;
-  if (model && left.size() > kVeryMany)
-    left = best_of(left, source, target, {kGlimpse, kVeryMany, 0.0, false, false});
-  if (left.size() > kMany) {
-    left = best_of(left, source, target,
-                   {kGlance, kMany, 0.25, openings && !model, !model, model ? kGlanceShare : 0.0});
-  }
-  left =
-      best_of(left, source, target, {kFirstLook, 8 * most, 1.0, openings, true, model ? kFirstShare : 0.0});
-  return best_of(left, source, target,
-                 {kSecondLook, most, kContradictionWeight, openings, true, model ? kModelShare : 0.0});
+  if (left.size() > kMany) left = best_of(left, source, target, {kGlance, kMany, 0.25, openings});
+  left = best_of(left, source, target, {kFirstLook, 8 * most, 1.0, openings});
+  return best_of(left, source, target, {kSecondLook, most, kContradictionWeight, openings});
 }
 
 }  // namespace limen

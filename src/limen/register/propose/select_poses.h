@@ -17,7 +17,8 @@ struct Look {
   double contradiction_weight = kContradictionWeight;
   bool openings = true;
   bool ask_model = true;   ///< the scan is asked about a model's surface as well
-  double min_share = 0.0;  ///< of the best value: poses below are not kept
+  double min_share = 0.0;  ///< of the best value: poses below are not kept ...
+  std::size_t least = 24;  ///< ... but at least so many: they show what chance reaches
 };
 
 /// The candidates that explain the scans best, best first.

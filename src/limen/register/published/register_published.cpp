@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "limen/base/error.h"
+#include "limen/register/judge/model_walls.h"
 #include "limen/register/judge/score_pose.h"
 #include "limen/register/prepare/stage_clock.h"
 #include "limen/register/published/cluster_2021.h"
@@ -86,7 +87,11 @@ Hypothesis measured(const PublishedPose& pose, const PreparedPair& pair, Registr
   best.rms_m = at.rms_m;
   best.matched_planes = static_cast<int>(at.matches.size());
   best.matched_openings = static_cast<int>(at.openings.size());
-  if (source.model || target.model) best.explained_share = score.explained_share;
+  if (source.model || target.model) {
+    const ModelWalls walls(source.model ? target : source, source.model ? source : target);
+    best.explained_share =
+        walls.under(source.model ? inverse(pose.target_from_source) : pose.target_from_source).share();
+  }
   result.matches = at.matches;
   return best;
 }

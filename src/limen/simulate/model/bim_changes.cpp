@@ -167,7 +167,7 @@ class Mover {
 }  // namespace
 
 void AsBuiltOptions::check() const {
-  for (const double share : {moved_share, missing_share, most_moved_share})
+  for (const double share : {moved_share, missing_share, most_moved_share, hidden_wall_share})
     if (!(share >= 0.0 && share <= 1.0)) throw_bad_option("as-built share", share, "between 0 and 1");
   if (!(furniture_per_m2 >= 0.0 && furniture_per_m2 <= 2.0))
     throw_bad_option("furniture_per_m2", furniture_per_m2, "between 0 and 2");

@@ -18,6 +18,8 @@ struct AsBuiltOptions {
   double moved_share = 0.25;
   double missing_share = 0.15;     ///< of doors, furniture and what bears no load
   double furniture_per_m2 = 0.25;  ///< pieces that the model does not have, in the scanned rooms
+  /// Of the length of these rooms' walls: wardrobes, shelves, kitchens and the like stand before it, about.
+  double hidden_wall_share = 0.0;
   /// At most this share of what the stations see along one direction has moved along it: the model's frame
   /// stays what most of the building says.
   double most_moved_share = 0.4;
@@ -36,7 +38,9 @@ BuiltState as_built(const BimModel& model, const AsBuiltOptions& options, const 
 /// The differences between the model and what was built, in the order of the elements.
 std::vector<ModelChange> changes_of(const BimModel& model, const BuiltState& doors, const BuiltState& built);
 
-/// Adds boxes on the floors about the stations: cupboards, tables, crates, clutter on top. Returns how many.
-int add_clutter(BimMesh& built, const std::vector<BimStation>& stations, double per_m2, RandomStream& random);
+/// Adds furniture along the walls of the scanned rooms, and boxes on the floors about the stations: tables,
+/// crates, clutter on top. Returns how many.
+int add_clutter(BimMesh& built, const std::vector<BimStation>& stations, const AsBuiltOptions& options,
+                RandomStream& random);
 
 }  // namespace limen

@@ -59,7 +59,7 @@ class BimSimulation {
     told_.changes = changes_of(model_, doors, state);
     built_ = build_mesh(model_, matter, state);
     RandomStream clutter_random(o_.seed, kClutter);
-    told_.furniture = add_clutter(built_, stations_, o_.as_built.furniture_per_m2, clutter_random);
+    told_.furniture = add_clutter(built_, stations_, o_.as_built, clutter_random);
   }
 
   void begin_truth() {
