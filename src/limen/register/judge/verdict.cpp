@@ -187,8 +187,8 @@ namespace {
 
 /// Leaves those poses of a ranking in a model whose walls the model explains better than chance does, and
 /// tells the odds of the best of them: its walls', and by how much its value exceeds that of the best pose
-/// that chance explains.
-void leave_chance_out(const std::vector<JudgedPose>& poses, const VerdictOptions& options, Verdict& verdict) {
+/// that chance explains. False where chance is the better explanation of all of them.
+bool leave_chance_out(const std::vector<JudgedPose>& poses, const VerdictOptions& options, Verdict& verdict) {
   std::vector<WallBalance> walls;
   for (const std::size_t i : verdict.ranking) walls.push_back(poses[i].walls);
   const std::vector<double> odds = log_odds_of_model(walls, options.model_odds);
@@ -208,12 +208,13 @@ void leave_chance_out(const std::vector<JudgedPose>& poses, const VerdictOptions
                    : options.model_odds.nats_per_m2 * (poses[left.front()].score.value() - by_chance);
   const std::size_t best = left.empty() ? verdict.ranking.front() : left.front();
   verdict.ranking = std::move(left);
-  if (verdict.log_odds_of_model > 0) return;
-  verdict.ranking.clear();
+  if (verdict.log_odds_of_model > 0) return true;
+  verdict.ranking = {best};
   verdict.reason = fmt::format(
       "at best {:.0f} % of the walls that the scan saw are in the model, as chance has it: it was taken "
       "elsewhere, or much was built otherwise",
       100.0 * poses[best].walls.share());
+  return false;
 }
 
 /// Whether a pose in a model may agree by chance after all, with more than the bearable probability.
@@ -232,8 +233,7 @@ Verdict judge(const std::vector<JudgedPose>& poses, const ContrastFunction& cont
     verdict.reason = "no planes of the two scans can be laid on one another";
     return verdict;
   }
-  if (options.in_model) leave_chance_out(poses, options, verdict);
-  if (verdict.ranking.empty()) return verdict;
+  if (options.in_model && !leave_chance_out(poses, options, verdict)) return verdict;
   const JudgedPose& best = poses[verdict.ranking.front()];
   if (best.score.planar_m2 < options.min_agreeing_m2) {
     verdict.reason =
