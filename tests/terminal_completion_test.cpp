@@ -96,7 +96,7 @@ TEST_F(SelfDescription, TheManualPageIsCleanAndTellsEveryOption) {
 
 TEST_F(SelfDescription, HelpFitsEightyColumnsAndEndsWithExamples) {
   for (const std::string command : {"info", "planes", "openings", "segments", "register", "transform",
-                                    "evaluate", "deviation", "simulate", "thin", "completion"}) {
+                                    "evaluate", "deviation", "simulate", "thin", "schema", "completion"}) {
     const std::string help = run({command, "--help"}).out;
     EXPECT_NE(help.find("\nExamples:\n"), std::string::npos) << command;
     EXPECT_EQ(help.find("TEXT"), std::string::npos) << command;

@@ -242,7 +242,7 @@ void add_with_option(CommandLine& command, const char* name, std::vector<std::st
 
 void add_cover_options(CommandLine& command, RegisterCommandOptions& options) {
   const auto add = [&command](const char* name, std::string& text, const char* description) {
-    command.add_option(name, text, description)->type_name("TEXT");
+    command.add_option(name, text, description)->type_name("WORDS");
   };
   add("--title", options.title, "Title of the report");
   add("--project", options.project, "Project that the report names");
