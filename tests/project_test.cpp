@@ -115,6 +115,23 @@ TEST_F(Project, StationsStandWhereTheTruthHasThemAndBytesNeverDiffer) {
   const ProgramRun merged = run({"transform", "out/project.json", "-o", "all.las", "--merge", "--quiet"});
   EXPECT_EQ(merged.status, 0) << merged.err;
   EXPECT_GT(std::filesystem::file_size(work() / "all.las"), 100000U);
+
+  // In an E57 each station stays a scan of its own, known to the other.
+  const ProgramRun e57 = run({"transform", "out/project.json", "-o", "all.e57", "--merge", "--quiet"});
+  EXPECT_EQ(e57.status, 0) << e57.err;
+  const ProgramRun reread = run(call({"all.e57"}, "reread"));
+  EXPECT_EQ(reread.status, 0) << reread.err;
+  const json joined = json::parse(text_of("reread"));
+  ASSERT_EQ(joined["scans"].size(), 2U);
+  EXPECT_EQ(joined["frame"]["kind"], "file");
+  const bool given = std::any_of(joined["links"].begin(), joined["links"].end(),
+                                 [](const json& link) { return link["pair"] == "given"; });
+  EXPECT_TRUE(given);
+  for (const json& scan : joined["scans"]) {
+    EXPECT_EQ(scan["state"], "registered");
+    const Matrix4d pose = matrix_of(scan["frame_from_scan"]);
+    EXPECT_LT((pose - Matrix4d::Identity()).cwiseAbs().maxCoeff(), 0.01);
+  }
 }
 
 TEST_F(Project, ScansThatCannotBeReadAndCopiesAreToldAndStopNothing) {
@@ -146,7 +163,10 @@ TEST_F(Project, WhatIsMissingIsTold) {
   EXPECT_EQ(run({"project", "-o", "out"}).status, 2);
   EXPECT_FALSE(std::filesystem::exists(work() / "out"));
   EXPECT_EQ(run({"project", "status", "nothing"}).status, 2);
+  write_whole(work() / "list.txt", "# scans\nbroken.ply\n");
   write_whole(work() / "broken.ply", "ply\n");
+  const ProgramRun listed = run({"project", "list.txt", "-o", "out"});
+  EXPECT_NE(listed.err.find("--scans list.txt"), std::string::npos) << listed.err;
   const ProgramRun broken = run({"project", "broken.ply", "-o", "out"});
   EXPECT_EQ(broken.status, 2);
   EXPECT_NE(broken.err.find("broken.ply"), std::string::npos);

@@ -14,21 +14,22 @@ namespace {
 
 class Assembler {
  public:
-  Assembler(const std::vector<ProjectNode>& nodes, const std::vector<TriedPair>& pairs, ProjectResult& result)
-      : nodes_(nodes), pairs_(pairs), result_(result) {}
+  Assembler(const std::vector<ProjectNode>& nodes, const std::vector<TriedPair>& pairs, double risk,
+            ProjectResult& result)
+      : nodes_(nodes), pairs_(pairs), risk_(risk), result_(result) {}
 
   void run() {
-    const ProjectGraph made = make_graph(nodes_, pairs_);
+    const ProjectGraph made = make_graph(nodes_, pairs_, risk_);
     graph_ = made.graph;
     pair_of_ = made.pair_of;
-    solved_ = solve_graph(graph_);
+    solved_ = solve_graph(graph_, risk_);
     if (nodes_.size() == 1) {
       // A scan alone is its own frame.
       solved_.nodes.front().state = NodeState::registered;
       solved_.nodes.front().component = 0;
       solved_.components = 1;
     }
-    result_.variance_factor = adjust_planes(nodes_, pairs_, made, solved_);
+    tell_adjustment(adjust_planes(nodes_, pairs_, made, solved_));
     settle_frame();
     for (std::size_t n = 0; n < nodes_.size(); ++n) tell_scan(n);
     for (std::size_t k = 0; k < graph_.links.size(); ++k) tell_link(k);
@@ -48,6 +49,19 @@ class Assembler {
     const ProjectScan& scan = result_.scans[nodes_[static_cast<std::size_t>(node)].scan];
     const bool several = nodes_[static_cast<std::size_t>(node)].grouped || scan.index > 0;
     return several ? fmt::format("{} #{}", scan.file, scan.index) : scan.file;
+  }
+
+  void tell_adjustment(const JointFinding& finding) {
+    result_.variance_factor = finding.variance_factor;
+    if (finding.torn.empty()) return;
+    std::string names;
+    for (std::size_t k = 0; k < finding.torn.size() && k < 3; ++k)
+      names += (k == 0 ? "" : ", ") + name_of(finding.torn[k]);
+    if (finding.torn.size() > 3) names += fmt::format(" and {} more", finding.torn.size() - 3);
+    result_.notes.push_back(
+        fmt::format("the joint adjustment of planes was left out: it would have moved {} by up to {:.0f} mm, "
+                    "more than the links allow; the poses are those of the links alone",
+                    names, 1e3 * finding.most_moved_m));
   }
 
   /// The first node of each component that stands firmly lends it its world.
@@ -81,6 +95,7 @@ class Assembler {
     const SolvedNode& node = solved_.nodes[n];
     scan.component = node.component;
     scan.state = node.state;
+    scan.doubt = node.doubt;
     if (node.component < 0) {
       scan.reason = "has nothing in common with any other scan that could be told for sure";
       return;
@@ -154,6 +169,8 @@ class Assembler {
         if (bridges == 0) return "is alone";
         return fmt::format("held by {} link{} that no loop checks", bridges, bridges == 1 ? "" : "s");
       case NodeState::ambiguous:
+        if (solved_.nodes[n].alternatives.empty())
+          return fmt::format("may stand elsewhere ({:.2g} %): see questions", 100.0 * solved_.nodes[n].doubt);
         return "stands in another place just as well: see alternatives and questions";
       case NodeState::under_constrained:
         return "its links leave a direction free, or hold it loosely";
@@ -183,6 +200,8 @@ class Assembler {
       if (p != taken) told.alternatives.push_back({world(link.poses[p]), link.poses[p].agreeing_m2});
     }
     told.given = link.trust == LinkTrust::given;
+    told.twin = link.twin;
+    told.chance = link.chance;
     if (pair_of_[k] >= 0) {
       const RegistrationResult& pair = pairs_[static_cast<std::size_t>(pair_of_[k])].result;
       told.pair = pair.outcome;
@@ -207,6 +226,7 @@ class Assembler {
       told.target_from_source = pair.best.target_from_source;
       told.agreeing_m2 = pair.best.agreeing_m2;
       told.sigma = pair.sigma;
+      told.twin = pair.others ? pair.others->twin : 0.0;
       told.pair = pair.outcome;
       told.reason = pair.reason;
       result_.links.push_back(std::move(told));
@@ -228,7 +248,8 @@ class Assembler {
     // Of one part there may be doubts about many places; its scans list them all.
     for (const GraphQuestion& other : solved_.questions) {
       if (&other == &question) break;
-      if (other.moved == question.moved && other.current == question.current) return;
+      const bool same_kind = (other.doubt > 0.0) == (question.doubt > 0.0);
+      if (same_kind && other.moved == question.moved && other.current == question.current) return;
     }
     std::string scans;
     for (std::size_t k = 0; k < question.moved.size(); ++k) {
@@ -238,7 +259,13 @@ class Assembler {
     if (question.moved.size() > 3) scans += fmt::format(" and {} more", question.moved.size() - 3);
     told.current = question.current;
     told.rival = question.rival;
-    if (question.rival.empty() && question.current.empty()) {
+    if (question.doubt > 0.0) {
+      told.text = fmt::format(
+          "{} {} held by {} alone, which may be wrong ({:.2g} %): one more scan that sees both sides, or "
+          "your word, would settle it",
+          scans, question.moved.size() == 1 ? "is" : "are",
+          question.current.empty() ? "nothing" : words_of(question.current), 100.0 * question.doubt);
+    } else if (question.rival.empty() && question.current.empty()) {
       told.text = fmt::format(
           "{} could stand in two places that the scans cannot tell apart: one more scan that "
           "sees both it and a neighbour would settle it",
@@ -289,6 +316,7 @@ class Assembler {
 
   const std::vector<ProjectNode>& nodes_;
   const std::vector<TriedPair>& pairs_;
+  double risk_;
   ProjectResult& result_;
   PoseGraph graph_;
   SolvedGraph solved_;
@@ -298,9 +326,9 @@ class Assembler {
 
 }  // namespace
 
-void assemble(const std::vector<ProjectNode>& nodes, const std::vector<TriedPair>& pairs,
+void assemble(const std::vector<ProjectNode>& nodes, const std::vector<TriedPair>& pairs, double risk,
               ProjectResult& result) {
-  Assembler(nodes, pairs, result).run();
+  Assembler(nodes, pairs, risk, result).run();
 }
 
 }  // namespace limen

@@ -50,10 +50,11 @@ class Run {
       throw Error("no scan could be read; the first " + first.reason, first.file, "look at the files");
     }
     order_nodes();
-    const std::vector<TriedPair> tried = few() ? try_all(every_pair()) : try_in_waves();
+    std::vector<TriedPair> tried = few() ? try_all(every_pair()) : try_in_waves();
+    try_any_turn(tried);
     monitor_.begin_stage("adjustment");
     result_.pairs_tried = tried.size();
-    assemble(nodes_, tried, result_);
+    assemble(nodes_, tried, risk(), result_);
     status_.stage = "done";
     write_status(folder_, status_);
     return std::move(result_);
@@ -81,7 +82,8 @@ class Run {
         add_file(k, file.model ? model_record(file, part) : scan_record(file, part));
       } catch (const Error& error) {
         if (error.fault() != Fault::input) throw;
-        add_unreadable(file, error.what());
+        add_unreadable(file, lists_files(file.path) ? "it names other files; give it as --scans " + file.path
+                                                    : std::string(error.what()));
       }
       ++status_.ready;
       write_status(folder_, status_);
@@ -204,13 +206,35 @@ class Run {
                      [&](const ProjectNode& a, const ProjectNode& b) { return rank(a) < rank(b); });
   }
 
+  [[nodiscard]] double risk() const { return options_.registering.verdict.risk; }
+
   [[nodiscard]] bool few() const {
     return options_.all_pairs || nodes_.size() <= static_cast<std::size_t>(options_.pairs_per_scan) + 1;
   }
 
-  std::vector<TriedPair> try_all(const PairList& pairs) {
+  std::vector<TriedPair> try_all(const PairList& pairs, PairSearch search = PairSearch::level) {
     status_.pairs += pairs.size();
-    return try_pairs(pairs, nodes_, store_, options_.registering, folder_, status_, monitor_);
+    // What is kept of a pair does not depend on the risk: the project weighs it.
+    RegisterOptions registering = options_.registering;
+    registering.verdict.risk = VerdictOptions{}.risk;
+    return try_pairs(pairs, nodes_, store_, registering, search, folder_, status_, monitor_);
+  }
+
+  /// Scans that seem to stand upright may not: those that nothing holds are tried once more, any way round.
+  void try_any_turn(std::vector<TriedPair>& tried) {
+    const SolvedGraph solved = solve_graph(make_graph(nodes_, tried, risk()).graph, risk());
+    PairList again;
+    std::vector<std::size_t> places;
+    for (std::size_t k = 0; k < tried.size(); ++k) {
+      const TriedPair& pair = tried[k];
+      const bool alone = solved.nodes[pair.source].component < 0 || solved.nodes[pair.target].component < 0;
+      if (!alone || pair.result.outcome != Outcome::no_match) continue;
+      if (!seem_level(nodes_[pair.source], nodes_[pair.target], options_.registering)) continue;
+      again.emplace_back(pair.source, pair.target);
+      places.push_back(k);
+    }
+    std::vector<TriedPair> results = try_all(again, PairSearch::any_turn);
+    for (std::size_t k = 0; k < results.size(); ++k) tried[places[k]] = std::move(results[k]);
   }
 
   /// First the pairs whose planes promise most; then, where they led to poses, those that must see the same;
@@ -237,8 +261,8 @@ class Run {
 
   [[nodiscard]] PairList next_pairs(const std::vector<std::vector<std::size_t>>& ranked,
                                     const std::vector<TriedPair>& tried, std::size_t partners) const {
-    const ProjectGraph made = make_graph(nodes_, tried);
-    const SolvedGraph solved = solve_graph(made.graph);
+    const ProjectGraph made = make_graph(nodes_, tried, risk());
+    const SolvedGraph solved = solve_graph(made.graph, risk());
     std::set<std::pair<std::size_t, std::size_t>> done;
     for (const TriedPair& pair : tried) done.emplace(pair.source, pair.target);
     std::vector<int> held(nodes_.size(), 0);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
+#include <fstream>
 #include <map>
 #include <set>
 
@@ -42,6 +43,21 @@ void take_hash(ProjectFile& file) {
 }
 
 }  // namespace
+
+bool lists_files(const std::string& path) {
+  constexpr std::streamsize kLongest = 4096;
+  std::ifstream stream(path);
+  std::string line;
+  line.resize(kLongest);
+  while (stream.getline(line.data(), kLongest)) {
+    std::string name(line.c_str());
+    while (!name.empty() && std::isspace(static_cast<unsigned char>(name.back())) != 0) name.pop_back();
+    if (name.empty() || name.front() == '#') continue;
+    std::error_code ignored;
+    return std::filesystem::is_regular_file(std::filesystem::path(path).parent_path() / name, ignored);
+  }
+  return false;
+}
 
 bool comes_before(const std::string& a, const std::string& b) {
   std::size_t i = 0;

@@ -22,11 +22,11 @@ const double kFloorRad = radians(0.03);
 constexpr double kDrawnM = 0.01;   // by how much a building misses its model
 constexpr double kGivenM = 0.005;  // of poses that a file gives
 const double kGivenRad = radians(0.05);
-constexpr double kRivalShare = 0.5;      // of the best pose's score: a pose with less is no possibility
-constexpr std::size_t kMostPoses = 9;    // of a link
-constexpr double kTwinPossible = 0.001;  // the risk that a pair takes by default
-constexpr double kTwinLikelier = 0.5;    // probability of a twin above which a pair tells nothing
-constexpr double kLooser = 2.0;          // an alternative's deviations against those of the best pose
+constexpr double kRivalShare = 0.5;    // of the best pose's score: a pose with less is no possibility
+constexpr std::size_t kMostPoses = 9;  // of a link
+constexpr double kLikelier = 0.5;      // a twin more probable than not: the pair tells nothing
+constexpr double kOfUnknown = 0.1;     // probability of being wrong where a pair tells none
+constexpr double kLooser = 2.0;        // an alternative's deviations against those of the best pose
 
 Vector6d diagonal(const Vector3d& turn, const Vector3d& shift) {
   Vector6d all;
@@ -47,8 +47,8 @@ Matrix6d with_floor(const Matrix6d& covariance, bool model) {
 
 class GraphMaker {
  public:
-  GraphMaker(const std::vector<ProjectNode>& nodes, const std::vector<TriedPair>& pairs)
-      : nodes_(nodes), pairs_(pairs) {}
+  GraphMaker(const std::vector<ProjectNode>& nodes, const std::vector<TriedPair>& pairs, double risk)
+      : nodes_(nodes), pairs_(pairs), risk_(risk) {}
 
   ProjectGraph run() {
     graph_.nodes = static_cast<int>(nodes_.size());
@@ -66,14 +66,13 @@ class GraphMaker {
     const RegistrationResult& found = pairs_[k].result;
     // Loops cannot settle what a twin says: rooms built alike laid on one another close their loops too.
     const double twin = found.others ? found.others->twin : 0.0;
-    if (found.outcome == Outcome::no_match || twin > kTwinLikelier) return;
-    const bool twin_possible = found.outcome == Outcome::ambiguous && twin > kTwinPossible;
+    if (found.outcome == Outcome::no_match || twin > kLikelier) return;
     GraphLink link;
     link.source = static_cast<int>(pairs_[k].source);
     link.target = static_cast<int>(pairs_[k].target);
-    link.trust = found.outcome == Outcome::registered                    ? LinkTrust::sure
-                 : found.outcome == Outcome::ambiguous && !twin_possible ? LinkTrust::open
-                                                                         : LinkTrust::weak;
+    link.trust = trust_of(found, twin);
+    link.twin = twin;
+    link.chance = chance_of(found, twin, link.trust);
     link.poses.push_back(pose_of(link, found, found.best, 1.0));
     for (const Hypothesis& other : found.alternatives) {
       if (link.poses.size() >= kMostPoses) break;
@@ -82,6 +81,21 @@ class GraphMaker {
     }
     graph_.links.push_back(std::move(link));
     pair_of_.push_back(static_cast<int>(k));
+  }
+
+  /// The pair's verdict without what its own risk made of a twin.
+  [[nodiscard]] LinkTrust trust_of(const RegistrationResult& found, double twin) const {
+    if (found.outcome == Outcome::under_constrained) return LinkTrust::weak;
+    if (found.outcome == Outcome::ambiguous && (found.rivals > 0 || twin <= 0.0)) return LinkTrust::open;
+    return twin > risk_ ? LinkTrust::likely : LinkTrust::sure;
+  }
+
+  /// Probability that no pose of the link is right, or of a link with one pose that this is wrong, twins
+  /// apart.
+  [[nodiscard]] static double chance_of(const RegistrationResult& found, double twin, LinkTrust trust) {
+    if (!found.others || !found.best.probability) return kOfUnknown;
+    if (trust == LinkTrust::open) return found.others->nothing_shared + found.others->unlisted_pose;
+    return std::max(0.0, 1.0 - *found.best.probability - twin);
   }
 
   [[nodiscard]] LinkPose pose_of(const GraphLink& link, const RegistrationResult& found,
@@ -93,6 +107,7 @@ class GraphMaker {
     const Rigid3 best = to_local(found.best.target_from_source, source.local_origin, target.local_origin);
     kept.centre = kept.target_from_source * (inverse(best) * (found.sigma.centre - target.local_origin));
     kept.agreeing_m2 = pose.agreeing_m2;
+    kept.probability = pose.probability.value_or(1.0 / (1.0 + static_cast<double>(found.rivals)));
     if (!pose.sigma.covariance.isZero()) {
       kept.centre = pose.sigma.centre - target.local_origin;
       kept.covariance = with_floor(pose.sigma.covariance, source.model || target.model);
@@ -137,6 +152,7 @@ class GraphMaker {
 
   const std::vector<ProjectNode>& nodes_;
   const std::vector<TriedPair>& pairs_;
+  double risk_;
   PoseGraph graph_;
   std::vector<int> pair_of_;
 };
@@ -230,26 +246,18 @@ class SharedPlanes {
 };
 
 /// By how much the joint adjustment may move a node: more is a fault of the shared planes, not a finding.
-constexpr double kMostShiftM = 0.03;
+constexpr double kMostShiftM = 0.03;  // and three deviations of the links alone
 const double kMostTurnRad = radians(0.3);
 
-}  // namespace
-
-ProjectGraph make_graph(const std::vector<ProjectNode>& nodes, const std::vector<TriedPair>& pairs) {
-  return GraphMaker(nodes, pairs).run();
-}
-
-double adjust_planes(const std::vector<ProjectNode>& nodes, const std::vector<TriedPair>& pairs,
-                     const ProjectGraph& made, SolvedGraph& solved) {
+JointProblem joint_problem(const std::vector<ProjectNode>& nodes, const std::vector<TriedPair>& pairs,
+                           const ProjectGraph& made, const SolvedGraph& solved) {
   JointProblem problem;
   std::vector<bool> taken;
-  for (std::size_t n = 0; n < nodes.size(); ++n) {
-    const SolvedNode& node = solved.nodes[n];
+  for (const SolvedNode& node : solved.nodes) {
     problem.frame_from_node.push_back(node.frame_from_node);
     taken.push_back(node.component >= 0);
     // The node that the graph left where it was is the frame of its component.
-    const bool reference = node.component < 0 || node.covariance.isZero();
-    problem.fixed.push_back(reference);
+    problem.fixed.push_back(node.component < 0 || node.covariance.isZero());
   }
   SharedPlanes shared(nodes, solved);
   for (std::size_t k = 0; k < made.graph.links.size(); ++k) {
@@ -263,22 +271,52 @@ double adjust_planes(const std::vector<ProjectNode>& nodes, const std::vector<Tr
     }
   }
   shared.tell(taken, problem);
-  if (problem.observations.empty()) return 0.0;
+  return problem;
+}
+
+/// Three standard deviations of where a node's point lies, and of its turn.
+struct Spread {
+  double shift_m = 0.0;
+  double turn_rad = 0.0;
+};
+Spread spread_of(const SolvedNode& node, const Vector3d& point) {
+  const LinkPose pose{node.frame_from_node, node.covariance, node.frame_from_node.translation, 0.0};
+  const Matrix6d at = moved_covariance(pose, Rigid3{}, node.frame_from_node * point);
+  return {3.0 * std::sqrt(std::max(0.0, at.bottomRightCorner<3, 3>().trace())),
+          3.0 * std::sqrt(std::max(0.0, at.topLeftCorner<3, 3>().trace()))};
+}
+
+}  // namespace
+
+ProjectGraph make_graph(const std::vector<ProjectNode>& nodes, const std::vector<TriedPair>& pairs,
+                        double risk) {
+  return GraphMaker(nodes, pairs, risk).run();
+}
+
+JointFinding adjust_planes(const std::vector<ProjectNode>& nodes, const std::vector<TriedPair>& pairs,
+                           const ProjectGraph& made, SolvedGraph& solved) {
+  const JointProblem problem = joint_problem(nodes, pairs, made, solved);
+  JointFinding finding;
+  if (problem.observations.empty()) return finding;
   const JointSolution solution = adjust_jointly(problem);
   for (std::size_t n = 0; n < nodes.size(); ++n) {
-    SolvedNode& node = solved.nodes[n];
+    const Rigid3& before = solved.nodes[n].frame_from_node;
     const Vector3d middle = nodes[n].digest.middle;
-    const double shift = (solution.frame_from_node[n] * middle - node.frame_from_node * middle).norm();
-    const double turn =
-        rotation_angle(solution.frame_from_node[n].rotation.transpose() * node.frame_from_node.rotation);
-    if (!(shift <= kMostShiftM && turn <= kMostTurnRad)) return 0.0;
+    const double shift = (solution.frame_from_node[n] * middle - before * middle).norm();
+    const double turn = rotation_angle(solution.frame_from_node[n].rotation.transpose() * before.rotation);
+    const Spread allowed = spread_of(solved.nodes[n], middle);
+    if (shift <= kMostShiftM + allowed.shift_m && turn <= kMostTurnRad + allowed.turn_rad) continue;
+    finding.torn.push_back(static_cast<int>(n));
+    finding.most_moved_m = std::max(finding.most_moved_m, shift);
   }
+  if (!finding.torn.empty()) return finding;
   for (std::size_t n = 0; n < nodes.size(); ++n) {
     if (solved.nodes[n].component < 0) continue;
     solved.nodes[n].frame_from_node = solution.frame_from_node[n];
     solved.nodes[n].covariance = solution.covariance[n];
   }
-  return solution.variance_factor;
+  finding.variance_factor = solution.variance_factor;
+  return finding;
 }
 
 }  // namespace limen

@@ -15,13 +15,23 @@ struct ProjectGraph {
   std::vector<int> pair_of;  ///< of each link: index of its pair, -1: the file gives it
 };
 
-/// Every pair that found something, with all its poses, and what files say of their own scans.
-ProjectGraph make_graph(const std::vector<ProjectNode>& nodes, const std::vector<TriedPair>& pairs);
+/// Every pair that found something, with all its poses, and what files say of their own scans. What may lie
+/// on a twin with more than `risk` is no sure link.
+ProjectGraph make_graph(const std::vector<ProjectNode>& nodes, const std::vector<TriedPair>& pairs,
+                        double risk);
+
+/// What came of the joint adjustment.
+struct JointFinding {
+  /// By what the planes' deviations miss what was taken for them; 0: there was nothing to adjust, or it was
+  /// not taken.
+  double variance_factor = 0.0;
+  std::vector<int> torn;      ///< nodes that it would move too far: then no node is moved
+  double most_moved_m = 0.0;  ///< of those
+};
 
 /// The solved poses once more, with all planes that accepted links show to be shared (adjust/); nodes that
-/// stand alone stay. Returns the factor by which the planes' deviations miss what was taken for them; 0:
-/// there was nothing to adjust.
-double adjust_planes(const std::vector<ProjectNode>& nodes, const std::vector<TriedPair>& pairs,
-                     const ProjectGraph& made, SolvedGraph& solved);
+/// stand alone stay.
+JointFinding adjust_planes(const std::vector<ProjectNode>& nodes, const std::vector<TriedPair>& pairs,
+                           const ProjectGraph& made, SolvedGraph& solved);
 
 }  // namespace limen

@@ -42,6 +42,7 @@ struct ProjectScan {
   std::optional<Rigid3> frame_from_scan;
   PoseSigma sigma;                   ///< against the frame's own scan, frame axes
   std::vector<Rigid3> alternatives;  ///< of an ambiguous scan: other places that explain as much
+  double doubt = 0.0;                ///< probability that it stands elsewhere than told
   std::string reason;                ///< one sentence for a user
   std::vector<Vector3d> stations;    ///< where the scanner stood, world of the component's frame
   std::vector<PlanWall> walls;       ///< its upright planes from above, the same frame
@@ -62,6 +63,8 @@ struct ProjectLink {
   Rigid3 target_from_source;  ///< the accepted pose, else the best of the pair; world to world
   PoseSigma sigma;
   double agreeing_m2 = 0.0;
+  double twin = 0.0;    ///< probability that it lays a place on another one built alike ...
+  double chance = 0.0;  ///< ... and that it is wrong otherwise; both by the pair alone
   std::vector<ProjectAlternative> alternatives;
   std::string reason;
 };

@@ -44,10 +44,16 @@ ProjectStatus project_status(const std::filesystem::path& folder) {
   }
 }
 
+bool seem_level(const ProjectNode& source, const ProjectNode& target, const RegisterOptions& options) {
+  const auto level = [](const ScanDigest& digest) { return digest.upright && !digest.model; };
+  return options.gravity == Gravity::automatic && level(source.digest) && level(target.digest);
+}
+
 std::vector<TriedPair> try_pairs(const std::vector<std::pair<std::size_t, std::size_t>>& pairs,
                                  const std::vector<ProjectNode>& nodes, const Store& store,
-                                 const RegisterOptions& options, const std::filesystem::path& folder,
-                                 ProjectStatus& status, Monitor& monitor) {
+                                 const RegisterOptions& options, PairSearch search,
+                                 const std::filesystem::path& folder, ProjectStatus& status,
+                                 Monitor& monitor) {
   monitor.begin_stage("pairs");
   std::vector<TriedPair> tried(pairs.size());
   ScanCache cache(store, kScansInMemory);
@@ -58,12 +64,16 @@ std::vector<TriedPair> try_pairs(const std::vector<std::pair<std::size_t, std::s
     for (std::size_t k = begin; k < end; ++k) {
       const auto [source, target] = pairs[k];
       tried[k] = {source, target, {}};
-      std::optional<RegistrationResult> kept = store.load_pair(nodes[source].key, nodes[target].key);
+      const bool level = search == PairSearch::level && seem_level(nodes[source], nodes[target], options);
+      const std::string target_key = nodes[target].key + (level ? "-level" : "");
+      std::optional<RegistrationResult> kept = store.load_pair(nodes[source].key, target_key);
       if (!kept) {
+        RegisterOptions own = options;
+        if (level) own.gravity = Gravity::up;
         // Copies, but of little: the views of space are shared.
         const PreparedPair pair{*cache.get(nodes[source].key), *cache.get(nodes[target].key)};
-        store.save_pair(nodes[source].key, nodes[target].key, register_prepared(pair, options));
-        kept = store.load_pair(nodes[source].key, nodes[target].key);
+        store.save_pair(nodes[source].key, target_key, register_prepared(pair, own));
+        kept = store.load_pair(nodes[source].key, target_key);
       }
       if (!kept) throw Error("the result of a pair cannot be read back", folder.string(), "look at the disk");
       tried[k].result = std::move(*kept);

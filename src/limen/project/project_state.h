@@ -31,14 +31,25 @@ struct TriedPair {
 /// Writes how far the project is to the store, for `project status`.
 void write_status(const std::filesystem::path& folder, const ProjectStatus& status);
 
+/// How far a pair is searched.
+enum class PairSearch {
+  level,     ///< two scans that stand upright are taken to do so
+  any_turn,  ///< where nothing is found so, they may stand any way round
+};
+
+/// Whether the two ways to search differ: both scans seem to stand upright, and nobody said so.
+bool seem_level(const ProjectNode& source, const ProjectNode& target, const RegisterOptions& options);
+
 /// Registers the pairs whose result is not kept, several at a time; returns all results in the given order.
 std::vector<TriedPair> try_pairs(const std::vector<std::pair<std::size_t, std::size_t>>& pairs,
                                  const std::vector<ProjectNode>& nodes, const Store& store,
-                                 const RegisterOptions& options, const std::filesystem::path& folder,
-                                 ProjectStatus& status, Monitor& monitor);
+                                 const RegisterOptions& options, PairSearch search,
+                                 const std::filesystem::path& folder, ProjectStatus& status,
+                                 Monitor& monitor);
 
-/// The frame, the states and the words: everything of `result` but its scans' files.
-void assemble(const std::vector<ProjectNode>& nodes, const std::vector<TriedPair>& pairs,
+/// The frame, the states and the words (`risk`: that a scan told as registered may be wrong with): everything
+/// of `result` but its scans' files.
+void assemble(const std::vector<ProjectNode>& nodes, const std::vector<TriedPair>& pairs, double risk,
               ProjectResult& result);
 
 }  // namespace limen

@@ -30,6 +30,7 @@ struct ProjectCommandOptions {
   std::string gravity = "auto";
   std::string pairs = "auto";
   std::string memory;
+  double risk = VerdictOptions{}.risk;
   bool apart = false;
 };
 
@@ -58,6 +59,8 @@ ProjectOptions project_options(const ProjectCommandOptions& options, const Sessi
   ReadingChoice reading;
   reading.memory = options.memory;
   project.reading = with_choice(read_options("", "--origin", options.gravity), reading);
+  project.registering.verdict.risk = options.risk;
+  project.registering.verdict.check();
   project.all_pairs = options.pairs == "all";
   project.stations_apart = options.apart;
   return project;
@@ -66,6 +69,7 @@ ProjectOptions project_options(const ProjectCommandOptions& options, const Sessi
 OptionList reported(const ProjectCommandOptions& options, const Session& session) {
   OptionList list = {{"gravity", options.gravity}, {"pairs", options.pairs}};
   if (options.apart) list.emplace_back("stations_apart", true);
+  if (options.risk != VerdictOptions{}.risk) list.emplace_back("risk", options.risk);
   if (!options.memory.empty()) list.emplace_back("memory", options.memory);
   list.emplace_back("seed", static_cast<std::int64_t>(session.common.seed));
   return list;
@@ -168,6 +172,11 @@ void add_project_command(CommandLine& app, Session& session) {
       ->one_of({"auto", "all"});
   command->add_flag("--stations-apart", options->apart,
                     "The scans of one file are not known to one another, whatever the file says");
+  command
+      ->add_option("--risk", options->risk,
+                   "Tell a scan as registered only where it stands elsewhere with less than this probability "
+                   "(default 0.001)")
+      ->type_name("P");
   add_gravity_option(*command, options->gravity, true);
   add_memory_option(*command, options->memory);
 }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limen/io/cloud/transform_cloud.h"
 
+#include <algorithm>
 #include <deque>
 #include <iterator>
 #include <utility>
@@ -77,6 +78,16 @@ TransformedCloud write_joined(std::vector<PlacedCloud> clouds, bool several_file
   return {written.written, first.file().format(), written.notes};
 }
 
+/// Each cloud as a scan of its own.
+TransformedCloud write_apart(const std::vector<PlacedCloud>& clouds, const std::filesystem::path& output,
+                             Monitor& monitor) {
+  std::vector<JoinedClouds> stations;
+  stations.reserve(clouds.size());
+  for (const PlacedCloud& cloud : clouds) stations.emplace_back(std::vector<PlacedCloud>{cloud}, false);
+  const WrittenClouds written = write_stations(stations, output, monitor);
+  return {written.written, clouds.front().input->file().format(), written.notes};
+}
+
 void require_known_ending(const std::filesystem::path& output, const OpenPoints& input) {
   if (is_cloud_ending(output)) return;
   const std::string ending = lower_case(output.extension().string());
@@ -134,9 +145,10 @@ TransformedCloud merge_clouds(const CloudToMove& moved, const std::vector<std::s
 TransformedCloud move_stations(const std::vector<StationToMove>& stations,
                                const std::filesystem::path& output, Monitor& monitor) {
   if (stations.empty()) throw Error("there is no scan to move", output.string(), "give at least one");
-  if (stations.size() > 256)
+  const bool apart = lower_case(output.extension().string()) == ".e57";
+  if (stations.size() > 256 && !apart)
     throw Error("more than 256 clouds cannot be told apart", output.string(),
-                "write each scan to a file of its own");
+                "write an .e57, which keeps each as a scan of its own, or a file for each");
   monitor.begin_stage("merging");
   std::deque<OpenPoints> files;
   std::vector<PlacedCloud> clouds;
@@ -148,7 +160,7 @@ TransformedCloud move_stations(const std::vector<StationToMove>& stations,
     bool found = false;
     for (PlacedCloud placed : all) {
       if (files.back().file().clouds()[placed.cloud].points == 0 || with_points++ != station.cloud) continue;
-      placed.source = static_cast<std::uint8_t>(k);
+      placed.source = static_cast<std::uint8_t>(std::min<std::size_t>(k, 255));
       clouds.push_back(placed);
       found = true;
     }
@@ -157,6 +169,7 @@ TransformedCloud move_stations(const std::vector<StationToMove>& stations,
                   "give the file that the project was made from");
   }
   require_known_ending(output, files.front());
+  if (apart) return write_apart(clouds, output, monitor);
   return write_joined(std::move(clouds), stations.size() > 1, output, monitor);
 }
 

@@ -47,9 +47,10 @@ struct StationToMove {
   std::size_t cloud = 0;  ///< of the file, those without points not counted
   Rigid3 target_from_source;
 };
-/// Clouds of one file or several, each moved by a pose of its own, in one .ply, .las or .e57 with the columns
-/// of all; `source_cloud` tells which station a point is from where there are several. Throws Error where a
-/// file has no such cloud, or there are more than 256.
+/// Clouds of one file or several, each moved by a pose of its own, in one file. In an .e57 each stays a scan
+/// of its own, its pose at the optical centre where that is known; in a .ply or .las they become one cloud
+/// with the columns of all, and `source_cloud` tells which station a point is from where there are several.
+/// Throws Error where a file has no such cloud, or more than 256 would become one.
 TransformedCloud move_stations(const std::vector<StationToMove>& stations,
                                const std::filesystem::path& output, Monitor& monitor = silent_monitor());
 

@@ -10,6 +10,7 @@
 #include "limen/base/text.h"
 #include "limen/io/cloud/cloud_writers.h"
 #include "limen/io/cloud/read_cloud.h"
+#include "limen/io/e57/write_e57.h"
 #include "limen/io/table/packed_rows.h"
 
 namespace limen {
@@ -90,6 +91,32 @@ WrittenClouds write_clouds(const JoinedClouds& clouds, const std::filesystem::pa
   if (finite.left_out() > 0)
     result.notes.push_back(
         fmt::format("{} points without finite coordinates are left out", finite.left_out()));
+  return result;
+}
+
+WrittenClouds write_stations(const std::vector<JoinedClouds>& stations, const std::filesystem::path& output,
+                             Monitor& monitor) {
+  double total = 0.0;
+  for (const JoinedClouds& station : stations) total += static_cast<double>(station.plan().most_points);
+  E57StationsWriter writer(output);
+  monitor.set_unit(WorkUnit::points);
+  WrittenClouds result;
+  for (const JoinedClouds& station : stations) {
+    for (const std::string& note : station.notes()) {
+      if (std::find(result.notes.begin(), result.notes.end(), note) == result.notes.end())
+        result.notes.push_back(note);
+    }
+    writer.begin_station(station.plan());
+    const std::unique_ptr<PointStream> stream = station.read();
+    while (const std::optional<RecordTable> piece = stream->next(kStreamRows / 4)) {
+      writer.write(*piece);
+      result.read += piece->rows;
+      monitor.throw_if_cancelled();
+      monitor.advance(static_cast<double>(result.read), total);
+    }
+  }
+  writer.finish();
+  result.written = result.read;
   return result;
 }
 

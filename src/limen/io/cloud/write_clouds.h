@@ -33,7 +33,11 @@ std::vector<PlacedCloud> placed_clouds(const OpenPoints& input, const Rigid3& ta
 WrittenClouds write_clouds(const JoinedClouds& clouds, const std::filesystem::path& output,
                            Monitor& monitor = silent_monitor());
 
-/// The same, thinned on the way.
+/// Each of them as a scan of its own in one E57 file.
+WrittenClouds write_stations(const std::vector<JoinedClouds>& stations, const std::filesystem::path& output,
+                             Monitor& monitor = silent_monitor());
+
+/// As write_clouds, thinned on the way.
 WrittenClouds write_thinned(const JoinedClouds& clouds, const ThinOptions& thinning,
                             const std::filesystem::path& output, Monitor& monitor = silent_monitor());
 

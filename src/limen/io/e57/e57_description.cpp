@@ -123,17 +123,28 @@ std::string e57_number(double value) {
   return fmt::format("{:.17g}", value);
 }
 
-std::string e57_description_xml(const E57Description& about) {
+std::string e57_description_xml(const std::vector<E57Description>& scans) {
+  std::uint64_t digest = scans.front().digest;
+  std::vector<std::string> georeference;
+  for (std::size_t k = 0; k < scans.size(); ++k) {
+    if (k > 0) digest = mix64(digest ^ scans[k].digest);
+    for (const std::string& text : scans[k].georeference) {
+      if (std::find(georeference.begin(), georeference.end(), text) == georeference.end())
+        georeference.push_back(text);
+    }
+  }
   std::string xml(kHead);
   xml += fmt::format(" xmlns:limen=\"{}\">\n", kE57LimenSpace);
   xml += text_element("formatName", "ASTM E57 3D Imaging Data File");
-  xml += text_element("guid", guid_of(about.digest));
+  xml += text_element("guid", guid_of(digest));
   xml += "<versionMajor type=\"Integer\">1</versionMajor>\n<versionMinor type=\"Integer\">0</versionMinor>\n";
   xml += text_element("e57LibraryVersion", fmt::format("limen {}", kVersion));
   std::string coordinates;
-  for (const std::string& text : about.georeference) coordinates += (coordinates.empty() ? "" : "\n") + text;
+  for (const std::string& text : georeference) coordinates += (coordinates.empty() ? "" : "\n") + text;
   xml += text_element("coordinateMetadata", coordinates);
-  xml += "<data3D type=\"Vector\" allowHeterogeneousChildren=\"1\">\n" + scan_xml(about) + "</data3D>\n";
+  xml += "<data3D type=\"Vector\" allowHeterogeneousChildren=\"1\">\n";
+  for (const E57Description& scan : scans) xml += scan_xml(scan);
+  xml += "</data3D>\n";
   return xml + "<images2D type=\"Vector\" allowHeterogeneousChildren=\"1\"></images2D>\n</e57Root>\n";
 }
 

@@ -13,7 +13,7 @@
 
 namespace limen {
 
-/// What is told of a new E57 file with one scan.
+/// What is told of one scan of a new E57 file.
 struct E57Description {
   std::string name;
   std::vector<std::string> georeference;
@@ -27,8 +27,8 @@ struct E57Description {
   std::vector<E57Range> ranges;  ///< of the columns
 };
 
-/// The description as the file's XML.
-std::string e57_description_xml(const E57Description& about);
+/// The descriptions of all scans as the file's XML; at least one.
+std::string e57_description_xml(const std::vector<E57Description>& scans);
 
 /// A number with the 17 digits that bring it back.
 std::string e57_number(double value);

@@ -12,6 +12,7 @@ constexpr std::size_t kPayload = 1024 - kE57CheckSumBytes;
 }  // namespace
 
 E57PageWriter::E57PageWriter(const std::filesystem::path& path) : file_(path) {
+  kept_[0];
   append(std::string(kE57HeadBytes, '\0'));
 }
 
@@ -29,26 +30,34 @@ void E57PageWriter::append(std::string_view bytes) {
   }
 }
 
-void E57PageWriter::replace_early(std::size_t logical, std::string_view bytes) {
-  (pages_ == 0 ? page_ : first_).replace(logical, bytes.size(), bytes);
+void E57PageWriter::fill_page() {
+  if (!page_.empty()) append(std::string(kPayload - page_.size(), '\0'));
+}
+
+std::uint64_t E57PageWriter::keep_page() {
+  kept_[pages_];
+  return pages_;
+}
+
+void E57PageWriter::replace(std::uint64_t page, std::size_t at, std::string_view bytes) {
+  (page == pages_ ? page_ : kept_.at(page)).replace(at, bytes.size(), bytes);
 }
 
 void E57PageWriter::finish(E57Head head) {
-  if (!page_.empty()) {
-    page_.resize(kPayload, '\0');
-    end_page();
-  }
+  fill_page();
   head.page_bytes = kPayload + kE57CheckSumBytes;
   head.file_bytes = pages_ * head.page_bytes;
-  first_.replace(0, kE57HeadBytes, e57_head_bytes(head));
-  file_.overwrite(0, first_ + e57_check_sum(first_));
+  replace(0, 0, e57_head_bytes(head));
+  for (const auto& [page, payload] : kept_)
+    file_.overwrite(page * head.page_bytes, payload + e57_check_sum(payload));
   file_.commit();
 }
 
 void E57PageWriter::end_page() {
   file_.write(page_);
   file_.write(e57_check_sum(page_));
-  if (pages_++ == 0) first_ = page_;
+  const auto kept = kept_.find(pages_++);
+  if (kept != kept_.end()) kept->second = page_;
   page_.clear();
 }
 

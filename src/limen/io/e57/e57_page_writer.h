@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <string>
 #include <string_view>
 
@@ -23,8 +24,12 @@ class E57PageWriter {
   /// Where the next byte will lie in the file.
   [[nodiscard]] std::uint64_t physical() const;
   void append(std::string_view bytes);
-  /// Replaces bytes of the first page, which must be there.
-  void replace_early(std::size_t logical, std::string_view bytes);
+  /// Fills the page that is not full with zeros, so that the next byte begins one.
+  void fill_page();
+  /// The page that the next byte lies in; its bytes may still be replaced when it is full.
+  [[nodiscard]] std::uint64_t keep_page();
+  /// Replaces bytes of a page that was kept, or of the first.
+  void replace(std::uint64_t page, std::size_t at, std::string_view bytes);
   /// Fills the last page, completes the head and brings the file to its name. `head` needs the place and the
   /// length of the description.
   void finish(E57Head head);
@@ -33,8 +38,8 @@ class E57PageWriter {
   void end_page();
 
   AtomicFile file_;
-  std::string page_;   ///< payload of the page that is not full
-  std::string first_;  ///< payload of the first page once it is full
+  std::string page_;                           ///< payload of the page that is not full
+  std::map<std::uint64_t, std::string> kept_;  ///< payloads of pages that may change; empty: not yet full
   std::uint64_t pages_ = 0;
   std::uint64_t logical_ = 0;
 };

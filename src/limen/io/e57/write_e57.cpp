@@ -28,6 +28,7 @@ namespace {
 
 constexpr std::size_t kLargestPacket = 65536;
 constexpr std::size_t kSectionHeaderBytes = 32;
+constexpr std::uint64_t kE57PageBytes = 1024;
 /// Rows of a packet: so that every column fills whole words.
 constexpr std::size_t kRowStep = 64;
 /// Integers reach so far from the pose.
@@ -161,11 +162,16 @@ bool append_rounded(E57Encoder& encoder, double value) {
   return std::abs(value) < kLargest && encoder.append_integer(std::llround(value));
 }
 
-class E57Writer : public CloudWriter {
+}  // namespace
+
+/// One scan on its way into a file.
+class E57Section {
  public:
-  E57Writer(const std::filesystem::path& path, CloudPlan plan);
-  void write(const RecordTable& rows) override;
-  void finish() override;
+  /// `name`: of the file, for messages.
+  E57Section(E57PageWriter& file, std::string name, CloudPlan plan);
+  void write(const RecordTable& rows);
+  /// Ends the section; tells what the file's description needs to know of it.
+  E57Description finish();
 
  private:
   void plan_encoders();
@@ -180,7 +186,10 @@ class E57Writer : public CloudWriter {
   std::string name_;
   CloudPlan plan_;
   Vector3d shift_;
-  E57PageWriter file_;
+  E57PageWriter& file_;
+  std::uint64_t page_;     ///< of the section's head
+  std::uint64_t logical_;  ///< where it begins
+  std::uint64_t physical_;
   std::vector<E57Encoder> encoders_;  ///< one per column of the plan, then the state of the points
   std::array<E57Range, 3> bounds_;    ///< of the points that are numbers, about the shift
   std::size_t packet_rows_ = 0;
@@ -189,8 +198,14 @@ class E57Writer : public CloudWriter {
   std::uint64_t digest_ = 0;      ///< of all that was written: makes the names (GUIDs) of file and scan
 };
 
-E57Writer::E57Writer(const std::filesystem::path& path, CloudPlan plan)
-    : name_(path.string()), plan_(std::move(plan)), shift_(plan_.centre.value_or(plan_.near)), file_(path) {
+E57Section::E57Section(E57PageWriter& file, std::string name, CloudPlan plan)
+    : name_(std::move(name)),
+      plan_(std::move(plan)),
+      shift_(plan_.centre.value_or(plan_.near)),
+      file_(file),
+      page_(file.keep_page()),
+      logical_(file.logical()),
+      physical_(file.physical()) {
   const bool sound = plan_.columns.size() >= 3 && lower_case(plan_.columns[0].name) == "x" &&
                      lower_case(plan_.columns[1].name) == "y" && lower_case(plan_.columns[2].name) == "z";
   if (!sound) throw Error("the first columns are not x, y and z", name_, "", Fault::internal);
@@ -206,7 +221,7 @@ E57Writer::E57Writer(const std::filesystem::path& path, CloudPlan plan)
   file_.append(std::string(kSectionHeaderBytes, '\0'));
 }
 
-void E57Writer::plan_encoders() {
+void E57Section::plan_encoders() {
   static constexpr std::array<const char*, 3> kCoordinates{"cartesianX", "cartesianY", "cartesianZ"};
   std::vector<std::string> taken;
   for (std::size_t k = 0; k < plan_.columns.size(); ++k) {
@@ -230,7 +245,7 @@ void E57Writer::plan_encoders() {
 }
 
 /// What is taken off a column of the plan: coordinates of optical centres are stored about the pose too.
-double E57Writer::shift_of(const std::string& lower_name) const {
+double E57Section::shift_of(const std::string& lower_name) const {
   constexpr std::array<std::string_view, 3> kCentre{"x_origin", "y_origin", "z_origin"};
   for (std::size_t k = 0; k < 3; ++k) {
     if (lower_name == kCentre[k]) return shift_[static_cast<int>(k)];
@@ -238,21 +253,21 @@ double E57Writer::shift_of(const std::string& lower_name) const {
   return 0.0;
 }
 
-void E57Writer::check_table(const RecordTable& rows) const {
+void E57Section::check_table(const RecordTable& rows) const {
   bool same = rows.fields.size() == plan_.columns.size();
   for (std::size_t k = 0; same && k < rows.fields.size(); ++k)
     same = rows.fields[k].name == lower_case(plan_.columns[k].name);
   if (!same) throw Error("the columns are not those of the plan", name_, "", Fault::internal);
 }
 
-void E57Writer::refuse(std::size_t k, std::size_t row, double value) const {
+void E57Section::refuse(std::size_t k, std::size_t row, double value) const {
   throw Error(
       fmt::format("{} of point {} is {}, which does not fit ({} to {})", plan_.columns[k].name,
                   rows_ + row + 1, value, encoders_[k].column().minimum, encoders_[k].column().maximum),
       name_, "write the points as PLY, or correct the values");
 }
 
-void E57Writer::encode_points(const RecordTable& rows) {
+void E57Section::encode_points(const RecordTable& rows) {
   std::vector<Vector3d> points(rows.rows);
   for (std::size_t k = 0; k < 3; ++k) {
     load_numbers(rows, rows.fields[k], {0, rows.rows}, points.empty() ? nullptr : points[0].data() + k, 3);
@@ -277,7 +292,7 @@ void E57Writer::encode_points(const RecordTable& rows) {
   }
 }
 
-void E57Writer::encode_column(const RecordTable& rows, std::size_t k) {
+void E57Section::encode_column(const RecordTable& rows, std::size_t k) {
   const Field& field = rows.fields[k];
   E57Encoder& encoder = encoders_[k];
   if (encoder.column().storage == E57Storage::integer && field.plain() && is_integer(field.type) &&
@@ -305,7 +320,7 @@ void E57Writer::encode_column(const RecordTable& rows, std::size_t k) {
   }
 }
 
-void E57Writer::write(const RecordTable& rows) {
+void E57Section::write(const RecordTable& rows) {
   check_table(rows);
   // The points are one task, each further column is another.
   parallel_for(rows.fields.size() - 2, 1, [&](std::size_t task, std::size_t) {
@@ -321,7 +336,7 @@ void E57Writer::write(const RecordTable& rows) {
   for (E57Encoder& encoder : encoders_) encoder.forget_taken();
 }
 
-void E57Writer::put_packet(std::size_t rows) {
+void E57Section::put_packet(std::size_t rows) {
   std::vector<std::string_view> streams;
   std::size_t length = 6 + 2 * encoders_.size();
   for (E57Encoder& encoder : encoders_) {
@@ -344,7 +359,7 @@ void E57Writer::put_packet(std::size_t rows) {
   waiting_rows_ -= rows;
 }
 
-E57Description E57Writer::description() const {
+E57Description E57Section::description() const {
   E57Description about;
   about.name = plan_.name;
   about.georeference = plan_.georeference;
@@ -352,7 +367,7 @@ E57Description E57Writer::description() const {
   about.centre_known = plan_.centre.has_value();
   about.bounds = bounds_;
   about.points = rows_;
-  about.section = kE57HeadBytes;
+  about.section = physical_;
   about.digest = mix64(digest_ ^ rows_);
   for (const E57Encoder& encoder : encoders_) {
     about.columns.push_back(encoder.column());
@@ -361,23 +376,63 @@ E57Description E57Writer::description() const {
   return about;
 }
 
-void E57Writer::finish() {
+E57Description E57Section::finish() {
   for (E57Encoder& encoder : encoders_) encoder.finish();
   if (waiting_rows_ > 0) put_packet(waiting_rows_);
   std::string section(kSectionHeaderBytes, '\0');
   section[0] = 1;
-  const std::uint64_t length = file_.logical() - kE57HeadBytes;
-  const std::uint64_t data = kE57HeadBytes + kSectionHeaderBytes;
+  const std::uint64_t length = file_.logical() - logical_;
+  const std::uint64_t data = physical_ + kSectionHeaderBytes;
   std::memcpy(&section[8], &length, sizeof length);
   std::memcpy(&section[16], &data, sizeof data);
-  file_.replace_early(kE57HeadBytes, section);
-  E57Head head;
-  head.xml_offset = file_.physical();
-  const std::string xml = e57_description_xml(description());
-  head.xml_bytes = xml.size();
-  file_.append(xml);
-  file_.finish(head);
+  file_.replace(page_, physical_ % kE57PageBytes, section);
+  return description();
 }
+
+E57StationsWriter::E57StationsWriter(const std::filesystem::path& path)
+    : name_(path.string()), file_(std::make_unique<E57PageWriter>(path)) {}
+E57StationsWriter::~E57StationsWriter() = default;
+
+void E57StationsWriter::begin_station(const CloudPlan& plan) {
+  end_station();
+  // The head of a section is known at its end: it must not lie in two pages.
+  if (!stations_.empty()) file_->fill_page();
+  station_ = std::make_unique<E57Section>(*file_, name_, plan);
+}
+
+void E57StationsWriter::write(const RecordTable& rows) {
+  if (!station_) throw Error("rows came before the first station", name_, "", Fault::internal);
+  station_->write(rows);
+}
+
+void E57StationsWriter::end_station() {
+  if (station_) stations_.push_back(station_->finish());
+  station_.reset();
+}
+
+void E57StationsWriter::finish() {
+  end_station();
+  E57Head head;
+  head.xml_offset = file_->physical();
+  const std::string xml = e57_description_xml(stations_);
+  head.xml_bytes = xml.size();
+  file_->append(xml);
+  file_->finish(head);
+}
+
+namespace {
+
+class E57Writer : public CloudWriter {
+ public:
+  E57Writer(const std::filesystem::path& path, const CloudPlan& plan) : file_(path) {
+    file_.begin_station(plan);
+  }
+  void write(const RecordTable& rows) override { file_.write(rows); }
+  void finish() override { file_.finish(); }
+
+ private:
+  E57StationsWriter file_;
+};
 
 }  // namespace
 

@@ -4,6 +4,8 @@
 
 #include <filesystem>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "limen/io/table/cloud_writer.h"
 
@@ -17,5 +19,34 @@ namespace limen {
 /// Throws Error where the plan lacks x, y, z or the file cannot be written, in write() where a row does not
 /// fit.
 std::unique_ptr<CloudWriter> make_e57_writer(const std::filesystem::path& path, const CloudPlan& plan);
+
+class E57PageWriter;
+class E57Section;
+struct E57Description;
+
+/// Writes several clouds to one E57 file, each as a scan of its own with its own pose and columns, in the way
+/// of make_e57_writer.
+class E57StationsWriter {
+ public:
+  explicit E57StationsWriter(const std::filesystem::path& path);
+  E57StationsWriter(const E57StationsWriter&) = delete;
+  E57StationsWriter& operator=(const E57StationsWriter&) = delete;
+  ~E57StationsWriter();
+
+  /// The rows that follow are of this cloud.
+  void begin_station(const CloudPlan& plan);
+  /// The next rows, with the columns of the station's plan.
+  void write(const RecordTable& rows);
+  /// The end: brings the file to its name. There must be a station.
+  void finish();
+
+ private:
+  void end_station();
+
+  std::string name_;
+  std::unique_ptr<E57PageWriter> file_;
+  std::unique_ptr<E57Section> station_;
+  std::vector<E57Description> stations_;
+};
 
 }  // namespace limen

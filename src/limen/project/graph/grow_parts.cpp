@@ -154,8 +154,18 @@ class Grower {
   [[nodiscard]] double value_of(const Crossing& c) const {
     const GraphLink& link = graph_.links[c.link];
     const double surface = std::min(link.poses[c.pose].agreeing_m2, kEnoughM2) / kEnoughM2;
-    const double own = link.trust == LinkTrust::given ? 100.0 : link.trust == LinkTrust::sure ? 1.0 : 0.3;
+    const double own = link.trust == LinkTrust::given    ? 100.0
+                       : link.trust == LinkTrust::sure   ? 1.0
+                       : link.trust == LinkTrust::likely ? 0.6
+                                                         : 0.3;
     return own + votes_[c.link][c.pose] + 0.5 * surface;
+  }
+
+  /// Of a join that no sure link bears; `several`: links agree on it, and a loop of one of them closes.
+  [[nodiscard]] static JoinTrust lesser_trust(LinkTrust candidate, bool several) {
+    if (candidate == LinkTrust::weak) return JoinTrust::weak;
+    if (candidate == LinkTrust::likely) return JoinTrust::likely;
+    return several ? JoinTrust::sure : JoinTrust::open;
   }
 
   /// The joint pose of most evidence: the links that agree with a crossing speak for it, sure ones that do
@@ -185,12 +195,8 @@ class Grower {
       join.evidence = 0.0;
       for (const auto& [link, worth] : value) join.evidence += worth;
       for (const std::size_t link : against) join.evidence -= value.count(link) > 0 ? 0.0 : 0.5;
-      if (join.trust != JoinTrust::sure) {
-        const bool open = graph_.links[candidate.link].trust != LinkTrust::weak;
-        join.trust = open && firm >= 1 && value.size() >= 2 ? JoinTrust::sure
-                     : open                                 ? JoinTrust::open
-                                                            : JoinTrust::weak;
-      }
+      if (join.trust != JoinTrust::sure)
+        join.trust = lesser_trust(graph_.links[candidate.link].trust, firm >= 1 && value.size() >= 2);
       const bool better = !best.valid || join.trust < best.trust ||
                           (join.trust == best.trust && join.evidence > best.evidence);
       if (better) best = join;

@@ -9,7 +9,7 @@
 namespace limen {
 
 /// How sure the join was that brought a node to its part.
-enum class JoinTrust { sure, open, weak };
+enum class JoinTrust { sure, likely, open, weak };
 
 /// Nodes put together step by step.
 struct GrownParts {
@@ -20,7 +20,8 @@ struct GrownParts {
 
 /// Maximum-evidence forest: two parts are joined by the pose that most links between them agree on, the pair
 /// of parts with the most evidence first. `votes` of the loops count with a link's own evidence. First by
-/// poses that a sure link bears, or that two links agree on; then by open ones; then by weak ones.
+/// poses that a sure link bears, or that two links agree on; then by those that may lie on a twin; then by
+/// open ones; then by weak ones.
 GrownParts grow_parts(const PoseGraph& graph, const std::vector<std::vector<int>>& votes);
 
 }  // namespace limen

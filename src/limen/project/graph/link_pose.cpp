@@ -17,7 +17,7 @@ Matrix3d skew(const Vector3d& v) {
 
 LinkPose reversed(const LinkPose& pose) {
   const Rigid3 back = inverse(pose.target_from_source);
-  LinkPose other{back, Matrix6d::Identity(), back * pose.centre, pose.agreeing_m2};
+  LinkPose other{back, Matrix6d::Identity(), back * pose.centre, pose.agreeing_m2, pose.probability};
   other.covariance = moved_covariance(pose, back, other.centre);
   return other;
 }

@@ -18,6 +18,7 @@ struct LinkPose {
   Matrix6d covariance = Matrix6d::Identity();
   Vector3d centre = Vector3d::Zero();  ///< near the common surface, target frame, metres
   double agreeing_m2 = 0.0;            ///< surface that speaks for it
+  double probability = 1.0;            ///< that it is the right one, by the pair alone
 };
 
 /// The same pose the other way round.

@@ -11,10 +11,11 @@ namespace limen {
 
 /// What is known of how a link's pose came about.
 enum class LinkTrust {
-  given,  ///< the files say so
-  sure,   ///< one pose explains the pair clearly better than every other
-  open,   ///< several poses explain the pair: the first is the best, the others are as likely
-  weak    ///< the pose leaves a direction free
+  given,   ///< the files say so
+  sure,    ///< one pose explains the pair clearly better than every other
+  likely,  ///< the same, but another place built alike may explain it too
+  open,    ///< several poses explain the pair: the first is the best, the others are as likely
+  weak     ///< the pose leaves a direction free
 };
 
 /// What a pair of nodes says of their poses; no pose is thrown away.
@@ -23,6 +24,8 @@ struct GraphLink {
   int target = -1;
   LinkTrust trust = LinkTrust::sure;
   std::vector<LinkPose> poses;  ///< at least one; best first
+  double twin = 0.0;            ///< probability that the best pose lays a place on another one built alike
+  double chance = 0.0;          ///< probability that none of its poses is right, for any other reason
 };
 
 /// Nodes are scans and models: 0 .. nodes - 1, the lower ones first where one has to be chosen.
@@ -64,6 +67,7 @@ struct SolvedNode {
   Rigid3 frame_from_node;                  ///< in the frame of the first node of its component
   Matrix6d covariance = Matrix6d::Zero();  ///< of a turn about the node's origin and a shift; frame axes, SI
   std::vector<Rigid3> alternatives;        ///< other poses that explain as much; frame
+  double doubt = 0.0;  ///< probability that it stands elsewhere, by the least that holds it to the frame
 };
 
 /// Two ways to put one part of a component against the rest that the data cannot tell apart.
@@ -71,7 +75,8 @@ struct GraphQuestion {
   std::vector<int> moved;    ///< nodes that would move
   std::vector<int> current;  ///< links that speak for the present place only
   std::vector<int> rival;    ///< links that speak for the other place only
-  Rigid3 frame_from_frame;   ///< how they would move
+  Rigid3 frame_from_frame;   ///< how they would move; without meaning where `doubt` is set
+  double doubt = 0.0;        ///< no other place is known, but the links are wrong with this probability
 };
 
 /// A loop of three or four links that was tested.
@@ -97,7 +102,8 @@ struct SolvedGraph {
 /// links between two parts deciding together; least squares with a robust weight (Geman-McClure, made strict
 /// step by step) over what was accepted; what then misses its covariance is rejected. In the end every pose
 /// that was not taken is tried again: where the links that speak for it alone are not clearly fewer than
-/// those that speak against it alone, the part that it would move is ambiguous.
-SolvedGraph solve_graph(const PoseGraph& graph);
+/// those that speak against it alone, the part that it would move is ambiguous. So is what no link holds that
+/// is wrong with a probability of `risk` at most (doubt.h).
+SolvedGraph solve_graph(const PoseGraph& graph, double risk = 0.001);
 
 }  // namespace limen

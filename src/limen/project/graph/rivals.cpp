@@ -3,19 +3,19 @@
 #include "limen/project/graph/rivals.h"
 
 #include <algorithm>
-#include <deque>
-#include <map>
+#include <limits>
 #include <utility>
 
 #include "limen/base/progress.h"
+#include "limen/project/graph/flow_network.h"
+#include "limen/project/graph/shared_views.h"
 
 namespace limen {
 namespace {
 
 constexpr double kMild = 4.0;
-constexpr int kClearLead =
+constexpr std::size_t kClearLead =
     3;  // as many independent links must speak for a place for each that speaks against
-constexpr double kSameView = 0.6;  // share of a link's surface that two scans share: they are one witness
 constexpr double kSameShiftM = 0.05;
 constexpr double kSameTurnRad = 0.0175;
 
@@ -27,13 +27,8 @@ struct Bend {
 
 class RivalSearch {
  public:
-  RivalSearch(const PoseGraph& graph, const AcceptedPoses& accepted) : graph_(graph), accepted_(accepted) {
-    for (std::size_t k = 0; k < graph.links.size(); ++k) {
-      if (accepted.pose[k] < 0) continue;
-      const LinkPose& pose = graph.links[k].poses[static_cast<std::size_t>(accepted.pose[k])];
-      shared_[{graph.links[k].source, graph.links[k].target}] = pose.agreeing_m2;
-    }
-  }
+  RivalSearch(const PoseGraph& graph, const AcceptedPoses& accepted)
+      : graph_(graph), accepted_(accepted), views_(graph, accepted) {}
 
   std::vector<GraphQuestion> run() {
     std::vector<GraphQuestion> questions;
@@ -44,7 +39,7 @@ class RivalSearch {
       if (component < 0 || component != accepted_.component[static_cast<std::size_t>(link.target)]) continue;
       if (link.trust == LinkTrust::weak || link.trust == LinkTrust::given) continue;
       // Of a sure link that was accepted the others are not as likely; of one that was not, only the best is.
-      const bool sure = link.trust == LinkTrust::sure;
+      const bool sure = link.trust <= LinkTrust::likely;
       if (sure && accepted_.pose[k] >= 0) continue;
       const std::size_t count = sure ? 1 : link.poses.size();
       for (std::size_t p = 0; p < count; ++p) {
@@ -65,7 +60,7 @@ class RivalSearch {
   }
   [[nodiscard]] static bool any_fits(const GraphLink& link, const Rigid3& predicted) {
     // Other poses of a sure link are no real possibility.
-    if (link.trust <= LinkTrust::sure) return fits(link.poses.front(), predicted);
+    if (link.trust <= LinkTrust::likely) return fits(link.poses.front(), predicted);
     return std::any_of(link.poses.begin(), link.poses.end(),
                        [&](const LinkPose& pose) { return fits(pose, predicted); });
   }
@@ -108,13 +103,14 @@ class RivalSearch {
     }
     std::vector<int> open_rivals;
     for (std::size_t k = 0; k < graph_.links.size(); ++k) witness(k, moved, movement, question, open_rivals);
-    // A link of many poses, perhaps none of them right, is no witness against a sure one.
+    // A link of many poses, perhaps none of them right, or to a possible twin, is no witness against a sure
+    // one.
     const bool firm = std::any_of(question.current.begin(), question.current.end(), [&](int k) {
       return graph_.links[static_cast<std::size_t>(k)].trust <= LinkTrust::sure;
     });
     if (!firm) question.rival.insert(question.rival.end(), open_rivals.begin(), open_rivals.end());
-    const int present = independent(question.current, moved);
-    const int other = independent(question.rival, moved);
+    const std::size_t present = views_.independent(question.current, moved).size();
+    const std::size_t other = views_.independent(question.rival, moved).size();
     if (kClearLead * other > present || present == 0) questions.push_back(std::move(question));
   }
 
@@ -190,113 +186,26 @@ class RivalSearch {
     const bool stays = accepted_.pose[k] >= 0;
     if (stays && !follows) question.current.push_back(static_cast<int>(k));
     if (follows && !stays)
-      (link.trust == LinkTrust::open ? open_rivals : question.rival).push_back(static_cast<int>(k));
+      (link.trust > LinkTrust::sure ? open_rivals : question.rival).push_back(static_cast<int>(k));
   }
 
-  [[nodiscard]] bool same_view(int a, int b, double surface_m2) const {
-    if (a == b) return true;
-    const auto found = shared_.find({std::min(a, b), std::max(a, b)});
-    const auto other = shared_.find({std::max(a, b), std::min(a, b)});
-    const double shared =
-        std::max(found == shared_.end() ? 0.0 : found->second, other == shared_.end() ? 0.0 : other->second);
-    return shared > kSameView * surface_m2;
-  }
-
-  /// Number of links, those counted once whose ends see the same on either side.
-  [[nodiscard]] int independent(const std::vector<int>& links, const std::vector<bool>& moved) const {
-    std::vector<int> chosen;
-    const auto ends = [&](int k) {
-      const GraphLink& link = graph_.links[static_cast<std::size_t>(k)];
-      return moved[static_cast<std::size_t>(link.source)] ? std::pair(link.source, link.target)
-                                                          : std::pair(link.target, link.source);
-    };
-    for (const int k : links) {
-      const std::pair<int, int> own = ends(k);
-      const double surface = graph_.links[static_cast<std::size_t>(k)].poses.front().agreeing_m2;
-      const bool counted = std::any_of(chosen.begin(), chosen.end(), [&](int other) {
-        const std::pair<int, int> theirs = ends(other);
-        return same_view(own.first, theirs.first, surface) && same_view(own.second, theirs.second, surface);
-      });
-      if (!counted) chosen.push_back(k);
-    }
-    return static_cast<int>(chosen.size());
-  }
-
-  struct Pipe {
-    int to = -1;
-    int room = 0;
-    std::size_t back = 0;
-  };
-
-  /// The nodes that go with the moving ones while the others stay (Edmonds and Karp's maximum flow).
+  /// The nodes that go with the moving ones while the others stay.
   [[nodiscard]] std::vector<bool> smallest_cut(const Sides& sides, const Rigid3& movement) const {
-    std::vector<std::vector<Pipe>> pipes(static_cast<std::size_t>(graph_.nodes));
-    const auto add = [&](int a, int b, int forward, int backward) {
-      std::vector<Pipe>& out = pipes[static_cast<std::size_t>(a)];
-      std::vector<Pipe>& in = pipes[static_cast<std::size_t>(b)];
-      out.push_back({b, forward, in.size()});
-      in.push_back({a, backward, out.size() - 1});
-    };
+    FlowNetwork network(static_cast<std::size_t>(graph_.nodes));
     for (std::size_t k = 0; k < graph_.links.size(); ++k) {
       if (accepted_.pose[k] < 0) continue;
       const GraphLink& link = graph_.links[k];
       const int firm = link.trust == LinkTrust::weak ? 1 : link.trust == LinkTrust::given ? 1000 : 10;
       const Bend bend = bend_of(link, movement);
-      add(link.source, link.target, bend.source_moves ? 0 : firm, bend.target_moves ? 0 : firm);
+      network.connect(link.source, link.target, bend.source_moves ? 0 : firm, bend.target_moves ? 0 : firm);
     }
-    for (;;) {
-      const Search search = reach(pipes, sides);
-      if (search.end < 0) return search.reached;
-      int room = 1 << 30;
-      for (int node = search.end; search.came[static_cast<std::size_t>(node)].first >= 0;
-           node = search.came[static_cast<std::size_t>(node)].first) {
-        const auto [before, k] = search.came[static_cast<std::size_t>(node)];
-        room = std::min(room, pipes[static_cast<std::size_t>(before)][k].room);
-      }
-      for (int node = search.end; search.came[static_cast<std::size_t>(node)].first >= 0;
-           node = search.came[static_cast<std::size_t>(node)].first) {
-        const auto [before, k] = search.came[static_cast<std::size_t>(node)];
-        Pipe& pipe = pipes[static_cast<std::size_t>(before)][k];
-        pipe.room -= room;
-        pipes[static_cast<std::size_t>(node)][pipe.back].room += room;
-      }
-    }
-  }
-
-  struct Search {
-    std::vector<bool> reached;
-    std::vector<std::pair<int, std::size_t>> came;  ///< the node before, and which of its pipes; -1: a start
-    int end = -1;                                   ///< a staying node that was reached, -1: none
-  };
-
-  [[nodiscard]] static Search reach(const std::vector<std::vector<Pipe>>& pipes, const Sides& sides) {
-    Search search{sides.moving, std::vector<std::pair<int, std::size_t>>(pipes.size(), {-1, 0}), -1};
-    std::deque<int> waiting;
-    for (std::size_t node = 0; node < pipes.size(); ++node) {
-      if (sides.moving[node]) waiting.push_back(static_cast<int>(node));
-    }
-    while (!waiting.empty()) {
-      const int node = waiting.front();
-      waiting.pop_front();
-      const std::vector<Pipe>& out = pipes[static_cast<std::size_t>(node)];
-      for (std::size_t k = 0; k < out.size(); ++k) {
-        const auto to = static_cast<std::size_t>(out[k].to);
-        if (out[k].room <= 0 || search.reached[to]) continue;
-        search.reached[to] = true;
-        search.came[to] = {node, k};
-        if (sides.staying[to]) {
-          search.end = out[k].to;
-          return search;
-        }
-        waiting.push_back(out[k].to);
-      }
-    }
-    return search;
+    return network.smallest_cut(sides.moving, sides.staying, std::numeric_limits<int>::max())
+        .value_or(sides.moving);
   }
 
   const PoseGraph& graph_;
   const AcceptedPoses& accepted_;
-  std::map<std::pair<int, int>, double> shared_;
+  SharedViews views_;
 };
 
 }  // namespace

@@ -5,15 +5,9 @@
 #include <vector>
 
 #include "limen/project/graph/pose_graph.h"
+#include "limen/project/graph/shared_views.h"
 
 namespace limen {
-
-/// A solution to be put to the test.
-struct AcceptedPoses {
-  std::vector<Rigid3> frame_from_node;
-  std::vector<int> component;  ///< of each node, -1: none
-  std::vector<int> pose;       ///< of each link: the accepted one, -1: none
-};
 
 /// Every pose that was not accepted would move one of its ends, and with it all that hangs together with that
 /// end: the smallest cut of the accepted links that the movement breaks (those that can follow it by another

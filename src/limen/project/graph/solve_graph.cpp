@@ -2,11 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <map>
+#include <numeric>
 #include <utility>
 
 #include "limen/base/progress.h"
+#include "limen/project/graph/bridges.h"
+#include "limen/project/graph/doubt.h"
 #include "limen/project/graph/grow_parts.h"
 #include "limen/project/graph/loops.h"
 #include "limen/project/graph/pose_adjustment.h"
@@ -22,55 +24,29 @@ constexpr std::size_t kLoopsPerLink = 8;
 constexpr double kFixedM = 0.05;  // a weak link's node that is known this well by several is held after all
 constexpr double kFixedRad = 0.01;
 
-/// Marks every edge that is part of no cycle (Tarjan 1974), without recursion.
-std::vector<bool> bridges_of(int nodes, const std::vector<PoseEdge>& edges) {
-  std::vector<std::vector<std::pair<int, std::size_t>>> arms(static_cast<std::size_t>(nodes));
-  for (std::size_t e = 0; e < edges.size(); ++e) {
-    if (edges[e].source == edges[e].target) continue;
-    arms[static_cast<std::size_t>(edges[e].source)].emplace_back(edges[e].target, e);
-    arms[static_cast<std::size_t>(edges[e].target)].emplace_back(edges[e].source, e);
+/// Numbers that belong together; each set is called by its lowest.
+class Sets {
+ public:
+  explicit Sets(int count) : root_(static_cast<std::size_t>(count)) {
+    std::iota(root_.begin(), root_.end(), 0);
   }
-  std::vector<bool> bridge(edges.size(), false);
-  std::vector<int> order(arms.size(), -1);
-  std::vector<int> low(arms.size(), 0);
-  struct Visit {
-    std::size_t node;
-    std::size_t by;
-    std::size_t next;
-  };
-  int count = 0;
-  for (std::size_t root = 0; root < arms.size(); ++root) {
-    if (order[root] >= 0) continue;
-    std::vector<Visit> stack{{root, edges.size(), 0}};
-    order[root] = low[root] = count++;
-    while (!stack.empty()) {
-      Visit& top = stack.back();
-      if (top.next < arms[top.node].size()) {
-        const auto [to, edge] = arms[top.node][top.next++];
-        const auto other = static_cast<std::size_t>(to);
-        if (edge == top.by) continue;
-        if (order[other] >= 0) {
-          low[top.node] = std::min(low[top.node], order[other]);
-        } else {
-          order[other] = low[other] = count++;
-          stack.push_back({other, edge, 0});
-        }
-        continue;
-      }
-      const Visit done = top;
-      stack.pop_back();
-      if (stack.empty()) continue;
-      Visit& parent = stack.back();
-      low[parent.node] = std::min(low[parent.node], low[done.node]);
-      if (low[done.node] > order[parent.node]) bridge[done.by] = true;
-    }
+  void join(int a, int b) {
+    a = find(a);
+    b = find(b);
+    root_[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
   }
-  return bridge;
-}
+  [[nodiscard]] int find(int i) const {
+    while (root_[static_cast<std::size_t>(i)] != i) i = root_[static_cast<std::size_t>(i)];
+    return i;
+  }
+
+ private:
+  std::vector<int> root_;
+};
 
 class Solver {
  public:
-  explicit Solver(const PoseGraph& graph) : graph_(graph) {
+  Solver(const PoseGraph& graph, double risk) : graph_(graph), risk_(risk) {
     solved_.nodes.resize(static_cast<std::size_t>(graph.nodes));
     solved_.links.resize(graph.links.size());
   }
@@ -92,6 +68,7 @@ class Solver {
     judge_nodes();
     solved_.questions = rival_places(graph_, accepted_);
     heed_questions();
+    heed_doubts();
     judge_links();
     solved_.loops = tested_loops(graph_, accepted_.pose, kLoopsPerLink);
     return std::move(solved_);
@@ -114,7 +91,7 @@ class Solver {
       if (component(link.source) != component(link.target)) continue;
       double best = gate * kChiSquareBound;
       // Of a sure link the other poses are there to be told, not to be taken.
-      const std::size_t count = link.trust <= LinkTrust::sure ? 1 : link.poses.size();
+      const std::size_t count = link.trust <= LinkTrust::likely ? 1 : link.poses.size();
       for (std::size_t p = 0; p < count; ++p) {
         const double squared = chi_square(misfit(link.poses[p], predicted(link)), link.poses[p].covariance);
         if (squared > best) continue;
@@ -125,19 +102,15 @@ class Solver {
   }
 
   void settle_components() {
-    std::vector<int> root(static_cast<std::size_t>(graph_.nodes));
-    for (std::size_t i = 0; i < root.size(); ++i) root[i] = static_cast<int>(i);
-    const auto find = [&](int i) {
-      while (root[static_cast<std::size_t>(i)] != i) i = root[static_cast<std::size_t>(i)];
-      return i;
-    };
+    Sets sets(graph_.nodes);
     for (std::size_t k = 0; k < graph_.links.size(); ++k) {
-      if (accepted_.pose[k] < 0) continue;
-      const int a = find(graph_.links[k].source);
-      const int b = find(graph_.links[k].target);
-      root[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
+      if (accepted_.pose[k] >= 0) sets.join(graph_.links[k].source, graph_.links[k].target);
     }
-    for (int i = 0; i < graph_.nodes; ++i) accepted_.component[static_cast<std::size_t>(i)] = find(i);
+    for (int i = 0; i < graph_.nodes; ++i) accepted_.component[static_cast<std::size_t>(i)] = sets.find(i);
+  }
+
+  [[nodiscard]] static bool verifies(const GraphLink& link) {
+    return link.trust != LinkTrust::weak && link.trust != LinkTrust::likely;
   }
 
   [[nodiscard]] std::vector<PoseEdge> edges() const {
@@ -151,27 +124,40 @@ class Solver {
   }
 
   /// The same without those that leave a direction free: a loop through one of them checks little. They stay
-  /// in the list, from a node to itself, so that numbers agree.
+  /// in the list, from a node to itself, so that numbers
+  /// agree. So do those that may lie on a twin: rooms built alike close loops too.
   [[nodiscard]] std::vector<PoseEdge> firm_edges() const {
     std::vector<PoseEdge> list = edges();
     std::size_t edge = 0;
     for (std::size_t k = 0; k < graph_.links.size(); ++k) {
       if (accepted_.pose[k] < 0) continue;
-      if (graph_.links[k].trust == LinkTrust::weak) list[edge].target = list[edge].source;
+      if (!verifies(graph_.links[k])) list[edge].target = list[edge].source;
       ++edge;
     }
     return list;
   }
 
-  /// The first node of each component that was joined surely keeps its pose.
+  /// Of each component by its lowest node: the first node of the largest part that sure links hold together,
+  /// for what is in doubt against it must not lend it the frame.
   [[nodiscard]] std::vector<int> references() const {
+    Sets sure(graph_.nodes);
+    for (std::size_t k = 0; k < graph_.links.size(); ++k) {
+      const GraphLink& link = graph_.links[k];
+      if (accepted_.pose[k] >= 0 && link.trust <= LinkTrust::open && link.twin <= risk_)
+        sure.join(link.source, link.target);
+    }
+    const auto firm = [&](int node) {
+      return grown_.trust[static_cast<std::size_t>(node)] <= JoinTrust::likely;
+    };
+    std::vector<int> size(static_cast<std::size_t>(graph_.nodes), 0);
+    for (int i = 0; i < graph_.nodes; ++i) size[static_cast<std::size_t>(sure.find(i))] += firm(i) ? 1 : 0;
+    const auto size_of = [&](int node) {
+      return firm(node) ? size[static_cast<std::size_t>(sure.find(node))] : 0;
+    };
     std::vector<int> first(static_cast<std::size_t>(graph_.nodes), -1);
-    for (const bool sure : {true, false}) {
-      for (int i = 0; i < graph_.nodes; ++i) {
-        int& reference = first[static_cast<std::size_t>(component(i))];
-        const bool firm = grown_.trust[static_cast<std::size_t>(i)] == JoinTrust::sure;
-        if (reference < 0 && firm == sure) reference = i;
-      }
+    for (int i = 0; i < graph_.nodes; ++i) {
+      int& reference = first[static_cast<std::size_t>(component(i))];
+      if (reference < 0 || size_of(i) > size_of(reference)) reference = i;
     }
     return first;
   }
@@ -212,6 +198,8 @@ class Solver {
     std::map<int, int> number;
     for (std::size_t k = 0; k < order.size(); ++k) number[order[k].second] = static_cast<int>(k);
     solved_.components = static_cast<int>(order.size());
+    const std::vector<int> first = references();
+    for (const auto& [size, root] : order) reference_of_.push_back(first[static_cast<std::size_t>(root)]);
     for (int& root : accepted_.component) root = number.count(root) > 0 ? number[root] : -1;
   }
 
@@ -225,7 +213,7 @@ class Solver {
       const Vector6d variances = node.covariance.diagonal();
       const bool held = variances.head<3>().maxCoeff() < kFixedRad * kFixedRad &&
                         variances.tail<3>().maxCoeff() < kFixedM * kFixedM;
-      node.state = grown_.trust[i] == JoinTrust::sure   ? NodeState::registered
+      node.state = grown_.trust[i] <= JoinTrust::likely ? NodeState::registered
                    : grown_.trust[i] == JoinTrust::open ? NodeState::ambiguous
                                                         : NodeState::under_constrained;
       if (node.state == NodeState::registered && !held) node.state = NodeState::under_constrained;
@@ -265,6 +253,30 @@ class Solver {
     }
   }
 
+  /// What no link holds surely enough is ambiguous; nodes that hang on the same links are one question.
+  void heed_doubts() {
+    std::vector<int> reference(solved_.nodes.size(), -1);
+    for (std::size_t i = 0; i < reference.size(); ++i) {
+      if (solved_.nodes[i].component >= 0)
+        reference[i] = reference_of_[static_cast<std::size_t>(solved_.nodes[i].component)];
+    }
+    const std::vector<NodeDoubt> doubts = doubts_of(graph_, accepted_, reference);
+    std::map<std::vector<int>, GraphQuestion> asked;
+    for (std::size_t i = 0; i < doubts.size(); ++i) {
+      SolvedNode& node = solved_.nodes[i];
+      if (node.component < 0) continue;
+      node.doubt = doubts[i].total();
+      if (node.state != NodeState::registered || node.doubt <= risk_) continue;
+      node.state = NodeState::ambiguous;
+      GraphQuestion& question = asked[doubts[i].links];
+      question.moved.push_back(static_cast<int>(i));
+      question.current = doubts[i].links;
+      question.doubt = std::max(question.doubt, node.doubt);
+      for (const int link : doubts[i].links) doubted_[link] = true;
+    }
+    for (const auto& [links, question] : asked) solved_.questions.push_back(question);
+  }
+
   void judge_links() {
     std::size_t edge = 0;
     for (std::size_t k = 0; k < graph_.links.size(); ++k) {
@@ -281,7 +293,7 @@ class Solver {
       }
       if (solved.pose < 0) {
         solved.state = link.trust == LinkTrust::weak ? LinkState::weak
-                       : link.trust == LinkTrust::open || doubted_.count(static_cast<int>(k)) > 0
+                       : link.trust > LinkTrust::sure || doubted_.count(static_cast<int>(k)) > 0
                            ? LinkState::ambiguous
                            : LinkState::rejected;
         continue;
@@ -291,9 +303,14 @@ class Solver {
       solved.redundancy = std::clamp(6.0 - part.trace(), 0.0, 6.0);
       const bool bridge = bridge_[edge];
       ++edge;
+      // What may lie on a twin is checked where its ends stand firmly without it.
+      const bool firm = solved_.nodes[static_cast<std::size_t>(link.source)].state == NodeState::registered &&
+                        solved_.nodes[static_cast<std::size_t>(link.target)].state == NodeState::registered;
       if (link.trust == LinkTrust::weak) {
         solved.state = LinkState::weak;
-      } else if (doubted_.count(static_cast<int>(k)) > 0 || (bridge && link.trust == LinkTrust::open)) {
+      } else if (link.trust == LinkTrust::likely && !firm) {
+        solved.state = LinkState::ambiguous;
+      } else if (doubted_.count(static_cast<int>(k)) > 0 || (bridge && link.trust > LinkTrust::sure)) {
         solved.state = LinkState::ambiguous;
       } else {
         solved.state = bridge ? LinkState::bridge : LinkState::verified;
@@ -302,6 +319,8 @@ class Solver {
   }
 
   const PoseGraph& graph_;
+  double risk_;
+  std::vector<int> reference_of_;  ///< of each component: the node that keeps its pose
   GrownParts grown_;
   AcceptedPoses accepted_;
   std::vector<Matrix6d> covariance_;
@@ -313,38 +332,8 @@ class Solver {
 
 }  // namespace
 
-const char* to_string(LinkState state) {
-  switch (state) {
-    case LinkState::verified:
-      return "verified";
-    case LinkState::bridge:
-      return "bridge";
-    case LinkState::ambiguous:
-      return "ambiguous";
-    case LinkState::rejected:
-      return "rejected";
-    case LinkState::weak:
-      break;
-  }
-  return "weak";
-}
-
-const char* to_string(NodeState state) {
-  switch (state) {
-    case NodeState::registered:
-      return "registered";
-    case NodeState::ambiguous:
-      return "ambiguous";
-    case NodeState::under_constrained:
-      return "under_constrained";
-    case NodeState::floating:
-      break;
-  }
-  return "floating";
-}
-
-SolvedGraph solve_graph(const PoseGraph& graph) {
-  return Solver(graph).run();
+SolvedGraph solve_graph(const PoseGraph& graph, double risk) {
+  return Solver(graph, risk).run();
 }
 
 }  // namespace limen

@@ -35,6 +35,7 @@ Json scan_json(const ProjectScan& scan) {
     json["alternatives"] = Json::array();
     for (const Rigid3& pose : scan.alternatives) json["alternatives"].push_back(json_of(to_matrix(pose)));
   }
+  json["doubt"] = scan.frame_from_scan ? Json(scan.doubt) : Json();
   json["reason"] = scan.reason;
   return json;
 }
@@ -47,6 +48,8 @@ Json link_json(const ProjectLink& link) {
                {"pose", json_of(to_matrix(link.target_from_source))},
                {"sigma", sigma_json(link.sigma)},
                {"agreeing_m2", link.agreeing_m2},
+               {"twin", link.twin},
+               {"chance", link.chance},
                {"redundancy", link.solved.redundancy},
                {"loop_error_m", link.solved.loop_error_m},
                {"loop_error_rad", link.solved.loop_error_rad}};

@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "limen/project/graph/pose_graph.h"
+#include "limen/project/graph/shared_views.h"
+
+namespace limen {
+
+/// Why a node may stand elsewhere, as probabilities.
+struct NodeDoubt {
+  double twin = 1.0;       ///< its side of the building is laid on another place built alike
+  double chance = 1.0;     ///< the links that hold it are wrong in other ways
+  std::vector<int> links;  ///< the links that hold it, where they are fewest or least sure
+
+  [[nodiscard]] double total() const { return twin + chance - twin * chance; }
+};
+
+/// How probable it is that each node stands wrongly against its component's `reference` (of each node: the
+/// node that lends its component the frame, -1: none).
+///
+/// Twins: places built alike come in rows and storeys, so that a second link that might lie on a twin makes a
+/// first one no surer. A node is as sure as the least sure link on the surest way to the reference.
+/// Chance: links that see different surface err independently, and that wrong poses close a loop is rare in
+/// itself; the smallest cut between the node and the reference counts, links that see the same only once.
+std::vector<NodeDoubt> doubts_of(const PoseGraph& graph, const AcceptedPoses& accepted,
+                                 const std::vector<int>& reference);
+
+}  // namespace limen

@@ -1,0 +1,126 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/project/graph/doubt.h"
+
+#include "support/synthetic_graph.h"
+#include <gtest/gtest.h>
+
+namespace limen {
+namespace {
+
+/// Stations in a row, without links.
+struct Row {
+  explicit Row(int nodes) {
+    graph.nodes = nodes;
+    for (int k = 0; k < nodes; ++k) {
+      Rigid3 pose;
+      pose.translation = {3.0 * k, 0, 0};
+      truth.push_back(pose);
+    }
+  }
+
+  void link(int source, int target, double twin, double chance, double agreeing_m2 = 10.0) {
+    const Rigid3 right =
+        inverse(truth[static_cast<std::size_t>(target)]) * truth[static_cast<std::size_t>(source)];
+    GraphLink made;
+    made.source = source;
+    made.target = target;
+    made.trust = twin > 0.001 ? LinkTrust::likely : LinkTrust::sure;
+    made.poses = {measured_pose(right, agreeing_m2, random)};
+    made.twin = twin;
+    made.chance = chance;
+    graph.links.push_back(made);
+  }
+
+  PoseGraph graph;
+  std::vector<Rigid3> truth;
+  RandomStream random{3, 1};
+};
+
+std::vector<NodeState> states_of(const SolvedGraph& solved) {
+  std::vector<NodeState> states;
+  for (const SolvedNode& node : solved.nodes) states.push_back(node.state);
+  return states;
+}
+
+using States = std::vector<NodeState>;
+constexpr NodeState kYes = NodeState::registered;
+constexpr NodeState kOpen = NodeState::ambiguous;
+
+TEST(Doubt, WhatOneDoubtfulBridgeHoldsIsNotRegistered) {
+  for (const bool twin : {true, false}) {
+    Row row(4);
+    row.link(1, 0, 0.0, 0.0);
+    row.link(2, 1, 0.0, 0.0);
+    row.link(3, 2, twin ? 0.01 : 0.0, twin ? 0.0 : 0.01);
+    const SolvedGraph solved = solve_graph(row.graph, 0.001);
+    EXPECT_EQ(states_of(solved), (States{kYes, kYes, kYes, kOpen})) << twin;
+    EXPECT_NEAR(solved.nodes[3].doubt, 0.01, 1e-5);
+    EXPECT_EQ(solved.nodes[2].doubt, solved.nodes[1].doubt);
+    ASSERT_EQ(solved.questions.size(), 1U);
+    EXPECT_EQ(solved.questions[0].moved, std::vector<int>{3});
+    EXPECT_EQ(solved.questions[0].current, std::vector<int>{2});
+    EXPECT_EQ(solved.links[2].state, LinkState::ambiguous);
+    // Who bears more risk is told more.
+    for (GraphLink& link : row.graph.links) link.trust = LinkTrust::sure;
+    EXPECT_EQ(states_of(solve_graph(row.graph, 0.02)), (States{kYes, kYes, kYes, kYes})) << twin;
+  }
+}
+
+TEST(Doubt, LinksThatSeeDifferentSurfaceCheckOneAnotherWhereChanceIsFeared) {
+  Row row(3);
+  row.link(1, 0, 0.0, 0.0, 4.0);
+  row.link(2, 0, 0.0, 0.05);
+  row.link(2, 1, 0.0, 0.05);
+  EXPECT_EQ(states_of(solve_graph(row.graph)), (States{kYes, kYes, kYes}));
+  // The same where both ends see the same room: one witness.
+  Row room(3);
+  room.link(1, 0, 0.0, 0.0, 50.0);
+  room.link(2, 0, 0.0, 0.05);
+  room.link(2, 1, 0.0, 0.05);
+  EXPECT_EQ(states_of(solve_graph(room.graph)), (States{kYes, kYes, kOpen}));
+}
+
+TEST(Doubt, OneOfSeveralPosesIsNoSurerThanThePairTakesItFor) {
+  // Two passes see one facade: what fits it in one of two places fits both passes there.
+  Row row(3);
+  row.link(1, 0, 0.0, 0.0, 400.0);
+  for (const int pass : {0, 1}) {
+    row.link(2, pass, 0.0, 0.0);
+    GraphLink& link = row.graph.links.back();
+    link.trust = LinkTrust::open;
+    link.poses.front().probability = 0.6;
+  }
+  EXPECT_EQ(states_of(solve_graph(row.graph)), (States{kYes, kYes, kOpen}));
+}
+
+TEST(Doubt, LoopsOfPlacesBuiltAlikeProveNothing) {
+  Row row(3);
+  row.link(1, 0, 0.005, 0.0);
+  row.link(2, 0, 0.005, 0.0);
+  row.link(2, 1, 0.005, 0.0);
+  const SolvedGraph solved = solve_graph(row.graph);
+  EXPECT_EQ(states_of(solved), (States{kYes, kOpen, kOpen}));
+  for (const SolvedLink& link : solved.links) EXPECT_NE(link.state, LinkState::verified);
+}
+
+TEST(Doubt, TheSurestWayCounts) {
+  Row row(3);
+  row.link(1, 0, 0.0002, 0.0);
+  row.link(2, 0, 0.3, 0.0);
+  row.link(2, 1, 0.0005, 0.0);
+  const SolvedGraph solved = solve_graph(row.graph);
+  EXPECT_EQ(states_of(solved), (States{kYes, kYes, kYes}));
+  EXPECT_NEAR(solved.nodes[2].doubt, 0.0005, 1e-5);
+}
+
+TEST(Doubt, TheLargestSurePartLendsTheFrame) {
+  Row row(4);
+  row.link(1, 0, 0.02, 0.0);
+  row.link(2, 1, 0.0, 0.0);
+  row.link(3, 2, 0.0, 0.0);
+  EXPECT_EQ(states_of(solve_graph(row.graph)), (States{kOpen, kYes, kYes, kYes}));
+}
+
+}  // namespace
+}  // namespace limen

@@ -1,0 +1,44 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "limen/project/graph/pose_graph.h"
+
+namespace limen {
+
+/// A solution to be put to the test.
+struct AcceptedPoses {
+  std::vector<Rigid3> frame_from_node;
+  std::vector<int> component;  ///< of each node, -1: none
+  std::vector<int> pose;       ///< of each link: the accepted one, -1: none
+};
+
+/// Which links are one witness: their ends see the same surface on either side.
+class SharedViews {
+ public:
+  SharedViews(const PoseGraph& graph, const AcceptedPoses& accepted);
+
+  /// Of `links` the first of each view; `moved` tells for every node on which side of a cut it lies, and
+  /// every link crosses the cut.
+  [[nodiscard]] std::vector<int> independent(const std::vector<int>& links,
+                                             const std::vector<bool>& moved) const;
+
+  /// How many accepted links see what an accepted link sees, itself included.
+  [[nodiscard]] int witnesses_like(int link) const;
+
+ private:
+  [[nodiscard]] double shared(int a, int b) const;
+  /// Whether of `surface_m2` that a link shows both nodes see most.
+  [[nodiscard]] bool same_view(int a, int b, double surface_m2) const;
+  [[nodiscard]] std::vector<int> like(int node, double surface_m2) const;
+
+  const PoseGraph& graph_;
+  std::map<std::pair<int, int>, double> shared_;  ///< by lower and higher node, m^2
+  std::vector<std::vector<int>> neighbours_;
+};
+
+}  // namespace limen
