@@ -315,10 +315,19 @@ Posterior posterior_of(const std::vector<JudgedPose>& poses, const Verdict& verd
 }
 
 /// The result in the scans' own frames.
-void tell(const Verdict& verdict, const std::vector<JudgedPose>& poses, const ContrastFunction& contrast,
+void tell(Verdict verdict, const std::vector<JudgedPose>& poses, const ContrastFunction& contrast,
           double twin, const PreparedPair& pair, const RegisterOptions& options, RegistrationResult& result) {
   const PreparedScan& from = pair.source;
   const PreparedScan& to = pair.target;
+  const std::vector<std::size_t> others =
+      verdict.ranking.empty() ? std::vector<std::size_t>{} : told_alternatives(verdict, options);
+  const bool model = from.model || to.model;
+  Posterior all;
+  if (!verdict.ranking.empty()) {
+    all = posterior_of(poses, verdict, others, contrast, twin, model);
+    // In a model the odds against chance have spoken already.
+    if (!model) verdict = with_posterior(std::move(verdict), all, options.verdict.risk);
+  }
   result.outcome = verdict.outcome;
   result.judged_poses = poses.size();
   result.reason = verdict.reason;
@@ -326,8 +335,6 @@ void tell(const Verdict& verdict, const std::vector<JudgedPose>& poses, const Co
   for (UnobservedFreedom& freedom : result.unobserved)
     freedom.direction = to.upright_from_scan.transpose() * freedom.direction;
   if (verdict.ranking.empty()) return;
-  const std::vector<std::size_t> others = told_alternatives(verdict, options);
-  const Posterior all = posterior_of(poses, verdict, others, contrast, twin, from.model || to.model);
   const RefinedPose& upright = poses[verdict.ranking.front()].refined;
   const JudgedPose best = in_own_frames(poses[verdict.ranking.front()], from, to);
   result.best = to_hypothesis(best, pair);

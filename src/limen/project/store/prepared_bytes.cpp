@@ -137,7 +137,8 @@ Hypothesis get_pose(ByteReader& reader) {
   return pose;
 }
 
-constexpr std::size_t kLeastPose = 480;  // bytes, 60 numbers
+constexpr std::size_t kLeastDetail = 56;  // bytes
+constexpr std::size_t kLeastPose = 480;   // bytes, 60 numbers
 
 void put_matches(ByteWriter& writer, const RegistrationResult& result) {
   writer.put_count(result.matches.size());
@@ -191,6 +192,27 @@ void get_matches(ByteReader& reader, RegistrationResult& result) {
   }
 }
 
+void put_details(ByteWriter& writer, const std::vector<SurfaceDetail>& details) {
+  writer.put_count(details.size());
+  for (const SurfaceDetail& detail : details) {
+    writer.put(detail.mean);
+    writer.put(detail.normal);
+    writer.put(detail.area_m2);
+    writer.put(detail.sigma_m);
+  }
+}
+
+std::vector<SurfaceDetail> get_details(ByteReader& reader) {
+  std::vector<SurfaceDetail> details(reader.get_count(kLeastDetail));
+  for (SurfaceDetail& detail : details) {
+    reader.get(detail.mean);
+    reader.get(detail.normal);
+    reader.get(detail.area_m2);
+    reader.get(detail.sigma_m);
+  }
+  return details;
+}
+
 }  // namespace
 
 std::string bytes_of(const PreparedScan& prepared) {
@@ -203,6 +225,7 @@ std::string bytes_of(const PreparedScan& prepared) {
   writer.put(Vector3d(prepared.reach.min()));
   writer.put(Vector3d(prepared.reach.max()));
   put_place(writer, prepared.place);
+  put_details(writer, prepared.details);
   put_space(writer, prepared.space.get());
   return writer.bytes();
 }
@@ -218,6 +241,7 @@ PreparedScan prepared_from(std::string_view bytes, const std::string& where) {
   reader.get(prepared.reach.min());
   reader.get(prepared.reach.max());
   prepared.place = get_place(reader);
+  prepared.details = get_details(reader);
   if (prepared.model) prepared.runs = SampleRuns(prepared.extracted.features.samples);
   prepared.space = get_space(reader, prepared.extracted.features);
   return prepared;

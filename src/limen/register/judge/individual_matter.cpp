@@ -15,19 +15,20 @@
 namespace limen {
 namespace {
 
-// What is the building's. A wall, even a strip of it between two windows, is longer than furniture is high;
-// a table or a bed that is taken for a wall is evidence lost, not evidence forged.
-constexpr double kBuiltLengthM = 2.1;
-constexpr double kBuiltArea_m2 = 3.0;
+// What is the building's: its large planes, and what is near them.
 constexpr double kBeforeWallM = 0.25;  // frames, sills, radiators, skirtings: built with the wall
 constexpr double kBehindWallM = 0.6;   // reveals, frames, panes
 constexpr double kBesideWallM = 0.3;   // beyond the outline that was seen of it
 
 // When a piece agrees.
-constexpr double kMatterM = 0.08;       // cubes of clutter are 0.25 m, their means scatter by a third of it
+constexpr double kMatterM = 0.08;       // pieces are 0.1 m, means of round ones lie off all surface
 constexpr double kFreeM = 0.15;         // rays passed this far beyond
-constexpr double kNearFaceM = 0.06;     // a face that may be the same piece, moved
 constexpr double kUprightCosine = 0.3;  // of a face's normal to the vertical
+constexpr double kSameNormal = 0.94;    // cosine: normals of small pieces are known to some degrees
+constexpr double kBesideM = 0.15;       // along the face, between the middles of two pieces of it
+constexpr double kUnevenM = 0.002;      // roughness, and the pose, at least
+constexpr double kOneFaceM = 0.03;      // pieces that lie so in one plane may be of one face
+constexpr double kFaceLengthM = 0.6;    // and then tell the same over this length
 
 // Pieces nearer than this tell the same: the size of a chair, a box, a monitor. A moved table is few pieces.
 constexpr double kCorrelationM = 0.25;
@@ -43,8 +44,7 @@ class BuiltPlanes {
       const PlanarPolygon& plane = features.planes[i];
       const Box2 box = box_of(plane.parts);
       if (box.empty()) continue;
-      const bool large = (box.high - box.low).maxCoeff() > kBuiltLengthM || plane.area_m2 > kBuiltArea_m2;
-      if (!large) continue;
+      if (!of_building(plane)) continue;
       built_[i] = true;
       for (const Polygon& part : plane.parts) parts_.push_back({plane.plane, plane.frame, box_of({part})});
     }
@@ -52,7 +52,7 @@ class BuiltPlanes {
 
   [[nodiscard]] bool is_built(std::int32_t plane) const { return built_[static_cast<std::size_t>(plane)]; }
 
-  enum class Place { off, at, behind };
+  enum class Place { off, at_wall, behind };
   /// Where `x` stands to the walls: at one, or behind one.
   [[nodiscard]] Place place(const Vector3d& x) const {
     Place found = Place::off;
@@ -62,7 +62,7 @@ class BuiltPlanes {
       const Vector2d at = part.frame.to_plane(x);
       const Vector2d margin = Vector2d::Constant(kBesideWallM);
       if (!Box2{part.box.low - margin, part.box.high + margin}.contains(at)) continue;
-      if (distance > -kBehindWallM) return Place::at;
+      if (distance > -kBehindWallM) return Place::at_wall;
       found = Place::behind;
     }
     return found;
@@ -92,16 +92,17 @@ class BuiltPlanes {
 
 /// A piece of individual matter of one scan.
 struct Piece {
-  const SurfaceSample* sample = nullptr;
+  const SurfaceDetail* detail = nullptr;
   bool behind = false;  ///< seen through an opening of this scan's walls
 };
 
-std::vector<Piece> pieces_of(const Features& features, const BuiltPlanes& built) {
+std::vector<Piece> pieces_of(const ScanView& view, const BuiltPlanes& built) {
   std::vector<Piece> pieces;
-  for (const SurfaceSample& sample : features.samples) {
-    if (sample.plane >= 0 && built.is_built(sample.plane)) continue;
-    const BuiltPlanes::Place place = built.place(sample.mean);
-    if (place != BuiltPlanes::Place::at) pieces.push_back({&sample, place == BuiltPlanes::Place::behind});
+  if (view.details == nullptr) return pieces;
+  for (const SurfaceDetail& detail : *view.details) {
+    const BuiltPlanes::Place place = built.place(detail.mean);
+    if (place != BuiltPlanes::Place::at_wall)
+      pieces.push_back({&detail, place == BuiltPlanes::Place::behind});
   }
   const std::size_t stride = 1 + pieces.size() / kMostPieces;
   std::size_t kept = 0;
@@ -117,21 +118,54 @@ struct Told {
   bool agrees = false;
 };
 
-/// Effective number of independent observations (Kish's formula with the correlation of neighbours): the
-/// square of the weights' sum over the sum of w_i w_j rho_ij, rho = exp(-d / length).
-double effective_count(const std::vector<Told>& told) {
-  double total = 0.0;
-  double together = 0.0;
+/// A face of one scan that the other has as well, in the target's frame.
+struct MetFace {
+  Vector3d at = Vector3d::Zero();
+  Vector3d normal = Vector3d::Zero();
+  double offset_m = 0.0;
+  double sigma_m = 0.0;
+};
+
+/// Correlation of what two faces tell: things are moved as a whole, so that pieces of one face are hardly
+/// more than one observation.
+double correlation(const MetFace& a, const MetFace& b) {
+  const Vector3d apart = b.at - a.at;
+  const bool one_face = std::abs(a.normal.dot(b.normal)) > 0.95 && std::abs(a.normal.dot(apart)) < kOneFaceM;
+  return std::exp(-apart.norm() / (one_face ? kFaceLengthM : kCorrelationM));
+}
+
+/// Each face's share of an observation: neighbours that tell the same make one together, however many they
+/// are, and what stands alone is one of its own.
+std::vector<double> shares_of(const std::vector<MetFace>& faces) {
+  std::vector<double> together(faces.size(), 1.0);
+  for (std::size_t i = 0; i < faces.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      if ((faces[j].at - faces[i].at).squaredNorm() > 9.0 * kFaceLengthM * kFaceLengthM) continue;
+      const double rho = correlation(faces[i], faces[j]);
+      together[i] += rho;
+      together[j] += rho;
+    }
+  }
+  for (double& one : together) one = 1.0 / one;
+  return together;
+}
+
+/// The same of pieces of matter, which weigh by their area: w_i / sum_j w_j rho_ij, rho = exp(-d / length).
+std::vector<double> shares_of(const std::vector<Told>& told) {
+  std::vector<double> together(told.size());
   for (std::size_t i = 0; i < told.size(); ++i) {
-    total += told[i].weight;
-    together += told[i].weight * told[i].weight;
+    together[i] += told[i].weight;
     for (std::size_t j = 0; j < i; ++j) {
       const double distance = (told[i].at - told[j].at).norm();
       if (distance > 8.0 * kCorrelationM) continue;
-      together += 2.0 * told[i].weight * told[j].weight * std::exp(-distance / kCorrelationM);
+      const double rho = std::exp(-distance / kCorrelationM);
+      together[i] += told[j].weight * rho;
+      together[j] += told[i].weight * rho;
     }
   }
-  return together > 0.0 ? total * total / together : 0.0;
+  for (std::size_t i = 0; i < told.size(); ++i)
+    together[i] = together[i] > 0.0 ? told[i].weight / together[i] : 0.0;
+  return together;
 }
 
 double agreeing_share(const std::vector<Told>& told) {
@@ -145,7 +179,15 @@ double agreeing_share(const std::vector<Told>& told) {
 }
 
 Observations observations(const std::vector<Told>& told) {
-  return {effective_count(told), agreeing_share(told)};
+  const std::vector<double> shares = shares_of(told);
+  Observations seen;
+  double agreeing = 0.0;
+  for (std::size_t i = 0; i < told.size(); ++i) {
+    seen.count += shares[i];
+    if (told[i].agrees) agreeing += shares[i];
+  }
+  seen.share = seen.count > 0.0 ? agreeing / seen.count : 0.0;
+  return seen;
 }
 
 /// One scan with what is the building's and what is not.
@@ -154,8 +196,7 @@ struct Side {
   BuiltPlanes built;
   std::vector<Piece> pieces;
 
-  explicit Side(const ScanView& scan)
-      : view(scan), built(*scan.features), pieces(pieces_of(*scan.features, built)) {}
+  explicit Side(const ScanView& scan) : view(scan), built(*scan.features), pieces(pieces_of(scan, built)) {}
 };
 
 /// Asks `judge` about the pieces of `scan`; what it does not know is left out.
@@ -164,9 +205,9 @@ void ask_matter(const Side& scan, const Side& judge, const Rigid3& judge_from_sc
   if (!judge.view.knows_free) return;  // what it does not contradict it does not confirm either
   for (const Piece& piece : scan.pieces) {
     SightQuery query;
-    query.at = judge_from_scan * piece.sample->mean;
+    query.at = judge_from_scan * piece.detail->mean;
     const BuiltPlanes::Place place = judge.built.place(query.at);
-    if (place == BuiltPlanes::Place::at) continue;
+    if (place == BuiltPlanes::Place::at_wall) continue;
     query.surface_m = kMatterM;
     query.free_m = kFreeM;
     const Sight sight = judge.view.space->look(query);
@@ -176,29 +217,97 @@ void ask_matter(const Side& scan, const Side& judge, const Rigid3& judge_from_sc
     if (surface && piece.behind && place == BuiltPlanes::Place::behind) continue;
     if (surface && sight.plane >= 0 && judge.built.is_built(sight.plane)) continue;
     told.push_back(
-        {target_from_scan * piece.sample->mean, static_cast<double>(piece.sample->area_m2), surface});
+        {target_from_scan * piece.detail->mean, static_cast<double>(piece.detail->area_m2), surface});
   }
 }
 
-/// Upright faces of furniture that the other scan has nearby.
-void ask_faces(const Side& scan, const Side& judge, const Rigid3& judge_from_scan,
-               const Rigid3& target_from_scan, double fine_m, std::vector<Told>& told) {
-  for (const Piece& piece : scan.pieces) {
-    const SurfaceSample& sample = *piece.sample;
-    if (sample.plane < 0) continue;
-    const Vector3d normal = judge_from_scan.rotation * sample.normal;
-    if (std::abs(normal.z()) > kUprightCosine) continue;
-    SightQuery query;
-    query.at = judge_from_scan * sample.mean;
-    if (judge.built.place(query.at) == BuiltPlanes::Place::at) continue;
-    query.normal = normal;
-    query.oriented = scan.view.features->planes[static_cast<std::size_t>(sample.plane)].oriented;
-    query.surface_m = kNearFaceM;
-    const Sight sight = judge.view.space->look(query);
-    if (sight.kind != SightKind::surface || sight.plane < 0 || judge.built.is_built(sight.plane)) continue;
-    told.push_back({target_from_scan * sample.mean, static_cast<double>(sample.area_m2),
-                    std::abs(sight.distance_m) <= fine_m});
+/// The flat pieces of one scan, found by place.
+class DetailGrid {
+ public:
+  explicit DetailGrid(const std::vector<SurfaceDetail>& details) : details_(details) {
+    for (std::uint32_t i = 0; i < details.size(); ++i) cells_.emplace_back(cell_of(details[i].mean), i);
+    std::sort(cells_.begin(), cells_.end());
   }
+
+  /// Of the pieces beside the place that face the same way the nearest; null: none.
+  [[nodiscard]] const SurfaceDetail* nearest(const Vector3d& at, const Vector3d& normal) const {
+    const SurfaceDetail* found = nullptr;
+    double least = kNearFaceM;
+    const Cell middle = cell_of(at);
+    for (int dx = -1; dx <= 1; ++dx)
+      for (int dy = -1; dy <= 1; ++dy)
+        for (int dz = -1; dz <= 1; ++dz) {
+          const Cell cell{middle[0] + dx, middle[1] + dy, middle[2] + dz};
+          auto it = std::lower_bound(cells_.begin(), cells_.end(), std::pair{cell, std::uint32_t{0}});
+          for (; it != cells_.end() && it->first == cell; ++it) {
+            const SurfaceDetail& other = details_[it->second];
+            if (other.normal.dot(normal) < kSameNormal) continue;
+            const Vector3d apart = at - other.mean;
+            const double across = apart.dot(other.normal);
+            const double along = (apart - across * other.normal).norm();
+            if (along > kBesideM || std::abs(across) >= least) continue;
+            least = std::abs(across);
+            found = &other;
+          }
+        }
+    return found;
+  }
+
+ private:
+  using Cell = std::array<std::int64_t, 3>;
+  static Cell cell_of(const Vector3d& x) {
+    constexpr double kCellM = 0.17;  // no smaller than the reach: sqrt(kBesideM^2 + kNearFaceM^2)
+    return {static_cast<std::int64_t>(std::floor(x.x() / kCellM)),
+            static_cast<std::int64_t>(std::floor(x.y() / kCellM)),
+            static_cast<std::int64_t>(std::floor(x.z() / kCellM))};
+  }
+
+  const std::vector<SurfaceDetail>& details_;
+  std::vector<std::pair<Cell, std::uint32_t>> cells_;
+};
+
+/// Upright flat pieces of `scan` that `judge` has nearby as well: of what stands in the room, not of the
+/// building, and not what both see through openings only.
+std::vector<MetFace> met_faces(const Side& scan, const Side& judge, const Rigid3& judge_from_scan,
+                               const Rigid3& target_from_judge) {
+  std::vector<MetFace> faces;
+  if (scan.view.details == nullptr || judge.view.details == nullptr) return faces;
+  const DetailGrid grid(*judge.view.details);
+  for (const Piece& piece : scan.pieces) {
+    const SurfaceDetail& detail = *piece.detail;
+    if (!detail.flat()) continue;
+    const Vector3d normal = judge_from_scan.rotation * detail.normal;
+    if (std::abs(normal.z()) > kUprightCosine) continue;
+    const Vector3d at = judge_from_scan * detail.mean;
+    const SurfaceDetail* met = grid.nearest(at, normal);
+    if (met == nullptr) continue;
+    const BuiltPlanes::Place there = judge.built.place(at);
+    if (there == BuiltPlanes::Place::at_wall) continue;
+    if (there == BuiltPlanes::Place::behind && piece.behind) continue;
+    const Vector3d across = (normal + met->normal).normalized();
+    faces.push_back({target_from_judge * at, target_from_judge.rotation * across, across.dot(at - met->mean),
+                     std::hypot(static_cast<double>(detail.sigma_m), static_cast<double>(met->sigma_m))});
+  }
+  return faces;
+}
+
+/// What stands in a room is its own to the millimetre: offsets between pieces that both scans have.
+FaceOffsets face_offsets(const Side& source, const Side& target, const Rigid3& target_from_source) {
+  const Rigid3 source_from_target = inverse(target_from_source);
+  // Nearness is mutual, about: the sparser scan asks.
+  const bool source_asks = source.view.details != nullptr && target.view.details != nullptr &&
+                           source.view.details->size() <= target.view.details->size();
+  const std::vector<MetFace> faces = source_asks
+                                         ? met_faces(source, target, target_from_source, Rigid3{})
+                                         : met_faces(target, source, source_from_target, target_from_source);
+  FaceOffsets offsets;
+  const double drift = std::hypot(source.view.features->drift_m, target.view.features->drift_m);
+  for (const MetFace& face : faces) {
+    offsets.offsets_m.push_back(face.offset_m);
+    offsets.sigmas_m.push_back(std::hypot(kUnevenM, face.sigma_m, drift));
+  }
+  offsets.shares = shares_of(faces);
+  return offsets;
 }
 
 std::vector<Told> told_of_matter(const Side& source, const Side& target, const Rigid3& target_from_source) {
@@ -231,13 +340,6 @@ double chance_of(const Side& source, const Side& target, const Rigid3& target_fr
   return counted > 0 ? share / counted : 0.0;
 }
 
-/// How far two measurements of one face may be apart: noise of both planes and what walls are uneven.
-double fine_m(const ScanView& source, const ScanView& target) {
-  const double noise = std::hypot(source.features->noise_m, target.features->noise_m);
-  const double drift = std::hypot(source.features->drift_m, target.features->drift_m);
-  return std::clamp(3.0 * std::hypot(noise, drift), 0.008, 0.025);
-}
-
 }  // namespace
 
 IndividualMatter individual_matter(const ScanView& source_view, const ScanView& target_view,
@@ -251,11 +353,7 @@ IndividualMatter individual_matter(const ScanView& source_view, const ScanView& 
   individual.chance = chance_of(source, target, target_from_source);
   individual.apart = wall_between(source, target, target_from_source) ||
                      wall_between(target, source, inverse(target_from_source));
-  const double fine = fine_m(source_view, target_view);
-  std::vector<Told> faces;
-  ask_faces(source, target, target_from_source, target_from_source, fine, faces);
-  ask_faces(target, source, inverse(target_from_source), Rigid3{}, fine, faces);
-  individual.faces = observations(faces);
+  individual.faces = face_offsets(source, target, target_from_source);
   return individual;
 }
 

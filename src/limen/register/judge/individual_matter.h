@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <vector>
+
 #include "limen/register/prepare/scan_view.h"
 
 namespace limen {
@@ -14,15 +16,26 @@ struct Observations {
   [[nodiscard]] double agreeing() const { return count * share; }
 };
 
+/// Distances across between flat pieces of things, each scan's to the other's.
+struct FaceOffsets {
+  std::vector<double> offsets_m;  ///< signed, within `kNearFaceM`
+  /// Of one observation, each: pieces of one face make about one together, however many they are.
+  std::vector<double> shares;
+  /// What noise leaves between two measurements of one face, each; roughness and the pose come on top.
+  std::vector<double> sigmas_m;
+};
+
+/// Pieces farther apart than this are not taken for one another.
+inline constexpr double kNearFaceM = 0.06;
+
 /// What two scans say of matter that is not the building's: furniture, clutter, things that stand about.
 /// Rooms built alike agree on walls, slabs, columns, frames by design; on this matter only by chance, or
 /// because they are furnished alike.
 struct IndividualMatter {
   /// Pieces that the other scan saw either as matter or as free space.
   Observations matter;
-  /// Upright faces of furniture: of those that the other scan has within a few centimetres, the share that it
-  /// has within what noise explains. Furniture put up alike by hand agrees to centimetres only.
-  Observations faces;
+  /// Upright flat pieces of things that the other scan has nearby as well, and how far apart the two are.
+  FaceOffsets faces;
   /// Share of `matter` that agrees when one room's things are shifted about in the other: chance.
   double chance = 0.0;
   /// A wall stands between the two stations: what they have in common is seen through an opening.

@@ -3,6 +3,9 @@
 #include "limen/register/judge/posterior.h"
 
 #include <cmath>
+#include <numeric>
+
+#include <fmt/format.h>
 
 #include "limen/base/error.h"
 
@@ -42,6 +45,20 @@ Posterior posterior(const PosteriorEvidence& evidence, const PosteriorOptions& o
   posterior.others.unlisted_pose /= total;
   posterior.others.nothing_shared /= total;
   return posterior;
+}
+
+Verdict with_posterior(Verdict verdict, const Posterior& posterior, double risk) {
+  if (verdict.outcome != Outcome::registered || posterior.poses.empty()) return verdict;
+  if (posterior.poses.front() >= 1.0 - risk) return verdict;
+  const double chance = posterior.others.nothing_shared + posterior.others.unlisted_pose;
+  const double others = std::accumulate(posterior.poses.begin() + 1, posterior.poses.end(), 0.0);
+  verdict.outcome = Outcome::ambiguous;
+  verdict.reason =
+      chance > others
+          ? fmt::format("so little surface agrees that it may be chance ({:.1f} %)", 100.0 * chance)
+          : fmt::format("too little speaks against the other poses: one of them may be right ({:.1f} %)",
+                        100.0 * others);
+  return verdict;
 }
 
 }  // namespace limen

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "limen/model/result.h"
+#include "limen/register/judge/verdict.h"
 
 namespace limen {
 
@@ -41,5 +42,9 @@ struct PosteriorEvidence {
 
 /// Bayes' rule over the poses found, a twin, a pose not proposed, and nothing shared.
 Posterior posterior(const PosteriorEvidence& evidence, const PosteriorOptions& options = {});
+
+/// A pose that is less probable than 1 - `risk` is not `registered`: `ambiguous`, and the reason tells what
+/// else may be. Other outcomes stay.
+Verdict with_posterior(Verdict verdict, const Posterior& posterior, double risk);
 
 }  // namespace limen

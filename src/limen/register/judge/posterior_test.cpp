@@ -62,5 +62,20 @@ TEST(Posterior, BoundsAreNamed) {
   EXPECT_THROW(posterior({}, options), Error);
 }
 
+TEST(PosteriorVerdict, WhatMayBeChanceIsNotRegistered) {
+  Verdict verdict;
+  verdict.outcome = Outcome::registered;
+  EXPECT_EQ(with_posterior(verdict, posterior({30.0, {12.0}, 0.0}), 1e-3).outcome, Outcome::registered);
+  const Verdict little = with_posterior(verdict, posterior({7.0, {12.0}, 0.0}), 1e-3);
+  EXPECT_EQ(little.outcome, Outcome::ambiguous);
+  EXPECT_NE(little.reason.find("chance"), std::string::npos) << little.reason;
+  const Verdict two = with_posterior(verdict, posterior({30.0, {2.0}, 0.0}), 1e-3);
+  EXPECT_EQ(two.outcome, Outcome::ambiguous);
+  EXPECT_NE(two.reason.find("one of them"), std::string::npos) << two.reason;
+  EXPECT_EQ(with_posterior(verdict, posterior({7.0, {12.0}, 0.0}), 0.4).outcome, Outcome::registered);
+  verdict.outcome = Outcome::under_constrained;
+  EXPECT_EQ(with_posterior(verdict, posterior({7.0, {12.0}, 0.0}), 1e-3).outcome, Outcome::under_constrained);
+}
+
 }  // namespace
 }  // namespace limen

@@ -15,17 +15,17 @@ struct ShareBelief {
 };
 
 struct TwinOptions {
-  double prior = 0.15;         ///< of the pairs whose walls fit, those of two rooms built alike
-  double alike_share = 0.05;   ///< of those, furnished alike as well, to a few centimetres
-  double apart_share = 0.1;    ///< of those again, where the stations stand in two rooms: both must be alike
-  ShareBelief kept{0.9, 7.0};  ///< share of a room's things that stayed between the two scans
-  /// Of the faces that stayed those that noise explains; the rest was pushed a little.
-  ShareBelief kept_faces{0.93, 8.0};
+  double prior = 0.15;        ///< of the pairs whose walls fit, those of two rooms built alike
+  double prior_apart = 0.05;  ///< the same where a wall is between the stations: two neighbours must be alike
+  double alike_share = 0.03;  ///< of those, furnished alike as well, to a few centimetres
+  double apart_share = 0.3;   ///< of those again, where the stations stand in two rooms: both must be alike
+  /// Share of a room's things that stayed between the two scans: mostly nearly all of them; in some pairs
+  /// the room was used in between, and any share is as good as another.
+  ShareBelief kept{0.9, 7.0};
+  double lived_in = 0.2;  ///< share of such pairs
+  ShareBelief kept_lived_in{0.55, 4.0};
   double more_than_chance = 0.1;  ///< rooms are furnished along walls and round tables: added to chance
-  double chance_strength = 10.0;  ///< how well chance is known, in observations
-  /// Furniture put up alike by hand, to 2 or 3 cm: a face within 6 cm of its like lies within 8 mm in a
-  /// quarter of the cases or less.
-  ShareBelief alike_faces{0.22, 8.0};
+  double chance_strength = 20.0;  ///< how well chance is known, in observations
 
   void check() const;
 };

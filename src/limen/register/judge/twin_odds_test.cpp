@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limen/register/judge/twin_odds.h"
 
+#include <cmath>
+#include <utility>
+
 #include <gtest/gtest.h>
 
 #include "limen/base/error.h"
@@ -12,42 +15,73 @@ namespace {
 
 constexpr double kRisk = 0.001;
 
-IndividualMatter seen(Observations matter, Observations faces, double chance = 0.05) {
+/// `count` faces that stand on their own, their offsets of a normal deviation.
+FaceOffsets faces(int count, double deviation_m) {
+  FaceOffsets offsets;
+  for (int k = 0; k < count; ++k) {
+    // Quantiles of the even distribution, stretched: a spread of the deviation asked for.
+    const double even = (k + 0.5) / count - 0.5;
+    offsets.offsets_m.push_back(even * std::sqrt(12.0) * deviation_m);
+    offsets.shares.push_back(1.0);
+    offsets.sigmas_m.push_back(0.002);
+  }
+  return offsets;
+}
+
+IndividualMatter seen(Observations matter, FaceOffsets offsets, double chance = 0.05) {
   IndividualMatter individual;
   individual.matter = matter;
-  individual.faces = faces;
+  individual.faces = std::move(offsets);
   individual.chance = chance;
   return individual;
 }
 
 TEST(TwinOdds, WithoutEvidenceThePriorStands) {
   EXPECT_NEAR(probability_of_twin({}), TwinOptions{}.prior, 1e-12);
+  IndividualMatter apart;
+  apart.apart = true;
+  EXPECT_NEAR(probability_of_twin(apart), TwinOptions{}.prior_apart, 1e-12);
 }
 
 TEST(TwinOdds, ThingsThatAgreeToTheMillimetreMakeOneRoom) {
-  EXPECT_LT(probability_of_twin(seen({10, 0.97}, {4, 1.0})), kRisk);
-  // A third of the things moved: still one room.
-  EXPECT_LT(probability_of_twin(seen({20, 0.65}, {5, 0.95})), kRisk);
+  EXPECT_LT(probability_of_twin(seen({10, 0.97}, faces(4, 0.002))), kRisk);
+  // Of the things a third moved: still one room. So it is where measuring is twice as coarse as thought.
+  EXPECT_LT(probability_of_twin(seen({20, 0.65}, faces(6, 0.002))), kRisk);
+  EXPECT_LT(probability_of_twin(seen({20, 0.95}, faces(6, 0.004))), kRisk);
 }
 
 TEST(TwinOdds, ThingsThatAgreeByChanceMakeATwin) {
-  EXPECT_GT(probability_of_twin(seen({8, 0.05}, {0, 0.0})), 0.9);
-  EXPECT_GT(probability_of_twin(seen({12, 0.3}, {2, 0.2}, 0.2)), 0.5);
+  EXPECT_GT(probability_of_twin(seen({8, 0.05}, {})), 0.5);
+  EXPECT_GT(probability_of_twin(seen({30, 0.1}, {})), 0.8);
 }
 
 TEST(TwinOdds, ThingsThatAgreeToCentimetresMayBeATwinFurnishedAlike) {
-  EXPECT_GT(probability_of_twin(seen({25, 0.98}, {8, 0.05})), 0.9);
-  EXPECT_GT(probability_of_twin(seen({25, 0.98}, {0, 0.0})), kRisk);
-  // Through a door two rooms would have to be alike.
-  IndividualMatter apart = seen({12, 1.0}, {0, 0.0});
+  EXPECT_GT(probability_of_twin(seen({25, 0.98}, faces(8, 0.025))), 10.0 * kRisk);
+  EXPECT_GT(probability_of_twin(seen({25, 0.98}, faces(8, 0.012))), kRisk);
+  EXPECT_GT(probability_of_twin(seen({25, 0.98}, {})), kRisk);
+  // Through a door two rooms would have to be alike; a few faces settle it.
+  IndividualMatter apart = seen({12, 1.0}, {});
   EXPECT_GT(probability_of_twin(apart), kRisk);
+  apart = seen({12, 1.0}, faces(2, 0.002));
+  const double together = probability_of_twin(apart);
   apart.apart = true;
-  EXPECT_LT(probability_of_twin(apart), kRisk);
+  EXPECT_LT(probability_of_twin(apart), 0.5 * together);
+}
+
+TEST(TwinOdds, PiecesOfOneFaceAreOneObservation) {
+  FaceOffsets one = faces(3, 0.002);
+  FaceOffsets split = one;
+  for (int copy = 0; copy < 4; ++copy) {
+    split.offsets_m.insert(split.offsets_m.end(), one.offsets_m.begin(), one.offsets_m.end());
+    split.sigmas_m.insert(split.sigmas_m.end(), one.sigmas_m.begin(), one.sigmas_m.end());
+  }
+  split.shares.assign(split.offsets_m.size(), 0.2);
+  EXPECT_NEAR(probability_of_twin(seen({10, 0.9}, split)), probability_of_twin(seen({10, 0.9}, one)), 1e-9);
 }
 
 TEST(TwinOdds, WhatThingsMeetAnywayTellsLess) {
-  EXPECT_GT(probability_of_twin(seen({6, 1.0}, {4, 1.0}, 0.5)),
-            probability_of_twin(seen({6, 1.0}, {4, 1.0}, 0.02)));
+  EXPECT_GT(probability_of_twin(seen({6, 1.0}, faces(4, 0.002), 0.5)),
+            probability_of_twin(seen({6, 1.0}, faces(4, 0.002), 0.02)));
 }
 
 TEST(TwinOdds, BoundsAreNamed) {

@@ -143,6 +143,7 @@ PreparedScan prepare_group(const std::vector<PlacedScan>& scans, const PrepareOp
   for (PreparedScan& part : parts) {
     group.mobile = group.mobile || part.mobile;
     group.stations.insert(group.stations.end(), part.stations.begin(), part.stations.end());
+    group.details.insert(group.details.end(), part.details.begin(), part.details.end());
     joiner.add(part);
   }
   group.extracted.features = joiner.features();

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limen/register/prepare/prepare_scan.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "limen/base/stage_part.h"
@@ -16,7 +17,16 @@ namespace {
 constexpr double kFramed = 0.1;  // shares of the work, about, by which progress is told
 constexpr double kExtracted = 0.75;
 constexpr double kSpaceKnown = 0.85;
+constexpr double kFlatNoise = 1.6;  // noise, and what its estimate is off
+constexpr double kRoundestM = 0.015;
 constexpr double kReachM = 0.3;  // beyond the samples
+
+/// What is flat but for the noise.
+DetailOptions details_for(double noise_m) {
+  DetailOptions options;
+  options.max_scatter_m = std::clamp(kFlatNoise * noise_m, options.max_scatter_m, kRoundestM);
+  return options;
+}
 
 /// The view of space, the openings, and the segments of a scan in its frame.
 void look_around(const Scan& laid, const PrepareOptions& options, PreparedScan& prepared, Monitor& monitor) {
@@ -32,6 +42,9 @@ void look_around(const Scan& laid, const PrepareOptions& options, PreparedScan& 
   monitor.advance(kSpaceKnown, 1.0);
   if (!options.planes_only && prepared.upright && laid.centre_known())
     features.openings = find_openings(laid, prepared.extracted, Vector3d::UnitZ(), options.openings, monitor);
+  if (!options.planes_only && !laid.mobile())
+    prepared.details =
+        find_surface_details(laid, prepared.extracted.labels, features.planes, details_for(features.noise_m));
   if (options.segments) features.segments = find_segments(laid, prepared.extracted, options.edges, monitor);
   prepared.settle_reach();
 }

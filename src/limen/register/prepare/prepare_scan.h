@@ -31,13 +31,15 @@ struct PreparedScan {
   std::vector<Vector3d> stations;          ///< optical centres of static stations, prepared frame
   Eigen::AlignedBox3d reach;               ///< around the samples, prepared frame
 
-  SampleRuns runs;  ///< of a model
+  SampleRuns runs;                     ///< of a model
+  std::vector<SurfaceDetail> details;  ///< of static stations: what stands in the room, prepared frame
 
   [[nodiscard]] ScanView view() const {
     ScanView view{&extracted.features, space.get(), reach, model, mobile, mobile || !stations.empty()};
     if (!stations.empty()) view.station = stations.front();
     view.stations = &stations;
     if (model) view.runs = &runs;
+    if (!details.empty()) view.details = &details;
     return view;
   }
   /// Sets `reach` from the samples, and of a model `runs`.

@@ -7,6 +7,7 @@
 
 #include <Eigen/Geometry>
 
+#include "limen/extract/surface/surface_details.h"
 #include "limen/model/features.h"
 #include "limen/register/prepare/sample_runs.h"
 #include "limen/sight/space_view.h"
@@ -27,6 +28,8 @@ struct ScanView {
   /// Of a model: its samples in runs, so that those within some reach are found without a look at each. Null:
   /// every sample is looked at.
   const SampleRuns* runs = nullptr;
+  /// Flat pieces of what stands in the room, of a static scan. Null: none are known.
+  const std::vector<SurfaceDetail>* details = nullptr;
 };
 
 }  // namespace limen

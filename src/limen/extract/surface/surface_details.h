@@ -1,0 +1,45 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "limen/model/features.h"
+#include "limen/model/scan.h"
+
+namespace limen {
+
+/// A small piece of what stands in a room. Of a flat one (the side of a chair, a monitor, a cupboard's door)
+/// the points fix where it is across to the noise over the root of their number: millimetres.
+struct SurfaceDetail {
+  Vector3d mean = Vector3d::Zero();    ///< metres, about the scan's local origin
+  Vector3d normal = Vector3d::Zero();  ///< towards the scanner where that is known; zero: not flat
+  float area_m2 = 0.0F;
+  float sigma_m =
+      0.0F;  ///< of the mean across a flat piece: scatter of its points over the root of their number
+
+  [[nodiscard]] bool flat() const { return !normal.isZero(); }
+};
+
+struct DetailOptions {
+  double cell_m = 0.10;  ///< edge of the cubes whose points make one piece; twice that where points are few
+  std::size_t min_points = 8;      ///< of a piece
+  double max_scatter_m = 0.005;    ///< across a flat piece; edges and rounder matter are not flat
+  std::size_t most_pieces = 4000;  ///< of a scan, evenly chosen
+
+  void check() const;
+};
+
+/// Whether a plane is the building's by its size: walls, even a strip of one between two windows, are longer
+/// than furniture is high. A table or a bed that is taken for a wall is evidence lost, not evidence forged.
+bool of_building(const PlanarPolygon& plane);
+
+/// The pieces that the points of a scan make that lie on no plane of the building. `labels[i]` is the plane
+/// of point i, or -1.
+std::vector<SurfaceDetail> find_surface_details(const Scan& scan, const std::vector<std::int32_t>& labels,
+                                                const std::vector<PlanarPolygon>& planes,
+                                                const DetailOptions& options = {});
+
+}  // namespace limen
