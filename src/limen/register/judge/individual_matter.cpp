@@ -124,6 +124,7 @@ struct MetFace {
   Vector3d normal = Vector3d::Zero();
   double offset_m = 0.0;
   double sigma_m = 0.0;
+  double weight = 1.0;
 };
 
 /// Correlation of what two faces tell: things are moved as a whole, so that pieces of one face are hardly
@@ -134,37 +135,27 @@ double correlation(const MetFace& a, const MetFace& b) {
   return std::exp(-apart.norm() / (one_face ? kFaceLengthM : kCorrelationM));
 }
 
-/// Each face's share of an observation: neighbours that tell the same make one together, however many they
-/// are, and what stands alone is one of its own.
-std::vector<double> shares_of(const std::vector<MetFace>& faces) {
-  std::vector<double> together(faces.size(), 1.0);
-  for (std::size_t i = 0; i < faces.size(); ++i) {
-    for (std::size_t j = 0; j < i; ++j) {
-      if ((faces[j].at - faces[i].at).squaredNorm() > 9.0 * kFaceLengthM * kFaceLengthM) continue;
-      const double rho = correlation(faces[i], faces[j]);
-      together[i] += rho;
-      together[j] += rho;
-    }
-  }
-  for (double& one : together) one = 1.0 / one;
-  return together;
+double correlation(const Told& a, const Told& b) {
+  return std::exp(-(a.at - b.at).norm() / kCorrelationM);
 }
 
-/// The same of pieces of matter, which weigh by their area: w_i / sum_j w_j rho_ij, rho = exp(-d / length).
-std::vector<double> shares_of(const std::vector<Told>& told) {
-  std::vector<double> together(told.size());
-  for (std::size_t i = 0; i < told.size(); ++i) {
-    together[i] += told[i].weight;
+/// Each piece's share of an observation, w_i / sum_j w_j rho_ij: neighbours that tell the same make one
+/// together, however many they are, and what stands alone is one of its own. Farther apart than `reach_m`
+/// none are correlated.
+template <typename Item>
+std::vector<double> shares_of(const std::vector<Item>& items, double reach_m) {
+  std::vector<double> together(items.size());
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    together[i] += items[i].weight;
     for (std::size_t j = 0; j < i; ++j) {
-      const double distance = (told[i].at - told[j].at).norm();
-      if (distance > 8.0 * kCorrelationM) continue;
-      const double rho = std::exp(-distance / kCorrelationM);
-      together[i] += told[j].weight * rho;
-      together[j] += told[i].weight * rho;
+      if ((items[j].at - items[i].at).squaredNorm() > reach_m * reach_m) continue;
+      const double rho = correlation(items[i], items[j]);
+      together[i] += items[j].weight * rho;
+      together[j] += items[i].weight * rho;
     }
   }
-  for (std::size_t i = 0; i < told.size(); ++i)
-    together[i] = together[i] > 0.0 ? told[i].weight / together[i] : 0.0;
+  for (std::size_t i = 0; i < items.size(); ++i)
+    together[i] = together[i] > 0.0 ? items[i].weight / together[i] : 0.0;
   return together;
 }
 
@@ -179,7 +170,7 @@ double agreeing_share(const std::vector<Told>& told) {
 }
 
 Observations observations(const std::vector<Told>& told) {
-  const std::vector<double> shares = shares_of(told);
+  const std::vector<double> shares = shares_of(told, 8.0 * kCorrelationM);
   Observations seen;
   double agreeing = 0.0;
   for (std::size_t i = 0; i < told.size(); ++i) {
@@ -306,7 +297,7 @@ FaceOffsets face_offsets(const Side& source, const Side& target, const Rigid3& t
     offsets.offsets_m.push_back(face.offset_m);
     offsets.sigmas_m.push_back(std::hypot(kUnevenM, face.sigma_m, drift));
   }
-  offsets.shares = shares_of(faces);
+  offsets.shares = shares_of(faces, 3.0 * kFaceLengthM);
   return offsets;
 }
 

@@ -13,24 +13,16 @@ namespace {
 constexpr double kLeastChance = 0.2;  // what chance reaches is not presumed to be less, or more, than this
 constexpr double kMostChance = 0.6;
 
-double log_beta(double a, double b) {
-  return std::lgamma(a) + std::lgamma(b) - std::lgamma(a + b);
-}
-
 /// Logarithm of the probability of these observations, the share integrated out.
 double log_evidence(const WallBalance& walls, const ShareBelief& belief) {
-  const double a = belief.mean * belief.strength;
-  const double b = belief.strength - a;
-  return log_beta(a + walls.explained, b + std::max(0.0, walls.asked - walls.explained)) - log_beta(a, b);
+  return log_beta_binomial(walls.explained, std::max(0.0, walls.asked - walls.explained), belief);
 }
 
 }  // namespace
 
 void ModelOddsOptions::check() const {
-  for (const ShareBelief& belief : {of_model, by_chance}) {
-    if (!(belief.mean > 0 && belief.mean < 1)) throw_bad_option("mean share", belief.mean, "within (0, 1)");
-    if (!(belief.strength > 0)) throw_bad_option("strength", belief.strength, "more than 0");
-  }
+  of_model.check("of_model");
+  by_chance.check("by_chance");
   if (!(known_poses > 0)) throw_bad_option("known_poses", known_poses, "more than 0");
   if (!(nats_per_m2 >= 0)) throw_bad_option("nats_per_m2", nats_per_m2, "0 or more");
 }

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "limen/register/judge/model_walls.h"
-#include "limen/register/judge/twin_odds.h"
+#include "limen/register/judge/share_belief.h"
 
 namespace limen {
 

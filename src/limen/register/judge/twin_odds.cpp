@@ -14,24 +14,9 @@
 namespace limen {
 namespace {
 
-double log_beta(double a, double b) {
-  return std::lgamma(a) + std::lgamma(b) - std::lgamma(a + b);
-}
-
-/// log of the mean of q^k (1 - q)^(n - k) over the belief about the share q; k of n agree.
 double log_likelihood(const Observations& seen, const ShareBelief& belief) {
-  const double a = belief.mean * belief.strength;
-  const double b = (1.0 - belief.mean) * belief.strength;
   const double agreeing = seen.agreeing();
-  return log_beta(a + agreeing, b + seen.count - agreeing) - log_beta(a, b);
-}
-
-/// log of the mean of a likelihood over two beliefs, the second held with weight `second_share`.
-double log_mixed(double first, double second, double second_share) {
-  const double a = std::log(1.0 - second_share) + first;
-  const double b = std::log(second_share) + second;
-  const double most = std::max(a, b);
-  return most + std::log(std::exp(a - most) + std::exp(b - most));
+  return log_beta_binomial(agreeing, seen.count - agreeing, belief);
 }
 
 /// Density of an offset within +-kNearFaceM for a normal deviation `sigma`, mixed with `stray` of the even
@@ -82,19 +67,11 @@ double log_likelihood(const FaceOffsets& faces, const std::array<OffsetScene, N>
     }
     logs[k] = std::log(scenes[k].weight) + sum;
   }
-  const double most = *std::max_element(logs.begin(), logs.end());
-  double total = 0.0;
-  for (const double one : logs) total += std::exp(one - most);
-  return most + std::log(total);
+  return log_sum_exp(logs);
 }
 
 void check_share(const char* name, double value) {
   if (!(value > 0 && value < 1)) throw_bad_option(name, value, "within (0, 1)");
-}
-
-void check_belief(const char* name, const ShareBelief& belief) {
-  check_share(name, belief.mean);
-  if (!(belief.strength > 0)) throw_bad_option(name, belief.strength, "more than 0");
 }
 
 constexpr double kFew = 3.0;          // observations
@@ -107,9 +84,9 @@ void TwinOptions::check() const {
   check_share("prior_apart", prior_apart);
   check_share("alike_share", alike_share);
   if (!(apart_share > 0 && apart_share <= 1)) throw_bad_option("apart_share", apart_share, "within (0, 1]");
-  check_belief("kept", kept);
+  kept.check("kept");
   check_share("lived_in", lived_in);
-  check_belief("kept_lived_in", kept_lived_in);
+  kept_lived_in.check("kept_lived_in");
   if (!(more_than_chance >= 0)) throw_bad_option("more_than_chance", more_than_chance, "0 or more");
   if (!(chance_strength > 0)) throw_bad_option("chance_strength", chance_strength, "more than 0");
 }
@@ -118,8 +95,9 @@ double probability_of_twin(const IndividualMatter& individual, const TwinOptions
   options.check();
   const ShareBelief chance{std::clamp(individual.chance + options.more_than_chance, 0.01, 0.7),
                            options.chance_strength};
-  const double stayed = log_mixed(log_likelihood(individual.matter, options.kept),
-                                  log_likelihood(individual.matter, options.kept_lived_in), options.lived_in);
+  const double stayed =
+      log_sum_exp({std::log(1.0 - options.lived_in) + log_likelihood(individual.matter, options.kept),
+                   std::log(options.lived_in) + log_likelihood(individual.matter, options.kept_lived_in)});
   const double prior = individual.apart ? options.prior_apart : options.prior;
   const double same = std::log(1.0 - prior) + stayed + log_likelihood(individual.faces, kOneRoom);
   const double alike_share = options.alike_share * (individual.apart ? options.apart_share : 1.0);
@@ -127,9 +105,7 @@ double probability_of_twin(const IndividualMatter& individual, const TwinOptions
                        log_likelihood(individual.faces, kFurnishedOtherwise);
   const double alike =
       std::log(prior * alike_share) + stayed + log_likelihood(individual.faces, kFurnishedAlike);
-  const double most = std::max({same, other, alike});
-  const double twin = std::exp(other - most) + std::exp(alike - most);
-  return twin / (twin + std::exp(same - most));
+  return std::exp(log_sum_exp({other, alike}) - log_sum_exp({same, other, alike}));
 }
 
 std::string twin_words(const IndividualMatter& individual, double probability) {

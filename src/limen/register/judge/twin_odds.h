@@ -5,14 +5,9 @@
 #include <string>
 
 #include "limen/register/judge/individual_matter.h"
+#include "limen/register/judge/share_belief.h"
 
 namespace limen {
-
-/// A share that is not known exactly, as the mean and the strength (in observations) of a beta distribution.
-struct ShareBelief {
-  double mean = 0.5;
-  double strength = 2.0;
-};
 
 struct TwinOptions {
   double prior = 0.15;        ///< of the pairs whose walls fit, those of two rooms built alike
