@@ -355,6 +355,8 @@ void tell(Verdict verdict, const std::vector<JudgedPose>& poses, const ContrastF
 
 /// Whether two rooms built alike could be taken for one: of a model, or of the house seen from the street,
 /// the other places are searched as well, and are rivals.
+constexpr double kTwinRather = 0.5;  // probability of a twin above which things tell two rooms
+
 bool may_be_twin(const PreparedScan& from, const PreparedScan& to) {
   return !from.model && !to.model && !from.mobile && !to.mobile;
 }
@@ -411,6 +413,18 @@ RegistrationResult register_prepared(const PreparedPair& pair, const RegisterOpt
   judging.in_model = model;
   judging.through_wall = !model && from.mobile != to.mobile;
   Verdict verdict = judge(poses, contrast, judging);
+  // Of a room in use things stand where the other scan saw free space: no contradiction, if enough of the
+  // rest is where it was to tell the room from its twins.
+  if (verdict.outcome == Outcome::no_match && may_be_twin(from, to) && !verdict.ranking.empty()) {
+    VerdictOptions bearing = judging;
+    bearing.max_contradiction = judging.max_contradiction_in_use;
+    Verdict in_use = judge(poses, contrast, bearing);
+    if (in_use.outcome != Outcome::no_match) {
+      const Rigid3& best = poses[in_use.ranking.front()].refined.target_from_source;
+      if (probability_of_twin(individual_matter(from.view(), to.view(), best), judging.twin) < kTwinRather)
+        verdict = std::move(in_use);
+    }
+  }
   const auto try_again = [&](bool gravity_known, Proposal proposal) {
     const std::vector<JudgedPose> more = attempt(from, to, gravity_known, proposal, options, clock);
     poses.insert(poses.end(), more.begin(), more.end());

@@ -16,9 +16,14 @@ namespace limen {
 namespace {
 
 // What is the building's: its large planes, and what is near them.
-constexpr double kBeforeWallM = 0.25;  // frames, sills, radiators, skirtings: built with the wall
-constexpr double kBehindWallM = 0.6;   // reveals, frames, panes
-constexpr double kBesideWallM = 0.3;   // beyond the outline that was seen of it
+constexpr double kBeforeWallM = 0.25;    // frames, sills, radiators, skirtings: built with the wall
+constexpr double kBehindWallM = 0.6;     // reveals, frames, panes
+constexpr double kBesideWallM = 0.3;     // beyond the outline that was seen of it
+constexpr double kBelowCeilingM = 0.35;  // lintels, beams, what shows of a wall above furniture
+constexpr double kSameWallM = 0.04;  // strips of a wall that furniture cuts in pieces lie in one plane ...
+constexpr double kSameWallCosine = 0.9994;  // ... to 2 degrees
+constexpr double kLevelCosine = 0.95;
+constexpr double kAtStripM = 0.1;  // before and beside a strip
 
 // When a piece agrees.
 constexpr double kMatterM = 0.08;       // pieces are 0.1 m, means of round ones lie off all surface
@@ -40,27 +45,28 @@ constexpr int kDisplacements = 8;
 class BuiltPlanes {
  public:
   explicit BuiltPlanes(const Features& features) : built_(features.planes.size(), false) {
-    for (std::size_t i = 0; i < features.planes.size(); ++i) {
-      const PlanarPolygon& plane = features.planes[i];
-      const Box2 box = box_of(plane.parts);
-      if (box.empty()) continue;
-      if (!of_building(plane)) continue;
-      built_[i] = true;
-      for (const Polygon& part : plane.parts) parts_.push_back({plane.plane, plane.frame, box_of({part})});
-    }
+    const std::vector<PlanarPolygon>& planes = features.planes;
+    for (std::size_t i = 0; i < planes.size(); ++i)
+      if (of_building(planes[i])) add(i, planes[i], false);
+    const std::vector<Part> large = parts_;
+    for (std::size_t i = 0; i < planes.size(); ++i)
+      if (!built_[i] && (reaches_ceiling(planes[i], large) || continues_wall(planes[i], large)))
+        add(i, planes[i], true);
   }
 
   [[nodiscard]] bool is_built(std::int32_t plane) const { return built_[static_cast<std::size_t>(plane)]; }
 
   enum class Place { off, at_wall, behind };
-  /// Where `x` stands to the walls: at one, or behind one.
+  /// Where `x` stands to the walls: at one (or at the ceiling), or behind one.
   [[nodiscard]] Place place(const Vector3d& x) const {
     Place found = Place::off;
     for (const Part& part : parts_) {
+      if (is_below(x, part)) return Place::at_wall;
       const double distance = part.plane.signed_distance(x);
-      if (distance > kBeforeWallM) continue;
+      if (distance > (part.strip ? kAtStripM : kBeforeWallM)) continue;
+      if (part.strip && distance < -kBehindWallM) continue;
       const Vector2d at = part.frame.to_plane(x);
-      const Vector2d margin = Vector2d::Constant(kBesideWallM);
+      const Vector2d margin = Vector2d::Constant(part.strip ? kAtStripM : kBesideWallM);
       if (!Box2{part.box.low - margin, part.box.high + margin}.contains(at)) continue;
       if (distance > -kBehindWallM) return Place::at_wall;
       found = Place::behind;
@@ -85,7 +91,47 @@ class BuiltPlanes {
     Plane plane;
     PlaneFrame frame;
     Box2 box;
+    bool strip = false;
   };
+
+  void add(std::size_t i, const PlanarPolygon& plane, bool strip) {
+    built_[i] = true;
+    for (const Polygon& part : plane.parts)
+      parts_.push_back({plane.plane, plane.frame, box_of({part}), strip});
+  }
+
+  /// Whether `x` is right below a ceiling.
+  static bool is_below(const Vector3d& x, const Part& part) {
+    if (part.plane.normal.z() > -kLevelCosine) return false;
+    const double below = part.plane.signed_distance(x);
+    if (below <= 0.0 || below > kBelowCeilingM) return false;
+    const Vector2d margin = Vector2d::Constant(kBesideWallM);
+    return Box2{part.box.low - margin, part.box.high + margin}.contains(part.frame.to_plane(x));
+  }
+
+  static bool reaches_ceiling(const PlanarPolygon& plane, const std::vector<Part>& large) {
+    if (std::abs(plane.plane.normal.z()) > kUprightCosine) return false;
+    for (const Polygon& part : plane.parts) {
+      for (const Vector2d& corner : part.outer) {
+        const Vector3d x = plane.frame.to_space(corner);
+        if (std::any_of(large.begin(), large.end(), [&](const Part& one) { return is_below(x, one); }))
+          return true;
+      }
+    }
+    return false;
+  }
+
+  static bool continues_wall(const PlanarPolygon& plane, const std::vector<Part>& large) {
+    const Box2 box = box_of(plane.parts);
+    if (box.empty()) return false;
+    const Vector3d middle = plane.frame.to_space(0.5 * (box.low + box.high));
+    return std::any_of(large.begin(), large.end(), [&](const Part& wall) {
+      return std::abs(wall.plane.normal.z()) < kUprightCosine &&
+             wall.plane.normal.dot(plane.plane.normal) > kSameWallCosine &&
+             std::abs(wall.plane.signed_distance(middle)) < kSameWallM;
+    });
+  }
+
   std::vector<bool> built_;
   std::vector<Part> parts_;
 };

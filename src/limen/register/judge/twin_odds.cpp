@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -19,53 +21,72 @@ double log_likelihood(const Observations& seen, const ShareBelief& belief) {
   return log_beta_binomial(agreeing, seen.count - agreeing, belief);
 }
 
-/// Density of an offset within +-kNearFaceM for a normal deviation `sigma`, mixed with `stray` of the even
-/// one.
-double offset_density(double offset_m, double sigma_m, double stray) {
+/// Normal density of an offset, cut off at +-kNearFaceM.
+double normal_density(double offset_m, double sigma_m) {
   const double z = offset_m / sigma_m;
   const double inside = std::erf(kNearFaceM / (sigma_m * std::numbers::sqrt2));
-  const double normal =
-      std::exp(-0.5 * z * z) / (sigma_m * std::sqrt(2.0 * std::numbers::pi) * std::max(inside, 1e-9));
-  return (1.0 - stray) * normal + stray / (2.0 * kNearFaceM);
+  return std::exp(-0.5 * z * z) / (sigma_m * std::sqrt(2.0 * std::numbers::pi) * std::max(inside, 1e-9));
 }
 
-/// One way in which the offsets of one explanation may be spread, and how often it is.
+/// One way in which the offsets of one explanation may be spread: a share of the faces is where it was, a
+/// share was pushed, and the rest has nothing to do with one another.
 struct OffsetScene {
-  double weight;
-  double sigma_m;         ///< on top of what measuring leaves
-  double stray;           ///< share that has nothing to do with one another
-  double measured = 1.0;  ///< measuring leaves so many times what is thought
+  double weight = 1.0;    ///< how often it is
+  double placed = 0.0;    ///< share of the first ...
+  double measured = 1.0;  ///< ... of which measuring leaves so many times what is thought
+  double pushed = 0.0;    ///< share of the second ...
+  double pushed_m = 0.0;  ///< ... spread by so much on top
+
+  [[nodiscard]] double density(double offset_m, double sigma_m) const {
+    double sum = (1.0 - placed - pushed) / (2.0 * kNearFaceM);
+    if (placed > 0.0) sum += placed * normal_density(offset_m, measured * sigma_m);
+    if (pushed > 0.0) sum += pushed * normal_density(offset_m, std::hypot(pushed_m, sigma_m));
+    return sum;
+  }
 };
 
-// One room: what stayed is where it was; of what is nearby some was pushed, or is another thing. What
-// measuring leaves may be underrated: roughness, round shapes, the pose.
-constexpr std::array<OffsetScene, 9> kOneRoom = {{{0.55 * 0.45, 0.0, 0.05},
-                                                  {0.33 * 0.45, 0.0, 0.25},
-                                                  {0.12 * 0.45, 0.0, 0.55},
-                                                  {0.55 * 0.45, 0.0, 0.05, 2.0},
-                                                  {0.33 * 0.45, 0.0, 0.25, 2.0},
-                                                  {0.12 * 0.45, 0.0, 0.55, 2.0},
-                                                  {0.55 * 0.10, 0.0, 0.05, 3.5},
-                                                  {0.33 * 0.10, 0.0, 0.25, 3.5},
-                                                  {0.12 * 0.10, 0.0, 0.55, 3.5}}};
-// Put up alike: by hand to some centimetres, where there are fittings or marks to under one.
-constexpr std::array<OffsetScene, 4> kFurnishedAlike = {
-    {{0.15, 0.008, 0.05}, {0.30, 0.015, 0.05}, {0.35, 0.025, 0.05}, {0.20, 0.040, 0.05}}};
-// Another room's things meet by chance, but for those of one make that stand against walls alike.
-constexpr std::array<OffsetScene, 2> kFurnishedOtherwise = {{{0.6, 0.010, 0.9}, {0.4, 0.010, 0.6}}};
+/// One room: what stayed is where it was; of what is nearby some was pushed, or is another thing. What
+/// measuring leaves may be overrated (smooth fronts, averaged over many points) or underrated: roughness,
+/// round shapes, the pose.
+std::vector<OffsetScene> one_room() {
+  constexpr std::array<std::pair<double, double>, 4> kMeasured = {
+      {{0.3, 0.35}, {0.3, 1.0}, {0.3, 2.0}, {0.1, 3.5}}};
+  std::vector<OffsetScene> scenes;
+  for (const auto& [weight, measured] : kMeasured) {
+    scenes.push_back({0.45 * weight, 0.95, measured});  // as it was
+    scenes.push_back({0.15 * weight, 0.75, measured});
+    for (const double pushed_m : {0.01, 0.02}) {  // used in between
+      scenes.push_back({0.075 * weight, 0.6, measured, 0.35, pushed_m});
+      scenes.push_back({0.075 * weight, 0.4, measured, 0.4, pushed_m});
+      scenes.push_back({0.05 * weight, 0.3, measured, 0.2, pushed_m});
+    }
+  }
+  return scenes;
+}
+
+/// Put up alike: by hand to some centimetres, where there are fittings or marks to under one.
+std::vector<OffsetScene> furnished_alike() {
+  std::vector<OffsetScene> scenes;
+  constexpr std::array<std::pair<double, double>, 4> kPlacing = {
+      {{0.15, 0.008}, {0.30, 0.015}, {0.35, 0.025}, {0.20, 0.040}}};
+  for (const auto& [weight, placing_m] : kPlacing) scenes.push_back({weight, 0.0, 1.0, 0.95, placing_m});
+  return scenes;
+}
+
+/// Another room's things meet by chance, but for those of one make that stand against walls alike.
+std::vector<OffsetScene> furnished_otherwise() {
+  return {{0.6, 0.0, 1.0, 0.1, 0.010}, {0.4, 0.0, 1.0, 0.4, 0.010}};
+}
 
 /// log of the likelihood of the offsets, tempered to the number of independent ones.
-template <std::size_t N>
-double log_likelihood(const FaceOffsets& faces, const std::array<OffsetScene, N>& scenes) {
-  std::array<double, N> logs = {};
-  for (std::size_t k = 0; k < N; ++k) {
-    const OffsetScene& scene = scenes[k];
+double log_likelihood(const FaceOffsets& faces, const std::vector<OffsetScene>& scenes) {
+  std::vector<double> logs;
+  logs.reserve(scenes.size());
+  for (const OffsetScene& scene : scenes) {
     double sum = 0.0;
-    for (std::size_t i = 0; i < faces.offsets_m.size(); ++i) {
-      const double sigma = std::hypot(scene.sigma_m, scene.measured * faces.sigmas_m[i]);
-      sum += faces.shares[i] * std::log(offset_density(faces.offsets_m[i], sigma, scene.stray));
-    }
-    logs[k] = std::log(scenes[k].weight) + sum;
+    for (std::size_t i = 0; i < faces.offsets_m.size(); ++i)
+      sum += faces.shares[i] * std::log(scene.density(faces.offsets_m[i], faces.sigmas_m[i]));
+    logs.push_back(std::log(scene.weight) + sum);
   }
   return log_sum_exp(logs);
 }
@@ -99,12 +120,12 @@ double probability_of_twin(const IndividualMatter& individual, const TwinOptions
       log_sum_exp({std::log(1.0 - options.lived_in) + log_likelihood(individual.matter, options.kept),
                    std::log(options.lived_in) + log_likelihood(individual.matter, options.kept_lived_in)});
   const double prior = individual.apart ? options.prior_apart : options.prior;
-  const double same = std::log(1.0 - prior) + stayed + log_likelihood(individual.faces, kOneRoom);
+  const double same = std::log(1.0 - prior) + stayed + log_likelihood(individual.faces, one_room());
   const double alike_share = options.alike_share * (individual.apart ? options.apart_share : 1.0);
   const double other = std::log(prior * (1.0 - alike_share)) + log_likelihood(individual.matter, chance) +
-                       log_likelihood(individual.faces, kFurnishedOtherwise);
+                       log_likelihood(individual.faces, furnished_otherwise());
   const double alike =
-      std::log(prior * alike_share) + stayed + log_likelihood(individual.faces, kFurnishedAlike);
+      std::log(prior * alike_share) + stayed + log_likelihood(individual.faces, furnished_alike());
   return std::exp(log_sum_exp({other, alike}) - log_sum_exp({same, other, alike}));
 }
 

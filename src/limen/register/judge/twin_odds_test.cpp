@@ -50,6 +50,18 @@ TEST(TwinOdds, ThingsThatAgreeToTheMillimetreMakeOneRoom) {
   EXPECT_LT(probability_of_twin(seen({20, 0.95}, faces(6, 0.004))), kRisk);
 }
 
+TEST(TwinOdds, OfARoomInUseWhatStayedTellsTheRoom) {
+  // Of what is nearby a half was pushed by hand; the rest stands to a fraction of a millimetre.
+  FaceOffsets in_use = faces(6, 0.0005);
+  const FaceOffsets pushed = faces(5, 0.012);
+  in_use.offsets_m.insert(in_use.offsets_m.end(), pushed.offsets_m.begin(), pushed.offsets_m.end());
+  in_use.shares.resize(11, 1.0);
+  in_use.sigmas_m.resize(11, 0.002);
+  EXPECT_LT(probability_of_twin(seen({24, 0.7}, in_use)), kRisk);
+  // If all of it was put up by hand, it may be a twin.
+  EXPECT_GT(probability_of_twin(seen({24, 0.7}, faces(11, 0.012))), kRisk);
+}
+
 TEST(TwinOdds, ThingsThatAgreeByChanceMakeATwin) {
   EXPECT_GT(probability_of_twin(seen({8, 0.05}, {})), 0.5);
   EXPECT_GT(probability_of_twin(seen({30, 0.1}, {})), 0.8);

@@ -111,7 +111,8 @@ void VerdictOptions::check() const {
   if (!(max_sigma_deg > 0)) throw_bad_option("max_sigma_deg", max_sigma_deg, "more than 0");
   if (!(min_held_m2 > 0)) throw_bad_option("min_held_m2", min_held_m2, "more than 0");
   // Nothing is more or less than a number that is none: such a bound would let any pose pass.
-  const std::pair<const char*, double> bounds[] = {{"full_evidence_m2", full_evidence_m2},
+  const std::pair<const char*, double> bounds[] = {{"max_contradiction_in_use", max_contradiction_in_use},
+                                                   {"full_evidence_m2", full_evidence_m2},
                                                    {"max_unopened_contradiction", max_unopened_contradiction},
                                                    {"unopened_allowance_m2", unopened_allowance_m2},
                                                    {"max_model_contradiction", max_model_contradiction},

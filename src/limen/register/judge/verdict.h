@@ -23,10 +23,11 @@ struct JudgedPose {
 };
 
 struct VerdictOptions {
-  double risk = 0.001;              ///< `registered` may be wrong with this probability at most
-  TwinOptions twin;                 ///< of two rooms built alike
-  double min_agreeing_m2 = 2.5;     ///< common planar surface that a pose must show
-  double max_contradiction = 0.10;  ///< contradicted over agreeing surface
+  double risk = 0.001;                     ///< `registered` may be wrong with this probability at most
+  TwinOptions twin;                        ///< of two rooms built alike
+  double min_agreeing_m2 = 2.5;            ///< common planar surface that a pose must show
+  double max_contradiction = 0.10;         ///< contradicted over agreeing surface
+  double max_contradiction_in_use = 0.25;  ///< the same where things tell that a room was used in between
   double full_evidence_m2 = 10.0;  ///< with less agreeing surface, proportionally less contradiction is borne
   /// One scan looks through walls that the other stands behind: where no opening shows the two to meet, a
   /// pose shifted by a storey or a house agrees on façades and ceilings alike, and only contradiction tells.

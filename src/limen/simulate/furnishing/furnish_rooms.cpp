@@ -39,8 +39,10 @@ Layout another_day(const Layout& layout, const World& world, std::size_t buildin
   const PlacingOptions placing{.shift_m = 0.01,
                                .turn_rad = 0.01,
                                .moved_share = style.moved_share,
-                               .removed_share = style.removed_share};
-  return as_placed(of_kind(layout, false), world, building, room, placing, true, mix64(own + style.day));
+                               .removed_share = style.removed_share,
+                               .pushed_share = style.pushed_share,
+                               .contents_share = style.contents_share};
+  return as_placed(of_kind(layout, false), world, building, room, placing, mix64(own + style.day));
 }
 
 /// Bags and bottles on the floor, a picture or two.
@@ -79,7 +81,7 @@ std::vector<bool> furnish_rooms(World& world, std::size_t building, const Furnis
     // People put the same furniture at the same places as well as they can; what lies about is their own.
     if (alike.back()) {
       const PlacingOptions placing{.shift_m = style.shift_m, .turn_rad = style.turn_rad};
-      layout = as_placed(layout, world, building, room, placing, true, own);
+      layout = as_placed(layout, world, building, room, placing, own);
     }
     if (style.day > 0) layout = another_day(layout, world, building, room, style, own);
     add_layout(world, building, room, layout);

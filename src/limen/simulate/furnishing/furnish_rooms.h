@@ -21,6 +21,8 @@ struct FurnishingStyle {
   std::uint64_t day = 0;
   double moved_share = 0.35;
   double removed_share = 0.1;
+  double pushed_share = 0.4;    ///< of what stays: shifted by a centimetre; heavy things stay as they are
+  double contents_share = 0.5;  ///< of the pieces: what is in and on them is new
 };
 
 /// Furnishes every room. Tells of each whether it has its design's furniture.

@@ -281,7 +281,7 @@ Layout make_layout(const World& world, std::size_t building, std::size_t room, c
 }
 
 Layout as_placed(const Layout& layout, const World& world, std::size_t building, std::size_t room,
-                 const PlacingOptions& options, bool own_contents, std::uint64_t seed) {
+                 const PlacingOptions& options, std::uint64_t seed) {
   RandomStream random(seed, 13);
   Decorator decorator(world, building, room, random);
   for (const PlacedPiece& placed : layout) decorator.take(placed);
@@ -292,7 +292,8 @@ Layout as_placed(const Layout& layout, const World& world, std::size_t building,
       result.push_back(placed);
       continue;
     }
-    if (own_contents) placed.piece.contents_seed = mix64(placed.piece.contents_seed ^ seed);
+    if (random.uniform() < options.contents_share)
+      placed.piece.contents_seed = mix64(placed.piece.contents_seed ^ seed);
     if (random.uniform() < options.removed_share) continue;
     if (random.uniform() < options.moved_share) {
       if (const auto other = decorator.elsewhere(placed, stands_at_wall(placed, outline))) {
@@ -300,6 +301,10 @@ Layout as_placed(const Layout& layout, const World& world, std::size_t building,
         result.push_back(*other);
         continue;
       }
+    }
+    if (!loose(placed.piece.kind) && random.uniform() >= options.pushed_share) {
+      result.push_back(placed);
+      continue;
     }
     const double much = loose(placed.piece.kind) ? 3.0 : 1.0;
     const double turn = on_wall(placed.piece.kind) ? 0.0 : much * options.turn_rad * random.normal();

@@ -43,12 +43,14 @@ struct PlacingOptions {
   double turn_rad = 0.0;  ///< one standard deviation
   double moved_share = 0.0;    ///< of the pieces: they stand elsewhere in the room
   double removed_share = 0.0;  ///< of the pieces
+  double pushed_share =
+      1.0;  ///< of those that stay, but for chairs and small things: shifted and turned a bit
+  double contents_share = 1.0;  ///< of the pieces: what is in and on them is new
 };
 
-/// The layout as it comes out in one room: each piece a little off its place, some moved or gone. Contents
-/// and small things are new where `own_contents`.
+/// The layout as it comes out in one room: pieces a little off their places, some moved or gone.
 Layout as_placed(const Layout& layout, const World& world, std::size_t building, std::size_t room,
-                 const PlacingOptions& options, bool own_contents, std::uint64_t seed);
+                 const PlacingOptions& options, std::uint64_t seed);
 
 /// Builds a layout in a room: its own or another of the same design, mirrored if need be. Pieces for which
 /// there is no place are left out.

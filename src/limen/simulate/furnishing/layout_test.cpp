@@ -69,7 +69,7 @@ TEST(Layout, OfAnotherDayIsPartlyTheSame) {
   std::size_t same = 0;
   std::size_t all = 0;
   for (std::uint64_t seed = 1; seed < 20; ++seed) {
-    for (const PlacedPiece& placed : as_placed(layout, world, 0, 0, options, true, seed)) {
+    for (const PlacedPiece& placed : as_placed(layout, world, 0, 0, options, seed)) {
       ++all;
       for (const PlacedPiece& before : layout)
         same += placed.piece.seed == before.piece.seed && placed.back == before.back ? 1U : 0U;
