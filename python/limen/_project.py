@@ -71,17 +71,25 @@ def read_project(path: Path) -> Project:
 
 
 def project(
-    scans: Sequence[Path], output: Path, *, model: Optional[Path] = None, arguments: Sequence[str] = ()
+    scans: Sequence[Path],
+    output: Path,
+    *,
+    model: Optional[Path] = None,
+    control: Optional[Path] = None,
+    targets: Optional[Path] = None,
+    check: Optional[Path] = None,
+    arguments: Sequence[str] = (),
 ) -> Project:
     """Put scans of a building into one frame, as `limen project` does, in a process of its own.
 
-    output: the folder of the project; what lies there of an earlier run is used again. arguments: further ones of
-    the command line. Raises RuntimeError with the program's own words where it refuses.
+    output: the folder of the project; what lies there of an earlier run is used again. control, targets, check: files
+    of known points, of where the scans see them, and of points to compare with. arguments: further ones of the command line. Raises RuntimeError with the program's own words where it refuses.
     """
     words = [sys.executable, "-m", "limen", "project", *(os.fspath(scan) for scan in scans)]
     words += ["-o", os.fspath(output), "--quiet", *arguments]
-    if model is not None:
-        words += ["--model", os.fspath(model)]
+    for name, file in (("model", model), ("control", control), ("targets", targets), ("check", check)):
+        if file is not None:
+            words += [f"--{name}", os.fspath(file)]
     done = subprocess.run(words, capture_output=True, text=True, check=False)
     if done.returncode not in (0, 3, 4):
         raise RuntimeError(done.stderr.strip() or f"limen project ended with status {done.returncode}")

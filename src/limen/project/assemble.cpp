@@ -2,38 +2,45 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include "limen/base/angles.h"
 #include "limen/project/project_graph.h"
 #include "limen/project/project_state.h"
+#include "limen/project/survey.h"
 
 namespace limen {
 namespace {
 
 class Assembler {
  public:
-  Assembler(const std::vector<ProjectNode>& nodes, const std::vector<TriedPair>& pairs, double risk,
-            ProjectResult& result)
-      : nodes_(nodes), pairs_(pairs), risk_(risk), result_(result) {}
+  Assembler(const std::vector<ProjectNode>& nodes, const std::vector<TriedPair>& pairs, Survey survey,
+            double risk, ProjectResult& result)
+      : nodes_(nodes), pairs_(pairs), survey_(std::move(survey)), risk_(risk), result_(result) {}
 
   void run() {
-    const ProjectGraph made = make_graph(nodes_, pairs_, risk_);
-    graph_ = made.graph;
-    pair_of_ = made.pair_of;
-    solved_ = solve_graph(graph_, risk_);
-    if (nodes_.size() == 1) {
+    ProjectGraph made = make_graph(nodes_, pairs_, risk_);
+    add_survey_links(survey_, made);
+    solved_ = solve_graph(made.graph, risk_);
+    if (nodes_.size() == 1 && solved_.nodes.front().component < 0) {
       // A scan alone is its own frame.
       solved_.nodes.front().state = NodeState::registered;
       solved_.nodes.front().component = 0;
       solved_.components = 1;
     }
-    tell_adjustment(adjust_planes(nodes_, pairs_, made, solved_));
+    placed_ = place_survey(survey_, made, solved_);
+    adjust(made);
+    graph_ = made.graph;
+    pair_of_ = made.pair_of;
     settle_frame();
     for (std::size_t n = 0; n < nodes_.size(); ++n) tell_scan(n);
     for (std::size_t k = 0; k < graph_.links.size(); ++k) tell_link(k);
     tell_twins();
+    tell_survey();
     result_.loops = solved_.loops;
     result_.components = solved_.components;
     for (const GraphQuestion& question : solved_.questions) tell_question(question);
@@ -49,6 +56,38 @@ class Assembler {
     const ProjectScan& scan = result_.scans[nodes_[static_cast<std::size_t>(node)].scan];
     const bool several = nodes_[static_cast<std::size_t>(node)].grouped || scan.index > 0;
     return several ? fmt::format("{} #{}", scan.file, scan.index) : scan.file;
+  }
+
+  /// Where control points contradict one another for good, all is solved as if there were none.
+  void adjust(ProjectGraph& made) {
+    JointFinding finding = adjust_planes(nodes_, pairs_, made, solved_, placed_);
+    if (finding.contradicted) {
+      std::string words = "the frame is not that of the control points: ";
+      for (std::size_t p = 0, named = 0; p < placed_.points.size(); ++p) {
+        if (placed_.settled.verdicts[p].known_left_out)
+          words += (named++ == 0 ? "" : ", ") + survey_.marks[p].name;
+      }
+      words += " contradict the others, and without them too few are left to hold a frame";
+      made = make_graph(nodes_, pairs_, risk_);
+      solved_ = solve_graph(made.graph, risk_);
+      const std::string file = std::exchange(survey_.file, {});
+      for (SurveyMark& mark : survey_.marks) mark.point.known_enters = false;
+      placed_ = place_survey(survey_, made, solved_);
+      survey_.file = file;
+      placed_.words = words;
+      finding = adjust_planes(nodes_, pairs_, made, solved_, placed_);
+    }
+    tell_adjustment(finding);
+  }
+
+  void tell_survey() {
+    result_.points = told_points(survey_, placed_, nodes_);
+    result_.control_file = survey_.file;
+    result_.control_words = placed_.words;
+    for (const std::string& note : survey_.notes) result_.notes.push_back(note);
+    if (!survey_.file.empty() && !placed_.placed) result_.notes.push_back(placed_.words);
+    if (placed_.placed && placed_.settled.redundancy > 0.0)
+      result_.control_factor = placed_.settled.chi_square / placed_.settled.redundancy;
   }
 
   void tell_adjustment(const JointFinding& finding) {
@@ -77,6 +116,11 @@ class Assembler {
     }
     result_.frame_kind = "none";
     if (solved_.components == 0) return;
+    if (placed_.placed) {
+      frame_node_.front() = kSurvey;
+      result_.frame_kind = "control";
+      return;
+    }
     const auto n = static_cast<std::size_t>(frame_node_.front());
     result_.frame_scan = static_cast<int>(nodes_[n].scan);
     result_.frame_kind = nodes_[n].digest.mobile  ? "mobile"
@@ -86,8 +130,13 @@ class Assembler {
   }
 
   [[nodiscard]] Rigid3 world_pose(const Rigid3& solved, int node, int frame) const {
-    const Rigid3 local = inverse(solved_.nodes[static_cast<std::size_t>(frame)].frame_from_node) * solved;
-    return to_world(local, digest(node).local_origin, digest(frame).local_origin);
+    const Vector3d& origin = frame == kSurvey ? survey_.origin : digest(frame).local_origin;
+    return to_world(told_from_solved(frame) * solved, digest(node).local_origin, origin);
+  }
+  /// From the frame that the graph was solved in to that which is told.
+  [[nodiscard]] Rigid3 told_from_solved(int frame) const {
+    if (frame == kSurvey) return {};
+    return inverse(solved_.nodes[static_cast<std::size_t>(frame)].frame_from_node);
   }
 
   void tell_scan(std::size_t n) {
@@ -123,7 +172,7 @@ class Assembler {
   void tell_sigma(const SolvedNode& node, int n, int frame, ProjectScan& scan) const {
     const ScanDigest& own = digest(n);
     const Vector3d at = own.stations.empty() ? own.middle : own.stations.front();
-    const Rigid3 frame_from_solved = inverse(solved_.nodes[static_cast<std::size_t>(frame)].frame_from_node);
+    const Rigid3 frame_from_solved = told_from_solved(frame);
     const LinkPose pose{node.frame_from_node, node.covariance, node.frame_from_node.translation, 0.0};
     const Matrix6d moved =
         moved_covariance(pose, frame_from_solved, frame_from_solved * node.frame_from_node * at);
@@ -166,6 +215,7 @@ class Assembler {
       case NodeState::registered:
         if (verified > 0)
           return fmt::format("held by {} link{} checked by loops", verified, verified == 1 ? "" : "s");
+        if (bridges == 0 && placed_.controlled[n]) return "held by its own targets";
         if (bridges == 0) return "is alone";
         return fmt::format("held by {} link{} that no loop checks", bridges, bridges == 1 ? "" : "s");
       case NodeState::ambiguous:
@@ -316,6 +366,10 @@ class Assembler {
 
   const std::vector<ProjectNode>& nodes_;
   const std::vector<TriedPair>& pairs_;
+  static constexpr int kSurvey = -2;  ///< in place of a node: the survey's frame
+
+  Survey survey_;
+  PlacedSurvey placed_;
   double risk_;
   ProjectResult& result_;
   PoseGraph graph_;
@@ -326,9 +380,9 @@ class Assembler {
 
 }  // namespace
 
-void assemble(const std::vector<ProjectNode>& nodes, const std::vector<TriedPair>& pairs, double risk,
-              ProjectResult& result) {
-  Assembler(nodes, pairs, risk, result).run();
+void assemble(const std::vector<ProjectNode>& nodes, const std::vector<TriedPair>& pairs,
+              const ProjectInputs& inputs, double risk, ProjectResult& result) {
+  Assembler(nodes, pairs, read_survey(inputs, nodes, result.scans), risk, result).run();
 }
 
 }  // namespace limen

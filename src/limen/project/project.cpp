@@ -12,6 +12,7 @@
 #include "limen/base/stage_part.h"
 #include "limen/bim/read_bim.h"
 #include "limen/io/cloud/read_scan.h"
+#include "limen/project/control/control_file.h"
 #include "limen/project/project_files.h"
 #include "limen/project/project_graph.h"
 #include "limen/project/project_state.h"
@@ -35,7 +36,8 @@ class Run {
  public:
   Run(const ProjectInputs& inputs, std::filesystem::path folder, const ProjectOptions& options,
       Monitor& monitor)
-      : folder_(std::move(folder)),
+      : inputs_(inputs),
+        folder_(std::move(folder)),
         options_(options),
         monitor_(monitor),
         store_(folder_ / "store", options_text(options)),
@@ -54,7 +56,7 @@ class Run {
     try_any_turn(tried);
     monitor_.begin_stage("adjustment");
     result_.pairs_tried = tried.size();
-    assemble(nodes_, tried, risk(), result_);
+    assemble(nodes_, tried, inputs_, risk(), result_);
     status_.stage = "done";
     write_status(folder_, status_);
     return std::move(result_);
@@ -315,6 +317,7 @@ class Run {
   static constexpr double kNearM = 12.0;  // stations nearer than this may see the same
   static constexpr int kEnoughLinks = 4;  // verified ones: a scan that has them needs no more
 
+  const ProjectInputs& inputs_;
   std::filesystem::path folder_;
   const ProjectOptions& options_;
   Monitor& monitor_;
@@ -349,6 +352,11 @@ ProjectResult run_project(const ProjectInputs& inputs, const std::filesystem::pa
                           const ProjectOptions& options, Monitor& monitor) {
   options.check();
   if (inputs.scans.empty()) throw Error("there is no scan", "project", "give at least one");
+  // A fault in a small file is told before hours of work.
+  for (const std::string& file : {inputs.control, inputs.check}) {
+    if (!file.empty()) static_cast<void>(read_surveyed_points(file));
+  }
+  if (!inputs.targets.empty()) static_cast<void>(read_seen_targets(inputs.targets));
   const CancelScope scope(monitor);
   return Run(inputs, folder, options, monitor).run();
 }

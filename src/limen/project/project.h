@@ -23,10 +23,13 @@ struct ProjectOptions {
   void check() const;
 };
 
-/// Scans and models by their files, in any order.
+/// Scans and models by their files, in any order, and what a surveyor knows (control/control_file.h).
 struct ProjectInputs {
   std::vector<std::string> scans;
   std::vector<std::string> models;
+  std::string control;  ///< file of points whose coordinates enter as observations; empty: none
+  std::string check;    ///< file of points that are compared with the result and never enter
+  std::string targets;  ///< file of where the scans saw them; a point called as a scan is its scanner's place
 };
 
 /// Puts any number of scans, and building models, into one frame. Features of scans and results of pairs are

@@ -12,6 +12,7 @@
 
 #include "limen/base/angles.h"
 #include "limen/project/adjust/plane_adjustment.h"
+#include "limen/project/survey.h"
 
 namespace limen {
 namespace {
@@ -250,14 +251,15 @@ constexpr double kMostShiftM = 0.03;  // and three deviations of the links alone
 const double kMostTurnRad = radians(0.3);
 
 JointProblem joint_problem(const std::vector<ProjectNode>& nodes, const std::vector<TriedPair>& pairs,
-                           const ProjectGraph& made, const SolvedGraph& solved) {
+                           const ProjectGraph& made, const SolvedGraph& solved, const PlacedSurvey& survey) {
   JointProblem problem;
   std::vector<bool> taken;
-  for (const SolvedNode& node : solved.nodes) {
+  for (std::size_t n = 0; n < nodes.size(); ++n) {
+    const SolvedNode& node = solved.nodes[n];
     problem.frame_from_node.push_back(node.frame_from_node);
     taken.push_back(node.component >= 0);
-    // The node that the graph left where it was is the frame of its component.
-    problem.fixed.push_back(node.component < 0 || node.covariance.isZero());
+    // The node that the graph left where it was is the frame of its component, if control points are not.
+    problem.fixed.push_back(node.component < 0 || (node.covariance.isZero() && !survey.controlled[n]));
   }
   SharedPlanes shared(nodes, solved);
   for (std::size_t k = 0; k < made.graph.links.size(); ++k) {
@@ -286,19 +288,9 @@ Spread spread_of(const SolvedNode& node, const Vector3d& point) {
           3.0 * std::sqrt(std::max(0.0, at.topLeftCorner<3, 3>().trace()))};
 }
 
-}  // namespace
-
-ProjectGraph make_graph(const std::vector<ProjectNode>& nodes, const std::vector<TriedPair>& pairs,
-                        double risk) {
-  return GraphMaker(nodes, pairs, risk).run();
-}
-
-JointFinding adjust_planes(const std::vector<ProjectNode>& nodes, const std::vector<TriedPair>& pairs,
-                           const ProjectGraph& made, SolvedGraph& solved) {
-  const JointProblem problem = joint_problem(nodes, pairs, made, solved);
-  JointFinding finding;
-  if (problem.observations.empty()) return finding;
-  const JointSolution solution = adjust_jointly(problem);
+/// The nodes that the adjustment would move by more than the links allow.
+void find_torn(const std::vector<ProjectNode>& nodes, const SolvedGraph& solved,
+               const JointSolution& solution, JointFinding& finding) {
   for (std::size_t n = 0; n < nodes.size(); ++n) {
     const Rigid3& before = solved.nodes[n].frame_from_node;
     const Vector3d middle = nodes[n].digest.middle;
@@ -309,13 +301,60 @@ JointFinding adjust_planes(const std::vector<ProjectNode>& nodes, const std::vec
     finding.torn.push_back(static_cast<int>(n));
     finding.most_moved_m = std::max(finding.most_moved_m, shift);
   }
-  if (!finding.torn.empty()) return finding;
-  for (std::size_t n = 0; n < nodes.size(); ++n) {
-    if (solved.nodes[n].component < 0) continue;
-    solved.nodes[n].frame_from_node = solution.frame_from_node[n];
-    solved.nodes[n].covariance = solution.covariance[n];
+}
+
+void take(const JointSolution& solution, SolvedGraph& solved) {
+  for (std::size_t n = 0; n < solved.nodes.size(); ++n) {
+    SolvedNode& node = solved.nodes[n];
+    if (node.component < 0) continue;
+    node.frame_from_node = solution.frame_from_node[n];
+    node.covariance = solution.covariance[n];
   }
-  finding.variance_factor = solution.variance_factor;
+}
+
+}  // namespace
+
+ProjectGraph make_graph(const std::vector<ProjectNode>& nodes, const std::vector<TriedPair>& pairs,
+                        double risk) {
+  return GraphMaker(nodes, pairs, risk).run();
+}
+
+JointFinding adjust_planes(const std::vector<ProjectNode>& nodes, const std::vector<TriedPair>& pairs,
+                           const ProjectGraph& made, SolvedGraph& solved, PlacedSurvey& survey) {
+  JointProblem problem = joint_problem(nodes, pairs, made, solved, survey);
+  JointFinding finding;
+  const bool surveyed = std::any_of(survey.points.begin(), survey.points.end(),
+                                    [](const MarkedPoint& point) { return !point.sights.empty(); });
+  if (surveyed) {
+    JointProblem links = problem;
+    links.observations.clear();
+    links.planes = 0;
+    links.points = survey.points;
+    survey.settled = settle_points(links, survey.candidates);
+    finding.contradicted = !survey.settled.firm;
+    if (finding.contradicted) return finding;
+    survey.points = problem.points = links.points;
+    take(survey.settled.solution, solved);
+    problem.frame_from_node = survey.settled.solution.frame_from_node;
+  }
+  if (problem.observations.empty()) return finding;
+  SettledPoints settled;
+  if (surveyed)
+    settled = settle_points(problem, survey.candidates);
+  else
+    settled.solution = adjust_jointly(problem);
+  find_torn(nodes, solved, settled.solution, finding);
+  if (!finding.torn.empty() || !settled.firm) return finding;
+  take(settled.solution, solved);
+  finding.variance_factor = settled.solution.variance_factor;
+  if (!surveyed) return finding;
+  // What the links alone left out stays told.
+  for (std::size_t p = 0; p < settled.verdicts.size(); ++p) {
+    const PointVerdict& before = survey.settled.verdicts[p];
+    if (before.known_left_out && !problem.points[p].is_known()) settled.verdicts[p] = before;
+  }
+  survey.points = problem.points;
+  survey.settled = std::move(settled);
   return finding;
 }
 

@@ -20,6 +20,8 @@ struct ProjectGraph {
 ProjectGraph make_graph(const std::vector<ProjectNode>& nodes, const std::vector<TriedPair>& pairs,
                         double risk);
 
+struct PlacedSurvey;
+
 /// What came of the joint adjustment.
 struct JointFinding {
   /// By what the planes' deviations miss what was taken for them; 0: there was nothing to adjust, or it was
@@ -27,11 +29,14 @@ struct JointFinding {
   double variance_factor = 0.0;
   std::vector<int> torn;      ///< nodes that it would move too far: then no node is moved
   double most_moved_m = 0.0;  ///< of those
+  /// Coordinates of control points contradict one another so that they hold no frame: nothing was moved.
+  bool contradicted = false;
 };
 
 /// The solved poses once more, with all planes that accepted links show to be shared (adjust/); nodes that
-/// stand alone stay.
+/// stand alone stay. The points of a survey enter as observations: first with the links alone, which tests
+/// them, then with the planes too; `survey` tells what came of them.
 JointFinding adjust_planes(const std::vector<ProjectNode>& nodes, const std::vector<TriedPair>& pairs,
-                           const ProjectGraph& made, SolvedGraph& solved);
+                           const ProjectGraph& made, SolvedGraph& solved, PlacedSurvey& survey);
 
 }  // namespace limen

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "limen/model/result.h"
+#include "limen/project/control/point_tests.h"
 #include "limen/project/graph/pose_graph.h"
 
 namespace limen {
@@ -77,11 +78,50 @@ struct ProjectQuestion {
   std::vector<int> rival;    ///< links that speak for the other
 };
 
+/// What became of a surveyed point.
+enum class PointState {
+  used,       ///< its coordinates entered
+  left_out,   ///< they contradict all else; or it is one of several that may be the wrong one
+  compared,   ///< a check point, or a target without coordinates
+  not_placed  ///< no scan that stands in the frame sees it
+};
+const char* to_string(PointState state);
+
+enum class PointRole { control, check, tie };
+const char* to_string(PointRole role);
+
+/// A scan that sees a surveyed point.
+struct ProjectSight {
+  int scan = -1;
+  bool used = false;
+  double missed_m = 0.0;  ///< between where the scan has it and the adjusted point
+};
+
+/// A surveyed point, or a target that ties scans to one another.
+struct ProjectPoint {
+  std::string name;
+  PointRole role = PointRole::control;
+  PointState state = PointState::not_placed;
+  bool scanner = false;           ///< the place of a scanner, no target
+  std::optional<Vector3d> given;  ///< its coordinates, metres
+  Vector3d given_sigma = Vector3d::Zero();
+  std::optional<Vector3d> found;  ///< by the adjustment; without its own coordinates where they did not enter
+  Vector3d found_sigma = Vector3d::Zero();
+  PointTest test;  ///< given less found
+  std::vector<ProjectSight> sights;
+  std::string reason;
+};
+
 struct ProjectResult {
   ProjectOutcome outcome = ProjectOutcome::no_match;
   std::string reason;
-  std::string frame_kind;  ///< "mobile", "model", "file", "station", or "none"
-  int frame_scan = -1;     ///< the scan whose world coordinates are the frame
+  std::string frame_kind;     ///< "control", "mobile", "model", "file", "station", or "none"
+  int frame_scan = -1;        ///< the scan whose world coordinates are the frame; -1: control's, or none
+  std::string control_file;   ///< empty: none was given
+  std::string control_words;  ///< what came of it
+  double control_factor =
+      0.0;  ///< of squared deviations of control points against what they were given; 0: none
+  std::vector<ProjectPoint> points;  ///< by name
   std::vector<ProjectScan> scans;
   std::vector<ProjectLink> links;
   std::vector<GraphLoop> loops;  ///< of links, by index

@@ -48,8 +48,8 @@ std::vector<TriedPair> try_pairs(const std::vector<std::pair<std::size_t, std::s
                                  Monitor& monitor);
 
 /// The frame, the states and the words (`risk`: that a scan told as registered may be wrong with): everything
-/// of `result` but its scans' files.
-void assemble(const std::vector<ProjectNode>& nodes, const std::vector<TriedPair>& pairs, double risk,
-              ProjectResult& result);
+/// of `result` but its scans' files. Throws Error where a file of the survey is no good.
+void assemble(const std::vector<ProjectNode>& nodes, const std::vector<TriedPair>& pairs,
+              const ProjectInputs& inputs, double risk, ProjectResult& result);
 
 }  // namespace limen

@@ -30,6 +30,9 @@ struct ProjectCommandOptions {
   std::string gravity = "auto";
   std::string pairs = "auto";
   std::string memory;
+  std::string control;
+  std::string check;
+  std::string targets;
   double risk = VerdictOptions{}.risk;
   bool apart = false;
 };
@@ -71,6 +74,9 @@ OptionList reported(const ProjectCommandOptions& options, const Session& session
   if (options.apart) list.emplace_back("stations_apart", true);
   if (options.risk != VerdictOptions{}.risk) list.emplace_back("risk", options.risk);
   if (!options.memory.empty()) list.emplace_back("memory", options.memory);
+  if (!options.control.empty()) list.emplace_back("control", options.control);
+  if (!options.check.empty()) list.emplace_back("check", options.check);
+  if (!options.targets.empty()) list.emplace_back("targets", options.targets);
   list.emplace_back("seed", static_cast<std::int64_t>(session.common.seed));
   return list;
 }
@@ -88,9 +94,30 @@ std::string scan_line(const ProjectScan& scan) {
   return line + "\n";
 }
 
+/// Control and check points, a line each.
+std::string point_lines(const ProjectResult& result) {
+  if (result.control_file.empty() && result.points.empty()) return {};
+  std::string text;
+  if (!result.control_words.empty()) text += fmt::format("control     {}\n", result.control_words);
+  for (const ProjectPoint& point : result.points) {
+    if (!point.given) continue;
+    text += fmt::format("{:<7} {:<12} {:<10}", to_string(point.role), point.name, to_string(point.state));
+    if (point.found)
+      text += fmt::format(" misses by {:6.1f} {:6.1f} {:6.1f} mm (sigma {:.1f} {:.1f} {:.1f})",
+                          1e3 * point.test.residual.x(), 1e3 * point.test.residual.y(),
+                          1e3 * point.test.residual.z(), 1e3 * point.test.sigma.x(),
+                          1e3 * point.test.sigma.y(), 1e3 * point.test.sigma.z());
+    if (point.state == PointState::left_out || point.state == PointState::not_placed)
+      text += ": " + point.reason;
+    text += "\n";
+  }
+  return text;
+}
+
 std::string summary(const ProjectResult& result, const std::string& folder) {
   std::string text = fmt::format("{}: {}\n", to_string(result.outcome), result.reason);
   for (const ProjectScan& scan : result.scans) text += scan_line(scan);
+  text += point_lines(result);
   for (const ProjectQuestion& question : result.questions) text += "question: " + question.text + "\n";
   std::size_t counts[5] = {};
   for (const ProjectLink& link : result.links) ++counts[static_cast<std::size_t>(link.solved.state)];
@@ -125,6 +152,13 @@ int tell_status(const std::string& folder, const Session& session) {
   return kExitOk;
 }
 
+ProjectInputs inputs_of(const ProjectCommandOptions& options) {
+  if (!options.control.empty() && !options.check.empty() && options.targets.empty())
+    throw Error("there is nothing that tells where the scans see the points", "--check",
+                "give a file of targets: --targets FILE.csv");
+  return {options.scans, options.models, options.control, options.check, options.targets};
+}
+
 int run(ProjectCommandOptions options, const Session& session) {
   if (options.folder.empty() && options.scans.size() == 2 && options.scans.front() == "status")
     return tell_status(options.scans.back(), session);
@@ -133,8 +167,8 @@ int run(ProjectCommandOptions options, const Session& session) {
     for (std::string& name : names_in(options.list)) options.scans.push_back(std::move(name));
   }
   const OutputFolder folder(options.folder);
-  const ProjectResult result = run_project({options.scans, options.models}, folder.path(),
-                                           project_options(options, session), *session.monitor);
+  const ProjectResult result =
+      run_project(inputs_of(options), folder.path(), project_options(options, session), *session.monitor);
   const std::string json = project_json(result, reported(options, session));
   session.monitor->throw_if_cancelled();
   write_file(folder.path() / "report.html", project_page(result));
@@ -172,6 +206,20 @@ void add_project_command(CommandLine& app, Session& session) {
       ->one_of({"auto", "all"});
   command->add_flag("--stations-apart", options->apart,
                     "The scans of one file are not known to one another, whatever the file says");
+  command
+      ->add_option(
+          "--control", options->control,
+          "Points whose coordinates are known: name,x,y,z,sigma (or sigma_x,sigma_y,sigma_z); the frame "
+          "becomes theirs. A point called as a scan is where its scanner stood")
+      ->type_name("CSV");
+  command
+      ->add_option("--targets", options->targets,
+                   "Where the scans see them: name,scan,x,y,z,sigma; x,y,z as in the scan's own file")
+      ->type_name("CSV");
+  command
+      ->add_option("--check", options->check,
+                   "Points like those of --control that never enter: what they miss is told")
+      ->type_name("CSV");
   command
       ->add_option("--risk", options->risk,
                    "Tell a scan as registered only where it stands elsewhere with less than this probability "

@@ -45,18 +45,14 @@ class JointSolver {
   }
 
   JointSolution run() {
-    if (size_ > 0) {
-      for (int step = 0; step < kSteps; ++step) {
-        CancelScope::check();
-        fit_planes();
-        weigh();
-        if (move() < kDone) break;
-      }
-      fit_planes();
-      weigh();
-      build();
+    converge();
+    tell_factor();
+    if (!problem_.points.empty() && solution_.variance_factor > 1.0) {
+      const double factor = solution_.variance_factor;
+      plane_share_ = 1.0 / factor;
+      converge();
     }
-    tell();
+    tell_covariance();
     return std::move(solution_);
   }
 
@@ -70,6 +66,19 @@ class JointSolver {
   /// The first of the six unknowns of a place, and how many there are in all.
   [[nodiscard]] static Eigen::Index unknown(int place) { return Eigen::Index{6} * place; }
   [[nodiscard]] Eigen::Index unknowns() const { return unknown(size_); }
+
+  void converge() {
+    if (size_ == 0) return;
+    for (int step = 0; step < kSteps; ++step) {
+      CancelScope::check();
+      fit_planes();
+      weigh();
+      if (move() < kDone) break;
+    }
+    fit_planes();
+    weigh();
+    build();
+  }
 
   /// Each plane anew from all that is seen of it, about its centroid.
   void fit_planes() {
@@ -116,6 +125,7 @@ class JointSolver {
     for (int k = 0; k < 6 * size_; ++k) entries_.emplace_back(k, k, kTiny);
     for (std::size_t e = 0; e < problem_.edges.size(); ++e) add_edge(problem_.edges[e], information_[e]);
     for (std::size_t p = 0; p < seen_by_.size(); ++p) add_plane(p);
+    for (const MarkedPoint& point : problem_.points) add_point(point);
     Eigen::SparseMatrix<double> normal(unknowns(), unknowns());
     normal.setFromTriplets(entries_.begin(), entries_.end());
     solver_.compute(normal);
@@ -169,7 +179,7 @@ class JointSolver {
     std::vector<Wide> mixed;
     for (const std::size_t k : seen) {
       const PlaneObservation& observation = problem_.observations[k];
-      const double weight = solution_.weights[k];
+      const double weight = plane_share_ * solution_.weights[k];
       const PlaneResidual residual = plane_residual(observation, pose(observation.node), planes_[p]);
       own += weight * residual.by_plane.transpose() * residual.by_plane;
       own_right -= weight * residual.by_plane.transpose() * residual.value;
@@ -187,8 +197,22 @@ class JointSolver {
     }
   }
 
-  void tell() {
-    solution_.covariance.assign(place_.size(), Matrix6d::Zero());
+  /// Adds what the sights of a point say of their poses, the point itself eliminated.
+  void add_point(const MarkedPoint& point) {
+    if (!point.enters || point.sights.empty()) return;
+    const PointTerms terms = point_terms(point, solution_.frame_from_node);
+    const Matrix3d inverted = terms.own.inverse();
+    for (std::size_t i = 0; i < point.sights.size(); ++i) {
+      const int node = point.sights[i].node;
+      const Wide half = terms.by_pose[i].transpose() * terms.weight[i];
+      add_block(node, node, half * terms.by_pose[i]);
+      add_right(node, -half * (terms.place[i] - terms.x));
+      for (std::size_t j = 0; j < point.sights.size(); ++j)
+        add_block(node, point.sights[j].node, -half * inverted * terms.weight[j] * terms.by_pose[j]);
+    }
+  }
+
+  void tell_factor() {
     if (size_ == 0) return;
     double sum = 0.0;
     double count = -6.0 * size_;
@@ -203,7 +227,13 @@ class JointSolver {
     }
     for (const std::vector<std::size_t>& seen : seen_by_) count -= seen.size() < 2 ? 0.0 : 3.0;
     if (count > 0.0) solution_.variance_factor = sum / count;
-    const double scale = std::max(1.0, solution_.variance_factor);
+  }
+
+  void tell_covariance() {
+    solution_.covariance.assign(place_.size(), Matrix6d::Zero());
+    for (const MarkedPoint& point : problem_.points) solution_.sight_covariance.push_back(of_sights(point));
+    if (size_ == 0) return;
+    const double scale = problem_.points.empty() ? std::max(1.0, solution_.variance_factor) : 1.0;
     for (std::size_t i = 0; i < place_.size(); ++i) {
       CancelScope::check();
       if (place_[i] < 0) continue;
@@ -211,6 +241,19 @@ class JointSolver {
       unit.block<6, 6>(unknown(place_[i]), 0).setIdentity();
       solution_.covariance[i] = scale * solver_.solve(unit).middleRows<6>(unknown(place_[i]));
     }
+  }
+
+  [[nodiscard]] Eigen::MatrixXd of_sights(const MarkedPoint& point) const {
+    const auto rows = static_cast<Eigen::Index>(3 * point.sights.size());
+    if (size_ == 0) return Eigen::MatrixXd::Zero(rows, rows);
+    const PointTerms terms = point_terms(point, solution_.frame_from_node);
+    Eigen::MatrixXd by_poses = Eigen::MatrixXd::Zero(unknowns(), rows);
+    for (std::size_t i = 0; i < point.sights.size(); ++i) {
+      const int at = place(point.sights[i].node);
+      if (at < 0) continue;
+      by_poses.block<6, 3>(unknown(at), static_cast<Eigen::Index>(3 * i)) = terms.by_pose[i].transpose();
+    }
+    return by_poses.transpose() * solver_.solve(by_poses);
   }
 
   /// Weighted squared distances of an observation's points to the plane that fits them best.
@@ -224,6 +267,7 @@ class JointSolver {
   JointSolution solution_;
   std::vector<int> place_;
   int size_ = 0;
+  double plane_share_ = 1.0;  // of the weight that planes are given
   std::vector<Matrix6d> information_;
   std::vector<std::vector<std::size_t>> seen_by_;
   std::vector<AnchoredPlane> planes_;

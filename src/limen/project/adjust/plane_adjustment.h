@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "limen/geometry/plane.h"
+#include "limen/project/adjust/survey_point.h"
 #include "limen/project/graph/pose_adjustment.h"
 
 namespace limen {
@@ -26,13 +27,16 @@ struct JointProblem {
   std::vector<PoseEdge> edges;
   std::vector<PlaneObservation> observations;
   int planes = 0;
+  std::vector<MarkedPoint> points;
 };
 
 struct JointSolution {
   std::vector<Rigid3> frame_from_node;
   std::vector<Matrix6d> covariance;  ///< of a turn about the node's origin and a shift; frame axes
   std::vector<double> weights;       ///< of each observation, 0 .. 1
-  double variance_factor = 1.0;      ///< of the observations: 1 where they err as they should
+  double variance_factor = 1.0;      ///< of the planes: 1 where they err as they should
+  /// Of each point: covariance of the places where its sights have it by the poses alone, three rows each.
+  std::vector<Eigen::MatrixXd> sight_covariance;
 };
 
 /// The four numbers whose squares are the weighted squared distances of an observation's points to a plane,
@@ -60,7 +64,9 @@ PlaneResidual plane_residual(const PlaneObservation& observation, const Rigid3& 
 
 /// Robust least squares over all poses and planes; planes are eliminated (Schur), the poses solved by sparse
 /// Cholesky. An observation that misses its plane by far loses its weight (Geman-McClure). Every node that is
-/// not fixed must be joined to a fixed one by edges.
+/// not fixed must be joined to a fixed one by edges, or hang with others on marked points whose coordinates
+/// are known. Marked points are eliminated like planes. Where there are any, planes that miss by more than
+/// was taken for them count for less, so that deviations of points and planes are of one measure.
 JointSolution adjust_jointly(const JointProblem& problem);
 
 }  // namespace limen

@@ -32,6 +32,7 @@ struct GraphLink {
 struct PoseGraph {
   int nodes = 0;
   std::vector<GraphLink> links;
+  int anchor = -1;  ///< a node that is the frame of the component it is part of, -1: none
 };
 
 /// What became of a link.

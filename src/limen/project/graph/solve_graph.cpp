@@ -159,6 +159,8 @@ class Solver {
       int& reference = first[static_cast<std::size_t>(component(i))];
       if (reference < 0 || size_of(i) > size_of(reference)) reference = i;
     }
+    if (graph_.anchor >= 0 && component(graph_.anchor) >= 0)
+      first[static_cast<std::size_t>(component(graph_.anchor))] = graph_.anchor;
     return first;
   }
 
@@ -235,8 +237,12 @@ class Solver {
         ++all;
         moving += moves[i] ? 1 : 0;
       }
-      // The smaller side is the one in doubt.
-      if (2 * moving > all || (2 * moving == all && moves[first])) {
+      // The smaller side is the one in doubt, but never the frame.
+      const bool anchored =
+          graph_.anchor >= 0 && accepted_.component[static_cast<std::size_t>(graph_.anchor)] == home;
+      const bool swap = anchored ? bool(moves[static_cast<std::size_t>(graph_.anchor)])
+                                 : 2 * moving > all || (2 * moving == all && moves[first]);
+      if (swap) {
         question.frame_from_frame = inverse(question.frame_from_frame);
         question.moved.clear();
         for (std::size_t i = 0; i < solved_.nodes.size(); ++i) {

@@ -77,6 +77,33 @@ Json question_json(const ProjectQuestion& question) {
           {"for_another_place", question.rival}};
 }
 
+Json point_json(const ProjectPoint& point) {
+  Json json = {{"name", point.name}, {"role", to_string(point.role)}, {"state", to_string(point.state)}};
+  if (point.scanner) json["scanner"] = true;
+  if (point.given) {
+    json["given"] = json_of(*point.given);
+    json["given_sigma_m"] = json_of(point.given_sigma);
+  }
+  json["found"] = point.found ? json_of(*point.found) : Json();
+  if (point.found) json["found_sigma_m"] = json_of(point.found_sigma);
+  if (point.found && point.given) {
+    json["missed_m"] = json_of(point.test.residual);
+    json["missed_sigma_m"] = json_of(point.test.sigma);
+    json["w"] = json_of(point.test.w);
+    json["chi_square"] = point.test.squared;
+    if (point.state == PointState::used) {
+      json["redundancy"] = point.test.redundancy;
+      json["detectable_m"] = json_of(point.test.detectable);
+    }
+  }
+  Json sights = Json::array();
+  for (const ProjectSight& sight : point.sights)
+    sights.push_back({{"scan", sight.scan}, {"used", sight.used}, {"missed_m", sight.missed_m}});
+  json["seen_by"] = std::move(sights);
+  json["reason"] = point.reason;
+  return json;
+}
+
 template <typename List, typename Make>
 Json list_json(const List& list, const Make& make) {
   Json json = Json::array();
@@ -90,16 +117,21 @@ std::string project_json(const ProjectResult& result, const OptionList& options)
   Json json;
   json["outcome"] = to_string(result.outcome);
   json["reason"] = result.reason;
-  json["frame"] = {
-      {"kind", result.frame_kind},
-      {"scan", result.frame_scan >= 0 ? Json(result.frame_scan) : Json()},
-      {"file", result.frame_scan >= 0 ? Json(result.scans[static_cast<std::size_t>(result.frame_scan)].file)
-                                      : Json()}};
+  const bool of_scan = result.frame_scan >= 0;
+  json["frame"] = {{"kind", result.frame_kind},
+                   {"scan", of_scan ? Json(result.frame_scan) : Json()},
+                   {"file", of_scan ? Json(result.scans[static_cast<std::size_t>(result.frame_scan)].file)
+                            : result.frame_kind == "control" ? Json(result.control_file)
+                                                             : Json()}};
   json["components"] = result.components;
   json["scans"] = list_json(result.scans, scan_json);
   json["links"] = list_json(result.links, link_json);
   json["loops"] = list_json(result.loops, loop_json);
   json["questions"] = list_json(result.questions, question_json);
+  if (!result.control_file.empty() || !result.points.empty()) {
+    json["control"] = {{"reason", result.control_words}, {"variance_factor", result.control_factor}};
+    json["points"] = list_json(result.points, point_json);
+  }
   json["pairs_tried"] = result.pairs_tried;
   json["variance_factor"] = result.variance_factor;
   json["notes"] = result.notes;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limen/report/project/project_page.h"
 
+#include <cmath>
 #include <vector>
 
 #include <fmt/format.h>
@@ -123,6 +124,53 @@ std::string loops_table(const ProjectResult& result) {
   return text + "</table></div>\n";
 }
 
+std::string millimetres(const Vector3d& metres) {
+  return fmt::format("<td class=\"n\">{:.1f}</td><td class=\"n\">{:.1f}</td><td class=\"n\">{:.1f}</td>",
+                     1e3 * metres.x(), 1e3 * metres.y(), 1e3 * metres.z());
+}
+
+std::string point_row(const ProjectPoint& point) {
+  const char* colour = point.state == PointState::used         ? "verified"
+                       : point.state == PointState::left_out   ? "rejected"
+                       : point.state == PointState::not_placed ? "weak"
+                                                               : "bridge";
+  std::string seers;
+  for (const ProjectSight& sight : point.sights)
+    seers += fmt::format("{0}<a href=\"#scan{1}\">{1}</a>", seers.empty() ? "" : ", ", sight.scan);
+  std::string row =
+      fmt::format("<tr><td>{}</td><td>{}</td><td class=\"state {}\">{}</td><td>{}</td>", escaped(point.name),
+                  to_string(point.role), colour, to_string(point.state), seers);
+  if (point.found) {
+    const double largest = point.test.w.cwiseAbs().maxCoeff();
+    const double detectable = point.test.detectable.maxCoeff();
+    row += millimetres(point.test.residual) + millimetres(point.test.sigma);
+    row += fmt::format("<td class=\"n\">{:.1f}</td><td class=\"n\">{}</td>", largest,
+                       point.state == PointState::used && std::isfinite(detectable)
+                           ? fmt::format("{:.0f}", 1e3 * detectable)
+                           : "");
+  } else {
+    row += "<td></td><td></td><td></td><td></td><td></td><td></td><td></td><td></td>";
+  }
+  return row + fmt::format("<td>{}</td></tr>\n", escaped(point.reason));
+}
+
+std::string points_table(const ProjectResult& result) {
+  std::string rows;
+  for (const ProjectPoint& point : result.points) {
+    if (point.given) rows += point_row(point);
+  }
+  if (rows.empty()) return {};
+  return fmt::format(
+      "<h2>Control and check points</h2>\n<p class=\"soft\">{}. Given less found, with one standard "
+      "deviation; w: "
+      "the largest of the three tests; found with 80&nbsp;%: the smallest blunder along any axis that would "
+      "be "
+      "found.</p>\n<div class=\"scroll\"><table><tr><th>point</th><th></th><th>state</th><th>seen by</th>"
+      "<th>x, mm</th><th>y</th><th>z</th><th>sigma x, mm</th><th>y</th><th>z</th><th>w</th>"
+      "<th>found with 80&nbsp;%, mm</th><th>why</th></tr>\n{}</table></div>\n",
+      escaped(result.control_words), rows);
+}
+
 std::string notes(const ProjectResult& result) {
   if (result.notes.empty()) return {};
   std::string text = "<h2>Notes</h2>\n<ul>\n";
@@ -131,6 +179,8 @@ std::string notes(const ProjectResult& result) {
 }
 
 std::string frame_words(const ProjectResult& result) {
+  if (result.frame_kind == "control")
+    return fmt::format("The frame is that of the control points in {}.", escaped(result.control_file));
   if (result.frame_scan < 0) return "Nothing was joined.";
   const ProjectScan& scan = result.scans[static_cast<std::size_t>(result.frame_scan)];
   return fmt::format("The frame is that of {}.", escaped(scan_name(scan)));
@@ -155,7 +205,8 @@ std::string project_page(const ProjectResult& result) {
             "<p class=\"soft\">Lines: verified links are full, bridges dashed, ambiguous and rejected ones "
             "dotted. Ellipses are "
             "one sigma, enlarged 100 times.</p>\n";
-  text += scans_table(result) + links_table(result) + loops_table(result) + notes(result);
+  text +=
+      scans_table(result) + points_table(result) + links_table(result) + loops_table(result) + notes(result);
   return text + "</main></body></html>\n";
 }
 

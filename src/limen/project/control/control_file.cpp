@@ -1,0 +1,173 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/project/control/control_file.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <map>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include <Eigen/Eigenvalues>
+#include <fmt/format.h>
+
+#include "limen/base/error.h"
+#include "limen/base/text.h"
+#include "limen/files/text_numbers.h"
+
+namespace limen {
+namespace {
+
+constexpr const char* kRemedy =
+    "the first line names the columns: name,x,y,z and sigma, or sigma_x,sigma_y,sigma_z, or cov_xx,cov_xy,"
+    "cov_xz,cov_yy,cov_yz,cov_zz; metres";
+
+/// One row of a table, with what an error has to name.
+class Row {
+ public:
+  Row(const std::map<std::string, std::size_t>& columns, std::vector<std::string> cells, char mark,
+      std::string where)
+      : columns_(columns), cells_(std::move(cells)), mark_(mark), where_(std::move(where)) {}
+
+  [[nodiscard]] const std::string& where() const { return where_; }
+  [[nodiscard]] bool has(const std::string& column) const { return columns_.count(column) > 0; }
+
+  [[nodiscard]] const std::string& text(const std::string& column) const {
+    const auto found = columns_.find(column);
+    if (found == columns_.end()) throw Error("there is no column " + column, where_, kRemedy);
+    if (found->second >= cells_.size() || cells_[found->second].empty())
+      throw Error("there is nothing in the column " + column, where_, "fill it, or take the line out");
+    return cells_[found->second];
+  }
+
+  [[nodiscard]] double number(const std::string& column) const {
+    std::string cell = text(column);
+    if (mark_ == ';') std::replace(cell.begin(), cell.end(), ',', '.');
+    const std::optional<double> value = parse_number(cell);
+    if (!value || !std::isfinite(*value))
+      throw Error(fmt::format("\"{}\" in the column {} is no number", cell, column), where_, kRemedy);
+    return *value;
+  }
+
+  [[nodiscard]] double sigma(const std::string& column) const {
+    const double value = number(column);
+    if (value <= 0.0)
+      throw Error(fmt::format("the deviation {} in the column {} is not above 0", value, column), where_,
+                  "give one standard deviation in metres; nothing is known exactly");
+    return value;
+  }
+
+  [[nodiscard]] Vector3d place() const { return {number("x"), number("y"), number("z")}; }
+
+  [[nodiscard]] Matrix3d covariance() const {
+    if (has("cov_xx")) return full_covariance();
+    if (has("sigma_x")) {
+      const Vector3d sigmas(sigma("sigma_x"), sigma("sigma_y"), sigma("sigma_z"));
+      return sigmas.array().square().matrix().asDiagonal();
+    }
+    const double own = sigma("sigma");
+    return own * own * Matrix3d::Identity();
+  }
+
+ private:
+  [[nodiscard]] Matrix3d full_covariance() const {
+    const double xy = number("cov_xy");
+    const double xz = number("cov_xz");
+    const double yz = number("cov_yz");
+    Matrix3d full;
+    full << number("cov_xx"), xy, xz, xy, number("cov_yy"), yz, xz, yz, number("cov_zz");
+    const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(full, Eigen::EigenvaluesOnly);
+    // Below this no inverse of it means anything.
+    constexpr double kLeastShare = 1e-12;
+    if (solver.eigenvalues()[0] <= kLeastShare * std::abs(solver.eigenvalues()[2]))
+      throw Error("the covariance is not positive definite", where_,
+                  "look at its six numbers, or give sigma_x,sigma_y,sigma_z");
+    return full;
+  }
+
+  const std::map<std::string, std::size_t>& columns_;
+  std::vector<std::string> cells_;
+  char mark_;
+  std::string where_;
+};
+
+/// The cells of a line; a quoted cell may hold the mark.
+std::vector<std::string> cells_of(std::string_view line, char mark) {
+  std::vector<std::string> cells(1);
+  bool quoted = false;
+  for (const char c : line) {
+    if (c == '"') {
+      quoted = !quoted;
+    } else if (c == mark && !quoted) {
+      cells.emplace_back();
+    } else {
+      cells.back() += c;
+    }
+  }
+  for (std::string& cell : cells) cell = std::string(trimmed(cell));
+  return cells;
+}
+
+char mark_of(std::string_view header) {
+  for (const char mark : {';', '\t'}) {
+    if (header.find(mark) != std::string_view::npos) return mark;
+  }
+  return ',';
+}
+
+/// Calls `visit` with each row of the table.
+template <typename Visit>
+void read_table(const std::filesystem::path& path, const Visit& visit) {
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream) throw Error("cannot be read", path.string(), "look whether the name is right");
+  std::map<std::string, std::size_t> columns;
+  char mark = ',';
+  int number = 0;
+  for (std::string line; std::getline(stream, line);) {
+    ++number;
+    std::string_view text = trimmed(line);
+    constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+    if (number == 1 && text.substr(0, kByteOrderMark.size()) == kByteOrderMark)
+      text.remove_prefix(kByteOrderMark.size());
+    if (text.empty() || text.front() == '#') continue;
+    const std::string where = fmt::format("{}, line {}", path.string(), number);
+    if (columns.empty()) {
+      mark = mark_of(text);
+      const std::vector<std::string> names = cells_of(text, mark);
+      for (std::size_t k = 0; k < names.size(); ++k) columns.emplace(lower_case(names[k]), k);
+      if (columns.count("name") == 0) throw Error("no column is called name", where, kRemedy);
+      continue;
+    }
+    visit(Row(columns, cells_of(text, mark), mark, where));
+  }
+  if (columns.empty()) throw Error("holds no line", path.string(), kRemedy);
+}
+
+}  // namespace
+
+std::vector<SurveyedPoint> read_surveyed_points(const std::filesystem::path& path) {
+  std::vector<SurveyedPoint> points;
+  std::set<std::string> known;
+  read_table(path, [&](const Row& row) {
+    points.push_back({row.text("name"), row.place(), row.covariance()});
+    if (!known.insert(points.back().name).second)
+      throw Error("the point " + points.back().name + " is given twice", row.where(), "take one of them out");
+  });
+  return points;
+}
+
+std::vector<SeenTarget> read_seen_targets(const std::filesystem::path& path) {
+  std::vector<SeenTarget> targets;
+  std::set<std::pair<std::string, std::string>> known;
+  read_table(path, [&](const Row& row) {
+    targets.push_back({row.text("name"), row.text("scan"), row.place(), row.covariance()});
+    if (!known.emplace(targets.back().name, targets.back().scan).second)
+      throw Error(fmt::format("the scan {} sees {} twice", targets.back().scan, targets.back().name),
+                  row.where(), "take one of them out");
+  });
+  return targets;
+}
+
+}  // namespace limen

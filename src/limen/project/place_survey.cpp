@@ -1,0 +1,244 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <set>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "limen/project/control/control_datum.h"
+#include "limen/project/survey.h"
+
+namespace limen {
+namespace {
+
+// A scan whose targets fit their coordinates stands elsewhere about as seldom as any link is wrong.
+constexpr double kTargetsWrong = 1e-6;
+constexpr double kTargetsM2 =
+    1000.0;  // what targets say of a scan no other scan says: they are witnesses of their own
+
+std::string names_of(const Survey& survey, const std::vector<std::size_t>& points) {
+  std::string text;
+  for (std::size_t k = 0; k < points.size() && k < 6; ++k)
+    text += (k == 0 ? "" : ", ") + survey.marks[points[k]].name;
+  if (points.size() > 6) text += fmt::format(" and {} more", points.size() - 6);
+  return text;
+}
+
+std::vector<std::size_t> suspects_of(const ControlDatum& datum) {
+  std::vector<std::size_t> points;
+  for (const std::size_t k : datum.fit.suspects) points.push_back(datum.points[k]);
+  return points;
+}
+
+std::vector<MarkedPoint> points_of(const Survey& survey) {
+  std::vector<MarkedPoint> points;
+  for (const SurveyMark& mark : survey.marks) points.push_back(mark.point);
+  return points;
+}
+
+/// The scan alone, in its own frame.
+FramedNodes only(int node, int nodes) {
+  FramedNodes framed;
+  framed.frame_from_node.resize(static_cast<std::size_t>(nodes));
+  framed.covariance.assign(static_cast<std::size_t>(nodes), Matrix6d::Zero());
+  framed.member.assign(static_cast<std::size_t>(nodes), false);
+  framed.member[static_cast<std::size_t>(node)] = true;
+  return framed;
+}
+
+class SurveyPlacer {
+ public:
+  SurveyPlacer(const Survey& survey, ProjectGraph& made, SolvedGraph& solved)
+      : survey_(survey), made_(made), solved_(solved) {}
+
+  PlacedSurvey run() {
+    placed_.points = points_of(survey_);
+    placed_.candidates.assign(placed_.points.size(), false);
+    take_out_anchor();
+    placed_.controlled.assign(solved_.nodes.size(), false);
+    std::vector<bool> held(static_cast<std::size_t>(std::max(0, solved_.components)), false);
+    for (std::size_t c = 0; c < held.size(); ++c) held[c] = hold(static_cast<int>(c));
+    if (placed_.placed) renumber(held);
+    keep_firm_sights();
+    tell();
+    return std::move(placed_);
+  }
+
+ private:
+  /// The survey's node and its links have done their work: they joined components and closed loops.
+  void take_out_anchor() {
+    if (made_.graph.anchor < 0) return;
+    const auto anchor = static_cast<std::size_t>(made_.graph.anchor);
+    solved_.nodes.resize(anchor);
+    made_.graph.nodes = made_.graph.anchor;
+    std::size_t links = made_.graph.links.size();
+    while (links > 0 && made_.graph.links[links - 1].target == made_.graph.anchor) --links;
+    made_.graph.links.resize(links);
+    made_.pair_of.resize(links);
+    solved_.links.resize(links);
+    const auto gone = [links](int link) { return static_cast<std::size_t>(link) >= links; };
+    for (GraphQuestion& question : solved_.questions) {
+      for (std::vector<int>* list : {&question.current, &question.rival})
+        list->erase(std::remove_if(list->begin(), list->end(), gone), list->end());
+    }
+    solved_.loops.erase(std::remove_if(solved_.loops.begin(), solved_.loops.end(),
+                                       [&](const GraphLoop& loop) {
+                                         return std::any_of(loop.links.begin(), loop.links.end(), gone);
+                                       }),
+                        solved_.loops.end());
+    made_.graph.anchor = -1;
+  }
+
+  /// Moves a component into the survey's frame where its points tell how; false: they do not.
+  bool hold(int component) {
+    FramedNodes nodes;
+    for (const SolvedNode& node : solved_.nodes) {
+      nodes.frame_from_node.push_back(node.frame_from_node);
+      nodes.covariance.push_back(node.covariance);
+      nodes.member.push_back(node.component == component && node.state == NodeState::registered);
+    }
+    const ControlDatum datum = control_datum(placed_.points, nodes);
+    if (datum.points.empty()) return false;
+    const auto agreeing = std::count(datum.fit.taken.begin(), datum.fit.taken.end(), true);
+    if (datum.fit.state == PointFitState::too_few || agreeing < 3) {
+      refuse(component, datum);
+      return false;
+    }
+    move(component, datum.fit.pose.target_from_source);
+    for (std::size_t k = 0; k < datum.points.size(); ++k) {
+      placed_.candidates[datum.points[k]] = true;
+      placed_.points[datum.points[k]].known_enters = datum.fit.taken[k];
+    }
+    // Which of them is wrong, all together tell best.
+    for (const std::size_t p : suspects_of(datum)) placed_.points[p].known_enters = true;
+    placed_.placed = true;
+    return true;
+  }
+
+  void refuse(int component, const ControlDatum& datum) {
+    const std::string which =
+        solved_.components > 1 ? fmt::format("component {} keeps", component) : "the scans keep";
+    if (datum.fit.state == PointFitState::too_few) {
+      refused_ += fmt::format(
+          "; {} a frame of their own: {} control point{} seen there, which does not fix "
+          "its six freedoms",
+          which, datum.points.size(), datum.points.size() == 1 ? " is" : "s are");
+    } else {
+      refused_ += fmt::format(
+          "; {} a frame of their own: {} contradict one another, and which is wrong "
+          "cannot be told, or their deviations are larger than given",
+          which, names_of(survey_, suspects_of(datum)));
+    }
+  }
+
+  void move(int component, const Rigid3& control_from_frame) {
+    Matrix6d turn = Matrix6d::Zero();
+    turn.topLeftCorner<3, 3>() = control_from_frame.rotation;
+    turn.bottomRightCorner<3, 3>() = control_from_frame.rotation;
+    for (std::size_t n = 0; n < solved_.nodes.size(); ++n) {
+      SolvedNode& node = solved_.nodes[n];
+      if (node.component != component) continue;
+      placed_.controlled[n] = true;
+      node.frame_from_node = control_from_frame * node.frame_from_node;
+      for (Rigid3& other : node.alternatives) other = control_from_frame * other;
+      node.covariance = turn * node.covariance * turn.transpose();
+    }
+  }
+
+  /// Held components become one, the first.
+  void renumber(const std::vector<bool>& held) {
+    std::vector<int> number(held.size(), 0);
+    int next = 1;
+    for (std::size_t c = 0; c < held.size(); ++c) {
+      if (!held[c]) number[c] = next++;
+    }
+    for (SolvedNode& node : solved_.nodes) {
+      if (node.component >= 0) node.component = number[static_cast<std::size_t>(node.component)];
+    }
+    solved_.components = next;
+  }
+
+  /// Scans that are in doubt do not say where points are.
+  void keep_firm_sights() {
+    placed_.sights.resize(placed_.points.size());
+    for (std::size_t p = 0; p < placed_.points.size(); ++p) {
+      MarkedPoint& point = placed_.points[p];
+      std::vector<PointSight> kept;
+      for (std::size_t k = 0; k < point.sights.size(); ++k) {
+        const auto n = static_cast<std::size_t>(point.sights[k].node);
+        const SolvedNode& node = solved_.nodes[n];
+        if (node.component != 0 || node.state != NodeState::registered) continue;
+        if (placed_.placed && !placed_.controlled[n]) continue;
+        kept.push_back(point.sights[k]);
+        placed_.sights[p].push_back(k);
+      }
+      point.sights = std::move(kept);
+      if (!placed_.placed) point.known_enters = false;
+    }
+  }
+
+  void tell() {
+    if (survey_.file.empty()) return;
+    std::set<int> nodes;
+    std::size_t points = 0;
+    for (const MarkedPoint& point : placed_.points) {
+      if (point.sights.empty() || !point.known || !point.enters) continue;
+      ++points;
+      for (const PointSight& sight : point.sights) nodes.insert(sight.node);
+    }
+    if (placed_.placed) {
+      placed_.words = fmt::format("{} control points are seen by {} scan{}", points, nodes.size(),
+                                  nodes.size() == 1 ? "" : "s");
+    } else {
+      placed_.words = "the frame is not that of the control points";
+      if (refused_.empty()) placed_.words += ": no scan that stands firmly sees any";
+    }
+    placed_.words += refused_;
+  }
+
+  const Survey& survey_;
+  ProjectGraph& made_;
+  SolvedGraph& solved_;
+  PlacedSurvey placed_;
+  std::string refused_;
+};
+
+}  // namespace
+
+void add_survey_links(Survey& survey, ProjectGraph& made) {
+  if (survey.file.empty()) return;
+  const int nodes = made.graph.nodes;
+  const std::vector<MarkedPoint> points = points_of(survey);
+  std::vector<GraphLink> links;
+  for (int n = 0; n < nodes; ++n) {
+    const ControlDatum datum = control_datum(points, only(n, nodes));
+    if (datum.fit.state == PointFitState::too_few) continue;
+    if (!datum.fit.suspects.empty())
+      survey.notes.push_back(fmt::format("of the targets of {} these contradict one another: {}",
+                                         survey.node_names[static_cast<std::size_t>(n)],
+                                         names_of(survey, suspects_of(datum))));
+    if (datum.fit.state != PointFitState::fixed) continue;
+    GraphLink link;
+    link.source = n;
+    link.target = nodes;
+    link.trust = LinkTrust::given;
+    link.chance = kTargetsWrong;
+    link.poses.push_back(datum.fit.pose);
+    link.poses.front().agreeing_m2 = kTargetsM2;
+    links.push_back(std::move(link));
+  }
+  if (links.empty()) return;
+  made.graph.anchor = nodes;
+  ++made.graph.nodes;
+  for (GraphLink& link : links) {
+    made.graph.links.push_back(std::move(link));
+    made.pair_of.push_back(-1);
+  }
+}
+
+PlacedSurvey place_survey(const Survey& survey, ProjectGraph& made, SolvedGraph& solved) {
+  return SurveyPlacer(survey, made, solved).run();
+}
+
+}  // namespace limen

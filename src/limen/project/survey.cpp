@@ -1,0 +1,268 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/project/survey.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <utility>
+
+#include <Eigen/LU>
+#include <fmt/format.h>
+
+#include "limen/base/error.h"
+#include "limen/files/text_numbers.h"
+#include "limen/project/control/control_file.h"
+
+namespace limen {
+namespace {
+
+constexpr double kScannerM = 1e-4;  // a scanner's place in its own scan is known
+
+/// A scan's name in two parts: the file, and which of its scans.
+std::pair<std::string, std::optional<int>> parts_of(const std::string& name) {
+  const std::size_t mark = name.rfind('#');
+  if (mark == std::string::npos) return {name, {}};
+  const std::optional<std::size_t> index = parse_count(std::string_view(name).substr(mark + 1));
+  if (!index) return {name, {}};
+  std::string file = name.substr(0, mark);
+  while (!file.empty() && file.back() == ' ') file.pop_back();
+  return {file, static_cast<int>(*index)};
+}
+
+class SurveyReader {
+ public:
+  SurveyReader(const std::vector<ProjectNode>& nodes, const std::vector<ProjectScan>& scans)
+      : nodes_(nodes), scans_(scans) {}
+
+  Survey run(const ProjectInputs& inputs) {
+    survey_.file = inputs.control;
+    if (!inputs.control.empty()) add_points(inputs.control, PointRole::control);
+    if (!inputs.check.empty()) add_points(inputs.check, PointRole::check);
+    if (!inputs.targets.empty()) add_targets(inputs.targets);
+    std::vector<std::string> unseen;
+    for (auto& [name, mark] : marks_) {
+      if (mark.point.sights.empty()) add_scanner(mark);
+      if (mark.point.sights.empty()) unseen.push_back(name);
+      survey_.marks.push_back(std::move(mark));
+    }
+    note("no scan sees", unseen);
+    note("the targets are told of scans that are not part of the project:", strangers_);
+    about_origin();
+    for (const ProjectNode& node : nodes_) {
+      const ProjectScan& scan = scans_[node.scan];
+      survey_.node_names.push_back(scan.index > 0 ? fmt::format("{} #{}", scan.file, scan.index) : scan.file);
+    }
+    return std::move(survey_);
+  }
+
+ private:
+  void note(const std::string& words, const std::vector<std::string>& names) {
+    if (names.empty()) return;
+    std::string text = words;
+    for (std::size_t k = 0; k < names.size() && k < 5; ++k) text += (k == 0 ? " " : ", ") + names[k];
+    if (names.size() > 5) text += fmt::format(" and {} more", names.size() - 5);
+    survey_.notes.push_back(text);
+  }
+
+  void add_points(const std::string& file, PointRole role) {
+    for (const SurveyedPoint& point : read_surveyed_points(file)) {
+      SurveyMark mark;
+      mark.name = point.name;
+      mark.role = role;
+      mark.given = point.x;
+      mark.point.known = KnownPlace{point.x, point.covariance};
+      mark.point.enters = role == PointRole::control;
+      if (!marks_.emplace(point.name, mark).second)
+        throw Error("the point " + point.name + " is both control and check point", file,
+                    "take it out of one of the two files");
+    }
+  }
+
+  void add_targets(const std::string& file) {
+    for (const SeenTarget& target : read_seen_targets(file)) {
+      const int node = node_of(target.scan);
+      if (node < 0) {
+        if (std::find(strangers_.begin(), strangers_.end(), target.scan) == strangers_.end())
+          strangers_.push_back(target.scan);
+        continue;
+      }
+      SurveyMark& mark = marks_[target.name];
+      mark.name = target.name;
+      const Vector3d& origin = nodes_[static_cast<std::size_t>(node)].digest.local_origin;
+      mark.point.sights.push_back({node, target.x_in_scan - origin, target.covariance});
+    }
+    for (auto& [name, mark] : marks_) {
+      std::sort(mark.point.sights.begin(), mark.point.sights.end(),
+                [](const PointSight& a, const PointSight& b) { return a.node < b.node; });
+    }
+  }
+
+  /// A point that no scan sees and that is called as a scan is where its scanner stood.
+  void add_scanner(SurveyMark& mark) {
+    const int node = node_of(mark.name);
+    if (node < 0) return;
+    const ScanDigest& digest = nodes_[static_cast<std::size_t>(node)].digest;
+    if (digest.mobile || digest.stations.size() != 1) return;
+    mark.scanner = true;
+    mark.point.sights.push_back(
+        {node, digest.stations.front(), kScannerM * kScannerM * Matrix3d::Identity()});
+  }
+
+  /// -1: none, or more than one is called so.
+  [[nodiscard]] int node_of(const std::string& name) const {
+    const auto [file, index] = parts_of(name);
+    for (const bool whole : {true, false}) {
+      int found = -1;
+      int count = 0;
+      for (std::size_t n = 0; n < nodes_.size(); ++n) {
+        const ProjectScan& scan = scans_[nodes_[n].scan];
+        const std::string own = whole ? scan.file : std::filesystem::path(scan.file).filename().string();
+        if (scan.model || own != file || (index && scan.index != *index)) continue;
+        found = static_cast<int>(n);
+        ++count;
+      }
+      if (count == 1) return found;
+    }
+    return -1;
+  }
+
+  /// Large coordinates meet in one subtraction.
+  void about_origin() {
+    Vector3d sum = Vector3d::Zero();
+    int count = 0;
+    for (const SurveyMark& mark : survey_.marks) {
+      if (!mark.given || mark.role != PointRole::control) continue;
+      sum += *mark.given;
+      ++count;
+    }
+    if (count > 0) survey_.origin = (sum / count).array().round();
+    for (SurveyMark& mark : survey_.marks) {
+      if (mark.given) mark.point.known->x = *mark.given - survey_.origin;
+    }
+  }
+
+  const std::vector<ProjectNode>& nodes_;
+  const std::vector<ProjectScan>& scans_;
+  Survey survey_;
+  std::map<std::string, SurveyMark> marks_;
+  std::vector<std::string> strangers_;
+};
+
+Vector3d sigmas(const Matrix3d& covariance) {
+  return covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
+}
+
+/// What coordinates miss that did not enter.
+PointTest test_apart(const KnownPlace& given, const PointFinding& finding) {
+  PointTest test;
+  test.residual = given.x - finding.x;
+  test.sigma = sigmas(given.covariance + finding.covariance);
+  test.w = test.residual.cwiseQuotient(test.sigma);
+  test.squared = missed_squared(finding, given);
+  test.redundancy = 3.0;
+  return test;
+}
+
+std::string reason_of(const ProjectPoint& point, const PointVerdict& verdict, bool placed) {
+  switch (point.state) {
+    case PointState::used:
+      return {};
+    case PointState::compared:
+      return point.given ? "never enters the adjustment" : "a target without coordinates";
+    case PointState::left_out:
+      return fmt::format(
+          "{}: off by {:.1f} mm, chi squared {:.0f} of 3 numbers",
+          verdict.suspected ? "it, or another that contradicts it, is wrong" : "contradicts all else",
+          1e3 * point.test.residual.norm(), verdict.squared);
+    case PointState::not_placed:
+      break;
+  }
+  return placed ? "no scan that stands in the frame for sure sees it"
+                : "the frame is not that of the control points";
+}
+
+ProjectPoint told_point(const SurveyMark& mark, const PlacedSurvey& placed, std::size_t p,
+                        const Survey& survey, const std::vector<ProjectNode>& nodes) {
+  ProjectPoint told;
+  told.name = mark.name;
+  told.role = mark.role;
+  told.scanner = mark.scanner;
+  told.given = mark.given;
+  if (mark.given) told.given_sigma = sigmas(mark.point.known->covariance);
+  const auto scan_of = [&](const PointSight& sight) {
+    return static_cast<int>(nodes[static_cast<std::size_t>(sight.node)].scan);
+  };
+  const bool seen = placed.placed && !placed.settled.findings.empty() && !placed.points[p].sights.empty();
+  for (std::size_t k = 0; k < mark.point.sights.size(); ++k)
+    told.sights.push_back({scan_of(mark.point.sights[k]), false, 0.0});
+  if (!seen) {
+    if (mark.role == PointRole::tie) told.state = PointState::compared;
+    told.reason = reason_of(told, {}, placed.placed);
+    return told;
+  }
+  const PointFinding& finding = placed.settled.findings[p];
+  const PointVerdict& verdict = placed.settled.verdicts[p];
+  told.found = finding.x + survey.origin;
+  told.found_sigma = sigmas(finding.covariance);
+  const std::vector<Rigid3>& poses = placed.settled.solution.frame_from_node;
+  for (const std::size_t k : placed.sights[p]) {
+    const PointSight& sight = mark.point.sights[k];
+    const Vector3d place = poses[static_cast<std::size_t>(sight.node)] * sight.x_in_node;
+    told.sights[k].missed_m = (place - finding.x).norm();
+    told.sights[k].used = std::any_of(
+        placed.points[p].sights.begin(), placed.points[p].sights.end(),
+        [&](const PointSight& kept) { return placed.points[p].enters && kept.node == sight.node; });
+  }
+  told.state = placed.points[p].is_known()       ? PointState::used
+               : mark.role == PointRole::control ? PointState::left_out
+                                                 : PointState::compared;
+  if (mark.given)
+    told.test = placed.points[p].is_known() ? finding.known : test_apart(*mark.point.known, finding);
+  told.reason = reason_of(told, verdict, true);
+  return told;
+}
+
+}  // namespace
+
+const char* to_string(PointState state) {
+  switch (state) {
+    case PointState::used:
+      return "used";
+    case PointState::left_out:
+      return "left_out";
+    case PointState::compared:
+      return "compared";
+    case PointState::not_placed:
+      break;
+  }
+  return "not_placed";
+}
+
+const char* to_string(PointRole role) {
+  switch (role) {
+    case PointRole::control:
+      return "control";
+    case PointRole::check:
+      return "check";
+    case PointRole::tie:
+      break;
+  }
+  return "tie";
+}
+
+Survey read_survey(const ProjectInputs& inputs, const std::vector<ProjectNode>& nodes,
+                   const std::vector<ProjectScan>& scans) {
+  return SurveyReader(nodes, scans).run(inputs);
+}
+
+std::vector<ProjectPoint> told_points(const Survey& survey, const PlacedSurvey& placed,
+                                      const std::vector<ProjectNode>& nodes) {
+  std::vector<ProjectPoint> told;
+  for (std::size_t p = 0; p < survey.marks.size(); ++p)
+    told.push_back(told_point(survey.marks[p], placed, p, survey, nodes));
+  return told;
+}
+
+}  // namespace limen

@@ -1,0 +1,63 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "limen/project/control/settle_points.h"
+#include "limen/project/project_graph.h"
+
+namespace limen {
+
+/// A point of a survey with the nodes that see it.
+struct SurveyMark {
+  std::string name;
+  PointRole role = PointRole::tie;
+  bool scanner = false;           ///< where a scanner stood
+  std::optional<Vector3d> given;  ///< world of the survey
+  MarkedPoint point;              ///< about the survey's origin; sights about the nodes' local origins
+};
+
+/// Control, check and tie points of a project, by name.
+struct Survey {
+  std::string file;                    ///< that of the control points, empty: there are none
+  Vector3d origin = Vector3d::Zero();  ///< near the control points, whole metres
+  std::vector<SurveyMark> marks;
+  std::vector<std::string> node_names;
+  std::vector<std::string> notes;
+};
+
+/// Reads the survey's files and finds the scans that they name (as the user wrote them, or by their file's
+/// name alone; " #2" for one of several in a file). Throws Error where a file is no good, or a point is both
+/// control and check point; names that are not part of the project are told in the notes.
+Survey read_survey(const ProjectInputs& inputs, const std::vector<ProjectNode>& nodes,
+                   const std::vector<ProjectScan>& scans);
+
+/// Adds the survey's frame as a node, and a link to it of every scan whose own targets tell how it stands
+/// there; contradictory ones are told in the notes. Nothing where there are no control points.
+void add_survey_links(Survey& survey, ProjectGraph& made);
+
+/// The survey against a solved graph.
+struct PlacedSurvey {
+  bool placed = false;              ///< at least one component stands in the survey's frame
+  std::string words;                ///< what came of it, one sentence
+  std::vector<bool> controlled;     ///< of each node: stands in the survey's frame
+  std::vector<MarkedPoint> points;  ///< of each mark: as it enters the adjustment
+  std::vector<std::vector<std::size_t>>
+      sights;                    ///< of each point: the numbers of the mark's sights that count
+  std::vector<bool> candidates;  ///< coordinates that may enter
+  SettledPoints settled;         ///< the last adjustment with them
+};
+
+/// Takes the survey's node out of the graph and moves every component that control points hold in all six
+/// freedoms into its frame: they become one, number 0. Others keep the frame of their own, and `words` say
+/// so.
+PlacedSurvey place_survey(const Survey& survey, ProjectGraph& made, SolvedGraph& solved);
+
+/// The points as they are told.
+std::vector<ProjectPoint> told_points(const Survey& survey, const PlacedSurvey& placed,
+                                      const std::vector<ProjectNode>& nodes);
+
+}  // namespace limen
