@@ -156,6 +156,43 @@ TEST_F(Project, ScansThatCannotBeReadAndCopiesAreToldAndStopNothing) {
   EXPECT_NE(done.out.find("more than once"), std::string::npos);
 }
 
+TEST_F(Project, DecisionsAreHeededTestedAndSurviveRuns) {
+  const std::vector<std::string> scans = simulate();
+  EXPECT_EQ(run(call(scans, "out")).status, 0);
+  const std::string before = text_of("out");
+  EXPECT_EQ(run({"project", "decide", "nowhere", "reject", "indoor_00.ply", "indoor_01.ply"}).status, 2);
+  EXPECT_EQ(run({"project", "decide", "out", "reject", "indoor_00.ply"}).status, 2);
+  EXPECT_EQ(run({"project", "decide", "out", "reject", "indoor_01.ply", "indoor_00.ply"}).status, 0);
+  for (int again = 0; again < 2; ++again) {
+    EXPECT_EQ(run(call(scans, "out")).status, 4);
+    const json project = json::parse(text_of("out"));
+    EXPECT_EQ(project["decisions"][0]["decision"], "reject indoor_00.ply indoor_01.ply");
+    EXPECT_EQ(project["decisions"][0]["state"], "kept");
+    EXPECT_EQ(project["links"][0]["state"], "rejected");
+    EXPECT_EQ(project["links"][0]["reason"], "rejected by your decision");
+  }
+  // From a file, over what was said before; names that nothing has are told.
+  write_whole(
+      work() / "words.json",
+      R"({"decisions": [{"accept": ["indoor_00.ply", "indoor_01.ply"]}, {"level": ["cellar.ply"]}]})");
+  std::vector<std::string> with_file = call(scans, "out");
+  with_file.insert(with_file.end(), {"--decide", "words.json"});
+  EXPECT_EQ(run(with_file).status, 0);
+  const json project = json::parse(text_of("out"));
+  ASSERT_EQ(project["decisions"].size(), 2U);
+  EXPECT_EQ(project["decisions"][0]["state"], "unused");
+  EXPECT_EQ(project["decisions"][1]["state"], "kept");
+  EXPECT_NE(read_whole(work() / "out" / "report.html").find("Your decisions"), std::string::npos);
+  EXPECT_EQ(run({"project", "decide", "out", "forget", "indoor_00.ply", "indoor_01.ply"}).status, 0);
+  EXPECT_EQ(run({"project", "decide", "out", "forget", "cellar.ply"}).status, 0);
+  EXPECT_EQ(run(call(scans, "out")).status, 0);
+  EXPECT_EQ(text_of("out"), before);
+  write_whole(work() / "words.json", R"({"decisions": [{"agree": ["a"]}]})");
+  const ProgramRun bad = run(with_file);
+  EXPECT_EQ(bad.status, 2);
+  EXPECT_NE(bad.err.find("words.json, decision 1"), std::string::npos) << bad.err;
+}
+
 TEST_F(Project, WhatIsMissingIsTold) {
   const ProgramRun nowhere = run({"project", "a.ply"});
   EXPECT_EQ(nowhere.status, 2);

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "limen/base/angles.h"
+#include "limen/project/judge_decisions.h"
 #include "limen/project/project_graph.h"
 #include "limen/project/project_state.h"
 #include "limen/project/survey.h"
@@ -19,11 +20,16 @@ namespace {
 class Assembler {
  public:
   Assembler(const std::vector<ProjectNode>& nodes, const std::vector<TriedPair>& pairs, Survey survey,
-            double risk, ProjectResult& result)
-      : nodes_(nodes), pairs_(pairs), survey_(std::move(survey)), risk_(risk), result_(result) {}
+            const UserWords& words, double risk, ProjectResult& result)
+      : nodes_(nodes),
+        pairs_(pairs),
+        words_(words),
+        survey_(std::move(survey)),
+        risk_(risk),
+        result_(result) {}
 
   void run() {
-    ProjectGraph made = make_graph(nodes_, pairs_, risk_);
+    ProjectGraph made = make_graph(nodes_, pairs_, risk_, words_);
     add_survey_links(survey_, made);
     solved_ = solve_graph(made.graph, risk_);
     if (nodes_.size() == 1 && solved_.nodes.front().component < 0) {
@@ -41,6 +47,7 @@ class Assembler {
     for (std::size_t k = 0; k < graph_.links.size(); ++k) tell_link(k);
     tell_twins();
     tell_survey();
+    result_.decisions = judged_decisions({nodes_, pairs_, words_, broken_, graph_, solved_, pair_of_});
     result_.loops = solved_.loops;
     result_.components = solved_.components;
     for (const GraphQuestion& question : solved_.questions) tell_question(question);
@@ -60,7 +67,7 @@ class Assembler {
 
   /// Where control points contradict one another for good, all is solved as if there were none.
   void adjust(ProjectGraph& made) {
-    JointFinding finding = adjust_planes(nodes_, pairs_, made, solved_, placed_);
+    JointFinding finding = adjust_planes(nodes_, pairs_, made, words_, solved_, placed_);
     if (finding.contradicted) {
       std::string words = "the frame is not that of the control points: ";
       for (std::size_t p = 0, named = 0; p < placed_.points.size(); ++p) {
@@ -68,15 +75,16 @@ class Assembler {
           words += (named++ == 0 ? "" : ", ") + survey_.marks[p].name;
       }
       words += " contradict the others, and without them too few are left to hold a frame";
-      made = make_graph(nodes_, pairs_, risk_);
+      made = make_graph(nodes_, pairs_, risk_, words_);
       solved_ = solve_graph(made.graph, risk_);
       const std::string file = std::exchange(survey_.file, {});
       for (SurveyMark& mark : survey_.marks) mark.point.known_enters = false;
       placed_ = place_survey(survey_, made, solved_);
       survey_.file = file;
       placed_.words = words;
-      finding = adjust_planes(nodes_, pairs_, made, solved_, placed_);
+      finding = adjust_planes(nodes_, pairs_, made, words_, solved_, placed_);
     }
+    broken_ = finding.broken;
     tell_adjustment(finding);
   }
 
@@ -247,8 +255,11 @@ class Assembler {
     const Vector6d sigma = link.poses[taken].covariance.diagonal().cwiseSqrt();
     told.sigma = {sigma.head<3>(), sigma.tail<3>(), link.poses[taken].centre + target.local_origin};
     for (std::size_t p = 0; p < link.poses.size(); ++p) {
-      if (p != taken) told.alternatives.push_back({world(link.poses[p]), link.poses[p].agreeing_m2});
+      if (p != taken)
+        told.alternatives.push_back(
+            {link.number_of(static_cast<int>(p)), world(link.poses[p]), link.poses[p].agreeing_m2});
     }
+    told.number = link.number_of(static_cast<int>(taken));
     told.given = link.trust == LinkTrust::given;
     told.twin = link.twin;
     told.chance = link.chance;
@@ -278,7 +289,9 @@ class Assembler {
       told.sigma = pair.sigma;
       told.twin = pair.others ? pair.others->twin : 0.0;
       told.pair = pair.outcome;
-      told.reason = pair.reason;
+      const auto said = words_.pairs.find({pairs_[k].source, pairs_[k].target});
+      const bool rejected = said != words_.pairs.end() && said->second.kind == DecisionKind::reject;
+      told.reason = rejected ? "rejected by your decision" : pair.reason;
       result_.links.push_back(std::move(told));
     }
   }
@@ -291,6 +304,20 @@ class Assembler {
     }
     if (links.size() > 3) text += fmt::format(" and {} more", links.size() - 3);
     return text;
+  }
+
+  /// To accept a link, another of its poses if there are any, or to reject it.
+  void add_answers(int k, ProjectQuestion& told) const {
+    const GraphLink& link = graph_.links[static_cast<std::size_t>(k)];
+    if (pair_of_[static_cast<std::size_t>(k)] < 0) return;
+    const std::vector<std::string> scans = {name_of(link.source), name_of(link.target)};
+    const int taken = solved_.links[static_cast<std::size_t>(k)].pose;
+    for (std::size_t p = 0; p < link.poses.size() && p < kMostAnswers; ++p) {
+      const int number = link.number_of(static_cast<int>(p));
+      if (link.trust <= LinkTrust::likely && static_cast<int>(p) != std::max(0, taken)) continue;
+      told.answers.push_back({number == 0 ? DecisionKind::accept : DecisionKind::choose, scans, number});
+    }
+    told.answers.push_back({DecisionKind::reject, scans, 0});
   }
 
   void tell_question(const GraphQuestion& question) {
@@ -309,6 +336,9 @@ class Assembler {
     if (question.moved.size() > 3) scans += fmt::format(" and {} more", question.moved.size() - 3);
     told.current = question.current;
     told.rival = question.rival;
+    for (const std::vector<int>* links : {&question.current, &question.rival}) {
+      for (std::size_t k = 0; k < links->size() && k < kMostAnswers; ++k) add_answers((*links)[k], told);
+    }
     if (question.doubt > 0.0) {
       told.text = fmt::format(
           "{} {} held by {} alone, which may be wrong ({:.2g} %): one more scan that sees both sides, or "
@@ -366,8 +396,11 @@ class Assembler {
 
   const std::vector<ProjectNode>& nodes_;
   const std::vector<TriedPair>& pairs_;
+  static constexpr std::size_t kMostAnswers = 3;
   static constexpr int kSurvey = -2;  ///< in place of a node: the survey's frame
 
+  const UserWords& words_;
+  std::vector<bool> broken_;
   Survey survey_;
   PlacedSurvey placed_;
   double risk_;
@@ -381,8 +414,8 @@ class Assembler {
 }  // namespace
 
 void assemble(const std::vector<ProjectNode>& nodes, const std::vector<TriedPair>& pairs,
-              const ProjectInputs& inputs, double risk, ProjectResult& result) {
-  Assembler(nodes, pairs, read_survey(inputs, nodes, result.scans), risk, result).run();
+              const ProjectInputs& inputs, const UserWords& words, double risk, ProjectResult& result) {
+  Assembler(nodes, pairs, read_survey(inputs, nodes, result.scans), words, risk, result).run();
 }
 
 }  // namespace limen

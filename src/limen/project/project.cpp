@@ -41,7 +41,8 @@ class Run {
         options_(options),
         monitor_(monitor),
         store_(folder_ / "store", options_text(options)),
-        files_(list_files(inputs, monitor)) {}
+        files_(list_files(inputs, monitor)),
+        decisions_(kept_decisions(folder_, inputs.decisions)) {}
 
   ProjectResult run() {
     result_.notes = files_.notes;
@@ -52,11 +53,13 @@ class Run {
       throw Error("no scan could be read; the first " + first.reason, first.file, "look at the files");
     }
     order_nodes();
+    words_ = words_by_nodes(decisions_, nodes_, result_.scans);
     std::vector<TriedPair> tried = few() ? try_all(every_pair()) : try_in_waves();
+    try_named(tried);
     try_any_turn(tried);
     monitor_.begin_stage("adjustment");
     result_.pairs_tried = tried.size();
-    assemble(nodes_, tried, inputs_, risk(), result_);
+    assemble(nodes_, tried, inputs_, words_, risk(), result_);
     status_.stage = "done";
     write_status(folder_, status_);
     return std::move(result_);
@@ -222,9 +225,26 @@ class Run {
     return try_pairs(pairs, nodes_, store_, registering, search, folder_, status_, monitor_);
   }
 
+  /// Pairs that a user names are tried in any case.
+  void try_named(std::vector<TriedPair>& tried) {
+    PairList named;
+    for (const auto& [pair, word] : words_.pairs) {
+      const bool known = std::any_of(tried.begin(), tried.end(), [&, wanted = pair](const TriedPair& other) {
+        return std::pair(other.source, other.target) == wanted;
+      });
+      if (!known && word.kind != DecisionKind::reject) named.push_back(pair);
+    }
+    for (TriedPair& pair : try_all(named)) tried.push_back(std::move(pair));
+    std::sort(tried.begin(), tried.end(), by_nodes);
+  }
+
+  static bool by_nodes(const TriedPair& a, const TriedPair& b) {
+    return std::pair(a.source, a.target) < std::pair(b.source, b.target);
+  }
+
   /// Scans that seem to stand upright may not: those that nothing holds are tried once more, any way round.
   void try_any_turn(std::vector<TriedPair>& tried) {
-    const SolvedGraph solved = solve_graph(make_graph(nodes_, tried, risk()).graph, risk());
+    const SolvedGraph solved = solve_graph(make_graph(nodes_, tried, risk(), words_).graph, risk());
     PairList again;
     std::vector<std::size_t> places;
     for (std::size_t k = 0; k < tried.size(); ++k) {
@@ -255,15 +275,13 @@ class Run {
       if (next.empty()) break;
       for (TriedPair& pair : try_all(next)) tried.push_back(std::move(pair));
     }
-    std::sort(tried.begin(), tried.end(), [](const TriedPair& a, const TriedPair& b) {
-      return std::pair(a.source, a.target) < std::pair(b.source, b.target);
-    });
+    std::sort(tried.begin(), tried.end(), by_nodes);
     return tried;
   }
 
   [[nodiscard]] PairList next_pairs(const std::vector<std::vector<std::size_t>>& ranked,
                                     const std::vector<TriedPair>& tried, std::size_t partners) const {
-    const ProjectGraph made = make_graph(nodes_, tried, risk());
+    const ProjectGraph made = make_graph(nodes_, tried, risk(), words_);
     const SolvedGraph solved = solve_graph(made.graph, risk());
     std::set<std::pair<std::size_t, std::size_t>> done;
     for (const TriedPair& pair : tried) done.emplace(pair.source, pair.target);
@@ -323,6 +341,8 @@ class Run {
   Monitor& monitor_;
   Store store_;
   ProjectFiles files_;
+  std::vector<Decision> decisions_;
+  UserWords words_;
   ProjectStatus status_;
   std::vector<ProjectNode> nodes_;
   ProjectResult result_;
@@ -356,6 +376,7 @@ ProjectResult run_project(const ProjectInputs& inputs, const std::filesystem::pa
   for (const std::string& file : {inputs.control, inputs.check}) {
     if (!file.empty()) static_cast<void>(read_surveyed_points(file));
   }
+  if (!inputs.decisions.empty()) static_cast<void>(read_decisions(inputs.decisions));
   if (!inputs.targets.empty()) static_cast<void>(read_seen_targets(inputs.targets));
   const CancelScope scope(monitor);
   return Run(inputs, folder, options, monitor).run();

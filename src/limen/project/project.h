@@ -8,6 +8,7 @@
 
 #include "limen/base/progress.h"
 #include "limen/io/table/scan_file.h"
+#include "limen/project/decide/decisions.h"
 #include "limen/project/project_result.h"
 #include "limen/register/register.h"
 
@@ -30,6 +31,7 @@ struct ProjectInputs {
   std::string control;  ///< file of points whose coordinates enter as observations; empty: none
   std::string check;    ///< file of points that are compared with the result and never enter
   std::string targets;  ///< file of where the scans saw them; a point called as a scan is its scanner's place
+  std::string decisions;  ///< file of what the user says (decide/decisions.h); added to what was said before
 };
 
 /// Puts any number of scans, and building models, into one frame. Features of scans and results of pairs are
@@ -38,6 +40,10 @@ struct ProjectInputs {
 /// Throws Error where there is no scan, or the store cannot be written.
 ProjectResult run_project(const ProjectInputs& inputs, const std::filesystem::path& folder,
                           const ProjectOptions& options = {}, Monitor& monitor = silent_monitor());
+
+/// Adds a decision to those that are kept in a project's folder, for the next run; returns them all. Throws
+/// Error where `folder` holds no project.
+std::vector<Decision> decide(const std::filesystem::path& folder, const Decision& decision);
 
 /// How far a project is, from its folder alone.
 struct ProjectStatus {

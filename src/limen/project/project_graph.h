@@ -6,6 +6,7 @@
 
 #include "limen/project/graph/pose_graph.h"
 #include "limen/project/project_state.h"
+#include "limen/project/words.h"
 
 namespace limen {
 
@@ -16,9 +17,10 @@ struct ProjectGraph {
 };
 
 /// Every pair that found something, with all its poses, and what files say of their own scans. What may lie
-/// on a twin with more than `risk` is no sure link.
+/// on a twin with more than `risk` is no sure link. A user's word makes a pose surer, or leaves a link out:
+/// the loops still test it.
 ProjectGraph make_graph(const std::vector<ProjectNode>& nodes, const std::vector<TriedPair>& pairs,
-                        double risk);
+                        double risk, const UserWords& words);
 
 struct PlacedSurvey;
 
@@ -29,14 +31,16 @@ struct JointFinding {
   double variance_factor = 0.0;
   std::vector<int> torn;      ///< nodes that it would move too far: then no node is moved
   double most_moved_m = 0.0;  ///< of those
+  std::vector<bool> broken;   ///< of each of the user's words: the data contradict it
   /// Coordinates of control points contradict one another so that they hold no frame: nothing was moved.
   bool contradicted = false;
 };
 
 /// The solved poses once more, with all planes that accepted links show to be shared (adjust/); nodes that
 /// stand alone stay. The points of a survey enter as observations: first with the links alone, which tests
-/// them, then with the planes too; `survey` tells what came of them.
+/// them, then with the planes too; `survey` tells what came of them. So do words on what is level.
 JointFinding adjust_planes(const std::vector<ProjectNode>& nodes, const std::vector<TriedPair>& pairs,
-                           const ProjectGraph& made, SolvedGraph& solved, PlacedSurvey& survey);
+                           const ProjectGraph& made, const UserWords& words, SolvedGraph& solved,
+                           PlacedSurvey& survey);
 
 }  // namespace limen

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include "limen/project/word_terms.h"
+
 namespace limen {
 namespace {
 
@@ -23,7 +25,7 @@ RegistrationResult told(Outcome outcome, double twin, std::size_t rivals = 0) {
 std::vector<GraphLink> links_of(const RegistrationResult& pair, double risk) {
   std::vector<ProjectNode> nodes(2);
   nodes[1].scan = 1;
-  return make_graph(nodes, {{1, 0, pair}}, risk).graph.links;
+  return make_graph(nodes, {{1, 0, pair}}, risk, {}).graph.links;
 }
 
 TEST(ProjectGraph, ATwinThatIsMoreProbableThanTheRiskMakesALinkNoMoreThanLikely) {
@@ -52,6 +54,143 @@ TEST(ProjectGraph, APairThatDoesNotKnowItselfIsNotSure) {
   EXPECT_NEAR(links_of(pair, 0.001).front().chance, 0.3, 1e-12);
   pair.others.reset();
   EXPECT_GT(links_of(pair, 0.001).front().chance, 0.001);
+}
+
+UserWords word(DecisionKind kind, int pose = 0) {
+  UserWords words;
+  words.pairs[{1, 0}] = {kind, pose};
+  return words;
+}
+
+std::vector<GraphLink> links_with(const RegistrationResult& pair, const UserWords& words) {
+  std::vector<ProjectNode> nodes(2);
+  nodes[1].scan = 1;
+  return make_graph(nodes, {{1, 0, pair}}, 0.001, words).graph.links;
+}
+
+TEST(ProjectGraph, AUsersWordMakesALinkSureOrLeavesItOut) {
+  const RegistrationResult twin = told(Outcome::ambiguous, 0.9);
+  ASSERT_TRUE(links_of(twin, 0.001).empty());
+  const std::vector<GraphLink> accepted = links_with(twin, word(DecisionKind::accept));
+  ASSERT_EQ(accepted.size(), 1U);
+  EXPECT_EQ(accepted.front().trust, LinkTrust::sure);
+  // No surer than a user is.
+  EXPECT_GT(accepted.front().twin, 0.0);
+  EXPECT_LT(accepted.front().twin + accepted.front().chance, 0.001);
+  EXPECT_TRUE(links_with(told(Outcome::registered, 0.0), word(DecisionKind::reject)).empty());
+  EXPECT_TRUE(links_with(told(Outcome::no_match, 0.0), word(DecisionKind::accept)).empty());
+}
+
+TEST(ProjectGraph, TheChosenPoseComesFirstAndPosesKeepTheirNumbers) {
+  RegistrationResult pair = told(Outcome::ambiguous, 0.0, 2);
+  pair.alternatives.push_back(pair.best);
+  pair.alternatives[0].target_from_source.translation.x() = 3.0;
+  pair.alternatives[1].target_from_source.translation.x() = 5.0;
+  const GraphLink link = links_with(pair, word(DecisionKind::choose, 2)).front();
+  EXPECT_EQ(link.trust, LinkTrust::sure);
+  EXPECT_EQ(link.poses.front().target_from_source.translation.x(), 5.0);
+  EXPECT_EQ(link.number_of(0), 2);
+  EXPECT_EQ(link.number_of(1), 1);
+  EXPECT_EQ(link.number_of(2), 0);
+  // A number that there is none of changes nothing.
+  EXPECT_EQ(links_with(pair, word(DecisionKind::choose, 7)).front().trust, LinkTrust::open);
+}
+
+/// A scanner 1.6 m above a floor of 10 m^2.
+ProjectNode over_a_floor(std::size_t scan) {
+  ProjectNode node;
+  node.scan = scan;
+  node.digest.upright = true;
+  node.digest.stations = {Vector3d(0, 0, 1.6)};
+  PlaneDigest floor;
+  floor.plane = {Vector3d::UnitZ(), 0.0};
+  floor.area_m2 = 10.0;
+  for (const double x : {-1.0, 0.0, 1.0}) {
+    for (const double y : {-1.0, 0.0, 1.0}) floor.moments.add({x, y, 0.0});
+  }
+  node.digest.planes.push_back(floor);
+  return node;
+}
+
+TEST(ProjectGraph, PosesOnOtherStoreysFallAwayWhereFloorsAreOfOneHeight) {
+  RegistrationResult pair = told(Outcome::ambiguous, 0.0, 1);
+  pair.best.target_from_source.translation.z() = 3.0;
+  pair.alternatives.front().target_from_source.translation.z() = 0.01;
+  UserWords words;
+  words.floors.emplace(1, 0);
+  const GraphLink link =
+      make_graph({over_a_floor(0), over_a_floor(1)}, {{1, 0, pair}}, 0.001, words).graph.links.front();
+  EXPECT_EQ(link.poses.front().target_from_source.translation.z(), 0.01);
+  EXPECT_EQ(link.number_of(0), 1);
+  EXPECT_EQ(link.trust, LinkTrust::sure);
+}
+
+/// Two scans with a link that knows tilts to 0.1 degrees and errs by as much.
+struct TwoScans {
+  std::vector<ProjectNode> nodes = {over_a_floor(0), over_a_floor(1)};
+  SolvedGraph solved;
+  JointProblem problem;
+
+  TwoScans(double lean_rad, double step_m, double link_rad = 0.002) {
+    solved.nodes.resize(2);
+    solved.nodes[0].component = solved.nodes[1].component = 0;
+    Rigid3& second = solved.nodes[1].frame_from_node;
+    second.rotation = rotation_exp(Vector3d(lean_rad, 0, 0));
+    second.translation = {2, 0, step_m};
+    LinkPose pose;
+    pose.target_from_source = second;
+    Vector6d variances;
+    variances << Vector3d::Constant(link_rad * link_rad), Vector3d::Constant(0.004 * 0.004);
+    pose.covariance = variances.asDiagonal();
+    pose.centre = second.translation;
+    problem.edges.push_back({1, 0, pose});
+    for (const SolvedNode& node : solved.nodes) problem.frame_from_node.push_back(node.frame_from_node);
+    problem.fixed = {true, false};
+  }
+
+  JointSolution solve(const UserWords& words, std::vector<bool>& broken) {
+    const std::vector<bool> controlled(2, false);
+    solved.nodes[1].covariance = adjust_jointly(problem).covariance[1];
+    broken = broken_words(words, nodes, solved, controlled);
+    add_word_terms(words, broken, nodes, solved, controlled, problem);
+    return adjust_jointly(problem);
+  }
+};
+
+UserWords said(DecisionKind kind) {
+  UserWords words;
+  if (kind == DecisionKind::same_floor) {
+    words.decisions = {{kind, {"a", "b"}, 0}};
+    words.nodes = {{0, 1}};
+  } else {
+    words.decisions = {{kind, {"a"}, 0}, {kind, {"b"}, 0}};
+    words.nodes = {{0}, {1}};
+  }
+  return words;
+}
+
+TEST(WordTerms, ScansThatAreToldToBeLevelBecomeSoUnlessTheDataContradictIt) {
+  std::vector<bool> broken;
+  const JointSolution solution = TwoScans(0.003, 0.0).solve(said(DecisionKind::level), broken);
+  const Vector3d up = solution.frame_from_node[1].rotation.col(2);
+  EXPECT_LT(up.head<2>().norm(), 0.0003);
+  EXPECT_EQ(broken, (std::vector<bool>{false, false}));
+  // A link that knows better.
+  const JointSolution leans = TwoScans(0.01, 0.0, 1e-4).solve(said(DecisionKind::level), broken);
+  EXPECT_EQ(broken, (std::vector<bool>{true, true}));
+  EXPECT_NEAR(leans.frame_from_node[1].rotation(2, 1), 0.01, 1e-5);
+}
+
+TEST(WordTerms, FloorsOfOneHeightComeTogetherUnlessTheDataContradictIt) {
+  std::vector<bool> broken;
+  const JointSolution solution = TwoScans(0.0, 0.006).solve(said(DecisionKind::same_floor), broken);
+  // Between 4 mm of the link, and its tilts at 2 m, and 7 mm of the floors.
+  const double z = solution.frame_from_node[1].translation.z();
+  EXPECT_NEAR(z, 0.006 * 49.0 / (49.0 + 16.0 + 16.0), 0.0012);
+  EXPECT_EQ(broken, std::vector<bool>{false});
+  const JointSolution step = TwoScans(0.0, 0.15).solve(said(DecisionKind::same_floor), broken);
+  EXPECT_EQ(broken, std::vector<bool>{true});
+  EXPECT_NEAR(step.frame_from_node[1].translation.z(), 0.15, 1e-6);
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 
 #include "limen/model/result.h"
 #include "limen/project/control/point_tests.h"
+#include "limen/project/decide/decisions.h"
 #include "limen/project/graph/pose_graph.h"
 
 namespace limen {
@@ -50,6 +51,7 @@ struct ProjectScan {
 };
 
 struct ProjectAlternative {
+  int number = 0;  ///< among the pair's poses
   Rigid3 target_from_source;
   double agreeing_m2 = 0.0;
 };
@@ -64,6 +66,7 @@ struct ProjectLink {
   Rigid3 target_from_source;  ///< the accepted pose, else the best of the pair; world to world
   PoseSigma sigma;
   double agreeing_m2 = 0.0;
+  int number = 0;       ///< of the accepted pose, else the best, among the pair's own
   double twin = 0.0;    ///< probability that it lays a place on another one built alike ...
   double chance = 0.0;  ///< ... and that it is wrong otherwise; both by the pair alone
   std::vector<ProjectAlternative> alternatives;
@@ -73,9 +76,24 @@ struct ProjectLink {
 /// What would settle a doubt.
 struct ProjectQuestion {
   std::string text;
-  std::vector<int> scans;    ///< that would move
-  std::vector<int> current;  ///< links that speak for the present place
-  std::vector<int> rival;    ///< links that speak for the other
+  std::vector<int> scans;         ///< that would move
+  std::vector<int> current;       ///< links that speak for the present place
+  std::vector<int> rival;         ///< links that speak for the other
+  std::vector<Decision> answers;  ///< that would settle it
+};
+
+/// What became of a user's decision.
+enum class DecisionState {
+  kept,          ///< nothing contradicts it
+  contradicted,  ///< other links or planes do
+  unused         ///< there is nothing that it could speak of
+};
+const char* to_string(DecisionState state);
+
+struct ProjectDecision {
+  Decision decision;
+  DecisionState state = DecisionState::unused;
+  std::string reason;
 };
 
 /// What became of a surveyed point.
@@ -122,6 +140,7 @@ struct ProjectResult {
   double control_factor =
       0.0;  ///< of squared deviations of control points against what they were given; 0: none
   std::vector<ProjectPoint> points;  ///< by name
+  std::vector<ProjectDecision> decisions;
   std::vector<ProjectScan> scans;
   std::vector<ProjectLink> links;
   std::vector<GraphLoop> loops;  ///< of links, by index

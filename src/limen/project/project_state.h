@@ -28,6 +28,8 @@ struct TriedPair {
   RegistrationResult result;
 };
 
+struct UserWords;
+
 /// Writes how far the project is to the store, for `project status`.
 void write_status(const std::filesystem::path& folder, const ProjectStatus& status);
 
@@ -50,6 +52,6 @@ std::vector<TriedPair> try_pairs(const std::vector<std::pair<std::size_t, std::s
 /// The frame, the states and the words (`risk`: that a scan told as registered may be wrong with): everything
 /// of `result` but its scans' files. Throws Error where a file of the survey is no good.
 void assemble(const std::vector<ProjectNode>& nodes, const std::vector<TriedPair>& pairs,
-              const ProjectInputs& inputs, double risk, ProjectResult& result);
+              const ProjectInputs& inputs, const UserWords& words, double risk, ProjectResult& result);
 
 }  // namespace limen

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <map>
 #include <utility>
 
@@ -12,24 +11,13 @@
 #include <fmt/format.h>
 
 #include "limen/base/error.h"
-#include "limen/files/text_numbers.h"
 #include "limen/project/control/control_file.h"
+#include "limen/project/scan_names.h"
 
 namespace limen {
 namespace {
 
 constexpr double kScannerM = 1e-4;  // a scanner's place in its own scan is known
-
-/// A scan's name in two parts: the file, and which of its scans.
-std::pair<std::string, std::optional<int>> parts_of(const std::string& name) {
-  const std::size_t mark = name.rfind('#');
-  if (mark == std::string::npos) return {name, {}};
-  const std::optional<std::size_t> index = parse_count(std::string_view(name).substr(mark + 1));
-  if (!index) return {name, {}};
-  std::string file = name.substr(0, mark);
-  while (!file.empty() && file.back() == ' ') file.pop_back();
-  return {file, static_cast<int>(*index)};
-}
 
 class SurveyReader {
  public:
@@ -50,10 +38,7 @@ class SurveyReader {
     note("no scan sees", unseen);
     note("the targets are told of scans that are not part of the project:", strangers_);
     about_origin();
-    for (const ProjectNode& node : nodes_) {
-      const ProjectScan& scan = scans_[node.scan];
-      survey_.node_names.push_back(scan.index > 0 ? fmt::format("{} #{}", scan.file, scan.index) : scan.file);
-    }
+    for (const ProjectNode& node : nodes_) survey_.node_names.push_back(scan_name(scans_[node.scan]));
     return std::move(survey_);
   }
 
@@ -110,22 +95,9 @@ class SurveyReader {
         {node, digest.stations.front(), kScannerM * kScannerM * Matrix3d::Identity()});
   }
 
-  /// -1: none, or more than one is called so.
   [[nodiscard]] int node_of(const std::string& name) const {
-    const auto [file, index] = parts_of(name);
-    for (const bool whole : {true, false}) {
-      int found = -1;
-      int count = 0;
-      for (std::size_t n = 0; n < nodes_.size(); ++n) {
-        const ProjectScan& scan = scans_[nodes_[n].scan];
-        const std::string own = whole ? scan.file : std::filesystem::path(scan.file).filename().string();
-        if (scan.model || own != file || (index && scan.index != *index)) continue;
-        found = static_cast<int>(n);
-        ++count;
-      }
-      if (count == 1) return found;
-    }
-    return -1;
+    const int node = node_called(name, nodes_, scans_);
+    return node >= 0 && nodes_[static_cast<std::size_t>(node)].digest.model ? -1 : node;
   }
 
   /// Large coordinates meet in one subtraction.

@@ -33,6 +33,7 @@ struct ProjectCommandOptions {
   std::string control;
   std::string check;
   std::string targets;
+  std::string decisions;
   double risk = VerdictOptions{}.risk;
   bool apart = false;
 };
@@ -77,6 +78,7 @@ OptionList reported(const ProjectCommandOptions& options, const Session& session
   if (!options.control.empty()) list.emplace_back("control", options.control);
   if (!options.check.empty()) list.emplace_back("check", options.check);
   if (!options.targets.empty()) list.emplace_back("targets", options.targets);
+  if (!options.decisions.empty()) list.emplace_back("decide", options.decisions);
   list.emplace_back("seed", static_cast<std::int64_t>(session.common.seed));
   return list;
 }
@@ -118,6 +120,9 @@ std::string summary(const ProjectResult& result, const std::string& folder) {
   std::string text = fmt::format("{}: {}\n", to_string(result.outcome), result.reason);
   for (const ProjectScan& scan : result.scans) text += scan_line(scan);
   text += point_lines(result);
+  for (const ProjectDecision& told : result.decisions)
+    text += fmt::format("decision    {}: {}{}{}\n", words_of(told.decision), to_string(told.state),
+                        told.reason.empty() ? "" : ", ", told.reason);
   for (const ProjectQuestion& question : result.questions) text += "question: " + question.text + "\n";
   std::size_t counts[5] = {};
   for (const ProjectLink& link : result.links) ++counts[static_cast<std::size_t>(link.solved.state)];
@@ -152,16 +157,29 @@ int tell_status(const std::string& folder, const Session& session) {
   return kExitOk;
 }
 
+/// Words: decide, the folder, and the decision.
+int take_decision(const std::vector<std::string>& words, const Session& session) {
+  const Decision decision = decision_from({words.begin() + 2, words.end()});
+  const std::vector<Decision> all = decide(words[1], decision);
+  session.say(
+      fmt::format("{}: kept with {} in all; run the project again, and it will be heeded and tested\n",
+                  words_of(decision), all.size()));
+  session.answer(decisions_text(all));
+  return kExitOk;
+}
+
 ProjectInputs inputs_of(const ProjectCommandOptions& options) {
   if (!options.control.empty() && !options.check.empty() && options.targets.empty())
     throw Error("there is nothing that tells where the scans see the points", "--check",
                 "give a file of targets: --targets FILE.csv");
-  return {options.scans, options.models, options.control, options.check, options.targets};
+  return {options.scans, options.models, options.control, options.check, options.targets, options.decisions};
 }
 
 int run(ProjectCommandOptions options, const Session& session) {
   if (options.folder.empty() && options.scans.size() == 2 && options.scans.front() == "status")
     return tell_status(options.scans.back(), session);
+  if (options.folder.empty() && options.scans.size() > 2 && options.scans.front() == "decide")
+    return take_decision(options.scans, session);
   if (options.folder.empty()) throw Error("there is no folder to write to", "--output", "give one: -o DIR");
   if (!options.list.empty()) {
     for (std::string& name : names_in(options.list)) options.scans.push_back(std::move(name));
@@ -187,7 +205,8 @@ void add_project_command(CommandLine& app, Session& session) {
   CommandLine* command =
       add_command(app, session, "project",
                   "Put any number of scans, and building models, into one frame; `project status DIR` tells "
-                  "how far one is; status 0: all registered, 3: some, 4: none",
+                  "how far one is, `project decide DIR accept A B` takes an answer; status 0: all "
+                  "registered, 3: some, 4: none",
                   [options, &session] { return run(*options, session); });
   command->add_option("SCAN", options->scans, "The scans, in any order and any frames; models too");
   command->add_option("--model", options->models, "A building model; may be given several times")
@@ -220,6 +239,10 @@ void add_project_command(CommandLine& app, Session& session) {
       ->add_option("--check", options->check,
                    "Points like those of --control that never enter: what they miss is told")
       ->type_name("CSV");
+  command
+      ->add_option("--decide", options->decisions,
+                   "Your answers: accept, reject or choose a pose of a link, level, same-floor; kept in DIR")
+      ->type_name("JSON");
   command
       ->add_option("--risk", options->risk,
                    "Tell a scan as registered only where it stands elsewhere with less than this probability "

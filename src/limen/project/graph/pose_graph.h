@@ -26,6 +26,12 @@ struct GraphLink {
   std::vector<LinkPose> poses;  ///< at least one; best first
   double twin = 0.0;            ///< probability that the best pose lays a place on another one built alike
   double chance = 0.0;          ///< probability that none of its poses is right, for any other reason
+  /// Where the pair's best pose stands among `poses`: elsewhere than first where a user chose another, which
+  /// took its place.
+  int best = 0;
+
+  /// The number that the pair itself gives a pose.
+  [[nodiscard]] int number_of(int pose) const { return pose == 0 ? best : pose == best ? 0 : pose; }
 };
 
 /// Nodes are scans and models: 0 .. nodes - 1, the lower ones first where one has to be chosen.

@@ -46,6 +46,7 @@ Json link_json(const ProjectLink& link) {
                {"state", to_string(link.solved.state)},
                {"pair", link.given ? "given" : to_string(link.pair)},
                {"pose", json_of(to_matrix(link.target_from_source))},
+               {"pose_number", link.number},
                {"sigma", sigma_json(link.sigma)},
                {"agreeing_m2", link.agreeing_m2},
                {"twin", link.twin},
@@ -55,8 +56,9 @@ Json link_json(const ProjectLink& link) {
                {"loop_error_rad", link.solved.loop_error_rad}};
   Json alternatives = Json::array();
   for (const ProjectAlternative& other : link.alternatives)
-    alternatives.push_back(
-        {{"pose", json_of(to_matrix(other.target_from_source))}, {"agreeing_m2", other.agreeing_m2}});
+    alternatives.push_back({{"number", other.number},
+                            {"pose", json_of(to_matrix(other.target_from_source))},
+                            {"agreeing_m2", other.agreeing_m2}});
   json["alternatives"] = std::move(alternatives);
   json["reason"] = link.reason;
   return json;
@@ -70,8 +72,15 @@ Json loop_json(const GraphLoop& loop) {
           {"closes", loop.closes}};
 }
 
+Json decision_json(const ProjectDecision& told) {
+  return {{"decision", words_of(told.decision)}, {"state", to_string(told.state)}, {"reason", told.reason}};
+}
+
 Json question_json(const ProjectQuestion& question) {
+  Json answers = Json::array();
+  for (const Decision& answer : question.answers) answers.push_back(words_of(answer));
   return {{"text", question.text},
+          {"answers", answers},
           {"scans", question.scans},
           {"for_the_present_place", question.current},
           {"for_another_place", question.rival}};
@@ -128,6 +137,7 @@ std::string project_json(const ProjectResult& result, const OptionList& options)
   json["links"] = list_json(result.links, link_json);
   json["loops"] = list_json(result.loops, loop_json);
   json["questions"] = list_json(result.questions, question_json);
+  if (!result.decisions.empty()) json["decisions"] = list_json(result.decisions, decision_json);
   if (!result.control_file.empty() || !result.points.empty()) {
     json["control"] = {{"reason", result.control_words}, {"variance_factor", result.control_factor}};
     json["points"] = list_json(result.points, point_json);

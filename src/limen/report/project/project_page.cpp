@@ -42,6 +42,8 @@ td.path { overflow-wrap: anywhere; }
 .link.bridge { stroke-dasharray: 9 5; } .link.ambiguous { stroke-dasharray: 3 5; } .link.rejected { stroke-dasharray: 2 8; } .link.weak { stroke-width: 1.2; }
 .node circle { fill: var(--paper); stroke: var(--c); stroke-width: 2.5; } .node text { font: 600 10px system-ui, sans-serif; text-anchor: middle; fill: var(--ink); }
 .sigma { fill: var(--c); fill-opacity: .18; }
+.answer { font: inherit; font-size: 13px; margin: 0 6px 6px 0; padding: 3px 10px; border: 1px solid var(--line); border-radius: 6px; background: var(--page); color: var(--ink); cursor: pointer; } .card p { margin: 0 0 8px; }
+#paste code { display: block; margin-top: 4px; padding: 8px 10px; background: var(--paper); border: 1px solid var(--line); user-select: all; }
 .bar { stroke: var(--ink); stroke-width: 3; } .scale { font: 12px system-ui, sans-serif; fill: var(--ink); }
 )";
 
@@ -53,12 +55,63 @@ std::string scan_name(const ProjectScan& scan) {
   return scan.index > 0 ? fmt::format("{} #{}", scan.file, scan.index) : scan.file;
 }
 
+/// The command that takes an answer, for a shell.
+std::string line_of(const Decision& answer) {
+  std::string line = fmt::format("limen project decide DIR {}", to_string(answer.kind));
+  for (const std::string& scan : answer.scans) {
+    std::string quoted;
+    for (const char c : scan) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    line += " '" + quoted + "'";
+  }
+  if (answer.kind == DecisionKind::choose) line += fmt::format(" {}", answer.pose);
+  return line;
+}
+
 std::string questions(const ProjectResult& result) {
   if (result.questions.empty()) return {};
   std::string text = "<h2>Open questions</h2>\n";
-  for (const ProjectQuestion& question : result.questions)
-    text += fmt::format("<p class=\"card\">{}</p>\n", escaped(question.text));
-  return text;
+  for (const ProjectQuestion& question : result.questions) {
+    text += fmt::format("<div class=\"card\"><p>{}</p>", escaped(question.text));
+    for (const Decision& answer : question.answers)
+      text += fmt::format("<button type=\"button\" class=\"answer\" data-line=\"{}\">{}</button> ",
+                          escaped(line_of(answer)), escaped(words_of(answer)));
+    text += "</div>\n";
+  }
+  return text +
+         R"(<p class="soft" id="paste" hidden>Paste this line into a terminal, then run the project again
+(what is done is kept): <code></code></p>
+<script>
+document.addEventListener('click', (event) => {
+  let line = event.target.dataset && event.target.dataset.line;
+  if (!line) return;
+  // The folder is that of this page.
+  if (location.protocol === 'file:') {
+    const folder = decodeURIComponent(location.pathname).replace(/\/[^/]*$/, '') || '/';
+    line = line.replace(' DIR ', () => " '" + folder.replaceAll("'", "'\\''") + "' ");
+  }
+  const paste = document.getElementById('paste');
+  paste.hidden = false;
+  paste.querySelector('code').textContent = line;
+  if (navigator.clipboard) navigator.clipboard.writeText(line).catch(() => {});
+});
+</script>
+)";
+}
+
+std::string decisions_table(const ProjectResult& result) {
+  if (result.decisions.empty()) return {};
+  std::string text =
+      "<h2>Your decisions</h2>\n<div "
+      "class=\"scroll\"><table><tr><th>decision</th><th>state</th><th>why</th></tr>\n";
+  for (const ProjectDecision& told : result.decisions) {
+    const char* colour = told.state == DecisionState::kept           ? "verified"
+                         : told.state == DecisionState::contradicted ? "rejected"
+                                                                     : "weak";
+    text +=
+        fmt::format("<tr><td>{}</td><td class=\"state {}\">{}</td><td>{}</td></tr>\n",
+                    escaped(words_of(told.decision)), colour, to_string(told.state), escaped(told.reason));
+  }
+  return text + "</table></div>\n";
 }
 
 std::string scans_table(const ProjectResult& result) {
@@ -198,7 +251,7 @@ std::string project_page(const ProjectResult& result) {
       "pairs "
       "were tried. limen {4}.</p>\n",
       to_string(result.outcome), escaped(result.reason), frame_words(result), result.pairs_tried, kVersion);
-  text += questions(result);
+  text += questions(result) + decisions_table(result);
   const std::string plan = project_plan(result);
   if (!plan.empty())
     text += "<h2>Plan</h2>\n" + plan +

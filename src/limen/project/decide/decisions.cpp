@@ -1,0 +1,160 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/project/decide/decisions.h"
+
+#include <algorithm>
+#include <fstream>
+#include <optional>
+#include <utility>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "limen/base/error.h"
+#include "limen/files/text_numbers.h"
+
+namespace limen {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr DecisionKind kKinds[] = {DecisionKind::accept, DecisionKind::reject,     DecisionKind::choose,
+                                   DecisionKind::level,  DecisionKind::same_floor, DecisionKind::forget};
+constexpr const char* kRemedy =
+    "say accept A B, reject A B, choose A B N, level A, same-floor A B or forget A B";
+
+std::optional<DecisionKind> kind_called(const std::string& name) {
+  for (const DecisionKind kind : kKinds) {
+    if (name == to_string(kind)) return kind;
+  }
+  return {};
+}
+
+bool counts_fit(const Decision& decision) {
+  const std::size_t scans = decision.scans.size();
+  if (decision.kind == DecisionKind::level) return scans == 1;
+  if (decision.kind == DecisionKind::forget) return scans == 1 || scans == 2;
+  return scans == 2 && decision.scans[0] != decision.scans[1];
+}
+
+/// Of a pair it does not matter who is named first.
+Decision in_order(Decision decision) {
+  std::sort(decision.scans.begin(), decision.scans.end());
+  return decision;
+}
+
+bool is_of_link(DecisionKind kind) {
+  return kind == DecisionKind::accept || kind == DecisionKind::reject || kind == DecisionKind::choose;
+}
+
+bool replaces(const Decision& later, const Decision& earlier) {
+  if (later.scans != earlier.scans) return false;
+  return later.kind == DecisionKind::forget || later.kind == earlier.kind ||
+         (is_of_link(later.kind) && is_of_link(earlier.kind));
+}
+
+Decision from_json(const Json& json, const std::string& where) {
+  for (const auto& [name, value] : json.items()) {
+    const std::optional<DecisionKind> kind = kind_called(name);
+    if (!kind) continue;
+    Decision decision{*kind, value.get<std::vector<std::string>>(), json.value("pose", 0)};
+    const bool numbered = *kind != DecisionKind::choose || json.contains("pose");
+    if (!counts_fit(decision) || decision.pose < 0 || !numbered)
+      throw Error(fmt::format("\"{}\" does not name what it needs", name), where,
+                  "two scans, for level one; choose needs \"pose\" too");
+    return in_order(std::move(decision));
+  }
+  throw Error("a decision says none of accept, reject, choose, level, same-floor, forget", where,
+              R"(write {"decisions": [{"accept": ["A", "B"]}]})");
+}
+
+}  // namespace
+
+const char* to_string(DecisionKind kind) {
+  switch (kind) {
+    case DecisionKind::accept:
+      return "accept";
+    case DecisionKind::reject:
+      return "reject";
+    case DecisionKind::choose:
+      return "choose";
+    case DecisionKind::level:
+      return "level";
+    case DecisionKind::same_floor:
+      return "same-floor";
+    case DecisionKind::forget:
+      break;
+  }
+  return "forget";
+}
+
+std::string words_of(const Decision& decision) {
+  std::string text = to_string(decision.kind);
+  for (const std::string& scan : decision.scans) text += " " + scan;
+  if (decision.kind == DecisionKind::choose) text += fmt::format(" {}", decision.pose);
+  return text;
+}
+
+Decision decision_from(const std::vector<std::string>& words) {
+  const std::optional<DecisionKind> kind = words.empty() ? std::nullopt : kind_called(words.front());
+  if (!kind) throw Error("there is nothing to decide", "project decide", kRemedy);
+  Decision decision{*kind, {words.begin() + 1, words.end()}, 0};
+  if (*kind == DecisionKind::choose && !decision.scans.empty()) {
+    const std::optional<std::size_t> number = parse_count(decision.scans.back());
+    if (!number || *number > 1000)
+      throw Error(fmt::format("\"{}\" is no number of a pose", decision.scans.back()), "project decide",
+                  kRemedy);
+    decision.pose = static_cast<int>(*number);
+    decision.scans.pop_back();
+  }
+  if (!counts_fit(decision))
+    throw Error(fmt::format("\"{}\" does not name the scans it needs", words.front()), "project decide",
+                kRemedy);
+  return in_order(std::move(decision));
+}
+
+std::vector<Decision> read_decisions(const std::filesystem::path& path) {
+  std::ifstream stream(path);
+  if (!stream) throw Error("cannot be read", path.string(), "look whether the name is right");
+  const Json json = Json::parse(stream, nullptr, false);
+  if (!json.is_object() || !json.contains("decisions") || !json["decisions"].is_array())
+    throw Error("is no file of decisions", path.string(), R"(write {"decisions": [{"accept": ["A", "B"]}]})");
+  std::vector<Decision> decisions;
+  int number = 0;
+  for (const Json& entry : json["decisions"]) {
+    const std::string where = fmt::format("{}, decision {}", path.string(), ++number);
+    try {
+      if (!entry.is_object()) throw Error("is no decision", where, R"(write {"accept": ["A", "B"]})");
+      decisions.push_back(from_json(entry, where));
+    } catch (const Json::exception&) {
+      throw Error("a decision does not name scans, or its pose is no number", where,
+                  R"(write {"choose": ["A", "B"], "pose": 2})");
+    }
+  }
+  return decisions;
+}
+
+std::string decisions_text(const std::vector<Decision>& decisions) {
+  std::string text = "{\"decisions\": [";
+  for (std::size_t k = 0; k < decisions.size(); ++k) {
+    Json json = {{to_string(decisions[k].kind), decisions[k].scans}};
+    if (decisions[k].kind == DecisionKind::choose) json["pose"] = decisions[k].pose;
+    text += (k == 0 ? "\n  " : ",\n  ") + json.dump();
+  }
+  return text + "\n]}\n";
+}
+
+std::vector<Decision> merged(std::vector<Decision> decisions, const std::vector<Decision>& later) {
+  for (const Decision& word : later) {
+    decisions.erase(std::remove_if(decisions.begin(), decisions.end(),
+                                   [&](const Decision& earlier) { return replaces(word, earlier); }),
+                    decisions.end());
+    if (word.kind != DecisionKind::forget) decisions.push_back(word);
+  }
+  std::sort(decisions.begin(), decisions.end(), [](const Decision& a, const Decision& b) {
+    return std::pair(a.scans, a.kind) < std::pair(b.scans, b.kind);
+  });
+  return decisions;
+}
+
+}  // namespace limen
