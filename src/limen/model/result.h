@@ -105,6 +105,15 @@ struct OtherExplanations {
   double unlisted_pose = 0.0;   ///< they share a place, under a pose that was not proposed
 };
 
+/// What became of a start that was given.
+struct StartAgreement {
+  double shift_m = 0.0;  ///< of the middle of the source, from where the start puts it
+  double turn_rad = 0.0;
+  double sigmas = 0.0;  ///< the larger of both, in the standard deviations that were given
+  /// The start is farther off than its deviations bear, and the data say otherwise.
+  [[nodiscard]] bool refuted() const { return sigmas > 4.0; }
+};
+
 /// What a published method says of its own pose.
 struct PublishedScore {
   std::string method;  ///< "2021-cluster"
@@ -127,6 +136,7 @@ struct RegistrationResult {
   std::size_t judged_poses = 0;              ///< poses that were refined and judged
   std::optional<OtherExplanations> others;   ///< where poses have probabilities
   std::size_t rivals = 0;                    ///< alternatives that cannot be told from `best`
+  std::optional<StartAgreement> start;       ///< where one was given and a pose was found
   ScannerPlace source_place;                 ///< where the scanner of each side stood, and who says so
   ScannerPlace target_place;
   std::vector<StageTime> stages;

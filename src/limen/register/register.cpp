@@ -255,6 +255,29 @@ void balance_walls(std::vector<JudgedPose>& poses, const ScanView& source, const
   });
 }
 
+/// A belief about the start between the prepared frames, and where it is asked.
+struct PreparedStart {
+  StartPrior prior;
+  Vector3d at = Vector3d::Zero();
+  bool upright = false;
+
+  [[nodiscard]] double log_prior(const Rigid3& pose) const {
+    return log_prior_of_start(prior, pose, at, upright, PosteriorOptions{}.search_nats);
+  }
+};
+
+std::optional<PreparedStart> prepared_start(const PreparedScan& source, const PreparedScan& target,
+                                            const RegisterOptions& options) {
+  if (!options.start) return std::nullopt;
+  PreparedStart start{*options.start, source.reach.center(), source.upright && target.upright};
+  const Rigid3 local = to_local(options.start->target_from_source, source.extracted.features.local_origin,
+                                target.extracted.features.local_origin);
+  const Matrix3d& up = target.upright_from_scan;
+  start.prior.target_from_source = {up * local.rotation * source.upright_from_scan.transpose(),
+                                    up * local.translation};
+  return start;
+}
+
 /// How an attempt proposes its poses.
 enum class Proposal { held, sliding };
 
@@ -272,16 +295,22 @@ std::vector<JudgedPose> attempt(const PreparedScan& source, const PreparedScan& 
                                               ? propose_poses(from, to, proposing)
                                               : propose_sliding_poses(from, to, proposing);
   clock.end();
+  const std::optional<PreparedStart> start = prepared_start(source, target, options);
   clock.begin("scoring");
   const bool model = source.model || target.model;
   const int refined = model ? std::max(options.refined_poses, kModelPoses) : options.refined_poses;
   candidates = select_poses(candidates, source.view(), target.view(), static_cast<std::size_t>(refined),
                             options.method != Method::polygons);
+  if (start && !model) candidates.push_back({start->prior.target_from_source, 0.0, 0});
   clock.end();
   clock.begin("refinement");
   std::vector<JudgedPose> judged = refine_all(candidates, source.view(), target.view(), options);
   polish(judged, source.view(), target.view(), options);
   balance_walls(judged, source.view(), target.view());
+  if (start) {
+    for (JudgedPose& pose : judged)
+      pose.prior_m2 = start->log_prior(pose.refined.target_from_source) / PosteriorOptions{}.nats_per_m2;
+  }
   clock.end();
   return judged;
 }
@@ -306,10 +335,15 @@ Posterior posterior_of(const std::vector<JudgedPose>& poses, const Verdict& verd
   PosteriorEvidence evidence;
   evidence.best_value_m2 = poses[best].score.value();
   evidence.twin = twin;
+  const auto add_prior = [&](std::size_t pose) {
+    evidence.log_priors.push_back(poses[pose].prior_m2 * PosteriorOptions{}.nats_per_m2);
+  };
+  add_prior(best);
   if (model) evidence.log_odds_of_model = verdict.log_odds_of_model;
   for (const std::size_t other : others) {
     const PoseContrast apart = contrast(best, other);
     evidence.leads_m2.push_back(apart.for_first_m2 - apart.for_second_m2);
+    add_prior(other);
   }
   return posterior(evidence);
 }
@@ -353,10 +387,20 @@ void tell(Verdict verdict, const std::vector<JudgedPose>& poses, const ContrastF
   }
 }
 
-/// Whether two rooms built alike could be taken for one: of a model, or of the house seen from the street,
-/// the other places are searched as well, and are rivals.
+/// The probability of a twin where something is believed of the pose beforehand: a twin is another place, at
+/// least a room away.
+double twin_beside_start(double twin, const PreparedStart& start, const Rigid3& pose) {
+  constexpr double kRoomApartM = 2.5;
+  if (twin <= 0.0 || twin >= 1.0) return twin;
+  const double gain = log_prior_elsewhere(start.prior, pose, start.at, kRoomApartM) - start.log_prior(pose);
+  const double odds = twin / (1.0 - twin) * std::exp(gain);
+  return odds / (1.0 + odds);
+}
+
 constexpr double kTwinRather = 0.5;  // probability of a twin above which things tell two rooms
 
+/// Whether two rooms built alike could be taken for one: of a model, or of the house seen from the street,
+/// the other places are searched as well, and are rivals.
 bool may_be_twin(const PreparedScan& from, const PreparedScan& to) {
   return !from.model && !to.model && !from.mobile && !to.mobile;
 }
@@ -394,6 +438,7 @@ void RegisterOptions::check() const {
 RegistrationResult register_prepared(const PreparedPair& pair, const RegisterOptions& options,
                                      Monitor& monitor) {
   options.check();
+  if (options.start) options.start->check();
   if (options.as_published)
     return register_as_published(pair, {*options.as_published, options.wall_thickness_m, options.seed},
                                  monitor);
@@ -437,10 +482,16 @@ RegistrationResult register_prepared(const PreparedPair& pair, const RegisterOpt
   if (verdict.outcome == Outcome::no_match && level && planes && !model) try_again(true, Proposal::sliding);
   double twin = 0.0;
   if (!verdict.ranking.empty() && verdict.outcome != Outcome::no_match && may_be_twin(from, to)) {
-    const IndividualMatter individual =
-        individual_matter(from.view(), to.view(), poses[verdict.ranking.front()].refined.target_from_source);
+    const Rigid3& best = poses[verdict.ranking.front()].refined.target_from_source;
+    const IndividualMatter individual = individual_matter(from.view(), to.view(), best);
     twin = probability_of_twin(individual, judging.twin);
+    if (const auto start = prepared_start(from, to, options)) twin = twin_beside_start(twin, *start, best);
     verdict = with_twin(std::move(verdict), individual, twin, judging);
+  }
+  if (const auto start = prepared_start(from, to, options); start && !verdict.ranking.empty()) {
+    const StartMiss miss =
+        miss_of_start(start->prior, poses[verdict.ranking.front()].refined.target_from_source, start->at);
+    result.start = StartAgreement{miss.shift_m, miss.turn_rad, miss.sigmas};
   }
   tell(verdict, poses, contrast, twin, pair, options, result);
   return result;

@@ -10,6 +10,7 @@
 #include "limen/extract/features/extract_features.h"
 #include "limen/match/planes/enumerate_poses.h"
 #include "limen/model/result.h"
+#include "limen/register/judge/start_prior.h"
 #include "limen/register/judge/verdict.h"
 #include "limen/register/prepare/prepare_group.h"
 #include "limen/register/prepare/prepared_pair.h"
@@ -32,9 +33,10 @@ struct RegisterOptions {
   PoseEnumerationOptions enumerate;
   RefineOptions refine;
   VerdictOptions verdict;
-  int refined_poses = 32;  ///< candidates that are refined and judged
-  int alternatives = 8;    ///< different poses reported besides the best
-  bool picture = false;    ///< keep what a report draws
+  std::optional<StartPrior> start = {};  ///< what is believed of the pose beforehand, world to world
+  int refined_poses = 32;                ///< candidates that are refined and judged
+  int alternatives = 8;                  ///< different poses reported besides the best
+  bool picture = false;                  ///< keep what a report draws
 
   void check() const;
 };

@@ -117,7 +117,7 @@ TEST(RegisterTwins, NorAreTwoFurnishedAlike) {
   EXPECT_EQ(twins.outcome, Outcome::ambiguous) << twins.reason;
   ASSERT_TRUE(twins.others);
   // Rare as such twins are, it is far more probable than any risk that is taken.
-  EXPECT_GT(twins.others->twin, 0.05);
+  EXPECT_GT(twins.others->twin, 20.0 * VerdictOptions{}.risk);
 }
 
 TEST(RegisterTwins, BareRoomsCannotBeTold) {

@@ -17,6 +17,7 @@
 #include "limen/cli/inputs/register_inputs.h"
 #include "limen/cli/inputs/register_segment_files.h"
 #include "limen/cli/inputs/scan_options.h"
+#include "limen/cli/inputs/start_option.h"
 #include "limen/register/register.h"
 #include "limen/report/html/html_report.h"
 #include "limen/report/json/result_json.h"
@@ -37,6 +38,8 @@ struct RegisterCommandOptions {
   std::string target_origin;
   std::vector<std::string> source_with;
   std::vector<std::string> target_with;
+  std::string start;
+  std::string start_sigma;
   double wall_thickness_m = 0.0;
   double risk = VerdictOptions{}.risk;
   bool no_report = false;
@@ -107,6 +110,8 @@ OptionList reported(const RegisterCommandOptions& options) {
     list.emplace_back("source_trajectory", options.source_reading.trajectory);
   if (!options.target_reading.trajectory.empty())
     list.emplace_back("target_trajectory", options.target_reading.trajectory);
+  if (!options.start.empty()) list.emplace_back("start", options.start);
+  if (!options.start_sigma.empty()) list.emplace_back("start_sigma", options.start_sigma);
   if (options.wall_thickness_m > 0) list.emplace_back("wall_thickness_m", options.wall_thickness_m);
   if (options.risk != VerdictOptions{}.risk) list.emplace_back("risk", options.risk);
   return list;
@@ -134,6 +139,7 @@ Registered register_files(const RegisterCommandOptions& options, const Session& 
   VerdictOptions verdict;
   verdict.risk = options.risk;
   verdict.check();
+  const std::optional<StartPrior> believed = start_of(options.start, options.start_sigma);
   const auto start = std::chrono::steady_clock::now();
   session.monitor->begin_stage("reading");
   Side source = read_side({options.source, options.source_with, source_options}, session);
@@ -146,6 +152,7 @@ Registered register_files(const RegisterCommandOptions& options, const Session& 
   registering.as_published = published_of(options.as_published);
   registering.wall_thickness_m = options.wall_thickness_m;
   registering.verdict = verdict;
+  registering.start = believed;
   registering.seed = session.common.seed;
   registering.picture = !options.no_report;
   Registered registered;
@@ -296,6 +303,15 @@ void add_register_command(CommandLine& app, Session& session) {
           "Tell `registered` only where a twin (another room built alike) is less probable than this "
           "(default 0.001)")
       ->type_name("P");
+  command
+      ->add_option("--start", options->start,
+                   "What is believed of the pose beforehand: identity (both on one grid), or the file of a "
+                   "pose. Evidence like any other: it may be refuted, and never makes a pose")
+      ->type_name("POSE");
+  command
+      ->add_option("--start-sigma", options->start_sigma,
+                   "How well the start is known, one standard deviation of place and turn (default 2m,5deg)")
+      ->type_name("LENGTH,ANGLE");
   add_with_option(*command, "--source-with", options->source_with, "SOURCE");
   add_with_option(*command, "--target-with", options->target_with, "TARGET");
   command->add_flag("--no-report", options->no_report,

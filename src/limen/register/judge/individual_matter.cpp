@@ -16,24 +16,27 @@ namespace limen {
 namespace {
 
 // What is the building's: its large planes, and what is near them.
-constexpr double kBeforeWallM = 0.25;    // frames, sills, radiators, skirtings: built with the wall
-constexpr double kBehindWallM = 0.6;     // reveals, frames, panes
-constexpr double kBesideWallM = 0.3;     // beyond the outline that was seen of it
-constexpr double kBelowCeilingM = 0.35;  // lintels, beams, what shows of a wall above furniture
-constexpr double kSameWallM = 0.04;  // strips of a wall that furniture cuts in pieces lie in one plane ...
+constexpr double kBeforeWallM = 0.25;   // frames, sills, radiators, skirtings: built with the wall
+constexpr double kBehindWallM = 0.6;    // reveals, frames, panes
+constexpr double kBesideWallM = 0.3;    // beyond the outline that was seen of it
+constexpr double kBelowCeilingM = 0.5;  // lintels, beams, what shows of a wall above furniture
+constexpr double kSameWallM = 0.04;     // strips of a wall that furniture cuts in pieces lie in one plane ...
 constexpr double kSameWallCosine = 0.9994;  // ... to 2 degrees
 constexpr double kLevelCosine = 0.95;
 constexpr double kAtStripM = 0.1;  // before and beside a strip
 
 // When a piece agrees.
-constexpr double kMatterM = 0.08;       // pieces are 0.1 m, means of round ones lie off all surface
-constexpr double kFreeM = 0.15;         // rays passed this far beyond
-constexpr double kUprightCosine = 0.3;  // of a face's normal to the vertical
-constexpr double kSameNormal = 0.94;    // cosine: normals of small pieces are known to some degrees
-constexpr double kBesideM = 0.15;       // along the face, between the middles of two pieces of it
-constexpr double kUnevenM = 0.002;      // roughness, and the pose, at least
-constexpr double kOneFaceM = 0.03;      // pieces that lie so in one plane may be of one face
-constexpr double kFaceLengthM = 0.6;    // and then tell the same over this length
+constexpr double kMatterM = 0.08;        // pieces are 0.1 m, means of round ones lie off all surface
+constexpr double kFreeM = 0.15;          // rays passed this far beyond
+constexpr double kUprightCosine = 0.3;   // of a face's normal to the vertical
+constexpr double kSlopedCosine = 0.7;    // of a face that tells shifts along the floor, to the vertical
+constexpr double kSameNormal = 0.94;     // cosine: normals of small pieces are known to some degrees
+constexpr double kBesideM = 0.15;        // along the face, between the middles of two pieces of it
+constexpr double kUnevenM = 0.001;       // roughness, and the pose, at least
+constexpr double kOneFaceM = 0.04;       // pieces that lie so in one plane ...
+constexpr double kOneFaceCosine = 0.97;  // ... facing the same way ...
+constexpr double kNextPieceM = 0.35;     // ... are of one face, piece by piece
+constexpr double kThingLengthM = 0.4;    // faces nearer than this tell the same
 
 // Pieces nearer than this tell the same: the size of a chair, a box, a monitor. A moved table is few pieces.
 constexpr double kCorrelationM = 0.25;
@@ -136,6 +139,10 @@ class BuiltPlanes {
   std::vector<Part> parts_;
 };
 
+double square(double x) {
+  return x * x;
+}
+
 /// A piece of individual matter of one scan.
 struct Piece {
   const SurfaceDetail* detail = nullptr;
@@ -170,15 +177,12 @@ struct MetFace {
   Vector3d normal = Vector3d::Zero();
   double offset_m = 0.0;
   double sigma_m = 0.0;
-  double weight = 1.0;
+  double weight = 1.0;  ///< pieces
 };
 
-/// Correlation of what two faces tell: things are moved as a whole, so that pieces of one face are hardly
-/// more than one observation.
+/// Faces near one another may be of one thing, or were pushed together.
 double correlation(const MetFace& a, const MetFace& b) {
-  const Vector3d apart = b.at - a.at;
-  const bool one_face = std::abs(a.normal.dot(b.normal)) > 0.95 && std::abs(a.normal.dot(apart)) < kOneFaceM;
-  return std::exp(-apart.norm() / (one_face ? kFaceLengthM : kCorrelationM));
+  return std::exp(-(a.at - b.at).norm() / kThingLengthM);
 }
 
 double correlation(const Told& a, const Told& b) {
@@ -314,7 +318,7 @@ std::vector<MetFace> met_faces(const Side& scan, const Side& judge, const Rigid3
     const SurfaceDetail& detail = *piece.detail;
     if (!detail.flat()) continue;
     const Vector3d normal = judge_from_scan.rotation * detail.normal;
-    if (std::abs(normal.z()) > kUprightCosine) continue;
+    if (std::abs(normal.z()) > kSlopedCosine) continue;
     const Vector3d at = judge_from_scan * detail.mean;
     const SurfaceDetail* met = grid.nearest(at, normal);
     if (met == nullptr) continue;
@@ -322,10 +326,65 @@ std::vector<MetFace> met_faces(const Side& scan, const Side& judge, const Rigid3
     if (there == BuiltPlanes::Place::at_wall) continue;
     if (there == BuiltPlanes::Place::behind && piece.behind) continue;
     const Vector3d across = (normal + met->normal).normalized();
-    faces.push_back({target_from_judge * at, target_from_judge.rotation * across, across.dot(at - met->mean),
-                     std::hypot(static_cast<double>(detail.sigma_m), static_cast<double>(met->sigma_m))});
+    // Things are put elsewhere along the floor: of a slope that is more than what is seen across it.
+    const double lean = 1.0 / across.head<2>().norm();
+    faces.push_back(
+        {target_from_judge * at, target_from_judge.rotation * across, lean * across.dot(at - met->mean),
+         lean * std::hypot(static_cast<double>(detail.sigma_m), static_cast<double>(met->sigma_m))});
   }
   return faces;
+}
+
+/// Whether a piece goes on where those of a face, given by their numbers, end.
+bool continues(const MetFace& piece, const std::vector<MetFace>& pieces,
+               const std::vector<std::size_t>& face) {
+  const MetFace& first = pieces[face.front()];
+  if (piece.normal.dot(first.normal) < kOneFaceCosine) return false;
+  if (std::abs(first.normal.dot(piece.at - first.at)) > kOneFaceM) return false;
+  return std::any_of(face.rbegin(), face.rend(), [&](std::size_t k) {
+    return (pieces[k].at - piece.at).squaredNorm() < kNextPieceM * kNextPieceM;
+  });
+}
+
+/// What the pieces of one face say together.
+MetFace mean_of(const std::vector<MetFace>& pieces, const std::vector<std::size_t>& face) {
+  constexpr double kLeastSigmaM = 1e-4;
+  MetFace mean;
+  double weights = 0.0;
+  for (const std::size_t k : face) {
+    const double weight = 1.0 / (square(pieces[k].sigma_m) + square(kLeastSigmaM));
+    mean.offset_m += weight * pieces[k].offset_m;
+    mean.at += pieces[k].at;
+    mean.normal += pieces[k].normal;
+    weights += weight;
+  }
+  const auto count = static_cast<double>(face.size());
+  mean.offset_m /= weights;
+  mean.at /= count;
+  mean.normal.normalize();
+  mean.weight = count;
+  double scatter = 0.0;
+  for (const std::size_t k : face) scatter += square(pieces[k].offset_m - mean.offset_m);
+  mean.sigma_m = std::sqrt(1.0 / weights + scatter / square(count));
+  return mean;
+}
+
+/// The pieces of one face were put where they are together: they make one observation, a better one the more
+/// they are.
+std::vector<MetFace> joined(const std::vector<MetFace>& pieces) {
+  std::vector<std::vector<std::size_t>> faces;
+  for (std::size_t k = 0; k < pieces.size(); ++k) {
+    const auto found = std::find_if(faces.begin(), faces.end(),
+                                    [&](const auto& face) { return continues(pieces[k], pieces, face); });
+    if (found != faces.end())
+      found->push_back(k);
+    else
+      faces.push_back({k});
+  }
+  std::vector<MetFace> means;
+  means.reserve(faces.size());
+  for (const std::vector<std::size_t>& face : faces) means.push_back(mean_of(pieces, face));
+  return means;
 }
 
 /// What stands in a room is its own to the millimetre: offsets between pieces that both scans have.
@@ -334,16 +393,16 @@ FaceOffsets face_offsets(const Side& source, const Side& target, const Rigid3& t
   // Nearness is mutual, about: the sparser scan asks.
   const bool source_asks = source.view.details != nullptr && target.view.details != nullptr &&
                            source.view.details->size() <= target.view.details->size();
-  const std::vector<MetFace> faces = source_asks
-                                         ? met_faces(source, target, target_from_source, Rigid3{})
-                                         : met_faces(target, source, source_from_target, target_from_source);
+  const std::vector<MetFace> faces =
+      joined(source_asks ? met_faces(source, target, target_from_source, Rigid3{})
+                         : met_faces(target, source, source_from_target, target_from_source));
   FaceOffsets offsets;
   const double drift = std::hypot(source.view.features->drift_m, target.view.features->drift_m);
   for (const MetFace& face : faces) {
     offsets.offsets_m.push_back(face.offset_m);
     offsets.sigmas_m.push_back(std::hypot(kUnevenM, face.sigma_m, drift));
   }
-  offsets.shares = shares_of(faces, 3.0 * kFaceLengthM);
+  offsets.shares = shares_of(faces, 8.0 * kThingLengthM);
   return offsets;
 }
 

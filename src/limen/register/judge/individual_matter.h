@@ -16,10 +16,10 @@ struct Observations {
   [[nodiscard]] double agreeing() const { return count * share; }
 };
 
-/// Distances across between flat pieces of things, each scan's to the other's.
+/// Distances across between flat faces of things, each scan's to the other's.
 struct FaceOffsets {
   std::vector<double> offsets_m;  ///< signed, within `kNearFaceM`
-  /// Of one observation, each: pieces of one face make about one together, however many they are.
+  /// Of one observation, each: faces of one thing make about one together, however many they are.
   std::vector<double> shares;
   /// What noise leaves between two measurements of one face, each; roughness and the pose come on top.
   std::vector<double> sigmas_m;
@@ -34,7 +34,7 @@ inline constexpr double kNearFaceM = 0.06;
 struct IndividualMatter {
   /// Pieces that the other scan saw either as matter or as free space.
   Observations matter;
-  /// Upright flat pieces of things that the other scan has nearby as well, and how far apart the two are.
+  /// Flat faces of things that the other scan has nearby as well, and how far apart the two are.
   FaceOffsets faces;
   /// Share of `matter` that agrees when one room's things are shifted about in the other: chance.
   double chance = 0.0;

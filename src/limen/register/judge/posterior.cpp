@@ -29,8 +29,10 @@ Posterior posterior(const PosteriorEvidence& evidence, const PosteriorOptions& o
   Posterior posterior;
   double total = 0.0;
   const auto add_pose = [&](double lead_m2) {
+    const std::size_t k = posterior.poses.size();
+    const double log_prior = k < evidence.log_priors.size() ? evidence.log_priors[k] : 0.0;
     const double weight =
-        options.prior_shared * (1.0 - options.unlisted) * std::exp(-options.nats_per_m2 * lead_m2);
+        options.prior_shared * (1.0 - options.unlisted) * std::exp(log_prior - options.nats_per_m2 * lead_m2);
     posterior.poses.push_back(weight * (1.0 - evidence.twin));
     posterior.others.twin += weight * evidence.twin;
     total += weight;

@@ -38,6 +38,9 @@ struct PosteriorEvidence {
   /// Of a scan in a model: logarithm of the odds of the best pose against chance, learned from the other
   /// poses (model_odds.h).
   std::optional<double> log_odds_of_model = {};
+  /// By how much a belief about the start makes each pose more probable, natural logarithm, the best one's
+  /// first; empty: there is none (start_prior.h).
+  std::vector<double> log_priors = {};
 };
 
 /// Bayes' rule over the poses found, a twin, a pose not proposed, and nothing shared.

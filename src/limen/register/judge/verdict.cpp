@@ -59,7 +59,8 @@ bool possible(const PoseScore& other, const PoseScore& best, const VerdictOption
          other.contradicted_m2 <= bearable;
 }
 
-bool is_rival(const PoseContrast& contrast, const VerdictOptions& options) {
+bool is_rival(PoseContrast contrast, double prior_lead_m2, const VerdictOptions& options) {
+  (prior_lead_m2 > 0 ? contrast.for_first_m2 : contrast.for_second_m2) += std::abs(prior_lead_m2);
   const double lead = contrast.for_first_m2 - contrast.for_second_m2;
   return lead < options.min_lead_m2 ||
          (lead < options.clear_lead_m2 &&
@@ -171,9 +172,8 @@ std::vector<UnobservedFreedom> loose_freedoms(const RefinedPose& pose, const Ver
 std::vector<std::size_t> rank(const std::vector<JudgedPose>& poses, const VerdictOptions& options) {
   std::vector<std::size_t> order(poses.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return poses[a].score.value() > poses[b].score.value();
-  });
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return poses[a].value() > poses[b].value(); });
   std::vector<std::size_t> distinct;
   for (const std::size_t i : order) {
     const bool known = std::any_of(distinct.begin(), distinct.end(), [&](std::size_t j) {
@@ -258,7 +258,8 @@ Verdict judge(const std::vector<JudgedPose>& poses, const ContrastFunction& cont
     const std::size_t other = verdict.ranking[k];
     if (!possible(poses[other].score, best.score, options)) continue;
     if (same_but_for(best.refined, poses[other].refined, verdict.unobserved, options)) continue;
-    if (is_rival(contrast(verdict.ranking.front(), other), options)) verdict.rivals.push_back(other);
+    if (is_rival(contrast(verdict.ranking.front(), other), best.prior_m2 - poses[other].prior_m2, options))
+      verdict.rivals.push_back(other);
   }
   const std::size_t rivals = verdict.rivals.size();
   if (rivals > 0) {

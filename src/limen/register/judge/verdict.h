@@ -19,7 +19,11 @@ namespace limen {
 struct JudgedPose {
   RefinedPose refined;
   PoseScore score;
-  WallBalance walls;  ///< of a scan in a model
+  WallBalance walls;      ///< of a scan in a model
+  double prior_m2 = 0.0;  ///< what a belief about the start speaks for it, in surface that would tell as much
+
+  /// What poses are ranked by.
+  [[nodiscard]] double value() const { return score.value() + prior_m2; }
 };
 
 struct VerdictOptions {

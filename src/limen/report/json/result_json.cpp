@@ -223,6 +223,11 @@ std::string result_json(const RegistrationReport& report) {
     json["probability_of_twin"] = result.others->twin;
     json["probability_of_unlisted_pose"] = result.others->unlisted_pose;
   }
+  if (found && result.start)
+    json["start"] = {{"shift_m", result.start->shift_m},
+                     {"turn_rad", result.start->turn_rad},
+                     {"sigmas", result.start->sigmas},
+                     {"refuted", result.start->refuted()}};
   json["evidence"] = found ? evidence_json(result.best) : Json();
   if (result.published) json["published"] = published_json(*result.published);
   json["motion"] = found ? motion_json(report) : Json();

@@ -56,12 +56,20 @@ std::string precision_lines(const RegistrationReport& report) {
   return text;
 }
 
+std::string start_line(const RegistrationResult& result) {
+  if (!result.start) return {};
+  const std::string off =
+      fmt::format("{:.3g} m and {:.2f} deg from where it was expected, {:.1f} sigma", result.start->shift_m,
+                  degrees(result.start->turn_rad), result.start->sigmas);
+  return line("start", result.start->refuted() ? "refuted by the data: " + off : off);
+}
+
 std::string pose_lines(const RegistrationReport& report) {
   const RegistrationResult& result = report.result;
   std::string text;
   if (result.best.probability && !result.published)
     text += line("probability", probability_words(*result.best.probability));
-  text += motion_lines(report) + precision_lines(report);
+  text += motion_lines(report) + precision_lines(report) + start_line(result);
   for (const MeasuredThickness& wall : result.thickness) {
     if (wall.sigma_m > 0.1) continue;
     text += line("wall", fmt::format("{:.3f} m thick, sigma {:.1f} mm, by {} opening{}", wall.value_m,

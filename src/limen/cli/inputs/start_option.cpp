@@ -1,0 +1,62 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/cli/inputs/start_option.h"
+
+#include <array>
+#include <charconv>
+#include <string_view>
+#include <utility>
+
+#include "limen/base/angles.h"
+#include "limen/base/error.h"
+#include "limen/report/pose_file.h"
+
+namespace limen {
+namespace {
+
+constexpr const char* kAsked = "give a length and an angle with their units, as in --start-sigma 2m,5deg";
+
+struct Unit {
+  std::string_view name;
+  double value;
+};
+constexpr std::array<Unit, 4> kLengths = {{{"mm", 1e-3}, {"cm", 1e-2}, {"km", 1e3}, {"m", 1.0}}};
+const std::array<Unit, 2> kAngles = {{{"deg", radians(1.0)}, {"rad", 1.0}}};
+
+/// "2m": the number times what its unit is worth.
+template <std::size_t N>
+double measure(std::string_view text, const std::array<Unit, N>& units, const std::string& all) {
+  double value = 0.0;
+  const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const std::string_view unit = text.substr(static_cast<std::size_t>(end - text.data()));
+  if (fault == std::errc() && value > 0.0 && value < 1e6) {
+    for (const Unit& known : units)
+      if (known.name == unit) return value * known.value;
+  }
+  throw Error("the deviations of the start cannot be read", "--start-sigma " + all, kAsked);
+}
+
+}  // namespace
+
+std::optional<StartPrior> start_of(const std::string& pose, const std::string& sigma) {
+  if (pose.empty()) {
+    if (sigma.empty()) return std::nullopt;
+    throw Error("--start-sigma without --start", "--start-sigma " + sigma,
+                "give the start as well: --start identity, or the file of a pose");
+  }
+  StartPrior start;
+  if (pose != "identity") {
+    const PoseFile file = read_pose_file(pose);
+    start.target_from_source = chosen_pose(file, 0, pose);
+  }
+  if (sigma.empty()) return start;
+  const std::size_t comma = sigma.find(',');
+  if (comma == std::string::npos)
+    throw Error("the deviations of the start cannot be read", "--start-sigma " + sigma, kAsked);
+  const std::string_view text = sigma;
+  start.sigma_m = measure(text.substr(0, comma), kLengths, sigma);
+  start.sigma_rad = measure(text.substr(comma + 1), kAngles, sigma);
+  return start;
+}
+
+}  // namespace limen

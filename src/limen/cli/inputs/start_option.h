@@ -1,0 +1,17 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "limen/register/judge/start_prior.h"
+
+namespace limen {
+
+/// What --start and --start-sigma say: "identity" or the name of a file with a pose (read_pose_file()), and
+/// "2m,5deg": one standard deviation of the place (mm, cm, m, km) and of the turn (deg, rad). Nothing where
+/// `pose` is empty. Throws Error that names the option.
+std::optional<StartPrior> start_of(const std::string& pose, const std::string& sigma);
+
+}  // namespace limen

@@ -1,0 +1,41 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "limen/geometry/rigid.h"
+
+namespace limen {
+
+/// What a user believes of a pose beforehand: both scans on one grid, a satellite fix, a compass. It is
+/// evidence like any other, and may be wrong: it moves the odds between poses, and never makes one.
+struct StartPrior {
+  Rigid3 target_from_source;   ///< where `at` and the turn are meant; any pair of frames
+  double sigma_m = 2.0;        ///< of the place, per axis, one standard deviation
+  double sigma_rad = 0.08727;  ///< of the turn, per axis: 5 degrees
+  double trust = 0.95;         ///< share of such beliefs that mean what they say
+
+  void check() const;
+};
+
+/// How far a pose is from the one believed.
+struct StartMiss {
+  double shift_m = 0.0;
+  double turn_rad = 0.0;
+  double sigmas = 0.0;  ///< the larger of both, in standard deviations
+};
+
+/// `at`: a point of the source in the middle of what it saw.
+StartMiss miss_of_start(const StartPrior& start, const Rigid3& pose, const Vector3d& at);
+
+/// By how much a belief makes a pose more probable than it is without one: the logarithm of its density over
+/// the even one in the space that is searched (40 x 40 x 10 m, all headings where `upright`, else all turns).
+/// Never less than the logarithm of what is not trusted, nor more than `most`: a belief may single a pose out
+/// of all that a search can tell apart, but is no evidence that scans share anything.
+double log_prior_of_start(const StartPrior& start, const Rigid3& pose, const Vector3d& at, bool upright,
+                          double most);
+
+/// The same of all poses whose place is more than `apart_m` from that of `pose`, as a twin's: other rooms
+/// that the belief bears as well.
+double log_prior_elsewhere(const StartPrior& start, const Rigid3& pose, const Vector3d& at, double apart_m);
+
+}  // namespace limen
