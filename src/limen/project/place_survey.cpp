@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "limen/base/angles.h"
 #include "limen/project/control/control_datum.h"
 #include "limen/project/survey.h"
 
@@ -16,6 +17,9 @@ namespace {
 constexpr double kTargetsWrong = 1e-6;
 constexpr double kTargetsM2 =
     1000.0;  // what targets say of a scan no other scan says: they are witnesses of their own
+
+constexpr double kRigidM = 0.004;
+const double kRigidRad = radians(0.03);
 
 std::string names_of(const Survey& survey, const std::vector<std::size_t>& points) {
   std::string text;
@@ -226,6 +230,9 @@ void add_survey_links(Survey& survey, ProjectGraph& made) {
     link.chance = kTargetsWrong;
     link.poses.push_back(datum.fit.pose);
     link.poses.front().agreeing_m2 = kTargetsM2;
+    // As rigid as scans are taken to be in the loops; the adjustment has the sights themselves.
+    for (Eigen::Index k = 0; k < 6; ++k)
+      link.poses.front().covariance(k, k) += k < 3 ? kRigidRad * kRigidRad : kRigidM * kRigidM;
     links.push_back(std::move(link));
   }
   if (links.empty()) return;

@@ -103,6 +103,12 @@ class RivalSearch {
     }
     std::vector<int> open_rivals;
     for (std::size_t k = 0; k < graph_.links.size(); ++k) witness(k, moved, movement, question, open_rivals);
+    // Targets that fit their coordinates to millimetres are no matter of numbers of links.
+    const bool surveyed = std::any_of(question.current.begin(), question.current.end(), [&](int k) {
+      const GraphLink& link = graph_.links[static_cast<std::size_t>(k)];
+      return graph_.anchor >= 0 && (link.source == graph_.anchor || link.target == graph_.anchor);
+    });
+    if (surveyed) return;
     // A link of many poses, perhaps none of them right, or to a possible twin, is no witness against a sure
     // one.
     const bool firm = std::any_of(question.current.begin(), question.current.end(), [&](int k) {

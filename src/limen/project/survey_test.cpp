@@ -1,0 +1,164 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/project/survey.h"
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+#include "support/synthetic_survey.h"
+#include <gtest/gtest.h>
+
+namespace limen {
+namespace {
+
+constexpr double kSigmaM = 0.002;
+
+/// Scans that share nothing but targets: three of one place each, the survey about the same origin.
+struct TargetsOnly {
+  std::vector<ProjectNode> nodes = std::vector<ProjectNode>(3);
+  std::vector<Rigid3> control_from_node;
+  Survey survey;
+
+  explicit TargetsOnly(const std::vector<std::size_t>& points_of_scans) {
+    RandomStream random(5, 1);
+    survey.file = "control.csv";
+    survey.node_names = {"a", "b", "c"};
+    for (std::size_t n = 0; n < nodes.size(); ++n) {
+      nodes[n].scan = n;
+      control_from_node.push_back(random_pose(random, 30.0));
+      for (std::size_t k = 0; k < points_of_scans[n]; ++k) add_point(static_cast<int>(n), random);
+    }
+  }
+
+  void add_point(int node, RandomStream& random) {
+    const Matrix3d covariance = kSigmaM * kSigmaM * Matrix3d::Identity();
+    const Vector3d place(random.uniform(-4, 4), random.uniform(-4, 4), random.uniform(-1, 2));
+    SurveyMark mark;
+    mark.name = "P" + std::to_string(survey.marks.size());
+    mark.role = PointRole::control;
+    const Vector3d x = control_from_node[static_cast<std::size_t>(node)] * place;
+    mark.point.known = KnownPlace{x + noise3(kSigmaM, random), covariance};
+    mark.given = mark.point.known->x;
+    mark.point.sights.push_back({node, place + noise3(kSigmaM, random), covariance});
+    survey.marks.push_back(mark);
+  }
+
+  /// As assemble() goes about it.
+  PlacedSurvey place(SolvedGraph& solved, const std::vector<TriedPair>& pairs = {}) {
+    ProjectGraph made = make_graph(nodes, pairs, 0.001, {});
+    add_survey_links(survey, made);
+    solved = solve_graph(made.graph, 0.001);
+    PlacedSurvey placed = place_survey(survey, made, solved);
+    EXPECT_FALSE(adjust_planes(nodes, pairs, made, {}, solved, placed).contradicted);
+    return placed;
+  }
+
+  /// What a pair of these scans tells.
+  [[nodiscard]] TriedPair pair(std::size_t source, std::size_t target, double off_m, double twin) const {
+    TriedPair pair{source, target, {}};
+    pair.result.outcome = Outcome::registered;
+    pair.result.best.target_from_source = inverse(control_from_node[target]) * control_from_node[source];
+    pair.result.best.target_from_source.translation.x() += off_m;
+    pair.result.best.probability = 1.0 - twin;
+    pair.result.best.score = pair.result.best.agreeing_m2 = 30.0;
+    pair.result.others = OtherExplanations{0.0, twin, 0.0};
+    pair.result.sigma.centre = inverse(control_from_node[target]) * control_from_node[source].translation;
+    return pair;
+  }
+};
+
+TEST(Survey, ScansThatOnlyTargetsJoinStandInOneFrame) {
+  TargetsOnly building({4, 5, 2});
+  SolvedGraph solved;
+  const PlacedSurvey placed = building.place(solved);
+  EXPECT_TRUE(placed.placed);
+  for (std::size_t n = 0; n < 2; ++n) {
+    EXPECT_EQ(solved.nodes[n].state, NodeState::registered) << n;
+    EXPECT_EQ(solved.nodes[n].component, 0) << n;
+    EXPECT_TRUE(placed.controlled[n]);
+    const Rigid3 error = solved.nodes[n].frame_from_node * inverse(building.control_from_node[n]);
+    EXPECT_LT(rotation_angle(error.rotation), 0.003) << n;
+    EXPECT_LT(
+        (solved.nodes[n].frame_from_node.translation - building.control_from_node[n].translation).norm(),
+        0.008)
+        << n;
+  }
+  // Two targets hold no scan.
+  EXPECT_EQ(solved.nodes[2].component, -1);
+  EXPECT_FALSE(placed.controlled[2]);
+}
+
+TEST(Survey, TargetsRefuteALinkAndSettleATwin) {
+  // c hangs on a by a link that is 0.3 m off, and on b by one that may lie on a twin.
+  TargetsOnly building({4, 4, 4});
+  const std::vector<TriedPair> pairs = {building.pair(2, 0, 0.3, 0.0), building.pair(2, 1, 0.0, 0.2)};
+  SolvedGraph solved;
+  const PlacedSurvey placed = building.place(solved, pairs);
+  EXPECT_TRUE(placed.placed);
+  for (std::size_t n = 0; n < 3; ++n) {
+    EXPECT_EQ(solved.nodes[n].state, NodeState::registered) << n;
+    EXPECT_LT(
+        (solved.nodes[n].frame_from_node.translation - building.control_from_node[n].translation).norm(),
+        0.01)
+        << n;
+  }
+  ASSERT_EQ(solved.links.size(), 2U);
+  EXPECT_EQ(solved.links[0].state, LinkState::rejected);
+  EXPECT_NE(solved.links[1].state, LinkState::rejected);
+  EXPECT_TRUE(solved.loops.empty() || solved.loops.front().links.size() <= 2);
+}
+
+TEST(Survey, ScansInDoubtAreHeldByTheirNeighboursTargetsOnly) {
+  // b has three targets; c hangs on b by a link that may lie on a twin, and sees one target.
+  TargetsOnly building({0, 3, 1});
+  SolvedGraph solved;
+  const PlacedSurvey placed = building.place(solved, {building.pair(2, 1, 0.0, 0.2)});
+  EXPECT_EQ(solved.nodes[1].state, NodeState::registered);
+  EXPECT_EQ(solved.nodes[2].state, NodeState::ambiguous);
+  EXPECT_TRUE(placed.points.back().sights.empty());
+  const std::vector<ProjectPoint> told = told_points(building.survey, placed, building.nodes);
+  EXPECT_EQ(told.back().state, PointState::not_placed);
+  EXPECT_EQ(told.front().state, PointState::used);
+}
+
+TEST(Survey, NamesOfScansArePlacesOfScannersAndStrangersAreTold) {
+  const std::filesystem::path folder = std::filesystem::temp_directory_path() / "limen_survey_test";
+  std::filesystem::create_directories(folder);
+  const auto write = [&](const char* name, const char* text) {
+    std::ofstream(folder / name) << text;
+    return (folder / name).string();
+  };
+  ProjectInputs inputs;
+  inputs.control = write("control.csv",
+                         "name,x,y,z,sigma\nhall.ply,652000.1235,6862000.5,35.25,0.02\n"
+                         "P1,652010,6862010,36,0.002\nP9,652010,6862010,36,0.002\n");
+  inputs.targets = write("targets.csv",
+                         "name,scan,x,y,z,sigma\nP1,all.e57 #1,1,2,3,0.002\nP1,cellar.ply,1,2,3,0.002\n"
+                         "T1,\"scans/hall.ply\",1.5,2,3,0.002\n");
+  std::vector<ProjectScan> scans(3);
+  scans[0].file = "scans/hall.ply";
+  scans[1].file = scans[2].file = "scans/all.e57";
+  scans[2].index = 1;
+  std::vector<ProjectNode> nodes(3);
+  for (std::size_t n = 0; n < 3; ++n) nodes[n].scan = n;
+  nodes[0].digest.local_origin = {1, 1, 1};
+  nodes[0].digest.stations = {Vector3d(0, 0, 1.6)};
+  const Survey survey = read_survey(inputs, nodes, scans);
+  ASSERT_EQ(survey.marks.size(), 4U);  // P1, P9, T1, hall.ply
+  EXPECT_EQ(survey.marks[0].point.sights.front().node, 2);
+  EXPECT_TRUE(survey.marks[1].point.sights.empty());
+  EXPECT_EQ(survey.marks[2].role, PointRole::tie);
+  EXPECT_EQ(survey.marks[2].point.sights.front().x_in_node, Vector3d(0.5, 1, 2));
+  EXPECT_TRUE(survey.marks[3].scanner);
+  EXPECT_EQ(survey.marks[3].point.sights.front().x_in_node, Vector3d(0, 0, 1.6));
+  // A tenth of a millimetre survives a national grid.
+  EXPECT_NEAR(survey.marks[3].point.known->x.x() - survey.marks[0].point.known->x.x(), -9.8765, 1e-9);
+  ASSERT_EQ(survey.notes.size(), 2U);
+  EXPECT_NE(survey.notes[0].find("P9"), std::string::npos);
+  EXPECT_NE(survey.notes[1].find("cellar.ply"), std::string::npos);
+  std::filesystem::remove_all(folder);
+}
+
+}  // namespace
+}  // namespace limen
