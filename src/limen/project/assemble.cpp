@@ -32,6 +32,7 @@ class Assembler {
     ProjectGraph made = make_graph(nodes_, pairs_, risk_, words_);
     add_survey_links(survey_, made);
     solved_ = solve_graph(made.graph, risk_);
+    if (confirm_by_points(survey_, solved_, made)) solved_ = solve_graph(made.graph, risk_);
     if (nodes_.size() == 1 && solved_.nodes.front().component < 0) {
       // A scan alone is its own frame.
       solved_.nodes.front().state = NodeState::registered;

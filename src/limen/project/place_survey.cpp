@@ -1,9 +1,11 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <optional>
 #include <set>
 #include <utility>
 
+#include <Eigen/LU>
 #include <fmt/format.h>
 
 #include "limen/base/angles.h"
@@ -208,13 +210,117 @@ class SurveyPlacer {
   std::string refused_;
 };
 
+void link_to_survey(int node, LinkPose pose, ProjectGraph& made) {
+  GraphLink link;
+  link.source = node;
+  link.target = made.graph.anchor;
+  link.trust = LinkTrust::given;
+  link.chance = kTargetsWrong;
+  pose.agreeing_m2 = kTargetsM2;
+  // As rigid as scans are taken to be in the loops; the adjustment has the sights themselves.
+  for (Eigen::Index k = 0; k < 6; ++k)
+    pose.covariance(k, k) += k < 3 ? kRigidRad * kRigidRad : kRigidM * kRigidM;
+  link.poses.push_back(pose);
+  made.graph.links.push_back(std::move(link));
+  made.pair_of.push_back(-1);
+}
+
+/// Looks for scans of one component that known points confirm.
+class Confirmer {
+ public:
+  Confirmer(const Survey& survey, const SolvedGraph& solved, int component) : points_(points_of(survey)) {
+    for (const SolvedNode& node : solved.nodes) {
+      framed_.frame_from_node.push_back(node.frame_from_node);
+      framed_.covariance.push_back(node.covariance);
+      framed_.member.push_back(node.component == component &&
+                               (node.state == NodeState::registered || node.state == NodeState::ambiguous));
+    }
+  }
+
+  /// Where the scan stands in the survey's frame by the points of all others; empty where they do not tell,
+  /// or it sees its own elsewhere, or none.
+  [[nodiscard]] std::optional<LinkPose> place(int node) const {
+    FramedNodes others = framed_;
+    others.member[static_cast<std::size_t>(node)] = false;
+    const ControlDatum datum = control_datum(apart_from(node), others);
+    if (datum.fit.state != PointFitState::fixed || !datum.fit.suspects.empty()) return {};
+    const Rigid3& own = framed_.frame_from_node[static_cast<std::size_t>(node)];
+    const Rigid3& survey = datum.fit.pose.target_from_source;
+    LinkPose placed;
+    placed.target_from_source = survey * own;
+    placed.centre = placed.target_from_source.translation;
+    const LinkPose in_frame{own, framed_.covariance[static_cast<std::size_t>(node)], own.translation, 0.0};
+    placed.covariance = moved_covariance(in_frame, survey, placed.centre) +
+                        moved_covariance(datum.fit.pose, Rigid3{}, placed.centre);
+    int agreeing = 0;
+    for (const MarkedPoint& point : points_) {
+      for (const PointSight& sight : point.sights) {
+        if (sight.node != node || !point.is_known()) continue;
+        if (!foretold(point, sight, placed)) return {};
+        ++agreeing;
+      }
+    }
+    return agreeing > 0 ? std::optional<LinkPose>(placed) : std::nullopt;
+  }
+
+ private:
+  static constexpr double kSharpM = 0.15;  // twins stand further apart than what is foretold as well as this
+
+  [[nodiscard]] static bool foretold(const MarkedPoint& point, const PointSight& sight,
+                                     const LinkPose& placed) {
+    const Vector3d at = placed.target_from_source * sight.x_in_node;
+    const Matrix3d& turn = placed.target_from_source.rotation;
+    const Matrix3d covariance = moved_covariance(placed, Rigid3{}, at).bottomRightCorner<3, 3>() +
+                                turn * sight.covariance * turn.transpose() + point.known->covariance;
+    const Vector3d missed = at - point.known->x;
+    return covariance.trace() < kSharpM * kSharpM &&
+           missed.dot(covariance.inverse() * missed) <= kPointChiSquareBound;
+  }
+
+  /// Points that the scan sees say nothing of the others, whoever sees them too.
+  [[nodiscard]] std::vector<MarkedPoint> apart_from(int node) const {
+    std::vector<MarkedPoint> points = points_;
+    for (MarkedPoint& point : points) {
+      const bool seen = std::any_of(point.sights.begin(), point.sights.end(),
+                                    [&](const PointSight& sight) { return sight.node == node; });
+      if (seen) point.enters = false;
+    }
+    return points;
+  }
+
+  std::vector<MarkedPoint> points_;
+  FramedNodes framed_;
+};
+
 }  // namespace
+
+bool confirm_by_points(const Survey& survey, const SolvedGraph& solved, ProjectGraph& made) {
+  if (survey.file.empty()) return false;
+  const int nodes = made.graph.anchor >= 0 ? made.graph.anchor : made.graph.nodes;
+  std::set<int> linked;
+  for (const GraphLink& link : made.graph.links) {
+    if (link.target == made.graph.anchor && made.graph.anchor >= 0) linked.insert(link.source);
+  }
+  std::vector<std::pair<int, LinkPose>> found;
+  for (int component = 0; component < solved.components; ++component) {
+    const Confirmer confirmer(survey, solved, component);
+    for (int n = 0; n < nodes; ++n) {
+      const SolvedNode& node = solved.nodes[static_cast<std::size_t>(n)];
+      if (linked.count(n) > 0 || node.component != component || node.state == NodeState::under_constrained)
+        continue;
+      if (const std::optional<LinkPose> pose = confirmer.place(n)) found.emplace_back(n, *pose);
+    }
+  }
+  if (found.empty()) return false;
+  if (made.graph.anchor < 0) made.graph.anchor = made.graph.nodes++;
+  for (const auto& [node, pose] : found) link_to_survey(node, pose, made);
+  return true;
+}
 
 void add_survey_links(Survey& survey, ProjectGraph& made) {
   if (survey.file.empty()) return;
   const int nodes = made.graph.nodes;
   const std::vector<MarkedPoint> points = points_of(survey);
-  std::vector<GraphLink> links;
   for (int n = 0; n < nodes; ++n) {
     const ControlDatum datum = control_datum(points, only(n, nodes));
     if (datum.fit.state == PointFitState::too_few) continue;
@@ -223,24 +329,8 @@ void add_survey_links(Survey& survey, ProjectGraph& made) {
                                          survey.node_names[static_cast<std::size_t>(n)],
                                          names_of(survey, suspects_of(datum))));
     if (datum.fit.state != PointFitState::fixed) continue;
-    GraphLink link;
-    link.source = n;
-    link.target = nodes;
-    link.trust = LinkTrust::given;
-    link.chance = kTargetsWrong;
-    link.poses.push_back(datum.fit.pose);
-    link.poses.front().agreeing_m2 = kTargetsM2;
-    // As rigid as scans are taken to be in the loops; the adjustment has the sights themselves.
-    for (Eigen::Index k = 0; k < 6; ++k)
-      link.poses.front().covariance(k, k) += k < 3 ? kRigidRad * kRigidRad : kRigidM * kRigidM;
-    links.push_back(std::move(link));
-  }
-  if (links.empty()) return;
-  made.graph.anchor = nodes;
-  ++made.graph.nodes;
-  for (GraphLink& link : links) {
-    made.graph.links.push_back(std::move(link));
-    made.pair_of.push_back(-1);
+    if (made.graph.anchor < 0) made.graph.anchor = made.graph.nodes++;
+    link_to_survey(n, datum.fit.pose, made);
   }
 }
 

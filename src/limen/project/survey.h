@@ -39,6 +39,11 @@ Survey read_survey(const ProjectInputs& inputs, const std::vector<ProjectNode>& 
 /// there; contradictory ones are told in the notes. Nothing where there are no control points.
 void add_survey_links(Survey& survey, ProjectGraph& made);
 
+/// Scans that are in doubt, or stand in a frame of their own, and that known points confirm: the points of
+/// all other scans of the component fix its frame, and foretell those that this scan sees. They are linked to
+/// the survey's frame, so that the graph is to be solved again; false: there are none.
+bool confirm_by_points(const Survey& survey, const SolvedGraph& solved, ProjectGraph& made);
+
 /// The survey against a solved graph.
 struct PlacedSurvey {
   bool placed = false;              ///< at least one component stands in the survey's frame

@@ -49,6 +49,7 @@ struct TargetsOnly {
     ProjectGraph made = make_graph(nodes, pairs, 0.001, {});
     add_survey_links(survey, made);
     solved = solve_graph(made.graph, 0.001);
+    if (confirm_by_points(survey, solved, made)) solved = solve_graph(made.graph, 0.001);
     PlacedSurvey placed = place_survey(survey, made, solved);
     EXPECT_FALSE(adjust_planes(nodes, pairs, made, {}, solved, placed).contradicted);
     return placed;
@@ -110,16 +111,38 @@ TEST(Survey, TargetsRefuteALinkAndSettleATwin) {
 }
 
 TEST(Survey, ScansInDoubtAreHeldByTheirNeighboursTargetsOnly) {
-  // b has three targets; c hangs on b by a link that may lie on a twin, and sees one target.
-  TargetsOnly building({0, 3, 1});
+  // b has targets; c hangs on b by a link that may lie on a twin, and so it does: its own target fits nothing.
+  TargetsOnly building({0, 4, 1});
   SolvedGraph solved;
-  const PlacedSurvey placed = building.place(solved, {building.pair(2, 1, 0.0, 0.2)});
+  const PlacedSurvey placed = building.place(solved, {building.pair(2, 1, 1.0, 0.2)});
   EXPECT_EQ(solved.nodes[1].state, NodeState::registered);
   EXPECT_EQ(solved.nodes[2].state, NodeState::ambiguous);
   EXPECT_TRUE(placed.points.back().sights.empty());
   const std::vector<ProjectPoint> told = told_points(building.survey, placed, building.nodes);
   EXPECT_EQ(told.back().state, PointState::not_placed);
   EXPECT_EQ(told.front().state, PointState::used);
+}
+
+TEST(Survey, PointsThatOtherScansForetellConfirmAScanInDoubt) {
+  // Links that may lie on twins; two targets in each scan, and each two fit what the four others tell.
+  TargetsOnly building({2, 2, 2});
+  const std::vector<TriedPair> pairs = {building.pair(1, 0, 0.0, 0.2), building.pair(2, 1, 0.0, 0.2)};
+  SolvedGraph solved;
+  EXPECT_TRUE(building.place(solved, pairs).placed);
+  for (std::size_t n = 0; n < 3; ++n) {
+    EXPECT_EQ(solved.nodes[n].state, NodeState::registered) << n;
+    EXPECT_LT(
+        (solved.nodes[n].frame_from_node.translation - building.control_from_node[n].translation).norm(),
+        0.02)
+        << n;
+  }
+  // The last scan a metre off, on its twin: its points fit nobody's, and it is not confirmed.
+  TargetsOnly wrong({4, 4, 2});
+  const std::vector<TriedPair> twins = {wrong.pair(1, 0, 0.0, 0.2), wrong.pair(2, 1, 1.0, 0.2)};
+  wrong.place(solved, twins);
+  EXPECT_EQ(solved.nodes[0].state, NodeState::registered);
+  EXPECT_EQ(solved.nodes[1].state, NodeState::registered);
+  EXPECT_EQ(solved.nodes[2].state, NodeState::ambiguous);
 }
 
 TEST(Survey, NamesOfScansArePlacesOfScannersAndStrangersAreTold) {
