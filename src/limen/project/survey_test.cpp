@@ -111,7 +111,8 @@ TEST(Survey, TargetsRefuteALinkAndSettleATwin) {
 }
 
 TEST(Survey, ScansInDoubtAreHeldByTheirNeighboursTargetsOnly) {
-  // b has targets; c hangs on b by a link that may lie on a twin, and so it does: its own target fits nothing.
+  // b has targets; c hangs on b by a link that may lie on a twin, and so it does: its own target fits
+  // nothing.
   TargetsOnly building({0, 4, 1});
   SolvedGraph solved;
   const PlacedSurvey placed = building.place(solved, {building.pair(2, 1, 1.0, 0.2)});
