@@ -40,7 +40,7 @@ td.path { overflow-wrap: anywhere; }
 .wall { stroke: var(--soft); stroke-opacity: .35; stroke-width: 1.5; fill: none; }
 .link { stroke: var(--c); stroke-width: 2.5; stroke-opacity: .8; }
 .link.bridge { stroke-dasharray: 9 5; } .link.ambiguous { stroke-dasharray: 3 5; } .link.rejected { stroke-dasharray: 2 8; } .link.weak { stroke-width: 1.2; }
-.node circle { fill: var(--paper); stroke: var(--c); stroke-width: 2.5; } .node text { font: 600 10px system-ui, sans-serif; text-anchor: middle; fill: var(--ink); }
+.node circle, .node path { fill: var(--paper); stroke: var(--c); stroke-width: 2.5; } .node text { font: 600 10px system-ui, sans-serif; text-anchor: middle; fill: var(--ink); }
 .sigma { fill: var(--c); fill-opacity: .18; }
 .answer { font: inherit; font-size: 13px; margin: 0 6px 6px 0; padding: 3px 10px; border: 1px solid var(--line); border-radius: 6px; background: var(--page); color: var(--ink); cursor: pointer; } .card p { margin: 0 0 8px; }
 #paste code { display: block; margin-top: 4px; padding: 8px 10px; background: var(--paper); border: 1px solid var(--line); user-select: all; }
@@ -257,7 +257,7 @@ std::string project_page(const ProjectResult& result) {
     text += "<h2>Plan</h2>\n" + plan +
             "<p class=\"soft\">Lines: verified links are full, bridges dashed, ambiguous and rejected ones "
             "dotted. Ellipses are "
-            "one sigma, enlarged 100 times.</p>\n";
+            "one sigma, enlarged 100 times. Triangles: control and check points.</p>\n";
   text +=
       scans_table(result) + points_table(result) + links_table(result) + loops_table(result) + notes(result);
   return text + "</main></body></html>\n";

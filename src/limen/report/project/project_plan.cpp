@@ -131,6 +131,27 @@ std::string links_of(const ProjectResult& result, const std::vector<Spot>& floor
   return text;
 }
 
+/// Control and check points on a floor, as triangles.
+std::string points_of(const ProjectResult& result, const std::vector<Spot>& floor, const Sheet& sheet) {
+  constexpr double kReachM = 2.5;  // above and below the stations
+  std::string text;
+  for (const ProjectPoint& point : result.points) {
+    if (!point.found || !point.given) continue;
+    if (point.found->z() < floor.front().at.z() - kReachM || point.found->z() > floor.back().at.z() + kReachM)
+      continue;
+    const char* state = point.state == PointState::used       ? "verified"
+                        : point.state == PointState::left_out ? "rejected"
+                                                              : "bridge";
+    text += fmt::format(
+        "<g class=\"node {}\"><title>{} point {}: {}, misses by {:.1f} mm</title><path d=\"M{:.1f} {:.1f}l7 "
+        "12h-14z\"/>"
+        "</g>\n",
+        state, to_string(point.role), escaped(point.name), to_string(point.state),
+        1e3 * point.test.residual.norm(), sheet.x(*point.found), sheet.y(*point.found) - 8.0);
+  }
+  return text;
+}
+
 /// A bar of a round length.
 std::string bar_of(const Sheet& sheet) {
   double metres = 1.0;
@@ -160,7 +181,7 @@ std::string project_plan(const ProjectResult& result) {
     for (const Spot& spot : floors[k]) text += walls_of(result.scans[spot.scan], sheet);
     text += links_of(result, floors[k], spots, sheet);
     for (const Spot& spot : floors[k]) text += station_of(result.scans[spot.scan], spot, sheet);
-    text += bar_of(sheet) + "</svg>\n";
+    text += points_of(result, floors[k], sheet) + bar_of(sheet) + "</svg>\n";
   }
   return text;
 }

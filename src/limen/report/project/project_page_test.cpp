@@ -1,0 +1,82 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/report/project/project_page.h"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "limen/report/project/project_json.h"
+
+namespace limen {
+namespace {
+
+/// Two scans, a control point that is left out, a check point, a question and a decision.
+ProjectResult some_result() {
+  ProjectResult result;
+  result.outcome = ProjectOutcome::partial;
+  result.frame_kind = "control";
+  result.control_file = "control.csv";
+  result.control_words = "2 control points are seen by 1 scan";
+  for (const char* name : {"hall.ply", "o'clock.ply"}) {
+    ProjectScan scan;
+    scan.file = name;
+    scan.component = 0;
+    scan.frame_from_scan = Rigid3{};
+    scan.stations = {Vector3d(result.scans.empty() ? 0 : 3, 2, 1.6)};
+    result.scans.push_back(scan);
+  }
+  ProjectPoint point;
+  point.name = "P<1>";
+  point.state = PointState::left_out;
+  point.given = Vector3d(652345.6781, 6862123.4562, 35.25);
+  point.found = Vector3d(1, 1, 1);
+  point.test.residual = {0.05, 0, 0};
+  point.reason = "contradicts all else";
+  point.sights.push_back({1, true, 0.001});
+  result.points.push_back(point);
+  ProjectQuestion question;
+  question.text = "where does it stand?";
+  question.answers = {{DecisionKind::choose, {"hall.ply", "o'clock.ply"}, 2}};
+  result.questions.push_back(question);
+  result.decisions.push_back({{DecisionKind::level, {"hall.ply"}, 0}, DecisionState::contradicted, "leans"});
+  return result;
+}
+
+TEST(ProjectPage, AnswersAreLinesForAShellAndPointsStandInTableAndPlan) {
+  const std::string page = project_page(some_result());
+  const auto holds = [&](const char* text) { return page.find(text) != std::string::npos; };
+  // The quote of the name is closed, written and opened again.
+  EXPECT_TRUE(holds("data-line=\"limen project decide DIR choose 'hall.ply' 'o'\\''clock.ply' 2\""))
+      << page.substr(page.find("data-line"), 200);
+  EXPECT_TRUE(holds("class=\"answer\""));
+  EXPECT_TRUE(holds("level hall.ply"));
+  EXPECT_TRUE(holds("contradicted"));
+  EXPECT_TRUE(holds("P&lt;1&gt;"));
+  EXPECT_FALSE(holds("P<1>"));
+  EXPECT_TRUE(holds("control point P&lt;1&gt;: left_out, misses by 50.0 mm"));
+  EXPECT_TRUE(holds("The frame is that of the control points in control.csv."));
+}
+
+TEST(ProjectJson, PointsDecisionsAndAnswersAreTold) {
+  const nlohmann::json json = nlohmann::json::parse(project_json(some_result(), {}));
+  EXPECT_EQ(json["frame"]["file"], "control.csv");
+  EXPECT_TRUE(json["frame"]["scan"].is_null());
+  EXPECT_EQ(json["questions"][0]["answers"][0], "choose hall.ply o'clock.ply 2");
+  EXPECT_EQ(json["decisions"][0]["state"], "contradicted");
+  const nlohmann::json& point = json["points"][0];
+  EXPECT_EQ(point["state"], "left_out");
+  EXPECT_EQ(point["given"][1].get<double>(), 6862123.4562);
+  EXPECT_EQ(point["seen_by"][0]["scan"], 1);
+  // What was left out was not tested together with the rest.
+  EXPECT_FALSE(point.contains("detectable_m"));
+}
+
+TEST(ProjectJson, WithoutSurveyAndDecisionsNothingIsSaidOfThem) {
+  const nlohmann::json json = nlohmann::json::parse(project_json(ProjectResult{}, {}));
+  EXPECT_FALSE(json.contains("points"));
+  EXPECT_FALSE(json.contains("control"));
+  EXPECT_FALSE(json.contains("decisions"));
+}
+
+}  // namespace
+}  // namespace limen
