@@ -25,6 +25,7 @@ const double kGivenRad = radians(0.05);
 constexpr double kRivalShare = 0.5;    // of the best pose's score: a pose with less is no possibility
 constexpr std::size_t kMostPoses = 9;  // of a link
 constexpr double kLikelier = 0.5;      // a twin more probable than not: the pair tells nothing
+constexpr double kHardly = 1e-4;       // a pose less probable than this is no possibility
 constexpr double kOfUnknown = 0.1;     // probability of being wrong where a pair tells none
 constexpr double kStoreyM = 0.5;       // floors further apart are of different storeys
 constexpr double kWordWrong = 4e-4;    // probability that a user's word is wrong
@@ -73,6 +74,9 @@ class GraphMaker {
     const bool spoken = said != words_.pairs.end();
     if (spoken && said->second.kind == DecisionKind::reject) return;
     if (found.outcome == Outcome::no_match || (twin > kLikelier && !spoken)) return;
+    // Poses that are more probably none are what any two scans show: many of them would outweigh what is
+    // sure.
+    if (!spoken && by_chance(found) > kLikelier) return;
     GraphLink link;
     link.source = static_cast<int>(pairs_[k].source);
     link.target = static_cast<int>(pairs_[k].target);
@@ -83,6 +87,7 @@ class GraphMaker {
     for (const Hypothesis& other : found.alternatives) {
       if (link.poses.size() >= kMostPoses) break;
       if (other.score < kRivalShare * found.best.score) continue;
+      if (other.probability && *other.probability < kHardly) continue;
       link.poses.push_back(pose_of(link, found, other, kLooser));
     }
     if (words_.floors.count({pairs_[k].source, pairs_[k].target}) > 0) keep_floor(link);
@@ -135,11 +140,16 @@ class GraphMaker {
     return twin > risk_ ? LinkTrust::likely : LinkTrust::sure;
   }
 
+  /// Probability that none of a pair's poses is right, twins apart.
+  [[nodiscard]] static double by_chance(const RegistrationResult& found) {
+    return found.others ? found.others->nothing_shared + found.others->unlisted_pose : 0.0;
+  }
+
   /// Probability that no pose of the link is right, or of a link with one pose that this is wrong, twins
   /// apart.
   [[nodiscard]] static double chance_of(const RegistrationResult& found, double twin, LinkTrust trust) {
     if (!found.others || !found.best.probability) return kOfUnknown;
-    if (trust == LinkTrust::open) return found.others->nothing_shared + found.others->unlisted_pose;
+    if (trust == LinkTrust::open) return by_chance(found);
     return std::max(0.0, 1.0 - *found.best.probability - twin);
   }
 

@@ -330,11 +330,12 @@ std::vector<std::size_t> told_alternatives(const Verdict& verdict, const Registe
 /// Probabilities of the best pose and of `others`, and of what else may be.
 Posterior posterior_of(const std::vector<JudgedPose>& poses, const Verdict& verdict,
                        const std::vector<std::size_t>& others, const ContrastFunction& contrast, double twin,
-                       bool model) {
+                       bool model, bool through_wall) {
   const std::size_t best = verdict.ranking.front();
   PosteriorEvidence evidence;
   evidence.best_value_m2 = poses[best].score.value();
   evidence.twin = twin;
+  evidence.through_wall = through_wall;
   const auto add_prior = [&](std::size_t pose) {
     evidence.log_priors.push_back(poses[pose].prior_m2 * PosteriorOptions{}.nats_per_m2);
   };
@@ -358,7 +359,7 @@ void tell(Verdict verdict, const std::vector<JudgedPose>& poses, const ContrastF
   const bool model = from.model || to.model;
   Posterior all;
   if (!verdict.ranking.empty()) {
-    all = posterior_of(poses, verdict, others, contrast, twin, model);
+    all = posterior_of(poses, verdict, others, contrast, twin, model, !model && from.mobile != to.mobile);
     // In a model the odds against chance have spoken already.
     if (!model) verdict = with_posterior(std::move(verdict), all, options.verdict.risk);
   }

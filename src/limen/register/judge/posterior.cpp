@@ -13,6 +13,8 @@ namespace limen {
 
 void PosteriorOptions::check() const {
   if (!(nats_per_m2 > 0)) throw_bad_option("nats_per_m2", nats_per_m2, "more than 0");
+  if (!(nats_per_m2_through_wall > 0))
+    throw_bad_option("nats_per_m2_through_wall", nats_per_m2_through_wall, "more than 0");
   if (!(search_nats >= 0)) throw_bad_option("search_nats", search_nats, "0 or more");
   if (!(prior_shared > 0 && prior_shared < 1))
     throw_bad_option("prior_shared", prior_shared, "within (0, 1)");
@@ -23,16 +25,17 @@ Posterior posterior(const PosteriorEvidence& evidence, const PosteriorOptions& o
   options.check();
   // Weights against the best pose, whose likelihood is 1; the best wrong pose is as likely as the right one
   // where its value is what a search reaches by chance.
-  const double chance = std::exp(evidence.log_odds_of_model
-                                     ? -*evidence.log_odds_of_model
-                                     : options.search_nats - options.nats_per_m2 * evidence.best_value_m2);
+  const double nats_per_m2 = evidence.through_wall ? options.nats_per_m2_through_wall : options.nats_per_m2;
+  const double chance =
+      std::exp(evidence.log_odds_of_model ? -*evidence.log_odds_of_model
+                                          : options.search_nats - nats_per_m2 * evidence.best_value_m2);
   Posterior posterior;
   double total = 0.0;
   const auto add_pose = [&](double lead_m2) {
     const std::size_t k = posterior.poses.size();
     const double log_prior = k < evidence.log_priors.size() ? evidence.log_priors[k] : 0.0;
     const double weight =
-        options.prior_shared * (1.0 - options.unlisted) * std::exp(log_prior - options.nats_per_m2 * lead_m2);
+        options.prior_shared * (1.0 - options.unlisted) * std::exp(log_prior - nats_per_m2 * lead_m2);
     posterior.poses.push_back(weight * (1.0 - evidence.twin));
     posterior.others.twin += weight * evidence.twin;
     total += weight;

@@ -15,6 +15,9 @@ struct PosteriorOptions {
   /// m^2. One that stands in seen free space does so with probability 0.03 under the right pose (it was
   /// moved) and 0.6 under a wrong one: 3 nats, or 7.6 per m^2, which weighs four times what agrees weighs.
   double nats_per_m2 = 1.9;
+  /// The same where one scan was taken along a street: bays, storeys and windows repeat, and what meets by
+  /// chance meets in rows. The best wrong poses of rooms that a street scan shows nothing of reach 9.5 m^2.
+  double nats_per_m2_through_wall = 1.0;
   /// What the best of all wrong poses reaches by chance: the logarithm of how many a search can tell apart
   /// (evidence times Laplace volume over search volume, for poses that are all held to about a centimetre).
   double search_nats = 9.5;
@@ -38,6 +41,7 @@ struct PosteriorEvidence {
   /// Of a scan in a model: logarithm of the odds of the best pose against chance, learned from the other
   /// poses (model_odds.h).
   std::optional<double> log_odds_of_model = {};
+  bool through_wall = false;  ///< one scan was taken in a room, the other along a street
   /// By how much a belief about the start makes each pose more probable, natural logarithm, the best one's
   /// first; empty: there is none (start_prior.h).
   std::vector<double> log_priors = {};

@@ -32,6 +32,15 @@ TEST(Posterior, HardlyAnyCommonSurfaceMeansNothingShared) {
   EXPECT_GT(posterior({2.0, {0.1}, 0.0}).others.nothing_shared, 0.9);
 }
 
+TEST(Posterior, AStreetShowsMuchThatRepeats) {
+  PosteriorEvidence evidence{9.5, {}, 0.0};
+  EXPECT_LT(posterior(evidence).others.nothing_shared, 1e-3);
+  evidence.through_wall = true;
+  EXPECT_GT(posterior(evidence).others.nothing_shared, 0.4);
+  evidence.best_value_m2 = 30.0;
+  EXPECT_LT(posterior(evidence).others.nothing_shared, 1e-6);
+}
+
 TEST(Posterior, WhatChanceReachesInAModelIsLearnedThere) {
   double before = 1.0;
   for (const double odds : {-3.0, 0.0, 3.0, 9.0}) {
