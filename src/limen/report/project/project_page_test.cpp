@@ -45,8 +45,10 @@ ProjectResult some_result() {
 TEST(ProjectPage, AnswersAreLinesForAShellAndPointsStandInTableAndPlan) {
   const std::string page = project_page(some_result());
   const auto holds = [&](const char* text) { return page.find(text) != std::string::npos; };
-  // The quote of the name is closed, written and opened again.
-  EXPECT_TRUE(holds("data-line=\"limen project decide DIR choose 'hall.ply' 'o'\\''clock.ply' 2\""))
+  // The quote of the name is closed, written and opened again, as HTML has it.
+  EXPECT_TRUE(
+      holds("data-line=\"limen project decide DIR choose &#39;hall.ply&#39; "
+            "&#39;o&#39;\\&#39;&#39;clock.ply&#39; 2\""))
       << page.substr(page.find("data-line"), 200);
   EXPECT_TRUE(holds("class=\"answer\""));
   EXPECT_TRUE(holds("level hall.ply"));
