@@ -31,10 +31,15 @@ Vector3d vector_of(const json& numbers) {
   return {numbers[0].get<double>(), numbers[1].get<double>(), numbers[2].get<double>()};
 }
 
-std::string number(double value, char mark = '.') {
-  std::string text = std::to_string(value);
-  for (char& c : text) c = c == '.' ? mark : c;
-  return text;
+/// Three numbers with `point` for the decimal point, `comma` before each.
+std::string line_of(const Vector3d& x, char point, const char* comma) {
+  std::string line;
+  for (const double value : {x.x(), x.y(), x.z()}) {
+    std::string text = std::to_string(value);
+    for (char& c : text) c = c == '.' ? point : c;
+    line.append(comma).append(text);
+  }
+  return line;
 }
 
 class ProjectSurvey : public ProgramTest {
@@ -68,16 +73,14 @@ class ProjectSurvey : public ProgramTest {
       const Vector3d x =
           grid_from_world_ * place + noise() + (name == "C" ? blunder_of_c : Vector3d(0, 0, 0));
       if (name.front() == 'K') {
-        check += name + ";" + number(x.x(), ',') + ";" + number(x.y(), ',') + ";" + number(x.z(), ',') +
-                 ";0,002;0,002;0,002\n";
+        check.append(name).append(line_of(x, ',', ";")).append(";0,002;0,002;0,002\n");
       } else {
-        control += name + "," + number(x.x()) + "," + number(x.y()) + "," + number(x.z()) + ",0.002\n";
+        control.append(name).append(line_of(x, '.', ",")).append(",0.002\n");
       }
       for (std::size_t k = 0; k < files_.size(); ++k) {
         const Vector3d seen = inverse(world_from_scan_[k]) * place + noise();
         const std::string file = files_[k].substr(files_[k].rfind('/') + 1);
-        targets += name + "," + file + "," + number(seen.x()) + "," + number(seen.y()) + "," +
-                   number(seen.z()) + ",0.002\n";
+        targets.append(name).append(",").append(file).append(line_of(seen, '.', ",")).append(",0.002\n");
       }
     }
     write_whole(work() / "control.csv", control);

@@ -169,9 +169,6 @@ int take_decision(const std::vector<std::string>& words, const Session& session)
 }
 
 ProjectInputs inputs_of(const ProjectCommandOptions& options) {
-  if (!options.control.empty() && !options.check.empty() && options.targets.empty())
-    throw Error("there is nothing that tells where the scans see the points", "--check",
-                "give a file of targets: --targets FILE.csv");
   return {options.scans, options.models, options.control, options.check, options.targets, options.decisions};
 }
 
