@@ -22,6 +22,7 @@ if(NOT LIMEN_BUILD_SIMULATOR)
 endif()
 
 Python3_add_library(limen_python MODULE WITH_SOABI ${LIMEN_PYTHON_SOURCES})
+limen_unity(limen_python ${LIMEN_PYTHON_SOURCES})
 set_target_properties(limen_python PROPERTIES OUTPUT_NAME _limen CXX_VISIBILITY_PRESET hidden
   LIBRARY_OUTPUT_DIRECTORY ${LIMEN_PYTHON_DIR})
 target_include_directories(limen_python SYSTEM PRIVATE ${PYBIND11_INCLUDE_DIR} ${Python3_INCLUDE_DIRS})

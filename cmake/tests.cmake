@@ -13,6 +13,7 @@ set(LIMEN_TEST_HEADERS <Eigen/Core> <Eigen/Geometry> <Eigen/LU> <algorithm> <arr
   <functional> <memory> <optional> <string> <string_view> <utility> <vector> <fmt/format.h> <gtest/gtest.h>)
 
 add_executable(limen_unit_tests ${LIMEN_UNIT_TESTS})
+limen_unity(limen_unit_tests ${LIMEN_UNIT_TESTS})
 target_include_directories(limen_unit_tests PRIVATE ${PROJECT_SOURCE_DIR}/tests)
 target_precompile_headers(limen_unit_tests PRIVATE ${LIMEN_TEST_HEADERS})
 target_link_libraries(limen_unit_tests PRIVATE limen limen_simulate limen_cli limen_options fmt::fmt
@@ -26,6 +27,7 @@ gtest_discover_tests(limen_unit_tests PROPERTIES LABELS unit DISCOVERY_MODE PRE_
 file(GLOB LIMEN_ACCEPTANCE_TESTS CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/tests/*_test.cpp)
 if(LIMEN_ACCEPTANCE_TESTS)
   add_executable(limen_acceptance_tests ${LIMEN_ACCEPTANCE_TESTS} tests/fuzz/readers.cpp)
+  limen_unity(limen_acceptance_tests ${LIMEN_ACCEPTANCE_TESTS})
   target_link_libraries(limen_acceptance_tests PRIVATE limen limen_simulate limen_cli limen_options fmt::fmt
     nlohmann_json::nlohmann_json GTest::gtest_main)
   target_include_directories(limen_acceptance_tests PRIVATE ${PROJECT_SOURCE_DIR}/tests)

@@ -15,7 +15,7 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr const char* kIdentity = "1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n";
-constexpr const char* kShifted = "1 0 0 0.25\n0 1 0 0\n0 0 1 0\n0 0 0 1\n";
+constexpr const char* kShiftedPose = "1 0 0 0.25\n0 1 0 0\n0 0 1 0\n0 0 0 1\n";
 
 class CliTest : public ProgramTest {
  protected:
@@ -135,7 +135,7 @@ TEST_F(CliTest, Version) {
 }
 
 TEST_F(CliTest, EvaluateTellsAKnownError) {
-  write_whole(work() / "found.txt", kShifted);
+  write_whole(work() / "found.txt", kShiftedPose);
   write_whole(work() / "true.txt", kIdentity);
   const ProgramRun done = run({"evaluate", "found.txt", "true.txt", "--json"});
   EXPECT_EQ(done.status, 0);
@@ -249,7 +249,7 @@ TEST_F(CliTest, NoMatchTakesAwayTheTransformOfAnEarlierRun) {
   for (int i = 0; i < 1000; ++i) line += std::to_string(0.01 * i) + " 0 0\n";
   write_whole(work() / "line.xyz", line);
   std::filesystem::create_directory(work() / "out");
-  write_whole(work() / "out" / "transform.txt", kShifted);
+  write_whole(work() / "out" / "transform.txt", kShiftedPose);
   const ProgramRun done = run({"register", "line.xyz", "line.xyz", "-o", "out"});
   EXPECT_EQ(done.status, 4) << done.err;
   EXPECT_FALSE(std::filesystem::exists(work() / "out" / "transform.txt"));

@@ -18,7 +18,7 @@ namespace {
 
 using nlohmann::json;
 
-Matrix4d matrix_of(const json& rows) {
+Matrix4d pose_matrix_of(const json& rows) {
   Matrix4d matrix;
   for (int i = 0; i < 4; ++i) {
     for (int j = 0; j < 4; ++j)
@@ -54,7 +54,7 @@ class ProjectSurvey : public ProgramTest {
     const json truth = json::parse(read_whole(work() / "case" / "truth" / "truth.json"));
     for (const json& scan : truth["scans"]) {
       files_.push_back("case/" + scan["file"].get<std::string>());
-      const Matrix4d pose = matrix_of(scan["world_from_scan"]);
+      const Matrix4d pose = pose_matrix_of(scan["world_from_scan"]);
       world_from_scan_.push_back({pose.topLeftCorner<3, 3>(), pose.topRightCorner<3, 1>()});
     }
     grid_from_world_.rotation = rotation_exp(Vector3d(0, 0, 0.7));
@@ -108,7 +108,7 @@ TEST_F(ProjectSurvey, ScansStandInTheFrameOfTheControlPointsAndABlunderIsNamed) 
   EXPECT_EQ(project["frame"]["kind"], "control");
   EXPECT_EQ(project["frame"]["file"], "control.csv");
   for (std::size_t k = 0; k < 2; ++k) {
-    const Matrix4d pose = matrix_of(project["scans"][k]["frame_from_scan"]);
+    const Matrix4d pose = pose_matrix_of(project["scans"][k]["frame_from_scan"]);
     const Rigid3 truth = grid_from_world_ * world_from_scan_[k];
     const Vector3d middle = inverse(world_from_scan_[k]) * Vector3d(2.5, 2, 1.2);
     const Vector3d there = pose.topLeftCorner<3, 3>() * middle + pose.topRightCorner<3, 1>();

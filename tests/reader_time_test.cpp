@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kBytes = 96 * 1024;
 
-std::string repeated(std::string_view word, std::size_t bytes) {
+std::string filled_with(std::string_view word, std::size_t bytes) {
   std::string text;
   while (text.size() < bytes) text += word;
   return text;
@@ -106,7 +106,7 @@ class ReaderTime : public testing::TestWithParam<FuzzedReader> {};
 TEST_P(ReaderTime, IsLinearInTheFile) {
   for (const std::string& begin : beginnings(GetParam().name)) {
     for (const std::string_view block : stumbling_blocks()) {
-      EXPECT_NO_THROW(read_strange(GetParam(), begin + repeated(block, kBytes)))
+      EXPECT_NO_THROW(read_strange(GetParam(), begin + filled_with(block, kBytes)))
           << "after " << begin.size() << " bytes: " << block;
     }
   }
@@ -129,7 +129,7 @@ std::string step_file(const std::string& statements) {
 
 TEST(StepTime, CommentsThatNeverClose) {
   const std::string comments =
-      repeated("/* ", 512 * 1024);  // without the blank each would close the one before
+      filled_with("/* ", 512 * 1024);  // without the blank each would close the one before
   EXPECT_NO_THROW(read_strange(step_reader(), comments));
   EXPECT_NO_THROW(read_strange(step_reader(), step_file("#1=IFCWALL(" + comments + ");\n")));
   EXPECT_NO_THROW(read_strange(step_reader(), step_file("#1=IFCWALL('a'" + comments + "'*/');\n")));

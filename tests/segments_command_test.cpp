@@ -43,10 +43,10 @@ TEST_F(SegmentsCommandTest, TwelveEdgesInWorldCoordinates) {
   const ProgramRun it =
       run({"segments", "room.xyz", "-o", "room.json", "--origin", "1050002,6840002,101.5", "--json"});
   ASSERT_EQ(it.status, 0) << it.err;
-  const Json json = Json::parse(it.out);
-  ASSERT_EQ(json["segments"].size(), 12U);
+  const Json written = Json::parse(it.out);
+  ASSERT_EQ(written["segments"].size(), 12U);
   double total = 0.0;
-  for (const Json& segment : json["segments"]) {
+  for (const Json& segment : written["segments"]) {
     double squares = 0.0;
     for (std::size_t k = 0; k < 3; ++k) {
       const double step = segment["b"][k].get<double>() - segment["a"][k].get<double>();

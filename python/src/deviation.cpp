@@ -63,7 +63,7 @@ py::dict values(const MeasuredDeviation& measured) {
   return told;
 }
 
-void save(const MeasuredDeviation& measured, const std::filesystem::path& path, double colour_limit_m) {
+void save_deviation(const MeasuredDeviation& measured, const std::filesystem::path& path, double colour_limit_m) {
   const OutputFolder folder(path);
   write_deviation_ply(folder.path() / "deviation.ply", *measured.scan, measured.report, colour_limit_m);
   write_file(folder.path() / "deviation.csv", deviation_csv(measured.report, *measured.model));
@@ -87,7 +87,7 @@ void bind_deviation(py::module_& module) {
                                    self.cast<const MeasuredDeviation&>().report.deviation.element;
                                return view(it, {static_cast<py::ssize_t>(it.size())}, self);
                              })
-      .def("save", &save, py::arg("folder"), py::arg("colour_limit_m"));
+      .def("save", &save_deviation, py::arg("folder"), py::arg("colour_limit_m"));
   module.def("deviation",
              [](std::shared_ptr<Scan> scan, std::shared_ptr<BimModel> model, const Matrix4d& pose,
                 const DeviationOptions& options, const py::object& progress) {

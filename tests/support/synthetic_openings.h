@@ -35,7 +35,7 @@ struct Wall {
 };
 
 /// How a scan sees them.
-struct Sight {
+struct WallSight {
   bool inside = false;
   double thickness_m = 0.4;  ///< of all walls
   double noise_m = 0.0;      ///< of every edge
@@ -59,7 +59,8 @@ inline PlanarPolygon rectangle(const Vector3d& start, const Vector3d& right, con
   return polygon;
 }
 
-inline Opening opening_of(const Wall& wall, const Window& window, const Sight& sight, RandomStream& random) {
+inline Opening opening_of(const Wall& wall, const Window& window, const WallSight& sight,
+                          RandomStream& random) {
   const Vector3d up = Vector3d::UnitZ();
   const double splay = sight.inside ? sight.splay_m : 0.0;
   const double left = window.left - splay + sight.noise_m * random.normal();
@@ -80,7 +81,7 @@ inline Opening opening_of(const Wall& wall, const Window& window, const Sight& s
 }
 
 /// A wall with all its windows, added to what a scan has.
-inline void add_wall(Features& features, const Wall& wall, const Sight& sight) {
+inline void add_wall(Features& features, const Wall& wall, const WallSight& sight) {
   RandomStream random(sight.seed, features.planes.size());
   const Vector3d up = Vector3d::UnitZ();
   if (sight.inside) {

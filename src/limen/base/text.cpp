@@ -35,6 +35,13 @@ std::string_view trimmed(std::string_view text) {
   return text;
 }
 
+std::string one_line(std::string text) {
+  for (char& c : text) {
+    if (c == '\n' || c == '\r' || c == '\0') c = ' ';
+  }
+  return text;
+}
+
 std::string reason_of(int error_number) {
   return std::generic_category().message(error_number);
 }

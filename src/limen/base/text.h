@@ -14,6 +14,9 @@ std::string upper_case(std::string_view text);
 /// Without spaces, tabs and ends of lines at either end.
 std::string_view trimmed(std::string_view text);
 
+/// With spaces for ends of lines and zero bytes.
+std::string one_line(std::string text);
+
 /// What the system says of an error number (errno), in words.
 std::string reason_of(int error_number);
 

@@ -15,7 +15,7 @@ constexpr std::uint8_t kCovered = 1;
 constexpr std::uint8_t kPassed = 2;
 constexpr double kMostTiles = 4e6;  // of one face
 constexpr double kBeginM = 0.2;     // of a ray: nothing so near to the scanner is measured
-constexpr std::size_t kGrain = 4096;
+constexpr std::size_t kSamplesPerPiece = 4096;
 
 /// The tiles of all faces.
 class Tiles {
@@ -101,7 +101,7 @@ std::vector<FaceCoverage> face_coverage(const ScanInModel& scan, const PointFace
         tiles.mark(crossing.face, crossing.at, kPassed);
     }
   };
-  parallel_for(scan.points.size() / stride, kGrain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(scan.points.size() / stride, kSamplesPerPiece, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) follow(k * stride);
   });
   std::vector<FaceCoverage> coverage(index.size());

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numeric>
 
-#include <Eigen/Eigenvalues>
+#include "limen/geometry/linear.h"
 
 namespace limen {
 namespace {
@@ -81,17 +81,17 @@ std::vector<Vector3d> held_directions(const std::vector<FaceOffset>& faces, cons
                                       std::vector<Vector3d>& open) {
   Matrix3d information = Matrix3d::Zero();
   for (const FaceOffset& face : faces) information += weight_of(face) * face.normal * face.normal.transpose();
-  const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(information);
+  const Spectrum3 spectrum = spectrum_of(information);
   std::vector<Vector3d> held;
   for (Eigen::Index k = 2; k >= 0; --k) {
-    Vector3d direction = solver.eigenvectors().col(k);
+    Vector3d direction = spectrum.vectors.col(k);
     Eigen::Index largest = 0;
     direction.cwiseAbs().maxCoeff(&largest);
     if (direction[largest] < 0.0) direction = -direction;
     std::size_t points = 0;
     for (const FaceOffset& face : faces)
       points += std::abs(face.normal.dot(direction)) > kAcross ? face.points : 0;
-    const bool enough = solver.eigenvalues()[k] > options.min_held_share * information.trace() &&
+    const bool enough = spectrum.values[k] > options.min_held_share * information.trace() &&
                         points >= options.min_held_points;
     (enough ? held : open).push_back(direction);
   }
@@ -148,7 +148,7 @@ ShiftFit fit_within(const Basis& basis, const std::vector<FaceOffset>& faces, do
     sums = sums_at(faces, fit.shift, width);
     small = basis.transpose() * sums.information * basis;
     small.diagonal().array() += 1e-9 * sums.information.trace() + 1e-12;
-    fit.shift += basis * small.ldlt().solve(basis.transpose() * sums.right);
+    fit.shift += basis * solve_symmetric(small, Eigen::VectorXd(basis.transpose() * sums.right));
     width = std::max(kRobustM, 0.6 * width);
   }
   // A face is one observation, good to its flatness, or to how the faces disagree.
@@ -156,7 +156,7 @@ ShiftFit fit_within(const Basis& basis, const std::vector<FaceOffset>& faces, do
   double largest = 0.0;
   for (const FaceOffset& face : faces)
     largest = std::max(largest, std::min(static_cast<double>(face.points), kMostPoints));
-  fit.covariance = (scatter + kFaceSigmaM * kFaceSigmaM) * largest * small.inverse();
+  fit.covariance = (scatter + kFaceSigmaM * kFaceSigmaM) * largest * inverse_of(small);
   return fit;
 }
 

@@ -14,13 +14,13 @@ namespace {
 
 constexpr double kFinestCubeM = 0.02;
 constexpr double kMaxThicknessM = 0.015;  // root mean square, of the points of a small piece of surface
-constexpr std::size_t kGrain = 8192;
+constexpr std::size_t kPointsPerPiece = 8192;
 
 }  // namespace
 
 ScanInModel::ScanInModel(const Scan& scan, const Rigid3& model_from_scan)
     : points(scan.size()), centres(scan.centres.size()) {
-  parallel_for(points.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(points.size(), kPointsPerPiece, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) points[i] = model_from_scan * scan.points[i];
   });
   for (std::size_t i = 0; i < centres.size(); ++i) centres[i] = model_from_scan * scan.centres[i];
@@ -70,7 +70,7 @@ PointFaces lay_on_faces(const ScanInModel& scan, const FaceIndex& index, const D
     any.x = query.x;
     laid.far[i] = index.nearest(any).face < 0 ? 1 : 0;
   };
-  parallel_for(count, kGrain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(count, kPointsPerPiece, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) lay(static_cast<std::uint32_t>(k));
   });
   return laid;

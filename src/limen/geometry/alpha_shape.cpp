@@ -19,18 +19,13 @@ namespace {
 using Diagram = boost::polygon::voronoi_diagram<double>;
 using GridPoint = boost::polygon::point_data<int>;
 
-constexpr double kGrid_m = 1e-5;
-constexpr double kMaxCoordinate_m = 1e12;
-
-bool usable(const Vector2d& p) {
-  return std::abs(p.x()) <= kMaxCoordinate_m && std::abs(p.y()) <= kMaxCoordinate_m;
-}
+constexpr double kShapeGrid_m = 1e-5;
 
 /// The points on the integer grid, distinct, in lexicographic order, and the way back to metres.
 struct GridPoints {
   std::vector<GridPoint> points;
   Vector2d origin = Vector2d::Zero();
-  double unit_m = kGrid_m;
+  double unit_m = kShapeGrid_m;
 
   [[nodiscard]] Vector2d metres(std::size_t i) const {
     return origin + unit_m * Vector2d(points[i].x(), points[i].y());
@@ -49,7 +44,7 @@ GridPoints on_grid(const std::vector<Vector2d>& points) {
   if (!(low.x() <= high.x())) return grid;
   grid.origin = 0.5 * low + 0.5 * high;
   // Boost's predicates are exact for 32-bit coordinates.
-  grid.unit_m = std::max(kGrid_m, (high - low).maxCoeff() / 0x1.0p30);
+  grid.unit_m = std::max(kShapeGrid_m, (high - low).maxCoeff() / 0x1.0p30);
   grid.points.reserve(points.size());
   for (const Vector2d& p : points) {
     if (!usable(p)) continue;

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Eigenvalues>
+#include "limen/geometry/linear.h"
 
 namespace limen {
 
@@ -34,10 +34,10 @@ PlaneFrame make_frame(const Plane& plane, const Vector3d& near) {
 PlaneFit fit_plane(const PointMoments& moments) {
   PlaneFit fit;
   fit.centroid = moments.mean();
-  // The iterative solver: the closed form loses the small eigenvalue, which is the one that matters here.
-  const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(moments.covariance());
-  fit.variances = solver.eigenvalues().cwiseMax(0.0);
-  fit.plane.normal = solver.eigenvectors().col(0).normalized();
+  // By iteration: the closed form loses the small eigenvalue, which is the one that matters here.
+  const Spectrum3 spectrum = spectrum_of(moments.covariance());
+  fit.variances = spectrum.values.cwiseMax(0.0);
+  fit.plane.normal = spectrum.vectors.col(0).normalized();
   fit.plane.offset = fit.plane.normal.dot(fit.centroid);
   fit.rms_m = std::sqrt(fit.variances[0]);
   return fit;

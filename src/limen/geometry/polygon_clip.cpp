@@ -20,7 +20,7 @@ using ClipperLib::PolyNode;
 using ClipperLib::PolyTree;
 
 constexpr double kGrid_m = 1e-5;
-constexpr double kMaxCoordinate_m = 1e9;
+constexpr double kMaxClipped_m = 1e9;
 
 /// Conversion between metres about an origin and Clipper's integers.
 class Grid {
@@ -67,7 +67,7 @@ class Grid {
 
 void check(const Ring& ring) {
   for (const Vector2d& p : ring) {
-    if (std::abs(p.x()) <= kMaxCoordinate_m && std::abs(p.y()) <= kMaxCoordinate_m) continue;
+    if (std::abs(p.x()) <= kMaxClipped_m && std::abs(p.y()) <= kMaxClipped_m) continue;
     throw Error("a polygon has a coordinate that is not finite or beyond 1e9 m", "polygon operation",
                 "give coordinates about a local origin");
   }

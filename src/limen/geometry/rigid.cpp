@@ -5,9 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/SVD>
-
 #include "limen/base/error.h"
+#include "limen/geometry/linear.h"
 
 namespace limen {
 
@@ -44,9 +43,9 @@ Rigid3 from_matrix(const Matrix4d& matrix, double tolerance) {
 }
 
 Matrix3d nearest_rotation(const Matrix3d& matrix) {
-  const Eigen::JacobiSVD<Matrix3d> svd(matrix, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Vector3d signs(1, 1, (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1);
-  return svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
+  const SingularValues3 svd = singular_values_of(matrix);
+  const Vector3d signs(1, 1, (svd.left * svd.right.transpose()).determinant() < 0 ? -1 : 1);
+  return svd.left * signs.asDiagonal() * svd.right.transpose();
 }
 
 Matrix3d rotation_exp(const Vector3d& rotation_vector) {

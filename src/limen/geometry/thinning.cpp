@@ -14,12 +14,6 @@
 namespace limen {
 namespace {
 
-constexpr double kMaxCoordinate_m = 1e12;
-
-bool usable(const Vector2d& p) {
-  return std::abs(p.x()) <= kMaxCoordinate_m && std::abs(p.y()) <= kMaxCoordinate_m;
-}
-
 /// Numbers the occupied cells of a square grid in the order of their first points: in a plain array where the
 /// grid is not much larger than the number of points, else in a table of those that are occupied.
 class CellTable {
@@ -221,6 +215,11 @@ class Representatives {
 };
 
 }  // namespace
+
+bool usable(const Vector2d& p) {
+  constexpr double kMaxCoordinate_m = 1e12;
+  return std::abs(p.x()) <= kMaxCoordinate_m && std::abs(p.y()) <= kMaxCoordinate_m;
+}
 
 std::vector<std::uint32_t> thinned(const std::vector<Vector2d>& points, double cell_m) {
   if (!(cell_m > 0.0)) throw_bad_option("cell_m", cell_m, "greater than 0");

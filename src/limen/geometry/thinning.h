@@ -9,6 +9,9 @@
 
 namespace limen {
 
+/// Neither infinite nor so large that squares of it mean nothing.
+bool usable(const Vector2d& p);
+
 /// Indices, ascending, of the points that are enough for the alpha shape with alpha_m = 4 * cell_m.
 ///
 /// Of each square cell near a gap that could hold an empty disc (a block of 3 x 3 empty cells) the extreme

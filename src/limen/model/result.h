@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "limen/geometry/linear.h"
 #include "limen/geometry/rigid.h"
 #include "limen/model/registration_picture.h"
 #include "limen/model/scanner_place.h"
@@ -29,8 +30,6 @@ struct UnobservedFreedom {
   Vector3d direction = Vector3d::UnitX();  ///< unit vector, target frame
   std::string name;                        ///< in a user's words: "shift along (0.00, 1.00, 0.00)"
 };
-
-using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
 /// How well a pose is known, in the target frame, about `centre`.
 struct PoseSigma {

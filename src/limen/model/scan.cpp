@@ -87,4 +87,10 @@ Vector3d origin_near(const Scan& scan) {
   return scan.local_origin + middle.array().round().matrix();
 }
 
+std::pair<double, double> signed_distances(const Plane& plane, const Extent& box) {
+  const double middle = plane.signed_distance(0.5 * (box.low + box.high));
+  const double reach = plane.normal.cwiseAbs().dot(0.5 * (box.high - box.low));
+  return {middle - reach, middle + reach};
+}
+
 }  // namespace limen

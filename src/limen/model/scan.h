@@ -4,9 +4,10 @@
 
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "limen/geometry/rigid.h"
+#include "limen/geometry/plane.h"
 #include "limen/model/scanner_place.h"
 
 namespace limen {
@@ -68,5 +69,8 @@ struct Extent {
   [[nodiscard]] double diagonal() const { return (high - low).norm(); }
 };
 Extent extent_of(const std::vector<Vector3d>& points);
+
+/// Lowest and highest signed distance of a box to a plane.
+std::pair<double, double> signed_distances(const Plane& plane, const Extent& box);
 
 }  // namespace limen

@@ -13,7 +13,7 @@ namespace limen {
 namespace {
 
 constexpr double kSamePlaceM = 0.05;  // a rejected link that others put so near is not wrong
-constexpr double kSameTurnRad = 0.01;
+constexpr double kJudgedTurnRad = 0.01;
 
 class DecisionJudge {
  public:
@@ -79,7 +79,7 @@ class DecisionJudge {
                                        digest(own.first).local_origin);
       const Rigid3 missed = inverse(rejected) * inverse(target.frame_from_node) * source.frame_from_node;
       const Vector3d middle = digest(own.second).middle;
-      if ((missed * middle - middle).norm() > kSamePlaceM || rotation_angle(missed.rotation) > kSameTurnRad)
+      if ((missed * middle - middle).norm() > kSamePlaceM || rotation_angle(missed.rotation) > kJudgedTurnRad)
         return;
       told.state = DecisionState::contradicted;
       told.reason = "the other links put the two just so all the same";

@@ -8,9 +8,8 @@
 #include <optional>
 #include <utility>
 
-#include <Eigen/Eigenvalues>
-
 #include "limen/base/angles.h"
+#include "limen/geometry/linear.h"
 #include "limen/project/word_terms.h"
 
 namespace limen {
@@ -19,8 +18,8 @@ namespace {
 // What no pair's own deviations know of: how flat walls are, how rigid a scan is. One standard deviation.
 constexpr double kFloorM = 0.004;
 const double kFloorRad = radians(0.03);
-constexpr double kDrawnM = 0.01;   // by how much a building misses its model
-constexpr double kGivenM = 0.005;  // of poses that a file gives
+constexpr double kModelDrawnM = 0.01;  // by how much a building misses its model
+constexpr double kGivenM = 0.005;      // of poses that a file gives
 const double kGivenRad = radians(0.05);
 constexpr double kRivalShare = 0.5;    // of the best pose's score: a pose with less is no possibility
 constexpr std::size_t kMostPoses = 9;  // of a link
@@ -40,11 +39,11 @@ Vector6d diagonal(const Vector3d& turn, const Vector3d& shift) {
 /// What a pair says, and what it does not know of; a free direction is known to 100 m.
 Matrix6d with_floor(const Matrix6d& covariance, bool model) {
   constexpr double kMost = 1e4;
-  const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(covariance);
-  const Vector6d clipped = solver.eigenvalues().cwiseMax(0.0).cwiseMin(kMost);
-  const Matrix6d known = solver.eigenvectors() * clipped.asDiagonal() * solver.eigenvectors().transpose();
+  const Spectrum6 spectrum = spectrum_of(covariance);
+  const Vector6d clipped = spectrum.values.cwiseMax(0.0).cwiseMin(kMost);
+  const Matrix6d known = spectrum.vectors * clipped.asDiagonal() * spectrum.vectors.transpose();
   const Vector6d floor =
-      diagonal(Vector3d::Constant(kFloorRad), Vector3d::Constant(model ? kDrawnM : kFloorM));
+      diagonal(Vector3d::Constant(kFloorRad), Vector3d::Constant(model ? kModelDrawnM : kFloorM));
   return known + Matrix6d(floor.array().square().matrix().asDiagonal());
 }
 
@@ -168,7 +167,7 @@ class GraphMaker {
       kept.covariance = with_floor(pose.sigma.covariance, source.model || target.model);
       return kept;
     }
-    const double floor = source.model || target.model ? kDrawnM : kFloorM;
+    const double floor = source.model || target.model ? kModelDrawnM : kFloorM;
     Vector3d turn;
     Vector3d shift;
     for (Eigen::Index axis = 0; axis < 3; ++axis) {

@@ -13,7 +13,7 @@ namespace limen {
 namespace {
 
 const double kLevelRad = radians(0.02);  // how level a scan is that is called so
-constexpr double kFloorM = 0.007;        // by how much two floors of one height differ
+constexpr double kWordFloorM = 0.007;    // by how much two floors of one height differ
 constexpr double kFarTilt = 3.7;         // deviations, two freedoms, once in a thousand
 constexpr double kFarHeight = 3.3;       // one freedom
 const double kLevelCosine = std::cos(radians(3.0));
@@ -126,7 +126,8 @@ class WordSolution {
     edge.pose.covariance.setZero();
     edge.pose.covariance.topLeftCorner<3, 3>() = kFreeRad2 * Matrix3d::Identity();
     edge.pose.covariance.bottomRightCorner<3, 3>() =
-        kFloorFreeM2 * (Matrix3d::Identity() - up * up.transpose()) + kFloorM * kFloorM * up * up.transpose();
+        kFloorFreeM2 * (Matrix3d::Identity() - up * up.transpose()) +
+        kWordFloorM * kWordFloorM * up * up.transpose();
     problem.edges.push_back(edge);
   }
 
@@ -149,7 +150,7 @@ class WordSolution {
     const int target = words_.nodes[k].back();
     const Vector3d at = pose(source) * floor_place(source);
     const Vector3d up = pose(target).rotation * up_in(digest(target));
-    double variance = kFloorM * kFloorM;
+    double variance = kWordFloorM * kWordFloorM;
     for (const int node : {source, target}) {
       const LinkPose known{pose(node), covariance(node), pose(node).translation, 0.0};
       variance += up.dot(moved_covariance(known, Rigid3{}, at).bottomRightCorner<3, 3>() * up);

@@ -44,7 +44,7 @@ double apart_sigma(const Rigid3& target_from_source) {
                   (shift.array() / result.sigma.translation_m.array()).abs().maxCoeff());
 }
 
-Rigid3 some_motion(std::uint64_t trial) {
+Rigid3 any_motion(std::uint64_t trial) {
   RandomStream stream(21, trial);
   const Eigen::Quaterniond q(stream.normal(), stream.normal(), stream.normal(), stream.normal());
   return {q.normalized().toRotationMatrix(),
@@ -74,7 +74,7 @@ TEST(Metamorphic, AScanInAnotherOrderAndOfAnotherNameHasTheSamePoseToTheLastDigi
 
 TEST(Metamorphic, AScanThatLiesAnyWayRoundHasTheSamePose) {
   for (const Gravity gravity : {Gravity::automatic, Gravity::unknown}) {
-    const Rigid3 motion = some_motion(gravity == Gravity::unknown ? 1 : 0);
+    const Rigid3 motion = any_motion(gravity == Gravity::unknown ? 1 : 0);
     RegisterOptions options;
     options.gravity = gravity;
     const RegistrationResult result = register_scans(moved(given().source, motion), given().target, options);

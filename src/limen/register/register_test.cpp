@@ -15,13 +15,13 @@
 namespace limen {
 namespace {
 
-struct Pair {
+struct RegisteredPair {
   Scan source;
   Scan target;
   Rigid3 truth;  // target from source, world
 };
 
-Pair simulated_pair(const SceneOptions& options, std::size_t source, std::size_t target) {
+RegisteredPair simulated_pair(const SceneOptions& options, std::size_t source, std::size_t target) {
   SimulatedCase simulated = simulate(options);
   return {simulated.scans.at(source), simulated.scans.at(target),
           true_target_from_source(simulated.truth, source, target)};
@@ -44,7 +44,7 @@ Rigid3 any_pose(std::uint64_t trial) {
 }
 
 /// The pair with its source moved; the truth follows.
-Pair moved(Pair pair, const Rigid3& pose) {
+RegisteredPair moved(RegisteredPair pair, const Rigid3& pose) {
   for (Vector3d& x : pair.source.points) x = pose * x;
   for (Vector3d& x : pair.source.centres) x = pose * x;
   pair.truth = pair.truth * inverse(pose);
@@ -56,7 +56,7 @@ double turn_deg(const Rigid3& truth, const Hypothesis& found) {
 }
 
 /// How far apart two poses put the scanner of the source.
-double shift_m(const Pair& pair, const Hypothesis& found) {
+double shift_m(const RegisteredPair& pair, const Hypothesis& found) {
   const Vector3d centre = pair.source.centre(0) + pair.source.local_origin;
   return (pair.truth * centre - found.target_from_source * centre).norm();
 }
@@ -68,9 +68,9 @@ RegisterOptions any_orientation() {
 }
 
 TEST(Register, OneRoomFromAnyOrientation) {
-  const Pair still = simulated_pair(small("room", 3), 0, 1);
+  const RegisteredPair still = simulated_pair(small("room", 3), 0, 1);
   for (std::uint64_t trial = 0; trial < 4; ++trial) {
-    const Pair pair = moved(still, any_pose(trial));
+    const RegisteredPair pair = moved(still, any_pose(trial));
     const RegistrationResult result = register_scans(pair.source, pair.target, any_orientation());
     ASSERT_EQ(result.outcome, Outcome::registered) << result.reason;
     EXPECT_LT(turn_deg(pair.truth, result.best), 0.02);
@@ -79,7 +79,7 @@ TEST(Register, OneRoomFromAnyOrientation) {
 }
 
 TEST(Register, SymmetricRoomIsAmbiguousWithTheTruthAmongTheCandidates) {
-  const Pair pair = moved(simulated_pair(small("symmetric_room", 2), 0, 1), any_pose(7));
+  const RegisteredPair pair = moved(simulated_pair(small("symmetric_room", 2), 0, 1), any_pose(7));
   const RegistrationResult result = register_scans(pair.source, pair.target, any_orientation());
   ASSERT_EQ(result.outcome, Outcome::ambiguous) << result.reason;
   std::vector<Hypothesis> candidates = result.alternatives;
@@ -92,14 +92,14 @@ TEST(Register, SymmetricRoomIsAmbiguousWithTheTruthAmongTheCandidates) {
 }
 
 TEST(Register, RoomsOfDifferentBuildingsDoNotMatch) {
-  Pair pair = simulated_pair(small("room", 3), 0, 1);
-  const Pair other = simulated_pair(small("room", 8), 0, 1);
+  RegisteredPair pair = simulated_pair(small("room", 3), 0, 1);
+  const RegisteredPair other = simulated_pair(small("room", 8), 0, 1);
   const RegistrationResult result = register_scans(pair.source, other.target, any_orientation());
   EXPECT_EQ(result.outcome, Outcome::no_match) << result.reason;
 }
 
 TEST(Register, SameResultForAnyThreadCount) {
-  const Pair pair = moved(simulated_pair(small("room", 5), 0, 1), any_pose(1));
+  const RegisteredPair pair = moved(simulated_pair(small("room", 5), 0, 1), any_pose(1));
   set_thread_count(1);
   const RegistrationResult one = register_scans(pair.source, pair.target, any_orientation());
   set_thread_count(3);
@@ -112,7 +112,7 @@ TEST(Register, SameResultForAnyThreadCount) {
 }
 
 TEST(Register, NationalGridLosesNoMillimetre) {
-  Pair pair = simulated_pair(small("room", 3), 0, 1);
+  RegisteredPair pair = simulated_pair(small("room", 3), 0, 1);
   const RegistrationResult near = register_scans(pair.source, pair.target);
   // The target's points keep their values; its origin moves to the national grid.
   const Vector3d grid(1050000, 6840000, 150);
@@ -125,7 +125,7 @@ TEST(Register, NationalGridLosesNoMillimetre) {
 }
 
 TEST(Register, PointsFarFromTheirOriginAreRecentred) {
-  Pair pair = simulated_pair(small("room", 3), 0, 1);
+  RegisteredPair pair = simulated_pair(small("room", 3), 0, 1);
   const Vector3d grid(1050000, 6840000, 150);
   for (Vector3d& x : pair.target.points) x += grid;
   for (Vector3d& x : pair.target.centres) x += grid;
@@ -136,7 +136,7 @@ TEST(Register, PointsFarFromTheirOriginAreRecentred) {
 }
 
 TEST(Register, SwappingTheScansInvertsThePose) {
-  const Pair pair = simulated_pair(small("room", 5), 0, 1);
+  const RegisteredPair pair = simulated_pair(small("room", 5), 0, 1);
   const RegistrationResult forth = register_scans(pair.source, pair.target);
   const RegistrationResult back = register_scans(pair.target, pair.source);
   ASSERT_EQ(forth.outcome, Outcome::registered);
@@ -147,7 +147,7 @@ TEST(Register, SwappingTheScansInvertsThePose) {
 }
 
 TEST(Register, WithoutOpticalCentresTheyAreEstimated) {
-  Pair pair = simulated_pair(small("room", 3), 0, 1);
+  RegisteredPair pair = simulated_pair(small("room", 3), 0, 1);
   const Vector3d centre = pair.source.centre(0);
   pair.source.centres.clear();
   pair.target.centres.clear();
@@ -158,14 +158,14 @@ TEST(Register, WithoutOpticalCentresTheyAreEstimated) {
 }
 
 TEST(Register, CancelledWorkThrows) {
-  const Pair pair = simulated_pair(small("room", 3), 0, 1);
+  const RegisteredPair pair = simulated_pair(small("room", 3), 0, 1);
   Monitor monitor;
   monitor.cancel();
   EXPECT_THROW(register_scans(pair.source, pair.target, {}, monitor), Error);
 }
 
 TEST(Register, TooLittleInCommonIsNoMatch) {
-  Pair pair = simulated_pair(small("room", 3), 0, 1);
+  RegisteredPair pair = simulated_pair(small("room", 3), 0, 1);
   pair.source.points.resize(40);
   const RegistrationResult result = register_scans(pair.source, pair.target);
   EXPECT_EQ(result.outcome, Outcome::no_match);

@@ -5,9 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Cholesky>
-
 #include "limen/base/parallel.h"
+#include "limen/geometry/linear.h"
 
 namespace limen {
 namespace {
@@ -126,12 +125,12 @@ Settled refine(const std::vector<Tile>& tiles, Vector3d centre, const Vector3d& 
       normal += weight * slope * slope.transpose();
       right += weight * residual * slope;
     }
-    Eigen::Vector4d step = normal.ldlt().solve(right);
+    Eigen::Vector4d step = solve_symmetric(normal, right);
     const double length = step.head<3>().norm();
     if (length > 0.3) step *= 0.3 / length;
     centre += step.head<3>();
     rate += step[3];
-    const Eigen::Matrix4d inverse = normal.inverse();
+    const Eigen::Matrix4d inverse = inverse_of(normal);
     sigma_m = 1.4826 * spread * std::sqrt(kTilesAlike * inverse.diagonal().head<3>().maxCoeff());
     if (length < 1e-4) break;
   }

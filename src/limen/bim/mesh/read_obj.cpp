@@ -25,16 +25,16 @@ namespace {
 constexpr std::size_t kLookedAt = std::size_t{1} << 16U;
 constexpr std::size_t kMostVertices = 0xfffffff0U;
 
-bool blank(char c) {
+bool blank_in_line(char c) {
   return c == ' ' || c == '\t' || c == '\r';
 }
 
 /// Takes the next word off the front of `line`; empty at its end.
 std::string_view take_word(std::string_view& line) {
   std::size_t begin = 0;
-  while (begin < line.size() && blank(line[begin])) ++begin;
+  while (begin < line.size() && blank_in_line(line[begin])) ++begin;
   std::size_t end = begin;
-  while (end < line.size() && !blank(line[end])) ++end;
+  while (end < line.size() && !blank_in_line(line[end])) ++end;
   const std::string_view word = line.substr(begin, end - begin);
   line.remove_prefix(end);
   return word;

@@ -18,7 +18,7 @@ namespace {
 /// Pieces lower than this have no normal worth comparing: their corners decide.
 constexpr double kThin_m = 0.01;
 
-struct Piece {
+struct FacePiece {
   Vector3d area = Vector3d::Zero();  ///< normal times area
   bool thin = false;
 };
@@ -62,8 +62,8 @@ PolygonMesh flat_pieces(const PolygonMesh& mesh, double plane_m) {
   return result;
 }
 
-std::vector<Piece> pieces_of(const PolygonMesh& mesh) {
-  std::vector<Piece> pieces(mesh.size());
+std::vector<FacePiece> pieces_of(const PolygonMesh& mesh) {
+  std::vector<FacePiece> pieces(mesh.size());
   for (std::size_t i = 0; i < mesh.size(); ++i) {
     pieces[i].area = area_vector(mesh, i);
     double longest = 0.0;
@@ -181,7 +181,7 @@ class Gatherer {
 
   const PolygonMesh& mesh_;
   const FlatFaceOptions& options_;
-  std::vector<Piece> pieces_;
+  std::vector<FacePiece> pieces_;
   std::vector<std::vector<std::uint32_t>> at_corner_;
   std::vector<Cluster> clusters_;
   Vector3d centre_ = Vector3d::Zero();

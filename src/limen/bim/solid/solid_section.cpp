@@ -19,7 +19,7 @@ constexpr double kOff_m = 2e-4;
 constexpr double kJoin_m = 2e-5;
 
 /// A directed piece of an outline: the solid is on its left.
-struct Piece {
+struct SectionPiece {
   Vector2d from;
   Vector2d to;
 };
@@ -49,8 +49,8 @@ Vector2d crossing(const PolygonMesh& mesh, const std::vector<double>& heights, c
 }
 
 /// The piece of outline in one triangle; corner on the plane count as above it.
-std::optional<Piece> piece_in(const PolygonMesh& mesh, const std::vector<double>& heights,
-                              const PlaneFrame& frame, const std::array<std::uint32_t, 3>& triangle) {
+std::optional<SectionPiece> piece_in(const PolygonMesh& mesh, const std::vector<double>& heights,
+                                     const PlaneFrame& frame, const std::array<std::uint32_t, 3>& triangle) {
   std::optional<Vector2d> up;
   std::optional<Vector2d> down;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -61,12 +61,12 @@ std::optional<Piece> piece_in(const PolygonMesh& mesh, const std::vector<double>
   }
   if (!up || !down) return {};
   // Seen from outside the corners run counter-clockwise: the outline enters where they come down.
-  return Piece{*down, *up};
+  return SectionPiece{*down, *up};
 }
 
-std::vector<Piece> pieces_of(const PolygonMesh& mesh, const std::vector<double>& heights,
-                             const PlaneFrame& frame) {
-  std::vector<Piece> pieces;
+std::vector<SectionPiece> pieces_of(const PolygonMesh& mesh, const std::vector<double>& heights,
+                                    const PlaneFrame& frame) {
+  std::vector<SectionPiece> pieces;
   for (std::size_t i = 0; i < mesh.size(); ++i) {
     const std::uint32_t begin = mesh.begin_of(i);
     // A fan covers the polygon with signs, and so do the pieces of outline from it.
@@ -82,7 +82,7 @@ std::vector<Piece> pieces_of(const PolygonMesh& mesh, const std::vector<double>&
 /// Looks pieces up by the place they begin at.
 class Beginnings {
  public:
-  explicit Beginnings(const std::vector<Piece>& pieces) : pieces_(pieces), used_(pieces.size(), 0) {
+  explicit Beginnings(const std::vector<SectionPiece>& pieces) : pieces_(pieces), used_(pieces.size(), 0) {
     for (std::size_t i = 0; i < pieces.size(); ++i) order_.emplace_back(pieces[i].from.x(), i);
     std::sort(order_.begin(), order_.end());
   }
@@ -106,12 +106,12 @@ class Beginnings {
   }
 
  private:
-  const std::vector<Piece>& pieces_;
+  const std::vector<SectionPiece>& pieces_;
   std::vector<char> used_;
   std::vector<std::pair<double, std::size_t>> order_;
 };
 
-std::vector<Ring> chained(const std::vector<Piece>& pieces) {
+std::vector<Ring> chained(const std::vector<SectionPiece>& pieces) {
   Beginnings beginnings(pieces);
   std::vector<Ring> rings;
   for (std::size_t first = 0; first < pieces.size(); ++first) {

@@ -137,11 +137,6 @@ std::string joined(const Json& words) {
   return text.empty() ? "none" : text;
 }
 
-std::string point_text(const Json& point) {
-  return fmt::format("{:.3f} {:.3f} {:.3f}", point[0].get<double>(), point[1].get<double>(),
-                     point[2].get<double>());
-}
-
 /// In a user's words how the scanner's place is known.
 std::string who_says(const Json& scanner) {
   const std::string source = scanner["source"];

@@ -15,7 +15,7 @@ namespace {
 std::string summary(const ProjectTruth& truth, const std::string& folder) {
   std::size_t points = 0;
   std::size_t passes = 0;
-  for (const ProjectScan& scan : truth.scans) {
+  for (const SimulatedScan& scan : truth.scans) {
     points += scan.points;
     passes += scan.mobile ? 1U : 0U;
   }

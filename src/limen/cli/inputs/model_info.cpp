@@ -103,11 +103,6 @@ Json json_of_rooms(const BimModel& model) {
   return json;
 }
 
-std::string point_text(const Json& point) {
-  return fmt::format("{:.3f} {:.3f} {:.3f}", point[0].get<double>(), point[1].get<double>(),
-                     point[2].get<double>());
-}
-
 std::string extent_text(const Json& model) {
   const auto side = [&](std::size_t k) {
     return model["high"][k].get<double>() - model["low"][k].get<double>();
@@ -132,6 +127,11 @@ std::string rooms_text(const Json& rooms) {
 }
 
 }  // namespace
+
+std::string point_text(const Json& point) {
+  return fmt::format("{:.3f} {:.3f} {:.3f}", point[0].get<double>(), point[1].get<double>(),
+                     point[2].get<double>());
+}
 
 Json json_of_model(const std::string& path, const BimModel& model) {
   std::vector<Vector3d> corners;

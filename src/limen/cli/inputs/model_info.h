@@ -9,6 +9,9 @@
 
 namespace limen {
 
+/// Three numbers, to the millimetre.
+std::string point_text(const Json& point);
+
 /// What `limen info` tells of a model: schema, units, extent, elements by kind, storeys, openings, rooms,
 /// warnings.
 Json json_of_model(const std::string& path, const BimModel& model);

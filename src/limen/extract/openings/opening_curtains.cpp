@@ -6,17 +6,19 @@
 #include <cmath>
 #include <utility>
 
+#include "limen/geometry/linear.h"
+
 namespace limen {
 namespace {
 
-constexpr double kNeck_m = 0.08;
+constexpr double kCurtainNeck_m = 0.08;
 constexpr double kOverhang_m = 0.15;   // of a curtain beyond its opening
 constexpr double kSigma_m = 0.1;       // of that
 constexpr double kMinGap_m = 0.03;     // between wall and curtain
 constexpr double kMaxSpread_m = 0.08;  // of the gap over one curtain
 constexpr double kMinFold_m = 0.006;   // root mean square depth of folds: what is flat is no curtain
 constexpr double kMinCurtain_m = 0.5;  // breadth and height of the curtain itself
-constexpr std::size_t kMinPoints = 60;
+constexpr std::size_t kMinCurtainPoints = 60;
 constexpr double kMinFill = 0.6;
 
 double quantile(std::vector<double> values, double share) {
@@ -61,7 +63,7 @@ double fold_depth(const Hanging& hanging) {
     normal += row * row.transpose();
     right += row * hanging.gap_m[i];
   }
-  const Vector3d plane = normal.ldlt().solve(right);
+  const Vector3d plane = solve_symmetric(normal, right);
   double sum = 0.0;
   for (std::size_t i = 0; i < hanging.u.size(); ++i) {
     const double rest = hanging.gap_m[i] - plane.dot(Vector3d(1.0, hanging.u[i], hanging.v[i]));
@@ -71,7 +73,7 @@ double fold_depth(const Hanging& hanging) {
 }
 
 bool is_curtain(const Hanging& hanging, double noise_m) {
-  if (hanging.u.size() < kMinPoints) return false;
+  if (hanging.u.size() < kMinCurtainPoints) return false;
   const Box2 box = hanging.box();
   if ((box.high - box.low).minCoeff() < kMinCurtain_m) return false;
   if (quantile(hanging.gap_m, 0.9) - quantile(hanging.gap_m, 0.1) > kMaxSpread_m) return false;
@@ -98,7 +100,7 @@ std::vector<OpeningRectangle> curtained_rectangles(const Scan& scan, const WallE
                                                    const OpeningGrid& grid, double noise_m,
                                                    const OpeningOptions& options) {
   std::vector<OpeningRectangle> rectangles;
-  for (const Box2& region : grid.regions(OpeningGrid::Cell::cover, kNeck_m)) {
+  for (const Box2& region : grid.regions(OpeningGrid::Cell::cover, kCurtainNeck_m)) {
     const Vector2d size = region.high - region.low;
     if (size.x() > options.max_width_m + 1.0 || size.y() > options.max_height_m + 1.0) continue;
     if (size.minCoeff() < kMinCurtain_m || covered_share(grid, region) < kMinFill) continue;

@@ -13,7 +13,7 @@
 namespace limen {
 namespace {
 
-constexpr std::size_t kBlock = 128;  // consecutive rays that are rejected together
+constexpr std::size_t kRaysPerBlock = 128;  // consecutive rays that are rejected together
 constexpr std::size_t kBlocksPerPiece = 128;
 constexpr double kMinStandOff_m = 0.05;   // of the scanner before a wall that it sees
 constexpr double kMinBeside_m = 0.3;      // of wall beside an opening; reveals one above the other have less
@@ -121,12 +121,12 @@ void set_spacing(OpeningWall& wall, const std::vector<PlanarPolygon>& polygons) 
 }
 
 /// A wall made ready for many rays.
-struct Target {
+struct WallTarget {
   const OpeningWall* wall = nullptr;
   Extent box;  ///< of the wall in space
 };
 
-Target make_target(const OpeningWall& wall) {
+WallTarget make_target(const OpeningWall& wall) {
   const auto at = [&](double u, double v) { return wall.frame.to_space({u, v}); };
   const Box2& b = wall.box;
   Extent box{at(b.low.x(), b.low.y()), at(b.low.x(), b.low.y())};
@@ -138,13 +138,6 @@ Target make_target(const OpeningWall& wall) {
   box.low.array() -= kMaxExtension_m;
   box.high.array() += kMaxExtension_m;
   return {&wall, box};
-}
-
-/// Lowest and highest signed distance of a box to a plane.
-std::pair<double, double> distances(const Plane& plane, const Extent& box) {
-  const double middle = plane.signed_distance(0.5 * (box.low + box.high));
-  const double reach = plane.normal.cwiseAbs().dot(0.5 * (box.high - box.low));
-  return {middle - reach, middle + reach};
 }
 
 /// Traces the rays of a scan to its walls.
@@ -164,8 +157,8 @@ class Tracer {
   [[nodiscard]] Samples trace(std::size_t begin, std::size_t end) const {
     Samples found;
     std::vector<std::uint32_t> near;
-    for (std::size_t at = begin; at < end; at += kBlock) {
-      const std::size_t stop = std::min(at + kBlock, end);
+    for (std::size_t at = begin; at < end; at += kRaysPerBlock) {
+      const std::size_t stop = std::min(at + kRaysPerBlock, end);
       near.clear();
       const Extent centres = bounds(at, stop, [&](std::size_t i) { return centre_of(scan_, options_, i); });
       const Extent points = bounds(at, stop, [&](std::size_t i) { return scan_.points[i]; });
@@ -190,13 +183,13 @@ class Tracer {
     return box;
   }
 
-  [[nodiscard]] bool may_meet(const Extent& centres, const Extent& points, const Target& target) const {
+  [[nodiscard]] bool may_meet(const Extent& centres, const Extent& points, const WallTarget& target) const {
     const Vector3d low = centres.low.cwiseMin(points.low);
     const Vector3d high = centres.high.cwiseMax(points.high);
     if ((low.array() > target.box.high.array()).any() || (high.array() < target.box.low.array()).any())
       return false;
-    if (distances(target.wall->plane, centres).second < kMinStandOff_m) return false;
-    return distances(target.wall->plane, points).first <=
+    if (signed_distances(target.wall->plane, centres).second < kMinStandOff_m) return false;
+    return signed_distances(target.wall->plane, points).first <=
            std::max(options_.max_curtain_gap_m, kMobileRelief_m);
   }
 
@@ -253,7 +246,7 @@ class Tracer {
   const Scan& scan_;
   const std::vector<std::int32_t>& labels_;
   const OpeningOptions& options_;
-  std::vector<Target> targets_;
+  std::vector<WallTarget> targets_;
   double on_wall_m_ = 0.0;  // no farther from the plane a point in no plane is wall
   double side_m_ = 0.0;     // farther behind it a point of another plane is not
   double behind_m_ = 0.0;   // farther behind it a point lies in an opening
@@ -331,7 +324,7 @@ std::vector<WallEvidence> opening_evidence(const Scan& scan, const ExtractedFeat
                                            const std::vector<OpeningWall>& walls,
                                            const OpeningOptions& options, Monitor& monitor) {
   const Tracer tracer(scan, extracted, walls, options);
-  constexpr std::size_t kPiece = kBlock * kBlocksPerPiece;
+  constexpr std::size_t kPiece = kRaysPerBlock * kBlocksPerPiece;
   std::vector<Tracer::Samples> pieces((scan.size() + kPiece - 1) / kPiece);
   parallel_for(scan.size(), kPiece, [&](std::size_t begin, std::size_t end) {
     monitor.throw_if_cancelled();

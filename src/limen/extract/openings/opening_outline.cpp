@@ -13,7 +13,7 @@
 namespace limen {
 namespace {
 
-constexpr double kMargin_m = 0.6;      // an arch may rise this far above what its sides suggest
+constexpr double kArchRise_m = 0.6;    // an arch may rise this far above what its sides suggest
 constexpr double kCornerShare = 0.2;   // of the shorter side: the corners that are looked at
 constexpr double kWallInCorner = 0.4;  // of a corner's samples
 constexpr std::size_t kMinInCorner = 6;
@@ -27,8 +27,8 @@ struct Sample {
 };
 
 std::vector<Sample> samples_about(const WallEvidence& evidence, const OpeningGrid& grid, Box2 box) {
-  box.low.array() -= kMargin_m;
-  box.high.array() += kMargin_m;
+  box.low.array() -= kArchRise_m;
+  box.high.array() += kArchRise_m;
   std::vector<Sample> samples;
   for (const std::uint32_t i : grid.samples_in(box)) {
     const WallSample& sample = evidence.samples[i];
@@ -57,7 +57,7 @@ Box2 middle_extent(const std::vector<Sample>& samples, const Box2& box) {
       const double t = outward(side) * (sample.at[axis] - middle[axis]);
       if (t > 0.0) marks.push_back({t, sample.wall});
     }
-    const double reach = 0.5 * size[axis] + kMargin_m;
+    const double reach = 0.5 * size[axis] + kArchRise_m;
     const SideSeparator found = separate(std::move(marks), 0.0, reach);
     if (found.found && found.sigma_m < kUnboundedSigma_m)
       set_place(extent, side, middle[axis] + outward(side) * found.place);

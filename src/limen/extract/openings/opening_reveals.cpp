@@ -15,10 +15,10 @@ constexpr double kMaxDepth_m = 1.0;    // walls are thinner
 constexpr double kMinDepth_m = 0.008;  // nearer to the face a point may belong to the wall itself
 constexpr double kDepthBin_m = 0.015;
 constexpr std::size_t kMinBins = 4;  // depths at which a side must be seen: a frame's face has one or two
-constexpr std::size_t kMinPoints = 8;
-constexpr double kCorner_m = 0.05;    // left out at either end of a side
-constexpr double kMaxReach_m = 0.12;  // of a side from where crossings and wall part
-constexpr double kMaxSlope = 0.5;     // of splayed sides, metres per metre
+constexpr std::size_t kMinRevealPoints = 8;
+constexpr double kCorner_m = 0.05;       // left out at either end of a side
+constexpr double kRevealReach_m = 0.12;  // of a side from where crossings and wall part
+constexpr double kMaxSlope = 0.5;        // of splayed sides, metres per metre
 constexpr double kSlopeStep = 0.05;
 constexpr double kSplayGain = 1.3;     // a splayed side must fit that much better than a straight one
 constexpr double kMinGraze = 0.08;     // tangent between ray and side: beams that touch an edge run along it
@@ -172,8 +172,8 @@ class RevealFinder {
     const Vector2d middle = 0.5 * (rectangle.box.low + rectangle.box.high);
     spacing_m_ = grid.spacing_m(middle);
     Box2 around = rectangle.box;
-    around.low.array() -= kMaxReach_m;
-    around.high.array() += kMaxReach_m;
+    around.low.array() -= kRevealReach_m;
+    around.high.array() += kRevealReach_m;
     for (const std::uint32_t i : grid.samples_in(around)) {
       const WallSample& sample = evidence.samples[i];
       if (sample.kind != SampleKind::open && sample.kind != SampleKind::shallow) continue;
@@ -188,17 +188,17 @@ class RevealFinder {
     const std::vector<SidePoint> all = points_of(side);
     const double place = outward(side) * place_of(rectangle_.box, side);
     const double sigma_m = rectangle_.sigma_m[static_cast<std::size_t>(side)];
-    const double reach_m = std::min(2.5 * sigma_m + 0.01, kMaxReach_m);
+    const double reach_m = std::min(2.5 * sigma_m + 0.01, kRevealReach_m);
     const double width_m = std::max(5.0 * noise_m_, 0.01);
     std::vector<SidePoint> near;
     for (const SidePoint& p : all) {
       if (p.depth < kMaxDepth_m && std::abs(p.across - place) <= reach_m + kMaxSlope * p.depth)
         near.push_back(p);
     }
-    if (near.size() < kMinPoints) return {};
+    if (near.size() < kMinRevealPoints) return {};
     const Line line = find_line(near, width_m);
     std::vector<SidePoint> on = near_line(near, line, width_m);
-    if (on.size() < kMinPoints || depths_of(on) < kMinBins || start_of(on) > kMaxStart_m) return {};
+    if (on.size() < kMinRevealPoints || depths_of(on) < kMinBins || start_of(on) > kMaxStart_m) return {};
     const FittedLine fitted = refined(on, line, 2.0 * width_m);
     if (std::abs(fitted.line.place - place) > reach_m) return {};
     Reveal reveal;

@@ -23,7 +23,7 @@ constexpr double kStep_rad = 0.006;  // between rays
 /// Where in the wall (u, v) there is an opening.
 using Hole = std::function<bool(double u, double v)>;
 
-Hole rectangle(double u0, double v0, double u1, double v1) {
+Hole wall_rectangle(double u0, double v0, double u1, double v1) {
   return [=](double u, double v) { return u > u0 && u < u1 && v > v0 && v < v1; };
 }
 
@@ -111,7 +111,7 @@ void expect_box(const Box2& box, double u0, double v0, double u1, double v1, dou
 
 TEST(Openings, AWindowIsFoundToMillimetresWithTheWallsThickness) {
   WallScene scene;
-  scene.hole = rectangle(0.5, -0.6, 1.7, 0.9);
+  scene.hole = wall_rectangle(0.5, -0.6, 1.7, 0.9);
   const std::vector<Opening> openings = openings_of(scene);
   ASSERT_EQ(openings.size(), 1U);
   const Opening& it = openings[0];
@@ -125,7 +125,7 @@ TEST(Openings, AWindowIsFoundToMillimetresWithTheWallsThickness) {
 
 TEST(Openings, CornersRunFromLowerLeftAsTheScannerSeesThem) {
   WallScene scene;
-  scene.hole = rectangle(-0.6, -0.6, 0.6, 0.9);
+  scene.hole = wall_rectangle(-0.6, -0.6, 0.6, 0.9);
   const std::vector<Opening> openings = openings_of(scene);
   ASSERT_EQ(openings.size(), 1U);
   const auto& c = openings[0].corners;
@@ -142,7 +142,7 @@ TEST(Openings, AWallWithoutOpeningsHasNone) {
 
 TEST(Openings, AMullionBehindTheFaceDoesNotDivide) {
   WallScene scene;
-  scene.hole = rectangle(0.0, -0.6, 1.4, 0.9);
+  scene.hole = wall_rectangle(0.0, -0.6, 1.4, 0.9);
   scene.in_opening = [](double u, double v) {
     const bool bar = std::abs(u - 0.7) < 0.04 || u < 0.06 || u > 1.34 || v < -0.54 || v > 0.84;
     return bar ? 0.1 : std::nan("");
@@ -156,8 +156,8 @@ TEST(Openings, AMullionBehindTheFaceDoesNotDivide) {
 TEST(Openings, ABarFlushWithTheWallDoesNotDivideButAPierDoes) {
   for (const double bar_m : {0.08, 0.3}) {
     WallScene scene;
-    const Hole left = rectangle(-1.0, -0.6, -0.5 * bar_m, 0.9);
-    const Hole right = rectangle(0.5 * bar_m, -0.6, 1.0, 0.9);
+    const Hole left = wall_rectangle(-1.0, -0.6, -0.5 * bar_m, 0.9);
+    const Hole right = wall_rectangle(0.5 * bar_m, -0.6, 1.0, 0.9);
     scene.hole = [=](double u, double v) { return left(u, v) || right(u, v); };
     EXPECT_EQ(openings_of(scene).size(), bar_m < 0.12 ? 1U : 2U) << bar_m;
   }
@@ -165,7 +165,7 @@ TEST(Openings, ABarFlushWithTheWallDoesNotDivideButAPierDoes) {
 
 TEST(Openings, AnArchKeepsItsOutline) {
   WallScene scene;
-  const Hole jambs = rectangle(-0.6, -0.6, 0.6, 0.5);
+  const Hole jambs = wall_rectangle(-0.6, -0.6, 0.6, 0.5);
   scene.hole = [=](double u, double v) { return jambs(u, v) || (v >= 0.5 && std::hypot(u, v - 0.5) < 0.6); };
   const std::vector<Opening> openings = openings_of(scene);
   ASSERT_EQ(openings.size(), 1U);
@@ -189,7 +189,7 @@ TEST(Openings, ARoundWindowKeepsItsOutlineAndARectangleHasNone) {
   expect_box(box_of(scene, openings[0]), -0.2, -0.3, 0.8, 0.7, 0.025);
   ASSERT_GE(openings[0].outline.size(), 8U);
   for (const Vector3d& x : openings[0].outline) EXPECT_NEAR(std::hypot(x.x() - 0.3, x.z() - 0.2), 0.5, 0.025);
-  scene.hole = rectangle(-0.2, -0.3, 0.8, 0.7);
+  scene.hole = wall_rectangle(-0.2, -0.3, 0.8, 0.7);
   const std::vector<Opening> square = openings_of(scene);
   ASSERT_EQ(square.size(), 1U);
   EXPECT_TRUE(square[0].outline.empty());
@@ -197,7 +197,7 @@ TEST(Openings, ARoundWindowKeepsItsOutlineAndARectangleHasNone) {
 
 TEST(Openings, ABlindBehindTheFaceIsARecess) {
   WallScene scene;
-  scene.hole = rectangle(-0.6, -0.6, 0.6, 0.9);
+  scene.hole = wall_rectangle(-0.6, -0.6, 0.6, 0.9);
   scene.in_opening = [](double, double) { return 0.12; };
   const std::vector<Opening> openings = openings_of(scene);
   ASSERT_EQ(openings.size(), 1U);
@@ -209,7 +209,7 @@ TEST(Openings, ABlindBehindTheFaceIsARecess) {
 TEST(Openings, AFlatShallowRecessSeenFromTheStreetIsANicheAWindowHasFrames) {
   for (const bool framed : {false, true}) {
     WallScene scene;
-    scene.hole = rectangle(-0.6, -0.6, 0.6, 0.9);
+    scene.hole = wall_rectangle(-0.6, -0.6, 0.6, 0.9);
     scene.in_opening = [=](double u, double) { return framed && std::abs(u) < 0.08 ? 0.06 : 0.12; };
     Scan scan = scene.scan();
     scan.centres.assign(scan.size(), Vector3d(scan.centres[0]));  // a vehicle that stands still
@@ -220,7 +220,7 @@ TEST(Openings, AFlatShallowRecessSeenFromTheStreetIsANicheAWindowHasFrames) {
 
 TEST(Openings, ACurtainBeforeTheWallIsAHoleWithWideSides) {
   WallScene scene;
-  scene.hole = rectangle(-0.6, -0.5, 0.6, 0.9);
+  scene.hole = wall_rectangle(-0.6, -0.5, 0.6, 0.9);
   scene.before = [](double u, double v) {
     return std::abs(u) < 0.8 && v > -0.7 && v < 1.05 ? -0.13 + 0.02 * std::sin(35.0 * u) : std::nan("");
   };
@@ -241,7 +241,7 @@ TEST(Openings, ABoardBeforeTheWallIsNoCurtain) {
 
 TEST(Openings, ADoorEndsAtTheFloor) {
   WallScene scene;
-  scene.hole = rectangle(-0.5, -1.6, 0.45, 0.55);
+  scene.hole = wall_rectangle(-0.5, -1.6, 0.45, 0.55);
   const std::vector<Opening> openings = openings_of(scene);
   ASSERT_EQ(openings.size(), 1U);
   expect_box(box_of(scene, openings[0]), -0.5, -1.5, 0.45, 0.55, 0.012);
@@ -249,13 +249,13 @@ TEST(Openings, ADoorEndsAtTheFloor) {
 
 TEST(Openings, AGapBetweenTwoWallsIsNoDoor) {
   WallScene scene;
-  scene.hole = rectangle(-0.5, -1.6, 0.45, 3.0);
+  scene.hole = wall_rectangle(-0.5, -1.6, 0.45, 3.0);
   EXPECT_TRUE(openings_of(scene).empty());
 }
 
 TEST(Openings, ASideHiddenByATreeIsNotKnown) {
   WallScene scene;
-  scene.hole = rectangle(-0.6, -0.6, 0.6, 0.9);
+  scene.hole = wall_rectangle(-0.6, -0.6, 0.6, 0.9);
   // A trunk 1 m before the wall hides the left side.
   scene.before = [](double u, double) { return u > -0.9 && u < -0.4 ? -1.0 : std::nan(""); };
   const std::vector<Opening> openings = openings_of(scene);
@@ -271,7 +271,7 @@ TEST(Openings, ASideHiddenByATreeIsNotKnown) {
 
 TEST(Openings, TheVerticalMayPointAnywhere) {
   WallScene scene;
-  scene.hole = rectangle(0.5, -0.6, 1.7, 0.9);
+  scene.hole = wall_rectangle(0.5, -0.6, 1.7, 0.9);
   scene.turn = rotation_exp(Vector3d(0.7, -1.1, 0.4));
   const std::vector<Opening> openings = openings_of(scene);
   ASSERT_EQ(openings.size(), 1U);
@@ -282,7 +282,7 @@ TEST(Openings, TheVerticalMayPointAnywhere) {
 
 TEST(Openings, ANarrowOrLowOneIsLeftOut) {
   WallScene scene;
-  scene.hole = rectangle(0.5, -0.6, 0.75, 0.9);
+  scene.hole = wall_rectangle(0.5, -0.6, 0.75, 0.9);
   EXPECT_TRUE(openings_of(scene).empty());
   OpeningOptions options;
   options.min_width_m = 0.2;
@@ -291,8 +291,8 @@ TEST(Openings, ANarrowOrLowOneIsLeftOut) {
 
 TEST(Openings, SameForAnyNumberOfThreads) {
   WallScene scene;
-  const Hole left = rectangle(-1.5, -0.6, -0.4, 0.9);
-  const Hole right = rectangle(0.4, -1.6, 1.3, 0.6);
+  const Hole left = wall_rectangle(-1.5, -0.6, -0.4, 0.9);
+  const Hole right = wall_rectangle(0.4, -1.6, 1.3, 0.6);
   scene.hole = [=](double u, double v) { return left(u, v) || right(u, v); };
   const Scan scan = scene.scan();
   const ExtractedFeatures extracted = extract_features(scan);
@@ -314,7 +314,7 @@ TEST(Openings, SameForAnyNumberOfThreads) {
 
 TEST(Openings, AnUnknownCentreIsAnErrorUnlessTold) {
   WallScene scene;
-  scene.hole = rectangle(0.5, -0.6, 1.7, 0.9);
+  scene.hole = wall_rectangle(0.5, -0.6, 1.7, 0.9);
   Scan scan = scene.scan();
   const Vector3d centre = scan.centres[0];
   const ExtractedFeatures extracted = extract_features(scan);

@@ -18,12 +18,11 @@
 namespace limen {
 namespace {
 
-constexpr double kJoinAngleDeg = 3.0;  // normals of two pieces of one plane
-constexpr int kSparseLevels = 3;       // coarser than the first cubes, for what lies far from the scanner
+constexpr int kSparseLevels = 3;  // coarser than the first cubes, for what lies far from the scanner
 constexpr int kSettlings = 2;
 constexpr double kSettleCellM = 0.08;  // points choose among the planes of their cube and those around
 constexpr double kExplained = 0.65;    // of a plane's points: others would take them
-constexpr std::size_t kPiece = 131072;
+constexpr std::size_t kPointsPerLabelling = 131072;
 
 double noise_of(const CellGrid& grid) {
   std::vector<double> thickness;
@@ -116,7 +115,7 @@ class PlaneGrower {
   void sum_up() {
     using Sums = std::vector<PointMoments>;
     sums_ = parallel_reduce(
-        labels_.size(), kPiece, Sums(sums_.size()),
+        labels_.size(), kPointsPerLabelling, Sums(sums_.size()),
         [&](std::size_t begin, std::size_t end) {
           Sums sums(sums_.size());
           for (std::size_t k = begin; k < end; ++k) {
@@ -150,7 +149,7 @@ class PlaneGrower {
       grown.planes.fits.push_back(fit);
     }
     grown.planes.labels.assign(labels_.size(), -1);
-    parallel_for(labels_.size(), kPiece, [&](std::size_t begin, std::size_t end) {
+    parallel_for(labels_.size(), kPointsPerLabelling, [&](std::size_t begin, std::size_t end) {
       for (std::size_t k = begin; k < end; ++k) {
         if (labels_[k] >= 0)
           grown.planes.labels[sorted_.order[k]] = final_label[static_cast<std::size_t>(labels_[k])];

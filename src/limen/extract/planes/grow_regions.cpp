@@ -14,10 +14,9 @@ namespace limen {
 namespace {
 
 constexpr std::size_t kMsacTrials = 24;  // per region, besides its least-squares plane
-constexpr double kJoinAngleDeg = 3.0;    // normals of two pieces of one plane
 constexpr double kUnevenShare = 0.25;    // of the threshold: unevenness of a cube
 constexpr double kMinPiece = 15.0;       // points that may join a plane
-constexpr std::int32_t kFree = -1;
+constexpr std::int32_t kNoRegion = -1;
 constexpr std::int32_t kRejected = -2;
 constexpr std::int32_t kOpen = -3;
 
@@ -70,7 +69,7 @@ void RegionGrower::grow_level(int level, const std::vector<std::uint32_t>& activ
   CellGrid grid(*sorted_, active, level);
   mark_planar(grid);
   for (const std::int32_t seed : seeds_of(grid)) {
-    if (cell_of(grid, seed).region == kFree) grow_region(grid, seed);
+    if (cell_of(grid, seed).region == kNoRegion) grow_region(grid, seed);
   }
   label_points(grid, active, labels);
 }
@@ -139,7 +138,7 @@ void RegionGrower::trim(CellGrid& grid, Region& region, const Plane& plane) cons
       kept.push_back(i);
       moments += cell.moments;
     } else {
-      cell.region = kFree;
+      cell.region = kNoRegion;
     }
   }
   region.cells = std::move(kept);

@@ -12,6 +12,9 @@ namespace limen {
 /// Of the inlier threshold: how far the points of a cube may be from its plane, root mean square.
 inline constexpr double kGateShare = 0.6;
 
+/// Between the normals of two pieces of one plane.
+inline constexpr double kJoinAngleDeg = 3.0;
+
 struct RegionOptions {
   double threshold_m = 0.01;    ///< of a plane's inliers
   int min_inliers = 200;        ///< half of them make a plane of a region; less may join one

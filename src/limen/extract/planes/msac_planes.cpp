@@ -16,7 +16,7 @@
 namespace limen {
 namespace {
 
-constexpr std::size_t kPiece = 65536;
+constexpr std::size_t kPointsPerVote = 65536;
 constexpr int kFits = 3;         // of a plane to its inliers
 constexpr int kMaxFailures = 3;  // samplings in a row without a plane that is large enough
 
@@ -67,9 +67,9 @@ class CubeSampler {
   std::uint64_t seed_;
 };
 
-class Detector {
+class MsacDetector {
  public:
-  Detector(const Scan& scan, const MsacPlaneOptions& options)
+  MsacDetector(const Scan& scan, const MsacPlaneOptions& options)
       : options_(options),
         sorted_(morton_order(scan.points, options.reach_m > 0.0 ? options.reach_m : 1.0)),
         labels_(scan.size(), -1),
@@ -110,7 +110,7 @@ class Detector {
 
   [[nodiscard]] PointMoments inliers_of(const Plane& plane) const {
     return parallel_reduce(
-        free_.size(), kPiece, PointMoments{},
+        free_.size(), kPointsPerVote, PointMoments{},
         [&](std::size_t begin, std::size_t end) {
           PointMoments sum;
           for (std::size_t k = begin; k < end; ++k) {
@@ -188,7 +188,7 @@ void MsacPlaneOptions::check() const {
 PlaneLabels msac_planes(const Scan& scan, const MsacPlaneOptions& options, Monitor& monitor) {
   options.check();
   if (scan.size() == 0) return {};
-  return Detector(scan, options).run(monitor);
+  return MsacDetector(scan, options).run(monitor);
 }
 
 }  // namespace limen

@@ -14,7 +14,7 @@ namespace limen {
 namespace {
 
 /// A plane with some points in a cube.
-struct Support {
+struct NeighbourSupport {
   std::int32_t plane = -1;
   std::uint32_t count = 0;
 };
@@ -28,12 +28,12 @@ class SupportGrid {
     std::vector<std::vector<std::int32_t>> pieces((runs().size() + kCubes - 1) / kCubes);
     parallel_for(runs().size(), kCubes, [&](std::size_t begin, std::size_t end) {
       std::vector<std::int32_t>& piece = pieces[begin / kCubes];
-      std::vector<Support> support;
+      std::vector<NeighbourSupport> support;
       for (std::size_t i = begin; i < end; ++i) {
         support.clear();
         for (std::uint32_t k = runs().begin(i); k < runs().end(i); ++k) count(labels[k], support);
         const std::size_t before = piece.size();
-        for (const Support& s : support) {
+        for (const NeighbourSupport& s : support) {
           if (s.count >= min_support) piece.push_back(s.plane);
         }
         begins_[i + 1] = piece.size() - before;
@@ -59,9 +59,9 @@ class SupportGrid {
   }
 
  private:
-  static void count(std::int32_t label, std::vector<Support>& support) {
+  static void count(std::int32_t label, std::vector<NeighbourSupport>& support) {
     if (label < 0) return;
-    for (Support& s : support) {
+    for (NeighbourSupport& s : support) {
       if (s.plane != label) continue;
       ++s.count;
       return;

@@ -23,7 +23,7 @@ constexpr int kSamples = 4;                // triples drawn per trial
 constexpr double kMinLocalShare = 0.5;     // of the neighbourhood that must support a sample
 constexpr std::int32_t kMinLines = 3;      // that a plane must span
 constexpr double kMinSineOfView = 0.0175;  // 1 degree: planes seen flatter than this are refused
-constexpr std::size_t kPointsPerPiece = 65536;
+constexpr std::size_t kFreePointsPerPiece = 65536;
 
 /// Places around a seed on the grid of lines: `own` those of its line, `others` those of lines nearby.
 struct Neighbourhood {
@@ -46,9 +46,9 @@ struct Patch {
   Plane plane;  ///< about the anchor
 };
 
-class Detector {
+class TopologyDetector {
  public:
-  Detector(const Scan& scan, const TopologyPlaneOptions& options)
+  TopologyDetector(const Scan& scan, const TopologyPlaneOptions& options)
       : scan_(scan),
         options_(options),
         grid_(scan, options.max_jump),
@@ -270,7 +270,7 @@ class Detector {
     std::vector<Plane> planes;
     for (const PointMoments& moments : pieces_) planes.push_back(fit_plane(moments).plane);
     std::vector<std::int32_t> settled = labels_;
-    parallel_for(labels_.size(), kPointsPerPiece, [&](std::size_t begin, std::size_t end) {
+    parallel_for(labels_.size(), kFreePointsPerPiece, [&](std::size_t begin, std::size_t end) {
       for (std::size_t at = begin; at < end; ++at) settled[at] = nearest_plane(at, planes);
     });
     labels_ = std::move(settled);
@@ -294,7 +294,7 @@ class Detector {
   [[nodiscard]] std::vector<PointMoments> sums_by_label() const {
     using Sums = std::vector<PointMoments>;
     return parallel_reduce(
-        labels_.size(), 4 * kPointsPerPiece, Sums(pieces_.size()),
+        labels_.size(), 4 * kFreePointsPerPiece, Sums(pieces_.size()),
         [&](std::size_t begin, std::size_t end) {
           Sums sums(pieces_.size());
           for (std::size_t at = begin; at < end; ++at) {
@@ -327,7 +327,7 @@ class Detector {
       result.fits.push_back(fit);
     }
     result.labels.assign(labels_.size(), kFree);
-    parallel_for(labels_.size(), kPointsPerPiece, [&](std::size_t begin, std::size_t end) {
+    parallel_for(labels_.size(), kFreePointsPerPiece, [&](std::size_t begin, std::size_t end) {
       for (std::size_t at = begin; at < end; ++at) {
         if (labels_[at] == kFree) continue;
         result.labels[grid_.scan_index(at)] = final_label[static_cast<std::size_t>(labels_[at])];
@@ -368,7 +368,7 @@ PlaneLabels extract_topology_planes(const Scan& scan, const TopologyPlaneOptions
     throw Error("the scan lines are not known", scan.name, "use the detector for unorganised clouds");
   }
   if (scan.size() == 0) return {};
-  return Detector(scan, options).run(monitor);
+  return TopologyDetector(scan, options).run(monitor);
 }
 
 }  // namespace limen

@@ -14,14 +14,14 @@ namespace limen {
 namespace {
 
 constexpr double kStep_m = 0.01;
-constexpr double kMargin_m = 0.2;   // rows of points may end this far from an edge
-constexpr double kAside_m = 0.006;  // slack of that
+constexpr double kCreaseMargin_m = 0.2;  // rows of points may end this far from an edge
+constexpr double kAside_m = 0.006;       // slack of that
 constexpr double kAmbiguous = 1.2;  // how near to a plane points may be its own, in units of the threshold
 constexpr double kBeyondStrays_m = 0.015;
-constexpr double kNear = 1.6;      // how far from a line points may begin, in units of their usual shortfall,
-constexpr double kRows = 0.6;      // and more where rows run along the line
-constexpr double kFilled = 0.4;    // share of the bins along a line that must hold points
-constexpr double kEndShare = 0.5;  // of a crease along which one of its planes must end
+constexpr double kNear = 1.6;  // how far from a line points may begin, in units of their usual shortfall,
+constexpr double kAlongRows = 0.6;  // and more where rows run along the line
+constexpr double kFilled = 0.4;     // share of the bins along a line that must hold points
+constexpr double kEndShare = 0.5;   // of a crease along which one of its planes must end
 
 /// The box of a plane's image in space.
 struct Box3 {
@@ -38,8 +38,8 @@ Box3 box_in_space(const PlaneImage& image) {
       box.high = box.high.cwiseMax(x);
     }
   }
-  box.low.array() -= kMargin_m;
-  box.high.array() += kMargin_m;
+  box.low.array() -= kCreaseMargin_m;
+  box.high.array() += kCreaseMargin_m;
   return box;
 }
 
@@ -60,8 +60,8 @@ void clip(const PlaneImage& image, Line3& line) {
   const Vector2d origin = image.frame().to_plane(line.origin);
   const Vector2d along(image.frame().u.dot(line.along), image.frame().v.dot(line.along));
   for (Eigen::Index axis = 0; axis < 2; ++axis) {
-    const double low = image.box().low[axis] - kMargin_m - origin[axis];
-    const double high = image.box().high[axis] + kMargin_m - origin[axis];
+    const double low = image.box().low[axis] - kCreaseMargin_m - origin[axis];
+    const double high = image.box().high[axis] + kCreaseMargin_m - origin[axis];
     if (std::abs(along[axis]) < 1e-9) {
       if (low > 0.0 || high < 0.0) line.end_m = line.begin_m;
       continue;
@@ -89,12 +89,12 @@ std::optional<Line3> meeting_line(const Plane& a, const Plane& b, const Vector3d
 }
 
 /// How a plane lies about a place of a line in it.
-struct Support {
+struct CreaseSupport {
   bool near = false;  ///< it has points there
   bool ends = false;  ///< on one side only
 };
 
-struct Interval {
+struct CreaseInterval {
   double begin_m = 1e300;
   double end_m = -1e300;
   [[nodiscard]] bool empty() const { return end_m <= begin_m; }
@@ -104,7 +104,7 @@ struct Interval {
 /// line they all begin at one distance, anything up to the distance between two rows.
 double farthest(const Approach& approach) {
   const double same = std::clamp(1.0 - approach.spread_m / std::max(1e-6, approach.shortfall_m), 0.0, 1.0);
-  return (kNear + kRows * same) * approach.shortfall_m + kAside_m;
+  return (kNear + kAlongRows * same) * approach.shortfall_m + kAside_m;
 }
 
 /// Looks at a plane along a line in it.
@@ -118,7 +118,7 @@ class LineView {
         along_(image.frame().u.dot(line.along), image.frame().v.dot(line.along)),
         across_(-along_.y(), along_.x()) {}
 
-  [[nodiscard]] Support at(double t) const {
+  [[nodiscard]] CreaseSupport at(double t) const {
     const Vector2d p = origin_ + t * along_;
     // A few strays of another surface on the line reach no further than their own discs; where rows of
     // points run along the line the next one may be further away than the points of a row are apart.
@@ -126,7 +126,7 @@ class LineView {
     const double aside = reach + kBeyondStrays_m;
     const bool left = image_.covered(p + aside * across_);
     const bool right = image_.covered(p - aside * across_);
-    Support support;
+    CreaseSupport support;
     support.near = left || right || image_.covered(p + 2.0 * reach * across_) ||
                    image_.covered(p - 2.0 * reach * across_);
     support.ends = !left || !right;
@@ -135,8 +135,8 @@ class LineView {
 
   /// The part of a stretch of the line along which the plane's points come as near to it as they must where
   /// the surface does; empty where they do not.
-  [[nodiscard]] Interval reached(double begin, double end) const {
-    Interval reached;
+  [[nodiscard]] CreaseInterval reached(double begin, double end) const {
+    CreaseInterval reached;
     for (const double sign : {1.0, -1.0}) {
       Strip strip;
       strip.origin = origin_;
@@ -182,9 +182,9 @@ class Meet {
 
   void run(const DetectedEdge& like, Meeting& meeting) {
     for (double t = line_.begin_m; t <= line_.end_m; t += kStep_m) {
-      const Support of_a = a_.at(t);
+      const CreaseSupport of_a = a_.at(t);
       if (!of_a.near) continue;
-      const Support of_b = b_.at(t);
+      const CreaseSupport of_b = b_.at(t);
       if (!of_b.near) continue;
       if (steps_ > 0 && t - last_ > o_.join_gap_m) finish(like, meeting);
       if (steps_ == 0) begin_ = t;
@@ -198,8 +198,8 @@ class Meet {
  private:
   void finish(const DetectedEdge& like, Meeting& meeting) {
     if (steps_ > 0 && last_ - begin_ >= o_.min_length_m && ends_ >= kEndShare * steps_) {
-      const Interval of_a = a_.reached(begin_, last_);
-      const Interval of_b = b_.reached(begin_, last_);
+      const CreaseInterval of_a = a_.reached(begin_, last_);
+      const CreaseInterval of_b = b_.reached(begin_, last_);
       // Where a plane does not reach the other, its points there are the other's.
       if (of_a.empty()) a_.add_ambiguous(begin_, last_, meeting.ambiguous);
       if (of_b.empty()) b_.add_ambiguous(begin_, last_, meeting.ambiguous);

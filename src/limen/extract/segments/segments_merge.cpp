@@ -13,7 +13,7 @@
 namespace limen {
 namespace {
 
-using Interval = std::pair<double, double>;
+using MergedInterval = std::pair<double, double>;
 
 constexpr double kUnsure = 2.5;  // a border may be this many of its standard deviations off its own crease
 
@@ -63,13 +63,13 @@ class EdgeIndex {
 };
 
 /// Part of `edge` that `other` covers, as lengths from edge.a; empty where they are not one line.
-Interval covered_part(const Segment& edge, const Segment& other, double reach_m, double cosine) {
+MergedInterval covered_part(const Segment& edge, const Segment& other, double reach_m, double cosine) {
   const Vector3d along = edge.direction();
   if (std::abs(along.dot(other.direction())) < cosine) return {0.0, 0.0};
   double t0 = along.dot(other.a - edge.a);
   double t1 = along.dot(other.b - edge.a);
   if (t0 > t1) std::swap(t0, t1);
-  const Interval common = {std::max(0.0, t0), std::min(edge.length(), t1)};
+  const MergedInterval common = {std::max(0.0, t0), std::min(edge.length(), t1)};
   if (common.second <= common.first) return {0.0, 0.0};
   // Both lines at the middle of what they share.
   const Vector3d x = edge.a + 0.5 * (common.first + common.second) * along;
@@ -80,11 +80,11 @@ Interval covered_part(const Segment& edge, const Segment& other, double reach_m,
 }
 
 /// What is left of [0, length] without the intervals.
-std::vector<Interval> rest_of(double length, std::vector<Interval> taken) {
+std::vector<MergedInterval> rest_of(double length, std::vector<MergedInterval> taken) {
   std::sort(taken.begin(), taken.end());
-  std::vector<Interval> rest;
+  std::vector<MergedInterval> rest;
   double from = 0.0;
-  for (const Interval& interval : taken) {
+  for (const MergedInterval& interval : taken) {
     if (interval.first > from) rest.emplace_back(from, interval.first);
     from = std::max(from, interval.second);
   }
@@ -108,17 +108,17 @@ std::vector<DetectedEdge> without_doubles(std::vector<DetectedEdge> edges, const
   std::vector<DetectedEdge> kept;
   EdgeIndex index;
   for (const DetectedEdge& edge : edges) {
-    std::vector<Interval> taken;
+    std::vector<MergedInterval> taken;
     for (const std::size_t k : index.near(edge.segment)) {
       const bool beside = edge.kind == EdgeKind::border && kept[k].kind == EdgeKind::crease;
       const bool of_it = kept[k].planes[0] == edge.planes[0] || kept[k].planes[1] == edge.planes[0];
       const double unsure = of_it ? kUnsure * edge.sigma_m : 0.0;
       const double reach = beside ? options.beside_m + unsure : options.same_m;
-      const Interval part = covered_part(edge.segment, kept[k].segment, reach, cosine);
+      const MergedInterval part = covered_part(edge.segment, kept[k].segment, reach, cosine);
       if (part.second > part.first) taken.push_back(part);
     }
     const Vector3d along = edge.segment.direction();
-    for (const Interval& part : rest_of(edge.segment.length(), std::move(taken))) {
+    for (const MergedInterval& part : rest_of(edge.segment.length(), std::move(taken))) {
       if (part.second - part.first < options.min_length_m) continue;
       DetectedEdge piece = edge;
       piece.segment = {edge.segment.a + part.first * along, edge.segment.a + part.second * along};

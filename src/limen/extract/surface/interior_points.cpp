@@ -13,12 +13,12 @@
 namespace limen {
 namespace {
 
-constexpr std::size_t kBlock = 256;  // consecutive rays that are rejected together
-constexpr std::size_t kBlocksPerPiece = 64;
+constexpr std::size_t kCrossingRaysPerBlock = 256;  // consecutive rays that are rejected together
+constexpr std::size_t kCrossingBlocksPerPiece = 64;
 constexpr double kBoxSlack_m = 1e-6;
 
 /// A wall made ready for many rays.
-struct Target {
+struct OutlineTarget {
   std::int32_t index = -1;
   Plane plane;
   PlaneFrame frame;
@@ -41,9 +41,9 @@ Extent box_of(const PlaneFrame& frame, const std::vector<Polygon>& outline) {
   return box;
 }
 
-std::vector<Target> make_targets(const std::vector<PlanarPolygon>& polygons, const std::vector<int>& walls,
-                                 const InteriorPointOptions& options) {
-  std::vector<Target> targets;
+std::vector<OutlineTarget> make_targets(const std::vector<PlanarPolygon>& polygons,
+                                        const std::vector<int>& walls, const InteriorPointOptions& options) {
+  std::vector<OutlineTarget> targets;
   for (const int wall : walls) {
     const PlanarPolygon& polygon = polygons.at(static_cast<std::size_t>(wall));
     OutlineRaster outline(wall_outline(polygons, wall, options.outline));
@@ -71,20 +71,13 @@ Block bounds_of(const Scan& scan, std::size_t begin, std::size_t end) {
   return block;
 }
 
-/// Lowest and highest signed distance of a box to a plane.
-std::pair<double, double> distances(const Plane& plane, const Extent& box) {
-  const double middle = plane.signed_distance(0.5 * (box.low + box.high));
-  const double reach = plane.normal.cwiseAbs().dot(0.5 * (box.high - box.low));
-  return {middle - reach, middle + reach};
-}
-
-bool may_cross(const Block& block, const Target& target, double min_depth_m) {
+bool may_cross(const Block& block, const OutlineTarget& target, double min_depth_m) {
   const Vector3d low = block.centres.low.cwiseMin(block.points.low);
   const Vector3d high = block.centres.high.cwiseMax(block.points.high);
   if ((low.array() > target.box.high.array()).any() || (high.array() < target.box.low.array()).any())
     return false;
-  const auto [centre_low, centre_high] = distances(target.plane, block.centres);
-  const auto [point_low, point_high] = distances(target.plane, block.points);
+  const auto [centre_low, centre_high] = signed_distances(target.plane, block.centres);
+  const auto [point_low, point_high] = signed_distances(target.plane, block.points);
   if (centre_high > 0.0 && point_low <= -min_depth_m) return true;
   return !target.one_sided && centre_low < 0.0 && point_high >= min_depth_m;
 }
@@ -96,7 +89,8 @@ struct Hit {
   double share = 2.0;
 };
 
-Hit cross(const Scan& scan, std::size_t point, const Target& target, const InteriorPointOptions& options) {
+Hit cross(const Scan& scan, std::size_t point, const OutlineTarget& target,
+          const InteriorPointOptions& options) {
   const Vector3d& centre = scan.centre(point);
   const Vector3d& x = scan.points[point];
   double before = target.plane.signed_distance(centre);
@@ -118,16 +112,17 @@ Hit cross(const Scan& scan, std::size_t point, const Target& target, const Inter
 }
 
 std::vector<Crossing> trace_block(const Scan& scan, std::size_t begin, std::size_t end,
-                                  const std::vector<Target>& targets, const InteriorPointOptions& options) {
-  std::vector<const Target*> near;
+                                  const std::vector<OutlineTarget>& targets,
+                                  const InteriorPointOptions& options) {
+  std::vector<const OutlineTarget*> near;
   const Block block = bounds_of(scan, begin, end);
-  for (const Target& target : targets) {
+  for (const OutlineTarget& target : targets) {
     if (may_cross(block, target, options.min_depth_m)) near.push_back(&target);
   }
   std::vector<Crossing> found;
   for (std::size_t i = begin; i < end && !near.empty(); ++i) {
     Hit first;
-    for (const Target* target : near) {
+    for (const OutlineTarget* target : near) {
       const Hit hit = cross(scan, i, *target, options);
       if (hit.share < first.share) first = hit;
     }
@@ -152,15 +147,16 @@ std::vector<Crossing> find_interior_points(const Scan& scan, const std::vector<P
   if (!scan.centre_known()) {
     throw Error("the optical centre is not known", scan.name, "give it with --origin, or a file that has it");
   }
-  const std::vector<Target> targets = make_targets(polygons, walls, options);
+  const std::vector<OutlineTarget> targets = make_targets(polygons, walls, options);
   using Crossings = std::vector<Crossing>;
   return parallel_reduce(
-      scan.size(), kBlock * kBlocksPerPiece, Crossings{},
+      scan.size(), kCrossingRaysPerBlock * kCrossingBlocksPerPiece, Crossings{},
       [&](std::size_t begin, std::size_t end) {
         monitor.throw_if_cancelled();
         Crossings found;
-        for (std::size_t at = begin; at < end; at += kBlock) {
-          const Crossings part = trace_block(scan, at, std::min(at + kBlock, end), targets, options);
+        for (std::size_t at = begin; at < end; at += kCrossingRaysPerBlock) {
+          const Crossings part =
+              trace_block(scan, at, std::min(at + kCrossingRaysPerBlock, end), targets, options);
           found.insert(found.end(), part.begin(), part.end());
         }
         return found;

@@ -17,7 +17,7 @@
 namespace limen {
 namespace {
 
-constexpr int kSubtiles = 4;  // per tile edge: their occupancy gives the area
+constexpr int kSubtilesPerEdge = 4;  // per tile edge: their occupancy gives the area
 
 /// Sum of the points of one tile or cube.
 struct Tile {
@@ -62,16 +62,17 @@ std::vector<SurfaceSample> plane_samples(const Scan& scan, const PlanarPolygon& 
   for (const std::uint32_t i : points) {
     const Vector2d p = plane.frame.to_plane(scan.points[i]) / tile_m;
     const auto fine = [](double x) {
-      return std::min(kSubtiles - 1, static_cast<int>((x - std::floor(x)) * kSubtiles));
+      return std::min(kSubtilesPerEdge - 1, static_cast<int>((x - std::floor(x)) * kSubtilesPerEdge));
     };
     Tile& tile = tiles.at(key_of(p.x(), p.y(), 0));
     tile.count += 1;
     tile.sum += scan.points[i];
-    tile.occupied |= 1U << static_cast<std::uint32_t>(fine(p.y()) * kSubtiles + fine(p.x()));
+    tile.occupied |= 1U << static_cast<std::uint32_t>(fine(p.y()) * kSubtilesPerEdge + fine(p.x()));
   }
   std::vector<SurfaceSample> samples;
   for (const Tile& tile : std::move(tiles).sorted()) {
-    const double share = std::popcount(tile.occupied) / static_cast<double>(kSubtiles * kSubtiles);
+    const double share =
+        std::popcount(tile.occupied) / static_cast<double>(kSubtilesPerEdge * kSubtilesPerEdge);
     samples.push_back({tile.sum / tile.count, plane.plane.normal, index,
                        static_cast<float>(share * tile_m * tile_m), static_cast<float>(tile.count)});
   }

@@ -6,9 +6,8 @@
 #include <cmath>
 #include <tuple>
 
-#include <Eigen/Eigenvalues>
-
 #include "limen/base/error.h"
+#include "limen/geometry/linear.h"
 #include "limen/geometry/polygon_clip.h"
 
 namespace limen {
@@ -80,8 +79,8 @@ SurfaceDetail piece_of(const Scan& scan, const std::vector<PlanarPolygon>& plane
     const Vector3d d = scan.points[it->point] - mean;
     spread += d * d.transpose();
   }
-  const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(spread / count);
-  const Vector3d deviation = solver.eigenvalues().cwiseMax(0.0).cwiseSqrt();
+  const Spectrum3 spectrum = spectrum_of(Matrix3d(spread / count));
+  const Vector3d deviation = spectrum.values.cwiseMax(0.0).cwiseSqrt();
   SurfaceDetail piece;
   piece.mean = mean;
   // Of an even square of edge w the deviations are w / sqrt(12).
@@ -92,7 +91,7 @@ SurfaceDetail piece_of(const Scan& scan, const std::vector<PlanarPolygon>& plane
                     deviation[1] >= std::max(kLeastWidthM, kFlatter * deviation[0]);
   if (!flat) return piece;
   // All points of a plane together know its normal better.
-  piece.normal = first->plane < 0 ? Vector3d(solver.eigenvectors().col(0))
+  piece.normal = first->plane < 0 ? Vector3d(spectrum.vectors.col(0))
                                   : planes[static_cast<std::size_t>(first->plane)].plane.normal;
   if (scan.centre_known() && piece.normal.dot(scan.centre(first->point) - mean) < 0) piece.normal *= -1.0;
   piece.sigma_m = static_cast<float>(deviation[0] / std::sqrt(count));

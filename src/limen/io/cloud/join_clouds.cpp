@@ -18,7 +18,7 @@ namespace {
 
 const std::array<std::string, 3> kPoint{"x", "y", "z"};
 const std::array<std::string, 3> kOrigin{"x_origin", "y_origin", "z_origin"};
-const std::string kSource = "source_cloud";
+const std::string kSourceColumn = "source_cloud";
 
 /// The motion from the numbers of a cloud to the frame of the output.
 Rigid3 motion_of(const PlacedCloud& placed) {
@@ -127,7 +127,7 @@ JoinedClouds::JoinedClouds(std::vector<PlacedCloud> clouds, bool tell_source)
   plan_.name = clouds_.front().input->path().stem().string();
   plan_.georeference = clouds_.front().input->georeference();
   settle_centres();
-  if (tell_source_) add_column(kSource, Scalar::uint8);
+  if (tell_source_) add_column(kSourceColumn, Scalar::uint8);
 }
 
 void JoinedClouds::add_column(const std::string& name, Scalar type) {
@@ -147,7 +147,7 @@ void JoinedClouds::add_columns(const RecordTable& table, const CloudFacts& facts
   }
   const bool split_colour = table.find({"red"}) != nullptr;
   for (const Field& field : table.fields) {
-    if (field.name == "_" || field.name == kSource) continue;
+    if (field.name == "_" || field.name == kSourceColumn) continue;
     // Colours packed into one number come as three columns too.
     if (split_colour && (field.name == "rgb" || field.name == "rgba")) continue;
     const bool moves = std::find(kPoint.begin(), kPoint.end(), field.name) != kPoint.end() ||
@@ -196,7 +196,7 @@ class JoinedStream : public PointStream {
     for (const ColumnPlan& column : plan_.columns) {
       const std::string name = lower_case(column.name);
       const auto origin = std::find(kOrigin.begin(), kOrigin.end(), name);
-      if (tell_source_ && name == kSource) {
+      if (tell_source_ && name == kSourceColumn) {
         mover.add_constant(name, placed.source);
       } else if (piece.find({name}) != nullptr) {
         mover.add(name);

@@ -21,14 +21,14 @@ namespace limen {
 namespace {
 
 /// How a format is told by its bytes, and the endings that are asked where bytes do not tell.
-struct Known {
+struct KnownFormat {
   PointFormat format;
   bool (*matches)(std::string_view bytes);
   std::string_view endings;
 };
 
 /// Plain text comes last: a damaged PTX looks like it.
-constexpr std::array<Known, 6> kKnown{{
+constexpr std::array<KnownFormat, 6> kKnown{{
     {PointFormat::e57, looks_like_e57, ".e57 "},
     {PointFormat::las, looks_like_las, ".las .laz "},
     {PointFormat::ply, looks_like_ply, ".ply "},
@@ -87,12 +87,12 @@ std::unique_ptr<PointFile> open_as(PointFormat format, std::string_view bytes, c
 
 PointFormat point_format_of(std::string_view bytes, const std::filesystem::path& path) {
   const std::string ending = lower_case(path.extension().string()) + " ";
-  const Known& text = kKnown.back();
-  for (const Known& known : kKnown) {
+  const KnownFormat& text = kKnown.back();
+  for (const KnownFormat& known : kKnown) {
     if (&known != &text && known.matches(bytes)) return known.format;
   }
   if (!is_stranger(bytes)) {
-    for (const Known& known : kKnown) {
+    for (const KnownFormat& known : kKnown) {
       if (ending != " " && known.endings.find(ending) != std::string_view::npos) return known.format;
     }
     if (text.matches(bytes)) return text.format;

@@ -83,7 +83,7 @@ AnyCloud any_cloud() {
 }
 
 template <typename Value>
-void put(std::vector<char>& bytes, double value) {
+void put_value(std::vector<char>& bytes, double value) {
   const auto raw = std::bit_cast<std::array<char, sizeof(Value)>>(static_cast<Value>(value));
   bytes.insert(bytes.end(), raw.begin(), raw.end());
 }
@@ -91,25 +91,25 @@ void put(std::vector<char>& bytes, double value) {
 void put_as(Scalar type, std::vector<char>& bytes, double value) {
   switch (type) {
     case Scalar::int8:
-      return put<std::int8_t>(bytes, value);
+      return put_value<std::int8_t>(bytes, value);
     case Scalar::uint8:
-      return put<std::uint8_t>(bytes, value);
+      return put_value<std::uint8_t>(bytes, value);
     case Scalar::int16:
-      return put<std::int16_t>(bytes, value);
+      return put_value<std::int16_t>(bytes, value);
     case Scalar::uint16:
-      return put<std::uint16_t>(bytes, value);
+      return put_value<std::uint16_t>(bytes, value);
     case Scalar::int32:
-      return put<std::int32_t>(bytes, value);
+      return put_value<std::int32_t>(bytes, value);
     case Scalar::uint32:
-      return put<std::uint32_t>(bytes, value);
+      return put_value<std::uint32_t>(bytes, value);
     case Scalar::int64:
-      return put<std::int64_t>(bytes, value);
+      return put_value<std::int64_t>(bytes, value);
     case Scalar::uint64:
-      return put<std::uint64_t>(bytes, value);
+      return put_value<std::uint64_t>(bytes, value);
     case Scalar::float32:
-      return put<float>(bytes, value);
+      return put_value<float>(bytes, value);
     case Scalar::float64:
-      return put<double>(bytes, value);
+      return put_value<double>(bytes, value);
   }
 }
 

@@ -19,11 +19,11 @@ namespace limen {
 namespace {
 
 /// Rows of one piece of parallel work; columns are decoded strip by strip.
-constexpr std::size_t kPiece = 32768;
-constexpr std::size_t kStrip = 1024;
+constexpr std::size_t kThinnedPerPiece = 32768;
+constexpr std::size_t kThinnedStrip = 1024;
 /// Cells are at least this small where the spacing is not given.
-constexpr double kFinestM = 1e-3;
-constexpr double kLargestM = 1e8;
+constexpr double kFinestCellM = 1e-3;
+constexpr double kLargestCoordinateM = 1e8;
 /// While the cloud comes in there may be so many times more cells than points are wanted: the last choice
 /// then comes close to the number.
 constexpr double kMoreCells = 2.2;
@@ -83,16 +83,17 @@ struct Coordinates {
 template <typename Action>
 void for_each_point(const RecordTable& table, const Coordinates& columns, RowRange rows,
                     const Action& action) {
-  std::array<std::array<double, kStrip>, 3> strip;
-  for (std::size_t at = rows.begin; at < rows.end; at += kStrip) {
-    const std::size_t end = std::min(rows.end, at + kStrip);
+  std::array<std::array<double, kThinnedStrip>, 3> strip;
+  for (std::size_t at = rows.begin; at < rows.end; at += kThinnedStrip) {
+    const std::size_t end = std::min(rows.end, at + kThinnedStrip);
     for (std::size_t k = 0; k < 3; ++k) load_numbers(table, *columns.field[k], {at, end}, strip[k].data());
     for (std::size_t i = at; i < end; ++i) action(i, strip[0][i - at], strip[1][i - at], strip[2][i - at]);
   }
 }
 
 bool usable(double x, double y, double z) {
-  return std::abs(x) < kLargestM && std::abs(y) < kLargestM && std::abs(z) < kLargestM;
+  return std::abs(x) < kLargestCoordinateM && std::abs(y) < kLargestCoordinateM &&
+         std::abs(z) < kLargestCoordinateM;
 }
 
 /// A point that may become the one of its cell.
@@ -151,7 +152,7 @@ class CloudThinner::Cells {
  public:
   Cells(const ThinOptions& options, std::uint64_t expected) : options_(options), expected_(expected) {
     options.check();
-    spacing_m_ = options.spacing_m > 0.0 ? options.spacing_m : kFinestM;
+    spacing_m_ = options.spacing_m > 0.0 ? options.spacing_m : kFinestCellM;
   }
 
   void add(const RecordTable& piece) {
@@ -194,7 +195,7 @@ class CloudThinner::Cells {
       most = std::min(most, static_cast<double>(options_.memory_bytes) / bytes);
     }
     most_cells_ = std::max<std::size_t>(16, static_cast<std::size_t>(most));
-    rows_at_once_ = std::clamp<std::size_t>(most_cells_ / 4, kPiece, kStreamRows);
+    rows_at_once_ = std::clamp<std::size_t>(most_cells_ / 4, kThinnedPerPiece, kStreamRows);
     const std::size_t room =
         std::min<std::size_t>(most_cells_ + rows_at_once_, static_cast<std::size_t>(expected_));
     cells_ = CellTable(room);
@@ -231,9 +232,9 @@ class CloudThinner::Cells {
   void take(const RecordTable& piece, RowRange rows) {
     const Grid grid{1.0 / spacing_m_};
     const std::size_t count = rows.end - rows.begin;
-    std::vector<Found> found((count + kPiece - 1) / kPiece);
-    parallel_for(count, kPiece, [&](std::size_t begin, std::size_t end) {
-      found[begin / kPiece] = look_at(piece, {rows.begin + begin, rows.begin + end}, grid);
+    std::vector<Found> found((count + kThinnedPerPiece - 1) / kThinnedPerPiece);
+    parallel_for(count, kThinnedPerPiece, [&](std::size_t begin, std::size_t end) {
+      found[begin / kThinnedPerPiece] = look_at(piece, {rows.begin + begin, rows.begin + end}, grid);
     });
     const std::size_t before = rows_.size();
     for (const Found& part : found) {
@@ -272,7 +273,7 @@ class CloudThinner::Cells {
     const Coordinates columns(table);
     const Grid grid{1.0 / spacing_m};
     std::vector<std::uint64_t> keys(table.rows);
-    parallel_for(table.rows, kPiece, [&](std::size_t begin, std::size_t end) {
+    parallel_for(table.rows, kThinnedPerPiece, [&](std::size_t begin, std::size_t end) {
       for_each_point(table, columns, {begin, end},
                      [&](std::size_t row, double x, double y, double z) { keys[row] = grid.key(x, y, z); });
     });
@@ -341,7 +342,7 @@ class CloudThinner::Cells {
 
   ThinOptions options_;
   std::uint64_t expected_;
-  double spacing_m_ = kFinestM;
+  double spacing_m_ = kFinestCellM;
   std::size_t most_cells_ = 0;
   std::size_t rows_at_once_ = kStreamRows;
   std::uint64_t read_ = 0;

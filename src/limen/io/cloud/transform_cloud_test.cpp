@@ -19,7 +19,7 @@ namespace {
 
 using namespace testing_io;
 
-constexpr Writing kWritings[] = {Writing::ascii, Writing::little, Writing::big};
+constexpr Writing kCloudWritings[] = {Writing::ascii, Writing::little, Writing::big};
 
 /// From a station's own frame to the national grid.
 Rigid3 grid_from_station() {
@@ -54,7 +54,7 @@ TEST(TransformCloud, MovesThePointsAndKeepsEverythingElse) {
   const TemporaryFolder folder;
   const auto points = room_points(3000, 1);
   const Rigid3 pose = grid_from_station();
-  for (const Writing writing : kWritings) {
+  for (const Writing writing : kCloudWritings) {
     const auto in = folder.write("in.ply", rich_ply(writing, points, ""));
     EXPECT_EQ(transform_cloud(in, pose, folder / "out.ply").points, points.size());
     const Scan before = read_scan(in);

@@ -13,6 +13,7 @@
 
 #include "limen/base/parallel.h"
 #include "limen/base/text.h"
+#include "limen/io/e57/e57_crc.h"
 
 namespace limen {
 namespace {
@@ -49,12 +50,6 @@ Scalar narrowest(std::int64_t minimum, std::int64_t maximum) {
   if (within(std::uint32_t{})) return Scalar::uint32;
   if (within(std::int32_t{})) return Scalar::int32;
   return Scalar::int64;
-}
-
-std::uint64_t load_eight(const char* bytes) {
-  std::uint64_t value = 0;
-  std::memcpy(&value, bytes, sizeof value);
-  return value;
 }
 
 /// Where a column's bits are, and what is to be made of them.

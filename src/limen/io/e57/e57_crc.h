@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <cstring>
 #include <string_view>
 
 namespace limen {
@@ -12,5 +13,12 @@ namespace limen {
 std::uint32_t crc32c(std::string_view bytes);
 /// The same by tables alone.
 std::uint32_t crc32c_by_table(std::string_view bytes);
+
+/// Eight bytes of a file as a number, the machine's order.
+inline std::uint64_t load_eight(const char* bytes) {
+  std::uint64_t value = 0;
+  std::memcpy(&value, bytes, sizeof value);
+  return value;
+}
 
 }  // namespace limen

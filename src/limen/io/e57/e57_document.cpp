@@ -24,9 +24,11 @@ constexpr std::size_t kMostColumns = 4096;
 constexpr const char* kExportAgain = "export the file again with another program or other settings";
 
 /// Where in the file something is, for messages.
-struct Place {
+struct ElementPlace {
   std::string text;
-  [[nodiscard]] Place inside(std::string_view part) const { return {fmt::format("{}, {}", text, part)}; }
+  [[nodiscard]] ElementPlace inside(std::string_view part) const {
+    return {fmt::format("{}, {}", text, part)};
+  }
 };
 
 /// All text in an element, which may be in several pieces.
@@ -39,7 +41,7 @@ std::string text_of(const pugi::xml_node& node) {
 }
 
 /// A finite number; `fallback` where the text is empty.
-double number_in(std::string_view text, double fallback, const Place& place) {
+double number_in(std::string_view text, double fallback, const ElementPlace& place) {
   text = trimmed(text);
   if (text.empty()) return fallback;
   const std::optional<double> number = parse_number(text);
@@ -47,7 +49,7 @@ double number_in(std::string_view text, double fallback, const Place& place) {
   throw Error(fmt::format("\"{}\" is no number", text.substr(0, 40)), place.text, kExportAgain);
 }
 
-std::int64_t integer_in(std::string_view text, std::int64_t fallback, const Place& place) {
+std::int64_t integer_in(std::string_view text, std::int64_t fallback, const ElementPlace& place) {
   text = trimmed(text);
   if (text.empty()) return fallback;
   if (text.front() == '+') text.remove_prefix(1);
@@ -58,19 +60,20 @@ std::int64_t integer_in(std::string_view text, std::int64_t fallback, const Plac
               kExportAgain);
 }
 
-double number_of(const pugi::xml_node& parent, const char* child, double fallback, const Place& place) {
+double number_of(const pugi::xml_node& parent, const char* child, double fallback,
+                 const ElementPlace& place) {
   return number_in(parent.child(child).child_value(), fallback, place.inside(child));
 }
 
 /// A count or an offset: a whole number >= 0 that must be there.
-std::uint64_t count_of(const pugi::xml_node& node, const char* attribute, const Place& place) {
+std::uint64_t count_of(const pugi::xml_node& node, const char* attribute, const ElementPlace& place) {
   const pugi::xml_attribute found = node.attribute(attribute);
   const std::int64_t number = integer_in(found.value(), -1, place.inside(attribute));
   if (number < 0) throw Error(fmt::format("{} is missing or negative", attribute), place.text, kExportAgain);
   return static_cast<std::uint64_t>(number);
 }
 
-Vector3d vector_of(const pugi::xml_node& node, const Place& place) {
+Vector3d vector_of(const pugi::xml_node& node, const ElementPlace& place) {
   return {number_of(node, "x", 0.0, place), number_of(node, "y", 0.0, place),
           number_of(node, "z", 0.0, place)};
 }
@@ -81,7 +84,7 @@ struct Pose {
   double quaternion_length = 1.0;
 };
 
-Pose pose_of(const pugi::xml_node& node, const Place& place) {
+Pose pose_of(const pugi::xml_node& node, const ElementPlace& place) {
   if (!node) return {};
   Pose result;
   Rigid3 pose;
@@ -99,7 +102,7 @@ Pose pose_of(const pugi::xml_node& node, const Place& place) {
   return result;
 }
 
-void read_bounds(const pugi::xml_node& node, E57Column& column, const Place& place) {
+void read_bounds(const pugi::xml_node& node, E57Column& column, const ElementPlace& place) {
   column.minimum = integer_in(node.attribute("minimum").value(), INT64_MIN, place);
   column.maximum = integer_in(node.attribute("maximum").value(), INT64_MAX, place);
   if (column.minimum > column.maximum) {
@@ -109,8 +112,8 @@ void read_bounds(const pugi::xml_node& node, E57Column& column, const Place& pla
   column.bits = e57_bits(column.minimum, column.maximum);
 }
 
-E57Column column_of(const pugi::xml_node& node, const std::string& name, const Place& scan) {
-  const Place place = scan.inside(name);
+E57Column column_of(const pugi::xml_node& node, const std::string& name, const ElementPlace& scan) {
+  const ElementPlace place = scan.inside(name);
   const std::string_view type = node.attribute("type").value();
   E57Column column;
   column.name = name;
@@ -139,8 +142,8 @@ E57Column column_of(const pugi::xml_node& node, const std::string& name, const P
 }
 
 /// Leaves of the prototype, in the order of their streams.
-void collect_columns(const pugi::xml_node& node, const std::string& prefix, int depth, const Place& place,
-                     std::vector<E57Column>& columns) {
+void collect_columns(const pugi::xml_node& node, const std::string& prefix, int depth,
+                     const ElementPlace& place, std::vector<E57Column>& columns) {
   for (const pugi::xml_node& child : node.children()) {
     if (child.type() != pugi::node_element) continue;
     const std::string name = prefix + child.name();
@@ -157,7 +160,7 @@ void collect_columns(const pugi::xml_node& node, const std::string& prefix, int 
   }
 }
 
-void read_colour_limits(const pugi::xml_node& limits, E57Scan& scan, const Place& place) {
+void read_colour_limits(const pugi::xml_node& limits, E57Scan& scan, const ElementPlace& place) {
   static constexpr std::array<const char*, 3> kLow{"colorRedMinimum", "colorGreenMinimum",
                                                    "colorBlueMinimum"};
   static constexpr std::array<const char*, 3> kHigh{"colorRedMaximum", "colorGreenMaximum",
@@ -168,7 +171,7 @@ void read_colour_limits(const pugi::xml_node& limits, E57Scan& scan, const Place
   }
 }
 
-E57Scan scan_of(const pugi::xml_node& node, const Place& place) {
+E57Scan scan_of(const pugi::xml_node& node, const ElementPlace& place) {
   E57Scan scan;
   scan.name = text_of(node.child("name"));
   const Pose pose = pose_of(node.child("pose"), place.inside("pose"));
@@ -287,7 +290,7 @@ E57Document parse_e57_document(std::string_view xml, const std::string& name) {
   document.coordinates = text_of(root.child("coordinateMetadata"));
   for (const pugi::xml_node& child : root.child("images2D").children()) {
     if (child.type() != pugi::node_element) continue;
-    const Place place{fmt::format("{}, image {}", name, document.images.size() + 1)};
+    const ElementPlace place{fmt::format("{}, image {}", name, document.images.size() + 1)};
     const bool projected = child.child("pinholeRepresentation") || child.child("sphericalRepresentation") ||
                            child.child("cylindricalRepresentation");
     document.images.push_back({pose_of(child.child("pose"), place.inside("pose")).pose, projected});

@@ -19,7 +19,6 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "E57 numbers are copied as they are in memory");
 
 constexpr std::string_view kSignature = "ASTM-E57";
-constexpr const char* kCopyAgain = "get the whole file, or export it again";
 constexpr std::uint64_t kLeastPageBytes = 64;
 constexpr std::uint64_t kLargestPageBytes = std::uint64_t{1} << 24U;
 
@@ -37,7 +36,7 @@ void append(std::string& bytes, Value value) {
 
 E57Head read_head(std::string_view bytes, const std::string& name) {
   if (bytes.size() < kE57HeadBytes || bytes.substr(0, kSignature.size()) != kSignature) {
-    throw Error("the file does not begin like an E57 file", name + ", byte 0", kCopyAgain);
+    throw Error("the file does not begin like an E57 file", name + ", byte 0", kE57CopyAgain);
   }
   E57Head head;
   head.major = number_at<std::uint32_t>(bytes, 8);
@@ -56,17 +55,17 @@ void check_head(const E57Head& head, std::uint64_t size, const std::string& name
   }
   if (head.page_bytes < kLeastPageBytes || head.page_bytes > kLargestPageBytes || head.page_bytes % 4 != 0) {
     throw Error(fmt::format("a page size of {} bytes is absurd", head.page_bytes), name + ", byte 40",
-                kCopyAgain);
+                kE57CopyAgain);
   }
   if (head.file_bytes > size) {
     throw Error(
         fmt::format("the file is cut off: it says it has {} bytes, there are {}", head.file_bytes, size),
-        name, kCopyAgain);
+        name, kE57CopyAgain);
   }
   if (head.file_bytes == 0 || head.file_bytes % head.page_bytes != 0) {
     throw Error(fmt::format("the file's length of {} bytes is no multiple of its page size of {}",
                             head.file_bytes, head.page_bytes),
-                name + ", byte 16", kCopyAgain);
+                name + ", byte 16", kE57CopyAgain);
   }
 }
 
@@ -106,7 +105,7 @@ std::uint64_t E57Pages::logical_of(std::uint64_t physical, std::string_view what
   if (physical >= bytes_.size() || within >= payload()) {
     throw Error(fmt::format("{} would begin at byte {}, which is {}", what, physical,
                             within >= payload() ? "a check sum" : "behind the end of the file"),
-                name_, kCopyAgain);
+                name_, kE57CopyAgain);
   }
   return physical / head_.page_bytes * payload() + within;
 }

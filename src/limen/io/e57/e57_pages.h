@@ -20,6 +20,10 @@ struct E57Head {
 };
 inline constexpr std::size_t kE57HeadBytes = 48;
 inline constexpr std::size_t kE57CheckSumBytes = 4;
+/// At the front of the section that holds a scan's points.
+inline constexpr std::size_t kE57SectionHeaderBytes = 32;
+/// What to do about a file that is cut off or damaged.
+inline constexpr const char* kE57CopyAgain = "get the whole file, or export it again";
 
 /// The head as its 48 bytes.
 std::string e57_head_bytes(const E57Head& head);

@@ -14,12 +14,10 @@
 namespace limen {
 namespace {
 
-constexpr std::size_t kSectionHeaderBytes = 32;
 constexpr std::size_t kPaddingBytes = 16;
 /// Where one column's packets come this far before another's, memory would go to book-keeping.
 constexpr std::size_t kMostStretches = std::size_t{1} << 22U;
 constexpr std::uint64_t kMostConstantRows = std::uint64_t{1} << 20U;
-constexpr const char* kCopyAgain = "get the whole file, or export it again";
 
 template <typename Value>
 Value number_at(const char* bytes) {
@@ -36,7 +34,7 @@ void check_promise(const E57Scan& scan, std::uint64_t room, const std::string& n
   if (fits) return;
   throw Error(fmt::format("the file promises {} points of {} bits each; there is room for {} bytes",
                           scan.points, bits, room),
-              name, kCopyAgain);
+              name, kE57CopyAgain);
 }
 
 }  // namespace
@@ -49,24 +47,25 @@ E57Streams::E57Streams(const E57Pages& pages, const E57Scan& scan, std::string n
       header_page_(pages.page_count()) {
   if (scan.points == 0) return;
   const std::uint64_t begin = pages.logical_of(scan.section, "the section of the points");
-  if (pages.logical_size() - begin < kSectionHeaderBytes) fail("the section of the points is cut off", begin);
-  std::array<char, kSectionHeaderBytes> header{};
+  if (pages.logical_size() - begin < kE57SectionHeaderBytes)
+    fail("the section of the points is cut off", begin);
+  std::array<char, kE57SectionHeaderBytes> header{};
   read(begin, header.size(), header.data());
   if (header[0] != 1) fail("where the points should be is no section of packed points", begin);
   const auto length = number_at<std::uint64_t>(&header[8]);
-  if (length < kSectionHeaderBytes || length > pages.logical_size() - begin) {
+  if (length < kE57SectionHeaderBytes || length > pages.logical_size() - begin) {
     fail(fmt::format("the section of the points would have {} bytes, which do not fit into the file", length),
          begin);
   }
   end_ = begin + length;
   at_ = pages.logical_of(number_at<std::uint64_t>(&header[16]), "the first packet of points");
-  if (at_ < begin + kSectionHeaderBytes) fail("the first packet of points lies before its section", begin);
+  if (at_ < begin + kE57SectionHeaderBytes) fail("the first packet of points lies before its section", begin);
   checked_ = pages.page_of(at_);
   check_promise(scan, end_ - std::min(at_, end_), name_);
 }
 
 void E57Streams::fail(const std::string& what, std::uint64_t logical) const {
-  throw Error(what, fmt::format("{}, byte {}", name_, pages_->physical_of(logical)), kCopyAgain);
+  throw Error(what, fmt::format("{}, byte {}", name_, pages_->physical_of(logical)), kE57CopyAgain);
 }
 
 void E57Streams::read(std::uint64_t logical, std::size_t count, char* to) {

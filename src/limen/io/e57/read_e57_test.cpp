@@ -41,7 +41,7 @@ const Field& field(const RecordTable& table, const char* name) {
   return *found;
 }
 
-std::vector<double> column(const std::string& bytes, const std::string& name, std::size_t cloud = 0) {
+std::vector<double> e57_column(const std::string& bytes, const std::string& name, std::size_t cloud = 0) {
   const auto file = open_e57(bytes, "test.e57");
   const auto& fields = file->clouds()[cloud].fields;
   const auto at = std::find(fields.begin(), fields.end(), name);
@@ -209,7 +209,7 @@ TEST(ReadE57, ColoursAreBroughtToEightOrSixteenBits) {
           "<colorLimits type=\"Structure\"><colorRedMinimum type=\"Integer\"/><colorRedMaximum "
           "type=\"Integer\">" +
           limits + "</colorRedMaximum></colorLimits>";
-    return column(file_of({scan}), "red");
+    return e57_column(file_of({scan}), "red");
   };
   using Values = std::vector<double>;
   EXPECT_EQ(colour("255", integer_column("colorRed", 0, 8, {0, 7, 255})), (Values{0, 7, 255}));
@@ -241,9 +241,9 @@ TEST(ReadE57, TimesRowsColumnsNormalsAndExtensions) {
   ASSERT_TRUE(table);
   EXPECT_NE(table->find({"gps week"}), nullptr);
   EXPECT_NE(table->find({"las:pointsourceid"}), nullptr);
-  EXPECT_EQ(column(bytes, "gps_time"), (std::vector<double>{1.2e9 + 0.5, 1.2e9 + 1.5}));
-  EXPECT_EQ(column(bytes, "row_index"), (std::vector<double>{3, 9}));
-  EXPECT_EQ(column(bytes, "las:pointSourceId"), (std::vector<double>{77, 78}));
+  EXPECT_EQ(e57_column(bytes, "gps_time"), (std::vector<double>{1.2e9 + 0.5, 1.2e9 + 1.5}));
+  EXPECT_EQ(e57_column(bytes, "row_index"), (std::vector<double>{3, 9}));
+  EXPECT_EQ(e57_column(bytes, "las:pointSourceId"), (std::vector<double>{77, 78}));
 }
 
 TEST(ReadE57, PosesOfSeveralScans) {
@@ -334,7 +334,7 @@ TEST(ReadE57, PromisesThatDoNotFit) {
   EXPECT_NE(message_of(file_of({constant})).find("promises"), std::string::npos);
   constant.points = 1000;
   EXPECT_EQ(message_of(file_of({constant})), "");
-  EXPECT_EQ(column(file_of({constant}), "x"), std::vector<double>(1000, 1.0));
+  EXPECT_EQ(e57_column(file_of({constant}), "x"), std::vector<double>(1000, 1.0));
 }
 
 TEST(ReadE57, PointsThatEndEarly) {

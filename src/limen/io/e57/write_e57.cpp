@@ -27,41 +27,41 @@ namespace limen {
 namespace {
 
 constexpr std::size_t kLargestPacket = 65536;
-constexpr std::size_t kSectionHeaderBytes = 32;
 constexpr std::uint64_t kE57PageBytes = 1024;
 /// Rows of a packet: so that every column fills whole words.
 constexpr std::size_t kRowStep = 64;
 /// Integers reach so far from the pose.
 constexpr double kReachM = 1e6;
 /// Finer than this a double serves as well.
-constexpr double kFinestM = 1e-7;
+constexpr double kFinestStepM = 1e-7;
 constexpr std::string_view kNotFinite = "cartesianInvalidState";
 
-struct Known {
+struct KnownField {
   const char* theirs;
   std::initializer_list<const char*> ours;
   bool integer;  ///< only where the plan has integers
 };
 
-const std::array<Known, 11>& known_columns() {
-  static const std::array<Known, 11> kKnown{{{"intensity", {"intensity", "scalar_intensity"}, false},
-                                             {"colorRed", {"red", "r", "diffuse_red"}, false},
-                                             {"colorGreen", {"green", "g", "diffuse_green"}, false},
-                                             {"colorBlue", {"blue", "b", "diffuse_blue"}, false},
-                                             {"timeStamp", {"gps_time", "gpstime", "scalar_gps_time"}, false},
-                                             {"rowIndex", {"row_index", "scan_index"}, true},
-                                             {"columnIndex", {"column_index", "scan_line"}, true},
-                                             {"returnIndex", {"return_index"}, true},
-                                             {"nor:normalX", {"nx"}, false},
-                                             {"nor:normalY", {"ny"}, false},
-                                             {"nor:normalZ", {"nz"}, false}}};
+const std::array<KnownField, 11>& known_columns() {
+  static const std::array<KnownField, 11> kKnown{
+      {{"intensity", {"intensity", "scalar_intensity"}, false},
+       {"colorRed", {"red", "r", "diffuse_red"}, false},
+       {"colorGreen", {"green", "g", "diffuse_green"}, false},
+       {"colorBlue", {"blue", "b", "diffuse_blue"}, false},
+       {"timeStamp", {"gps_time", "gpstime", "scalar_gps_time"}, false},
+       {"rowIndex", {"row_index", "scan_index"}, true},
+       {"columnIndex", {"column_index", "scan_line"}, true},
+       {"returnIndex", {"return_index"}, true},
+       {"nor:normalX", {"nx"}, false},
+       {"nor:normalY", {"ny"}, false},
+       {"nor:normalZ", {"nz"}, false}}};
   return kKnown;
 }
 
 /// The name of the column in the file; standard names are given once, to the first that asks.
 std::string file_name_of(const ColumnPlan& plan, std::vector<std::string>& taken) {
   const std::string lower = lower_case(plan.name);
-  for (const Known& known : known_columns()) {
+  for (const KnownField& known : known_columns()) {
     const bool fits = !known.integer || is_integer(plan.type);
     const auto same = [&](const char* name) { return lower == name; };
     if (!fits || std::none_of(known.ours.begin(), known.ours.end(), same)) continue;
@@ -118,7 +118,7 @@ E57Column coordinate_column(const char* name, double resolution_m) {
   E57Column column;
   column.name = name;
   const double step = resolution_m / 8.0;
-  if (!(step >= kFinestM)) return column;
+  if (!(step >= kFinestStepM)) return column;
   column.storage = E57Storage::integer;
   column.scale = step;
   column.maximum = static_cast<std::int64_t>(std::ceil(kReachM / step));
@@ -218,7 +218,7 @@ E57Section::E57Section(E57PageWriter& file, std::string name, CloudPlan plan)
     throw Error(fmt::format("{} values per point are too many for an E57 file", plan_.columns.size()), name_,
                 "write the points as PLY");
   }
-  file_.append(std::string(kSectionHeaderBytes, '\0'));
+  file_.append(std::string(kE57SectionHeaderBytes, '\0'));
 }
 
 void E57Section::plan_encoders() {
@@ -379,10 +379,10 @@ E57Description E57Section::description() const {
 E57Description E57Section::finish() {
   for (E57Encoder& encoder : encoders_) encoder.finish();
   if (waiting_rows_ > 0) put_packet(waiting_rows_);
-  std::string section(kSectionHeaderBytes, '\0');
+  std::string section(kE57SectionHeaderBytes, '\0');
   section[0] = 1;
   const std::uint64_t length = file_.logical() - logical_;
-  const std::uint64_t data = physical_ + kSectionHeaderBytes;
+  const std::uint64_t data = physical_ + kE57SectionHeaderBytes;
   std::memcpy(&section[8], &length, sizeof length);
   std::memcpy(&section[16], &data, sizeof data);
   file_.replace(page_, physical_ % kE57PageBytes, section);

@@ -35,6 +35,10 @@ std::optional<LasBox> told_box(const LasHeader& header) {
   return LasBox{header.low, header.high};
 }
 
+Vector3d round_offset(const Vector3d& near) {
+  return (near / kRoundOffset).array().round() * kRoundOffset;
+}
+
 LasGrid moved_grid(const LasHeader& header, const Rigid3& target_from_source, const LasBox& box) {
   LasGrid grid;
   if (target_from_source.rotation.isIdentity(0.0)) {
@@ -45,7 +49,7 @@ LasGrid moved_grid(const LasHeader& header, const Rigid3& target_from_source, co
   }
   double step = std::min(kStep, header.scale.cwiseAbs().minCoeff());
   const Vector3d middle = 0.5 * (box.low + box.high);
-  grid.offset = (middle / kRoundOffset).array().round() * kRoundOffset;
+  grid.offset = round_offset(middle);
   const double reach =
       std::max((box.high - grid.offset).cwiseAbs().maxCoeff(), (box.low - grid.offset).cwiseAbs().maxCoeff());
   while (reach > kMostSteps * step && std::isfinite(reach)) step *= 10.0;

@@ -28,6 +28,9 @@ LasBox moved_box(const LasBox& box, const Rigid3& target_from_source);
 /// The box that the header tells, where it can be one.
 std::optional<LasBox> told_box(const LasHeader& header);
 
+/// A round number near a place: what stored coordinates are counted from.
+Vector3d round_offset(const Vector3d& near);
+
 /// A grid for points in `box`, target frame: steps as fine as the finest old ones and 0.1 mm, where the box
 /// allows, else the next power of ten that it allows; the offset is a round number near its middle. A pose
 /// without rotation keeps the old steps and shifts the offset.

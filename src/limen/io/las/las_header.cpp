@@ -18,10 +18,10 @@ namespace limen {
 namespace {
 
 constexpr std::size_t kLongRecordHead = 60;
-constexpr std::array<std::size_t, 5> kHeaderBytes{227, 227, 227, 235, 375};
+constexpr std::array<std::size_t, 5> kHeaderBytesOf{227, 227, 227, 235, 375};
 
 /// A file in memory and its name.
-struct Source {
+struct HeaderSource {
   std::string_view bytes;
   const std::string& name;
 
@@ -57,7 +57,7 @@ std::optional<LasRecord> record_at(std::string_view bytes, std::size_t at, std::
 }
 
 /// What lies between header and points. Records that do not fit are told, not fatal: the points are sound.
-void parse_records(const Source& source, std::uint32_t promised, LasHeader& header) {
+void parse_records(const HeaderSource& source, std::uint32_t promised, LasHeader& header) {
   std::size_t at = header.size;
   for (std::uint32_t k = 0; k < promised; ++k) {
     std::optional<LasRecord> record = record_at(source.bytes, at, header.points_begin - at, false);
@@ -73,7 +73,7 @@ void parse_records(const Source& source, std::uint32_t promised, LasHeader& head
   }
 }
 
-void parse_long_records(const Source& source, LasHeader& header) {
+void parse_long_records(const HeaderSource& source, LasHeader& header) {
   const auto promised = las_number<std::uint32_t>(source.bytes, las_at::kLongRecordCount);
   if (promised == 0) {
     header.long_records = 0;
@@ -97,8 +97,8 @@ void parse_long_records(const Source& source, LasHeader& header) {
   }
 }
 
-void check_version(const Source& source, LasHeader& header) {
-  if (source.bytes.size() < kHeaderBytes[0])
+void check_version(const HeaderSource& source, LasHeader& header) {
+  if (source.bytes.size() < kHeaderBytesOf[0])
     source.damaged(fmt::format("the file ends within its header, after {} bytes", source.bytes.size()));
   const int major = static_cast<unsigned char>(source.bytes[las_at::kMinorVersion - 1]);
   header.minor = static_cast<unsigned char>(source.bytes[las_at::kMinorVersion]);
@@ -106,7 +106,7 @@ void check_version(const Source& source, LasHeader& header) {
     source.fail(fmt::format("LAS version {}.{} is not known", major, header.minor),
                 "export it as LAS 1.0 to 1.4");
   }
-  const std::size_t least = kHeaderBytes[static_cast<std::size_t>(header.minor)];
+  const std::size_t least = kHeaderBytesOf[static_cast<std::size_t>(header.minor)];
   header.size = las_number<std::uint16_t>(source.bytes, las_at::kHeaderSize);
   if (header.size < least) {
     source.damaged(
@@ -120,7 +120,7 @@ void check_version(const Source& source, LasHeader& header) {
   }
 }
 
-void parse_point_format(const Source& source, LasHeader& header) {
+void parse_point_format(const HeaderSource& source, LasHeader& header) {
   const unsigned format = static_cast<unsigned char>(source.bytes[las_at::kPointFormat]);
   header.compressed = (format & 0x80U) != 0;
   header.point_format = static_cast<int>(format & 0x3FU);
@@ -136,7 +136,7 @@ void parse_point_format(const Source& source, LasHeader& header) {
   }
 }
 
-void parse_count(const Source& source, LasHeader& header) {
+void parse_count(const HeaderSource& source, LasHeader& header) {
   header.points = las_number<std::uint32_t>(source.bytes, las_at::kLegacyCount);
   if (header.minor < 4) return;
   const auto count = las_number<std::uint64_t>(source.bytes, las_at::kCount);
@@ -147,7 +147,7 @@ void parse_count(const Source& source, LasHeader& header) {
   if (count != 0) header.points = count;
 }
 
-void parse_grid(const Source& source, LasHeader& header) {
+void parse_grid(const HeaderSource& source, LasHeader& header) {
   header.scale = las_vector(source.bytes, las_at::kScale);
   header.offset = las_vector(source.bytes, las_at::kOffset);
   header.high = las_vector(source.bytes, las_at::kBounds, 16);
@@ -174,7 +174,7 @@ bool looks_like_las(std::string_view bytes) {
 }
 
 LasHeader parse_las_header(std::string_view bytes, const std::string& name) {
-  const Source source{bytes, name};
+  const HeaderSource source{bytes, name};
   LasHeader header;
   check_version(source, header);
   header.global_encoding = las_number<std::uint16_t>(bytes, las_at::kGlobalEncoding);

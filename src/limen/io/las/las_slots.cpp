@@ -23,7 +23,7 @@ constexpr std::size_t kNameBytes = 32;
 constexpr std::size_t kMostRecord = 0xFFFF;
 
 /// A place of the format: the names a column may have, and the widest integer that fits.
-struct Place {
+struct SlotPlace {
   std::string_view names;  ///< each with a space behind it
   LasStore store;
   std::size_t at;
@@ -31,7 +31,7 @@ struct Place {
   int axis;
 };
 
-constexpr std::array<Place, 21> kPlaces{{
+constexpr std::array<SlotPlace, 21> kPlaces{{
     {"x ", LasStore::coordinate, 0, {}, 0},
     {"y ", LasStore::coordinate, 4, {}, 1},
     {"z ", LasStore::coordinate, 8, {}, 2},
@@ -54,9 +54,9 @@ constexpr std::array<Place, 21> kPlaces{{
     {"green g diffuse_green ", LasStore::colour, 32, {}, 0},
     {"blue b diffuse_blue ", LasStore::colour, 34, {}, 0},
 }};
-constexpr Place kInfrared{"nir ", LasStore::word, 36, {}, 0};
+constexpr SlotPlace kInfrared{"nir ", LasStore::word, 36, {}, 0};
 
-bool bears(const Place& place, const std::string& name) {
+bool bears(const SlotPlace& place, const std::string& name) {
   const std::string word = name + " ";
   for (std::size_t at = place.names.find(word); at != std::string_view::npos;
        at = place.names.find(word, at + 1)) {
@@ -84,7 +84,7 @@ bool exact(LasStore store, Scalar type) {
   }
 }
 
-bool has_column(const CloudPlan& plan, const Place& place) {
+bool has_column(const CloudPlan& plan, const SlotPlace& place) {
   return std::any_of(plan.columns.begin(), plan.columns.end(),
                      [&](const ColumnPlan& column) { return bears(place, lower_case(column.name)); });
 }
@@ -114,7 +114,7 @@ class Places {
   explicit Places(bool infrared) : infrared_(infrared) {}
 
   std::optional<LasSlot> take(const std::string& name, std::size_t column) {
-    for (const Place& place : kPlaces) {
+    for (const SlotPlace& place : kPlaces) {
       if (bears(place, name)) return take(place, column);
     }
     if (infrared_ && bears(kInfrared, name)) return take(kInfrared, column);
@@ -122,7 +122,7 @@ class Places {
   }
 
  private:
-  std::optional<LasSlot> take(const Place& place, std::size_t column) {
+  std::optional<LasSlot> take(const SlotPlace& place, std::size_t column) {
     if (!taken_.insert(place.names).second) return {};
     return LasSlot{column, place.store, place.at, place.bits, place.axis};
   }
@@ -132,7 +132,7 @@ class Places {
 };
 
 void check_columns(const CloudPlan& plan, const std::string& name) {
-  for (const Place& place : kPlaces) {
+  for (const SlotPlace& place : kPlaces) {
     if (place.store != LasStore::coordinate || has_column(plan, place)) continue;
     throw Error("points without x, y and z cannot be written as LAS", name, "write another format");
   }
@@ -142,7 +142,7 @@ void check_columns(const CloudPlan& plan, const std::string& name) {
 
 LasSlots las_slots(const CloudPlan& plan, const std::string& name) {
   check_columns(plan, name);
-  const bool coloured = std::any_of(kPlaces.begin(), kPlaces.end(), [&](const Place& place) {
+  const bool coloured = std::any_of(kPlaces.begin(), kPlaces.end(), [&](const SlotPlace& place) {
     return place.store == LasStore::colour && has_column(plan, place);
   });
   const bool infrared = has_column(plan, kInfrared);

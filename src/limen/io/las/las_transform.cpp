@@ -24,8 +24,8 @@
 namespace limen {
 namespace {
 
-constexpr std::size_t kBlock = 500000;  ///< records per step of work
-constexpr std::size_t kPiece = 16384;
+constexpr std::size_t kRecordsPerStep = 500000;  ///< records per step of work
+constexpr std::size_t kRecordsPerPiece = 16384;
 
 /// What is moved, and how.
 struct Motion {
@@ -36,25 +36,25 @@ struct Motion {
   Monitor& monitor;
 };
 
-using Place = std::array<std::int32_t, 3>;
+using GridPlace = std::array<std::int32_t, 3>;
 
-Place place_of(const char* record) {
-  Place place{};
+GridPlace place_of(const char* record) {
+  GridPlace place{};
   std::memcpy(place.data(), record, sizeof place);
   return place;
 }
-Vector3d old_point(const LasHeader& header, const Place& place) {
+Vector3d old_point(const LasHeader& header, const GridPlace& place) {
   return header.offset + header.scale.cwiseProduct(Vector3d(place[0], place[1], place[2]));
 }
 
 /// Extremes of integers; `outside`: some had no room.
 struct Reach {
-  Place low{INT32_MAX, INT32_MAX, INT32_MAX};
-  Place high{INT32_MIN, INT32_MIN, INT32_MIN};
+  GridPlace low{INT32_MAX, INT32_MAX, INT32_MAX};
+  GridPlace high{INT32_MIN, INT32_MIN, INT32_MIN};
   std::uint64_t points = 0;
   bool outside = false;
 
-  void add(const Place& place) {
+  void add(const GridPlace& place) {
     for (std::size_t k = 0; k < 3; ++k) {
       low[k] = std::min(low[k], place[k]);
       high[k] = std::max(high[k], place[k]);
@@ -79,15 +79,16 @@ LasBox measured_box(const Motion& motion) {
   box.low.setConstant(std::numeric_limits<double>::infinity());
   box.high = -box.low;
   const auto records = open_las_records(motion.bytes, motion.name, motion.header);
-  for (LasPiece piece = records->next(kBlock); piece.count > 0; piece = records->next(kBlock)) {
+  for (LasPiece piece = records->next(kRecordsPerStep); piece.count > 0;
+       piece = records->next(kRecordsPerStep)) {
     motion.monitor.throw_if_cancelled();
     const char* data = piece.data;
     box = parallel_reduce(
-        piece.count, kPiece, box,
+        piece.count, kRecordsPerPiece, box,
         [&](std::size_t begin, std::size_t end) {
           LasBox part = box;
           for (std::size_t i = begin; i < end; ++i) {
-            const Place place = place_of(data + i * motion.header.point_bytes);
+            const GridPlace place = place_of(data + i * motion.header.point_bytes);
             const Vector3d x = motion.target_from_source * old_point(motion.header, place);
             part.low = part.low.cwiseMin(x);
             part.high = part.high.cwiseMax(x);
@@ -105,12 +106,12 @@ LasBox measured_box(const Motion& motion) {
 Reach move_records(const Motion& motion, const LasGrid& grid, std::vector<char>& records) {
   const std::size_t stride = motion.header.point_bytes;
   return parallel_reduce(
-      records.size() / stride, kPiece, Reach{},
+      records.size() / stride, kRecordsPerPiece, Reach{},
       [&](std::size_t begin, std::size_t end) {
         Reach reach;
         for (std::size_t i = begin; i < end; ++i) {
           char* record = &records[i * stride];
-          Place place = place_of(record);
+          GridPlace place = place_of(record);
           if (!grid.unchanged) {
             const Vector3d x = motion.target_from_source * old_point(motion.header, place);
             const Vector3d steps = (x - grid.offset).cwiseQuotient(grid.scale);
@@ -259,7 +260,8 @@ std::optional<std::uint64_t> write_moved(const Motion& motion, const LasGrid& gr
   Reach reach;
   const auto records = open_las_records(motion.bytes, motion.name, motion.header);
   std::vector<char> moved;
-  for (LasPiece piece = records->next(kBlock); piece.count > 0; piece = records->next(kBlock)) {
+  for (LasPiece piece = records->next(kRecordsPerStep); piece.count > 0;
+       piece = records->next(kRecordsPerStep)) {
     motion.monitor.throw_if_cancelled();
     moved.assign(piece.data, piece.data + piece.count * motion.header.point_bytes);
     reach = reach.with(move_records(motion, grid, moved));

@@ -16,7 +16,7 @@ namespace {
 using namespace testing_las;
 
 /// What the error says, or "no error".
-std::string error_of(const std::string& bytes) {
+std::string las_error_of(const std::string& bytes) {
   try {
     records_of(bytes);
     open_las(bytes, "test");
@@ -190,13 +190,13 @@ TEST(ReadLas, CoordinateSystemsAreFound) {
 
 TEST(ReadLas, PromisesThatCannotBeKept) {
   const std::string whole = file(some(2, 1));
-  EXPECT_EQ(error_of(whole.substr(0, whole.size() - 1)),
+  EXPECT_EQ(las_error_of(whole.substr(0, whole.size() - 1)),
             "the header promises 50 points, the file has room for 49");
-  EXPECT_EQ(error_of(whole.substr(0, 100)), "the file ends within its header, after 100 bytes");
+  EXPECT_EQ(las_error_of(whole.substr(0, 100)), "the file ends within its header, after 100 bytes");
   const auto changed = [&](std::size_t at, auto value) {
     std::string bytes = whole;
     put(bytes, at, value);
-    return error_of(bytes);
+    return las_error_of(bytes);
   };
   EXPECT_EQ(changed(24, std::uint8_t{2}), "LAS version 2.2 is not known");
   EXPECT_EQ(changed(25, std::uint8_t{5}), "LAS version 1.5 is not known");
@@ -227,7 +227,7 @@ TEST(ReadLas, TwoCounts) {
   EXPECT_EQ(open_las(bytes, "test")->clouds()[0].points, 50U);
   EXPECT_NE(open_las(bytes, "test")->clouds()[0].notes.at(0).find("disagree"), std::string::npos);
   put(bytes, 247, std::uint64_t{1} << 60U);
-  EXPECT_EQ(error_of(bytes).substr(0, 20), "the header promises ");
+  EXPECT_EQ(las_error_of(bytes).substr(0, 20), "the header promises ");
 }
 
 TEST(ReadLas, AnyShortenedOrChangedFileIsReadOrRefused) {
@@ -236,14 +236,15 @@ TEST(ReadLas, AnyShortenedOrChangedFileIsReadOrRefused) {
   parts.tail = long_record("limen", 9, "text");
   parts.tail_records = 1;
   const std::string whole = file(parts);
-  for (std::size_t length = 0; length < whole.size(); length += 3) (void)error_of(whole.substr(0, length));
+  for (std::size_t length = 0; length < whole.size(); length += 3)
+    (void)las_error_of(whole.substr(0, length));
   RandomStream random(3);
   int refused = 0;
   for (int trial = 0; trial < 3000; ++trial) {
     std::string bytes = whole;
     for (std::uint32_t k = random.below(4) + 1; k > 0; --k)
       bytes[random.below(static_cast<std::uint32_t>(bytes.size()))] = static_cast<char>(random.below(256));
-    refused += error_of(bytes) == "no error" ? 0 : 1;
+    refused += las_error_of(bytes) == "no error" ? 0 : 1;
   }
   EXPECT_GT(refused, 100);
   EXPECT_LT(refused, 2900);

@@ -15,20 +15,20 @@
 #include "limen/base/error.h"
 #include "limen/base/parallel.h"
 #include "limen/io/las/las_fields.h"
+#include "limen/io/las/las_grid.h"
 #include "limen/io/las/las_header.h"
 #include "limen/io/las/las_slots.h"
 
 namespace limen {
 namespace {
 
-constexpr std::size_t kHeaderBytes = 375;
-constexpr std::size_t kPiece = 16384;   ///< rows per piece of parallel work
-constexpr std::size_t kStrip = 1024;    ///< values that stay in the cache
-constexpr std::size_t kBlock = 262144;  ///< rows that are encoded before they are written
+constexpr std::size_t kHeaderBytes14 = 375;
+constexpr std::size_t kEncodedPerPiece = 16384;  ///< rows per piece of parallel work
+constexpr std::size_t kEncodedStrip = 1024;      ///< values that stay in the cache
+constexpr std::size_t kRowsPerBlock = 262144;    ///< rows that are encoded before they are written
 constexpr double kFinestStep = 1e-5;
 constexpr double kCoarsestStep = 1e-4;
 constexpr double kSecondsOfWeek = 604800.0;
-constexpr double kRoundOffset = 100.0;
 constexpr std::int32_t kBlank = INT32_MIN;  ///< stored for what is no number, until the row is left out
 
 std::string record_of(const std::string& user, std::uint16_t number, const std::string& body) {
@@ -74,7 +74,7 @@ struct Summary {
 };
 
 /// The values of one column that go into records.
-struct Strip {
+struct ValueStrip {
   const double* values;
   std::size_t count;
   char* record;  ///< the first
@@ -90,7 +90,7 @@ struct Strip {
   }
 };
 
-void store_bits(const Strip& strip, const LasSlot& slot) {
+void store_bits(const ValueStrip& strip, const LasSlot& slot) {
   const unsigned most = (1U << slot.bits.count) - 1;
   for (std::size_t i = 0; i < strip.count; ++i) {
     char& byte = strip.record[i * strip.stride + slot.at];
@@ -100,7 +100,7 @@ void store_bits(const Strip& strip, const LasSlot& slot) {
   }
 }
 
-void store_extra(const Strip& strip, const LasSlot& slot) {
+void store_extra(const ValueStrip& strip, const LasSlot& slot) {
   switch (slot.type) {
     case Scalar::int8:
       return strip.store(slot.at, clamped<std::int8_t>);
@@ -132,7 +132,7 @@ class LasWriter : public CloudWriter {
     const double step =
         plan.resolution_m > 0.0 ? plan.resolution_m : (plan.centre ? kFinestStep : kCoarsestStep);
     step_ = std::clamp(step, kFinestStep, kCoarsestStep);
-    offset_ = (plan.near / kRoundOffset).array().round() * kRoundOffset;
+    offset_ = round_offset(plan.near);
     if (!offset_.allFinite()) offset_.setZero();
     file_.write(beginning());
   }
@@ -142,8 +142,8 @@ class LasWriter : public CloudWriter {
       throw Error("rows without the columns of the plan", name_, "report this as a bug", Fault::internal);
     if (rows.rows == 0) return;
     if (spreads_.empty()) find_spreads(rows);
-    for (std::size_t begin = 0; begin < rows.rows; begin += kBlock)
-      write_block(rows, {begin, std::min(rows.rows, begin + kBlock)});
+    for (std::size_t begin = 0; begin < rows.rows; begin += kRowsPerBlock)
+      write_block(rows, {begin, std::min(rows.rows, begin + kRowsPerBlock)});
   }
 
   void finish() override {
@@ -168,14 +168,14 @@ class LasWriter : public CloudWriter {
       put_las_vector(centre, 0, *plan_.centre);
       add(kLasCentreUser, kLasCentreNumber, centre);
     }
-    std::string header(kHeaderBytes, '\0');
+    std::string header(kHeaderBytes14, '\0');
     header.replace(0, 4, "LASF");
     header[las_at::kMinorVersion - 1] = 1;
     header[las_at::kMinorVersion] = 4;
     header.replace(58, 5, "limen");
     put_las_number(header, las_at::kGlobalEncoding, kWktBit);
-    put_las_number(header, las_at::kHeaderSize, static_cast<std::uint16_t>(kHeaderBytes));
-    put_las_number(header, las_at::kPointsBegin, static_cast<std::uint32_t>(kHeaderBytes + records.size()));
+    put_las_number(header, las_at::kHeaderSize, static_cast<std::uint16_t>(kHeaderBytes14));
+    put_las_number(header, las_at::kPointsBegin, static_cast<std::uint32_t>(kHeaderBytes14 + records.size()));
     put_las_number(header, las_at::kRecordCount, count);
     header[las_at::kPointFormat] = static_cast<char>(slots_.point_format);
     put_las_number(header, las_at::kPointLength, static_cast<std::uint16_t>(slots_.point_bytes));
@@ -189,7 +189,7 @@ class LasWriter : public CloudWriter {
     spreads_.assign(plan_.columns.size(), 1.0);
     double largest = 0.0;
     bool fractions = false;
-    const RowRange first{0, std::min(rows.rows, kPiece)};
+    const RowRange first{0, std::min(rows.rows, kEncodedPerPiece)};
     std::vector<double> values(first.end);
     for (const LasSlot& slot : slots_.slots) {
       const bool fraction =
@@ -215,11 +215,11 @@ class LasWriter : public CloudWriter {
   void write_block(const RecordTable& rows, RowRange range) {
     records_.assign((range.end - range.begin) * slots_.point_bytes, '\0');
     Summary summary = parallel_reduce(
-        range.end - range.begin, kPiece, Summary{},
+        range.end - range.begin, kEncodedPerPiece, Summary{},
         [&](std::size_t begin, std::size_t end) {
           Summary piece;
-          for (std::size_t at = begin; at < end; at += kStrip) {
-            const std::size_t stop = std::min(end, at + kStrip);
+          for (std::size_t at = begin; at < end; at += kEncodedStrip) {
+            const std::size_t stop = std::min(end, at + kEncodedStrip);
             encode(rows, {range.begin + at, range.begin + stop}, &records_[at * slots_.point_bytes], piece);
           }
           return piece;
@@ -258,8 +258,8 @@ class LasWriter : public CloudWriter {
   }
 
   void encode(const RecordTable& rows, RowRange range, char* records, Summary& summary) const {
-    std::array<double, kStrip> values;  // NOLINT: filled below
-    const Strip strip{values.data(), range.end - range.begin, records, slots_.point_bytes};
+    std::array<double, kEncodedStrip> values;  // NOLINT: filled below
+    const ValueStrip strip{values.data(), range.end - range.begin, records, slots_.point_bytes};
     for (std::size_t i = 0; i < strip.count; ++i) records[i * strip.stride + 14] = 0x11;  // one return of one
     for (const LasSlot& slot : slots_.slots) {
       const Field& field = rows.fields[slot.column];
@@ -283,7 +283,7 @@ class LasWriter : public CloudWriter {
       std::memcpy(to, from, bytes);
   }
 
-  void store(const Strip& strip, const LasSlot& slot, Summary& summary) const {
+  void store(const ValueStrip& strip, const LasSlot& slot, Summary& summary) const {
     const double spread = spreads_[slot.column];
     switch (slot.store) {
       case LasStore::coordinate:
@@ -309,7 +309,7 @@ class LasWriter : public CloudWriter {
     }
   }
 
-  void store_coordinate(const Strip& strip, const LasSlot& slot, Summary& summary) const {
+  void store_coordinate(const ValueStrip& strip, const LasSlot& slot, Summary& summary) const {
     const double offset = offset_[slot.axis];
     const double steps_per_m =
         std::nearbyint(1.0 / step_) * step_ == 1.0 ? std::nearbyint(1.0 / step_) : 1.0 / step_;

@@ -20,18 +20,18 @@ namespace {
 
 constexpr std::size_t kMostFields = 1000;
 constexpr std::size_t kMostCount = 100000;
-const char* const kRemedy = "the PCD header is damaged: export the file again";
+const char* const kPcdRemedy = "the PCD header is damaged: export the file again";
 
-using Tokens = std::vector<std::string_view>;
+using PcdTokens = std::vector<std::string_view>;
 
 /// The tokens of one header line, where it stands, and how to complain about it.
-struct Line {
-  Tokens tokens;
+struct PcdLine {
+  PcdTokens tokens;
   std::size_t number;
   const std::string& name;
 
   [[noreturn]] void fail(const std::string& what) const {
-    throw Error(what, fmt::format("{}, line {}", name, number), kRemedy);
+    throw Error(what, fmt::format("{}, line {}", name, number), kPcdRemedy);
   }
   [[nodiscard]] std::size_t count(std::size_t k) const {
     const auto value = k < tokens.size() ? parse_count(tokens[k]) : std::nullopt;
@@ -45,14 +45,14 @@ struct Line {
   }
 };
 
-void read_fields(const Line& line, PcdHeader& header) {
+void read_fields(const PcdLine& line, PcdHeader& header) {
   if (line.tokens.size() < 2 || line.tokens.size() > kMostFields)
     line.fail("FIELDS needs the names of the fields");
   header.fields.clear();
   for (std::size_t k = 1; k < line.tokens.size(); ++k) header.fields.push_back({lower_case(line.tokens[k])});
 }
 
-void read_per_field(const Line& line, PcdHeader& header) {
+void read_per_field(const PcdLine& line, PcdHeader& header) {
   line.require_per_field(header);
   for (std::size_t k = 0; k < header.fields.size(); ++k) {
     PcdField& field = header.fields[k];
@@ -69,7 +69,7 @@ void read_per_field(const Line& line, PcdHeader& header) {
 }
 
 /// tx ty tz qw qx qy qz; without the quaternion, or with one that is none, the sensor is not turned.
-std::optional<Rigid3> viewpoint_of(const Line& line) {
+std::optional<Rigid3> viewpoint_of(const PcdLine& line) {
   if (line.tokens.size() < 4) return {};
   std::array<double, 7> numbers{0, 0, 0, 1, 0, 0, 0};
   for (std::size_t k = 0; k < std::min(numbers.size(), line.tokens.size() - 1); ++k) {
@@ -85,7 +85,7 @@ std::optional<Rigid3> viewpoint_of(const Line& line) {
 }
 
 /// Takes one line; returns true at DATA, the last one.
-bool read_line(const Line& line, PcdHeader& header) {
+bool read_line(const PcdLine& line, PcdHeader& header) {
   const std::string_view word = line.tokens[0];
   if (word == "FIELDS" || word == "COLUMNS") {
     read_fields(line, header);
@@ -132,13 +132,13 @@ PcdHeader parse_pcd_header(std::string_view bytes, const std::string& name) {
   while (header.body < bytes.size() && header.lines < 1000) {
     const TextLine text = first_line(bytes.substr(header.body));
     header.body += text.bytes;
-    const Line line{split_tokens(text.text), ++header.lines, name};
+    const PcdLine line{split_tokens(text.text), ++header.lines, name};
     if (line.tokens.empty() || line.tokens[0].front() == '#') continue;
     if (!read_line(line, header)) continue;
     if (header.fields.empty()) line.fail("the header has no line FIELDS");
     return header;
   }
-  throw Error("the header has no line DATA", fmt::format("{}, line {}", name, header.lines), kRemedy);
+  throw Error("the header has no line DATA", fmt::format("{}, line {}", name, header.lines), kPcdRemedy);
 }
 
 Scalar pcd_scalar(const PcdField& field, const std::string& name) {
@@ -156,7 +156,7 @@ Scalar pcd_scalar(const PcdField& field, const std::string& name) {
   if (field.type == 'F' && field.size == 8) scalar = Scalar::float64;
   if (scalar) return *scalar;
   throw Error(fmt::format("field {} has the unknown type {} of {} bytes", field.name, field.type, field.size),
-              name, kRemedy);
+              name, kPcdRemedy);
 }
 
 void throw_pcd_too_few(std::size_t points, std::size_t room, const std::string& name) {

@@ -20,9 +20,9 @@
 namespace limen {
 namespace {
 
-constexpr std::size_t kRowsAtOnce = 65536;
+constexpr std::size_t kPcdRowsAtOnce = 65536;
 
-constexpr std::array<std::array<const char*, 3>, 3> kTriples{
+constexpr std::array<std::array<const char*, 3>, 3> kPcdTriples{
     {{"x", "y", "z"}, {"x_origin", "y_origin", "z_origin"}, {"normal_x", "normal_y", "normal_z"}}};
 constexpr std::size_t kDirections = 2;  ///< from this triple on: only turned
 
@@ -34,12 +34,12 @@ struct Moved {
 
 std::vector<Moved> moved_fields(const PcdHeader& header) {
   std::vector<Moved> all;
-  for (std::size_t t = 0; t < kTriples.size(); ++t) {
+  for (std::size_t t = 0; t < kPcdTriples.size(); ++t) {
     Moved moved{{}, t >= kDirections};
     bool whole = true;
     for (std::size_t k = 0; k < 3; ++k) {
       const auto found = std::find_if(header.fields.begin(), header.fields.end(), [&](const PcdField& field) {
-        return field.name == kTriples[t][k] && field.count == 1;
+        return field.name == kPcdTriples[t][k] && field.count == 1;
       });
       whole = whole && found != header.fields.end();
       moved.field[k] = static_cast<std::size_t>(found - header.fields.begin());
@@ -190,7 +190,7 @@ TransformedCloud transform_pcd(const NamedBytes& input, const Rigid3& target_fro
   if (text) {
     // Reading all rows proves the file before anything is written.
     const auto stream = open_pcd(input.bytes, input.name)->read(0);
-    while (stream->next(kRowsAtOnce)) {
+    while (stream->next(kPcdRowsAtOnce)) {
     }
   }
   const PcdBody body = text ? PcdBody{} : open_pcd_body(input.bytes, header, input.name);
@@ -201,8 +201,8 @@ TransformedCloud transform_pcd(const NamedBytes& input, const Rigid3& target_fro
     file.write(mover.moved(input.bytes.substr(header.body), false, input.name));
   } else {
     const Records records(header, body, moved, input.name);
-    for (std::size_t begin = 0; begin < records.size(); begin += kRowsAtOnce)
-      file.write(records.rows(begin, std::min(records.size(), begin + kRowsAtOnce), target_from_source));
+    for (std::size_t begin = 0; begin < records.size(); begin += kPcdRowsAtOnce)
+      file.write(records.rows(begin, std::min(records.size(), begin + kPcdRowsAtOnce), target_from_source));
   }
   file.commit();
   return result;

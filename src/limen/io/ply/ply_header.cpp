@@ -21,7 +21,7 @@ namespace {
 constexpr std::size_t kLongestHeader = std::size_t{1} << 20U;
 constexpr std::size_t kMostProperties = 10000;
 
-using Tokens = std::vector<std::string_view>;
+using PlyTokens = std::vector<std::string_view>;
 
 [[noreturn]] void bad_header(const std::string& what, std::size_t line, const std::string& name) {
   throw Error(what, fmt::format("{}, line {}", name, line),
@@ -45,8 +45,8 @@ std::optional<Scalar> scalar_named(std::string_view name) {
 }
 
 /// One header line being read.
-struct Line {
-  Tokens tokens;
+struct PlyLine {
+  PlyTokens tokens;
   std::size_t number;
   const std::string& name;
 
@@ -58,7 +58,7 @@ struct Line {
   }
 };
 
-PlyEncoding encoding_of(const Line& line) {
+PlyEncoding encoding_of(const PlyLine& line) {
   if (line.tokens.size() >= 2) {
     if (line.tokens[1] == "ascii") return PlyEncoding::ascii;
     if (line.tokens[1] == "binary_little_endian") return PlyEncoding::little_endian;
@@ -67,14 +67,14 @@ PlyEncoding encoding_of(const Line& line) {
   line.fail("unknown PLY format (known: ascii, binary_little_endian, binary_big_endian)");
 }
 
-PlyElement element_of(const Line& line) {
+PlyElement element_of(const PlyLine& line) {
   const std::optional<std::size_t> count =
       line.tokens.size() == 3 ? parse_count(line.tokens[2]) : std::nullopt;
   if (!count) line.fail("an element needs a name and a count");
   return {std::string(line.tokens[1]), *count, {}};
 }
 
-PlyProperty property_of(const Line& line) {
+PlyProperty property_of(const PlyLine& line) {
   if (line.tokens.size() == 5 && line.tokens[1] == "list") {
     const Scalar count_type = line.scalar(2);
     if (!is_integer(count_type)) line.fail("the count of a list must be a whole number");
@@ -85,7 +85,7 @@ PlyProperty property_of(const Line& line) {
 }
 
 /// The last three tokens as numbers.
-std::optional<Vector3d> last_three(const Tokens& tokens) {
+std::optional<Vector3d> last_three(const PlyTokens& tokens) {
   if (tokens.size() < 5) return {};  // comment, topic, three numbers
   Vector3d x;
   for (int k = 0; k < 3; ++k) {
@@ -97,13 +97,13 @@ std::optional<Vector3d> last_three(const Tokens& tokens) {
 }
 
 /// The first word of a comment without a colon or an equals sign behind it.
-std::string topic_of(const Tokens& tokens) {
+std::string topic_of(const PlyTokens& tokens) {
   std::string word = tokens.size() < 2 ? "" : lower_case(tokens[1]);
   while (!word.empty() && (word.back() == ':' || word.back() == '=')) word.pop_back();
   return word;
 }
 
-std::optional<Vector3d> offset_in_comment(const Tokens& tokens) {
+std::optional<Vector3d> offset_in_comment(const PlyTokens& tokens) {
   static constexpr std::array<std::string_view, 5> kTopics{"offset", "pivot", "shift", "global_shift",
                                                            "translation"};
   if (std::find(kTopics.begin(), kTopics.end(), topic_of(tokens)) == kTopics.end()) return {};
@@ -111,7 +111,7 @@ std::optional<Vector3d> offset_in_comment(const Tokens& tokens) {
 }
 
 /// Takes what a comment says about the frame; `tokens` begin with the word "comment" or "obj_info".
-void read_comment(const Tokens& tokens, PlyHeader& header) {
+void read_comment(const PlyTokens& tokens, PlyHeader& header) {
   if (topic_of(tokens) == "scanner_position") {
     header.centre = last_three(tokens);
     header.centre_unknown = !header.centre;
@@ -124,7 +124,7 @@ void read_comment(const Tokens& tokens, PlyHeader& header) {
 }
 
 /// Takes one line; returns true at end_header.
-bool read_line(const Line& line, PlyHeader& header) {
+bool read_line(const PlyLine& line, PlyHeader& header) {
   const std::string_view word = line.tokens.empty() ? std::string_view{} : line.tokens[0];
   if (word == "end_header") return true;
   if (word == "format") {
@@ -186,7 +186,7 @@ PlyHeader parse_ply_header(std::string_view bytes, const std::string& name) {
     const TextLine text = first_line(head.substr(header.body));
     header.body += text.bytes;
     header.lines.emplace_back(text.text);
-    const Line line{split_tokens(text.text), header.lines.size(), name};
+    const PlyLine line{split_tokens(text.text), header.lines.size(), name};
     if (line.number == 1) {
       if (line.tokens.size() != 1 || line.tokens[0] != "ply")
         line.fail("a PLY file begins with the line \"ply\"");
@@ -201,7 +201,7 @@ PlyHeader parse_ply_header(std::string_view bytes, const std::string& name) {
 }
 
 std::optional<Vector3d> offset_in_line(std::string_view header_line) {
-  const Tokens tokens = split_tokens(header_line);
+  const PlyTokens tokens = split_tokens(header_line);
   if (tokens.empty() || (tokens[0] != "comment" && tokens[0] != "obj_info")) return {};
   return offset_in_comment(tokens);
 }

@@ -24,8 +24,8 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "numbers are copied as they are in memory");
 
-constexpr std::size_t kPiece = 16384;
-constexpr std::size_t kStrip = 512;
+constexpr std::size_t kRowsPerWrite = 16384;
+constexpr std::size_t kWrittenStrip = 512;
 
 const char* ply_name(Scalar type) {
   static constexpr const char* kNames[] = {"char", "uchar", "short",  "ushort", "int",
@@ -57,10 +57,10 @@ struct Target {
 
 template <typename Value>
 void put_numbers(const RecordTable& table, const Field& field, RowRange rows, const Target& to) {
-  double strip[kStrip];
+  double strip[kWrittenStrip];
   char* at = to.first;
-  for (std::size_t begin = rows.begin; begin < rows.end; begin += kStrip) {
-    const std::size_t end = std::min(rows.end, begin + kStrip);
+  for (std::size_t begin = rows.begin; begin < rows.end; begin += kWrittenStrip) {
+    const std::size_t end = std::min(rows.end, begin + kWrittenStrip);
     load_numbers(table, field, {begin, end}, strip);
     for (std::size_t i = begin; i < end; ++i, at += to.stride) {
       const auto value = converted<Value>(strip[i - begin]);
@@ -103,15 +103,7 @@ void put_column(const RecordTable& table, const Field& field, Scalar type, RowRa
   }
 }
 
-/// One line, whatever stood in it.
-std::string one_line(std::string text) {
-  for (char& c : text) {
-    if (c == '\n' || c == '\r' || c == '\0') c = ' ';
-  }
-  return text;
-}
-
-std::string word(std::string name) {
+std::string property_word(std::string name) {
   for (char& c : name) {
     if (c == ' ' || c == '\t' || c == '\n' || c == '\r') c = '_';
   }
@@ -136,7 +128,7 @@ std::string header_of(const CloudPlan& plan, std::uint64_t points) {
   for (const std::string& crs : plan.georeference) text += "comment crs " + one_line(crs) + "\n";
   text += fmt::format("comment {}\nelement vertex {}\n", room, count);
   for (const ColumnPlan& column : plan.columns)
-    text += fmt::format("property {} {}\n", ply_name(column.type), word(column.name));
+    text += fmt::format("property {} {}\n", ply_name(column.type), property_word(column.name));
   return text + "end_header\n";
 }
 
@@ -148,7 +140,7 @@ class PlyWriter : public CloudWriter {
   }
 
   void write(const RecordTable& rows) override {
-    constexpr std::size_t kRowsAtOnce = 16 * kPiece;
+    constexpr std::size_t kRowsAtOnce = 16 * kRowsPerWrite;
     for (std::size_t begin = 0; begin < rows.rows; begin += kRowsAtOnce)
       write_rows(rows, {begin, std::min(rows.rows, begin + kRowsAtOnce)});
     points_ += rows.rows;
@@ -164,7 +156,7 @@ class PlyWriter : public CloudWriter {
   void write_rows(const RecordTable& table, RowRange rows) {
     const std::size_t count = rows.end - rows.begin;
     bytes_.resize(count * record_bytes_);
-    parallel_for(count, kPiece, [&](std::size_t begin, std::size_t end) {
+    parallel_for(count, kRowsPerWrite, [&](std::size_t begin, std::size_t end) {
       std::size_t at = begin * record_bytes_;
       for (std::size_t k = 0; k < plan_.columns.size(); ++k) {
         const Scalar type = plan_.columns[k].type;

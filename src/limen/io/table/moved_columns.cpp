@@ -13,21 +13,21 @@
 namespace limen {
 namespace {
 
-constexpr std::size_t kPiece = 32768;
-constexpr std::size_t kStrip = 1024;
+constexpr std::size_t kMovedPerPiece = 32768;
+constexpr std::size_t kMovedStrip = 1024;
 
 /// Three columns that change together.
-struct Triple {
+struct NamedTriple {
   std::array<const char*, 3> names;
   bool direction;  ///< turns only
 };
-constexpr std::array<Triple, 4> kTriples{{{{"x", "y", "z"}, false},
-                                          {{"x_origin", "y_origin", "z_origin"}, false},
-                                          {{"nx", "ny", "nz"}, true},
-                                          {{"normal_x", "normal_y", "normal_z"}, true}}};
+constexpr std::array<NamedTriple, 4> kMovedTriples{{{{"x", "y", "z"}, false},
+                                                    {{"x_origin", "y_origin", "z_origin"}, false},
+                                                    {{"nx", "ny", "nz"}, true},
+                                                    {{"normal_x", "normal_y", "normal_z"}, true}}};
 
-std::optional<Triple> triple_with(const RecordTable& table, const std::string& name) {
-  for (const Triple& triple : kTriples) {
+std::optional<NamedTriple> triple_with(const RecordTable& table, const std::string& name) {
+  for (const NamedTriple& triple : kMovedTriples) {
     if (std::find(triple.names.begin(), triple.names.end(), name) == triple.names.end()) continue;
     const bool whole = std::all_of(triple.names.begin(), triple.names.end(),
                                    [&](const char* one) { return table.find({one}) != nullptr; });
@@ -36,13 +36,13 @@ std::optional<Triple> triple_with(const RecordTable& table, const std::string& n
   return {};
 }
 
-std::vector<double> moved_numbers(const RecordTable& table, const Triple& triple, const Rigid3& motion) {
+std::vector<double> moved_numbers(const RecordTable& table, const NamedTriple& triple, const Rigid3& motion) {
   std::vector<double> numbers(3 * table.rows);
   const Vector3d shift = triple.direction ? Vector3d::Zero() : motion.translation;
   const bool turned = !motion.rotation.isIdentity(0.0);
-  parallel_for(table.rows, kPiece, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t at = begin; at < end; at += kStrip) {
-      const RowRange rows{at, std::min(end, at + kStrip)};
+  parallel_for(table.rows, kMovedPerPiece, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t at = begin; at < end; at += kMovedStrip) {
+      const RowRange rows{at, std::min(end, at + kMovedStrip)};
       for (std::size_t k = 0; k < 3; ++k)
         load_numbers(table, *table.find({triple.names[k]}), rows, numbers.data() + 3 * at + k, 3);
       for (std::size_t i = rows.begin; i < rows.end; ++i) {
@@ -77,7 +77,7 @@ void ColumnMover::add(const std::string& name) {
     return std::find_if(memory_->moved.begin(), memory_->moved.end(),
                         [&](const auto& column) { return column.first == name; });
   };
-  const std::optional<Triple> triple = triple_with(source_, name);
+  const std::optional<NamedTriple> triple = triple_with(source_, name);
   if (triple && find_moved() == memory_->moved.end()) {
     memory_->triples.push_back(moved_numbers(source_, *triple, motion_));
     for (std::size_t k = 0; k < 3; ++k)

@@ -43,7 +43,7 @@ double load_one(const char* bytes) {
 }
 
 /// Source and destination of one loop over a column.
-struct Strip {
+struct NumberStrip {
   const char* from;
   std::size_t from_stride;
   std::size_t count;
@@ -52,7 +52,7 @@ struct Strip {
 };
 
 template <typename Value>
-void load_strip(const Strip& strip, bool swapped) {
+void load_strip(const NumberStrip& strip, bool swapped) {
   const char* from = strip.from;
   double* to = strip.to;
   if (swapped) {
@@ -64,7 +64,7 @@ void load_strip(const Strip& strip, bool swapped) {
   }
 }
 
-void keep_bits(const Strip& strip, BitRange bits) {
+void keep_bits(const NumberStrip& strip, BitRange bits) {
   const std::uint64_t mask = bits.count >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << bits.count) - 1;
   for (std::size_t i = 0; i < strip.count; ++i) {
     double& number = strip.to[i * strip.to_stride];
@@ -141,8 +141,8 @@ RecordTable table_of_numbers(std::shared_ptr<const std::vector<double>> numbers,
 
 void load_numbers(const RecordTable& table, const Field& field, RowRange rows, double* out,
                   std::size_t out_stride) {
-  const Strip strip{field.data + rows.begin * field.stride, field.stride, rows.end - rows.begin, out,
-                    out_stride};
+  const NumberStrip strip{field.data + rows.begin * field.stride, field.stride, rows.end - rows.begin, out,
+                          out_stride};
   with_type(field.type, [&](auto value) { load_strip<decltype(value)>(strip, table.swapped); });
   if (field.bits.count != 0) keep_bits(strip, field.bits);
   if (field.scale != 1.0 || field.offset != 0.0) {

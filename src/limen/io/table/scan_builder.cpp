@@ -21,8 +21,8 @@ namespace limen {
 namespace {
 
 /// Rows per piece of parallel work, and per strip of a column that stays in the cache.
-constexpr std::size_t kPiece = 65536;
-constexpr std::size_t kStrip = 1024;
+constexpr std::size_t kScannedPerPiece = 65536;
+constexpr std::size_t kScannedStrip = 1024;
 /// No coordinate on Earth is larger (geocentric ones reach 6.4e6 m).
 constexpr double kLargestM = 1e8;
 constexpr double kLargestExtentM = 1e6;
@@ -30,12 +30,12 @@ constexpr double kLargestExtentM = 1e6;
 constexpr double kNearZeroM = 1e4;
 constexpr double kRoundM = 100.0;
 
-using Triple = std::array<const Field*, 3>;
+using FieldTriple = std::array<const Field*, 3>;
 
-Triple find_triple(const RecordTable& table, const std::string& suffix) {
+FieldTriple find_triple(const RecordTable& table, const std::string& suffix) {
   return {table.find({"x" + suffix}), table.find({"y" + suffix}), table.find({"z" + suffix})};
 }
-bool whole(const Triple& triple) {
+bool whole(const FieldTriple& triple) {
   return triple[0] != nullptr && triple[1] != nullptr && triple[2] != nullptr;
 }
 
@@ -45,8 +45,8 @@ std::string names_of(const RecordTable& table) {
   return names.empty() ? "none" : names;
 }
 
-Triple require_coordinates(const RecordTable& table, const TableFacts& facts) {
-  const Triple triple = find_triple(table, "");
+FieldTriple require_coordinates(const RecordTable& table, const TableFacts& facts) {
+  const FieldTriple triple = find_triple(table, "");
   for (std::size_t k = 0; k < 3; ++k) {
     if (triple[k] != nullptr) continue;
     throw Error(fmt::format("the points have no {} (their values are: {})", "xyz"[k], names_of(table)),
@@ -74,7 +74,7 @@ TableFacts in_metres(TableFacts facts) {
 }
 
 /// The first usable point, world; the search is short unless the file begins with missing returns.
-Vector3d first_usable(const RecordTable& table, const Triple& fields, const TableFacts& facts) {
+Vector3d first_usable(const RecordTable& table, const FieldTriple& fields, const TableFacts& facts) {
   for (std::size_t i = 0; i < table.rows; ++i) {
     Vector3d x;
     for (std::size_t k = 0; k < 3; ++k) load_numbers(table, *fields[k], {i, i + 1}, &x[static_cast<int>(k)]);
@@ -86,14 +86,14 @@ Vector3d first_usable(const RecordTable& table, const Triple& fields, const Tabl
 }
 
 /// Loads three columns as points, brought from the file's unit to metres and moved.
-std::vector<Vector3d> load_points(const RecordTable& table, const Triple& fields, const Rigid3& motion,
+std::vector<Vector3d> load_points(const RecordTable& table, const FieldTriple& fields, const Rigid3& motion,
                                   double metres_per_unit) {
   const bool scaled = metres_per_unit != 1.0;
   const bool turned = !motion.rotation.isIdentity(0.0);
   std::vector<Vector3d> points(table.rows);
-  parallel_for(table.rows, kPiece, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t strip = begin; strip < end; strip += kStrip) {
-      const RowRange rows{strip, std::min(end, strip + kStrip)};
+  parallel_for(table.rows, kScannedPerPiece, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t strip = begin; strip < end; strip += kScannedStrip) {
+      const RowRange rows{strip, std::min(end, strip + kScannedStrip)};
       for (int k = 0; k < 3; ++k)
         load_numbers(table, *fields[static_cast<std::size_t>(k)], rows, points[strip].data() + k, 3);
       for (std::size_t i = rows.begin; i < rows.end; ++i) {
@@ -110,10 +110,10 @@ template <typename Value>
 std::vector<Value> load_column(const RecordTable& table, const Field* field) {
   if (field == nullptr) return {};
   std::vector<Value> column(table.rows);
-  parallel_for(table.rows, kPiece, [&](std::size_t begin, std::size_t end) {
-    std::array<double, kStrip> strip{};
-    for (std::size_t at = begin; at < end; at += kStrip) {
-      const std::size_t stop = std::min(end, at + kStrip);
+  parallel_for(table.rows, kScannedPerPiece, [&](std::size_t begin, std::size_t end) {
+    std::array<double, kScannedStrip> strip{};
+    for (std::size_t at = begin; at < end; at += kScannedStrip) {
+      const std::size_t stop = std::min(end, at + kScannedStrip);
       load_numbers(table, *field, {at, stop}, strip.data());
       for (std::size_t i = at; i < stop; ++i) column[i] = static_cast<Value>(strip[i - at]);
     }
@@ -189,12 +189,12 @@ double colour_scale(const ColourRange& range) {
   return range.largest <= 1.0 && range.fractions ? 255.0 : 1.0;
 }
 
-std::vector<std::uint8_t> interleaved(const RecordTable& table, const Triple& fields, double scale) {
+std::vector<std::uint8_t> interleaved(const RecordTable& table, const FieldTriple& fields, double scale) {
   std::vector<std::uint8_t> colours(3 * table.rows);
-  parallel_for(table.rows, kPiece, [&](std::size_t begin, std::size_t end) {
-    std::array<double, kStrip> strip{};
-    for (std::size_t at = begin; at < end; at += kStrip) {
-      const std::size_t stop = std::min(end, at + kStrip);
+  parallel_for(table.rows, kScannedPerPiece, [&](std::size_t begin, std::size_t end) {
+    std::array<double, kScannedStrip> strip{};
+    for (std::size_t at = begin; at < end; at += kScannedStrip) {
+      const std::size_t stop = std::min(end, at + kScannedStrip);
       for (std::size_t k = 0; k < 3; ++k) {
         load_numbers(table, *fields[k], {at, stop}, strip.data());
         for (std::size_t i = at; i < stop; ++i) {
@@ -208,8 +208,9 @@ std::vector<std::uint8_t> interleaved(const RecordTable& table, const Triple& fi
 }
 
 std::vector<std::uint8_t> load_colours(const RecordTable& table) {
-  const Triple fields{table.find({"red", "r", "diffuse_red"}), table.find({"green", "g", "diffuse_green"}),
-                      table.find({"blue", "b", "diffuse_blue"})};
+  const FieldTriple fields{table.find({"red", "r", "diffuse_red"}),
+                           table.find({"green", "g", "diffuse_green"}),
+                           table.find({"blue", "b", "diffuse_blue"})};
   if (!whole(fields)) return {};
   ColourRange all;
   for (const Field* field : fields) {
@@ -222,7 +223,7 @@ std::vector<std::uint8_t> load_colours(const RecordTable& table) {
 
 /// Optical centres the file gives per point: one where all are the same, none where it gives none.
 std::vector<Vector3d> load_centres(const RecordTable& table, const Rigid3& motion, double metres_per_unit) {
-  const Triple fields = find_triple(table, "_origin");
+  const FieldTriple fields = find_triple(table, "_origin");
   if (!whole(fields)) return {};
   std::vector<Vector3d> centres = load_points(table, fields, motion, metres_per_unit);
   const bool same =
@@ -231,7 +232,7 @@ std::vector<Vector3d> load_centres(const RecordTable& table, const Rigid3& motio
   return centres;
 }
 
-Scan load_scan(const RecordTable& table, const TableFacts& facts, const Triple& fields) {
+Scan load_scan(const RecordTable& table, const TableFacts& facts, const FieldTriple& fields) {
   Scan scan;
   scan.name = facts.name;
   scan.local_origin = round_origin_near(first_usable(table, fields, facts));
@@ -255,7 +256,7 @@ std::pair<Scan, std::size_t> without_unusable(Scan scan) {
     return seen_from && usable(scan.points[i] + scan.local_origin);
   };
   const std::size_t bad = parallel_reduce(
-      scan.size(), kPiece, std::size_t{0},
+      scan.size(), kScannedPerPiece, std::size_t{0},
       [&](std::size_t begin, std::size_t end) {
         std::size_t count = 0;
         for (std::size_t i = begin; i < end; ++i) count += good(i) ? 0U : 1U;
@@ -329,7 +330,7 @@ ScanFile with_scan(ScanFile file, const RecordTable& table, const TableFacts& sa
   if (options.metres_per_unit) facts.metres_per_unit = options.metres_per_unit;
   facts = in_metres(std::move(facts));
   file.metres_per_unit = unit_of(facts);
-  const Triple fields = require_coordinates(table, facts);
+  const FieldTriple fields = require_coordinates(table, facts);
   if (table.rows == 0) throw Error("there are no points", facts.name, "check how the file was exported");
   if (table.rows > 0xFFFFFFFFU) {
     throw Error(fmt::format("{} points are too many for one scan", table.rows), facts.name,

@@ -20,7 +20,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr const char* kRemedy =
+constexpr const char* kSegmentsRemedy =
     "give the JSON of limen segments or limen openings, or a text of p, O and L lines";
 constexpr std::size_t kMostBytes = 512U << 20U;
 constexpr double kUnseenM = 1.0;  // a side of an opening known no better was not seen
@@ -128,9 +128,9 @@ std::vector<Segment> from_text(std::string_view text, Form form, const std::stri
 Vector3d point_of(const json& list, const std::string& where) {
   const bool good = list.is_array() && list.size() == 3 &&
                     std::all_of(list.begin(), list.end(), [](const json& x) { return x.is_number(); });
-  if (!good) throw Error("is not a point of three numbers", where, kRemedy);
+  if (!good) throw Error("is not a point of three numbers", where, kSegmentsRemedy);
   const Vector3d point(list[0].get<double>(), list[1].get<double>(), list[2].get<double>());
-  if (!point.allFinite()) throw Error("is not finite", where, kRemedy);
+  if (!point.allFinite()) throw Error("is not finite", where, kSegmentsRemedy);
   return point;
 }
 
@@ -139,7 +139,7 @@ std::vector<Segment> from_segment_list(const json& list, const std::string& name
   for (std::size_t i = 0; i < list.size(); ++i) {
     const std::string where = fmt::format("{}: segments[{}]", name, i);
     if (!list[i].is_object() || !list[i].contains("a") || !list[i].contains("b"))
-      throw Error("has no ends a and b", where, kRemedy);
+      throw Error("has no ends a and b", where, kSegmentsRemedy);
     segments.push_back({point_of(list[i]["a"], where + ".a"), point_of(list[i]["b"], where + ".b")});
   }
   return segments;
@@ -151,7 +151,8 @@ std::vector<Segment> from_openings(const json& list, const std::string& name) {
   for (std::size_t i = 0; i < list.size(); ++i) {
     const std::string where = fmt::format("{}: openings[{}]", name, i);
     const json corners = list[i].is_object() ? list[i].value("corners", json()) : json();
-    if (!corners.is_array() || corners.size() != 4) throw Error("has no four corners", where, kRemedy);
+    if (!corners.is_array() || corners.size() != 4)
+      throw Error("has no four corners", where, kSegmentsRemedy);
     const json sigmas = list[i].value("edge_sigma_m", json());
     for (std::size_t k = 0; k < 4; ++k) {
       const bool unseen = sigmas.is_array() && sigmas.size() == 4 && sigmas[k].is_number() &&
@@ -178,10 +179,10 @@ std::vector<Segment> from_json(std::string_view text, const std::string& name) {
   for (const char* key : {"segments", "openings"}) {
     if (!object.contains(key)) continue;
     const json& list = object[key];
-    if (!list.is_array()) throw Error(fmt::format("{} is not a list", key), name, kRemedy);
+    if (!list.is_array()) throw Error(fmt::format("{} is not a list", key), name, kSegmentsRemedy);
     return std::string_view(key) == "segments" ? from_segment_list(list, name) : from_openings(list, name);
   }
-  throw Error("has neither segments nor openings", name, kRemedy);
+  throw Error("has neither segments nor openings", name, kSegmentsRemedy);
 }
 
 /// About a whole-metre origin near the middle, those of no length left out.
@@ -218,15 +219,16 @@ bool is_segment_file(const std::filesystem::path& path) {
 SegmentSet read_segments(const std::filesystem::path& path) {
   const MappedFile file(path);
   const std::string name = path.string();
-  if (file.bytes().size() > kMostBytes) throw Error("is far too large for a list of segments", name, kRemedy);
+  if (file.bytes().size() > kMostBytes)
+    throw Error("is far too large for a list of segments", name, kSegmentsRemedy);
   const Form form = form_of(file.bytes());
-  if (form == Form::unknown) throw Error("holds no segments that limen can read", name, kRemedy);
+  if (form == Form::unknown) throw Error("holds no segments that limen can read", name, kSegmentsRemedy);
   const std::vector<Segment> segments = with_whole_inputs([&] {
     return form == Form::keyed ? from_json(file.bytes(), name) : from_text(file.bytes(), form, name);
   });
   SegmentSet set;
   if (!segments.empty()) set = localised(segments);
-  if (set.segments.empty()) throw Error("holds no segment", name, kRemedy);
+  if (set.segments.empty()) throw Error("holds no segment", name, kSegmentsRemedy);
   return set;
 }
 

@@ -18,21 +18,14 @@
 namespace limen {
 namespace {
 
-constexpr std::size_t kRowsAtOnce = 8192;
+constexpr std::size_t kLinesAtOnce = 8192;
 
 /// A name as one word of a line.
-std::string word(std::string name) {
+std::string column_word(std::string name) {
   for (char& c : name) {
     if (c == ' ' || c == '\t' || c == '\n' || c == '\r' || c == ',' || c == ';') c = '_';
   }
   return name.empty() ? "_" : name;
-}
-
-std::string one_line(std::string text) {
-  for (char& c : text) {
-    if (c == '\n' || c == '\r' || c == '\0') c = ' ';
-  }
-  return text;
 }
 
 bool is_coordinate(const std::string& name) {
@@ -49,8 +42,8 @@ class TextWriter : public CloudWriter {
   }
 
   void write(const RecordTable& rows) override {
-    for (std::size_t begin = 0; begin < rows.rows; begin += kRowsAtOnce)
-      write_rows(rows, {begin, std::min(rows.rows, begin + kRowsAtOnce)});
+    for (std::size_t begin = 0; begin < rows.rows; begin += kLinesAtOnce)
+      write_rows(rows, {begin, std::min(rows.rows, begin + kLinesAtOnce)});
     points_ += rows.rows;
   }
 
@@ -71,7 +64,7 @@ class TextWriter : public CloudWriter {
     std::string names;
     for (const ColumnPlan& column : plan_.columns) {
       if (!names.empty()) names += separator();
-      names += word(column.name);
+      names += column_word(column.name);
     }
     return text + (commas_ ? "" : "// ") + names + "\n";
   }

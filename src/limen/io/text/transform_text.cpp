@@ -25,10 +25,10 @@ constexpr std::size_t kPiecesAtOnce = 16;
 constexpr int kLeastDecimals = 4;
 constexpr int kMostDecimals = 15;
 
-constexpr std::array<std::array<const char*, 3>, 4> kTriples{{{"x", "y", "z"},
-                                                              {"x_origin", "y_origin", "z_origin"},
-                                                              {"nx", "ny", "nz"},
-                                                              {"normal_x", "normal_y", "normal_z"}}};
+constexpr std::array<std::array<const char*, 3>, 4> kTextTriples{{{"x", "y", "z"},
+                                                                  {"x_origin", "y_origin", "z_origin"},
+                                                                  {"nx", "ny", "nz"},
+                                                                  {"normal_x", "normal_y", "normal_z"}}};
 
 std::string written_like(double value, std::string_view old) {
   const std::size_t point = old.find('.');
@@ -53,11 +53,11 @@ std::string_view take_piece(std::string_view& text) {
 }  // namespace
 
 LineMover::LineMover(const std::vector<std::string>& names, const Rigid3& motion) : motion_(motion) {
-  for (std::size_t t = 0; t < kTriples.size(); ++t) {
+  for (std::size_t t = 0; t < kTextTriples.size(); ++t) {
     Triple triple{{}, t >= 2};
     bool whole = true;
     for (std::size_t k = 0; k < 3; ++k) {
-      const auto found = std::find(names.begin(), names.end(), kTriples[t][k]);
+      const auto found = std::find(names.begin(), names.end(), kTextTriples[t][k]);
       whole = whole && found != names.end();
       triple.column[k] = static_cast<std::size_t>(found - names.begin());
     }

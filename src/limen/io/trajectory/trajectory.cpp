@@ -22,7 +22,7 @@ constexpr double kWeekS = 604800.0;
 constexpr double kAdjustmentS = 1e9;
 /// No scanner reaches farther.
 constexpr double kFarthestM = 2e4;
-constexpr std::size_t kPiece = 16384;
+constexpr std::size_t kTimesPerPiece = 16384;
 
 struct TimeRange {
   double first = 0.0;
@@ -120,7 +120,7 @@ FollowedScan with_trajectory(const Scan& scan, const Trajectory& trajectory) {
   FollowedScan followed{scan, 0};
   std::vector<char> known(scan.size(), 0);
   followed.scan.centres.assign(scan.size(), Vector3d::Zero());
-  parallel_for(scan.size(), kPiece, [&](std::size_t begin, std::size_t end) {
+  parallel_for(scan.size(), kTimesPerPiece, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const std::optional<Vector3d> centre = trajectory.position(scan.times_s[i]);
       if (!centre) continue;

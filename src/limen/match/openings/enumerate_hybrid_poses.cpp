@@ -19,7 +19,7 @@ namespace {
 constexpr double kSamePoseM = 0.01;  // opening poses that differ along their normal only are one
 constexpr double kSamePoseRad = 0.002;
 constexpr double kMinRevealSigmaM = 0.003;
-constexpr std::size_t kGrain = 8;
+constexpr std::size_t kDrawsPerPiece = 8;
 
 /// Up in a scan's frame: z where gravity is known, else what its openings say.
 Vector3d up_of(const Features& features, bool gravity_known) {
@@ -255,7 +255,7 @@ std::vector<HybridPose> enumerate_hybrid_poses(const Features& source, const Fea
   const HybridEnumerator enumerator(source, target, all);
   const std::vector<OpeningPose> openings = apart_within_the_wall(opening_poses);
   std::vector<std::vector<HybridPose>> found(openings.size());
-  parallel_for(openings.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(openings.size(), kDrawsPerPiece, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) found[i] = enumerator.poses_of(openings[i]);
   });
   std::vector<HybridPose> opposite;

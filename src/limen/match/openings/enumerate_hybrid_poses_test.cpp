@@ -16,8 +16,8 @@ namespace {
 
 using synthetic::add_wall;
 using synthetic::rectangle;
-using synthetic::Sight;
 using synthetic::Wall;
+using synthetic::WallSight;
 using synthetic::Window;
 
 /// A street front with a room behind its first three windows; what a scan outside and one inside have of it.

@@ -22,10 +22,10 @@ constexpr double kCornerHeightM = 0.25;   // by which two walls' shifts may diff
 constexpr std::size_t kCornerThicknesses = 4;  // kept per shift
 constexpr std::size_t kCornerShifts = 150;     // of every other pair of walls that are asked
 constexpr double kFrameM = 0.07;               // a window's frame between its two reveals
-constexpr std::size_t kGrain = 16;
+constexpr std::size_t kCandidatesPerPiece = 16;
 
 /// A shift in a wall that brings openings together, with what speaks for it.
-struct Shift {
+struct VotedShift {
   Vector2d shift = Vector2d::Zero();
   double vote = 0.0;  // metres of edges, less what they miss
 };
@@ -36,11 +36,11 @@ struct WallPair {
   std::size_t target = 0;
   Matrix3d rotation = Matrix3d::Identity();
   Vector3d start = Vector3d::Zero();  // translation for shift 0 and thickness 0
-  std::vector<Shift> shifts;          // most votes first
+  std::vector<VotedShift> shifts;     // most votes first
 };
 
 /// A pose to be fitted, and the thicknesses it shall be listed with where nothing holds that.
-struct Candidate {
+struct OpeningCandidate {
   const WallPair* pair = nullptr;
   Rigid3 target_from_source;
   double vote = 0.0;
@@ -48,10 +48,10 @@ struct Candidate {
   std::vector<double> others_m;
 };
 
-class Enumerator {
+class OpeningEnumerator {
  public:
-  Enumerator(const Features& source, const Features& target, const OpeningMatcher& matcher, WallSides sides,
-             const OpeningPoseOptions& options)
+  OpeningEnumerator(const Features& source, const Features& target, const OpeningMatcher& matcher,
+                    WallSides sides, const OpeningPoseOptions& options)
       : source_(source), target_(target), matcher_(matcher), sides_(sides), options_(options) {}
 
   [[nodiscard]] std::vector<OpeningPose> run() const {
@@ -62,9 +62,9 @@ class Enumerator {
     parallel_for(pairs.size(), 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) pairs[i].shifts = shifts_of(pairs[i]);
     });
-    const std::vector<Candidate> candidates = candidates_of(pairs);
+    const std::vector<OpeningCandidate> candidates = candidates_of(pairs);
     std::vector<std::vector<OpeningPose>> poses(candidates.size());
-    parallel_for(candidates.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    parallel_for(candidates.size(), kCandidatesPerPiece, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) poses[i] = fitted(candidates[i]);
     });
     std::vector<OpeningPose> all;
@@ -112,9 +112,9 @@ class Enumerator {
     return sum.cwiseQuotient(weight);
   }
 
-  [[nodiscard]] Shift voted(const std::vector<WallRectangle>& rectangles, std::size_t wall,
-                            const Vector2d& shift) const {
-    Shift result{shift, 0.0};
+  [[nodiscard]] VotedShift voted(const std::vector<WallRectangle>& rectangles, std::size_t wall,
+                                 const Vector2d& shift) const {
+    VotedShift result{shift, 0.0};
     const double tolerance = options_.edge_tolerance_m + 2.0 * kEdgeNoiseM;
     for (const auto& [i, j] : matcher_.pairs_at(rectangles, wall, shift)) {
       const auto fit = matcher_.fit_of(rectangles[i], shift, matcher_.target()[wall].rectangles[j]);
@@ -123,21 +123,22 @@ class Enumerator {
     return result;
   }
 
-  [[nodiscard]] std::vector<Shift> shifts_of(const WallPair& pair) const {
+  [[nodiscard]] std::vector<VotedShift> shifts_of(const WallPair& pair) const {
     const std::vector<WallRectangle> rectangles = as_seen_in_target(pair.source);
-    std::vector<Shift> all;
+    std::vector<VotedShift> all;
     for (const WallRectangle& a : rectangles) {
       for (const WallRectangle& b : matcher_.target()[pair.target].rectangles) {
         if (!matcher_.alike(a, b)) continue;
-        const Shift shift = voted(rectangles, pair.target, shift_between(a, b));
+        const VotedShift shift = voted(rectangles, pair.target, shift_between(a, b));
         if (shift.vote > 0.0) all.push_back(shift);
       }
     }
-    std::stable_sort(all.begin(), all.end(), [](const Shift& x, const Shift& y) { return x.vote > y.vote; });
-    std::vector<Shift> kept;
-    for (const Shift& shift : all) {
+    std::stable_sort(all.begin(), all.end(),
+                     [](const VotedShift& x, const VotedShift& y) { return x.vote > y.vote; });
+    std::vector<VotedShift> kept;
+    for (const VotedShift& shift : all) {
       if (static_cast<int>(kept.size()) == options_.max_poses) break;
-      const bool known = std::any_of(kept.begin(), kept.end(), [&](const Shift& other) {
+      const bool known = std::any_of(kept.begin(), kept.end(), [&](const VotedShift& other) {
         return (other.shift - shift.shift).cwiseAbs().maxCoeff() < options_.same_shift_m;
       });
       if (!known) kept.push_back(shift);
@@ -152,11 +153,12 @@ class Enumerator {
   }
 
   /// Thicknesses of the pair's wall that bring openings of two other walls together too, most votes first.
-  [[nodiscard]] std::vector<Shift> corner_thicknesses(const std::vector<WallPair>& pairs,
-                                                      const WallPair& pair, const Vector2d& shift) const {
+  [[nodiscard]] std::vector<VotedShift> corner_thicknesses(const std::vector<WallPair>& pairs,
+                                                           const WallPair& pair,
+                                                           const Vector2d& shift) const {
     const Rigid3 base = pose_at(pair, shift, 0.0);
     const Vector3d normal = matcher_.target()[pair.target].normal();
-    std::vector<Shift> found;  // x: thickness
+    std::vector<VotedShift> found;  // x: thickness
     for (const WallPair& other : pairs) {
       const WallWithOpenings& wall = matcher_.target()[other.target];
       const double along = wall.frame.u.dot(normal);
@@ -166,7 +168,7 @@ class Enumerator {
       const Vector3d off = base * middle - wall.frame.origin;
       const std::size_t count = std::min(other.shifts.size(), kCornerShifts);
       for (std::size_t i = 0; i < count; ++i) {
-        const Shift& s = other.shifts[i];
+        const VotedShift& s = other.shifts[i];
         if (std::abs(wall.frame.v.dot(off) - s.shift.y()) > kCornerHeightM) continue;
         const double thickness = (wall.frame.u.dot(off) - s.shift.x()) / along;
         const double others = -wall.normal().dot(off - thickness * normal);
@@ -176,13 +178,13 @@ class Enumerator {
     return strongest(std::move(found));
   }
 
-  [[nodiscard]] std::vector<Shift> strongest(std::vector<Shift> found) const {
+  [[nodiscard]] std::vector<VotedShift> strongest(std::vector<VotedShift> found) const {
     std::stable_sort(found.begin(), found.end(),
-                     [](const Shift& x, const Shift& y) { return x.vote > y.vote; });
-    std::vector<Shift> kept;
-    for (const Shift& one : found) {
+                     [](const VotedShift& x, const VotedShift& y) { return x.vote > y.vote; });
+    std::vector<VotedShift> kept;
+    for (const VotedShift& one : found) {
       if (kept.size() == kCornerThicknesses) break;
-      const bool known = std::any_of(kept.begin(), kept.end(), [&](const Shift& other) {
+      const bool known = std::any_of(kept.begin(), kept.end(), [&](const VotedShift& other) {
         return std::abs(other.shift.x() - one.shift.x()) < options_.same_thickness_m;
       });
       if (!known) kept.push_back(one);
@@ -220,11 +222,11 @@ class Enumerator {
     return list;
   }
 
-  [[nodiscard]] std::vector<Candidate> candidates_of(const std::vector<WallPair>& pairs) const {
-    std::vector<Candidate> all;
+  [[nodiscard]] std::vector<OpeningCandidate> candidates_of(const std::vector<WallPair>& pairs) const {
+    std::vector<OpeningCandidate> all;
     for (const WallPair& pair : pairs) {
-      for (const Shift& shift : pair.shifts) {
-        for (const Shift& corner : corner_thicknesses(pairs, pair, shift.shift)) {
+      for (const VotedShift& shift : pair.shifts) {
+        for (const VotedShift& corner : corner_thicknesses(pairs, pair, shift.shift)) {
           const double thickness = corner.shift.x();
           all.push_back(
               {&pair, pose_at(pair, shift.shift, thickness), shift.vote + corner.vote, thickness, {}});
@@ -241,9 +243,9 @@ class Enumerator {
 
   /// Most votes first, every wall of the source having its turn: a wall with one window must not be crowded
   /// out by the twenty of the house across the street, some of which fit everywhere.
-  [[nodiscard]] std::vector<Candidate> shared_out(std::vector<Candidate> all) const {
+  [[nodiscard]] std::vector<OpeningCandidate> shared_out(std::vector<OpeningCandidate> all) const {
     std::stable_sort(all.begin(), all.end(),
-                     [](const Candidate& x, const Candidate& y) { return x.vote > y.vote; });
+                     [](const OpeningCandidate& x, const OpeningCandidate& y) { return x.vote > y.vote; });
     std::vector<std::size_t> turns(matcher_.source().size(), 0);
     std::vector<std::pair<std::size_t, std::size_t>> order;  // turn, place
     for (std::size_t i = 0; i < all.size(); ++i) order.emplace_back(turns[all[i].pair->source]++, i);
@@ -251,13 +253,13 @@ class Enumerator {
     if (order.size() > static_cast<std::size_t>(options_.max_poses)) {
       order.resize(static_cast<std::size_t>(options_.max_poses));
     }
-    std::vector<Candidate> kept;
+    std::vector<OpeningCandidate> kept;
     for (const auto& [turn, place] : order) kept.push_back(std::move(all[place]));
     return kept;
   }
 
   /// A candidate, fitted; with every thickness where nothing holds it.
-  [[nodiscard]] std::vector<OpeningPose> fitted(const Candidate& candidate) const {
+  [[nodiscard]] std::vector<OpeningPose> fitted(const OpeningCandidate& candidate) const {
     const auto fit = matcher_.fit(candidate.target_from_source, sides_);
     if (!fit) return {};
     std::vector<OpeningPose> poses = {described(candidate, *fit)};
@@ -291,7 +293,8 @@ class Enumerator {
     return one.pairs.size() > other.pairs.size();
   }
 
-  [[nodiscard]] OpeningPose described(const Candidate& candidate, const OpeningMatcher::Fit& fit) const {
+  [[nodiscard]] OpeningPose described(const OpeningCandidate& candidate,
+                                      const OpeningMatcher::Fit& fit) const {
     OpeningPose pose;
     pose.target_from_source = fit.target_from_source;
     pose.sides = sides_;
@@ -372,7 +375,7 @@ std::vector<OpeningPose> enumerate_opening_poses(const Features& source, const F
     const OpeningMatcher matcher(std::move(walls), target_walls, options);
     for (const WallSides sides : {WallSides::opposite, WallSides::same}) {
       if (!(sides == WallSides::opposite ? options.try_opposite : options.try_same)) continue;
-      const auto some = Enumerator(source, target, matcher, sides, options).run();
+      const auto some = OpeningEnumerator(source, target, matcher, sides, options).run();
       all.insert(all.end(), some.begin(), some.end());
     }
   }

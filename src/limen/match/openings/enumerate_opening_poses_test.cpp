@@ -16,8 +16,8 @@ namespace limen {
 namespace {
 
 using synthetic::add_wall;
-using synthetic::Sight;
 using synthetic::Wall;
+using synthetic::WallSight;
 using synthetic::Window;
 
 Wall south_wall(std::vector<Window> windows, double width = 14.0) {
@@ -28,7 +28,7 @@ Wall east_wall(std::vector<Window> windows) {
   return {Vector3d(14.0, 0.0, 0.0), Vector3d::UnitY(), 10.0, 9.0, std::move(windows)};
 }
 
-Features seen(const std::vector<Wall>& walls, const Sight& sight) {
+Features seen(const std::vector<Wall>& walls, const WallSight& sight) {
   Features features;
   for (const Wall& wall : walls) add_wall(features, wall, sight);
   return features;
@@ -94,7 +94,7 @@ TEST(EnumerateOpeningPoses, TheNormalIsAnAssumptionUntilASecondWallHoldsIt) {
   const Rigid3 truth = yaw_and_shift(-60.0, Vector3d(3.0, 5.0, -1.0));
   const Features outside = synthetic::moved(
       truth, seen({south_wall(all), east_wall(synthetic::grid(3, 2, 3.1))}, {false, 0.4, 0.004, 0.0, 3}));
-  const Sight in{true, 0.37, 0.004, 0.0, 4};
+  const WallSight in{true, 0.37, 0.004, 0.0, 4};
   const Features one_wall = seen({south_wall({all[3]})}, in);
   const auto free = enumerate_opening_poses(one_wall, outside);
   EXPECT_FALSE(free.empty());

@@ -66,12 +66,12 @@ Edges edges_of(const Opening& opening, const Rectangle& own, const Rectangle& ax
 }
 
 /// What two opposed edges say of the shift, each off by the shift plus or minus its part of the splay.
-struct Shift {
+struct EdgeShift {
   double value = 0.0;
   double sigma = kNothing;
 };
 
-Shift shift_of(const Edge& low, const Edge& high, double low_splay, double high_splay) {
+EdgeShift shift_of(const Edge& low, const Edge& high, double low_splay, double high_splay) {
   // Least squares over (shift, splay), the splay near zero a priori: with both edges it cancels.
   Matrix3d normal = Matrix3d::Zero();
   Vector3d right = Vector3d::Zero();
@@ -136,7 +136,7 @@ bool bent_all_round(const Ring& ring) {
 }
 
 /// The better known one: edges and outline come from the same samples, so that they do not add up.
-Shift surer(const Shift& a, const Shift& b) {
+EdgeShift surer(const EdgeShift& a, const EdgeShift& b) {
   return a.sigma <= b.sigma ? a : b;
 }
 
@@ -201,10 +201,10 @@ std::optional<OpeningMatch> match_of(const Opening& source, const Rectangle& a, 
     if (bent_all_round(outlines.target)) off = {};
   }
   const double splay = match.opposite ? kSplaySigmaM : kFloorSigmaM;
-  Shift across = shift_of(off[3], off[1], splay, splay);
+  EdgeShift across = shift_of(off[3], off[1], splay, splay);
   // The splay of the sides is a hint at that of the head.
   const double widening = both(3, 1) ? 0.5 * std::abs(a.width - b.width) : splay;
-  Shift up = shift_of(off[0], off[2], kSillSigmaM, kSillSigmaM + std::min(splay, widening));
+  EdgeShift up = shift_of(off[0], off[2], kSillSigmaM, kSillSigmaM + std::min(splay, widening));
   if (outlines.both()) {
     across = surer(across, {outlines.fit->shift_m.x(), outlines.fit->sigma_m.x()});
     up = surer(up, {outlines.fit->shift_m.y(), outlines.fit->sigma_m.y()});

@@ -13,16 +13,16 @@
 namespace limen {
 namespace {
 
-constexpr double kEdgeNoiseM = 0.01;     // least deviation between two detections of one edge
-constexpr double kRobustM = 0.05;        // edges farther off than this lose weight
-constexpr double kMaxToleranceM = 0.35;  // for edges that are known badly
+constexpr double kLeastEdgeNoiseM = 0.01;  // least deviation between two detections of one edge
+constexpr double kRobustM = 0.05;          // edges farther off than this lose weight
+constexpr double kMaxToleranceM = 0.35;    // for edges that are known badly
 constexpr double kMinInformation = 0.003;
 constexpr double kGravityWeight = 1e4;  // against metres of edges: gravity is exact
 constexpr int kFitRounds = 3;
 constexpr double kAcrossCosine = 0.9999;  // a shift along the normal moves nothing within such a wall
 
 double variance(const WallRectangle& a, const WallRectangle& b, std::size_t k) {
-  return a.sigma_m[k] * a.sigma_m[k] + b.sigma_m[k] * b.sigma_m[k] + kEdgeNoiseM * kEdgeNoiseM;
+  return a.sigma_m[k] * a.sigma_m[k] + b.sigma_m[k] * b.sigma_m[k] + kLeastEdgeNoiseM * kLeastEdgeNoiseM;
 }
 
 bool both_see(const WallRectangle& a, const WallRectangle& b, std::size_t k) {

@@ -7,9 +7,8 @@
 #include <numbers>
 #include <numeric>
 
-#include <Eigen/Eigenvalues>
-
 #include "limen/base/error.h"
+#include "limen/geometry/linear.h"
 
 namespace limen {
 namespace {
@@ -82,8 +81,8 @@ class Clustering {
     cluster.weight += weight(plane);
     scatter_[k] += weight(plane) * normal(plane) * normal(plane).transpose();
     if (cluster.weight <= 0.0) return;
-    const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(scatter_[k]);
-    const Vector3d main = solver.eigenvectors().col(2);
+    const Spectrum3 spectrum = spectrum_of(scatter_[k]);
+    const Vector3d main = spectrum.vectors.col(2);
     cluster.direction = main.dot(normal(cluster.planes.front())) < 0.0 ? Vector3d(-main) : main;
   }
 
@@ -98,12 +97,12 @@ class Clustering {
       }
       cluster.spread_rad = cluster.weight > 0.0 ? std::sqrt(sum / cluster.weight) : 0.0;
     }
-    const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(directions);
+    const Spectrum3 spectrum = spectrum_of(directions);
     for (int i = 0; i < 3; ++i) {
-      if (solver.eigenvalues()[i] > options_.min_independence) {
+      if (spectrum.values[i] > options_.min_independence) {
         ++result_.independent;
       } else {
-        result_.open.emplace_back(solver.eigenvectors().col(i));
+        result_.open.emplace_back(spectrum.vectors.col(i));
       }
     }
   }

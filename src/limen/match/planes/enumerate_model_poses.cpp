@@ -23,9 +23,9 @@ namespace {
 
 using Box = Eigen::AlignedBox3d;
 
-constexpr double kMinDeterminant = 0.2;  // three normals flatter than this do not fix a shift
-constexpr double kOtherDirection = 0.8;  // cosine: normals nearer than this are no two directions
-constexpr double kMeetM = 0.15;          // boxes of planes that meet may miss each other by this
+constexpr double kMinNormalDeterminant = 0.2;  // three normals flatter than this do not fix a shift
+constexpr double kOtherDirection = 0.8;        // cosine: normals nearer than this are no two directions
+constexpr double kMeetM = 0.15;                // boxes of planes that meet may miss each other by this
 // Along each axis two planes that are one share this much of the shorter: what a scan saw of a wall lies in
 // that wall, or holds it where a scan saw several pieces as one; corners that only touch show nothing.
 constexpr double kCommonShare = 0.3;
@@ -231,9 +231,9 @@ class Ballot {
   std::vector<std::uint32_t> slots_;  // a power of two, half of them free at least
 };
 
-class Enumerator {
+class ModelEnumerator {
  public:
-  Enumerator(const Features& scan, const Features& model, const ModelPoseOptions& options)
+  ModelEnumerator(const Features& scan, const Features& model, const ModelPoseOptions& options)
       : options_(options) {
     for (const PlanarPolygon& polygon : model.planes) {
       if (polygon.area_m2 >= options.min_plane_m2) model_.push_back(boxed(polygon, Matrix3d::Identity()));
@@ -294,7 +294,7 @@ class Enumerator {
     for (std::size_t k = 0; k < known; ++k) {
       if (std::abs(normal.dot(directions[k])) > kOtherDirection) return false;
     }
-    return known < 2 || std::abs(directions[0].cross(directions[1]).dot(normal)) > kMinDeterminant;
+    return known < 2 || std::abs(directions[0].cross(directions[1]).dot(normal)) > kMinNormalDeterminant;
   }
 
   void add_partners(Anchor& anchor) const {
@@ -344,7 +344,7 @@ class Enumerator {
       for (const std::uint32_t i : c.partners.crossing(base, along, stretch)) {
         const Partner& r = c.anchor->partners[i];
         const double slope = r.plane->normal.dot(along);
-        if (std::abs(slope) < kMinDeterminant) continue;
+        if (std::abs(slope) < kMinNormalDeterminant) continue;
         const double s = (r.shift - r.plane->normal.dot(base)) / slope;
         if (s < stretch.from || s > stretch.to) continue;
         const Vector3d shift = base + s * along;
@@ -381,7 +381,7 @@ std::vector<PoseCandidate> enumerate_model_poses(const Features& scan, const Fea
   turning.direction_deg = options.direction_deg;
   const std::vector<Matrix3d> rotations = enumerate_rotations(
       axis_directions(scan, options.direction_deg), axis_directions(model, options.direction_deg), turning);
-  const Enumerator enumerator(scan, model, options);
+  const ModelEnumerator enumerator(scan, model, options);
   // Some rotations at a time: of a large building each has a hundred thousand shifts.
   constexpr std::size_t kAtOnce = 16;
   const auto most = static_cast<std::size_t>(options.max_poses);

@@ -6,9 +6,8 @@
 #include <cmath>
 #include <numeric>
 
-#include <Eigen/Eigenvalues>
-
 #include "limen/base/angles.h"
+#include "limen/geometry/linear.h"
 
 namespace limen {
 namespace {
@@ -82,8 +81,8 @@ std::vector<AxisDirection> axis_directions(const Features& features, double clus
     Cluster& cluster = near != clusters.end() ? *near : clusters.emplace_back();
     cluster.outer += plane.area_m2 * plane.plane.normal * plane.plane.normal.transpose();
     cluster.axis.weight += plane.area_m2;
-    const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(cluster.outer);
-    cluster.axis.direction = solver.eigenvectors().col(2);
+    const Spectrum3 spectrum = spectrum_of(cluster.outer);
+    cluster.axis.direction = spectrum.vectors.col(2);
   }
   std::stable_sort(clusters.begin(), clusters.end(),
                    [](const Cluster& a, const Cluster& b) { return a.axis.weight > b.axis.weight; });

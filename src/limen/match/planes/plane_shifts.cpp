@@ -12,7 +12,7 @@
 namespace limen {
 namespace {
 
-constexpr std::size_t kMaxParts = 6;  // of one plane, largest first
+constexpr std::size_t kMaxPartsShifted = 6;  // of one plane, largest first
 
 /// A frame of the plane whose v is `up` as far as the plane allows.
 PlaneFrame upright_frame(const Plane& plane, const Vector3d& near, const Vector3d& up) {
@@ -49,7 +49,7 @@ PlaneShiftFinder::BoxedPlane PlaneShiftFinder::boxed(const PlanarPolygon& polygo
   result.oriented = polygon.oriented;
   result.frame = upright_frame(polygon.plane, polygon.centroid, up);
   for (const Polygon& part : polygon.parts) {
-    if (result.boxes.size() == kMaxParts) break;
+    if (result.boxes.size() == kMaxPartsShifted) break;
     Box box{Vector2d::Constant(1e300), Vector2d::Constant(-1e300), 1.0};
     for (const Vector2d& p : part.outer) {
       const Vector2d q = result.frame.to_plane(polygon.frame.to_space(p));

@@ -13,7 +13,7 @@ namespace limen {
 namespace {
 
 /// A polygon of the other scan that may meet the one in question, and the weight of equation 10.
-struct Candidate {
+struct NearPolygon {
   std::size_t index = 0;
   double weight = 0.0;
 };
@@ -23,16 +23,16 @@ bool may_agree(const PlanarPolygon& a, const PlanarPolygon& b, const AgreementOp
   return !(options.same_side && a.oriented && b.oriented) || a.plane.normal.dot(b.plane.normal) > 0.0;
 }
 
-std::vector<Candidate> candidates(const PlanarPolygon& a, const std::vector<PlanarPolygon>& scan,
-                                  const AgreementOptions& options) {
-  std::vector<Candidate> found;
+std::vector<NearPolygon> candidates(const PlanarPolygon& a, const std::vector<PlanarPolygon>& scan,
+                                    const AgreementOptions& options) {
+  std::vector<NearPolygon> found;
   for (std::size_t i = 0; i < scan.size(); ++i) {
     if (!may_agree(a, scan[i], options)) continue;
     const double ratio = bisector_distance(a, scan[i]) / options.max_distance_m;
     if (ratio < 1.0) found.push_back({i, 1.0 - ratio * ratio});
   }
   std::stable_sort(found.begin(), found.end(),
-                   [](const Candidate& p, const Candidate& q) { return p.weight > q.weight; });
+                   [](const NearPolygon& p, const NearPolygon& q) { return p.weight > q.weight; });
   return found;
 }
 
@@ -95,13 +95,13 @@ void AgreementOptions::check() const {
 double agreement(const PlanarPolygon& a, const std::vector<PlanarPolygon>& scan,
                  const AgreementOptions& options) {
   options.check();
-  const std::vector<Candidate> found = candidates(a, scan, options);
+  const std::vector<NearPolygon> found = candidates(a, scan, options);
   if (found.size() == 1) return found[0].weight * overlap_area(a, scan[found[0].index]);
   // Heaviest first: each adds only what the ones before it left open.
   std::vector<Polygon> covered;
   double covered_m2 = 0.0;
   double total = 0.0;
-  for (const Candidate& candidate : found) {
+  for (const NearPolygon& candidate : found) {
     const ProjectedPair pair = project_to_bisector(a, scan[candidate.index]);
     const std::vector<Polygon> common = intersection(pair.a, pair.b);
     if (common.empty()) continue;

@@ -25,7 +25,7 @@ constexpr double kFinestPieceM = 0.2;
 constexpr std::size_t kCoarseStride = 4;  // pieces left out in the first look
 constexpr std::size_t kSecondLook = 4;    // of so many shifts one is looked at with all pieces
 constexpr std::size_t kLeastSecondLook = 60;
-constexpr int kFitRounds = 2;
+constexpr int kSegmentFitRounds = 2;
 
 /// Directions of a set, heaviest first.
 std::vector<AxisDirection> directions_of(const std::vector<Segment>& segments, double direction_deg) {
@@ -55,10 +55,10 @@ double gain(const SegmentSample& piece, const SegmentHit& hit, double reach_m) {
 }
 
 /// The enumeration with the smaller set as source.
-class Enumerator {
+class SegmentEnumerator {
  public:
-  Enumerator(const std::vector<Segment>& source, const std::vector<Segment>& target,
-             const SegmentPoseOptions& options)
+  SegmentEnumerator(const std::vector<Segment>& source, const std::vector<Segment>& target,
+                    const SegmentPoseOptions& options)
       : options_(options),
         source_(source, static_cast<std::size_t>(options.max_segments)),
         target_(target, kMostTargets),
@@ -170,7 +170,7 @@ class Enumerator {
   /// IV-D (13 and 14): the shift that lays all pieces that meet on their lines, and its support.
   void fit(const std::vector<SegmentSample>& turned, PoseCandidate& pose) const {
     Vector3d& shift = pose.target_from_source.translation;
-    for (int round = 0; round < kFitRounds; ++round) {
+    for (int round = 0; round < kSegmentFitRounds; ++round) {
       std::vector<LinePair> pairs;
       for (const SegmentSample& piece : turned) {
         const SegmentHit hit = lookup_.nearest(piece.at + shift, piece.direction);
@@ -252,8 +252,8 @@ std::vector<PoseCandidate> enumerate_segment_poses(const std::vector<Segment>& s
                                                    const SegmentPoseOptions& options) {
   options.check();
   if (source.empty() || target.empty()) return {};
-  if (total_length(source) <= total_length(target)) return Enumerator(source, target, options).run();
-  std::vector<PoseCandidate> poses = Enumerator(target, source, options).run();
+  if (total_length(source) <= total_length(target)) return SegmentEnumerator(source, target, options).run();
+  std::vector<PoseCandidate> poses = SegmentEnumerator(target, source, options).run();
   for (PoseCandidate& pose : poses) pose.target_from_source = inverse(pose.target_from_source);
   return poses;
 }

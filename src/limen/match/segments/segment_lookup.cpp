@@ -8,9 +8,9 @@
 namespace limen {
 namespace {
 
-constexpr double kNoLengthM = 1e-6;
+constexpr double kNoSegmentM = 1e-6;
 constexpr double kLeastCellM = 0.5;
-constexpr double kMostCells = 4e6;
+constexpr double kMostLookupCells = 4e6;
 
 /// Whether a segment comes within `reach` of a box: exact enough (the box is widened, its corners are not
 /// rounded off).
@@ -39,7 +39,7 @@ SegmentLookup::SegmentLookup(const std::vector<Segment>& segments, double reach_
   low_ = Vector3d::Constant(1e300);
   for (std::size_t i = 0; i < segments.size(); ++i) {
     const double length = segments[i].length();
-    if (!(length > kNoLengthM)) continue;
+    if (!(length > kNoSegmentM)) continue;
     segments_[i] = {0.5 * (segments[i].a + segments[i].b), segments[i].direction(), 0.5 * length};
     low_ = low_.cwiseMin(segments[i].a.cwiseMin(segments[i].b));
     high = high.cwiseMax(segments[i].a.cwiseMax(segments[i].b));
@@ -50,7 +50,7 @@ SegmentLookup::SegmentLookup(const std::vector<Segment>& segments, double reach_
   const Vector3d extent = high - low_;
   const auto count = [&](Eigen::Index k) { return std::floor(extent[k] / cell_m_) + 1.0; };
   cell_m_ = std::max(kLeastCellM, 2.0 * reach_m_);
-  while (count(0) * count(1) * count(2) > kMostCells) cell_m_ *= 1.25;
+  while (count(0) * count(1) * count(2) > kMostLookupCells) cell_m_ *= 1.25;
   for (Eigen::Index k = 0; k < 3; ++k) size_[k] = static_cast<std::int64_t>(count(k));
   begin_.assign(static_cast<std::size_t>(size_[0] * size_[1] * size_[2]) + 1, 0);
   for (const Prepared& s : segments_) visit_cells(s, [&](std::size_t cell) { ++begin_[cell + 1]; });
@@ -124,7 +124,7 @@ std::vector<SegmentSample> sample_segments(const std::vector<Segment>& segments,
   std::vector<SegmentSample> samples;
   for (std::size_t i = 0; i < segments.size(); ++i) {
     const double length = segments[i].length();
-    if (!(length > kNoLengthM)) continue;
+    if (!(length > kNoSegmentM)) continue;
     const Vector3d direction = segments[i].direction();
     const double count = std::max(1.0, std::ceil(length / step_m));
     for (double k = 0.5; k < count; k += 1.0) {

@@ -15,12 +15,12 @@
 namespace limen {
 namespace {
 
-constexpr double kMostCells = 1500.0;    // along one component of the shift
-constexpr double kLongestVoteM = 3.0;    // a long edge is one coincidence, however long
-constexpr double kMaxCosine = 0.9;       // two directions nearer to each other do not span a plane
-constexpr double kMinDeterminant = 0.2;  // nor do three flatter ones span space
-constexpr double kPeakShare = 0.6;       // of the best completion of a place: less is not tried
-constexpr std::size_t kCompletions = 8;  // of one place
+constexpr double kMostVoteCells = 1500.0;       // along one component of the shift
+constexpr double kLongestVoteM = 3.0;           // a long edge is one coincidence, however long
+constexpr double kMaxCosine = 0.9;              // two directions nearer to each other do not span a plane
+constexpr double kMinSegmentDeterminant = 0.2;  // nor do three flatter ones span space
+constexpr double kPeakShare = 0.6;              // of the best completion of a place: less is not tried
+constexpr std::size_t kCompletions = 8;         // of one place
 
 /// A segment in the coordinates of the basis.
 struct Placed {
@@ -111,7 +111,7 @@ class Voting {
       const Vector3d& d = family.direction;
       if (families_.size() == 1 && std::abs(d.dot(families_[0].direction)) > kMaxCosine) continue;
       if (families_.size() == 2 &&
-          std::abs(families_[0].direction.cross(families_[1].direction).dot(d)) < kMinDeterminant)
+          std::abs(families_[0].direction.cross(families_[1].direction).dot(d)) < kMinSegmentDeterminant)
         continue;
       families_.push_back(family);
     }
@@ -144,7 +144,7 @@ class Voting {
     }
     middle_shift_ = 0.5 * (low[1] + high[1] - low[0] - high[0]);
     const Vector3d range = high[1] - low[0] - (low[1] - high[0]);
-    cell_m_ = std::max(options_.cell_m, range.maxCoeff() / kMostCells);
+    cell_m_ = std::max(options_.cell_m, range.maxCoeff() / kMostVoteCells);
     low_shift_ = (low[1] - high[0]).array() - cell_m_;
     for (std::size_t k = 0; k < 3; ++k)
       count_[k] = static_cast<std::size_t>(range[static_cast<Eigen::Index>(k)] / cell_m_) + 4;

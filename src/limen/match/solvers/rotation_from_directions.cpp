@@ -4,10 +4,8 @@
 
 #include <cmath>
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/SVD>
-
 #include "limen/base/error.h"
+#include "limen/geometry/linear.h"
 
 namespace limen {
 namespace {
@@ -60,11 +58,11 @@ RotationFit rotation_from_directions(const std::vector<DirectionPair>& pairs, do
   if (!(weight > 0.0)) {
     throw Error("no pair of directions has a weight", "rotation from directions", "give at least one pair");
   }
-  const Eigen::JacobiSVD<Matrix3d> svd(correlation / weight, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const double sign = svd.matrixU().determinant() * svd.matrixV().determinant() < 0.0 ? -1.0 : 1.0;
+  const SingularValues3 svd = singular_values_of(correlation / weight);
+  const double sign = svd.left.determinant() * svd.right.determinant() < 0.0 ? -1.0 : 1.0;
   const Vector3d diagonal(1.0, 1.0, sign);
   RotationFit fit;
-  fit.rotation = svd.matrixU() * diagonal.asDiagonal() * svd.matrixV().transpose();
+  fit.rotation = svd.left * diagonal.asDiagonal() * svd.right.transpose();
   double sum = 0.0;
   for (const DirectionPair& pair : pairs) {
     const double angle = vector_angle(fit.rotation * pair.source, pair.target);
@@ -72,9 +70,9 @@ RotationFit rotation_from_directions(const std::vector<DirectionPair>& pairs, do
   }
   fit.rms_rad = std::sqrt(sum / weight);
   // Two target directions at an angle s leave about s^2 / 4 in the second eigenvalue of their scatter.
-  const Eigen::SelfAdjointEigenSolver<Matrix3d> spread(scatter / weight);
-  if (spread.eigenvalues()[1] < 0.25 * min_spread_rad * min_spread_rad) {
-    fit.free_axis = spread.eigenvectors().col(2);
+  const Spectrum3 spread = spectrum_of(Matrix3d(scatter / weight));
+  if (spread.values[1] < 0.25 * min_spread_rad * min_spread_rad) {
+    fit.free_axis = spread.vectors.col(2);
   }
   return fit;
 }

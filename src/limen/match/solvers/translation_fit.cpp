@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include <Eigen/Eigenvalues>
+#include "limen/geometry/linear.h"
 
 namespace limen {
 
@@ -15,10 +15,10 @@ TranslationFit solve_translation(const TranslationSums& sums, const Vector3d& st
     fit.unobserved = {Vector3d::UnitX(), Vector3d::UnitY(), Vector3d::UnitZ()};
     return fit;
   }
-  const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(sums.information / sums.weight);
-  const Vector3d& values = solver.eigenvalues();
+  const Spectrum3 spectrum = spectrum_of(Matrix3d(sums.information / sums.weight));
+  const Vector3d& values = spectrum.values;
   for (int i = 0; i < 3; ++i) {
-    const Vector3d direction = solver.eigenvectors().col(i);
+    const Vector3d direction = spectrum.vectors.col(i);
     if (values[i] <= min_information) {
       fit.unobserved.push_back(direction);
     } else {

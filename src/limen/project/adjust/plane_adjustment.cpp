@@ -5,28 +5,24 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
-#include <Eigen/SparseCholesky>
-
 #include "limen/base/progress.h"
+#include "limen/geometry/linear.h"
 
 namespace limen {
 namespace {
 
-constexpr int kSteps = 12;
-constexpr double kDone = 1e-9;
+constexpr int kPlaneSteps = 12;
+constexpr double kPlanesDone = 1e-9;
 constexpr double kMissed =
     9.0;  // mean squared deviations at which an observation has lost three quarters of its weight
-constexpr double kTiny = 1e-9;
+constexpr double kTinyInformation = 1e-9;
 
 /// F with F F^T = the weighted moments [p; 1][p; 1]^T, p in the node's frame.
 Eigen::Matrix4d factor_of(const PlaneObservation& observation) {
-  const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(observation.moments.covariance());
+  const Spectrum3 spectrum = spectrum_of(observation.moments.covariance());
   const double count = std::min(observation.moments.count, observation.most_points);
   Eigen::Matrix4d factor = Eigen::Matrix4d::Zero();
-  factor.topLeftCorner<3, 3>() =
-      solver.eigenvectors() * solver.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
+  factor.topLeftCorner<3, 3>() = spectrum.vectors * spectrum.values.cwiseMax(0.0).cwiseSqrt().asDiagonal();
   factor.topRightCorner<3, 1>() = observation.anchor + observation.moments.mean();
   factor(3, 3) = 1.0;
   return std::sqrt(count) / observation.sigma_m * factor;
@@ -34,9 +30,8 @@ Eigen::Matrix4d factor_of(const PlaneObservation& observation) {
 
 class JointSolver {
  public:
-  explicit JointSolver(const JointProblem& problem) : problem_(problem) {
-    for (const bool fixed : problem.fixed) place_.push_back(fixed ? -1 : size_++);
-    for (const PoseEdge& edge : problem.edges) information_.emplace_back(edge.pose.covariance.inverse());
+  explicit JointSolver(const JointProblem& problem) : problem_(problem), system_(problem.fixed) {
+    for (const PoseEdge& edge : problem.edges) information_.push_back(inverse_of(edge.pose.covariance));
     seen_by_.resize(static_cast<std::size_t>(problem.planes));
     for (std::size_t k = 0; k < problem.observations.size(); ++k)
       seen_by_[static_cast<std::size_t>(problem.observations[k].plane)].push_back(k);
@@ -62,18 +57,14 @@ class JointSolver {
   [[nodiscard]] const Rigid3& pose(int node) const {
     return solution_.frame_from_node[static_cast<std::size_t>(node)];
   }
-  [[nodiscard]] int place(int node) const { return place_[static_cast<std::size_t>(node)]; }
-  /// The first of the six unknowns of a place, and how many there are in all.
-  [[nodiscard]] static Eigen::Index unknown(int place) { return Eigen::Index{6} * place; }
-  [[nodiscard]] Eigen::Index unknowns() const { return unknown(size_); }
 
   void converge() {
-    if (size_ == 0) return;
-    for (int step = 0; step < kSteps; ++step) {
+    if (system_.empty()) return;
+    for (int step = 0; step < kPlaneSteps; ++step) {
       CancelScope::check();
       fit_planes();
       weigh();
-      if (move() < kDone) break;
+      if (move() < kPlanesDone) break;
     }
     fit_planes();
     weigh();
@@ -120,61 +111,24 @@ class JointSolver {
   }
 
   void build() {
-    entries_.clear();
-    right_ = Eigen::VectorXd::Zero(unknowns());
-    for (int k = 0; k < 6 * size_; ++k) entries_.emplace_back(k, k, kTiny);
-    for (std::size_t e = 0; e < problem_.edges.size(); ++e) add_edge(problem_.edges[e], information_[e]);
+    system_.clear();
+    for (std::size_t e = 0; e < problem_.edges.size(); ++e)
+      add_edge(problem_.edges[e], solution_.frame_from_node, information_[e], system_);
     for (std::size_t p = 0; p < seen_by_.size(); ++p) add_plane(p);
     for (const MarkedPoint& point : problem_.points) add_point(point);
-    Eigen::SparseMatrix<double> normal(unknowns(), unknowns());
-    normal.setFromTriplets(entries_.begin(), entries_.end());
-    solver_.compute(normal);
+    system_.factor();
   }
 
   double move() {
     build();
-    const Eigen::VectorXd delta = solver_.solve(right_);
-    if (!delta.allFinite()) return 0.0;
-    double largest = 0.0;
-    for (std::size_t i = 0; i < place_.size(); ++i) {
-      if (place_[i] < 0) continue;
-      const Vector6d d = delta.segment<6>(unknown(place_[i]));
-      Rigid3& node = solution_.frame_from_node[i];
-      node.rotation = nearest_rotation(rotation_exp(d.head<3>()) * node.rotation);
-      node.translation += d.tail<3>();
-      largest = std::max(largest, d.cwiseAbs().maxCoeff());
-    }
-    return largest;
-  }
-
-  void add_block(int row, int column, const Matrix6d& block) {
-    if (place(row) < 0 || place(column) < 0) return;
-    for (int i = 0; i < 6; ++i) {
-      for (int j = 0; j < 6; ++j)
-        entries_.emplace_back(6 * place(row) + i, 6 * place(column) + j, block(i, j));
-    }
-  }
-  void add_right(int row, const Vector6d& part) {
-    if (place(row) >= 0) right_.segment<6>(unknown(place(row))) += part;
-  }
-
-  void add_edge(const PoseEdge& edge, const Matrix6d& information) {
-    const EdgeResidual line = edge_residual(edge, pose(edge.source), pose(edge.target));
-    const Matrix6d of_source = line.by_source.transpose() * information;
-    const Matrix6d of_target = line.by_target.transpose() * information;
-    add_block(edge.source, edge.source, of_source * line.by_source);
-    add_block(edge.target, edge.target, of_target * line.by_target);
-    add_block(edge.source, edge.target, of_source * line.by_target);
-    add_block(edge.target, edge.source, of_target * line.by_source);
-    add_right(edge.source, -of_source * line.value);
-    add_right(edge.target, -of_target * line.value);
+    return system_.move(solution_.frame_from_node);
   }
 
   /// Adds what a plane says of the poses that see it, the plane itself eliminated.
   void add_plane(std::size_t p) {
     const std::vector<std::size_t>& seen = seen_by_[p];
     if (seen.size() < 2) return;
-    Matrix3d own = kTiny * Matrix3d::Identity();
+    Matrix3d own = kTinyInformation * Matrix3d::Identity();
     Vector3d own_right = Vector3d::Zero();
     std::vector<Wide> mixed;
     for (const std::size_t k : seen) {
@@ -184,16 +138,17 @@ class JointSolver {
       own += weight * residual.by_plane.transpose() * residual.by_plane;
       own_right -= weight * residual.by_plane.transpose() * residual.value;
       mixed.push_back(weight * residual.by_pose.transpose() * residual.by_plane);
-      add_block(observation.node, observation.node, weight * residual.by_pose.transpose() * residual.by_pose);
-      add_right(observation.node, -weight * residual.by_pose.transpose() * residual.value);
+      system_.add(observation.node, observation.node,
+                  weight * residual.by_pose.transpose() * residual.by_pose);
+      system_.add_right(observation.node, -weight * residual.by_pose.transpose() * residual.value);
     }
     const Matrix3d inverted = own.inverse();
     for (std::size_t i = 0; i < seen.size(); ++i) {
       const int node = problem_.observations[seen[i]].node;
       const Wide half = mixed[i] * inverted;
-      add_right(node, -half * own_right);
+      system_.add_right(node, -half * own_right);
       for (std::size_t j = 0; j < seen.size(); ++j)
-        add_block(node, problem_.observations[seen[j]].node, -half * mixed[j].transpose());
+        system_.add(node, problem_.observations[seen[j]].node, -half * mixed[j].transpose());
     }
   }
 
@@ -205,17 +160,17 @@ class JointSolver {
     for (std::size_t i = 0; i < point.sights.size(); ++i) {
       const int node = point.sights[i].node;
       const Wide half = terms.by_pose[i].transpose() * terms.weight[i];
-      add_block(node, node, half * terms.by_pose[i]);
-      add_right(node, -half * (terms.place[i] - terms.x));
+      system_.add(node, node, half * terms.by_pose[i]);
+      system_.add_right(node, -half * (terms.place[i] - terms.x));
       for (std::size_t j = 0; j < point.sights.size(); ++j)
-        add_block(node, point.sights[j].node, -half * inverted * terms.weight[j] * terms.by_pose[j]);
+        system_.add(node, point.sights[j].node, -half * inverted * terms.weight[j] * terms.by_pose[j]);
     }
   }
 
   void tell_factor() {
-    if (size_ == 0) return;
+    if (system_.empty()) return;
     double sum = 0.0;
-    double count = -6.0 * size_;
+    double count = -6.0 * system_.moving();
     for (std::size_t k = 0; k < problem_.observations.size(); ++k) {
       const PlaneObservation& seen = problem_.observations[k];
       const std::size_t plane = static_cast<std::size_t>(seen.plane);
@@ -230,50 +185,45 @@ class JointSolver {
   }
 
   void tell_covariance() {
-    solution_.covariance.assign(place_.size(), Matrix6d::Zero());
+    solution_.covariance.assign(problem_.fixed.size(), Matrix6d::Zero());
     for (const MarkedPoint& point : problem_.points) solution_.sight_covariance.push_back(of_sights(point));
-    if (size_ == 0) return;
+    if (system_.empty()) return;
     const double scale = problem_.points.empty() ? std::max(1.0, solution_.variance_factor) : 1.0;
-    for (std::size_t i = 0; i < place_.size(); ++i) {
+    for (std::size_t i = 0; i < problem_.fixed.size(); ++i) {
       CancelScope::check();
-      if (place_[i] < 0) continue;
-      Eigen::MatrixXd unit = Eigen::MatrixXd::Zero(unknowns(), 6);
-      unit.block<6, 6>(unknown(place_[i]), 0).setIdentity();
-      solution_.covariance[i] = scale * solver_.solve(unit).middleRows<6>(unknown(place_[i]));
+      const int node = static_cast<int>(i);
+      if (!system_.moves(node)) continue;
+      solution_.covariance[i] = scale * system_.block_of(system_.inverse_columns(node), node);
     }
   }
 
   [[nodiscard]] Eigen::MatrixXd of_sights(const MarkedPoint& point) const {
     const auto rows = static_cast<Eigen::Index>(3 * point.sights.size());
-    if (size_ == 0) return Eigen::MatrixXd::Zero(rows, rows);
+    if (system_.empty()) return Eigen::MatrixXd::Zero(rows, rows);
     const PointTerms terms = point_terms(point, solution_.frame_from_node);
-    Eigen::MatrixXd by_poses = Eigen::MatrixXd::Zero(unknowns(), rows);
+    Eigen::MatrixXd by_poses = Eigen::MatrixXd::Zero(system_.unknowns(), rows);
     for (std::size_t i = 0; i < point.sights.size(); ++i) {
-      const int at = place(point.sights[i].node);
-      if (at < 0) continue;
-      by_poses.block<6, 3>(unknown(at), static_cast<Eigen::Index>(3 * i)) = terms.by_pose[i].transpose();
+      if (!system_.moves(point.sights[i].node)) continue;
+      by_poses.block<6, 3>(system_.first_unknown(point.sights[i].node), static_cast<Eigen::Index>(3 * i)) =
+          terms.by_pose[i].transpose();
     }
-    return by_poses.transpose() * solver_.solve(by_poses);
+    return by_poses.transpose() * system_.solved(by_poses);
   }
 
   /// Weighted squared distances of an observation's points to the plane that fits them best.
   static double own_misfit(const PlaneObservation& seen) {
-    const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(seen.moments.covariance(), Eigen::EigenvaluesOnly);
-    return std::max(0.0, solver.eigenvalues()[0]) * std::min(seen.moments.count, seen.most_points) /
+    const Spectrum3 spectrum = spectrum_of(seen.moments.covariance());
+    return std::max(0.0, spectrum.values[0]) * std::min(seen.moments.count, seen.most_points) /
            (seen.sigma_m * seen.sigma_m);
   }
 
   const JointProblem& problem_;
   JointSolution solution_;
-  std::vector<int> place_;
-  int size_ = 0;
   double plane_share_ = 1.0;  // of the weight that planes are given
   std::vector<Matrix6d> information_;
   std::vector<std::vector<std::size_t>> seen_by_;
   std::vector<AnchoredPlane> planes_;
-  std::vector<Eigen::Triplet<double>> entries_;
-  Eigen::VectorXd right_;
-  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver_;
+  PoseSystem system_;
 };
 
 }  // namespace

@@ -20,7 +20,7 @@
 namespace limen {
 namespace {
 
-constexpr const char* kRemedy =
+constexpr const char* kControlRemedy =
     "the first line names the columns: name,x,y,z and sigma, or sigma_x,sigma_y,sigma_z, or cov_xx,cov_xy,"
     "cov_xz,cov_yy,cov_yz,cov_zz; metres";
 
@@ -36,7 +36,7 @@ class Row {
 
   [[nodiscard]] const std::string& text(const std::string& column) const {
     const auto found = columns_.find(column);
-    if (found == columns_.end()) throw Error("there is no column " + column, where_, kRemedy);
+    if (found == columns_.end()) throw Error("there is no column " + column, where_, kControlRemedy);
     if (found->second >= cells_.size() || cells_[found->second].empty())
       throw Error("there is nothing in the column " + column, where_, "fill it, or take the line out");
     return cells_[found->second];
@@ -47,7 +47,7 @@ class Row {
     if (mark_ == ';') std::replace(cell.begin(), cell.end(), ',', '.');
     const std::optional<double> value = parse_number(cell);
     if (!value || !std::isfinite(*value))
-      throw Error(fmt::format("\"{}\" in the column {} is no number", cell, column), where_, kRemedy);
+      throw Error(fmt::format("\"{}\" in the column {} is no number", cell, column), where_, kControlRemedy);
     return *value;
   }
 
@@ -137,12 +137,12 @@ void read_table(const std::filesystem::path& path, const Visit& visit) {
       mark = mark_of(text);
       const std::vector<std::string> names = cells_of(text, mark);
       for (std::size_t k = 0; k < names.size(); ++k) columns.emplace(lower_case(names[k]), k);
-      if (columns.count("name") == 0) throw Error("no column is called name", where, kRemedy);
+      if (columns.count("name") == 0) throw Error("no column is called name", where, kControlRemedy);
       continue;
     }
     visit(Row(columns, cells_of(text, mark), mark, where));
   }
-  if (columns.empty()) throw Error("holds no line", path.string(), kRemedy);
+  if (columns.empty()) throw Error("holds no line", path.string(), kControlRemedy);
 }
 
 }  // namespace

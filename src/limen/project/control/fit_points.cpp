@@ -14,9 +14,9 @@ namespace limen {
 namespace {
 
 constexpr std::size_t kMostTriples = 600;
-constexpr double kLeastRootM = 0.05;  // of a triple: the second largest spread, else it is nearly a line
-constexpr double kFixedRad = 0.01;    // a turn that is known less well is open
-constexpr double kFixedM = 0.1;       // a shift likewise
+constexpr double kLeastRootM = 0.05;   // of a triple: the second largest spread, else it is nearly a line
+constexpr double kFitFixedRad = 0.01;  // a turn that is known less well is open
+constexpr double kFitFixedM = 0.1;     // a shift likewise
 constexpr int kSteps = 8;
 
 Matrix3d skew(const Vector3d& v) {
@@ -71,8 +71,8 @@ class PointFitter {
     fit.taken = kept.taken;
     fit.pose = {kept.pose, kept.covariance, kept.centre, 0.0};
     const Vector6d variances = kept.covariance.diagonal();
-    const bool turns = variances.head<3>().maxCoeff() < kFixedRad * kFixedRad;
-    if (turns && variances.tail<3>().maxCoeff() < kFixedM * kFixedM) fit.state = PointFitState::fixed;
+    const bool turns = variances.head<3>().maxCoeff() < kFitFixedRad * kFitFixedRad;
+    if (turns && variances.tail<3>().maxCoeff() < kFitFixedM * kFitFixedM) fit.state = PointFitState::fixed;
     return fit;
   }
 

@@ -13,8 +13,8 @@
 namespace limen {
 namespace {
 
-constexpr double kFixedRad = 0.01;  // the best-held node; a datum that is known less well is none
-constexpr double kFixedM = 0.1;
+constexpr double kSettledFixedRad = 0.01;  // the best-held node; a datum that is known less well is none
+constexpr double kSettledFixedM = 0.1;
 constexpr int kKnown = -1;  // in place of a sight's number: the coordinates
 
 /// One observation that may be wrong.
@@ -74,7 +74,7 @@ class Settler {
         least_shift = std::min(least_shift, variances.tail<3>().maxCoeff());
       }
     }
-    return least_turn < kFixedRad * kFixedRad && least_shift < kFixedM * kFixedM;
+    return least_turn < kSettledFixedRad * kSettledFixedRad && least_shift < kSettledFixedM * kSettledFixedM;
   }
 
   [[nodiscard]] std::vector<Suspect> suspects() const {

@@ -13,7 +13,7 @@
 namespace limen {
 namespace {
 
-constexpr double kSigmaM = 0.002;
+constexpr double kSettledSigmaM = 0.002;
 
 /// What the links alone make of the building, in the frame of its first station.
 FramedNodes framed(const SyntheticSurvey& survey, const std::vector<PoseEdge>& edges) {
@@ -66,7 +66,7 @@ SyntheticSurvey with_check_points(std::size_t control, std::uint64_t seed) {
   for (const Vector3d& place : {Vector3d(2, 2, 1), Vector3d(10, 2, 2), Vector3d(10, 7, 0.5),
                                 Vector3d(2, 6, 2), Vector3d(6.5, 3, 1.5)})
     places.push_back(place);
-  SyntheticSurvey survey = synthetic_survey(places, kSigmaM, 1, seed);
+  SyntheticSurvey survey = synthetic_survey(places, kSettledSigmaM, 1, seed);
   for (std::size_t k = control; k < places.size(); ++k) survey.points[k].enters = false;
   return survey;
 }
@@ -148,7 +148,7 @@ TEST(PointTests, BoundsAreThoseOfTheTables) {
 
 TEST(SettlePoints, ASightOfAnotherTargetIsLeftOutAndTheTargetStays) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
-    SyntheticSurvey survey = synthetic_survey(corner_places(6), kSigmaM, 3, seed);
+    SyntheticSurvey survey = synthetic_survey(corner_places(6), kSettledSigmaM, 3, seed);
     survey.points[2].sights[1].x_in_node += Vector3d(0.03, -0.02, 0.01);
     const Surveyed done = survey_whole(survey);
     ASSERT_EQ(done.fit.state, PointFitState::fixed);
@@ -162,7 +162,7 @@ TEST(SettlePoints, TheDetectableBlunderIsDetectedInFourOfFive) {
   int found = 0;
   constexpr int kSeeds = 60;
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
-    SyntheticSurvey survey = synthetic_survey(corner_places(8), kSigmaM, 2, seed);
+    SyntheticSurvey survey = synthetic_survey(corner_places(8), kSettledSigmaM, 2, seed);
     const Surveyed clean = survey_whole(survey);
     ASSERT_EQ(clean.fit.state, PointFitState::fixed);
     const double detectable = clean.settled.findings[4].known.detectable.x();
@@ -179,15 +179,15 @@ TEST(SettlePoints, TheDetectableBlunderIsDetectedInFourOfFive) {
 }
 
 TEST(SettlePoints, TwoPointsOrThreeOnALineFixNothing) {
-  EXPECT_EQ(survey_whole(synthetic_survey(corner_places(2), kSigmaM, 1, 1)).fit.state,
+  EXPECT_EQ(survey_whole(synthetic_survey(corner_places(2), kSettledSigmaM, 1, 1)).fit.state,
             PointFitState::too_few);
-  const SyntheticSurvey line = synthetic_survey({{0, 0, 1}, {5, 0, 1}, {11, 0, 1}}, kSigmaM, 1, 1);
+  const SyntheticSurvey line = synthetic_survey({{0, 0, 1}, {5, 0, 1}, {11, 0, 1}}, kSettledSigmaM, 1, 1);
   EXPECT_EQ(survey_whole(line).fit.state, PointFitState::too_few);
 }
 
 TEST(SettlePoints, PlacesOfScannersKnownToCentimetresFixTheFrameAsWellAsTheyCan) {
   // As a receiver of satellites tells them: every station, 2 cm.
-  SyntheticSurvey survey = synthetic_survey({}, kSigmaM, 1, 3);
+  SyntheticSurvey survey = synthetic_survey({}, kSettledSigmaM, 1, 3);
   RandomStream random(3, 13);
   const auto nodes = survey.building.world_from_node.size();
   for (std::size_t n = 0; n < nodes; ++n) {

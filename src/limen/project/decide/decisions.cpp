@@ -20,7 +20,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr DecisionKind kKinds[] = {DecisionKind::accept, DecisionKind::reject,     DecisionKind::choose,
                                    DecisionKind::level,  DecisionKind::same_floor, DecisionKind::forget};
-constexpr const char* kRemedy =
+constexpr const char* kDecisionsRemedy =
     "say accept A B, reject A B, choose A B N, level A, same-floor A B or forget A B";
 
 std::optional<DecisionKind> kind_called(const std::string& name) {
@@ -97,19 +97,19 @@ std::string words_of(const Decision& decision) {
 
 Decision decision_from(const std::vector<std::string>& words) {
   const std::optional<DecisionKind> kind = words.empty() ? std::nullopt : kind_called(words.front());
-  if (!kind) throw Error("there is nothing to decide", "project decide", kRemedy);
+  if (!kind) throw Error("there is nothing to decide", "project decide", kDecisionsRemedy);
   Decision decision{*kind, {words.begin() + 1, words.end()}, 0};
   if (*kind == DecisionKind::choose && !decision.scans.empty()) {
     const std::optional<std::size_t> number = parse_count(decision.scans.back());
     if (!number || *number > 1000)
       throw Error(fmt::format("\"{}\" is no number of a pose", decision.scans.back()), "project decide",
-                  kRemedy);
+                  kDecisionsRemedy);
     decision.pose = static_cast<int>(*number);
     decision.scans.pop_back();
   }
   if (!counts_fit(decision))
     throw Error(fmt::format("\"{}\" does not name the scans it needs", words.front()), "project decide",
-                kRemedy);
+                kDecisionsRemedy);
   return in_order(std::move(decision));
 }
 

@@ -2,18 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limen/project/graph/link_pose.h"
 
-#include <Eigen/Cholesky>
+#include "limen/geometry/linear.h"
 
 namespace limen {
-namespace {
-
-Matrix3d skew(const Vector3d& v) {
-  Matrix3d m;
-  m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
-  return m;
-}
-
-}  // namespace
 
 LinkPose reversed(const LinkPose& pose) {
   const Rigid3 back = inverse(pose.target_from_source);
@@ -40,7 +31,7 @@ Vector6d misfit(const LinkPose& measured, const Rigid3& predicted) {
 }
 
 double chi_square(const Vector6d& misfit, const Matrix6d& covariance) {
-  return misfit.dot(covariance.ldlt().solve(misfit));
+  return misfit.dot(solve_symmetric(covariance, misfit));
 }
 
 }  // namespace limen

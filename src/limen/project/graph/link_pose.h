@@ -9,8 +9,6 @@
 
 namespace limen {
 
-using Vector6d = Eigen::Matrix<double, 6, 1>;
-
 /// A measured pose between two nodes and how well it is known. Both frames are about local origins.
 struct LinkPose {
   Rigid3 target_from_source;

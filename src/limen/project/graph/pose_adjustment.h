@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "limen/project/graph/link_pose.h"
+#include "limen/project/graph/pose_system.h"
 
 namespace limen {
 
@@ -24,6 +25,10 @@ struct EdgeResidual {
 };
 EdgeResidual edge_residual(const PoseEdge& edge, const Rigid3& frame_from_source,
                            const Rigid3& frame_from_target);
+
+/// Adds an edge's say, weighted by `information`, to what is asked of the nodes it joins.
+void add_edge(const PoseEdge& edge, const std::vector<Rigid3>& poses, const Matrix6d& information,
+              PoseSystem& system);
 
 struct PoseAdjustment {
   std::vector<Rigid3> frame_from_node;

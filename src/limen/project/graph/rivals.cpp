@@ -13,7 +13,7 @@
 namespace limen {
 namespace {
 
-constexpr double kMild = 4.0;
+constexpr double kMildRival = 4.0;
 constexpr std::size_t kClearLead =
     3;  // as many independent links must speak for a place for each that speaks against
 constexpr double kSameShiftM = 0.05;
@@ -56,7 +56,7 @@ class RivalSearch {
   }
 
   [[nodiscard]] static bool fits(const LinkPose& pose, const Rigid3& predicted) {
-    return chi_square(misfit(pose, predicted), kMild * pose.covariance) <= kChiSquareBound;
+    return chi_square(misfit(pose, predicted), kMildRival * pose.covariance) <= kChiSquareBound;
   }
   [[nodiscard]] static bool any_fits(const GraphLink& link, const Rigid3& predicted) {
     // Other poses of a sure link are no real possibility.

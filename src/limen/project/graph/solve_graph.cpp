@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "limen/base/progress.h"
+#include "limen/geometry/linear.h"
 #include "limen/project/graph/bridges.h"
 #include "limen/project/graph/doubt.h"
 #include "limen/project/graph/grow_parts.h"
@@ -18,7 +19,7 @@
 namespace limen {
 namespace {
 
-constexpr int kRounds = 4;           // of accepting links and adjusting
+constexpr int kAcceptRounds = 4;     // of accepting links and adjusting
 constexpr double kFirstGate = 16.0;  // times the bound, before the first adjustment
 constexpr std::size_t kLoopsPerLink = 8;
 constexpr double kFixedM = 0.05;  // a weak link's node that is known this well by several is held after all
@@ -56,8 +57,8 @@ class Solver {
     accepted_.frame_from_node = grown_.part_from_node;
     accepted_.component = grown_.part;
     accepted_.pose.assign(graph_.links.size(), -1);
-    for (int round = 0; round < kRounds; ++round) {
-      accept(round == 0 ? kFirstGate : round + 1 < kRounds ? 4.0 : 1.0);
+    for (int round = 0; round < kAcceptRounds; ++round) {
+      accept(round == 0 ? kFirstGate : round + 1 < kAcceptRounds ? 4.0 : 1.0);
       settle_components();
       adjust(false);
     }
@@ -305,7 +306,7 @@ class Solver {
         continue;
       }
       const LinkPose& pose = link.poses[static_cast<std::size_t>(solved.pose)];
-      const Matrix6d part = edge_covariance_[edge] * pose.covariance.inverse();
+      const Matrix6d part = edge_covariance_[edge] * inverse_of(pose.covariance);
       solved.redundancy = std::clamp(6.0 - part.trace(), 0.0, 6.0);
       const bool bridge = bridge_[edge];
       ++edge;

@@ -11,23 +11,23 @@
 namespace limen {
 namespace {
 
-constexpr double kWallTilt = 0.5;        // |normal . up| of a wall is less
-constexpr double kBuiltM = 0.05;         // by how much built matter may miss its drawing and count
-constexpr double kCeilingTilt = 0.3;     // a ceiling, a sloping one too, looks down more than this
-constexpr double kColumnM = 0.25;        // walls are looked at in columns this wide
-constexpr double kBesideCeilingM = 0.5;  // beside the top of a column, and above it, a ceiling is sought ...
+constexpr double kWallTilt = 0.5;         // |normal . up| of a wall is less
+constexpr double kMissesDrawingM = 0.05;  // by how much built matter may miss its drawing and count
+constexpr double kCeilingTilt = 0.3;      // a ceiling, a sloping one too, looks down more than this
+constexpr double kColumnM = 0.25;         // walls are looked at in columns this wide
+constexpr double kBesideCeilingM = 0.5;   // beside the top of a column, and above it, a ceiling is sought ...
 constexpr double kNearCeilingM = 0.25;
-constexpr double kBelowCeilingM = 0.15;  // ... which may seem a little lower than the wall's top
-constexpr double kMostPieces = 1500.0;
+constexpr double kWallBelowCeilingM = 0.15;  // ... which may seem a little lower than the wall's top
+constexpr double kMostWallPieces = 1500.0;
 // Of the planes that do not reach a ceiling one in five is a wall: gables, parapets, walls with something
 // before their upper part.
 constexpr double kLowPlaneShare = 0.2;
 constexpr double kUprightAgain = 0.98;  // cosine: the model's vertical is an axis of the scan's frame
-constexpr double kPlaneLimit_m2 = 5.0;  // of one plane, however large, about this much says something new ...
+constexpr double kWallLimit_m2 = 5.0;   // of one plane, however large, about this much says something new ...
 constexpr double kObservation_m2 = 1.25;  // ... and this much of it is one observation
 
 double observations(double area_m2) {
-  return kPlaneLimit_m2 / kObservation_m2 * (1.0 - std::exp(-area_m2 / kPlaneLimit_m2));
+  return kWallLimit_m2 / kObservation_m2 * (1.0 - std::exp(-area_m2 / kWallLimit_m2));
 }
 
 /// +x, -x, +y, -y, +z, -z.
@@ -80,7 +80,7 @@ ModelWalls::Reaching ModelWalls::reaching_ceiling(const Vector3d& up) const {
     return std::any_of(ceiling.begin(), ceiling.end(), [&](const Vector3d& at) {
       const Vector3d apart = at - top.second;
       const double above = up.dot(apart);
-      return above > -kBelowCeilingM && above < kNearCeilingM &&
+      return above > -kWallBelowCeilingM && above < kNearCeilingM &&
              apart.squaredNorm() - above * above < kBesideCeilingM * kBesideCeilingM;
     });
   };
@@ -104,7 +104,7 @@ const ModelWalls::Reaching* ModelWalls::reaching_under(const Matrix3d& rotation)
 void ModelWalls::choose_pieces() {
   const Features& features = *scan_.features;
   const auto stride =
-      static_cast<std::size_t>(1.0 + static_cast<double>(features.samples.size()) / kMostPieces);
+      static_cast<std::size_t>(1.0 + static_cast<double>(features.samples.size()) / kMostWallPieces);
   for (std::size_t i = 0; i < features.samples.size(); i += stride) {
     const SurfaceSample& sample = features.samples[i];
     if (sample.plane < 0) continue;
@@ -148,7 +148,7 @@ WallBalance ModelWalls::under(const Rigid3& model_from_scan) const {
     query.at = model_from_scan * piece.at;
     if (!is_asked(piece, query.at, stations)) continue;
     query.oriented = piece.oriented;
-    query.surface_m = kBuiltM;
+    query.surface_m = kMissesDrawingM;
     Sums& sums = planes[piece.plane];
     sums.asked_m2 += piece.area_m2;
     if (model_.space->look(query).kind == SightKind::surface) sums.explained_m2 += piece.area_m2;

@@ -6,12 +6,11 @@
 #include <cmath>
 #include <numeric>
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
 #include <fmt/format.h>
 
 #include "limen/base/angles.h"
 #include "limen/base/error.h"
+#include "limen/geometry/linear.h"
 
 namespace limen {
 namespace {
@@ -89,10 +88,10 @@ Vector3d positive(const Vector3d& d) {
 /// Directions in which a 3 x 3 information (m^2) is below the bound.
 void add_weak(const Matrix3d& information, double bound, bool rotation,
               std::vector<UnobservedFreedom>& weak) {
-  const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(information);
+  const Spectrum3 spectrum = spectrum_of(information);
   for (Eigen::Index k = 0; k < 3; ++k) {
-    if (solver.eigenvalues()[k] >= bound) continue;
-    const Vector3d d = positive(solver.eigenvectors().col(k));
+    if (spectrum.values[k] >= bound) continue;
+    const Vector3d d = positive(spectrum.vectors.col(k));
     weak.push_back({rotation, d, (rotation ? "turn about " : "shift along ") + direction_name(d)});
   }
 }
@@ -148,13 +147,13 @@ std::vector<UnobservedFreedom> unobserved_freedoms(const RefinedPose& pose, doub
 std::vector<UnobservedFreedom> loose_freedoms(const RefinedPose& pose, const VerdictOptions& options) {
   const Matrix6d covariance = covariance_of(pose);
   std::vector<UnobservedFreedom> loose;
-  const Eigen::SelfAdjointEigenSolver<Matrix3d> shifts(covariance.bottomRightCorner<3, 3>());
-  const Eigen::SelfAdjointEigenSolver<Matrix3d> turns(covariance.topLeftCorner<3, 3>());
+  const Spectrum3 shifts = spectrum_of(Matrix3d(covariance.bottomRightCorner<3, 3>()));
+  const Spectrum3 turns = spectrum_of(Matrix3d(covariance.topLeftCorner<3, 3>()));
   for (Eigen::Index k = 0; k < 3; ++k) {
-    const double sigma_m = std::sqrt(std::max(0.0, shifts.eigenvalues()[k]));
-    const double sigma_deg = degrees(std::sqrt(std::max(0.0, turns.eigenvalues()[k])));
-    const Vector3d along = positive(shifts.eigenvectors().col(k));
-    const Vector3d about = positive(turns.eigenvectors().col(k));
+    const double sigma_m = std::sqrt(std::max(0.0, shifts.values[k]));
+    const double sigma_deg = degrees(std::sqrt(std::max(0.0, turns.values[k])));
+    const Vector3d along = positive(shifts.vectors.col(k));
+    const Vector3d about = positive(turns.vectors.col(k));
     if (sigma_m > options.max_sigma_m) {
       loose.push_back({false, along,
                        fmt::format("shift along {}, known to {:.0f} mm only", direction_name(along),

@@ -7,11 +7,10 @@
 #include <optional>
 #include <utility>
 
-#include <Eigen/Eigenvalues>
-
 #include "limen/base/angles.h"
 #include "limen/base/parallel.h"
 #include "limen/extract/cells/cell_grid.h"
+#include "limen/geometry/linear.h"
 
 namespace limen {
 namespace {
@@ -34,14 +33,14 @@ constexpr double kGatherM = 0.12;
 constexpr double kTukeyM = 0.03;
 constexpr int kSettlings = 40;
 
-struct Piece {
+struct PlanePiece {
   Vector3d mean;
   Vector3d normal;
 };
 
 /// The planar cubes of one size, and how many points they hold.
 struct Pieces {
-  std::vector<Piece> list;
+  std::vector<PlanePiece> list;
   std::size_t points = 0;
   double edge_m = kCellM;
 };
@@ -75,7 +74,7 @@ Pieces planar_pieces(const std::vector<Vector3d>& points) {
 }
 
 /// The direction that most of the pieces left share; empty where too few do.
-std::optional<Vector3d> next_direction(const std::vector<Piece>& pieces, const std::vector<bool>& taken,
+std::optional<Vector3d> next_direction(const std::vector<PlanePiece>& pieces, const std::vector<bool>& taken,
                                        std::size_t least) {
   std::vector<std::size_t> left;
   for (std::size_t k = 0; k < pieces.size(); ++k) {
@@ -103,14 +102,14 @@ std::optional<Vector3d> next_direction(const std::vector<Piece>& pieces, const s
       if (std::abs(pieces[k].normal.dot(best)) > cosine)
         outer += pieces[k].normal * pieces[k].normal.transpose();
     }
-    const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(outer);
-    best = solver.eigenvectors().col(2);
+    const Spectrum3 spectrum = spectrum_of(outer);
+    best = spectrum.vectors.col(2);
   }
   return best;
 }
 
 /// First guesses of the planes of one direction: layers in which many of its pieces lie.
-std::vector<FramePlane> layers_of(const std::vector<Piece>& pieces, std::vector<std::size_t> members,
+std::vector<FramePlane> layers_of(const std::vector<PlanePiece>& pieces, std::vector<std::size_t> members,
                                   const Vector3d& direction, std::size_t least, double edge_m) {
   std::vector<FramePlane> planes;
   std::sort(members.begin(), members.end(), [&](std::size_t a, std::size_t b) {
@@ -185,8 +184,8 @@ std::optional<FramePlane> settled(const std::vector<Vector3d>& points, const Fra
     const double width = round < 2 ? 2.0 * kTukeyM : kTukeyM;
     const Weighted sums = near_plane(gathered, found.plane, anchor, width);
     if (sums.weight < 30.0) return std::nullopt;
-    Eigen::SelfAdjointEigenSolver<Matrix3d> solver(sums.covariance);
-    Vector3d normal = solver.eigenvectors().col(0);
+    const Spectrum3 spectrum = spectrum_of(sums.covariance);
+    Vector3d normal = spectrum.vectors.col(0);
     if (normal.dot(found.plane.normal) < 0) normal = -normal;
     const double turn = (normal - found.plane.normal).norm();
     const double shift = found.plane.signed_distance(sums.mean);
@@ -207,7 +206,7 @@ bool same(const FramePlane& a, const FramePlane& b) {
 
 std::vector<FramePlane> frame_planes(const std::vector<Vector3d>& points) {
   const Pieces found = planar_pieces(points);
-  const std::vector<Piece>& pieces = found.list;
+  const std::vector<PlanePiece>& pieces = found.list;
   const std::size_t least =
       std::max<std::size_t>(6, static_cast<std::size_t>(kLeastShare * static_cast<double>(pieces.size())));
   std::vector<bool> taken(pieces.size(), false);

@@ -14,7 +14,7 @@ namespace limen {
 namespace {
 
 constexpr double kOrderM = 0.00125;
-constexpr std::size_t kPiece = 65536;
+constexpr std::size_t kLaidPerPiece = 65536;
 constexpr std::size_t kMostOfCube = 64;  // points kept of one cube, at most
 constexpr std::uint32_t kCoarsest = 12;  // 5 m
 
@@ -91,7 +91,7 @@ std::vector<CurvePlace> thinned(const std::vector<CurvePlace>& sorted, std::size
 Scan laid_in(const Scan& scan, const ScanFrame& frame, std::size_t most) {
   const auto placed = [&](const Vector3d& x) { return Vector3d(frame.frame_from_scan * (x - frame.corner)); };
   std::vector<Vector3d> points(scan.size());
-  parallel_for(scan.size(), kPiece, [&](std::size_t begin, std::size_t end) {
+  parallel_for(scan.size(), kLaidPerPiece, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) points[i] = placed(scan.points[i]);
   });
   std::vector<CurvePlace> sorted = along_curve(points, kOrderM).places;
@@ -103,7 +103,7 @@ Scan laid_in(const Scan& scan, const ScanFrame& frame, std::size_t most) {
   laid.level = frame.upright;
   laid.centre_source = frame.place.source;
   laid.points.resize(sorted.size());
-  parallel_for(sorted.size(), kPiece, [&](std::size_t begin, std::size_t end) {
+  parallel_for(sorted.size(), kLaidPerPiece, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) laid.points[k] = points[sorted[k].index];
   });
   if (scan.mobile()) {

@@ -14,7 +14,7 @@
 namespace limen {
 namespace {
 
-constexpr double kSameNormal = 0.9995;  // cosine: 1.8 degrees
+constexpr double kSamePlaneNormal = 0.9995;  // cosine: 1.8 degrees
 constexpr double kSamePlaneM = 0.02;
 constexpr double kSameOpeningM = 0.2;
 
@@ -64,7 +64,7 @@ class Joiner {
 
  private:
   static bool same(const PlanarPolygon& a, const PlanarPolygon& b, const std::vector<Polygon>& b_in_a) {
-    if (a.oriented != b.oriented || a.plane.normal.dot(b.plane.normal) < kSameNormal) return false;
+    if (a.oriented != b.oriented || a.plane.normal.dot(b.plane.normal) < kSamePlaneNormal) return false;
     if (std::abs(a.plane.signed_distance(b.centroid)) > kSamePlaneM) return false;
     return intersection_area(a.parts, b_in_a) > 0.0;
   }
@@ -72,7 +72,7 @@ class Joiner {
   std::int32_t enter(const PlanarPolygon& plane) {
     for (std::size_t i = 0; i < all_.planes.size(); ++i) {
       PlanarPolygon& known = all_.planes[i];
-      if (known.plane.normal.dot(plane.plane.normal) < kSameNormal) continue;
+      if (known.plane.normal.dot(plane.plane.normal) < kSamePlaneNormal) continue;
       const std::vector<Polygon> parts = projected(plane.parts, plane.frame, known.frame);
       if (!same(known, plane, parts)) continue;
       known.parts = merged(known.parts, parts);

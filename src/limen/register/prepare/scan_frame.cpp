@@ -21,7 +21,7 @@
 namespace limen {
 namespace {
 
-constexpr std::size_t kLooked = 120000;  // points
+constexpr std::size_t kFramePoints = 120000;  // points
 constexpr std::size_t kLeastPoints = 1000;
 constexpr double kLevelPathDeg = 3.0;  // z of a moving scanner's frame, nearer to up than this, is up
 constexpr double kWallDeg = 5.0;
@@ -212,7 +212,7 @@ ScanFrame find_scan_frame(const Scan& scan, Gravity gravity, Monitor& monitor) {
   }
   if (scan.mobile()) found.place.source = PlaceSource::per_point;
   if (scan.size() < kLeastPoints) return found;
-  Scan sample = subset(scan, steady_sample(scan, kLooked));
+  Scan sample = subset(scan, steady_sample(scan, kFramePoints));
   const Scan few = every_third(sample);
   const std::vector<FramePlane> first = frame_planes(few.points);
   monitor.throw_if_cancelled();

@@ -5,18 +5,17 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Eigenvalues>
-
 #include "limen/base/angles.h"
+#include "limen/geometry/linear.h"
 
 namespace limen {
 namespace {
 
 constexpr double kAlikeDeg = 4.0;  // directions nearer than this are one
 constexpr std::size_t kMainDirections = 6;
-constexpr double kAlongDeg = 5.0;       // of walls along up, and of floors across it
-constexpr double kStrayShare = 0.0005;  // of the points that may lie in the blind cone: feet, reflections
-constexpr std::size_t kLooked = 40000;  // points looked at for the cone
+constexpr double kAlongDeg = 5.0;           // of walls along up, and of floors across it
+constexpr double kStrayShare = 0.0005;      // of the points that may lie in the blind cone: feet, reflections
+constexpr std::size_t kConePoints = 40000;  // points looked at for the cone
 // What each observation adds to a direction; 1 is worth about 4 degrees of blind cone.
 constexpr double kPerConeDeg = 0.25;
 constexpr double kMostConeDeg = 40.0;
@@ -41,7 +40,7 @@ constexpr double kPathSpreadM = 0.6;
 constexpr double kSettleDeg = 0.5;    // planes off by more count less and less
 constexpr double kRoadWeight = 0.05;  // roads slope, façades do not
 
-struct Axis {
+struct AreaAxis {
   Vector3d direction;
   double area_m2 = 0.0;
 };
@@ -51,10 +50,10 @@ bool alike(const Vector3d& a, const Vector3d& b) {
 }
 
 /// Directions of the planes, those of most area, and what is at right angles to two of them.
-std::vector<Axis> main_axes(const std::vector<FramePlane>& planes) {
-  std::vector<Axis> axes;
+std::vector<AreaAxis> main_axes(const std::vector<FramePlane>& planes) {
+  std::vector<AreaAxis> axes;
   for (const FramePlane& plane : planes) {
-    const auto known = std::find_if(axes.begin(), axes.end(), [&](const Axis& axis) {
+    const auto known = std::find_if(axes.begin(), axes.end(), [&](const AreaAxis& axis) {
       return alike(axis.direction, plane.plane.normal);
     });
     if (known != axes.end()) {
@@ -64,7 +63,7 @@ std::vector<Axis> main_axes(const std::vector<FramePlane>& planes) {
     }
   }
   std::stable_sort(axes.begin(), axes.end(),
-                   [](const Axis& a, const Axis& b) { return a.area_m2 > b.area_m2; });
+                   [](const AreaAxis& a, const AreaAxis& b) { return a.area_m2 > b.area_m2; });
   if (axes.size() > kMainDirections) axes.resize(kMainDirections);
   const std::size_t seen = std::min<std::size_t>(3, axes.size());
   for (std::size_t i = 0; i < seen; ++i) {
@@ -72,7 +71,7 @@ std::vector<Axis> main_axes(const std::vector<FramePlane>& planes) {
       const Vector3d across = axes[i].direction.cross(axes[j].direction);
       if (across.norm() < 0.5) continue;
       const Vector3d unit = across.normalized();
-      if (std::none_of(axes.begin(), axes.end(), [&](const Axis& a) { return alike(a.direction, unit); }))
+      if (std::none_of(axes.begin(), axes.end(), [&](const AreaAxis& a) { return alike(a.direction, unit); }))
         axes.push_back({unit, 0.0});
     }
   }
@@ -82,8 +81,8 @@ std::vector<Axis> main_axes(const std::vector<FramePlane>& planes) {
 /// Degrees from `axis` to the first points about it.
 double empty_cone_deg(const Scan& sample, const Vector3d& axis) {
   std::vector<double> cosines;
-  cosines.reserve(kLooked + 1);
-  for (std::size_t i = 0; i < sample.size(); i += 1 + sample.size() / kLooked) {
+  cosines.reserve(kConePoints + 1);
+  for (std::size_t i = 0; i < sample.size(); i += 1 + sample.size() / kConePoints) {
     const Vector3d ray = sample.points[i] - sample.centre(i);
     const double range = ray.norm();
     if (range > 0.05) cosines.push_back(ray.dot(axis) / range);
@@ -133,7 +132,7 @@ Storey storey_along(const std::vector<FramePlane>& planes, const Vector3d& up) {
 double share_beyond(const Scan& sample, const Vector3d& direction, double height) {
   std::size_t beyond = 0;
   std::size_t all = 0;
-  for (std::size_t i = 0; i < sample.size(); i += 1 + sample.size() / kLooked) {
+  for (std::size_t i = 0; i < sample.size(); i += 1 + sample.size() / kConePoints) {
     ++all;
     beyond += sample.points[i].dot(direction) > height + 0.1 ? 1U : 0U;
   }
@@ -204,9 +203,9 @@ double evidence_for(const Scan& sample, const std::vector<FramePlane>& planes, c
 }  // namespace
 
 ScanUp find_up(const Scan& sample, const std::vector<FramePlane>& planes, Gravity gravity, bool place_sure) {
-  std::vector<Axis> axes = main_axes(planes);
+  std::vector<AreaAxis> axes = main_axes(planes);
   const bool z_told = gravity != Gravity::unknown;
-  const auto near_z = [](const Axis& axis) {
+  const auto near_z = [](const AreaAxis& axis) {
     return std::abs(axis.direction.z()) > std::cos(radians(kZGoodDeg));
   };
   if (z_told && std::none_of(axes.begin(), axes.end(), near_z)) axes.push_back({Vector3d::UnitZ(), 0.0});
@@ -215,7 +214,7 @@ ScanUp find_up(const Scan& sample, const std::vector<FramePlane>& planes, Gravit
     double evidence;
   };
   std::vector<Rated> rated;
-  for (const Axis& axis : axes) {
+  for (const AreaAxis& axis : axes) {
     for (const double sign : {1.0, -1.0}) {
       const Vector3d up = sign * axis.direction;
       rated.push_back({up, evidence_for(sample, planes, up, gravity, place_sure)});
@@ -256,8 +255,8 @@ Vector3d settled_up(const Vector3d& up, const std::vector<FramePlane>& planes, b
           std::max(0.0, plane.area_m2 / largest - 0.1) / ((1.0 + off * off) * (1.0 + off * off));
       sums += (across ? (mobile ? -kRoadWeight : -1.0) : 1.0) * weight * n * n.transpose();
     }
-    const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(sums);
-    Vector3d next = solver.eigenvectors().col(0);
+    const Spectrum3 spectrum = spectrum_of(sums);
+    Vector3d next = spectrum.vectors.col(0);
     if (next.dot(up) < 0) next = -next;
     const double moved = (next - settled).norm();
     settled = next;

@@ -16,7 +16,7 @@
 namespace limen {
 namespace {
 
-constexpr std::size_t kPiece = 65536;
+constexpr std::size_t kLookedPerPiece = 65536;
 constexpr std::size_t kEnough = 500000;  // points; chance spoils the density of a share of them
 constexpr double kOnPlaneM = 0.02;
 constexpr double kTileM = 0.3;
@@ -41,7 +41,7 @@ Features tiled(const Scan& scan, const std::vector<FramePlane>& planes, const Ma
     features.planes.push_back(polygon);
   }
   std::vector<std::int32_t> labels(scan.size(), -1);
-  parallel_for(scan.size(), kPiece, [&](std::size_t begin, std::size_t end) {
+  parallel_for(scan.size(), kLookedPerPiece, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       double nearest = kOnPlaneM;
       for (std::size_t k = 0; k < planes.size(); ++k) {

@@ -12,7 +12,7 @@
 namespace limen {
 namespace {
 
-constexpr std::size_t kPiece = 65536;
+constexpr std::size_t kSampledPerPiece = 65536;
 /// Spherical shells this thick are chosen or left out as a whole: thin, so that every surface has its share;
 /// thick against the rounding of 32-bit coordinates.
 constexpr double kShellM = 1e-3;
@@ -21,7 +21,7 @@ constexpr double kMiddleM = 1e-7;
 
 Vector3d middle_of(const std::vector<Vector3d>& points) {
   const Vector3d sum = parallel_reduce(
-      points.size(), kPiece, Vector3d(Vector3d::Zero()),
+      points.size(), kSampledPerPiece, Vector3d(Vector3d::Zero()),
       [&](std::size_t begin, std::size_t end) {
         Vector3d part = Vector3d::Zero();
         for (std::size_t i = begin; i < end; ++i) part += points[i];

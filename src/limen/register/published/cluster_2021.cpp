@@ -56,7 +56,7 @@ Matrix3d aligned(const MainClusters& source, const MainClusters& target, const M
 }
 
 /// One direction of both scans after the alignment, everything turned into the target's frame.
-struct Axis {
+struct OffsetAxis {
   Vector3d direction = Vector3d::UnitZ();
   Polygons source;  // turned, not shifted
   Polygons target;
@@ -92,7 +92,7 @@ Polygons members(const Polygons& all, const DirectionCluster& cluster, const Mat
 }
 
 /// What (10) can be at most along one axis under a shift, by the offsets alone.
-double most_agreement(const Axis& axis, double shift_m, double max_distance_m) {
+double most_agreement(const OffsetAxis& axis, double shift_m, double max_distance_m) {
   constexpr double kSlackM = 0.05;  // planes are not quite parallel
   double total = 0.0;
   for (const PlanarPolygon& a : axis.source) {
@@ -107,7 +107,7 @@ double most_agreement(const Axis& axis, double shift_m, double max_distance_m) {
   return total;
 }
 
-std::vector<Pairing> pairings(const Axis& axis, double max_distance_m) {
+std::vector<Pairing> pairings(const OffsetAxis& axis, double max_distance_m) {
   std::vector<Pairing> list;
   for (const int i : axis.source_ones) {
     for (const int j : axis.target_ones) {
@@ -127,7 +127,7 @@ struct Triple {
   float most_m2 = 0.0F;
 };
 
-using Axes = std::array<Axis, 3>;
+using Axes = std::array<OffsetAxis, 3>;
 using Pairings = std::array<std::vector<Pairing>, 3>;
 
 /// I_1 x I_2 x I_3, what promises most first.
@@ -163,7 +163,7 @@ Vector3d shift_of(const Triple& triple, const Axes& axes, const Pairings& of) {
 /// rdist under one shift: (10) within each pair of clusters.
 double agreement_at(const Vector3d& shift, const Axes& axes, const AgreementOptions& options) {
   double total = 0.0;
-  for (const Axis& axis : axes) {
+  for (const OffsetAxis& axis : axes) {
     Polygons moved;
     for (const PlanarPolygon& polygon : axis.source)
       moved.push_back(transformed({Matrix3d::Identity(), shift}, polygon));
@@ -220,7 +220,7 @@ PublishedAnswer register_cluster_2021(const PublishedInput& input, const Cluster
   Axes axes;
   Pairings of;
   for (std::size_t m = 0; m < 3; ++m) {
-    Axis& axis = axes[m];
+    OffsetAxis& axis = axes[m];
     axis.direction = to.of[m]->direction;
     axis.source = members(source, *from.of[m], rotation);
     axis.target = members(target, *to.of[m], Matrix3d::Identity());

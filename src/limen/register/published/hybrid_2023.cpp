@@ -21,7 +21,7 @@ struct Choice {
   DirectionClusters clusters;
 };
 
-struct Drawn {
+struct DrawnHybrid {
   Rigid3 target_from_source;
   Vector3d wall_normal = Vector3d::UnitX();  // of the target's wall, towards its scanner
 };
@@ -57,12 +57,12 @@ Plane plane_of(const PlanarPolygon& polygon, const Rigid3& target_from_source) {
 }
 
 /// One iteration of III-B.
-std::optional<Drawn> draw(const Choice& choice, RandomStream& random) {
+std::optional<DrawnHybrid> draw(const Choice& choice, RandomStream& random) {
   // A façade plane of each scan, p1 and p2.
   const WallEdges& from = drawn(choice.source, random);
   const WallEdges& to = drawn(choice.target, random);
   // The two planes coincide: p1 becomes p1'.
-  Drawn result;
+  DrawnHybrid result;
   Rigid3& pose = result.target_from_source;
   result.wall_normal = to.normal;
   pose.rotation = wall_axes(to, 1.0) * wall_axes(from, -1.0).transpose();
@@ -107,7 +107,7 @@ PublishedAnswer register_hybrid_2023(const PublishedInput& input, const Hybrid20
   const std::vector<Segment> source_edges = all_edges(choice.source);
   const std::vector<Segment> target_edges = all_edges(choice.target);
   const SegmentSetMeasure measure(target_edges, options.distance);
-  const auto cost = [&](const Drawn& pose) {
+  const auto cost = [&](const DrawnHybrid& pose) {
     return measure.to(source_edges, pose.target_from_source).distance;
   };
   // III-B.2: random trials.
@@ -115,7 +115,7 @@ PublishedAnswer register_hybrid_2023(const PublishedInput& input, const Hybrid20
   const std::optional<BestTrial> best = best_trial(options.trials, input.seed, drawing, cost);
   if (!best) return {std::nullopt, "no two planes of the source stand across a wall with openings"};
   RandomStream again(input.seed, best->trial);
-  const Drawn chosen = *draw(choice, again);
+  const DrawnHybrid chosen = *draw(choice, again);
   PublishedPose pose;
   pose.target_from_source = chosen.target_from_source;
   pose.criterion = best->cost;

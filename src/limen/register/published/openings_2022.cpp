@@ -9,7 +9,7 @@
 namespace limen {
 namespace {
 
-struct Drawn {
+struct DrawnOpening {
   Rigid3 target_from_source;
   Vector3d wall_normal = Vector3d::UnitX();  // of the target's wall
 };
@@ -19,7 +19,8 @@ Line line_of(const Segment& segment, double sign) {
 }
 
 /// 3.2: the wall pair, then one vertical and one horizontal edge of each; 3.3: the pose.
-Drawn draw(const std::vector<WallEdges>& source, const std::vector<WallEdges>& target, RandomStream& random) {
+DrawnOpening draw(const std::vector<WallEdges>& source, const std::vector<WallEdges>& target,
+                  RandomStream& random) {
   const WallEdges& from = drawn(source, random);
   const WallEdges& to = drawn(target, random);
   LinePair vertical;
@@ -43,15 +44,17 @@ PublishedAnswer register_openings_2022(const PublishedInput& input, const Openin
   // 3.1: the distance between the two sets of segments, (3) to (14).
   const std::vector<Segment> edges = all_edges(source);
   const SegmentSetMeasure measure(all_edges(target), options.distance);
-  const auto cost = [&](const Drawn& pose) { return measure.to(edges, pose.target_from_source).distance; };
+  const auto cost = [&](const DrawnOpening& pose) {
+    return measure.to(edges, pose.target_from_source).distance;
+  };
   // 3.2: random trials.
   const auto drawing = [&](RandomStream& random) {
-    return std::optional<Drawn>(draw(source, target, random));
+    return std::optional<DrawnOpening>(draw(source, target, random));
   };
   const std::optional<BestTrial> best = best_trial(options.trials, input.seed, drawing, cost);
   if (!best) return {std::nullopt, "no trial gave a pose"};
   RandomStream again(input.seed, best->trial);
-  const Drawn chosen = draw(source, target, again);
+  const DrawnOpening chosen = draw(source, target, again);
   PublishedPose pose;
   pose.target_from_source = chosen.target_from_source;
   pose.criterion = best->cost;

@@ -18,7 +18,7 @@ namespace limen {
 namespace {
 
 /// Two scans of which the source is nearly in place already.
-struct Pair {
+struct PublishedPair {
   Scan source;
   Scan target;
   Rigid3 truth;  // target from source, world
@@ -27,11 +27,11 @@ struct Pair {
 };
 
 /// The source where it belongs, but for a turn about its station and a shift.
-Pair nearly_placed(const SceneOptions& scene, double shift_m, double turn_deg) {
+PublishedPair nearly_placed(const SceneOptions& scene, double shift_m, double turn_deg) {
   const SimulatedCase made = simulate(scene);
   const std::size_t target = made.scans.size() - 1;
   const Rigid3 truth = true_target_from_source(made.truth, 0, target);
-  Pair pair{made.scans[0], made.scans[target], {}};
+  PublishedPair pair{made.scans[0], made.scans[target], {}};
   const Vector3d station = truth * pair.station();
   const Matrix3d turn = rotation_exp(radians(turn_deg) * Vector3d(1.0, 2.0, 3.0).normalized());
   const Vector3d shift = shift_m * Vector3d(2.0, -1.0, 0.5).normalized();
@@ -44,32 +44,32 @@ Pair nearly_placed(const SceneOptions& scene, double shift_m, double turn_deg) {
   return pair;
 }
 
-Pair room(double shift_m, double turn_deg) {
+PublishedPair room(double shift_m, double turn_deg) {
   SceneOptions scene;
   scene.name = "room";
   scene.seed = 3;
   scene.stations = 2;
   scene.points_indoor = 40000;
-  Pair pair = nearly_placed(scene, shift_m, turn_deg);
+  PublishedPair pair = nearly_placed(scene, shift_m, turn_deg);
   return pair;
 }
 
-RegistrationResult published(const Pair& pair, PublishedMethod method) {
+RegistrationResult published(const PublishedPair& pair, PublishedMethod method) {
   RegisterOptions options;
   options.as_published = method;
   return register_scans(pair.source, pair.target, options);
 }
 
-Vector3d off(const Pair& pair, const RegistrationResult& result) {
+Vector3d off(const PublishedPair& pair, const RegistrationResult& result) {
   return result.best.target_from_source * pair.station() - pair.truth * pair.station();
 }
 
-double turn_deg(const Pair& pair, const RegistrationResult& result) {
+double turn_deg(const PublishedPair& pair, const RegistrationResult& result) {
   return degrees(rotation_angle(pair.truth.rotation.transpose() * result.best.target_from_source.rotation));
 }
 
 TEST(Published, ClustersOf2021FindAPoseFromTheThirdStartOfTable1) {
-  const Pair pair = room(1.27, 3.0);
+  const PublishedPair pair = room(1.27, 3.0);
   const RegistrationResult result = published(pair, PublishedMethod::cluster_2021);
   ASSERT_EQ(result.outcome, Outcome::ambiguous) << result.reason;
   EXPECT_LT(off(pair, result).norm(), 0.05);
@@ -82,18 +82,18 @@ TEST(Published, ClustersOf2021FindAPoseFromTheThirdStartOfTable1) {
 }
 
 TEST(Published, ThresholdsOf2021NeedAGoodStart) {
-  const Pair near = room(0.099, 0.001);
+  const PublishedPair near = room(0.099, 0.001);
   const RegistrationResult good = published(near, PublishedMethod::threshold_2021);
   ASSERT_EQ(good.outcome, Outcome::ambiguous) << good.reason;
   EXPECT_LT(off(near, good).norm(), 0.05);
-  const Pair far = room(4.15, 12.0);
+  const PublishedPair far = room(4.15, 12.0);
   const RegistrationResult bad = published(far, PublishedMethod::threshold_2021);
   EXPECT_NE(bad.outcome, Outcome::registered);
   EXPECT_TRUE(bad.outcome == Outcome::no_match || off(far, bad).norm() > 0.2);
 }
 
 TEST(Published, SegmentsOf2023) {
-  const Pair pair = room(0.44, 0.528);
+  const PublishedPair pair = room(0.44, 0.528);
   const RegistrationResult result = published(pair, PublishedMethod::segments_2023);
   ASSERT_EQ(result.outcome, Outcome::ambiguous) << result.reason;
   EXPECT_LT(off(pair, result).norm(), 0.1);
@@ -169,7 +169,7 @@ TEST(Published, AKnownThicknessHoldsTheHybrid) {
 }
 
 TEST(Published, TheSameForAnyNumberOfThreadsAndAnotherForAnotherSeed) {
-  const Pair pair = room(0.44, 0.528);
+  const PublishedPair pair = room(0.44, 0.528);
   RegisterOptions options;
   options.as_published = PublishedMethod::segments_2023;
   const int threads = thread_count();

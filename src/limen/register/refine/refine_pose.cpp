@@ -6,23 +6,18 @@
 #include <cmath>
 #include <map>
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
-
 #include "limen/base/error.h"
 #include "limen/base/progress.h"
+#include "limen/geometry/linear.h"
 #include "limen/register/refine/pose_contacts.h"
 
 namespace limen {
 namespace {
 
-using Vector6d = Eigen::Matrix<double, 6, 1>;
-
-constexpr double kWeakShare = 1e-4;   // of the information: less is the planes' error
-constexpr double kMaxCentreM = 20.0;  // the best known point is sought this far from the matched surface
-constexpr double kBuiltM = 0.002;     // by how much a wall stands elsewhere than drawn, at least: 1 sigma
-constexpr double kGateSigma = 0.2;    // deviation of a tile far from the goal, as a share of the gate
+constexpr double kWeakShare = 1e-4;      // of the information: less is the planes' error
+constexpr double kMaxCentreM = 20.0;     // the best known point is sought this far from the matched surface
+constexpr double kBuilderErrsM = 0.002;  // by how much a wall stands elsewhere than drawn, at least: 1 sigma
+constexpr double kGateSigma = 0.2;       // deviation of a tile far from the goal, as a share of the gate
 
 class Refiner {
  public:
@@ -92,13 +87,13 @@ class Refiner {
     Vector6d unit;
     unit << Vector3d::Constant(1.0 / std::max(0.1, lever)), Vector3d::Ones();
     const Matrix6d scaled = unit.asDiagonal() * planes.normal * unit.asDiagonal();
-    const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(scaled);
+    const Spectrum6 spectrum = spectrum_of(scaled);
     NormalEquations kept;
     for (Eigen::Index k = 0; k < 6; ++k) {
-      if (solver.eigenvalues()[k] < kWeakShare * scaled.trace()) continue;
-      const Vector6d d = solver.eigenvectors().col(k);
+      if (spectrum.values[k] < kWeakShare * scaled.trace()) continue;
+      const Vector6d d = spectrum.vectors.col(k);
       const Vector6d back = d.cwiseQuotient(unit);
-      kept.normal += solver.eigenvalues()[k] * back * back.transpose();
+      kept.normal += spectrum.values[k] * back * back.transpose();
       kept.right += d.dot(unit.cwiseProduct(planes.right)) * back;
     }
     return kept;
@@ -120,7 +115,8 @@ class Refiner {
     const NormalEquations held = without_weak(planes);
     const Matrix6d normal = held.normal + openings.normal;
     const double damping = 1e-9 * normal.trace();
-    const Vector6d step = (normal + damping * Matrix6d::Identity()).ldlt().solve(held.right + openings.right);
+    const Vector6d step = solve_symmetric(Matrix6d(normal + damping * Matrix6d::Identity()),
+                                          Vector6d(held.right + openings.right));
     const Rigid3 move{rotation_exp(step.head<3>()), Vector3d::Zero()};
     Rigid3& pose = refined.target_from_source;
     pose.rotation = nearest_rotation(move.rotation * pose.rotation);
@@ -151,7 +147,7 @@ class Refiner {
     const auto count = static_cast<double>(pairs.size());
     const double freedoms = count / std::max(1.0, count - 3.0);
     const double noise = std::max(source_.features->noise_m, target_.features->noise_m);
-    const double least = source_.model || target_.model ? kBuiltM : 0.1 * noise;
+    const double least = source_.model || target_.model ? kBuilderErrsM : 0.1 * noise;
     return std::max(std::sqrt(freedoms * squares / areas), least);
   }
 
@@ -180,7 +176,7 @@ class Refiner {
     // The mean square of shift + turn x c is least at:
     const Vector3d twist(mixed(1, 2) - mixed(2, 1), mixed(2, 0) - mixed(0, 2), mixed(0, 1) - mixed(1, 0));
     const Matrix3d square = turns.trace() * Matrix3d::Identity() - turns;
-    Vector3d c = -square.ldlt().solve(twist);
+    Vector3d c = -solve_symmetric(square, twist);
     if (!c.allFinite()) return;
     if (c.norm() > kMaxCentreM) c *= kMaxCentreM / c.norm();
     Matrix6d move = Matrix6d::Identity();
@@ -259,9 +255,8 @@ class Refiner {
   const RefineOptions& options_;
 };
 
-Matrix6d inverse_of(const Matrix6d& information) {
-  const Matrix6d damped = information + 1e-6 * Matrix6d::Identity();
-  return damped.inverse();
+Matrix6d damped_inverse(const Matrix6d& information) {
+  return inverse_of(Matrix6d(information + 1e-6 * Matrix6d::Identity()));
 }
 
 }  // namespace
@@ -274,11 +269,11 @@ void RefineOptions::check() const {
 }
 
 Matrix6d covariance_of(const RefinedPose& pose) {
-  return inverse_of(pose.information);
+  return damped_inverse(pose.information);
 }
 
 Matrix6d formal_covariance_of(const RefinedPose& pose) {
-  return inverse_of(pose.formal_information);
+  return damped_inverse(pose.formal_information);
 }
 
 RefinedPose refine_pose(const ScanView& source, const ScanView& target, const Rigid3& start,

@@ -6,16 +6,13 @@
 #include <cmath>
 #include <set>
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
-
 #include "limen/base/angles.h"
 #include "limen/base/error.h"
+#include "limen/geometry/linear.h"
 
 namespace limen {
 namespace {
 
-using Vector6d = Eigen::Matrix<double, 6, 1>;
 using Rows = Eigen::Matrix<double, 3, 6>;
 
 constexpr double kPieceM = 0.2;
@@ -32,11 +29,9 @@ constexpr double kFreedomsPerEnd = 4.0 / 3.0;
 
 /// Residual of a point against a line by (turn, shift) about `centre`: (I - d d^T) [-[x]x | I].
 Rows rows_of(const Vector3d& x, const Vector3d& direction) {
-  Matrix3d cross;
-  cross << 0, -x.z(), x.y(), x.z(), 0, -x.x(), -x.y(), x.x(), 0;
   const Matrix3d across = Matrix3d::Identity() - direction * direction.transpose();
   Rows rows;
-  rows << -across * cross, across;
+  rows << -across * skew(x), across;
   return rows;
 }
 
@@ -124,7 +119,8 @@ void SegmentRefiner::adjust(const std::vector<Match>& matches, double gate_m, Ri
     normal += weight * rows.transpose() * rows;
     right += weight * rows.transpose() * m.residual;
   }
-  const Vector6d step = (normal + 1e-6 * normal.trace() * Matrix6d::Identity()).ldlt().solve(right);
+  const Vector6d step =
+      solve_symmetric(Matrix6d(normal + 1e-6 * normal.trace() * Matrix6d::Identity()), right);
   const Matrix3d turn = rotation_exp(step.head<3>());
   pose.rotation = nearest_rotation(turn * pose.rotation);
   pose.translation = turn * (pose.translation - centre) + centre + step.tail<3>();
@@ -149,8 +145,8 @@ void SegmentRefiner::summarise(const std::vector<Match>& matches, double gate_m,
   const double scatter = std::max(squares / freedoms, kLeastScatterM * kLeastScatterM);
   pose.information /= kCorrelation * scatter;
   pose.rms_m = std::sqrt(squares / weights);
-  const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(spread);
-  fit.in_one_plane = solver.eigenvalues()[0] < kFlatM * kFlatM * weights;
+  const Spectrum3 spectrum = spectrum_of(spread);
+  fit.in_one_plane = spectrum.values[0] < kFlatM * kFlatM * weights;
 }
 
 void SegmentRefiner::count(const std::vector<Match>& matches, SegmentFit& fit) const {

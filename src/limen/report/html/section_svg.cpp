@@ -16,7 +16,7 @@ constexpr double kBarPx = 34.0;  // below the picture: scale bar and key
 constexpr double kTitlePx = 26.0;
 
 /// Colours follow the page where the picture stands in one; by themselves they suit paper.
-constexpr const char* kStyle =
+constexpr const char* kSectionStyle =
     ".ls-paper{fill:var(--paper,#fff)}.ls-text{fill:var(--ink,#1d2a35);font:500 13px system-ui,sans-serif}"
     ".ls-soft{fill:var(--soft,#5c6b77);font:12px system-ui,sans-serif}"
     ".ls-t{stroke:var(--target,#1f6fb4)}.ls-s{stroke:var(--source,#d9730d)}"
@@ -241,7 +241,7 @@ std::string section_svg(const ReportScene& scene, const SceneView& view, Section
       "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0:g} {1:g}\" role=\"img\" "
       "aria-label=\"{2}\">\n<style>{3}</style>\n<rect class=\"ls-paper\" width=\"{0:g}\" height=\"{1:g}\"/>\n"
       "<text class=\"ls-text\" x=\"12\" y=\"18\">{2}</text>\n",
-      paper.width(), height, title, kStyle);
+      paper.width(), height, title, kSectionStyle);
   const std::string clip = fmt::format("ls-{}", to_string(side));
   svg += fmt::format(
       "<clipPath id=\"{}\"><rect y=\"{}\" width=\"{:g}\" height=\"{:g}\"/></clipPath>\n<g "

@@ -11,12 +11,12 @@ Json number_or_null(int number) {
   return number >= 0 ? Json(number) : Json(nullptr);
 }
 
-const char* kind_of(const ProjectScan& scan) {
+const char* kind_of(const SimulatedScan& scan) {
   return scan.mobile ? "mobile" : "station";
 }
 
 Json scan_json(const ProjectTruth& truth, std::size_t index) {
-  const ProjectScan& scan = truth.scans[index];
+  const SimulatedScan& scan = truth.scans[index];
   Json json;
   json["name"] = scan.name;
   json["file"] = scan.name + ".ply";
@@ -64,7 +64,7 @@ std::string project_task_json(const ProjectTruth& truth) {
   Json json;
   json["units"] = "m";
   json["scans"] = Json::array();
-  for (const ProjectScan& scan : truth.scans)
+  for (const SimulatedScan& scan : truth.scans)
     json["scans"].push_back({{"file", scan.name + ".ply"}, {"kind", kind_of(scan)}});
   return to_text(json);
 }

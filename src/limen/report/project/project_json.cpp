@@ -8,7 +8,7 @@
 namespace limen {
 namespace {
 
-Json sigma_json(const PoseSigma& sigma) {
+Json pose_sigma_json(const PoseSigma& sigma) {
   return {{"rotation_rad", json_of(sigma.rotation_rad)},
           {"translation_m", json_of(sigma.translation_m)},
           {"centre", json_of(sigma.centre)}};
@@ -30,7 +30,7 @@ Json scan_json(const ProjectScan& scan) {
   json["frame_from_scan"] = in_frame ? json_of(to_matrix(*scan.frame_from_scan)) : Json();
   if (scan.frame_from_scan && !in_frame)
     json["component_from_scan"] = json_of(to_matrix(*scan.frame_from_scan));
-  json["sigma"] = scan.frame_from_scan ? sigma_json(scan.sigma) : Json();
+  json["sigma"] = scan.frame_from_scan ? pose_sigma_json(scan.sigma) : Json();
   if (!scan.alternatives.empty()) {
     json["alternatives"] = Json::array();
     for (const Rigid3& pose : scan.alternatives) json["alternatives"].push_back(json_of(to_matrix(pose)));
@@ -47,7 +47,7 @@ Json link_json(const ProjectLink& link) {
                {"pair", link.given ? "given" : to_string(link.pair)},
                {"pose", json_of(to_matrix(link.target_from_source))},
                {"pose_number", link.number},
-               {"sigma", sigma_json(link.sigma)},
+               {"sigma", pose_sigma_json(link.sigma)},
                {"agreeing_m2", link.agreeing_m2},
                {"twin", link.twin},
                {"chance", link.chance},

@@ -15,7 +15,7 @@
 namespace limen {
 namespace {
 
-constexpr const char* kStyle = R"(
+constexpr const char* kProjectStyle = R"(
 :root { --page: #f5f4f0; --paper: #fff; --ink: #1d2a35; --soft: #5a6873; --line: #dcdfe1; --good: #1f6fb4; --doubt: #c9660a; --bad: #b3261e; --weak: #8a949c; }
 @media (prefers-color-scheme: dark) { :root { --page: #11171c; --paper: #192128; --ink: #e7ecf0; --soft: #9dabb6; --line: #2b3640; --good: #6fb3ec; --doubt: #f3a155; --bad: #ff8a80; --weak: #7b8791; } }
 * { box-sizing: border-box; }
@@ -245,7 +245,7 @@ std::string project_page(const ProjectResult& result) {
   std::string text =
       "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n<meta name=\"viewport\" "
       "content=\"width=device-width, initial-scale=1\">\n<title>limen: project</title>\n<style>";
-  text += kStyle;
+  text += kProjectStyle;
   text += fmt::format(
       "</style></head>\n<body data-outcome=\"{0}\"><main>\n<h1>{0}: {1}</h1>\n<p class=\"soft\">{2} {3} "
       "pairs "

@@ -11,7 +11,7 @@ namespace limen {
 namespace {
 
 /// A box of a piece of furniture: middle (x along, y into the room, z up from the floor) and size.
-struct Part {
+struct FurniturePart {
   Vector3d middle;  ///< x, y of the middle, z of the bottom
   Vector3d size;
 };
@@ -20,7 +20,7 @@ struct Part {
 struct Piece {
   Vector2d footprint = Vector2d::Zero();
   double height = 0.0;
-  std::vector<Part> parts;
+  std::vector<FurniturePart> parts;
 };
 
 Piece box_piece(double w, double d, double h) {
@@ -142,9 +142,9 @@ Piece display_case(RandomStream& r) {
 }
 
 /// Puts pieces into one room.
-class Decorator {
+class FurnitureDecorator {
  public:
-  Decorator(World& world, std::size_t building, std::size_t room, RandomStream& random)
+  FurnitureDecorator(World& world, std::size_t building, std::size_t room, RandomStream& random)
       : mesh_(world.mesh),
         building_(world.buildings[building]),
         index_(room),
@@ -264,7 +264,7 @@ class Decorator {
     const Ring area = rectangle_ring(back + 0.5 * piece.footprint.y() * in, along, piece.footprint);
     if (!fits(area, piece.footprint, piece.height)) return false;
     const double yaw = std::atan2(along.y(), along.x());
-    for (const Part& part : piece.parts) {
+    for (const FurniturePart& part : piece.parts) {
       const Vector2d p = back + part.middle.x() * along + part.middle.y() * in;
       mesh_.add_box({{p.x(), p.y(), room_.floor_m + part.middle.z()}, yaw}, part.size, like);
     }
@@ -336,7 +336,7 @@ class Decorator {
 
 void furnish(World& world, std::size_t building, std::size_t room, double fullness, RandomStream& random) {
   if (fullness <= 0.0) return;
-  Decorator(world, building, room, random).run(fullness);
+  FurnitureDecorator(world, building, room, random).run(fullness);
 }
 
 bool is_free(const Building& building, std::size_t room, const Vector2d& p, double radius_m) {

@@ -107,9 +107,9 @@ std::optional<Footprint> footprint_of(const PlacedPiece& placed) {
 }
 
 /// Finds places for pieces in one room.
-class Decorator {
+class LayoutDecorator {
  public:
-  Decorator(const World& world, std::size_t building, std::size_t room, RandomStream& random)
+  LayoutDecorator(const World& world, std::size_t building, std::size_t room, RandomStream& random)
       : room_(world.buildings[building], room), random_(random) {}
 
   Layout run(const LayoutOptions& options) {
@@ -277,13 +277,13 @@ Layout make_layout(const World& world, std::size_t building, std::size_t room, c
                    std::uint64_t seed) {
   options.check();
   RandomStream random(seed, 12);
-  return Decorator(world, building, room, random).run(options);
+  return LayoutDecorator(world, building, room, random).run(options);
 }
 
 Layout as_placed(const Layout& layout, const World& world, std::size_t building, std::size_t room,
                  const PlacingOptions& options, std::uint64_t seed) {
   RandomStream random(seed, 13);
-  Decorator decorator(world, building, room, random);
+  LayoutDecorator decorator(world, building, room, random);
   for (const PlacedPiece& placed : layout) decorator.take(placed);
   const Ring outline = DesignRoom(world.buildings[building], room).outline();
   Layout result;

@@ -18,7 +18,7 @@ namespace limen {
 /// A scan and what is true of it.
 struct ScannedBuilding {
   Scan scan;
-  ProjectScan truth;
+  SimulatedScan truth;
 };
 
 /// Scans a building from one place after the other. The building must outlive it.

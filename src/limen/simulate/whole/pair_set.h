@@ -38,7 +38,7 @@ struct PairSetOptions {
 
 struct PairSetScan {
   Scan scan;
-  ProjectScan truth;
+  SimulatedScan truth;
   int day = 0;
 };
 

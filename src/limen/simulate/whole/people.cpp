@@ -11,23 +11,23 @@
 namespace limen {
 namespace {
 
-struct Part {
+struct BodyPart {
   Vector3d middle;  ///< in shares of the height; x to the person's right
   Vector3d radii;
 };
 
 // Legs, trunk, head.
 constexpr int kParts = 4;
-const std::array<Part, kParts>& parts() {
-  static const std::array<Part, kParts> body = {
-      Part{{-0.06, 0.0, 0.24}, {0.055, 0.065, 0.25}}, Part{{0.06, 0.02, 0.24}, {0.055, 0.065, 0.25}},
-      Part{{0.0, 0.0, 0.64}, {0.15, 0.085, 0.22}}, Part{{0.0, 0.01, 0.93}, {0.05, 0.06, 0.075}}};
+const std::array<BodyPart, kParts>& parts() {
+  static const std::array<BodyPart, kParts> body = {
+      BodyPart{{-0.06, 0.0, 0.24}, {0.055, 0.065, 0.25}}, BodyPart{{0.06, 0.02, 0.24}, {0.055, 0.065, 0.25}},
+      BodyPart{{0.0, 0.0, 0.64}, {0.15, 0.085, 0.22}}, BodyPart{{0.0, 0.01, 0.93}, {0.05, 0.06, 0.075}}};
   return body;
 }
 
 /// The range at which a unit ray meets an upright ellipsoid turned by `heading`.
 std::optional<double> meets(const Vector3d& origin, const Vector3d& direction, const Person& person,
-                            const Part& part) {
+                            const BodyPart& part) {
   const double c = std::cos(person.heading_rad);
   const double s = std::sin(person.heading_rad);
   const auto turned = [&](const Vector3d& v) {
@@ -76,7 +76,7 @@ void hide_behind(Sweep& sweep, const Vector3d& scanner, const std::vector<Person
     const Vector3d direction = (echo.point - scanner) / range;
     double nearest = range;
     for (const Person& person : people)
-      for (const Part& part : parts())
+      for (const BodyPart& part : parts())
         if (const auto met = meets(scanner, direction, person, part)) nearest = std::min(nearest, *met);
     if (nearest >= range) continue;
     echo.point = scanner + (nearest + noise_m * random.normal()) * direction;

@@ -22,7 +22,7 @@ struct ProjectRoom {
 };
 
 /// What is true of one scan of a project.
-struct ProjectScan {
+struct SimulatedScan {
   std::string name;  ///< of the file, less its ending
   bool mobile = false;
   std::size_t points = 0;
@@ -46,7 +46,7 @@ struct ProjectTruth {
   std::uint64_t seed = 0;
   Vector3d local_origin = Vector3d::Zero();
   std::vector<ProjectRoom> rooms;
-  std::vector<ProjectScan> scans;
+  std::vector<SimulatedScan> scans;
   std::vector<SharedSurface> shared;  ///< sorted; pairs that share nothing are left out
 };
 

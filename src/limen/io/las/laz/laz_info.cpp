@@ -36,7 +36,7 @@ struct Compression {
 };
 
 /// The file and where its points lie.
-struct Source {
+struct InfoSource {
   std::string_view bytes;
   const std::string& name;
   const LasHeader& header;
@@ -46,7 +46,7 @@ struct Source {
   }
 };
 
-Compression parse_compression(const Source& source, std::string_view body) {
+Compression parse_compression(const InfoSource& source, std::string_view body) {
   Compression compression;
   compression.compressor = las_number<std::uint16_t>(body, 0);
   const auto coder = las_number<std::uint16_t>(body, 2);
@@ -61,7 +61,7 @@ Compression parse_compression(const Source& source, std::string_view body) {
   return compression;
 }
 
-std::vector<ItemPlan> parse_items(const Source& source, std::string_view body) {
+std::vector<ItemPlan> parse_items(const InfoSource& source, std::string_view body) {
   const std::size_t count = las_number<std::uint16_t>(body, 32);
   if (count == 0 || body.size() < kRecordHead + count * kItemBytes)
     source.damaged(fmt::format("the LASzip record has no room for its {} items", count));
@@ -108,7 +108,7 @@ bool fits(const ItemPlan& item, bool layered, bool first) {
   }
 }
 
-void check_items(const Source& source, const LazInfo& info) {
+void check_items(const InfoSource& source, const LazInfo& info) {
   for (std::size_t k = 0; k < info.items.size(); ++k) {
     const ItemPlan& item = info.items[k];
     const bool version = info.layered ? item.version == 3 || item.version == 4 : item.version <= 2;
@@ -125,7 +125,7 @@ void check_items(const Source& source, const LazInfo& info) {
 
 /// Where the table of chunks begins: told before the first chunk, or at the end of the file by writers that
 /// could not go back.
-std::uint64_t table_place(const Source& source) {
+std::uint64_t table_place(const InfoSource& source) {
   const std::size_t begin = source.header.points_begin;
   const std::size_t size = source.bytes.size();
   if (size - begin < 8) source.damaged("the file ends before its compressed points");
@@ -142,7 +142,7 @@ std::uint64_t table_place(const Source& source) {
 }
 
 /// Chunk lengths, and numbers of points where they vary.
-void parse_table(const Source& source, const Compression& compression, LazInfo& info) {
+void parse_table(const InfoSource& source, const Compression& compression, LazInfo& info) {
   const std::uint64_t place = table_place(source);
   const std::size_t count = las_number<std::uint32_t>(source.bytes, place + 4);
   const std::uint64_t begin = source.header.points_begin + 8;
@@ -181,7 +181,7 @@ void parse_table(const Source& source, const Compression& compression, LazInfo& 
 }  // namespace
 
 LazInfo parse_laz_info(std::string_view bytes, const std::string& name, const LasHeader& header) {
-  const Source source{bytes, name, header};
+  const InfoSource source{bytes, name, header};
   const LasRecord* record = header.find(kLasZipUser, kLasZipNumber);
   if (record == nullptr || record->body.size() < kRecordHead)
     source.damaged("the points are compressed, but no LASzip record says how");

@@ -17,15 +17,15 @@ namespace limen::laz {
 namespace {
 
 constexpr std::size_t kBytes = 20;
-constexpr std::size_t kIntensity = 12;
-constexpr std::size_t kReturns = 14;
-constexpr std::size_t kClass = 15;
-constexpr std::size_t kAngle = 16;
-constexpr std::size_t kUser = 17;
-constexpr std::size_t kSource = 18;
+constexpr std::size_t kIntensity10 = 12;
+constexpr std::size_t kReturns10 = 14;
+constexpr std::size_t kClass10 = 15;
+constexpr std::size_t kAngle10 = 16;
+constexpr std::size_t kUser10 = 17;
+constexpr std::size_t kSource10 = 18;
 
 /// Context of a return, by number of returns and return number.
-constexpr std::array<std::array<std::uint8_t, 8>, 8> kReturnContexts{{
+constexpr std::array<std::array<std::uint8_t, 8>, 8> kReturnContexts10{{
     {15, 14, 13, 12, 11, 10, 9, 8},
     {14, 0, 1, 3, 6, 10, 10, 9},
     {13, 1, 2, 4, 7, 11, 11, 10},
@@ -56,11 +56,11 @@ class Point10V2 : public PointItem {
     Decoder decoder = shared;  // in registers
     const unsigned changed = decoder.symbol(changed_);
     if ((changed & 32U) != 0)
-      last_[kReturns] = static_cast<char>(returns_.decode(decoder, byte_at(last_, kReturns)));
-    const unsigned returns = byte_at(last_, kReturns);
+      last_[kReturns10] = static_cast<char>(returns_.decode(decoder, byte_at(last_, kReturns10)));
+    const unsigned returns = byte_at(last_, kReturns10);
     const unsigned number = returns & 7U;
     const unsigned of = (returns >> 3U) & 7U;
-    const unsigned context = kReturnContexts[of][number];
+    const unsigned context = kReturnContexts10[of][number];
     decode_intensity(decoder, changed, context);
     decode_bytes(decoder, changed);
     const unsigned single = of == 1 ? 1 : 0;
@@ -76,20 +76,21 @@ class Point10V2 : public PointItem {
     if ((changed & 16U) != 0) {
       intensity = static_cast<std::uint16_t>(intensity_.decode(decoder, intensity, std::min(context, 3U)));
     }
-    put(&last_[kIntensity], intensity);
+    put(&last_[kIntensity10], intensity);
   }
 
   void decode_bytes(Decoder& decoder, unsigned changed) {
     if ((changed & 8U) != 0)
-      last_[kClass] = static_cast<char>(classes_.decode(decoder, byte_at(last_, kClass)));
+      last_[kClass10] = static_cast<char>(classes_.decode(decoder, byte_at(last_, kClass10)));
     if ((changed & 4U) != 0) {
-      SymbolModel<256>& model = angles_[(byte_at(last_, kReturns) >> 6U) & 1U];
-      last_[kAngle] = static_cast<char>(byte_at(last_, kAngle) + decoder.symbol(model));
+      SymbolModel<256>& model = angles_[(byte_at(last_, kReturns10) >> 6U) & 1U];
+      last_[kAngle10] = static_cast<char>(byte_at(last_, kAngle10) + decoder.symbol(model));
     }
-    if ((changed & 2U) != 0) last_[kUser] = static_cast<char>(users_.decode(decoder, byte_at(last_, kUser)));
+    if ((changed & 2U) != 0)
+      last_[kUser10] = static_cast<char>(users_.decode(decoder, byte_at(last_, kUser10)));
     if ((changed & 1U) != 0) {
-      const auto source = source_.decode(decoder, get<std::uint16_t>(&last_[kSource]));
-      put(&last_[kSource], static_cast<std::uint16_t>(source));
+      const auto source = source_.decode(decoder, get<std::uint16_t>(&last_[kSource10]));
+      put(&last_[kSource10], static_cast<std::uint16_t>(source));
     }
   }
 
@@ -153,15 +154,17 @@ class Point10V1 : public PointItem {
 
  private:
   void decode_rest(Decoder& decoder, unsigned changed, unsigned bits) {
-    if ((changed & 32U) != 0) decode_short(decoder, intensity_, kIntensity);
+    if ((changed & 32U) != 0) decode_short(decoder, intensity_, kIntensity10);
     if ((changed & 16U) != 0)
-      last_[kReturns] = static_cast<char>(returns_.decode(decoder, byte_at(last_, kReturns)));
+      last_[kReturns10] = static_cast<char>(returns_.decode(decoder, byte_at(last_, kReturns10)));
     if ((changed & 8U) != 0)
-      last_[kClass] = static_cast<char>(classes_.decode(decoder, byte_at(last_, kClass)));
+      last_[kClass10] = static_cast<char>(classes_.decode(decoder, byte_at(last_, kClass10)));
     if ((changed & 4U) != 0)
-      last_[kAngle] = static_cast<char>(angle_.decode(decoder, byte_at(last_, kAngle), bits < 3 ? 1U : 0U));
-    if ((changed & 2U) != 0) last_[kUser] = static_cast<char>(users_.decode(decoder, byte_at(last_, kUser)));
-    if ((changed & 1U) != 0) decode_short(decoder, source_, kSource);
+      last_[kAngle10] =
+          static_cast<char>(angle_.decode(decoder, byte_at(last_, kAngle10), bits < 3 ? 1U : 0U));
+    if ((changed & 2U) != 0)
+      last_[kUser10] = static_cast<char>(users_.decode(decoder, byte_at(last_, kUser10)));
+    if ((changed & 1U) != 0) decode_short(decoder, source_, kSource10);
   }
   void decode_short(Decoder& decoder, IntegerDecoder<16, 1>& number, std::size_t at) {
     put(&last_[at], static_cast<std::uint16_t>(number.decode(decoder, get<std::uint16_t>(&last_[at]))));

@@ -17,18 +17,18 @@
 namespace limen::laz {
 namespace {
 
-constexpr std::size_t kIntensity = 12;
-constexpr std::size_t kReturns = 14;
+constexpr std::size_t kIntensity14 = 12;
+constexpr std::size_t kReturns14 = 14;
 constexpr std::size_t kFlags = 15;
-constexpr std::size_t kClass = 16;
-constexpr std::size_t kUser = 17;
-constexpr std::size_t kAngle = 18;
-constexpr std::size_t kSource = 20;
+constexpr std::size_t kClass14 = 16;
+constexpr std::size_t kUser14 = 17;
+constexpr std::size_t kAngle14 = 18;
+constexpr std::size_t kSource14 = 20;
 constexpr std::size_t kTime = 22;
-constexpr std::size_t kChannels = 4;
+constexpr std::size_t kScannerChannels = 4;
 
 /// Context of a return, by number of returns and return number.
-constexpr std::array<std::array<std::uint8_t, 16>, 16> kReturnContexts{{
+constexpr std::array<std::array<std::uint8_t, 16>, 16> kReturnContexts14{{
     {0, 1, 2, 3, 4, 5, 3, 4, 4, 5, 5, 5, 5, 5, 5, 5},
     {1, 0, 1, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3},
     {2, 1, 2, 4, 4, 4, 4, 4, 4, 4, 4, 3, 3, 3, 3, 3},
@@ -75,7 +75,7 @@ class PlaceLayer {
   void start(const char* raw, unsigned channel, std::string_view bytes) {
     decoder_ = Decoder(bytes);
     channel_ = channel;
-    const auto returns = get<std::uint8_t>(raw + kReturns);
+    const auto returns = get<std::uint8_t>(raw + kReturns14);
     begin(channel, {get<std::int32_t>(raw), get<std::int32_t>(raw + 4), returns & 15U,
                     static_cast<unsigned>(returns >> 4U), false});
   }
@@ -109,7 +109,7 @@ class PlaceLayer {
     step.from = static_cast<std::uint8_t>(channel_);
     if ((changed & 64U) != 0) {
       models->channel.reset_once();
-      channel_ = (channel_ + decoder.symbol(models->channel) + 1) % kChannels;
+      channel_ = (channel_ + decoder.symbol(models->channel) + 1) % kScannerChannels;
       step.fresh = !models_[channel_];
       if (step.fresh) begin(channel_, before);
       models = models_[channel_].get();
@@ -122,7 +122,7 @@ class PlaceLayer {
     decode_place(decoder, *models, step);
     put(record, models->last.x);
     put(record + 4, models->last.y);
-    put(record + kReturns, static_cast<std::uint8_t>(models->last.number | (models->last.of << 4U)));
+    put(record + kReturns14, static_cast<std::uint8_t>(models->last.number | (models->last.of << 4U)));
     models->last.time_changed = step.gps_time_changes;
     return step;
   }
@@ -146,7 +146,7 @@ class PlaceLayer {
     PlaceState& last = models.last;
     const unsigned single = last.of == 1 ? 1 : 0;
     const std::size_t context =
-        2U * kReturnContexts[last.of][last.number] + (step.gps_time_changes ? 1U : 0U);
+        2U * kReturnContexts14[last.of][last.number] + (step.gps_time_changes ? 1U : 0U);
     const std::int32_t dx = models.dx.decode(decoder, models.x_steps[context].get(), single);
     models.x_steps[context].add(dx);
     const unsigned x_bits = models.dx.bit_count();
@@ -164,7 +164,7 @@ class PlaceLayer {
 
   Decoder decoder_;
   unsigned channel_ = 0;
-  std::array<std::unique_ptr<PlaceModels>, kChannels> models_;
+  std::array<std::unique_ptr<PlaceModels>, kScannerChannels> models_;
 };
 
 /// One value of a point in a layer of its own. `Models` holds what is kept per channel: `last`, start(last)
@@ -209,7 +209,7 @@ class ValueLayer {
   Value first_{};
   bool constant_ = true;
   Decoder decoder_;
-  std::array<std::unique_ptr<Models>, kChannels> models_;
+  std::array<std::unique_ptr<Models>, kScannerChannels> models_;
 };
 
 struct HeightModels {
@@ -322,12 +322,12 @@ class Point14 : public LayerItem {
   void start(const char* raw, unsigned channel, const std::vector<std::string_view>& bytes) override {
     place_.start(raw, channel, bytes[0]);
     height_.start(get<std::int32_t>(raw + 8), channel, bytes[1]);
-    class_.start(get<std::uint8_t>(raw + kClass), channel, bytes[2]);
+    class_.start(get<std::uint8_t>(raw + kClass14), channel, bytes[2]);
     flags_.start(coded_flags(get<std::uint8_t>(raw + kFlags)), channel, bytes[3]);
-    intensity_.start(get<std::uint16_t>(raw + kIntensity), channel, bytes[4]);
-    angle_.start(get<std::int16_t>(raw + kAngle), channel, bytes[5]);
-    user_.start(get<std::uint8_t>(raw + kUser), channel, bytes[6]);
-    source_.start(get<std::uint16_t>(raw + kSource), channel, bytes[7]);
+    intensity_.start(get<std::uint16_t>(raw + kIntensity14), channel, bytes[4]);
+    angle_.start(get<std::int16_t>(raw + kAngle14), channel, bytes[5]);
+    user_.start(get<std::uint8_t>(raw + kUser14), channel, bytes[6]);
+    source_.start(get<std::uint16_t>(raw + kSource14), channel, bytes[7]);
     time_.start(get<std::uint64_t>(raw + kTime), channel, bytes[8]);
   }
 
@@ -337,14 +337,14 @@ class Point14 : public LayerItem {
     };
     place_.decode(out, steps);
     height_.decode(out, steps, to(8));
-    class_.decode(out, steps, to(kClass));
+    class_.decode(out, steps, to(kClass14));
     flags_.decode(out, steps, [](char* record, std::uint8_t coded, const PointStep& step) {
       put(record + kFlags, flags_byte(coded, step.channel));
     });
-    intensity_.decode(out, steps, to(kIntensity));
-    angle_.decode(out, steps, to(kAngle));
-    user_.decode(out, steps, to(kUser));
-    source_.decode(out, steps, to(kSource));
+    intensity_.decode(out, steps, to(kIntensity14));
+    angle_.decode(out, steps, to(kAngle14));
+    user_.decode(out, steps, to(kUser14));
+    source_.decode(out, steps, to(kSource14));
     time_.decode(out, steps, to(kTime));
   }
 

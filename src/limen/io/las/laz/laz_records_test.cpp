@@ -17,7 +17,7 @@ using testing_las::Parts;
 using testing_las::records_of;
 using testing_laz::Packing;
 
-Parts some(int format, std::size_t count, std::size_t extra = 0) {
+Parts some_records(int format, std::size_t count, std::size_t extra = 0) {
   Parts parts;
   parts.minor = 4;
   parts.format = format;
@@ -27,7 +27,7 @@ Parts some(int format, std::size_t count, std::size_t extra = 0) {
 }
 
 /// What the error says, or "no error".
-std::string error_of(const std::string& bytes) {
+std::string laz_error_of(const std::string& bytes) {
   try {
     records_of(bytes, 100000);
   } catch (const Error& error) {
@@ -82,7 +82,7 @@ TEST(LazArithmetic, SymbolsBitsAndIntegersComeBack) {
 TEST(LazRecords, EveryFormatComesBack) {
   for (int format = 0; format <= 10; ++format) {
     for (const std::size_t extra : {std::size_t{0}, std::size_t{5}}) {
-      const Parts parts = some(format, 2500, extra);
+      const Parts parts = some_records(format, 2500, extra);
       for (const int version : {3, 4}) {
         Packing packing;
         packing.chunk = 1100;
@@ -97,7 +97,7 @@ TEST(LazRecords, EveryFormatComesBack) {
 
 TEST(LazRecords, EveryPackingComesBack) {
   for (const int format : {1, 7}) {
-    const Parts parts = some(format, 3001);
+    const Parts parts = some_records(format, 3001);
     Packing variable;
     variable.variable = true;
     Packing at_end;
@@ -109,25 +109,25 @@ TEST(LazRecords, EveryPackingComesBack) {
   }
   Packing one_run;
   one_run.one_run = true;
-  const Parts parts = some(3, 3001);
+  const Parts parts = some_records(3, 3001);
   EXPECT_TRUE(records_of(testing_laz::file(parts, one_run), 100) == parts.points);
 }
 
 TEST(LazRecords, ValuesThatNeverChangeHaveNoLayers) {
-  Parts parts = some(8, 1, 2);
+  Parts parts = some_records(8, 1, 2);
   const std::string one = parts.points;
   for (int i = 0; i < 500; ++i) parts.points += one;
   EXPECT_TRUE(records_of(testing_laz::file(parts)) == parts.points);
 }
 
 TEST(LazRecords, NoPointsAreNoError) {
-  const std::string bytes = testing_laz::file(some(6, 0));
-  EXPECT_EQ(error_of(bytes), "no error");
+  const std::string bytes = testing_laz::file(some_records(6, 0));
+  EXPECT_EQ(laz_error_of(bytes), "no error");
   EXPECT_EQ(open_las(bytes, "test")->read(0)->next(10), std::nullopt);
 }
 
 TEST(LazRecords, TheSameForAnyThreads) {
-  const std::string bytes = testing_laz::file(some(7, 20000));
+  const std::string bytes = testing_laz::file(some_records(7, 20000));
   set_thread_count(1);
   const std::string one = records_of(bytes, 6000);
   set_thread_count(0);
@@ -135,26 +135,27 @@ TEST(LazRecords, TheSameForAnyThreads) {
 }
 
 TEST(LazRecords, DamageIsTold) {
-  const std::string whole = testing_laz::file(some(3, 1000));
-  EXPECT_EQ(error_of(whole.substr(0, whole.size() - 300)).substr(0, 33), "the table of its compressed chunk");
+  const std::string whole = testing_laz::file(some_records(3, 1000));
+  EXPECT_EQ(laz_error_of(whole.substr(0, whole.size() - 300)).substr(0, 33),
+            "the table of its compressed chunk");
   std::string fewer = whole;
   testing_las::put(fewer, 107, std::uint32_t{999});
   testing_las::put(fewer, 247, std::uint64_t{999});
-  EXPECT_NE(error_of(fewer), "no error");
+  EXPECT_NE(laz_error_of(fewer), "no error");
   std::string more = whole;
   testing_las::put(more, 247, std::uint64_t{1001});
-  EXPECT_EQ(error_of(more), "the header promises 1001 points, the compressed chunks hold 1000");
+  EXPECT_EQ(laz_error_of(more), "the header promises 1001 points, the compressed chunks hold 1000");
   std::string far = whole;
   testing_las::put(far, 247, std::uint64_t{1} << 62U);
-  EXPECT_NE(error_of(far), "no error");
+  EXPECT_NE(laz_error_of(far), "no error");
 }
 
 TEST(LazRecords, ACountThatNoBytesCanHold) {
   Packing one_run;
   one_run.one_run = true;
-  std::string bytes = testing_laz::file(some(1, 100), one_run);
+  std::string bytes = testing_laz::file(some_records(1, 100), one_run);
   testing_las::put(bytes, 247, std::uint64_t{1} << 40U);
-  EXPECT_EQ(error_of(bytes).substr(0, 30), "1099511627776 points cannot be");
+  EXPECT_EQ(laz_error_of(bytes).substr(0, 30), "1099511627776 points cannot be");
 }
 
 TEST(LazRecords, AnyShortenedOrChangedFileIsReadOrRefused) {
@@ -163,22 +164,22 @@ TEST(LazRecords, AnyShortenedOrChangedFileIsReadOrRefused) {
     Packing packing;
     packing.chunk = 40;
     packing.variable = format == 6;
-    const std::string whole = testing_laz::file(some(format, 120, 2), packing);
+    const std::string whole = testing_laz::file(some_records(format, 120, 2), packing);
     for (std::size_t length = 0; length < whole.size(); length += 13)
-      EXPECT_NE(error_of(whole.substr(0, length)), "no error") << length;
+      EXPECT_NE(laz_error_of(whole.substr(0, length)), "no error") << length;
     int refused = 0;
     for (int trial = 0; trial < 400; ++trial) {
       std::string bytes = whole;
       for (std::uint32_t k = random.below(4) + 1; k > 0; --k)
         bytes[random.below(static_cast<std::uint32_t>(bytes.size()))] = static_cast<char>(random.below(256));
-      refused += error_of(bytes) == "no error" ? 0 : 1;
+      refused += laz_error_of(bytes) == "no error" ? 0 : 1;
     }
     EXPECT_GT(refused, 100);
   }
 }
 
 TEST(TransformLaz, BecomesLasWithAllRecords) {
-  Parts parts = some(7, 700, 1);
+  Parts parts = some_records(7, 700, 1);
   parts.records.push_back(testing_las::record("LASF_Projection", 2112, "WKT"));
   parts.tail =
       testing_las::long_record("copc", 1000, "chunks") + testing_las::long_record("someone", 78, "behind");
