@@ -60,12 +60,12 @@ TEST(ProjectPage, AnswersAreLinesForAShellAndPointsStandInTableAndPlan) {
 }
 
 TEST(ProjectJson, PointsDecisionsAndAnswersAreTold) {
-  const nlohmann::json json = nlohmann::json::parse(project_json(some_result(), {}));
-  EXPECT_EQ(json["frame"]["file"], "control.csv");
-  EXPECT_TRUE(json["frame"]["scan"].is_null());
-  EXPECT_EQ(json["questions"][0]["answers"][0], "choose hall.ply o'clock.ply 2");
-  EXPECT_EQ(json["decisions"][0]["state"], "contradicted");
-  const nlohmann::json& point = json["points"][0];
+  const nlohmann::json told = nlohmann::json::parse(project_json(some_result(), {}));
+  EXPECT_EQ(told["frame"]["file"], "control.csv");
+  EXPECT_TRUE(told["frame"]["scan"].is_null());
+  EXPECT_EQ(told["questions"][0]["answers"][0], "choose hall.ply o'clock.ply 2");
+  EXPECT_EQ(told["decisions"][0]["state"], "contradicted");
+  const nlohmann::json& point = told["points"][0];
   EXPECT_EQ(point["state"], "left_out");
   EXPECT_EQ(point["given"][1].get<double>(), 6862123.4562);
   EXPECT_EQ(point["seen_by"][0]["scan"], 1);
@@ -74,10 +74,10 @@ TEST(ProjectJson, PointsDecisionsAndAnswersAreTold) {
 }
 
 TEST(ProjectJson, WithoutSurveyAndDecisionsNothingIsSaidOfThem) {
-  const nlohmann::json json = nlohmann::json::parse(project_json(ProjectResult{}, {}));
-  EXPECT_FALSE(json.contains("points"));
-  EXPECT_FALSE(json.contains("control"));
-  EXPECT_FALSE(json.contains("decisions"));
+  const nlohmann::json told = nlohmann::json::parse(project_json(ProjectResult{}, {}));
+  EXPECT_FALSE(told.contains("points"));
+  EXPECT_FALSE(told.contains("control"));
+  EXPECT_FALSE(told.contains("decisions"));
 }
 
 }  // namespace
