@@ -236,8 +236,14 @@ Verdict judge(const std::vector<JudgedPose>& poses, const ContrastFunction& cont
   if (options.in_model && !leave_chance_out(poses, options, verdict)) return verdict;
   const JudgedPose& best = poses[verdict.ranking.front()];
   if (best.score.planar_m2 < options.min_agreeing_m2) {
-    verdict.reason =
-        fmt::format("the scans have only {:.1f} m2 of surface in common at best", best.score.planar_m2);
+    double most_m2 = 0.0;
+    for (const std::size_t i : verdict.ranking) most_m2 = std::max(most_m2, poses[i].score.planar_m2);
+    verdict.reason = most_m2 < options.min_agreeing_m2
+                         ? fmt::format("the scans have only {:.1f} m2 of surface in common at best", most_m2)
+                         : fmt::format(
+                               "where most surface agrees, {:.1f} m2, too much stands in seen free space; "
+                               "where little does only {:.1f} m2 agree",
+                               most_m2, best.score.planar_m2);
     return verdict;
   }
   if (contradicted(best.score, options) || (options.in_model && best.score.value() <= 0.0)) {
