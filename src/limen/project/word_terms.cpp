@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "limen/base/angles.h"
+#include "limen/geometry/rotation_between.h"
 
 namespace limen {
 namespace {
@@ -29,7 +30,7 @@ Vector3d up_in(const ScanDigest& digest) {
 
 /// The turn about a level axis that brings `up` to z.
 Matrix3d levelled(const Vector3d& up) {
-  return Eigen::Quaterniond::FromTwoVectors(up, Vector3d::UnitZ()).toRotationMatrix();
+  return rotation_between(up, Vector3d::UnitZ());
 }
 
 PoseEdge level_edge(int node, int up, const Rigid3& up_from_node) {

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "limen/base/angles.h"
+#include "limen/geometry/rotation_between.h"
 
 namespace limen {
 namespace {
@@ -81,8 +82,7 @@ std::vector<Matrix3d> parallel_rotations(const VotingSegments& source, const Vot
   const std::vector<Pair> to =
       pairs_of(target, Matrix3d::Identity(), normal, options.direction_deg, kTargetLines);
   for (const double sense : {1.0, -1.0}) {
-    const Matrix3d start =
-        Eigen::Quaterniond::FromTwoVectors(sense * source_axis.direction, normal).toRotationMatrix();
+    const Matrix3d start = rotation_between(sense * source_axis.direction, normal);
     if (options.gravity_known && start(2, 2) < std::cos(radians(options.gravity_tolerance_deg))) continue;
     const std::vector<double> votes =
         votes_for_turns(pairs_of(source, start, normal, options.direction_deg, kSourceLines), to);
