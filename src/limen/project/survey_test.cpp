@@ -35,7 +35,8 @@ struct TargetsOnly {
     const Matrix3d covariance = kSigmaM * kSigmaM * Matrix3d::Identity();
     const Vector3d place(random.uniform(-4, 4), random.uniform(-4, 4), random.uniform(-1, 2));
     SurveyMark mark;
-    mark.name = "P" + std::to_string(survey.marks.size());
+    mark.name = "P";
+    mark.name += std::to_string(survey.marks.size());
     mark.role = PointRole::control;
     const Vector3d x = control_from_node[static_cast<std::size_t>(node)] * place;
     mark.point.known = KnownPlace{x + noise3(kSigmaM, random), covariance};
