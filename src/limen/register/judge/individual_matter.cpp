@@ -11,6 +11,7 @@
 
 #include "limen/base/progress.h"
 #include "limen/geometry/polygon_clip.h"
+#include "limen/register/judge/stairs.h"
 
 namespace limen {
 namespace {
@@ -47,8 +48,9 @@ constexpr int kDisplacements = 8;
 /// One scan's large planes as boxes in the planes' own coordinates, one for each part.
 class BuiltPlanes {
  public:
-  explicit BuiltPlanes(const Features& features) : built_(features.planes.size(), false) {
-    const std::vector<PlanarPolygon>& planes = features.planes;
+  explicit BuiltPlanes(const ScanView& view) : built_(view.features->planes.size(), false) {
+    const std::vector<PlanarPolygon>& planes = view.features->planes;
+    if (view.details != nullptr) flights_ = find_flights(*view.details);
     for (std::size_t i = 0; i < planes.size(); ++i)
       if (of_building(planes[i])) add(i, planes[i], false);
     const std::vector<Part> large = parts_;
@@ -60,9 +62,11 @@ class BuiltPlanes {
   [[nodiscard]] bool is_built(std::int32_t plane) const { return built_[static_cast<std::size_t>(plane)]; }
 
   enum class Place { off, at_wall, behind };
-  /// Where `x` stands to the walls: at one (or at the ceiling), or behind one.
+  /// Where `x` stands to the walls: at one (or at the ceiling, or on stairs), or behind one.
   [[nodiscard]] Place place(const Vector3d& x) const {
     Place found = Place::off;
+    if (std::any_of(flights_.begin(), flights_.end(), [&](const Flight& f) { return f.contains(x); }))
+      return Place::at_wall;
     for (const Part& part : parts_) {
       if (is_below(x, part)) return Place::at_wall;
       const double distance = part.plane.signed_distance(x);
@@ -137,6 +141,7 @@ class BuiltPlanes {
 
   std::vector<bool> built_;
   std::vector<Part> parts_;
+  std::vector<Flight> flights_;
 };
 
 double square(double x) {
@@ -237,7 +242,7 @@ struct Side {
   BuiltPlanes built;
   std::vector<Piece> pieces;
 
-  explicit Side(const ScanView& scan) : view(scan), built(*scan.features), pieces(pieces_of(scan, built)) {}
+  explicit Side(const ScanView& scan) : view(scan), built(scan), pieces(pieces_of(scan, built)) {}
 };
 
 /// Asks `judge` about the pieces of `scan`; what it does not know is left out.

@@ -1,0 +1,119 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/register/judge/stairs.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+
+namespace limen {
+namespace {
+
+// Steps as people can climb them, with what the middles of pieces miss those of risers by.
+constexpr double kLeastRunM = 0.18;
+constexpr double kMostRunM = 0.38;
+constexpr double kLeastRiseM = 0.09;
+constexpr double kMostRiseM = 0.27;
+constexpr double kSameRunM = 0.04;
+constexpr double kSameRiseM = 0.08;
+constexpr double kBesideStepM = 0.6;
+
+constexpr double kRiserUpright = 0.1;  // cosine of its normal to the vertical, at most
+constexpr double kParallelRisers = 0.985;
+constexpr double kOneRiserM = 0.05;     // across
+constexpr double kNextToRiserM = 0.35;  // along
+
+constexpr double kHalfFlightM = 1.3;
+constexpr double kBelowFlightM = 0.6;
+constexpr double kRailingM = 1.3;
+constexpr double kUnseenFlightM = 1.5;  // of the flight, either way
+
+struct Riser {
+  Vector3d at = Vector3d::Zero();
+  Vector2d up = Vector2d::UnitX();
+  Vector3d last = Vector3d::Zero();
+  double pieces = 0.0;
+};
+
+/// The pieces joined to risers, or to whatever else stands upright.
+std::vector<Riser> upright_faces(const std::vector<SurfaceDetail>& details) {
+  std::vector<Riser> faces;
+  for (const SurfaceDetail& piece : details) {
+    if (!piece.flat() || std::abs(piece.normal.z()) > kRiserUpright) continue;
+    const Vector2d up = -piece.normal.head<2>().normalized();
+    const auto found = std::find_if(faces.begin(), faces.end(), [&](const Riser& face) {
+      const Vector3d apart = piece.mean - face.at;
+      return face.up.dot(up) > kParallelRisers && std::abs(apart.head<2>().dot(face.up)) < kOneRiserM &&
+             (piece.mean - face.last).norm() < kNextToRiserM + 0.1 * face.pieces;
+    });
+    if (found == faces.end()) {
+      faces.push_back({piece.mean, up, piece.mean, 1.0});
+      continue;
+    }
+    found->at = (found->pieces * found->at + piece.mean) / (found->pieces + 1.0);
+    found->last = piece.mean;
+    found->pieces += 1.0;
+  }
+  return faces;
+}
+
+struct Step {
+  double run_m = 0.0;
+  double rise_m = 0.0;
+};
+
+/// The step that leads from one riser to the other, if one does.
+std::optional<Step> step_between(const Riser& lower, const Riser& upper) {
+  if (lower.up.dot(upper.up) < kParallelRisers) return std::nullopt;
+  const Vector3d apart = upper.at - lower.at;
+  const Vector2d level = apart.head<2>();
+  const Step step{level.dot(lower.up), apart.z()};
+  const double beside = std::abs(lower.up.x() * level.y() - lower.up.y() * level.x());
+  const bool climbs = step.run_m > kLeastRunM && step.run_m < kMostRunM && step.rise_m > kLeastRiseM &&
+                      step.rise_m < kMostRiseM && beside < kBesideStepM;
+  return climbs ? std::optional(step) : std::nullopt;
+}
+
+}  // namespace
+
+bool Flight::contains(const Vector3d& x) const {
+  const Vector3d apart = x - foot;
+  const double along = apart.head<2>().dot(up);
+  if (along < -kUnseenFlightM || along > length_m + kUnseenFlightM) return false;
+  if (std::abs(up.x() * apart.y() - up.y() * apart.x()) > kHalfFlightM) return false;
+  const double above = apart.z() - slope * along;
+  return above > -kBelowFlightM && above < kRailingM;
+}
+
+std::vector<Flight> find_flights(const std::vector<SurfaceDetail>& details) {
+  const std::vector<Riser> faces = upright_faces(details);
+  std::vector<Flight> flights;
+  for (const Riser& first : faces) {
+    const bool known = std::any_of(flights.begin(), flights.end(),
+                                   [&](const Flight& flight) { return flight.contains(first.at); });
+    if (known) continue;
+    for (const Riser& second : faces) {
+      const std::optional<Step> step = step_between(first, second);
+      if (!step) continue;
+      const auto third = std::find_if(faces.begin(), faces.end(), [&](const Riser& face) {
+        const std::optional<Step> next = step_between(second, face);
+        return next && std::abs(next->run_m - step->run_m) < kSameRunM &&
+               std::abs(next->rise_m - step->rise_m) < kSameRiseM;
+      });
+      if (third == faces.end()) continue;
+      const Vector3d all = third->at - first.at;
+      const double run = all.head<2>().dot(first.up);
+      Flight flight{first.at, first.up, all.z() / run, run};
+      for (const Riser& face : faces) {
+        if (!flight.contains(face.at) || face.up.dot(flight.up) < kParallelRisers) continue;
+        flight.length_m = std::max(flight.length_m, (face.at - flight.foot).head<2>().dot(flight.up));
+      }
+      flights.push_back(flight);
+      break;
+    }
+  }
+  return flights;
+}
+
+}  // namespace limen
