@@ -16,6 +16,8 @@ void PosteriorOptions::check() const {
   if (!(nats_per_m2_through_wall > 0))
     throw_bad_option("nats_per_m2_through_wall", nats_per_m2_through_wall, "more than 0");
   if (!(search_nats >= 0)) throw_bad_option("search_nats", search_nats, "0 or more");
+  if (!(search_nats_through_wall >= 0))
+    throw_bad_option("search_nats_through_wall", search_nats_through_wall, "0 or more");
   if (!(prior_shared > 0 && prior_shared < 1))
     throw_bad_option("prior_shared", prior_shared, "within (0, 1)");
   if (!(unlisted >= 0 && unlisted < 1)) throw_bad_option("unlisted", unlisted, "within [0, 1)");
@@ -26,9 +28,10 @@ Posterior posterior(const PosteriorEvidence& evidence, const PosteriorOptions& o
   // Weights against the best pose, whose likelihood is 1; the best wrong pose is as likely as the right one
   // where its value is what a search reaches by chance.
   const double nats_per_m2 = evidence.through_wall ? options.nats_per_m2_through_wall : options.nats_per_m2;
+  const double search_nats = evidence.through_wall ? options.search_nats_through_wall : options.search_nats;
   const double chance =
       std::exp(evidence.log_odds_of_model ? -*evidence.log_odds_of_model
-                                          : options.search_nats - nats_per_m2 * evidence.best_value_m2);
+                                          : search_nats - nats_per_m2 * evidence.best_value_m2);
   Posterior posterior;
   double total = 0.0;
   const auto add_pose = [&](double lead_m2) {

@@ -17,7 +17,8 @@ struct PosteriorOptions {
   double nats_per_m2 = 1.9;
   /// The same where one scan was taken along a street: bays, storeys and windows repeat, and what meets by
   /// chance meets in rows. The best wrong poses of rooms that a street scan shows nothing of reach 9.5 m^2.
-  double nats_per_m2_through_wall = 1.0;
+  double nats_per_m2_through_wall = 1.6;
+  double search_nats_through_wall = 15.2;  ///< `search_nats`, there: 9.5 m^2
   /// What the best of all wrong poses reaches by chance: the logarithm of how many a search can tell apart
   /// (evidence times Laplace volume over search volume, for poses that are all held to about a centimetre).
   double search_nats = 9.5;
