@@ -388,16 +388,6 @@ void tell(Verdict verdict, const std::vector<JudgedPose>& poses, const ContrastF
   }
 }
 
-/// The probability of a twin where something is believed of the pose beforehand: a twin is another place, at
-/// least a room away.
-double twin_beside_start(double twin, const PreparedStart& start, const Rigid3& pose) {
-  constexpr double kRoomApartM = 2.5;
-  if (twin <= 0.0 || twin >= 1.0) return twin;
-  const double gain = log_prior_elsewhere(start.prior, pose, start.at, kRoomApartM) - start.log_prior(pose);
-  const double odds = twin / (1.0 - twin) * std::exp(gain);
-  return odds / (1.0 + odds);
-}
-
 constexpr double kTwinRather = 0.5;  // probability of a twin above which things tell two rooms
 
 /// Whether two rooms built alike could be taken for one: of a model, or of the house seen from the street,
@@ -481,15 +471,16 @@ RegistrationResult register_prepared(const PreparedPair& pair, const RegisterOpt
   }
   const bool planes = options.method == Method::automatic || options.method == Method::polygons;
   if (verdict.outcome == Outcome::no_match && level && planes && !model) try_again(true, Proposal::sliding);
+  const std::optional<PreparedStart> start = prepared_start(from, to, options);
   double twin = 0.0;
   if (!verdict.ranking.empty() && verdict.outcome != Outcome::no_match && may_be_twin(from, to)) {
     const Rigid3& best = poses[verdict.ranking.front()].refined.target_from_source;
     const IndividualMatter individual = individual_matter(from.view(), to.view(), best);
     twin = probability_of_twin(individual, judging.twin);
-    if (const auto start = prepared_start(from, to, options)) twin = twin_beside_start(twin, *start, best);
+    if (start) twin = twin_beside_start(twin, start->prior, best, start->at, start->log_prior(best));
     verdict = with_twin(std::move(verdict), individual, twin, judging);
   }
-  if (const auto start = prepared_start(from, to, options); start && !verdict.ranking.empty()) {
+  if (start && !verdict.ranking.empty()) {
     const StartMiss miss =
         miss_of_start(start->prior, poses[verdict.ranking.front()].refined.target_from_source, start->at);
     result.start = StartAgreement{miss.shift_m, miss.turn_rad, miss.sigmas};

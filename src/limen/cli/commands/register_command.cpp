@@ -300,7 +300,7 @@ void add_register_command(CommandLine& app, Session& session) {
   command
       ->add_option(
           "--risk", options->risk,
-          "Tell `registered` only where a twin (another room built alike) is less probable than this "
+          "Tell `registered` only where all else (a twin, another pose, chance) is less probable than this "
           "(default 0.001)")
       ->type_name("P");
   command

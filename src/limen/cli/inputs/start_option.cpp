@@ -5,7 +5,6 @@
 #include <array>
 #include <charconv>
 #include <string_view>
-#include <utility>
 
 #include "limen/base/angles.h"
 #include "limen/base/error.h"
