@@ -7,7 +7,7 @@
 
 #include "limen/io/las/laz/laz_arithmetic.h"
 
-/// The other direction of laz_arithmetic.h and laz_integer.h. For tests: limen writes no LAZ.
+/// A second encoder, for tests: limen's own is held against it.
 namespace limen::testing_laz {
 
 using laz::BitModel;

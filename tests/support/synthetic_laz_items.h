@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <cstdlib>
 #include <map>
@@ -14,8 +15,8 @@
 
 #include "limen/io/las/laz/laz_prediction.h"
 
-/// Encoders of the parts of points, for tests. Written from the description of the format, not from the
-/// decoders; running medians and wrapping sums are shared with them.
+/// Encoders of the parts of points, for tests: what limen writes is held against them. Written from the
+/// description of the format, not from limen's coders; running medians and wrapping sums are shared.
 namespace limen::testing_laz {
 
 using laz::clamp_to_byte;
@@ -77,7 +78,7 @@ class TimeEncoder {
 
   void encode_multiple(Encoder& encoder, std::uint64_t time, std::int32_t step) {
     const std::int32_t usual = steps_[now_];
-    const auto multiple = static_cast<std::int64_t>(static_cast<double>(step) / usual + 0.5);
+    const auto multiple = static_cast<std::int64_t>(std::round(static_cast<double>(step) / usual));
     const auto predicted = [&](std::int32_t by) {
       return static_cast<std::int32_t>(static_cast<std::uint32_t>(by) * static_cast<std::uint32_t>(usual));
     };

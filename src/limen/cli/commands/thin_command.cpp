@@ -69,7 +69,8 @@ void add_thin_command(CommandLine& app, Session& session) {
   CommandLine* command = add_command(app, session, "thin", "Keep an even part of a cloud of any size",
                                      [options, &session] { return run(*options, session); });
   command->add_option("CLOUD", options->cloud, "A cloud of any format limen reads")->required();
-  command->add_option("OUT", options->output, "The file to write: .ply, .las or .e57")->required();
+  command->add_option("OUT", options->output, "The file to write: .ply, .las, .laz, .e57 or .xyz")
+      ->required();
   command
       ->add_option("--points", options->thinning.most_points,
                    "Keep so many points, or a little less; the spacing follows")

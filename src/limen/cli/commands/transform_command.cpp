@@ -107,8 +107,9 @@ void add_transform_command(CommandLine& app, Session& session) {
   command->add_option("RESULT", options->result, "result.json, or a text of 4 x 4 numbers")->required();
   command->add_option("CLOUD", options->cloud, "The cloud to move, of any format limen reads")->required();
   command
-      ->add_option("OUT", options->output,
-                   "The file to write: of CLOUD's own format, which keeps all of it, or .ply, .las, .e57")
+      ->add_option(
+          "OUT", options->output,
+          "The file to write: of CLOUD's own format, which keeps all of it, or .ply, .las, .laz, .e57, .xyz")
       ->required();
   command
       ->add_option(

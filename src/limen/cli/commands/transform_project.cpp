@@ -64,8 +64,7 @@ void name_outputs(std::vector<Move>& moves, const fs::path& folder, const std::s
   for (Move& move : moves) {
     const fs::path from(move.entry.file);
     std::string end = ending.empty() ? from.extension().string() : "." + ending;
-    // What only readers know, and files of several stations, are written as E57.
-    if (ending.empty() && (end == ".laz" || end == ".LAZ")) end = ".las";
+    // A file of several stations becomes E57.
     if (ending.empty() && move.several) end = ".e57";
     const std::string stem =
         from.stem().string() + (move.several ? fmt::format("_{}", move.entry.index) : std::string());
@@ -142,7 +141,7 @@ void add_transform_project_command(CommandLine& app, Session& session) {
       ->required()
       ->type_name("OUT");
   command->add_option("--as", options->ending, "Format of what is written; else each scan's own")
-      ->one_of({"e57", "las", "ply"});
+      ->one_of({"e57", "las", "laz", "ply"});
   command->add_flag("--merge", options->merge, "All scans in one file");
 }
 

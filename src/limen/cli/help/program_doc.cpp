@@ -88,7 +88,7 @@ const std::vector<ExampleDoc>& examples_of(const std::string& command) {
         {"Both clouds in one file",
          "limen transform result/result.json room.e57 both.e57 --merge street.laz"}}},
       {"thin",
-       {{"Two million points of a file of any size", "limen thin street.laz street_2M.las --points 2000000"},
+       {{"Two million points of a file of any size", "limen thin street.laz street_2M.laz --points 2000000"},
         {"One point per centimetre", "limen thin room.e57 room.ply --spacing-m 0.01"}}},
       {"evaluate",
        {{"Compare with the truth of a simulated case",

@@ -28,18 +28,19 @@ bool is_text(const std::string& ending) {
 
 std::unique_ptr<CloudWriter> make_cloud_writer(const std::filesystem::path& path, const CloudPlan& plan) {
   const std::string ending = ending_of(path);
-  if (ending == ".las") return make_las_writer(path, plan);
+  if (ending == ".las" || ending == ".laz") return make_las_writer(path, plan);
   if (ending == ".e57") return make_e57_writer(path, plan);
   if (is_text(ending)) return make_text_writer(path, plan);
   // What has no ending is no ordinary file: a pipe.
   if (ending == ".ply" || ending.empty()) return make_ply_writer(path, plan);
   throw Error(fmt::format("the ending \"{}\" is not written", ending), path.string(),
-              ending == ".laz" ? "name the output .las" : "name the output .ply, .las, .e57, .xyz or .csv");
+              "name the output .ply, .las, .laz, .e57, .xyz or .csv");
 }
 
 bool is_cloud_ending(const std::filesystem::path& path) {
   const std::string ending = ending_of(path);
-  return ending == ".las" || ending == ".e57" || ending == ".ply" || is_text(ending) || ending.empty();
+  return ending == ".las" || ending == ".laz" || ending == ".e57" || ending == ".ply" || is_text(ending) ||
+         ending.empty();
 }
 
 }  // namespace limen

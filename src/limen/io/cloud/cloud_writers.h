@@ -9,7 +9,7 @@
 
 namespace limen {
 
-/// The writer for the ending of the file: .ply, .las, .e57, or text (.xyz, .txt, .asc,
+/// The writer for the ending of the file: .ply, .las, .laz, .e57, or text (.xyz, .txt, .asc,
 /// .csv). Throws Error for any other.
 std::unique_ptr<CloudWriter> make_cloud_writer(const std::filesystem::path& path, const CloudPlan& plan);
 

@@ -192,5 +192,9 @@ RC_GTEST_PROP(RoundTripLaws, Las, ()) {
   comes_back("any.las", 1e-4);
 }
 
+RC_GTEST_PROP(RoundTripLaws, Laz, ()) {
+  comes_back("any.laz", 1e-4);
+}
+
 }  // namespace
 }  // namespace limen

@@ -40,7 +40,7 @@ bool has_ending_of(PointFormat format, const std::filesystem::path& path) {
     case PointFormat::e57:
       return ending == ".e57";
     case PointFormat::las:
-      return ending == ".las";
+      return ending == ".las" || ending == ".laz";
     case PointFormat::text:
       return ending == ".pts" || ending == ".xyz" || ending == ".txt" || ending == ".csv" || ending == ".asc";
   }
@@ -92,9 +92,7 @@ void require_known_ending(const std::filesystem::path& output, const OpenPoints&
   if (is_cloud_ending(output)) return;
   const std::string ending = lower_case(output.extension().string());
   throw Error(fmt::format("{} is not written as \"{}\"", input.file().format(), ending), output.string(),
-              ending == ".laz"
-                  ? "name the output .las"
-                  : "name the output .ply, .las, .e57, .xyz or .csv, or give it the ending of the input");
+              "name the output .ply, .las, .laz, .e57, .xyz or .csv, or give it the ending of the input");
 }
 
 }  // namespace

@@ -17,14 +17,14 @@ namespace limen {
 ///  - PLY: encoding, comments, other elements, every value; moved coordinates become double, a comment with
 ///  an
 ///    offset is taken out, since it is added;
-///  - LAS, LAZ: written as LAS of the same version and point format with all its records;
+///  - LAS, LAZ: written as LAS or LAZ of the same version and point format with all its records;
 ///  - E57: only the poses of the scans differ;
 ///  - PTX: matrix and scanner lines are replaced, the points stay in the scanner's frame;
 ///  - PCD: x y z become double, the view point moves, all fields are kept; compressed points become plain
 ///  ones;
 ///  - PTS, XYZ and other text: the numbers of x y z (origins, normals) in each line are replaced.
-/// To .ply, .las, .e57 and text (.xyz, .txt, .asc, .csv) from any other format every column goes with its
-/// type; points stream. The file appears whole or not at all; throws Error for what cannot be read or
+/// To .ply, .las, .laz, .e57 and text (.xyz, .txt, .asc, .csv) from any other format every column goes with
+/// its type; points stream. The file appears whole or not at all; throws Error for what cannot be read or
 /// written.
 TransformedCloud transform_cloud(const std::filesystem::path& input, const Rigid3& target_from_source,
                                  const std::filesystem::path& output, const ReadOptions& options = {},
@@ -35,9 +35,9 @@ struct CloudToMove {
   std::filesystem::path path;
   Rigid3 target_from_source;
 };
-/// Moves a cloud, and writes it and `others`, which lie in the target's frame already, to one .ply, .las or
-/// .e57 with the columns of all; `source_cloud` tells which file a point is from, 0 being the moved one.
-/// Without others it is transform_cloud.
+/// Moves a cloud, and writes it and `others`, which lie in the target's frame already, to one .ply, .las,
+/// .laz or .e57 with the columns of all; `source_cloud` tells which file a point is from, 0 being the moved
+/// one. Without others it is transform_cloud.
 TransformedCloud merge_clouds(const CloudToMove& moved, const std::vector<std::string>& others,
                               const std::filesystem::path& output, Monitor& monitor = silent_monitor());
 
@@ -48,9 +48,9 @@ struct StationToMove {
   Rigid3 target_from_source;
 };
 /// Clouds of one file or several, each moved by a pose of its own, in one file. In an .e57 each stays a scan
-/// of its own, its pose at the optical centre where that is known; in a .ply or .las they become one cloud
-/// with the columns of all, and `source_cloud` tells which station a point is from where there are several.
-/// Throws Error where a file has no such cloud, or more than 256 would become one.
+/// of its own, its pose at the optical centre where that is known; in a .ply, .las or .laz they become one
+/// cloud with the columns of all, and `source_cloud` tells which station a point is from where there are
+/// several. Throws Error where a file has no such cloud, or more than 256 would become one.
 TransformedCloud move_stations(const std::vector<StationToMove>& stations,
                                const std::filesystem::path& output, Monitor& monitor = silent_monitor());
 

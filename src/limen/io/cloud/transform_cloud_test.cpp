@@ -324,7 +324,7 @@ TEST(TransformCloud, GoesThroughLasAndE57) {
 TEST(TransformCloud, RefusesEndingsItDoesNotWrite) {
   const TemporaryFolder folder;
   const auto in = folder.write("in.xyz", "1 2 3\n4 5 6\n");
-  for (const char* name : {"out.laz", "out.pcd", "out.jpg"}) {
+  for (const char* name : {"out.copc", "out.pcd", "out.jpg"}) {
     EXPECT_THROW(transform_cloud(in, Rigid3{}, folder / name), Error) << name;
   }
   EXPECT_EQ(folder.files(), 1U);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limen/io/las/las_header.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <optional>
@@ -167,6 +168,14 @@ const LasRecord* LasHeader::find(std::string_view user, std::uint16_t number) co
     if (record.user == user && record.number == number) return &record;
   }
   return nullptr;
+}
+
+std::string las_record(std::string_view user, std::uint16_t number, std::string_view body) {
+  std::string record(kLasRecordHead, '\0');
+  std::copy(user.begin(), user.end(), record.begin() + 2);
+  put_las_number(record, 18, number);
+  put_las_number(record, 20, static_cast<std::uint16_t>(body.size()));
+  return record.append(body);
 }
 
 bool looks_like_las(std::string_view bytes) {

@@ -61,6 +61,9 @@ inline constexpr std::size_t kLasRecordHead = 54;
 inline constexpr const char* kLasCentreUser = "limen";
 inline constexpr std::uint16_t kLasCentreNumber = 1;
 
+/// A variable length record as it lies in a file; the body has at most 65535 bytes.
+std::string las_record(std::string_view user, std::uint16_t number, std::string_view body);
+
 /// A variable length record, the long kind too.
 struct LasRecord {
   std::string user;          ///< "LASF_Projection"

@@ -20,6 +20,8 @@
 #include "limen/io/las/las_grid.h"
 #include "limen/io/las/las_records.h"
 #include "limen/io/las/laz/laz_info.h"
+#include "limen/io/las/laz/laz_pack.h"
+#include "limen/io/las/laz/laz_writer.h"
 
 namespace limen {
 namespace {
@@ -34,6 +36,7 @@ struct Motion {
   const LasHeader& header;
   const Rigid3& target_from_source;
   Monitor& monitor;
+  std::vector<laz::ItemPlan> items;  ///< of points that are written packed; else none
 };
 
 using GridPlace = std::array<std::int32_t, 3>;
@@ -128,7 +131,7 @@ Reach move_records(const Motion& motion, const LasGrid& grid, std::vector<char>&
       [](const Reach& sum, const Reach& part) { return sum.with(part); });
 }
 
-/// Records that describe how the points were packed; they are packed no more.
+/// Records that describe how the points were packed; they are packed anew or no more.
 bool describes_packing(const LasRecord& record) {
   return (record.user == kLasZipUser && record.number == kLasZipNumber) || record.user == "copc";
 }
@@ -148,6 +151,7 @@ std::string beginning(const Motion& motion, const LasGrid& grid) {
   const LasHeader& header = motion.header;
   std::string text(motion.bytes.substr(0, header.size));
   std::uint32_t taken_out = 0;
+  std::uint32_t kept = 0;
   std::size_t end = header.size;
   for (const LasRecord& record : header.records) {
     if (record.extended) continue;
@@ -155,14 +159,20 @@ std::string beginning(const Motion& motion, const LasGrid& grid) {
     if (header.compressed && describes_packing(record)) {
       ++taken_out;
     } else {
+      ++kept;
       text += written_record(motion, record);
     }
   }
+  if (!motion.items.empty()) {
+    text += las_record(kLasZipUser, kLasZipNumber, laz::laszip_record(motion.items, kLazChunkPoints));
+  }
   text += motion.bytes.substr(end, header.points_begin - end);
-  put_las_number(text, las_at::kRecordCount,
-                 las_number<std::uint32_t>(motion.bytes, las_at::kRecordCount) - taken_out);
+  // A false count is kept, but not where it would hide the record that tells of the packing.
+  const auto told = las_number<std::uint32_t>(motion.bytes, las_at::kRecordCount);
+  put_las_number(text, las_at::kRecordCount, motion.items.empty() ? told - taken_out : kept + 1);
   put_las_number(text, las_at::kPointsBegin, static_cast<std::uint32_t>(text.size()));
-  text[las_at::kPointFormat] = static_cast<char>(header.point_format);
+  const unsigned packed = motion.items.empty() ? 0U : kPackedBit;
+  text[las_at::kPointFormat] = static_cast<char>(static_cast<unsigned>(header.point_format) | packed);
   put_las_vector(text, las_at::kScale, grid.scale);
   put_las_vector(text, las_at::kOffset, grid.offset);
   return text;
@@ -257,6 +267,8 @@ std::optional<std::uint64_t> write_moved(const Motion& motion, const LasGrid& gr
   AtomicFile file(output);
   const std::string text = beginning(motion, grid);
   file.write(text);
+  std::optional<LazWriter> packed;
+  if (!motion.items.empty()) packed.emplace(file, text.size(), motion.items);
   Reach reach;
   const auto records = open_las_records(motion.bytes, motion.name, motion.header);
   std::vector<char> moved;
@@ -266,12 +278,15 @@ std::optional<std::uint64_t> write_moved(const Motion& motion, const LasGrid& gr
     moved.assign(piece.data, piece.data + piece.count * motion.header.point_bytes);
     reach = reach.with(move_records(motion, grid, moved));
     if (reach.outside) return {};
-    file.write({moved.data(), moved.size()});
+    const std::string_view written(moved.data(), moved.size());
+    packed ? packed->write(written) : file.write(written);
     motion.monitor.advance(static_cast<double>(reach.points), static_cast<double>(motion.header.points));
   }
+  const std::uint64_t points_end =
+      packed ? packed->finish() : text.size() + reach.points * motion.header.point_bytes;
   const Tail tail = tail_of(motion);
   file.write(tail.bytes());
-  patch_header(file, motion, tail, text.size() + reach.points * motion.header.point_bytes);
+  patch_header(file, motion, tail, points_end);
   patch_bounds(file, grid, reach);
   file.commit();
   return reach.points;
@@ -312,7 +327,8 @@ TransformedCloud transform_las(std::string_view bytes, const std::string& name,
                                const Rigid3& target_from_source, const std::filesystem::path& output,
                                Monitor& monitor) {
   const LasHeader header = parse_las_header(bytes, name);
-  const Motion motion{bytes, name, header, target_from_source, monitor};
+  Motion motion{bytes, name, header, target_from_source, monitor, {}};
+  if (is_laz_ending(output)) motion.items = laz::items_of(header.point_format, header.point_bytes);
   const std::optional<LasBox> told = told_box(header);
   LasGrid grid = moved_grid(header, target_from_source,
                             told ? moved_box(*told, target_from_source) : measured_box(motion));

@@ -12,7 +12,8 @@
 
 namespace limen {
 
-/// Moves a LAS or LAZ file in memory and writes it as LAS of the same version and point format. Coordinates
+/// Moves a LAS or LAZ file in memory and writes it as LAS, or as LAZ where `output` ends so, of the same
+/// version and point format. Coordinates
 /// move; scale, offset and bounding box follow; every other value of the points and every record around them
 /// is kept byte for byte, but for what describes the compression. Steps are not coarser than the old ones
 /// where the range allows. Points stream, the file may be larger than memory.

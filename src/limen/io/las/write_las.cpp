@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
@@ -18,6 +19,9 @@
 #include "limen/io/las/las_grid.h"
 #include "limen/io/las/las_header.h"
 #include "limen/io/las/las_slots.h"
+#include "limen/io/las/laz/laz_info.h"
+#include "limen/io/las/laz/laz_pack.h"
+#include "limen/io/las/laz/laz_writer.h"
 
 namespace limen {
 namespace {
@@ -30,14 +34,6 @@ constexpr double kFinestStep = 1e-5;
 constexpr double kCoarsestStep = 1e-4;
 constexpr double kSecondsOfWeek = 604800.0;
 constexpr std::int32_t kBlank = INT32_MIN;  ///< stored for what is no number, until the row is left out
-
-std::string record_of(const std::string& user, std::uint16_t number, const std::string& body) {
-  std::string record(kLasRecordHead, '\0');
-  std::copy(user.begin(), user.end(), record.begin() + 2);
-  put_las_number(record, 18, number);
-  put_las_number(record, 20, static_cast<std::uint16_t>(body.size()));
-  return record + body;
-}
 
 /// A value brought into a whole number of a range; what is no number becomes the lowest.
 template <typename Value>
@@ -128,13 +124,19 @@ void store_extra(const ValueStrip& strip, const LasSlot& slot) {
 class LasWriter : public CloudWriter {
  public:
   LasWriter(const std::filesystem::path& path, const CloudPlan& plan)
-      : name_(path.string()), plan_(plan), slots_(las_slots(plan, name_)), file_(path) {
+      : name_(path.string()),
+        plan_(plan),
+        slots_(las_slots(plan, name_)),
+        items_(is_laz_ending(path) ? laz::items_of(slots_.point_format, slots_.point_bytes) : Items{}),
+        file_(path) {
     const double step =
         plan.resolution_m > 0.0 ? plan.resolution_m : (plan.centre ? kFinestStep : kCoarsestStep);
     step_ = std::clamp(step, kFinestStep, kCoarsestStep);
     offset_ = round_offset(plan.near);
     if (!offset_.allFinite()) offset_.setZero();
-    file_.write(beginning());
+    const std::string head = beginning();
+    file_.write(head);
+    if (!items_.empty()) packed_.emplace(file_, head.size(), items_);
   }
 
   void write(const RecordTable& rows) override {
@@ -147,6 +149,7 @@ class LasWriter : public CloudWriter {
   }
 
   void finish() override {
+    if (packed_) packed_->finish();
     patch_header();
     file_.commit();
   }
@@ -158,7 +161,7 @@ class LasWriter : public CloudWriter {
     std::uint32_t count = 0;
     const auto add = [&](const std::string& user, std::uint16_t number, const std::string& body) {
       if (body.empty() || body.size() > 0xFFFF) return;
-      records += record_of(user, number, body);
+      records += las_record(user, number, body);
       ++count;
     };
     if (!plan_.georeference.empty()) add("LASF_Projection", 2112, plan_.georeference.front() + '\0');
@@ -168,6 +171,7 @@ class LasWriter : public CloudWriter {
       put_las_vector(centre, 0, *plan_.centre);
       add(kLasCentreUser, kLasCentreNumber, centre);
     }
+    if (!items_.empty()) add(kLasZipUser, kLasZipNumber, laz::laszip_record(items_, kLazChunkPoints));
     std::string header(kHeaderBytes14, '\0');
     header.replace(0, 4, "LASF");
     header[las_at::kMinorVersion - 1] = 1;
@@ -177,7 +181,8 @@ class LasWriter : public CloudWriter {
     put_las_number(header, las_at::kHeaderSize, static_cast<std::uint16_t>(kHeaderBytes14));
     put_las_number(header, las_at::kPointsBegin, static_cast<std::uint32_t>(kHeaderBytes14 + records.size()));
     put_las_number(header, las_at::kRecordCount, count);
-    header[las_at::kPointFormat] = static_cast<char>(slots_.point_format);
+    const auto format = static_cast<unsigned>(slots_.point_format) | (items_.empty() ? 0U : kPackedBit);
+    header[las_at::kPointFormat] = static_cast<char>(format);
     put_las_number(header, las_at::kPointLength, static_cast<std::uint16_t>(slots_.point_bytes));
     put_las_vector(header, las_at::kScale, Vector3d::Constant(step_));
     put_las_vector(header, las_at::kOffset, offset_);
@@ -236,7 +241,8 @@ class LasWriter : public CloudWriter {
                   name_, "write PLY, or leave out stray points");
     }
     summary_.add(summary);
-    file_.write({records_.data(), records_.size()});
+    const std::string_view bytes(records_.data(), records_.size());
+    packed_ ? packed_->write(bytes) : file_.write(bytes);
   }
 
   /// Takes out the records with a coordinate that was no number.
@@ -356,12 +362,15 @@ class LasWriter : public CloudWriter {
     if (timed && !of_week) patch(las_at::kGlobalEncoding, static_cast<std::uint16_t>(kWktBit | 1U));
   }
 
+  using Items = std::vector<laz::ItemPlan>;
   static constexpr std::uint16_t kWktBit = 16;
 
   std::string name_;
   CloudPlan plan_;
   LasSlots slots_;
+  Items items_;  ///< of packed points; else none
   AtomicFile file_;
+  std::optional<LazWriter> packed_;
   double step_ = kCoarsestStep;
   Vector3d offset_ = Vector3d::Zero();
   std::vector<double> spreads_;  ///< per column; empty before the first rows

@@ -140,8 +140,13 @@ class SymbolModel {
 };
 
 /// Decodes symbols from bytes that the caller keeps. Behind their end it goes on with zeros; sound() tells.
+///
+/// What is written once for both directions calls code(): this one finds a value and passes over the wanted
+/// one, Encoder (laz_encoder.h) stores the wanted one and returns it.
 class Decoder {
  public:
+  static constexpr bool kEncodes = false;
+
   Decoder() = default;
   explicit Decoder(std::string_view bytes)
       : at_(reinterpret_cast<const unsigned char*>(bytes.data())), end_(at_ + bytes.size()) {
@@ -175,6 +180,15 @@ class Decoder {
     model.count(found);
     return found;
   }
+
+  bool code(BitModel& model, bool /*wanted*/) { return bit(model); }
+  template <unsigned most>
+  unsigned code(SymbolModel<most>& model, unsigned /*wanted*/) {
+    return symbol(model);
+  }
+  std::uint32_t code_bits(unsigned count, std::uint32_t /*wanted*/) { return bits(count); }
+  std::uint32_t code_word(std::uint32_t /*wanted*/) { return word(); }
+  std::uint64_t code_long_word(std::uint64_t /*wanted*/) { return long_word(); }
 
   /// Plain bits, up to 32.
   std::uint32_t bits(unsigned count) {
@@ -242,14 +256,15 @@ class Decoder {
 template <unsigned symbols, unsigned values>
 class ModelPerValue {
  public:
-  unsigned decode(Decoder& decoder, unsigned value) {
+  SymbolModel<symbols>& of(unsigned value) {
     std::unique_ptr<SymbolModel<symbols>>& model = models_[value];
     if (!model) {
       model = std::make_unique<SymbolModel<symbols>>();
       model->reset();
     }
-    return decoder.symbol(*model);
+    return *model;
   }
+  unsigned decode(Decoder& decoder, unsigned value) { return decoder.symbol(of(value)); }
 
  private:
   std::array<std::unique_ptr<SymbolModel<symbols>>, values> models_;

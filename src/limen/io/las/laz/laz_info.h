@@ -31,6 +31,8 @@ struct LazInfo {
 /// Name of the record that tells how the points are packed.
 inline constexpr const char* kLasZipUser = "laszip encoded";
 inline constexpr std::uint16_t kLasZipNumber = 22204;
+/// In the byte of the point format: the points are packed.
+inline constexpr unsigned kPackedBit = 0x80;
 
 /// Reads the LASzip record and the table of chunks; all chunks lie in the file and their points add up.
 /// A file coded as one run has one chunk. Throws Error where that is not so.

@@ -18,12 +18,12 @@ class GpsTimeV2 : public PointItem {
   void start(const char* raw) override { times_.start(get<std::uint64_t>(raw)); }
   void decode(Decoder& shared, char* out) override {
     Decoder decoder = shared;
-    put(out, times_.decode(decoder));
+    put(out, times_.code(decoder, 0));
     shared = decoder;
   }
 
  private:
-  GpsTimeDecoder<true> times_;
+  GpsTimeCoder<Decoder, true> times_;
 };
 
 /// Version 1: one sequence of times.
@@ -86,14 +86,14 @@ class ColoursV2 : public PointItem {
   void start(const char* raw) override { last_ = get<Colour>(raw); }
   void decode(Decoder& shared, char* out) override {
     Decoder decoder = shared;
-    last_ = colours_.decode(decoder, last_);
+    last_ = colours_.code(decoder, last_, {});
     put(out, last_);
     shared = decoder;
   }
 
  private:
   Colour last_{};
-  ColourDecoder colours_;
+  ColourCoder<Decoder> colours_;
 };
 
 /// Version 1: each byte is predicted by the last one.
@@ -117,22 +117,19 @@ class ColoursV1 : public PointItem {
 
 class BytesV2 : public PointItem {
  public:
-  explicit BytesV2(std::size_t count) : last_(count), models_(count) {}
+  explicit BytesV2(std::size_t count) : last_(count), bytes_(count) {}
 
   void start(const char* raw) override { std::memcpy(last_.data(), raw, last_.size()); }
   void decode(Decoder& shared, char* out) override {
     Decoder decoder = shared;
-    for (std::size_t k = 0; k < last_.size(); ++k) {
-      models_[k].reset_once();
-      last_[k] = static_cast<std::uint8_t>(last_[k] + decoder.symbol(models_[k]));
-    }
+    for (std::size_t k = 0; k < last_.size(); ++k) last_[k] = bytes_[k].code(decoder, last_[k], 0);
     std::memcpy(out, last_.data(), last_.size());
     shared = decoder;
   }
 
  private:
   std::vector<std::uint8_t> last_;
-  std::vector<SymbolModel<256>> models_;
+  std::vector<ByteCoder<Decoder>> bytes_;
 };
 
 /// Version 1: the number of bits has a model per byte, what follows is shared.
@@ -157,15 +154,15 @@ class BytesV1 : public PointItem {
 
 class WavePacketV1 : public PointItem {
  public:
-  void start(const char* raw) override { std::memcpy(last_.data(), raw, last_.size()); }
+  void start(const char* raw) override { last_ = get<WavePacket>(raw); }
   void decode(Decoder& decoder, char* out) override {
-    packets_.decode(decoder, last_.data(), last_.data());
-    std::memcpy(out, last_.data(), last_.size());
+    last_ = packets_.code(decoder, last_, {});
+    put(out, last_);
   }
 
  private:
-  std::array<char, kWavePacketBytes> last_{};
-  WavePacketDecoder packets_;
+  WavePacket last_{};
+  WavePacketCoder<Decoder> packets_;
 };
 
 }  // namespace

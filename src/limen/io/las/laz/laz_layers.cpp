@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::size_t kChannels = 4;
 
-/// One layer whose values are `Value`, its models `Models` with decode(decoder, last) -> next.
+/// One layer whose values are `Value`, its models `Models` with code(decoder, last, wanted) -> next.
 template <typename Value, typename Models>
 class Layer {
  public:
@@ -43,7 +43,7 @@ class Layer {
         // leaves, and stores the new value there.
         const bool stale = version_ == 3 && !step.fresh;
         Value& last = last_[stale ? step.from : step.channel];
-        last = models_[step.channel]->decode(decoder, last);
+        last = models_[step.channel]->code(decoder, last, Value{});
         put(record, last);
       } else {
         put(record, last_[0]);
@@ -60,51 +60,6 @@ class Layer {
   Decoder decoder_;
   std::array<Value, kChannels> last_{};
   std::array<std::unique_ptr<Models>, kChannels> models_;
-};
-
-class InfraredDecoder {
- public:
-  std::uint16_t decode(Decoder& decoder, std::uint16_t last) {
-    used_.reset_once();
-    const unsigned used = decoder.symbol(used_);
-    std::uint32_t next = last;
-    for (unsigned half = 0; half < 2; ++half) {
-      if ((used & (1U << half)) == 0) continue;
-      differences_[half].reset_once();
-      const std::uint32_t byte = ((last >> (8U * half)) + decoder.symbol(differences_[half])) & 255U;
-      next = (next & ~(255U << (8U * half))) | (byte << (8U * half));
-    }
-    return static_cast<std::uint16_t>(next);
-  }
-
- private:
-  SymbolModel<4> used_;
-  std::array<SymbolModel<256>, 2> differences_;
-};
-
-class ByteDecoder {
- public:
-  std::uint8_t decode(Decoder& decoder, std::uint8_t last) {
-    model_.reset_once();
-    return static_cast<std::uint8_t>(last + decoder.symbol(model_));
-  }
-
- private:
-  SymbolModel<256> model_;
-};
-
-using WavePacket = std::array<char, kWavePacketBytes>;
-
-class PacketDecoder {
- public:
-  WavePacket decode(Decoder& decoder, const WavePacket& last) {
-    WavePacket next{};
-    packets_.decode(decoder, last.data(), next.data());
-    return next;
-  }
-
- private:
-  WavePacketDecoder packets_;
 };
 
 class Colours14 : public LayerItem {
@@ -127,8 +82,8 @@ class Colours14 : public LayerItem {
  private:
   int version_;
   bool with_infrared_;
-  Layer<Colour, ColourDecoder> colours_;
-  Layer<std::uint16_t, InfraredDecoder> infrared_;
+  Layer<Colour, ColourCoder<Decoder>> colours_;
+  Layer<std::uint16_t, InfraredCoder<Decoder>> infrared_;
 };
 
 class Bytes14 : public LayerItem {
@@ -152,7 +107,7 @@ class Bytes14 : public LayerItem {
 
  private:
   int version_;
-  std::vector<Layer<std::uint8_t, ByteDecoder>> bytes_;
+  std::vector<Layer<std::uint8_t, ByteCoder<Decoder>>> bytes_;
 };
 
 class WavePackets14 : public LayerItem {
@@ -170,7 +125,7 @@ class WavePackets14 : public LayerItem {
 
  private:
   int version_;
-  Layer<WavePacket, PacketDecoder> packets_;
+  Layer<WavePacket, WavePacketCoder<Decoder>> packets_;
 };
 
 }  // namespace

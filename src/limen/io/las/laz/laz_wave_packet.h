@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 
 #include "limen/io/las/laz/laz_integer.h"
@@ -14,34 +15,45 @@ namespace limen::laz {
 /// direction numbers (4 each, as the integers of their bits).
 inline constexpr std::size_t kWavePacketBytes = 29;
 
-class WavePacketDecoder {
+using WavePacket = std::array<char, kWavePacketBytes>;
+
+template <typename Coder>
+class WavePacketCoder {
  public:
-  /// `out` may be `last`.
-  void decode(Decoder& decoder, const char* last, char* out) {
+  WavePacket code(Coder& coder, const WavePacket& last, const WavePacket& wanted) {
+    WavePacket next{};
     index_.reset_once();
-    const auto index = static_cast<std::uint8_t>(decoder.symbol(index_));
-    offset_kinds_[offset_kind_].reset_once();
-    offset_kind_ = decoder.symbol(offset_kinds_[offset_kind_]);
-    const std::uint64_t offset = decode_offset(decoder, last);
-    std::array<std::int32_t, 5> numbers{};
-    for (std::size_t k = 0; k < numbers.size(); ++k) {
-      const auto before = get<std::int32_t>(last + 9 + 4 * k);
-      numbers[k] = k == 0   ? size_.decode(decoder, before)
-                   : k == 1 ? return_.decode(decoder, before)
-                            : direction_.decode(decoder, before, static_cast<unsigned>(k - 2));
+    put(next.data(), static_cast<std::uint8_t>(coder.code(index_, get<std::uint8_t>(wanted.data()))));
+    put(&next[1], code_offset(coder, last, get<std::uint64_t>(&wanted[1])));
+    for (std::size_t k = 0; k < 5; ++k) {
+      const auto before = get<std::int32_t>(&last[9 + 4 * k]);
+      const auto after = get<std::int32_t>(&wanted[9 + 4 * k]);
+      put(&next[9 + 4 * k], k == 0   ? size_.code(coder, after, before)
+                            : k == 1 ? return_.code(coder, after, before)
+                                     : direction_.code(coder, after, before, static_cast<unsigned>(k - 2)));
     }
-    put(out, index);
-    put(out + 1, offset);
-    std::memcpy(out + 9, numbers.data(), sizeof numbers);
+    return next;
   }
 
  private:
-  std::uint64_t decode_offset(Decoder& decoder, const char* last) {
-    const auto offset = get<std::uint64_t>(last + 1);
+  /// 0: the offset stays, 1: the next packet lies behind the last one, 2: a step of 32 bits, 3: any.
+  static unsigned kind_of(const WavePacket& last, std::uint64_t wanted) {
+    const auto step = static_cast<std::int64_t>(wanted - get<std::uint64_t>(&last[1]));
+    if (step == 0) return 0;
+    if (step == get<std::uint32_t>(&last[9])) return 1;
+    return step == static_cast<std::int32_t>(step) ? 2 : 3;
+  }
+
+  std::uint64_t code_offset(Coder& coder, const WavePacket& last, std::uint64_t wanted) {
+    const auto offset = get<std::uint64_t>(&last[1]);
+    SymbolModel<4>& kinds = offset_kinds_[offset_kind_];
+    kinds.reset_once();
+    offset_kind_ = coder.code(kinds, Coder::kEncodes ? kind_of(last, wanted) : 0U);
     if (offset_kind_ == 0) return offset;
-    if (offset_kind_ == 1) return offset + get<std::uint32_t>(last + 9);
-    if (offset_kind_ == 3) return decoder.long_word();
-    step_ = offset_.decode(decoder, step_);
+    if (offset_kind_ == 1) return offset + get<std::uint32_t>(&last[9]);
+    if (offset_kind_ == 3) return coder.code_long_word(wanted);
+    step_ =
+        offset_.code(coder, static_cast<std::int32_t>(static_cast<std::uint32_t>(wanted - offset)), step_);
     return offset + static_cast<std::uint64_t>(static_cast<std::int64_t>(step_));
   }
 
@@ -49,10 +61,10 @@ class WavePacketDecoder {
   std::int32_t step_ = 0;
   SymbolModel<256> index_;
   std::array<SymbolModel<4>, 4> offset_kinds_;
-  IntegerDecoder<32, 1> offset_;
-  IntegerDecoder<32, 1> size_;
-  IntegerDecoder<32, 1> return_;
-  IntegerDecoder<32, 3> direction_;
+  IntegerCoder<Coder, 32, 1> offset_;
+  IntegerCoder<Coder, 32, 1> size_;
+  IntegerCoder<Coder, 32, 1> return_;
+  IntegerCoder<Coder, 32, 3> direction_;
 };
 
 }  // namespace limen::laz
