@@ -2,22 +2,48 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limen/cli/commands/schema_command.h"
 
+#include <map>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "limen/cli/terminal/terminal.h"
+#include "limen/report/deviation/deviation_schema.h"
+#include "limen/report/json/evaluation_schema.h"
+#include "limen/report/json/features_schema.h"
 #include "limen/report/json/result_schema.h"
+#include "limen/report/project/project_schema.h"
 
 namespace limen {
+namespace {
+
+using SchemaMaker = std::string (*)();
+
+const std::map<std::string, SchemaMaker>& schema_makers() {
+  static const std::map<std::string, SchemaMaker> makers{
+      {"deviation", deviation_schema}, {"evaluation", evaluation_schema}, {"openings", openings_schema},
+      {"planes", planes_schema},       {"project", project_schema},       {"result", result_schema},
+      {"segments", segments_schema}};
+  return makers;
+}
+
+}  // namespace
 
 void add_schema_command(CommandLine& app, Session& session) {
   auto file = std::make_shared<std::string>();
   CommandLine* command =
       add_command(app, session, "schema", "Print the JSON Schema of a file that limen writes", [file] {
-        print_out(result_schema());
+        print_out(schema_makers().at(*file)());
         return kExitOk;
       });
-  command->add_option("FILE", *file, "Which file: that of limen register")->required()->one_of({"result"});
+  std::vector<std::string> names;
+  for (const auto& [name, maker] : schema_makers()) names.push_back(name);
+  command
+      ->add_option("FILE", *file,
+                   "Which file: result (of register), project, deviation, planes, openings, segments, or "
+                   "evaluation (what evaluate prints)")
+      ->required()
+      ->one_of(names);
 }
 
 }  // namespace limen

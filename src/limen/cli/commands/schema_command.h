@@ -6,7 +6,7 @@
 
 namespace limen {
 
-/// `limen schema result`: the JSON Schema of a file that limen writes.
+/// `limen schema result` and others: the JSON Schema of a file that limen writes.
 void add_schema_command(CommandLine& app, Session& session);
 
 }  // namespace limen

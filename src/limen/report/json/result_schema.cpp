@@ -2,61 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limen/report/json/result_schema.h"
 
-#include <initializer_list>
-
-#include "limen/report/json/json_values.h"
+#include "limen/report/json/schema_words.h"
 
 namespace limen {
+namespace schema {
 namespace {
-
-Json ref(const char* name) {
-  return {{"$ref", std::string("#/$defs/") + name}};
-}
-
-Json nullable(const char* name) {
-  return {{"anyOf", Json::array({ref(name), Json{{"type", "null"}}})}};
-}
-
-Json number(const char* description) {
-  return {{"type", "number"}, {"description", description}};
-}
-
-Json whole(const char* description) {
-  return {{"type", "integer"}, {"description", description}};
-}
-
-Json text(const char* description) {
-  return {{"type", "string"}, {"description", description}};
-}
-
-Json list_of(const Json& items, const char* description) {
-  return {{"type", "array"}, {"items", items}, {"description", description}};
-}
-
-/// `count` numbers.
-Json numbers(int count, const char* description) {
-  return {{"type", "array"},
-          {"items", {{"type", "number"}}},
-          {"minItems", count},
-          {"maxItems", count},
-          {"description", description}};
-}
-
-Json rows(int count, const char* description) {
-  Json row = numbers(count, "a row");
-  return {{"type", "array"},
-          {"items", row},
-          {"minItems", count},
-          {"maxItems", count},
-          {"description", description}};
-}
-
-/// An object with these fields; `required` of them are always there.
-Json object(Json properties, std::initializer_list<const char*> required) {
-  Json names = Json::array();
-  for (const char* name : required) names.push_back(name);
-  return {{"type", "object"}, {"properties", std::move(properties)}, {"required", names}};
-}
 
 Json outcomes() {
   return {{"enum", {"registered", "ambiguous", "under_constrained", "no_match"}}};
@@ -119,7 +69,7 @@ Json input_schema() {
                  {"metres_per_unit", number("of the numbers in the file; everything here is metres")},
                  {"centre_known", {{"type", "boolean"}}},
                  {"mobile", {{"type", "boolean"}}},
-                 {"scanner", {{"type", "object"}}}},
+                 {"scanner", ref("scanner")}},
                 {"path", "kind", "low", "high", "middle", "inner_low", "inner_high", "metres_per_unit"});
 }
 
@@ -130,6 +80,7 @@ Json definitions() {
           {"alternative", alternative_schema()},
           {"place", place_schema()},
           {"input", input_schema()},
+          {"scanner", scanner_schema()},
           {"motion", object({{"about", numbers(3, "the source's middle, source coordinates")},
                              {"shift_m", numbers(3, "of that point")},
                              {"axis", numbers(3, "of the turn, target frame")},
@@ -203,16 +154,16 @@ Json fields() {
 }
 
 }  // namespace
+}  // namespace schema
 
 std::string result_schema() {
-  Json schema =
+  using namespace schema;
+  return schema_text(
+      "result.json of limen register",
       object(fields(), {"outcome", "reason", "target_from_source", "sigma", "probability", "evidence",
                         "motion", "precision", "unobserved", "alternatives", "matches", "matched_openings",
-                        "wall_thickness", "inputs", "options", "next_steps", "version", "seed", "stages"});
-  schema["$schema"] = "https://json-schema.org/draft/2020-12/schema";
-  schema["title"] = "result.json of limen register";
-  schema["$defs"] = definitions();
-  return to_text(schema);
+                        "wall_thickness", "inputs", "options", "next_steps", "version", "seed", "stages"}),
+      definitions());
 }
 
 }  // namespace limen

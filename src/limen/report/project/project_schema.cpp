@@ -1,0 +1,144 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/report/project/project_schema.h"
+
+#include "limen/report/json/schema_words.h"
+
+namespace limen {
+namespace schema {
+namespace {
+
+Json project_scan_schema() {
+  return object(
+      {{"file", text("as it was given")},
+       {"index", whole("of the scan within its file, from 0")},
+       {"kind", words({"scan", "model"})},
+       {"mobile", flag("of a scan")},
+       {"points", whole("of a scan")},
+       {"sha256", text("of the file's bytes")},
+       {"copy_of", text("another file of the same bytes")},
+       {"readable", flag("")},
+       {"state", words({"registered", "ambiguous", "under_constrained", "floating"})},
+       {"component", {{"type", {"integer", "null"}}, {"description", "0: the project's; null: none"}}},
+       {"frame_from_scan", nullable("pose")},
+       {"component_from_scan", ref("pose")},
+       {"sigma", nullable("sigma")},
+       {"alternatives", list_of(ref("pose"), "other places that explain as much")},
+       {"doubt", number_or_null("probability that it stands elsewhere than told")},
+       {"reason", text("one sentence")}},
+      {"file", "index", "kind", "sha256", "readable", "state", "component", "frame_from_scan", "sigma",
+       "doubt", "reason"});
+}
+
+Json link_schema() {
+  const Json other = object({{"number", whole("among the poses of the pair")},
+                             {"pose", ref("pose")},
+                             {"agreeing_m2", number("surface of each scan met by the other")}},
+                            {"number", "pose", "agreeing_m2"});
+  return object({{"source", whole("of scans, from 0")},
+                 {"target", whole("of scans, from 0")},
+                 {"state", words({"verified", "bridge", "ambiguous", "rejected", "weak"})},
+                 {"pair", words({"given", "registered", "ambiguous", "under_constrained", "no_match"})},
+                 {"pose", ref("pose")},
+                 {"pose_number", whole("among the poses of the pair, 0 the best")},
+                 {"sigma", ref("sigma")},
+                 {"agreeing_m2", number("surface of each scan met by the other")},
+                 {"twin", number("probability that a place built alike was taken for it")},
+                 {"chance", number("probability that it is wrong otherwise")},
+                 {"redundancy", number_or_null("share of its six numbers that others check, 0 to 6")},
+                 {"loop_error_m", number_or_null("shift between it and the whole")},
+                 {"loop_error_rad", number_or_null("turn between it and the whole")},
+                 {"alternatives", list_of(other, "other poses of the pair")},
+                 {"reason", text("one sentence")}},
+                {"source", "target", "state", "pair", "pose", "pose_number", "sigma", "agreeing_m2", "twin",
+                 "chance", "redundancy", "loop_error_m", "loop_error_rad", "alternatives", "reason"});
+}
+
+Json point_schema() {
+  const Json sight = object({{"scan", whole("of scans, from 0")},
+                             {"used", flag("it enters the solution")},
+                             {"missed_m", number_or_null("from where the others put the point")}},
+                            {"scan", "used", "missed_m"});
+  return object({{"name", text("as in the files")},
+                 {"role", words({"control", "check", "tie"})},
+                 {"state", words({"used", "left_out", "compared", "not_placed"})},
+                 {"scanner", flag("the point is where a scanner stood")},
+                 {"given", numbers(3, "by the surveyor")},
+                 {"given_sigma_m", numbers_or_null(3, "one standard deviation")},
+                 {"found", {{"anyOf", {numbers(3, "by the scans"), Json{{"type", "null"}}}}}},
+                 {"found_sigma_m", numbers_or_null(3, "one standard deviation")},
+                 {"missed_m", numbers_or_null(3, "given less found")},
+                 {"missed_sigma_m", numbers_or_null(3, "one standard deviation")},
+                 {"w", numbers_or_null(3, "missed in its deviations")},
+                 {"chi_square", number_or_null("of the three")},
+                 {"redundancy", number_or_null("share of its three numbers that others check, 0 to 3")},
+                 {"detectable_m", numbers_or_null(3, "the smallest blunder that would be found")},
+                 {"seen_by", list_of(sight, "the scans that saw it")},
+                 {"reason", text("one sentence")}},
+                {"name", "role", "state", "found", "seen_by", "reason"});
+}
+
+Json project_definitions() {
+  return {{"pose", rows(4, "rigid 4 x 4 matrix, metres")},
+          {"sigma", pose_sigma_schema()},
+          {"scan", project_scan_schema()},
+          {"link", link_schema()},
+          {"point", point_schema()},
+          {"loop", object({{"links", list_of({{"type", "integer"}}, "of links, from 0")},
+                           {"error_m", number("shift after one round")},
+                           {"error_rad", number("turn after one round")},
+                           {"chi_square", number_or_null("of the six numbers")},
+                           {"closes", flag("")}},
+                          {"links", "error_m", "error_rad", "chi_square", "closes"})},
+          {"question", object({{"text", text("in words")},
+                               {"answers", list_of({{"type", "string"}}, "for limen project decide")},
+                               {"scans", list_of({{"type", "integer"}}, "that would move, from 0")},
+                               {"for_the_present_place", list_of({{"type", "integer"}}, "links, from 0")},
+                               {"for_another_place", list_of({{"type", "integer"}}, "links, from 0")}},
+                              {"text", "answers", "scans", "for_the_present_place", "for_another_place"})},
+          {"decision", object({{"decision", text("as it was given")},
+                               {"state", words({"kept", "contradicted", "unused"})},
+                               {"reason", text("one sentence")}},
+                              {"decision", "state", "reason"})}};
+}
+
+Json project_fields() {
+  const Json frame =
+      object({{"kind", words({"control", "mobile", "model", "file", "station", "none"})},
+              {"scan", {{"type", {"integer", "null"}}, {"description", "whose frame it is, from 0"}}},
+              {"file", {{"type", {"string", "null"}}, {"description", "whose frame it is"}}}},
+             {"kind", "scan", "file"});
+  const Json control =
+      object({{"reason", text("one sentence")}, {"variance_factor", number_or_null("of the control points")}},
+             {"reason", "variance_factor"});
+  return {{"outcome", words({"registered", "partial", "no_match"})},
+          {"reason", text("one sentence")},
+          {"frame", frame},
+          {"components", whole("groups of scans that nothing joins")},
+          {"scans", list_of(ref("scan"), "scans and models, in the order of the call")},
+          {"links", list_of(ref("link"), "pairs with something in common")},
+          {"loops", list_of(ref("loop"), "rounds of links")},
+          {"questions", list_of(ref("question"), "what only somebody who knows the building can tell")},
+          {"decisions", list_of(ref("decision"), "answers that were given")},
+          {"control", control},
+          {"points", list_of(ref("point"), "control, check and tie points")},
+          {"pairs_tried", whole("")},
+          {"variance_factor", number_or_null("of the links")},
+          {"notes", list_of({{"type", "string"}}, "for a user")},
+          {"options", {{"type", "object"}}},
+          {"version", text("of limen")}};
+}
+
+}  // namespace
+}  // namespace schema
+
+std::string project_schema() {
+  using namespace schema;
+  return schema_text("project.json of limen project",
+                     object(project_fields(),
+                            {"outcome", "reason", "frame", "components", "scans", "links", "loops",
+                             "questions", "pairs_tried", "variance_factor", "notes", "options", "version"}),
+                     project_definitions());
+}
+
+}  // namespace limen
