@@ -115,10 +115,10 @@ TEST(CellGrid, MeasuresThePointsOfItsCubes) {
   EXPECT_DOUBLE_EQ(grid.edge_m(), 0.16);
   const Cell& cell = grid.cells()[0];
   EXPECT_EQ(cell.count(), 4000U);
-  EXPECT_GT(std::abs(cell.normal.dot(normal)), 0.9999);
-  EXPECT_NEAR(cell.thickness_m, 0.002, 1e-4);
-  EXPECT_NEAR(cell.spread_m, 0.1 / std::sqrt(12.0), 1e-3);
-  EXPECT_LT(cell.unevenness_m, 0.001);
+  EXPECT_GT(std::abs(grid.shape(cell).normal.dot(normal)), 0.9999);
+  EXPECT_NEAR(grid.shape(cell).thickness_m, 0.002, 1e-4);
+  EXPECT_NEAR(grid.shape(cell).spread_m, 0.1 / std::sqrt(12.0), 1e-3);
+  EXPECT_LT(grid.shape(cell).unevenness_m, 0.001);
 }
 
 TEST(CellGrid, AStepIsUneven) {
@@ -135,7 +135,7 @@ TEST(CellGrid, AStepIsUneven) {
   const CellGrid grid(sorted, active, 3);
   double worst = 0.0;
   for (const Cell& cell : grid.cells()) {
-    if (cell.count() > 100) worst = std::max(worst, cell.unevenness_m);
+    if (cell.count() > 100) worst = std::max(worst, grid.shape(cell).unevenness_m);
   }
   EXPECT_GT(worst, 0.001);
 }

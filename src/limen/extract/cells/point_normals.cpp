@@ -2,9 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limen/extract/cells/point_normals.h"
 
+#include <cmath>
 #include <numeric>
+#include <span>
 
-#include "limen/extract/cells/cell_grid.h"
+#include "limen/base/parallel.h"
+#include "limen/extract/cells/cell_runs.h"
+#include "limen/extract/cells/cell_shape.h"
 
 namespace limen {
 namespace {
@@ -13,6 +17,23 @@ constexpr std::uint32_t kEnough = 12;  // points in a cube
 constexpr double kFlat = 4.0;          // times its thickness that a cube's points must spread
 constexpr double kUneven = 0.4;        // of the thickness allowed
 constexpr double kWide = 0.12;         // of the cube's edge that they must spread
+
+/// A cube with enough points, and whether they make a plane.
+struct LookedAt {
+  std::uint32_t begin = 0;
+  std::uint32_t end = 0;
+  bool flat = false;
+  Vector3d normal = Vector3d::Zero();
+};
+
+std::vector<LookedAt> cubes_with_enough(const MortonOrder& sorted, std::span<const std::uint32_t> open,
+                                        int level) {
+  std::vector<LookedAt> cubes;
+  for_each_cell(sorted, open, level, [&](std::uint32_t begin, std::uint32_t end) {
+    if (end - begin >= kEnough) cubes.push_back({begin, end});
+  });
+  return cubes;
+}
 
 }  // namespace
 
@@ -23,24 +44,33 @@ PointNormals::PointNormals(const MortonOrder& sorted, double max_thickness_m, do
   std::iota(open.begin(), open.end(), 0U);
   const int coarsest = level_of(coarsest_m, sorted.cell_m);
   for (int level = level_of(finest_m, sorted.cell_m); level <= coarsest && !open.empty(); ++level) {
-    const CellGrid grid(sorted, open, level);
-    std::vector<std::uint32_t> left;
-    for (const Cell& cell : grid.cells()) {
-      const bool enough = cell.count() >= kEnough;
-      const bool flat = enough && cell.thickness_m <= max_thickness_m &&
-                        cell.unevenness_m <= kUneven * max_thickness_m &&
-                        cell.spread_m >= kFlat * cell.thickness_m && cell.spread_m >= kWide * grid.edge_m();
-      for (std::uint32_t k = cell.begin; k < cell.end; ++k) {
-        if (flat) of_point_[open[k]] = static_cast<std::int32_t>(normals_.size());
-        if (!flat && enough) of_point_[open[k]] = kRough;
+    const double edge_m = sorted.cell_m * std::exp2(level);
+    std::vector<LookedAt> cubes = cubes_with_enough(sorted, open, level);
+    parallel_for(cubes.size(), 256, [&](std::size_t first, std::size_t last) {
+      for (LookedAt& cube : std::span(cubes).subspan(first, last - first)) {
+        const CellShape shape =
+            shape_of(sorted, std::span(open).subspan(cube.begin, cube.end - cube.begin), level);
+        cube.normal = shape.normal;
+        cube.flat = shape.thickness_m <= max_thickness_m && shape.unevenness_m <= kUneven * max_thickness_m &&
+                    shape.spread_m >= kFlat * shape.thickness_m && shape.spread_m >= kWide * edge_m;
       }
-      if (flat) {
-        normals_.push_back(cell.normal);
-      } else {
-        left.insert(left.end(), open.begin() + cell.begin, open.begin() + cell.end);
+    });
+    std::size_t left = 0;
+    std::uint32_t done = 0;
+    const auto leave_open_until = [&](std::uint32_t end) {
+      for (; done < end; ++done) open[left++] = open[done];
+    };
+    for (const LookedAt& cube : cubes) {
+      leave_open_until(cube.begin);
+      const std::int32_t found = cube.flat ? static_cast<std::int32_t>(normals_.size()) : kRough;
+      for (std::uint32_t k = cube.begin; k < cube.end; ++k) of_point_[open[k]] = found;
+      if (cube.flat) {
+        normals_.push_back(cube.normal);
+        done = cube.end;
       }
     }
-    open = std::move(left);
+    leave_open_until(static_cast<std::uint32_t>(open.size()));
+    open.resize(left);
   }
 }
 

@@ -27,9 +27,10 @@ constexpr std::size_t kPointsPerLabelling = 131072;
 double noise_of(const CellGrid& grid) {
   std::vector<double> thickness;
   for (const Cell& cell : grid.cells()) {
-    if (cell.count() >= 12 && cell.spread_m > 5.0 * cell.thickness_m && cell.spread_m > 0.1 * grid.edge_m()) {
-      thickness.push_back(cell.thickness_m);
-    }
+    if (cell.count() < 12) continue;
+    const CellShape& shape = grid.shape(cell);
+    if (shape.spread_m > 5.0 * shape.thickness_m && shape.spread_m > 0.1 * grid.edge_m())
+      thickness.push_back(shape.thickness_m);
   }
   if (thickness.size() < 20) return 0.005;
   const auto middle = thickness.begin() + static_cast<std::ptrdiff_t>(thickness.size() / 2);

@@ -34,16 +34,19 @@ struct CubeEstimator {
   const CellGrid& grid;
   const std::vector<std::int32_t>& cells;
 
-  [[nodiscard]] const Cell& at(std::uint32_t item) const { return cell_of(grid, cells[item]); }
+  [[nodiscard]] const Cell& cell(std::uint32_t item) const { return cell_of(grid, cells[item]); }
+  [[nodiscard]] const PointMoments& moments(std::uint32_t item) const {
+    return grid.shape(cell(item)).moments;
+  }
   [[nodiscard]] std::size_t size() const { return cells.size(); }
-  [[nodiscard]] double weight(std::uint32_t item) const { return at(item).moments.count; }
+  [[nodiscard]] double weight(std::uint32_t item) const { return moments(item).count; }
   [[nodiscard]] std::optional<Plane> estimate(const std::array<std::uint32_t, 3>& sample) const {
-    PointMoments moments;
-    for (const std::uint32_t item : sample) moments += at(item).moments;
-    return fit_plane(moments).plane;
+    PointMoments sums;
+    for (const std::uint32_t item : sample) sums += moments(item);
+    return fit_plane(sums).plane;
   }
   [[nodiscard]] double residual(const Plane& plane, std::uint32_t item) const {
-    return rms_about(at(item).moments, plane);
+    return rms_about(moments(item), plane);
   }
 };
 
@@ -76,17 +79,18 @@ void RegionGrower::grow_level(int level, const std::vector<std::uint32_t>& activ
 
 void RegionGrower::mark_planar(CellGrid& grid) const {
   for (Cell& cell : grid.cells()) {
-    cell.planar = cell.count() >= 6 && cell.thickness_m < gate_m_ &&
-                  cell.unevenness_m < kUnevenShare * options_.threshold_m &&
-                  cell.spread_m > 3.0 * cell.thickness_m && cell.spread_m > 0.08 * grid.edge_m();
+    if (cell.shape < 0) continue;
+    const CellShape& shape = grid.shape(cell);
+    cell.planar = shape.thickness_m < gate_m_ && shape.unevenness_m < kUnevenShare * options_.threshold_m &&
+                  shape.spread_m > 3.0 * shape.thickness_m && shape.spread_m > 0.08 * grid.edge_m();
   }
 }
 
-bool RegionGrower::fits(const Cell& cell, const Plane& plane) const {
-  const double slack = 3.0 * cell.thickness_m / (cell.spread_m * std::sqrt(cell.moments.count));
+bool RegionGrower::fits(const CellShape& shape, const Plane& plane) const {
+  const double slack = 3.0 * shape.thickness_m / (shape.spread_m * std::sqrt(shape.moments.count));
   const double angle = std::min(radians(options_.max_angle_deg) + slack, radians(40.0));
-  return std::abs(cell.normal.dot(plane.normal)) >= std::cos(angle) &&
-         rms_about(cell.moments, plane) <= gate_m_;
+  return std::abs(shape.normal.dot(plane.normal)) >= std::cos(angle) &&
+         rms_about(shape.moments, plane) <= gate_m_;
 }
 
 /// Breadth first from `start` cells over free planar neighbours that fit; the plane follows the points.
@@ -97,16 +101,17 @@ RegionGrower::Region RegionGrower::flood(CellGrid& grid, const std::vector<std::
   region.cells = start;
   for (const std::int32_t i : start) {
     cell_of(grid, i).region = kOpen;
-    region.moments += cell_of(grid, i).moments;
+    region.moments += grid.shape(cell_of(grid, i)).moments;
   }
   double fitted_count = region.moments.count;
   for (std::size_t head = 0; head < region.cells.size(); ++head) {
     for (const std::int32_t i : grid.neighbours(static_cast<std::size_t>(region.cells[head]))) {
       Cell& cell = cell_of(grid, i);
-      if (!cell.planar || cell.region >= 0 || cell.region == kOpen || !fits(cell, region.plane)) continue;
+      if (!cell.planar || cell.region >= 0 || cell.region == kOpen || !fits(grid.shape(cell), region.plane))
+        continue;
       cell.region = kOpen;
       region.cells.push_back(i);
-      region.moments += cell.moments;
+      region.moments += grid.shape(cell).moments;
     }
     if (refit && region.moments.count > 1.3 * fitted_count) {
       region.plane = fit_plane(region.moments).plane;
@@ -122,7 +127,7 @@ Plane RegionGrower::consensus(const CellGrid& grid, const Region& region) const 
   const Plane whole = fit_plane(region.moments).plane;
   const double score = score_of(cubes, whole, MsacScore{gate_m_}, region.moments.count);
   if (score > 0.9 * region.moments.count || region.cells.size() < 4) return whole;
-  const std::uint64_t seed = mix64(static_cast<std::uint64_t>(cubes.at(0).begin) + 17);
+  const std::uint64_t seed = mix64(static_cast<std::uint64_t>(cubes.cell(0).begin) + 17);
   const auto found = msac(cubes, UniformSampler(cubes.size(), seed),
                           {.threshold = gate_m_, .confidence = 0.999, .most_trials = kMsacTrials});
   return found.model && found.score > score ? *found.model : whole;
@@ -134,9 +139,9 @@ void RegionGrower::trim(CellGrid& grid, Region& region, const Plane& plane) cons
   PointMoments moments;
   for (const std::int32_t i : region.cells) {
     Cell& cell = cell_of(grid, i);
-    if (fits(cell, plane)) {
+    if (fits(grid.shape(cell), plane)) {
       kept.push_back(i);
-      moments += cell.moments;
+      moments += grid.shape(cell).moments;
     } else {
       cell.region = kNoRegion;
     }
@@ -147,7 +152,7 @@ void RegionGrower::trim(CellGrid& grid, Region& region, const Plane& plane) cons
 }
 
 void RegionGrower::grow_region(CellGrid& grid, std::int32_t seed) {
-  Region region = flood(grid, {seed}, cell_of(grid, seed).plane(), true);
+  Region region = flood(grid, {seed}, grid.shape(cell_of(grid, seed)).plane(), true);
   trim(grid, region, consensus(grid, region));
   if (region.cells.size() > 1) {
     region = flood(grid, region.cells, fit_plane(region.moments).plane, false);

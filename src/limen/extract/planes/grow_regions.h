@@ -41,7 +41,7 @@ class RegionGrower {
   };
 
   void mark_planar(CellGrid& grid) const;
-  [[nodiscard]] bool fits(const Cell& cell, const Plane& plane) const;
+  [[nodiscard]] bool fits(const CellShape& shape, const Plane& plane) const;
   Region flood(CellGrid& grid, const std::vector<std::int32_t>& start, const Plane& plane, bool refit) const;
   [[nodiscard]] Plane consensus(const CellGrid& grid, const Region& region) const;
   void trim(CellGrid& grid, Region& region, const Plane& plane) const;

@@ -50,10 +50,12 @@ Pieces pieces_of(const MortonOrder& sorted, const std::vector<std::uint32_t>& al
   Pieces pieces;
   pieces.edge_m = grid.edge_m();
   for (const Cell& cell : grid.cells()) {
-    const bool planar = cell.count() >= kCellPoints && cell.thickness_m < kThinM &&
-                        cell.spread_m > kFlat * cell.thickness_m && cell.spread_m > kFilled * grid.edge_m();
+    if (cell.count() < kCellPoints) continue;
+    const CellShape& shape = grid.shape(cell);
+    const bool planar = shape.thickness_m < kThinM && shape.spread_m > kFlat * shape.thickness_m &&
+                        shape.spread_m > kFilled * grid.edge_m();
     if (!planar) continue;
-    pieces.list.push_back({cell.mean + sorted.anchor, cell.normal});
+    pieces.list.push_back({shape.mean + sorted.anchor, shape.normal});
     pieces.points += cell.count();
   }
   return pieces;
