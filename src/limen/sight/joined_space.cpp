@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limen/sight/joined_space.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -33,20 +35,24 @@ bool stands_before(const Sight& a, const Sight& b) {
 
 JoinedSpace::JoinedSpace(std::vector<Member> members) : members_(std::move(members)) {}
 
-void JoinedSpace::fetch(std::span<const SightQuery> queries) const {
-  for (const Member& member : members_) member.view->fetch(queries);
+Sight JoinedSpace::look(const SightQuery& query) const {
+  Sight sight;
+  look_all({&query, 1}, {&sight, 1});
+  return sight;
 }
 
-Sight JoinedSpace::look(const SightQuery& query) const {
-  Sight best;
-  best.kind = SightKind::unseen;
+void JoinedSpace::look_all(std::span<const SightQuery> queries, std::span<Sight> sights) const {
+  std::fill(sights.begin(), sights.end(), Sight{});
+  std::array<Sight, kSightBatch> of_member;
   for (const Member& member : members_) {
-    Sight sight = member.view->look(query);
-    if (!stands_before(sight, best)) continue;
-    if (sight.plane >= 0) sight.plane = member.joint_plane[static_cast<std::size_t>(sight.plane)];
-    best = sight;
+    member.view->look_all(queries, {of_member.data(), queries.size()});
+    for (std::size_t k = 0; k < queries.size(); ++k) {
+      Sight& sight = of_member[k];
+      if (!stands_before(sight, sights[k])) continue;
+      if (sight.plane >= 0) sight.plane = member.joint_plane[static_cast<std::size_t>(sight.plane)];
+      sights[k] = sight;
+    }
   }
-  return best;
 }
 
 }  // namespace limen

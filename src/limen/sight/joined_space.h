@@ -22,7 +22,7 @@ class JoinedSpace : public SpaceView {
   explicit JoinedSpace(std::vector<Member> members);
 
   [[nodiscard]] Sight look(const SightQuery& query) const override;
-  void fetch(std::span<const SightQuery> queries) const override;
+  void look_all(std::span<const SightQuery> queries, std::span<Sight> sights) const override;
 
  private:
   std::vector<Member> members_;

@@ -3,6 +3,7 @@
 #include "limen/sight/panorama.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 
@@ -125,7 +126,7 @@ bool Panorama::on_surface(const SightQuery& query, double range, const Pixel& pi
   const auto test = [&](float measured, std::int32_t plane) {
     const double off = range - static_cast<double>(measured);
     if (plane < 0) {
-      if (!query.normal.isZero() || std::abs(off) > query.surface_m) return false;
+      if (!query.of_clutter() || std::abs(off) > query.surface_m) return false;
       sight = {SightKind::surface, -1, off};
       return true;
     }
@@ -140,25 +141,32 @@ bool Panorama::on_surface(const SightQuery& query, double range, const Pixel& pi
          (pixel.far_plane != pixel.near_plane && test(pixel.far_m, pixel.far_plane));
 }
 
-void Panorama::fetch(std::span<const SightQuery> queries) const {
-  for (const SightQuery& query : queries) {
-    const Pixel& pixel = pixels_[pixel_at(query.at - centre_)];
-    __builtin_prefetch(&pixel);
-    __builtin_prefetch(&pixel.far_plane);  // a pixel may lie across two lines of the cache
-  }
-}
-
-Sight Panorama::look(const SightQuery& query) const {
+Sight Panorama::look_at(const SightQuery& query, double range, const Pixel& pixel) const {
   Sight sight;
-  const Vector3d ray = query.at - centre_;
-  const double range = ray.norm();
   if (range < 0.05) return {SightKind::free, -1, 0.0};
-  const Pixel& pixel = pixels_[pixel_at(ray)];
   if (pixel.clear_m == 0.0F) return sight;
   if (pixel.near_m > 0.0F && on_surface(query, range, pixel, sight)) return sight;
   if (range < pixel.clear_m - query.free_m) return {SightKind::free, -1, 0.0};
   if (pixel.near_m > 0.0F && range > pixel.far_m) return {SightKind::hidden, -1, 0.0};
   return sight;
+}
+
+Sight Panorama::look(const SightQuery& query) const {
+  const Vector3d ray = query.at - centre_;
+  return look_at(query, ray.norm(), pixels_[pixel_at(ray)]);
+}
+
+void Panorama::look_all(std::span<const SightQuery> queries, std::span<Sight> sights) const {
+  std::array<const Pixel*, kSightBatch> pixels;
+  std::array<double, kSightBatch> ranges;
+  for (std::size_t k = 0; k < queries.size(); ++k) {
+    const Vector3d ray = queries[k].at - centre_;
+    ranges[k] = ray.norm();
+    pixels[k] = &pixels_[pixel_at(ray)];
+    __builtin_prefetch(pixels[k]);
+    __builtin_prefetch(&pixels[k]->far_plane);  // a pixel may lie across two lines of the cache
+  }
+  for (std::size_t k = 0; k < queries.size(); ++k) sights[k] = look_at(queries[k], ranges[k], *pixels[k]);
 }
 
 }  // namespace limen

@@ -31,7 +31,7 @@ class Panorama : public SpaceView {
 
   [[nodiscard]] PanoramaState state() const;
   [[nodiscard]] Sight look(const SightQuery& query) const override;
-  void fetch(std::span<const SightQuery> queries) const override;
+  void look_all(std::span<const SightQuery> queries, std::span<Sight> sights) const override;
   [[nodiscard]] const Vector3d& centre() const { return centre_; }
 
  private:
@@ -44,6 +44,7 @@ class Panorama : public SpaceView {
   };
 
   [[nodiscard]] std::size_t pixel_at(const Vector3d& direction) const;
+  [[nodiscard]] Sight look_at(const SightQuery& query, double range, const Pixel& pixel) const;
   void fill(const Scan& scan, const std::vector<std::int32_t>& labels);
   void erode();
   [[nodiscard]] bool on_surface(const SightQuery& query, double range, const Pixel& pixel,

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -32,7 +34,12 @@ struct SightQuery {
   bool oriented = false;               ///< the normal's sign counts
   double surface_m = 0.05;             ///< a surface nearer than this is the same surface
   double free_m = 0.10;                ///< solid matter is contradicted where rays passed this much beyond
+
+  [[nodiscard]] bool of_clutter() const { return normal.squaredNorm() < 0.25; }
 };
+
+/// Queries of one batch, at most.
+constexpr std::size_t kSightBatch = 32;
 
 /// What a scan knows of space: asked place by place when a pose is judged.
 class SpaceView {
@@ -43,9 +50,11 @@ class SpaceView {
   virtual ~SpaceView() = default;
 
   [[nodiscard]] virtual Sight look(const SightQuery& query) const = 0;
-  /// Says that these will be asked about next: what the answers need is fetched from memory ahead, for most
-  /// of a look is waiting for it. The answers are the same without.
-  virtual void fetch(std::span<const SightQuery> /*queries*/) const {}
+  /// Looks for a batch of queries, at most kSightBatch: what the answers need is fetched from memory ahead,
+  /// for most of a look is waiting for it. `sights` has as many places as there are queries.
+  virtual void look_all(std::span<const SightQuery> queries, std::span<Sight> sights) const {
+    for (std::size_t k = 0; k < queries.size(); ++k) sights[k] = look(queries[k]);
+  }
 };
 
 /// A plane as a view of space needs it.
@@ -55,6 +64,15 @@ struct Facet {
 };
 std::vector<Facet> facets_of(const Features& features);
 /// Signed distance to `facet` where it is the surface asked for: near enough, and facing the same way.
-std::optional<double> distance_if_same(const SightQuery& query, const Facet& facet);
+inline std::optional<double> distance_if_same(const SightQuery& query, const Facet& facet) {
+  constexpr double kSameNormal = 0.94;  // cosine: about 20 degrees
+  const double distance = facet.plane.signed_distance(query.at);
+  if (std::abs(distance) > query.surface_m) return std::nullopt;
+  if (!query.of_clutter()) {
+    const double cosine = query.normal.dot(facet.plane.normal);
+    if ((query.oriented && facet.oriented ? cosine : std::abs(cosine)) < kSameNormal) return std::nullopt;
+  }
+  return distance;
+}
 
 }  // namespace limen

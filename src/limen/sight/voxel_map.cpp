@@ -194,7 +194,7 @@ bool VoxelMap::is_free(const Vector3d& x) const {
 bool VoxelMap::passed_freely(const SightQuery& query) const {
   if (free_.empty() || !is_free(query.at)) return false;
   // A ray that grazes a surface frees the cube it stands in, but not the cubes on both sides of it.
-  if (!query.normal.isZero()) {
+  if (!query.of_clutter()) {
     return is_free(query.at + edge_ * query.normal) && is_free(query.at - edge_ * query.normal);
   }
   for (int axis = 0; axis < 3; ++axis) {
@@ -204,31 +204,40 @@ bool VoxelMap::passed_freely(const SightQuery& query) const {
   return true;
 }
 
-void VoxelMap::fetch(std::span<const SightQuery> queries) const {
-  // One step of the way to a cube at a time, for all queries.
-  for (const SightQuery& query : queries) {
-    const Key key = key_of(query.at);
-    if (index_of(key) >= 0) __builtin_prefetch(&block_at_[block_of(key)]);
-  }
-  for (const SightQuery& query : queries) {
-    const Key key = key_of(query.at);
-    if (index_of(key) < 0) continue;
-    const std::int32_t block = block_at_[block_of(key)];
-    if (block >= 0)
-      __builtin_prefetch(&cube_at_[static_cast<std::size_t>(block) * kBlockCubes + place_in_block(key)]);
-  }
-  for (const SightQuery& query : queries) {
-    const Key key = key_of(query.at);
-    if (index_of(key) < 0) continue;
-    const Cube* const cube = find(key);
-    if (cube != nullptr) __builtin_prefetch(cube);
-  }
-}
-
 Sight VoxelMap::look(const SightQuery& query) const {
   const Key key = key_of(query.at);
-  if (index_of(key) < 0) return {};
-  const Cube* const found = find(key);
+  return index_of(key) < 0 ? Sight{} : look_in(find(key), query);
+}
+
+void VoxelMap::look_all(std::span<const SightQuery> queries, std::span<Sight> sights) const {
+  // One step of the way to a cube at a time, for all queries.
+  constexpr std::size_t kNowhere = static_cast<std::size_t>(-1);
+  std::array<std::size_t, kSightBatch> at;  // of the block, then of the cube in its block
+  std::array<std::size_t, kSightBatch> within;
+  std::array<bool, kSightBatch> inside;
+  for (std::size_t k = 0; k < queries.size(); ++k) {
+    const Key key = key_of(queries[k].at);
+    inside[k] = index_of(key) >= 0;
+    at[k] = inside[k] ? block_of(key) : kNowhere;
+    within[k] = place_in_block(key);
+    if (inside[k]) __builtin_prefetch(&block_at_[at[k]]);
+  }
+  for (std::size_t k = 0; k < queries.size(); ++k) {
+    const std::int32_t block = inside[k] ? block_at_[at[k]] : -1;
+    at[k] = block < 0 ? kNowhere : static_cast<std::size_t>(block) * kBlockCubes + within[k];
+    if (block >= 0) __builtin_prefetch(&cube_at_[at[k]]);
+  }
+  std::array<const Cube*, kSightBatch> cubes;
+  for (std::size_t k = 0; k < queries.size(); ++k) {
+    const std::int32_t cube = at[k] == kNowhere ? -1 : cube_at_[at[k]];
+    cubes[k] = cube < 0 ? nullptr : &cubes_[static_cast<std::size_t>(cube)];
+    if (cube >= 0) __builtin_prefetch(cubes[k]);
+  }
+  for (std::size_t k = 0; k < queries.size(); ++k)
+    sights[k] = inside[k] ? look_in(cubes[k], queries[k]) : Sight{};
+}
+
+Sight VoxelMap::look_in(const Cube* found, const SightQuery& query) const {
   if (found == nullptr) {
     return {passed_freely(query) ? SightKind::free : SightKind::unseen, -1, 0.0};
   }
@@ -241,7 +250,7 @@ Sight VoxelMap::look(const SightQuery& query) const {
     nearest = std::abs(*distance);
     best = {SightKind::surface, plane, *distance};
   }
-  if (best.kind == SightKind::unseen && query.normal.isZero() && found->clutter) {
+  if (best.kind == SightKind::unseen && query.of_clutter() && found->clutter) {
     best = {SightKind::surface, -1, 0.0};
   }
   return best;

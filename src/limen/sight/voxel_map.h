@@ -37,7 +37,7 @@ class VoxelMap : public SpaceView {
 
   [[nodiscard]] VoxelMapState state() const;
   [[nodiscard]] Sight look(const SightQuery& query) const override;
-  void fetch(std::span<const SightQuery> queries) const override;
+  void look_all(std::span<const SightQuery> queries, std::span<Sight> sights) const override;
 
  private:
   static constexpr std::size_t kPlanes = 4;
@@ -54,6 +54,7 @@ class VoxelMap : public SpaceView {
   [[nodiscard]] bool passed_freely(const SightQuery& query) const;
   [[nodiscard]] std::size_t block_of(const Key& key) const;
   [[nodiscard]] const Cube* find(const Key& key) const;
+  [[nodiscard]] Sight look_in(const Cube* found, const SightQuery& query) const;
   Cube& obtain(const Key& key);  ///< `key` lies inside
   void make_blocks();
   void enter(const Features& features);
