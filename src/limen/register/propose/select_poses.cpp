@@ -15,6 +15,13 @@ constexpr std::size_t kMany = 2500;      // poses that get a first look
 constexpr std::size_t kGlance = 150;     // samples asked of each scan when there are more
 constexpr std::size_t kGlimpse = 40;     // and when there are tens of thousands
 constexpr std::size_t kVeryMany = 8000;
+// Between two scans as many samples tell which of the poses are worth asking more.
+constexpr std::size_t kShortLook = 200;
+constexpr std::size_t kSome = 768;
+// One pose whose surface agrees by so much, m^2, is no coincidence, and others that reach so small a share of
+// it will not become its rivals: what they say in the first digits is enough.
+constexpr double kClearM2 = 20.0;
+constexpr double kClearShare = 0.15;
 // Of a model's poses, which come in the order of what their planes have in common, fewer get a closer look.
 constexpr std::size_t kManyInModel = 600;
 constexpr std::size_t kSomeInModel = 128;
@@ -61,7 +68,9 @@ std::vector<PoseCandidate> best_of(const std::vector<PoseCandidate>& candidates,
   if (order.size() > look.most) order.resize(look.most);
   std::vector<PoseCandidate> best;
   for (const std::size_t i : order) {
-    const bool poor = look.min_share > 0 && values[i] < look.min_share * values[order.front()];
+    const double best_value = values[order.front()];
+    const bool poor =
+        look.min_share > 0 && best_value >= look.clear_m2 && values[i] < look.min_share * best_value;
     if (poor && best.size() >= look.least) break;
     best.push_back(candidates[i]);
   }
@@ -72,10 +81,14 @@ std::vector<PoseCandidate> select_poses(const std::vector<PoseCandidate>& candid
                                         const ScanView& target, std::size_t most, bool openings) {
   const bool model = source.model || target.model;
   if (model) return select_in_model(candidates, source, target, most, openings);
+  const auto look = [&](std::size_t samples, std::size_t kept, double contradiction_weight) {
+    return Look{samples, kept, contradiction_weight, openings, true, kClearShare, 24, kClearM2};
+  };
   std::vector<PoseCandidate> left = candidates;
-  if (left.size() > kMany) left = best_of(left, source, target, {kGlance, kMany, 0.25, openings});
-  left = best_of(left, source, target, {kFirstLook, 8 * most, 1.0, openings});
-  return best_of(left, source, target, {kSecondLook, most, kContradictionWeight, openings});
+  if (left.size() > kMany) left = best_of(left, source, target, look(kGlance, kMany, 0.25));
+  if (left.size() > kSome) left = best_of(left, source, target, look(kShortLook, kSome, 1.0));
+  left = best_of(left, source, target, look(kFirstLook, 8 * most, 1.0));
+  return best_of(left, source, target, look(kSecondLook, most, kContradictionWeight));
 }
 
 }  // namespace limen

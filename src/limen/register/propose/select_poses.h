@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include "limen/match/planes/enumerate_poses.h"
@@ -19,6 +20,7 @@ struct Look {
   bool ask_model = true;   ///< the scan is asked about a model's surface as well
   double min_share = 0.0;  ///< of the best value: poses below are not kept ...
   std::size_t least = 24;  ///< ... but at least so many: they show what chance reaches
+  double clear_m2 = -std::numeric_limits<double>::infinity();  ///< and only where the best reaches this
 };
 
 /// The candidates that explain the scans best, best first.
