@@ -6,10 +6,10 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <numeric>
 
 #include <boost/polygon/voronoi.hpp>
 
+#include "limen/base/disjoint_sets.h"
 #include "limen/base/error.h"
 #include "limen/geometry/thinning.h"
 
@@ -64,22 +64,6 @@ struct OutlineEdge {
   std::size_t part = 0;
 };
 
-/// Disjoint sets over the Delaunay faces.
-class Sets {
- public:
-  explicit Sets(std::size_t size) : parent_(size) { std::iota(parent_.begin(), parent_.end(), 0); }
-  std::size_t root(std::size_t i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void join(std::size_t a, std::size_t b) {
-    parent_[std::max(root(a), root(b))] = std::min(root(a), root(b));
-  }
-
- private:
-  std::vector<std::size_t> parent_;
-};
-
 /// Each Voronoi vertex is a Delaunay face and the centre of its circumscribed circle.
 std::vector<char> faces_within(const Diagram& diagram, const GridPoints& grid, double alpha_m) {
   const double limit = alpha_m / grid.unit_m;
@@ -98,7 +82,7 @@ std::vector<OutlineEdge> outline_edges(const Diagram& diagram, const std::vector
     return static_cast<std::size_t>(vertex - first);
   };
   const auto inside = [&](const Diagram::vertex_type* v) { return v != nullptr && kept[face(v)] != 0; };
-  Sets sets(diagram.num_vertices());
+  DisjointSets sets(diagram.num_vertices());  // of the Delaunay faces
   for (const auto& edge : diagram.edges()) {
     if (inside(edge.vertex0()) && inside(edge.vertex1()))
       sets.join(face(edge.vertex0()), face(edge.vertex1()));
@@ -108,7 +92,7 @@ std::vector<OutlineEdge> outline_edges(const Diagram& diagram, const std::vector
     // A half-edge has its own cell on the left, so its end lies left of the way from that site to the twin's.
     if (!inside(edge.vertex1()) || inside(edge.vertex0())) continue;
     outline.push_back(
-        {edge.cell()->source_index(), edge.twin()->cell()->source_index(), sets.root(face(edge.vertex1()))});
+        {edge.cell()->source_index(), edge.twin()->cell()->source_index(), sets.find(face(edge.vertex1()))});
   }
   // Sites are in lexicographic order: the outline does not depend on how the diagram was built.
   std::sort(outline.begin(), outline.end(), [](const OutlineEdge& a, const OutlineEdge& b) {

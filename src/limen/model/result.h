@@ -12,6 +12,7 @@
 #include "limen/geometry/rigid.h"
 #include "limen/model/registration_picture.h"
 #include "limen/model/scanner_place.h"
+#include "limen/model/twin_evidence.h"
 
 namespace limen {
 
@@ -134,6 +135,7 @@ struct RegistrationResult {
   std::vector<MeasuredThickness> thickness;  ///< of the walls between the scans, most openings first
   std::size_t judged_poses = 0;              ///< poses that were refined and judged
   std::optional<OtherExplanations> others;   ///< where poses have probabilities
+  std::optional<TwinEvidence> twin;          ///< of `best`, where rooms built alike may be meant
   std::size_t rivals = 0;                    ///< alternatives that cannot be told from `best`
   std::optional<StartAgreement> start;       ///< where one was given and a pose was found
   ScannerPlace source_place;                 ///< where the scanner of each side stood, and who says so

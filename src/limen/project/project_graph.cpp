@@ -28,7 +28,9 @@ constexpr double kHardly = 1e-4;       // a pose less probable than this is no p
 constexpr double kOfUnknown = 0.1;     // probability of being wrong where a pair tells none
 constexpr double kStoreyM = 0.5;       // floors further apart are of different storeys
 constexpr double kWordWrong = 4e-4;    // probability that a user's word is wrong
-constexpr double kLooser = 2.0;        // an alternative's deviations against those of the best pose
+constexpr double kToldApartM = 0.05;   // deviation of the least known shift below which a pose is a place
+const double kToldApartRad = radians(0.5);
+constexpr double kLooser = 2.0;  // an alternative's deviations against those of the best pose
 
 Vector6d diagonal(const Vector3d& turn, const Vector3d& shift) {
   Vector6d all;
@@ -72,7 +74,7 @@ class GraphMaker {
     const auto said = words_.pairs.find({pairs_[k].source, pairs_[k].target});
     const bool spoken = said != words_.pairs.end();
     if (spoken && said->second.kind == DecisionKind::reject) return;
-    if (found.outcome == Outcome::no_match || (twin > kLikelier && !spoken)) return;
+    if (found.outcome == Outcome::no_match) return;
     // Poses that are more probably none are what any two scans show: many of them would outweigh what is
     // sure.
     if (!spoken && by_chance(found) > kLikelier) return;
@@ -81,8 +83,13 @@ class GraphMaker {
     link.target = static_cast<int>(pairs_[k].target);
     link.trust = trust_of(found, twin);
     link.twin = twin;
+    link.evidence = found.twin;
     link.chance = chance_of(found, twin, link.trust);
     link.poses.push_back(pose_of(link, found, found.best, 1.0));
+    if (twin > kLikelier && !spoken) {
+      graph_.against.push_back(std::move(link));
+      return;
+    }
     for (const Hypothesis& other : found.alternatives) {
       if (link.poses.size() >= kMostPoses) break;
       if (other.score < kRivalShare * found.best.score) continue;
@@ -128,15 +135,30 @@ class GraphMaker {
     link.best = word.pose;
     if (link.trust != LinkTrust::weak) link.trust = LinkTrust::sure;
     link.twin = std::min(link.twin, kWordWrong);
+    link.evidence.reset();
     link.chance = std::min(link.chance, kWordWrong);
     link.poses.front().probability = std::max(link.poses.front().probability, 1.0 - kWordWrong);
   }
 
   /// The pair's verdict without what its own risk made of a twin.
   [[nodiscard]] LinkTrust trust_of(const RegistrationResult& found, double twin) const {
-    if (found.outcome == Outcome::under_constrained) return LinkTrust::weak;
+    if (found.outcome == Outcome::under_constrained) {
+      // What a pair calls open may be known well enough to tell places apart: the covariance says how well.
+      if (!tells_places_apart(found.sigma)) return LinkTrust::weak;
+      if (others_than_best(found, twin) > risk_) return LinkTrust::open;
+    }
     if (found.outcome == Outcome::ambiguous && (found.rivals > 0 || twin <= 0.0)) return LinkTrust::open;
     return twin > risk_ ? LinkTrust::likely : LinkTrust::sure;
+  }
+
+  [[nodiscard]] static bool tells_places_apart(const PoseSigma& sigma) {
+    return sigma.translation_m.maxCoeff() < kToldApartM && sigma.rotation_rad.maxCoeff() < kToldApartRad;
+  }
+
+  /// Probability that another of a pair's poses is right.
+  [[nodiscard]] static double others_than_best(const RegistrationResult& found, double twin) {
+    if (!found.others || !found.best.probability) return kOfUnknown;
+    return std::max(0.0, 1.0 - *found.best.probability - twin - by_chance(found));
   }
 
   /// Probability that none of a pair's poses is right, twins apart.

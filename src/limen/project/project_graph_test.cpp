@@ -40,7 +40,16 @@ TEST(ProjectGraph, ATwinThatIsMoreProbableThanTheRiskMakesALinkNoMoreThanLikely)
   EXPECT_EQ(trust(told(Outcome::ambiguous, 0.01), 0.001), LinkTrust::likely);
   EXPECT_EQ(trust(told(Outcome::ambiguous, 0.01), 0.05), LinkTrust::sure);
   EXPECT_EQ(trust(told(Outcome::ambiguous, 0.01, 1), 0.05), LinkTrust::open);
-  EXPECT_EQ(trust(told(Outcome::under_constrained, 0.0), 0.001), LinkTrust::weak);
+}
+
+TEST(ProjectGraph, WhatIsKnownToCentimetresTellsOnePlaceFromAnother) {
+  RegistrationResult pair = told(Outcome::under_constrained, 0.0);
+  pair.sigma.translation_m = {0.003, 0.02, 0.003};
+  EXPECT_EQ(links_of(pair, 0.001).front().trust, LinkTrust::sure);
+  pair.best.probability = 0.6;  // another pose has the rest
+  EXPECT_EQ(links_of(pair, 0.001).front().trust, LinkTrust::open);
+  pair.sigma.translation_m.y() = 0.2;
+  EXPECT_EQ(links_of(pair, 0.001).front().trust, LinkTrust::weak);
 }
 
 TEST(ProjectGraph, WhatATwinExplainsBetterIsNoLink) {

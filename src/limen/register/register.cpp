@@ -476,7 +476,8 @@ RegistrationResult register_prepared(const PreparedPair& pair, const RegisterOpt
   if (!verdict.ranking.empty() && verdict.outcome != Outcome::no_match && may_be_twin(from, to)) {
     const Rigid3& best = poses[verdict.ranking.front()].refined.target_from_source;
     const IndividualMatter individual = individual_matter(from.view(), to.view(), best);
-    twin = probability_of_twin(individual, judging.twin);
+    result.twin = weigh_twin(individual, judging.twin);
+    twin = result.twin->probability();
     if (start) twin = twin_beside_start(twin, start->prior, best, start->at, start->log_prior(best));
     verdict = with_twin(std::move(verdict), individual, twin, judging);
   }

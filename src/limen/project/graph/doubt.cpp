@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 #include <utility>
 
 #include "limen/base/progress.h"
 #include "limen/project/graph/flow_network.h"
+#include "limen/project/graph/twin_rate.h"
 
 namespace limen {
 namespace {
@@ -17,7 +19,9 @@ constexpr double kMostNats = 14.0;     // no link is surer than about one in a m
 constexpr double kLoopNats = 7.0;      // a wrong pose that agrees with another link, once in a thousand ...
 constexpr double kOpenLoopNats = 3.0;  // ... or one of several, which repeat what repeats in the building
 constexpr double kEnoughNats = 30.0;
-constexpr double kUnits = 1000.0;  // of the flow, per nat
+constexpr double kHardlyFresh = 0.05;   // share of what a link shows that no other has shown
+constexpr double kMostBelieved = 0.45;  // of each kind of twin, beforehand
+constexpr double kUnits = 1000.0;       // of the flow, per nat
 
 class DoubtSearch {
  public:
@@ -27,21 +31,30 @@ class DoubtSearch {
       if (accepted.pose[k] >= 0 && graph.links[k].trust != LinkTrust::weak)
         held_.push_back(static_cast<int>(k));
     }
-    std::stable_sort(held_.begin(), held_.end(), [&](int a, int b) { return link(a).twin < link(b).twin; });
-    for (const int k : held_) share_.push_back((nats(k) + loop_nats(k)) / views_.witnesses_like(k));
+    evidence_.resize(graph.links.size());
+    for (const int k : held_) evidence_[static_cast<std::size_t>(k)] = evidence_of(k);
+    rate_.emplace(graph.nodes, witnesses());
+    for (const int k : held_) {
+      const int witnesses = views_.witnesses_like(k);
+      TwinEvidence& said = evidence_[static_cast<std::size_t>(k)];
+      said.otherwise_nats = std::min(said.otherwise_nats, kMostNats);
+      said.alike_nats = std::min(said.alike_nats, kMostNats);
+      share_.push_back((nats(k) + loop_nats(k)) / witnesses);
+      otherwise_share_.push_back(said.otherwise_nats / witnesses);
+      alike_share_.push_back(said.alike_nats / witnesses);
+    }
   }
 
   std::vector<NodeDoubt> run(const std::vector<int>& reference) {
     std::vector<NodeDoubt> doubts(static_cast<std::size_t>(graph_.nodes));
-    for (int root = 0; root < graph_.nodes; ++root) {
-      if (reference[static_cast<std::size_t>(root)] == root) add_twins(root, doubts);
-    }
     for (int node = 0; node < graph_.nodes; ++node) {
       CancelScope::check();
       const int root = reference[static_cast<std::size_t>(node)];
       NodeDoubt& doubt = doubts[static_cast<std::size_t>(node)];
       if (root == node) doubt = {0.0, 0.0, {}};
-      if (root >= 0 && root != node) add_chance(node, root, doubt);
+      if (root < 0 || root == node) continue;
+      add_twins(node, root, doubt);
+      add_chance(node, root, doubt);
     }
     return doubts;
   }
@@ -59,50 +72,134 @@ class DoubtSearch {
     return chance > 0.0 ? std::clamp(-std::log(chance), 0.0, kMostNats) : kMostNats;
   }
 
-  /// The surest way to each node: along the tree that surer links make first (Kruskal 1956), which held_ is
-  /// sorted for.
-  void add_twins(int root, std::vector<NodeDoubt>& doubts) {
-    std::vector<bool> reached(static_cast<std::size_t>(graph_.nodes), false);
-    reached[static_cast<std::size_t>(root)] = true;
-    doubts[static_cast<std::size_t>(root)].twin = 0.0;
-    // Prim's order: the surest link that leads on is taken first; ties by number.
-    double worst = 0.0;
-    for (bool grown = true; grown;) {
-      grown = false;
-      for (const int k : held_) {
-        const auto s = static_cast<std::size_t>(link(k).source);
-        const auto t = static_cast<std::size_t>(link(k).target);
-        if (reached[s] == reached[t]) continue;
-        worst = std::max(worst, link(k).twin);
-        NodeDoubt& doubt = doubts[reached[s] ? t : s];
-        doubt.twin = worst;
-        doubt.links = {k};
-        reached[s] = reached[t] = grown = true;
-        break;
-      }
+  [[nodiscard]] std::vector<TwinWitness> witnesses() const {
+    std::vector<TwinWitness> all;
+    for (const int k : held_) {
+      if (is_asked(k)) all.push_back({link(k).source, link(k).target, evidence(k)});
     }
+    for (const GraphLink& pair : graph_.against) {
+      if (pair.evidence) all.push_back({pair.source, pair.target, *pair.evidence});
+    }
+    return all;
   }
 
-  void add_chance(int node, int root, NodeDoubt& doubt) const {
+  [[nodiscard]] bool is_asked(int k) const { return link(k).evidence || link(k).twin > 0.0; }
+
+  /// Of a pair whose things were not asked the other places are among its poses: what speaks against them
+  /// speaks against twins.
+  [[nodiscard]] TwinEvidence evidence_of(int k) const {
+    if (is_asked(k)) return link(k).evidence.value_or(twin_evidence_of(link(k).twin));
+    TwinEvidence evidence;
+    evidence.otherwise_nats = evidence.alike_nats = nats(k);
+    return evidence;
+  }
+
+  /// Twins of one kind.
+  struct Kind {
+    double TwinEvidence::*prior;
+    double TwinEvidence::*nats;
+  };
+
+  void add_twins(int node, int root, NodeDoubt& doubt) const {
+    constexpr Kind kOtherwise{&TwinEvidence::otherwise, &TwinEvidence::otherwise_nats};
+    constexpr Kind kAlike{&TwinEvidence::alike, &TwinEvidence::alike_nats};
+    const Cut otherwise = twin_cut(kOtherwise, node, root);
+    const Cut alike = twin_cut(kAlike, node, root);
+    const double twin = otherwise.weight() + alike.weight();
+    doubt.twin = twin / (twin + 1.0 - otherwise.prior - alike.prior);
+    doubt.links = otherwise.weight() > alike.weight() ? otherwise.links : alike.links;
+  }
+
+  struct Cut {
+    double prior = 0.0;  ///< of a twin, before things are asked; none where no pair's were
+    double nats = 0.0;   ///< what they say against it
+    std::vector<int> links;
+    [[nodiscard]] double weight() const { return prior * std::exp(-nats); }
+  };
+
+  /// The cut across which least is said against a twin.
+  [[nodiscard]] Cut twin_cut(const Kind& kind, int node, int root) const {
+    const std::vector<double>& shares =
+        kind.nats == &TwinEvidence::alike_nats ? alike_share_ : otherwise_share_;
+    std::vector<bool> alone(static_cast<std::size_t>(graph_.nodes), false);
+    alone[static_cast<std::size_t>(node)] = true;
+    Cut least = across(kind, alone);
+    const std::optional<std::vector<bool>> side = smallest_cut(shares, node, root);
+    if (!side) return least;
+    Cut found = across(kind, *side);
+    return found.weight() >= least.weight() ? found : least;
+  }
+
+  /// What is said across a cut, by those first that say most.
+  [[nodiscard]] Cut across(const Kind& kind, const std::vector<bool>& side) const {
+    std::vector<int> crossing = crossing_links(side);
+    std::stable_sort(crossing.begin(), crossing.end(),
+                     [&](int a, int b) { return evidence(a).*kind.nats > evidence(b).*kind.nats; });
+    Cut cut;
+    for (const int k : crossing) {
+      const double fresh = 1.0 - views_.seen_already(k, cut.links, side);
+      const double said = evidence(k).*kind.nats;
+      // What speaks for a twin is no less true for being seen twice.
+      cut.nats += said > 0.0 ? fresh * said : said;
+      if (is_asked(k)) {
+        const double prior = evidence(k).*kind.prior;
+        cut.prior = cut.prior > 0.0 ? std::min(cut.prior, prior) : prior;
+      }
+      if (fresh > kHardlyFresh) cut.links.push_back(k);
+    }
+    for (const GraphLink& pair : graph_.against) {
+      if (side[static_cast<std::size_t>(pair.source)] != side[static_cast<std::size_t>(pair.target)] &&
+          is_laid_so(pair) && pair.evidence)
+        cut.nats += std::min(0.0, (*pair.evidence).*kind.nats);
+    }
+    cut.prior = std::min(kMostBelieved, cut.prior * rate_->factor(side));
+    return cut;
+  }
+
+  /// Whether the solution lays the two as the pair's best pose does.
+  [[nodiscard]] bool is_laid_so(const GraphLink& pair) const {
+    constexpr double kNearM = 0.3;
+    const auto s = static_cast<std::size_t>(pair.source);
+    const auto t = static_cast<std::size_t>(pair.target);
+    if (accepted_.component[s] < 0 || accepted_.component[s] != accepted_.component[t]) return false;
+    const Rigid3 laid = inverse(accepted_.frame_from_node[t]) * accepted_.frame_from_node[s];
+    const LinkPose& pose = pair.poses.front();
+    const Vector3d at = inverse(pose.target_from_source) * pose.centre;
+    return (laid * at - pose.centre).norm() < kNearM;
+  }
+
+  [[nodiscard]] const TwinEvidence& evidence(int k) const { return evidence_[static_cast<std::size_t>(k)]; }
+
+  [[nodiscard]] std::vector<int> crossing_links(const std::vector<bool>& side) const {
+    std::vector<int> crossing;
+    for (const int k : held_) {
+      if (side[static_cast<std::size_t>(link(k).source)] != side[static_cast<std::size_t>(link(k).target)])
+        crossing.push_back(k);
+    }
+    return crossing;
+  }
+
+  /// The side of `node` of the smallest cut between it and `root`, of links that are worth `nats`; empty
+  /// where enough is said across every one.
+  [[nodiscard]] std::optional<std::vector<bool>> smallest_cut(const std::vector<double>& nats, int node,
+                                                              int root) const {
     FlowNetwork network(static_cast<std::size_t>(graph_.nodes));
     for (std::size_t i = 0; i < held_.size(); ++i) {
-      const auto room = static_cast<int>(std::lround(kUnits * share_[i]));
+      const auto room = static_cast<int>(std::lround(kUnits * std::max(0.0, nats[i])));
       network.connect(link(held_[i]).source, link(held_[i]).target, room, room);
     }
     std::vector<bool> start(static_cast<std::size_t>(graph_.nodes), false);
     std::vector<bool> end = start;
     start[static_cast<std::size_t>(node)] = true;
     end[static_cast<std::size_t>(root)] = true;
-    const std::optional<std::vector<bool>> side =
-        network.smallest_cut(start, end, static_cast<int>(kUnits * (kEnoughNats + kLoopNats)));
+    return network.smallest_cut(start, end, static_cast<int>(kUnits * (kEnoughNats + kLoopNats)));
+  }
+
+  void add_chance(int node, int root, NodeDoubt& doubt) const {
+    const std::optional<std::vector<bool>> side = smallest_cut(share_, node, root);
     doubt.chance = 0.0;
     if (!side) return;
-    std::vector<int> crossing;
-    for (const int k : held_) {
-      if ((*side)[static_cast<std::size_t>(link(k).source)] !=
-          (*side)[static_cast<std::size_t>(link(k).target)])
-        crossing.push_back(k);
-    }
+    std::vector<int> crossing = crossing_links(*side);
     std::stable_sort(crossing.begin(), crossing.end(), [&](int a, int b) { return nats(a) > nats(b); });
     const std::vector<int> chosen = views_.independent(crossing, *side);
     double all = 0.0;
@@ -119,8 +216,12 @@ class DoubtSearch {
   const PoseGraph& graph_;
   const AcceptedPoses& accepted_;
   SharedViews views_;
-  std::vector<int> held_;      ///< accepted links that hold, those of the least probable twin first
-  std::vector<double> share_;  ///< of each of them: nats, shared with those that see the same
+  std::vector<int> held_;                ///< accepted links that hold
+  std::vector<double> share_;            ///< of each of them: nats, shared with those that see the same
+  std::vector<double> otherwise_share_;  ///< the same against twins furnished otherwise ...
+  std::vector<double> alike_share_;      ///< ... and alike
+  std::optional<TwinRate> rate_;
+  std::vector<TwinEvidence> evidence_;  ///< of each link
 };
 
 }  // namespace

@@ -21,8 +21,11 @@ struct NodeDoubt {
 /// How probable it is that each node stands wrongly against its component's `reference` (of each node: the
 /// node that lends its component the frame, -1: none).
 ///
-/// Twins: places built alike come in rows and storeys, so that a second link that might lie on a twin makes a
-/// first one no surer. A node is as sure as the least sure link on the surest way to the reference.
+/// Twins: places built alike come in rows and storeys, so that a whole side of the building may be laid on
+/// its twin, and all links across lie on twins together. That there is such a twin is believed once, and of
+/// one furnished alike once; what things say against it multiplies over the links across, as far as they see
+/// different ones. The cut between the node and the reference counts across which least is said; pairs that
+/// speak for a twin (`PoseGraph::against`) speak against their side.
 /// Chance: links that see different surface err independently, and that wrong poses close a loop is rare in
 /// itself; the smallest cut between the node and the reference counts, links that see the same only once.
 std::vector<NodeDoubt> doubts_of(const PoseGraph& graph, const AcceptedPoses& accepted,

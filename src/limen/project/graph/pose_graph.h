@@ -3,8 +3,10 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
+#include "limen/model/twin_evidence.h"
 #include "limen/project/graph/link_pose.h"
 
 namespace limen {
@@ -25,7 +27,9 @@ struct GraphLink {
   LinkTrust trust = LinkTrust::sure;
   std::vector<LinkPose> poses;  ///< at least one; best first
   double twin = 0.0;            ///< probability that the best pose lays a place on another one built alike
-  double chance = 0.0;          ///< probability that none of its poses is right, for any other reason
+  /// What that probability comes from, where things were asked.
+  std::optional<TwinEvidence> evidence;
+  double chance = 0.0;  ///< probability that none of its poses is right, for any other reason
   /// Where the pair's best pose stands among `poses`: elsewhere than first where a user chose another, which
   /// took its place.
   int best = 0;
@@ -38,6 +42,9 @@ struct GraphLink {
 struct PoseGraph {
   int nodes = 0;
   std::vector<GraphLink> links;
+  /// Pairs that more probably show two places built alike: they hold nothing, and speak against what lays the
+  /// two on one another.
+  std::vector<GraphLink> against;
   int anchor = -1;  ///< a node that is the frame of the component it is part of, -1: none
 };
 

@@ -32,19 +32,35 @@ bool SharedViews::same_view(int a, int b, double surface_m2) const {
   return a == b || shared(a, b) > kSameView * surface_m2;
 }
 
+std::pair<int, int> SharedViews::ends(int k, const std::vector<bool>& moved) const {
+  const GraphLink& link = graph_.links[static_cast<std::size_t>(k)];
+  return moved[static_cast<std::size_t>(link.source)] ? std::pair(link.source, link.target)
+                                                      : std::pair(link.target, link.source);
+}
+
+double SharedViews::seen_already(int link, const std::vector<int>& others,
+                                 const std::vector<bool>& moved) const {
+  const std::pair<int, int> own = ends(link, moved);
+  const double surface = graph_.links[static_cast<std::size_t>(link)].poses.front().agreeing_m2;
+  const auto share = [&](int a, int b) {
+    return a == b || surface <= 0.0 ? 1.0 : std::min(1.0, shared(a, b) / surface);
+  };
+  double most = 0.0;
+  for (const int other : others) {
+    const std::pair<int, int> theirs = ends(other, moved);
+    most = std::max(most, share(own.first, theirs.first) * share(own.second, theirs.second));
+  }
+  return most;
+}
+
 std::vector<int> SharedViews::independent(const std::vector<int>& links,
                                           const std::vector<bool>& moved) const {
   std::vector<int> chosen;
-  const auto ends = [&](int k) {
-    const GraphLink& link = graph_.links[static_cast<std::size_t>(k)];
-    return moved[static_cast<std::size_t>(link.source)] ? std::pair(link.source, link.target)
-                                                        : std::pair(link.target, link.source);
-  };
   for (const int k : links) {
-    const std::pair<int, int> own = ends(k);
+    const std::pair<int, int> own = ends(k, moved);
     const double surface = graph_.links[static_cast<std::size_t>(k)].poses.front().agreeing_m2;
     const bool counted = std::any_of(chosen.begin(), chosen.end(), [&](int other) {
-      const std::pair<int, int> theirs = ends(other);
+      const std::pair<int, int> theirs = ends(other, moved);
       return same_view(own.first, theirs.first, surface) && same_view(own.second, theirs.second, surface);
     });
     if (!counted) chosen.push_back(k);

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 #include <utility>
 
+#include "limen/base/disjoint_sets.h"
 #include "limen/base/progress.h"
 #include "limen/geometry/linear.h"
 #include "limen/project/graph/bridges.h"
@@ -24,26 +24,6 @@ constexpr double kFirstGate = 16.0;  // times the bound, before the first adjust
 constexpr std::size_t kLoopsPerLink = 8;
 constexpr double kFixedM = 0.05;  // a weak link's node that is known this well by several is held after all
 constexpr double kFixedRad = 0.01;
-
-/// Numbers that belong together; each set is called by its lowest.
-class Sets {
- public:
-  explicit Sets(int count) : root_(static_cast<std::size_t>(count)) {
-    std::iota(root_.begin(), root_.end(), 0);
-  }
-  void join(int a, int b) {
-    a = find(a);
-    b = find(b);
-    root_[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
-  }
-  [[nodiscard]] int find(int i) const {
-    while (root_[static_cast<std::size_t>(i)] != i) i = root_[static_cast<std::size_t>(i)];
-    return i;
-  }
-
- private:
-  std::vector<int> root_;
-};
 
 class Solver {
  public:
@@ -102,12 +82,17 @@ class Solver {
     }
   }
 
+  static void join(DisjointSets& sets, const GraphLink& link) {
+    sets.join(static_cast<std::size_t>(link.source), static_cast<std::size_t>(link.target));
+  }
+
   void settle_components() {
-    Sets sets(graph_.nodes);
+    DisjointSets sets(accepted_.component.size());
     for (std::size_t k = 0; k < graph_.links.size(); ++k) {
-      if (accepted_.pose[k] >= 0) sets.join(graph_.links[k].source, graph_.links[k].target);
+      if (accepted_.pose[k] >= 0) join(sets, graph_.links[k]);
     }
-    for (int i = 0; i < graph_.nodes; ++i) accepted_.component[static_cast<std::size_t>(i)] = sets.find(i);
+    for (std::size_t i = 0; i < accepted_.component.size(); ++i)
+      accepted_.component[i] = static_cast<int>(sets.find(i));
   }
 
   [[nodiscard]] static bool verifies(const GraphLink& link) {
@@ -141,19 +126,18 @@ class Solver {
   /// Of each component by its lowest node: the first node of the largest part that sure links hold together,
   /// for what is in doubt against it must not lend it the frame.
   [[nodiscard]] std::vector<int> references() const {
-    Sets sure(graph_.nodes);
+    DisjointSets sure(accepted_.component.size());
     for (std::size_t k = 0; k < graph_.links.size(); ++k) {
       const GraphLink& link = graph_.links[k];
-      if (accepted_.pose[k] >= 0 && link.trust <= LinkTrust::open && link.twin <= risk_)
-        sure.join(link.source, link.target);
+      if (accepted_.pose[k] >= 0 && link.trust <= LinkTrust::open && link.twin <= risk_) join(sure, link);
     }
     const auto firm = [&](int node) {
       return grown_.trust[static_cast<std::size_t>(node)] <= JoinTrust::likely;
     };
     std::vector<int> size(static_cast<std::size_t>(graph_.nodes), 0);
-    for (int i = 0; i < graph_.nodes; ++i) size[static_cast<std::size_t>(sure.find(i))] += firm(i) ? 1 : 0;
+    for (int i = 0; i < graph_.nodes; ++i) size[sure.find(static_cast<std::size_t>(i))] += firm(i) ? 1 : 0;
     const auto size_of = [&](int node) {
-      return firm(node) ? size[static_cast<std::size_t>(sure.find(node))] : 0;
+      return firm(node) ? size[sure.find(static_cast<std::size_t>(node))] : 0;
     };
     std::vector<int> first(static_cast<std::size_t>(graph_.nodes), -1);
     for (int i = 0; i < graph_.nodes; ++i) {

@@ -268,6 +268,10 @@ std::string bytes_of(const RegistrationResult& result) {
   const OtherExplanations others = result.others.value_or(OtherExplanations{});
   for (const double probability : {others.nothing_shared, others.twin, others.unlisted_pose})
     writer.put(probability);
+  writer.put(result.twin.has_value());
+  const TwinEvidence twin = result.twin.value_or(TwinEvidence{});
+  for (const double told : {twin.otherwise, twin.alike, twin.otherwise_nats, twin.alike_nats})
+    writer.put(told);
   return writer.bytes();
 }
 
@@ -294,6 +298,11 @@ RegistrationResult result_from(std::string_view bytes, const std::string& where)
   for (double* probability : {&told.nothing_shared, &told.twin, &told.unlisted_pose})
     reader.get(*probability);
   if (others) result.others = told;
+  const bool asked = reader.get<bool>();
+  TwinEvidence twin;
+  for (double* value : {&twin.otherwise, &twin.alike, &twin.otherwise_nats, &twin.alike_nats})
+    reader.get(*value);
+  if (asked) result.twin = twin;
   return result;
 }
 

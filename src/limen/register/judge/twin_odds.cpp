@@ -130,7 +130,7 @@ void TwinOptions::check() const {
   if (!(chance_strength > 0)) throw_bad_option("chance_strength", chance_strength, "more than 0");
 }
 
-double probability_of_twin(const IndividualMatter& individual, const TwinOptions& options) {
+TwinEvidence weigh_twin(const IndividualMatter& individual, const TwinOptions& options) {
   options.check();
   const ShareBelief chance{std::clamp(individual.chance + options.more_than_chance, 0.01, 0.7),
                            options.chance_strength};
@@ -138,13 +138,19 @@ double probability_of_twin(const IndividualMatter& individual, const TwinOptions
       log_sum_exp({std::log(1.0 - options.lived_in) + log_likelihood(individual.matter, options.kept),
                    std::log(options.lived_in) + log_likelihood(individual.matter, options.kept_lived_in)});
   const double prior = individual.apart ? options.prior_apart : options.prior;
-  const double same = std::log(1.0 - prior) + stayed + log_likelihood(individual.faces, one_room());
   const double alike_share = options.alike_share * (individual.apart ? options.apart_share : 1.0);
-  const double other = std::log(prior * (1.0 - alike_share)) + log_likelihood(individual.matter, chance) +
-                       log_likelihood(individual.faces, furnished_otherwise());
-  const double alike =
-      std::log(prior * alike_share) + stayed + log_likelihood(individual.faces, furnished_alike());
-  return std::exp(log_sum_exp({other, alike}) - log_sum_exp({same, other, alike}));
+  const double same = log_likelihood(individual.faces, one_room());
+  TwinEvidence evidence;
+  evidence.otherwise = prior * (1.0 - alike_share);
+  evidence.alike = prior * alike_share;
+  evidence.otherwise_nats = stayed - log_likelihood(individual.matter, chance) + same -
+                            log_likelihood(individual.faces, furnished_otherwise());
+  evidence.alike_nats = same - log_likelihood(individual.faces, furnished_alike());
+  return evidence;
+}
+
+double probability_of_twin(const IndividualMatter& individual, const TwinOptions& options) {
+  return weigh_twin(individual, options).probability();
 }
 
 std::string twin_words(const IndividualMatter& individual, double probability) {

@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "limen/model/twin_evidence.h"
 #include "limen/register/judge/individual_matter.h"
 #include "limen/register/judge/share_belief.h"
 
@@ -25,10 +26,12 @@ struct TwinOptions {
   void check() const;
 };
 
-/// The probability that the scans show two rooms built alike and not one, given that their walls fit.
-/// Bayes' rule over three explanations: one room; a twin furnished otherwise; a twin furnished alike. Each
-/// says with which share individual matter and faces agree; the share itself is integrated out
-/// (beta-binomial). Without observations it is the prior.
+/// What things say of three explanations of two scans whose walls fit: one room; a twin furnished otherwise;
+/// a twin furnished alike. Each says with which share individual matter and faces agree; the share itself is
+/// integrated out (beta-binomial). Without observations nothing speaks for or against any.
+TwinEvidence weigh_twin(const IndividualMatter& individual, const TwinOptions& options = {});
+
+/// The probability that the scans show two rooms built alike and not one, by Bayes' rule.
 double probability_of_twin(const IndividualMatter& individual, const TwinOptions& options = {});
 
 /// What a user should know of a pair whose twin cannot be excluded: one sentence's end.

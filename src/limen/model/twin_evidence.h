@@ -1,0 +1,40 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+namespace limen {
+
+/// What things say of whether two scans show one room, or two built alike: what is believed beforehand, and
+/// by how much one room explains better what was seen (natural logarithms). Kept apart, for what several
+/// pairs say of one place multiplies, and what is believed of the place does not.
+struct TwinEvidence {
+  double otherwise = 0.1455;    ///< probability beforehand of a twin furnished otherwise ...
+  double alike = 0.0045;        ///< ... and of one furnished alike as well
+  double otherwise_nats = 0.0;  ///< against the first
+  double alike_nats = 0.0;      ///< against the second
+
+  /// Odds of a twin of either kind.
+  [[nodiscard]] double odds() const {
+    return (otherwise * std::exp(-otherwise_nats) + alike * std::exp(-alike_nats)) /
+           (1.0 - otherwise - alike);
+  }
+  [[nodiscard]] double probability() const {
+    const double against = odds();
+    return std::isfinite(against) ? against / (1.0 + against) : 1.0;
+  }
+};
+
+/// Evidence that leaves a probability of `probability`, of whichever kind of twin.
+inline TwinEvidence twin_evidence_of(double probability) {
+  constexpr double kMostNats = 50.0;
+  TwinEvidence evidence;
+  const double nats =
+      probability > 0.0 ? std::log(evidence.odds() * (1.0 - probability) / probability) : kMostNats;
+  evidence.otherwise_nats = evidence.alike_nats = std::min(nats, kMostNats);
+  return evidence;
+}
+
+}  // namespace limen
