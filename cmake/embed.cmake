@@ -3,7 +3,7 @@
 # Makes a C++ source of the report page's own sources, at build time:
 #   cmake -DPAGE_DIR=src/limen/report/html/page -DOUTPUT=report_page.cpp -P embed.cmake
 # A literal may not be arbitrarily long: every file becomes one, joined by the compiler.
-set(SCRIPTS math.js data.js shaders.js gl.js scene.js camera.js pick.js panel.js main.js)
+set(SHARED_SCRIPTS math.js data.js shaders.js gl.js scene.js camera.js pick.js panel.js keys.js)
 
 function(as_literals out)
   set(text "")
@@ -14,11 +14,19 @@ function(as_literals out)
   set(${out} "${text}" PARENT_SCOPE)
 endfunction()
 
-as_literals(pattern page.html)
-as_literals(style page.css)
-as_literals(script ${SCRIPTS})
 set(text "// Made by cmake/embed.cmake from src/limen/report/html/page: change it there.\n#include \"limen/report/html/report_page.h\"\n")
-string(APPEND text "\nnamespace limen {\n\nstd::string_view report_pattern() {\n  return\n${pattern};\n}\n")
-string(APPEND text "\nstd::string_view report_style() {\n  return\n${style};\n}\n")
-string(APPEND text "\nstd::string_view report_script() {\n  return\n${script};\n}\n\n}  // namespace limen\n")
+string(APPEND text "\nnamespace limen {\n")
+# A function per part: its name, then the files it is made of.
+function(add_part name)
+  as_literals(content ${ARGN})
+  string(APPEND text "\nstd::string_view ${name}() {\n  return\n${content};\n}\n")
+  set(text "${text}" PARENT_SCOPE)
+endfunction()
+add_part(report_pattern page.html)
+add_part(report_style page.css)
+add_part(report_script ${SHARED_SCRIPTS} main.js)
+add_part(view_pattern view.html)
+add_part(view_style view.css)
+add_part(view_script ${SHARED_SCRIPTS} view.js)
+string(APPEND text "\n}  // namespace limen\n")
 file(WRITE ${OUTPUT} "${text}")

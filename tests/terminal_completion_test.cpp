@@ -95,8 +95,9 @@ TEST_F(SelfDescription, TheManualPageIsCleanAndTellsEveryOption) {
 }
 
 TEST_F(SelfDescription, HelpFitsEightyColumnsAndEndsWithExamples) {
-  for (const std::string command : {"info", "planes", "openings", "segments", "register", "transform",
-                                    "evaluate", "deviation", "simulate", "thin", "schema", "completion"}) {
+  for (const std::string command :
+       {"info", "planes", "openings", "segments", "register", "transform", "evaluate", "deviation",
+        "simulate", "thin", "view", "schema", "completion"}) {
     const std::string help = run({command, "--help"}).out;
     EXPECT_NE(help.find("\nExamples:\n"), std::string::npos) << command;
     EXPECT_EQ(help.find("TEXT"), std::string::npos) << command;
@@ -119,6 +120,7 @@ TEST_F(SelfDescription, EveryCommandAnswersInJsonAndNothingElse) {
       {"transform", "result/result.json", "case/indoor_00.ply", "moved.ply"},
       {"deviation", "office/scan_01.ply", "office/model.ifc", "--identity", "-o", "deviation"},
       {"thin", "case/indoor_00.ply", "thin.ply", "--points", "1000"},
+      {"view", "case/indoor_00.ply", "-o", "view.html"},
       {"completion", "bash"},
       {"man"}};
   for (std::vector<std::string> call : calls) {

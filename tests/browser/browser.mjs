@@ -3,7 +3,7 @@
 
 // A browser of this machine and the pages of one run of limen.
 import { execFileSync } from 'node:child_process';
-import { existsSync, mkdtempSync, rmSync } from 'node:fs';
+import { existsSync, mkdtempSync, readFileSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { pathToFileURL } from 'node:url';
@@ -52,4 +52,39 @@ export const limen = (program, ...words) => {
   } catch (error) {
     if (![3, 4].includes(error.status)) throw error;
   }
+};
+
+/** Shares of pixels of the canvas that are not empty, and of those nearer to orange than to blue. */
+export const pixels = (page) => page.evaluate(() => {
+  const canvas = document.getElementById('canvas');
+  const copy = Object.assign(document.createElement('canvas'), { width: canvas.width, height: canvas.height });
+  const context = copy.getContext('2d');
+  context.drawImage(canvas, 0, 0);
+  const { data } = context.getImageData(0, 0, copy.width, copy.height);
+  let drawn = 0; let orange = 0; let sum = 0;
+  for (let k = 0; k < data.length; k += 4) {
+    if (data[k + 3] < 16) continue;
+    drawn += 1;
+    orange += data[k] > data[k + 2] + 30 ? 1 : 0;
+    sum = (sum * 31 + data[k] + 7 * data[k + 1] + 13 * data[k + 2]) % 1000000007;
+  }
+  return { drawn: drawn / (data.length / 4), orange: orange / Math.max(1, drawn), sum };
+});
+
+/** After what an action asked for was drawn. */
+export const settled = async (page, action) => {
+  const frames = () => page.evaluate(() => +document.getElementById('canvas').dataset.frames);
+  const earlier = await frames();
+  await action();
+  await page.waitForFunction((n) => +document.getElementById('canvas').dataset.frames > n, earlier, { timeout: 30000 });
+  await page.waitForFunction(() => document.getElementById('canvas').dataset.moving === 'false');
+  return pixels(page);
+};
+
+/** What axe-core holds against the page, in words; the rules of WCAG 2.1, levels A and AA, and good practice. */
+export const accessibilityFaults = async (page) => {
+  // Evaluated, not added as an element: the page allows no other scripts than its own.
+  await page.evaluate(readFileSync(new URL('node_modules/axe-core/axe.min.js', import.meta.url), 'utf8'));
+  const { violations } = await page.evaluate(() => axe.run());
+  return violations.flatMap(({ id, nodes }) => nodes.map(({ html, failureSummary }) => `${id}: ${html.slice(0, 160)} ${failureSummary}`));
 };

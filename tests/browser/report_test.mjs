@@ -8,7 +8,7 @@ import { copyFileSync, mkdirSync, mkdtempSync, readFileSync, rmSync, statSync, w
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, describe, test } from 'node:test';
-import { limen, openBrowser, openReport } from './browser.mjs';
+import { accessibilityFaults, limen, openBrowser, openReport, pixels, settled } from './browser.mjs';
 
 const program = process.env.LIMEN_PROGRAM;
 const playwright = await import('playwright-core');
@@ -16,33 +16,6 @@ const folder = mkdtempSync(join(tmpdir(), 'limen-report-'));
 const shots = process.env.LIMEN_SCREENSHOTS;
 const report = (name) => join(folder, name, 'report.html');
 let browser;
-
-/** Shares of pixels of the canvas that are not empty, and of those nearer to orange than to blue. */
-const pixels = (page) => page.evaluate(() => {
-  const canvas = document.getElementById('canvas');
-  const copy = Object.assign(document.createElement('canvas'), { width: canvas.width, height: canvas.height });
-  const context = copy.getContext('2d');
-  context.drawImage(canvas, 0, 0);
-  const { data } = context.getImageData(0, 0, copy.width, copy.height);
-  let drawn = 0; let orange = 0; let sum = 0;
-  for (let k = 0; k < data.length; k += 4) {
-    if (data[k + 3] < 16) continue;
-    drawn += 1;
-    orange += data[k] > data[k + 2] + 30 ? 1 : 0;
-    sum = (sum * 31 + data[k] + 7 * data[k + 1] + 13 * data[k + 2]) % 1000000007;
-  }
-  return { drawn: drawn / (data.length / 4), orange: orange / Math.max(1, drawn), sum };
-});
-
-/** After what an action asked for was drawn. */
-const settled = async (page, action) => {
-  const frames = () => page.evaluate(() => +document.getElementById('canvas').dataset.frames);
-  const earlier = await frames();
-  await action();
-  await page.waitForFunction((n) => +document.getElementById('canvas').dataset.frames > n, earlier, { timeout: 30000 });
-  await page.waitForFunction(() => document.getElementById('canvas').dataset.moving === 'false');
-  return pixels(page);
-};
 
 before(async () => {
   const museum = join(folder, 'museum');
@@ -167,7 +140,7 @@ describe('a registered pair', () => {
   test('every control can be reached with the tab key and shows it', async () => {
     await page.evaluate(() => { document.activeElement?.blur(); scrollTo(0, 0); });
     const reached = new Set();
-    for (let k = 0; k < 80; ++k) {
+    for (let k = 0; k < 100; ++k) {
       await page.keyboard.press('Tab');
       const at = await page.evaluate(() => {
         const node = document.activeElement;
@@ -275,12 +248,13 @@ describe('other outcomes', () => {
 
 describe('on every screen', () => {
   for (const [width, height, scheme] of [[1280, 900, 'light'], [1280, 900, 'dark'], [390, 844, 'light']]) {
-    test(`${width} px, ${scheme}: nothing sticks out`, async () => {
+    test(`${width} px, ${scheme}: nothing sticks out, and everybody can use it`, async () => {
       for (const name of ['registered', 'in_model', 'no_match']) {
         const { page } = await openReport(browser.context, report(name), { viewport: { width, height }, scheme });
         assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), name);
         const sizes = await page.evaluate(() => ['#canvas', 'h1'].map((one) => document.querySelector(one).getBoundingClientRect().width));
         assert.ok(sizes.every((size) => size > 0 && size <= width));
+        assert.deepEqual(await accessibilityFaults(page), [], name);
         if (shots) await page.screenshot({ path: join(shots, `${name}-${width}-${scheme}.png`), fullPage: width < 600 });
         await page.close();
       }

@@ -34,6 +34,7 @@
 #include "limen/cli/commands/thin_command.h"
 #include "limen/cli/commands/transform_command.h"
 #include "limen/cli/commands/transform_project.h"
+#include "limen/cli/commands/view_command.h"
 #include "limen/cli/help/program_help.h"
 #include "limen/cli/terminal/command.h"
 #include "limen/cli/terminal/nearest_word.h"
@@ -152,6 +153,7 @@ void add_commands(CommandLine& app, Session& session) {
   add_transform_command(app, session);
   add_transform_project_command(app, session);
   add_thin_command(app, session);
+  add_view_command(app, session);
   add_evaluate_command(app, session);
   add_deviation_command(app, session);
 #ifdef LIMEN_WITH_SIMULATOR

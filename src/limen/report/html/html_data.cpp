@@ -9,6 +9,7 @@
 
 #include "limen/geometry/polygon_clip.h"
 #include "limen/report/html/html_bytes.h"
+#include "limen/report/html/html_elements.h"
 #include "limen/report/html/html_residuals.h"
 #include "limen/report/html/html_tables.h"
 #include "limen/report/json/json_values.h"
@@ -107,20 +108,6 @@ Json segments_json(const Features& features) {
   return list;
 }
 
-Json side_json(const InputSummary& input, const SceneSide& side, const QuantisedPoints& points) {
-  return {{"name", file_name(input)},
-          {"origin", json_of(side.origin)},
-          {"low", json_of(points.low)},
-          {"step", json_of(points.step)},
-          {"count", side.points.empty() ? 3 * side.faces.size() : side.points.size()},
-          {"shape", !side.points.empty() ? "points"
-                    : side.faces.empty() ? "none"
-                                         : "faces"},
-          {"planes", planes_json(side.pictured.features)},
-          {"openings", openings_json(side.pictured.features)},
-          {"segments", segments_json(side.pictured.features)}};
-}
-
 /// Pose `number` of the report: 0 is the best one. Its tables come with it, for the page shows those of the
 /// pose that is looked at.
 Json pose_json(const RegistrationReport& report, std::size_t number, const ReportScene& scene) {
@@ -161,49 +148,43 @@ Json matches_json(const RegistrationResult& result) {
   return list;
 }
 
-std::string element(const char* type, const std::string& id, const std::string& content) {
-  return fmt::format("<script type=\"{}\" id=\"{}\">{}</script>\n", type, id, content);
+}  // namespace
+
+Json side_json(const std::string& name, const SceneSide& side, const QuantisedPoints& points) {
+  return {{"name", name},
+          {"origin", json_of(side.origin)},
+          {"low", json_of(points.low)},
+          {"step", json_of(points.step)},
+          {"count", side.points.empty() ? 3 * side.faces.size() : side.points.size()},
+          {"shape", !side.points.empty() ? "points"
+                    : side.faces.empty() ? "none"
+                                         : "faces"},
+          {"planes", planes_json(side.pictured.features)},
+          {"openings", openings_json(side.pictured.features)},
+          {"segments", segments_json(side.pictured.features)}};
 }
 
-std::string blob(const std::string& id, const std::vector<std::uint8_t>& bytes) {
-  if (bytes.empty()) return {};
-  return element("text/plain", id, base64(bytes));
-}
-
-/// JSON that cannot end the element it stands in, nor open a comment there.
-std::string json_element(const Json& json) {
-  std::string safe;
-  for (const char c : json.dump(-1, ' ', false, Json::error_handler_t::replace)) {
-    if (c == '<') {
-      safe += "\\u003c";
-    } else {
-      safe += c;
-    }
-  }
-  return element("application/json", "scene", safe);
+QuantisedPoints quantised_side(const SceneSide& side) {
+  return side.points.empty() ? quantise(side.faces) : quantise(side.points);
 }
 
 std::string side_blobs(const std::string& name, const SceneSide& side, const QuantisedPoints& points,
                        const std::vector<std::uint8_t>& planes) {
-  std::string text = blob(name + "-points", bytes_of(points.numbers));
-  text += blob(name + "-planes", planes);
-  if (!side.colours.empty()) return text + blob(name + "-colours", bytes_of(packed_colours(side.colours)));
-  return text + blob(name + "-intensities", stretched(side.intensities));
+  std::string text = blob_element(name + "-points", bytes_of(points.numbers));
+  text += blob_element(name + "-planes", planes);
+  if (!side.colours.empty())
+    return text + blob_element(name + "-colours", bytes_of(packed_colours(side.colours)));
+  return text + blob_element(name + "-intensities", stretched(side.intensities));
 }
-
-}  // namespace
 
 std::string scene_elements(const RegistrationReport& report, const ReportScene& scene,
                            const SceneView& view) {
   const RegistrationResult& result = report.result;
-  const auto quantised = [](const SceneSide& side) {
-    return side.points.empty() ? quantise(side.faces) : quantise(side.points);
-  };
-  const QuantisedPoints source = quantised(scene.source);
-  const QuantisedPoints target = quantised(scene.target);
+  const QuantisedPoints source = quantised_side(scene.source);
+  const QuantisedPoints target = quantised_side(scene.target);
   const std::vector<std::uint8_t> source_planes = plane_of_points(scene.source);
-  Json json = {{"source", side_json(report.source, scene.source, source)},
-               {"target", side_json(report.target, scene.target, target)},
+  Json json = {{"source", side_json(file_name(report.source), scene.source, source)},
+               {"target", side_json(file_name(report.target), scene.target, target)},
                {"axes", Json::array()},
                {"low", json_of(view.low)},
                {"high", json_of(view.high)},
@@ -219,7 +200,7 @@ std::string scene_elements(const RegistrationReport& report, const ReportScene& 
   if (view.matched && !result.matches.empty()) {
     const PointResiduals residuals = point_residuals(scene, result, source_planes);
     json["residual_range"] = residuals.range_m;
-    blobs += blob("source-residuals", residuals.values);
+    blobs += blob_element("source-residuals", residuals.values);
   }
   return json_element(json) + blobs;
 }

@@ -2,12 +2,23 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <string>
+#include <vector>
 
+#include "limen/report/html/html_bytes.h"
 #include "limen/report/html/html_view.h"
+#include "limen/report/json/json_values.h"
 #include "limen/report/json/result_json.h"
 
 namespace limen {
+
+/// One side as the page's script reads it, and the elements with its points; `planes`: as plane_of_points.
+Json side_json(const std::string& name, const SceneSide& side, const QuantisedPoints& points);
+std::string side_blobs(const std::string& name, const SceneSide& side, const QuantisedPoints& points,
+                       const std::vector<std::uint8_t>& planes);
+/// The points of a side, else the corners of its faces.
+QuantisedPoints quantised_side(const SceneSide& side);
 
 /// The script elements that hold a scene for the page's own script: numbers and names as JSON, points and
 /// faces as base64.

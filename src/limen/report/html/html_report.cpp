@@ -2,14 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limen/report/html/html_report.h"
 
-#include <map>
-
 #include <fmt/format.h>
 
 #include "limen/base/atomic_file.h"
 #include "limen/base/version.h"
 #include "limen/report/html/html_bytes.h"
 #include "limen/report/html/html_data.h"
+#include "limen/report/html/html_elements.h"
 #include "limen/report/html/html_tables.h"
 #include "limen/report/html/html_words.h"
 #include "limen/report/html/report_page.h"
@@ -18,25 +17,6 @@
 
 namespace limen {
 namespace {
-
-using Parts = std::map<std::string, std::string>;
-
-/// `pattern` with every {{name}} replaced by the part of that name, in one pass: what a part holds is never
-/// looked into.
-std::string filled_in(std::string_view pattern, const Parts& parts) {
-  std::string text;
-  std::size_t at = 0;
-  while (true) {
-    const std::size_t open = pattern.find("{{", at);
-    const std::size_t close = open == std::string_view::npos ? open : pattern.find("}}", open);
-    if (close == std::string_view::npos) break;
-    text += pattern.substr(at, open - at);
-    const auto part = parts.find(std::string(pattern.substr(open + 2, close - open - 2)));
-    if (part != parts.end()) text += part->second;
-    at = close + 2;
-  }
-  return text.append(pattern.substr(at));
-}
 
 /// A heading with what follows, or nothing where nothing follows. `kept`: on the printed sheet too.
 std::string section(const char* heading, const std::string& content, const char* remark = "",
@@ -116,22 +96,22 @@ ReportPages report_pages(const RegistrationReport& report, const ReportScene& sc
   pages.front = section_svg(scene, view, SectionSide::front);
   pages.side = section_svg(scene, view, SectionSide::side);
   const VerdictWords words = verdict_words(report);
-  const Parts parts = {{"title", escaped(cover.title.empty() ? words.headline : cover.title)},
-                       {"outcome", to_string(report.result.outcome)},
-                       {"symbol", words.symbol},
-                       {"headline", escaped(words.headline)},
-                       {"cover", cover_html(report, cover)},
-                       {"sentences", sentences(words)},
-                       {"source", escaped(file_name(report.source))},
-                       {"target", escaped(file_name(report.target))},
-                       {"tables", tables(report) + matrix_card(report)},
-                       {"top", pages.top},
-                       {"front", pages.front},
-                       {"side", pages.side},
-                       {"version", kVersion},
-                       {"style", std::string(report_style())},
-                       {"script", std::string(report_script())},
-                       {"scene", scene_elements(report, scene, view)}};
+  const PageParts parts = {{"title", escaped(cover.title.empty() ? words.headline : cover.title)},
+                           {"outcome", to_string(report.result.outcome)},
+                           {"symbol", words.symbol},
+                           {"headline", escaped(words.headline)},
+                           {"cover", cover_html(report, cover)},
+                           {"sentences", sentences(words)},
+                           {"source", escaped(file_name(report.source))},
+                           {"target", escaped(file_name(report.target))},
+                           {"tables", tables(report) + matrix_card(report)},
+                           {"top", pages.top},
+                           {"front", pages.front},
+                           {"side", pages.side},
+                           {"version", kVersion},
+                           {"style", std::string(report_style())},
+                           {"script", std::string(report_script())},
+                           {"scene", scene_elements(report, scene, view)}};
   pages.page = filled_in(report_pattern(), parts);
   return pages;
 }

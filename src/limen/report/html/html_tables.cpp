@@ -29,7 +29,10 @@ std::string row(const std::string& head, const std::string& value) {
 
 /// A table with a head line; rows are ready HTML.
 std::string table(const std::vector<std::string>& heads, const std::string& rows, const char* id) {
-  std::string text = fmt::format("<div class=\"scroll\"><table id=\"{}\"><thead><tr>", id);
+  std::string text = fmt::format(
+      "<div class=\"scroll\" tabindex=\"0\" role=\"group\" aria-label=\"Table: {0}\"><table "
+      "id=\"{0}\"><thead><tr>",
+      id);
   for (const std::string& head : heads) text += cell(head, "th", " scope=\"col\"");
   return text + "</tr></thead><tbody>\n" + rows + "</tbody></table></div>\n";
 }
@@ -257,7 +260,7 @@ std::string thickness_table(const RegistrationReport& report) {
 }
 
 std::string inputs_table(const RegistrationReport& report) {
-  return table({"", "File", "Kind", "Holds", "Extent", "SHA-256"},
+  return table({"Side", "File", "Kind", "Holds", "Extent", "SHA-256"},
                input_row("Source", report.source) + input_row("Target", report.target), "inputs");
 }
 
@@ -286,7 +289,7 @@ std::string stages_table(const RegistrationReport& report) {
   }
   rows += "<tr>" + cell("All", "th", " scope=\"row\"") + cell(fmt::format("{:.2f} s", total)) + cell("") +
           "</tr>\n";
-  return table({"Stage", "Time", ""}, rows, "stages");
+  return table({"Stage", "Time", "Share"}, rows, "stages");
 }
 
 std::string options_table(const RegistrationReport& report) {

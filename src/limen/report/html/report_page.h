@@ -15,4 +15,9 @@ std::string_view report_style();
 /// JavaScript: all files of report/page, in the order in which they build on one another.
 std::string_view report_script();
 
+/// The same of the page that shows clouds alone; its style adds to that of the report.
+std::string_view view_pattern();
+std::string_view view_style();
+std::string_view view_script();
+
 }  // namespace limen

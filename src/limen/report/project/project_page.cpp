@@ -16,8 +16,8 @@ namespace limen {
 namespace {
 
 constexpr const char* kProjectStyle = R"(
-:root { --page: #f5f4f0; --paper: #fff; --ink: #1d2a35; --soft: #5a6873; --line: #dcdfe1; --good: #1f6fb4; --doubt: #c9660a; --bad: #b3261e; --weak: #8a949c; }
-@media (prefers-color-scheme: dark) { :root { --page: #11171c; --paper: #192128; --ink: #e7ecf0; --soft: #9dabb6; --line: #2b3640; --good: #6fb3ec; --doubt: #f3a155; --bad: #ff8a80; --weak: #7b8791; } }
+:root { --page: #f5f4f0; --paper: #fff; --ink: #1d2a35; --soft: #5a6873; --line: #dcdfe1; --good: #1f6fb4; --doubt: #a85300; --bad: #b3261e; --weak: #5f6a73; }
+@media (prefers-color-scheme: dark) { :root { --page: #11171c; --paper: #192128; --ink: #e7ecf0; --soft: #9dabb6; --line: #2b3640; --good: #6fb3ec; --doubt: #f3a155; --bad: #ff8a80; --weak: #8d9aa5; } }
 * { box-sizing: border-box; }
 body { margin: 0; background: var(--page); color: var(--ink); font: 15px/1.5 system-ui, "Segoe UI", "Noto Sans", "Liberation Sans", sans-serif; }
 main { max-width: 1200px; margin: 0 auto; padding: 24px 28px 60px; }
@@ -33,6 +33,7 @@ th, td { text-align: left; padding: 6px 12px; border-bottom: 1px solid var(--lin
 th { color: var(--soft); font-weight: 600; white-space: nowrap; }
 td.n { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; }
 td.path { overflow-wrap: anywhere; }
+:focus-visible { outline: 2.5px solid var(--good); outline-offset: 2px; }
 .state { font-weight: 650; white-space: nowrap; }
 .registered, .verified { --c: var(--good); } .ambiguous, .bridge, .under_constrained { --c: var(--doubt); }
 .rejected, .unreadable { --c: var(--bad); } .floating, .weak { --c: var(--weak); }
@@ -102,7 +103,7 @@ std::string decisions_table(const ProjectResult& result) {
   if (result.decisions.empty()) return {};
   std::string text =
       "<h2>Your decisions</h2>\n<div "
-      "class=\"scroll\"><table><tr><th>decision</th><th>state</th><th>why</th></tr>\n";
+      "class=\"scroll\" tabindex=\"0\"><table><tr><th>decision</th><th>state</th><th>why</th></tr>\n";
   for (const ProjectDecision& told : result.decisions) {
     const char* colour = told.state == DecisionState::kept           ? "verified"
                          : told.state == DecisionState::contradicted ? "rejected"
@@ -117,7 +118,7 @@ std::string decisions_table(const ProjectResult& result) {
 std::string scans_table(const ProjectResult& result) {
   std::string text =
       "<h2>Scans</h2>\n<div "
-      "class=\"scroll\"><table><tr><th>no.</th><th>file</th><th>state</th><th>component</th>"
+      "class=\"scroll\" tabindex=\"0\"><table><tr><th>no.</th><th>file</th><th>state</th><th>component</th>"
       "<th>sigma, mm</th><th>sigma, deg</th><th>why</th></tr>\n";
   for (std::size_t k = 0; k < result.scans.size(); ++k) {
     const ProjectScan& scan = result.scans[k];
@@ -141,7 +142,8 @@ std::string scans_table(const ProjectResult& result) {
 std::string links_table(const ProjectResult& result) {
   if (result.links.empty()) return {};
   std::string text =
-      "<h2>Links</h2>\n<div class=\"scroll\"><table><tr><th>no.</th><th>scans</th><th>state</th><th>the pair "
+      "<h2>Links</h2>\n<div class=\"scroll\" "
+      "tabindex=\"0\"><table><tr><th>no.</th><th>scans</th><th>state</th><th>the pair "
       "alone</th>"
       "<th>agreeing, m&sup2;</th><th>misses by, mm</th><th>deg</th><th>redundancy</th><th>other "
       "poses</th></tr>\n";
@@ -163,7 +165,8 @@ std::string links_table(const ProjectResult& result) {
 std::string loops_table(const ProjectResult& result) {
   if (result.loops.empty()) return {};
   std::string text =
-      "<h2>Loops</h2>\n<div class=\"scroll\"><table><tr><th>links</th><th>closes</th><th>misses by, "
+      "<h2>Loops</h2>\n<div class=\"scroll\" "
+      "tabindex=\"0\"><table><tr><th>links</th><th>closes</th><th>misses by, "
       "mm</th><th>deg</th>"
       "<th>chi squared of 6</th></tr>\n";
   for (const GraphLoop& loop : result.loops) {
@@ -218,7 +221,8 @@ std::string points_table(const ProjectResult& result) {
       "deviation; w: "
       "the largest of the three tests; found with 80&nbsp;%: the smallest blunder along any axis that would "
       "be "
-      "found.</p>\n<div class=\"scroll\"><table><tr><th>point</th><th></th><th>state</th><th>seen by</th>"
+      "found.</p>\n<div class=\"scroll\" "
+      "tabindex=\"0\"><table><tr><th>point</th><th>role</th><th>state</th><th>seen by</th>"
       "<th>x, mm</th><th>y</th><th>z</th><th>sigma x, mm</th><th>y</th><th>z</th><th>w</th>"
       "<th>found with 80&nbsp;%, mm</th><th>why</th></tr>\n{}</table></div>\n",
       escaped(result.control_words), rows);

@@ -298,42 +298,10 @@ const bindControls = (scene, actions) => {
   }
 };
 
-/** Single letters work wherever the reader is but in a field; arrows only on the picture itself. */
-const bindKeys = (canvas, actions) => {
-  const arrows = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
-  const moveSection = (way) => {
-    const { cut } = actions.state;
-    const [low, high] = actions.cutRange(cut.axis);
-    cut.place[cut.axis] = clamp(cut.place[cut.axis] + way * 0.02 * (high - low), low, high);
-    cut.on = true;
-    actions.changed();
-  };
-  const nextColouring = () => {
-    const list = actions.colourings;
-    const next = list[(list.indexOf(actions.state.colouring) + 1) % list.length];
-    document.querySelector(`input[name="colouring"][value="${next}"]`).click();
-  };
-  const letters = {
-    b: () => actions.toggle(!actions.state.after), n: () => actions.choosePose(actions.state.pose + 1),
-    p: () => actions.choosePose(actions.state.pose - 1), 1: () => actions.chooseView('top'), 2: () => actions.chooseView('front'),
-    3: () => actions.chooseView('side'), 4: () => actions.chooseView('free'), 0: () => actions.fit(), c: nextColouring,
-    '+': () => actions.setCamera(zoomed(actions.camera(), 0.85)), '=': () => actions.setCamera(zoomed(actions.camera(), 0.85)),
-    '-': () => actions.setCamera(zoomed(actions.camera(), 1 / 0.85)), '[': () => moveSection(-1), ']': () => moveSection(1),
-  };
-  document.addEventListener('keydown', (event) => {
-    if (event.ctrlKey || event.metaKey || event.altKey) return;
-    const field = event.target.closest?.('select, textarea');
-    const letter = letters[event.key.toLowerCase()];
-    if (letter && !field) { letter(); event.preventDefault(); return; }
-    if (event.target !== canvas) return;
-    if (event.key === 'Enter') actions.middle();
-    const arrow = arrows[event.key];
-    if (!arrow) return;
-    event.preventDefault();
-    const shift = event.shiftKey || actions.camera().parallel;
-    actions.setCamera(shift ? panned(actions.camera(), -0.05 * arrow[0], -0.05 * arrow[1]) : rotated(actions.camera(), 0.08 * arrow[0], 0.08 * arrow[1]));
-  });
-};
+const bindKeys = (canvas, actions) => listenKeys(canvas, {
+  b: () => actions.toggle(!actions.state.after), n: () => actions.choosePose(actions.state.pose + 1),
+  p: () => actions.choosePose(actions.state.pose - 1),
+}, actions);
 
 const start = () => {
   const canvas = element('canvas');

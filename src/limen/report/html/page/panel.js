@@ -22,7 +22,7 @@ const hasLayer = (side, layer) => {
 
 const buildLayers = (scene, state, changed) => {
   const grid = element('layers');
-  grid.append(made('span'), made('span', { class: 'head', style: 'color:var(--source)' }, 'Source'),
+  grid.append(made('span'), made('span', { class: 'head', style: 'color:var(--source-ink)' }, 'Source'),
     made('span', { class: 'head', style: 'color:var(--target)' }, 'Target'));
   for (const [layer, text] of kLayers) {
     if (!hasLayer(scene.source, layer) && !hasLayer(scene.target, layer)) continue;

@@ -33,7 +33,8 @@ uniform vec3 eye;          // view frame; of parallel views the way towards the 
 uniform bool parallel;
 uniform bool seeThrough;
 uniform highp sampler2D normals;
-uniform int colouring;     // 0 by side, 1 own, 2 residual
+uniform int colouring;     // 0 by side, 1 own, 2 residual, 3 height
+uniform vec2 heights;      // metres, of the two ends of the ramp
 uniform vec3 tint;
 uniform vec3 plain;
 uniform float size;
@@ -53,6 +54,7 @@ void main() {
   float light = mark.x > 0u ? 0.68 + 0.36 * abs(dot(viewFromSide * normal.xyz, vec3(0.36, -0.6, 0.71))) : 0.9;
   colour = tint * (0.8 + 0.3 * grey) * light;
   if (colouring == 1) colour = own.rgb;
+  if (colouring == 3) colour = ramp((x.z - heights.x) / max(heights.y - heights.x, 0.001)) * light;
   if (colouring == 2) colour = mark.y > 0u ? ramp(abs(float(mark.y) - 128.0) / 127.0) : plain * light;
 }`;
 

@@ -1,0 +1,179 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+
+// What somebody does with the page of `limen view`, and whether everybody can use that of a project.
+import assert from 'node:assert/strict';
+import { mkdirSync, mkdtempSync, rmSync, statSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { after, before, describe, test } from 'node:test';
+import { accessibilityFaults, limen, openBrowser, openReport, pixels, settled } from './browser.mjs';
+
+const program = process.env.LIMEN_PROGRAM;
+const playwright = await import('playwright-core');
+const folder = mkdtempSync(join(tmpdir(), 'limen-view-'));
+const shots = process.env.LIMEN_SCREENSHOTS;
+const view = (name) => join(folder, `${name}.html`);
+let browser;
+
+before(async () => {
+  const museum = join(folder, 'museum');
+  limen(program, 'simulate', 'museum', '-o', museum, '--points-indoor', '60000', '--points-outdoor', '200000');
+  limen(program, 'register', join(museum, 'indoor_00.ply'), join(museum, 'outdoor.ply'), '-o', join(folder, 'registered'));
+  limen(program, 'view', join(folder, 'registered', 'result.json'), '-o', view('pair'), '--most-points', '120000');
+  const office = join(folder, 'office');
+  limen(program, 'simulate', 'office', '-o', office, '--points-indoor', '60000');
+  limen(program, 'view', join(office, 'model.ifc'), '-o', view('model'), '--title', 'The model of the office');
+  limen(program, 'simulate', 'room', '-o', join(folder, 'room'), '--points-indoor', '30000');
+  limen(program, 'project', join(folder, 'room', 'indoor_00.ply'), join(folder, 'room', 'indoor_01.ply'), '-o', join(folder, 'project'));
+  browser = await openBrowser(playwright);
+  if (shots) mkdirSync(shots, { recursive: true });
+});
+
+after(async () => {
+  await browser?.close();
+  rmSync(folder, { recursive: true, force: true });
+});
+
+/** Clicks places of the canvas until something was found there; the words about it. */
+const clickSomething = async (page, from = 0) => {
+  const { width, height } = await page.locator('#canvas').boundingBox();
+  const before_ = await page.locator('#picked').innerText();
+  for (let k = from; k < from + 60; ++k) {
+    await page.locator('#canvas').click({ position: { x: width * (0.3 + 0.4 * ((k * 0.618) % 1)), y: height * (0.35 + 0.3 * ((k * 0.383) % 1)) } });
+    const words = await page.locator('#picked').innerText();
+    if (words !== before_) return words;
+  }
+  return '';
+};
+
+describe('both sides of a result', () => {
+  let page; let heard;
+  before(async () => ({ page, heard } = await openReport(browser.context, view('pair'))));
+
+  test('shows both and tells how many points', async () => {
+    assert.equal(await page.title(), 'indoor_00.ply, outdoor.ply');
+    const files = await page.locator('#sides').innerText();
+    assert.match(files, /indoor_00\.ply\s+\d+\D\d+ of 60\D\d+ points/);
+    assert.match(files, /outdoor\.ply\s+\d+\D\d+ of 200\D\d+ points/);
+    const seen = await pixels(page);
+    assert.ok(seen.drawn > 0.03, `only ${seen.drawn} of the canvas is drawn`);
+    assert.ok(seen.orange > 0.02 && seen.orange < 0.98, `${seen.orange} orange: both sides must be there`);
+    if (shots) await page.screenshot({ path: join(shots, 'view-pair.png') });
+  });
+
+  test('a file can be hidden', async () => {
+    const both = await pixels(page);
+    const one = await settled(page, () => page.uncheck('[data-side="1"]'));
+    assert.ok(one.drawn < both.drawn);
+    const again = await settled(page, () => page.check('[data-side="1"]'));
+    assert.equal(again.sum, both.sum);
+  });
+
+  test('sections move by slider and key', async () => {
+    await settled(page, () => page.keyboard.press('1'));
+    assert.ok(await page.isChecked('#cut'));
+    const cut = await pixels(page);
+    const moved = await settled(page, () => page.keyboard.press(']'));
+    assert.notEqual(moved.sum, cut.sum);
+    const thick = await settled(page, () => page.fill('#cut-thickness', '90'));
+    assert.ok(thick.drawn > moved.drawn);
+    if (shots) await page.screenshot({ path: join(shots, 'view-plan.png') });
+    await settled(page, () => page.keyboard.press('4'));
+    assert.ok(!(await page.isChecked('#cut')));
+  });
+
+  test('colours by height with a legend', async () => {
+    const plain = await pixels(page);
+    const coloured = await settled(page, () => page.check('input[value="height"]'));
+    assert.notEqual(coloured.sum, plain.sum);
+    assert.match(await page.locator('#legend').innerText(), /[\d.]+ m\s*[\d.]+ m/);
+    await settled(page, () => page.check('input[value="side"]'));
+    assert.equal(await page.locator('#legend').innerText(), '');
+  });
+
+  test('a click tells where a point is, in world coordinates', async () => {
+    const words = await clickSomething(page);
+    assert.match(words, /At\s+10\d{5}\.\d{3}\s+68\d{5}\.\d{3}\s+-?\d+\.\d{3}/);
+    assert.match(words, /Of\s+(indoor_00|outdoor)\.ply/);
+    assert.ok(await page.isVisible('#pin-0'));
+  });
+
+  test('two clicks measure', async () => {
+    await page.keyboard.press('m');
+    assert.equal(await page.getAttribute('#measure', 'aria-pressed'), 'true');
+    assert.match(await page.locator('#picked').innerText(), /Click two points/);
+    assert.match(await clickSomething(page), /Click the other end/);
+    const words = await clickSomething(page, 7);
+    const places = [...words.matchAll(/End \d\s+(\S+)\s+(\S+)\s+(\S+)/g)].map((match) => match.slice(1).map(Number));
+    assert.equal(places.length, 2);
+    const distance = Math.hypot(...places[0].map((c, k) => places[1][k] - c));
+    const told = +/Distance\s+([\d.]+) m/.exec(words)[1];
+    assert.ok(told > 0.05 && Math.abs(told - distance) < 0.002, `${told} told, ${distance} between the ends`);
+    assert.equal(await page.locator('#length').innerText(), `${told.toFixed(3)} m`);
+    if (shots) await page.screenshot({ path: join(shots, 'view-measured.png') });
+    await settled(page, () => page.click('#clear'));
+    assert.ok(!(await page.isVisible('#pin-0')));
+    assert.ok(!(await page.isVisible('#length')));
+    await page.click('#measure');
+  });
+
+  test('every control can be reached with the tab key and shows it', async () => {
+    await page.evaluate(() => { document.activeElement?.blur(); scrollTo(0, 0); });
+    const reached = new Set();
+    for (let k = 0; k < 40; ++k) {
+      await page.keyboard.press('Tab');
+      const at = await page.evaluate(() => {
+        const node = document.activeElement;
+        return { name: node.id || node.dataset.view || node.dataset.side || node.value, shown: getComputedStyle(node).outlineStyle !== 'none' };
+      });
+      if (at.name) assert.ok(at.shown, `no focus to be seen on ${at.name}`);
+      reached.add(at.name);
+    }
+    for (const name of ['canvas', 'measure', 'clear', 'top', 'free', '0', '1', 'cut', 'cut-axis', 'cut-place', 'cut-thickness', 'size'])
+      assert.ok(reached.has(name), `${name} was not reached`);
+  });
+
+  test('asks nothing of the network, complains of nothing, and is small', async () => {
+    assert.deepEqual(heard.problems, []);
+    assert.deepEqual(heard.requests.filter((url) => !/^(file|data):/.test(url)), []);
+    assert.equal(heard.requests.filter((url) => url.startsWith('file:')).length, 1);
+    assert.ok(statSync(view('pair')).size < 2.5e6);
+  });
+});
+
+describe('a model', () => {
+  test('its surfaces are shown and can be clicked', async () => {
+    const { page, heard } = await openReport(browser.context, view('model'));
+    assert.equal(await page.locator('h1').innerText(), 'The model of the office');
+    assert.ok((await pixels(page)).drawn > 0.05);
+    assert.match(await clickSomething(page), /Surface\s+[\d.]+ m²/);
+    if (shots) await page.screenshot({ path: join(shots, 'view-model.png') });
+    assert.deepEqual(heard.problems, []);
+    await page.close();
+  });
+});
+
+describe('the page of a project', () => {
+  for (const scheme of ['light', 'dark']) {
+    test(`everybody can use it, ${scheme}`, async () => {
+      const { page, heard } = await openReport(browser.context, join(folder, 'project', 'report.html'), { ready: false, scheme });
+      assert.deepEqual(await accessibilityFaults(page), []);
+      assert.deepEqual(heard.problems, []);
+      if (shots) await page.screenshot({ path: join(shots, `project-${scheme}.png`), fullPage: true });
+      await page.close();
+    });
+  }
+});
+
+describe('on every screen', () => {
+  for (const [width, height, scheme] of [[1280, 900, 'light'], [1280, 900, 'dark'], [390, 844, 'light']]) {
+    test(`${width} px, ${scheme}: nothing sticks out, and everybody can use it`, async () => {
+      const { page } = await openReport(browser.context, view('pair'), { viewport: { width, height }, scheme });
+      assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth));
+      assert.deepEqual(await accessibilityFaults(page), []);
+      if (shots) await page.screenshot({ path: join(shots, `view-${width}-${scheme}.png`), fullPage: width < 600 });
+      await page.close();
+    });
+  }
+});
