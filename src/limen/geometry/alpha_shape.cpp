@@ -7,17 +7,13 @@
 #include <limits>
 #include <map>
 
-#include <boost/polygon/voronoi.hpp>
-
 #include "limen/base/disjoint_sets.h"
 #include "limen/base/error.h"
+#include "limen/geometry/delaunay.h"
 #include "limen/geometry/thinning.h"
 
 namespace limen {
 namespace {
-
-using Diagram = boost::polygon::voronoi_diagram<double>;
-using GridPoint = boost::polygon::point_data<int>;
 
 constexpr double kShapeGrid_m = 1e-5;
 
@@ -28,11 +24,11 @@ struct GridPoints {
   double unit_m = kShapeGrid_m;
 
   [[nodiscard]] Vector2d metres(std::size_t i) const {
-    return origin + unit_m * Vector2d(points[i].x(), points[i].y());
+    return origin + unit_m * Vector2d(points[i].x, points[i].y);
   }
 };
 
-GridPoints on_grid(const std::vector<Vector2d>& points) {
+GridPoints on_grid(const std::vector<Vector2d>& points, double alpha_m) {
   GridPoints grid;
   Vector2d low = Vector2d::Constant(std::numeric_limits<double>::infinity());
   Vector2d high = -low;
@@ -43,14 +39,15 @@ GridPoints on_grid(const std::vector<Vector2d>& points) {
   }
   if (!(low.x() <= high.x())) return grid;
   grid.origin = 0.5 * low + 0.5 * high;
-  // Boost's predicates are exact for 32-bit coordinates.
-  grid.unit_m = std::max(kShapeGrid_m, (high - low).maxCoeff() / 0x1.0p30);
+  // Half the extent, and alpha, within what the triangulation takes.
+  constexpr double kMost = kMostGrid - 1;
+  grid.unit_m = std::max({kShapeGrid_m, 0.5 * (high - low).maxCoeff() / kMost, alpha_m / kMost});
   grid.points.reserve(points.size());
   for (const Vector2d& p : points) {
     if (!usable(p)) continue;
     const Vector2d scaled = (p - grid.origin) / grid.unit_m;
-    grid.points.emplace_back(static_cast<int>(std::lround(scaled.x())),
-                             static_cast<int>(std::lround(scaled.y())));
+    grid.points.push_back({static_cast<std::int32_t>(std::lround(scaled.x())),
+                           static_cast<std::int32_t>(std::lround(scaled.y()))});
   }
   std::sort(grid.points.begin(), grid.points.end());
   grid.points.erase(std::unique(grid.points.begin(), grid.points.end()), grid.points.end());
@@ -64,37 +61,23 @@ struct OutlineEdge {
   std::size_t part = 0;
 };
 
-/// Each Voronoi vertex is a Delaunay face and the centre of its circumscribed circle.
-std::vector<char> faces_within(const Diagram& diagram, const GridPoints& grid, double alpha_m) {
-  const double limit = alpha_m / grid.unit_m;
-  std::vector<char> kept(diagram.num_vertices());
-  for (std::size_t i = 0; i < kept.size(); ++i) {
-    const auto& vertex = diagram.vertices()[i];
-    const GridPoint& site = grid.points[vertex.incident_edge()->cell()->source_index()];
-    kept[i] = std::hypot(vertex.x() - site.x(), vertex.y() - site.y()) <= limit ? 1 : 0;
-  }
-  return kept;
-}
-
-std::vector<OutlineEdge> outline_edges(const Diagram& diagram, const std::vector<char>& kept) {
-  const auto* first = diagram.vertices().data();
-  const auto face = [first](const Diagram::vertex_type* vertex) {
-    return static_cast<std::size_t>(vertex - first);
-  };
-  const auto inside = [&](const Diagram::vertex_type* v) { return v != nullptr && kept[face(v)] != 0; };
-  DisjointSets sets(diagram.num_vertices());  // of the Delaunay faces
-  for (const auto& edge : diagram.edges()) {
-    if (inside(edge.vertex0()) && inside(edge.vertex1()))
-      sets.join(face(edge.vertex0()), face(edge.vertex1()));
+/// The edges with a face of the shape on one side only, that side on their left.
+std::vector<OutlineEdge> outline_edges(const std::vector<DelaunayFace>& faces) {
+  DisjointSets sets(faces.size());
+  for (std::size_t f = 0; f < faces.size(); ++f) {
+    for (const std::int32_t across : faces[f].across) {
+      if (across != DelaunayFace::kNone) sets.join(f, static_cast<std::size_t>(across));
+    }
   }
   std::vector<OutlineEdge> outline;
-  for (const auto& edge : diagram.edges()) {
-    // A half-edge has its own cell on the left, so its end lies left of the way from that site to the twin's.
-    if (!inside(edge.vertex1()) || inside(edge.vertex0())) continue;
-    outline.push_back(
-        {edge.cell()->source_index(), edge.twin()->cell()->source_index(), sets.find(face(edge.vertex1()))});
+  for (std::size_t f = 0; f < faces.size(); ++f) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (faces[f].across[k] != DelaunayFace::kNone) continue;
+      outline.push_back({static_cast<std::size_t>(faces[f].corners[(k + 1) % 3]),
+                         static_cast<std::size_t>(faces[f].corners[(k + 2) % 3]), sets.find(f)});
+    }
   }
-  // Sites are in lexicographic order: the outline does not depend on how the diagram was built.
+  // Sites are in lexicographic order: the outline does not depend on the order of the faces.
   std::sort(outline.begin(), outline.end(), [](const OutlineEdge& a, const OutlineEdge& b) {
     return a.from != b.from ? a.from < b.from : a.to < b.to;
   });
@@ -152,8 +135,8 @@ class RingTracer {
   /// Angle from at->a clockwise to at->b, in (0, 2 pi].
   [[nodiscard]] double clockwise_turn(std::size_t at, std::size_t a, std::size_t b) const {
     const auto towards = [&](std::size_t site) {
-      return Vector2d(static_cast<double>(grid_.points[site].x()) - grid_.points[at].x(),
-                      static_cast<double>(grid_.points[site].y()) - grid_.points[at].y());
+      return Vector2d(static_cast<double>(grid_.points[site].x) - grid_.points[at].x,
+                      static_cast<double>(grid_.points[site].y) - grid_.points[at].y);
     };
     const Vector2d u = towards(a);
     const Vector2d w = towards(b);
@@ -238,14 +221,12 @@ std::vector<Polygon> alpha_shape(const std::vector<Vector2d>& points, const Alph
   if (options.thin) {
     std::vector<Vector2d> few;
     for (const std::uint32_t i : thinned(points, 0.25 * options.alpha_m)) few.push_back(points[i]);
-    grid = on_grid(few);
+    grid = on_grid(few, options.alpha_m);
   } else {
-    grid = on_grid(points);
+    grid = on_grid(points, options.alpha_m);
   }
   if (grid.points.size() < 3) return {};
-  Diagram diagram;
-  boost::polygon::construct_voronoi(grid.points.begin(), grid.points.end(), &diagram);
-  RingTracer tracer(grid, outline_edges(diagram, faces_within(diagram, grid, options.alpha_m)));
+  RingTracer tracer(grid, outline_edges(delaunay_faces(grid.points, options.alpha_m / grid.unit_m)));
   return assemble(grid, tracer.walks(), options);
 }
 

@@ -23,8 +23,9 @@ struct AlphaShapeOptions {
 /// One polygon for each part whose triangles hang together by edges, largest area first; islands inside
 /// holes are parts of their own. Rings are simple: where a ring would touch itself in a point it is split
 /// there, so that rings may share single points but never cross.
-/// Coordinates are rounded to a grid of 10 um (coarser where the extent exceeds 10 km). Points that are not
-/// finite (or beyond 1e12 m) are ignored. Fewer than three distinct points, or all on one line: no polygon.
+/// Coordinates are rounded to a grid of 10 um (coarser where the extent exceeds a kilometre). Points that are
+/// not finite (or beyond 1e12 m) are ignored. Fewer than three distinct points, or all on one line: no
+/// polygon.
 std::vector<Polygon> alpha_shape(const std::vector<Vector2d>& points, const AlphaShapeOptions& options);
 
 }  // namespace limen
