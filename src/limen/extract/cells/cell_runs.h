@@ -25,8 +25,8 @@ class CellNeighbours {
   std::size_t count_ = 0;
 };
 
-/// The occupied cubes of one level: runs of a list of points along the curve, and a hash from blocks of 2 x 2
-/// x 2 cubes to their runs, so that the cubes around one are found with eight look-ups.
+/// The occupied cubes of one level: runs of a list of points along the curve, and a hash from blocks of 4 x 4
+/// x 4 cubes to their runs, so that the cubes around one are found with one to eight look-ups, mostly few.
 class CellRuns {
  public:
   /// Over the points at the positions `active` along the curve, ascending.
@@ -50,7 +50,7 @@ class CellRuns {
   struct Block {
     std::uint64_t code = 0;
     std::int32_t first = -1;  ///< run of its first occupied cube; -1: an empty slot of the table
-    std::uint32_t mask = 0;   ///< bit per cube: occupied
+    std::uint64_t mask = 0;   ///< bit per cube: occupied
   };
   [[nodiscard]] std::uint64_t slot_of(std::uint64_t block_code) const;
   [[nodiscard]] const Block* find(std::uint64_t block_code) const;

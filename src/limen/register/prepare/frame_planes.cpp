@@ -151,7 +151,8 @@ struct Weighted {
 Weighted near_plane(const std::vector<Vector3d>& points, const Plane& plane, const Vector3d& anchor,
                     double width_m) {
   Weighted sums;
-  Matrix3d outer = Matrix3d::Zero();
+  // Written out, each product once: a good part of laying a scan in its frame is spent here.
+  double xx = 0, yx = 0, yy = 0, zx = 0, zy = 0, zz = 0;
   for (const Vector3d& x : points) {
     const double off = plane.signed_distance(x) / width_m;
     if (std::abs(off) >= 1.0) continue;
@@ -159,10 +160,18 @@ Weighted near_plane(const std::vector<Vector3d>& points, const Plane& plane, con
     const Vector3d about = x - anchor;
     const double weight = root * root;
     sums.weight += weight;
-    sums.mean += weight * about;
-    outer += weight * about * about.transpose();
+    const Vector3d weighted = weight * about;
+    sums.mean += weighted;
+    xx += weighted[0] * about[0];
+    yx += weighted[1] * about[0];
+    yy += weighted[1] * about[1];
+    zx += weighted[2] * about[0];
+    zy += weighted[2] * about[1];
+    zz += weighted[2] * about[2];
   }
   if (sums.weight <= 0.0) return sums;
+  Matrix3d outer;
+  outer << xx, yx, zx, yx, yy, zy, zx, zy, zz;
   sums.mean /= sums.weight;
   sums.covariance = outer / sums.weight - sums.mean * sums.mean.transpose();
   sums.mean += anchor;
