@@ -1,7 +1,10 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
 // The report that `limen register` writes, as a script meets it; tests/browser looks at the page itself.
+#include <cstdlib>
+#include <iterator>
 #include <regex>
+#include <utility>
 
 #include "run_program.h"
 #include <nlohmann/json.hpp>
@@ -54,6 +57,65 @@ TEST_F(ReportTest, TellsOfNoMatchAndOfSegments) {
   ASSERT_EQ(none.status, 4) << none.err;
   EXPECT_NE(page().find("No match: the two lists of segments"), std::string::npos);
   EXPECT_FALSE(std::filesystem::exists(work() / "out/transform.txt"));
+}
+
+/// A program in place of the browser: a shell script that knows as `$pdf` where to print to.
+class PrintedReportTest : public ReportTest {
+ protected:
+  void TearDown() override {
+    unsetenv("LIMEN_CHROMIUM");
+    ReportTest::TearDown();
+  }
+  void write_browser(const std::string& script) const {
+    const auto path = work() / "browser";
+    write_whole(
+        path,
+        "#!/bin/sh\nfor word; do case $word in --print-to-pdf=*) pdf=${word#*=};; esac; done\n" + script);
+    std::filesystem::permissions(path, std::filesystem::perms::owner_all);
+    setenv("LIMEN_CHROMIUM", path.c_str(), 1);
+  }
+  [[nodiscard]] std::size_t files_beside_the_report() const {
+    const std::filesystem::directory_iterator all(work() / "out");
+    return static_cast<std::size_t>(std::distance(begin(all), end(all)));
+  }
+};
+
+TEST_F(PrintedReportTest, StandsBesideThePage) {
+  ASSERT_EQ(register_rooms().status, 0);
+  const std::size_t without = files_beside_the_report();
+  write_browser("printf '%%PDF-1.4 ' > \"$pdf\"; echo \"$word\" >> \"$pdf\"\n");
+  const ProgramRun done = register_rooms({"--pdf"});
+  ASSERT_EQ(done.status, 0) << done.err;
+  const std::string pdf = read_whole(work() / "out/report.pdf");
+  EXPECT_EQ(pdf.substr(0, 16), "%PDF-1.4 file://");
+  EXPECT_NE(pdf.find("/out/report.html\n"), std::string::npos);
+  EXPECT_EQ(files_beside_the_report(), without + 1);  // nothing is left of the browser
+  // It never stands beside other numbers.
+  ASSERT_EQ(register_rooms().status, 0);
+  EXPECT_FALSE(std::filesystem::exists(work() / "out/report.pdf"));
+}
+
+TEST_F(PrintedReportTest, ABrowserThatFailsCostsThePdfAlone) {
+  for (const auto& [script, words] :
+       {std::pair{"exit 7\n", "ended with status 7"}, std::pair{"kill -9 $$\n", "died of signal 9"},
+        std::pair{"exit 0\n", "printed nothing"}}) {
+    write_browser(script);
+    const ProgramRun done = register_rooms({"--pdf"});
+    EXPECT_EQ(done.status, 0);
+    EXPECT_NE(done.err.find("there is no report.pdf"), std::string::npos) << done.err;
+    EXPECT_NE(done.err.find(words), std::string::npos) << done.err;
+    EXPECT_FALSE(std::filesystem::exists(work() / "out/report.pdf"));
+    EXPECT_TRUE(std::filesystem::exists(work() / "out/report.html"));
+  }
+}
+
+TEST_F(PrintedReportTest, ABrowserThatIsMissingIsToldBeforeTheWork) {
+  setenv("LIMEN_CHROMIUM", "/no/such/browser", 1);
+  const ProgramRun done = register_rooms({"--pdf"});
+  EXPECT_EQ(done.status, 2);
+  EXPECT_NE(done.err.find("LIMEN_CHROMIUM=/no/such/browser"), std::string::npos) << done.err;
+  EXPECT_FALSE(std::filesystem::exists(work() / "out"));
+  EXPECT_NE(register_rooms({"--pdf", "--no-report"}).err.find("--no-report"), std::string::npos);
 }
 
 TEST_F(ReportTest, DiffersBetweenRunsInTheSecondsOnly) {

@@ -8,9 +8,10 @@ import { copyFileSync, mkdirSync, mkdtempSync, readFileSync, rmSync, statSync, w
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, describe, test } from 'node:test';
-import { accessibilityFaults, limen, openBrowser, openReport, pixels, settled } from './browser.mjs';
+import { accessibilityFaults, findChromium, limen, openBrowser, openReport, pixels, settled } from './browser.mjs';
 
 const program = process.env.LIMEN_PROGRAM;
+process.env.LIMEN_CHROMIUM ??= findChromium();
 const playwright = await import('playwright-core');
 const folder = mkdtempSync(join(tmpdir(), 'limen-report-'));
 const shots = process.env.LIMEN_SCREENSHOTS;
@@ -20,7 +21,7 @@ let browser;
 before(async () => {
   const museum = join(folder, 'museum');
   limen(program, 'simulate', 'museum', '-o', museum, '--points-indoor', '60000', '--points-outdoor', '200000');
-  limen(program, 'register', join(museum, 'indoor_00.ply'), join(museum, 'outdoor.ply'), '-o', join(folder, 'registered'));
+  limen(program, 'register', join(museum, 'indoor_00.ply'), join(museum, 'outdoor.ply'), '-o', join(folder, 'registered'), '--pdf');
   const long = join(museum, 'station_of_the_second_floor_of_the_north_wing_beside_the_great_stairs.ply');
   copyFileSync(join(museum, 'indoor_00.ply'), long);
   limen(program, 'register', long, join(museum, 'outdoor.ply'), '-o', join(folder, 'handed_on'), '--language', 'fr',
@@ -170,6 +171,13 @@ describe('a registered pair', () => {
     assert.equal(heard.requests.filter((url) => url.startsWith('file:')).length, 1);
     const blocked = await page.evaluate(() => fetch('https://example.org/').then(() => false, () => true));
     assert.ok(blocked, 'the page must not be able to reach out');
+  });
+
+  test('was printed on one A4 page by the program', () => {
+    const text = readFileSync(join(folder, 'registered', 'report.pdf')).toString('latin1');
+    assert.equal(text.match(/\/Type\s*\/Page\b(?!s)/g)?.length, 1);
+    const [, width, height] = /\/MediaBox\s*\[\s*0 0 ([\d.]+) ([\d.]+)/.exec(text).map(Number);
+    assert.ok(Math.abs(width - 595) < 2 && Math.abs(height - 842) < 2, `${width} x ${height} is not A4`);
   });
 
   test('is at most 10 MB and prints on one A4 page', async () => {

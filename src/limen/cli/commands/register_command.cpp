@@ -20,6 +20,7 @@
 #include "limen/cli/inputs/start_option.h"
 #include "limen/register/register.h"
 #include "limen/report/html/html_report.h"
+#include "limen/report/html/print_pdf.h"
 #include "limen/report/json/result_json.h"
 #include "limen/report/summary/summary_text.h"
 
@@ -43,6 +44,7 @@ struct RegisterCommandOptions {
   double wall_thickness_m = 0.0;
   double risk = VerdictOptions{}.risk;
   bool no_report = false;
+  bool pdf = false;
   std::string title;
   std::string project;
   std::string operator_name;
@@ -194,6 +196,28 @@ void write_page(const std::filesystem::path& folder, const Registered& registere
   }
 }
 
+/// The page as a PDF beside it; as for the page, the numbers are not given up for it.
+void write_pdf(const std::filesystem::path& browser, const std::filesystem::path& folder,
+               const Session& session) {
+  if (!std::filesystem::exists(folder / "report.html")) return;
+  session.monitor->begin_stage("printing");
+  try {
+    print_pdf(browser, folder / "report.html", folder / "report.pdf", *session.monitor);
+  } catch (const Error& error) {
+    if (error.fault() != Fault::input) throw;
+    session.warn(
+        fmt::format("there is no report.pdf: {}; all other files are written and whole", error.what()));
+  }
+}
+
+/// The browser that is to print, found before the work; none where nothing is to be printed.
+std::filesystem::path browser_of(const RegisterCommandOptions& options) {
+  if (!options.pdf) return {};
+  if (options.no_report)
+    throw Error("--pdf prints the report that --no-report leaves out", "--pdf", "give one of them");
+  return find_chromium();
+}
+
 ReportCover cover_of(const RegisterCommandOptions& options) {
   const Language language = options.language == "fr"   ? Language::french
                             : options.language == "de" ? Language::german
@@ -219,6 +243,7 @@ int run(const RegisterCommandOptions& options, const Session& session) {
     throw Error("--as-published and --method both choose a method", "--as-published " + options.as_published,
                 "give one of them");
   }
+  const std::filesystem::path browser = browser_of(options);
   const bool segments = takes_segments(options);
   const OutputFolder folder(options.folder);
   const Registered registered =
@@ -229,6 +254,7 @@ int run(const RegisterCommandOptions& options, const Session& session) {
   remove_report(folder.path());  // an earlier run's page must not stand beside other numbers
   write_numbers(folder.path(), report);
   if (!options.no_report) write_page(folder.path(), registered, cover_of(options), session);
+  if (options.pdf) write_pdf(browser, folder.path(), session);
   session.say(summary_text(report, options.folder));
   session.answer(json);
   return status_of(report.result.outcome);
@@ -314,6 +340,9 @@ void add_register_command(CommandLine& app, Session& session) {
       ->type_name("LENGTH,ANGLE");
   add_with_option(*command, "--source-with", options->source_with, "SOURCE");
   add_with_option(*command, "--target-with", options->target_with, "TARGET");
+  command->add_flag(
+      "--pdf", options->pdf,
+      "Print the report to report.pdf too, by the Chromium of this machine (LIMEN_CHROMIUM names one)");
   command->add_flag("--no-report", options->no_report,
                     "Write neither report.html nor the sections, only result.json and transform.txt");
   add_cover_options(*command, *options);

@@ -126,7 +126,8 @@ void write_report(const std::filesystem::path& folder, const RegistrationReport&
 }
 
 void remove_report(const std::filesystem::path& folder) {
-  for (const char* name : {"report.html", "section_top.svg", "section_front.svg", "section_side.svg"})
+  for (const char* name :
+       {"report.html", "report.pdf", "section_top.svg", "section_front.svg", "section_side.svg"})
     std::filesystem::remove(folder / name);
 }
 
