@@ -11,7 +11,7 @@
 namespace limen {
 namespace {
 
-using testing_schema::json;
+using SchemaJson = testing_schema::json;
 using testing_schema::Validator;
 
 class SchemaTest : public ProgramTest {
@@ -20,7 +20,7 @@ class SchemaTest : public ProgramTest {
   [[nodiscard]] std::string fault(const std::string& schema, const std::string& text) const {
     const ProgramRun printed = run({"schema", schema});
     EXPECT_EQ(printed.status, 0) << printed.err;
-    return Validator(json::parse(printed.out)).fault(json::parse(text));
+    return Validator(SchemaJson::parse(printed.out)).fault(SchemaJson::parse(text));
   }
   [[nodiscard]] std::string file_fault(const std::string& schema, const std::string& path) const {
     return fault(schema, read_whole(work() / path));
@@ -35,12 +35,12 @@ TEST_F(SchemaTest, FilesOfOneScan) {
   must_run({"simulate", "room", "--points-indoor", "60000", "-o", "."});
   for (const std::string kind : {"planes", "openings", "segments"}) {
     must_run({kind, "indoor_00.ply", "-o", kind + ".json"});
-    const json written = json::parse(read_whole(work() / (kind + ".json")));
+    const SchemaJson written = SchemaJson::parse(read_whole(work() / (kind + ".json")));
     EXPECT_GT(written[kind].size(), 0U) << kind;
     EXPECT_EQ(file_fault(kind, kind + ".json"), "");
   }
   EXPECT_EQ(file_fault("planes", "openings.json"), "$.openings is not in the schema");
-  json bad = json::parse(read_whole(work() / "planes.json"));
+  SchemaJson bad = SchemaJson::parse(read_whole(work() / "planes.json"));
   bad["planes"][0]["normal"].erase(0);
   EXPECT_EQ(fault("planes", bad.dump()), "$.planes[0].normal has another length");
 }
@@ -56,7 +56,7 @@ TEST_F(SchemaTest, FilesOfAPairAndOfAProject) {
   write_whole(work() / "targets.csv", "name,scan,x,y,z,sigma\nA,indoor_00.ply,0.1,0.2,0.3,0.01\n");
   must_run({"project", "indoor_00.ply", "indoor_01.ply", "-o", "building", "--control", "control.csv",
             "--targets", "targets.csv"});
-  const json project = json::parse(read_whole(work() / "building/project.json"));
+  const SchemaJson project = SchemaJson::parse(read_whole(work() / "building/project.json"));
   EXPECT_EQ(project["links"].size(), 1U);
   EXPECT_EQ(project["points"].size(), 2U);
   EXPECT_EQ(file_fault("project", "building/project.json"), "");
@@ -64,9 +64,9 @@ TEST_F(SchemaTest, FilesOfAPairAndOfAProject) {
 
 TEST_F(SchemaTest, FilesAboutAModel) {
   must_run({"simulate", "office", "--points-indoor", "60000", "-o", "."});
-  const json truth = json::parse(read_whole(work() / "truth/truth.json"));
+  const SchemaJson truth = SchemaJson::parse(read_whole(work() / "truth/truth.json"));
   write_whole(work() / "pose.json",
-              json{{"target_from_source", truth["scans"][0]["target_from_source"]}}.dump());
+              SchemaJson{{"target_from_source", truth["scans"][0]["target_from_source"]}}.dump());
   must_run({"deviation", "scan_01.ply", "model.ifc", "--result", "pose.json", "-o", "out"});
   EXPECT_EQ(file_fault("deviation", "out/deviation.json"), "");
   for (const std::string kind : {"planes", "openings"}) {
