@@ -10,7 +10,7 @@
 namespace limen {
 namespace {
 
-using Json = nlohmann::json;
+using TruthJson = nlohmann::json;
 
 SimulatedCase museum() {
   SceneOptions options;
@@ -20,7 +20,7 @@ SimulatedCase museum() {
   return simulate(options);
 }
 
-Matrix4d matrix_of(const Json& rows) {
+Matrix4d matrix_of(const TruthJson& rows) {
   Matrix4d matrix;
   for (int i = 0; i < 4; ++i)
     for (int j = 0; j < 4; ++j)
@@ -30,7 +30,7 @@ Matrix4d matrix_of(const Json& rows) {
 
 TEST(TruthJson, GivesBackEveryPoseBitForBit) {
   const SimulatedCase made = museum();
-  const Json truth = Json::parse(truth_json(made.truth));
+  const TruthJson truth = TruthJson::parse(truth_json(made.truth));
   ASSERT_EQ(truth["scans"].size(), made.scans.size());
   for (std::size_t i = 0; i < made.scans.size(); ++i) {
     EXPECT_EQ(truth["scans"][i]["file"], made.scans[i].name + ".ply");
@@ -44,22 +44,22 @@ TEST(TruthJson, GivesBackEveryPoseBitForBit) {
 
 TEST(TruthJson, PlanesAndOpeningsAgreeInTheWorld) {
   const SimulatedCase made = museum();
-  const Json truth = Json::parse(truth_json(made.truth));
+  const TruthJson truth = TruthJson::parse(truth_json(made.truth));
   ASSERT_EQ(truth["planes"].size(), made.truth.planes.size());
   ASSERT_EQ(truth["openings"].size(), made.truth.openings.size());
-  for (const Json& plane : truth["planes"]) {
+  for (const TruthJson& plane : truth["planes"]) {
     double shift = 0.0;
     for (std::size_t k = 0; k < 3; ++k)
       shift += plane["normal"][k].get<double>() * truth["local_origin"][k].get<double>();
     EXPECT_NEAR(plane["offset"].get<double>(), plane["local_offset"].get<double>() + shift, 1e-8);
   }
-  for (const Json& opening : truth["openings"]) {
+  for (const TruthJson& opening : truth["openings"]) {
     double thickness = 0.0;
     for (std::size_t k = 0; k < 3; ++k)
       thickness += opening["normal"][k].get<double>() *
                    (opening["outer"][1][k].get<double>() - opening["inner"][1][k].get<double>());
     EXPECT_NEAR(thickness, opening["thickness_m"].get<double>(), 1e-7);
-    for (const Json& sight : opening["seen"]) EXPECT_LE(sight["through"], sight["crossed"]);
+    for (const TruthJson& sight : opening["seen"]) EXPECT_LE(sight["through"], sight["crossed"]);
   }
 }
 
@@ -72,10 +72,11 @@ TEST(TruthJson, TellsTheOutlineOfArchedWindows) {
   Truth truth;
   truth.local_origin = Vector3d(100.0, 0.0, 0.0);
   truth.openings = {arched, TrueOpening{}};
-  const Json openings = Json::parse(truth_json(truth))["openings"];
+  const TruthJson openings = TruthJson::parse(truth_json(truth))["openings"];
   EXPECT_EQ(openings[0]["head"], "semicircle");
-  EXPECT_EQ(openings[0]["outer_outline"], (Json{{101.0, 2.0, 3.0}, {102.0, 2.0, 3.0}, {101.5, 2.0, 4.0}}));
-  EXPECT_EQ(openings[0]["inner_outline"][2], (Json{101.5, 2.5, 4.0}));
+  EXPECT_EQ(openings[0]["outer_outline"],
+            (TruthJson{{101.0, 2.0, 3.0}, {102.0, 2.0, 3.0}, {101.5, 2.0, 4.0}}));
+  EXPECT_EQ(openings[0]["inner_outline"][2], (TruthJson{101.5, 2.5, 4.0}));
   EXPECT_EQ(openings[1]["head"], "rectangular");
   EXPECT_FALSE(openings[1].contains("outer_outline"));
 }
@@ -97,21 +98,21 @@ TEST(TruthJson, TellsOfAScannedModel) {
                                        .state = ModelState::moved,
                                        .shift_m = Vector3d(0.01, 0.0, 0.0)});
   made.truth.model->changes.push_back({.element = 9, .guid = "d", .kind = "door", .state = ModelState::open});
-  const Json truth = Json::parse(truth_json(made.truth));
+  const TruthJson truth = TruthJson::parse(truth_json(made.truth));
   EXPECT_EQ(matrix_of(truth["scans"][0]["target_from_source"]).col(3),
             Eigen::Vector4d(1001.5, 2002.5, 33.5, 1.0));
   EXPECT_EQ(truth["model"]["file"], "house.ifc");
   EXPECT_EQ(truth["model"]["rooms"][0]["repeated"], true);
-  EXPECT_EQ(truth["model"]["rooms"][0]["like"], Json({5, 7}));
+  EXPECT_EQ(truth["model"]["rooms"][0]["like"], TruthJson({5, 7}));
   EXPECT_EQ(truth["model"]["changes"][0]["shift_m"][0], 0.01);
   EXPECT_EQ(truth["model"]["changes"][1]["state"], "open");
-  EXPECT_EQ(Json::parse(task_json(made))["target"], "house.ifc");
+  EXPECT_EQ(TruthJson::parse(task_json(made))["target"], "house.ifc");
 }
 
 TEST(TaskJson, NamesFilesButNoTruth) {
   const SimulatedCase made = museum();
   const std::string text = task_json(made);
-  const Json task = Json::parse(text);
+  const TruthJson task = TruthJson::parse(text);
   EXPECT_EQ(task["source"], "indoor_00.ply");
   EXPECT_EQ(task["target"], "outdoor.ply");
   EXPECT_EQ(task["scans"].size(), 3U);
