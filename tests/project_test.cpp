@@ -18,6 +18,7 @@
 #include <unistd.h>
 
 #include "limen/geometry/rigid.h"
+#include "limen/io/cloud/read_scan.h"
 
 namespace limen {
 namespace {
@@ -132,6 +133,76 @@ TEST_F(Project, StationsStandWhereTheTruthHasThemAndBytesNeverDiffer) {
     const Matrix4d pose = matrix_of(scan["frame_from_scan"]);
     EXPECT_LT((pose - Matrix4d::Identity()).cwiseAbs().maxCoeff(), 0.01);
   }
+}
+
+/// Squares of the distances of two passes' points from where they are in truth, once a shift of all is taken
+/// out; `folder` holds them as they were written.
+double spread_about_truth(const std::filesystem::path& case_folder, const std::filesystem::path& folder) {
+  const json truth = json::parse(read_whole(case_folder / "truth" / "project.json"));
+  Vector3d sum = Vector3d::Zero();
+  double squares = 0.0;
+  double count = 0.0;
+  for (const json& scan : truth["scans"]) {
+    if (scan["kind"] != "mobile") continue;
+    const std::string file = scan["file"].get<std::string>();
+    const Scan measured = read_scan(case_folder / file);
+    const Scan placed = read_scan(folder / file);
+    const json& drift = scan["drift"];
+    for (std::size_t i = 0; i < measured.size(); i += 101) {
+      const double share = (measured.times_s[i] - drift.front()[0].get<double>()) /
+                           (drift.back()[0].get<double>() - drift.front()[0].get<double>());
+      const double at = std::clamp(share, 0.0, 1.0) * static_cast<double>(drift.size() - 1);
+      const json& then = drift[static_cast<std::size_t>(at)];
+      const Vector3d error(then[1].get<double>(), then[2].get<double>(), then[3].get<double>());
+      const Vector3d off =
+          (placed.local_origin - measured.local_origin) + placed.points[i] - measured.points[i] + error;
+      sum += off;
+      squares += off.squaredNorm();
+      count += 1.0;
+    }
+  }
+  return squares / count - (sum / count).squaredNorm();
+}
+
+TEST_F(Project, PassesThatDriftAreBentBack) {
+  const ProgramRun made =
+      run({"simulate", "museum", "--project", "--stations", "1", "--passes", "2", "--drift-m", "0.015",
+           "--points-indoor", "20000", "--points-outdoor", "150000", "--seed", "1", "-o", "case", "--quiet"});
+  ASSERT_EQ(made.status, 0) << made.err;
+  std::vector<std::string> passes{"case/pass_1.ply", "case/pass_2.ply"};
+  // Two passes alone may leave a direction loose.
+  const auto joined = [&](const std::vector<std::string>& arguments) {
+    const int status = run(arguments).status;
+    return status == 0 || status == 3;
+  };
+  ASSERT_TRUE(joined(call(passes, "bent")));
+  const json bent = json::parse(text_of("bent"));
+  for (const json& scan : bent["scans"]) {
+    ASSERT_TRUE(scan.contains("correction")) << scan["reason"];
+    EXPECT_GT(scan["correction"]["knots"].size(), 5U);
+  }
+  // The same bytes for one thread and another order.
+  std::reverse(passes.begin(), passes.end());
+  std::vector<std::string> again = call(passes, "again");
+  again.insert(again.end(), {"--threads", "1"});
+  ASSERT_TRUE(joined(again));
+  EXPECT_EQ(text_of("again"), text_of("bent"));
+
+  std::vector<std::string> rigid = call(passes, "rigid");
+  rigid.emplace_back("--rigid-passes");
+  ASSERT_TRUE(joined(rigid));
+  EXPECT_EQ(json::parse(text_of("rigid"))["scans"][0]["rigid"], "as you asked");
+  for (const char* how : {"bent", "rigid"}) {
+    const std::string from = std::string(how) + "/project.json";
+    const std::string to = std::string("placed_") + how;
+    const ProgramRun moved = run({"transform", from, "-o", to, "--quiet"});
+    ASSERT_EQ(moved.status, 0) << moved.err;
+  }
+  EXPECT_TRUE(std::filesystem::exists(work() / "placed_bent" / "pass_1_trajectory.csv"));
+  EXPECT_FALSE(std::filesystem::exists(work() / "placed_rigid" / "pass_1_trajectory.csv"));
+  const double before = spread_about_truth(work() / "case", work() / "placed_rigid");
+  const double after = spread_about_truth(work() / "case", work() / "placed_bent");
+  EXPECT_LT(after, 0.5 * before);
 }
 
 TEST_F(Project, ScansThatCannotBeReadAndCopiesAreToldAndStopNothing) {

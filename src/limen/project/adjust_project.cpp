@@ -2,116 +2,45 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <set>
 #include <utility>
 #include <vector>
 
 #include "limen/base/angles.h"
 #include "limen/project/adjust/plane_adjustment.h"
+#include "limen/project/passes/bent_passes.h"
 #include "limen/project/project_graph.h"
+#include "limen/project/shared_planes.h"
 #include "limen/project/survey.h"
 #include "limen/project/word_terms.h"
 
 namespace limen {
 namespace {
 
-constexpr double kDrawnM = 0.01;  // by how much a building misses its model
-
-// Tiles of one plane: how flat built walls are, and how many of them err independently.
-constexpr double kFlatM = 0.002;
-constexpr double kBendPerM = 0.0003;  // a long wall bends
-constexpr double kTilesThatCount = 16.0;
 constexpr double kSharedM2 = 0.3;
-const double kSharedCosine = std::cos(radians(2.0));
-constexpr double kSharedM = 0.04;
 
-/// Planes of all scans, those that are one surface joined.
-class SharedPlanes {
- public:
-  SharedPlanes(const std::vector<ProjectNode>& nodes, const SolvedGraph& solved)
-      : nodes_(nodes), solved_(solved) {
-    first_.push_back(0);
-    for (const ProjectNode& node : nodes) first_.push_back(first_.back() + node.digest.planes.size());
-    for (std::size_t k = 0; k < first_.back(); ++k) root_.push_back(k);
-  }
-
-  /// Joins two planes where they lie in one under the solved poses as well.
-  void join(int source, int source_plane, int target, int target_plane) {
-    const PlaneDigest& a =
-        nodes_[static_cast<std::size_t>(source)].digest.planes[static_cast<std::size_t>(source_plane)];
-    const PlaneDigest& b =
-        nodes_[static_cast<std::size_t>(target)].digest.planes[static_cast<std::size_t>(target_plane)];
-    const Rigid3& frame_from_a = solved_.nodes[static_cast<std::size_t>(source)].frame_from_node;
-    const Rigid3& frame_from_b = solved_.nodes[static_cast<std::size_t>(target)].frame_from_node;
-    const Plane in_frame = transformed(frame_from_a, a.plane);
-    const double cosine = in_frame.normal.dot(frame_from_b.rotation * b.plane.normal);
-    if (std::abs(cosine) < kSharedCosine) return;
-    if (std::abs(in_frame.signed_distance(frame_from_b * b.centroid)) > kSharedM) return;
-    const std::size_t x =
-        find(first_[static_cast<std::size_t>(source)] + static_cast<std::size_t>(source_plane));
-    const std::size_t y =
-        find(first_[static_cast<std::size_t>(target)] + static_cast<std::size_t>(target_plane));
-    root_[std::max(x, y)] = std::min(x, y);
-  }
-
-  /// Observations of the planes that two nodes or more see; planes are numbered anew.
-  void tell(const std::vector<bool>& taken, JointProblem& problem) {
-    std::map<std::size_t, std::set<std::size_t>> seen_by;
-    for_each([&](std::size_t node, std::size_t, std::size_t root) {
-      if (taken[node]) seen_by[root].insert(node);
-    });
-    std::map<std::size_t, int> number;
-    for (const auto& [root, seers] : seen_by) {
-      if (seers.size() > 1) number.emplace(root, static_cast<int>(number.size()));
-    }
-    for_each([&](std::size_t node, std::size_t plane, std::size_t root) {
-      const auto found = number.find(root);
-      if (!taken[node] || found == number.end()) return;
-      const ScanDigest& digest = nodes_[node].digest;
-      const PlaneDigest& seen = digest.planes[plane];
-      if (seen.moments.count < 3.0) return;
-      PlaneObservation observation;
-      observation.node = static_cast<int>(node);
-      observation.plane = found->second;
-      observation.moments = seen.moments;
-      observation.anchor = seen.centroid;
-      const double length = std::sqrt(12.0 * seen.moments.covariance().trace());
-      const double own = std::hypot(kFlatM, kBendPerM * length);
-      // What a trajectory drifts by is one for the whole plane.
-      observation.sigma_m = std::hypot(own, digest.drift_m * std::sqrt(kTilesThatCount));
-      if (digest.model) observation.sigma_m = std::hypot(own, kDrawnM * std::sqrt(kTilesThatCount));
-      observation.most_points = kTilesThatCount;
-      problem.observations.push_back(observation);
-    });
-    problem.planes = static_cast<int>(number.size());
-  }
-
- private:
-  std::size_t find(std::size_t k) {
-    while (root_[k] != k) k = root_[k] = root_[root_[k]];
-    return k;
-  }
-  template <typename Visit>
-  void for_each(const Visit& visit) {
-    for (std::size_t node = 0; node < nodes_.size(); ++node) {
-      for (std::size_t plane = 0; plane < nodes_[node].digest.planes.size(); ++plane)
-        visit(node, plane, find(first_[node] + plane));
-    }
-  }
-
-  const std::vector<ProjectNode>& nodes_;
-  const SolvedGraph& solved_;
-  std::vector<std::size_t> first_;
-  std::vector<std::size_t> root_;
-};
+constexpr int kBendRounds = 8;
+constexpr int kLeastRounds = 2;
+constexpr double kSettled = 1.1;  // of a rate of drift, from round to round
 
 /// By how much the joint adjustment may move a node: more is a fault of the shared planes, not a finding.
 constexpr double kMostShiftM = 0.03;  // and three deviations of the links alone
 const double kMostTurnRad = radians(0.3);
 
+/// Where a link holds a pass that is bent: the node of its part that saw what both see.
+int held_node(const TriedPair& pair, const GraphLink& link, bool source, const SharedPlanes& shared,
+              const SolvedGraph& solved, const BentPasses& passes, JointProblem& problem) {
+  const int node = source ? link.source : link.target;
+  if (!passes.bends(node)) return node;
+  std::vector<int> planes;
+  for (const PlaneMatch& match : pair.result.matches) planes.push_back(source ? match.source : match.target);
+  const Vector3d centre =
+      solved.nodes[static_cast<std::size_t>(link.target)].frame_from_node * link.poses.front().centre;
+  return passes.node_at(problem, node, shared.place_of(node, planes, centre));
+}
+
 JointProblem joint_problem(const std::vector<ProjectNode>& nodes, const std::vector<TriedPair>& pairs,
-                           const ProjectGraph& made, const SolvedGraph& solved, const PlacedSurvey& survey) {
+                           const ProjectGraph& made, const SolvedGraph& solved, const PlacedSurvey& survey,
+                           BentPasses& passes) {
   JointProblem problem;
   std::vector<bool> taken;
   for (std::size_t n = 0; n < nodes.size(); ++n) {
@@ -121,19 +50,41 @@ JointProblem joint_problem(const std::vector<ProjectNode>& nodes, const std::vec
     // The node that the graph left where it was is the frame of its component, if control points are not.
     problem.fixed.push_back(node.component < 0 || (node.covariance.isZero() && !survey.controlled[n]));
   }
-  SharedPlanes shared(nodes, solved);
+  passes.add_to(problem);
+  SharedPlanes shared(nodes, solved, passes);
   for (std::size_t k = 0; k < made.graph.links.size(); ++k) {
     const GraphLink& link = made.graph.links[k];
     if (solved.links[k].pose < 0) continue;
-    problem.edges.push_back(
-        {link.source, link.target, link.poses[static_cast<std::size_t>(solved.links[k].pose)]});
-    if (made.pair_of[k] < 0 || solved.links[k].pose != link.best) continue;
-    for (const PlaneMatch& match : pairs[static_cast<std::size_t>(made.pair_of[k])].result.matches) {
-      if (match.overlap_m2 >= kSharedM2) shared.join(link.source, match.source, link.target, match.target);
+    PoseEdge edge{link.source, link.target, link.poses[static_cast<std::size_t>(solved.links[k].pose)]};
+    if (made.pair_of[k] >= 0 && solved.links[k].pose == link.best) {
+      const TriedPair& pair = pairs[static_cast<std::size_t>(made.pair_of[k])];
+      for (const PlaneMatch& match : pair.result.matches) {
+        if (match.overlap_m2 >= kSharedM2) shared.join(link.source, match.source, link.target, match.target);
+      }
+      edge.source = held_node(pair, link, true, shared, solved, passes, problem);
+      edge.target = held_node(pair, link, false, shared, solved, passes, problem);
     }
+    problem.edges.push_back(edge);
   }
   shared.tell(taken, problem);
   return problem;
+}
+
+/// Passes with a way that stand in a component: what bends.
+BentPasses passes_to_bend(const std::vector<ProjectNode>& nodes, const SolvedGraph& solved) {
+  std::vector<PassToBend> passes;
+  for (std::size_t n = 0; n < nodes.size(); ++n) {
+    const ScanDigest& digest = nodes[n].digest;
+    if (!digest.mobile || !digest.track.way.known() || solved.nodes[n].component < 0) continue;
+    passes.push_back({static_cast<int>(n), &digest.track.way, digest.drift_m});
+  }
+  return BentPasses(passes);
+}
+
+std::vector<int> components_of(const SolvedGraph& solved) {
+  std::vector<int> components;
+  for (const SolvedNode& node : solved.nodes) components.push_back(node.component);
+  return components;
 }
 
 /// Three standard deviations of where a node's point lies, and of its turn.
@@ -174,7 +125,7 @@ void take(const JointSolution& solution, SolvedGraph& solved) {
 
 /// The adjustment of a problem, its points and planes.
 JointFinding adjust_once(const std::vector<ProjectNode>& nodes, JointProblem problem, SolvedGraph& solved,
-                         PlacedSurvey& survey) {
+                         PlacedSurvey& survey, const BentPasses& passes, bool level = false) {
   JointFinding finding;
   const bool surveyed = std::any_of(survey.points.begin(), survey.points.end(),
                                     [](const MarkedPoint& point) { return !point.sights.empty(); });
@@ -186,20 +137,22 @@ JointFinding adjust_once(const std::vector<ProjectNode>& nodes, JointProblem pro
     survey.settled = settle_points(links, survey.candidates);
     finding.contradicted = !survey.settled.firm;
     if (finding.contradicted) return finding;
+    passes.settle_frames(problem, components_of(solved), survey.settled.solution);
     survey.points = problem.points = links.points;
     take(survey.settled.solution, solved);
     problem.frame_from_node = survey.settled.solution.frame_from_node;
   }
-  const bool level = problem.frame_from_node.size() > nodes.size();
   if (problem.observations.empty() && !level) return finding;
   SettledPoints settled;
   if (surveyed)
     settled = settle_points(problem, survey.candidates);
   else
     settled.solution = adjust_jointly(problem);
+  passes.settle_frames(problem, components_of(solved), settled.solution);
   find_torn(nodes, solved, settled.solution, finding);
   if (!finding.torn.empty() || !settled.firm) return finding;
   take(settled.solution, solved);
+  finding.passes = passes.told(settled.solution);
   finding.variance_factor = settled.solution.variance_factor;
   if (!surveyed) return finding;
   // What the links alone left out stays told.
@@ -212,13 +165,28 @@ JointFinding adjust_once(const std::vector<ProjectNode>& nodes, JointProblem pro
   return finding;
 }
 
-}  // namespace
+/// The shape of the passes, and how fast they drift, in the frame as it is solved so far: planes are joined
+/// anew once passes are bent.
+void bend(const std::vector<ProjectNode>& nodes, const std::vector<TriedPair>& pairs,
+          const ProjectGraph& made, SolvedGraph solved, const PlacedSurvey& survey, BentPasses& passes) {
+  for (int round = 0; round < kBendRounds; ++round) {
+    JointProblem problem = joint_problem(nodes, pairs, made, solved, survey, passes);
+    problem.points = survey.points;
+    JointSolution solution = adjust_jointly(problem);
+    passes.settle_frames(problem, components_of(solved), solution);
+    const double change = passes.take(problem, solution);
+    for (std::size_t n = 0; n < solved.nodes.size(); ++n)
+      solved.nodes[n].frame_from_node = solution.frame_from_node[n];
+    if (round >= kLeastRounds && change < kSettled) break;
+  }
+}
 
-JointFinding adjust_planes(const std::vector<ProjectNode>& nodes, const std::vector<TriedPair>& pairs,
-                           const ProjectGraph& made, const UserWords& words, SolvedGraph& solved,
-                           PlacedSurvey& survey) {
+JointFinding adjust_with(const std::vector<ProjectNode>& nodes, const std::vector<TriedPair>& pairs,
+                         const ProjectGraph& made, const UserWords& words, SolvedGraph& solved,
+                         PlacedSurvey& survey, BentPasses& passes) {
+  if (passes.any()) bend(nodes, pairs, made, solved, survey, passes);
   JointFinding finding =
-      adjust_once(nodes, joint_problem(nodes, pairs, made, solved, survey), solved, survey);
+      adjust_once(nodes, joint_problem(nodes, pairs, made, solved, survey, passes), solved, survey, passes);
   const bool spoken =
       std::any_of(words.decisions.begin(), words.decisions.end(), [](const Decision& decision) {
         return decision.kind == DecisionKind::level || decision.kind == DecisionKind::same_floor;
@@ -226,11 +194,33 @@ JointFinding adjust_planes(const std::vector<ProjectNode>& nodes, const std::vec
   if (!spoken || finding.contradicted) return finding;
   // What is said of heights and levels is held against all else before it is heeded.
   const std::vector<bool> broken = broken_words(words, nodes, solved, survey.controlled);
-  JointProblem problem = joint_problem(nodes, pairs, made, solved, survey);
+  JointProblem problem = joint_problem(nodes, pairs, made, solved, survey, passes);
+  const std::size_t before = problem.frame_from_node.size();
   add_word_terms(words, broken, nodes, solved, survey.controlled, problem);
-  finding = adjust_once(nodes, std::move(problem), solved, survey);
+  const bool level = problem.frame_from_node.size() > before;
+  finding = adjust_once(nodes, std::move(problem), solved, survey, passes, level);
   finding.broken = broken;
   return finding;
+}
+
+}  // namespace
+
+JointFinding adjust_planes(const std::vector<ProjectNode>& nodes, const std::vector<TriedPair>& pairs,
+                           const ProjectGraph& made, const UserWords& words, SolvedGraph& solved,
+                           PlacedSurvey& survey) {
+  BentPasses passes = passes_to_bend(nodes, solved);
+  if (passes.any()) {
+    SolvedGraph bent_solved = solved;
+    PlacedSurvey bent_survey = survey;
+    JointFinding finding = adjust_with(nodes, pairs, made, words, bent_solved, bent_survey, passes);
+    if (finding.torn.empty() && !finding.contradicted) {
+      solved = std::move(bent_solved);
+      survey = std::move(bent_survey);
+      return finding;
+    }
+  }
+  BentPasses none({});
+  return adjust_with(nodes, pairs, made, words, solved, survey, none);
 }
 
 }  // namespace limen

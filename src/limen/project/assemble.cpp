@@ -13,6 +13,7 @@
 #include "limen/project/project_graph.h"
 #include "limen/project/project_state.h"
 #include "limen/project/survey.h"
+#include "limen/project/told_passes.h"
 
 namespace limen {
 namespace {
@@ -86,6 +87,7 @@ class Assembler {
       finding = adjust_planes(nodes_, pairs_, made, words_, solved_, placed_);
     }
     broken_ = finding.broken;
+    bent_ = finding.passes;
     tell_adjustment(finding);
   }
 
@@ -154,6 +156,7 @@ class Assembler {
     scan.component = node.component;
     scan.state = node.state;
     scan.doubt = node.doubt;
+    if (scan.mobile) scan.rigid = why_rigid(nodes_[n].digest);
     if (node.component < 0) {
       scan.reason = "has nothing in common with any other scan that could be told for sure";
       return;
@@ -165,6 +168,7 @@ class Assembler {
     for (const Vector3d& station : nodes_[n].digest.stations)
       scan.stations.push_back(*scan.frame_from_scan * (nodes_[n].digest.local_origin + station));
     tell_sigma(node, static_cast<int>(n), frame, scan);
+    tell_bend(static_cast<int>(n), frame, scan);
     tell_walls(nodes_[n].digest, scan);
     // Only the first component has the project's frame.
     if (node.component > 0 && scan.state != NodeState::floating) {
@@ -190,6 +194,15 @@ class Assembler {
       scan.sigma.translation_m[k] = std::sqrt(std::max(0.0, moved(k + 3, k + 3)));
     }
     scan.sigma.centre = *scan.frame_from_scan * (own.local_origin + at);
+  }
+
+  void tell_bend(int n, int frame, ProjectScan& scan) const {
+    const auto found =
+        std::find_if(bent_.begin(), bent_.end(), [&](const BentPass& pass) { return pass.node == n; });
+    if (found == bent_.end()) return;
+    const Vector3d& origin = frame == kSurvey ? survey_.origin : digest(frame).local_origin;
+    scan.correction = told_correction(*found, digest(n).track.way, told_from_solved(frame), origin);
+    scan.rigid.clear();
   }
 
   /// The upright planes: as long as tiles spread along them.
@@ -402,6 +415,7 @@ class Assembler {
 
   const UserWords& words_;
   std::vector<bool> broken_;
+  std::vector<BentPass> bent_;
   Survey survey_;
   PlacedSurvey placed_;
   double risk_;

@@ -60,6 +60,9 @@ class Run {
     monitor_.begin_stage("adjustment");
     result_.pairs_tried = tried.size();
     assemble(nodes_, tried, inputs_, words_, risk(), result_);
+    if (options_.rigid_passes) {
+      for (ProjectScan& scan : result_.scans) scan.rigid = scan.mobile ? "as you asked" : "";
+    }
     status_.stage = "done";
     write_status(folder_, status_);
     return std::move(result_);
@@ -174,6 +177,7 @@ class Run {
       const std::optional<ScanDigest> digest = store_.load_digest(node.key);
       if (!digest) throw Error("features cannot be read back", folder_.string(), "look at the disk");
       node.digest = *digest;
+      if (options_.rigid_passes) node.digest.track = {};
       ProjectScan scan;
       scan.file = file.path;
       scan.index = static_cast<int>(k);

@@ -20,6 +20,7 @@ struct ProjectOptions {
   bool all_pairs = false;       ///< every pair is tried, however many there are
   int pairs_per_scan = 12;      ///< else: as many per scan at most, on average
   bool stations_apart = false;  ///< scans of one file are not known to one another
+  bool rigid_passes = false;    ///< mobile passes do not drift: none is bent
 
   void check() const;
 };

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "limen/project/graph/pose_graph.h"
+#include "limen/project/passes/bent_passes.h"
 #include "limen/project/project_state.h"
 #include "limen/project/words.h"
 
@@ -34,6 +35,7 @@ struct JointFinding {
   std::vector<bool> broken;   ///< of each of the user's words: the data contradict it
   /// Coordinates of control points contradict one another so that they hold no frame: nothing was moved.
   bool contradicted = false;
+  std::vector<BentPass> passes;  ///< as they were bent; in the frame of the solution
 };
 
 /// The solved poses once more, with all planes that accepted links show to be shared (adjust/); nodes that

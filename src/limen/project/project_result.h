@@ -28,6 +28,27 @@ struct PlanWall {
   Vector3d to = Vector3d::Zero();
 };
 
+/// By how much a mobile pass was moved where it was at a time.
+struct PassKnot {
+  double time_s = 0.0;
+  double distance_m = 0.0;               ///< travelled
+  Vector3d place = Vector3d::Zero();     ///< of the optical centre, corrected; frame
+  Vector3d turn_rad = Vector3d::Zero();  ///< frame axes, about the correction's pivot
+  Vector3d shift_m = Vector3d::Zero();   ///< of the pivot
+  Vector3d moved_m = Vector3d::Zero();   ///< by what the turn and the shift move the place
+  Vector3d turn_sigma_rad = Vector3d::Zero();
+  Vector3d moved_sigma_m = Vector3d::Zero();
+};
+
+/// How a mobile pass drifted: what its points are moved by once frame_from_scan has moved them
+/// (geometry/spline_motion.h).
+struct PassCorrection {
+  Vector3d pivot = Vector3d::Zero();  ///< frame
+  std::vector<PassKnot> knots;
+  double shift_rate_m2_per_m = 0.0;  ///< of the random walk that explains it best, per axis
+  double turn_rate_rad2_per_m = 0.0;
+};
+
 /// One scan (a station, a mobile pass) or one building model.
 struct ProjectScan {
   std::string file;    ///< as the user wrote it
@@ -42,12 +63,14 @@ struct ProjectScan {
   int component = -1;  ///< 0: the project's; others have a frame of their own; -1: joined to nothing
   /// World of the component's frame from the scan's world; empty where it was joined to nothing.
   std::optional<Rigid3> frame_from_scan;
-  PoseSigma sigma;                   ///< against the frame's own scan, frame axes
-  std::vector<Rigid3> alternatives;  ///< of an ambiguous scan: other places that explain as much
-  double doubt = 0.0;                ///< probability that it stands elsewhere than told
-  std::string reason;                ///< one sentence for a user
-  std::vector<Vector3d> stations;    ///< where the scanner stood, world of the component's frame
-  std::vector<PlanWall> walls;       ///< its upright planes from above, the same frame
+  PoseSigma sigma;                           ///< against the frame's own scan, frame axes
+  std::vector<Rigid3> alternatives;          ///< of an ambiguous scan: other places that explain as much
+  double doubt = 0.0;                        ///< probability that it stands elsewhere than told
+  std::string reason;                        ///< one sentence for a user
+  std::vector<Vector3d> stations;            ///< where the scanner stood, world of the component's frame
+  std::optional<PassCorrection> correction;  ///< of a mobile pass that was bent
+  std::string rigid;                         ///< why a mobile pass was not; empty: it was, or is none
+  std::vector<PlanWall> walls;               ///< its upright planes from above, the same frame
 };
 
 struct ProjectAlternative {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limen/cli/commands/project_command.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <memory>
@@ -36,6 +37,7 @@ struct ProjectCommandOptions {
   std::string decisions;
   double risk = VerdictOptions{}.risk;
   bool apart = false;
+  bool rigid_passes = false;
 };
 
 /// The names in a list: one a line, relative to the list's folder; empty lines and those that begin with #
@@ -67,12 +69,14 @@ ProjectOptions project_options(const ProjectCommandOptions& options, const Sessi
   project.registering.verdict.check();
   project.all_pairs = options.pairs == "all";
   project.stations_apart = options.apart;
+  project.rigid_passes = options.rigid_passes;
   return project;
 }
 
 OptionList reported(const ProjectCommandOptions& options, const Session& session) {
   OptionList list = {{"gravity", options.gravity}, {"pairs", options.pairs}};
   if (options.apart) list.emplace_back("stations_apart", true);
+  if (options.rigid_passes) list.emplace_back("rigid_passes", true);
   if (options.risk != VerdictOptions{}.risk) list.emplace_back("risk", options.risk);
   if (!options.memory.empty()) list.emplace_back("memory", options.memory);
   if (!options.control.empty()) list.emplace_back("control", options.control);
@@ -93,7 +97,16 @@ std::string scan_line(const ProjectScan& scan) {
   } else {
     line += ": " + scan.reason;
   }
-  return line + "\n";
+  line += "\n";
+  if (scan.correction) {
+    double most = 0.0;
+    for (const PassKnot& knot : scan.correction->knots) most = std::max(most, knot.moved_m.norm());
+    line += fmt::format("{:<17} bent back along {:.0f} m, by {:.1f} mm at most\n", "",
+                        scan.correction->knots.back().distance_m, 1e3 * most);
+  } else if (scan.component >= 0 && !scan.rigid.empty()) {
+    line += fmt::format("{:<17} {}\n", "", scan.rigid);
+  }
+  return line;
 }
 
 /// Control and check points, a line each.
@@ -222,6 +235,8 @@ void add_project_command(CommandLine& app, Session& session) {
       ->one_of({"auto", "all"});
   command->add_flag("--stations-apart", options->apart,
                     "The scans of one file are not known to one another, whatever the file says");
+  command->add_flag("--rigid-passes", options->rigid_passes,
+                    "Mobile scans do not drift along their way: none is bent");
   command
       ->add_option(
           "--control", options->control,

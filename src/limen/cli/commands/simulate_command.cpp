@@ -35,6 +35,7 @@ struct SimulateOptions {
   bool as_built = false;
   bool project = false;  ///< a whole building
   int passes = -1;
+  std::string drift = "waves";
   bool styles = false;
 };
 
@@ -152,6 +153,7 @@ int run_project(const SimulateOptions& options, const Session& session) {
   project.points_pass = scene.points_outdoor;
   project.any_rotation = scene.any_rotation;
   if (scene.drift_m >= 0.0) project.drift_m = scene.drift_m;
+  project.drift = options.drift == "walk" ? DriftKind::walk : DriftKind::waves;
   project.scanner = scene.scanner;
   project.styles = options.styles;
   return run_simulate_project(project, options.output, session);
@@ -233,6 +235,8 @@ void add_simulate_command(CommandLine& app, Session& session) {
                                 fmt::join(whole_building_names(), ", ")));
   command->add_option("--passes", options->passes, "With --project: street passes, each along two facades")
       ->type_name("N");
+  command->add_option("--drift", options->drift, "With --project: how the paths of passes err")
+      ->one_of({"waves", "walk"});
   command->add_flag("--styles", options->styles,
                     "With --project: noise, density, view, tilt, origin, glass and people at random");
 }

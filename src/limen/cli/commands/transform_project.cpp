@@ -16,6 +16,8 @@
 #include "limen/base/atomic_file.h"
 #include "limen/base/error.h"
 #include "limen/cli/inputs/scan_options.h"
+#include "limen/io/cloud/cloud_writers.h"
+#include "limen/io/cloud/corrected_trajectory.h"
 #include "limen/io/cloud/transform_cloud.h"
 #include "limen/report/json/json_values.h"
 #include "limen/report/project/read_project.h"
@@ -66,12 +68,19 @@ void name_outputs(std::vector<Move>& moves, const fs::path& folder, const std::s
     std::string end = ending.empty() ? from.extension().string() : "." + ending;
     // A file of several stations becomes E57.
     if (ending.empty() && move.several) end = ".e57";
+    // What is bent is written point by point.
+    if (move.entry.bend && !is_cloud_ending("cloud" + end)) end = ".ply";
     const std::string stem =
         from.stem().string() + (move.several ? fmt::format("_{}", move.entry.index) : std::string());
     move.output = folder / (stem + end);
     for (int k = 2; !taken.insert(move.output).second; ++k)
       move.output = folder / fmt::format("{}_{}{}", stem, k, end);
   }
+}
+
+/// Of a pass that is bent: beside its cloud.
+fs::path trajectory_name(const fs::path& cloud) {
+  return cloud.parent_path() / (cloud.stem().string() + "_trajectory.csv");
 }
 
 std::size_t write_each(std::vector<Move>& moves, const ProjectMoveOptions& options, const Session& session) {
@@ -81,10 +90,13 @@ std::size_t write_each(std::vector<Move>& moves, const ProjectMoveOptions& optio
   for (const Move& move : moves) {
     refuse_same_file(move.output.string(), move.entry.file);
     const Rigid3& pose = *move.entry.frame_from_scan;
+    const StationToMove station{move.entry.file, static_cast<std::size_t>(move.entry.index), pose,
+                                move.entry.bend};
     const TransformedCloud cloud =
-        move.several ? move_stations({{move.entry.file, static_cast<std::size_t>(move.entry.index), pose}},
-                                     move.output, *session.monitor)
-                     : transform_cloud(move.entry.file, pose, move.output, {}, *session.monitor);
+        move.several || move.entry.bend
+            ? move_stations({station}, move.output, *session.monitor)
+            : transform_cloud(move.entry.file, pose, move.output, {}, *session.monitor);
+    if (move.entry.bend) write_corrected_trajectory(station, trajectory_name(move.output), *session.monitor);
     points += cloud.points;
     for (const std::string& note : cloud.notes) session.note(move.output.string() + ": " + note);
   }
@@ -98,8 +110,8 @@ std::size_t write_merged(const std::vector<Move>& moves, const ProjectMoveOption
   std::vector<StationToMove> stations;
   for (const Move& move : moves) {
     refuse_same_file(output.string(), move.entry.file);
-    stations.push_back(
-        {move.entry.file, static_cast<std::size_t>(move.entry.index), *move.entry.frame_from_scan});
+    stations.push_back({move.entry.file, static_cast<std::size_t>(move.entry.index),
+                        *move.entry.frame_from_scan, move.entry.bend});
   }
   const TransformedCloud cloud = move_stations(stations, output, *session.monitor);
   for (const std::string& note : cloud.notes) session.note(note);

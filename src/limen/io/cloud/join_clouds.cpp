@@ -190,7 +190,7 @@ class JoinedStream : public PointStream {
 
  private:
   [[nodiscard]] RecordTable moved(const RecordTable& piece, const PlacedCloud& placed) const {
-    ColumnMover mover(piece, motion_of(placed));
+    ColumnMover mover(piece, motion_of(placed), placed.bend.get());
     std::optional<Vector3d> centre;
     if (placed.centre) centre = placed.target_from_world * *placed.centre;
     for (const ColumnPlan& column : plan_.columns) {

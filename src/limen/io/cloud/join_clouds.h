@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "limen/geometry/spline_motion.h"
 #include "limen/io/cloud/open_points.h"
 #include "limen/io/table/cloud_writer.h"
 
@@ -19,6 +20,7 @@ struct PlacedCloud {
   Rigid3 target_from_world;        ///< from the world of the file, its offset added
   std::optional<Vector3d> centre;  ///< optical centre in the world of the file, where there is one
   std::uint8_t source = 0;         ///< number of the file
+  std::shared_ptr<const SplineMotion> bend = {};  ///< of a pass that drifted: by time, after the motion
 };
 
 /// Several clouds as one that is read in pieces: x y z as float64 in one frame, all other columns that any of

@@ -159,6 +159,7 @@ TransformedCloud move_stations(const std::vector<StationToMove>& stations,
     for (PlacedCloud placed : all) {
       if (files.back().file().clouds()[placed.cloud].points == 0 || with_points++ != station.cloud) continue;
       placed.source = static_cast<std::uint8_t>(std::min<std::size_t>(k, 255));
+      placed.bend = station.bend;
       clouds.push_back(placed);
       found = true;
     }

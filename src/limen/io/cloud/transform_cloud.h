@@ -3,10 +3,12 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "limen/base/progress.h"
+#include "limen/geometry/spline_motion.h"
 #include "limen/io/table/transformed_cloud.h"
 
 namespace limen {
@@ -46,6 +48,7 @@ struct StationToMove {
   std::filesystem::path path;
   std::size_t cloud = 0;  ///< of the file, those without points not counted
   Rigid3 target_from_source;
+  std::shared_ptr<const SplineMotion> bend = {};  ///< of a pass that drifted: by time, in the target's frame
 };
 /// Clouds of one file or several, each moved by a pose of its own, in one file. In an .e57 each stays a scan
 /// of its own, its pose at the optical centre where that is known; in a .ply, .las or .laz they become one

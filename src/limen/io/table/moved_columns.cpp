@@ -8,7 +8,9 @@
 #include <optional>
 #include <utility>
 
+#include "limen/base/error.h"
 #include "limen/base/parallel.h"
+#include "limen/io/table/time_column.h"
 
 namespace limen {
 namespace {
@@ -36,7 +38,22 @@ std::optional<NamedTriple> triple_with(const RecordTable& table, const std::stri
   return {};
 }
 
-std::vector<double> moved_numbers(const RecordTable& table, const NamedTriple& triple, const Rigid3& motion) {
+/// Moves each of the rows by what `bend` is at its own time.
+void bend_rows(const RecordTable& table, const NamedTriple& triple, const SplineMotion& bend, RowRange rows,
+               double* numbers) {
+  std::array<double, kMovedStrip> times{};
+  load_numbers(table, *find_times(table), rows, times.data());
+  for (std::size_t i = 0; i < rows.end - rows.begin; ++i) {
+    Eigen::Map<Vector3d> x(numbers + 3 * i);
+    if (triple.direction)
+      x = Vector3d(rotation_exp(bend.value(times[i]).head<3>()) * x);
+    else
+      x = bend.moved(x, times[i]);
+  }
+}
+
+std::vector<double> moved_numbers(const RecordTable& table, const NamedTriple& triple, const Rigid3& motion,
+                                  const SplineMotion* bend) {
   std::vector<double> numbers(3 * table.rows);
   const Vector3d shift = triple.direction ? Vector3d::Zero() : motion.translation;
   const bool turned = !motion.rotation.isIdentity(0.0);
@@ -49,6 +66,7 @@ std::vector<double> moved_numbers(const RecordTable& table, const NamedTriple& t
         Eigen::Map<Vector3d> x(numbers.data() + 3 * i);
         x = (turned ? Vector3d(motion.rotation * x) : Vector3d(x)) + shift;
       }
+      if (bend != nullptr) bend_rows(table, triple, *bend, rows, numbers.data() + 3 * at);
     }
   });
   return numbers;
@@ -65,8 +83,11 @@ struct ColumnMover::Memory {
   std::vector<std::pair<std::string, const double*>> moved;  ///< where each moved column begins
 };
 
-ColumnMover::ColumnMover(const RecordTable& source, const Rigid3& motion)
-    : source_(source), motion_(motion), memory_(std::make_shared<Memory>()) {
+ColumnMover::ColumnMover(const RecordTable& source, const Rigid3& motion, const SplineMotion* bend)
+    : source_(source), motion_(motion), bend_(bend), memory_(std::make_shared<Memory>()) {
+  if (bend != nullptr && find_times(source) == nullptr)
+    throw Error("the points have no times, which a pass that is bent needs", "points",
+                "give the file that the project was made from");
   memory_->source = source.keeper;
   table_.rows = source.rows;
   table_.keeper = memory_;
@@ -79,7 +100,7 @@ void ColumnMover::add(const std::string& name) {
   };
   const std::optional<NamedTriple> triple = triple_with(source_, name);
   if (triple && find_moved() == memory_->moved.end()) {
-    memory_->triples.push_back(moved_numbers(source_, *triple, motion_));
+    memory_->triples.push_back(moved_numbers(source_, *triple, motion_, bend_));
     for (std::size_t k = 0; k < 3; ++k)
       memory_->moved.emplace_back(triple->names[k], memory_->triples.back().data() + k);
   }

@@ -7,16 +7,18 @@
 #include <vector>
 
 #include "limen/geometry/rigid.h"
+#include "limen/geometry/spline_motion.h"
 #include "limen/io/table/record_table.h"
 
 namespace limen {
 
 /// Makes a table of chosen columns of another one, moved: x y z and x_origin y_origin z_origin by the motion,
-/// nx ny nz by its turn, the others as they are. All in this machine's order of bytes. What is made may point
-/// into the source.
+/// nx ny nz by its turn, the others as they are. `bend` (none: nullptr) moves each point, after the motion,
+/// by what it is at the point's own time; it must outlive what is made, and the table must have times. All in
+/// this machine's order of bytes. What is made may point into the source.
 class ColumnMover {
  public:
-  ColumnMover(const RecordTable& source, const Rigid3& motion);
+  ColumnMover(const RecordTable& source, const Rigid3& motion, const SplineMotion* bend = nullptr);
 
   /// The column of this name.
   void add(const std::string& name);
@@ -30,6 +32,7 @@ class ColumnMover {
 
   const RecordTable& source_;
   Rigid3 motion_;
+  const SplineMotion* bend_;
   RecordTable table_;
   std::shared_ptr<Memory> memory_;
 };

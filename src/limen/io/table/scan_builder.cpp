@@ -16,6 +16,7 @@
 #include "limen/base/parallel.h"
 #include "limen/io/table/optical_centre.h"
 #include "limen/io/table/profile_topology.h"
+#include "limen/io/table/time_column.h"
 
 namespace limen {
 namespace {
@@ -240,8 +241,7 @@ Scan load_scan(const RecordTable& table, const TableFacts& facts, const FieldTri
   motion.translation += facts.offset - scan.local_origin;
   scan.points = load_points(table, fields, motion, unit_of(facts));
   scan.centres = load_centres(table, motion, unit_of(facts));
-  scan.times_s = load_column<double>(table, table.find({"gps_time", "gpstime", "time", "t", "timestamp",
-                                                        "scalar_gps_time", "scalar_gpstime", "scalar_time"}));
+  scan.times_s = load_column<double>(table, find_times(table));
   scan.intensities = load_column<float>(
       table, table.find({"intensity", "reflectance", "scalar_intensity", "scalar_reflectance", "amplitude"}));
   scan.colours = load_colours(table);

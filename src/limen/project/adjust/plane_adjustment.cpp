@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "limen/base/progress.h"
 #include "limen/geometry/linear.h"
@@ -30,7 +31,8 @@ Eigen::Matrix4d factor_of(const PlaneObservation& observation) {
 
 class JointSolver {
  public:
-  explicit JointSolver(const JointProblem& problem) : problem_(problem), system_(problem.fixed) {
+  explicit JointSolver(const JointProblem& problem)
+      : problem_(problem), system_(problem.fixed, problem.blends) {
     for (const PoseEdge& edge : problem.edges) information_.push_back(inverse_of(edge.pose.covariance));
     seen_by_.resize(static_cast<std::size_t>(problem.planes));
     for (std::size_t k = 0; k < problem.observations.size(); ++k)
@@ -41,11 +43,13 @@ class JointSolver {
 
   JointSolution run() {
     converge();
+    tell_edges();
     tell_factor();
     if (!problem_.points.empty() && solution_.variance_factor > 1.0) {
       const double factor = solution_.variance_factor;
       plane_share_ = 1.0 / factor;
       converge();
+      tell_edges();
     }
     tell_covariance();
     return std::move(solution_);
@@ -130,25 +134,26 @@ class JointSolver {
     if (seen.size() < 2) return;
     Matrix3d own = kTinyInformation * Matrix3d::Identity();
     Vector3d own_right = Vector3d::Zero();
-    std::vector<Wide> mixed;
+    std::map<int, Wide> mixed;  // of each place of freedoms: many parts of a pass may see one plane
     for (const std::size_t k : seen) {
       const PlaneObservation& observation = problem_.observations[k];
       const double weight = plane_share_ * solution_.weights[k];
       const PlaneResidual residual = plane_residual(observation, pose(observation.node), planes_[p]);
       own += weight * residual.by_plane.transpose() * residual.by_plane;
       own_right -= weight * residual.by_plane.transpose() * residual.value;
-      mixed.push_back(weight * residual.by_pose.transpose() * residual.by_plane);
+      const Wide own_mixed = weight * residual.by_pose.transpose() * residual.by_plane;
+      for (const auto& [place, share] : system_.shares(observation.node))
+        mixed.try_emplace(place, Wide::Zero()).first->second += share * own_mixed;
       system_.add(observation.node, observation.node,
                   weight * residual.by_pose.transpose() * residual.by_pose);
       system_.add_right(observation.node, -weight * residual.by_pose.transpose() * residual.value);
     }
     const Matrix3d inverted = own.inverse();
-    for (std::size_t i = 0; i < seen.size(); ++i) {
-      const int node = problem_.observations[seen[i]].node;
-      const Wide half = mixed[i] * inverted;
-      system_.add_right(node, -half * own_right);
-      for (std::size_t j = 0; j < seen.size(); ++j)
-        system_.add(node, problem_.observations[seen[j]].node, -half * mixed[j].transpose());
+    for (const auto& [row, of_row] : mixed) {
+      const Wide half = of_row * inverted;
+      system_.add_right_at(row, -half * own_right);
+      for (const auto& [column, of_column] : mixed)
+        system_.add_at(row, column, -half * of_column.transpose());
     }
   }
 
@@ -170,7 +175,7 @@ class JointSolver {
   void tell_factor() {
     if (system_.empty()) return;
     double sum = 0.0;
-    double count = -6.0 * system_.moving();
+    double count = held_by_told() - 6.0 * system_.moving();
     for (std::size_t k = 0; k < problem_.observations.size(); ++k) {
       const PlaneObservation& seen = problem_.observations[k];
       const std::size_t plane = static_cast<std::size_t>(seen.plane);
@@ -192,8 +197,42 @@ class JointSolver {
     for (std::size_t i = 0; i < problem_.fixed.size(); ++i) {
       CancelScope::check();
       const int node = static_cast<int>(i);
-      if (!system_.moves(node)) continue;
+      if (!system_.moves(node) || (i < problem_.untold.size() && problem_.untold[i])) continue;
       solution_.covariance[i] = scale * system_.block_of(system_.inverse_columns(node), node);
+    }
+  }
+
+  /// Of all freedoms those that edges which are told hold, and planes do not: so much of their misfits the
+  /// covariances have left.
+  [[nodiscard]] double held_by_told() const {
+    double held = 0.0;
+    for (std::size_t e = 0; e < solution_.edge_covariance.size(); ++e) {
+      if (problem_.edges[e].told) held += (information_[e] * solution_.edge_covariance[e]).trace();
+    }
+    return held;
+  }
+
+  void tell_edges() {
+    if (system_.empty()) return;
+    const bool any = std::any_of(problem_.edges.begin(), problem_.edges.end(),
+                                 [](const PoseEdge& edge) { return edge.told; });
+    if (!any) return;
+    solution_.edge_covariance.assign(problem_.edges.size(), Matrix6d::Zero());
+    for (std::size_t e = 0; e < problem_.edges.size(); ++e) {
+      const PoseEdge& edge = problem_.edges[e];
+      if (!edge.told) continue;
+      CancelScope::check();
+      const EdgeResidual residual = edge_residual(edge, pose(edge.source), pose(edge.target));
+      Matrix6d covariance = Matrix6d::Zero();
+      const auto add = [&](int a, const Matrix6d& by_a) {
+        if (!system_.moves(a)) return;
+        const Eigen::MatrixXd columns = system_.inverse_columns(a);
+        covariance += residual.by_source * system_.block_of(columns, edge.source) * by_a.transpose();
+        covariance += residual.by_target * system_.block_of(columns, edge.target) * by_a.transpose();
+      };
+      add(edge.source, residual.by_source);
+      add(edge.target, residual.by_target);
+      solution_.edge_covariance[e] = covariance;
     }
   }
 
@@ -203,9 +242,9 @@ class JointSolver {
     const PointTerms terms = point_terms(point, solution_.frame_from_node);
     Eigen::MatrixXd by_poses = Eigen::MatrixXd::Zero(system_.unknowns(), rows);
     for (std::size_t i = 0; i < point.sights.size(); ++i) {
-      if (!system_.moves(point.sights[i].node)) continue;
-      by_poses.block<6, 3>(system_.first_unknown(point.sights[i].node), static_cast<Eigen::Index>(3 * i)) =
-          terms.by_pose[i].transpose();
+      for (const auto& [place, share] : system_.shares(point.sights[i].node))
+        by_poses.block<6, 3>(Eigen::Index{6} * place, static_cast<Eigen::Index>(3 * i)) +=
+            share * terms.by_pose[i].transpose();
     }
     return by_poses.transpose() * system_.solved(by_poses);
   }

@@ -18,6 +18,57 @@ void recentre(ScanDigest& digest) {
     plane.plane = shifted(plane.plane, shift);
     plane.centroid -= shift;
   }
+  for (Vector3d& place : digest.track.way.places) place -= shift;
+  for (PassStrip& strip : digest.track.strips) strip.anchor -= shift;
+}
+
+/// The track in the scan's own axes.
+PassTrack turned(PassTrack track, const Matrix3d& back) {
+  for (Vector3d& place : track.way.places) place = back * place;
+  for (PassStrip& strip : track.strips) {
+    strip.anchor = back * strip.anchor;
+    strip.moments.sum = back * strip.moments.sum;
+    strip.moments.outer = back * strip.moments.outer * back.transpose();
+  }
+  return track;
+}
+
+void put_moments(ByteWriter& writer, const PointMoments& moments) {
+  writer.put(moments.count);
+  writer.put(moments.sum);
+  writer.put(moments.outer);
+}
+void get_moments(ByteReader& reader, PointMoments& moments) {
+  reader.get(moments.count);
+  reader.get(moments.sum);
+  reader.get(moments.outer);
+}
+
+void put_track(ByteWriter& writer, const PassTrack& track) {
+  writer.put_all(track.way.times_s);
+  writer.put_all(track.way.distances_m);
+  writer.put_all(track.way.places);
+  writer.put_count(track.strips.size());
+  for (const PassStrip& strip : track.strips) {
+    writer.put(strip.plane);
+    writer.put(strip.place);
+    writer.put(strip.anchor);
+    put_moments(writer, strip.moments);
+  }
+}
+PassTrack get_track(ByteReader& reader) {
+  PassTrack track;
+  track.way.times_s = reader.get_all<double>();
+  track.way.distances_m = reader.get_all<double>();
+  track.way.places = reader.get_all<Vector3d>();
+  track.strips.resize(reader.get_count(140));
+  for (PassStrip& strip : track.strips) {
+    reader.get(strip.plane);
+    reader.get(strip.place);
+    reader.get(strip.anchor);
+    get_moments(reader, strip.moments);
+  }
+  return track;
 }
 
 }  // namespace
@@ -52,6 +103,7 @@ ScanDigest digest_of(const PreparedScan& prepared) {
     plane.moments.add(mean - plane.centroid);
   }
   if (!features.samples.empty()) digest.middle = sum / static_cast<double>(features.samples.size());
+  digest.track = turned(prepared.track, back);
   recentre(digest);
   for (const Opening& opening : features.openings) {
     digest.openings.emplace_back((opening.corners[1] - opening.corners[0]).norm(),
@@ -77,11 +129,10 @@ std::string bytes_of(const ScanDigest& digest) {
     writer.put(plane.area_m2);
     writer.put(plane.oriented);
     writer.put(plane.interior);
-    writer.put(plane.moments.count);
-    writer.put(plane.moments.sum);
-    writer.put(plane.moments.outer);
+    put_moments(writer, plane.moments);
   }
   writer.put_all(digest.openings);
+  put_track(writer, digest.track);
   return writer.bytes();
 }
 
@@ -103,11 +154,10 @@ ScanDigest digest_from(std::string_view bytes, const std::string& where) {
     reader.get(plane.area_m2);
     reader.get(plane.oriented);
     reader.get(plane.interior);
-    reader.get(plane.moments.count);
-    reader.get(plane.moments.sum);
-    reader.get(plane.moments.outer);
+    get_moments(reader, plane.moments);
   }
   digest.openings = reader.get_all<Vector2d>();
+  digest.track = get_track(reader);
   return digest;
 }
 

@@ -109,6 +109,10 @@ Scan laid_in(const Scan& scan, const ScanFrame& frame, std::size_t most) {
   if (scan.mobile()) {
     laid.centres.resize(sorted.size());
     for (std::size_t k = 0; k < sorted.size(); ++k) laid.centres[k] = placed(scan.centres[sorted[k].index]);
+    if (!scan.times_s.empty()) {
+      laid.times_s.resize(sorted.size());
+      for (std::size_t k = 0; k < sorted.size(); ++k) laid.times_s[k] = scan.times_s[sorted[k].index];
+    }
   } else if (frame.place.source != PlaceSource::unknown) {
     laid.centres = {placed(frame.place.centre)};
   }

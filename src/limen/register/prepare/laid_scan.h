@@ -10,8 +10,8 @@
 namespace limen {
 
 /// The scan in its frame, about local origin + corner, seen from the place found; its points sorted along a
-/// curve through space, so that nothing that follows depends on their order in the file. Times, intensities
-/// and colours are left out.
+/// curve through space, so that nothing that follows depends on their order in the file. Times of a
+/// static scan, intensities and colours are left out.
 ///
 /// Of more than `most` points (0: all are kept) so many of each cube are kept that about `most` are left, the
 /// cubes as small as that allows: what lies near the scanner is measured many times over, what lies far off

@@ -12,6 +12,7 @@
 #include "limen/extract/segments/segments.h"
 #include "limen/model/bim_model.h"
 #include "limen/model/method.h"
+#include "limen/register/prepare/pass_track.h"
 #include "limen/register/prepare/scan_frame.h"
 #include "limen/register/prepare/scan_view.h"
 
@@ -33,6 +34,7 @@ struct PreparedScan {
 
   SampleRuns runs;                     ///< of a model
   std::vector<SurfaceDetail> details;  ///< of static stations: what stands in the room, prepared frame
+  PassTrack track;                     ///< of a mobile scan with times
 
   [[nodiscard]] ScanView view() const {
     ScanView view{&extracted.features, space.get(), reach, model, mobile, mobile || !stations.empty()};

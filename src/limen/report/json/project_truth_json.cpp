@@ -25,6 +25,11 @@ Json scan_json(const ProjectTruth& truth, std::size_t index) {
   json["room"] = number_or_null(scan.room);
   if (!scan.mobile) json["scanner"] = json_of(scan.scanner);
   json["drift_m"] = scan.drift_m;
+  if (scan.mobile) {
+    json["drift"] = Json::array();
+    for (const DriftSample& sample : scan.drift)
+      json["drift"].push_back({sample.time_s, sample.error.x(), sample.error.y(), sample.error.z()});
+  }
   json["surface_m2"] = scan.surface_m2;
   json["world_from_scan"] = json_of(to_matrix(world_from_scan(truth, index)));
   return json;

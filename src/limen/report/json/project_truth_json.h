@@ -12,7 +12,8 @@ namespace limen {
 /// and
 /// - `scans`: name, file, kind (station, mobile), points, `room` (index or null), `scanner` of a station in
 /// its
-///   own frame, drift_m, `surface_m2` it saw, `world_from_scan` (four rows of four);
+///   own frame, drift_m, `drift` of a pass (rows of a time in seconds and the error x y z then, metres),
+///   `surface_m2` it saw, `world_from_scan` (four rows of four);
 /// - `shared`: pairs of scans `a` < `b` (indices into scans) and the surface `m2` that both saw;
 /// - `rooms`: storey, unit (flat, house, bay; null: none), use, area_m2, `alike` (rooms of one number are
 /// built

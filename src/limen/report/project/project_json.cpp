@@ -14,6 +14,23 @@ Json pose_sigma_json(const PoseSigma& sigma) {
           {"centre", json_of(sigma.centre)}};
 }
 
+Json correction_json(const PassCorrection& correction) {
+  Json knots = Json::array();
+  for (const PassKnot& knot : correction.knots)
+    knots.push_back({{"time_s", knot.time_s},
+                     {"distance_m", knot.distance_m},
+                     {"place", json_of(knot.place)},
+                     {"turn_rad", json_of(knot.turn_rad)},
+                     {"shift_m", json_of(knot.shift_m)},
+                     {"moved_m", json_of(knot.moved_m)},
+                     {"turn_sigma_rad", json_of(knot.turn_sigma_rad)},
+                     {"moved_sigma_m", json_of(knot.moved_sigma_m)}});
+  return {{"pivot", json_of(correction.pivot)},
+          {"knots", std::move(knots)},
+          {"walk_m2_per_m", correction.shift_rate_m2_per_m},
+          {"walk_rad2_per_m", correction.turn_rate_rad2_per_m}};
+}
+
 Json scan_json(const ProjectScan& scan) {
   Json json = {{"file", scan.file}, {"index", scan.index}, {"kind", scan.model ? "model" : "scan"}};
   if (!scan.model) {
@@ -31,6 +48,9 @@ Json scan_json(const ProjectScan& scan) {
   if (scan.frame_from_scan && !in_frame)
     json["component_from_scan"] = json_of(to_matrix(*scan.frame_from_scan));
   json["sigma"] = scan.frame_from_scan ? pose_sigma_json(scan.sigma) : Json();
+  // As the pose: only in the project's frame.
+  if (scan.correction && in_frame) json["correction"] = correction_json(*scan.correction);
+  if (!scan.rigid.empty()) json["rigid"] = scan.rigid;
   if (!scan.alternatives.empty()) {
     json["alternatives"] = Json::array();
     for (const Rigid3& pose : scan.alternatives) json["alternatives"].push_back(json_of(to_matrix(pose)));

@@ -10,6 +10,7 @@
 #include "limen/base/angles.h"
 #include "limen/base/version.h"
 #include "limen/report/html/html_bytes.h"
+#include "limen/report/project/pass_charts.h"
 #include "limen/report/project/project_plan.h"
 
 namespace limen {
@@ -262,6 +263,7 @@ std::string project_page(const ProjectResult& result) {
             "<p class=\"soft\">Lines: verified links are full, bridges dashed, ambiguous and rejected ones "
             "dotted. Ellipses are "
             "one sigma, enlarged 100 times. Triangles: control and check points.</p>\n";
+  text += pass_charts(result);
   text +=
       scans_table(result) + points_table(result) + links_table(result) + loops_table(result) + notes(result);
   return text + "</main></body></html>\n";

@@ -2,10 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limen/report/project/project_page.h"
 
+#include "support/test_support.h"
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
 #include "limen/report/project/project_json.h"
+#include "limen/report/project/read_project.h"
 
 namespace limen {
 namespace {
@@ -78,6 +80,51 @@ TEST(ProjectJson, WithoutSurveyAndDecisionsNothingIsSaidOfThem) {
   EXPECT_FALSE(told.contains("points"));
   EXPECT_FALSE(told.contains("control"));
   EXPECT_FALSE(told.contains("decisions"));
+}
+
+/// The same with a pass that was bent, and one that was not.
+ProjectResult drifted_result() {
+  ProjectResult result = some_result();
+  for (ProjectScan& scan : result.scans) scan.mobile = true;
+  PassCorrection correction;
+  correction.pivot = {652300.0, 6862100.0, 30.0};
+  for (int k = 0; k < 4; ++k) {
+    PassKnot knot;
+    knot.time_s = 381000.0 + 1.5 * k;
+    knot.distance_m = 5.0 * k;
+    knot.turn_rad = {0.0, 1e-5 * k, 2e-4};
+    knot.shift_m = {0.004 * k, -0.01, 0.0};
+    knot.moved_m = knot.shift_m;
+    knot.moved_sigma_m = Vector3d::Constant(0.001);
+    correction.knots.push_back(knot);
+  }
+  result.scans[0].correction = correction;
+  result.scans[1].rigid = "its points have no times";
+  return result;
+}
+
+TEST(ProjectPage, DrawsHowPassesDriftedAndTellsWhyOthersStayRigid) {
+  const std::string page = project_page(drifted_result());
+  EXPECT_NE(page.find("bent back along 15 m"), std::string::npos);
+  EXPECT_NE(page.find("<polyline points=\"56.0,"), std::string::npos);
+  EXPECT_NE(page.find("its points have no times"), std::string::npos);
+  EXPECT_EQ(project_page(some_result()).find("Drift of the passes"), std::string::npos);
+}
+
+TEST(ProjectPage, ABendIsReadBackAsItWasWritten) {
+  const ProjectResult result = drifted_result();
+  const testing_io::TemporaryFolder folder;
+  const std::vector<ProjectEntry> entries = read_project(folder.write("p.json", project_json(result, {})));
+  ASSERT_EQ(entries.size(), 2U);
+  EXPECT_EQ(entries[1].bend, nullptr);
+  ASSERT_NE(entries[0].bend, nullptr);
+  for (const PassKnot& knot : result.scans[0].correction->knots) {
+    Vector6d value;
+    value << knot.turn_rad, knot.shift_m;
+    EXPECT_LT((entries[0].bend->value(knot.time_s) - value).norm(), 1e-15);
+  }
+  const Vector3d pivot = result.scans[0].correction->pivot;
+  EXPECT_LT((entries[0].bend->moved(pivot, 381000.0) - pivot - Vector3d(0.0, -0.01, 0.0)).norm(), 1e-9);
 }
 
 }  // namespace

@@ -8,6 +8,24 @@ namespace limen {
 namespace schema {
 namespace {
 
+Json correction_schema() {
+  const Json knot = object(
+      {{"time_s", number("of the points' own clock")},
+       {"distance_m", number("travelled")},
+       {"place", numbers(3, "of the scanner, corrected; frame")},
+       {"turn_rad", numbers(3, "about the pivot, frame axes")},
+       {"shift_m", numbers(3, "of the pivot")},
+       {"moved_m", numbers(3, "by what both move the place")},
+       {"turn_sigma_rad", numbers(3, "one standard deviation")},
+       {"moved_sigma_m", numbers(3, "one standard deviation")}},
+      {"time_s", "distance_m", "place", "turn_rad", "shift_m", "moved_m", "turn_sigma_rad", "moved_sigma_m"});
+  return object({{"pivot", numbers(3, "frame")},
+                 {"knots", list_of(knot, "along the way, in the order of time")},
+                 {"walk_m2_per_m", number("rate of the random walk of the shift, per axis")},
+                 {"walk_rad2_per_m", number("rate of the random walk of the turn, per axis")}},
+                {"pivot", "knots", "walk_m2_per_m", "walk_rad2_per_m"});
+}
+
 Json project_scan_schema() {
   return object(
       {{"file", text("as it was given")},
@@ -23,6 +41,8 @@ Json project_scan_schema() {
        {"frame_from_scan", nullable("pose")},
        {"component_from_scan", ref("pose")},
        {"sigma", nullable("sigma")},
+       {"correction", correction_schema()},
+       {"rigid", text("of a mobile pass: why it was not bent")},
        {"alternatives", list_of(ref("pose"), "other places that explain as much")},
        {"doubt", number_or_null("probability that it stands elsewhere than told")},
        {"reason", text("one sentence")}},

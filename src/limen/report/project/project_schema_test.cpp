@@ -26,8 +26,11 @@ ProjectResult result_with_everything() {
   placed.frame_from_scan = Rigid3{};
   placed.alternatives = {Rigid3{}};
   placed.copy_of = "other.ply";
+  placed.correction = PassCorrection{};
+  placed.correction->knots = {PassKnot{}, PassKnot{}};
   ProjectScan elsewhere = placed;
   elsewhere.component = 1;
+  elsewhere.rigid = "as you asked";
   ProjectScan model;
   model.model = true;
   result.scans = {placed, elsewhere, model, ProjectScan{}};

@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limen/report/project/read_project.h"
 
+#include <algorithm>
 #include <cctype>
 #include <fstream>
+#include <functional>
 
 #include "limen/base/error.h"
 #include "limen/report/json/json_values.h"
@@ -33,6 +35,27 @@ Rigid3 pose_of(const Json& rows) {
   return from_matrix(matrix);
 }
 
+Vector3d numbers_of(const Json& numbers) {
+  return {numbers.at(0).get<double>(), numbers.at(1).get<double>(), numbers.at(2).get<double>()};
+}
+
+std::shared_ptr<const SplineMotion> bend_of(const Json& correction) {
+  std::vector<double> times;
+  std::vector<Vector6d> values;
+  for (const Json& knot : correction.at("knots")) {
+    times.push_back(knot.at("time_s").get<double>());
+    Vector6d value;
+    value << numbers_of(knot.at("turn_rad")), numbers_of(knot.at("shift_m"));
+    values.push_back(value);
+  }
+  const bool ascending =
+      std::adjacent_find(times.begin(), times.end(), std::greater_equal<>()) == times.end();
+  if (times.size() < 2 || !ascending)
+    throw Error("the correction of a pass is not told as it should be", "project.json",
+                "give the project.json that limen project wrote");
+  return std::make_shared<const SplineMotion>(times, values, numbers_of(correction.at("pivot")));
+}
+
 ProjectEntry entry_of(const Json& scan) {
   ProjectEntry entry;
   entry.file = scan.at("file").get<std::string>();
@@ -41,6 +64,7 @@ ProjectEntry entry_of(const Json& scan) {
   entry.state = scan.at("state").get<std::string>();
   const Json& pose = scan.at("frame_from_scan");
   if (!pose.is_null()) entry.frame_from_scan = pose_of(pose);
+  if (scan.contains("correction") && entry.frame_from_scan) entry.bend = bend_of(scan["correction"]);
   return entry;
 }
 

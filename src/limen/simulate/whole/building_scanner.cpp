@@ -12,6 +12,8 @@
 namespace limen {
 namespace {
 
+constexpr int kDriftSamples = 400;
+
 Matrix3d tilted(double tilt_rad, RandomStream& random) {
   const double way = random.uniform(0.0, 2.0 * std::numbers::pi);
   return rotation_exp(tilt_rad * Vector3d(std::cos(way), std::sin(way), 0.0));
@@ -65,7 +67,8 @@ ScannedBuilding BuildingScanner::station(const std::string& name, const StationP
 }
 
 ScannedBuilding BuildingScanner::pass(const std::string& name, const Trajectory& path, std::size_t points,
-                                      double drift_m, const ScannerOptions& scanner, std::uint64_t seed) {
+                                      const PassDrift& wanted, const ScannerOptions& scanner,
+                                      std::uint64_t seed) {
   RandomStream random(seed, 1);
   ScanPattern pattern;
   const auto make = [&](std::size_t pulses) {
@@ -75,11 +78,17 @@ ScannedBuilding BuildingScanner::pass(const std::string& name, const Trajectory&
   const Sweep result = sweep_of_points(points, make, [&](const ScanPattern& fired) {
     return sweep(caster_, building_.world.openings, fired, scanner, seed);
   });
-  const Drift drift(drift_m, pattern.pulse(0, 0).time_s, pattern.pulse(pattern.lines - 1, 0).time_s, random);
+  const double begin_s = pattern.pulse(0, 0).time_s;
+  const double end_s = pattern.pulse(pattern.lines - 1, 0).time_s;
+  const Drift drift(wanted.sigma_m, begin_s, end_s, random, wanted.kind);
   ScannedBuilding made;
   made.truth.name = name;
   made.truth.mobile = true;
-  made.truth.drift_m = drift_m;
+  made.truth.drift_m = wanted.sigma_m;
+  for (int k = 0; k <= kDriftSamples; ++k) {
+    const double time_s = begin_s + (end_s - begin_s) * k / kDriftSamples;
+    made.truth.drift.push_back({time_s, drift.at(time_s)});
+  }
   Scan& scan = made.scan;
   scan.name = name;
   scan.local_origin = local_origin_;

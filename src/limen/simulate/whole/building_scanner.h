@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "limen/model/scan.h"
+#include "limen/simulate/scanner/drift.h"
 #include "limen/simulate/scanner/ray_caster.h"
 #include "limen/simulate/whole/project_truth.h"
 #include "limen/simulate/whole/scan_style.h"
@@ -21,6 +22,12 @@ struct ScannedBuilding {
   SimulatedScan truth;
 };
 
+/// By how much the path of a pass errs, one standard deviation per axis, and how.
+struct PassDrift {
+  double sigma_m = 0.0;
+  DriftKind kind = DriftKind::waves;
+};
+
 /// Scans a building from one place after the other. The building must outlive it.
 class BuildingScanner {
  public:
@@ -31,9 +38,9 @@ class BuildingScanner {
   [[nodiscard]] const RayCaster& caster() const { return caster_; }
   ScannedBuilding station(const std::string& name, const StationPlace& place, const ScanStyle& style,
                           std::uint64_t seed);
-  /// A drive along a path: about `points`, in the world's frame, with a slow error of `drift_m`.
-  ScannedBuilding pass(const std::string& name, const Trajectory& path, std::size_t points, double drift_m,
-                       const ScannerOptions& scanner, std::uint64_t seed);
+  /// A drive along a path: about `points`, in the world's frame, with a slow error.
+  ScannedBuilding pass(const std::string& name, const Trajectory& path, std::size_t points,
+                       const PassDrift& drift, const ScannerOptions& scanner, std::uint64_t seed);
   /// Of all scans so far, in their order.
   [[nodiscard]] std::vector<SharedSurface> shared() const { return counter_.shared(); }
 

@@ -54,8 +54,8 @@ class ProjectSimulation {
     }
     for (std::size_t i = 0; i < building_.passes.size(); ++i) {
       monitor_.throw_if_cancelled();
-      record(scanner_.pass(fmt::format("pass_{}", i + 1), building_.passes[i], points_of_pass(i), o_.drift_m,
-                           o_.scanner, scan_seed()));
+      record(scanner_.pass(fmt::format("pass_{}", i + 1), building_.passes[i], points_of_pass(i),
+                           {o_.drift_m, o_.drift}, o_.scanner, scan_seed()));
       monitor_.advance(++done, total);
     }
     truth_.shared = scanner_.shared();

@@ -8,6 +8,7 @@
 
 #include "limen/base/progress.h"
 #include "limen/model/scan.h"
+#include "limen/simulate/scanner/drift.h"
 #include "limen/simulate/scanner/scanner.h"
 #include "limen/simulate/whole/project_truth.h"
 
@@ -23,6 +24,7 @@ struct ProjectSceneOptions {
   std::size_t points_pass = 0;          ///< of each pass, about; 0: 6 000 a metre, at most 1.2 million
   bool any_rotation = false;            ///< stations at any rotation, else level with any heading
   double drift_m = 0.008;               ///< slow error of the passes, one standard deviation per axis
+  DriftKind drift = DriftKind::waves;
   double open_door_share = 0.9;
   bool styles = false;  ///< every station in a style at random (scan_style.h)
   ScannerOptions scanner;

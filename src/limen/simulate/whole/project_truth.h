@@ -21,15 +21,22 @@ struct ProjectRoom {
   bool furnished_alike = false;  ///< with the design's furniture, placed by hand
 };
 
+/// By how much the path of a pass errs at a time.
+struct DriftSample {
+  double time_s = 0.0;
+  Vector3d error = Vector3d::Zero();  ///< of what was measured then, world axes, metres
+};
+
 /// What is true of one scan of a project.
 struct SimulatedScan {
   std::string name;  ///< of the file, less its ending
   bool mobile = false;
   std::size_t points = 0;
-  int room = -1;            ///< index into ProjectTruth::rooms; -1: the street
-  double drift_m = 0.0;     ///< error of the trajectory that was put in, one standard deviation per axis
-  double surface_m2 = 0.0;  ///< of the building and its surroundings, seen by it
-  Rigid3 local_from_scan;   ///< scan frame to world less ProjectTruth::local_origin
+  int room = -1;         ///< index into ProjectTruth::rooms; -1: the street
+  double drift_m = 0.0;  ///< error of the trajectory that was put in, one standard deviation per axis
+  std::vector<DriftSample> drift;       ///< of a pass; it goes evenly from one to the next
+  double surface_m2 = 0.0;              ///< of the building and its surroundings, seen by it
+  Rigid3 local_from_scan;               ///< scan frame to world less ProjectTruth::local_origin
   Vector3d scanner = Vector3d::Zero();  ///< of a station, in its own frame; not always told in the file
 };
 

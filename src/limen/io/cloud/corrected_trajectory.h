@@ -1,0 +1,19 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+
+#include "limen/base/progress.h"
+#include "limen/io/cloud/transform_cloud.h"
+
+namespace limen {
+
+/// Writes where the scanner of a mobile pass was, moved as its points are: text with a header line,
+/// `time,x,y,z` in seconds and metres, that read_trajectory() reads; a place every 5 ms at most. Returns the
+/// number of places; where the points do not tell where they were seen from or when, nothing is written.
+std::size_t write_corrected_trajectory(const StationToMove& pass, const std::filesystem::path& output,
+                                       Monitor& monitor = silent_monitor());
+
+}  // namespace limen

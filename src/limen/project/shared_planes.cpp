@@ -1,0 +1,203 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/project/shared_planes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <utility>
+
+#include "limen/base/angles.h"
+
+namespace limen {
+namespace {
+
+constexpr double kDrawnM = 0.01;  // by how much a building misses its model
+
+// Tiles of one plane: how flat built walls are, and how many of them err independently.
+constexpr double kFlatM = 0.002;
+constexpr double kBendPerM = 0.0003;  // a long wall bends
+constexpr double kTilesThatCount = 16.0;
+const double kSharedCosine = std::cos(radians(2.0));
+constexpr double kSharedM = 0.04;
+
+// Of what a bent pass sees.
+constexpr double kPatchM = 10.0;  // of a surface that counts as a plane
+constexpr double kStripTiles = 8.0;
+constexpr double kStripM = 0.001;  // a strip of a wall stands out by so much
+constexpr double kNearStripM = 10.0;
+
+}  // namespace
+
+SharedPlanes::SharedPlanes(const std::vector<ProjectNode>& nodes, const SolvedGraph& solved,
+                           const BentPasses& passes)
+    : nodes_(nodes), solved_(solved), passes_(passes) {
+  first_.push_back(0);
+  for (const ProjectNode& node : nodes) first_.push_back(first_.back() + node.digest.planes.size());
+  for (std::size_t k = 0; k < first_.back(); ++k) root_.push_back(k);
+  for (std::size_t n = 0; n < nodes.size(); ++n) {
+    if (!passes.bends(static_cast<int>(n))) continue;
+    std::vector<std::vector<std::size_t>>& of_plane = strips_[n];
+    of_plane.resize(digest(n).planes.size());
+    for (std::size_t k = 0; k < digest(n).track.strips.size(); ++k)
+      of_plane[static_cast<std::size_t>(digest(n).track.strips[k].plane)].push_back(k);
+  }
+}
+
+std::size_t SharedPlanes::find(std::size_t k) {
+  while (root_[k] != k) k = root_[k] = root_[root_[k]];
+  return k;
+}
+
+template <typename Visit>
+void SharedPlanes::for_each(const Visit& visit) {
+  for (std::size_t node = 0; node < nodes_.size(); ++node) {
+    for (std::size_t plane = 0; plane < digest(node).planes.size(); ++plane)
+      visit(node, plane, find(first_[node] + plane));
+  }
+}
+
+void SharedPlanes::join(int source, int source_plane, int target, int target_plane) {
+  const auto source_node = static_cast<std::size_t>(source);
+  const auto target_node = static_cast<std::size_t>(target);
+  const PlaneDigest& a = digest(source_node).planes[static_cast<std::size_t>(source_plane)];
+  const PlaneDigest& b = digest(target_node).planes[static_cast<std::size_t>(target_plane)];
+  const Rigid3& frame_from_a = solved_.nodes[source_node].frame_from_node;
+  const Rigid3& frame_from_b = solved_.nodes[target_node].frame_from_node;
+  const Plane in_frame = transformed(frame_from_a, a.plane);
+  const double cosine = in_frame.normal.dot(frame_from_b.rotation * b.plane.normal);
+  if (std::abs(cosine) < kSharedCosine) return;
+  if (std::abs(in_frame.signed_distance(frame_from_b * b.centroid)) > kSharedM) return;
+  const std::size_t x = find(first_[source_node] + static_cast<std::size_t>(source_plane));
+  const std::size_t y = find(first_[target_node] + static_cast<std::size_t>(target_plane));
+  root_[std::max(x, y)] = std::min(x, y);
+}
+
+PlaneObservation SharedPlanes::whole_plane(std::size_t node, const PlaneDigest& seen) const {
+  PlaneObservation observation;
+  observation.node = static_cast<int>(node);
+  observation.moments = seen.moments;
+  observation.anchor = seen.centroid;
+  const double length = std::sqrt(12.0 * seen.moments.covariance().trace());
+  const double own = std::hypot(kFlatM, kBendPerM * length);
+  // What a trajectory drifts by is one for the whole plane.
+  observation.sigma_m = std::hypot(own, digest(node).drift_m * std::sqrt(kTilesThatCount));
+  if (digest(node).model) observation.sigma_m = std::hypot(own, kDrawnM * std::sqrt(kTilesThatCount));
+  observation.most_points = kTilesThatCount;
+  return observation;
+}
+
+void SharedPlanes::tell(const std::vector<bool>& taken, JointProblem& problem) {
+  std::map<std::size_t, std::vector<std::pair<std::size_t, std::size_t>>> members;
+  for_each([&](std::size_t node, std::size_t plane, std::size_t root) {
+    if (taken[node] && digest(node).planes[plane].moments.count >= 3.0)
+      members[root].emplace_back(node, plane);
+  });
+  for (const auto& [root, seen] : members) {
+    std::set<std::size_t> seers;
+    bool is_bent = false;
+    for (const auto& [node, plane] : seen) {
+      seers.insert(node);
+      is_bent = is_bent || passes_.bends(static_cast<int>(node));
+    }
+    if (is_bent) {
+      tell_patches(root, seen, problem);
+      continue;
+    }
+    if (seers.size() < 2) continue;
+    for (const auto& [node, plane] : seen) {
+      PlaneObservation observation = whole_plane(node, digest(node).planes[plane]);
+      observation.plane = problem.planes;
+      problem.observations.push_back(observation);
+    }
+    ++problem.planes;
+  }
+}
+
+void SharedPlanes::tell_patches(std::size_t root,
+                                const std::vector<std::pair<std::size_t, std::size_t>>& members,
+                                JointProblem& problem) {
+  const auto& [first_node, first_plane] = members.front();
+  const PlaneDigest& first = digest(first_node).planes[first_plane];
+  const Rigid3& frame_from_first = solved_.nodes[first_node].frame_from_node;
+  const PlaneFrame squares =
+      make_frame(transformed(frame_from_first, first.plane), frame_from_first * first.centroid);
+  std::map<PatchKey, std::vector<Seen>> patches;
+  const auto add = [&](const PlaneObservation& seen, const Rigid3& pose, int from) {
+    const Vector2d at = squares.to_plane(pose * (seen.anchor + seen.moments.mean())) / kPatchM;
+    patches[{root, static_cast<int>(std::floor(at.x())), static_cast<int>(std::floor(at.y()))}].push_back(
+        {seen, from});
+  };
+  for (const auto& [node, plane] : members) {
+    const Rigid3& whole = solved_.nodes[node].frame_from_node;
+    const int number = static_cast<int>(node);
+    if (!passes_.bends(number)) {
+      add(whole_plane(node, digest(node).planes[plane]), whole, number);
+      continue;
+    }
+    const double unfollowed = passes_.unfollowed_m(number);
+    for (const std::size_t k : strips_.at(node)[plane]) {
+      const PassStrip& strip = digest(node).track.strips[k];
+      PlaneObservation seen;
+      seen.moments = strip.moments;
+      seen.anchor = strip.anchor;
+      seen.most_points = kStripTiles;
+      // What is common to the strip no number of tiles makes less.
+      const double common = std::hypot(kStripM, unfollowed);
+      seen.sigma_m = std::hypot(kFlatM, common * std::sqrt(std::min(kStripTiles, strip.moments.count)));
+      seen.node = static_cast<int>(k);  // for now: the node is made where the patch counts
+      // Parts of a way are told apart by negative numbers.
+      add(seen, passes_.pose_at(number, whole, strip.place),
+          -1 - static_cast<int>(nodes_.size()) -
+              static_cast<int>(2.0 * strip.place) * static_cast<int>(nodes_.size()) - number);
+    }
+  }
+  keep(patches, problem);
+}
+
+/// The patches that are seen twice.
+void SharedPlanes::keep(const std::map<PatchKey, std::vector<Seen>>& patches, JointProblem& problem) const {
+  for (const auto& [key, seen] : patches) {
+    std::set<int> from;
+    for (const Seen& one : seen) from.insert(one.from);
+    if (from.size() < 2) continue;
+    for (const Seen& one : seen) {
+      PlaneObservation observation = one.observation;
+      observation.plane = problem.planes;
+      if (one.from < 0) {
+        const int node = (-1 - one.from) % static_cast<int>(nodes_.size());
+        const PassStrip& strip =
+            digest(static_cast<std::size_t>(node)).track.strips[static_cast<std::size_t>(observation.node)];
+        observation.node = passes_.node_at(problem, node, strip.place);
+      }
+      problem.observations.push_back(observation);
+    }
+    ++problem.planes;
+  }
+}
+
+double SharedPlanes::place_of(int node, const std::vector<int>& planes, const Vector3d& x_in_frame) const {
+  const auto n = static_cast<std::size_t>(node);
+  std::vector<std::pair<double, double>> near;  // place along the way, and how much was seen there
+  std::vector<std::pair<double, double>> all;
+  for (const int plane : planes) {
+    for (const std::size_t k : strips_.at(n)[static_cast<std::size_t>(plane)]) {
+      const PassStrip& strip = digest(n).track.strips[k];
+      const Vector3d at = solved_.nodes[n].frame_from_node * (strip.anchor + strip.moments.mean());
+      all.emplace_back(strip.place, strip.moments.count);
+      if ((at - x_in_frame).norm() < kNearStripM) near.emplace_back(strip.place, strip.moments.count);
+    }
+  }
+  std::vector<std::pair<double, double>>& strips = near.empty() ? all : near;
+  if (strips.empty()) return 0.5 * (digest(n).track.way.knots() - 1);
+  std::sort(strips.begin(), strips.end());
+  double half = 0.0;
+  for (const auto& [place, weight] : strips) half += 0.5 * weight;
+  for (const auto& [place, weight] : strips) {
+    half -= weight;
+    if (half <= 0.0) return place;
+  }
+  return strips.back().first;
+}
+
+}  // namespace limen

@@ -1,0 +1,59 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <tuple>
+#include <vector>
+
+#include "limen/project/adjust/plane_adjustment.h"
+#include "limen/project/graph/pose_graph.h"
+#include "limen/project/passes/bent_passes.h"
+#include "limen/project/project_state.h"
+
+namespace limen {
+
+/// Planes of all scans, those that are one surface joined.
+class SharedPlanes {
+ public:
+  /// `solved`: the poses by which planes are compared; `passes` as they are bent so far. All outlive this.
+  SharedPlanes(const std::vector<ProjectNode>& nodes, const SolvedGraph& solved, const BentPasses& passes);
+
+  /// Joins two planes where they lie in one under the solved poses as well.
+  void join(int source, int source_plane, int target, int target_plane);
+
+  /// Adds the observations of the planes that two nodes or more see, or a bent pass at two times: of a bent
+  /// pass strip by strip, and of what it sees patch by patch, for long walls bend.
+  void tell(const std::vector<bool>& taken, JointProblem& problem);
+
+  /// Where along its way a pass saw what it shares with another scan, in knots: the median over the strips of
+  /// these planes near a place of the frame.
+  [[nodiscard]] double place_of(int node, const std::vector<int>& planes, const Vector3d& x_in_frame) const;
+
+ private:
+  /// A patch of a surface: its planes' root, and a square of it.
+  using PatchKey = std::tuple<std::size_t, int, int>;
+  struct Seen {
+    PlaneObservation observation;
+    int from = 0;  ///< strips of one part of a way, and all of another scan, count as one
+  };
+
+  std::size_t find(std::size_t k);
+  template <typename Visit>
+  void for_each(const Visit& visit);
+  [[nodiscard]] const ScanDigest& digest(std::size_t node) const { return nodes_[node].digest; }
+  [[nodiscard]] PlaneObservation whole_plane(std::size_t node, const PlaneDigest& seen) const;
+  void tell_patches(std::size_t root, const std::vector<std::pair<std::size_t, std::size_t>>& members,
+                    JointProblem& problem);
+  void keep(const std::map<PatchKey, std::vector<Seen>>& patches, JointProblem& problem) const;
+
+  const std::vector<ProjectNode>& nodes_;
+  const SolvedGraph& solved_;
+  const BentPasses& passes_;
+  std::vector<std::size_t> first_;
+  std::vector<std::size_t> root_;
+  std::map<std::size_t, std::vector<std::vector<std::size_t>>> strips_;  // of bent nodes: of each plane
+};
+
+}  // namespace limen
