@@ -90,10 +90,16 @@ TEST_F(ViewTest, BothSidesOfAResultStandInTheTargetsFrame) {
   EXPECT_NEAR(low_of(scene, "side-0")[1], 2000.0, 1e-6);
   EXPECT_NEAR(low_of(scene, "side-0")[2], 5.0, 1e-6);
   EXPECT_NEAR(low_of(scene, "side-1")[0], 1000.0, 1e-6);
+  // Looked at from elsewhere: the files are sought from where the result lies, upwards.
+  std::filesystem::create_directories(work() / "site/results/one");
+  for (const char* name : {"a.xyz", "b.xyz"}) std::filesystem::rename(work() / name, work() / "site" / name);
+  std::filesystem::rename(work() / "result.json", work() / "site/results/one/result.json");
+  must_view({"site/results/one/result.json", "-o", "out.html"});
+  EXPECT_EQ(scene_of("out.html"), scene);
   // A file that is not the registered one would stand anywhere.
   result["inputs"]["source"]["sha256"] = std::string(64, 'a');
-  write_whole(work() / "result.json", result.dump());
-  EXPECT_NE(error_of({"result.json", "-o", "other.html"}).find("SHA-256"), std::string::npos);
+  write_whole(work() / "site/result.json", result.dump());
+  EXPECT_NE(error_of({"site/result.json", "-o", "other.html"}).find("SHA-256"), std::string::npos);
   EXPECT_FALSE(std::filesystem::exists(work() / "other.html"));
 }
 

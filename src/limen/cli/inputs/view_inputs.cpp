@@ -34,11 +34,15 @@ bool is_json_name(const std::string& path) {
   return lower_case(fs::path(path).extension().string()) == ".json";
 }
 
-/// A file that another one names: from here, else from there.
+/// A file that another one names: as seen from here, else from the folders that one lies in, for it was
+/// written from one of them.
 std::string found_beside(const std::string& file, const std::string& named_by) {
   std::error_code ignored;
-  const fs::path beside = fs::path(named_by).parent_path() / file;
-  return !fs::exists(file, ignored) && fs::exists(beside, ignored) ? beside.string() : file;
+  if (fs::exists(file, ignored)) return file;
+  for (fs::path folder = fs::absolute(named_by).parent_path();; folder = folder.parent_path()) {
+    if (fs::exists(folder / file, ignored)) return (folder / file).string();
+    if (folder == folder.parent_path()) return file;
+  }
 }
 
 std::vector<ViewInput> sides_of_result(const std::string& path, int alternative) {
