@@ -65,8 +65,9 @@ int run(const ViewCommand& command, const Session& session) {
   const std::string page = view_page(scene);
   file.write(page);
   file.commit();
-  session.say(fmt::format("{} files, {:.1f} MB; written to {}: open it in a browser\n", scene.sides.size(),
-                          static_cast<double>(page.size()) / 1e6, command.output));
+  session.say(fmt::format("{} file{}, {:.1f} MB; written to {}: open it in a browser\n", scene.sides.size(),
+                          scene.sides.size() == 1 ? "" : "s", static_cast<double>(page.size()) / 1e6,
+                          command.output));
   session.answer(viewed_as_json(command, scene, page.size()));
   return kExitOk;
 }
