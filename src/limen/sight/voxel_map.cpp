@@ -3,9 +3,11 @@
 #include "limen/sight/voxel_map.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 #include "limen/base/error.h"
+#include "limen/base/parallel.h"
 
 namespace limen {
 namespace {
@@ -27,6 +29,10 @@ Extent robust_extent(const std::vector<Vector3d>& points) {
     extent.high[axis] = values[values.size() - 1 - values.size() / 1000] + 0.5;
   }
   return extent;
+}
+
+std::size_t words_for(std::size_t bits) {
+  return (bits + 63) / 64;
 }
 
 std::size_t place_in_block(const std::array<std::int32_t, 3>& key) {
@@ -61,27 +67,27 @@ VoxelMap::VoxelMap(const Scan& scan, const Features& features, const VoxelMapOpt
 VoxelMap::VoxelMap(const VoxelMapState& state, const Features& features)
     : facets_(facets_of(features)), edge_(state.edge_m), low_(state.low), size_(state.size) {
   constexpr std::int32_t kMostCubes = 1 << 20;
-  double cubes = 1.0;
-  for (const std::int32_t size : size_) cubes *= size >= 0 && size <= kMostCubes ? size : 1e300;
+  double told = 1.0;
+  for (const std::int32_t size : size_) told *= size >= 0 && size <= kMostCubes ? size : 1e300;
   const bool fits =
-      edge_ > 0 && cubes <= 1e10 &&
-      (state.free_bits.empty() || state.free_bits.size() == (static_cast<std::size_t>(cubes) + 7) / 8);
+      edge_ > 0 && told <= 1e10 &&
+      (state.free_bits.empty() || state.free_bits.size() == (static_cast<std::size_t>(told) + 7) / 8);
   if (!fits) throw Error("the map of cubes does not fit its scan", "kept features", "have them made again");
-  if (cubes == 0.0) return;
+  if (told == 0.0) return;
   make_blocks();
   enter(features);
   if (state.free_bits.empty()) return;
-  free_.resize(static_cast<std::size_t>(cubes));
-  for (std::size_t k = 0; k < free_.size(); ++k) free_[k] = ((state.free_bits[k / 8] >> (k % 8)) & 1U) != 0;
+  free_.assign(words_for(cubes()), 0);
+  for (std::size_t k = 0; k < state.free_bits.size(); ++k)
+    free_[k / 8] |= std::uint64_t{state.free_bits[k]} << (8 * (k % 8));
 }
 
 VoxelMapState VoxelMap::state() const {
   VoxelMapState state{edge_, low_, size_, {}};
-  state.free_bits.assign((free_.size() + 7) / 8, 0);
-  for (std::size_t k = 0; k < free_.size(); ++k) {
-    if (free_[k])
-      state.free_bits[k / 8] = static_cast<std::uint8_t>(state.free_bits[k / 8] | (1U << (k % 8)));
-  }
+  if (free_.empty()) return state;
+  state.free_bits.resize((cubes() + 7) / 8);
+  for (std::size_t k = 0; k < state.free_bits.size(); ++k)
+    state.free_bits[k] = static_cast<std::uint8_t>(free_[k / 8] >> (8 * (k % 8)));
   return state;
 }
 
@@ -161,34 +167,51 @@ void VoxelMap::enter(const Features& features) {
   }
 }
 
-void VoxelMap::carve(const Scan& scan, double margin_m) {
-  free_.assign(static_cast<std::size_t>(size_[0]) * static_cast<std::size_t>(size_[1]) *
-                   static_cast<std::size_t>(size_[2]),
-               false);
-  const std::size_t step = 1 + scan.size() / kMaxRays;
-  for (std::size_t i = 0; i < scan.size(); i += step) {
-    const Vector3d ray = scan.points[i] - scan.centre(i);
-    const double range = ray.norm();
-    if (range <= margin_m) continue;
-    carve_ray(scan.centre(i), scan.points[i] - ray * (margin_m / range));
-  }
+std::size_t VoxelMap::cubes() const {
+  return static_cast<std::size_t>(size_[0]) * static_cast<std::size_t>(size_[1]) *
+         static_cast<std::size_t>(size_[2]);
 }
 
+void VoxelMap::carve(const Scan& scan, double margin_m) {
+  constexpr std::size_t kRaysPerPiece = 4096;
+  free_.assign(words_for(cubes()), 0);
+  const std::size_t step = 1 + scan.size() / kMaxRays;
+  parallel_for((scan.size() + step - 1) / step, kRaysPerPiece, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      const Vector3d& centre = scan.centre(k * step);
+      const Vector3d ray = scan.points[k * step] - centre;
+      const double range = ray.norm();
+      if (range > margin_m) carve_ray(centre, scan.points[k * step] - ray * (margin_m / range));
+    }
+  });
+}
+
+/// Rays of several threads may pass one cube; which of them says so is all one.
 void VoxelMap::carve_ray(const Vector3d& from, const Vector3d& to) {
   const double length = (to - from).norm();
   const auto steps = static_cast<int>(length / (0.5 * edge_));
+  const Vector3d start = (from - low_) / edge_;
+  const Vector3d stride = (to - from) / (edge_ * std::max(1, steps));
+  const Vector3d end(size_[0], size_[1], size_[2]);
   std::int64_t last = -1;
   for (int k = 0; k <= steps; ++k) {
-    const std::int64_t index =
-        index_of(key_of(from + (to - from) * (static_cast<double>(k) / std::max(1, steps))));
-    if (index >= 0 && index != last) free_[static_cast<std::size_t>(index)] = true;
+    const Vector3d x = start + static_cast<double>(k) * stride;
+    const bool inside =
+        x[0] >= 0.0 && x[1] >= 0.0 && x[2] >= 0.0 && x[0] < end[0] && x[1] < end[1] && x[2] < end[2];
+    if (!inside) continue;
+    const std::int64_t index = index_of(
+        {static_cast<std::int32_t>(x[0]), static_cast<std::int32_t>(x[1]), static_cast<std::int32_t>(x[2])});
+    if (index == last) continue;
     last = index;
+    const std::uint64_t bit = std::uint64_t{1} << (static_cast<std::uint64_t>(index) % 64);
+    const std::atomic_ref<std::uint64_t> word(free_[static_cast<std::size_t>(index) / 64]);
+    if ((word.load(std::memory_order_relaxed) & bit) == 0) word.fetch_or(bit, std::memory_order_relaxed);
   }
 }
 
 bool VoxelMap::is_free(const Vector3d& x) const {
   const std::int64_t index = index_of(key_of(x));
-  return index >= 0 && free_[static_cast<std::size_t>(index)];
+  return index >= 0 && (free_[static_cast<std::size_t>(index) / 64] >> (index % 64) & 1U) != 0;
 }
 
 bool VoxelMap::passed_freely(const SightQuery& query) const {

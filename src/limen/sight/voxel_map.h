@@ -50,6 +50,7 @@ class VoxelMap : public SpaceView {
   using Key = std::array<std::int32_t, 3>;
   [[nodiscard]] Key key_of(const Vector3d& x) const;
   [[nodiscard]] std::int64_t index_of(const Key& key) const;  ///< -1 outside
+  [[nodiscard]] std::size_t cubes() const;                    ///< of the whole extent
   [[nodiscard]] bool is_free(const Vector3d& x) const;
   [[nodiscard]] bool passed_freely(const SightQuery& query) const;
   [[nodiscard]] std::size_t block_of(const Key& key) const;
@@ -70,7 +71,7 @@ class VoxelMap : public SpaceView {
   std::vector<std::int32_t> block_at_;  ///< number of the block in `cube_at_`, or -1
   std::vector<std::int32_t> cube_at_;   ///< 512 per block: index into `cubes_`, or -1
   std::vector<Cube> cubes_;
-  std::vector<bool> free_;
+  std::vector<std::uint64_t> free_;  ///< one bit per cube; empty: no ray frees any
 };
 
 }  // namespace limen

@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limen/cli/inputs/register_inputs.h"
 
+#include <string>
 #include <utility>
 
 #include "limen/base/error.h"
+#include "limen/base/run_both.h"
 #include "limen/bim/read_bim.h"
 #include "limen/cli/inputs/scan_options.h"
 #include "limen/files/file_hash.h"
@@ -35,11 +37,14 @@ Rigid3 pose_in_group(const std::string& path) {
 Side read_side(const SideOptions& options, const Session& session) {
   if (is_bim_file(options.path)) return read_model_side(options, session);
   Side side;
-  InputScan read = read_input_scan(options.path, options.reading, session);
+  InputScan read;
+  std::string hash;
+  run_both([&] { read = read_input_scan(options.path, options.reading, session); },
+           [&] { hash = sha256_of_file(options.path); });
   side.input.scans.push_back({std::move(read.scan), {}});
   side.summary = summarise(options.path, side.input.scans.front().scan);
   side.summary.metres_per_unit = read.metres_per_unit;
-  side.summary.sha256 = sha256_of_file(options.path);
+  side.summary.sha256 = std::move(hash);
   // The trajectory is that of the side's own scan.
   ReadOptions reading = options.reading;
   reading.trajectory.reset();
