@@ -19,9 +19,10 @@ struct AxisBox {
   [[nodiscard]] double overlap_area(const AxisBox& other, const Vector2d& shift) const {
     const double w =
         std::min(high.x() + shift.x(), other.high.x()) - std::max(low.x() + shift.x(), other.low.x());
+    if (!(w > 0)) return 0.0;
     const double h =
         std::min(high.y() + shift.y(), other.high.y()) - std::max(low.y() + shift.y(), other.low.y());
-    return w > 0 && h > 0 ? w * h * fill * other.fill : 0.0;
+    return h > 0 ? w * h * fill * other.fill : 0.0;
   }
 };
 
@@ -58,8 +59,9 @@ class ShiftSupport {
   }
   void add(const AxisBox& source, const AxisBox& target) { boxes_.push_back({source, target}); }
 
-  /// m^2, at a shift `in_plane` of the source across the axis.
-  [[nodiscard]] double at(const Vector2d& in_plane) const;
+  /// m^2, at a shift `in_plane` of the source across the axis. Where it is plain that it is no more than
+  /// `enough`, something between it and `enough`.
+  [[nodiscard]] double at(const Vector2d& in_plane, double enough) const;
   /// No shift gives more, m^2.
   [[nodiscard]] double most() const { return most_m2_; }
 

@@ -39,16 +39,30 @@ TEST(AxisPairs, SupportAtAShiftIsTheSupportThere) {
   const AxisPairs along = random_pairs(200);
   RandomStream random(8, 1);
   double most = 0.0;
+  int ended_early = 0;
   for (int k = 0; k < 500; ++k) {
     const Vector3d shift(random.uniform(-3.0, 3.0), random.uniform(-3.0, 3.0), random.uniform(-3.2, 3.2));
     const double value = along.axis.direction.dot(shift);
     const ShiftSupport there = along.support_at(value, kTolerance);
     const Vector2d in_plane(along.axis.frame.u.dot(shift), along.axis.frame.v.dot(shift));
-    EXPECT_EQ(there.at(in_plane), along.support(shift, kTolerance));
-    EXPECT_GE(there.most(), there.at(in_plane));
-    most = std::max(most, there.at(in_plane));
+    const double support = along.support(shift, kTolerance);
+    EXPECT_EQ(there.at(in_plane, -1.0), support);
+    EXPECT_GE(there.most(), support);
+    most = std::max(most, support);
+    for (const double enough : {0.5 * support, 0.99 * support}) {
+      if (support > 0.0) {
+        EXPECT_EQ(there.at(in_plane, enough), support);
+      }
+    }
+    for (const double enough : {support + 0.01, 2.0 * support + 0.1}) {
+      const double told = there.at(in_plane, enough);
+      EXPECT_LE(told, enough);
+      EXPECT_GE(told, support - 1e-9);
+      ended_early += told != support ? 1 : 0;
+    }
   }
   EXPECT_GT(most, 0.0);
+  EXPECT_GT(ended_early, 50);
 }
 
 TEST(AxisPairs, NothingGivesMoreThanTheBound) {

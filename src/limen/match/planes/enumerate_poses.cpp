@@ -276,7 +276,8 @@ class PoseEnumerator {
       const AxisPairs& along = axes[basis.axis[k]];
       const ShiftSupport& support = basis.supports[k][at[k]];
       const double here =
-          support.at({along.axis.frame.u.dot(translation), along.axis.frame.v.dot(translation)});
+          support.at({along.axis.frame.u.dot(translation), along.axis.frame.v.dot(translation)},
+                     least - (bound - support.most()));
       sum += here;
       bound += here - support.most();
       if (bound <= least) return 0.0;
