@@ -3,6 +3,7 @@
 #include "limen/extract/planes/grow_planes.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 
@@ -44,16 +45,41 @@ std::vector<std::uint32_t> all_positions(std::size_t size) {
   return positions;
 }
 
+/// Moments of the points of a plane, each product once.
+class LabelSums {
+ public:
+  void add(const Vector3d& p) {
+    const std::array<double, 10> of_point{1.0,         p[0],        p[1],        p[2],        p[0] * p[0],
+                                          p[0] * p[1], p[0] * p[2], p[1] * p[1], p[1] * p[2], p[2] * p[2]};
+    for (std::size_t i = 0; i < sums_.size(); ++i) sums_[i] += of_point[i];
+  }
+  void add(const LabelSums& other) {
+    for (std::size_t i = 0; i < sums_.size(); ++i) sums_[i] += other.sums_[i];
+  }
+  [[nodiscard]] PointMoments moments() const {
+    const std::array<double, 10>& s = sums_;
+    PointMoments moments;
+    moments.count = s[0];
+    moments.sum = {s[1], s[2], s[3]};
+    moments.outer << s[4], s[5], s[6], s[5], s[7], s[8], s[6], s[8], s[9];
+    return moments;
+  }
+
+ private:
+  std::array<double, 10> sums_{};  // 1, x, y, z, xx, xy, xz, yy, yz, zz
+};
+
 class PlaneGrower {
  public:
   PlaneGrower(const Scan& scan, const GrowOptions& options)
       : options_(options),
         sorted_(morton_order(scan.points, options.finest_cell_m)),
         labels_(scan.size(), -1) {
+    threshold_m_ = options_.inlier_threshold_m;
+    if (threshold_m_ > 0) return;
     const CellGrid grid(sorted_, all_positions(scan.size()), level_of(0.16, options_.finest_cell_m));
     noise_m_ = noise_of(grid);
-    threshold_m_ = options_.inlier_threshold_m > 0 ? options_.inlier_threshold_m
-                                                   : std::clamp(3.3 * noise_m_, 0.008, 0.03);
+    threshold_m_ = std::clamp(3.3 * noise_m_, 0.008, 0.03);
   }
 
   GrownPlanes run(Monitor& monitor) {
@@ -114,20 +140,22 @@ class PlaneGrower {
   }
 
   void sum_up() {
-    using Sums = std::vector<PointMoments>;
-    sums_ = parallel_reduce(
+    using Sums = std::vector<LabelSums>;
+    const Sums sums = parallel_reduce(
         labels_.size(), kPointsPerLabelling, Sums(sums_.size()),
         [&](std::size_t begin, std::size_t end) {
-          Sums sums(sums_.size());
+          Sums part(sums_.size());
           for (std::size_t k = begin; k < end; ++k) {
-            if (labels_[k] >= 0) sums[static_cast<std::size_t>(labels_[k])].add(sorted_.points[k]);
+            if (labels_[k] >= 0) part[static_cast<std::size_t>(labels_[k])].add(sorted_.points[k]);
           }
-          return sums;
+          return part;
         },
         [](Sums a, const Sums& b) {
-          for (std::size_t i = 0; i < a.size(); ++i) a[i] += b[i];
+          for (std::size_t i = 0; i < a.size(); ++i) a[i].add(b[i]);
           return a;
         });
+    std::transform(sums.begin(), sums.end(), sums_.begin(),
+                   [](const LabelSums& sum) { return sum.moments(); });
   }
 
   [[nodiscard]] GrownPlanes finish() const {

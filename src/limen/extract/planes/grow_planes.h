@@ -21,7 +21,8 @@ struct GrowOptions {
 
 struct GrownPlanes {
   PlaneLabels planes;
-  double noise_m = 0.0;             ///< one standard deviation of points about their local planes
+  /// One standard deviation of points about their local planes, where the threshold is made of it; else 0.
+  double noise_m = 0.0;
   double inlier_threshold_m = 0.0;  ///< the threshold used
 };
 

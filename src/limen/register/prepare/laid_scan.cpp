@@ -88,7 +88,7 @@ std::vector<CurvePlace> thinned(const std::vector<CurvePlace>& sorted, std::size
 
 }  // namespace
 
-Scan laid_in(const Scan& scan, const ScanFrame& frame, std::size_t most) {
+Scan laid_in(const Scan& scan, const ScanFrame& frame, std::size_t most, bool lines) {
   const auto placed = [&](const Vector3d& x) { return Vector3d(frame.frame_from_scan * (x - frame.corner)); };
   std::vector<Vector3d> points(scan.size());
   parallel_for(scan.size(), kLaidPerPiece, [&](std::size_t begin, std::size_t end) {
@@ -108,15 +108,19 @@ Scan laid_in(const Scan& scan, const ScanFrame& frame, std::size_t most) {
   });
   if (scan.mobile()) {
     laid.centres.resize(sorted.size());
-    for (std::size_t k = 0; k < sorted.size(); ++k) laid.centres[k] = placed(scan.centres[sorted[k].index]);
-    if (!scan.times_s.empty()) {
-      laid.times_s.resize(sorted.size());
-      for (std::size_t k = 0; k < sorted.size(); ++k) laid.times_s[k] = scan.times_s[sorted[k].index];
-    }
+    laid.times_s.resize(scan.times_s.empty() ? 0 : sorted.size());
+    parallel_for(sorted.size(), kLaidPerPiece, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k) {
+        laid.centres[k] = placed(scan.centres[sorted[k].index]);
+        if (!laid.times_s.empty()) laid.times_s[k] = scan.times_s[sorted[k].index];
+      }
+    });
   } else if (frame.place.source != PlaceSource::unknown) {
     laid.centres = {placed(frame.place.centre)};
   }
-  if (scan.topology.known()) {
+  if (lines && scan.topology.known()) {
+    laid.topology.line.reserve(sorted.size());
+    laid.topology.index.reserve(sorted.size());
     for (const CurvePlace& place : sorted) {
       laid.topology.line.push_back(scan.topology.line[place.index]);
       laid.topology.index.push_back(scan.topology.index[place.index]);

@@ -16,6 +16,8 @@ namespace limen {
 /// Of more than `most` points (0: all are kept) so many of each cube are kept that about `most` are left, the
 /// cubes as small as that allows: what lies near the scanner is measured many times over, what lies far off
 /// stays as it is.
-Scan laid_in(const Scan& scan, const ScanFrame& frame, std::size_t most = 0);
+///
+/// `lines`: with the scan lines, where they are known.
+Scan laid_in(const Scan& scan, const ScanFrame& frame, std::size_t most = 0, bool lines = true);
 
 }  // namespace limen

@@ -49,6 +49,10 @@ void look_around(const Scan& laid, const PrepareOptions& options, PreparedScan& 
   prepared.settle_reach();
 }
 
+bool needs_lines(PlaneDetector detector) {
+  return detector == PlaneDetector::scan_lines || detector == PlaneDetector::published;
+}
+
 ScannerPlace in_world(ScannerPlace place, const Vector3d& local_origin) {
   if (place.source != PlaceSource::unknown && place.source != PlaceSource::per_point)
     place.centre += local_origin;
@@ -75,7 +79,8 @@ PreparedScan prepare_in_frame(const Scan& scan, const ScanFrame& frame, const Pr
   prepared.place = in_world(frame.place, scan.local_origin);
   prepared.mobile = scan.mobile();
   // Segments are found along the borders between neighbouring points: all of them.
-  const Scan laid = laid_in(scan, frame, options.segments ? 0 : options.most_points);
+  const bool lines = options.segments || needs_lines(options.extract.detect.detector);
+  const Scan laid = laid_in(scan, frame, options.segments ? 0 : options.most_points, lines);
   ExtractOptions extract = options.extract;
   extract.interior.enabled = extract.interior.enabled && (prepared.upright || prepared.mobile);
   {
