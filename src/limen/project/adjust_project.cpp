@@ -18,6 +18,8 @@ namespace {
 
 constexpr double kSharedM2 = 0.3;
 
+constexpr double kMostBentM = 0.5;  // of the pass's middle, beyond its pose as a whole
+const double kMostTurnedRad = radians(0.5);
 constexpr int kBendRounds = 8;
 constexpr int kLeastRounds = 2;
 constexpr double kSettled = 1.1;  // of a rate of drift, from round to round
@@ -26,16 +28,13 @@ constexpr double kSettled = 1.1;  // of a rate of drift, from round to round
 constexpr double kMostShiftM = 0.03;  // and three deviations of the links alone
 const double kMostTurnRad = radians(0.3);
 
-/// Where a link holds a pass that is bent: the node of its part that saw what both see.
-int held_node(const TriedPair& pair, const GraphLink& link, bool source, const SharedPlanes& shared,
-              const SolvedGraph& solved, const BentPasses& passes, JointProblem& problem) {
-  const int node = source ? link.source : link.target;
+/// Where a link holds a pass that is bent: the node of its parts that saw what both see.
+int held_node(const TriedPair& pair, int node, bool source, const SharedPlanes& shared,
+              const BentPasses& passes, JointProblem& problem) {
   if (!passes.bends(node)) return node;
   std::vector<int> planes;
   for (const PlaneMatch& match : pair.result.matches) planes.push_back(source ? match.source : match.target);
-  const Vector3d centre =
-      solved.nodes[static_cast<std::size_t>(link.target)].frame_from_node * link.poses.front().centre;
-  return passes.node_at(problem, node, shared.place_of(node, planes, centre));
+  return passes.node_at(problem, node, shared.places_of(node, planes));
 }
 
 JointProblem joint_problem(const std::vector<ProjectNode>& nodes, const std::vector<TriedPair>& pairs,
@@ -61,8 +60,8 @@ JointProblem joint_problem(const std::vector<ProjectNode>& nodes, const std::vec
       for (const PlaneMatch& match : pair.result.matches) {
         if (match.overlap_m2 >= kSharedM2) shared.join(link.source, match.source, link.target, match.target);
       }
-      edge.source = held_node(pair, link, true, shared, solved, passes, problem);
-      edge.target = held_node(pair, link, false, shared, solved, passes, problem);
+      edge.source = held_node(pair, link.source, true, shared, passes, problem);
+      edge.target = held_node(pair, link.target, false, shared, passes, problem);
     }
     problem.edges.push_back(edge);
   }
@@ -181,6 +180,15 @@ void bend(const std::vector<ProjectNode>& nodes, const std::vector<TriedPair>& p
   }
 }
 
+/// No trajectory that deserves the name is off by more: then something else is wrong, and passes stay rigid.
+bool drift_is_plausible(const std::vector<BentPass>& passes) {
+  return std::all_of(passes.begin(), passes.end(), [](const BentPass& pass) {
+    return std::all_of(pass.knots.begin(), pass.knots.end(), [](const BentKnot& knot) {
+      return knot.value.head<3>().norm() < kMostTurnedRad && knot.value.tail<3>().norm() < kMostBentM;
+    });
+  });
+}
+
 JointFinding adjust_with(const std::vector<ProjectNode>& nodes, const std::vector<TriedPair>& pairs,
                          const ProjectGraph& made, const UserWords& words, SolvedGraph& solved,
                          PlacedSurvey& survey, BentPasses& passes) {
@@ -213,7 +221,7 @@ JointFinding adjust_planes(const std::vector<ProjectNode>& nodes, const std::vec
     SolvedGraph bent_solved = solved;
     PlacedSurvey bent_survey = survey;
     JointFinding finding = adjust_with(nodes, pairs, made, words, bent_solved, bent_survey, passes);
-    if (finding.torn.empty() && !finding.contradicted) {
+    if (finding.torn.empty() && !finding.contradicted && drift_is_plausible(finding.passes)) {
       solved = std::move(bent_solved);
       survey = std::move(bent_survey);
       return finding;

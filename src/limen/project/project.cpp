@@ -177,7 +177,7 @@ class Run {
       const std::optional<ScanDigest> digest = store_.load_digest(node.key);
       if (!digest) throw Error("features cannot be read back", folder_.string(), "look at the disk");
       node.digest = *digest;
-      if (options_.rigid_passes) node.digest.track = {};
+      if (options_.rigid_passes) node.digest.track.way = {};
       ProjectScan scan;
       scan.file = file.path;
       scan.index = static_cast<int>(k);

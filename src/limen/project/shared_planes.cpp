@@ -22,10 +22,11 @@ const double kSharedCosine = std::cos(radians(2.0));
 constexpr double kSharedM = 0.04;
 
 // Of what a bent pass sees.
-constexpr double kPatchM = 10.0;  // of a surface that counts as a plane
+constexpr double kPatchM =
+    3.0;  // of a surface that counts as a plane: houses of a row stand out by a centimetre
 constexpr double kStripTiles = 8.0;
-constexpr double kStripM = 0.001;  // a strip of a wall stands out by so much
-constexpr double kNearStripM = 10.0;
+constexpr double kStripM = 0.001;    // a strip of a wall stands out by so much
+constexpr double kHeldPlaces = 6.0;  // along a way, where a link holds it
 
 }  // namespace
 
@@ -35,12 +36,11 @@ SharedPlanes::SharedPlanes(const std::vector<ProjectNode>& nodes, const SolvedGr
   first_.push_back(0);
   for (const ProjectNode& node : nodes) first_.push_back(first_.back() + node.digest.planes.size());
   for (std::size_t k = 0; k < first_.back(); ++k) root_.push_back(k);
-  for (std::size_t n = 0; n < nodes.size(); ++n) {
-    if (!passes.bends(static_cast<int>(n))) continue;
-    std::vector<std::vector<std::size_t>>& of_plane = strips_[n];
-    of_plane.resize(digest(n).planes.size());
+  strips_.resize(passes.any() ? nodes.size() : 0);
+  for (std::size_t n = 0; n < strips_.size(); ++n) {
+    strips_[n].resize(digest(n).planes.size());
     for (std::size_t k = 0; k < digest(n).track.strips.size(); ++k)
-      of_plane[static_cast<std::size_t>(digest(n).track.strips[k].plane)].push_back(k);
+      strips_[n][static_cast<std::size_t>(digest(n).track.strips[k].plane)].push_back(k);
   }
 }
 
@@ -114,6 +114,25 @@ void SharedPlanes::tell(const std::vector<bool>& taken, JointProblem& problem) {
   }
 }
 
+/// What is common to a strip no number of tiles makes less.
+SharedPlanes::Seen SharedPlanes::seen_strip(std::size_t node, std::size_t strip) const {
+  const ScanDigest& of = digest(node);
+  const PassStrip& saw = of.track.strips[strip];
+  const int number = static_cast<int>(node);
+  const bool bends = passes_.bends(number);
+  double common = of.model ? kDrawnM : kStripM;
+  if (of.mobile) common = std::hypot(kStripM, bends ? passes_.unfollowed_m(number) : of.drift_m);
+  Seen seen;
+  seen.observation.node = number;
+  seen.observation.moments = saw.moments;
+  seen.observation.anchor = saw.anchor;
+  seen.observation.most_points = kStripTiles;
+  seen.observation.sigma_m = std::hypot(kFlatM, common * std::sqrt(std::min(kStripTiles, saw.moments.count)));
+  seen.from = {node, bends ? static_cast<int>(2.0 * saw.place) : 0};
+  seen.place = saw.place;
+  return seen;
+}
+
 void SharedPlanes::tell_patches(std::size_t root,
                                 const std::vector<std::pair<std::size_t, std::size_t>>& members,
                                 JointProblem& problem) {
@@ -123,33 +142,16 @@ void SharedPlanes::tell_patches(std::size_t root,
   const PlaneFrame squares =
       make_frame(transformed(frame_from_first, first.plane), frame_from_first * first.centroid);
   std::map<PatchKey, std::vector<Seen>> patches;
-  const auto add = [&](const PlaneObservation& seen, const Rigid3& pose, int from) {
-    const Vector2d at = squares.to_plane(pose * (seen.anchor + seen.moments.mean())) / kPatchM;
-    patches[{root, static_cast<int>(std::floor(at.x())), static_cast<int>(std::floor(at.y()))}].push_back(
-        {seen, from});
-  };
   for (const auto& [node, plane] : members) {
     const Rigid3& whole = solved_.nodes[node].frame_from_node;
     const int number = static_cast<int>(node);
-    if (!passes_.bends(number)) {
-      add(whole_plane(node, digest(node).planes[plane]), whole, number);
-      continue;
-    }
-    const double unfollowed = passes_.unfollowed_m(number);
-    for (const std::size_t k : strips_.at(node)[plane]) {
-      const PassStrip& strip = digest(node).track.strips[k];
-      PlaneObservation seen;
-      seen.moments = strip.moments;
-      seen.anchor = strip.anchor;
-      seen.most_points = kStripTiles;
-      // What is common to the strip no number of tiles makes less.
-      const double common = std::hypot(kStripM, unfollowed);
-      seen.sigma_m = std::hypot(kFlatM, common * std::sqrt(std::min(kStripTiles, strip.moments.count)));
-      seen.node = static_cast<int>(k);  // for now: the node is made where the patch counts
-      // Parts of a way are told apart by negative numbers.
-      add(seen, passes_.pose_at(number, whole, strip.place),
-          -1 - static_cast<int>(nodes_.size()) -
-              static_cast<int>(2.0 * strip.place) * static_cast<int>(nodes_.size()) - number);
+    for (const std::size_t k : strips_[node][plane]) {
+      const Seen seen = seen_strip(node, k);
+      const Rigid3 pose = passes_.bends(number) ? passes_.pose_at(number, whole, seen.place) : whole;
+      const Vector3d middle = pose * (seen.observation.anchor + seen.observation.moments.mean());
+      const Vector2d at = squares.to_plane(middle) / kPatchM;
+      patches[{root, static_cast<int>(std::floor(at.x())), static_cast<int>(std::floor(at.y()))}].push_back(
+          seen);
     }
   }
   keep(patches, problem);
@@ -158,46 +160,40 @@ void SharedPlanes::tell_patches(std::size_t root,
 /// The patches that are seen twice.
 void SharedPlanes::keep(const std::map<PatchKey, std::vector<Seen>>& patches, JointProblem& problem) const {
   for (const auto& [key, seen] : patches) {
-    std::set<int> from;
+    std::set<std::pair<std::size_t, int>> from;
     for (const Seen& one : seen) from.insert(one.from);
     if (from.size() < 2) continue;
     for (const Seen& one : seen) {
       PlaneObservation observation = one.observation;
       observation.plane = problem.planes;
-      if (one.from < 0) {
-        const int node = (-1 - one.from) % static_cast<int>(nodes_.size());
-        const PassStrip& strip =
-            digest(static_cast<std::size_t>(node)).track.strips[static_cast<std::size_t>(observation.node)];
-        observation.node = passes_.node_at(problem, node, strip.place);
-      }
+      if (passes_.bends(observation.node))
+        observation.node = passes_.node_at(problem, observation.node, {one.place});
       problem.observations.push_back(observation);
     }
     ++problem.planes;
   }
 }
 
-double SharedPlanes::place_of(int node, const std::vector<int>& planes, const Vector3d& x_in_frame) const {
+std::vector<double> SharedPlanes::places_of(int node, const std::vector<int>& planes) const {
   const auto n = static_cast<std::size_t>(node);
-  std::vector<std::pair<double, double>> near;  // place along the way, and how much was seen there
-  std::vector<std::pair<double, double>> all;
+  std::vector<std::pair<double, double>> strips;  // place along the way, and how much was seen there
+  double all = 0.0;
   for (const int plane : planes) {
-    for (const std::size_t k : strips_.at(n)[static_cast<std::size_t>(plane)]) {
+    for (const std::size_t k : strips_[n][static_cast<std::size_t>(plane)]) {
       const PassStrip& strip = digest(n).track.strips[k];
-      const Vector3d at = solved_.nodes[n].frame_from_node * (strip.anchor + strip.moments.mean());
-      all.emplace_back(strip.place, strip.moments.count);
-      if ((at - x_in_frame).norm() < kNearStripM) near.emplace_back(strip.place, strip.moments.count);
+      strips.emplace_back(strip.place, strip.moments.count);
+      all += strip.moments.count;
     }
   }
-  std::vector<std::pair<double, double>>& strips = near.empty() ? all : near;
-  if (strips.empty()) return 0.5 * (digest(n).track.way.knots() - 1);
+  if (strips.empty()) return {0.5 * (digest(n).track.way.knots() - 1)};
   std::sort(strips.begin(), strips.end());
-  double half = 0.0;
-  for (const auto& [place, weight] : strips) half += 0.5 * weight;
+  std::vector<double> places;
+  double sum = 0.0;
   for (const auto& [place, weight] : strips) {
-    half -= weight;
-    if (half <= 0.0) return place;
+    sum += weight;
+    while (static_cast<double>(places.size()) + 0.5 < kHeldPlaces * sum / all) places.push_back(place);
   }
-  return strips.back().first;
+  return places;
 }
 
 }  // namespace limen

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <map>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "limen/project/adjust/plane_adjustment.h"
@@ -27,16 +28,17 @@ class SharedPlanes {
   /// pass strip by strip, and of what it sees patch by patch, for long walls bend.
   void tell(const std::vector<bool>& taken, JointProblem& problem);
 
-  /// Where along its way a pass saw what it shares with another scan, in knots: the median over the strips of
-  /// these planes near a place of the frame.
-  [[nodiscard]] double place_of(int node, const std::vector<int>& planes, const Vector3d& x_in_frame) const;
+  /// Where along its way a pass saw what it shares with another scan, in knots: places that part the tiles of
+  /// these planes evenly.
+  [[nodiscard]] std::vector<double> places_of(int node, const std::vector<int>& planes) const;
 
  private:
   /// A patch of a surface: its planes' root, and a square of it.
   using PatchKey = std::tuple<std::size_t, int, int>;
   struct Seen {
     PlaneObservation observation;
-    int from = 0;  ///< strips of one part of a way, and all of another scan, count as one
+    std::pair<std::size_t, int> from;  ///< the node, and of a bent pass the part of its way
+    double place = 0.0;                ///< along it
   };
 
   std::size_t find(std::size_t k);
@@ -44,6 +46,7 @@ class SharedPlanes {
   void for_each(const Visit& visit);
   [[nodiscard]] const ScanDigest& digest(std::size_t node) const { return nodes_[node].digest; }
   [[nodiscard]] PlaneObservation whole_plane(std::size_t node, const PlaneDigest& seen) const;
+  [[nodiscard]] Seen seen_strip(std::size_t node, std::size_t strip) const;
   void tell_patches(std::size_t root, const std::vector<std::pair<std::size_t, std::size_t>>& members,
                     JointProblem& problem);
   void keep(const std::map<PatchKey, std::vector<Seen>>& patches, JointProblem& problem) const;
@@ -53,7 +56,7 @@ class SharedPlanes {
   const BentPasses& passes_;
   std::vector<std::size_t> first_;
   std::vector<std::size_t> root_;
-  std::map<std::size_t, std::vector<std::vector<std::size_t>>> strips_;  // of bent nodes: of each plane
+  std::vector<std::vector<std::vector<std::size_t>>> strips_;  // of each plane of each node
 };
 
 }  // namespace limen

@@ -127,13 +127,20 @@ void BentPasses::add_chain(Pass& pass, JointProblem& problem) {
   }
 }
 
-int BentPasses::node_at(JointProblem& problem, int node, double place) const {
+int BentPasses::node_at(JointProblem& problem, int node, const std::vector<double>& places) const {
   const Pass& pass = pass_of(node);
-  NodeBlend blend;
-  for (const SplineShare& share : spline_shares(static_cast<int>(pass.nodes.size()), place))
-    blend.emplace_back(pass.nodes[static_cast<std::size_t>(share.control)], share.weight);
-  const Rigid3 pose = pose_at(node, problem.frame_from_node[static_cast<std::size_t>(node)], place);
-  return add_blend(problem, blend, pose, true);
+  std::map<int, double> weights;
+  Vector6d by = Vector6d::Zero();
+  for (const double place : places) {
+    for (const SplineShare& share : spline_shares(static_cast<int>(pass.nodes.size()), place)) {
+      const auto control = static_cast<std::size_t>(share.control);
+      const double weight = share.weight / static_cast<double>(places.size());
+      weights[pass.nodes[control]] += weight;
+      by += weight * pass.controls[control];
+    }
+  }
+  const Rigid3& whole = problem.frame_from_node[static_cast<std::size_t>(node)];
+  return add_blend(problem, NodeBlend(weights.begin(), weights.end()), bent(whole, by), true);
 }
 
 Rigid3 BentPasses::pose_at(int node, const Rigid3& frame_from_node, double place) const {

@@ -99,7 +99,7 @@ class DriftingStreet {
                                       way_.places.front().x(), way_.places.back().x());
       const double place = (along - way_.places.front().x()) / kKnotM;
       PlaneObservation strip = seen(there, u, v, 1.25, drift_at(place), random);
-      strip.node = passes.node_at(made, 1, place);
+      strip.node = passes.node_at(made, 1, {place});
       strip.sigma_m = std::hypot(kTileNoiseM, unfollowed * std::sqrt(double{kTilesSeen}));
       strip.plane = made.planes;
       made.observations.push_back(strip);

@@ -103,7 +103,7 @@ ScanDigest digest_of(const PreparedScan& prepared) {
     plane.moments.add(mean - plane.centroid);
   }
   if (!features.samples.empty()) digest.middle = sum / static_cast<double>(features.samples.size());
-  digest.track = turned(prepared.track, back);
+  digest.track = turned(prepared.track.way.known() ? prepared.track : find_static_track(features), back);
   recentre(digest);
   for (const Opening& opening : features.openings) {
     digest.openings.emplace_back((opening.corners[1] - opening.corners[0]).norm(),

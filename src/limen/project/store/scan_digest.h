@@ -37,7 +37,7 @@ struct ScanDigest {
   double drift_m = 0.0;
   std::vector<PlaneDigest> planes;
   std::vector<Vector2d> openings;  ///< width and height of each
-  PassTrack track;                 ///< of a mobile scan with times, about the local origin, scan's axes
+  PassTrack track;                 ///< about the local origin, scan's axes
 };
 
 ScanDigest digest_of(const PreparedScan& prepared);

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <tuple>
+#include <utility>
 
 #include "limen/geometry/spline_motion.h"
 
@@ -18,7 +20,7 @@ constexpr double kMomentS = 0.05;     // places of one moment are averaged
 constexpr double kStepM = 0.25;       // what is less is no way but noise of the trajectory
 constexpr double kMostMoments = 4e6;  // a gap of years is no reason to run out of memory
 constexpr double kTrackTileM = 0.25;  // points of a tile count as one
-constexpr double kStripM = 8.0;       // a strip lies in a cube of this size
+constexpr double kStripM = 2.0;       // a strip lies in a cube of this size
 constexpr double kStripsPerKnot = 2.0;
 constexpr std::size_t kMostLooked = 4000000;
 constexpr double kLeastTiles = 4.0;
@@ -156,6 +158,25 @@ PassTrack find_pass_track(const Scan& laid, const ExtractedFeatures& extracted) 
     PassStrip strip = strip_of(placed, begin, end, laid, track.way);
     if (strip.moments.count >= kLeastTiles) track.strips.push_back(strip);
     begin = end;
+  }
+  return track;
+}
+
+PassTrack find_static_track(const Features& features) {
+  std::map<std::pair<std::int32_t, Cube>, PassStrip> strips;
+  for (const SurfaceSample& sample : features.samples) {
+    if (sample.plane < 0) continue;
+    const auto [at, fresh] = strips.try_emplace({sample.plane, cube_of(sample.mean, kStripM)}, PassStrip{});
+    PassStrip& strip = at->second;
+    if (fresh) {
+      strip.plane = sample.plane;
+      strip.anchor = sample.mean;
+    }
+    strip.moments.add(sample.mean - strip.anchor);
+  }
+  PassTrack track;
+  for (const auto& [key, strip] : strips) {
+    if (strip.moments.count >= kLeastTiles) track.strips.push_back(strip);
   }
   return track;
 }
