@@ -119,6 +119,28 @@ TEST_F(ViewTest, AllPlacedScansOfAProject) {
   EXPECT_GE(shown, 5000);
 }
 
+TEST_F(ViewTest, APassThatDriftedIsShownBentBack) {
+  std::string drive = "x,y,z,x_origin,y_origin,z_origin,gps_time\n";
+  for (int k = 0; k < 200; ++k) {
+    const std::string x = std::to_string(0.5 * k);
+    drive.append(x).append(",5,1,").append(x).append(",0,2,").append(std::to_string(100.0 + k)).append("\n");
+  }
+  write_whole(work() / "drive.csv", drive);
+  json knots = json::array();
+  for (int k = 0; k < 5; ++k)
+    knots.push_back({{"time_s", 100.0 + 50.0 * k}, {"turn_rad", {0, 0, 0}}, {"shift_m", {0, 0, 0.25}}});
+  json scan = {{"file", "drive.csv"}, {"index", 0}, {"kind", "scan"}, {"state", "registered"}};
+  scan["frame_from_scan"] = {{0, -1, 0, 1000}, {1, 0, 0, 2000}, {0, 0, 1, 5}, {0, 0, 0, 1}};
+  scan["correction"] = {{"pivot", {1000, 2000, 5}}, {"knots", knots}};
+  write_whole(work() / "project.json", json{{"scans", json::array({scan})}, {"links", json::array()}}.dump());
+  must_view({"project.json"});
+  const json scene = scene_of("view.html");
+  // (0 .. 99.5, 5, 1) turned by a right angle, moved, and lifted by the correction.
+  EXPECT_NEAR(low_of(scene, "side-0")[0], 995.0, 1e-6);
+  EXPECT_NEAR(low_of(scene, "side-0")[1], 2000.0, 1e-6);
+  EXPECT_NEAR(low_of(scene, "side-0")[2], 6.25, 1e-6);
+}
+
 TEST_F(ViewTest, AModelBesideAScanAndTheSameBytesForAnyThreads) {
   ASSERT_EQ(run({"simulate", "office", "--points-indoor", "20000", "-o", ".", "--quiet"}).status, 0);
   must_view({"model.ifc", "scan_01.ply", "-o", "one.html", "--threads", "1"});

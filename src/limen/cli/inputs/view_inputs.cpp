@@ -63,8 +63,8 @@ std::vector<ViewInput> scans_of_project(const std::string& path, const Session& 
       session.note(fmt::format("{}: {}, not shown", entry.file, entry.state));
       continue;
     }
-    inputs.push_back(
-        {found_beside(entry.file, path), entry.model ? -1 : entry.index, *entry.frame_from_scan, "", path});
+    inputs.push_back({found_beside(entry.file, path), entry.model ? -1 : entry.index, *entry.frame_from_scan,
+                      "", path, entry.bend});
   }
   return inputs;
 }
@@ -91,12 +91,22 @@ struct CloudToView {
   std::uint64_t points = 0;
 };
 
+/// What is bent moves point by point within the frame: it has to stand there before, else it is placed last,
+/// when its unit is known.
+Rigid3 place_in_file(const ViewInput& input) {
+  return input.bend ? input.frame_from_world : Rigid3{};
+}
+Rigid3 place_of_scan(const ViewInput& input) {
+  return input.bend ? Rigid3{} : input.frame_from_world;
+}
+
 CloudToView open_cloud(const ViewInput& input, std::size_t number, const Session& session) {
   CloudToView cloud{number, std::make_unique<OpenPoints>(input.path), {}, 0};
   int seen = 0;
-  for (const PlacedCloud& placed : placed_clouds(*cloud.file, Rigid3{}, {}, *session.monitor)) {
+  for (PlacedCloud placed : placed_clouds(*cloud.file, place_in_file(input), {}, *session.monitor)) {
     const std::uint64_t points = cloud.file->file().clouds()[placed.cloud].points;
     if (points == 0 || (input.scan >= 0 && seen++ != input.scan)) continue;
+    placed.bend = input.bend;
     cloud.clouds.push_back(placed);
     cloud.points += points;
   }
@@ -146,7 +156,7 @@ ViewSide side_of_cloud(const ViewInput& input, const CloudToView& cloud, Scan sc
   RegistrationPicture picture;
   picture.source.features.local_origin = origin;
   RegisterInput placed;
-  placed.scans.push_back({std::move(scan), input.frame_from_world});
+  placed.scans.push_back({std::move(scan), place_of_scan(input)});
   ReportSceneOptions all;
   all.max_points = cloud.points;
   ViewSide side;
@@ -198,20 +208,20 @@ ViewScene read_view(const std::vector<ViewInput>& inputs, std::size_t most_point
   ViewScene scene;
   scene.sides.resize(inputs.size());
   std::optional<Vector3d> origin;
-  const auto about = [&](const ViewInput& input, const Vector3d& place) -> const Vector3d& {
-    if (!origin) origin = round_origin_near(input.frame_from_world * place);
+  const auto about = [&](const Vector3d& place) -> const Vector3d& {
+    if (!origin) origin = round_origin_near(place);
     return *origin;
   };
   const std::vector<std::uint64_t> shares = shares_of(clouds, most_points);
   for (std::size_t k = 0; k < clouds.size(); ++k) {
     const ViewInput& input = inputs[clouds[k].input];
     Scan scan = with_whole_inputs([&] { return read_share(clouds[k], shares[k], metres_per_unit, session); });
-    const Vector3d& middle = about(input, scan.local_origin + scan.points.front());
+    const Vector3d& middle = about(place_of_scan(input) * (scan.local_origin + scan.points.front()));
     scene.sides[clouds[k].input] = side_of_cloud(input, clouds[k], std::move(scan), middle);
   }
   for (const auto& [k, model] : models)
-    scene.sides[k].scene =
-        view_of_model(model, inputs[k].frame_from_world, about(inputs[k], model.local_origin));
+    scene.sides[k].scene = view_of_model(model, inputs[k].frame_from_world,
+                                         about(inputs[k].frame_from_world * model.local_origin));
   scene.origin = *origin;
   name_sides(inputs, scene);
   return scene;

@@ -2,11 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "limen/cli/terminal/command.h"
+#include "limen/geometry/spline_motion.h"
 #include "limen/report/view/view_page.h"
 
 namespace limen {
@@ -18,6 +20,8 @@ struct ViewInput {
   Rigid3 frame_from_world;   ///< metres
   std::string sha256;        ///< that its bytes must have; empty: any
   std::string told_by = {};  ///< the file that says so
+  /// Of a mobile pass that drifted: by how much each point moves within the frame, by its time.
+  std::shared_ptr<const SplineMotion> bend = {};
 };
 
 /// What the words on the command line mean: scans and models as they lie, both sides of a result.json under
