@@ -218,6 +218,10 @@ Eigen::VectorXd solve_symmetric(const Eigen::MatrixXd& symmetric, const Eigen::V
   return as_vector<Eigen::VectorXd>(solve_by_ldlt(Square(symmetric), column_of(right)));
 }
 
+Matrix3d inverse_of(const Matrix3d& matrix) {
+  return matrix.inverse();
+}
+
 Matrix4d inverse_of(const Matrix4d& matrix) {
   return matrix.inverse();
 }

@@ -36,6 +36,7 @@ Vector6d solve_symmetric(const Matrix6d& symmetric, const Vector6d& right);
 Eigen::VectorXd solve_symmetric(const Eigen::MatrixXd& symmetric, const Eigen::VectorXd& right);
 
 /// Inverse of a regular matrix.
+Matrix3d inverse_of(const Matrix3d& matrix);
 Matrix4d inverse_of(const Matrix4d& matrix);
 Matrix6d inverse_of(const Matrix6d& matrix);
 Eigen::MatrixXd inverse_of(const Eigen::MatrixXd& matrix);

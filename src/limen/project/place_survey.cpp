@@ -5,10 +5,10 @@
 #include <set>
 #include <utility>
 
-#include <Eigen/LU>
 #include <fmt/format.h>
 
 #include "limen/base/angles.h"
+#include "limen/geometry/linear.h"
 #include "limen/project/control/control_datum.h"
 #include "limen/project/survey.h"
 
@@ -274,7 +274,7 @@ class Confirmer {
                                 turn * sight.covariance * turn.transpose() + point.known->covariance;
     const Vector3d missed = at - point.known->x;
     return covariance.trace() < kSharpM * kSharpM &&
-           missed.dot(covariance.inverse() * missed) <= kPointChiSquareBound;
+           missed.dot(solve_symmetric(covariance, missed)) <= kPointChiSquareBound;
   }
 
   /// Points that the scan sees say nothing of the others, whoever sees them too.

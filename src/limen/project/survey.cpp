@@ -7,7 +7,6 @@
 #include <map>
 #include <utility>
 
-#include <Eigen/LU>
 #include <fmt/format.h>
 
 #include "limen/base/error.h"

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limen/project/adjust/survey_point.h"
 
-#include <Eigen/LU>
+#include "limen/geometry/linear.h"
 
 namespace limen {
 
@@ -17,7 +17,8 @@ PointTerms point_terms(const MarkedPoint& point, const std::vector<Rigid3>& fram
     by_pose << 0, arm.z(), -arm.y(), 1, 0, 0,  //
         -arm.z(), 0, arm.x(), 0, 1, 0,         //
         arm.y(), -arm.x(), 0, 0, 0, 1;
-    const Matrix3d weight = (node.rotation * sight.covariance * node.rotation.transpose()).inverse();
+    const Matrix3d weight =
+        inverse_of(Matrix3d(node.rotation * sight.covariance * node.rotation.transpose()));
     const Vector3d place = node.translation + arm;
     terms.by_pose.push_back(by_pose);
     terms.weight.push_back(weight);
@@ -26,11 +27,11 @@ PointTerms point_terms(const MarkedPoint& point, const std::vector<Rigid3>& fram
     right += weight * place;
   }
   if (point.is_known()) {
-    const Matrix3d weight = point.known->covariance.inverse();
+    const Matrix3d weight = inverse_of(point.known->covariance);
     terms.own += weight;
     right += weight * point.known->x;
   }
-  terms.x = terms.own.inverse() * right;
+  terms.x = inverse_of(terms.own) * right;
   return terms;
 }
 

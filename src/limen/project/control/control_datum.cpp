@@ -4,7 +4,7 @@
 
 #include <optional>
 
-#include <Eigen/LU>
+#include "limen/geometry/linear.h"
 
 namespace limen {
 namespace {
@@ -22,12 +22,12 @@ std::optional<PointPair> pair_of(const MarkedPoint& point, const FramedNodes& no
   for (std::size_t k = 0; k < seen.sights.size(); ++k) {
     const Matrix6d& of_node = nodes.covariance[static_cast<std::size_t>(seen.sights[k].node)];
     const Matrix3d covariance =
-        terms.weight[k].inverse() + terms.by_pose[k] * of_node * terms.by_pose[k].transpose();
-    const Matrix3d weight = covariance.inverse();
+        inverse_of(terms.weight[k]) + terms.by_pose[k] * of_node * terms.by_pose[k].transpose();
+    const Matrix3d weight = inverse_of(covariance);
     weights += weight;
     sum += weight * terms.place[k];
   }
-  const Matrix3d covariance = weights.inverse();
+  const Matrix3d covariance = inverse_of(weights);
   return PointPair{covariance * sum, covariance, point.known->x, point.known->covariance};
 }
 

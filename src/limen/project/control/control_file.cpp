@@ -10,12 +10,12 @@
 #include <set>
 #include <utility>
 
-#include <Eigen/Eigenvalues>
 #include <fmt/format.h>
 
 #include "limen/base/error.h"
 #include "limen/base/text.h"
 #include "limen/files/text_numbers.h"
+#include "limen/geometry/linear.h"
 
 namespace limen {
 namespace {
@@ -78,10 +78,10 @@ class Row {
     const double yz = number("cov_yz");
     Matrix3d full;
     full << number("cov_xx"), xy, xz, xy, number("cov_yy"), yz, xz, yz, number("cov_zz");
-    const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(full, Eigen::EigenvaluesOnly);
+    const Vector3d variances = spectrum_of(full).values;
     // Below this no inverse of it means anything.
     constexpr double kLeastShare = 1e-12;
-    if (solver.eigenvalues()[0] <= kLeastShare * std::abs(solver.eigenvalues()[2]))
+    if (variances[0] <= kLeastShare * std::abs(variances[2]))
       throw Error("the covariance is not positive definite", where_,
                   "look at its six numbers, or give sigma_x,sigma_y,sigma_z");
     return full;

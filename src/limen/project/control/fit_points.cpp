@@ -7,8 +7,7 @@
 #include <optional>
 #include <utility>
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/SVD>
+#include "limen/geometry/linear.h"
 
 namespace limen {
 namespace {
@@ -133,7 +132,7 @@ class PointFitter {
       const Vector3d miss = fit.pose * pair.x_in_source - pair.x_in_target;
       Matrix3d sum = covariance_of(pair, fit.pose.rotation);
       if (!fit.taken[k]) sum += of_pose(fit, pair);
-      agreeing[k] = miss.dot(sum.ldlt().solve(miss)) <= kPointChiSquareBound;
+      agreeing[k] = miss.dot(solve_symmetric(sum, miss)) <= kPointChiSquareBound;
     }
     return agreeing;
   }
@@ -161,7 +160,7 @@ class PointFitter {
       for (std::size_t k = 0; k < pairs_.size(); ++k) {
         if (!taken[k]) continue;
         const PointPair& pair = pairs_[k];
-        const Matrix3d weight = covariance_of(pair, fit.pose.rotation).inverse();
+        const Matrix3d weight = inverse_of(covariance_of(pair, fit.pose.rotation));
         const Vector3d at = fit.pose * pair.x_in_source;
         const Vector3d miss = at - pair.x_in_target;
         Eigen::Matrix<double, 3, 6> j;
@@ -170,7 +169,7 @@ class PointFitter {
         right -= j.transpose() * weight * miss;
         fit.chi_square += miss.dot(weight * miss);
       }
-      fit.covariance = normal.inverse();
+      fit.covariance = inverse_of(normal);
       const Vector6d move = fit.covariance * right;
       const Matrix3d turn = rotation_exp(move.head<3>());
       fit.pose.translation = turn * (fit.pose.translation - fit.centre) + fit.centre + move.tail<3>();
@@ -197,8 +196,7 @@ class PointFitter {
       mixed += (pairs_[k].x_in_target - target) * a.transpose();
       spread += a * a.transpose() / static_cast<double>(fit.count);
     }
-    const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(spread, Eigen::EigenvaluesOnly);
-    if (solver.eigenvalues()[1] < kLeastRootM * kLeastRootM) return false;
+    if (spectrum_of(spread).values[1] < kLeastRootM * kLeastRootM) return false;
     fit.pose.rotation = nearest_rotation(mixed);
     fit.pose.translation = target - fit.pose.rotation * source;
     fit.centre = target;

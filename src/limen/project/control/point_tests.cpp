@@ -5,8 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
+#include "limen/geometry/linear.h"
 
 namespace limen {
 namespace {
@@ -41,7 +40,7 @@ double crossing(double low, double high, const Function& function) {
 PointTest test_of(const Vector3d& residual, const Matrix3d& weight, const Matrix3d& adjusted, double shift) {
   PointTest test;
   test.residual = residual;
-  const Matrix3d of_residual = weight.inverse() - adjusted;
+  const Matrix3d of_residual = inverse_of(weight) - adjusted;
   test.redundancy = std::clamp((of_residual * weight).trace(), 0.0, 3.0);
   const Matrix3d reduced = weight * of_residual * weight;
   const Vector3d pull = weight * residual;
@@ -53,13 +52,13 @@ PointTest test_of(const Vector3d& residual, const Matrix3d& weight, const Matrix
     test.detectable[k] = shift / root;
   }
   // In axes of one standard deviation; what nothing checks is left out.
-  const Eigen::SelfAdjointEigenSolver<Matrix3d> root(weight);
-  const Matrix3d half = root.operatorSqrt();
-  const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(half * of_residual * half);
-  const Vector3d along = solver.eigenvectors().transpose() * (half * residual);
+  const Spectrum3 root = spectrum_of(weight);
+  const Matrix3d half =
+      root.vectors * root.values.cwiseMax(0.0).cwiseSqrt().asDiagonal() * root.vectors.transpose();
+  const Spectrum3 checked = spectrum_of(Matrix3d(half * of_residual * half));
+  const Vector3d along = checked.vectors.transpose() * (half * residual);
   for (Eigen::Index k = 0; k < 3; ++k) {
-    if (solver.eigenvalues()[k] > kLeastRedundancy)
-      test.squared += along[k] * along[k] / solver.eigenvalues()[k];
+    if (checked.values[k] > kLeastRedundancy) test.squared += along[k] * along[k] / checked.values[k];
   }
   return test;
 }
@@ -79,7 +78,7 @@ PointFinding test_point(const MarkedPoint& point, const std::vector<Rigid3>& fra
   PointFinding finding;
   if (point.sights.empty()) return finding;
   const PointTerms terms = point_terms(point, frame_from_node);
-  const Matrix3d inverted = terms.own.inverse();
+  const Matrix3d inverted = inverse_of(terms.own);
   Eigen::Matrix<double, 3, Eigen::Dynamic> pull(3, sight_covariance.cols());
   for (std::size_t i = 0; i < point.sights.size(); ++i)
     pull.middleCols<3>(static_cast<Eigen::Index>(3 * i)) = inverted * terms.weight[i];
@@ -89,7 +88,7 @@ PointFinding test_point(const MarkedPoint& point, const std::vector<Rigid3>& fra
   if (!point.enters) return finding;
   if (point.is_known())
     finding.known =
-        test_of(point.known->x - terms.x, point.known->covariance.inverse(), finding.covariance, shift);
+        test_of(point.known->x - terms.x, inverse_of(point.known->covariance), finding.covariance, shift);
   for (std::size_t i = 0; i < point.sights.size(); ++i) {
     const auto at = static_cast<Eigen::Index>(3 * i);
     const Matrix3d mixed = sight_covariance.middleRows<3>(at) * pull.transpose();
@@ -103,7 +102,7 @@ PointFinding test_point(const MarkedPoint& point, const std::vector<Rigid3>& fra
 double missed_squared(const PointFinding& predicted, const KnownPlace& given) {
   const Vector3d missed = given.x - predicted.x;
   const Matrix3d covariance = given.covariance + predicted.covariance;
-  return missed.dot(covariance.ldlt().solve(missed));
+  return missed.dot(solve_symmetric(covariance, missed));
 }
 
 }  // namespace limen

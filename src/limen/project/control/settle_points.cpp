@@ -8,6 +8,7 @@
 #include <set>
 #include <utility>
 
+#include "limen/geometry/linear.h"
 #include "limen/project/control/fit_points.h"
 
 namespace limen {
@@ -159,7 +160,7 @@ class Settler {
       const MarkedPoint& point = problem_.points[p];
       if (!point.is_known()) continue;
       const PointTest& test = settled_.findings[p].known;
-      settled_.chi_square += test.residual.dot(point.known->covariance.inverse() * test.residual);
+      settled_.chi_square += test.residual.dot(inverse_of(point.known->covariance) * test.residual);
       settled_.redundancy += test.redundancy;
     }
   }

@@ -31,6 +31,9 @@ class DoubtSearch {
       if (accepted.pose[k] >= 0 && graph.links[k].trust != LinkTrust::weak)
         held_.push_back(static_cast<int>(k));
     }
+    for (const GraphLink& pair : graph.against) {
+      if (pair.evidence && is_laid_so(pair)) against_.push_back(&pair);
+    }
     evidence_.resize(graph.links.size());
     for (const int k : held_) evidence_[static_cast<std::size_t>(k)] = evidence_of(k);
     rate_.emplace(graph.nodes, witnesses());
@@ -51,7 +54,7 @@ class DoubtSearch {
       CancelScope::check();
       const int root = reference[static_cast<std::size_t>(node)];
       NodeDoubt& doubt = doubts[static_cast<std::size_t>(node)];
-      if (root == node) doubt = {0.0, 0.0, {}};
+      if (root == node) doubt.twin = doubt.chance = 0.0;
       if (root < 0 || root == node) continue;
       add_twins(node, root, doubt);
       add_chance(node, root, doubt);
@@ -106,14 +109,19 @@ class DoubtSearch {
     const Cut otherwise = twin_cut(kOtherwise, node, root);
     const Cut alike = twin_cut(kAlike, node, root);
     const double twin = otherwise.weight() + alike.weight();
-    doubt.twin = twin / (twin + 1.0 - otherwise.prior - alike.prior);
-    doubt.links = otherwise.weight() > alike.weight() ? otherwise.links : alike.links;
+    const double none = 1.0 - otherwise.prior - alike.prior;
+    doubt.twin = twin / (twin + none);
+    doubt.twin_nats = std::log(twin / none);
+    const Cut& likelier = otherwise.weight() > alike.weight() ? otherwise : alike;
+    doubt.links = likelier.links;
+    doubt.across = likelier.across;
   }
 
   struct Cut {
-    double prior = 0.0;  ///< of a twin, before things are asked; none where no pair's were
-    double nats = 0.0;   ///< what they say against it
-    std::vector<int> links;
+    double prior = 0.0;       ///< of a twin, before things are asked; none where no pair's were
+    double nats = 0.0;        ///< what they say against it
+    std::vector<int> links;   ///< that see different things
+    std::vector<int> across;  ///< all
     [[nodiscard]] double weight() const { return prior * std::exp(-nats); }
   };
 
@@ -130,29 +138,40 @@ class DoubtSearch {
     return found.weight() >= least.weight() ? found : least;
   }
 
-  /// What is said across a cut, by those first that say most.
+  /// What is said across a cut for and against a twin, by those first that say most.
   [[nodiscard]] Cut across(const Kind& kind, const std::vector<bool>& side) const {
-    std::vector<int> crossing = crossing_links(side);
-    std::stable_sort(crossing.begin(), crossing.end(),
-                     [&](int a, int b) { return evidence(a).*kind.nats > evidence(b).*kind.nats; });
-    Cut cut;
-    for (const int k : crossing) {
-      const double fresh = 1.0 - views_.seen_already(k, cut.links, side);
-      const double said = evidence(k).*kind.nats;
-      // What speaks for a twin is no less true for being seen twice.
-      cut.nats += said > 0.0 ? fresh * said : said;
-      if (is_asked(k)) {
-        const double prior = evidence(k).*kind.prior;
-        cut.prior = cut.prior > 0.0 ? std::min(cut.prior, prior) : prior;
-      }
-      if (fresh > kHardlyFresh) cut.links.push_back(k);
+    struct Voice {
+      const GraphLink* pair = nullptr;
+      TwinEvidence said;
+      int link = -1;  ///< -1: a pair that holds nothing
+    };
+    std::vector<Voice> voices;
+    for (const int k : crossing_links(side)) voices.push_back({&link(k), evidence(k), k});
+    for (const GraphLink* pair : against_) {
+      if (side[static_cast<std::size_t>(pair->source)] != side[static_cast<std::size_t>(pair->target)])
+        voices.push_back({pair, *pair->evidence});
     }
-    for (const GraphLink& pair : graph_.against) {
-      if (side[static_cast<std::size_t>(pair.source)] != side[static_cast<std::size_t>(pair.target)] &&
-          is_laid_so(pair) && pair.evidence)
-        cut.nats += std::min(0.0, (*pair.evidence).*kind.nats);
+    std::stable_sort(voices.begin(), voices.end(), [&](const Voice& a, const Voice& b) {
+      return std::abs(a.said.*kind.nats) > std::abs(b.said.*kind.nats);
+    });
+    Cut cut;
+    std::vector<const GraphLink*> heard_for;
+    std::vector<const GraphLink*> heard_against;
+    for (const Voice& voice : voices) {
+      const double nats = voice.said.*kind.nats;
+      std::vector<const GraphLink*>& heard = nats > 0.0 ? heard_against : heard_for;
+      const double fresh = 1.0 - views_.seen_already(*voice.pair, heard, side);
+      cut.nats += fresh * nats;
+      heard.push_back(voice.pair);
+      if (voice.link < 0) continue;
+      cut.across.push_back(voice.link);
+      if (fresh > kHardlyFresh) cut.links.push_back(voice.link);
+      if (!is_asked(voice.link)) continue;
+      const double prior = voice.said.*kind.prior;
+      cut.prior = cut.prior > 0.0 ? std::min(cut.prior, prior) : prior;
     }
     cut.prior = std::min(kMostBelieved, cut.prior * rate_->factor(side));
+    std::sort(cut.links.begin(), cut.links.end());
     return cut;
   }
 
@@ -220,6 +239,8 @@ class DoubtSearch {
   std::vector<double> share_;            ///< of each of them: nats, shared with those that see the same
   std::vector<double> otherwise_share_;  ///< the same against twins furnished otherwise ...
   std::vector<double> alike_share_;      ///< ... and alike
+  std::vector<const GraphLink*>
+      against_;  ///< of the pairs that speak for twins those that the solution lays so
   std::optional<TwinRate> rate_;
   std::vector<TwinEvidence> evidence_;  ///< of each link
 };

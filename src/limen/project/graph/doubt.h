@@ -11,9 +11,11 @@ namespace limen {
 
 /// Why a node may stand elsewhere, as probabilities.
 struct NodeDoubt {
-  double twin = 1.0;       ///< its side of the building is laid on another place built alike
-  double chance = 1.0;     ///< the links that hold it are wrong in other ways
-  std::vector<int> links;  ///< the links that hold it, where they are fewest or least sure
+  double twin = 1.0;        ///< its side of the building is laid on another place built alike
+  double chance = 1.0;      ///< the links that hold it are wrong in other ways
+  std::vector<int> links;   ///< the links that hold it, where they are fewest or least sure
+  double twin_nats = 0.0;   ///< logarithm of the odds of `twin`
+  std::vector<int> across;  ///< all links that would lie on twins
 
   [[nodiscard]] double total() const { return twin + chance - twin * chance; }
 };

@@ -3,6 +3,7 @@
 #include "limen/project/graph/doubt.h"
 
 #include <cmath>
+#include <utility>
 
 #include "support/synthetic_graph.h"
 #include <gtest/gtest.h>
@@ -132,6 +133,29 @@ TEST(Doubt, WhatSpeaksForATwinCountsToo) {
   // A pair whose twin would stand elsewhere than the solution says nothing of it.
   row.graph.against.back().poses.front().target_from_source.translation.y() += 5.0;
   EXPECT_EQ(states_of(solve_graph(row.graph)), (States{kYes, kYes, kYes}));
+}
+
+TEST(Doubt, WhatIsRatherATwinIsTakenApartAndLeavesTheOthersSure) {
+  // 3 and 4 are of one room. A bare pair lays them on 1, and pairs with other scans there say: twins.
+  Row row(5);
+  row.link(1, 0, 0.0, 0.0, 4.0);
+  row.link(2, 1, 0.0002, 0.0);
+  row.link(4, 3, 0.0002, 0.0);
+  row.link(3, 1, 0.15, 0.0);
+  for (const auto& [source, target] : {std::pair(4, 1), std::pair(3, 2)}) {
+    row.link(source, target, 0.99, 0.0);
+    row.graph.against.push_back(row.graph.links.back());
+    row.graph.against.back().evidence = twin_evidence_of(0.99);
+    row.graph.links.pop_back();
+  }
+  const SolvedGraph solved = solve_graph(row.graph);
+  for (const std::size_t node : {0, 1, 2}) {
+    EXPECT_EQ(solved.nodes[node].state, kYes) << node;
+    EXPECT_EQ(solved.nodes[node].component, 0) << node;
+  }
+  EXPECT_EQ(solved.nodes[3].component, 1);
+  EXPECT_EQ(solved.nodes[4].component, 1);
+  EXPECT_LT(solved.links[3].pose, 0);
 }
 
 TEST(Doubt, TheLargestSurePartLendsTheFrame) {

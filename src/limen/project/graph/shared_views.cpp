@@ -9,6 +9,12 @@ namespace {
 
 constexpr double kSameView = 0.6;  // share of a link's surface that two scans share: they are one witness
 
+/// The ends of what crosses a cut, that on the moved side first.
+std::pair<int, int> ends_across(const GraphLink& pair, const std::vector<bool>& moved) {
+  return moved[static_cast<std::size_t>(pair.source)] ? std::pair(pair.source, pair.target)
+                                                      : std::pair(pair.target, pair.source);
+}
+
 }  // namespace
 
 SharedViews::SharedViews(const PoseGraph& graph, const AcceptedPoses& accepted)
@@ -32,22 +38,16 @@ bool SharedViews::same_view(int a, int b, double surface_m2) const {
   return a == b || shared(a, b) > kSameView * surface_m2;
 }
 
-std::pair<int, int> SharedViews::ends(int k, const std::vector<bool>& moved) const {
-  const GraphLink& link = graph_.links[static_cast<std::size_t>(k)];
-  return moved[static_cast<std::size_t>(link.source)] ? std::pair(link.source, link.target)
-                                                      : std::pair(link.target, link.source);
-}
-
-double SharedViews::seen_already(int link, const std::vector<int>& others,
+double SharedViews::seen_already(const GraphLink& pair, const std::vector<const GraphLink*>& others,
                                  const std::vector<bool>& moved) const {
-  const std::pair<int, int> own = ends(link, moved);
-  const double surface = graph_.links[static_cast<std::size_t>(link)].poses.front().agreeing_m2;
+  const std::pair<int, int> own = ends_across(pair, moved);
+  const double surface = pair.poses.front().agreeing_m2;
   const auto share = [&](int a, int b) {
     return a == b || surface <= 0.0 ? 1.0 : std::min(1.0, shared(a, b) / surface);
   };
   double most = 0.0;
-  for (const int other : others) {
-    const std::pair<int, int> theirs = ends(other, moved);
+  for (const GraphLink* other : others) {
+    const std::pair<int, int> theirs = ends_across(*other, moved);
     most = std::max(most, share(own.first, theirs.first) * share(own.second, theirs.second));
   }
   return most;
@@ -57,10 +57,10 @@ std::vector<int> SharedViews::independent(const std::vector<int>& links,
                                           const std::vector<bool>& moved) const {
   std::vector<int> chosen;
   for (const int k : links) {
-    const std::pair<int, int> own = ends(k, moved);
+    const std::pair<int, int> own = ends_across(graph_.links[static_cast<std::size_t>(k)], moved);
     const double surface = graph_.links[static_cast<std::size_t>(k)].poses.front().agreeing_m2;
     const bool counted = std::any_of(chosen.begin(), chosen.end(), [&](int other) {
-      const std::pair<int, int> theirs = ends(other, moved);
+      const std::pair<int, int> theirs = ends_across(graph_.links[static_cast<std::size_t>(other)], moved);
       return same_view(own.first, theirs.first, surface) && same_view(own.second, theirs.second, surface);
     });
     if (!counted) chosen.push_back(k);

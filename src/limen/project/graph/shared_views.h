@@ -27,8 +27,8 @@ class SharedViews {
   [[nodiscard]] std::vector<int> independent(const std::vector<int>& links,
                                              const std::vector<bool>& moved) const;
 
-  /// How much of what a link shows others that cross the same cut have shown already, in [0, 1].
-  [[nodiscard]] double seen_already(int link, const std::vector<int>& others,
+  /// How much of what a pair shows others that cross the same cut have shown already, in [0, 1].
+  [[nodiscard]] double seen_already(const GraphLink& pair, const std::vector<const GraphLink*>& others,
                                     const std::vector<bool>& moved) const;
 
   /// How many accepted links see what an accepted link sees, itself included.
@@ -36,8 +36,6 @@ class SharedViews {
 
  private:
   [[nodiscard]] double shared(int a, int b) const;
-  /// The link's ends, that on the moved side first.
-  [[nodiscard]] std::pair<int, int> ends(int link, const std::vector<bool>& moved) const;
   /// Whether of `surface_m2` that a link shows both nodes see most.
   [[nodiscard]] bool same_view(int a, int b, double surface_m2) const;
   [[nodiscard]] std::vector<int> like(int node, double surface_m2) const;

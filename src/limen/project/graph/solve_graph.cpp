@@ -24,12 +24,14 @@ constexpr double kFirstGate = 16.0;  // times the bound, before the first adjust
 constexpr std::size_t kLoopsPerLink = 8;
 constexpr double kFixedM = 0.05;  // a weak link's node that is known this well by several is held after all
 constexpr double kFixedRad = 0.01;
+constexpr double kRather = 0.5;  // probability of a twin above which it is the explanation
 
 class Solver {
  public:
   Solver(const PoseGraph& graph, double risk) : graph_(graph), risk_(risk) {
     solved_.nodes.resize(static_cast<std::size_t>(graph.nodes));
     solved_.links.resize(graph.links.size());
+    left_out_.resize(graph.links.size(), false);
   }
 
   SolvedGraph run() {
@@ -37,13 +39,8 @@ class Solver {
     accepted_.frame_from_node = grown_.part_from_node;
     accepted_.component = grown_.part;
     accepted_.pose.assign(graph_.links.size(), -1);
-    for (int round = 0; round < kAcceptRounds; ++round) {
-      accept(round == 0 ? kFirstGate : round + 1 < kAcceptRounds ? 4.0 : 1.0);
-      settle_components();
-      adjust(false);
-    }
-    accept(1.0);
-    settle_components();
+    settle();
+    while (take_apart_twins()) settle();
     adjust(true);
     number_components();
     judge_nodes();
@@ -56,6 +53,35 @@ class Solver {
   }
 
  private:
+  void settle() {
+    for (int round = 0; round < kAcceptRounds; ++round) {
+      accept(round == 0 ? kFirstGate : round + 1 < kAcceptRounds ? 4.0 : 1.0);
+      settle_components();
+      adjust(false);
+    }
+    accept(1.0);
+    settle_components();
+  }
+
+  /// Where two sides of the building are more probably twins than one place, what lays them on one another is
+  /// left out, the likeliest first: it would make everything else doubtful. Whether any was.
+  bool take_apart_twins() {
+    const std::vector<int> firsts = references();
+    std::vector<int> reference;
+    for (int node = 0; node < graph_.nodes; ++node)
+      reference.push_back(firsts[static_cast<std::size_t>(component(node))]);
+    const std::vector<NodeDoubt> doubts = doubts_of(graph_, accepted_, reference);
+    const NodeDoubt* likeliest = nullptr;
+    for (const NodeDoubt& doubt : doubts) {
+      if (doubt.twin > kRather && !doubt.across.empty() &&
+          (likeliest == nullptr || doubt.twin_nats > likeliest->twin_nats))
+        likeliest = &doubt;
+    }
+    if (likeliest == nullptr) return false;
+    for (const int k : likeliest->across) left_out_[static_cast<std::size_t>(k)] = true;
+    return true;
+  }
+
   [[nodiscard]] Rigid3 predicted(const GraphLink& link) const {
     return inverse(at(link.target)) * at(link.source);
   }
@@ -69,7 +95,7 @@ class Solver {
     for (std::size_t k = 0; k < graph_.links.size(); ++k) {
       const GraphLink& link = graph_.links[k];
       accepted_.pose[k] = -1;
-      if (component(link.source) != component(link.target)) continue;
+      if (left_out_[k] || component(link.source) != component(link.target)) continue;
       double best = gate * kChiSquareBound;
       // Of a sure link the other poses are there to be told, not to be taken.
       const std::size_t count = link.trust <= LinkTrust::likely ? 1 : link.poses.size();
@@ -200,9 +226,8 @@ class Solver {
       const Vector6d variances = node.covariance.diagonal();
       const bool held = variances.head<3>().maxCoeff() < kFixedRad * kFixedRad &&
                         variances.tail<3>().maxCoeff() < kFixedM * kFixedM;
-      node.state = grown_.trust[i] <= JoinTrust::likely ? NodeState::registered
-                   : grown_.trust[i] == JoinTrust::open ? NodeState::ambiguous
-                                                        : NodeState::under_constrained;
+      // Of what a weak link joined the covariance tells whether other links hold it by now.
+      node.state = grown_.trust[i] == JoinTrust::open ? NodeState::ambiguous : NodeState::registered;
       if (node.state == NodeState::registered && !held) node.state = NodeState::under_constrained;
     }
   }
@@ -311,6 +336,7 @@ class Solver {
 
   const PoseGraph& graph_;
   double risk_;
+  std::vector<bool> left_out_;     ///< links that would lay a place on its twin
   std::vector<int> reference_of_;  ///< of each component: the node that keeps its pose
   GrownParts grown_;
   AcceptedPoses accepted_;

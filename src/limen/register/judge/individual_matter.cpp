@@ -37,7 +37,8 @@ constexpr double kUnevenM = 0.001;       // roughness, and the pose, at least
 constexpr double kOneFaceM = 0.04;       // pieces that lie so in one plane ...
 constexpr double kOneFaceCosine = 0.97;  // ... facing the same way ...
 constexpr double kNextPieceM = 0.35;     // ... are of one face, piece by piece
-constexpr double kThingLengthM = 0.4;    // faces nearer than this tell the same
+constexpr double kThingLengthM = 0.4;    // faces nearer than this tell the same ...
+constexpr double kFrontLengthM = 1.5;    // ... and those of one plane nearer than this
 
 // Pieces nearer than this tell the same: the size of a chair, a box, a monitor. A moved table is few pieces.
 constexpr double kCorrelationM = 0.25;
@@ -174,6 +175,7 @@ struct Told {
   Vector3d at = Vector3d::Zero();
   double weight = 0.0;
   bool agrees = false;
+  bool of_source = false;  ///< it stands in the room of the source's station
 };
 
 /// A face of one scan that the other has as well, in the target's frame.
@@ -185,9 +187,12 @@ struct MetFace {
   double weight = 1.0;  ///< pieces
 };
 
-/// Faces near one another may be of one thing, or were pushed together.
+/// Faces near one another may be of one thing, or were pushed together; those in one plane are of one
+/// cupboard or board even where something hides what lies between.
 double correlation(const MetFace& a, const MetFace& b) {
-  return std::exp(-(a.at - b.at).norm() / kThingLengthM);
+  const Vector3d apart = a.at - b.at;
+  const bool one_plane = a.normal.dot(b.normal) > kOneFaceCosine && std::abs(apart.dot(a.normal)) < kOneFaceM;
+  return std::exp(-apart.norm() / (one_plane ? kFrontLengthM : kThingLengthM));
 }
 
 double correlation(const Told& a, const Told& b) {
@@ -236,6 +241,17 @@ Observations observations(const std::vector<Told>& told) {
   return seen;
 }
 
+/// Observations that agree in the room of one station, and in that of the other: the fewer.
+double in_both_rooms(const std::vector<Told>& told) {
+  const std::vector<double> shares = shares_of(told, 8.0 * kCorrelationM);
+  double of_source = 0.0;
+  double of_target = 0.0;
+  for (std::size_t i = 0; i < told.size(); ++i) {
+    if (told[i].agrees) (told[i].of_source ? of_source : of_target) += shares[i];
+  }
+  return std::min(of_source, of_target);
+}
+
 /// One scan with what is the building's and what is not.
 struct Side {
   ScanView view;
@@ -247,7 +263,7 @@ struct Side {
 
 /// Asks `judge` about the pieces of `scan`; what it does not know is left out.
 void ask_matter(const Side& scan, const Side& judge, const Rigid3& judge_from_scan,
-                const Rigid3& target_from_scan, std::vector<Told>& told) {
+                const Rigid3& target_from_scan, bool scan_is_source, std::vector<Told>& told) {
   if (!judge.view.knows_free) return;  // what it does not contradict it does not confirm either
   for (const Piece& piece : scan.pieces) {
     SightQuery query;
@@ -262,8 +278,8 @@ void ask_matter(const Side& scan, const Side& judge, const Rigid3& judge_from_sc
     // Beyond an opening of both stands what both rooms' neighbours have alike: corridors, façades.
     if (surface && piece.behind && place == BuiltPlanes::Place::behind) continue;
     if (surface && sight.plane >= 0 && judge.built.is_built(sight.plane)) continue;
-    told.push_back(
-        {target_from_scan * piece.detail->mean, static_cast<double>(piece.detail->area_m2), surface});
+    told.push_back({target_from_scan * piece.detail->mean, static_cast<double>(piece.detail->area_m2),
+                    surface, piece.behind != scan_is_source});
   }
 }
 
@@ -413,8 +429,8 @@ FaceOffsets face_offsets(const Side& source, const Side& target, const Rigid3& t
 
 std::vector<Told> told_of_matter(const Side& source, const Side& target, const Rigid3& target_from_source) {
   std::vector<Told> told;
-  ask_matter(source, target, target_from_source, target_from_source, told);
-  ask_matter(target, source, inverse(target_from_source), Rigid3{}, told);
+  ask_matter(source, target, target_from_source, target_from_source, true, told);
+  ask_matter(target, source, inverse(target_from_source), Rigid3{}, false, told);
   return told;
 }
 
@@ -450,7 +466,9 @@ IndividualMatter individual_matter(const ScanView& source_view, const ScanView& 
   if (source_view.space == nullptr || target_view.space == nullptr) return individual;
   const Side source(source_view);
   const Side target(target_view);
-  individual.matter = observations(told_of_matter(source, target, target_from_source));
+  const std::vector<Told> told = told_of_matter(source, target, target_from_source);
+  individual.matter = observations(told);
+  individual.in_both_rooms = in_both_rooms(told);
   individual.chance = chance_of(source, target, target_from_source);
   individual.apart = wall_between(source, target, target_from_source) ||
                      wall_between(target, source, inverse(target_from_source));

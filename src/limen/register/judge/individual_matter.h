@@ -40,6 +40,8 @@ struct IndividualMatter {
   double chance = 0.0;
   /// A wall stands between the two stations: what they have in common is seen through an opening.
   bool apart = false;
+  /// Observations that agree in either station's room: those of the room with fewer.
+  double in_both_rooms = 0.0;
 };
 
 /// Asks each scan about the other's individual matter under a pose (upright frames): pieces of surface on no

@@ -11,7 +11,7 @@ namespace limen {
 namespace {
 
 // Steps as people can climb them, with what the middles of pieces miss those of risers by.
-constexpr double kLeastRunM = 0.18;
+constexpr double kLeastRunM = 0.1;  // of steep ones
 constexpr double kMostRunM = 0.38;
 constexpr double kLeastRiseM = 0.09;
 constexpr double kMostRiseM = 0.27;

@@ -138,7 +138,8 @@ TwinEvidence weigh_twin(const IndividualMatter& individual, const TwinOptions& o
       log_sum_exp({std::log(1.0 - options.lived_in) + log_likelihood(individual.matter, options.kept),
                    std::log(options.lived_in) + log_likelihood(individual.matter, options.kept_lived_in)});
   const double prior = individual.apart ? options.prior_apart : options.prior;
-  const double alike_share = options.alike_share * (individual.apart ? options.apart_share : 1.0);
+  const double in_both = individual.apart ? std::clamp(individual.in_both_rooms, 0.0, 1.0) : 0.0;
+  const double alike_share = options.alike_share * std::pow(options.apart_share, in_both);
   const double same = log_likelihood(individual.faces, one_room());
   TwinEvidence evidence;
   evidence.otherwise = prior * (1.0 - alike_share);
