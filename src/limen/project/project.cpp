@@ -147,8 +147,10 @@ class Run {
       StagePart preparing(part, at(k), at(k + 1));
       record.points.push_back(read.scans[k].size());
       const Scan scan = std::move(read.scans[k]);
+      PrepareOptions with_track = prepare_options(options_.registering);
+      with_track.track = true;
       store_.save_features(store_.feature_key(file.sha256, static_cast<int>(k)),
-                           prepare_scan(scan, prepare_options(options_.registering), preparing));
+                           prepare_scan(scan, with_track, preparing));
     }
     store_.save_file(file.sha256, record);
     return record;

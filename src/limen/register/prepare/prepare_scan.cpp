@@ -87,7 +87,8 @@ PreparedScan prepare_in_frame(const Scan& scan, const ScanFrame& frame, const Pr
     StagePart extracting(monitor, kFramed, kExtracted);
     prepared.extracted = extract_features(laid, extract, extracting);
   }
-  if (laid.mobile() && !options.planes_only) prepared.track = find_pass_track(laid, prepared.extracted);
+  if (options.track && laid.mobile() && !options.planes_only)
+    prepared.track = find_pass_track(laid, prepared.extracted);
   look_around(laid, options, prepared, monitor);
   return prepared;
 }

@@ -51,6 +51,7 @@ struct PreparedScan {
 struct PrepareOptions {
   ExtractOptions extract;
   Gravity gravity = Gravity::automatic;
+  bool track = false;        ///< of a mobile scan, as a project needs it that bends drifting passes
   bool planes_only = false;  ///< neither openings nor a view of space
   bool segments = false;     ///< line segments as well
   OpeningOptions openings;   ///< which openings are looked for
