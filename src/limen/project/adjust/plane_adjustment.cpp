@@ -148,22 +148,12 @@ class JointSolver {
                   weight * residual.by_pose.transpose() * residual.by_pose);
       system_.add_right(observation.node, -weight * residual.by_pose.transpose() * residual.value);
     }
-<<<<<<< HEAD
-    const Matrix3d inverted = own.inverse();
+    const Matrix3d inverted = inverse_of(own);
     for (const auto& [row, of_row] : mixed) {
       const Wide half = of_row * inverted;
       system_.add_right_at(row, -half * own_right);
       for (const auto& [column, of_column] : mixed)
         system_.add_at(row, column, -half * of_column.transpose());
-=======
-    const Matrix3d inverted = inverse_of(own);
-    for (std::size_t i = 0; i < seen.size(); ++i) {
-      const int node = problem_.observations[seen[i]].node;
-      const Wide half = mixed[i] * inverted;
-      system_.add_right(node, -half * own_right);
-      for (std::size_t j = 0; j < seen.size(); ++j)
-        system_.add(node, problem_.observations[seen[j]].node, -half * mixed[j].transpose());
->>>>>>> 40f6ece (Terraces are told apart: steep stairs are the building's, a cupboard is one observation, what agrees in one room says nothing of the next; sides of a building that are rather twins are taken apart)
     }
   }
 
