@@ -9,6 +9,7 @@
 
 #include "limen/base/error.h"
 #include "limen/base/parallel.h"
+#include "limen/geometry/polygon_clip.h"
 #include "limen/register/judge/individual_matter.h"
 #include "limen/register/judge/posterior.h"
 #include "limen/register/judge/twin_odds.h"
@@ -140,17 +141,35 @@ std::string room_of(const Rigid3& target_from_source, const PreparedPair& pair) 
                  (pair.source.model ? inverse(target_from_source) : target_from_source) * station);
 }
 
-/// Over what length a trajectory's error changes: its size over this is the turn it may cause.
+/// Over what length a trajectory's error changes: its size over this is the turn it may cause. An error that
+/// wanders along a wall of length E turns a fit to the whole of it by about 2.4 of its sizes over E.
 constexpr double kDriftLengthM = 5.0;
+constexpr double kTurnOfWandering = 2.4;
+
+double longest_side(const PlanarPolygon& plane) {
+  const Box2 box = box_of(plane.parts);
+  return box.empty() ? 0.0 : (box.high - box.low).maxCoeff();
+}
+
+/// The longest wall that both scans saw, of each pair as far as the shorter goes.
+double common_length_m(const RefinedPose& pose, const ScanView& source, const ScanView& target) {
+  double longest = 0.0;
+  for (const PlaneMatch& match : pose.matches)
+    longest = std::max(
+        longest, std::min(longest_side(source.features->planes[static_cast<std::size_t>(match.source)]),
+                          longest_side(target.features->planes[static_cast<std::size_t>(match.target)])));
+  return longest;
+}
 
 /// What the data hold, and what the trajectory may be off where this place was scanned: the matched surface
 /// is seen within seconds, so that the error is one for all of it and does not average out.
-PoseSigma sigma_of(const RefinedPose& pose, const Vector3d& target_origin, double drift_m) {
+PoseSigma sigma_of(const RefinedPose& pose, const Vector3d& target_origin, double drift_m,
+                   double common_length_m) {
   PoseSigma sigma;
   sigma.centre = pose.centre + target_origin;
   sigma.covariance = covariance_of(pose);
   sigma.formal_covariance = formal_covariance_of(pose);
-  const double drift_rad = drift_m / kDriftLengthM;
+  const double drift_rad = drift_m / std::max(kDriftLengthM, common_length_m / kTurnOfWandering);
   sigma.covariance.diagonal().head<3>().array() += drift_rad * drift_rad;
   sigma.covariance.diagonal().tail<3>().array() += drift_m * drift_m;
   const Eigen::Matrix<double, 6, 1> deviation = sigma.covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
@@ -165,7 +184,8 @@ Hypothesis to_hypothesis(const JudgedPose& pose, const PreparedPair& pair) {
       to_world(pose.refined.target_from_source, pair.source.extracted.features.local_origin,
                pair.target.extracted.features.local_origin);
   hypothesis.sigma = sigma_of(pose.refined, pair.target.extracted.features.local_origin,
-                              drift_m(pair.source.view(), pair.target.view()));
+                              drift_m(pair.source.view(), pair.target.view()),
+                              common_length_m(pose.refined, pair.source.view(), pair.target.view()));
   hypothesis.score = pose.score.value();
   hypothesis.agreeing_m2 = pose.score.agreeing_m2;
   hypothesis.contradicted_m2 = pose.score.contradicted_m2;
