@@ -13,7 +13,7 @@ foreach(source IN LISTS LIMEN_BENCHMARKS)
   get_filename_component(name ${source} NAME_WE)
   string(REGEX REPLACE "_main$" "" target bench_${name})
   add_executable(${target} ${source})
-  target_link_libraries(${target} PRIVATE limen limen_options Boost::headers fmt::fmt nlohmann_json::nlohmann_json
+  target_link_libraries(${target} PRIVATE limen limen_options fmt::fmt nlohmann_json::nlohmann_json
     CLI11::CLI11 $<$<BOOL:${LIMEN_BUILD_SIMULATOR}>:limen_simulate>)
   target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
   if(name STREQUAL "icp_floor_main")

@@ -324,9 +324,8 @@ class Solver {
                         solved_.nodes[static_cast<std::size_t>(link.target)].state == NodeState::registered;
       if (link.trust == LinkTrust::weak) {
         solved.state = LinkState::weak;
-      } else if (link.trust == LinkTrust::likely && !firm) {
-        solved.state = LinkState::ambiguous;
-      } else if (doubted_.count(static_cast<int>(k)) > 0 || (bridge && link.trust > LinkTrust::sure)) {
+      } else if ((link.trust == LinkTrust::likely && !firm) || doubted_.count(static_cast<int>(k)) > 0 ||
+                 (bridge && link.trust > LinkTrust::sure)) {
         solved.state = LinkState::ambiguous;
       } else {
         solved.state = bridge ? LinkState::bridge : LinkState::verified;
