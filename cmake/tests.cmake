@@ -42,7 +42,9 @@ endif()
 
 add_test(NAME floors COMMAND ${PROJECT_SOURCE_DIR}/scripts/check_floors)
 add_test(NAME floors_are_checked COMMAND ${PROJECT_SOURCE_DIR}/tests/tools/check_floors_test)
-set_tests_properties(floors floors_are_checked PROPERTIES LABELS unit)
+add_test(NAME names COMMAND ${PROJECT_SOURCE_DIR}/scripts/check_names)
+add_test(NAME names_are_checked COMMAND ${PROJECT_SOURCE_DIR}/tests/tools/check_names_test)
+set_tests_properties(floors floors_are_checked names names_are_checked PROPERTIES LABELS unit)
 
 # What the first page of the documentation says is run.
 add_test(NAME commands_of_the_first_hour COMMAND ${PROJECT_SOURCE_DIR}/tests/tools/docs_test $<TARGET_FILE:limen_program>)
