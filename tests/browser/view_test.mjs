@@ -96,7 +96,7 @@ describe('both sides of a result', () => {
     const words = await clickSomething(page);
     assert.match(words, /At\s+10\d{5}\.\d{3}\s+68\d{5}\.\d{3}\s+-?\d+\.\d{3}/);
     assert.match(words, /Of\s+(indoor_00|outdoor)\.ply/);
-    assert.ok(await page.isVisible('#pin-0'));
+    await page.waitForSelector('#pin-0:not([hidden])');
   });
 
   test('two clicks measure', async () => {
@@ -110,6 +110,7 @@ describe('both sides of a result', () => {
     const distance = Math.hypot(...places[0].map((c, k) => places[1][k] - c));
     const told = +/Distance\s+([\d.]+) m/.exec(words)[1];
     assert.ok(told > 0.05 && Math.abs(told - distance) < 0.002, `${told} told, ${distance} between the ends`);
+    await page.waitForSelector('#length:not([hidden])');  // it is put there with the next picture
     assert.equal(await page.locator('#length').innerText(), `${told.toFixed(3)} m`);
     if (shots) await page.screenshot({ path: join(shots, 'view-measured.png') });
     await settled(page, () => page.click('#clear'));
