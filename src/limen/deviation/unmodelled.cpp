@@ -7,6 +7,8 @@
 #include <cstdint>
 #include <unordered_map>
 
+#include "limen/base/disjoint_sets.h"
+
 namespace limen {
 namespace {
 
@@ -22,30 +24,6 @@ std::uint64_t key_of(const Vector3d& x, double cell_m) {
   return key;
 }
 
-/// Cubes joined with their neighbours.
-class Joined {
- public:
-  std::size_t add() {
-    parent_.push_back(parent_.size());
-    return parent_.size() - 1;
-  }
-  std::size_t root(std::size_t i) {
-    while (parent_[i] != i) {
-      parent_[i] = parent_[parent_[i]];
-      i = parent_[i];
-    }
-    return i;
-  }
-  void join(std::size_t a, std::size_t b) {
-    const std::size_t x = root(a);
-    const std::size_t y = root(b);
-    parent_[std::max(x, y)] = std::min(x, y);
-  }
-
- private:
-  std::vector<std::size_t> parent_;
-};
-
 }  // namespace
 
 std::vector<UnmodelledMatter> pieces_of(const std::vector<Vector3d>& points, double cell_m,
@@ -53,16 +31,13 @@ std::vector<UnmodelledMatter> pieces_of(const std::vector<Vector3d>& points, dou
   std::unordered_map<std::uint64_t, std::size_t> cubes;
   std::vector<std::uint64_t> keys;  // of the cubes, as they came
   std::vector<std::size_t> cube_of_point;
-  Joined joined;
   for (const Vector3d& x : points) {
     const std::uint64_t key = key_of(x, cell_m);
     const auto [it, fresh] = cubes.try_emplace(key, keys.size());
-    if (fresh) {
-      keys.push_back(key);
-      joined.add();
-    }
+    if (fresh) keys.push_back(key);
     cube_of_point.push_back(it->second);
   }
+  DisjointSets joined(keys.size());  // cubes, with their neighbours
   for (std::size_t k = 0; k < keys.size(); ++k) {
     for (std::uint64_t n = 0; n < 27; ++n) {
       const std::uint64_t step = ((n % 3) << 42U) + ((n / 3 % 3) << 21U) + n / 9;
@@ -77,7 +52,7 @@ std::vector<UnmodelledMatter> pieces_of(const std::vector<Vector3d>& points, dou
     piece.high = Vector3d::Constant(-1e300);
   }
   for (std::size_t i = 0; i < points.size(); ++i) {
-    UnmodelledMatter& piece = pieces[joined.root(cube_of_point[i])];
+    UnmodelledMatter& piece = pieces[joined.find(cube_of_point[i])];
     ++piece.points;
     piece.low = piece.low.cwiseMin(points[i]);
     piece.high = piece.high.cwiseMax(points[i]);

@@ -28,14 +28,18 @@ constexpr double kStripTiles = 8.0;
 constexpr double kStripM = 0.001;    // a strip of a wall stands out by so much
 constexpr double kHeldPlaces = 6.0;  // along a way, where a link holds it
 
+/// Of each node the number of its first plane among those of all; behind them how many there are.
+std::vector<std::size_t> first_planes(const std::vector<ProjectNode>& nodes) {
+  std::vector<std::size_t> first = {0};
+  for (const ProjectNode& node : nodes) first.push_back(first.back() + node.digest.planes.size());
+  return first;
+}
+
 }  // namespace
 
 SharedPlanes::SharedPlanes(const std::vector<ProjectNode>& nodes, const SolvedGraph& solved,
                            const BentPasses& passes)
-    : nodes_(nodes), solved_(solved), passes_(passes) {
-  first_.push_back(0);
-  for (const ProjectNode& node : nodes) first_.push_back(first_.back() + node.digest.planes.size());
-  for (std::size_t k = 0; k < first_.back(); ++k) root_.push_back(k);
+    : nodes_(nodes), solved_(solved), passes_(passes), first_(first_planes(nodes)), surfaces_(first_.back()) {
   strips_.resize(passes.any() ? nodes.size() : 0);
   for (std::size_t n = 0; n < strips_.size(); ++n) {
     strips_[n].resize(digest(n).planes.size());
@@ -44,16 +48,11 @@ SharedPlanes::SharedPlanes(const std::vector<ProjectNode>& nodes, const SolvedGr
   }
 }
 
-std::size_t SharedPlanes::find(std::size_t k) {
-  while (root_[k] != k) k = root_[k] = root_[root_[k]];
-  return k;
-}
-
 template <typename Visit>
 void SharedPlanes::for_each(const Visit& visit) {
   for (std::size_t node = 0; node < nodes_.size(); ++node) {
     for (std::size_t plane = 0; plane < digest(node).planes.size(); ++plane)
-      visit(node, plane, find(first_[node] + plane));
+      visit(node, plane, surfaces_.find(first_[node] + plane));
   }
 }
 
@@ -68,9 +67,8 @@ void SharedPlanes::join(int source, int source_plane, int target, int target_pla
   const double cosine = in_frame.normal.dot(frame_from_b.rotation * b.plane.normal);
   if (std::abs(cosine) < kSharedCosine) return;
   if (std::abs(in_frame.signed_distance(frame_from_b * b.centroid)) > kSharedM) return;
-  const std::size_t x = find(first_[source_node] + static_cast<std::size_t>(source_plane));
-  const std::size_t y = find(first_[target_node] + static_cast<std::size_t>(target_plane));
-  root_[std::max(x, y)] = std::min(x, y);
+  surfaces_.join(first_[source_node] + static_cast<std::size_t>(source_plane),
+                 first_[target_node] + static_cast<std::size_t>(target_plane));
 }
 
 PlaneObservation SharedPlanes::whole_plane(std::size_t node, const PlaneDigest& seen) const {

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "limen/base/disjoint_sets.h"
 #include "limen/project/adjust/plane_adjustment.h"
 #include "limen/project/graph/pose_graph.h"
 #include "limen/project/passes/bent_passes.h"
@@ -41,7 +42,6 @@ class SharedPlanes {
     double place = 0.0;                ///< along it
   };
 
-  std::size_t find(std::size_t k);
   template <typename Visit>
   void for_each(const Visit& visit);
   [[nodiscard]] const ScanDigest& digest(std::size_t node) const { return nodes_[node].digest; }
@@ -55,7 +55,7 @@ class SharedPlanes {
   const SolvedGraph& solved_;
   const BentPasses& passes_;
   std::vector<std::size_t> first_;
-  std::vector<std::size_t> root_;
+  DisjointSets surfaces_;                                      ///< planes that are one, of all nodes
   std::vector<std::vector<std::vector<std::size_t>>> strips_;  // of each plane of each node
 };
 

@@ -469,6 +469,7 @@ RegistrationResult register_prepared(const PreparedPair& pair, const RegisterOpt
   judging.in_model = model;
   judging.through_wall = !model && from.mobile != to.mobile;
   Verdict verdict = judge(poses, contrast, judging);
+  std::optional<IndividualMatter> individual;  // under the best pose, once it was asked for
   // Of a room in use things stand where the other scan saw free space: no contradiction, if enough of the
   // rest is where it was to tell the room from its twins.
   if (verdict.outcome == Outcome::no_match && may_be_twin(from, to) && !verdict.ranking.empty()) {
@@ -477,8 +478,11 @@ RegistrationResult register_prepared(const PreparedPair& pair, const RegisterOpt
     Verdict in_use = judge(poses, contrast, bearing);
     if (in_use.outcome != Outcome::no_match) {
       const Rigid3& best = poses[in_use.ranking.front()].refined.target_from_source;
-      if (probability_of_twin(individual_matter(from.view(), to.view(), best), judging.twin) < kTwinRather)
+      IndividualMatter matter = individual_matter(from.view(), to.view(), best);
+      if (probability_of_twin(matter, judging.twin) < kTwinRather) {
         verdict = std::move(in_use);
+        individual = std::move(matter);
+      }
     }
   }
   const auto try_again = [&](bool gravity_known, Proposal proposal) {
@@ -495,11 +499,11 @@ RegistrationResult register_prepared(const PreparedPair& pair, const RegisterOpt
   double twin = 0.0;
   if (!verdict.ranking.empty() && verdict.outcome != Outcome::no_match && may_be_twin(from, to)) {
     const Rigid3& best = poses[verdict.ranking.front()].refined.target_from_source;
-    const IndividualMatter individual = individual_matter(from.view(), to.view(), best);
-    result.twin = weigh_twin(individual, judging.twin);
+    if (!individual) individual = individual_matter(from.view(), to.view(), best);
+    result.twin = weigh_twin(*individual, judging.twin);
     twin = result.twin->probability();
     if (start) twin = twin_beside_start(twin, start->prior, best, start->at, start->log_prior(best));
-    verdict = with_twin(std::move(verdict), individual, twin, judging);
+    verdict = with_twin(std::move(verdict), *individual, twin, judging);
   }
   if (start && !verdict.ranking.empty()) {
     const StartMiss miss =

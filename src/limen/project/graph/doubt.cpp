@@ -38,13 +38,10 @@ class DoubtSearch {
     for (const int k : held_) evidence_[static_cast<std::size_t>(k)] = evidence_of(k);
     rate_.emplace(graph.nodes, witnesses());
     for (const int k : held_) {
-      const int witnesses = views_.witnesses_like(k);
       TwinEvidence& said = evidence_[static_cast<std::size_t>(k)];
       said.otherwise_nats = std::min(said.otherwise_nats, kMostNats);
       said.alike_nats = std::min(said.alike_nats, kMostNats);
-      share_.push_back((nats(k) + loop_nats(k)) / witnesses);
-      otherwise_share_.push_back(said.otherwise_nats / witnesses);
-      alike_share_.push_back(said.alike_nats / witnesses);
+      witnesses_like_.push_back(views_.witnesses_like(k));
     }
   }
 
@@ -127,12 +124,11 @@ class DoubtSearch {
 
   /// The cut across which least is said against a twin.
   [[nodiscard]] Cut twin_cut(const Kind& kind, int node, int root) const {
-    const std::vector<double>& shares =
-        kind.nats == &TwinEvidence::alike_nats ? alike_share_ : otherwise_share_;
     std::vector<bool> alone(static_cast<std::size_t>(graph_.nodes), false);
     alone[static_cast<std::size_t>(node)] = true;
     Cut least = across(kind, alone);
-    const std::optional<std::vector<bool>> side = smallest_cut(shares, node, root);
+    const std::optional<std::vector<bool>> side =
+        smallest_cut([&](int k) { return evidence(k).*kind.nats; }, node, root);
     if (!side) return least;
     Cut found = across(kind, *side);
     return found.weight() >= least.weight() ? found : least;
@@ -198,13 +194,15 @@ class DoubtSearch {
     return crossing;
   }
 
-  /// The side of `node` of the smallest cut between it and `root`, of links that are worth `nats`; empty
-  /// where enough is said across every one.
-  [[nodiscard]] std::optional<std::vector<bool>> smallest_cut(const std::vector<double>& nats, int node,
+  /// The side of `node` of the smallest cut between it and `root`, of links that are worth `nats_of(link)`,
+  /// shared with those that see the same; empty where enough is said across every one.
+  template <typename NatsOf>
+  [[nodiscard]] std::optional<std::vector<bool>> smallest_cut(const NatsOf& nats_of, int node,
                                                               int root) const {
     FlowNetwork network(static_cast<std::size_t>(graph_.nodes));
     for (std::size_t i = 0; i < held_.size(); ++i) {
-      const auto room = static_cast<int>(std::lround(kUnits * std::max(0.0, nats[i])));
+      const auto room =
+          static_cast<int>(std::lround(kUnits * std::max(0.0, nats_of(held_[i]) / witnesses_like_[i])));
       network.connect(link(held_[i]).source, link(held_[i]).target, room, room);
     }
     std::vector<bool> start(static_cast<std::size_t>(graph_.nodes), false);
@@ -215,7 +213,8 @@ class DoubtSearch {
   }
 
   void add_chance(int node, int root, NodeDoubt& doubt) const {
-    const std::optional<std::vector<bool>> side = smallest_cut(share_, node, root);
+    const std::optional<std::vector<bool>> side =
+        smallest_cut([&](int k) { return nats(k) + loop_nats(k); }, node, root);
     doubt.chance = 0.0;
     if (!side) return;
     std::vector<int> crossing = crossing_links(*side);
@@ -235,10 +234,8 @@ class DoubtSearch {
   const PoseGraph& graph_;
   const AcceptedPoses& accepted_;
   SharedViews views_;
-  std::vector<int> held_;                ///< accepted links that hold
-  std::vector<double> share_;            ///< of each of them: nats, shared with those that see the same
-  std::vector<double> otherwise_share_;  ///< the same against twins furnished otherwise ...
-  std::vector<double> alike_share_;      ///< ... and alike
+  std::vector<int> held_;            ///< accepted links that hold
+  std::vector<int> witnesses_like_;  ///< of each of them: how many links see what it sees
   std::vector<const GraphLink*>
       against_;  ///< of the pairs that speak for twins those that the solution lays so
   std::optional<TwinRate> rate_;

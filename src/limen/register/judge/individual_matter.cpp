@@ -229,8 +229,8 @@ double agreeing_share(const std::vector<Told>& told) {
   return total > 0.0 ? agreeing / total : 0.0;
 }
 
-Observations observations(const std::vector<Told>& told) {
-  const std::vector<double> shares = shares_of(told, 8.0 * kCorrelationM);
+/// `shares`: each answer's, of an observation.
+Observations observations(const std::vector<Told>& told, const std::vector<double>& shares) {
   Observations seen;
   double agreeing = 0.0;
   for (std::size_t i = 0; i < told.size(); ++i) {
@@ -242,8 +242,7 @@ Observations observations(const std::vector<Told>& told) {
 }
 
 /// Observations that agree in the room of one station, and in that of the other: the fewer.
-double in_both_rooms(const std::vector<Told>& told) {
-  const std::vector<double> shares = shares_of(told, 8.0 * kCorrelationM);
+double in_both_rooms(const std::vector<Told>& told, const std::vector<double>& shares) {
   double of_source = 0.0;
   double of_target = 0.0;
   for (std::size_t i = 0; i < told.size(); ++i) {
@@ -467,8 +466,9 @@ IndividualMatter individual_matter(const ScanView& source_view, const ScanView& 
   const Side source(source_view);
   const Side target(target_view);
   const std::vector<Told> told = told_of_matter(source, target, target_from_source);
-  individual.matter = observations(told);
-  individual.in_both_rooms = in_both_rooms(told);
+  const std::vector<double> shares = shares_of(told, 8.0 * kCorrelationM);
+  individual.matter = observations(told, shares);
+  individual.in_both_rooms = in_both_rooms(told, shares);
   individual.chance = chance_of(source, target, target_from_source);
   individual.apart = wall_between(source, target, target_from_source) ||
                      wall_between(target, source, inverse(target_from_source));

@@ -41,6 +41,10 @@ TEST(TwinOdds, WithoutEvidenceThePriorStands) {
   IndividualMatter apart;
   apart.apart = true;
   EXPECT_NEAR(probability_of_twin(apart), TwinOptions{}.prior_apart, 1e-12);
+  // What a project believes where it knows nothing else is what a pair believes.
+  const TwinEvidence nothing = weigh_twin({});
+  EXPECT_NEAR(nothing.otherwise, TwinEvidence{}.otherwise, 1e-12);
+  EXPECT_NEAR(nothing.alike, TwinEvidence{}.alike, 1e-12);
 }
 
 TEST(TwinOdds, ThingsThatAgreeToTheMillimetreMakeOneRoom) {

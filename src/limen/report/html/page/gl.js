@@ -126,6 +126,42 @@ const makePicture = (gl) => {
   return { begin, colours, depths };
 };
 
+const makePrograms = (gl) => ({
+  points: makeProgram(gl, kPointVertex, kPointFragment), faces: makeProgram(gl, kFaceVertex, kFaceFragment),
+  lines: makeProgram(gl, kLineVertex, kLineFragment), shade: makeProgram(gl, kShadeVertex, kShadeFragment),
+});
+
+/**
+ * Draws a frame's surfaces onto an empty canvas: what `drawGlass` draws, and over it what `drawSolid` draws, shaded by
+ * its depths. A model is glass: points in it are seen through its walls.
+ */
+const makeSurfacePainter = (gl, programs) => {
+  const picture = makePicture(gl);
+  const empty = gl.createVertexArray();
+  const shade = (frame) => {
+    programs.shade.use();
+    [picture.colours, picture.depths].forEach((texture, k) => { gl.activeTexture(gl.TEXTURE0 + k); gl.bindTexture(gl.TEXTURE_2D, texture); });
+    programs.shade.set({ colours: 0, depths: 1, range: frame.look.range, parallel: frame.look.parallel, reach: 1.5 * frame.ratio, height: frame.height, shadow: frame.shadow });
+    gl.bindVertexArray(empty);
+    gl.drawArrays(gl.TRIANGLES, 0, 3);
+  };
+  return (frame, drawSolid, drawGlass) => {
+    gl.enable(gl.DEPTH_TEST);
+    gl.disable(gl.BLEND);
+    picture.begin(...frame.size);
+    drawSolid();
+    gl.disable(gl.DEPTH_TEST);
+    gl.enable(gl.BLEND);
+    gl.blendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
+    gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+    gl.viewport(0, 0, ...frame.size);
+    gl.clearColor(0, 0, 0, 0);
+    gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
+    drawGlass();
+    shade(frame);
+  };
+};
+
 /** "#1f6fb4" of a style's variable as three shares; grey where it is told otherwise. */
 const styleColour = (name) => {
   const text = getComputedStyle(document.documentElement).getPropertyValue(name).trim();

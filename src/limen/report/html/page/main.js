@@ -174,11 +174,8 @@ const startViewer = (gl, canvas) => {
 };
 
 const makeGpu = (gl, scene) => {
-  const programs = {
-    points: makeProgram(gl, kPointVertex, kPointFragment), faces: makeProgram(gl, kFaceVertex, kFaceFragment),
-    lines: makeProgram(gl, kLineVertex, kLineFragment), shade: makeProgram(gl, kShadeVertex, kShadeFragment),
-  };
-  const picture = makePicture(gl);
+  const programs = makePrograms(gl);
+  const paintSurfaces = makeSurfacePainter(gl, programs);
   const parts = {};
   for (const name of ['source', 'target']) {
     const side = scene[name];
@@ -189,7 +186,6 @@ const makeGpu = (gl, scene) => {
     };
   }
   const open = makeLines(gl).replace(openLines(scene));
-  const empty = gl.createVertexArray();
 
   const drawPoints = (name, frame, tint) => {
     const { cloud } = parts[name];
@@ -226,16 +222,6 @@ const makeGpu = (gl, scene) => {
     gl.bindVertexArray(lines.array);
     gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, lines.count);
   };
-  const shade = (frame) => {
-    programs.shade.use();
-    gl.activeTexture(gl.TEXTURE0);
-    gl.bindTexture(gl.TEXTURE_2D, picture.colours);
-    gl.activeTexture(gl.TEXTURE1);
-    gl.bindTexture(gl.TEXTURE_2D, picture.depths);
-    programs.shade.set({ colours: 0, depths: 1, range: frame.look.range, parallel: frame.look.parallel, reach: 1.5 * frame.ratio, height: frame.height, shadow: frame.shadow });
-    gl.bindVertexArray(empty);
-    gl.drawArrays(gl.TRIANGLES, 0, 3);
-  };
   const drawSideLines = (name, frame, colour) => {
     const layers = frame.state.layers[name];
     const place = frame.places[name];
@@ -254,21 +240,9 @@ const makeGpu = (gl, scene) => {
   const draw = (frame) => {
     const tints = { source: styleColour('--source'), target: styleColour('--target') };
     Object.assign(frame, { plain: styleColour('--line'), ink: styleColour('--ink'), shadow: styleColour('--ink').map((c) => (c > 0.5 ? 0.02 : c * 0.6)) });
-    gl.enable(gl.DEPTH_TEST);
-    gl.disable(gl.BLEND);
-    picture.begin(...frame.size);
-    for (const name of ['target', 'source']) drawPoints(name, frame, tints[name]);
-    gl.disable(gl.DEPTH_TEST);
-    gl.enable(gl.BLEND);
-    gl.blendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
-    gl.bindFramebuffer(gl.FRAMEBUFFER, null);
-    gl.viewport(0, 0, ...frame.size);
-    gl.clearColor(0, 0, 0, 0);
-    gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
-    // A model is glass: points in it are seen through its walls.
-    for (const name of ['target', 'source']) drawFaces(name, frame, tints[name]);
-    shade(frame);
-    for (const name of ['target', 'source']) drawSideLines(name, frame, tints[name]);
+    const drawEach = (drawSide) => () => { for (const name of ['target', 'source']) drawSide(name, frame, tints[name]); };
+    paintSurfaces(frame, drawEach(drawPoints), drawEach(drawFaces));
+    drawEach(drawSideLines)();
     if (frame.state.after) drawLines(open, frame, frame.places.target, { colour: frame.ink, width: 2, whole: true });
   };
   const cut = ({ on, axis, place }, places) => {

@@ -67,16 +67,12 @@ const showColourLegend = (scene, state) => {
 };
 
 const makeViewGpu = (gl, scene) => {
-  const programs = {
-    points: makeProgram(gl, kPointVertex, kPointFragment), faces: makeProgram(gl, kFaceVertex, kFaceFragment),
-    lines: makeProgram(gl, kLineVertex, kLineFragment), shade: makeProgram(gl, kShadeVertex, kShadeFragment),
-  };
-  const picture = makePicture(gl);
+  const programs = makePrograms(gl);
+  const paintSurfaces = makeSurfacePainter(gl, programs);
   const parts = scene.sides.map((side) => ({
     side, cloud: makeCloud(gl, side), outlines: makeLines(gl).replace(side.planes.flatMap(outlineOf)), walls: makeLines(gl),
   }));
   const measured = makeLines(gl);
-  const empty = gl.createVertexArray();
   const ways = ['side', 'own', 'residual', 'height'];
 
   const drawCloud = ({ side, cloud }, { look, state, ratio, plain }) => {
@@ -107,29 +103,10 @@ const makeViewGpu = (gl, scene) => {
     gl.bindVertexArray(lines.array);
     gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, lines.count);
   };
-  const shade = (frame) => {
-    programs.shade.use();
-    [picture.colours, picture.depths].forEach((texture, k) => { gl.activeTexture(gl.TEXTURE0 + k); gl.bindTexture(gl.TEXTURE_2D, texture); });
-    programs.shade.set({ colours: 0, depths: 1, range: frame.look.range, parallel: frame.look.parallel, reach: 1.5 * frame.ratio, height: frame.height, shadow: frame.shadow });
-    gl.bindVertexArray(empty);
-    gl.drawArrays(gl.TRIANGLES, 0, 3);
-  };
   const draw = (frame) => {
     const ink = styleColour('--ink');
     Object.assign(frame, { plain: styleColour('--line'), shadow: ink.map((c) => (c > 0.5 ? 0.02 : c * 0.6)) });
-    gl.enable(gl.DEPTH_TEST);
-    gl.disable(gl.BLEND);
-    picture.begin(...frame.size);
-    for (const part of parts) drawCloud(part, frame);
-    gl.disable(gl.DEPTH_TEST);
-    gl.enable(gl.BLEND);
-    gl.blendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
-    gl.bindFramebuffer(gl.FRAMEBUFFER, null);
-    gl.viewport(0, 0, ...frame.size);
-    gl.clearColor(0, 0, 0, 0);
-    gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
-    for (const part of parts) drawModel(part, frame);
-    shade(frame);
+    paintSurfaces(frame, () => { for (const part of parts) drawCloud(part, frame); }, () => { for (const part of parts) drawModel(part, frame); });
     for (const { side, outlines, walls } of parts) {
       if (!side.shown) continue;
       drawLines(outlines, frame, { colour: styleColour(side.tint), width: 1.1, alpha: 0.7 });
