@@ -65,6 +65,14 @@ class RivalSearch {
                        [&](const LinkPose& pose) { return fits(pose, predicted); });
   }
 
+  /// Whether a pose says no more than what is known of it allows, or than nobody cares about.
+  [[nodiscard]] static bool is_present_place(const LinkPose& pose, const Rigid3& present) {
+    const Rigid3 movement = present * inverse(pose.target_from_source);
+    const bool near = (movement * pose.centre - pose.centre).norm() < kSameShiftM &&
+                      rotation_angle(movement.rotation) < kSameTurnRad;
+    return near || chi_square(misfit(pose, present), pose.covariance) <= kChiSquareBound;
+  }
+
   [[nodiscard]] Bend bend_of(const GraphLink& link, const Rigid3& movement) const {
     return {any_fits(link, inverse(at(link.target)) * movement * at(link.source)),
             any_fits(link, inverse(movement * at(link.target)) * at(link.source))};
@@ -73,12 +81,13 @@ class RivalSearch {
   void ask(const GraphLink& link, const LinkPose& pose, std::vector<GraphQuestion>& questions) const {
     // The source would stand at movement * its present place.
     const Rigid3 movement = at(link.target) * pose.target_from_source * inverse(at(link.source));
-    const Vector3d from = at(link.source).translation;
-    if ((movement * from - from).norm() < kSameShiftM && rotation_angle(movement.rotation) < kSameTurnRad)
-      return;
+    if (is_present_place(pose, inverse(at(link.target)) * at(link.source))) return;
+    // Shifts are told where the two meet: a frame's own origin may be far away, on a national grid.
+    const Vector3d meets = at(link.target) * pose.centre;
+    const Vector3d from = inverse(movement) * meets;
     for (const GraphQuestion& known : questions) {
       const bool same =
-          (known.frame_from_frame * from - movement * from).norm() < kSameShiftM &&
+          (known.frame_from_frame * from - meets).norm() < kSameShiftM &&
           rotation_angle(known.frame_from_frame.rotation.transpose() * movement.rotation) < kSameTurnRad;
       if (same && contains(known.moved, link.source) && !contains(known.moved, link.target)) return;
     }

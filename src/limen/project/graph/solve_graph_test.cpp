@@ -103,6 +103,27 @@ TEST(SolveGraph, AnOpenLinkThatNothingSettlesLeavesItsScanAmbiguous) {
   EXPECT_FALSE(solved.questions.empty());
 }
 
+/// Passes that drift are known to one another to centimetres: a second pose that lies within that is the
+/// same place.
+TEST(SolveGraph, APoseWithinWhatIsKnownOfItsLinkIsNoOtherPlace) {
+  SyntheticGraph made = synthetic_graph(3, 1, 2, 0.0, 9);
+  RandomStream random(9, 1);
+  made.graph.nodes = 4;
+  const LinkPose best = measured_pose(random_pose(random, 5.0), 10.0, random);
+  for (const double loose : {1.0, 200.0}) {
+    GraphLink link;
+    link.source = 3;
+    link.target = 1;
+    link.trust = LinkTrust::open;
+    link.poses = {best, best};
+    link.poses[1].target_from_source.translation += Vector3d(0.07, 0.0, 0.0);
+    for (LinkPose& pose : link.poses) pose.covariance *= loose;
+    PoseGraph graph = made.graph;
+    graph.links.push_back(link);
+    EXPECT_EQ(solve_graph(graph).questions.empty(), loose > 1.0) << loose;
+  }
+}
+
 /// Two rooms alike, scanned three times each, and a corridor that sees both: each pair of scans of different
 /// rooms is taken for one room, and all these false links agree with one another.
 TEST(SolveGraph, TwinRoomsLinkedWronglyAreNeverRegisteredBoth) {
