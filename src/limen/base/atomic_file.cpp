@@ -82,6 +82,7 @@ void remove_left_behind(const fs::path& folder) {
 }  // namespace
 
 AtomicFile::AtomicFile(fs::path path) : path_(std::move(path)) {
+  if (path_.empty()) throw Error("the file to write has no name", "", "name a file to write to");
   std::error_code ignored;
   if (fs::is_symlink(path_, ignored)) {
     const fs::path behind = fs::canonical(path_, ignored);
@@ -191,6 +192,7 @@ void write_files(const std::vector<FileToWrite>& files) {
 }
 
 OutputFolder::OutputFolder(fs::path path) : path_(std::move(path)) {
+  if (path_.empty()) throw Error("the output folder has no name", "", "name a folder to write to");
   std::error_code error;
   fs::path missing = fs::absolute(path_, error).lexically_normal();
   if (!missing.has_filename()) missing = missing.parent_path();

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limen/base/text.h"
 
+#include <algorithm>
+#include <cstddef>
 #include <system_error>
 
 namespace limen {
@@ -11,7 +13,35 @@ bool blank(char c) {
   return c == ' ' || c == '\t' || c == '\r' || c == '\n';
 }
 
+/// Bytes of the UTF-8 character that `text` begins with; 0 where it begins with none, or with one that
+/// commands a terminal.
+std::size_t printable_length(std::string_view text) {
+  const auto byte = [&](std::size_t k) { return static_cast<unsigned char>(text[k]); };
+  const unsigned char first = byte(0);
+  if (first < 0x80U) return first >= 0x20U && first != 0x7FU ? 1 : 0;
+  const std::size_t length = first >= 0xF0U ? 4 : first >= 0xE0U ? 3 : 2;
+  if (first < 0xC2U || first > 0xF4U || text.size() < length) return 0;
+  for (std::size_t k = 1; k < length; ++k) {
+    if ((byte(k) & 0xC0U) != 0x80U) return 0;
+  }
+  // U+0080 to U+009F are controls; what is longer than it need be, half of a pair or beyond Unicode is none.
+  const bool control = first == 0xC2U && byte(1) < 0xA0U;
+  const bool wrong = (first == 0xE0U && byte(1) < 0xA0U) || (first == 0xEDU && byte(1) > 0x9FU) ||
+                     (first == 0xF0U && byte(1) < 0x90U) || (first == 0xF4U && byte(1) > 0x8FU);
+  return control || wrong ? 0 : length;
+}
+
 }  // namespace
+
+std::string printable(std::string_view text) {
+  std::string shown;
+  while (!text.empty()) {
+    const std::size_t length = printable_length(text);
+    shown += length == 0 ? std::string_view("?") : text.substr(0, length);
+    text.remove_prefix(std::max<std::size_t>(length, 1));
+  }
+  return shown;
+}
 
 std::string lower_case(std::string_view text) {
   std::string lower(text);

@@ -20,6 +20,20 @@ TEST(Text, TrimmedKeepsWhatStandsBetween) {
   EXPECT_EQ(trimmed(""), "");
 }
 
+TEST(Text, WhatCommandsATerminalIsNotShown) {
+  EXPECT_EQ(printable("scan 1: \"a\""), "scan 1: \"a\"");
+  EXPECT_EQ(printable("\x1b[2J\r\x7f"), "?[2J??");
+  EXPECT_EQ(printable("Gr\xc3\xbc\xc3\x9f\x65 \xe2\x82\xac \xf0\x9f\x8f\xa0"),
+            "Gr\xc3\xbc\xc3\x9f\x65 \xe2\x82\xac \xf0\x9f\x8f\xa0");
+  EXPECT_EQ(printable("\xc2\x9b\x33\x31m"), "??31m") << "a control beyond ASCII";
+  EXPECT_EQ(printable("\xff\xc3(\xe2\x82"),
+            "?"
+            "?(?"
+            "?")
+      << "no UTF-8, and half of a character";
+  EXPECT_EQ(printable("\xc0\xaf\xed\xa0\x80\xf4\x90\x80\x80"), "?????????") << "no characters of Unicode";
+}
+
 TEST(Text, ReasonIsTold) {
   EXPECT_NE(reason_of(ENOENT), reason_of(EACCES));
   EXPECT_FALSE(reason_of(ENOENT).empty());

@@ -20,6 +20,7 @@
 
 #include "limen/base/error.h"
 #include "limen/base/parallel.h"
+#include "limen/base/text.h"
 #include "limen/base/version.h"
 #include "limen/cli/commands/completion_command.h"
 #include "limen/cli/commands/deviation_command.h"
@@ -47,17 +48,15 @@
 namespace limen {
 namespace {
 
-/// One line, whatever the message holds.
-std::string one_line(std::string text) {
-  std::replace(text.begin(), text.end(), '\n', ' ');
-  text.erase(text.find_last_not_of(' ') + 1);
-  return text;
+/// One line that a terminal shows as it is, whatever the message holds.
+std::string told_in_one_line(const std::string& message) {
+  return printable(trimmed(one_line(message)));
 }
 
 int fail(const std::string& message, int status) {
   std::fflush(stdout);
   // Not fmt::print: a terminal that is gone is no reason to throw.
-  std::fputs(fmt::format("limen: error: {}\n", one_line(message)).c_str(), stderr);
+  std::fputs(fmt::format("limen: error: {}\n", told_in_one_line(message)).c_str(), stderr);
   return status;
 }
 
@@ -81,7 +80,7 @@ std::vector<std::string> option_names(const CLI::App& command) {
 std::string unknown_word(const std::string& word, const std::string& what,
                          const std::vector<std::string>& known) {
   const std::string meant = nearest_word(word, known);
-  return fmt::format("{} is not {}{}", word, what,
+  return fmt::format("{} is not {}{}", word.empty() ? "an empty word" : word, what,
                      meant.empty() ? "" : fmt::format("; did you mean {}?", meant));
 }
 

@@ -220,7 +220,6 @@ class Assembly {
     if (file_.damaged() > 0)
       warnings.push_back(
           fmt::format("{} statements of the file are damaged and passed over", file_.damaged()));
-    if (!file_.whole()) warnings.emplace_back("the file does not end as it should: it may be cut off");
     model_.head.metres_per_unit = structure_.metres_per_unit;
     model_.head.georeferenced = structure_.map.has_value();
   }
@@ -262,6 +261,9 @@ bool looks_like_ifczip(std::string_view bytes) {
 RawModel read_ifc(std::string_view bytes, const std::string& name, Monitor& monitor) {
   const StepFile file(bytes);
   require_schema(file, name);
+  if (!file.whole())
+    throw Error("the file is cut off: it does not end with END-ISO-10303-21", name,
+                "get the whole file, or export it again");
   IfcStructure structure = read_ifc_structure(file);
   monitor.throw_if_cancelled();
   std::vector<std::string> warnings;

@@ -14,11 +14,14 @@
 #include "limen/base/angles.h"
 #include "limen/base/atomic_file.h"
 #include "limen/base/error.h"
+#include "limen/base/text.h"
 #include "limen/cli/inputs/scan_options.h"
+#include "limen/files/mapped_file.h"
 #include "limen/project/project.h"
 #include "limen/report/json/json_values.h"
 #include "limen/report/project/project_json.h"
 #include "limen/report/project/project_page.h"
+#include "limen/report/project/read_project.h"
 
 namespace limen {
 namespace {
@@ -47,6 +50,9 @@ std::vector<std::string> names_in(const std::string& path) {
   if (!stream) throw Error("cannot be read", path, "give a text file with the name of a scan on each line");
   std::vector<std::string> names;
   for (std::string line; std::getline(stream, line);) {
+    if (printable(trimmed(line)) != trimmed(line) && line.find('\t') == std::string::npos)
+      throw Error("is no list of names: it holds bytes that are no text", path,
+                  "give a text file with the name of a scan on each line");
     while (!line.empty() && (line.back() == '\r' || line.back() == ' ' || line.back() == '\t'))
       line.pop_back();
     if (line.empty() || line.front() == '#') continue;
@@ -170,9 +176,36 @@ int tell_status(const std::string& folder, const Session& session) {
   return kExitOk;
 }
 
+/// Whether a scan is called so: by its file or the file's name, where it has several with the scan's number.
+bool is_called(const ProjectEntry& scan, const std::string& name) {
+  const std::string numbered = fmt::format(" #{}", scan.index);
+  const std::string file = name.ends_with(numbered) ? name.substr(0, name.size() - numbered.size()) : name;
+  return file == scan.file || file == std::filesystem::path(scan.file).filename();
+}
+
+/// A slip in a name would never be heeded. Throws Error that tells the names; a project that was not finished
+/// tells none, and any is taken.
+void require_known(const Decision& decision, const std::filesystem::path& folder) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(folder / "project.json", ignored)) return;
+  const std::vector<ProjectEntry> scans = read_project(folder / "project.json");
+  for (const std::string& name : decision.scans) {
+    const auto called = [&](const ProjectEntry& scan) { return is_called(scan, name); };
+    if (std::any_of(scans.begin(), scans.end(), called)) continue;
+    constexpr std::size_t kShown = 6;
+    std::string names;
+    for (std::size_t k = 0; k < std::min(kShown, scans.size()); ++k)
+      names += (k == 0 ? "" : ", ") + scans[k].file;
+    throw Error(
+        fmt::format("has no scan that is called {}", name), folder.string(),
+        fmt::format("name two of its {}: {}{}", scans.size(), names, scans.size() > kShown ? ", ..." : ""));
+  }
+}
+
 /// Words: decide, the folder, and the decision.
 int take_decision(const std::vector<std::string>& words, const Session& session) {
   const Decision decision = decision_from({words.begin() + 2, words.end()});
+  if (decision.kind != DecisionKind::forget) require_known(decision, words[1]);
   const std::vector<Decision> all = decide(words[1], decision);
   session.say(
       fmt::format("{}: kept with {} in all; run the project again, and it will be heeded and tested\n",
@@ -181,8 +214,41 @@ int take_decision(const std::vector<std::string>& words, const Session& session)
   return kExitOk;
 }
 
+/// A scan that cannot be read does not stop the others; where there is nothing else nothing is begun.
+void require_files(const ProjectCommandOptions& options) {
+  std::error_code ignored;
+  bool any = options.scans.empty();
+  for (const std::string& scan : options.scans) {
+    if (std::filesystem::is_directory(scan, ignored))
+      throw Error("is a folder, not a scan", scan, "name the scans in it: " + scan + "/*");
+    any = any || std::filesystem::exists(scan, ignored);
+  }
+  if (!any) static_cast<void>(MappedFile(options.scans.front()));  // says why
+}
+
 ProjectInputs inputs_of(const ProjectCommandOptions& options) {
   return {options.scans, options.models, options.control, options.check, options.targets, options.decisions};
+}
+
+/// Where nothing was kept that a later run could use, a folder is left as it was found.
+bool keeps_nothing(const std::filesystem::path& folder) {
+  std::error_code stop;
+  std::filesystem::recursive_directory_iterator entry(folder, stop);
+  for (; !stop && entry != std::filesystem::recursive_directory_iterator(); entry.increment(stop)) {
+    if (!entry->is_directory(stop) && entry->path().filename() != "status.json") return false;
+  }
+  return !stop;
+}
+
+ProjectResult run_in(const std::filesystem::path& folder, const ProjectCommandOptions& options,
+                     const Session& session) {
+  try {
+    return run_project(inputs_of(options), folder, project_options(options, session), *session.monitor);
+  } catch (...) {
+    std::error_code ignored;
+    if (keeps_nothing(folder)) std::filesystem::remove_all(folder / "store", ignored);
+    throw;
+  }
 }
 
 int run(ProjectCommandOptions options, const Session& session) {
@@ -190,13 +256,17 @@ int run(ProjectCommandOptions options, const Session& session) {
     return tell_status(options.scans.back(), session);
   if (options.folder.empty() && options.scans.size() > 2 && options.scans.front() == "decide")
     return take_decision(options.scans, session);
+  if (options.folder.empty() && !options.scans.empty() &&
+      (options.scans.front() == "status" || options.scans.front() == "decide"))
+    throw Error(fmt::format("project {} is not told enough", options.scans.front()), "",
+                "say project status DIR, or project decide DIR accept A B");
   if (options.folder.empty()) throw Error("there is no folder to write to", "--output", "give one: -o DIR");
   if (!options.list.empty()) {
     for (std::string& name : names_in(options.list)) options.scans.push_back(std::move(name));
   }
+  require_files(options);
   const OutputFolder folder(options.folder);
-  const ProjectResult result =
-      run_project(inputs_of(options), folder.path(), project_options(options, session), *session.monitor);
+  const ProjectResult result = run_in(folder.path(), options, session);
   const std::string json = project_json(result, reported(options, session));
   session.monitor->throw_if_cancelled();
   write_file(folder.path() / "report.html", project_page(result));

@@ -72,25 +72,24 @@ Rigid3 in_unit_of_clouds(Rigid3 pose, const PoseFile& file, const std::string& p
   return pose;
 }
 
-Rigid3 read_pose(const TransformOptions& options, const Session& session) {
-  const PoseFile pose = read_pose_file(options.result);
+Rigid3 read_pose(const TransformOptions& options, const PoseFile& pose) {
   const Rigid3 target_from_source =
       in_unit_of_clouds(chosen_pose(pose, options.alternative, options.result), pose, options.result);
   check_cloud(options, pose);
-  if (options.alternative == 0 && pose.outcome && *pose.outcome != Outcome::registered) {
-    session.note(fmt::format("the pose in {} is {}: check it", options.result, to_string(*pose.outcome)));
-  }
   return options.invert ? inverse(target_from_source) : target_from_source;
 }
 
 int run(const TransformOptions& options, const Session& session) {
   refuse_same_file(options.output, options.cloud);
   refuse_same_file(options.output, options.result);
-  const Rigid3 target_from_source = read_pose(options, session);
+  const PoseFile pose = read_pose_file(options.result);
+  const Rigid3 target_from_source = read_pose(options, pose);
   for (const std::string& other : options.merge) refuse_same_file(options.output, other);
   const CancelScope scope(*session.monitor);
   const TransformedCloud cloud =
       merge_clouds({options.cloud, target_from_source}, options.merge, options.output, *session.monitor);
+  if (options.alternative == 0 && pose.outcome && *pose.outcome != Outcome::registered)
+    session.note(fmt::format("the pose in {} is {}: check it", options.result, to_string(*pose.outcome)));
   for (const std::string& note : cloud.notes) session.note(note);
   session.say(fmt::format("{} points moved; written to {}\n", cloud.points, options.output));
   session.answer(as_json(options, cloud));

@@ -183,6 +183,9 @@ void name_sides(const std::vector<ViewInput>& inputs, ViewScene& scene) {
 std::vector<ViewInput> view_inputs(const std::vector<std::string>& files, int alternative,
                                    const Session& session) {
   std::vector<ViewInput> inputs;
+  if (alternative > 0 && std::none_of(files.begin(), files.end(), is_json_name))
+    throw Error("--alternative chooses among the poses of a result, and none is given", "",
+                "name the result.json, or leave the option out");
   for (const std::string& file : files) {
     std::vector<ViewInput> more{{file, -1, Rigid3{}, "", ""}};
     if (is_json_name(file))

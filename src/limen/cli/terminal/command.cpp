@@ -19,11 +19,6 @@ std::string ended(std::string_view text) {
   return fmt::format("{}{}", text, text.empty() || text.back() == '\n' ? "" : "\n");
 }
 
-std::string not_a_seed(const std::string& text) {
-  const bool digits = !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;
-  return digits ? "" : fmt::format("{} is not a whole number of 0 or more", text);
-}
-
 }  // namespace
 
 void Session::say(std::string_view text) const {
@@ -71,7 +66,6 @@ void add_common_options(CommandLine& app, Session& session) {
       ->type_name("N")
       ->group(group);
   app.add_option("--seed", common.seed, "Seed of every random choice (default 1)")
-      ->check(not_a_seed)
       ->type_name("N")
       ->group(group);
 }

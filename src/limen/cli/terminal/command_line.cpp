@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limen/cli/terminal/command_line.h"
 
+#include <charconv>
+#include <cstdint>
 #include <utility>
 
 #include <CLI/App.hpp>
@@ -9,6 +11,18 @@
 #include <CLI/Formatter.hpp>
 
 namespace limen {
+namespace {
+
+std::string fault_of_count(const std::string& text) {
+  std::uint64_t number = 0;
+  const char* const end = text.data() + text.size();
+  const auto read = std::from_chars(text.data(), end, number);
+  if (read.ec == std::errc() && read.ptr == end) return {};
+  return read.ec == std::errc::result_out_of_range ? text + " is too large"
+                                                   : text + " is not a whole number of 0 or more";
+}
+
+}  // namespace
 
 Argument* Argument::required() {
   option_->required();
@@ -45,6 +59,10 @@ Argument* Argument::in_range(int low, int high) {
   return this;
 }
 
+Argument* Argument::count() {
+  return check(fault_of_count);
+}
+
 Argument* Argument::check(const std::function<std::string(const std::string&)>& fault) {
   option_->check(fault);
   return this;
@@ -66,7 +84,7 @@ Argument* CommandLine::add_option(const std::string& name, int& value, const std
 
 Argument* CommandLine::add_option(const std::string& name, std::size_t& value,
                                   const std::string& description) {
-  return keep(app_->add_option(name, value, description));
+  return keep(app_->add_option(name, value, description))->count();
 }
 
 Argument* CommandLine::add_option(const std::string& name, double& value, const std::string& description) {

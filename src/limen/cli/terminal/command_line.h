@@ -33,6 +33,8 @@ class Argument {
   Argument* one_of(const std::vector<std::string>& values);
   /// A whole number from `low` to `high`, both included.
   Argument* in_range(int low, int high);
+  /// A whole number from 0 on that fits into 64 bits.
+  Argument* count();
   /// `fault` tells what is wrong with a word; nothing where it is good.
   Argument* check(const std::function<std::string(const std::string&)>& fault);
 
@@ -53,6 +55,7 @@ class CommandLine {
   Argument* add_option(const std::string& name, std::vector<std::string>& values,
                        const std::string& description);
   Argument* add_option(const std::string& name, int& value, const std::string& description);
+  /// Of a number below 0, which would wrap around, or one too large the user is told.
   Argument* add_option(const std::string& name, std::size_t& value, const std::string& description);
   Argument* add_option(const std::string& name, double& value, const std::string& description);
   Argument* add_flag(const std::string& name, bool& value, const std::string& description);

@@ -99,6 +99,8 @@ void parse_long_records(const HeaderSource& source, LasHeader& header) {
 }
 
 void check_version(const HeaderSource& source, LasHeader& header) {
+  if (!looks_like_las(source.bytes))
+    source.damaged("this is no LAS file, whatever its name says: it does not begin with LASF");
   if (source.bytes.size() < kHeaderBytesOf[0])
     source.damaged(fmt::format("the file ends within its header, after {} bytes", source.bytes.size()));
   const int major = static_cast<unsigned char>(source.bytes[las_at::kMinorVersion - 1]);
