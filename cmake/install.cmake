@@ -9,6 +9,7 @@ install(TARGETS limen_program RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 if(LIMEN_BUILD_IFC)
   install(TARGETS limen_ifc RUNTIME DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/limen)
 endif()
+install(FILES src/dask/limen_dask.py DESTINATION ${CMAKE_INSTALL_DATADIR}/limen)
 # The public headers are those that limen/limen.h names; what they include goes with them, nothing else.
 install(CODE "set(LIMEN_HEADER_ROOT \"${PROJECT_SOURCE_DIR}/src\")
 set(LIMEN_HEADER_DESTINATION \"${CMAKE_INSTALL_INCLUDEDIR}\")

@@ -3,34 +3,24 @@
 #include "limen/project/project.h"
 
 #include <algorithm>
-#include <set>
-#include <tuple>
+#include <memory>
 
 #include <fmt/format.h>
 
 #include "limen/base/error.h"
 #include "limen/base/stage_part.h"
-#include "limen/bim/read_bim.h"
-#include "limen/io/cloud/read_scan.h"
 #include "limen/project/control/control_file.h"
 #include "limen/project/project_files.h"
 #include "limen/project/project_graph.h"
 #include "limen/project/project_state.h"
 #include "limen/project/retrieve/choose_pairs.h"
-#include "limen/register/prepare/prepare_model.h"
+#include "limen/project/scan_names.h"
+#include "limen/project/store_jobs.h"
+#include "limen/project/waves.h"
+#include "limen/project/work.h"
 
 namespace limen {
 namespace {
-
-/// Everything that features and pairs depend on beside the files.
-std::string options_text(const ProjectOptions& options) {
-  const RegisterOptions& registering = options.registering;
-  std::string text = fmt::format("method {} gravity {} thickness {} seed {} level {} memory {}",
-                                 static_cast<int>(registering.method), static_cast<int>(registering.gravity),
-                                 registering.wall_thickness_m, registering.seed, options.reading.level,
-                                 options.reading.memory_bytes);
-  return text;
-}
 
 class Run {
  public:
@@ -40,13 +30,15 @@ class Run {
         folder_(std::move(folder)),
         options_(options),
         monitor_(monitor),
-        store_(folder_ / "store", options_text(options)),
+        store_(folder_ / "store", store_options(options)),
+        engine_(make_engine(options.engine, (folder_ / "store" / "dask.log").string(), monitor)),
         files_(list_files(inputs, monitor)),
         decisions_(kept_decisions(folder_, inputs.decisions)) {}
 
   ProjectResult run() {
     result_.notes = files_.notes;
     status_.scans = files_.files.size();
+    if (engine_) prepare_elsewhere();
     prepare_files();
     if (nodes_.empty()) {
       const ProjectScan& first = result_.scans.front();
@@ -54,9 +46,10 @@ class Run {
     }
     order_nodes();
     words_ = words_by_nodes(decisions_, nodes_, result_.scans);
-    std::vector<TriedPair> tried = few() ? try_all(every_pair()) : try_in_waves();
+    std::vector<TriedPair> tried = few() ? try_all(every_pair()) : waves();
     try_named(tried);
     try_any_turn(tried);
+    engine_.reset();
     monitor_.begin_stage("adjustment");
     result_.pairs_tried = tried.size();
     assemble(nodes_, tried, inputs_, words_, risk(), result_);
@@ -87,15 +80,45 @@ class Run {
         continue;
       }
       try {
-        add_file(k, file.model ? model_record(file, part) : scan_record(file, part));
+        add_file(k, make_features(file, options_, store_, part));
+      } catch (const StoreFault&) {
+        throw;
       } catch (const Error& error) {
         if (error.fault() != Fault::input) throw;
-        add_unreadable(file, lists_files(file.path) ? "it names other files; give it as --scans " + file.path
-                                                    : std::string(error.what()));
+        add_unreadable(file, told_fault(file, error.what()));
       }
       ++status_.ready;
       write_status(folder_, status_);
     }
+  }
+
+  /// What is not kept is made by the engine's workers; what they could not make is the file's fault.
+  void prepare_elsewhere() {
+    monitor_.begin_stage("features");
+    write_work_order(folder_, files_.files, options_, store_);
+    std::vector<Job> jobs;
+    std::vector<ProjectFile*> files;
+    for (ProjectFile& file : files_.files) {
+      if (!file.fault.empty() || !file.copy_of.empty() || kept_record(store_, file.sha256)) continue;
+      jobs.push_back(features_job(folder_, file, store_));
+      files.push_back(&file);
+    }
+    status_.stage = "features";
+    const std::size_t kept = files_.files.size() - jobs.size();
+    const auto on_done = [&](std::size_t done) {
+      status_.ready = kept + done;
+      write_status(folder_, status_);
+      monitor_.advance(static_cast<double>(done), static_cast<double>(jobs.size()));
+    };
+    const std::vector<JobResult> results = engine_->run(jobs, on_done, monitor_);
+    for (std::size_t k = 0; k < results.size(); ++k) {
+      if (results[k].state != JobState::done) files[k]->fault = told_fault(*files[k], results[k].words);
+    }
+    status_.ready = 0;
+  }
+
+  static std::string told_fault(const ProjectFile& file, const std::string& words) {
+    return lists_files(file.path) ? "it names other files; give it as --scans " + file.path : words;
   }
 
   void add_unreadable(const ProjectFile& file, const std::string& fault) {
@@ -117,54 +140,6 @@ class Run {
       copy.copy_of = file.copy_of;
       result_.scans.push_back(std::move(copy));
     }
-  }
-
-  [[nodiscard]] bool all_kept(const std::string& sha256, const FileRecord& record) const {
-    for (std::size_t k = 0; k < record.points.size(); ++k) {
-      const std::string key = store_.feature_key(sha256, static_cast<int>(k));
-      if (!store_.has_features(key) || !store_.load_digest(key)) return false;
-    }
-    return true;
-  }
-
-  FileRecord scan_record(const ProjectFile& file, Monitor& part) {
-    if (const std::optional<FileRecord> kept = store_.load_file(file.sha256)) {
-      if (all_kept(file.sha256, *kept)) return *kept;
-    }
-    constexpr double kReading = 0.3;
-    ScanFile read;
-    {
-      StagePart reading(part, 0.0, kReading);
-      read = read_scan_file(file.path, options_.reading, reading);
-    }
-    FileRecord record;
-    record.notes = read.notes;
-    const auto all = static_cast<double>(read.scans.size());
-    for (std::size_t k = 0; k < read.scans.size(); ++k) {
-      const auto at = [&](std::size_t i) {
-        return kReading + (1.0 - kReading) * static_cast<double>(i) / all;
-      };
-      StagePart preparing(part, at(k), at(k + 1));
-      record.points.push_back(read.scans[k].size());
-      const Scan scan = std::move(read.scans[k]);
-      PrepareOptions with_track = prepare_options(options_.registering);
-      with_track.track = true;
-      store_.save_features(store_.feature_key(file.sha256, static_cast<int>(k)),
-                           prepare_scan(scan, with_track, preparing));
-    }
-    store_.save_file(file.sha256, record);
-    return record;
-  }
-
-  FileRecord model_record(const ProjectFile& file, Monitor& part) {
-    if (const std::optional<FileRecord> kept = store_.load_file(file.sha256)) {
-      if (all_kept(file.sha256, *kept)) return *kept;
-    }
-    const BimModel model = read_bim(file.path, part);
-    store_.save_features(store_.feature_key(file.sha256, 0), prepare_model(model, {}, part));
-    FileRecord record{{0}, model.warnings};
-    store_.save_file(file.sha256, record);
-    return record;
   }
 
   void add_file(std::size_t number, const FileRecord& record) {
@@ -225,10 +200,20 @@ class Run {
 
   std::vector<TriedPair> try_all(const PairList& pairs, PairSearch search = PairSearch::level) {
     status_.pairs += pairs.size();
-    // What is kept of a pair does not depend on the risk: the project weighs it.
-    RegisterOptions registering = options_.registering;
-    registering.verdict.risk = VerdictOptions{}.risk;
-    return try_pairs(pairs, nodes_, store_, registering, search, folder_, status_, monitor_);
+    const PairWork work{nodes_, result_.scans, store_, options_.registering, engine_.get(), folder_};
+    std::vector<TriedPair> tried = try_pairs(pairs, work, search, status_, monitor_);
+    for (const TriedPair& pair : tried) {
+      if (pair.fault.empty()) continue;
+      const auto name = [&](std::size_t node) { return scan_name(result_.scans[nodes_[node].scan]); };
+      result_.notes.push_back(fmt::format("{} and {} could not be compared ({}); run again to try once more",
+                                          name(pair.source), name(pair.target), pair.fault));
+    }
+    return tried;
+  }
+
+  std::vector<TriedPair> waves() {
+    return try_in_waves(nodes_, words_, risk(), options_.pairs_per_scan,
+                        [this](const PairList& pairs) { return try_all(pairs); });
   }
 
   /// Pairs that a user names are tried in any case.
@@ -244,10 +229,6 @@ class Run {
     std::sort(tried.begin(), tried.end(), by_nodes);
   }
 
-  static bool by_nodes(const TriedPair& a, const TriedPair& b) {
-    return std::pair(a.source, a.target) < std::pair(b.source, b.target);
-  }
-
   /// Scans that seem to stand upright may not: those that nothing holds are tried once more, any way round.
   void try_any_turn(std::vector<TriedPair>& tried) {
     const SolvedGraph solved = solve_graph(make_graph(nodes_, tried, risk(), words_).graph, risk());
@@ -256,71 +237,13 @@ class Run {
     for (std::size_t k = 0; k < tried.size(); ++k) {
       const TriedPair& pair = tried[k];
       const bool alone = solved.nodes[pair.source].component < 0 || solved.nodes[pair.target].component < 0;
-      if (!alone || pair.result.outcome != Outcome::no_match) continue;
+      if (!alone || pair.result.outcome != Outcome::no_match || !pair.fault.empty()) continue;
       if (!seem_level(nodes_[pair.source], nodes_[pair.target], options_.registering)) continue;
       again.emplace_back(pair.source, pair.target);
       places.push_back(k);
     }
     std::vector<TriedPair> results = try_all(again, PairSearch::any_turn);
     for (std::size_t k = 0; k < results.size(); ++k) tried[places[k]] = std::move(results[k]);
-  }
-
-  /// First the pairs whose planes promise most; then, where they led to poses, those that must see the same;
-  /// for scans that are not held yet the next in their list.
-  std::vector<TriedPair> try_in_waves() {
-    std::vector<ScanDigest> digests;
-    for (const ProjectNode& node : nodes_) digests.push_back(node.digest);
-    const std::vector<std::vector<std::size_t>> ranked = ranked_partners(digests);
-    std::vector<TriedPair> tried = try_all(best_pairs(ranked, kFirstPartners));
-    const auto most = static_cast<std::size_t>(options_.pairs_per_scan) * nodes_.size();
-    for (int wave = 1; wave <= kWaves; ++wave) {
-      PairList next =
-          next_pairs(ranked, tried, kFirstPartners + static_cast<std::size_t>(wave) * kMorePartners);
-      if (tried.size() >= most) break;
-      next.resize(std::min(next.size(), most - tried.size()));
-      if (next.empty()) break;
-      for (TriedPair& pair : try_all(next)) tried.push_back(std::move(pair));
-    }
-    std::sort(tried.begin(), tried.end(), by_nodes);
-    return tried;
-  }
-
-  [[nodiscard]] PairList next_pairs(const std::vector<std::vector<std::size_t>>& ranked,
-                                    const std::vector<TriedPair>& tried, std::size_t partners) const {
-    const ProjectGraph made = make_graph(nodes_, tried, risk(), words_);
-    const SolvedGraph solved = solve_graph(made.graph, risk());
-    std::set<std::pair<std::size_t, std::size_t>> done;
-    for (const TriedPair& pair : tried) done.emplace(pair.source, pair.target);
-    std::vector<int> held(nodes_.size(), 0);
-    for (std::size_t k = 0; k < made.graph.links.size(); ++k) {
-      if (solved.links[k].state != LinkState::verified) continue;
-      ++held[static_cast<std::size_t>(made.graph.links[k].source)];
-      ++held[static_cast<std::size_t>(made.graph.links[k].target)];
-    }
-    // By how near they stand, then by name.
-    std::vector<std::tuple<double, std::size_t, std::size_t>> wanted;
-    for (std::size_t i = 0; i < nodes_.size(); ++i) {
-      for (std::size_t j = 0; j < i; ++j) {
-        if (done.count({i, j}) > 0 || solved.nodes[i].component < 0) continue;
-        if (solved.nodes[i].component != solved.nodes[j].component) continue;
-        const double apart = (solved.nodes[i].frame_from_node * nodes_[i].digest.middle -
-                              solved.nodes[j].frame_from_node * nodes_[j].digest.middle)
-                                 .norm();
-        if (apart < kNearM && (held[i] < kEnoughLinks || held[j] < kEnoughLinks))
-          wanted.emplace_back(apart, i, j);
-      }
-      if (held[i] > 0) continue;
-      for (std::size_t k = 0; k < std::min(partners, ranked[i].size()); ++k) {
-        const std::pair pair(std::max(i, ranked[i][k]), std::min(i, ranked[i][k]));
-        if (done.count(pair) == 0) wanted.emplace_back(kNearM, pair.first, pair.second);
-      }
-    }
-    std::sort(wanted.begin(), wanted.end());
-    PairList next;
-    for (const auto& [apart, i, j] : wanted) {
-      if (done.emplace(i, j).second) next.emplace_back(i, j);
-    }
-    return next;
   }
 
   [[nodiscard]] PairList every_pair() const {
@@ -335,17 +258,13 @@ class Run {
   }
 
   static constexpr double kOnePlaceM = 0.05;
-  static constexpr std::size_t kFirstPartners = 6;
-  static constexpr std::size_t kMorePartners = 4;
-  static constexpr int kWaves = 3;
-  static constexpr double kNearM = 12.0;  // stations nearer than this may see the same
-  static constexpr int kEnoughLinks = 4;  // verified ones: a scan that has them needs no more
 
   const ProjectInputs& inputs_;
   std::filesystem::path folder_;
   const ProjectOptions& options_;
   Monitor& monitor_;
   Store store_;
+  std::unique_ptr<JobEngine> engine_;  ///< null: the local one
   ProjectFiles files_;
   std::vector<Decision> decisions_;
   UserWords words_;
@@ -359,6 +278,7 @@ class Run {
 void ProjectOptions::check() const {
   registering.check();
   reading.check();
+  engine.check();
   if (pairs_per_scan < 1) throw_bad_option("pairs_per_scan", pairs_per_scan, "1 or more");
 }
 

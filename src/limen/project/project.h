@@ -9,6 +9,7 @@
 #include "limen/base/progress.h"
 #include "limen/io/table/scan_file.h"
 #include "limen/project/decide/decisions.h"
+#include "limen/project/engine/job_engine.h"
 #include "limen/project/project_result.h"
 #include "limen/register/register.h"
 
@@ -21,6 +22,7 @@ struct ProjectOptions {
   int pairs_per_scan = 12;      ///< else: as many per scan at most, on average
   bool stations_apart = false;  ///< scans of one file are not known to one another
   bool rigid_passes = false;    ///< mobile passes do not drift: none is bent
+  EngineOptions engine = {};    ///< where features and pairs are made; never changes a result
 
   void check() const;
 };

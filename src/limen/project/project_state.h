@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "limen/project/engine/job_engine.h"
 #include "limen/project/project.h"
 #include "limen/project/store/store.h"
 
@@ -26,6 +27,7 @@ struct TriedPair {
   std::size_t source = 0;
   std::size_t target = 0;
   RegistrationResult result;
+  std::string fault;  ///< why there is no result, where a worker could not make it; empty: there is one
 };
 
 struct UserWords;
@@ -42,11 +44,19 @@ enum class PairSearch {
 /// Whether the two ways to search differ: both scans seem to stand upright, and nobody said so.
 bool seem_level(const ProjectNode& source, const ProjectNode& target, const RegisterOptions& options);
 
+/// Where and how pairs are registered.
+struct PairWork {
+  const std::vector<ProjectNode>& nodes;
+  const std::vector<ProjectScan>& scans;
+  const Store& store;
+  const RegisterOptions& options;
+  JobEngine* engine;  ///< null: here
+  const std::filesystem::path& folder;
+};
+
 /// Registers the pairs whose result is not kept, several at a time; returns all results in the given order.
 std::vector<TriedPair> try_pairs(const std::vector<std::pair<std::size_t, std::size_t>>& pairs,
-                                 const std::vector<ProjectNode>& nodes, const Store& store,
-                                 const RegisterOptions& options, PairSearch search,
-                                 const std::filesystem::path& folder, ProjectStatus& status,
+                                 const PairWork& work, PairSearch search, ProjectStatus& status,
                                  Monitor& monitor);
 
 /// The frame, the states and the words (`risk`: that a scan told as registered may be wrong with): everything

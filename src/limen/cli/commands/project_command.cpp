@@ -3,6 +3,8 @@
 #include "limen/cli/commands/project_command.h"
 
 #include <algorithm>
+#include <csignal>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <memory>
@@ -10,6 +12,8 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <sys/prctl.h>
+#include <unistd.h>
 
 #include "limen/base/angles.h"
 #include "limen/base/atomic_file.h"
@@ -18,6 +22,7 @@
 #include "limen/cli/inputs/scan_options.h"
 #include "limen/files/mapped_file.h"
 #include "limen/project/project.h"
+#include "limen/project/work.h"
 #include "limen/report/json/json_values.h"
 #include "limen/report/project/project_json.h"
 #include "limen/report/project/project_page.h"
@@ -41,6 +46,8 @@ struct ProjectCommandOptions {
   double risk = VerdictOptions{}.risk;
   bool apart = false;
   bool rigid_passes = false;
+  std::string engine = "local";
+  EngineOptions dask;
 };
 
 /// The names in a list: one a line, relative to the list's folder; empty lines and those that begin with #
@@ -76,6 +83,9 @@ ProjectOptions project_options(const ProjectCommandOptions& options, const Sessi
   project.all_pairs = options.pairs == "all";
   project.stations_apart = options.apart;
   project.rigid_passes = options.rigid_passes;
+  project.engine = options.dask;
+  project.engine.kind = options.engine == "dask" ? EngineKind::dask : EngineKind::local;
+  project.engine.on_note = [&session](const std::string& text) { session.note(text); };
   return project;
 }
 
@@ -226,6 +236,25 @@ void require_files(const ProjectCommandOptions& options) {
   if (!any) static_cast<void>(MappedFile(options.scans.front()));  // says why
 }
 
+/// A job ends with the worker that started it, however that ends: LIMEN_WORKER_PID names it.
+void die_with_worker() {
+  const char* worker = std::getenv("LIMEN_WORKER_PID");
+  if (worker == nullptr) return;
+  const bool told = prctl(PR_SET_PDEATHSIG, SIGKILL) == 0;
+  // Whoever died before we asked to be told of it is no parent any more.
+  if (told && std::to_string(getppid()) != worker)
+    throw Error("the worker that started this job is gone", "LIMEN_WORKER_PID", "unset it", Fault::cancelled);
+}
+
+/// Words: work, the folder, and the job.
+int work(const std::vector<std::string>& words, const Session& session) {
+  die_with_worker();
+  const WorkAnswer answer = do_work({words.begin() + 1, words.end()}, *session.monitor);
+  session.say(fmt::format("{} {}\n", answer.state, answer.words));
+  session.answer(to_text(Json{{"state", answer.state}, {"words", answer.words}}));
+  return kExitOk;
+}
+
 ProjectInputs inputs_of(const ProjectCommandOptions& options) {
   return {options.scans, options.models, options.control, options.check, options.targets, options.decisions};
 }
@@ -235,7 +264,9 @@ bool keeps_nothing(const std::filesystem::path& folder) {
   std::error_code stop;
   std::filesystem::recursive_directory_iterator entry(folder, stop);
   for (; !stop && entry != std::filesystem::recursive_directory_iterator(); entry.increment(stop)) {
-    if (!entry->is_directory(stop) && entry->path().filename() != "status.json") return false;
+    if (!entry->is_directory(stop) && entry->path().filename() != "status.json" &&
+        entry->path().filename() != "dask.log")
+      return false;
   }
   return !stop;
 }
@@ -256,6 +287,8 @@ int run(ProjectCommandOptions options, const Session& session) {
     return tell_status(options.scans.back(), session);
   if (options.folder.empty() && options.scans.size() > 2 && options.scans.front() == "decide")
     return take_decision(options.scans, session);
+  if (options.folder.empty() && options.scans.size() > 2 && options.scans.front() == "work")
+    return work(options.scans, session);
   if (options.folder.empty() && !options.scans.empty() &&
       (options.scans.front() == "status" || options.scans.front() == "decide"))
     throw Error(fmt::format("project {} is not told enough", options.scans.front()), "",
@@ -276,6 +309,32 @@ int run(ProjectCommandOptions options, const Session& session) {
   session.say(summary(result, options.folder));
   session.answer(json);
   return status_of(result.outcome);
+}
+
+void add_engine_options(CommandLine& command, ProjectCommandOptions& options) {
+  const std::string group = "More than one machine";
+  EngineOptions& dask = options.dask;
+  const auto add = [&](const char* name, std::string& value, const char* type, const char* text) {
+    command.add_option(name, value, text)->type_name(type)->group(group);
+  };
+  command
+      .add_option("--engine", options.engine,
+                  "Where features and pairs are made: local (default) or dask; never changes a result")
+      ->one_of({"local", "dask"})
+      ->group(group);
+  add("--scheduler", dask.scheduler, "ADDRESS",
+      "Dask's scheduler, tcp://HOST:PORT or tls://HOST:PORT; without one, workers on this machine are "
+      "started");
+  add("--scheduler-file", dask.scheduler_file, "FILE",
+      "The same by the file that dask-scheduler --scheduler-file writes");
+  add("--tls-ca", dask.tls_ca, "PEM", "Who signed the scheduler's certificate");
+  add("--tls-cert", dask.tls_cert, "PEM", "The certificate to show to the scheduler");
+  add("--tls-key", dask.tls_key, "PEM", "Its key");
+  command
+      .add_flag(
+          "--trust-network", dask.trust_network,
+          "Reach a scheduler on another machine without TLS: whoever reaches it can run programs as you")
+      ->group(group);
 }
 
 }  // namespace
@@ -330,6 +389,7 @@ void add_project_command(CommandLine& app, Session& session) {
                    "Tell a scan as registered only where it stands elsewhere with less than this probability "
                    "(default 0.001)")
       ->type_name("P");
+  add_engine_options(*command, *options);
   add_gravity_option(*command, options->gravity, true);
   add_memory_option(*command, options->memory);
 }

@@ -29,6 +29,8 @@ class Store {
   /// Makes the folders. `options` is a text of everything that features and pairs depend on.
   Store(const std::filesystem::path& folder, const std::string& options);
 
+  /// Of the options and the version: the last part of all keys.
+  [[nodiscard]] const std::string& options_key() const { return options_; }
   [[nodiscard]] std::string feature_key(const std::string& sha256, int index) const;
 
   [[nodiscard]] std::optional<FileRecord> load_file(const std::string& sha256) const;

@@ -1,0 +1,106 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/project/store_jobs.h"
+
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "limen/base/stage_part.h"
+#include "limen/bim/read_bim.h"
+#include "limen/io/cloud/read_scan.h"
+#include "limen/register/prepare/prepare_model.h"
+
+namespace limen {
+namespace {
+
+/// Saves something; that it cannot be saved is no fault of what it was made of.
+template <typename Save>
+void into_store(const Save& save) {
+  try {
+    save();
+  } catch (const Error& error) {
+    if (error.fault() != Fault::input) throw;
+    throw StoreFault(error.problem(), error.where(), error.remedy());
+  }
+}
+
+FileRecord make_scan_features(const ProjectFile& file, const ProjectOptions& options, const Store& store,
+                              Monitor& monitor) {
+  constexpr double kReading = 0.3;
+  ScanFile read;
+  {
+    StagePart reading(monitor, 0.0, kReading);
+    read = read_scan_file(file.path, options.reading, reading);
+  }
+  FileRecord record;
+  record.notes = read.notes;
+  const auto all = static_cast<double>(read.scans.size());
+  for (std::size_t k = 0; k < read.scans.size(); ++k) {
+    const auto at = [&](std::size_t i) { return kReading + (1.0 - kReading) * static_cast<double>(i) / all; };
+    StagePart preparing(monitor, at(k), at(k + 1));
+    record.points.push_back(read.scans[k].size());
+    const Scan scan = std::move(read.scans[k]);
+    PrepareOptions with_track = prepare_options(options.registering);
+    with_track.track = true;
+    const PreparedScan prepared = prepare_scan(scan, with_track, preparing);
+    into_store([&] { store.save_features(store.feature_key(file.sha256, static_cast<int>(k)), prepared); });
+  }
+  return record;
+}
+
+FileRecord make_model_features(const ProjectFile& file, const Store& store, Monitor& monitor) {
+  const BimModel model = read_bim(file.path, monitor);
+  const PreparedScan prepared = prepare_model(model, {}, monitor);
+  into_store([&] { store.save_features(store.feature_key(file.sha256, 0), prepared); });
+  return {{0}, model.warnings};
+}
+
+}  // namespace
+
+std::string store_options(const ProjectOptions& options) {
+  const RegisterOptions& registering = options.registering;
+  return fmt::format("method {} gravity {} thickness {} seed {} level {} memory {}",
+                     static_cast<int>(registering.method), static_cast<int>(registering.gravity),
+                     registering.wall_thickness_m, registering.seed, options.reading.level,
+                     options.reading.memory_bytes);
+}
+
+std::optional<FileRecord> kept_record(const Store& store, const std::string& sha256) {
+  std::optional<FileRecord> record = store.load_file(sha256);
+  if (!record) return {};
+  for (std::size_t k = 0; k < record->points.size(); ++k) {
+    const std::string key = store.feature_key(sha256, static_cast<int>(k));
+    if (!store.has_features(key) || !store.load_digest(key)) return {};
+  }
+  return record;
+}
+
+FileRecord make_features(const ProjectFile& file, const ProjectOptions& options, const Store& store,
+                         Monitor& monitor) {
+  if (const std::optional<FileRecord> kept = kept_record(store, file.sha256)) return *kept;
+  FileRecord record = file.model ? make_model_features(file, store, monitor)
+                                 : make_scan_features(file, options, store, monitor);
+  into_store([&] { store.save_file(file.sha256, record); });
+  return record;
+}
+
+RegistrationResult make_pair_result(const PairKey& pair, const RegisterOptions& options, const Store& store,
+                                    ScanCache& cache) {
+  std::optional<RegistrationResult> kept = store.load_pair(pair.source, pair.target_name());
+  if (!kept) {
+    RegisterOptions own = options;
+    // What is kept of a pair does not depend on the risk: the project weighs it.
+    own.verdict.risk = VerdictOptions{}.risk;
+    if (pair.level) own.gravity = Gravity::up;
+    // Copies, but of little: the views of space are shared.
+    const PreparedPair prepared{*cache.get(pair.source), *cache.get(pair.target)};
+    const RegistrationResult result = register_prepared(prepared, own);
+    into_store([&] { store.save_pair(pair.source, pair.target_name(), result); });
+    kept = store.load_pair(pair.source, pair.target_name());
+  }
+  if (!kept) throw StoreFault("the result of a pair cannot be read back", pair.source, "look at the disk");
+  return std::move(*kept);
+}
+
+}  // namespace limen

@@ -1,0 +1,186 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/project/work.h"
+
+#include <fstream>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "limen/base/atomic_file.h"
+#include "limen/base/version.h"
+
+namespace limen {
+namespace {
+
+namespace fs = std::filesystem;
+using Order = nlohmann::json;
+
+constexpr std::string_view kLevel = "-level";
+
+/// A worker cannot do its job here or now.
+struct Unavailable {
+  std::string words;
+};
+
+std::string key_of_file(const ProjectFile& file, const Store& store) {
+  return file.sha256 + "-" + store.options_key();
+}
+
+fs::path order_path(const fs::path& folder, const std::string& options_key) {
+  return folder / "store" / "orders" / (options_key + ".json");
+}
+
+Order options_order(const ProjectOptions& options) {
+  const RegisterOptions& registering = options.registering;
+  return {{"method", static_cast<int>(registering.method)},
+          {"gravity", static_cast<int>(registering.gravity)},
+          {"wall_thickness_m", registering.wall_thickness_m},
+          {"seed", registering.seed},
+          {"level", options.reading.level},
+          {"memory_bytes", options.reading.memory_bytes}};
+}
+
+ProjectOptions options_from(const Order& order) {
+  ProjectOptions options;
+  options.registering.method = static_cast<Method>(order.at("method").get<int>());
+  options.registering.gravity = static_cast<Gravity>(order.at("gravity").get<int>());
+  options.registering.wall_thickness_m = order.at("wall_thickness_m");
+  options.registering.seed = order.at("seed");
+  options.reading.level = order.at("level");
+  options.reading.memory_bytes = order.at("memory_bytes");
+  return options;
+}
+
+/// The last part of a key: of the options it was made with.
+std::string options_key_in(std::string_view key) {
+  if (key.ends_with(kLevel)) key.remove_suffix(kLevel.size());
+  return std::string(key.substr(key.rfind('-') + 1));
+}
+
+Order read_order(const fs::path& folder, const std::string& options_key) {
+  const fs::path path = order_path(folder, options_key);
+  std::ifstream stream(path);
+  const Order order = Order::parse(stream, nullptr, false);
+  if (!stream || !order.is_object())
+    throw Unavailable{"the project's folder is not to be seen there: no " + path.string()};
+  if (order.value("limen", "") != kVersion)
+    throw Unavailable{fmt::format("the project is run by limen {}, the worker has {}",
+                                  order.value("limen", "?"), kVersion)};
+  return order;
+}
+
+class Worker {
+ public:
+  Worker(fs::path folder, const std::string& options_key)
+      : folder_(std::move(folder)), order_(read_order(folder_, options_key)) {
+    options_ = options_from(order_.at("options"));
+    std::error_code error;
+    fs::current_path(order_.at("folder").get<std::string>(), error);
+    if (error)
+      throw Unavailable{"the folder that the scans' names are relative to: " + error.message() + ": " +
+                        order_.at("folder").get<std::string>()};
+    store_.emplace(folder_ / "store", store_options(options_));
+    if (store_->options_key() != options_key) throw Unavailable{"the job is of another version of limen"};
+  }
+
+  WorkAnswer features(const std::string& key, Monitor& monitor) const {
+    const std::string sha256 = key.substr(0, key.find('-'));
+    const Order& files = order_.at("files");
+    if (!files.contains(sha256)) throw Unavailable{"the file is not part of the project's last run"};
+    const Order& told = files.at(sha256);
+    ProjectFile file{told.at("path"), told.at("model"), sha256, {}, {}};
+    require_whole(file.path, told.at("bytes"));
+    try {
+      make_features(file, options_, *store_, monitor);
+    } catch (const StoreFault&) {
+      throw;
+    } catch (const Error& error) {
+      if (error.fault() != Fault::input) throw;
+      require_whole(file.path, told.at("bytes"));
+      return {"bad_input", error.what()};
+    }
+    return {"done", {}};
+  }
+
+  WorkAnswer pair(const PairKey& pair) const {
+    for (const std::string& key : {pair.source, pair.target}) {
+      if (!store_->has_features(key)) throw Unavailable{"features are not in the store: " + key};
+    }
+    constexpr std::size_t kTwo = 2;
+    ScanCache cache(*store_, kTwo);
+    make_pair_result(pair, options_.registering, *store_, cache);
+    return {"done", {}};
+  }
+
+ private:
+  static void require_whole(const std::string& path, std::uintmax_t bytes) {
+    std::error_code error;
+    const std::uintmax_t size = fs::file_size(path, error);
+    if (error || size != bytes) throw Unavailable{path + " is not to be seen there as it is for limen"};
+  }
+
+  fs::path folder_;
+  Order order_;
+  ProjectOptions options_;
+  std::optional<Store> store_;
+};
+
+WorkAnswer do_job(const std::vector<std::string>& words, Monitor& monitor) {
+  const Worker worker(words[0], options_key_in(words[2]));
+  if (words[1] == "features") return worker.features(words[2], monitor);
+  PairKey pair{words[2], words[3], words[3].ends_with(kLevel)};
+  if (pair.level) pair.target.resize(pair.target.size() - kLevel.size());
+  return worker.pair(pair);
+}
+
+}  // namespace
+
+void write_work_order(const fs::path& folder, const std::vector<ProjectFile>& files,
+                      const ProjectOptions& options, const Store& store) {
+  Order order = {{"limen", kVersion},
+                 {"folder", fs::current_path().string()},
+                 {"options", options_order(options)},
+                 {"files", Order::object()}};
+  for (const ProjectFile& file : files) {
+    if (file.sha256.empty() || !file.copy_of.empty()) continue;
+    std::error_code ignored;
+    order["files"][file.sha256] = {
+        {"path", file.path}, {"model", file.model}, {"bytes", fs::file_size(file.path, ignored)}};
+  }
+  const fs::path path = order_path(folder, store.options_key());
+  std::error_code ignored;
+  fs::create_directories(path.parent_path(), ignored);
+  write_file(path, order.dump(1, ' ', false, Order::error_handler_t::replace) + "\n");
+}
+
+Job features_job(const fs::path& folder, const ProjectFile& file, const Store& store) {
+  return {"features of " + file.path,
+          {fs::absolute(folder).lexically_normal().string(), "features", key_of_file(file, store)}};
+}
+
+Job pair_job(const fs::path& folder, const std::string& name, const PairKey& pair) {
+  return {"pair " + name,
+          {fs::absolute(folder).lexically_normal().string(), "pair", pair.source, pair.target_name()}};
+}
+
+WorkAnswer do_work(const std::vector<std::string>& words, Monitor& monitor) {
+  const bool features = words.size() == 3 && words[1] == "features";
+  const bool pair = words.size() == 4 && words[1] == "pair";
+  if (!features && !pair)
+    throw Error("not a job", "project work", "say DIR features KEY, or DIR pair SOURCE TARGET");
+  try {
+    return do_job(words, monitor);
+  } catch (const Unavailable& fault) {
+    return {"unavailable", fault.words};
+  } catch (const StoreFault& fault) {
+    return {"unavailable", fault.what()};
+  } catch (const Order::exception&) {
+    return {"unavailable", "the work order is damaged: " + words[0]};
+  }
+}
+
+}  // namespace limen
