@@ -46,6 +46,9 @@ add_test(NAME names COMMAND ${PROJECT_SOURCE_DIR}/scripts/check_names)
 add_test(NAME names_are_checked COMMAND ${PROJECT_SOURCE_DIR}/tests/tools/check_names_test)
 set_tests_properties(floors floors_are_checked names names_are_checked PROPERTIES LABELS unit)
 
+add_test(NAME links_of_the_documentation COMMAND ${PROJECT_SOURCE_DIR}/tests/tools/links_test)
+set_tests_properties(links_of_the_documentation PROPERTIES LABELS unit)
+
 # What the first page of the documentation says is run.
 add_test(NAME commands_of_the_first_hour COMMAND ${PROJECT_SOURCE_DIR}/tests/tools/docs_test $<TARGET_FILE:limen_program>)
 set_tests_properties(commands_of_the_first_hour PROPERTIES LABELS acceptance)

@@ -32,6 +32,7 @@
 #include "limen/cli/commands/register_command.h"
 #include "limen/cli/commands/schema_command.h"
 #include "limen/cli/commands/segments_command.h"
+#include "limen/cli/commands/serve_command.h"
 #include "limen/cli/commands/thin_command.h"
 #include "limen/cli/commands/transform_command.h"
 #include "limen/cli/commands/transform_project.h"
@@ -153,6 +154,7 @@ void add_commands(CommandLine& app, Session& session) {
   add_transform_project_command(app, session);
   add_thin_command(app, session);
   add_view_command(app, session);
+  add_serve_command(app, session);
   add_evaluate_command(app, session);
   add_deviation_command(app, session);
 #ifdef LIMEN_WITH_SIMULATOR

@@ -19,6 +19,7 @@
 #include "limen/base/atomic_file.h"
 #include "limen/base/error.h"
 #include "limen/base/text.h"
+#include "limen/cli/inputs/pdf_option.h"
 #include "limen/cli/inputs/scan_options.h"
 #include "limen/files/mapped_file.h"
 #include "limen/project/project.h"
@@ -48,6 +49,7 @@ struct ProjectCommandOptions {
   bool rigid_passes = false;
   std::string engine = "local";
   EngineOptions dask;
+  bool pdf = false;
 };
 
 /// The names in a list: one a line, relative to the list's folder; empty lines and those that begin with #
@@ -298,13 +300,16 @@ int run(ProjectCommandOptions options, const Session& session) {
     for (std::string& name : names_in(options.list)) options.scans.push_back(std::move(name));
   }
   require_files(options);
+  const std::filesystem::path browser = browser_for_pdf(options.pdf);
   const OutputFolder folder(options.folder);
   const ProjectResult result = run_in(folder.path(), options, session);
   const std::string json = project_json(result, reported(options, session));
   session.monitor->throw_if_cancelled();
   write_file(folder.path() / "report.html", project_page(result));
+  std::filesystem::remove(folder.path() / "report.pdf");  // an earlier run's
   // Last: where it is, the folder is complete.
   write_file(folder.path() / "project.json", json);
+  if (options.pdf) write_pdf(browser, folder.path(), session);
   for (const std::string& note : result.notes) session.note(note);
   session.say(summary(result, options.folder));
   session.answer(json);
@@ -390,6 +395,7 @@ void add_project_command(CommandLine& app, Session& session) {
                    "(default 0.001)")
       ->type_name("P");
   add_engine_options(*command, *options);
+  add_pdf_option(*command, options->pdf);
   add_gravity_option(*command, options->gravity, true);
   add_memory_option(*command, options->memory);
 }

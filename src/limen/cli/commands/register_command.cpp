@@ -14,13 +14,13 @@
 
 #include "limen/base/atomic_file.h"
 #include "limen/base/error.h"
+#include "limen/cli/inputs/pdf_option.h"
 #include "limen/cli/inputs/register_inputs.h"
 #include "limen/cli/inputs/register_segment_files.h"
 #include "limen/cli/inputs/scan_options.h"
 #include "limen/cli/inputs/start_option.h"
 #include "limen/register/register.h"
 #include "limen/report/html/html_report.h"
-#include "limen/report/html/print_pdf.h"
 #include "limen/report/json/result_json.h"
 #include "limen/report/summary/summary_text.h"
 
@@ -196,26 +196,11 @@ void write_page(const std::filesystem::path& folder, const Registered& registere
   }
 }
 
-/// The page as a PDF beside it; as for the page, the numbers are not given up for it.
-void write_pdf(const std::filesystem::path& browser, const std::filesystem::path& folder,
-               const Session& session) {
-  if (!std::filesystem::exists(folder / "report.html")) return;
-  session.monitor->begin_stage("printing");
-  try {
-    print_pdf(browser, folder / "report.html", folder / "report.pdf", *session.monitor);
-  } catch (const Error& error) {
-    if (error.fault() != Fault::input) throw;
-    session.warn(
-        fmt::format("there is no report.pdf: {}; all other files are written and whole", error.what()));
-  }
-}
-
 /// The browser that is to print, found before the work; none where nothing is to be printed.
 std::filesystem::path browser_of(const RegisterCommandOptions& options) {
-  if (!options.pdf) return {};
-  if (options.no_report)
+  if (options.pdf && options.no_report)
     throw Error("--pdf prints the report that --no-report leaves out", "--pdf", "give one of them");
-  return find_chromium();
+  return browser_for_pdf(options.pdf);
 }
 
 ReportCover cover_of(const RegisterCommandOptions& options) {
@@ -340,9 +325,7 @@ void add_register_command(CommandLine& app, Session& session) {
       ->type_name("LENGTH,ANGLE");
   add_with_option(*command, "--source-with", options->source_with, "SOURCE");
   add_with_option(*command, "--target-with", options->target_with, "TARGET");
-  command->add_flag(
-      "--pdf", options->pdf,
-      "Print the report to report.pdf too, by the Chromium of this machine (LIMEN_CHROMIUM names one)");
+  add_pdf_option(*command, options->pdf);
   command->add_flag("--no-report", options->no_report,
                     "Write neither report.html nor the sections, only result.json and transform.txt");
   add_cover_options(*command, *options);

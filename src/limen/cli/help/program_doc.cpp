@@ -93,6 +93,7 @@ const std::vector<ExampleDoc>& examples_of(const std::string& command) {
       {"view",
        {{"A building with all its scans, for a browser", "limen view building/project.json -o building.html"},
         {"A scan and a model that lie in one frame", "limen view room.ply house.ifc"}}},
+      {"serve", {{"A page to drop scans on and to register them", "limen serve building"}}},
       {"evaluate",
        {{"Compare with the truth of a simulated case",
          "limen evaluate result/result.json museum/truth/truth.json"}}},

@@ -13,6 +13,7 @@
 #include <unistd.h>
 
 #include "limen/base/error.h"
+#include "limen/cli/terminal/progress_pipe.h"
 
 namespace limen {
 namespace {
@@ -149,6 +150,7 @@ void TerminalMonitor::draw() {
 }
 
 std::unique_ptr<Monitor> make_monitor(bool quiet) {
+  if (std::unique_ptr<Monitor> pipe = pipe_monitor()) return pipe;
   const bool able = isatty(STDERR_FILENO) != 0 && variable("TERM") != "dumb";
   if (quiet || !able) return std::make_unique<Monitor>();
   return std::make_unique<TerminalMonitor>(LineStyle{80, speaks_utf8()});

@@ -47,8 +47,8 @@ class TerminalMonitor : public Monitor {
   std::unique_ptr<Ticker> ticker_;  // last: it ends before the rest goes
 };
 
-/// A TerminalMonitor where stderr is a terminal that can move its cursor and `quiet` is false, else one that
-/// shows nothing.
+/// One that tells another program where that asked for it (see progress_pipe.h), else a TerminalMonitor where
+/// stderr is a terminal that can move its cursor and `quiet` is false, else one that shows nothing.
 std::unique_ptr<Monitor> make_monitor(bool quiet);
 
 /// While it lives, the first SIGINT, SIGTERM or SIGHUP cancels `monitor`; a second one ends the process at

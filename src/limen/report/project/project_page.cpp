@@ -46,6 +46,11 @@ td.path { overflow-wrap: anywhere; }
 .sigma { fill: var(--c); fill-opacity: .18; }
 .answer { font: inherit; font-size: 13px; margin: 0 6px 6px 0; padding: 3px 10px; border: 1px solid var(--line); border-radius: 6px; background: var(--page); color: var(--ink); cursor: pointer; } .card p { margin: 0 0 8px; }
 #paste code { display: block; margin-top: 4px; padding: 8px 10px; background: var(--paper); border: 1px solid var(--line); user-select: all; }
+@media print {
+  @page { size: A4; margin: 12mm; }
+  body { background: #fff; font-size: 12px; } main { padding: 0; max-width: none; } .answer, #paste { display: none; }
+  .scroll { overflow: visible; } tr, .card, .plan { break-inside: avoid; } h2 { break-after: avoid; }
+}
 .bar { stroke: var(--ink); stroke-width: 3; } .scale { font: 12px system-ui, sans-serif; fill: var(--ink); }
 )";
 

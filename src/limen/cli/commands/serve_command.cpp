@@ -1,0 +1,99 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/cli/commands/serve_command.h"
+
+#include <cerrno>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include "limen/base/atomic_file.h"
+#include "limen/base/error.h"
+#include "limen/base/text.h"
+#include "limen/cli/inputs/scan_options.h"
+#include "limen/cli/serve/server.h"
+#include "limen/cli/terminal/terminal.h"
+#include "limen/report/json/json_values.h"
+
+namespace limen {
+namespace {
+
+struct ServeCommand {
+  std::string folder;
+  int port = 0;
+  std::string most_upload = "20G";
+};
+
+/// One server a folder: two would give their work the same numbers.
+class FolderLock {
+ public:
+  explicit FolderLock(const std::filesystem::path& folder)
+      : descriptor_(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
+    if (descriptor_ >= 0 && flock(descriptor_, LOCK_EX | LOCK_NB) == 0) return;
+    const int reason = errno;
+    if (descriptor_ >= 0) close(descriptor_);
+    if (reason == EWOULDBLOCK)
+      throw Error("is served already", folder.string(),
+                  "open that page, end that server, or give another folder");
+    throw Error("cannot be used: " + reason_of(reason), folder.string(), "give a folder you may write to");
+  }
+  ~FolderLock() { close(descriptor_); }
+  FolderLock(const FolderLock&) = delete;
+  FolderLock& operator=(const FolderLock&) = delete;
+
+ private:
+  int descriptor_;
+};
+
+std::uint64_t upload_bound(const std::string& text) {
+  try {
+    return parse_memory(text);
+  } catch (const Error&) {
+    throw Error(fmt::format("--most-upload is \"{}\", but must be a size of 1M or more", text), "",
+                "write it as 500M, 1G or 2.5G");
+  }
+}
+
+int run(const ServeCommand& command, const Session& session) {
+  const std::uint64_t most_upload = upload_bound(command.most_upload);
+  const OutputFolder folder(command.folder);
+  const FolderLock lock(folder.path());
+  const LoopbackSocket socket(command.port);
+  const Gate gate{new_token(), socket.port()};
+  ServeSite site(std::filesystem::canonical(folder.path()), gate, most_upload);
+  const std::string address = fmt::format("http://127.0.0.1:{}/{}/", socket.port(), gate.token);
+  session.say(fmt::format(
+      "open {}\nin a browser on this machine; whoever knows this address can use it. Ctrl-C ends it.\n",
+      address));
+  session.answer(to_text(Json{{"address", address}, {"folder", command.folder}}));
+  if (session.common.quiet && !session.common.json) session.warn("open " + address);
+  flush_out();
+  serve_site(socket, site, [&] { return session.monitor->cancelled(); });
+  session.say("ended; what was done lies in " + command.folder + "\n");
+  return kExitOk;
+}
+
+}  // namespace
+
+void add_serve_command(CommandLine& app, Session& session) {
+  auto options = std::make_shared<ServeCommand>();
+  CommandLine* command = add_command(
+      app, session, "serve",
+      "Serve a page on this machine alone: drop files on it, register them, watch, choose, look at results",
+      [options, &session] { return run(*options, session); });
+  command
+      ->add_option("DIR", options->folder, "Folder for the files and the results; made where it is missing")
+      ->required();
+  command->add_option("--port", options->port, "Port of 127.0.0.1 (default 0: any that is free)")
+      ->in_range(0, 65535)
+      ->type_name("N");
+  command->add_option("--most-upload", options->most_upload, "The largest file that is taken (default 20G)")
+      ->type_name("SIZE");
+}
+
+}  // namespace limen

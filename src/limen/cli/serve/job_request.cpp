@@ -1,0 +1,232 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/cli/serve/job_request.h"
+
+#include <algorithm>
+#include <fstream>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "limen/base/length_unit.h"
+#include "limen/cli/serve/gate.h"
+#include "limen/cli/serve/http_request.h"
+
+namespace limen {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kMostFiles = 1000;
+constexpr int kMostAlternative = 1000;
+
+/// What was asked, and where it is looked up.
+struct Asked {
+  const Json& json;
+  const fs::path& folder;
+  const JobBoard& board;
+
+  [[nodiscard]] std::string text(const char* key) const {
+    const auto found = json.find(key);
+    if (found == json.end() || found->is_null()) return {};
+    if (!found->is_string()) throw HttpFault(400, fmt::format("{} is no text", key));
+    return found->get<std::string>();
+  }
+
+  [[nodiscard]] int number(const char* key) const {
+    const auto found = json.find(key);
+    if (found == json.end() || found->is_null()) return 0;
+    if (!found->is_number_integer()) throw HttpFault(400, fmt::format("{} is no number", key));
+    const auto value = found->get<std::int64_t>();
+    if (value < 0 || value > 1'000'000'000) throw HttpFault(400, fmt::format("{} is out of bounds", key));
+    return static_cast<int>(value);
+  }
+
+  /// "files/NAME" of a file that is there.
+  [[nodiscard]] std::string file(const std::string& name) const {
+    std::error_code gone;
+    if (!is_safe_name(name) || !fs::is_regular_file(fs::symlink_status(folder / "files" / name, gone)))
+      throw HttpFault(400,
+                      name.empty() ? "choose a file" : "there is no such file: drop it on the page first");
+    return "files/" + name;
+  }
+
+  [[nodiscard]] std::vector<std::string> files() const {
+    const auto found = json.find("files");
+    if (found == json.end() || !found->is_array() || found->empty() || found->size() > kMostFiles)
+      throw HttpFault(400, "choose some files");
+    std::vector<std::string> paths;
+    for (const Json& name : *found) {
+      if (!name.is_string()) throw HttpFault(400, "the name of a file is no text");
+      paths.push_back(file(name.get<std::string>()));
+    }
+    return paths;
+  }
+
+  /// A job that has ended and whose results are asked for.
+  [[nodiscard]] const Job& of(const char* kind) const {
+    const Job& job = board.job(number("of"));
+    if (job.kind != kind || job.state != "done")
+      throw HttpFault(409, fmt::format("that is no {} that has ended well", kind));
+    return job;
+  }
+
+  [[nodiscard]] std::string results() const { return fmt::format("results/{}", board.next_id()); }
+};
+
+std::string last_name(const std::string& path) {
+  return fs::path(path).filename().string();
+}
+
+std::string joined_names(const std::vector<std::string>& paths) {
+  constexpr std::size_t kShown = 3;
+  std::string text;
+  for (std::size_t k = 0; k < std::min(kShown, paths.size()); ++k)
+    text += (k == 0 ? "" : ", ") + last_name(paths[k]);
+  return paths.size() > kShown ? fmt::format("{} and {} more", text, paths.size() - kShown) : text;
+}
+
+void add_units(const Asked& asked, const char* key, const char* option, std::vector<std::string>& words) {
+  const std::string unit = asked.text(key);
+  if (unit.empty()) return;
+  if (!length_unit(unit)) throw HttpFault(400, "that is no unit of length");
+  words.insert(words.end(), {option, unit});
+}
+
+Job registering(const Asked& asked) {
+  Job job;
+  const std::string source = asked.file(asked.text("source"));
+  const std::string target = asked.file(asked.text("target"));
+  if (source == target) throw HttpFault(400, "choose two different files");
+  job.words = {"register", source, target, "-o", asked.results()};
+  add_units(asked, "source_units", "--source-units", job.words);
+  add_units(asked, "target_units", "--target-units", job.words);
+  job.title = fmt::format("{} into {}", last_name(source), last_name(target));
+  return job;
+}
+
+Job whole_project(const Asked& asked) {
+  Job job;
+  const std::vector<std::string> files = asked.files();
+  job.words = {"project"};
+  job.words.insert(job.words.end(), files.begin(), files.end());
+  job.words.insert(job.words.end(), {"-o", asked.results()});
+  job.title = joined_names(files);
+  return job;
+}
+
+/// Of a registration: its result; of a project: its project.json.
+std::string result_of(const Job& job) {
+  return fmt::format("results/{}/{}", job.id, job.kind == "project" ? "project.json" : "result.json");
+}
+
+const Job& registration_or_project(const Asked& asked) {
+  return asked.of(asked.board.job(asked.number("of")).kind == "project" ? "project" : "register");
+}
+
+/// "--alternative N" where one is meant.
+std::string add_alternative(const Asked& asked, const Job& of, std::vector<std::string>& words) {
+  const int alternative = asked.number("alternative");
+  if (alternative == 0) return of.title;
+  if (of.kind != "register" || alternative > kMostAlternative)
+    throw HttpFault(400, "there is no such alternative");
+  words.insert(words.end(), {"--alternative", std::to_string(alternative)});
+  return fmt::format("{}, alternative {}", of.title, alternative);
+}
+
+Job viewing(const Asked& asked) {
+  Job job;
+  job.words = {"view"};
+  if (asked.json.contains("of")) {
+    const Job& of = registration_or_project(asked);
+    job.words.push_back(result_of(of));
+    job.title = add_alternative(asked, of, job.words);
+  } else {
+    const std::vector<std::string> files = asked.files();
+    job.words.insert(job.words.end(), files.begin(), files.end());
+    job.title = joined_names(files);
+  }
+  job.words.insert(job.words.end(), {"-o", asked.results() + "/view.html"});
+  return job;
+}
+
+Job placing(const Asked& asked) {
+  Job job;
+  const Job& of = registration_or_project(asked);
+  if (of.kind == "project") {
+    job.words = {"transform", result_of(of), "-o", asked.results()};
+    job.title = of.title;
+    return job;
+  }
+  const std::string source = of.words.at(1);
+  const fs::path name = last_name(source);
+  job.words = {
+      "transform", result_of(of), source,
+      fmt::format("{}/{}_placed{}", asked.results(), name.stem().string(), name.extension().string())};
+  job.title = add_alternative(asked, of, job.words);
+  return job;
+}
+
+Json read_json(const fs::path& path) {
+  std::ifstream stream(path);
+  return Json::parse(stream, nullptr, false);
+}
+
+/// The words of a decision: names hold no blanks but before the number of a scan in its file.
+std::vector<std::string> words_of_answer(const std::string& answer) {
+  std::vector<std::string> words;
+  for (std::size_t begin = 0; begin < answer.size();) {
+    const std::size_t end = std::min(answer.find(' ', begin), answer.size());
+    const std::string word = answer.substr(begin, end - begin);
+    if (!words.empty() && word.starts_with('#'))
+      words.back() += " " + word;
+    else
+      words.push_back(word);
+    begin = end + 1;
+  }
+  return words;
+}
+
+Job deciding(const Asked& asked) {
+  Job job;
+  const Job& of = asked.of("project");
+  const std::string answer = asked.text("answer");
+  const Json project = read_json(asked.folder / result_of(of));
+  bool offered = false;
+  for (const Json& question :
+       project.is_object() ? project.value("questions", Json::array()) : Json::array()) {
+    const Json answers = question.value("answers", Json::array());
+    offered = offered || std::find(answers.begin(), answers.end(), Json(answer)) != answers.end();
+  }
+  if (!offered) throw HttpFault(400, "none of the project's questions has this answer");
+  const std::vector<std::string> words = words_of_answer(answer);
+  if (std::any_of(words.begin(), words.end(), [](const std::string& word) { return word.starts_with('-'); }))
+    throw HttpFault(400, "that is no answer");
+  job.words = {"project", "decide", fmt::format("results/{}", of.id)};
+  job.words.insert(job.words.end(), words.begin(), words.end());
+  job.title = answer;
+  return job;
+}
+
+}  // namespace
+
+Job job_from_request(const std::string& body, const fs::path& folder, const JobBoard& board) {
+  const Json json = Json::parse(body, nullptr, false);
+  if (!json.is_object()) throw HttpFault(400, "the work is not told as JSON");
+  const Asked asked{json, folder, board};
+  const std::string kind = asked.text("kind");
+  constexpr std::pair<const char*, Job (*)(const Asked&)> kKinds[] = {{"register", registering},
+                                                                      {"project", whole_project},
+                                                                      {"view", viewing},
+                                                                      {"place", placing},
+                                                                      {"decide", deciding}};
+  for (const auto& [name, make] : kKinds) {
+    if (kind != name) continue;
+    Job job = make(asked);
+    job.kind = kind;
+    return job;
+  }
+  throw HttpFault(400, "this kind of work is not known");
+}
+
+}  // namespace limen

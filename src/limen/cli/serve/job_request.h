@@ -1,0 +1,22 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "limen/cli/serve/jobs.h"
+
+namespace limen {
+
+/// The work that the page asks for, by "kind":
+///   register  source, target; source_units, target_units
+///   project   files
+///   view      files, or of: a job, with alternative where one of its poses is meant
+///   place     of: a job, with alternative where one of its poses is meant
+///   decide    of: a project, answer: one of those that its questions name
+/// Every file is one of files/, every answer one that was offered: no word of the page reaches the command
+/// line unseen. `next_id` names the folder of its results. Throws HttpFault that tells what is wrong.
+Job job_from_request(const std::string& body, const std::filesystem::path& folder, const JobBoard& board);
+
+}  // namespace limen

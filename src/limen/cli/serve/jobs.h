@@ -1,0 +1,89 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <deque>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "limen/cli/serve/child.h"
+#include "limen/report/json/json_values.h"
+
+namespace limen {
+
+/// A file for the page: its name and its size.
+struct ServedFile {
+  std::string name;
+  std::uintmax_t bytes = 0;
+};
+
+/// The plain files of a folder that may be served, by name.
+std::vector<ServedFile> served_files(const std::filesystem::path& folder);
+Json served_files_json(const std::vector<ServedFile>& files);
+
+/// Lines of what a program said, without what could command a terminal or be no UTF-8.
+std::string printable_lines(const std::string& text);
+
+/// One piece of work: a run of limen, whose results lie in results/ID.
+struct Job {
+  int id = 0;
+  std::string kind;                ///< register, project, view, place or decide
+  std::string title;               ///< for a reader
+  std::vector<std::string> words;  ///< of the command line
+  std::string state = "queued";    ///< queued, running, done, failed or stopped
+  int status = -1;                 ///< exit status; -1 before it ended
+  double seconds = 0.0;
+  std::string said;
+  std::vector<ServedFile> outputs;
+};
+
+/// The work that is asked for, one piece after another: each takes all threads of the machine.
+class JobBoard {
+ public:
+  static constexpr std::size_t kMostWaiting = 20;
+
+  /// `folder`: what serve was given; finished work of an earlier run is found again.
+  explicit JobBoard(std::filesystem::path folder);
+
+  /// The number of the next job, for the names of its results.
+  [[nodiscard]] int next_id() const { return next_id_; }
+  /// Throws HttpFault where too many wait.
+  void add(Job job);
+  /// Once more, into the same folder. Throws HttpFault where there is no such job, or it has not ended.
+  void again(int id);
+  /// Throws HttpFault where there is no such job. What has ended stays as it is.
+  void stop(int id);
+  /// Throws HttpFault where there is none.
+  [[nodiscard]] const Job& job(int id) const;
+  /// Whether work that waits or runs names the file.
+  [[nodiscard]] bool uses(const std::string& word) const;
+
+  /// Hears the running one, ends it, begins the next.
+  void tick();
+  /// Asks the running one to end, and waits a little for that.
+  void finish();
+  [[nodiscard]] std::vector<int> ears() const;
+  [[nodiscard]] std::filesystem::path results_of(int id) const;
+  [[nodiscard]] Json as_json() const;
+
+ private:
+  Job& find(int id);
+  void begin(Job& job);
+  void end_running(int status);
+  void keep(const Job& job) const;
+  void find_kept();
+
+  std::filesystem::path folder_;
+  std::deque<Job> jobs_;
+  int next_id_ = 1;
+  std::unique_ptr<Child> child_;
+  int running_ = 0;  ///< its number; 0: none
+  bool stopping_ = false;
+  std::chrono::steady_clock::time_point begun_;
+};
+
+}  // namespace limen

@@ -1,0 +1,304 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+'use strict';
+
+const byId = (id) => document.getElementById(id);
+
+/** An element with properties and children; texts stay texts, whatever they hold. */
+const make = (tag, properties = {}, ...children) => {
+  const node = document.createElement(tag);
+  for (const [name, value] of Object.entries(properties)) {
+    if (name.includes('-') || name === 'role' || name === 'for') node.setAttribute(name, value);
+    else node[name] = value;
+  }
+  node.append(...children);
+  return node;
+};
+
+const sizeOf = (bytes) => {
+  const units = ['B', 'kB', 'MB', 'GB', 'TB'];
+  let k = 0;
+  for (; bytes >= 1000 && k < units.length - 1; ++k) bytes /= 1000;
+  return `${k === 0 ? bytes : bytes.toFixed(bytes < 10 ? 1 : 0)} ${units[k]}`;
+};
+const timeOf = (seconds) => (seconds < 60 ? `${seconds.toFixed(seconds < 10 ? 1 : 0)} s` : `${Math.floor(seconds / 60)} min ${Math.round(seconds % 60)} s`);
+
+const say = (text, fault = false) => {
+  byId('said').textContent = text;
+  byId('said').className = fault ? 'fault' : '';
+};
+
+const ask = async (path, options = {}) => {
+  const response = await fetch(path, { credentials: 'omit', redirect: 'error', ...options });
+  const json = await response.json();
+  if (!response.ok) throw new Error(json.error ?? `status ${response.status}`);
+  return json;
+};
+const post = (path, json) => ask(path, { method: 'POST', headers: { 'Content-Type': 'application/json' }, body: JSON.stringify(json ?? {}) });
+
+let state = { files: [], jobs: [], most_upload_bytes: 0 };
+const ticked = new Set();
+
+// Files
+
+const upload = (file) => {
+  const name = file.name.replace(/\s+/g, '_');
+  const bar = make('progress', { max: 1, value: 0, 'aria-label': `${name} on its way` });
+  const told = make('span', { textContent: sizeOf(file.size) });
+  const item = make('li', {}, make('span', { textContent: name }), told, bar);
+  byId('uploads').append(item);
+  return new Promise((resolve) => {
+    const end = (fault) => {
+      if (fault) {
+        bar.remove();
+        told.textContent = '';
+        item.append(make('span', { className: 'fault', role: 'alert', textContent: fault }));
+        item.append(make('button', { className: 'plain', textContent: 'Dismiss', onclick: () => item.remove() }));
+      } else {
+        item.remove();
+        ticked.add(name);
+      }
+      resolve(!fault);
+    };
+    if (state.most_upload_bytes > 0 && file.size > state.most_upload_bytes) {
+      end(`larger than ${sizeOf(state.most_upload_bytes)}, which is the most that is taken`);
+      return;
+    }
+    const request = new XMLHttpRequest();
+    request.open('PUT', `files/${encodeURIComponent(name)}`);
+    request.upload.onprogress = (event) => { bar.value = event.total > 0 ? event.loaded / event.total : 0; };
+    request.onerror = () => end('the connection broke off');
+    request.onload = () => {
+      let told_ = {};
+      try { told_ = JSON.parse(request.responseText); } catch { /* no words, then */ }
+      end(request.status === 201 ? '' : told_.error ?? `status ${request.status}`);
+    };
+    request.send(file);
+  });
+};
+
+const uploadAll = async (files) => {
+  for (const file of files) await upload(file);
+  await refresh();
+};
+
+const removeFile = async (name) => {
+  if (!confirm(`Remove ${name}?`)) return;
+  try {
+    await ask(`files/${encodeURIComponent(name)}`, { method: 'DELETE' });
+    ticked.delete(name);
+    say(`${name} was removed.`);
+  } catch (error) { say(error.message, true); }
+  await refresh();
+};
+
+const showTicked = () => {
+  const names = state.files.map((file) => file.name).filter((name) => ticked.has(name));
+  byId('ticked').textContent = names.length ? `${names.length} ticked: ${names.join(', ')}` : 'Tick files above.';
+  for (const button of byId('many').querySelectorAll('button')) button.disabled = names.length === 0;
+};
+
+const fileRow = ({ name, bytes }) => {
+  const box = make('input', { type: 'checkbox', checked: ticked.has(name), 'aria-label': `Take ${name}` });
+  box.onchange = () => {
+    if (box.checked) ticked.add(name); else ticked.delete(name);
+    showTicked();
+  };
+  return make('tr', {}, make('td', {}, box), make('td', { className: 'name', textContent: name }),
+    make('td', { className: 'n', textContent: sizeOf(bytes) }),
+    make('td', {}, make('button', { className: 'plain', type: 'button', textContent: 'Remove', 'aria-label': `Remove ${name}`, onclick: () => removeFile(name) })));
+};
+
+/** Choices of a list, with what was chosen kept. */
+const fill = (select, values, fallback) => {
+  const chosen = values.includes(select.value) ? select.value : fallback ?? '';
+  select.replaceChildren(...values.map((value) => make('option', { value, textContent: value })));
+  select.value = chosen;
+};
+
+let filesShown = '';
+const showFiles = () => {
+  const key = JSON.stringify(state.files);
+  if (key === filesShown) return;
+  filesShown = key;
+  const names = state.files.map((file) => file.name);
+  byId('files').replaceChildren(...state.files.map(fileRow));
+  byId('no-files').hidden = names.length > 0;
+  fill(byId('source'), names, names[0]);
+  fill(byId('target'), names, names[1] ?? names[0]);
+  byId('register').querySelector('button').disabled = names.length < 2;
+  showTicked();
+};
+
+// Work
+
+const kinds = { register: 'Register', project: 'One frame', view: 'Look', place: 'Move', decide: 'Answer' };
+const results = new Map();  // what a job's result says, once it was read
+
+const start = async (work) => {
+  try {
+    await post('jobs', work);
+    say('Started: see the work.');
+  } catch (error) { say(error.message, true); }
+  await refresh();
+};
+
+const link = (job, { name, bytes }) => make('a', { href: `results/${job.id}/${encodeURIComponent(name)}`, target: '_blank', rel: 'noopener noreferrer', textContent: `${name} (${sizeOf(bytes)})` });
+
+const button = (text, work, label) => make('button', { type: 'button', textContent: text, onclick: () => start(work), ...(label ? { 'aria-label': label } : {}) });
+
+const percent = (p) => (p == null ? '' : p < 0.001 ? '< 0.1 %' : `${(100 * p).toFixed(1)} %`);
+
+const alternativesOf = (job, result) => {
+  const list = result.alternatives ?? [];
+  if (list.length === 0) return [];
+  const rooms = list.some((other) => other.room);
+  const rows = list.slice(0, 50).map((other, k) => make('tr', {}, make('td', { textContent: k + 1 }),
+    make('td', { textContent: percent(other.probability) }), ...(rooms ? [make('td', { className: 'name', textContent: other.room ?? '' })] : []),
+    make('td', {}, button('Look', { kind: 'view', of: job.id, alternative: k + 1 }, `Look at alternative ${k + 1}`), ' ',
+      button('Choose', { kind: 'place', of: job.id, alternative: k + 1 }, `Choose alternative ${k + 1}: move the scan there`))));
+  const head = make('tr', {}, ...['Number', 'Probability', rooms ? 'Room' : '', 'Do'].filter((word) => word).map((textContent) => make('th', { scope: 'col', textContent })));
+  return [make('details', { open: result.outcome === 'ambiguous' }, make('summary', { textContent: `Other places (${list.length})` }),
+    make('div', { className: 'scroll', tabIndex: 0, role: 'region', 'aria-label': `Other places of ${job.title}` }, make('table', {}, make('thead', {}, head), make('tbody', {}, ...rows))))];
+};
+
+const answered = new Set();
+const questionsOf = (job, project) => {
+  const list = project.questions ?? [];
+  const parts = list.slice(0, 50).map((question) => make('div', { className: 'question' }, make('p', { textContent: question.text }),
+    make('p', { className: 'answers' }, ...(question.answers ?? []).map((answer) => {
+      const choose = button(answer, null);
+      choose.setAttribute('aria-pressed', answered.has(`${job.id} ${answer}`));
+      choose.onclick = async () => {
+        answered.add(`${job.id} ${answer}`);
+        choose.setAttribute('aria-pressed', 'true');
+        await start({ kind: 'decide', of: job.id, answer });
+      };
+      return choose;
+    }))));
+  if (parts.length > 0) parts.unshift(make('p', {}, make('strong', { textContent: 'What only somebody who knows the building can tell' })));
+  parts.push(make('p', {}, button(list.length ? 'Run again with the answers' : 'Run again', { kind: 'again', of: job.id }, `Run ${job.title} again`)));
+  return parts;
+};
+
+const outcomeOf = (job, result) => {
+  if (job.state !== 'done') return '';
+  const words = { registered: 'registered', ambiguous: 'not decided: several places fit', under_constrained: 'some direction stays free', no_match: 'nothing in common was found', partial: 'some have a place, some do not' };
+  return words[result?.outcome] ?? '';
+};
+
+const classOf = (job, result) => (job.state !== 'done' ? job.state : result?.outcome && result.outcome !== 'registered' ? 'undecided' : 'registered');
+
+const jobCard = (job) => {
+  const result = results.get(job.id)?.json;
+  const title = make('h3', {}, `${kinds[job.kind] ?? job.kind}: `, make('span', { textContent: job.title }));
+  const told = make('p', {}, make('span', { className: 'state', textContent: outcomeOf(job, result) || job.state }), ' ', make('span', { className: 'soft time' }));
+  const parts = [title, told];
+  if (job.state === 'running' || job.state === 'queued') {
+    parts.push(make('progress', { max: 1, 'aria-label': `${job.title}: how far` }));
+    parts.push(make('p', {}, make('button', { type: 'button', textContent: 'Stop', 'aria-label': `Stop ${job.title}`, onclick: async () => {
+      try { await post(`jobs/${job.id}/stop`); } catch (error) { say(error.message, true); }
+      await refresh();
+    } })));
+  }
+  if (result?.reason) parts.push(make('p', { textContent: result.reason }));
+  if (job.state === 'done' && result?.next_steps?.length) parts.push(make('ul', {}, ...result.next_steps.map((step) => make('li', { textContent: typeof step === 'string' ? step : step.text ?? '' }))));
+  if (job.outputs.length > 0) parts.push(make('p', { className: 'links' }, ...job.outputs.map((file) => link(job, file))));
+  const placed = result && (result.target_from_source || (result.scans ?? []).some((scan) => scan.frame_from_scan));
+  if (job.state === 'done' && placed) parts.push(make('p', {}, button('Look at it', { kind: 'view', of: job.id }, `Look at ${job.title}`), ' ', button(job.kind === 'project' ? 'Move all scans there' : 'Move the scan there', { kind: 'place', of: job.id })));
+  if (result && job.kind === 'register') parts.push(...alternativesOf(job, result));
+  if (result && job.kind === 'project') parts.push(...questionsOf(job, result));
+  if (job.said) {
+    const failed = job.state === 'failed';
+    parts.push(failed ? make('pre', { className: 'fault', tabIndex: 0, textContent: job.said }) : make('details', {}, make('summary', { textContent: 'What it said' }), make('pre', { tabIndex: 0, textContent: job.said })));
+  }
+  return make('article', { className: `job ${classOf(job, result)}`, id: `job-${job.id}` }, ...parts);
+};
+
+/** What changes all the time: written into the card that stands. */
+const showProgress = (job) => {
+  const card = byId(`job-${job.id}`);
+  const bar = card?.querySelector('progress');
+  card.querySelector('.time').textContent = job.state === 'queued' ? 'waits' : `${job.stage ? `${job.stage}, ` : ''}${timeOf(job.seconds)}`;
+  if (!bar) return;
+  if (job.share == null) bar.removeAttribute('value'); else bar.value = job.share;
+};
+
+const readResult = async (job) => {
+  const file = { register: 'result.json', project: 'project.json' }[job.kind];
+  if (job.state !== 'done' || !file || !job.outputs.some(({ name }) => name === file)) return;
+  const key = `${job.seconds}`;
+  if (results.get(job.id)?.key === key) return;
+  try {
+    results.set(job.id, { key, json: await ask(`results/${job.id}/${file}`) });
+  } catch { /* it is asked for again */ }
+};
+
+const shown = new Map();
+const showJobs = async () => {
+  for (const job of state.jobs) await readResult(job);
+  byId('no-work').hidden = state.jobs.length > 0;
+  const list = byId('jobs');
+  for (const job of state.jobs) {
+    const { seconds, stage, share, ...rest } = job;
+    if (job.state === 'running') rest.said = '';
+    const key = JSON.stringify([rest, results.get(job.id)?.key]);
+    if (shown.get(job.id) !== key) {
+      const card = jobCard(job.state === 'running' ? { ...job, said: '' } : job);
+      const before = byId(`job-${job.id}`);
+      if (before) before.replaceWith(card); else list.prepend(card);
+      shown.set(job.id, key);
+    }
+    showProgress(job);
+  }
+};
+
+// All of it
+
+let missed = 0;
+const refresh = async () => {
+  try {
+    state = await ask('state');
+    missed = 0;
+  } catch {
+    missed += 1;
+  }
+  byId('gone').hidden = missed < 3;
+  if (missed > 0) return;
+  byId('folder').textContent = state.folder;
+  byId('version').textContent = `limen ${state.version}`;
+  document.title = state.jobs.some((job) => job.state === 'running') ? 'limen: at work' : 'limen';
+  showFiles();
+  await showJobs();
+  document.documentElement.dataset.ready = '1';
+};
+
+const again = async () => {
+  await refresh();
+  setTimeout(again, missed > 3 ? 5000 : 700);
+};
+
+byId('choose').onchange = async (event) => {
+  const files = [...event.target.files];
+  event.target.value = '';
+  await uploadAll(files);
+};
+for (const name of ['dragover', 'dragleave', 'drop']) {
+  document.addEventListener(name, (event) => {
+    event.preventDefault();
+    byId('drop').classList.toggle('over', name === 'dragover');
+    if (name === 'drop' && event.dataTransfer?.files?.length) uploadAll([...event.dataTransfer.files]);
+  });
+}
+for (const id of ['source-units', 'target-units']) {
+  byId(id).append(make('option', { value: '', textContent: 'as the file says, else m' }), ...['mm', 'cm', 'm', 'ft', 'us-ft', 'in', 'km'].map((value) => make('option', { value, textContent: value })));
+}
+byId('register').onsubmit = (event) => {
+  event.preventDefault();
+  start({ kind: 'register', source: byId('source').value, target: byId('target').value, source_units: byId('source-units').value, target_units: byId('target-units').value });
+};
+byId('many').onsubmit = (event) => {
+  event.preventDefault();
+  start({ kind: event.submitter.value, files: state.files.map((file) => file.name).filter((name) => ticked.has(name)) });
+};
+again();

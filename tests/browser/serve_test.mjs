@@ -1,0 +1,238 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+
+// What somebody does with the page of `limen serve`: drop files, register, choose, answer, look, download.
+import assert from 'node:assert/strict';
+import { spawn } from 'node:child_process';
+import { copyFileSync, existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, statSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { after, before, describe, test } from 'node:test';
+import { accessibilityFaults, limen, openBrowser } from './browser.mjs';
+
+const program = process.env.LIMEN_PROGRAM;
+const playwright = await import('playwright-core');
+const folder = mkdtempSync(join(tmpdir(), 'limen-serve-'));
+const shots = process.env.LIMEN_SCREENSHOTS;
+const museum = (name) => join(folder, 'museum', name);
+let browser; let server; let address; let page;
+const heard = { problems: [], requests: [] };
+
+/** Starts it and waits for the address that it tells. */
+const serve = async () => {
+  server = spawn(program, ['serve', join(folder, 'site'), '--most-upload', '100M', '--json'], { stdio: ['ignore', 'pipe', 'inherit'] });
+  let told = '';
+  for await (const piece of server.stdout) {
+    told += piece;
+    if (told.includes('}')) break;
+  }
+  return JSON.parse(told).address;
+};
+
+const openPage = async (scheme = 'light', viewport) => {
+  const opened = await browser.context.newPage();
+  if (viewport) await opened.setViewportSize(viewport);
+  await opened.emulateMedia({ colorScheme: scheme, reducedMotion: 'reduce' });
+  opened.on('console', (message) => ['error', 'warning'].includes(message.type()) && heard.problems.push(message.text()));
+  opened.on('pageerror', (error) => heard.problems.push(String(error.stack ?? error)));
+  opened.on('request', (request) => heard.requests.push(request.url()));
+  await opened.goto(address);
+  await opened.waitForSelector('html[data-ready]', { timeout: 20000 });
+  return opened;
+};
+
+/** The card of a piece of work once it has ended. */
+const ended = async (id) => {
+  await page.waitForSelector(`#job-${id}:not(.running):not(.queued)`, { timeout: 120000 });
+  return page.locator(`#job-${id}`);
+};
+
+before(async () => {
+  limen(program, 'simulate', 'museum', '-o', join(folder, 'museum'), '--points-indoor', '60000', '--points-outdoor', '200000');
+  limen(program, 'simulate', 'room', '-o', join(folder, 'room'), '--points-indoor', '20000');
+  limen(program, 'simulate', 'office', '-o', join(folder, 'office'), '--points-indoor', '60000');
+  copyFileSync(join(folder, 'office', 'scan_01.ply'), join(folder, 'room_of_office.ply'));
+  writeFileSync(join(folder, 'a <b>&.ply'), readFileSync(join(folder, 'room', 'indoor_00.ply')));
+  browser = await openBrowser(playwright);
+  address = await serve();
+  page = await openPage();
+  if (shots) mkdirSync(shots, { recursive: true });
+});
+
+after(async () => {
+  await browser?.close();
+  server?.kill('SIGKILL');
+  rmSync(folder, { recursive: true, force: true });
+});
+
+describe('a page to drop files on', () => {
+  test('is empty at first, and everybody can use it', async () => {
+    assert.match(await page.locator('#no-files').innerText(), /No file yet/);
+    assert.ok(await page.locator('#register button').isDisabled());
+    assert.deepEqual(await accessibilityFaults(page), []);
+    if (shots) await page.screenshot({ path: join(shots, 'serve-empty.png') });
+  });
+
+  test('takes files, shows them as text, and refuses a second of one name', async () => {
+    await page.setInputFiles('#choose', [museum('indoor_00.ply'), museum('outdoor.ply'), join(folder, 'a <b>&.ply')]);
+    await page.waitForFunction(() => document.querySelectorAll('#files tr').length === 3);
+    const names = await page.locator('#files td.name').allInnerTexts();
+    assert.deepEqual(names, ['a_<b>&.ply', 'indoor_00.ply', 'outdoor.ply']);
+    assert.equal(statSync(join(folder, 'site', 'files', 'outdoor.ply')).size, statSync(museum('outdoor.ply')).size);
+    await page.setInputFiles('#choose', [museum('outdoor.ply')]);
+    await page.waitForSelector('#uploads .fault');
+    assert.match(await page.locator('#uploads').innerText(), /there is a file of this name/);
+    await page.click('#uploads button');
+    heard.problems = heard.problems.filter((text) => !/409/.test(text));
+  });
+
+  test('takes a file that is dropped', async () => {
+    await page.evaluate(() => {
+      const data = new DataTransfer();
+      data.items.add(new File(['0 0 0\n'], 'dropped.xyz'));
+      document.getElementById('drop').dispatchEvent(new DragEvent('drop', { dataTransfer: data, bubbles: true, cancelable: true }));
+    });
+    await page.waitForFunction(() => [...document.querySelectorAll('#files td.name')].some((cell) => cell.textContent === 'dropped.xyz'));
+  });
+
+  test('removes one', async () => {
+    page.once('dialog', (dialog) => dialog.accept());
+    await page.click('button[aria-label="Remove dropped.xyz"]');
+    await page.waitForFunction(() => ![...document.querySelectorAll('#files td.name')].some((cell) => cell.textContent === 'dropped.xyz'));
+    assert.ok(!existsSync(join(folder, 'site', 'files', 'dropped.xyz')));
+  });
+});
+
+describe('work', () => {
+  test('two files are registered, with progress, and the report can be looked at', async () => {
+    await page.selectOption('#source', 'indoor_00.ply');
+    await page.selectOption('#target', 'outdoor.ply');
+    await page.click('#register button');
+    await page.waitForFunction(() => /(reading|features|scoring|refinement|hypotheses)/.test(document.querySelector('#job-1 .time')?.textContent ?? ''), null, { timeout: 60000, polling: 20 });
+    if (shots) await page.screenshot({ path: join(shots, 'serve-running.png') });
+    const card = await ended(1);
+    assert.match(await card.innerText(), /registered/);
+    const [report] = await Promise.all([page.context().waitForEvent('page'), card.locator('a', { hasText: 'report.html' }).click()]);
+    await report.waitForSelector('html[data-ready]', { timeout: 60000 });
+    assert.match(await report.locator('h1').innerText(), /fit/i);
+    assert.equal(await report.evaluate(() => origin), 'null', 'a result has no origin: it can ask nothing');
+    assert.equal(await report.evaluate((url) => fetch(url).then(() => 'asked', () => 'refused'), `${address}state`), 'refused');
+    await report.close();
+  });
+
+  test('the scan is moved there and can be downloaded', async () => {
+    await page.click('#job-1 button:has-text("Move the scan there")');
+    const card = await ended(2);
+    const [download] = await Promise.all([page.waitForEvent('download'), card.locator('a', { hasText: 'indoor_00_placed.ply' }).evaluate((node) => { node.removeAttribute('target'); node.click(); })]);
+    const bytes = readFileSync(await download.path());
+    assert.equal(bytes.length, statSync(join(folder, 'site', 'results', '2', 'indoor_00_placed.ply')).size);
+    assert.equal(bytes.subarray(0, 4).toString(), 'ply\n');
+  });
+
+  test('both can be looked at together', async () => {
+    await page.click('#job-1 button:has-text("Look at it")');
+    const card = await ended(3);
+    const [view] = await Promise.all([page.context().waitForEvent('page'), card.locator('a', { hasText: 'view.html' }).click()]);
+    await view.waitForSelector('html[data-ready]', { timeout: 60000 });
+    assert.equal(await view.title(), 'indoor_00.ply, outdoor.ply');
+    await view.close();
+  });
+
+  test('other places are a choice', async () => {
+    await page.setInputFiles('#choose', [join(folder, 'room_of_office.ply'), join(folder, 'office', 'model.ifc')]);
+    await page.waitForFunction(() => [...document.querySelectorAll('#files td.name')].some((cell) => cell.textContent === 'model.ifc'));
+    await page.selectOption('#source', 'room_of_office.ply');
+    await page.selectOption('#target', 'model.ifc');
+    await page.click('#register button');
+    const card = await ended(4);
+    await card.locator('details').first().evaluate((node) => { node.open = true; });
+    assert.match(await card.innerText(), /Other places \(\d+\)/);
+    assert.deepEqual(await accessibilityFaults(page), []);
+    if (shots) await page.screenshot({ path: join(shots, 'serve-alternatives.png'), fullPage: true });
+    await card.locator('button[aria-label^="Choose alternative 1"]').click();
+    const moved = await ended(5);
+    assert.match(await moved.innerText(), /alternative 1/);
+    assert.ok(existsSync(join(folder, 'site', 'results', '5', 'room_of_office_placed.ply')));
+  });
+
+  test('a project is made of the files that are ticked, and run again', async () => {
+    for (const name of ['room_of_office.ply', 'model.ifc', 'outdoor.ply', 'indoor_00.ply']) await page.setChecked(`input[aria-label="Take ${name}"]`, ['indoor_00.ply', 'outdoor.ply'].includes(name));
+    await page.setChecked('input[aria-label="Take a_<b>&.ply"]', false);
+    await page.click('button[value="project"]');
+    const card = await ended(6);
+    assert.match(await card.innerText(), /project\.json/);
+    await card.locator('button', { hasText: /^Run again/ }).click();
+    await page.waitForSelector('#job-6.running, #job-6.queued');
+    await ended(6);
+  });
+
+  test('a question is answered as limen project decide would', async () => {
+    // The question itself is put there: which pairs leave one open is not what is tested here.
+    const path = join(folder, 'site', 'results', '6', 'project.json');
+    const project = JSON.parse(readFileSync(path));
+    const answer = 'accept files/indoor_00.ply files/outdoor.ply';
+    project.questions = [{ text: 'Do the two stand so?', answers: [answer, 'accept files/indoor_00.ply -oevil'], scans: [], for_the_present_place: [], for_another_place: [] }];
+    writeFileSync(path, JSON.stringify(project));
+    await page.reload();
+    await page.waitForSelector('#job-6 .question');
+    await page.click(`#job-6 .answers button:has-text("${answer}")`);
+    const card = await ended(7);
+    assert.match(await card.innerText(), /Answer:/);
+    assert.match(readFileSync(join(folder, 'site', 'results', '6', 'decisions.json'), 'utf8'), /accept/);
+    const refused = await page.evaluate(() => fetch('jobs', { method: 'POST', body: JSON.stringify({ kind: 'decide', of: 6, answer: 'forget x' }) }).then((response) => response.status));
+    assert.equal(refused, 400);
+    heard.problems = heard.problems.filter((text) => !/400/.test(text));
+  });
+
+  test('what fails says why, in the words of the program', async () => {
+    await page.setInputFiles('#choose', [{ name: 'broken.las', mimeType: 'application/octet-stream', buffer: Buffer.from('\u001b[31mno cloud at all'.repeat(40)) }]);
+    await page.waitForFunction(() => [...document.querySelectorAll('#files td.name')].some((cell) => cell.textContent === 'broken.las'));
+    await page.selectOption('#source', 'broken.las');
+    await page.selectOption('#target', 'outdoor.ply');
+    await page.click('#register button');
+    const card = await ended(8);
+    assert.match(await card.innerText(), /failed[\s\S]*broken\.las: this is no LAS file/);
+  });
+
+  test('can be stopped', async () => {
+    await page.selectOption('#source', 'indoor_00.ply');
+    await page.click('#register button');
+    await page.waitForSelector('#job-9 button:has-text("Stop")');
+    await page.click('#job-9 button:has-text("Stop")');
+    await ended(9);
+    assert.match(await page.locator('#job-9').innerText(), /stopped|registered/);
+  });
+});
+
+describe('nobody else', () => {
+  test('a page of another origin gets nothing, with the token or without', async () => {
+    const other = await browser.context.newPage();
+    await other.goto('data:text/html,<title>elsewhere</title>');
+    for (const url of [`${address}state`, address.replace(/\/[0-9a-f]{32}\//, '/state')]) {
+      const got = await other.evaluate((to) => fetch(to, { method: 'POST', body: '{}' }).then(() => 'asked', () => 'refused'), url);
+      assert.equal(got, 'refused');
+    }
+    await other.close();
+  });
+});
+
+describe('on every screen', () => {
+  for (const [width, height, scheme] of [[1280, 900, 'light'], [1280, 900, 'dark'], [390, 844, 'light'], [1920, 1080, 'light']]) {
+    test(`${width} px, ${scheme}: nothing sticks out, and everybody can use it`, async () => {
+      const opened = await openPage(scheme, { width, height });
+      assert.ok(await opened.evaluate(() => document.documentElement.scrollWidth <= innerWidth));
+      if (shots) await opened.screenshot({ path: join(shots, `serve-${width}-${scheme}.png`), fullPage: true });
+      assert.deepEqual(await accessibilityFaults(opened), []);
+      await opened.close();
+    });
+  }
+
+  test('it complains of nothing, asks nobody else, and says when the server has ended', async () => {
+    assert.deepEqual(heard.problems, []);
+    assert.deepEqual(heard.requests.filter((url) => !url.startsWith(address) && !url.startsWith('data:')), []);
+    const closed = new Promise((resolve) => { server.on('exit', (code) => resolve(code)); });
+    server.kill('SIGINT');
+    assert.equal(await closed, 0);
+    await page.waitForSelector('#gone:not([hidden])', { timeout: 30000 });
+  });
+});
