@@ -132,7 +132,7 @@ void Connection::take_body(const std::string& bytes) {
   upload_.reset();
 }
 
-void Connection::begin_reply(HttpReply reply) {
+void Connection::begin_reply(const HttpReply& reply) {
   const bool head_only = request_.method == "HEAD";
   const std::uint64_t bytes = reply.file >= 0 ? reply.file_bytes : reply.body.size();
   out_ = head_of(reply, bytes) + (head_only ? std::string() : reply.body);

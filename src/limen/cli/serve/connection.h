@@ -40,7 +40,7 @@ class Connection {
   void take(const std::string& bytes, Clock::time_point now);
   void take_head();
   void take_body(const std::string& bytes);
-  void begin_reply(HttpReply reply);
+  void begin_reply(const HttpReply& reply);
   void fail(const HttpFault& fault);
   void sent(Clock::time_point now);
 

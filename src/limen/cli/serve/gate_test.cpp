@@ -45,7 +45,7 @@ TEST(Gate, KeepsOutOtherNamesAndPages) {
        {"", "Host: evil.example:8123\r\n", "Host: 127.0.0.1\r\n", "Host: 127.0.0.1:8124\r\n",
         "Host: 127.0.0.1:8123.evil.example\r\n", "Host: [::1]:8123\r\n", "Host: 0.0.0.0:8123\r\n"})
     EXPECT_EQ(told_at_gate(kInside, host), 403) << host;
-  EXPECT_EQ(told_at_gate(kInside, kHost + kHost), 400);
+  EXPECT_EQ(told_at_gate(kInside, "Host: 127.0.0.1:8123\r\nHost: 127.0.0.1:8123\r\n"), 400);
   for (const std::string origin :
        {"null", "http://evil.example", "https://127.0.0.1:8123", "http://127.0.0.1", "http://localhost:8123",
         "http://127.0.0.1:8123.evil.example"})
