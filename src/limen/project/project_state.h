@@ -27,7 +27,7 @@ struct TriedPair {
   std::size_t source = 0;
   std::size_t target = 0;
   RegistrationResult result;
-  std::string fault;  ///< why there is no result, where a worker could not make it; empty: there is one
+  std::string fault = {};  ///< why there is no result, where a worker could not make it; empty: there is one
 };
 
 struct UserWords;
