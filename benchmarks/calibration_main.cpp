@@ -5,6 +5,7 @@
 // have nothing in common, other buildings of the same kind; against the simulator's exact truth.
 //   bench_calibration --purpose judging --minutes 20 -o rows.csv      again: goes on where it stopped
 //   bench_calibration --purpose fitting --only twin --pairs 100 -o rows.csv
+//   bench_calibration --purpose fitting --matter matter.jsonl         what scripts/fit_judge reads
 //   bench_calibration --report rows.csv --svg reliability.svg         the tables of rows made before
 // A pose is the true one within 5 cm at the scanner and half a degree.
 #include <chrono>
@@ -14,6 +15,7 @@
 
 #include "calibration_kinds.h"
 #include "calibration_rows.h"
+#include "matter_rows.h"
 #include <CLI/CLI.hpp>
 
 #include "limen/base/angles.h"
@@ -36,6 +38,7 @@ struct Settings {
   double minutes = 10.0;
   bool plain = false;
   std::string output;
+  std::string matter;
   std::string report;
   std::string svg;
 };
@@ -84,10 +87,10 @@ class Ready {
 };
 
 /// Registers two scans; `truth`: nothing where there is none (another building).
-void measure(Row& row, const PreparedPair& pair, const std::optional<Rigid3>& truth,
-             const Vector3d& scanner) {
+RegistrationResult measure(Row& row, const PreparedPair& pair, const std::optional<Rigid3>& truth,
+                           const Vector3d& scanner) {
   const auto start = std::chrono::steady_clock::now();
-  const RegistrationResult result = register_prepared(pair);
+  RegistrationResult result = register_prepared(pair);
   row.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   row.outcome = to_string(result.outcome);
   row.agreeing_m2 = result.best.agreeing_m2;
@@ -104,6 +107,7 @@ void measure(Row& row, const PreparedPair& pair, const std::optional<Rigid3>& tr
   row.near = best.near();
   row.listed = row.near;
   for (const Hypothesis& other : result.alternatives) row.listed = consider(other).near() || row.listed;
+  return result;
 }
 
 class Calibration {
@@ -188,7 +192,8 @@ class Calibration {
                 const std::optional<Rigid3>& truth) {
     if (row.kind == "unclear" || !wanted(s_.only, row.kind) || done_.count(key_of(row)) > 0) return;
     PreparedPair pair{from.take(i), to.take(j)};
-    measure(row, pair, truth, from.set().scans[i].truth.scanner);
+    const RegistrationResult result = measure(row, pair, truth, from.set().scans[i].truth.scanner);
+    tell_matter(row, pair, result);
     from.put_back(i, std::move(pair.source));
     to.put_back(j, std::move(pair.target));
     ++made_;
@@ -197,9 +202,22 @@ class Calibration {
     rows_.push_back(row);
   }
 
+  /// Of poses that lay a room on itself, or on one that is known to be built alike.
+  void tell_matter(const Row& row, const PreparedPair& pair, const RegistrationResult& result) {
+    if (s_.matter.empty() || !(row.near || row.kind == "twin") || !result.twin) return;
+    if (!matter_.is_open()) matter_.open(s_.matter, std::ios::app);
+    const std::string about = fmt::format(
+        R"("building": "{}", "purpose": "{}", "seed": {}, "source": "{}", "target": "{}", "kind": "{}", )"
+        R"("furnished_alike": {}, "stated": {:.6g})",
+        row.building, row.purpose, row.seed, row.source, row.target, row.kind, row.furnished_alike,
+        result.twin->probability());
+    matter_ << matter_line(pair, result.best.target_from_source, about, !row.near) << "\n" << std::flush;
+  }
+
   const Settings& s_;
   std::chrono::steady_clock::time_point start_;
   std::ofstream file_;
+  std::ofstream matter_;
   std::vector<Row> rows_;
   std::set<std::string> done_;
   int made_ = 0;
@@ -253,6 +271,8 @@ int main(int argc, char** argv) {
   app.add_flag("--plain", settings.plain, "no random styles");
   app.add_option("-o,--output", settings.output,
                  "rows are added to this file; what it has is not done again");
+  app.add_option("--matter", settings.matter,
+                 "what things say of the poses is added to this file (JSON lines)");
   app.add_option("--report", settings.report, "only the tables of such a file");
   app.add_option("--svg", settings.svg, "a picture of the reliability table");
   CLI11_PARSE(app, argc, argv);

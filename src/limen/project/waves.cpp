@@ -7,16 +7,18 @@
 #include <tuple>
 #include <utility>
 
+#include "limen/base/parallel.h"
 #include "limen/project/project_graph.h"
+#include "limen/project/retrieve/predict_overlap.h"
 
 namespace limen {
 namespace {
 
-constexpr std::size_t kFirstPartners = 6;
-constexpr std::size_t kMorePartners = 4;
-constexpr int kMostWaves = 3;
-constexpr double kNearM = 12.0;  // stations nearer than this may see the same
-constexpr int kEnoughLinks = 4;  // verified ones: a scan that has them needs no more
+constexpr std::size_t kFirstPartners = 4;
+constexpr std::size_t kMorePartners = 3;
+constexpr int kMostWaves = 4;
+constexpr double kLeastOverlapM2 = 3.0;  // less holds no pair
+constexpr int kEnoughLinks = 4;          // verified ones: a scan that has them needs no more
 
 class Waves {
  public:
@@ -55,30 +57,62 @@ class Waves {
       ++held[static_cast<std::size_t>(made.graph.links[k].source)];
       ++held[static_cast<std::size_t>(made.graph.links[k].target)];
     }
-    // By how near they stand, then by name.
-    std::vector<std::tuple<double, std::size_t, std::size_t>> wanted;
+    PairList next = partners_by_place(solved, held, done);
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
-      for (std::size_t j = 0; j < i; ++j) {
-        if (done.count({i, j}) > 0 || solved.nodes[i].component < 0) continue;
-        if (solved.nodes[i].component != solved.nodes[j].component) continue;
-        const double apart = (solved.nodes[i].frame_from_node * nodes_[i].digest.middle -
-                              solved.nodes[j].frame_from_node * nodes_[j].digest.middle)
-                                 .norm();
-        if (apart < kNearM && (held[i] < kEnoughLinks || held[j] < kEnoughLinks))
-          wanted.emplace_back(apart, i, j);
-      }
       if (held[i] > 0) continue;
       for (std::size_t k = 0; k < std::min(partners, ranked[i].size()); ++k) {
         const std::pair pair(std::max(i, ranked[i][k]), std::min(i, ranked[i][k]));
-        if (done.count(pair) == 0) wanted.emplace_back(kNearM, pair.first, pair.second);
+        if (done.insert(pair).second) next.push_back(pair);
       }
     }
-    std::sort(wanted.begin(), wanted.end());
+    return next;
+  }
+
+  /// Less overlap, scan, partner.
+  using Wish = std::tuple<double, std::size_t, std::size_t>;
+  using Done = std::set<std::pair<std::size_t, std::size_t>>;
+
+  /// Of scans that are not held by links enough the partners that should see most of what they see, the most
+  /// promising first, from where all stand by now; ties by number.
+  [[nodiscard]] PairList partners_by_place(const SolvedGraph& solved, const std::vector<int>& held,
+                                           Done& done) const {
+    std::vector<Eigen::AlignedBox3d> boxes;
+    for (std::size_t i = 0; i < nodes_.size(); ++i)
+      boxes.push_back(box_of_planes(nodes_[i].digest, solved.nodes[i].frame_from_node));
+    std::vector<std::vector<Wish>> of_scan(nodes_.size());
+    parallel_for(nodes_.size(), 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        if (solved.nodes[i].component >= 0 && held[i] < kEnoughLinks)
+          of_scan[i] = wishes_of(i, solved, boxes, done);
+      }
+    });
+    std::vector<Wish> wishes;
+    for (const std::vector<Wish>& one : of_scan) wishes.insert(wishes.end(), one.begin(), one.end());
+    std::sort(wishes.begin(), wishes.end());
     PairList next;
-    for (const auto& [apart, i, j] : wanted) {
-      if (done.emplace(i, j).second) next.emplace_back(i, j);
+    for (const auto& [less, i, j] : wishes) {
+      const std::pair pair(std::max(i, j), std::min(i, j));
+      if (done.insert(pair).second) next.push_back(pair);
     }
     return next;
+  }
+
+  [[nodiscard]] std::vector<Wish> wishes_of(std::size_t i, const SolvedGraph& solved,
+                                            const std::vector<Eigen::AlignedBox3d>& boxes,
+                                            const Done& done) const {
+    const SolvedNode& node = solved.nodes[i];
+    std::vector<Wish> wishes;
+    for (std::size_t j = 0; j < nodes_.size(); ++j) {
+      const SolvedNode& other = solved.nodes[j];
+      if (i == j || other.component != node.component || !boxes[i].intersects(boxes[j])) continue;
+      if (done.count({std::max(i, j), std::min(i, j)}) > 0) continue;
+      const double common = predicted_overlap(nodes_[i].digest, nodes_[j].digest,
+                                              inverse(other.frame_from_node) * node.frame_from_node);
+      if (common >= kLeastOverlapM2) wishes.emplace_back(-common, i, j);
+    }
+    std::sort(wishes.begin(), wishes.end());
+    wishes.resize(std::min(wishes.size(), kMorePartners));
+    return wishes;
   }
 
   const std::vector<ProjectNode>& nodes_;

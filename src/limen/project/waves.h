@@ -14,9 +14,9 @@ namespace limen {
 /// Results of pairs, in their order.
 using PairTrier = std::function<std::vector<TriedPair>(const PairList&)>;
 
-/// First the pairs whose planes promise most; then, where they led to poses, those that must see the same;
-/// for scans that are not held yet the next in their list. No more than `pairs_per_scan` on average. By
-/// nodes.
+/// First the pairs whose planes promise most; then, where they led to poses, those that should see the most
+/// of one another; for scans that are not held yet the next in their list. No more than `pairs_per_scan` on
+/// average. By nodes.
 std::vector<TriedPair> try_in_waves(const std::vector<ProjectNode>& nodes, const UserWords& words,
                                     double risk, int pairs_per_scan, const PairTrier& try_all);
 
