@@ -25,7 +25,7 @@ RegistrationResult told(Outcome outcome, double twin, std::size_t rivals = 0) {
 std::vector<GraphLink> links_of(const RegistrationResult& pair, double risk) {
   std::vector<ProjectNode> nodes(2);
   nodes[1].scan = 1;
-  return make_graph(nodes, {{1, 0, pair}}, risk, {}).graph.links;
+  return make_graph(nodes, {{1, 0, pair, {}}}, risk, {}).graph.links;
 }
 
 TEST(ProjectGraph, ATwinThatIsMoreProbableThanTheRiskMakesALinkNoMoreThanLikely) {
@@ -74,7 +74,7 @@ UserWords word(DecisionKind kind, int pose = 0) {
 std::vector<GraphLink> links_with(const RegistrationResult& pair, const UserWords& words) {
   std::vector<ProjectNode> nodes(2);
   nodes[1].scan = 1;
-  return make_graph(nodes, {{1, 0, pair}}, 0.001, words).graph.links;
+  return make_graph(nodes, {{1, 0, pair, {}}}, 0.001, words).graph.links;
 }
 
 TEST(ProjectGraph, AUsersWordMakesALinkSureOrLeavesItOut) {
@@ -128,7 +128,7 @@ TEST(ProjectGraph, PosesOnOtherStoreysFallAwayWhereFloorsAreOfOneHeight) {
   UserWords words;
   words.floors.emplace(1, 0);
   const GraphLink link =
-      make_graph({over_a_floor(0), over_a_floor(1)}, {{1, 0, pair}}, 0.001, words).graph.links.front();
+      make_graph({over_a_floor(0), over_a_floor(1)}, {{1, 0, pair, {}}}, 0.001, words).graph.links.front();
   EXPECT_EQ(link.poses.front().target_from_source.translation.z(), 0.01);
   EXPECT_EQ(link.number_of(0), 1);
   EXPECT_EQ(link.trust, LinkTrust::sure);
