@@ -291,7 +291,7 @@ for (const name of ['dragover', 'dragleave', 'drop']) {
   });
 }
 for (const id of ['source-units', 'target-units']) {
-  byId(id).append(make('option', { value: '', textContent: 'as the file says, else m' }), ...['mm', 'cm', 'm', 'ft', 'us-ft', 'in', 'km'].map((value) => make('option', { value, textContent: value })));
+  byId(id).append(make('option', { value: '', textContent: 'as in the file' }), ...['mm', 'cm', 'm', 'ft', 'us-ft', 'in', 'km'].map((value) => make('option', { value, textContent: value })));
 }
 byId('register').onsubmit = (event) => {
   event.preventDefault();
