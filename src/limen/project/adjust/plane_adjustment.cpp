@@ -193,12 +193,13 @@ class JointSolver {
     solution_.covariance.assign(problem_.fixed.size(), Matrix6d::Zero());
     for (const MarkedPoint& point : problem_.points) solution_.sight_covariance.push_back(of_sights(point));
     if (system_.empty()) return;
+    system_.invert();
     const double scale = problem_.points.empty() ? std::max(1.0, solution_.variance_factor) : 1.0;
     for (std::size_t i = 0; i < problem_.fixed.size(); ++i) {
       CancelScope::check();
       const int node = static_cast<int>(i);
       if (!system_.moves(node) || (i < problem_.untold.size() && problem_.untold[i])) continue;
-      solution_.covariance[i] = scale * system_.block_of(system_.inverse_columns(node), node);
+      solution_.covariance[i] = scale * system_.inverse_block(node, node);
     }
   }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
 #include <optional>
 #include <utility>
@@ -53,8 +54,11 @@ class DoubtSearch {
       NodeDoubt& doubt = doubts[static_cast<std::size_t>(node)];
       if (root == node) doubt.twin = doubt.chance = 0.0;
       if (root < 0 || root == node) continue;
-      add_twins(node, root, doubt);
-      add_chance(node, root, doubt);
+      std::vector<Held>& held = held_to_[root];
+      held.resize(3, Held(static_cast<std::size_t>(graph_.nodes), false));
+      for (Held& nodes : held) nodes[static_cast<std::size_t>(root)] = true;
+      add_twins(node, held, doubt);
+      add_chance(node, held, doubt);
     }
     return doubts;
   }
@@ -100,11 +104,15 @@ class DoubtSearch {
     double TwinEvidence::*nats;
   };
 
-  void add_twins(int node, int root, NodeDoubt& doubt) const {
+  /// Nodes between which and the reference enough is said across every cut, the reference among them: no
+  /// smaller cut parts them, so that a cut from all of them is that from the reference, found sooner.
+  using Held = std::vector<bool>;
+
+  void add_twins(int node, std::vector<Held>& held, NodeDoubt& doubt) const {
     constexpr Kind kOtherwise{&TwinEvidence::otherwise, &TwinEvidence::otherwise_nats};
     constexpr Kind kAlike{&TwinEvidence::alike, &TwinEvidence::alike_nats};
-    const Cut otherwise = twin_cut(kOtherwise, node, root);
-    const Cut alike = twin_cut(kAlike, node, root);
+    const Cut otherwise = twin_cut(kOtherwise, node, held[0]);
+    const Cut alike = twin_cut(kAlike, node, held[1]);
     const double twin = otherwise.weight() + alike.weight();
     const double none = 1.0 - otherwise.prior - alike.prior;
     doubt.twin = twin / (twin + none);
@@ -123,12 +131,12 @@ class DoubtSearch {
   };
 
   /// The cut across which least is said against a twin.
-  [[nodiscard]] Cut twin_cut(const Kind& kind, int node, int root) const {
+  [[nodiscard]] Cut twin_cut(const Kind& kind, int node, Held& held) const {
     std::vector<bool> alone(static_cast<std::size_t>(graph_.nodes), false);
     alone[static_cast<std::size_t>(node)] = true;
     Cut least = across(kind, alone);
     const std::optional<std::vector<bool>> side =
-        smallest_cut([&](int k) { return evidence(k).*kind.nats; }, node, root);
+        smallest_cut([&](int k) { return evidence(k).*kind.nats; }, node, held);
     if (!side) return least;
     Cut found = across(kind, *side);
     return found.weight() >= least.weight() ? found : least;
@@ -194,11 +202,11 @@ class DoubtSearch {
     return crossing;
   }
 
-  /// The side of `node` of the smallest cut between it and `root`, of links that are worth `nats_of(link)`,
-  /// shared with those that see the same; empty where enough is said across every one.
+  /// The side of `node` of the smallest cut between it and the reference, of links that are worth
+  /// `nats_of(link)`, shared with those that see the same; empty where enough is said across every one.
   template <typename NatsOf>
   [[nodiscard]] std::optional<std::vector<bool>> smallest_cut(const NatsOf& nats_of, int node,
-                                                              int root) const {
+                                                              Held& held) const {
     FlowNetwork network(static_cast<std::size_t>(graph_.nodes));
     for (std::size_t i = 0; i < held_.size(); ++i) {
       const auto room =
@@ -206,15 +214,16 @@ class DoubtSearch {
       network.connect(link(held_[i]).source, link(held_[i]).target, room, room);
     }
     std::vector<bool> start(static_cast<std::size_t>(graph_.nodes), false);
-    std::vector<bool> end = start;
     start[static_cast<std::size_t>(node)] = true;
-    end[static_cast<std::size_t>(root)] = true;
-    return network.smallest_cut(start, end, static_cast<int>(kUnits * (kEnoughNats + kLoopNats)));
+    std::optional<std::vector<bool>> side =
+        network.smallest_cut(start, held, static_cast<int>(kUnits * (kEnoughNats + kLoopNats)));
+    if (!side) held[static_cast<std::size_t>(node)] = true;
+    return side;
   }
 
-  void add_chance(int node, int root, NodeDoubt& doubt) const {
+  void add_chance(int node, std::vector<Held>& held, NodeDoubt& doubt) const {
     const std::optional<std::vector<bool>> side =
-        smallest_cut([&](int k) { return nats(k) + loop_nats(k); }, node, root);
+        smallest_cut([&](int k) { return nats(k) + loop_nats(k); }, node, held[2]);
     doubt.chance = 0.0;
     if (!side) return;
     std::vector<int> crossing = crossing_links(*side);
@@ -238,6 +247,7 @@ class DoubtSearch {
   std::vector<int> witnesses_like_;  ///< of each of them: how many links see what it sees
   std::vector<const GraphLink*>
       against_;  ///< of the pairs that speak for twins those that the solution lays so
+  std::map<int, std::vector<Held>> held_to_;  ///< of each reference: by what is asked
   std::optional<TwinRate> rate_;
   std::vector<TwinEvidence> evidence_;  ///< of each link
 };

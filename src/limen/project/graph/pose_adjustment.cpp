@@ -32,6 +32,7 @@ class Adjuster {
     system_.factor();
   }
 
+  void invert() { system_.invert(); }
   [[nodiscard]] const PoseSystem& system() const { return system_; }
 
  private:
@@ -63,23 +64,15 @@ void add_covariances(const Adjuster& adjuster, const std::vector<PoseEdge>& edge
   const PoseSystem& system = adjuster.system();
   result.covariance.assign(nodes, Matrix6d::Zero());
   result.edge_covariance.assign(edges.size(), Matrix6d::Zero());
-  std::vector<std::vector<std::size_t>> of_source(nodes);
-  for (std::size_t e = 0; e < edges.size(); ++e)
-    of_source[static_cast<std::size_t>(edges[e].source)].push_back(e);
-  std::vector<Matrix6d> across(edges.size(), Matrix6d::Zero());  // of target against source
-  for (std::size_t i = 0; i < nodes; ++i) {
-    CancelScope::check();
-    if (!system.moves(static_cast<int>(i))) continue;
-    const Eigen::MatrixXd columns = system.inverse_columns(static_cast<int>(i));
-    result.covariance[i] = system.block_of(columns, static_cast<int>(i));
-    for (const std::size_t e : of_source[i]) across[e] = system.block_of(columns, edges[e].target);
-  }
+  for (std::size_t i = 0; i < nodes; ++i)
+    result.covariance[i] = system.inverse_block(static_cast<int>(i), static_cast<int>(i));
   for (std::size_t e = 0; e < edges.size(); ++e) {
     const auto source = static_cast<std::size_t>(edges[e].source);
     const auto target = static_cast<std::size_t>(edges[e].target);
     const EdgeResidual line =
         edge_residual(edges[e], result.frame_from_node[source], result.frame_from_node[target]);
-    const Matrix6d mixed = line.by_target * across[e] * line.by_source.transpose();
+    const Matrix6d across = system.inverse_block(edges[e].target, edges[e].source);
+    const Matrix6d mixed = line.by_target * across * line.by_source.transpose();
     result.edge_covariance[e] = line.by_source * result.covariance[source] * line.by_source.transpose() +
                                 line.by_target * result.covariance[target] * line.by_target.transpose() +
                                 mixed + mixed.transpose();
@@ -140,6 +133,7 @@ PoseAdjustment adjust_poses(const std::vector<Rigid3>& start, const std::vector<
   }
   if (options.covariance) {
     adjuster.factor(result.frame_from_node, result.weights);
+    adjuster.invert();
     add_covariances(adjuster, edges, result);
   }
   return result;

@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limen/project/graph/pose_system.h"
 
-#include <algorithm>
+#include <optional>
 
-#include <Eigen/SparseCholesky>
+#include "limen/project/graph/block_cholesky.h"
 
 namespace limen {
 namespace {
@@ -19,9 +19,9 @@ Eigen::Index unknown(int place) {
 }  // namespace
 
 struct PoseSystem::Sparse {
-  std::vector<Eigen::Triplet<double>> entries;
+  LowerBlocks blocks;
   Eigen::VectorXd right;
-  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver;
+  BlockCholesky solver;
 };
 
 PoseSystem::PoseSystem(const std::vector<bool>& fixed, const std::vector<NodeBlend>& blends)
@@ -43,9 +43,13 @@ PoseSystem::PoseSystem(const std::vector<bool>& fixed, const std::vector<NodeBle
 PoseSystem::~PoseSystem() = default;
 
 void PoseSystem::clear() {
-  sparse_->entries.clear();
   sparse_->right = Eigen::VectorXd::Zero(unknown(size_));
-  for (int k = 0; k < 6 * size_; ++k) sparse_->entries.emplace_back(k, k, kTiny);
+  sparse_->blocks.resize(static_cast<std::size_t>(size_));
+  // Which nodes have to do with each other stays from step to step.
+  for (std::size_t k = 0; k < sparse_->blocks.size(); ++k) {
+    for (auto& [row, block] : sparse_->blocks[k]) block.setZero();
+    sparse_->blocks[k][static_cast<int>(k)] = kTiny * Matrix6d::Identity();
+  }
 }
 
 void PoseSystem::add(int row, int column, const Matrix6d& block) {
@@ -56,10 +60,10 @@ void PoseSystem::add(int row, int column, const Matrix6d& block) {
 }
 
 void PoseSystem::add_at(int row_place, int column_place, const Matrix6d& block) {
-  for (int i = 0; i < 6; ++i) {
-    for (int j = 0; j < 6; ++j)
-      sparse_->entries.emplace_back(6 * row_place + i, 6 * column_place + j, block(i, j));
-  }
+  // The other half is the same.
+  if (row_place < column_place) return;
+  auto& column = sparse_->blocks[static_cast<std::size_t>(column_place)];
+  column.try_emplace(row_place, Matrix6d::Zero()).first->second += block;
 }
 
 void PoseSystem::add_right(int row, const Vector6d& part) {
@@ -71,9 +75,23 @@ void PoseSystem::add_right_at(int row_place, const Vector6d& part) {
 }
 
 void PoseSystem::factor() {
-  Eigen::SparseMatrix<double> normal(unknown(size_), unknown(size_));
-  normal.setFromTriplets(sparse_->entries.begin(), sparse_->entries.end());
-  sparse_->solver.compute(normal);
+  sparse_->solver.factor(sparse_->blocks);
+}
+
+void PoseSystem::invert() {
+  sparse_->solver.invert();
+}
+
+Matrix6d PoseSystem::inverse_block(int row, int column) const {
+  Matrix6d sum = Matrix6d::Zero();
+  for (const auto& [at_row, of_row] : shares(row)) {
+    for (const auto& [at_column, of_column] : shares(column)) {
+      const std::optional<Matrix6d> block = sparse_->solver.inverse_block(at_row, at_column);
+      if (!block) return block_of(inverse_columns(column), row);
+      sum += of_row * of_column * *block;
+    }
+  }
+  return sum;
 }
 
 double PoseSystem::move(std::vector<Rigid3>& poses) const {

@@ -16,7 +16,7 @@ namespace limen {
 using NodeBlend = std::vector<std::pair<int, double>>;
 
 /// Normal equations of small motions of nodes (turn about the node's own origin, shift; frame axes), six
-/// unknowns for each node that is not fixed; solved by sparse Cholesky.
+/// unknowns for each node that is not fixed; solved by sparse Cholesky of blocks.
 class PoseSystem {
  public:
   /// `blends`: of each node, empty: it has freedoms of its own; may be shorter than `fixed`.
@@ -50,6 +50,11 @@ class PoseSystem {
   /// Columns of the inverse for one node that moves; `block_of` takes a node's rows from them.
   [[nodiscard]] Eigen::MatrixXd inverse_columns(int node) const;
   [[nodiscard]] Matrix6d block_of(const Eigen::MatrixXd& columns, int node) const;
+  /// Makes the blocks of the inverse that the factor has, all at once; then inverse_block() costs next to
+  /// nothing for a node and for two that have to do with each other.
+  void invert();
+  /// Rows of one node and columns of another of the inverse; zero where one of them does not move.
+  [[nodiscard]] Matrix6d inverse_block(int row, int column) const;
   /// The inverse times `right`, which has a row for each unknown; the six of a place begin at six times it.
   [[nodiscard]] Eigen::MatrixXd solved(const Eigen::MatrixXd& right) const;
   [[nodiscard]] Eigen::Index unknowns() const { return Eigen::Index{6} * size_; }
