@@ -61,6 +61,12 @@ add_test(NAME installed_package
                  -P ${PROJECT_SOURCE_DIR}/cmake/test_install.cmake)
 set_tests_properties(installed_package PROPERTIES LABELS acceptance)
 
+# The sanitizers' own libraries are not for handing on.
+if(LIMEN_BUILD_IFC AND NOT "${CMAKE_CXX_FLAGS} ${CMAKE_EXE_LINKER_FLAGS}" MATCHES "sanitize")
+  add_test(NAME bundle_runs_anywhere COMMAND ${PROJECT_SOURCE_DIR}/tests/tools/bundle_test ${PROJECT_BINARY_DIR})
+  set_tests_properties(bundle_runs_anywhere PROPERTIES LABELS acceptance SKIP_RETURN_CODE 77)
+endif()
+
 if(LIMEN_BUILD_PYTHON)
   include(cmake/python_tests.cmake)
 endif()

@@ -68,7 +68,7 @@ std::vector<std::string> environment_with_progress() {
   return all;
 }
 
-/// Where this program lies; a start through a loader of its own says so (see scripts/package).
+/// Where this program lies; a start through a loader of its own says so (see scripts/bundle).
 std::string own_program() {
   const char* told = std::getenv("LIMEN_PROGRAM_FILE");
   return told != nullptr && *told == '/' ? told : "/proc/self/exe";

@@ -22,7 +22,10 @@ namespace {
 namespace fs = std::filesystem;
 using Line = nlohmann::json;
 
+/// A starter that takes the program through a loader of its own names itself (scripts/bundle).
 fs::path own_program() {
+  const char* starter = std::getenv("LIMEN_PROGRAM_FILE");
+  if (starter != nullptr && *starter == '/') return starter;
   std::error_code ignored;
   return fs::read_symlink("/proc/self/exe", ignored);
 }
