@@ -23,7 +23,8 @@ void Gate::check(const HttpRequest& request) const {
   if (!origin.empty() && origin != "http://" + host)
     throw HttpFault(403, "pages of other origins may ask nothing here");
   const std::string site = request.field("sec-fetch-site");
-  // A link or a typed address brings a browser here by GET; nothing else comes from elsewhere.
+  // An address that was typed or pasted comes from no site. A link on a page of somebody else brings nobody
+  // in.
   if (site == "cross-site" || (site == "same-site" && request.method != "GET"))
     throw HttpFault(403, "pages of other sites may ask nothing here");
   if (!same_secret(request.segments.front(), token))
