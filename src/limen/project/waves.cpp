@@ -33,8 +33,8 @@ class Waves {
     std::vector<TriedPair> tried = try_all_(best_pairs(ranked, kFirstPartners));
     const auto most = static_cast<std::size_t>(pairs_per_scan_) * nodes_.size();
     for (int wave = 1; wave <= kMostWaves; ++wave) {
-      PairList next =
-          next_pairs(ranked, tried, kFirstPartners + static_cast<std::size_t>(wave) * kMorePartners);
+      // What nothing holds is worth more with every wave.
+      PairList next = next_pairs(ranked, tried, kFirstPartners << static_cast<unsigned>(wave));
       if (tried.size() >= most) break;
       next.resize(std::min(next.size(), most - tried.size()));
       if (next.empty()) break;
