@@ -19,6 +19,8 @@ set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 if(LIMEN_BUILD_IFC)
   set(CPACK_DEBIAN_PACKAGE_DEPENDS libifcplusplus)
 endif()
+# What knows coordinate systems by their numbers; found when the program runs.
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS libproj25)
 # What --engine dask needs, and what builds with find_package(limen) need besides.
 set(CPACK_DEBIAN_PACKAGE_SUGGESTS "python3-distributed, libeigen3-dev, libfmt-dev, zlib1g-dev, libpugixml-dev, libpolyclipping-dev, libssl-dev")
 set(CPACK_GENERATOR TGZ)

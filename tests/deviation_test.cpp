@@ -6,6 +6,8 @@
 #include <map>
 
 #include "run_program.h"
+#include "support/bcf_check.h"
+#include "support/json_schema.h"
 #include <nlohmann/json.hpp>
 
 #include "limen/geometry/rigid.h"
@@ -86,6 +88,150 @@ TEST_F(DeviationProgramTest, ShiftsAndMissingElementsOfAnOffice) {
       0);
   for (const char* name : {"deviation.json", "deviation.csv", "deviation.ply"})
     EXPECT_EQ(read_whole(work() / "back" / name), read_whole(work() / "again" / name)) << name;
+}
+
+/// What limen project would have written, were its poses true: all scans of a simulated case, and its model.
+Json true_project(const Json& truth) {
+  Json project = {{"links", Json::array()}, {"scans", Json::array()}};
+  for (const Json& scan : truth["scans"])
+    project["scans"].push_back({{"file", scan["file"]},
+                                {"index", 0},
+                                {"kind", "scan"},
+                                {"state", "registered"},
+                                {"frame_from_scan", scan["world_from_scan"]},
+                                {"sigma", {{"translation_m", {0.001, 0.001, 0.001}}}}});
+  const Json identity = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}};
+  project["scans"].push_back({{"file", "model.ifc"},
+                              {"index", 0},
+                              {"kind", "model"},
+                              {"state", "registered"},
+                              {"frame_from_scan", identity},
+                              {"sigma", nullptr}});
+  return project;
+}
+
+std::string in_lines(const std::vector<std::string>& faults) {
+  std::string text;
+  for (const std::string& fault : faults) text += fault + "\n";
+  return text;
+}
+
+TEST_F(DeviationProgramTest, AWholeProjectAgainstItsModel) {
+  ASSERT_EQ(run({"simulate", "office", "--as-built", "--seed", "5", "--stations", "3", "--points-indoor",
+                 "80000", "-o", "."})
+                .status,
+            0);
+  const Json truth = json_of("truth/truth.json");
+  Json project = true_project(truth);
+  ASSERT_EQ(project["scans"].size(), 4U);
+  write_whole(work() / "project.json", project.dump());
+  const ProgramRun done =
+      run({"deviation", "project.json", "-o", "out", "--bcf", "issues.bcf", "--moved-m", "0.005"});
+  ASSERT_EQ(done.status, 0) << done.err;
+  const Json found = json_of("out/deviation.json");
+  const ProgramRun schema = run({"schema", "project-deviation"});
+  EXPECT_EQ(testing_schema::Validator(testing_schema::json::parse(schema.out))
+                .fault(testing_schema::json::parse(read_whole(work() / "out/deviation.json"))),
+            "");
+  std::map<int, Json> changes;
+  for (const Json& change : truth["model"]["changes"]) changes[change["element"].get<int>()] = change;
+  std::size_t expected = 0;  // issues of elements
+  double worst = 1e9;        // what is off most comes first
+  for (const Json& element : found["elements"]) {
+    const auto change = changes.find(element["element"].get<int>());
+    const bool there = change == changes.end() || change->second["state"] == "moved";
+    EXPECT_FALSE(there && element["presence"] == "not_found") << element["name"];
+    EXPECT_FALSE(!there && element["presence"] == "found") << element["name"];
+    expected += element["presence"] == "not_found" || element["moved"].get<bool>() ? 1 : 0;
+    if (element["presence"] != "found") continue;
+    Vector3d shift = vector_of(element["shift"]["shift_m"]);
+    const double off =
+        element["shift"]["held"].get<int>() > 0 ? shift.norm() : std::abs(element["median_m"].get<double>());
+    EXPECT_LE(off, worst);
+    worst = off;
+    if (element["points"] < 1000) continue;
+    Vector3d error = shift;
+    if (change != changes.end()) error -= vector_of(change->second["shift_m"]);
+    for (const Json& open : element["shift"]["open"]) error -= vector_of(open).dot(error) * vector_of(open);
+    EXPECT_LT(error.norm(), 0.003) << element["name"];
+  }
+  // The issues: a file as the standard wants it, with each element by its GUID.
+  const std::string bcf = read_whole(work() / "issues.bcf");
+  EXPECT_EQ(in_lines(bcf_faults(bcf)), "");
+  std::size_t of_elements = 0;
+  for (const auto& [name, text] : bcf_members(bcf))
+    of_elements += text.find("<Selection>") != std::string::npos ? 1 : 0;
+  EXPECT_GE(expected, 3U);  // two are missing, one was moved
+  EXPECT_EQ(of_elements, expected);
+  EXPECT_NE(read_whole(work() / "out/report.html").find("<h2>Elements"), std::string::npos);
+
+  // Other threads, the same bytes; a scan in doubt is left out and told.
+  ASSERT_EQ(run({"deviation", "project.json", "-o", "again", "--threads", "1", "--bcf", "again.bcf",
+                 "--moved-m", "0.005"})
+                .status,
+            0);
+  EXPECT_EQ(read_whole(work() / "again.bcf"), bcf);
+  for (const char* name : {"deviation.json", "deviation.csv", "deviation.ply", "report.html"})
+    EXPECT_EQ(read_whole(work() / "out" / name), read_whole(work() / "again" / name)) << name;
+  project["scans"][1]["state"] = "ambiguous";
+  write_whole(work() / "project.json", project.dump());
+  const ProgramRun fewer = run({"deviation", "project.json", "-o", "fewer", "--cloud-points", "20000"});
+  ASSERT_EQ(fewer.status, 0) << fewer.err;
+  EXPECT_NE(fewer.err.find("ambiguous"), std::string::npos);
+  const Json left = json_of("fewer/deviation.json");
+  EXPECT_EQ(left["scans"].size(), 2U);
+  ASSERT_EQ(left["left_out"].size(), 1U);
+  EXPECT_LE(left["summary"]["cloud_points"].get<int>(), 20000);
+}
+
+TEST_F(DeviationProgramTest, ModelsOfAProjectAndMistakes) {
+  ASSERT_EQ(
+      run({"simulate", "office", "--as-built", "--seed", "3", "--points-indoor", "40000", "-o", "."}).status,
+      0);
+  Json project = true_project(json_of("truth/truth.json"));
+  // A model that the project could not place lies in one frame with one that it could.
+  std::filesystem::copy_file(work() / "model.ifc", work() / "second.ifc");
+  Json second = project["scans"].back();
+  second["file"] = "second.ifc";
+  second["state"] = "floating";
+  second["frame_from_scan"] = nullptr;
+  project["scans"].push_back(second);
+  write_whole(work() / "project.json", project.dump());
+  ProgramRun done =
+      run({"deviation", "project.json", "--model", "model.ifc", "--model", "second.ifc", "-o", "two"});
+  ASSERT_EQ(done.status, 0) << done.err;
+  const Json two = json_of("two/deviation.json");
+  ASSERT_EQ(two["models"].size(), 2U);
+  EXPECT_EQ(two["models"][1]["place"], "with the first");
+  EXPECT_GT(two["summary"]["elements_in_several_models"].get<int>(), 5);
+  ASSERT_EQ(run({"deviation", "project.json", "-o", "one"}).status, 0);
+  EXPECT_EQ(json_of("one/deviation.json")["summary"]["points_on_faces"], two["summary"]["points_on_faces"]);
+
+  const auto fails = [this](std::vector<std::string> arguments, const std::string& told) {
+    arguments.insert(arguments.begin(), "deviation");
+    arguments.insert(arguments.end(), {"-o", "none"});
+    const ProgramRun failed = run(arguments);
+    EXPECT_EQ(failed.status, 2);
+    EXPECT_NE(failed.err.find(told), std::string::npos) << failed.err;
+    EXPECT_FALSE(std::filesystem::exists(work() / "none"));
+  };
+  fails({"project.json", "--identity"}, "--identity");
+  fails({"project.json", "--moved-m", "0"}, "moved_m");
+  fails({"scan_01.ply", "--identity"}, "no model");
+  project["scans"][0]["sha256"] = std::string(64, '0');
+  write_whole(work() / "project.json", project.dump());
+  fails({"project.json"}, "SHA-256");
+  ASSERT_EQ(run({"deviation", "project.json", "-o", "forced", "--force"}).status, 0);
+  for (Json& scan : project["scans"]) scan["state"] = "floating";
+  write_whole(work() / "project.json", project.dump());
+  fails({"project.json"}, "no scan stands");
+
+  // One scan has issues too.
+  write_true_result(json_of("truth/truth.json"), false);
+  done = run({"deviation", "scan_01.ply", "model.ifc", "--result", "true.json", "-o", "single", "--bcf",
+              "single.bcf"});
+  ASSERT_EQ(done.status, 0) << done.err;
+  EXPECT_EQ(in_lines(bcf_faults(read_whole(work() / "single.bcf"))), "");
 }
 
 TEST_F(DeviationProgramTest, MistakesAreNamedAndLeaveNothingBehind) {

@@ -17,96 +17,80 @@ constexpr double kMostTiles = 4e6;  // of one face
 constexpr double kBeginM = 0.2;     // of a ray: nothing so near to the scanner is measured
 constexpr std::size_t kSamplesPerPiece = 4096;
 
-/// The tiles of all faces.
-class Tiles {
- public:
-  Tiles(const FaceIndex& index, double tile_m) : index_(index), grids_(index.size()) {
-    std::size_t total = 0;
-    for (std::size_t k = 0; k < grids_.size(); ++k) {
-      Grid& grid = grids_[k];
-      Vector2d low = Vector2d::Constant(1e300);
-      Vector2d high = Vector2d::Constant(-1e300);
-      for (const Vector2d& p : index.face(static_cast<int>(k)).outline.outer) {
-        low = low.cwiseMin(p);
-        high = high.cwiseMax(p);
-      }
-      if (low.x() > high.x()) continue;
-      const Vector2d size = high - low;
-      grid.low = low;
-      grid.tile_m = std::max(tile_m, std::sqrt(size.x() * size.y() / kMostTiles));
-      grid.columns = static_cast<std::size_t>(size.x() / grid.tile_m) + 1;
-      grid.rows = static_cast<std::size_t>(size.y() / grid.tile_m) + 1;
-      grid.begin = total;
-      total += grid.columns * grid.rows;
-    }
-    marks_.assign(total, 0);
-  }
-
-  void mark(int face, const Vector3d& x, std::uint8_t what) {
-    const Grid& grid = grids_[static_cast<std::size_t>(face)];
-    const Vector2d p = index_.face(face).frame.to_plane(x) - grid.low;
-    const Vector2d place = p / grid.tile_m;
-    if (!(place.x() >= 0.0 && place.y() >= 0.0)) return;
-    const auto column = static_cast<std::size_t>(place.x());
-    const auto row = static_cast<std::size_t>(place.y());
-    if (column >= grid.columns || row >= grid.rows) return;
-    // Marks only ever add up: the order of threads does not matter.
-    std::atomic_ref<std::uint8_t>(marks_[grid.begin + row * grid.columns + column])
-        .fetch_or(what, std::memory_order_relaxed);
-  }
-
-  [[nodiscard]] FaceCoverage count(std::size_t face) const {
-    const Grid& grid = grids_[face];
-    std::size_t covered = 0;
-    std::size_t passed = 0;
-    for (std::size_t k = grid.begin; k < grid.begin + grid.columns * grid.rows; ++k) {
-      covered += (marks_[k] & kCovered) != 0 ? 1 : 0;
-      passed += marks_[k] == kPassed ? 1 : 0;
-    }
-    const double tile_m2 = grid.tile_m * grid.tile_m;
-    return {static_cast<double>(covered) * tile_m2, static_cast<double>(passed) * tile_m2};
-  }
-
- private:
-  struct Grid {
-    Vector2d low = Vector2d::Zero();
-    double tile_m = 0.0;
-    std::size_t columns = 0;
-    std::size_t rows = 0;
-    std::size_t begin = 0;
-  };
-
-  const FaceIndex& index_;
-  std::vector<Grid> grids_;
-  std::vector<std::uint8_t> marks_;
-};
-
 }  // namespace
 
-std::vector<FaceCoverage> face_coverage(const ScanInModel& scan, const PointFaces& laid,
-                                        const FaceIndex& index, const DeviationOptions& options) {
-  Tiles tiles(index, options.tile_m);
+FaceTiles::FaceTiles(const FaceIndex& index, double tile_m) : index_(index), grids_(index.size()) {
+  std::size_t total = 0;
+  for (std::size_t k = 0; k < grids_.size(); ++k) {
+    Grid& grid = grids_[k];
+    Vector2d low = Vector2d::Constant(1e300);
+    Vector2d high = Vector2d::Constant(-1e300);
+    for (const Vector2d& p : index.face(static_cast<int>(k)).outline.outer) {
+      low = low.cwiseMin(p);
+      high = high.cwiseMax(p);
+    }
+    if (low.x() > high.x()) continue;
+    const Vector2d size = high - low;
+    grid.low = low;
+    grid.tile_m = std::max(tile_m, std::sqrt(size.x() * size.y() / kMostTiles));
+    grid.columns = static_cast<std::size_t>(size.x() / grid.tile_m) + 1;
+    grid.rows = static_cast<std::size_t>(size.y() / grid.tile_m) + 1;
+    grid.begin = total;
+    total += grid.columns * grid.rows;
+  }
+  marks_.assign(total, 0);
+}
+
+void FaceTiles::mark(int face, const Vector3d& x, std::uint8_t what) {
+  const Grid& grid = grids_[static_cast<std::size_t>(face)];
+  const Vector2d p = index_.face(face).frame.to_plane(x) - grid.low;
+  const Vector2d place = p / grid.tile_m;
+  if (!(place.x() >= 0.0 && place.y() >= 0.0)) return;
+  const auto column = static_cast<std::size_t>(place.x());
+  const auto row = static_cast<std::size_t>(place.y());
+  if (column >= grid.columns || row >= grid.rows) return;
+  // Marks only ever add up: the order of threads does not matter.
+  std::atomic_ref<std::uint8_t>(marks_[grid.begin + row * grid.columns + column])
+      .fetch_or(what, std::memory_order_relaxed);
+}
+
+FaceCoverage FaceTiles::count(std::size_t face) const {
+  const Grid& grid = grids_[face];
+  std::size_t covered = 0;
+  std::size_t passed = 0;
+  for (std::size_t k = grid.begin; k < grid.begin + grid.columns * grid.rows; ++k) {
+    covered += (marks_[k] & kCovered) != 0 ? 1 : 0;
+    passed += marks_[k] == kPassed ? 1 : 0;
+  }
+  const double tile_m2 = grid.tile_m * grid.tile_m;
+  return {static_cast<double>(covered) * tile_m2, static_cast<double>(passed) * tile_m2};
+}
+
+void FaceTiles::add(const ScanInModel& scan, const PointFaces& laid, const DeviationOptions& options) {
   const std::size_t stride = 1 + scan.points.size() / options.rays;
   const auto follow = [&](std::size_t i) {
     const Vector3d& point = scan.points[i];
-    if (laid.face[i] >= 0) tiles.mark(laid.face[i], point, kCovered);
+    if (laid.face[i] >= 0) mark(laid.face[i], point, kCovered);
     if (!scan.centre_known()) return;
     const Vector3d& centre = scan.centre(i);
     const double range = (point - centre).norm();
     if (range <= kBeginM) return;
     const Vector3d begin = centre + kBeginM / range * (point - centre);
-    for (const FaceCrossing& crossing : index.crossings(begin, point)) {
-      const Plane& plane = index.face(crossing.face).plane;
+    for (const FaceCrossing& crossing : index_.crossings(begin, point)) {
+      const Plane& plane = index_.face(crossing.face).plane;
       if (plane.signed_distance(begin) > 0.0 && plane.signed_distance(point) < -options.max_distance_m)
-        tiles.mark(crossing.face, crossing.at, kPassed);
+        mark(crossing.face, crossing.at, kPassed);
     }
   };
   parallel_for(scan.points.size() / stride, kSamplesPerPiece, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) follow(k * stride);
   });
-  std::vector<FaceCoverage> coverage(index.size());
-  for (std::size_t k = 0; k < coverage.size(); ++k) coverage[k] = tiles.count(k);
-  return coverage;
+}
+
+std::vector<FaceCoverage> FaceTiles::coverage() const {
+  std::vector<FaceCoverage> all(index_.size());
+  for (std::size_t k = 0; k < all.size(); ++k) all[k] = count(k);
+  return all;
 }
 
 }  // namespace limen

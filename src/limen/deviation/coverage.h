@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "limen/deviation/point_faces.h"
@@ -14,10 +16,33 @@ struct FaceCoverage {
   double passed_m2 = 0.0;   ///< tiles without, through which a ray passed to a point well behind
 };
 
-/// Coverage of every face of the index by about `options.rays` rays, evenly taken: tiles that neither a point
-/// nor a ray reached count nowhere, so that the share covered does not depend on how dense the scan is. Where
-/// the scanner's place is not known nothing counts as passed.
-std::vector<FaceCoverage> face_coverage(const ScanInModel& scan, const PointFaces& laid,
-                                        const FaceIndex& index, const DeviationOptions& options);
+/// Coverage of every face of the index, by any number of scans: tiles that neither a point nor a ray reached
+/// count nowhere, so that the share covered does not depend on how dense the scans are. A tile on which
+/// points of one scan lie is covered, whatever others saw there.
+class FaceTiles {
+ public:
+  FaceTiles(const FaceIndex& index, double tile_m);
+
+  /// Follows about `options.rays` rays of a scan, evenly taken. Where the scanner's place is not known
+  /// nothing counts as passed.
+  void add(const ScanInModel& scan, const PointFaces& laid, const DeviationOptions& options);
+  [[nodiscard]] std::vector<FaceCoverage> coverage() const;
+
+ private:
+  struct Grid {
+    Vector2d low = Vector2d::Zero();
+    double tile_m = 0.0;
+    std::size_t columns = 0;
+    std::size_t rows = 0;
+    std::size_t begin = 0;
+  };
+
+  void mark(int face, const Vector3d& x, std::uint8_t what);
+  [[nodiscard]] FaceCoverage count(std::size_t face) const;
+
+  const FaceIndex& index_;
+  std::vector<Grid> grids_;
+  std::vector<std::uint8_t> marks_;
+};
 
 }  // namespace limen

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "limen/geometry/linear.h"
 
@@ -20,6 +21,9 @@ constexpr double kContestedWeight = 0.1;  // (3 mm / 10 mm)^2: it may be another
 constexpr double kRobustM = 0.008;        // faces that differ by more from the shift count less
 constexpr double kMostPoints = 2000.0;    // more points do not make a face more certain
 constexpr double kAcross = 0.5;           // cosine: a face across a direction
+constexpr double kNear = 0.95;            // cosine: a face that stands across a direction itself
+constexpr double kSmallFace = 0.2;        // of the largest one's weight: it does not tell the direction
+constexpr double kMostNoise = 1.8;        // of a typical face's: one that scatters more is no plane
 
 /// Start of the peak: middle of the fullest window.
 double peak_of(const std::vector<float>& distances, double most) {
@@ -50,9 +54,32 @@ double weight_of(const FaceOffset& face) {
   return face.contested ? kContestedWeight * points : points;
 }
 
+/// The same of one scan's view: its pose errs as well as the face.
+double weight_in_frame(const FaceOffset& face) {
+  const double pose = face.pose_sigma_m / kFaceSigmaM;
+  return weight_of(face) / (1.0 + pose * pose);
+}
+
 double tukey(double residual, double width) {
   const double x = residual / width;
   return std::abs(x) >= 1.0 ? 0.0 : (1.0 - x * x) * (1.0 - x * x);
+}
+
+/// Where half of the weight is reached.
+double weighted_median(const std::vector<FaceOffset>& faces) {
+  std::vector<std::pair<double, double>> sorted;
+  double total = 0.0;
+  for (const FaceOffset& face : faces) {
+    sorted.emplace_back(face.offset_m, weight_in_frame(face));
+    total += sorted.back().second;
+  }
+  std::sort(sorted.begin(), sorted.end());
+  double passed = 0.0;
+  for (const auto& [offset, weight] : sorted) {
+    passed += weight;
+    if (2.0 * passed >= total) return offset;
+  }
+  return 0.0;
 }
 
 /// Normal equations of a shift.
@@ -76,6 +103,28 @@ Sums sums_at(const std::vector<FaceOffset>& faces, const Vector3d& shift, double
   return sums;
 }
 
+/// The normal of the faces that stand across a direction, near it. A direction between that of large faces
+/// and that of small ones would tell a part of a movement that only the small ones could.
+Vector3d normal_near(const std::vector<FaceOffset>& faces, const Vector3d& direction) {
+  Vector3d sum = Vector3d::Zero();
+  double largest = 0.0;
+  for (const FaceOffset& face : faces) {
+    if (std::abs(face.normal.dot(direction)) > kNear) largest = std::max(largest, weight_of(face));
+  }
+  for (const FaceOffset& face : faces) {
+    const double along = face.normal.dot(direction);
+    if (std::abs(along) <= kNear || weight_of(face) < kSmallFace * largest) continue;
+    sum += weight_of(face) * (along < 0.0 ? Vector3d(-face.normal) : face.normal);
+  }
+  return sum.norm() > 0.0 ? Vector3d(sum.normalized()) : direction;
+}
+
+/// What is left of a vector across others of unit length.
+Vector3d across(Vector3d vector, const std::vector<Vector3d>& others) {
+  for (const Vector3d& other : others) vector -= other.dot(vector) * other;
+  return vector.normalized();
+}
+
 /// Directions that enough points hold, as an orthonormal basis; the others go to `open`.
 std::vector<Vector3d> held_directions(const std::vector<FaceOffset>& faces, const DeviationOptions& options,
                                       std::vector<Vector3d>& open) {
@@ -93,7 +142,16 @@ std::vector<Vector3d> held_directions(const std::vector<FaceOffset>& faces, cons
       points += std::abs(face.normal.dot(direction)) > kAcross ? face.points : 0;
     const bool enough = spectrum.values[k] > options.min_held_share * information.trace() &&
                         points >= options.min_held_points;
-    (enough ? held : open).push_back(direction);
+    if (enough) {
+      held.push_back(across(normal_near(faces, direction), held));
+    } else {
+      open.push_back(direction);
+    }
+  }
+  std::vector<Vector3d> all = held;
+  for (Vector3d& direction : open) {
+    direction = across(direction, all);
+    all.push_back(direction);
   }
   return held;
 }
@@ -126,6 +184,56 @@ FaceOffset face_offset(const Vector3d& normal, const std::vector<float>& distanc
   }
   face.offset_m = middle;
   return face;
+}
+
+FaceOffset joined_offset(const std::vector<FaceOffset>& by_scan) {
+  FaceOffset all;
+  if (by_scan.empty()) return all;
+  all.normal = by_scan.front().normal;
+  all.offset_m = weighted_median(by_scan);
+  for (int round = 0; round < kRounds; ++round) {
+    double sum = 0.0;
+    double squares = 0.0;
+    double weights = 0.0;
+    double contested = 0.0;
+    all.points = 0;
+    for (const FaceOffset& face : by_scan) {
+      const double off = face.offset_m - all.offset_m;
+      // A pose that is known worse may be off by more.
+      const double weight = weight_in_frame(face) * tukey(off, std::hypot(kRobustM, 3.0 * face.pose_sigma_m));
+      if (weight <= 0.0) continue;
+      all.points += face.points;
+      sum += weight * off;
+      squares += weight * face.sigma_m * face.sigma_m;
+      weights += weight;
+      contested += face.contested ? weight : 0.0;
+    }
+    if (weights <= 0.0) break;
+    all.offset_m += sum / weights;
+    all.sigma_m = std::sqrt(squares / weights);
+    all.contested = 2.0 * contested > weights;
+  }
+  return all;
+}
+
+void contest_scattered(std::vector<FaceOffset>& faces) {
+  std::vector<std::pair<double, std::size_t>> sigmas;
+  std::size_t total = 0;
+  for (const FaceOffset& face : faces) {
+    if (face.points == 0) continue;
+    sigmas.emplace_back(face.sigma_m, face.points);
+    total += face.points;
+  }
+  std::sort(sigmas.begin(), sigmas.end());
+  std::size_t passed = 0;
+  double typical = 0.0;
+  for (const auto& [sigma, points] : sigmas) {
+    passed += points;
+    if (2 * passed < total) continue;
+    typical = sigma;
+    break;
+  }
+  for (FaceOffset& face : faces) face.contested = face.contested || face.sigma_m > kMostNoise * typical;
 }
 
 namespace {

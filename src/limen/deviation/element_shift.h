@@ -16,11 +16,20 @@ struct FaceOffset {
   std::size_t points = 0;
   /// Other matter may stand there as well: another face lies near, or the offset is near the limit.
   bool contested = false;
+  double pose_sigma_m = 0.0;  ///< of the scan that saw it, as far as it is known
 };
 
 /// Where most of the points of a face are: the peak of their distribution, so that what else stands within
 /// reach of the face, or another element's surface, does not pull.
 FaceOffset face_offset(const Vector3d& normal, const std::vector<float>& distances_m, double max_distance_m);
+
+/// Where a face stands by several scans, each of which saw it: robustly, the better known poses counting
+/// more. One observation still, for how flat a face is no number of scans changes. None: no points.
+FaceOffset joined_offset(const std::vector<FaceOffset>& by_scan);
+
+/// Faces whose points scatter much more than those of most points' faces are contested: no planes stand
+/// there.
+void contest_scattered(std::vector<FaceOffset>& faces);
 
 /// The rigid shift that explains the offsets of an element's faces, robustly.
 ElementShift shift_of(const std::vector<FaceOffset>& faces, const DeviationOptions& options);

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <unordered_map>
 
 #include "limen/base/disjoint_sets.h"
 
@@ -24,39 +23,48 @@ std::uint64_t key_of(const Vector3d& x, double cell_m) {
   return key;
 }
 
+/// A piece before it holds anything.
+UnmodelledMatter nothing_yet() {
+  UnmodelledMatter piece;
+  piece.low = Vector3d::Constant(1e300);
+  piece.high = Vector3d::Constant(-1e300);
+  return piece;
+}
+
 }  // namespace
 
-std::vector<UnmodelledMatter> pieces_of(const std::vector<Vector3d>& points, double cell_m,
-                                        std::size_t min_points, const Vector3d& low, const Vector3d& high) {
-  std::unordered_map<std::uint64_t, std::size_t> cubes;
-  std::vector<std::uint64_t> keys;  // of the cubes, as they came
-  std::vector<std::size_t> cube_of_point;
-  for (const Vector3d& x : points) {
-    const std::uint64_t key = key_of(x, cell_m);
-    const auto [it, fresh] = cubes.try_emplace(key, keys.size());
-    if (fresh) keys.push_back(key);
-    cube_of_point.push_back(it->second);
+void LooseMatter::add(const Vector3d& x) {
+  const std::uint64_t key = key_of(x, cell_m_);
+  const auto [it, fresh] = places_.try_emplace(key, keys_.size());
+  if (fresh) {
+    keys_.push_back(key);
+    cubes_.push_back(nothing_yet());
   }
-  DisjointSets joined(keys.size());  // cubes, with their neighbours
-  for (std::size_t k = 0; k < keys.size(); ++k) {
+  UnmodelledMatter& cube = cubes_[it->second];
+  ++cube.points;
+  cube.low = cube.low.cwiseMin(x);
+  cube.high = cube.high.cwiseMax(x);
+  cube.centre += x;
+}
+
+std::vector<UnmodelledMatter> LooseMatter::pieces(std::size_t min_points, const Vector3d& low,
+                                                  const Vector3d& high) const {
+  DisjointSets joined(keys_.size());  // cubes, with their neighbours
+  for (std::size_t k = 0; k < keys_.size(); ++k) {
     for (std::uint64_t n = 0; n < 27; ++n) {
       const std::uint64_t step = ((n % 3) << 42U) + ((n / 3 % 3) << 21U) + n / 9;
       const std::uint64_t back = (std::uint64_t{1} << 42U) + (std::uint64_t{1} << 21U) + 1;
-      const auto other = cubes.find(keys[k] + step - back);
-      if (other != cubes.end()) joined.join(k, other->second);
+      const auto other = places_.find(keys_[k] + step - back);
+      if (other != places_.end()) joined.join(k, other->second);
     }
   }
-  std::vector<UnmodelledMatter> pieces(keys.size());
-  for (UnmodelledMatter& piece : pieces) {
-    piece.low = Vector3d::Constant(1e300);
-    piece.high = Vector3d::Constant(-1e300);
-  }
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    UnmodelledMatter& piece = pieces[joined.find(cube_of_point[i])];
-    ++piece.points;
-    piece.low = piece.low.cwiseMin(points[i]);
-    piece.high = piece.high.cwiseMax(points[i]);
-    piece.centre += points[i];
+  std::vector<UnmodelledMatter> pieces(keys_.size(), nothing_yet());
+  for (std::size_t k = 0; k < cubes_.size(); ++k) {
+    UnmodelledMatter& piece = pieces[joined.find(k)];
+    piece.points += cubes_[k].points;
+    piece.low = piece.low.cwiseMin(cubes_[k].low);
+    piece.high = piece.high.cwiseMax(cubes_[k].high);
+    piece.centre += cubes_[k].centre;
   }
   std::erase_if(pieces, [&](const UnmodelledMatter& piece) {
     return piece.points < std::max<std::size_t>(1, min_points);
@@ -69,6 +77,13 @@ std::vector<UnmodelledMatter> pieces_of(const std::vector<Vector3d>& points, dou
   std::stable_sort(pieces.begin(), pieces.end(),
                    [](const UnmodelledMatter& a, const UnmodelledMatter& b) { return a.points > b.points; });
   return pieces;
+}
+
+std::vector<UnmodelledMatter> pieces_of(const std::vector<Vector3d>& points, double cell_m,
+                                        std::size_t min_points, const Vector3d& low, const Vector3d& high) {
+  LooseMatter matter(cell_m);
+  for (const Vector3d& x : points) matter.add(x);
+  return matter.pieces(min_points, low, high);
 }
 
 }  // namespace limen

@@ -47,4 +47,12 @@ std::string sha256_of_file(const std::filesystem::path& path) {
   return hexadecimal(digest.data(), size);
 }
 
+std::string sha256_of(std::string_view bytes) {
+  std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
+  unsigned int size = 0;
+  if (EVP_Digest(bytes.data(), bytes.size(), digest.data(), &size, EVP_sha256(), nullptr) != 1)
+    throw Error("no SHA-256 to be had", "libcrypto", "look at its configuration", Fault::internal);
+  return hexadecimal(digest.data(), size);
+}
+
 }  // namespace limen

@@ -10,6 +10,7 @@
 #include "limen/io/table/scan_file.h"
 #include "limen/project/decide/decisions.h"
 #include "limen/project/engine/job_engine.h"
+#include "limen/project/pass_trajectories.h"
 #include "limen/project/project_result.h"
 #include "limen/register/register.h"
 
@@ -23,6 +24,9 @@ struct ProjectOptions {
   bool stations_apart = false;  ///< scans of one file are not known to one another
   bool rigid_passes = false;    ///< mobile passes do not drift: none is bent
   EngineOptions engine = {};    ///< where features and pairs are made; never changes a result
+  /// Along which scans may have been measured: each with times takes the one that covers it, before what its
+  /// file says.
+  ToldTrajectories trajectories = {};
 
   void check() const;
 };

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limen/project/store_jobs.h"
 
+#include <algorithm>
 #include <utility>
 
 #include <fmt/format.h>
@@ -33,14 +34,17 @@ FileRecord make_scan_features(const ProjectFile& file, const ProjectOptions& opt
     StagePart reading(monitor, 0.0, kReading);
     read = read_scan_file(file.path, options.reading, reading);
   }
+  const bool timed =
+      std::any_of(read.scans.begin(), read.scans.end(), [](const Scan& it) { return !it.times_s.empty(); });
+  const Trajectories trajectories = timed ? read_trajectories(options.trajectories) : Trajectories{};
   FileRecord record;
   record.notes = read.notes;
   const auto all = static_cast<double>(read.scans.size());
   for (std::size_t k = 0; k < read.scans.size(); ++k) {
     const auto at = [&](std::size_t i) { return kReading + (1.0 - kReading) * static_cast<double>(i) / all; };
     StagePart preparing(monitor, at(k), at(k + 1));
-    record.points.push_back(read.scans[k].size());
-    const Scan scan = std::move(read.scans[k]);
+    const Scan scan = along_trajectory(std::move(read.scans[k]), trajectories, record.notes);
+    record.points.push_back(scan.size());
     PrepareOptions with_track = prepare_options(options.registering);
     with_track.track = true;
     const PreparedScan prepared = prepare_scan(scan, with_track, preparing);
@@ -60,10 +64,12 @@ FileRecord make_model_features(const ProjectFile& file, const Store& store, Moni
 
 std::string store_options(const ProjectOptions& options) {
   const RegisterOptions& registering = options.registering;
-  return fmt::format("method {} gravity {} thickness {} seed {} level {} memory {}",
-                     static_cast<int>(registering.method), static_cast<int>(registering.gravity),
-                     registering.wall_thickness_m, registering.seed, options.reading.level,
-                     options.reading.memory_bytes);
+  std::string text = fmt::format("method {} gravity {} thickness {} seed {} level {} memory {}",
+                                 static_cast<int>(registering.method), static_cast<int>(registering.gravity),
+                                 registering.wall_thickness_m, registering.seed, options.reading.level,
+                                 options.reading.memory_bytes);
+  if (const std::string key = key_of(options.trajectories); !key.empty()) text += " trajectories " + key;
+  return text;
 }
 
 std::optional<FileRecord> kept_record(const Store& store, const std::string& sha256) {

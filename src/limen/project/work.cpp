@@ -36,12 +36,19 @@ fs::path order_path(const fs::path& folder, const std::string& options_key) {
 
 Order options_order(const ProjectOptions& options) {
   const RegisterOptions& registering = options.registering;
+  const ToldTrajectories& told = options.trajectories;
+  const Vector3d& arm = told.reading.lever_arm_m;
   return {{"method", static_cast<int>(registering.method)},
           {"gravity", static_cast<int>(registering.gravity)},
           {"wall_thickness_m", registering.wall_thickness_m},
           {"seed", registering.seed},
           {"level", options.reading.level},
-          {"memory_bytes", options.reading.memory_bytes}};
+          {"memory_bytes", options.reading.memory_bytes},
+          {"trajectories", told.files},
+          {"trajectory_columns", told.reading.columns},
+          {"utm_zone", told.reading.utm_zone},
+          {"time_offset_s", told.reading.time_offset_s},
+          {"lever_arm_m", {arm.x(), arm.y(), arm.z()}}};
 }
 
 ProjectOptions options_from(const Order& order) {
@@ -52,6 +59,13 @@ ProjectOptions options_from(const Order& order) {
   options.registering.seed = order.at("seed");
   options.reading.level = order.at("level");
   options.reading.memory_bytes = order.at("memory_bytes");
+  ToldTrajectories& told = options.trajectories;
+  told.files = order.at("trajectories").get<std::vector<std::string>>();
+  told.reading.columns = order.at("trajectory_columns").get<std::vector<std::string>>();
+  told.reading.utm_zone = order.at("utm_zone");
+  told.reading.time_offset_s = order.at("time_offset_s");
+  for (std::size_t k = 0; k < 3; ++k)
+    told.reading.lever_arm_m[static_cast<Eigen::Index>(k)] = order.at("lever_arm_m").at(k);
   return options;
 }
 

@@ -18,8 +18,8 @@ struct Recipe {
   bool through_door = false;  ///< the two stations stand in rooms joined by an open door, in sight
   std::size_t points_indoor = 260000;
   std::size_t points_outdoor = 0;
-  bool wants_view = false;         ///< stations are placed where they see much through their windows
-  std::optional<Trajectory> path;  ///< of the mobile scan
+  bool wants_view = false;          ///< stations are placed where they see much through their windows
+  std::optional<VehiclePath> path;  ///< of the mobile scan
   std::vector<double> head_turns_rad = {0.0};  ///< one head across the path, or two askew
   bool national_grid = false;                  ///< world coordinates far from zero
 };

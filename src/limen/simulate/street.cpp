@@ -190,7 +190,7 @@ std::vector<Vector2d> offset_chain(const Ring& envelope, std::size_t first, std:
   return chain;
 }
 
-Trajectory add_street(World& world, std::size_t building, const StreetOptions& o, RandomStream& random) {
+VehiclePath add_street(World& world, std::size_t building, const StreetOptions& o, RandomStream& random) {
   const Ring envelope = world.buildings[building].plan.envelope;
   Mesh& mesh = world.mesh;
   for (std::size_t edge = o.first_edge; edge < o.first_edge + o.edges; ++edge) {
@@ -202,9 +202,9 @@ Trajectory add_street(World& world, std::size_t building, const StreetOptions& o
   return drive_past(envelope, o.first_edge, o.edges, o.path_m, o.antenna_m);
 }
 
-Trajectory drive_past(const Ring& envelope, std::size_t first, std::size_t count, double distance_m,
-                      double antenna_m) {
-  Trajectory trajectory;
+VehiclePath drive_past(const Ring& envelope, std::size_t first, std::size_t count, double distance_m,
+                       double antenna_m) {
+  VehiclePath trajectory;
   for (const Vector2d& p : driven(offset_chain(envelope, first, count, distance_m), 11.0))
     trajectory.points.push_back(lifted(p, antenna_m));
   return trajectory;

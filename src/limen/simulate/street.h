@@ -25,11 +25,12 @@ std::vector<Vector2d> offset_chain(const Ring& envelope, std::size_t first, std:
                                    double distance);
 
 /// Adds ground, pavement, houses across, trees, cars and poles; returns the path of the scanner.
-Trajectory add_street(World& world, std::size_t building, const StreetOptions& options, RandomStream& random);
+VehiclePath add_street(World& world, std::size_t building, const StreetOptions& options,
+                       RandomStream& random);
 
 /// A vehicle's path along `count` façades from `first` on, `distance_m` before them, rounded at the corners.
-Trajectory drive_past(const Ring& envelope, std::size_t first, std::size_t count, double distance_m,
-                      double antenna_m);
+VehiclePath drive_past(const Ring& envelope, std::size_t first, std::size_t count, double distance_m,
+                       double antenna_m);
 
 /// Ground all round, and a garden with trees behind the building's edge `edge`.
 void add_ground(World& world);

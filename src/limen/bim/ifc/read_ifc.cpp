@@ -285,4 +285,13 @@ RawModel read_ifczip(std::string_view bytes, const std::string& name, Monitor& m
   return read_ifc(text, name, monitor);
 }
 
+std::optional<MapConversion> map_of_ifc(std::string_view bytes, const std::string& name) {
+  if (looks_like_step(bytes)) return read_ifc_structure(StepFile(bytes)).map;
+  const std::vector<ZipMember> members =
+      looks_like_ifczip(bytes) ? ifc_members(bytes) : std::vector<ZipMember>{};
+  if (members.size() != 1) return {};
+  const std::string text = unpacked(bytes, members.front(), name, kLargestUnpacked);
+  return map_of_ifc(text, name);
+}
+
 }  // namespace limen

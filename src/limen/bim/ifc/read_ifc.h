@@ -2,11 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 
 #include "limen/base/progress.h"
 #include "limen/bim/build/bim_builder.h"
+#include "limen/bim/ifc/ifc_structure.h"
 
 namespace limen {
 
@@ -23,5 +25,9 @@ RawModel read_ifc(std::string_view bytes, const std::string& name, Monitor& moni
 
 /// The same of the IFC file in a zip archive (.ifczip).
 RawModel read_ifczip(std::string_view bytes, const std::string& name, Monitor& monitor = silent_monitor());
+
+/// How a map is made of the coordinates of an IFC file, in a zip archive or not; empty where it is not, or
+/// the bytes are no IFC file's.
+std::optional<MapConversion> map_of_ifc(std::string_view bytes, const std::string& name);
 
 }  // namespace limen

@@ -12,6 +12,8 @@
 
 #include "limen/base/atomic_file.h"
 #include "limen/base/error.h"
+#include "limen/cli/commands/deviation_project.h"
+#include "limen/cli/inputs/issue_file.h"
 #include "limen/cli/inputs/register_inputs.h"
 #include "limen/cli/inputs/scan_options.h"
 #include "limen/model/plausible_size.h"
@@ -34,8 +36,11 @@ struct DeviationCommand {
   bool inverse = false;
   bool force = false;
   int alternative = 0;
+  std::vector<std::string> models;
+  int cloud_points = ProjectDeviation{}.cloud_points;
   double colour_limit_m = 0.05;
   DeviationOptions measuring;
+  IssueChoice issues;
 };
 
 /// The scans of a group as one, about the first one's origin, with the optical centre of every point where
@@ -163,7 +168,48 @@ std::optional<double> registered_unit(const DeviationCommand& command, const Pos
   return unit == 1.0 ? std::nullopt : std::optional(unit);
 }
 
+/// Issues of one scan; returns their number.
+std::size_t write_issues(const DeviationCommand& command, const DeviationReport& report, const Scan& scan,
+                         const BimModel& model) {
+  std::vector<Vector3d> scanners;
+  const std::size_t step = 1 + scan.centres.size() / 200;
+  for (std::size_t i = 0; i < scan.centres.size(); i += step)
+    scanners.push_back(report.model_from_scan * (scan.local_origin + scan.centres[i]));
+  const std::vector<IssueModel> models = {issue_model(command.model, model, {})};
+  const std::vector<BcfTopic> topics =
+      deviation_issues({model, report.deviation.elements, report.deviation.unmodelled, models, {}, scanners},
+                       command.issues.options);
+  const std::string& dated = command.result.empty() ? command.scan : command.result;
+  write_file(command.issues.file, bcf_file(topics, date_of_file(dated)));
+  return topics.size();
+}
+
+int run_on_project(const DeviationCommand& command, const Session& session) {
+  const bool pose_given = !command.result.empty() || command.identity || command.inverse ||
+                          command.alternative != 0 || !command.origin.empty() || !command.with.empty();
+  if (pose_given)
+    throw Error("a project tells the poses of its scans itself", command.scan,
+                "leave out --result, --identity, --inverse, --alternative, --origin and --with");
+  ProjectDeviation project;
+  project.project = command.scan;
+  project.models = command.models;
+  if (!command.model.empty()) project.models.insert(project.models.begin(), command.model);
+  project.folder = command.folder;
+  project.memory = command.reading.memory;
+  project.force = command.force;
+  project.cloud_points = command.cloud_points;
+  project.colour_limit_m = command.colour_limit_m;
+  project.measuring = command.measuring;
+  project.issues = command.issues;
+  return run_project_deviation(project, session);
+}
+
 int run(const DeviationCommand& command, const Session& session) {
+  if (names_project(command.scan)) return run_on_project(command, session);
+  if (command.model.empty()) throw Error("there is no model", "MODEL", "give an IFC, OBJ or PLY model");
+  if (!command.models.empty())
+    throw Error("--model is for projects", "", "give the one model after the scan");
+  command.issues.options.check();
   check(command);
   const OutputFolder folder(command.folder);
   DeviationReport report;
@@ -201,6 +247,9 @@ int run(const DeviationCommand& command, const Session& session) {
   write_files({{folder.path() / "deviation.csv", table}, {folder.path() / "deviation.json", json}});
   write_deviation_ply(folder.path() / "deviation.ply", scan, report, command.colour_limit_m);
   session.say(summary(report, model, command.folder));
+  if (!command.issues.file.empty())
+    session.say(fmt::format("{} issues written to {}\n", write_issues(command, report, scan, model),
+                            command.issues.file));
   session.answer(json);
   return kExitOk;
 }
@@ -234,11 +283,25 @@ void add_deviation_command(CommandLine& app, Session& session) {
   auto options = std::make_shared<DeviationCommand>();
   CommandLine* command = add_command(app, session, "deviation", "Measure a registered scan against its model",
                                      [options, &session] { return run(*options, session); });
-  command->add_option("SCAN", options->scan, "A scan of any format limen reads")->required();
-  command->add_option("MODEL", options->model, "The building model: IFC, OBJ, or PLY with faces")->required();
   command
-      ->add_option("-o,--output", options->folder,
-                   "Folder for deviation.json, deviation.csv and deviation.ply")
+      ->add_option(
+          "SCAN", options->scan,
+          "A scan of any format limen reads; or the project.json of limen project, for all of its scans")
+      ->required();
+  command->add_option(
+      "MODEL", options->model,
+      "The building model: IFC, OBJ, or PLY with faces; of a project: its own where none is given");
+  command
+      ->add_option(
+          "--model", options->models,
+          "Of a project: measure against this model; may be given several times, for files of one building")
+      ->type_name("MODEL")
+      ->type_size(1)
+      ->take_all();
+  command
+      ->add_option(
+          "-o,--output", options->folder,
+          "Folder for deviation.json, deviation.csv and deviation.ply; of a project also report.html")
       ->required()
       ->type_name("DIR");
   add_pose_options(*command, *options);
@@ -248,6 +311,11 @@ void add_deviation_command(CommandLine& app, Session& session) {
                     "Edge of the tiles by which coverage is counted (default 0.05)");
   add_length_option(*command, "--colour-limit-m", options->colour_limit_m,
                     "Deviation of full colour in deviation.ply (default 0.05)");
+  command
+      ->add_option("--cloud-points", options->cloud_points,
+                   "Of a project: points of deviation.ply at most, spread evenly (default 3000000)")
+      ->in_range(1000, 1000000000);
+  add_issue_options(*command, options->issues);
 }
 
 }  // namespace limen

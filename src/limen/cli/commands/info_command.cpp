@@ -14,6 +14,7 @@
 #include "limen/base/length_unit.h"
 #include "limen/base/random.h"
 #include "limen/bim/read_bim.h"
+#include "limen/cli/inputs/frame_system.h"
 #include "limen/cli/inputs/model_info.h"
 #include "limen/cli/inputs/scan_options.h"
 #include "limen/io/cloud/read_scan.h"
@@ -122,6 +123,8 @@ Json json_of_file(const std::string& path, const ScanFile& file) {
   json["fields"] = file.fields;
   json["left_out"] = file.dropped;
   json["metres_per_unit"] = file.metres_per_unit;
+  if (const CoordinateSystem system = system_of_file(path); system.known())
+    json["crs"] = {{"name", system.name}, {"code", system.code}, {"told", system.told}};
   json["notes"] = file.notes;
   for (const Scan& scan : file.scans) {
     if (const std::string hint = size_hint(scan); !hint.empty()) json["notes"].push_back(hint);
@@ -175,6 +178,11 @@ std::string text_of(const Json& file) {
       fmt::format("file            {}\nformat          {}\nfields          {}\n",
                   file["file"].get<std::string>(), file["format"].get<std::string>(), joined(file["fields"]));
   text += fmt::format("unit            {}\n", unit_name(file["metres_per_unit"].get<double>()));
+  if (file.contains("crs")) {
+    const Json& crs = file["crs"];
+    const CoordinateSystem system{crs["told"], crs["name"], crs["code"], {}};
+    text += fmt::format("coordinates     {}\n", words_of(system));
+  }
   const bool several = file["scans"].size() > 1;
   for (std::size_t i = 0; i < file["scans"].size(); ++i) {
     if (several) text += fmt::format("\nscan {} of {}\n", i + 1, file["scans"].size());

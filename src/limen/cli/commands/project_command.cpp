@@ -19,7 +19,9 @@
 #include "limen/base/atomic_file.h"
 #include "limen/base/error.h"
 #include "limen/base/text.h"
+#include "limen/cli/inputs/frame_system.h"
 #include "limen/cli/inputs/pdf_option.h"
+#include "limen/cli/inputs/project_trajectories.h"
 #include "limen/cli/inputs/scan_options.h"
 #include "limen/files/mapped_file.h"
 #include "limen/project/project.h"
@@ -44,6 +46,8 @@ struct ProjectCommandOptions {
   std::string check;
   std::string targets;
   std::string decisions;
+  std::string crs;
+  TrajectoryChoice trajectories;
   double risk = VerdictOptions{}.risk;
   bool apart = false;
   bool rigid_passes = false;
@@ -101,6 +105,7 @@ OptionList reported(const ProjectCommandOptions& options, const Session& session
   if (!options.check.empty()) list.emplace_back("check", options.check);
   if (!options.targets.empty()) list.emplace_back("targets", options.targets);
   if (!options.decisions.empty()) list.emplace_back("decide", options.decisions);
+  if (!options.crs.empty()) list.emplace_back("crs", options.crs);
   list.emplace_back("seed", static_cast<std::int64_t>(session.common.seed));
   return list;
 }
@@ -274,9 +279,12 @@ bool keeps_nothing(const std::filesystem::path& folder) {
 }
 
 ProjectResult run_in(const std::filesystem::path& folder, const ProjectCommandOptions& options,
-                     const Session& session) {
+                     const ToldTrajectories& trajectories, const Session& session) {
+  ProjectOptions project = project_options(options, session);
+  project.trajectories = trajectories;
+  static_cast<void>(read_trajectories(trajectories));  // what is wrong with them is told before the long work
   try {
-    return run_project(inputs_of(options), folder, project_options(options, session), *session.monitor);
+    return run_project(inputs_of(options), folder, project, *session.monitor);
   } catch (...) {
     std::error_code ignored;
     if (keeps_nothing(folder)) std::filesystem::remove_all(folder / "store", ignored);
@@ -301,9 +309,14 @@ int run(ProjectCommandOptions options, const Session& session) {
   }
   require_files(options);
   const std::filesystem::path browser = browser_for_pdf(options.pdf);
+  const CoordinateSystem chosen = chosen_system(options.crs);
   const OutputFolder folder(options.folder);
-  const ProjectResult result = run_in(folder.path(), options, session);
-  const std::string json = project_json(result, reported(options, session));
+  const ToldTrajectories trajectories = told_trajectories(options.trajectories, chosen);
+  const ProjectResult result = run_in(folder.path(), options, trajectories, session);
+  std::vector<std::string> of_system;
+  FrameSystem system = frame_system(result, chosen, of_system);
+  system.trajectories = trajectories;
+  const std::string json = project_json(result, reported(options, session), system);
   session.monitor->throw_if_cancelled();
   write_file(folder.path() / "report.html", project_page(result));
   std::filesystem::remove(folder.path() / "report.pdf");  // an earlier run's
@@ -311,6 +324,7 @@ int run(ProjectCommandOptions options, const Session& session) {
   write_file(folder.path() / "project.json", json);
   if (options.pdf) write_pdf(browser, folder.path(), session);
   for (const std::string& note : result.notes) session.note(note);
+  for (const std::string& note : of_system) session.note(note);
   session.say(summary(result, options.folder));
   session.answer(json);
   return status_of(result.outcome);
@@ -396,6 +410,8 @@ void add_project_command(CommandLine& app, Session& session) {
       ->type_name("P");
   add_engine_options(*command, *options);
   add_pdf_option(*command, options->pdf);
+  add_crs_option(*command, options->crs);
+  add_trajectories_option(*command, options->trajectories);
   add_gravity_option(*command, options->gravity, true);
   add_memory_option(*command, options->memory);
 }

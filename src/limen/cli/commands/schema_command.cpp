@@ -21,9 +21,10 @@ using SchemaMaker = std::string (*)();
 
 const std::map<std::string, SchemaMaker>& schema_makers() {
   static const std::map<std::string, SchemaMaker> makers{
-      {"deviation", deviation_schema}, {"evaluation", evaluation_schema}, {"openings", openings_schema},
-      {"planes", planes_schema},       {"project", project_schema},       {"result", result_schema},
-      {"segments", segments_schema}};
+      {"deviation", deviation_schema}, {"evaluation", evaluation_schema},
+      {"openings", openings_schema},   {"planes", planes_schema},
+      {"project", project_schema},     {"project-deviation", project_deviation_schema},
+      {"result", result_schema},       {"segments", segments_schema}};
   return makers;
 }
 
@@ -40,7 +41,8 @@ void add_schema_command(CommandLine& app, Session& session) {
   for (const auto& [name, maker] : schema_makers()) names.push_back(name);
   command
       ->add_option("FILE", *file,
-                   "Which file: result (of register), project, deviation, planes, openings, segments, or "
+                   "Which file: result (of register), project, deviation, project-deviation, planes, "
+                   "openings, segments, or "
                    "evaluation (what evaluate prints)")
       ->required()
       ->one_of(names);

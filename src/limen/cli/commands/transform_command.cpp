@@ -10,6 +10,7 @@
 
 #include "limen/base/error.h"
 #include "limen/base/length_unit.h"
+#include "limen/cli/inputs/frame_system.h"
 #include "limen/cli/inputs/scan_options.h"
 #include "limen/files/file_hash.h"
 #include "limen/io/cloud/transform_cloud.h"
@@ -27,6 +28,7 @@ struct TransformOptions {
   bool force = false;
   int alternative = 0;
   std::vector<std::string> merge;
+  std::string crs;
 };
 
 std::string as_json(const TransformOptions& options, const TransformedCloud& cloud) {
@@ -86,8 +88,8 @@ int run(const TransformOptions& options, const Session& session) {
   const Rigid3 target_from_source = read_pose(options, pose);
   for (const std::string& other : options.merge) refuse_same_file(options.output, other);
   const CancelScope scope(*session.monitor);
-  const TransformedCloud cloud =
-      merge_clouds({options.cloud, target_from_source}, options.merge, options.output, *session.monitor);
+  const TransformedCloud cloud = merge_clouds({options.cloud, target_from_source}, options.merge,
+                                              options.output, *session.monitor, chosen_system(options.crs));
   if (options.alternative == 0 && pose.outcome && *pose.outcome != Outcome::registered)
     session.note(fmt::format("the pose in {} is {}: check it", options.result, to_string(*pose.outcome)));
   for (const std::string& note : cloud.notes) session.note(note);
@@ -119,6 +121,7 @@ void add_transform_command(CommandLine& app, Session& session) {
       ->take_all();
   command->add_flag("--invert", options->invert, "Move from the target's frame to the source's instead");
   add_alternative_option(*command, options->alternative);
+  add_crs_option(*command, options->crs);
   command->add_flag(
       "--force", options->force,
       "Move CLOUD although it is not the file that was registered: a copy in the same frame, say");

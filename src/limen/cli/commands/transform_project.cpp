@@ -15,9 +15,10 @@
 
 #include "limen/base/atomic_file.h"
 #include "limen/base/error.h"
+#include "limen/cli/inputs/frame_system.h"
+#include "limen/cli/inputs/project_trajectories.h"
 #include "limen/cli/inputs/scan_options.h"
 #include "limen/io/cloud/cloud_writers.h"
-#include "limen/io/cloud/corrected_trajectory.h"
 #include "limen/io/cloud/transform_cloud.h"
 #include "limen/report/json/json_values.h"
 #include "limen/report/project/read_project.h"
@@ -33,6 +34,7 @@ struct ProjectMoveOptions {
   std::string output;   ///< a folder, or with `merge` a file
   std::string ending;   ///< "e57", "las", "ply", or empty: each as it is
   bool merge = false;   ///< all in one file
+  std::string crs;      ///< of the frame, where the user says it
 };
 
 /// A scan that is written, and to where.
@@ -78,13 +80,10 @@ void name_outputs(std::vector<Move>& moves, const fs::path& folder, const std::s
   }
 }
 
-/// Of a pass that is bent: beside its cloud.
-fs::path trajectory_name(const fs::path& cloud) {
-  return cloud.parent_path() / (cloud.stem().string() + "_trajectory.csv");
-}
-
-std::size_t write_each(std::vector<Move>& moves, const ProjectMoveOptions& options, const Session& session) {
+std::size_t write_each(std::vector<Move>& moves, const ProjectMoveOptions& options,
+                       const CoordinateSystem& system, const Session& session) {
   const OutputFolder folder(options.output);
+  const ToldTrajectories trajectories = read_project_trajectories(options.project);
   name_outputs(moves, folder.path(), options.ending);
   std::size_t points = 0;
   for (const Move& move : moves) {
@@ -94,9 +93,13 @@ std::size_t write_each(std::vector<Move>& moves, const ProjectMoveOptions& optio
                                 move.entry.bend};
     const TransformedCloud cloud =
         move.several || move.entry.bend
-            ? move_stations({station}, move.output, *session.monitor)
-            : transform_cloud(move.entry.file, pose, move.output, {}, *session.monitor);
-    if (move.entry.bend) write_corrected_trajectory(station, trajectory_name(move.output), *session.monitor);
+            ? move_stations({station}, move.output, *session.monitor, system)
+            : transform_cloud(move.entry.file, pose, move.output, {}, *session.monitor, system);
+    if (move.entry.bend) {
+      for (const std::string& note :
+           write_pass_trajectory(move.entry, trajectories, system, move.output, *session.monitor))
+        session.note(move.output.string() + ": " + note);
+    }
     points += cloud.points;
     for (const std::string& note : cloud.notes) session.note(move.output.string() + ": " + note);
   }
@@ -104,7 +107,7 @@ std::size_t write_each(std::vector<Move>& moves, const ProjectMoveOptions& optio
 }
 
 std::size_t write_merged(const std::vector<Move>& moves, const ProjectMoveOptions& options,
-                         const Session& session) {
+                         const CoordinateSystem& system, const Session& session) {
   fs::path output(options.output);
   if (!options.ending.empty() && output.extension() != "." + options.ending) output += "." + options.ending;
   std::vector<StationToMove> stations;
@@ -113,7 +116,7 @@ std::size_t write_merged(const std::vector<Move>& moves, const ProjectMoveOption
     stations.push_back({move.entry.file, static_cast<std::size_t>(move.entry.index),
                         *move.entry.frame_from_scan, move.entry.bend});
   }
-  const TransformedCloud cloud = move_stations(stations, output, *session.monitor);
+  const TransformedCloud cloud = move_stations(stations, output, *session.monitor, system);
   for (const std::string& note : cloud.notes) session.note(note);
   return cloud.points;
 }
@@ -121,10 +124,16 @@ std::size_t write_merged(const std::vector<Move>& moves, const ProjectMoveOption
 int run(const ProjectMoveOptions& options, const Session& session) {
   const CancelScope scope(*session.monitor);
   std::vector<Move> moves = moves_of(read_project(options.project), session);
+  const CoordinateSystem told = read_project_system(options.project);
+  const CoordinateSystem chosen = chosen_system(options.crs);
+  if (!same_system(told, chosen))
+    session.note(fmt::format("the project says that its frame is {}; --crs says {}, and that is told",
+                             words_of(told), words_of(chosen)));
+  const CoordinateSystem& system = chosen.known() ? chosen : told;
   if (moves.empty())
     throw Error("no scan has a place in the frame", options.project, "give a project that joined some");
-  const std::size_t points =
-      options.merge ? write_merged(moves, options, session) : write_each(moves, options, session);
+  const std::size_t points = options.merge ? write_merged(moves, options, system, session)
+                                           : write_each(moves, options, system, session);
   const Json json = {
       {"input", options.project}, {"output", options.output}, {"scans", moves.size()}, {"points", points}};
   session.say(
@@ -155,6 +164,7 @@ void add_transform_project_command(CommandLine& app, Session& session) {
   command->add_option("--as", options->ending, "Format of what is written; else each scan's own")
       ->one_of({"e57", "las", "laz", "ply"});
   command->add_flag("--merge", options->merge, "All scans in one file");
+  add_crs_option(*command, options->crs);
 }
 
 }  // namespace limen

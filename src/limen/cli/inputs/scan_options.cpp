@@ -92,9 +92,10 @@ void add_trajectory_options(CommandLine& command, ReadingChoice& choice, const s
                   "Columns of the text, as time,x,y,z; else its header line tells them")
       ->type_name("NAMES");
   command
-      .add_option(
-          "--" + side + "utm-zone", choice.utm_zone,
-          "Zone for latitudes and longitudes, as 32N; auto (default): of the first; local: east, north, up")
+      .add_option("--" + side + "utm-zone", choice.utm_zone,
+                  "Zone for latitudes and longitudes, as 32N, or a system as EPSG:2154; auto (default): of "
+                  "the first; local: "
+                  "east, north, up")
       ->type_name("ZONE");
   command.add_option(name + "-time-offset-s", choice.time_offset_s, "Added to the times of the trajectory")
       ->type_name("S");
@@ -120,10 +121,7 @@ std::optional<double> metres_per_unit_of(const std::string& units) {
   return unit ? std::optional(unit->metres_per_unit) : std::nullopt;
 }
 
-ReadOptions with_choice(ReadOptions options, const ReadingChoice& choice) {
-  options.memory_bytes = parse_memory(choice.memory);
-  options.metres_per_unit = metres_per_unit_of(choice.units);
-  if (choice.trajectory.empty()) return options;
+TrajectoryOptions trajectory_options(const ReadingChoice& choice) {
   TrajectoryOptions reading;
   std::string names = choice.columns;
   for (std::size_t comma = 0; !names.empty(); names.erase(0, comma + 1)) {
@@ -134,7 +132,15 @@ ReadOptions with_choice(ReadOptions options, const ReadingChoice& choice) {
   reading.utm_zone = choice.utm_zone;
   reading.time_offset_s = choice.time_offset_s;
   if (!choice.lever_arm.empty()) reading.lever_arm_m = parse_point(choice.lever_arm, "--lever-arm");
-  options.trajectory = std::make_shared<const Trajectory>(read_trajectory(choice.trajectory, reading));
+  return reading;
+}
+
+ReadOptions with_choice(ReadOptions options, const ReadingChoice& choice) {
+  options.memory_bytes = parse_memory(choice.memory);
+  options.metres_per_unit = metres_per_unit_of(choice.units);
+  if (choice.trajectory.empty()) return options;
+  options.trajectory =
+      std::make_shared<const Trajectory>(read_trajectory(choice.trajectory, trajectory_options(choice)));
   return options;
 }
 

@@ -10,6 +10,7 @@
 #include "limen/base/atomic_file.h"
 #include "limen/cli/terminal/command.h"
 #include "limen/io/cloud/read_scan.h"
+#include "limen/io/trajectory/read_trajectory.h"
 #include "limen/model/bim_model.h"
 #include "limen/register/prepare/prepare_scan.h"
 #include "limen/report/json/result_json.h"
@@ -43,6 +44,8 @@ void add_trajectory_options(CommandLine& command, ReadingChoice& choice, const s
 void add_units_option(CommandLine& command, std::string& units, const std::string& side = "");
 /// Metres per unit of a name that was given; nothing for an empty text.
 std::optional<double> metres_per_unit_of(const std::string& units);
+/// How a trajectory is to be read.
+TrajectoryOptions trajectory_options(const ReadingChoice& choice);
 /// What read_options() gave, with the choice; reads the trajectory.
 ReadOptions with_choice(ReadOptions options, const ReadingChoice& choice);
 

@@ -39,7 +39,7 @@ class PlacesByTime {
     for (std::size_t i = 0; i < table.rows; ++i) {
       const double* row = numbers.data() + 4 * i;
       if (!std::all_of(row, row + 4, [](double number) { return std::isfinite(number); })) continue;
-      const auto [at, fresh] = places_.try_emplace(std::floor(row[0] / kPlaceEveryS), Place{});
+      const auto [at, fresh] = places_.try_emplace(std::floor(row[0] / kPlaceEveryS), TimedPlace{});
       if (!fresh && at->second.time_s <= row[0]) continue;
       at->second = {row[0], {row[1], row[2], row[3]}};
     }
@@ -47,29 +47,22 @@ class PlacesByTime {
   }
 
   [[nodiscard]] std::size_t size() const { return places_.size(); }
-  [[nodiscard]] std::string text() const {
-    std::string text = "time,x,y,z\n";
-    for (const auto& [moment, place] : places_)
-      text +=
-          fmt::format("{:.6f},{:.5f},{:.5f},{:.5f}\n", place.time_s, place.x.x(), place.x.y(), place.x.z());
-    return text;
+  [[nodiscard]] std::vector<TimedPlace> list() const {
+    std::vector<TimedPlace> list;
+    for (const auto& [moment, place] : places_) list.push_back(place);
+    return list;
   }
 
  private:
-  struct Place {
-    double time_s = 0.0;
-    Vector3d x = Vector3d::Zero();
-  };
-  std::map<double, Place> places_;
+  std::map<double, TimedPlace> places_;
 };
 
 }  // namespace
 
-std::size_t write_corrected_trajectory(const StationToMove& pass, const std::filesystem::path& output,
-                                       Monitor& monitor) {
+std::vector<TimedPlace> corrected_places(const StationToMove& pass, Monitor& monitor) {
   const OpenPoints file(pass.path);
   PlacesByTime places;
-  return with_whole_inputs([&]() -> std::size_t {
+  return with_whole_inputs([&]() -> std::vector<TimedPlace> {
     std::size_t with_points = 0;
     for (PlacedCloud cloud : placed_clouds(file, pass.target_from_source, {}, monitor)) {
       if (file.file().clouds()[cloud.cloud].points == 0 || with_points++ != pass.cloud) continue;
@@ -78,13 +71,26 @@ std::size_t write_corrected_trajectory(const StationToMove& pass, const std::fil
       const std::unique_ptr<PointStream> stream = moved.read();
       while (const std::optional<RecordTable> piece = stream->next(kRowsPerLook)) {
         monitor.throw_if_cancelled();
-        if (!places.add(*piece)) return 0;
+        if (!places.add(*piece)) return {};
       }
     }
-    if (places.size() < 2) return 0;
-    write_file(output, places.text());
-    return places.size();
+    return places.list();
   });
+}
+
+std::string text_of_places(const std::vector<TimedPlace>& places) {
+  std::string text = "time,x,y,z\n";
+  for (const TimedPlace& place : places)
+    text += fmt::format("{:.6f},{:.5f},{:.5f},{:.5f}\n", place.time_s, place.x.x(), place.x.y(), place.x.z());
+  return text;
+}
+
+std::size_t write_corrected_trajectory(const StationToMove& pass, const std::filesystem::path& output,
+                                       Monitor& monitor) {
+  const std::vector<TimedPlace> places = corrected_places(pass, monitor);
+  if (places.size() < 2) return 0;
+  write_file(output, text_of_places(places));
+  return places.size();
 }
 
 }  // namespace limen

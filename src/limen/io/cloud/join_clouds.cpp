@@ -11,6 +11,7 @@
 
 #include "limen/base/error.h"
 #include "limen/base/text.h"
+#include "limen/io/crs/coordinate_system.h"
 #include "limen/io/table/moved_columns.h"
 
 namespace limen {
@@ -102,7 +103,7 @@ std::optional<Vector3d> first_point(const RecordTable& table, const Rigid3& moti
 
 }  // namespace
 
-JoinedClouds::JoinedClouds(std::vector<PlacedCloud> clouds, bool tell_source)
+JoinedClouds::JoinedClouds(std::vector<PlacedCloud> clouds, bool tell_source, const std::string& system)
     : clouds_(std::move(clouds)), tell_source_(tell_source) {
   for (const std::string& name : kPoint) plan_.columns.push_back({name, Scalar::float64});
   std::vector<PlacedCloud> full;
@@ -125,7 +126,13 @@ JoinedClouds::JoinedClouds(std::vector<PlacedCloud> clouds, bool tell_source)
   if (full.empty()) throw Error("there are no points", clouds_.front().input->name(), "check the input");
   clouds_ = std::move(full);
   plan_.name = clouds_.front().input->path().stem().string();
-  plan_.georeference = clouds_.front().input->georeference();
+  for (const std::string& text : clouds_.front().input->georeference()) {
+    // A number becomes text where PROJ knows it: more formats can tell that.
+    const CoordinateSystem known =
+        text.find('[') == std::string::npos ? told_system(text) : CoordinateSystem{};
+    plan_.georeference.push_back(known.wkt.empty() ? text : known.wkt);
+  }
+  if (!system.empty()) plan_.georeference = {system};
   settle_centres();
   if (tell_source_) add_column(kSourceColumn, Scalar::uint8);
 }

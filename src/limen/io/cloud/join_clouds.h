@@ -30,7 +30,8 @@ class JoinedClouds {
  public:
   /// `tell_source`: a column source_cloud says which file each point is from. Static clouds with different
   /// optical centres give them per point. Throws Error where a cloud lacks x, y or z, or none has points.
-  JoinedClouds(std::vector<PlacedCloud> clouds, bool tell_source);
+  /// `system`: well-known text of the output's coordinate system; empty: that of the first cloud.
+  JoinedClouds(std::vector<PlacedCloud> clouds, bool tell_source, const std::string& system = {});
 
   /// What a writer needs to know; the columns are those of the tables of read(), in their order.
   [[nodiscard]] const CloudPlan& plan() const { return plan_; }

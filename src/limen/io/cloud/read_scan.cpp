@@ -78,6 +78,32 @@ ScanFile read_scan_file(const std::filesystem::path& path, const ReadOptions& op
   return read;
 }
 
+Scan read_one_scan(const std::filesystem::path& path, std::size_t index, const ReadOptions& options,
+                   Monitor& monitor) {
+  options.check();
+  const CancelScope scope(monitor);
+  const OpenPoints input(path);
+  const auto missing = [&]() -> Error {
+    return Error(fmt::format("has no scan {}", index), path.string(), "give the file that was registered");
+  };
+  const bool apart = input.format() == PointFormat::e57 || input.format() == PointFormat::las;
+  if (!apart) {
+    ScanFile file = read_scan_file(path, options, monitor);
+    if (index >= file.scans.size()) throw missing();
+    return std::move(file.scans[index]);
+  }
+  const std::vector<CloudFacts>& clouds = input.file().clouds();
+  std::size_t with_points = 0;
+  for (std::size_t k = 0; k < clouds.size(); ++k) {
+    if (clouds[k].points == 0 || with_points++ != index) continue;
+    ScanFile file = with_whole_inputs([&] { return read_one_cloud(input, k, options, monitor); });
+    monitor.throw_if_cancelled();
+    if (options.trajectory && !options.origin) file = followed(std::move(file), *options.trajectory);
+    return std::move(file.scans.front());
+  }
+  throw missing();
+}
+
 std::vector<Scan> read_scans(const std::filesystem::path& path, const ReadOptions& options,
                              Monitor& monitor) {
   return read_scan_file(path, options, monitor).scans;

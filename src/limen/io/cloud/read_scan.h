@@ -15,6 +15,11 @@ namespace limen {
 ScanFile read_scan_file(const std::filesystem::path& path, const ReadOptions& options = {},
                         Monitor& monitor = silent_monitor());
 
+/// Reads scan `index` of a file, in the order of read_scan_file(), without the others where the format
+/// allows. Throws Error where there is none.
+Scan read_one_scan(const std::filesystem::path& path, std::size_t index, const ReadOptions& options = {},
+                   Monitor& monitor = silent_monitor());
+
 /// Reads every scan of a file. Most formats hold one, PTX holds several.
 std::vector<Scan> read_scans(const std::filesystem::path& path, const ReadOptions& options = {},
                              Monitor& monitor = silent_monitor());

@@ -50,7 +50,7 @@ bool has_ending_of(PointFormat format, const std::filesystem::path& path) {
 /// Moves the file as it is.
 TransformedCloud move_in_format(const OpenPoints& input, const Rigid3& pose,
                                 const std::filesystem::path& output, const ReadOptions& options,
-                                Monitor& monitor) {
+                                Monitor& monitor, const CoordinateSystem& system) {
   const NamedBytes bytes{input.bytes(), input.name()};
   switch (input.format()) {
     case PointFormat::ply:
@@ -62,28 +62,42 @@ TransformedCloud move_in_format(const OpenPoints& input, const Rigid3& pose,
     case PointFormat::text:
       return transform_text(bytes, pose, output);
     case PointFormat::las:
-      return transform_las(input.bytes(), input.name(), pose, output, monitor);
+      return transform_las(input.bytes(), input.name(), pose, output, monitor, {system.wkt, system.code});
     case PointFormat::e57:
       break;
   }
-  const MovedE57 moved = replace_e57_poses(input.bytes(), input.name(), pose, output, monitor);
+  const MovedE57 moved = replace_e57_poses(input.bytes(), input.name(), pose, output, monitor, system.wkt);
   return {moved.points, input.file().format(), moved.notes};
 }
 
+/// Formats without a place for a coordinate system are moved all the same, and a note tells it.
+TransformedCloud move_and_tell(const OpenPoints& input, const Rigid3& pose,
+                               const std::filesystem::path& output, const ReadOptions& options,
+                               Monitor& monitor, const CoordinateSystem& system) {
+  TransformedCloud cloud = move_in_format(input, pose, output, options, monitor, system);
+  const bool told = input.format() == PointFormat::las || input.format() == PointFormat::e57;
+  if (system.known() && !told)
+    cloud.notes.push_back(fmt::format("{} has no place for the coordinate system: it is not told in the file",
+                                      input.file().format()));
+  return cloud;
+}
+
 TransformedCloud write_joined(std::vector<PlacedCloud> clouds, bool several_files,
-                              const std::filesystem::path& output, Monitor& monitor) {
+                              const std::filesystem::path& output, Monitor& monitor,
+                              const CoordinateSystem& system) {
   const OpenPoints& first = *clouds.front().input;
-  const JoinedClouds joined(std::move(clouds), several_files);
+  const JoinedClouds joined(std::move(clouds), several_files, system.wkt);
   const WrittenClouds written = write_clouds(joined, output, monitor);
   return {written.written, first.file().format(), written.notes};
 }
 
 /// Each cloud as a scan of its own.
 TransformedCloud write_apart(const std::vector<PlacedCloud>& clouds, const std::filesystem::path& output,
-                             Monitor& monitor) {
+                             Monitor& monitor, const CoordinateSystem& system) {
   std::vector<JoinedClouds> stations;
   stations.reserve(clouds.size());
-  for (const PlacedCloud& cloud : clouds) stations.emplace_back(std::vector<PlacedCloud>{cloud}, false);
+  for (const PlacedCloud& cloud : clouds)
+    stations.emplace_back(std::vector<PlacedCloud>{cloud}, false, system.wkt);
   const WrittenClouds written = write_stations(stations, output, monitor);
   return {written.written, clouds.front().input->file().format(), written.notes};
 }
@@ -109,21 +123,23 @@ Scan transformed(const Scan& scan, const Rigid3& target_from_source) {
 
 TransformedCloud transform_cloud(const std::filesystem::path& input, const Rigid3& target_from_source,
                                  const std::filesystem::path& output, const ReadOptions& options,
-                                 Monitor& monitor) {
+                                 Monitor& monitor, const CoordinateSystem& system) {
   monitor.begin_stage("transform");
   const OpenPoints open(input);
   return with_whole_inputs([&] {
     if (has_ending_of(open.format(), output))
-      return move_in_format(open, target_from_source, output, options, monitor);
+      return move_and_tell(open, target_from_source, output, options, monitor, system);
     require_known_ending(output, open);
     return write_joined(placed_clouds(open, target_from_source, options.origin, monitor), false, output,
-                        monitor);
+                        monitor, system);
   });
 }
 
 TransformedCloud merge_clouds(const CloudToMove& moved, const std::vector<std::string>& others,
-                              const std::filesystem::path& output, Monitor& monitor) {
-  if (others.empty()) return transform_cloud(moved.path, moved.target_from_source, output, {}, monitor);
+                              const std::filesystem::path& output, Monitor& monitor,
+                              const CoordinateSystem& system) {
+  if (others.empty())
+    return transform_cloud(moved.path, moved.target_from_source, output, {}, monitor, system);
   if (others.size() > 255) throw Error("more than 256 clouds cannot be told apart", "--merge", "merge fewer");
   monitor.begin_stage("merging");
   std::deque<OpenPoints> files;
@@ -137,11 +153,12 @@ TransformedCloud merge_clouds(const CloudToMove& moved, const std::vector<std::s
     }
   }
   require_known_ending(output, files.front());
-  return with_whole_inputs([&] { return write_joined(std::move(clouds), true, output, monitor); });
+  return with_whole_inputs([&] { return write_joined(std::move(clouds), true, output, monitor, system); });
 }
 
 TransformedCloud move_stations(const std::vector<StationToMove>& stations,
-                               const std::filesystem::path& output, Monitor& monitor) {
+                               const std::filesystem::path& output, Monitor& monitor,
+                               const CoordinateSystem& system) {
   if (stations.empty()) throw Error("there is no scan to move", output.string(), "give at least one");
   const bool apart = lower_case(output.extension().string()) == ".e57";
   if (stations.size() > 256 && !apart)
@@ -168,8 +185,8 @@ TransformedCloud move_stations(const std::vector<StationToMove>& stations,
                   "give the file that the project was made from");
   }
   require_known_ending(output, files.front());
-  if (apart) return write_apart(clouds, output, monitor);
-  return write_joined(std::move(clouds), stations.size() > 1, output, monitor);
+  if (apart) return write_apart(clouds, output, monitor, system);
+  return write_joined(std::move(clouds), stations.size() > 1, output, monitor, system);
 }
 
 }  // namespace limen

@@ -9,6 +9,7 @@
 
 #include "limen/base/progress.h"
 #include "limen/geometry/spline_motion.h"
+#include "limen/io/crs/coordinate_system.h"
 #include "limen/io/table/transformed_cloud.h"
 
 namespace limen {
@@ -26,11 +27,12 @@ namespace limen {
 ///  ones;
 ///  - PTS, XYZ and other text: the numbers of x y z (origins, normals) in each line are replaced.
 /// To .ply, .las, .laz, .e57 and text (.xyz, .txt, .asc, .csv) from any other format every column goes with
-/// its type; points stream. The file appears whole or not at all; throws Error for what cannot be read or
-/// written.
+/// its type; points stream. `system`: of the target's coordinates; LAS, LAZ and E57 tell it, and what is
+/// joined as PLY or text in a comment. Not known: what the source says stays. The file appears whole or not
+/// at all; throws Error for what cannot be read or written.
 TransformedCloud transform_cloud(const std::filesystem::path& input, const Rigid3& target_from_source,
                                  const std::filesystem::path& output, const ReadOptions& options = {},
-                                 Monitor& monitor = silent_monitor());
+                                 Monitor& monitor = silent_monitor(), const CoordinateSystem& system = {});
 
 /// A file and how it comes into the frame of the output.
 struct CloudToMove {
@@ -41,7 +43,8 @@ struct CloudToMove {
 /// .laz or .e57 with the columns of all; `source_cloud` tells which file a point is from, 0 being the moved
 /// one. Without others it is transform_cloud.
 TransformedCloud merge_clouds(const CloudToMove& moved, const std::vector<std::string>& others,
-                              const std::filesystem::path& output, Monitor& monitor = silent_monitor());
+                              const std::filesystem::path& output, Monitor& monitor = silent_monitor(),
+                              const CoordinateSystem& system = {});
 
 /// One cloud of a file and how it comes into the frame of the output.
 struct StationToMove {
@@ -55,7 +58,8 @@ struct StationToMove {
 /// cloud with the columns of all, and `source_cloud` tells which station a point is from where there are
 /// several. Throws Error where a file has no such cloud, or more than 256 would become one.
 TransformedCloud move_stations(const std::vector<StationToMove>& stations,
-                               const std::filesystem::path& output, Monitor& monitor = silent_monitor());
+                               const std::filesystem::path& output, Monitor& monitor = silent_monitor(),
+                               const CoordinateSystem& system = {});
 
 /// The scan in the target frame, about a local origin near its points there.
 Scan transformed(const Scan& scan, const Rigid3& target_from_source);

@@ -234,8 +234,29 @@ void write_replaced(const E57Pages& pages, Replacement changed, const std::files
 
 }  // namespace
 
+std::string with_coordinate_system(const std::string& xml, const std::string& wkt) {
+  std::string quoted = wkt;
+  // The one thing that may not stand in a section of characters is its end.
+  for (std::size_t at = quoted.find("]]>"); at != std::string::npos; at = quoted.find("]]>", at + 3))
+    quoted.replace(at, 3, "]] >");
+  const std::string element =
+      "<coordinateMetadata type=\"String\"><![CDATA[" + quoted + "]]></coordinateMetadata>";
+  const std::string begin = "<coordinateMetadata";
+  const std::string end = "</coordinateMetadata>";
+  const std::size_t at = xml.find(begin);
+  if (at != std::string::npos) {
+    const std::size_t head = xml.find('>', at);
+    const bool closed = head != std::string::npos && xml[head - 1] == '/';
+    const std::size_t behind = closed ? head + 1 : xml.find(end, at) + end.size();
+    return xml.substr(0, at) + element + xml.substr(behind);
+  }
+  const std::size_t last = xml.rfind("</e57Root>");
+  if (last == std::string::npos) return xml;
+  return xml.substr(0, last) + element + xml.substr(last);
+}
+
 MovedE57 replace_e57_poses(std::string_view bytes, const std::string& name, const Rigid3& target_from_source,
-                           const std::filesystem::path& output, Monitor& monitor) {
+                           const std::filesystem::path& output, Monitor& monitor, const std::string& wkt) {
   monitor.set_unit(WorkUnit::bytes);
   const E57Pages pages(bytes, name);
   const std::string xml = e57_xml(pages);
@@ -245,7 +266,7 @@ MovedE57 replace_e57_poses(std::string_view bytes, const std::string& name, cons
   result.images = document.images.size();
   for (const E57Scan& scan : document.scans) result.points += scan.points;
   if (document.scans.empty()) throw Error("the file holds no scans", name, "name a file with scans");
-  if (!document.coordinates.empty()) {
+  if (!document.coordinates.empty() && wkt.empty()) {
     result.notes.emplace_back(
         "the file names a coordinate system, which is kept: see to it that it is the target's");
   }
@@ -254,6 +275,7 @@ MovedE57 replace_e57_poses(std::string_view bytes, const std::string& name, cons
         fmt::format("{} bytes after the end that the file gives are left out", pages.surplus()));
   }
   std::string moved = edited(xml, pose_edits(xml, document, target_from_source, name));
+  if (!wkt.empty()) moved = with_coordinate_system(moved, wkt);
   const E57Document check = parse_e57_document(moved, name);
   if (check.scans.size() != result.scans || check.images.size() != result.images) {
     throw Error("the description (XML) did not survive its editing", name, "", Fault::internal);

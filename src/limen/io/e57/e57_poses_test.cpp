@@ -166,6 +166,25 @@ TEST(E57Poses, ThereAndBack) {
   EXPECT_LT((pose.rotation - rotation_exp({0, 0, std::acos(0.0)})).norm(), 1e-14);
 }
 
+TEST(E57Poses, ACoordinateSystemIsNamed) {
+  const TemporaryFolder folder;
+  const std::string source = file_of({scan(kPose)});
+  const std::string wkt = "PROJCS[\"a <b> & c\",UNIT[\"metre\",1]]";
+  (void)replace_e57_poses(source, "in.e57", motion(), folder / "out.e57", silent_monitor(), wkt);
+  const std::string once = testing_io::slurp(folder / "out.e57");
+  EXPECT_EQ(e57_coordinate_systems(once, "out.e57"), std::vector<std::string>{wkt});
+  // Another one takes its place, and without one it stays.
+  (void)replace_e57_poses(once, "in.e57", motion(), folder / "again.e57", silent_monitor(), "PROJCS[\"d\"]");
+  EXPECT_EQ(e57_coordinate_systems(testing_io::slurp(folder / "again.e57"), "again.e57"),
+            std::vector<std::string>{"PROJCS[\"d\"]"});
+  (void)replace_e57_poses(once, "in.e57", motion(), folder / "kept.e57");
+  EXPECT_EQ(e57_coordinate_systems(testing_io::slurp(folder / "kept.e57"), "kept.e57"),
+            std::vector<std::string>{wkt});
+  EXPECT_EQ(
+      with_coordinate_system("<e57Root><coordinateMetadata type=\"String\"/><data3D/></e57Root>", "W"),
+      "<e57Root><coordinateMetadata type=\"String\"><![CDATA[W]]></coordinateMetadata><data3D/></e57Root>");
+}
+
 TEST(E57Poses, DamageIsNamedAndNothingIsLeft) {
   const TemporaryFolder folder;
   const std::string sound = file_of({scan(kPose)});

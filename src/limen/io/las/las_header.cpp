@@ -12,6 +12,7 @@
 
 #include "limen/base/error.h"
 #include "limen/io/las/las_fields.h"
+#include "limen/io/las/las_unit.h"
 
 // Source: ASPRS LAS Specification 1.4 R15; earlier versions are beginnings of the same layout.
 
@@ -217,6 +218,9 @@ std::vector<std::string> las_coordinate_systems(const LasHeader& header) {
     if (record.user != "LASF_Projection" || record.number != 2112) continue;
     std::string text(record.body.substr(0, record.body.find('\0')));
     if (!text.empty()) texts.push_back(std::move(text));
+  }
+  if (texts.empty()) {
+    if (const std::string code = las_projected_code(header); !code.empty()) texts.push_back(code);
   }
   return texts;
 }

@@ -107,7 +107,8 @@ LasHeader parse_las_header(std::string_view bytes, const std::string& name);
 /// "LAZ 1.4, point format 6".
 std::string las_format_name(const LasHeader& header);
 
-/// Texts of the coordinate system (OGC WKT) that the file carries, as they are.
+/// Texts of the coordinate system (OGC WKT) that the file carries, as they are; where it has none, but the
+/// keys of GeoTIFF with a number of a projected system: "EPSG:2154".
 std::vector<std::string> las_coordinate_systems(const LasHeader& header);
 
 }  // namespace limen

@@ -19,6 +19,7 @@
 #include "limen/io/las/las_fields.h"
 #include "limen/io/las/las_grid.h"
 #include "limen/io/las/las_records.h"
+#include "limen/io/las/las_unit.h"
 #include "limen/io/las/laz/laz_info.h"
 #include "limen/io/las/laz/laz_pack.h"
 #include "limen/io/las/laz/laz_writer.h"
@@ -37,6 +38,7 @@ struct Motion {
   const Rigid3& target_from_source;
   Monitor& monitor;
   std::vector<laz::ItemPlan> items;  ///< of points that are written packed; else none
+  const LasSystem& system;           ///< of the target
 };
 
 using GridPlace = std::array<std::int32_t, 3>;
@@ -136,6 +138,26 @@ bool describes_packing(const LasRecord& record) {
   return (record.user == kLasZipUser && record.number == kLasZipNumber) || record.user == "copc";
 }
 
+/// Records of the source's coordinate system, where the target has one of its own.
+bool is_replaced(const Motion& motion, const LasRecord& record) {
+  return !motion.system.wkt.empty() && record.user == "LASF_Projection";
+}
+
+constexpr int kTextFromMinor = 4;       // LAS 1.4 names systems by well-known text
+constexpr std::uint16_t kTextBit = 16;  // of the global encoding: there is such a text
+constexpr std::size_t kMostRecordBytes = 65535;
+
+/// The record that names the target's system; empty where it has none, or this version of LAS cannot.
+std::string system_record(const Motion& motion) {
+  const LasSystem& system = motion.system;
+  if (system.wkt.empty()) return {};
+  if (motion.header.minor >= kTextFromMinor)
+    return system.wkt.size() < kMostRecordBytes ? las_record("LASF_Projection", 2112, system.wkt + '\0')
+                                                : std::string();
+  return system.code.empty() ? std::string()
+                             : las_record("LASF_Projection", 34735, las_key_directory(system.code));
+}
+
 /// A record as it is to be written; the scanner's position moves.
 std::string written_record(const Motion& motion, const LasRecord& record) {
   std::string written(motion.bytes.substr(record.begin, record.end - record.begin));
@@ -156,20 +178,29 @@ std::string beginning(const Motion& motion, const LasGrid& grid) {
   for (const LasRecord& record : header.records) {
     if (record.extended) continue;
     end = record.end;
-    if (header.compressed && describes_packing(record)) {
+    if ((header.compressed && describes_packing(record)) || is_replaced(motion, record)) {
       ++taken_out;
     } else {
       ++kept;
       text += written_record(motion, record);
     }
   }
+  const std::string named = system_record(motion);
+  text += named;
+  if (!named.empty()) ++kept;
   if (!motion.items.empty()) {
     text += las_record(kLasZipUser, kLasZipNumber, laz::laszip_record(motion.items, kLazChunkPoints));
   }
   text += motion.bytes.substr(end, header.points_begin - end);
   // A false count is kept, but not where it would hide the record that tells of the packing.
   const auto told = las_number<std::uint32_t>(motion.bytes, las_at::kRecordCount);
-  put_las_number(text, las_at::kRecordCount, motion.items.empty() ? told - taken_out : kept + 1);
+  put_las_number(text, las_at::kRecordCount,
+                 motion.items.empty() && named.empty() ? told - taken_out
+                 : motion.items.empty()                ? kept
+                                                       : kept + 1);
+  if (!named.empty() && header.minor >= kTextFromMinor)
+    put_las_number(text, las_at::kGlobalEncoding,
+                   static_cast<std::uint16_t>(header.global_encoding | kTextBit));
   put_las_number(text, las_at::kPointsBegin, static_cast<std::uint32_t>(text.size()));
   const unsigned packed = motion.items.empty() ? 0U : kPackedBit;
   text[las_at::kPointFormat] = static_cast<char>(static_cast<unsigned>(header.point_format) | packed);
@@ -213,7 +244,7 @@ Tail tail_of(const Motion& motion) {
   bool taken_out = false;
   for (const LasRecord& record : header.records) {
     if (!record.extended) continue;
-    const bool packing = header.compressed && describes_packing(record);
+    const bool packing = (header.compressed && describes_packing(record)) || is_replaced(motion, record);
     taken_out = taken_out || packing;
     if (packing) continue;
     kept += written_record(motion, record);
@@ -302,7 +333,13 @@ std::vector<std::string> notes_of(const Motion& motion, const LasGrid& grid) {
   const double shift = (motion.target_from_source * middle - middle).norm();
   constexpr double kSmallAngle = 0.02;  // radians
   constexpr double kSmallShiftM = 10.0;
-  if (placed && !(angle < kSmallAngle && shift < kSmallShiftM)) {
+  if (!motion.system.wkt.empty()) {
+    if (system_record(motion).empty())
+      notes.push_back(
+          fmt::format("LAS 1.{} names coordinate systems by their EPSG number, and this one has none: it is "
+                      "not told in the file",
+                      header.minor));
+  } else if (placed && !(angle < kSmallAngle && shift < kSmallShiftM)) {
     notes.emplace_back(
         "the records of the coordinate system are kept as they were: they name the source's system, "
         "the coordinates are now the target's");
@@ -325,9 +362,9 @@ std::vector<std::string> notes_of(const Motion& motion, const LasGrid& grid) {
 
 TransformedCloud transform_las(std::string_view bytes, const std::string& name,
                                const Rigid3& target_from_source, const std::filesystem::path& output,
-                               Monitor& monitor) {
+                               Monitor& monitor, const LasSystem& system) {
   const LasHeader header = parse_las_header(bytes, name);
-  Motion motion{bytes, name, header, target_from_source, monitor, {}};
+  Motion motion{bytes, name, header, target_from_source, monitor, {}, system};
   if (is_laz_ending(output)) motion.items = laz::items_of(header.point_format, header.point_bytes);
   const std::optional<LasBox> told = told_box(header);
   LasGrid grid = moved_grid(header, target_from_source,

@@ -3,6 +3,7 @@
 #include "limen/io/las/las_transform.h"
 
 #include <algorithm>
+#include <tuple>
 
 #include "support/synthetic_las.h"
 #include <gtest/gtest.h>
@@ -54,6 +55,38 @@ std::vector<Vector3d> points_of(const std::string& bytes) {
   std::vector<Vector3d> points;
   for (std::size_t i = 0; i < x.size(); ++i) points.emplace_back(x[i], y[i], z[i]);
   return points;
+}
+
+TEST(TransformLas, ACoordinateSystemTakesThePlaceOfTheSources) {
+  const TemporaryFolder folder;
+  const LasSystem system{"PROJCS[\"new\",UNIT[\"metre\",1]]", "EPSG:2154"};
+  for (const auto& [minor, format, ending] :
+       {std::tuple{2, 3, ".las"}, {4, 7, ".las"}, {2, 3, ".laz"}, {4, 7, ".laz"}}) {
+    const std::string before = file(sample(minor, format));
+    const std::string name = std::string("out") + ending;
+    const TransformedCloud result =
+        transform_las(before, "test", turned(), folder / name, silent_monitor(), system);
+    const std::string after = slurp(folder / name);
+    const LasHeader header = parse_las_header(after, "test");
+    EXPECT_EQ(result.points, 300U);
+    EXPECT_TRUE(result.notes.empty());
+    EXPECT_EQ(las_coordinate_systems(header),
+              std::vector<std::string>{minor == 4 ? system.wkt : system.code});
+    EXPECT_EQ((header.global_encoding & 16U) != 0, minor == 4);
+    EXPECT_NE(header.find("someone", 77), nullptr);
+    EXPECT_EQ(las_number<std::uint32_t>(after, las_at::kRecordCount),
+              static_cast<std::uint32_t>(std::count_if(header.records.begin(), header.records.end(),
+                                                       [](const LasRecord& it) { return !it.extended; })));
+    const auto old_points = points_of(before);
+    const auto new_points = points_of(after);
+    for (std::size_t i = 0; i < old_points.size(); ++i)
+      EXPECT_LT((turned() * old_points[i] - new_points[i]).cwiseAbs().maxCoeff(), 5.1e-5);
+  }
+  // Without a number old versions have no place for it, and it is told.
+  const TransformedCloud told = transform_las(file(sample(2, 3)), "test", turned(), folder / "old.las",
+                                              silent_monitor(), {system.wkt, ""});
+  ASSERT_EQ(told.notes.size(), 1U);
+  EXPECT_TRUE(las_coordinate_systems(parse_las_header(slurp(folder / "old.las"), "test")).empty());
 }
 
 TEST(TransformLas, MovesPointsAndKeepsAllElse) {

@@ -12,6 +12,10 @@ namespace {
 
 constexpr std::uint16_t kKeyDirectory = 34735;
 constexpr std::uint16_t kDoubles = 34736;
+constexpr std::uint16_t kModelType = 1024;
+constexpr std::uint16_t kRasterType = 1025;
+constexpr std::uint16_t kProjectedSystem = 3072;
+constexpr std::uint16_t kUserDefined = 32767;
 constexpr std::uint16_t kProjLinearUnits = 3076;
 constexpr std::uint16_t kProjLinearUnitSize = 3077;
 
@@ -134,6 +138,52 @@ std::optional<double> las_metres_per_unit(const LasHeader& header) {
     if (const auto unit = wkt_metres_per_unit(text)) return unit;
   }
   return unit_of_keys(header);
+}
+
+std::string las_projected_code(const LasHeader& header) {
+  const LasRecord* record = header.find("LASF_Projection", kKeyDirectory);
+  if (record == nullptr) return {};
+  for (std::size_t at = 8; at + 8 <= record->body.size(); at += 8) {
+    if (las_number<std::uint16_t>(record->body, at) != kProjectedSystem) continue;
+    const auto place = las_number<std::uint16_t>(record->body, at + 2);
+    const auto value = las_number<std::uint16_t>(record->body, at + 6);
+    if (place == 0 && value != 0 && value != kUserDefined) return "EPSG:" + std::to_string(value);
+  }
+  return {};
+}
+
+std::string las_key_directory(const std::string& code) {
+  const auto number = static_cast<std::uint16_t>(std::stoul(code.substr(code.find(':') + 1)));
+  constexpr std::uint16_t kProjected = 1;
+  constexpr std::uint16_t kPixelIsArea = 1;
+  constexpr std::uint16_t kMetre = 9001;
+  // Version 1.1.0, then keys in ascending order, each with its value in place.
+  const std::uint16_t numbers[] = {1,
+                                   1,
+                                   0,
+                                   4,
+                                   kModelType,
+                                   0,
+                                   1,
+                                   kProjected,
+                                   kRasterType,
+                                   0,
+                                   1,
+                                   kPixelIsArea,
+                                   kProjectedSystem,
+                                   0,
+                                   1,
+                                   number,
+                                   kProjLinearUnits,
+                                   0,
+                                   1,
+                                   kMetre};
+  std::string body;
+  for (const std::uint16_t value : numbers) {
+    body += static_cast<char>(value & 0xFFU);
+    body += static_cast<char>(value >> 8U);
+  }
+  return body;
 }
 
 }  // namespace limen

@@ -56,5 +56,21 @@ TEST(LasUnit, ReadsGeoTiffKeys) {
   EXPECT_FALSE(las_metres_per_unit(LasHeader{}));
 }
 
+TEST(LasUnit, ProjectedSystemsByTheirNumber) {
+  EXPECT_EQ(las_projected_code(with_key(directory(3072, 2154))), "EPSG:2154");
+  EXPECT_EQ(las_projected_code(with_key(directory(3072, 32767))), "") << "defined by the user";
+  EXPECT_EQ(las_projected_code(with_key(directory(3076, 9001))), "");
+  EXPECT_EQ(las_projected_code(LasHeader{}), "");
+  const std::string keys = las_key_directory("EPSG:25832");
+  const LasHeader header = with_key(keys);
+  EXPECT_EQ(las_projected_code(header), "EPSG:25832");
+  EXPECT_EQ(*las_metres_per_unit(header), 1.0);
+  EXPECT_EQ(las_coordinate_systems(header), std::vector<std::string>{"EPSG:25832"});
+  // The directory counts its keys, which ascend.
+  EXPECT_EQ(las_number<std::uint16_t>(keys, 6) * 8U + 8U, keys.size());
+  for (std::size_t at = 16; at < keys.size(); at += 8)
+    EXPECT_LT(las_number<std::uint16_t>(keys, at - 8), las_number<std::uint16_t>(keys, at));
+}
+
 }  // namespace
 }  // namespace limen

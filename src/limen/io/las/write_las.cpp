@@ -164,7 +164,10 @@ class LasWriter : public CloudWriter {
       records += las_record(user, number, body);
       ++count;
     };
-    if (!plan_.georeference.empty()) add("LASF_Projection", 2112, plan_.georeference.front() + '\0');
+    // Of LAS 1.4 it is well-known text; a number alone has no place in it.
+    const auto text = std::find_if(plan_.georeference.begin(), plan_.georeference.end(),
+                                   [](const std::string& it) { return it.find('[') != std::string::npos; });
+    if (text != plan_.georeference.end()) add("LASF_Projection", 2112, *text + '\0');
     add("LASF_Spec", 4, slots_.extra_bytes);
     if (plan_.centre) {
       std::string centre(24, '\0');

@@ -17,6 +17,8 @@
 #include "limen/base/text.h"
 #include "limen/files/mapped_file.h"
 #include "limen/files/text_numbers.h"
+#include "limen/io/crs/coordinate_system.h"
+#include "limen/io/crs/map_projection.h"
 #include "limen/io/table/record_table.h"
 #include "limen/io/trajectory/transverse_mercator.h"
 
@@ -214,13 +216,22 @@ class Projection {
       local_ = true;
     } else if (utm_zone == "auto") {
       zone_ = utm_zone_of(first);
+    } else if (const std::optional<UtmZone> zone = parse_utm_zone(utm_zone)) {
+      zone_ = *zone;
     } else {
-      zone_ = *parse_utm_zone(utm_zone);
+      map_.emplace(utm_zone, "--utm-zone");
     }
   }
   [[nodiscard]] Entry operator()(Entry entry) const {
     if (local_) {
       entry.x = east_north_up(first_) * (to_geocentric(*entry.geodetic) - to_geocentric(first_));
+      return entry;
+    }
+    if (map_) {
+      const Geodetic& it = *entry.geodetic;
+      entry.x = map_->to_map(it.latitude_rad, it.longitude_rad, it.height_m);
+      if (entry.attitude)
+        entry.attitude->heading_rad -= map_->convergence_rad(it.latitude_rad, it.longitude_rad, it.height_m);
       return entry;
     }
     const GridPlace grid = to_utm(*entry.geodetic, zone_);
@@ -233,6 +244,7 @@ class Projection {
   Geodetic first_;
   bool local_ = false;
   UtmZone zone_;
+  std::optional<MapProjection> map_;  ///< any other system
 };
 
 bool is_binary(std::string_view bytes, const std::filesystem::path& path) {
@@ -250,8 +262,15 @@ void TrajectoryOptions::check() const {
     if (!(std::abs(lever_arm_m[k]) < 100.0)) throw_bad_option("lever_arm_m", lever_arm_m[k], "within 100 m");
   }
   if (utm_zone == "auto" || utm_zone == "local" || parse_utm_zone(utm_zone)) return;
-  throw Error(fmt::format("the UTM zone is \"{}\", but must be as 32N or 19S, auto or local", utm_zone),
-              "--utm-zone", "name the zone of the points");
+  if (utm_zone.find_first_of(":[{") != std::string::npos) {
+    static_cast<void>(coordinate_system(utm_zone, "--utm-zone"));
+    return;
+  }
+  throw Error(
+      fmt::format("the UTM zone is \"{}\", but must be as 32N or 19S, auto, local, or a coordinate system as "
+                  "EPSG:2154",
+                  utm_zone),
+      "--utm-zone", "name the zone or the system of the points");
 }
 
 Trajectory read_trajectory(const std::filesystem::path& path, const TrajectoryOptions& options) {

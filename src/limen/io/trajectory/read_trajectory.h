@@ -17,7 +17,8 @@ struct TrajectoryOptions {
   /// line says.
   std::vector<std::string> columns;
   /// Geographic places become easting, northing, height of "32N" or another UTM zone, of the zone of the
-  /// first place ("auto"), or east, north and up about the first place ("local").
+  /// first place ("auto"), of any system of a map ("EPSG:2154", WKT: by PROJ), or east, north and up about
+  /// the first place ("local").
   std::string utm_zone = "auto";
   double time_offset_s = 0.0;  ///< added to the times of the file
   double max_gap_s = 1.0;      ///< places are not interpolated across longer gaps

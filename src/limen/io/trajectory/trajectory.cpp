@@ -112,6 +112,30 @@ std::optional<Vector3d> Trajectory::position(double time_s) const {
   return positions_[k - 1] + share * (positions_[k] - positions_[k - 1]);
 }
 
+const Trajectory* covering_trajectory(const Scan& scan,
+                                      const std::vector<std::shared_ptr<const Trajectory>>& trajectories) {
+  constexpr std::size_t kAsked = 1000;
+  const std::size_t step = std::max<std::size_t>(1, scan.times_s.size() / kAsked);
+  const Trajectory* best = nullptr;
+  std::size_t most = 0;
+  for (const auto& trajectory : trajectories) {
+    std::size_t asked = 0;
+    std::vector<double> distances;
+    for (std::size_t i = 0; i < scan.times_s.size(); i += step) {
+      ++asked;
+      if (const std::optional<Vector3d> place = trajectory->position(scan.times_s[i]))
+        distances.push_back((scan.local_origin + scan.points[i] - *place).norm());
+    }
+    if (distances.empty() || 2 * distances.size() < asked || distances.size() <= most) continue;
+    const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
+    std::nth_element(distances.begin(), middle, distances.end());
+    if (*middle > kFarthestM) continue;
+    best = trajectory.get();
+    most = distances.size();
+  }
+  return best;
+}
+
 FollowedScan with_trajectory(const Scan& scan, const Trajectory& trajectory) {
   if (scan.times_s.empty()) {
     throw Error("the points have no times, so a trajectory tells nothing of them", scan.name,

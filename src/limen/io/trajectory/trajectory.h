@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -24,6 +25,8 @@ class Trajectory {
 
   [[nodiscard]] const std::string& name() const { return name_; }
   [[nodiscard]] std::size_t size() const { return times_s_.size(); }
+  [[nodiscard]] double time_s(std::size_t i) const { return times_s_[i]; }
+  [[nodiscard]] const Vector3d& place(std::size_t i) const { return positions_[i]; }
   [[nodiscard]] double first_s() const { return times_s_.front(); }
   [[nodiscard]] double last_s() const { return times_s_.back(); }
   /// On the line between the places before and after; empty outside of the times and within gaps.
@@ -41,6 +44,11 @@ struct FollowedScan {
   Scan scan;
   std::size_t left_out = 0;  ///< points at times that the trajectory does not cover
 };
+
+/// Which of several trajectories a scan was measured along: the one that covers most of its times, at least
+/// half, and passes near its points. Nothing where the scan has no times, or none does.
+const Trajectory* covering_trajectory(const Scan& scan,
+                                      const std::vector<std::shared_ptr<const Trajectory>>& trajectories);
 
 /// The scan with the optical centre of each point by its time. Throws Error where the scan has no times,
 /// where no time of it is covered (with both ranges, and what would bring them together), or where the

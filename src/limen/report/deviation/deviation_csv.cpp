@@ -9,17 +9,6 @@
 namespace limen {
 namespace {
 
-/// A field, quoted where it must be.
-std::string field(std::string_view text) {
-  if (text.find_first_of(",\"\r\n") == std::string_view::npos) return std::string(text);
-  std::string quoted = "\"";
-  for (const char c : text) {
-    if (c == '"') quoted += '"';
-    quoted += c;
-  }
-  return quoted + '"';
-}
-
 std::string directions(const std::vector<Vector3d>& open) {
   std::string text;
   for (const Vector3d& d : open)
@@ -41,19 +30,34 @@ std::string figures(const ElementDeviation& it) {
 
 }  // namespace
 
-std::string deviation_csv(const DeviationReport& report, const BimModel& model) {
-  std::string text =
-      "element,kind,type,guid,name,storey,presence,points,area_m2,covered_m2,passed_m2,covered_share,"
-      "median_m,mean_m,sigma_m,p95_m,loa,shift_x_m,shift_y_m,shift_z_m,shift_sigma_x_m,shift_sigma_y_m,"
-      "shift_sigma_z_m,shift_held,shift_open\r\n";
-  for (const ElementDeviation& it : report.deviation.elements) {
-    const BimElement& element = model.elements[static_cast<std::size_t>(it.element)];
-    text += fmt::format("{},{},{},{},{},{},{},{},", it.element, to_string(element.kind), field(element.type),
-                        field(element.guid), field(element.name), field(element.storey),
-                        to_string(it.presence), it.points);
-    text += fmt::format("{:.4f},{:.4f},{:.4f},{:.4f},{}\r\n", it.area_m2, it.covered_m2, it.passed_m2,
-                        it.covered_share, figures(it));
+std::string csv_field(std::string_view text) {
+  if (text.find_first_of(",\"\r\n") == std::string_view::npos) return std::string(text);
+  std::string quoted = "\"";
+  for (const char c : text) {
+    if (c == '"') quoted += '"';
+    quoted += c;
   }
+  return quoted + '"';
+}
+
+std::string deviation_columns() {
+  return "element,kind,type,guid,name,storey,presence,points,area_m2,covered_m2,passed_m2,covered_share,"
+         "median_m,mean_m,sigma_m,p95_m,loa,shift_x_m,shift_y_m,shift_z_m,shift_sigma_x_m,shift_sigma_y_m,"
+         "shift_sigma_z_m,shift_held,shift_open";
+}
+
+std::string deviation_row(const ElementDeviation& it, const BimElement& element) {
+  std::string text = fmt::format("{},{},{},{},{},{},{},{},", it.element, to_string(element.kind),
+                                 csv_field(element.type), csv_field(element.guid), csv_field(element.name),
+                                 csv_field(element.storey), to_string(it.presence), it.points);
+  return text + fmt::format("{:.4f},{:.4f},{:.4f},{:.4f},{}", it.area_m2, it.covered_m2, it.passed_m2,
+                            it.covered_share, figures(it));
+}
+
+std::string deviation_csv(const DeviationReport& report, const BimModel& model) {
+  std::string text = deviation_columns() + "\r\n";
+  for (const ElementDeviation& it : report.deviation.elements)
+    text += deviation_row(it, model.elements[static_cast<std::size_t>(it.element)]) + "\r\n";
   return text;
 }
 

@@ -49,29 +49,38 @@ Colour deviation_colour(double deviation_m, double limit_m) {
   return {mixed(kMiddle, 220.0, share), mixed(kMiddle, 90.0, share), mixed(kMiddle, 0.0, share)};
 }
 
-void write_deviation_ply(const std::filesystem::path& path, const Scan& scan, const DeviationReport& report,
-                         double colour_limit_m) {
-  const Deviation& deviation = report.deviation;
+void write_deviation_points(const std::filesystem::path& path, std::size_t count,
+                            const std::function<DeviationPoint(std::size_t)>& point, double colour_limit_m) {
   if (!(colour_limit_m > 0.0)) throw_bad_option("colour_limit_m", colour_limit_m, "more than 0");
   AtomicFile file(path);
-  file.write(header(scan.size(), colour_limit_m));
+  file.write(header(count, colour_limit_m));
   std::string bytes;
-  for (std::size_t begin = 0; begin < scan.size(); begin += kPiece) {
-    const std::size_t end = std::min(scan.size(), begin + kPiece);
+  for (std::size_t begin = 0; begin < count; begin += kPiece) {
+    const std::size_t end = std::min(count, begin + kPiece);
     bytes.resize((end - begin) * kRecordBytes);
     char* at = bytes.data();
     for (std::size_t i = begin; i < end; ++i) {
-      const Vector3d x = report.model_from_scan * (scan.local_origin + scan.points[i]);
-      for (Eigen::Index k = 0; k < 3; ++k) at = put(at, x[k]);
-      const float d = deviation.distance_m[i];
-      const Colour colour =
-          std::isnan(d) ? kOnNoFace : deviation_colour(static_cast<double>(d), colour_limit_m);
+      const DeviationPoint it = point(i);
+      for (Eigen::Index k = 0; k < 3; ++k) at = put(at, it.x[k]);
+      const Colour colour = std::isnan(it.deviation_m)
+                                ? kOnNoFace
+                                : deviation_colour(static_cast<double>(it.deviation_m), colour_limit_m);
       at = put(put(put(at, colour.red), colour.green), colour.blue);
-      at = put(put(at, d), deviation.element[i]);
+      at = put(put(at, it.deviation_m), it.element);
     }
     file.write(bytes);
   }
   file.commit();
+}
+
+void write_deviation_ply(const std::filesystem::path& path, const Scan& scan, const DeviationReport& report,
+                         double colour_limit_m) {
+  const Deviation& deviation = report.deviation;
+  const auto point = [&](std::size_t i) -> DeviationPoint {
+    return {report.model_from_scan * (scan.local_origin + scan.points[i]), deviation.distance_m[i],
+            deviation.element[i]};
+  };
+  write_deviation_points(path, scan.size(), point, colour_limit_m);
 }
 
 }  // namespace limen

@@ -2,8 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <string>
+#include <string_view>
 
 #include "limen/deviation/deviation.h"
 #include "limen/report/json/result_json.h"
@@ -31,6 +35,12 @@ std::string deviation_json(const DeviationReport& report, const BimModel& model)
 /// points.
 std::string deviation_csv(const DeviationReport& report, const BimModel& model);
 
+/// The names of the columns of a row of the table, and the row; neither ends its line.
+std::string deviation_columns();
+std::string deviation_row(const ElementDeviation& it, const BimElement& element);
+/// A field of a CSV, quoted where it must be.
+std::string csv_field(std::string_view text);
+
 /// Red, green and blue of a deviation: blue for missing matter (negative), light grey at 0, orange for matter
 /// that stands out; full colour from `limit_m` on. Told apart with every kind of colour vision.
 struct Colour {
@@ -39,6 +49,16 @@ struct Colour {
   unsigned char blue = 0;
 };
 Colour deviation_colour(double deviation_m, double limit_m);
+
+/// A point of the coloured cloud.
+struct DeviationPoint {
+  Vector3d x = Vector3d::Zero();  ///< world
+  float deviation_m = 0.0F;       ///< NaN: on no face
+  std::int32_t element = -1;      ///< -1: on none
+};
+/// Writes `count` of them as binary PLY. The file appears whole or not at all.
+void write_deviation_points(const std::filesystem::path& path, std::size_t count,
+                            const std::function<DeviationPoint(std::size_t)>& point, double colour_limit_m);
 
 /// Writes the scan's points in the model's world coordinates as binary PLY, with their colour, `deviation_m`
 /// (NaN: on no face) and `element` (-1: on none). Points on no face are grey. The file appears whole or not

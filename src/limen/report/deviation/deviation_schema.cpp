@@ -6,9 +6,8 @@
 
 namespace limen {
 namespace schema {
-namespace {
 
-Json element_schema() {
+Json deviation_element_schema() {
   const Json kinds = words({"wall", "slab", "roof", "column", "beam", "stair", "railing", "covering", "plate",
                             "window", "door", "furniture", "terrain", "other"});
   Json loa = words({"LOA10", "LOA20", "LOA30", "LOA40", "LOA50"});
@@ -35,7 +34,7 @@ Json element_schema() {
                  "covered_m2", "passed_m2", "covered_share"});
 }
 
-Json shift_schema() {
+Json element_shift_schema() {
   return object({{"shift_m", numbers(3, "of the element, model frame")},
                  {"sigma_m", numbers_or_null(3, "one standard deviation; null: open")},
                  {"held", whole("directions that the points hold, 0 to 3")},
@@ -43,7 +42,7 @@ Json shift_schema() {
                 {"shift_m", "sigma_m", "held", "open"});
 }
 
-Json unmodelled_schema() {
+Json unmodelled_matter_schema() {
   return object({{"points", whole("")},
                  {"centre", numbers(3, "model coordinates")},
                  {"low", numbers(3, "of its box")},
@@ -52,6 +51,8 @@ Json unmodelled_schema() {
                  {"within_model", flag("it lies inside the model's box")}},
                 {"points", "centre", "low", "high", "size_m", "within_model"});
 }
+
+namespace {
 
 Json summary_schema() {
   const Json counts = {{"type", "object"}, {"additionalProperties", {{"type", "integer"}}}};
@@ -96,11 +97,12 @@ Json fields_of_deviation() {
 
 std::string deviation_schema() {
   using namespace schema;
-  return schema_text(
-      "deviation.json of limen deviation",
-      object(fields_of_deviation(),
-             {"inputs", "pose", "options", "summary", "elements", "unmodelled", "version"}),
-      {{"element", element_schema()}, {"shift", shift_schema()}, {"unmodelled", unmodelled_schema()}});
+  return schema_text("deviation.json of limen deviation",
+                     object(fields_of_deviation(),
+                            {"inputs", "pose", "options", "summary", "elements", "unmodelled", "version"}),
+                     {{"element", deviation_element_schema()},
+                      {"shift", element_shift_schema()},
+                      {"unmodelled", unmodelled_matter_schema()}});
 }
 
 }  // namespace limen

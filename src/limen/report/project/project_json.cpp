@@ -142,7 +142,7 @@ Json list_json(const List& list, const Make& make) {
 
 }  // namespace
 
-std::string project_json(const ProjectResult& result, const OptionList& options) {
+std::string project_json(const ProjectResult& result, const OptionList& options, const FrameSystem& system) {
   Json json;
   json["outcome"] = to_string(result.outcome);
   json["reason"] = result.reason;
@@ -152,6 +152,18 @@ std::string project_json(const ProjectResult& result, const OptionList& options)
                    {"file", of_scan ? Json(result.scans[static_cast<std::size_t>(result.frame_scan)].file)
                             : result.frame_kind == "control" ? Json(result.control_file)
                                                              : Json()}};
+  if (system.system.known())
+    json["frame"]["crs"] = {{"name", system.system.name},
+                            {"code", system.system.code},
+                            {"wkt", system.system.wkt.empty() ? system.system.told : system.system.wkt},
+                            {"said_by", system.said_by}};
+  const ToldTrajectories& told = system.trajectories;
+  if (!told.files.empty())
+    json["trajectories"] = {{"files", told.files},
+                            {"columns", told.reading.columns},
+                            {"utm_zone", told.reading.utm_zone},
+                            {"time_offset_s", told.reading.time_offset_s},
+                            {"lever_arm_m", json_of(told.reading.lever_arm_m)}};
   json["components"] = result.components;
   json["scans"] = list_json(result.scans, scan_json);
   json["links"] = list_json(result.links, link_json);

@@ -123,17 +123,31 @@ Json project_definitions() {
 }
 
 Json project_fields() {
+  const Json crs = object({{"name", text("of the coordinate system, as far as it is known")},
+                           {"code", text("EPSG:NUMBER, as far as it is known")},
+                           {"wkt", text("well-known text, else as it was told")},
+                           {"said_by", words({"user", "file"})}},
+                          {"name", "code", "wkt", "said_by"});
   const Json frame =
       object({{"kind", words({"control", "mobile", "model", "file", "station", "none"})},
               {"scan", {{"type", {"integer", "null"}}, {"description", "whose frame it is, from 0"}}},
-              {"file", {{"type", {"string", "null"}}, {"description", "whose frame it is"}}}},
+              {"file", {{"type", {"string", "null"}}, {"description", "whose frame it is"}}},
+              {"crs", crs}},
              {"kind", "scan", "file"});
+  const Json trajectories =
+      object({{"files", list_of({{"type", "string"}}, "as they were given")},
+              {"columns", list_of({{"type", "string"}}, "of a text, where they were given")},
+              {"utm_zone", text("or the system of places in latitude and longitude")},
+              {"time_offset_s", number("added to their times")},
+              {"lever_arm_m", numbers(3, "forward, right, down")}},
+             {"files", "columns", "utm_zone", "time_offset_s", "lever_arm_m"});
   const Json control =
       object({{"reason", text("one sentence")}, {"variance_factor", number_or_null("of the control points")}},
              {"reason", "variance_factor"});
   return {{"outcome", words({"registered", "partial", "no_match"})},
           {"reason", text("one sentence")},
           {"frame", frame},
+          {"trajectories", trajectories},
           {"components", whole("groups of scans that nothing joins")},
           {"scans", list_of(ref("scan"), "scans and models, in the order of the call")},
           {"links", list_of(ref("link"), "pairs with something in common")},

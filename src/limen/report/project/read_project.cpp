@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <fstream>
 #include <functional>
 
@@ -56,6 +57,24 @@ std::shared_ptr<const SplineMotion> bend_of(const Json& correction) {
   return std::make_shared<const SplineMotion>(times, values, numbers_of(correction.at("pivot")));
 }
 
+double largest_of(const Json& numbers) {
+  double largest = 0.0;
+  for (const Json& number : numbers)
+    largest = std::max(largest, number.is_number() ? number.get<double>() : 0.0);
+  return largest;
+}
+
+double sigma_of(const Json& scan) {
+  double sigma = 0.0;
+  if (scan.contains("sigma") && scan["sigma"].is_object())
+    sigma = largest_of(scan["sigma"].at("translation_m"));
+  if (!scan.contains("correction")) return sigma;
+  double squares = 0.0;
+  const Json& knots = scan["correction"].at("knots");
+  for (const Json& knot : knots) squares += std::pow(largest_of(knot.at("moved_sigma_m")), 2);
+  return std::hypot(sigma, std::sqrt(squares / static_cast<double>(std::max<std::size_t>(1, knots.size()))));
+}
+
 ProjectEntry entry_of(const Json& scan) {
   ProjectEntry entry;
   entry.file = scan.at("file").get<std::string>();
@@ -65,10 +84,49 @@ ProjectEntry entry_of(const Json& scan) {
   const Json& pose = scan.at("frame_from_scan");
   if (!pose.is_null()) entry.frame_from_scan = pose_of(pose);
   if (scan.contains("correction") && entry.frame_from_scan) entry.bend = bend_of(scan["correction"]);
+  if (entry.bend) {
+    for (const Json& knot : scan["correction"]["knots"])
+      entry.knot_times_s.push_back(knot["time_s"].get<double>());
+  }
+  entry.sha256 = scan.value("sha256", "");
+  entry.copy_of = scan.value("copy_of", "");
+  entry.sigma_m = sigma_of(scan);
   return entry;
 }
 
 }  // namespace
+
+CoordinateSystem read_project_system(const std::filesystem::path& path) {
+  const std::optional<Json> json = parse(path);
+  if (!json) throw Error("is not a project", path.string(), "give the project.json that limen project wrote");
+  CoordinateSystem system;
+  if (!json->contains("frame") || !(*json)["frame"].contains("crs")) return system;
+  const Json& crs = (*json)["frame"]["crs"];
+  system.name = crs.value("name", "");
+  system.code = crs.value("code", "");
+  system.told = crs.value("wkt", "");
+  if (system.told.find('[') != std::string::npos) system.wkt = system.told;
+  return system;
+}
+
+ToldTrajectories read_project_trajectories(const std::filesystem::path& path) {
+  const char* remedy = "give the project.json that limen project wrote";
+  const std::optional<Json> json = parse(path);
+  if (!json) throw Error("is not a project", path.string(), remedy);
+  ToldTrajectories told;
+  if (!json->contains("trajectories")) return told;
+  try {
+    const Json& all = (*json)["trajectories"];
+    told.files = all.at("files").get<std::vector<std::string>>();
+    told.reading.columns = all.at("columns").get<std::vector<std::string>>();
+    told.reading.utm_zone = all.at("utm_zone").get<std::string>();
+    told.reading.time_offset_s = all.at("time_offset_s").get<double>();
+    told.reading.lever_arm_m = numbers_of(all.at("lever_arm_m"));
+    return told;
+  } catch (const Json::exception&) {
+    throw Error("the trajectories of the project are not told as they should be", path.string(), remedy);
+  }
+}
 
 std::vector<ProjectEntry> read_project(const std::filesystem::path& path) {
   const char* remedy = "give the project.json that limen project wrote";

@@ -10,6 +10,8 @@
 
 #include "limen/geometry/rigid.h"
 #include "limen/geometry/spline_motion.h"
+#include "limen/io/crs/coordinate_system.h"
+#include "limen/report/project/project_json.h"
 
 namespace limen {
 
@@ -19,9 +21,21 @@ struct ProjectEntry {
   int index = 0;
   bool model = false;
   std::string state;
+  std::string sha256;   ///< of the file's bytes
+  std::string copy_of;  ///< another file of the same bytes
+  double sigma_m =
+      0.0;  ///< how well its place is known, the largest of three deviations; of a bent pass along it
   std::optional<Rigid3> frame_from_scan;     ///< empty where it has no place in the project's frame
   std::shared_ptr<const SplineMotion> bend;  ///< of a pass that drifted: what moves it then, by time
+  std::vector<double> knot_times_s;          ///< of that
 };
+
+/// The coordinate system of its frame; not known where it tells none. Throws Error as read_project().
+CoordinateSystem read_project_system(const std::filesystem::path& path);
+
+/// The trajectories that its passes were measured along; no files where it tells none. Throws Error as
+/// read_project().
+ToldTrajectories read_project_trajectories(const std::filesystem::path& path);
 
 /// Its scans and models. Throws Error that names the file and the fault.
 std::vector<ProjectEntry> read_project(const std::filesystem::path& path);

@@ -31,13 +31,13 @@ ScanPattern station_pattern(const Rigid3& scene_from_scanner, std::size_t pulses
   return pattern;
 }
 
-double Trajectory::length() const {
+double VehiclePath::length() const {
   double length = 0.0;
   for (std::size_t i = 1; i < points.size(); ++i) length += (points[i] - points[i - 1]).norm();
   return length;
 }
 
-Vector3d Trajectory::at(double distance_m) const {
+Vector3d VehiclePath::at(double distance_m) const {
   for (std::size_t i = 1; i < points.size(); ++i) {
     const double piece = (points[i] - points[i - 1]).norm();
     if (distance_m <= piece) return points[i - 1] + (points[i] - points[i - 1]) * (distance_m / piece);
@@ -46,7 +46,7 @@ Vector3d Trajectory::at(double distance_m) const {
   return points.back();
 }
 
-Vector3d Trajectory::heading(double distance_m) const {
+Vector3d VehiclePath::heading(double distance_m) const {
   // Over a wheelbase, so that a bend of the path does not turn the vehicle at once.
   const double half = 1.4;
   const double whole = length();
@@ -55,7 +55,7 @@ Vector3d Trajectory::heading(double distance_m) const {
   return along.normalized();
 }
 
-ScanPattern profiler_pattern(const Trajectory& trajectory, const std::vector<double>& head_turns_rad,
+ScanPattern profiler_pattern(const VehiclePath& trajectory, const std::vector<double>& head_turns_rad,
                              std::size_t pulses) {
   constexpr double kSpeed = 5.0;          // m/s
   constexpr double kStart = 381000.0;     // seconds of the GPS week

@@ -74,7 +74,7 @@ ScanPattern station_pattern(const Rigid3& scene_from_scanner, std::size_t pulses
                             const FieldOfView& view = {});
 
 /// A vehicle's path: points in the scene's frame, straight in between, driven at constant speed.
-struct Trajectory {
+struct VehiclePath {
   std::vector<Vector3d> points;
   [[nodiscard]] double length() const;
   /// Place and heading (unit, horizontal) after `distance_m`.
@@ -85,7 +85,7 @@ struct Trajectory {
 /// Profilers on a vehicle: each head turns full circles in an upright plane, turned by its angle about the
 /// vertical from the plane across the path. About `pulses` in all; profiles as far apart as pulses at 10 m.
 /// The lines of the first head come first, then those of the second, which drives along at the same time.
-ScanPattern profiler_pattern(const Trajectory& trajectory, const std::vector<double>& head_turns_rad,
+ScanPattern profiler_pattern(const VehiclePath& trajectory, const std::vector<double>& head_turns_rad,
                              std::size_t pulses);
 
 }  // namespace limen

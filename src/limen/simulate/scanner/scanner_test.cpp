@@ -163,7 +163,7 @@ TEST(Scanner, AStationCoversItsRasterOnce) {
 }
 
 TEST(Scanner, AProfilerDrivesItsPathAndTurnsInItsPlane) {
-  const Trajectory path{{{0.0, 0.0, 2.0}, {30.0, 0.0, 2.0}}};
+  const VehiclePath path{{{0.0, 0.0, 2.0}, {30.0, 0.0, 2.0}}};
   EXPECT_DOUBLE_EQ(path.length(), 30.0);
   for (const double turn : {0.0, radians(45.0)}) {
     const ScanPattern pattern = profiler_pattern(path, {turn}, 50000);
@@ -179,7 +179,7 @@ TEST(Scanner, AProfilerDrivesItsPathAndTurnsInItsPlane) {
 }
 
 TEST(Scanner, TwoHeadsDriveTheSamePathAtTheSameTime) {
-  const Trajectory path{{{0.0, 0.0, 2.0}, {30.0, 0.0, 2.0}}};
+  const VehiclePath path{{{0.0, 0.0, 2.0}, {30.0, 0.0, 2.0}}};
   const ScanPattern pattern = profiler_pattern(path, {radians(45.0), radians(-45.0)}, 50000);
   ASSERT_EQ(pattern.lines % 2, 0U);
   const std::size_t second = pattern.lines / 2;

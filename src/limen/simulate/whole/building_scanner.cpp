@@ -66,7 +66,7 @@ ScannedBuilding BuildingScanner::station(const std::string& name, const StationP
   return counted(std::move(made), result);
 }
 
-ScannedBuilding BuildingScanner::pass(const std::string& name, const Trajectory& path, std::size_t points,
+ScannedBuilding BuildingScanner::pass(const std::string& name, const VehiclePath& path, std::size_t points,
                                       const PassDrift& wanted, const ScannerOptions& scanner,
                                       std::uint64_t seed) {
   RandomStream random(seed, 1);

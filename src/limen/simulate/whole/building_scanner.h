@@ -39,7 +39,7 @@ class BuildingScanner {
   ScannedBuilding station(const std::string& name, const StationPlace& place, const ScanStyle& style,
                           std::uint64_t seed);
   /// A drive along a path: about `points`, in the world's frame, with a slow error.
-  ScannedBuilding pass(const std::string& name, const Trajectory& path, std::size_t points,
+  ScannedBuilding pass(const std::string& name, const VehiclePath& path, std::size_t points,
                        const PassDrift& drift, const ScannerOptions& scanner, std::uint64_t seed);
   /// Of all scans so far, in their order.
   [[nodiscard]] std::vector<SharedSurface> shared() const { return counter_.shared(); }

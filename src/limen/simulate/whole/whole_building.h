@@ -24,7 +24,7 @@ struct StationWish {
 struct WholeBuilding {
   World world;  ///< building 0 is the one that is scanned
   std::vector<StationWish> wishes;
-  std::vector<Trajectory> passes;
+  std::vector<VehiclePath> passes;
   std::vector<ProjectRoom> rooms;
   std::vector<double> head_turns_rad = {0.0};
 };

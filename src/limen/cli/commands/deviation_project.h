@@ -1,0 +1,32 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "limen/cli/inputs/issue_file.h"
+#include "limen/deviation/deviation.h"
+
+namespace limen {
+
+/// What the user says of measuring a whole project.
+struct ProjectDeviation {
+  std::string project;              ///< project.json
+  std::vector<std::string> models;  ///< empty: those of the project
+  std::string folder;
+  std::string memory;
+  bool force = false;
+  int cloud_points = 3'000'000;
+  double colour_limit_m = 0.05;
+  DeviationOptions measuring;
+  IssueChoice issues;
+};
+
+/// Whether a file is the project.json of `limen project`, by its name.
+bool names_project(const std::string& path);
+
+/// Measures every scan that stands registered in a project's frame against its models, one scan at a time.
+int run_project_deviation(const ProjectDeviation& command, const Session& session);
+
+}  // namespace limen

@@ -1,0 +1,52 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/cli/inputs/issue_file.h"
+
+#include <ctime>
+
+#include <fmt/format.h>
+#include <sys/stat.h>
+
+#include "limen/bim/ifc/read_ifc.h"
+#include "limen/files/mapped_file.h"
+
+namespace limen {
+
+void add_issue_options(CommandLine& command, IssueChoice& choice) {
+  command
+      .add_option(
+          "--bcf", choice.file,
+          "Write issues for building modellers: BCF 2.1 with what is missing, moved, or not in the model")
+      ->type_name("FILE");
+  add_length_option(command, "--moved-m", choice.options.moved_m,
+                    "An element that stands elsewhere by more is told as moved (default 0.015, LOA30)");
+  add_length_option(command, "--matter-m", choice.options.matter_m,
+                    "Matter not in the model is an issue from this length on (default 0.5)");
+}
+
+IssueModel issue_model(const std::string& path, const BimModel& model, const Rigid3& world_from_elements) {
+  IssueModel issue;
+  issue.file = std::filesystem::path(path).filename().string();
+  issue.file_from_elements = world_from_elements;
+  if (!model.georeferenced) return issue;
+  const MappedFile file(path);
+  const std::optional<MapConversion> map = map_of_ifc(file.bytes(), path);
+  if (!map) return issue;
+  Rigid3 map_from_file;
+  map_from_file.rotation << map->cosine, -map->sine, 0.0, map->sine, map->cosine, 0.0, 0.0, 0.0, 1.0;
+  map_from_file.translation = map->shift_m;
+  issue.file_from_elements = inverse(map_from_file) * world_from_elements;
+  issue.scale = map->scale;
+  return issue;
+}
+
+std::string date_of_file(const std::filesystem::path& path) {
+  struct stat status = {};
+  std::tm parts = {};
+  const std::time_t time = ::stat(path.c_str(), &status) == 0 ? status.st_mtime : 0;
+  ::gmtime_r(&time, &parts);
+  return fmt::format("{:04}-{:02}-{:02}T{:02}:{:02}:{:02}Z", parts.tm_year + 1900, parts.tm_mon + 1,
+                     parts.tm_mday, parts.tm_hour, parts.tm_min, parts.tm_sec);
+}
+
+}  // namespace limen

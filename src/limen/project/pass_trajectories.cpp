@@ -1,0 +1,41 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/project/pass_trajectories.h"
+
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "limen/files/file_hash.h"
+
+namespace limen {
+
+Trajectories read_trajectories(const ToldTrajectories& told) {
+  Trajectories all;
+  for (const std::string& file : told.files)
+    all.push_back(std::make_shared<const Trajectory>(read_trajectory(file, told.reading)));
+  return all;
+}
+
+std::string key_of(const ToldTrajectories& told) {
+  if (told.files.empty()) return {};
+  std::string key;
+  for (const std::string& file : told.files) key += sha256_of_file(file) + " ";
+  for (const std::string& column : told.reading.columns) key += column + ",";
+  const Vector3d& arm = told.reading.lever_arm_m;
+  return key + fmt::format("{} {} {} {} {}", told.reading.utm_zone, told.reading.time_offset_s, arm.x(),
+                           arm.y(), arm.z());
+}
+
+Scan along_trajectory(Scan scan, const Trajectories& trajectories, std::vector<std::string>& notes) {
+  const Trajectory* trajectory = covering_trajectory(scan, trajectories);
+  if (trajectory == nullptr) return scan;
+  FollowedScan followed = with_trajectory(scan, *trajectory);
+  notes.push_back(fmt::format("{} was measured along {}", scan.name, trajectory->name()));
+  if (followed.left_out > 0)
+    notes.push_back(
+        fmt::format("{} points at times that the trajectory does not cover are left out", followed.left_out));
+  return std::move(followed.scan);
+}
+
+}  // namespace limen

@@ -1,0 +1,29 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "limen/io/trajectory/read_trajectory.h"
+
+namespace limen {
+
+/// Trajectories along which passes were measured, and how their files are to be read.
+struct ToldTrajectories {
+  std::vector<std::string> files;
+  TrajectoryOptions reading;
+};
+
+using Trajectories = std::vector<std::shared_ptr<const Trajectory>>;
+Trajectories read_trajectories(const ToldTrajectories& told);
+
+/// What tells trajectories and how they were read from all others; empty where there are none.
+std::string key_of(const ToldTrajectories& told);
+
+/// The scan with the places of its scanner along the trajectory that covers it, as it was where none does;
+/// `notes` tells which it was.
+Scan along_trajectory(Scan scan, const Trajectories& trajectories, std::vector<std::string>& notes);
+
+}  // namespace limen
