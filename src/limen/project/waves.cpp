@@ -59,10 +59,14 @@ class Waves {
     }
     PairList next = partners_by_place(solved, held, done);
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
-      if (held[i] > 0) continue;
+      // A room whose scans hold one another may still stand apart from the rest.
+      const int own = solved.nodes[i].component;
+      if (held[i] > 0 && own == 0) continue;
       for (std::size_t k = 0; k < std::min(partners, ranked[i].size()); ++k) {
-        const std::pair pair(std::max(i, ranked[i][k]), std::min(i, ranked[i][k]));
-        if (done.insert(pair).second) next.push_back(pair);
+        const std::size_t partner = ranked[i][k];
+        if (held[i] > 0 && solved.nodes[partner].component == own) continue;
+        if (done.emplace(std::max(i, partner), std::min(i, partner)).second)
+          next.emplace_back(std::max(i, partner), std::min(i, partner));
       }
     }
     return next;

@@ -126,7 +126,34 @@ class RivalSearch {
     if (!firm) question.rival.insert(question.rival.end(), open_rivals.begin(), open_rivals.end());
     const std::size_t present = views_.independent(question.current, moved).size();
     const std::size_t other = views_.independent(question.rival, moved).size();
+    if (present == 0 && !follow_together(moved, movement)) return;
     if (kClearLead * other > present || present == 0) questions.push_back(std::move(question));
+  }
+
+  /// Links that could follow a movement each by itself, by what is known of them, may not do so all together.
+  [[nodiscard]] bool follow_together(const std::vector<bool>& moved, const Rigid3& movement) const {
+    double more = 0.0;
+    for (std::size_t k = 0; k < graph_.links.size(); ++k) {
+      const GraphLink& link = graph_.links[k];
+      const bool source = moved[static_cast<std::size_t>(link.source)];
+      if (accepted_.pose[k] < 0 || source == moved[static_cast<std::size_t>(link.target)]) continue;
+      const Rigid3 before = at(link.target);
+      const Rigid3 now = inverse(before) * at(link.source);
+      const Rigid3 then = source ? inverse(before) * movement * at(link.source)
+                                 : inverse(movement * before) * at(link.source);
+      more += least_miss(link, then) - least_miss(link, now);
+    }
+    return more <= kChiSquareBound;
+  }
+
+  /// Of the poses that are possible, with mild deviations: those of one pass err alike.
+  [[nodiscard]] static double least_miss(const GraphLink& link, const Rigid3& predicted) {
+    double least = std::numeric_limits<double>::infinity();
+    for (const LinkPose& pose : link.poses) {
+      least = std::min(least, chi_square(misfit(pose, predicted), kMildRival * pose.covariance));
+      if (link.trust <= LinkTrust::likely) break;
+    }
+    return least;
   }
 
   /// Nodes that would move, and nodes that would stay.

@@ -124,6 +124,38 @@ TEST(SolveGraph, APoseWithinWhatIsKnownOfItsLinkIsNoOtherPlace) {
   }
 }
 
+/// Each of many links to a pass may leave a decimetre open, all together do not.
+TEST(SolveGraph, WhatNoSingleLinkForbidsAllForbidTogether) {
+  for (const int stations : {1, 8}) {
+    PoseGraph graph;
+    graph.nodes = stations + 1;
+    RandomStream random(3, 1);
+    std::vector<Rigid3> truth(static_cast<std::size_t>(graph.nodes));
+    for (int k = 0; k < stations; ++k) truth[static_cast<std::size_t>(k)] = random_pose(random, 8.0);
+    const auto between = [&](int source, int target) {
+      return inverse(truth[static_cast<std::size_t>(target)]) * truth[static_cast<std::size_t>(source)];
+    };
+    const auto add = [&](int source, int target, double loose) -> GraphLink& {
+      GraphLink link;
+      link.source = source;
+      link.target = target;
+      link.poses = {measured_pose(between(source, target), 20.0, random)};
+      link.poses.front().covariance *= loose;
+      graph.links.push_back(link);
+      return graph.links.back();
+    };
+    for (int k = 1; k < stations; ++k) add(k, k - 1, 1.0);
+    for (int k = 0; k < stations; ++k) add(stations, k, 25.0);
+    GraphLink& open = graph.links.back();
+    open.trust = LinkTrust::open;
+    LinkPose slipped = open.poses.front();
+    slipped.target_from_source.translation += Vector3d(0.15, 0.0, 0.0);
+    slipped.covariance /= 25.0;
+    open.poses.push_back(slipped);
+    EXPECT_EQ(solve_graph(graph).questions.empty(), stations > 1) << stations;
+  }
+}
+
 /// Two rooms alike, scanned three times each, and a corridor that sees both: each pair of scans of different
 /// rooms is taken for one room, and all these false links agree with one another.
 TEST(SolveGraph, TwinRoomsLinkedWronglyAreNeverRegisteredBoth) {
