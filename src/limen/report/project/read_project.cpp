@@ -71,7 +71,9 @@ double sigma_of(const Json& scan) {
   if (!scan.contains("correction")) return sigma;
   double squares = 0.0;
   const Json& knots = scan["correction"].at("knots");
-  for (const Json& knot : knots) squares += std::pow(largest_of(knot.at("moved_sigma_m")), 2);
+  for (const Json& knot : knots) {
+    if (knot.contains("moved_sigma_m")) squares += std::pow(largest_of(knot["moved_sigma_m"]), 2);
+  }
   return std::hypot(sigma, std::sqrt(squares / static_cast<double>(std::max<std::size_t>(1, knots.size()))));
 }
 
