@@ -126,7 +126,7 @@ class RivalSearch {
     if (!firm) question.rival.insert(question.rival.end(), open_rivals.begin(), open_rivals.end());
     const std::size_t present = views_.independent(question.current, moved).size();
     const std::size_t other = views_.independent(question.rival, moved).size();
-    if (present == 0 && !follow_together(moved, movement)) return;
+    if (present == 0 && other == 0 && !follow_together(moved, movement)) return;
     if (kClearLead * other > present || present == 0) questions.push_back(std::move(question));
   }
 
