@@ -23,6 +23,7 @@
 #include <unistd.h>
 
 #include "limen/base/error.h"
+#include "limen/base/start_program.h"
 #include "limen/base/text.h"
 
 extern char** environ;
@@ -132,9 +133,7 @@ pid_t start(const fs::path& program, const std::vector<std::string>& arguments, 
             const Bounds& bounds) {
   std::vector<std::string> words{program.string()};
   words.insert(words.end(), arguments.begin(), arguments.end());
-  std::vector<char*> pointers;
-  for (std::string& word : words) pointers.push_back(word.data());
-  pointers.push_back(nullptr);
+  const std::vector<char*> pointers = exec_pointers(words);
   const pid_t parent = getpid();
   const pid_t id = fork();
   if (id < 0) cannot_start(reason_of(errno));

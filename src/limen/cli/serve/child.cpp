@@ -6,7 +6,6 @@
 #include <array>
 #include <cerrno>
 #include <csignal>
-#include <cstdlib>
 #include <string_view>
 
 #include <fcntl.h>
@@ -16,6 +15,7 @@
 #include <unistd.h>
 
 #include "limen/base/error.h"
+#include "limen/base/start_program.h"
 #include "limen/base/text.h"
 #include "limen/cli/terminal/progress_pipe.h"
 #include "limen/files/text_numbers.h"
@@ -51,13 +51,6 @@ struct Pipe {
   }
 };
 
-std::vector<char*> pointers_to(std::vector<std::string>& texts) {
-  std::vector<char*> pointers;
-  for (std::string& text : texts) pointers.push_back(text.data());
-  pointers.push_back(nullptr);
-  return pointers;
-}
-
 std::vector<std::string> environment_with_progress() {
   std::vector<std::string> all;
   const std::string own = std::string(kProgressVariable) + "=";
@@ -66,12 +59,6 @@ std::vector<std::string> environment_with_progress() {
   }
   all.push_back(fmt::format("{}{}", own, STDERR_FILENO + 1));
   return all;
-}
-
-/// Where this program lies; a start through a loader of its own says so (see scripts/bundle).
-std::string own_program() {
-  const char* told = std::getenv("LIMEN_PROGRAM_FILE");
-  return told != nullptr && *told == '/' ? told : "/proc/self/exe";
 }
 
 /// In the child. Calls only what may be called after a fork of a process with threads.
@@ -115,9 +102,10 @@ Child::Child(const std::vector<std::string>& arguments, const std::filesystem::p
   std::vector<std::string> words = {"limen"};
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<std::string> environment = environment_with_progress();
-  const std::vector<char*> word_pointers = pointers_to(words);
-  const std::vector<char*> environment_pointers = pointers_to(environment);
-  const std::string program = own_program();
+  const std::vector<char*> word_pointers = exec_pointers(words);
+  const std::vector<char*> environment_pointers = exec_pointers(environment);
+  const char* starter = program_starter();
+  const char* program = starter != nullptr ? starter : "/proc/self/exe";
   Pipe output;
   Pipe progress;
   output_ = output.read;
@@ -125,8 +113,8 @@ Child::Child(const std::vector<std::string>& arguments, const std::filesystem::p
   const pid_t parent = getpid();
   id_ = fork();
   if (id_ == 0)
-    become_limen(program.c_str(), word_pointers.data(), environment_pointers.data(), folder.c_str(),
-                 output.write, progress.write, parent);
+    become_limen(program, word_pointers.data(), environment_pointers.data(), folder.c_str(), output.write,
+                 progress.write, parent);
   close_end(output.write);
   close_end(progress.write);
   if (id_ < 0) {

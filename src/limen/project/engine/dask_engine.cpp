@@ -13,6 +13,7 @@
 
 #include "limen/base/error.h"
 #include "limen/base/parallel.h"
+#include "limen/base/start_program.h"
 #include "limen/project/engine/helper_process.h"
 #include "limen/project/engine/job_engine.h"
 
@@ -22,10 +23,8 @@ namespace {
 namespace fs = std::filesystem;
 using Line = nlohmann::json;
 
-/// A starter that takes the program through a loader of its own names itself (scripts/bundle).
 fs::path own_program() {
-  const char* starter = std::getenv("LIMEN_PROGRAM_FILE");
-  if (starter != nullptr && *starter == '/') return starter;
+  if (const char* starter = program_starter()) return starter;
   std::error_code ignored;
   return fs::read_symlink("/proc/self/exe", ignored);
 }

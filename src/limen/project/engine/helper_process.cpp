@@ -16,6 +16,7 @@
 #include <unistd.h>
 
 #include "limen/base/error.h"
+#include "limen/base/start_program.h"
 #include "limen/base/text.h"
 
 namespace limen {
@@ -39,9 +40,7 @@ namespace {
 
 HelperProcess::HelperProcess(const std::vector<std::string>& command, const std::string& log) {
   std::vector<std::string> words = command;
-  std::vector<char*> pointers;
-  for (std::string& word : words) pointers.push_back(word.data());
-  pointers.push_back(nullptr);
+  const std::vector<char*> pointers = exec_pointers(words);
   std::array<int, 2> ends{};
   if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0) helper_fails(command.front());
   const int errors = open(log.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666);

@@ -24,6 +24,7 @@
 
 #include "limen/base/atomic_file.h"
 #include "limen/base/error.h"
+#include "limen/base/start_program.h"
 
 namespace limen {
 namespace {
@@ -95,9 +96,7 @@ std::vector<std::string> words_for(const fs::path& browser, const fs::path& page
 
 /// Starts it in a group of processes of its own, silent.
 pid_t start_browser(std::vector<std::string> words) {
-  std::vector<char*> pointers;
-  for (std::string& word : words) pointers.push_back(word.data());
-  pointers.push_back(nullptr);
+  const std::vector<char*> pointers = exec_pointers(words);
   posix_spawn_file_actions_t actions;
   posix_spawnattr_t attributes;
   posix_spawn_file_actions_init(&actions);
