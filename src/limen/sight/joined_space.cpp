@@ -55,4 +55,23 @@ void JoinedSpace::look_all(std::span<const SightQuery> queries, std::span<Sight>
   }
 }
 
+void JoinedSpace::look_at_surface(const SurfaceColumns& asked, std::size_t begin, std::size_t size,
+                                  const Rigid3& view_from_scan, const LookTolerances& tolerances,
+                                  Looks& looks) const {
+  const auto sight_of = [](const Looks& all, std::size_t k) {
+    return Sight{static_cast<SightKind>(all.kind[k]), -1, static_cast<double>(all.distance_m[k])};
+  };
+  std::fill_n(looks.kind.begin(), size, static_cast<std::int32_t>(SightKind::unseen));
+  std::fill_n(looks.distance_m.begin(), size, 0.0F);
+  Looks of_member;
+  for (const Member& member : members_) {
+    member.view->look_at_surface(asked, begin, size, view_from_scan, tolerances, of_member);
+    for (std::size_t k = 0; k < size; ++k) {
+      if (!stands_before(sight_of(of_member, k), sight_of(looks, k))) continue;
+      looks.kind[k] = of_member.kind[k];
+      looks.distance_m[k] = of_member.distance_m[k];
+    }
+  }
+}
+
 }  // namespace limen

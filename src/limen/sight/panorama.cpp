@@ -15,11 +15,24 @@ namespace {
 
 constexpr double kPointsPerPixel = 2.0;
 
+std::vector<PanoramaFacet> seen_from(const Vector3d& centre, const std::vector<Facet>& facets) {
+  std::vector<PanoramaFacet> seen;
+  seen.reserve(facets.size() + 1);
+  for (const Facet& facet : facets) {
+    const Eigen::Vector3f normal = facet.plane.normal.cast<float>();
+    seen.push_back({{normal.x(), normal.y(), normal.z()},
+                    static_cast<float>(-facet.plane.signed_distance(centre)),
+                    facet.oriented ? 1.0F : 0.0F});
+  }
+  seen.emplace_back();
+  return seen;
+}
+
 }  // namespace
 
 Panorama::Panorama(const Scan& scan, const std::vector<std::int32_t>& labels, const Features& features,
                    const Vector3d& centre)
-    : facets_(facets_of(features)), centre_(centre) {
+    : facets_(facets_of(features)), seen_facets_(seen_from(centre, facets_)), centre_(centre) {
   const double wanted = std::sqrt(static_cast<double>(scan.size()) / (6.0 * kPointsPerPixel));
   edge_ = static_cast<std::size_t>(std::clamp(wanted, 24.0, 384.0));
   pixels_.resize(6 * edge_ * edge_);
@@ -28,7 +41,10 @@ Panorama::Panorama(const Scan& scan, const std::vector<std::int32_t>& labels, co
 }
 
 Panorama::Panorama(const PanoramaState& state, const Features& features)
-    : facets_(facets_of(features)), centre_(state.centre), edge_(state.edge) {
+    : facets_(facets_of(features)),
+      seen_facets_(seen_from(state.centre, facets_)),
+      centre_(state.centre),
+      edge_(state.edge) {
   const std::size_t count = state.near_m.size();
   const auto is_plane = [&](std::int32_t plane) {
     return plane >= -1 && plane < static_cast<std::int32_t>(facets_.size());
@@ -49,7 +65,7 @@ PanoramaState Panorama::state() const {
   PanoramaState state;
   state.centre = centre_;
   state.edge = edge_;
-  for (const Pixel& pixel : pixels_) {
+  for (const PanoramaPixel& pixel : pixels_) {
     state.near_m.push_back(pixel.near_m);
     state.far_m.push_back(pixel.far_m);
     state.near_plane.push_back(pixel.near_plane);
@@ -90,7 +106,7 @@ void Panorama::fill(const Scan& scan, const std::vector<std::int32_t>& labels) {
     const Vector3d ray = scan.points[i] - centre_;
     const auto range = static_cast<float>(ray.norm());
     if (!(range > 0.01F)) continue;
-    Pixel& pixel = pixels_[pixel_at(ray)];
+    PanoramaPixel& pixel = pixels_[pixel_at(ray)];
     if (pixel.near_m == 0.0F || range < pixel.near_m) {
       pixel.near_m = range;
       pixel.near_plane = labels[i];
@@ -122,7 +138,8 @@ void Panorama::erode() {
   });
 }
 
-bool Panorama::on_surface(const SightQuery& query, double range, const Pixel& pixel, Sight& sight) const {
+bool Panorama::on_surface(const SightQuery& query, double range, const PanoramaPixel& pixel,
+                          Sight& sight) const {
   const auto test = [&](float measured, std::int32_t plane) {
     const double off = range - static_cast<double>(measured);
     if (plane < 0) {
@@ -141,7 +158,7 @@ bool Panorama::on_surface(const SightQuery& query, double range, const Pixel& pi
          (pixel.far_plane != pixel.near_plane && test(pixel.far_m, pixel.far_plane));
 }
 
-Sight Panorama::look_at(const SightQuery& query, double range, const Pixel& pixel) const {
+Sight Panorama::look_at(const SightQuery& query, double range, const PanoramaPixel& pixel) const {
   Sight sight;
   if (range < 0.05) return {SightKind::free, -1, 0.0};
   if (pixel.clear_m == 0.0F) return sight;
@@ -157,7 +174,7 @@ Sight Panorama::look(const SightQuery& query) const {
 }
 
 void Panorama::look_all(std::span<const SightQuery> queries, std::span<Sight> sights) const {
-  std::array<const Pixel*, kSightBatch> pixels;
+  std::array<const PanoramaPixel*, kSightBatch> pixels;
   std::array<double, kSightBatch> ranges;
   for (std::size_t k = 0; k < queries.size(); ++k) {
     const Vector3d ray = queries[k].at - centre_;
@@ -167,6 +184,27 @@ void Panorama::look_all(std::span<const SightQuery> queries, std::span<Sight> si
     __builtin_prefetch(&pixels[k]->far_plane);  // a pixel may lie across two lines of the cache
   }
   for (std::size_t k = 0; k < queries.size(); ++k) sights[k] = look_at(queries[k], ranges[k], *pixels[k]);
+}
+
+void Panorama::look_at_surface(const SurfaceColumns& asked, std::size_t begin, std::size_t size,
+                               const Rigid3& view_from_scan, const LookTolerances& tolerances,
+                               Looks& looks) const {
+  PanoramaLook look;
+  look.pixels = pixels_.data();
+  look.facets = seen_facets_.data();
+  look.edge = static_cast<std::int32_t>(edge_);
+  const Vector3d shift = view_from_scan.translation - centre_;
+  for (std::size_t row = 0; row < 3; ++row) {
+    const auto i = static_cast<Eigen::Index>(row);
+    for (std::size_t column = 0; column < 3; ++column)
+      look.rotation[3 * row + column] =
+          static_cast<float>(view_from_scan.rotation(i, static_cast<Eigen::Index>(column)));
+    look.shift[row] = static_cast<float>(shift[i]);
+  }
+  look.surface_m = static_cast<float>(tolerances.surface_m);
+  look.clutter_m = static_cast<float>(tolerances.clutter_m);
+  look.free_m = static_cast<float>(tolerances.free_m);
+  limen::look_at_surface(look, asked, begin, size, looks);
 }
 
 }  // namespace limen

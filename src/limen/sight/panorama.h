@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "limen/sight/panorama_look.h"
 #include "limen/sight/space_view.h"
 
 namespace limen {
@@ -32,28 +33,24 @@ class Panorama : public SpaceView {
   [[nodiscard]] PanoramaState state() const;
   [[nodiscard]] Sight look(const SightQuery& query) const override;
   void look_all(std::span<const SightQuery> queries, std::span<Sight> sights) const override;
+  void look_at_surface(const SurfaceColumns& asked, std::size_t begin, std::size_t size,
+                       const Rigid3& view_from_scan, const LookTolerances& tolerances,
+                       Looks& looks) const override;
   [[nodiscard]] const Vector3d& centre() const { return centre_; }
 
  private:
-  struct Pixel {
-    float near_m = 0.0F;  ///< closest return; 0: none
-    float far_m = 0.0F;
-    float clear_m = 0.0F;  ///< closest return of the 3 x 3 pixels around: rays passed freely up to here
-    std::int32_t near_plane = -1;
-    std::int32_t far_plane = -1;
-  };
-
   [[nodiscard]] std::size_t pixel_at(const Vector3d& direction) const;
-  [[nodiscard]] Sight look_at(const SightQuery& query, double range, const Pixel& pixel) const;
+  [[nodiscard]] Sight look_at(const SightQuery& query, double range, const PanoramaPixel& pixel) const;
   void fill(const Scan& scan, const std::vector<std::int32_t>& labels);
   void erode();
-  [[nodiscard]] bool on_surface(const SightQuery& query, double range, const Pixel& pixel,
+  [[nodiscard]] bool on_surface(const SightQuery& query, double range, const PanoramaPixel& pixel,
                                 Sight& sight) const;
 
   std::vector<Facet> facets_;
+  std::vector<PanoramaFacet> seen_facets_;  ///< the same from the centre; one more, so that there is one
   Vector3d centre_;
   std::size_t edge_ = 0;  ///< pixels per cube edge
-  std::vector<Pixel> pixels_;
+  std::vector<PanoramaPixel> pixels_;
 };
 
 }  // namespace limen

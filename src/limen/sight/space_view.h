@@ -9,7 +9,9 @@
 #include <span>
 #include <vector>
 
+#include "limen/geometry/rigid.h"
 #include "limen/model/features.h"
+#include "limen/sight/surface_columns.h"
 
 namespace limen {
 
@@ -55,6 +57,11 @@ class SpaceView {
   virtual void look_all(std::span<const SightQuery> queries, std::span<Sight> sights) const {
     for (std::size_t k = 0; k < queries.size(); ++k) sights[k] = look(queries[k]);
   }
+  /// Looks at the pieces [begin, begin + size) of another scan's surface, at most kLookBatch, where
+  /// `view_from_scan` lays them.
+  virtual void look_at_surface(const SurfaceColumns& asked, std::size_t begin, std::size_t size,
+                               const Rigid3& view_from_scan, const LookTolerances& tolerances,
+                               Looks& looks) const;
 };
 
 /// A plane as a view of space needs it.

@@ -11,7 +11,7 @@
 #include "limen/base/progress.h"
 #include "limen/match/openings/match_openings.h"
 #include "limen/register/prepare/asked_samples.h"
-#include "limen/sight/ask_in_batches.h"
+#include "limen/sight/surface_columns.h"
 
 namespace limen {
 namespace {
@@ -20,79 +20,60 @@ constexpr double kClutterWeight = 0.5;  // clutter moves, and its cubes meet les
 
 /// What the judge's scanner says to one sample of the other scan.
 struct Answer {
-  Sight sight;
+  SightKind kind = SightKind::unseen;
   double area_m2 = 0.0;
   double gain_m2 = 0.0;  // agreeing surface, 1 - d^2 / t^2 of the area
-  bool planar = false;
 
-  [[nodiscard]] double contradicted_m2() const { return sight.kind == SightKind::free ? area_m2 : 0.0; }
-  [[nodiscard]] double value() const { return gain_m2 - kContradictionWeight * contradicted_m2(); }
+  [[nodiscard]] double contradicted_m2() const { return kind == SightKind::free ? area_m2 : 0.0; }
 };
 
 /// What is asked of one scan, gathered: the samples that a look asks lie far apart in memory.
 struct Gathered {
-  std::vector<SurfaceSample> samples;
-  std::vector<char> oriented;  ///< whether the sign of the sample's normal counts
-  double factor = 1.0;         ///< surface that each stands for, as a multiple of its own
+  SurfaceColumns columns;
+  std::vector<std::int32_t> planes;  ///< of each sample, or -1
+  std::vector<float> areas_m2;       ///< clutter's weighed
+  double factor = 1.0;               ///< surface that each stands for, as a multiple of its own
 };
 
 Gathered gathered(const ScanView& scan, const AskedSamples& asked) {
   Gathered all;
   all.factor = asked.factor;
-  all.samples.reserve(asked.indices.size());
-  all.oriented.reserve(asked.indices.size());
+  all.columns.reserve(asked.indices.size());
+  all.planes.reserve(asked.indices.size());
+  all.areas_m2.reserve(asked.indices.size());
   for (const std::uint32_t i : asked.indices) {
     const SurfaceSample& sample = scan.features->samples[i];
-    all.samples.push_back(sample);
-    all.oriented.push_back(static_cast<char>(
-        sample.plane >= 0 && scan.features->planes[static_cast<std::size_t>(sample.plane)].oriented));
+    const bool planar = sample.plane >= 0;
+    all.columns.add(sample, planar && scan.features->planes[static_cast<std::size_t>(sample.plane)].oriented);
+    all.planes.push_back(planar ? sample.plane : -1);
+    all.areas_m2.push_back(planar ? sample.area_m2 : static_cast<float>(kClutterWeight) * sample.area_m2);
   }
   return all;
 }
 
-/// The product, written out: it is made millions of times.
-Vector3d turned(const Matrix3d& rotation, const Vector3d& x) {
-  return {rotation(0, 0) * x[0] + rotation(0, 1) * x[1] + rotation(0, 2) * x[2],
-          rotation(1, 0) * x[0] + rotation(1, 1) * x[1] + rotation(1, 2) * x[2],
-          rotation(2, 0) * x[0] + rotation(2, 1) * x[1] + rotation(2, 2) * x[2]};
-}
-
-/// What `all` asks of a scanner about its k-th sample.
-SightQuery question(const Gathered& all, std::size_t k, const Rigid3& judge_from_scan,
-                    const ScoreOptions& options) {
-  const SurfaceSample& sample = all.samples[k];
-  const bool planar = sample.plane >= 0;
-  SightQuery query;
-  query.free_m = options.free_m;
-  query.at = turned(judge_from_scan.rotation, sample.mean) + judge_from_scan.translation;
-  if (planar) query.normal = turned(judge_from_scan.rotation, sample.normal);
-  query.oriented = all.oriented[k] != 0;
-  query.surface_m = planar ? options.surface_m : 1.5 * options.surface_m;
-  return query;
-}
-
-Answer answer_of(const SurfaceSample& sample, const SightQuery& query, const Sight& sight) {
-  Answer answer;
-  answer.planar = sample.plane >= 0;
-  answer.sight = sight;
-  answer.area_m2 = static_cast<double>(sample.area_m2) * (answer.planar ? 1.0 : kClutterWeight);
-  if (sight.kind == SightKind::surface) {
-    const double off = sight.distance_m / query.surface_m;
-    answer.gain_m2 = answer.area_m2 * (1.0 - off * off);
-  }
-  return answer;
-}
-
-/// Asks `judge` about all of them, in order.
+/// Asks `judge` about all of them, in order: `use(k, answer)`.
 template <typename Use>
 void ask_all(const Gathered& all, const ScanView& judge, const Rigid3& judge_from_scan,
              const ScoreOptions& options, const Use& use) {
-  ask_in_batches(
-      *judge.space, all.samples.size(),
-      [&](std::size_t k) { return question(all, k, judge_from_scan, options); },
-      [&](std::size_t k, const SightQuery& query, const Sight& sight) {
-        use(all.samples[k], answer_of(all.samples[k], query, sight));
-      });
+  const LookTolerances tolerances{options.surface_m, 1.5 * options.surface_m, options.free_m};
+  const std::size_t count = all.planes.size();
+  Looks looks;
+  for (std::size_t begin = 0; begin < count; begin += kLookBatch) {
+    const std::size_t size = std::min(kLookBatch, count - begin);
+    judge.space->look_at_surface(all.columns, begin, size, judge_from_scan, tolerances, looks);
+    for (std::size_t k = 0; k < size; ++k) {
+      Answer answer;
+      answer.kind = static_cast<SightKind>(looks.kind[k]);
+      answer.area_m2 = static_cast<double>(all.areas_m2[begin + k]);
+      if (answer.kind == SightKind::surface) {
+        const bool planar = all.planes[begin + k] >= 0;
+        const double off =
+            static_cast<double>(looks.distance_m[k]) / (planar ? tolerances.surface_m : tolerances.clutter_m);
+        answer.gain_m2 = answer.area_m2 * (1.0 - off * off);
+      }
+      use(begin + k, answer);
+    }
+  }
 }
 
 /// One plane counts for no more than this, m^2, however large: that two large planes meet is one coincidence,
@@ -112,22 +93,22 @@ PoseScore one_way(const Gathered& asked, const ScanView& judge, const Rigid3& ju
   // Samples come plane by plane, clutter last.
   std::int32_t plane = -1;
   double of_plane = 0.0;
-  ask_all(asked, judge, judge_from_scan, options, [&](const SurfaceSample& sample, const Answer& answer) {
+  ask_all(asked, judge, judge_from_scan, options, [&](std::size_t k, const Answer& answer) {
     const double gain = factor * answer.gain_m2;
     score.agreeing_m2 += gain;
-    if (sample.plane != plane) {
+    if (asked.planes[k] != plane) {
       score.evidence_m2 += saturated(of_plane);
       of_plane = 0.0;
-      plane = sample.plane;
+      plane = asked.planes[k];
     }
-    if (answer.planar) {
+    if (plane >= 0) {
       score.planar_m2 += gain;
       of_plane += gain;
     } else {
       score.evidence_m2 += gain;
     }
     score.contradicted_m2 += factor * answer.contradicted_m2();
-    if (answer.sight.kind != SightKind::unseen) score.tested_m2 += factor * answer.area_m2;
+    if (answer.kind != SightKind::unseen) score.tested_m2 += factor * answer.area_m2;
   });
   score.evidence_m2 += saturated(of_plane);
   return score;
@@ -172,15 +153,15 @@ void add_contrast(const ScanView& scan, const ScanView& judge, const Rigid3& fir
   // Both ways are averaged, as in the score.
   const double share = 0.5 * asked.factor;
   std::vector<Answer> of_first;
-  of_first.reserve(asked.samples.size());
+  of_first.reserve(asked.planes.size());
   ask_all(asked, judge, first, options,
-          [&](const SurfaceSample&, const Answer& answer) { of_first.push_back(answer); });
+          [&](std::size_t, const Answer& answer) { of_first.push_back(answer); });
   std::vector<PoseContrast> planes(scan.features->planes.size());
-  std::size_t k = 0;
-  ask_all(asked, judge, second, options, [&](const SurfaceSample& sample, const Answer& in_second) {
-    const Answer& in_first = of_first[k++];
+  ask_all(asked, judge, second, options, [&](std::size_t k, const Answer& in_second) {
+    const Answer& in_first = of_first[k];
     const double agreeing = share * (in_first.gain_m2 - in_second.gain_m2);
-    add_lead(agreeing, sample.plane >= 0 ? planes[static_cast<std::size_t>(sample.plane)] : contrast);
+    const std::int32_t plane = asked.planes[k];
+    add_lead(agreeing, plane >= 0 ? planes[static_cast<std::size_t>(plane)] : contrast);
     // Matter where a ray passed is no coincidence: it counts in full.
     add_lead(share * kContradictionWeight * (in_second.contradicted_m2() - in_first.contradicted_m2()),
              contrast);
