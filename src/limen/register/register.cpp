@@ -87,16 +87,16 @@ RefineOptions refine_options(const ScanView& source, const ScanView& target, con
 /// Least squares may leave a good pose along a shift that hardly anything holds: then smaller steps are
 /// tried, and where they lead astray as well, the pose stays.
 JudgedPose refined_if_better(const ScanView& source, const ScanView& target, const Rigid3& start,
-                             const RefineOptions& options, const ScoreOptions& fine) {
+                             const RefineOptions& options, const PoseScorer& score_of) {
   const auto judged = [&](const RefineOptions& refine) {
     JudgedPose pose;
     pose.refined = refine_pose(source, target, start, refine);
-    pose.score = score_pose(source, target, pose.refined.target_from_source, fine);
+    pose.score = score_of(pose.refined.target_from_source);
     return pose;
   };
   JudgedPose pose = judged(options);
   // Clearly worse: by a little the score may fall where a pose gets better.
-  const double start_value = score_pose(source, target, start, fine).value();
+  const double start_value = score_of(start).value();
   const double before = start_value - std::max(0.3, 0.05 * start_value);
   RefineOptions careful = options;
   if (pose.score.value() < before) {
@@ -122,10 +122,11 @@ std::vector<JudgedPose> refine_all(const std::vector<PoseCandidate>& candidates,
     quick.samples = kModelRefineSamples;
     fine.samples = kSecondLook;
   }
+  const PoseScorer score_of(source, target, fine);
   std::vector<JudgedPose> judged(candidates.size());
   parallel_for(candidates.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      judged[i] = refined_if_better(source, target, candidates[i].target_from_source, quick, fine);
+      judged[i] = refined_if_better(source, target, candidates[i].target_from_source, quick, score_of);
     }
   });
   return judged;
@@ -198,10 +199,9 @@ Hypothesis to_hypothesis(const JudgedPose& pose, const PreparedPair& pair) {
 }
 
 void refine_and_score(JudgedPose& pose, const ScanView& source, const ScanView& target,
-                      const RegisterOptions& options) {
-  pose =
-      refined_if_better(source, target, pose.refined.target_from_source,
-                        refine_options(source, target, options), fine_score(source, target, options.method));
+                      const RegisterOptions& options, const PoseScorer& score_of) {
+  pose = refined_if_better(source, target, pose.refined.target_from_source,
+                           refine_options(source, target, options), score_of);
 }
 
 /// The steps along `direction` at which the surface agrees best, by a part of the samples: few are worth a
@@ -227,13 +227,12 @@ std::vector<Rigid3> best_steps(const Rigid3& start, const Vector3d& direction, c
 /// Moves a pose along the shifts its planes leave open to where the rest of the surface agrees best; tells
 /// whether it moved.
 bool settle_open_shifts(JudgedPose& pose, const ScanView& source, const ScanView& target,
-                        const RegisterOptions& options) {
+                        const RegisterOptions& options, const PoseScorer& score_of) {
   const std::vector<UnobservedFreedom> open = unobserved_freedoms(pose.refined, options.verdict.min_held_m2);
   if (open.empty()) return false;
-  ScoreOptions fine = fine_score(source, target, options.method);
-  const PoseScorer score_of(source, target, fine);
-  fine.samples = kSecondLook;
-  const PoseScorer glance(source, target, fine);
+  ScoreOptions coarse = fine_score(source, target, options.method);
+  coarse.samples = kSecondLook;
+  const PoseScorer glance(source, target, coarse);
   bool moved_at_all = false;
   for (const UnobservedFreedom& freedom : open) {
     if (freedom.rotation) return moved_at_all;
@@ -253,12 +252,14 @@ void polish(std::vector<JudgedPose>& poses, const ScanView& source, const ScanVi
             const RegisterOptions& options) {
   const std::vector<std::size_t> ranking = rank(poses, options.verdict);
   const std::size_t count = std::min<std::size_t>(kPolished, ranking.size());
+  const PoseScorer score_of(source, target, fine_score(source, target, options.method));
   parallel_for(count, 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       JudgedPose& pose = poses[ranking[k]];
-      refine_and_score(pose, source, target, options);
+      refine_and_score(pose, source, target, options, score_of);
       // A pose that slid to its place meets surface that it had missed.
-      if (settle_open_shifts(pose, source, target, options)) refine_and_score(pose, source, target, options);
+      if (settle_open_shifts(pose, source, target, options, score_of))
+        refine_and_score(pose, source, target, options, score_of);
     }
   });
 }

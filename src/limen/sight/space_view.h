@@ -40,6 +40,10 @@ struct SightQuery {
   [[nodiscard]] bool of_clutter() const { return normal.squaredNorm() < 0.25; }
 };
 
+/// What the i-th piece of `asked` asks where `view_from_scan` lays it, at `at`.
+SightQuery query_of(const SurfaceColumns& asked, std::size_t i, const Vector3d& at,
+                    const Rigid3& view_from_scan, const LookTolerances& tolerances);
+
 /// Queries of one batch, at most.
 constexpr std::size_t kSightBatch = 32;
 

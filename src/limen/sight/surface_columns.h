@@ -21,6 +21,8 @@ struct SurfaceColumns {
   std::vector<std::int32_t> planar;  // 0 for clutter
 
   [[nodiscard]] std::size_t size() const { return x.size(); }
+  [[nodiscard]] Vector3d place(std::size_t i) const { return {x[i], y[i], z[i]}; }
+  [[nodiscard]] Vector3d normal(std::size_t i) const { return {nx[i], ny[i], nz[i]}; }
   void reserve(std::size_t count);
   void add(const SurfaceSample& sample, bool oriented_plane);
 };

@@ -56,6 +56,7 @@ VoxelMap::VoxelMap(const Scan& scan, const Features& features, const VoxelMapOpt
   const Vector3d sides = extent.high - extent.low;
   const double volume = sides.prod();
   edge_ = std::max(edge_, std::cbrt(volume / static_cast<double>(options.max_cubes)));
+  per_m_ = 1.0 / edge_;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     size_[axis] = 1 + static_cast<std::int32_t>(sides[static_cast<Eigen::Index>(axis)] / edge_);
   }
@@ -74,6 +75,7 @@ VoxelMap::VoxelMap(const VoxelMapState& state, const Features& features)
       (state.free_bits.empty() || state.free_bits.size() == (static_cast<std::size_t>(told) + 7) / 8);
   if (!fits) throw Error("the map of cubes does not fit its scan", "kept features", "have them made again");
   if (told == 0.0) return;
+  per_m_ = 1.0 / edge_;
   make_blocks();
   enter(features);
   if (state.free_bits.empty()) return;
@@ -100,7 +102,7 @@ void VoxelMap::make_blocks() {
 
 VoxelMap::Key VoxelMap::key_of(const Vector3d& x) const {
   const auto cell = [&](Eigen::Index axis) {
-    const double at = std::min(std::max((x[axis] - low_[axis]) / edge_, -2.0), 1e6);
+    const double at = std::min(std::max((x[axis] - low_[axis]) * per_m_, -2.0), 1e6);
     const auto towards_zero = static_cast<std::int32_t>(at);
     return at < towards_zero ? towards_zero - 1 : towards_zero;
   };
@@ -210,12 +212,16 @@ void VoxelMap::carve_ray(const Vector3d& from, const Vector3d& to) {
 }
 
 bool VoxelMap::is_free(const Vector3d& x) const {
-  const std::int64_t index = index_of(key_of(x));
-  return index >= 0 && (free_[static_cast<std::size_t>(index) / 64] >> (index % 64) & 1U) != 0;
+  return is_free_at(index_of(key_of(x)));
+}
+
+bool VoxelMap::is_free_at(std::int64_t index) const {
+  return !free_.empty() && index >= 0 &&
+         (free_[static_cast<std::size_t>(index) / 64] >> (index % 64) & 1U) != 0;
 }
 
 bool VoxelMap::passed_freely(const SightQuery& query) const {
-  if (free_.empty() || !is_free(query.at)) return false;
+  if (!is_free(query.at)) return false;
   // A ray that grazes a surface frees the cube it stands in, but not the cubes on both sides of it.
   if (!query.of_clutter()) {
     return is_free(query.at + edge_ * query.normal) && is_free(query.at - edge_ * query.normal);
@@ -232,32 +238,55 @@ Sight VoxelMap::look(const SightQuery& query) const {
   return index_of(key) < 0 ? Sight{} : look_in(find(key), query);
 }
 
-void VoxelMap::look_all(std::span<const SightQuery> queries, std::span<Sight> sights) const {
-  // One step of the way to a cube at a time, for all queries.
+void VoxelMap::find_all(std::span<const Key> keys, std::span<const Cube*> cubes) const {
+  // One step of the way to a cube at a time, for all places: most of it is waiting for memory.
   constexpr std::size_t kNowhere = static_cast<std::size_t>(-1);
-  std::array<std::size_t, kSightBatch> at;  // of the block, then of the cube in its block
-  std::array<std::size_t, kSightBatch> within;
-  std::array<bool, kSightBatch> inside;
-  for (std::size_t k = 0; k < queries.size(); ++k) {
-    const Key key = key_of(queries[k].at);
-    inside[k] = index_of(key) >= 0;
-    at[k] = inside[k] ? block_of(key) : kNowhere;
-    within[k] = place_in_block(key);
-    if (inside[k]) __builtin_prefetch(&block_at_[at[k]]);
+  std::array<std::size_t, kLookBatch> at;  // of the block, then of the cube in its block
+  for (std::size_t k = 0; k < keys.size(); ++k) {
+    at[k] = index_of(keys[k]) >= 0 ? block_of(keys[k]) : kNowhere;
+    if (at[k] != kNowhere) __builtin_prefetch(&block_at_[at[k]]);
   }
-  for (std::size_t k = 0; k < queries.size(); ++k) {
-    const std::int32_t block = inside[k] ? block_at_[at[k]] : -1;
-    at[k] = block < 0 ? kNowhere : static_cast<std::size_t>(block) * kBlockCubes + within[k];
+  for (std::size_t k = 0; k < keys.size(); ++k) {
+    const std::int32_t block = at[k] == kNowhere ? -1 : block_at_[at[k]];
+    at[k] = block < 0 ? kNowhere : static_cast<std::size_t>(block) * kBlockCubes + place_in_block(keys[k]);
     if (block >= 0) __builtin_prefetch(&cube_at_[at[k]]);
   }
-  std::array<const Cube*, kSightBatch> cubes;
-  for (std::size_t k = 0; k < queries.size(); ++k) {
+  for (std::size_t k = 0; k < keys.size(); ++k) {
     const std::int32_t cube = at[k] == kNowhere ? -1 : cube_at_[at[k]];
     cubes[k] = cube < 0 ? nullptr : &cubes_[static_cast<std::size_t>(cube)];
     if (cube >= 0) __builtin_prefetch(cubes[k]);
   }
+}
+
+void VoxelMap::look_all(std::span<const SightQuery> queries, std::span<Sight> sights) const {
+  std::array<Key, kSightBatch> keys;
+  std::array<const Cube*, kSightBatch> cubes;
+  for (std::size_t k = 0; k < queries.size(); ++k) keys[k] = key_of(queries[k].at);
+  find_all({keys.data(), queries.size()}, {cubes.data(), queries.size()});
   for (std::size_t k = 0; k < queries.size(); ++k)
-    sights[k] = inside[k] ? look_in(cubes[k], queries[k]) : Sight{};
+    sights[k] = index_of(keys[k]) >= 0 ? look_in(cubes[k], queries[k]) : Sight{};
+}
+
+void VoxelMap::look_at_surface(const SurfaceColumns& asked, std::size_t begin, std::size_t size,
+                               const Rigid3& view_from_scan, const LookTolerances& tolerances,
+                               Looks& looks) const {
+  std::array<Vector3d, kLookBatch> places;
+  std::array<Key, kLookBatch> keys;
+  std::array<const Cube*, kLookBatch> cubes;
+  for (std::size_t k = 0; k < size; ++k) {
+    places[k] = view_from_scan * asked.place(begin + k);
+    keys[k] = key_of(places[k]);
+  }
+  find_all({keys.data(), size}, {cubes.data(), size});
+  std::fill_n(looks.kind.begin(), size, static_cast<std::int32_t>(SightKind::unseen));
+  std::fill_n(looks.distance_m.begin(), size, 0.0F);
+  for (std::size_t k = 0; k < size; ++k) {
+    // Most places lie where nothing was measured.
+    if (cubes[k] == nullptr && !is_free_at(index_of(keys[k]))) continue;
+    const Sight sight = look_in(cubes[k], query_of(asked, begin + k, places[k], view_from_scan, tolerances));
+    looks.kind[k] = static_cast<std::int32_t>(sight.kind);
+    looks.distance_m[k] = static_cast<float>(sight.distance_m);
+  }
 }
 
 Sight VoxelMap::look_in(const Cube* found, const SightQuery& query) const {

@@ -38,6 +38,9 @@ class VoxelMap : public SpaceView {
   [[nodiscard]] VoxelMapState state() const;
   [[nodiscard]] Sight look(const SightQuery& query) const override;
   void look_all(std::span<const SightQuery> queries, std::span<Sight> sights) const override;
+  void look_at_surface(const SurfaceColumns& asked, std::size_t begin, std::size_t size,
+                       const Rigid3& view_from_scan, const LookTolerances& tolerances,
+                       Looks& looks) const override;
 
  private:
   static constexpr std::size_t kPlanes = 4;
@@ -52,9 +55,12 @@ class VoxelMap : public SpaceView {
   [[nodiscard]] std::int64_t index_of(const Key& key) const;  ///< -1 outside
   [[nodiscard]] std::size_t cubes() const;                    ///< of the whole extent
   [[nodiscard]] bool is_free(const Vector3d& x) const;
+  [[nodiscard]] bool is_free_at(std::int64_t index) const;  ///< as index_of() says
   [[nodiscard]] bool passed_freely(const SightQuery& query) const;
   [[nodiscard]] std::size_t block_of(const Key& key) const;
   [[nodiscard]] const Cube* find(const Key& key) const;
+  /// The cubes of a batch of places; none where nothing was measured, or outside.
+  void find_all(std::span<const Key> keys, std::span<const Cube*> cubes) const;
   [[nodiscard]] Sight look_in(const Cube* found, const SightQuery& query) const;
   Cube& obtain(const Key& key);  ///< `key` lies inside
   void make_blocks();
@@ -64,6 +70,7 @@ class VoxelMap : public SpaceView {
 
   std::vector<Facet> facets_;
   double edge_ = 0.25;
+  double per_m_ = 4.0;  ///< cubes
   Vector3d low_ = Vector3d::Zero();
   Key size_{0, 0, 0};
   // Cubes with surface, found by blocks of 8 x 8 x 8: few of them hold any.

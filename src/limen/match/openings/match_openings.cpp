@@ -22,25 +22,29 @@ constexpr double kSplaySigmaM = 0.05;   // how much wider an opening may be on o
 constexpr double kNothing = 1e3;        // deviation of what is not known
 constexpr double kOtherShapeM = 0.045;  // outlines that differ by more on average are not of one opening
 
-/// A rectangle in the target's frame, on the axes of the target's wall.
-struct Rectangle {
-  Vector3d origin;  // lower left corner
-  Vector3d across;
-  Vector3d up;
-  double width = 0.0;
-  double height = 0.0;
-};
+using Rectangle = OpeningRectangle;
 
-Rectangle rectangle_of(const Opening& opening, const Rigid3& pose) {
+Rectangle rectangle_of(const Opening& opening) {
   Rectangle r;
-  r.origin = pose * opening.corners[0];
-  const Vector3d side = pose * opening.corners[1] - r.origin;
-  const Vector3d rise = pose * opening.corners[3] - r.origin;
+  r.origin = opening.corners[0];
+  const Vector3d side = opening.corners[1] - r.origin;
+  const Vector3d rise = opening.corners[3] - r.origin;
   r.width = side.norm();
   r.height = rise.norm();
   r.across = side / std::max(1e-9, r.width);
   r.up = rise / std::max(1e-9, r.height);
   return r;
+}
+
+std::vector<Rectangle> rectangles_of(const std::vector<Opening>& openings) {
+  std::vector<Rectangle> rectangles;
+  rectangles.reserve(openings.size());
+  for (const Opening& opening : openings) rectangles.push_back(rectangle_of(opening));
+  return rectangles;
+}
+
+Rectangle moved(const Rectangle& r, const Rigid3& pose) {
+  return {pose * r.origin, pose.rotation * r.across, pose.rotation * r.up, r.width, r.height};
 }
 
 /// Place of an edge along an axis, and its deviation.
@@ -232,23 +236,25 @@ std::optional<OpeningMatch> match_of(const Opening& source, const Rectangle& a, 
 
 }  // namespace
 
-std::vector<OpeningMatch> match_openings(const Features& source, const Features& target,
-                                         const Rigid3& target_from_source,
-                                         const OpeningMatchOptions& options) {
-  std::vector<Rectangle> targets;
-  targets.reserve(target.openings.size());
-  for (const Opening& opening : target.openings) targets.push_back(rectangle_of(opening, {}));
+OpeningMatching::OpeningMatching(const Features& source, const Features& target,
+                                 const OpeningMatchOptions& options)
+    : sources_(source.openings),
+      targets_(target.openings),
+      options_(options),
+      source_rectangles_(rectangles_of(source.openings)),
+      target_rectangles_(rectangles_of(target.openings)) {}
+
+std::vector<OpeningMatch> OpeningMatching::under(const Rigid3& target_from_source) const {
   std::vector<OpeningMatch> all;
-  for (std::size_t i = 0; i < source.openings.size(); ++i) {
-    const Rectangle a = rectangle_of(source.openings[i], target_from_source);
-    const double reach = options.max_gap_m + a.width + a.height + options.gate_m;
-    for (std::size_t k = 0; k < targets.size(); ++k) {
-      if ((targets[k].origin - a.origin).squaredNorm() >
-          (reach + targets[k].width) * (reach + targets[k].width)) {
-        continue;
-      }
-      if (auto match =
-              match_of(source.openings[i], a, target_from_source, target.openings[k], targets[k], options)) {
+  for (std::size_t i = 0; i < sources_.size(); ++i) {
+    const Rectangle& own = source_rectangles_[i];
+    const Vector3d corner = target_from_source * own.origin;
+    const double reach = options_.max_gap_m + own.width + own.height + options_.gate_m;
+    for (std::size_t k = 0; k < targets_.size(); ++k) {
+      const Rectangle& b = target_rectangles_[k];
+      if ((b.origin - corner).squaredNorm() > (reach + b.width) * (reach + b.width)) continue;
+      if (auto match = match_of(sources_[i], moved(own, target_from_source), target_from_source, targets_[k],
+                                b, options_)) {
         match->source = static_cast<int>(i);
         match->target = static_cast<int>(k);
         all.push_back(*match);
@@ -266,6 +272,12 @@ std::vector<OpeningMatch> match_openings(const Features& source, const Features&
     if (!taken) matches.push_back(match);
   }
   return matches;
+}
+
+std::vector<OpeningMatch> match_openings(const Features& source, const Features& target,
+                                         const Rigid3& target_from_source,
+                                         const OpeningMatchOptions& options) {
+  return OpeningMatching(source, target, options).under(target_from_source);
 }
 
 }  // namespace limen

@@ -31,6 +31,15 @@ struct OpeningMatch {
   bool by_outline = false;  ///< both saw it arched or round: its shape agrees, and holds the shift
 };
 
+/// The rectangle of an opening by a corner and its sides.
+struct OpeningRectangle {
+  Vector3d origin = Vector3d::Zero();   ///< lower left corner
+  Vector3d across = Vector3d::UnitX();  ///< unit vectors
+  Vector3d up = Vector3d::UnitZ();
+  double width = 0.0;
+  double height = 0.0;
+};
+
 struct OpeningMatchOptions {
   double gate_m = 0.25;  ///< middles farther apart within the wall are no match
   double max_size_difference_m = 0.35;
@@ -38,6 +47,22 @@ struct OpeningMatchOptions {
   double max_gap_m = 1.3;
   double max_same_face_m = 0.08;  ///< of rectangles seen from the same side
   double max_angle_rad = 0.1;     ///< between the walls
+};
+
+/// The openings of two scans, laid out once to be matched under many poses. Refers to both features.
+class OpeningMatching {
+ public:
+  OpeningMatching(const Features& source, const Features& target, const OpeningMatchOptions& options = {});
+
+  /// As match_openings().
+  [[nodiscard]] std::vector<OpeningMatch> under(const Rigid3& target_from_source) const;
+
+ private:
+  const std::vector<Opening>& sources_;
+  const std::vector<Opening>& targets_;
+  OpeningMatchOptions options_;
+  std::vector<OpeningRectangle> source_rectangles_;  ///< each in its own scan's frame
+  std::vector<OpeningRectangle> target_rectangles_;
 };
 
 /// One-to-one matches, nearest first. Openings that both scans saw arched or round match only where their

@@ -114,14 +114,18 @@ PoseScore one_way(const Gathered& asked, const ScanView& judge, const Rigid3& ju
   return score;
 }
 
-/// The area of each source opening that meets one of the target, clipped as surface is.
-std::vector<double> opening_gains(const ScanView& source, const ScanView& target, const Rigid3& pose,
-                                  const ScoreOptions& options) {
-  std::vector<double> gains(source.features->openings.size(), 0.0);
-  if (!options.openings || gains.empty() || target.features->openings.empty()) return gains;
+OpeningMatchOptions opening_matching(const ScoreOptions& options) {
   OpeningMatchOptions matching;
   matching.gate_m = options.opening_m;
-  for (const OpeningMatch& match : match_openings(*source.features, *target.features, pose, matching)) {
+  return matching;
+}
+
+/// The area of each source opening that meets one of the target, clipped as surface is.
+std::vector<double> opening_gains(const OpeningMatching& openings, std::size_t sources, const Rigid3& pose,
+                                  const ScoreOptions& options) {
+  std::vector<double> gains(sources, 0.0);
+  if (!options.openings) return gains;
+  for (const OpeningMatch& match : openings.under(pose)) {
     const double off = std::hypot(match.shift_across_m, match.shift_up_m) / options.opening_m;
     gains[static_cast<std::size_t>(match.source)] = match.trust * match.area_m2 * (1.0 - off * off);
   }
@@ -177,10 +181,14 @@ void add_contrast(const ScanView& scan, const ScanView& judge, const Rigid3& fir
 struct PoseScorer::Asked {
   Gathered source;
   Gathered target;
+  OpeningMatching openings;
 };
 
 PoseScorer::PoseScorer(const ScanView& source, const ScanView& target, const ScoreOptions& options)
-    : source_(source), target_(target), options_(options), asked_(std::make_unique<Asked>()) {
+    : source_(source),
+      target_(target),
+      options_(options),
+      asked_(new Asked{{}, {}, {*source.features, *target.features, opening_matching(options)}}) {
   // Of a model only what comes within the scan's reach is asked, which the pose decides.
   if (!source.model) asked_->source = gathered(source, asked_samples(source, target, {}, options.samples));
   if (!target.model) asked_->target = gathered(target, asked_samples(target, source, {}, options.samples));
@@ -203,7 +211,8 @@ PoseScore PoseScorer::operator()(const Rigid3& target_from_source) const {
   both.planar_m2 = 0.5 * (forth.planar_m2 + back.planar_m2);
   both.contradicted_m2 = 0.5 * (forth.contradicted_m2 + back.contradicted_m2);
   both.tested_m2 = 0.5 * (forth.tested_m2 + back.tested_m2);
-  for (const double gain : opening_gains(source_, target_, target_from_source, options_))
+  for (const double gain :
+       opening_gains(asked_->openings, source_.features->openings.size(), target_from_source, options_))
     both.opening_m2 += gain;
   both.agreeing_m2 += both.opening_m2;
   both.evidence_m2 = 0.5 * (forth.evidence_m2 + back.evidence_m2) + both.opening_m2;
@@ -220,8 +229,10 @@ PoseContrast contrast_poses(const ScanView& source, const ScanView& target, cons
   PoseContrast contrast;
   add_contrast(source, target, first, second, options, contrast);
   add_contrast(target, source, inverse(first), inverse(second), options, contrast);
-  const std::vector<double> in_first = opening_gains(source, target, first, options);
-  const std::vector<double> in_second = opening_gains(source, target, second, options);
+  const OpeningMatching openings(*source.features, *target.features, opening_matching(options));
+  const std::size_t sources = source.features->openings.size();
+  const std::vector<double> in_first = opening_gains(openings, sources, first, options);
+  const std::vector<double> in_second = opening_gains(openings, sources, second, options);
   for (std::size_t i = 0; i < in_first.size(); ++i) {
     add_lead(in_first[i] - in_second[i], contrast);
   }
