@@ -124,6 +124,9 @@ TEST_P(Threads, AChildForkedAmidWorkHasThreadsOfItsOwn) {
 #if defined(__SANITIZE_THREAD__)
   GTEST_SKIP() << "the thread sanitizer allows no threads after a fork of a process with threads";
 #endif
+#if defined(__SANITIZE_ADDRESS__)
+  GTEST_SKIP() << "the allocator of the address sanitizer may be locked by another thread at the fork";
+#endif
   std::atomic<bool> stop{false};
   std::thread other([&] {
     while (!stop) sum_in_parallel();

@@ -491,9 +491,9 @@ RegistrationResult register_prepared(const PreparedPair& pair, const RegisterOpt
     poses.insert(poses.end(), more.begin(), more.end());
     verdict = judge(poses, contrast, judging);
   };
-  if (verdict.outcome == Outcome::no_match && level && options.gravity != Gravity::up) {
+  const bool sure = from.surely_upright && to.surely_upright;
+  if (verdict.outcome == Outcome::no_match && level && !sure && options.gravity != Gravity::up)
     try_again(false, Proposal::held);
-  }
   const bool planes = options.method == Method::automatic || options.method == Method::polygons;
   if (verdict.outcome == Outcome::no_match && level && planes && !model) try_again(true, Proposal::sliding);
   const std::optional<PreparedStart> start = prepared_start(from, to, options);

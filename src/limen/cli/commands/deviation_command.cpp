@@ -218,10 +218,10 @@ int run(const DeviationCommand& command, const Session& session) {
   session.monitor->begin_stage("reading");
   ReadOptions reading = with_choice(read_options(command.origin, "--origin", "up"), command.reading);
   if (!reading.metres_per_unit) reading.metres_per_unit = registered_unit(command, pose_file);
-  const Side scan_side = read_side({command.scan, command.with, reading}, session);
+  const InputSide scan_side = read_side({command.scan, command.with, reading}, session);
   ReadOptions model_reading;
   model_reading.metres_per_unit = metres_per_unit_of(command.model_units);
-  const Side model_side = read_side({command.model, {}, model_reading}, session);
+  const InputSide model_side = read_side({command.model, {}, model_reading}, session);
   if (scan_side.input.model)
     throw Error("is a building model", command.scan, "give the scan first, then the model");
   if (!model_side.input.model)

@@ -144,8 +144,8 @@ Registered register_files(const RegisterCommandOptions& options, const Session& 
   const std::optional<StartPrior> believed = start_of(options.start, options.start_sigma);
   const auto start = std::chrono::steady_clock::now();
   session.monitor->begin_stage("reading");
-  Side source = read_side({options.source, options.source_with, source_options}, session);
-  Side target = read_side({options.target, options.target_with, target_options}, session);
+  InputSide source = read_side({options.source, options.source_with, source_options}, session);
+  InputSide target = read_side({options.target, options.target_with, target_options}, session);
   const std::chrono::duration<double> reading = std::chrono::steady_clock::now() - start;
 
   RegisterOptions registering;

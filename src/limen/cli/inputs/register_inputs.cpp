@@ -15,10 +15,10 @@
 namespace limen {
 namespace {
 
-Side read_model_side(const SideOptions& options, const Session& session) {
+InputSide read_model_side(const SideOptions& options, const Session& session) {
   if (!options.with.empty())
     throw Error("is a building model", options.path, "further scans can only stand by a scan");
-  Side side;
+  InputSide side;
   side.input.model = read_model_input(options.path, session, options.reading.metres_per_unit);
   side.summary = summarise(options.path, *side.input.model);
   if (options.reading.metres_per_unit) side.summary.metres_per_unit = *options.reading.metres_per_unit;
@@ -34,9 +34,9 @@ Rigid3 pose_in_group(const std::string& path) {
 
 }  // namespace
 
-Side read_side(const SideOptions& options, const Session& session) {
+InputSide read_side(const SideOptions& options, const Session& session) {
   if (is_bim_file(options.path)) return read_model_side(options, session);
-  Side side;
+  InputSide side;
   InputScan read;
   std::string hash;
   run_both([&] { read = read_input_scan(options.path, options.reading, session); },

@@ -20,12 +20,12 @@ struct SideOptions {
 };
 
 /// One side as it was read, and what the report says of it.
-struct Side {
+struct InputSide {
   RegisterInput input;
   InputSummary summary;
 };
 
 /// Reads a scan, a group of scans or a building model, by content. Warnings of a model are noted.
-Side read_side(const SideOptions& options, const Session& session);
+InputSide read_side(const SideOptions& options, const Session& session);
 
 }  // namespace limen

@@ -64,8 +64,8 @@ struct Asked {
   }
 
   /// A job that has ended and whose results are asked for.
-  [[nodiscard]] const Job& of(const char* kind) const {
-    const Job& job = board.job(number("of"));
+  [[nodiscard]] const PageJob& of(const char* kind) const {
+    const PageJob& job = board.job(number("of"));
     if (job.kind != kind || job.state != "done")
       throw HttpFault(409, fmt::format("that is no {} that has ended well", kind));
     return job;
@@ -93,8 +93,8 @@ void add_units(const Asked& asked, const char* key, const char* option, std::vec
   words.insert(words.end(), {option, unit});
 }
 
-Job registering(const Asked& asked) {
-  Job job;
+PageJob registering(const Asked& asked) {
+  PageJob job;
   const std::string source = asked.file(asked.text("source"));
   const std::string target = asked.file(asked.text("target"));
   if (source == target) throw HttpFault(400, "choose two different files");
@@ -105,8 +105,8 @@ Job registering(const Asked& asked) {
   return job;
 }
 
-Job whole_project(const Asked& asked) {
-  Job job;
+PageJob whole_project(const Asked& asked) {
+  PageJob job;
   const std::vector<std::string> files = asked.files();
   job.words = {"project"};
   job.words.insert(job.words.end(), files.begin(), files.end());
@@ -116,16 +116,16 @@ Job whole_project(const Asked& asked) {
 }
 
 /// Of a registration: its result; of a project: its project.json.
-std::string result_of(const Job& job) {
+std::string result_of(const PageJob& job) {
   return fmt::format("results/{}/{}", job.id, job.kind == "project" ? "project.json" : "result.json");
 }
 
-const Job& registration_or_project(const Asked& asked) {
+const PageJob& registration_or_project(const Asked& asked) {
   return asked.of(asked.board.job(asked.number("of")).kind == "project" ? "project" : "register");
 }
 
 /// "--alternative N" where one is meant.
-std::string add_alternative(const Asked& asked, const Job& of, std::vector<std::string>& words) {
+std::string add_alternative(const Asked& asked, const PageJob& of, std::vector<std::string>& words) {
   const int alternative = asked.number("alternative");
   if (alternative == 0) return of.title;
   if (of.kind != "register" || alternative > kMostAlternative)
@@ -134,11 +134,11 @@ std::string add_alternative(const Asked& asked, const Job& of, std::vector<std::
   return fmt::format("{}, alternative {}", of.title, alternative);
 }
 
-Job viewing(const Asked& asked) {
-  Job job;
+PageJob viewing(const Asked& asked) {
+  PageJob job;
   job.words = {"view"};
   if (asked.json.contains("of")) {
-    const Job& of = registration_or_project(asked);
+    const PageJob& of = registration_or_project(asked);
     job.words.push_back(result_of(of));
     job.title = add_alternative(asked, of, job.words);
   } else {
@@ -150,9 +150,9 @@ Job viewing(const Asked& asked) {
   return job;
 }
 
-Job placing(const Asked& asked) {
-  Job job;
-  const Job& of = registration_or_project(asked);
+PageJob placing(const Asked& asked) {
+  PageJob job;
+  const PageJob& of = registration_or_project(asked);
   if (of.kind == "project") {
     job.words = {"transform", result_of(of), "-o", asked.results()};
     job.title = of.title;
@@ -187,9 +187,9 @@ std::vector<std::string> words_of_answer(const std::string& answer) {
   return words;
 }
 
-Job deciding(const Asked& asked) {
-  Job job;
-  const Job& of = asked.of("project");
+PageJob deciding(const Asked& asked) {
+  PageJob job;
+  const PageJob& of = asked.of("project");
   const std::string answer = asked.text("answer");
   const Json project = read_json(asked.folder / result_of(of));
   bool offered = false;
@@ -210,19 +210,19 @@ Job deciding(const Asked& asked) {
 
 }  // namespace
 
-Job job_from_request(const std::string& body, const fs::path& folder, const JobBoard& board) {
+PageJob job_from_request(const std::string& body, const fs::path& folder, const JobBoard& board) {
   const Json json = Json::parse(body, nullptr, false);
   if (!json.is_object()) throw HttpFault(400, "the work is not told as JSON");
   const Asked asked{json, folder, board};
   const std::string kind = asked.text("kind");
-  constexpr std::pair<const char*, Job (*)(const Asked&)> kKinds[] = {{"register", registering},
-                                                                      {"project", whole_project},
-                                                                      {"view", viewing},
-                                                                      {"place", placing},
-                                                                      {"decide", deciding}};
+  constexpr std::pair<const char*, PageJob (*)(const Asked&)> kKinds[] = {{"register", registering},
+                                                                          {"project", whole_project},
+                                                                          {"view", viewing},
+                                                                          {"place", placing},
+                                                                          {"decide", deciding}};
   for (const auto& [name, make] : kKinds) {
     if (kind != name) continue;
-    Job job = make(asked);
+    PageJob job = make(asked);
     job.kind = kind;
     return job;
   }

@@ -17,6 +17,6 @@ namespace limen {
 ///   decide    of: a project, answer: one of those that its questions name
 /// Every file is one of files/, every answer one that was offered: no word of the page reaches the command
 /// line unseen. `next_id` names the folder of its results. Throws HttpFault that tells what is wrong.
-Job job_from_request(const std::string& body, const std::filesystem::path& folder, const JobBoard& board);
+PageJob job_from_request(const std::string& body, const std::filesystem::path& folder, const JobBoard& board);
 
 }  // namespace limen

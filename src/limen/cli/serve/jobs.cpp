@@ -28,7 +28,7 @@ constexpr std::chrono::seconds kGrace{3};
 constexpr std::chrono::milliseconds kGraceTick{20};
 constexpr std::size_t kMostKept = 1000;
 
-bool has_ended(const Job& job) {
+bool has_ended(const PageJob& job) {
   return job.state != "queued" && job.state != "running";
 }
 
@@ -38,15 +38,15 @@ std::string state_of(int status, bool stopped) {
   return stopped || status == kExitInterrupted ? "stopped" : "failed";
 }
 
-Json kept_json(const Job& job) {
+Json kept_json(const PageJob& job) {
   return {{"id", job.id},           {"kind", job.kind},
           {"title", job.title},     {"words", job.words},
           {"state", job.state},     {"status", job.status},
           {"seconds", job.seconds}, {"said", printable_lines(job.said)}};
 }
 
-Job job_from(const Json& json) {
-  Job job;
+PageJob job_from(const Json& json) {
+  PageJob job;
   job.id = json.at("id").get<int>();
   job.kind = json.at("kind").get<std::string>();
   job.title = json.at("title").get<std::string>();
@@ -113,7 +113,7 @@ void JobBoard::find_kept() {
     if (entry->path().extension() != ".json" || jobs_.size() == kMostKept) continue;
     try {
       std::ifstream stream(entry->path());
-      Job job = job_from(Json::parse(stream));
+      PageJob job = job_from(Json::parse(stream));
       if (job.id != static_cast<int>(*number)) continue;
       job.outputs = served_files(results_of(job.id));
       jobs_.push_back(std::move(job));
@@ -121,35 +121,36 @@ void JobBoard::find_kept() {
       continue;  // the record of no job
     }
   }
-  std::sort(jobs_.begin(), jobs_.end(), [](const Job& a, const Job& b) { return a.id < b.id; });
+  std::sort(jobs_.begin(), jobs_.end(), [](const PageJob& a, const PageJob& b) { return a.id < b.id; });
 }
 
-Job& JobBoard::find(int id) {
-  const auto found = std::find_if(jobs_.begin(), jobs_.end(), [&](const Job& job) { return job.id == id; });
+PageJob& JobBoard::find(int id) {
+  const auto found =
+      std::find_if(jobs_.begin(), jobs_.end(), [&](const PageJob& job) { return job.id == id; });
   if (found == jobs_.end()) throw HttpFault(404, "there is no such work");
   return *found;
 }
 
-const Job& JobBoard::job(int id) const {
+const PageJob& JobBoard::job(int id) const {
   return const_cast<JobBoard*>(this)->find(id);
 }
 
 bool JobBoard::uses(const std::string& word) const {
-  return std::any_of(jobs_.begin(), jobs_.end(), [&](const Job& job) {
+  return std::any_of(jobs_.begin(), jobs_.end(), [&](const PageJob& job) {
     return !has_ended(job) && std::find(job.words.begin(), job.words.end(), word) != job.words.end();
   });
 }
 
-void JobBoard::add(Job job) {
+void JobBoard::add(PageJob job) {
   const auto waiting =
-      std::count_if(jobs_.begin(), jobs_.end(), [](const Job& it) { return it.state == "queued"; });
+      std::count_if(jobs_.begin(), jobs_.end(), [](const PageJob& it) { return it.state == "queued"; });
   if (static_cast<std::size_t>(waiting) >= kMostWaiting) throw HttpFault(429, "too much work waits already");
   job.id = next_id_++;
   jobs_.push_back(std::move(job));
 }
 
 void JobBoard::again(int id) {
-  Job& job = find(id);
+  PageJob& job = find(id);
   if (!has_ended(job)) throw HttpFault(409, "this work has not ended yet");
   job.state = "queued";
   job.status = -1;
@@ -157,7 +158,7 @@ void JobBoard::again(int id) {
 }
 
 void JobBoard::stop(int id) {
-  Job& job = find(id);
+  PageJob& job = find(id);
   if (job.id == running_) {
     stopping_ = true;
     child_->stop();
@@ -167,7 +168,7 @@ void JobBoard::stop(int id) {
   }
 }
 
-void JobBoard::begin(Job& job) {
+void JobBoard::begin(PageJob& job) {
   job.state = "running";
   running_ = job.id;
   stopping_ = false;
@@ -182,7 +183,7 @@ void JobBoard::begin(Job& job) {
 }
 
 void JobBoard::end_running(int status) {
-  Job& job = find(running_);
+  PageJob& job = find(running_);
   if (child_) job.said = child_->said();
   child_.reset();
   running_ = 0;
@@ -193,7 +194,7 @@ void JobBoard::end_running(int status) {
   keep(job);
 }
 
-void JobBoard::keep(const Job& job) const {
+void JobBoard::keep(const PageJob& job) const {
   try {
     fs::create_directories(folder_ / "results");
     write_file(results_of(job.id).string() + ".json", to_text(kept_json(job)));
@@ -209,12 +210,12 @@ void JobBoard::tick() {
   }
   if (running_ != 0) return;
   const auto next =
-      std::find_if(jobs_.begin(), jobs_.end(), [](const Job& job) { return job.state == "queued"; });
+      std::find_if(jobs_.begin(), jobs_.end(), [](const PageJob& job) { return job.state == "queued"; });
   if (next != jobs_.end()) begin(*next);
 }
 
 void JobBoard::finish() {
-  for (Job& job : jobs_) {
+  for (PageJob& job : jobs_) {
     if (job.state == "queued") stop(job.id);
   }
   if (!child_) return;
@@ -233,7 +234,7 @@ std::vector<int> JobBoard::ears() const {
 
 Json JobBoard::as_json() const {
   Json list = Json::array();
-  for (const Job& job : jobs_) {
+  for (const PageJob& job : jobs_) {
     Json json = kept_json(job);
     json["outputs"] = served_files_json(job.outputs);
     if (job.id == running_ && child_) {

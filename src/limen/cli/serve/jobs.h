@@ -29,7 +29,7 @@ Json served_files_json(const std::vector<ServedFile>& files);
 std::string printable_lines(const std::string& text);
 
 /// One piece of work: a run of limen, whose results lie in results/ID.
-struct Job {
+struct PageJob {
   int id = 0;
   std::string kind;                ///< register, project, view, place or decide
   std::string title;               ///< for a reader
@@ -52,13 +52,13 @@ class JobBoard {
   /// The number of the next job, for the names of its results.
   [[nodiscard]] int next_id() const { return next_id_; }
   /// Throws HttpFault where too many wait.
-  void add(Job job);
+  void add(PageJob job);
   /// Once more, into the same folder. Throws HttpFault where there is no such job, or it has not ended.
   void again(int id);
   /// Throws HttpFault where there is no such job. What has ended stays as it is.
   void stop(int id);
   /// Throws HttpFault where there is none.
-  [[nodiscard]] const Job& job(int id) const;
+  [[nodiscard]] const PageJob& job(int id) const;
   /// Whether work that waits or runs names the file.
   [[nodiscard]] bool uses(const std::string& word) const;
 
@@ -71,14 +71,14 @@ class JobBoard {
   [[nodiscard]] Json as_json() const;
 
  private:
-  Job& find(int id);
-  void begin(Job& job);
+  PageJob& find(int id);
+  void begin(PageJob& job);
   void end_running(int status);
-  void keep(const Job& job) const;
+  void keep(const PageJob& job) const;
   void find_kept();
 
   std::filesystem::path folder_;
-  std::deque<Job> jobs_;
+  std::deque<PageJob> jobs_;
   int next_id_ = 1;
   std::unique_ptr<Child> child_;
   int running_ = 0;  ///< its number; 0: none

@@ -22,7 +22,7 @@ constexpr double kSplaySigmaM = 0.05;   // how much wider an opening may be on o
 constexpr double kNothing = 1e3;        // deviation of what is not known
 constexpr double kOtherShapeM = 0.045;  // outlines that differ by more on average are not of one opening
 
-using Rectangle = OpeningRectangle;
+using Rectangle = OpeningFrame;
 
 Rectangle rectangle_of(const Opening& opening) {
   Rectangle r;

@@ -32,7 +32,7 @@ struct OpeningMatch {
 };
 
 /// The rectangle of an opening by a corner and its sides.
-struct OpeningRectangle {
+struct OpeningFrame {
   Vector3d origin = Vector3d::Zero();   ///< lower left corner
   Vector3d across = Vector3d::UnitX();  ///< unit vectors
   Vector3d up = Vector3d::UnitZ();
@@ -61,8 +61,8 @@ class OpeningMatching {
   const std::vector<Opening>& sources_;
   const std::vector<Opening>& targets_;
   OpeningMatchOptions options_;
-  std::vector<OpeningRectangle> source_rectangles_;  ///< each in its own scan's frame
-  std::vector<OpeningRectangle> target_rectangles_;
+  std::vector<OpeningFrame> source_rectangles_;  ///< each in its own scan's frame
+  std::vector<OpeningFrame> target_rectangles_;
 };
 
 /// One-to-one matches, nearest first. Openings that both scans saw arched or round match only where their

@@ -10,6 +10,18 @@ namespace {
 
 constexpr std::size_t kMaxParts = 6;  // of one plane, largest first
 
+/// Extent of a box along a unit vector.
+struct BoxReach {
+  double low = 0.0;
+  double high = 0.0;
+};
+
+BoxReach reach_along(const AxisBox& box, const Vector2d& way) {
+  const Vector2d middle = 0.5 * (box.low + box.high);
+  const double half = 0.5 * (box.high - box.low).dot(way.cwiseAbs());
+  return {middle.dot(way) - half, middle.dot(way) + half};
+}
+
 }  // namespace
 
 std::vector<AxisBox> boxes_of(const PlanarPolygon& plane, const Matrix3d& rotation, const MatchAxis& axis) {
@@ -42,6 +54,28 @@ double ShiftSupport::at(const Vector2d& in_plane, double enough) const {
     sum += std::min(overlap, pairs_[i].limit_m2) * pairs_[i].weight;
   }
   return sum;
+}
+
+double ShiftSupport::most_where(const Vector2d& way, double along_m) const {
+  const Vector2d across(-way.y(), way.x());
+  double sum = 0.0;
+  for (std::size_t i = 0; i < pairs_.size(); ++i) {
+    const std::size_t end = i + 1 < pairs_.size() ? pairs_[i + 1].first : boxes_.size();
+    double overlap = 0.0;
+    for (std::size_t k = pairs_[i].first; k < end; ++k) {
+      const AxisBox& a = boxes_[k].source;
+      const AxisBox& b = boxes_[k].target;
+      const BoxReach from = reach_along(a, way);
+      const BoxReach to = reach_along(b, way);
+      const double common = std::min(from.high + along_m, to.high) - std::max(from.low + along_m, to.low);
+      if (!(common > 0.0)) continue;
+      const BoxReach wide_a = reach_along(a, across);
+      const BoxReach wide_b = reach_along(b, across);
+      overlap += common * std::min(wide_a.high - wide_a.low, wide_b.high - wide_b.low) * a.fill * b.fill;
+    }
+    sum += std::min(overlap, pairs_[i].limit_m2) * pairs_[i].weight;
+  }
+  return 1.000001 * sum + 1e-9;  // so that rounding does no harm
 }
 
 void AxisPairs::index(double tolerance) {
@@ -113,7 +147,7 @@ ShiftSupport AxisPairs::support_at(double value, double tolerance) const {
   return support;
 }
 
-std::vector<AxisShift> best_shifts(const std::vector<PlanePair>& pairs, double tolerance, int most) {
+std::vector<AxisShift> best_shifts(const std::vector<ShiftPair>& pairs, double tolerance, int most) {
   std::vector<AxisShift> all;
   std::size_t low = 0;
   for (std::size_t i = 0; i < pairs.size(); ++i) {

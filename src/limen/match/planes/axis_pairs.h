@@ -36,7 +36,7 @@ struct MatchAxis {
 std::vector<AxisBox> boxes_of(const PlanarPolygon& plane, const Matrix3d& rotation, const MatchAxis& axis);
 
 /// A plane of the source that may be a plane of the target, and the shift along the axis that makes it so.
-struct PlanePair {
+struct ShiftPair {
   double shift = 0.0;
   std::size_t source = 0;
   std::size_t target = 0;
@@ -64,6 +64,8 @@ class ShiftSupport {
   [[nodiscard]] double at(const Vector2d& in_plane, double enough) const;
   /// No shift gives more, m^2.
   [[nodiscard]] double most() const { return most_m2_; }
+  /// No shift that goes `along_m` along the unit vector `way` of the axis's plane gives more, m^2.
+  [[nodiscard]] double most_where(const Vector2d& way, double along_m) const;
 
  private:
   struct PairPlace {
@@ -83,7 +85,7 @@ class ShiftSupport {
 /// All pairs along one axis under one rotation, by shift.
 struct AxisPairs {
   MatchAxis axis;
-  std::vector<PlanePair> pairs;
+  std::vector<ShiftPair> pairs;
   std::vector<std::vector<AxisBox>> source_boxes;  ///< per source plane; empty where it is not of this axis
   std::vector<std::vector<AxisBox>> target_boxes;
   std::vector<AxisShift> shifts;
@@ -115,6 +117,6 @@ struct AxisPairs {
 
 /// Shifts that bring most surface together, heaviest first, no two nearer than half the tolerance; `pairs` by
 /// shift.
-std::vector<AxisShift> best_shifts(const std::vector<PlanePair>& pairs, double tolerance, int most);
+std::vector<AxisShift> best_shifts(const std::vector<ShiftPair>& pairs, double tolerance, int most);
 
 }  // namespace limen

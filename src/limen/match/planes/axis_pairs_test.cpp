@@ -30,7 +30,7 @@ AxisPairs random_pairs(std::size_t count) {
     along.pairs.push_back({random.uniform(-3.0, 3.0), i, i, random.uniform(0.1, 4.0)});
   }
   std::sort(along.pairs.begin(), along.pairs.end(),
-            [](const PlanePair& a, const PlanePair& b) { return a.shift < b.shift; });
+            [](const ShiftPair& a, const ShiftPair& b) { return a.shift < b.shift; });
   along.index(kTolerance);
   return along;
 }
@@ -80,7 +80,7 @@ TEST(AxisPairs, PairsAreFoundFromAnyValue) {
   const AxisPairs along = random_pairs(50);
   for (const double value : {-9.0, -3.0, -0.5, 0.0, 0.01, 1.7, 2.99, 9.0}) {
     const auto wanted = std::count_if(along.pairs.begin(), along.pairs.end(),
-                                      [&](const PlanePair& pair) { return pair.shift < value; });
+                                      [&](const ShiftPair& pair) { return pair.shift < value; });
     EXPECT_EQ(along.first_from(value), static_cast<std::size_t>(wanted));
   }
 }

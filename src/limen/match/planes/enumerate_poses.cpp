@@ -170,7 +170,7 @@ class PoseEnumerator {
       }
     }
     std::stable_sort(along.pairs.begin(), along.pairs.end(),
-                     [](const PlanePair& a, const PlanePair& b) { return a.shift < b.shift; });
+                     [](const ShiftPair& a, const ShiftPair& b) { return a.shift < b.shift; });
     along.index(options_.offset_tolerance_m);
     along.shifts = best_shifts(along.pairs, options_.offset_tolerance_m, options_.max_shifts_per_axis);
     for (const AxisShift& shift : along.shifts) along.weight_m2 += shift.limit_m2;
@@ -204,7 +204,7 @@ class PoseEnumerator {
     double weight = 0.0;
     double sum = 0.0;
     for (const std::size_t k : basis) {
-      for (const PlanePair& pair : axes[k].pairs) {
+      for (const ShiftPair& pair : axes[k].pairs) {
         const Vector3d gap =
             target_.planes[pair.target].centroid - rotation * source_.planes[pair.source].centroid;
         sum += pair.limit_m2 * gap.dot(open.axis.direction);
@@ -232,14 +232,57 @@ class PoseEnumerator {
     return poses_of_triples(rotation, axes, basis, open, of_all);
   }
 
+  /// The most that a shift along one axis of the basis brings together where the shift along a second is
+  /// known as well: it moves the planes of the first across. Reckoned where it is asked for.
+  struct TwoShifts {
+    Vector2d way = Vector2d::UnitX();  ///< across the first axis, where the second points
+    double per_own = 0.0;              ///< the way gone, by metres along the first ...
+    double per_other = 0.0;            ///< ... and the second
+    std::size_t others = 0;
+    std::vector<double> most_m2;  ///< by own shift and other shift; less than 0: not reckoned yet
+  };
+
+  static TwoShifts two_shifts(const AxisPairs& own, const AxisPairs& other) {
+    TwoShifts two;
+    const Vector3d& along = own.axis.direction;
+    const double common = other.axis.direction.dot(along);
+    const Vector3d across = other.axis.direction - common * along;
+    const double length = across.norm();
+    two.way = {own.axis.frame.u.dot(across) / length, own.axis.frame.v.dot(across) / length};
+    two.per_own = -common / length;
+    two.per_other = 1.0 / length;
+    two.others = other.shifts.size();
+    two.most_m2.assign(own.shifts.size() * other.shifts.size(), -1.0);
+    return two;
+  }
+
   /// The three axes whose shifts make a pose, with what each of their shifts brings together.
   struct Basis {
     std::array<std::size_t, 3> axis{};
     std::array<std::vector<ShiftSupport>, 3> supports;
-    Matrix3d solve = Matrix3d::Identity();  ///< shift from the three values along the axes
-    std::vector<std::size_t> others;        ///< all other axes
-    double others_m2 = 0.0;                 ///< the most that they can add
+    Matrix3d solve = Matrix3d::Identity();        ///< shift from the three values along the axes
+    std::vector<std::size_t> others;              ///< all other axes
+    double others_m2 = 0.0;                       ///< the most that they can add
+    std::array<std::array<TwoShifts, 3>, 3> two;  ///< of the one axis, where another's shift is known too
   };
+
+  /// The most that the k-th axis of the basis brings together at one triple of shifts.
+  [[nodiscard]] static double most_of(const std::vector<AxisPairs>& axes, Basis& basis, std::size_t k,
+                                      const std::array<std::size_t, 3>& at) {
+    const ShiftSupport& support = basis.supports[k][at[k]];
+    double most = support.most();
+    if (most == 0.0) return 0.0;
+    for (std::size_t m = 0; m < 3; ++m) {
+      if (m == k) continue;
+      TwoShifts& two = basis.two[k][m];
+      double& known = two.most_m2[at[k] * two.others + at[m]];
+      if (known < 0.0)
+        known = support.most_where(two.way, two.per_own * axes[basis.axis[k]].shifts[at[k]].value +
+                                                two.per_other * axes[basis.axis[m]].shifts[at[m]].value);
+      most = std::min(most, known);
+    }
+    return most;
+  }
 
   [[nodiscard]] Basis prepared(const std::vector<AxisPairs>& axes, const std::vector<std::size_t>& of) const {
     Basis basis;
@@ -251,6 +294,11 @@ class PoseEnumerator {
         basis.supports[k].push_back(axes[of[k]].support_at(shift.value, options_.offset_tolerance_m));
     }
     basis.solve = normals.inverse();
+    for (std::size_t k = 0; k < 3; ++k) {
+      for (std::size_t m = 0; m < 3; ++m) {
+        if (m != k) basis.two[k][m] = two_shifts(axes[of[k]], axes[of[m]]);
+      }
+    }
     for (std::size_t k = 0; k < axes.size(); ++k) {
       const bool in_basis = std::find(of.begin(), of.end(), k) != of.end();
       if (in_basis || axes[k].pairs.empty()) continue;
@@ -262,27 +310,36 @@ class PoseEnumerator {
 
   /// The surface that comes together at a shift; 0 once it is plain that it is no more than `least`.
   [[nodiscard]] double precedence_of(const Vector3d& translation, const std::vector<AxisPairs>& axes,
-                                     const Basis& basis, const std::array<std::size_t, 3>& at,
-                                     double least) const {
-    const double tolerance = options_.offset_tolerance_m;
-    double bound = 0.0;
+                                     Basis& basis, const std::array<std::size_t, 3>& at, double least) const {
+    double bound = basis.others_m2;
+    std::array<double, 3> most{};
     for (std::size_t k = 0; k < 3; ++k) bound += basis.supports[k][at[k]].most();
-    if (bound + basis.others_m2 <= least) return 0.0;
+    if (bound <= least) return 0.0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      most[k] = most_of(axes, basis, k, at);
+      bound += most[k] - basis.supports[k][at[k]].most();
+      if (bound <= least) return 0.0;
+    }
+    bound -= basis.others_m2;
     for (const std::size_t k : basis.others)
       bound += axes[k].most_near(axes[k].axis.direction.dot(translation));
     if (bound <= least) return 0.0;
     double sum = 0.0;
     for (std::size_t k = 0; k < 3; ++k) {
       const AxisPairs& along = axes[basis.axis[k]];
-      const ShiftSupport& support = basis.supports[k][at[k]];
-      const double here =
-          support.at({along.axis.frame.u.dot(translation), along.axis.frame.v.dot(translation)},
-                     least - (bound - support.most()));
+      const double here = basis.supports[k][at[k]].at(
+          {along.axis.frame.u.dot(translation), along.axis.frame.v.dot(translation)},
+          least - (bound - most[k]));
       sum += here;
-      bound += here - support.most();
+      bound += here - most[k];
       if (bound <= least) return 0.0;
     }
-    for (const std::size_t k : basis.others) sum += axes[k].support(translation, tolerance);
+    for (const std::size_t k : basis.others) {
+      const double here = axes[k].support(translation, options_.offset_tolerance_m);
+      sum += here;
+      bound += here - axes[k].most_near(axes[k].axis.direction.dot(translation));
+      if (bound <= least) return 0.0;
+    }
     return sum;
   }
 
@@ -290,7 +347,7 @@ class PoseEnumerator {
                                                             const std::vector<AxisPairs>& axes,
                                                             const std::vector<std::size_t>& basis_axes,
                                                             int open, const LeastPrecedence& of_all) const {
-    const Basis basis = prepared(axes, basis_axes);
+    Basis basis = prepared(axes, basis_axes);
     // Shifts come heaviest first, so that a loop ends where even the limits cannot reach the best so far.
     const double others = basis.others_m2;
     const std::vector<AxisShift>& first = axes[basis.axis[0]].shifts;

@@ -219,7 +219,8 @@ std::string bytes_of(const PreparedScan& prepared) {
   ByteWriter writer;
   put_features(writer, prepared.extracted.features);
   writer.put(prepared.upright_from_scan);
-  for (const bool flag : {prepared.mobile, prepared.upright, prepared.model}) writer.put(flag);
+  for (const bool flag : {prepared.mobile, prepared.upright, prepared.surely_upright, prepared.model})
+    writer.put(flag);
   put_rooms(writer, prepared.rooms);
   writer.put_all(prepared.stations);
   writer.put(Vector3d(prepared.reach.min()));
@@ -235,7 +236,8 @@ PreparedScan prepared_from(std::string_view bytes, const std::string& where) {
   PreparedScan prepared;
   prepared.extracted.features = get_features(reader);
   reader.get(prepared.upright_from_scan);
-  for (bool* flag : {&prepared.mobile, &prepared.upright, &prepared.model}) reader.get(*flag);
+  for (bool* flag : {&prepared.mobile, &prepared.upright, &prepared.surely_upright, &prepared.model})
+    reader.get(*flag);
   prepared.rooms = get_rooms(reader);
   prepared.stations = reader.get_all<Vector3d>();
   reader.get(prepared.reach.min());

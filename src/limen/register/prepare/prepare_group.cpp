@@ -136,6 +136,7 @@ PreparedScan prepare_group(const std::vector<PlacedScan>& scans, const PrepareOp
   std::vector<PreparedScan> parts = prepare_parts(placed, options, monitor);
   PreparedScan group;
   group.upright = parts.front().upright;
+  group.surely_upright = parts.front().surely_upright;
   group.upright_from_scan = parts.front().upright_from_scan;
   group.place = parts.front().place;
   const Vector3d local_origin = parts.front().extracted.features.local_origin;

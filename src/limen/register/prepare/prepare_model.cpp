@@ -25,7 +25,7 @@ PreparedScan prepare_model(const BimModel& model, const ModelFeatureOptions& opt
                 "give a model with geometry; `limen info` lists what it has");
   }
   prepared.space = std::make_unique<ModelSpace>(prepared.extracted.features);
-  prepared.upright = true;
+  prepared.upright = prepared.surely_upright = true;
   prepared.model = true;
   prepared.rooms = model.spaces;
   prepared.settle_reach();

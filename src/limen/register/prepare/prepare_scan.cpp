@@ -75,6 +75,7 @@ PreparedScan prepare_in_frame(const Scan& scan, const ScanFrame& frame, const Pr
   const CancelScope scope(monitor);
   PreparedScan prepared;
   prepared.upright = frame.upright;
+  prepared.surely_upright = frame.surely_upright;
   prepared.upright_from_scan = frame.frame_from_scan;
   prepared.place = in_world(frame.place, scan.local_origin);
   prepared.mobile = scan.mobile();

@@ -27,6 +27,7 @@ struct PreparedScan {
   ScannerPlace place;                      ///< where the (first) scanner stood, world
   bool mobile = false;                     ///< seen from many places along a path
   bool upright = false;                    ///< z of the prepared frame points up
+  bool surely_upright = false;             ///< no other way up need be tried
   bool model = false;                      ///< a building model instead of a scan
   std::vector<BimSpace> rooms;             ///< of a model
   std::vector<Vector3d> stations;          ///< optical centres of static stations, prepared frame

@@ -205,7 +205,7 @@ std::vector<FramePlane> planes_in(const Matrix3d& frame, const Vector3d& corner,
 
 ScanFrame find_scan_frame(const Scan& scan, Gravity gravity, Monitor& monitor) {
   ScanFrame found;
-  found.upright = gravity == Gravity::up;
+  found.upright = found.surely_upright = gravity == Gravity::up;
   if (scan.centres.size() == 1) {
     found.place.source = scan.centre_source;
     found.place.centre = scan.centres.front();
@@ -221,6 +221,7 @@ ScanFrame find_scan_frame(const Scan& scan, Gravity gravity, Monitor& monitor) {
   sample = seen_from(std::move(sample), found.place);
   const ScanUp up = find_up(sample, first, gravity, found.place.confirmed);
   found.upright = up.clear;
+  found.surely_upright = up.sure;
   const Matrix3d about = frame_by(first, up.up, sample, gravity);
   monitor.throw_if_cancelled();
   const std::vector<FramePlane> planes = planes_in(about, corner_of(about, sample.points), sample);

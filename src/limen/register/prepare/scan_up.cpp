@@ -30,6 +30,7 @@ constexpr double kGroundUnderPath = 10.0;
 constexpr double kFilesZ = 3.0;
 constexpr double kUsersZ = 100.0;
 constexpr double kLead = 1.5;      // over the next other direction: up is clear
+constexpr double kSureLead = 4.0;  // and no single observation less would leave it unclear
 constexpr double kZGoodDeg = 5.0;  // a file's z counts whole up to here, and not at all from
 constexpr double kZBadDeg = 20.0;
 constexpr double kLowestTripodM = 0.3;
@@ -224,15 +225,17 @@ ScanUp find_up(const Scan& sample, const std::vector<FramePlane>& planes, Gravit
                    [](const Rated& a, const Rated& b) { return a.evidence > b.evidence; });
   ScanUp found;
   if (rated.empty()) {
-    found.clear = gravity == Gravity::up;
+    found.clear = found.sure = gravity == Gravity::up;
     return found;
   }
   found.up = rated.front().up;
   const auto next = std::find_if(rated.begin(), rated.end(), [&](const Rated& other) {
     return other.up.dot(found.up) < std::cos(radians(3.0 * kAlikeDeg));
   });
-  found.clear = gravity == Gravity::up ||
-                (!planes.empty() && next != rated.end() && rated.front().evidence - next->evidence > kLead);
+  const bool compared = !planes.empty() && next != rated.end();
+  const double lead = compared ? rated.front().evidence - next->evidence : 0.0;
+  found.clear = gravity == Gravity::up || lead > kLead;
+  found.sure = gravity == Gravity::up || lead > kSureLead;
   return found;
 }
 
