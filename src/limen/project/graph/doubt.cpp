@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <numeric>
 #include <optional>
 #include <utility>
@@ -44,21 +43,26 @@ class DoubtSearch {
       said.alike_nats = std::min(said.alike_nats, kMostNats);
       witnesses_like_.push_back(views_.witnesses_like(k));
     }
+    otherwise_ = search_over([&](int k) { return evidence(k).otherwise_nats; });
+    alike_ = search_over([&](int k) { return evidence(k).alike_nats; });
+    chance_ = search_over([&](int k) { return nats(k) + loop_nats(k); });
   }
 
   std::vector<NodeDoubt> run(const std::vector<int>& reference) {
     std::vector<NodeDoubt> doubts(static_cast<std::size_t>(graph_.nodes));
-    for (int node = 0; node < graph_.nodes; ++node) {
+    for (CutSearch* search : {&otherwise_, &alike_, &chance_}) {
+      for (const int root : reference) {
+        if (root >= 0) search->held[static_cast<std::size_t>(root)] = true;
+      }
+    }
+    for (const int node : outwards(reference)) {
       CancelScope::check();
       const int root = reference[static_cast<std::size_t>(node)];
       NodeDoubt& doubt = doubts[static_cast<std::size_t>(node)];
       if (root == node) doubt.twin = doubt.chance = 0.0;
       if (root < 0 || root == node) continue;
-      std::vector<Held>& held = held_to_[root];
-      held.resize(3, Held(static_cast<std::size_t>(graph_.nodes), false));
-      for (Held& nodes : held) nodes[static_cast<std::size_t>(root)] = true;
-      add_twins(node, held, doubt);
-      add_chance(node, held, doubt);
+      add_twins(node, doubt);
+      add_chance(node, doubt);
     }
     return doubts;
   }
@@ -104,15 +108,56 @@ class DoubtSearch {
     double TwinEvidence::*nats;
   };
 
-  /// Nodes between which and the reference enough is said across every cut, the reference among them: no
-  /// smaller cut parts them, so that a cut from all of them is that from the reference, found sooner.
-  using Held = std::vector<bool>;
+  /// Smallest cuts by one measure of what the links say. `held`: nodes between which and their reference
+  /// enough is said across every cut, the references among them: no smaller cut parts them, so that a cut
+  /// from all of them is that from the reference, found sooner.
+  struct CutSearch {
+    std::optional<FlowNetwork> network;
+    std::vector<bool> held;
+  };
 
-  void add_twins(int node, std::vector<Held>& held, NodeDoubt& doubt) const {
-    constexpr Kind kOtherwise{&TwinEvidence::otherwise, &TwinEvidence::otherwise_nats};
-    constexpr Kind kAlike{&TwinEvidence::alike, &TwinEvidence::alike_nats};
-    const Cut otherwise = twin_cut(kOtherwise, node, held[0]);
-    const Cut alike = twin_cut(kAlike, node, held[1]);
+  /// Links are worth `nats_of(link)`, shared with those that see the same.
+  template <typename NatsOf>
+  [[nodiscard]] CutSearch search_over(const NatsOf& nats_of) const {
+    const auto nodes = static_cast<std::size_t>(graph_.nodes);
+    CutSearch search{FlowNetwork(nodes), std::vector<bool>(nodes, false)};
+    for (std::size_t i = 0; i < held_.size(); ++i) {
+      const auto room =
+          static_cast<int>(std::lround(kUnits * std::max(0.0, nats_of(held_[i]) / witnesses_like_[i])));
+      search.network->connect(link(held_[i]).source, link(held_[i]).target, room, room);
+    }
+    return search;
+  }
+
+  /// All nodes, from the references outwards along the links that hold: a node's neighbours are mostly held
+  /// when its own cut is sought.
+  [[nodiscard]] std::vector<int> outwards(const std::vector<int>& reference) const {
+    std::vector<std::vector<int>> beside(static_cast<std::size_t>(graph_.nodes));
+    for (const int k : held_) {
+      beside[static_cast<std::size_t>(link(k).source)].push_back(link(k).target);
+      beside[static_cast<std::size_t>(link(k).target)].push_back(link(k).source);
+    }
+    std::vector<int> order;
+    std::vector<bool> taken(beside.size(), false);
+    const auto take = [&](int node) {
+      if (taken[static_cast<std::size_t>(node)]) return;
+      taken[static_cast<std::size_t>(node)] = true;
+      order.push_back(node);
+    };
+    for (const int root : reference) {
+      if (root >= 0) take(root);
+    }
+    for (std::size_t next = 0; next < order.size(); ++next) {
+      for (const int node : beside[static_cast<std::size_t>(order[next])]) take(node);
+    }
+    for (int node = 0; node < graph_.nodes; ++node) take(node);
+    return order;
+  }
+
+  void add_twins(int node, NodeDoubt& doubt) {
+    const Cut otherwise =
+        twin_cut({&TwinEvidence::otherwise, &TwinEvidence::otherwise_nats}, node, otherwise_);
+    const Cut alike = twin_cut({&TwinEvidence::alike, &TwinEvidence::alike_nats}, node, alike_);
     const double twin = otherwise.weight() + alike.weight();
     const double none = 1.0 - otherwise.prior - alike.prior;
     doubt.twin = twin / (twin + none);
@@ -130,13 +175,21 @@ class DoubtSearch {
     [[nodiscard]] double weight() const { return prior * std::exp(-nats); }
   };
 
+  /// The side of `node` of the smallest cut between it and the reference; empty where enough is said across
+  /// every one.
+  static std::optional<std::vector<bool>> smallest_cut(CutSearch& search, int node) {
+    std::optional<std::vector<bool>> side = search.network->smallest_cut(
+        {node}, search.held, static_cast<int>(kUnits * (kEnoughNats + kLoopNats)));
+    if (!side) search.held[static_cast<std::size_t>(node)] = true;
+    return side;
+  }
+
   /// The cut across which least is said against a twin.
-  [[nodiscard]] Cut twin_cut(const Kind& kind, int node, Held& held) const {
+  [[nodiscard]] Cut twin_cut(const Kind& kind, int node, CutSearch& search) const {
     std::vector<bool> alone(static_cast<std::size_t>(graph_.nodes), false);
     alone[static_cast<std::size_t>(node)] = true;
     Cut least = across(kind, alone);
-    const std::optional<std::vector<bool>> side =
-        smallest_cut([&](int k) { return evidence(k).*kind.nats; }, node, held);
+    const std::optional<std::vector<bool>> side = smallest_cut(search, node);
     if (!side) return least;
     Cut found = across(kind, *side);
     return found.weight() >= least.weight() ? found : least;
@@ -202,28 +255,8 @@ class DoubtSearch {
     return crossing;
   }
 
-  /// The side of `node` of the smallest cut between it and the reference, of links that are worth
-  /// `nats_of(link)`, shared with those that see the same; empty where enough is said across every one.
-  template <typename NatsOf>
-  [[nodiscard]] std::optional<std::vector<bool>> smallest_cut(const NatsOf& nats_of, int node,
-                                                              Held& held) const {
-    FlowNetwork network(static_cast<std::size_t>(graph_.nodes));
-    for (std::size_t i = 0; i < held_.size(); ++i) {
-      const auto room =
-          static_cast<int>(std::lround(kUnits * std::max(0.0, nats_of(held_[i]) / witnesses_like_[i])));
-      network.connect(link(held_[i]).source, link(held_[i]).target, room, room);
-    }
-    std::vector<bool> start(static_cast<std::size_t>(graph_.nodes), false);
-    start[static_cast<std::size_t>(node)] = true;
-    std::optional<std::vector<bool>> side =
-        network.smallest_cut(start, held, static_cast<int>(kUnits * (kEnoughNats + kLoopNats)));
-    if (!side) held[static_cast<std::size_t>(node)] = true;
-    return side;
-  }
-
-  void add_chance(int node, std::vector<Held>& held, NodeDoubt& doubt) const {
-    const std::optional<std::vector<bool>> side =
-        smallest_cut([&](int k) { return nats(k) + loop_nats(k); }, node, held[2]);
+  void add_chance(int node, NodeDoubt& doubt) {
+    const std::optional<std::vector<bool>> side = smallest_cut(chance_, node);
     doubt.chance = 0.0;
     if (!side) return;
     std::vector<int> crossing = crossing_links(*side);
@@ -246,8 +279,10 @@ class DoubtSearch {
   std::vector<int> held_;            ///< accepted links that hold
   std::vector<int> witnesses_like_;  ///< of each of them: how many links see what it sees
   std::vector<const GraphLink*>
-      against_;  ///< of the pairs that speak for twins those that the solution lays so
-  std::map<int, std::vector<Held>> held_to_;  ///< of each reference: by what is asked
+      against_;          ///< of the pairs that speak for twins those that the solution lays so
+  CutSearch otherwise_;  ///< by what is said against twins furnished otherwise
+  CutSearch alike_;      ///< and alike
+  CutSearch chance_;     ///< by how hardly links are wrong by chance
   std::optional<TwinRate> rate_;
   std::vector<TwinEvidence> evidence_;  ///< of each link
 };

@@ -3,7 +3,6 @@
 #include "limen/project/graph/flow_network.h"
 
 #include <algorithm>
-#include <deque>
 #include <limits>
 
 namespace limen {
@@ -15,52 +14,65 @@ void FlowNetwork::connect(int a, int b, int forward, int backward) {
   in.push_back({a, backward, out.size() - 1});
 }
 
-std::optional<std::vector<bool>> FlowNetwork::smallest_cut(const std::vector<bool>& start,
+std::optional<std::vector<bool>> FlowNetwork::smallest_cut(const std::vector<int>& start,
                                                            const std::vector<bool>& end, int enough) {
+  std::optional<std::vector<bool>> side;
   for (int flow = 0; flow < enough;) {
-    Search search = reach(start, end);
-    if (search.end < 0) return std::move(search.reached);
-    flow += fill(search);
+    const int found = reach(start, end);
+    if (found < 0) {
+      side.emplace(pipes_.size(), false);
+      for (const int node : reached_) (*side)[static_cast<std::size_t>(node)] = true;
+      break;
+    }
+    flow += fill(found);
   }
-  return {};
+  empty();
+  return side;
 }
 
-int FlowNetwork::fill(const Search& search) {
-  const auto came = [&](int node) { return search.came[static_cast<std::size_t>(node)]; };
+int FlowNetwork::fill(int end) {
+  const auto before = [&](int node) { return before_[static_cast<std::size_t>(node)]; };
   int room = std::numeric_limits<int>::max();
-  for (int node = search.end; came(node).first >= 0; node = came(node).first)
-    room = std::min(room, pipes_[static_cast<std::size_t>(came(node).first)][came(node).second].room);
-  for (int node = search.end; came(node).first >= 0; node = came(node).first) {
-    Pipe& pipe = pipes_[static_cast<std::size_t>(came(node).first)][came(node).second];
-    pipe.room -= room;
-    pipes_[static_cast<std::size_t>(node)][pipe.back].room += room;
+  for (int node = end; before(node).node >= 0; node = before(node).node)
+    room = std::min(room, pipes_[static_cast<std::size_t>(before(node).node)][before(node).pipe].room);
+  for (int node = end; before(node).node >= 0; node = before(node).node) {
+    move(before(node).node, before(node).pipe, room);
+    filled_.push_back({before(node).node, before(node).pipe, room});
   }
   return room;
 }
 
-FlowNetwork::Search FlowNetwork::reach(const std::vector<bool>& start, const std::vector<bool>& end) const {
-  Search search{start, std::vector<std::pair<int, std::size_t>>(pipes_.size(), {-1, 0}), -1};
-  std::deque<int> waiting;
-  for (std::size_t node = 0; node < pipes_.size(); ++node) {
-    if (start[node]) waiting.push_back(static_cast<int>(node));
+void FlowNetwork::move(int node, std::size_t pipe, int flow) {
+  Pipe& along = pipes_[static_cast<std::size_t>(node)][pipe];
+  along.room -= flow;
+  pipes_[static_cast<std::size_t>(along.to)][along.back].room += flow;
+}
+
+void FlowNetwork::empty() {
+  for (const Filled& filled : filled_) move(filled.node, filled.pipe, -filled.flow);
+  filled_.clear();
+}
+
+int FlowNetwork::reach(const std::vector<int>& start, const std::vector<bool>& end) {
+  ++search_;
+  reached_ = start;
+  for (const int node : start) {
+    seen_[static_cast<std::size_t>(node)] = search_;
+    before_[static_cast<std::size_t>(node)] = {};
   }
-  while (!waiting.empty()) {
-    const int node = waiting.front();
-    waiting.pop_front();
+  for (std::size_t next = 0; next < reached_.size(); ++next) {
+    const int node = reached_[next];
     const std::vector<Pipe>& out = pipes_[static_cast<std::size_t>(node)];
     for (std::size_t k = 0; k < out.size(); ++k) {
       const auto to = static_cast<std::size_t>(out[k].to);
-      if (out[k].room <= 0 || search.reached[to]) continue;
-      search.reached[to] = true;
-      search.came[to] = {node, k};
-      if (end[to]) {
-        search.end = out[k].to;
-        return search;
-      }
-      waiting.push_back(out[k].to);
+      if (out[k].room <= 0 || seen_[to] == search_) continue;
+      seen_[to] = search_;
+      before_[to] = {node, k};
+      if (end[to]) return out[k].to;
+      reached_.push_back(out[k].to);
     }
   }
-  return search;
+  return -1;
 }
 
 }  // namespace limen

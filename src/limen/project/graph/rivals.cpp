@@ -241,7 +241,11 @@ class RivalSearch {
       const Bend bend = bend_of(link, movement);
       network.connect(link.source, link.target, bend.source_moves ? 0 : firm, bend.target_moves ? 0 : firm);
     }
-    return network.smallest_cut(sides.moving, sides.staying, std::numeric_limits<int>::max())
+    std::vector<int> moving;
+    for (int node = 0; node < graph_.nodes; ++node) {
+      if (sides.moving[static_cast<std::size_t>(node)]) moving.push_back(node);
+    }
+    return network.smallest_cut(moving, sides.staying, std::numeric_limits<int>::max())
         .value_or(sides.moving);
   }
 
