@@ -36,23 +36,14 @@ bool stands_before(const Sight& a, const Sight& b) {
 JoinedSpace::JoinedSpace(std::vector<Member> members) : members_(std::move(members)) {}
 
 Sight JoinedSpace::look(const SightQuery& query) const {
-  Sight sight;
-  look_all({&query, 1}, {&sight, 1});
-  return sight;
-}
-
-void JoinedSpace::look_all(std::span<const SightQuery> queries, std::span<Sight> sights) const {
-  std::fill(sights.begin(), sights.end(), Sight{});
-  std::array<Sight, kSightBatch> of_member;
+  Sight best;
   for (const Member& member : members_) {
-    member.view->look_all(queries, {of_member.data(), queries.size()});
-    for (std::size_t k = 0; k < queries.size(); ++k) {
-      Sight& sight = of_member[k];
-      if (!stands_before(sight, sights[k])) continue;
-      if (sight.plane >= 0) sight.plane = member.joint_plane[static_cast<std::size_t>(sight.plane)];
-      sights[k] = sight;
-    }
+    Sight sight = member.view->look(query);
+    if (!stands_before(sight, best)) continue;
+    if (sight.plane >= 0) sight.plane = member.joint_plane[static_cast<std::size_t>(sight.plane)];
+    best = sight;
   }
+  return best;
 }
 
 void JoinedSpace::look_at_surface(const SurfaceColumns& asked, std::size_t begin, std::size_t size,
@@ -62,6 +53,7 @@ void JoinedSpace::look_at_surface(const SurfaceColumns& asked, std::size_t begin
     return Sight{static_cast<SightKind>(all.kind[k]), -1, static_cast<double>(all.distance_m[k])};
   };
   std::fill_n(looks.kind.begin(), size, static_cast<std::int32_t>(SightKind::unseen));
+  std::fill_n(looks.plane.begin(), size, -1);
   std::fill_n(looks.distance_m.begin(), size, 0.0F);
   Looks of_member;
   for (const Member& member : members_) {
@@ -69,6 +61,8 @@ void JoinedSpace::look_at_surface(const SurfaceColumns& asked, std::size_t begin
     for (std::size_t k = 0; k < size; ++k) {
       if (!stands_before(sight_of(of_member, k), sight_of(looks, k))) continue;
       looks.kind[k] = of_member.kind[k];
+      const std::int32_t plane = of_member.plane[k];
+      looks.plane[k] = plane < 0 ? -1 : member.joint_plane[static_cast<std::size_t>(plane)];
       looks.distance_m[k] = of_member.distance_m[k];
     }
   }

@@ -22,7 +22,6 @@ class JoinedSpace : public SpaceView {
   explicit JoinedSpace(std::vector<Member> members);
 
   [[nodiscard]] Sight look(const SightQuery& query) const override;
-  void look_all(std::span<const SightQuery> queries, std::span<Sight> sights) const override;
   void look_at_surface(const SurfaceColumns& asked, std::size_t begin, std::size_t size,
                        const Rigid3& view_from_scan, const LookTolerances& tolerances,
                        Looks& looks) const override;

@@ -3,8 +3,8 @@
 #include "limen/sight/panorama.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "limen/base/error.h"
@@ -14,6 +14,12 @@ namespace limen {
 namespace {
 
 constexpr double kPointsPerPixel = 2.0;
+
+/// The smallest planes of more than a pixel can tell are clutter.
+std::int16_t told_plane(std::int32_t plane) {
+  return plane <= std::numeric_limits<std::int16_t>::max() ? static_cast<std::int16_t>(plane)
+                                                           : std::int16_t{-1};
+}
 
 std::vector<PanoramaFacet> seen_from(const Vector3d& centre, const std::vector<Facet>& facets) {
   std::vector<PanoramaFacet> seen;
@@ -57,7 +63,8 @@ Panorama::Panorama(const PanoramaState& state, const Features& features)
   if (!fits) throw Error("the panorama does not fit its scan", "kept features", "have them made again");
   pixels_.resize(count);
   for (std::size_t k = 0; k < count; ++k)
-    pixels_[k] = {state.near_m[k], state.far_m[k], 0.0F, state.near_plane[k], state.far_plane[k]};
+    pixels_[k] = {state.near_m[k], state.far_m[k], 0.0F, told_plane(state.near_plane[k]),
+                  told_plane(state.far_plane[k])};
   erode();
 }
 
@@ -109,11 +116,11 @@ void Panorama::fill(const Scan& scan, const std::vector<std::int32_t>& labels) {
     PanoramaPixel& pixel = pixels_[pixel_at(ray)];
     if (pixel.near_m == 0.0F || range < pixel.near_m) {
       pixel.near_m = range;
-      pixel.near_plane = labels[i];
+      pixel.near_plane = told_plane(labels[i]);
     }
     if (range > pixel.far_m) {
       pixel.far_m = range;
-      pixel.far_plane = labels[i];
+      pixel.far_plane = told_plane(labels[i]);
     }
   }
 }
@@ -171,19 +178,6 @@ Sight Panorama::look_at(const SightQuery& query, double range, const PanoramaPix
 Sight Panorama::look(const SightQuery& query) const {
   const Vector3d ray = query.at - centre_;
   return look_at(query, ray.norm(), pixels_[pixel_at(ray)]);
-}
-
-void Panorama::look_all(std::span<const SightQuery> queries, std::span<Sight> sights) const {
-  std::array<const PanoramaPixel*, kSightBatch> pixels;
-  std::array<double, kSightBatch> ranges;
-  for (std::size_t k = 0; k < queries.size(); ++k) {
-    const Vector3d ray = queries[k].at - centre_;
-    ranges[k] = ray.norm();
-    pixels[k] = &pixels_[pixel_at(ray)];
-    __builtin_prefetch(pixels[k]);
-    __builtin_prefetch(&pixels[k]->far_plane);  // a pixel may lie across two lines of the cache
-  }
-  for (std::size_t k = 0; k < queries.size(); ++k) sights[k] = look_at(queries[k], ranges[k], *pixels[k]);
 }
 
 void Panorama::look_at_surface(const SurfaceColumns& asked, std::size_t begin, std::size_t size,

@@ -4,17 +4,8 @@
 
 #include <cmath>
 
+#include "limen/base/wide.h"
 #include "limen/sight/space_view.h"
-
-// The loops over columns are written for the compiler to take eight at a time where the processor can: no
-// branches, no calls. Their results do not depend on it: no sum runs across pieces, and products are not
-// contracted.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \
-    !defined(__SANITIZE_THREAD__)
-#define LIMEN_WIDE __attribute__((target_clones("default", "avx2")))
-#else
-#define LIMEN_WIDE
-#endif
 
 namespace limen {
 namespace {
@@ -34,8 +25,8 @@ struct LookColumns {
 };
 
 /// Where the pieces lie from the centre, and in which pixel: as in Panorama::pixel_at().
-LIMEN_WIDE void find_pixels(const PanoramaLook& look, const float* x, const float* y, const float* z,
-                            std::size_t size, LookColumns& at) {
+LIMEN_WIDE void find_pixels(const PanoramaLook& look, const float* __restrict x, const float* __restrict y,
+                            const float* __restrict z, std::size_t size, LookColumns& __restrict at) {
   const std::array<float, 9> r = look.rotation;
   const std::array<float, 3> t = look.shift;
   const float half = 0.5F * static_cast<float>(look.edge);
@@ -72,7 +63,7 @@ LIMEN_WIDE void find_pixels(const PanoramaLook& look, const float* x, const floa
 }
 
 /// From memory into columns: what cannot be done many at a time.
-void fetch(const PanoramaLook& look, std::size_t size, LookColumns& at) {
+void fetch(const PanoramaLook& look, std::size_t size, LookColumns& __restrict at) {
   for (std::size_t k = 0; k < size; ++k) {
     const PanoramaPixel& pixel = look.pixels[at.pixel[k]];
     at.near_m[k] = pixel.near_m;
@@ -107,7 +98,7 @@ constexpr auto kHidden = static_cast<std::int32_t>(SightKind::hidden);
 
 /// As Panorama::look_at(), of the nearer return alone; `on_near` tells where it was met, or need not be.
 LIMEN_WIDE void look_near(const PanoramaLook& look, const AskedColumns& asked, std::size_t size,
-                          LookColumns& at, Looks& looks) {
+                          LookColumns& __restrict at, Looks& __restrict looks) {
   const std::array<float, 9> r = look.rotation;
   const float surface_m = look.surface_m;
   const float clutter_m = look.clutter_m;
@@ -144,6 +135,7 @@ LIMEN_WIDE void look_near(const PanoramaLook& look, const AskedColumns& asked, s
     settled = near > 0.0F ? settled : 1;
     settled = range < 0.05F ? 1 : settled;
     looks.kind[k] = kind;
+    looks.plane[k] = met != 0 ? at.near_plane[k] : -1;
     looks.distance_m[k] = distance;
     at.on_near[k] = settled;
   }
@@ -157,6 +149,7 @@ void look_far(const PanoramaLook& look, const AskedColumns& asked, std::size_t k
   const bool planar = asked.planar[k] != 0;
   const auto meet = [&](float distance) {
     looks.kind[k] = kSurface;
+    looks.plane[k] = at.far_plane[k];
     looks.distance_m[k] = distance;
   };
   if (at.far_plane[k] < 0) {
@@ -189,7 +182,6 @@ void look_at_surface(const PanoramaLook& look, const SurfaceColumns& asked, std:
   for (std::size_t k = 0; k < size; ++k) {
     const PanoramaPixel* pixel = &look.pixels[at.pixel[k]];
     __builtin_prefetch(pixel);
-    __builtin_prefetch(&pixel->far_plane);  // a pixel may lie across two lines of the cache
   }
   fetch(look, size, at);
   const AskedColumns columns{asked.nx.data() + begin, asked.ny.data() + begin, asked.nz.data() + begin,

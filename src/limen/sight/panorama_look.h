@@ -10,12 +10,13 @@
 
 namespace limen {
 
-struct PanoramaPixel {
+/// In one line of the cache: most of a look is waiting for it.
+struct alignas(16) PanoramaPixel {
   float near_m = 0.0F;  ///< closest return; 0: none
   float far_m = 0.0F;
-  float clear_m = 0.0F;  ///< closest return of the 3 x 3 pixels around: rays passed freely up to here
-  std::int32_t near_plane = -1;
-  std::int32_t far_plane = -1;
+  float clear_m = 0.0F;          ///< closest return of the 3 x 3 pixels around: rays passed freely up to here
+  std::int16_t near_plane = -1;  ///< -1: clutter, and what lies on a plane whose number is too large
+  std::int16_t far_plane = -1;
 };
 
 /// A plane seen from the panorama's centre.

@@ -91,7 +91,8 @@ Tally compare(const SpaceView& view, const SurfaceColumns& pieces, const Rigid3&
       tally.hidden += kind == SightKind::hidden ? 1 : 0;
       const bool off =
           kind == SightKind::surface && !(std::abs(together.distance_m[k] - singly.distance_m[k]) < 1e-5F);
-      tally.apart += together.kind[k] != singly.kind[k] || off ? 1 : 0;
+      tally.apart +=
+          together.kind[k] != singly.kind[k] || together.plane[k] != singly.plane[k] || off ? 1 : 0;
     }
   }
   return tally;

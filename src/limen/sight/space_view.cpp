@@ -2,9 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limen/sight/space_view.h"
 
-#include <algorithm>
-#include <array>
-
 namespace limen {
 
 std::vector<Facet> facets_of(const Features& features) {
@@ -29,19 +26,12 @@ SightQuery query_of(const SurfaceColumns& asked, std::size_t i, const Vector3d& 
 void SpaceView::look_at_surface(const SurfaceColumns& asked, std::size_t begin, std::size_t size,
                                 const Rigid3& view_from_scan, const LookTolerances& tolerances,
                                 Looks& looks) const {
-  std::array<SightQuery, kSightBatch> queries;
-  std::array<Sight, kSightBatch> sights;
-  for (std::size_t done = 0; done < size; done += kSightBatch) {
-    const std::size_t count = std::min(kSightBatch, size - done);
-    for (std::size_t k = 0; k < count; ++k) {
-      const std::size_t i = begin + done + k;
-      queries[k] = query_of(asked, i, view_from_scan * asked.place(i), view_from_scan, tolerances);
-    }
-    look_all({queries.data(), count}, {sights.data(), count});
-    for (std::size_t k = 0; k < count; ++k) {
-      looks.kind[done + k] = static_cast<std::int32_t>(sights[k].kind);
-      looks.distance_m[done + k] = static_cast<float>(sights[k].distance_m);
-    }
+  for (std::size_t k = 0; k < size; ++k) {
+    const Vector3d at = view_from_scan * asked.place(begin + k);
+    const Sight sight = look(query_of(asked, begin + k, at, view_from_scan, tolerances));
+    looks.kind[k] = static_cast<std::int32_t>(sight.kind);
+    looks.plane[k] = sight.plane;
+    looks.distance_m[k] = static_cast<float>(sight.distance_m);
   }
 }
 

@@ -6,7 +6,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
-#include <span>
 #include <vector>
 
 #include "limen/geometry/rigid.h"
@@ -44,9 +43,6 @@ struct SightQuery {
 SightQuery query_of(const SurfaceColumns& asked, std::size_t i, const Vector3d& at,
                     const Rigid3& view_from_scan, const LookTolerances& tolerances);
 
-/// Queries of one batch, at most.
-constexpr std::size_t kSightBatch = 32;
-
 /// What a scan knows of space: asked place by place when a pose is judged.
 class SpaceView {
  public:
@@ -56,13 +52,9 @@ class SpaceView {
   virtual ~SpaceView() = default;
 
   [[nodiscard]] virtual Sight look(const SightQuery& query) const = 0;
-  /// Looks for a batch of queries, at most kSightBatch: what the answers need is fetched from memory ahead,
-  /// for most of a look is waiting for it. `sights` has as many places as there are queries.
-  virtual void look_all(std::span<const SightQuery> queries, std::span<Sight> sights) const {
-    for (std::size_t k = 0; k < queries.size(); ++k) sights[k] = look(queries[k]);
-  }
   /// Looks at the pieces [begin, begin + size) of another scan's surface, at most kLookBatch, where
-  /// `view_from_scan` lays them.
+  /// `view_from_scan` lays them: what the answers need is fetched from memory ahead, for most of a look is
+  /// waiting for it.
   virtual void look_at_surface(const SurfaceColumns& asked, std::size_t begin, std::size_t size,
                                const Rigid3& view_from_scan, const LookTolerances& tolerances,
                                Looks& looks) const;

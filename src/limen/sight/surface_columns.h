@@ -36,10 +36,11 @@ struct LookTolerances {
 /// Pieces of surface that are looked at together, at most.
 constexpr std::size_t kLookBatch = 64;
 
-/// What a view of space says to pieces of surface: for each a SightKind as a number, and for surface the
-/// signed distance to it.
+/// What a view of space says to pieces of surface: for each a SightKind as a number, and for surface its
+/// plane, or -1, and the signed distance to it.
 struct Looks {
   std::array<std::int32_t, kLookBatch> kind;
+  std::array<std::int32_t, kLookBatch> plane;
   std::array<float, kLookBatch> distance_m;
 };
 

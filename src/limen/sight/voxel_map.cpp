@@ -243,7 +243,7 @@ void VoxelMap::find_all(std::span<const Key> keys, std::span<const Cube*> cubes)
   constexpr std::size_t kNowhere = static_cast<std::size_t>(-1);
   std::array<std::size_t, kLookBatch> at;  // of the block, then of the cube in its block
   for (std::size_t k = 0; k < keys.size(); ++k) {
-    at[k] = index_of(keys[k]) >= 0 ? block_of(keys[k]) : kNowhere;
+    at[k] = keys[k][0] >= 0 ? block_of(keys[k]) : kNowhere;
     if (at[k] != kNowhere) __builtin_prefetch(&block_at_[at[k]]);
   }
   for (std::size_t k = 0; k < keys.size(); ++k) {
@@ -258,33 +258,44 @@ void VoxelMap::find_all(std::span<const Key> keys, std::span<const Cube*> cubes)
   }
 }
 
-void VoxelMap::look_all(std::span<const SightQuery> queries, std::span<Sight> sights) const {
-  std::array<Key, kSightBatch> keys;
-  std::array<const Cube*, kSightBatch> cubes;
-  for (std::size_t k = 0; k < queries.size(); ++k) keys[k] = key_of(queries[k].at);
-  find_all({keys.data(), queries.size()}, {cubes.data(), queries.size()});
-  for (std::size_t k = 0; k < queries.size(); ++k)
-    sights[k] = index_of(keys[k]) >= 0 ? look_in(cubes[k], queries[k]) : Sight{};
+/// Of the i-th piece; outside the first number is -1. Written out: it is made millions of times.
+VoxelMap::Key VoxelMap::key_at(const Rigid3& cubes_from_scan, const SurfaceColumns& asked,
+                               std::size_t i) const {
+  const double x = static_cast<double>(asked.x[i]);
+  const double y = static_cast<double>(asked.y[i]);
+  const double z = static_cast<double>(asked.z[i]);
+  const Matrix3d& r = cubes_from_scan.rotation;
+  const Vector3d& t = cubes_from_scan.translation;
+  const std::array<double, 3> at{r(0, 0) * x + r(0, 1) * y + r(0, 2) * z + t[0],
+                                 r(1, 0) * x + r(1, 1) * y + r(1, 2) * z + t[1],
+                                 r(2, 0) * x + r(2, 1) * y + r(2, 2) * z + t[2]};
+  bool inside = true;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    inside = inside && at[axis] >= 0.0 && at[axis] < static_cast<double>(size_[axis]);
+  if (!inside) return {-1, -1, -1};
+  return {static_cast<std::int32_t>(at[0]), static_cast<std::int32_t>(at[1]),
+          static_cast<std::int32_t>(at[2])};
 }
 
 void VoxelMap::look_at_surface(const SurfaceColumns& asked, std::size_t begin, std::size_t size,
                                const Rigid3& view_from_scan, const LookTolerances& tolerances,
                                Looks& looks) const {
-  std::array<Vector3d, kLookBatch> places;
   std::array<Key, kLookBatch> keys;
   std::array<const Cube*, kLookBatch> cubes;
-  for (std::size_t k = 0; k < size; ++k) {
-    places[k] = view_from_scan * asked.place(begin + k);
-    keys[k] = key_of(places[k]);
-  }
+  const Rigid3 cubes_from_scan{per_m_ * view_from_scan.rotation,
+                               per_m_ * (view_from_scan.translation - low_)};
+  for (std::size_t k = 0; k < size; ++k) keys[k] = key_at(cubes_from_scan, asked, begin + k);
   find_all({keys.data(), size}, {cubes.data(), size});
   std::fill_n(looks.kind.begin(), size, static_cast<std::int32_t>(SightKind::unseen));
+  std::fill_n(looks.plane.begin(), size, -1);
   std::fill_n(looks.distance_m.begin(), size, 0.0F);
   for (std::size_t k = 0; k < size; ++k) {
     // Most places lie where nothing was measured.
-    if (cubes[k] == nullptr && !is_free_at(index_of(keys[k]))) continue;
-    const Sight sight = look_in(cubes[k], query_of(asked, begin + k, places[k], view_from_scan, tolerances));
+    if (cubes[k] == nullptr && (keys[k][0] < 0 || !is_free_at(index_of(keys[k])))) continue;
+    const Vector3d at = view_from_scan * asked.place(begin + k);
+    const Sight sight = look_in(cubes[k], query_of(asked, begin + k, at, view_from_scan, tolerances));
     looks.kind[k] = static_cast<std::int32_t>(sight.kind);
+    looks.plane[k] = sight.plane;
     looks.distance_m[k] = static_cast<float>(sight.distance_m);
   }
 }

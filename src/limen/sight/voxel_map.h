@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "limen/sight/space_view.h"
@@ -37,7 +38,6 @@ class VoxelMap : public SpaceView {
 
   [[nodiscard]] VoxelMapState state() const;
   [[nodiscard]] Sight look(const SightQuery& query) const override;
-  void look_all(std::span<const SightQuery> queries, std::span<Sight> sights) const override;
   void look_at_surface(const SurfaceColumns& asked, std::size_t begin, std::size_t size,
                        const Rigid3& view_from_scan, const LookTolerances& tolerances,
                        Looks& looks) const override;
@@ -59,7 +59,8 @@ class VoxelMap : public SpaceView {
   [[nodiscard]] bool passed_freely(const SightQuery& query) const;
   [[nodiscard]] std::size_t block_of(const Key& key) const;
   [[nodiscard]] const Cube* find(const Key& key) const;
-  /// The cubes of a batch of places; none where nothing was measured, or outside.
+  [[nodiscard]] Key key_at(const Rigid3& cubes_from_scan, const SurfaceColumns& asked, std::size_t i) const;
+  /// The cubes of a batch of places; none where nothing was measured, or outside, where a key's first is -1.
   void find_all(std::span<const Key> keys, std::span<const Cube*> cubes) const;
   [[nodiscard]] Sight look_in(const Cube* found, const SightQuery& query) const;
   Cube& obtain(const Key& key);  ///< `key` lies inside

@@ -245,16 +245,22 @@ OpeningMatching::OpeningMatching(const Features& source, const Features& target,
       target_rectangles_(rectangles_of(target.openings)) {}
 
 std::vector<OpeningMatch> OpeningMatching::under(const Rigid3& target_from_source) const {
+  return under(target_from_source, options_.gate_m);
+}
+
+std::vector<OpeningMatch> OpeningMatching::under(const Rigid3& target_from_source, double gate_m) const {
+  OpeningMatchOptions options = options_;
+  options.gate_m = gate_m;
   std::vector<OpeningMatch> all;
   for (std::size_t i = 0; i < sources_.size(); ++i) {
     const Rectangle& own = source_rectangles_[i];
     const Vector3d corner = target_from_source * own.origin;
-    const double reach = options_.max_gap_m + own.width + own.height + options_.gate_m;
+    const double reach = options.max_gap_m + own.width + own.height + options.gate_m;
     for (std::size_t k = 0; k < targets_.size(); ++k) {
       const Rectangle& b = target_rectangles_[k];
       if ((b.origin - corner).squaredNorm() > (reach + b.width) * (reach + b.width)) continue;
       if (auto match = match_of(sources_[i], moved(own, target_from_source), target_from_source, targets_[k],
-                                b, options_)) {
+                                b, options)) {
         match->source = static_cast<int>(i);
         match->target = static_cast<int>(k);
         all.push_back(*match);

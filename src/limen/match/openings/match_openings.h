@@ -56,6 +56,8 @@ class OpeningMatching {
 
   /// As match_openings().
   [[nodiscard]] std::vector<OpeningMatch> under(const Rigid3& target_from_source) const;
+  /// The same with another gate.
+  [[nodiscard]] std::vector<OpeningMatch> under(const Rigid3& target_from_source, double gate_m) const;
 
  private:
   const std::vector<Opening>& sources_;

@@ -10,6 +10,7 @@
 
 #include "limen/base/progress.h"
 #include "limen/match/openings/match_openings.h"
+#include "limen/register/judge/weigh_looks.h"
 #include "limen/register/prepare/asked_samples.h"
 #include "limen/sight/surface_columns.h"
 
@@ -17,15 +18,6 @@ namespace limen {
 namespace {
 
 constexpr double kClutterWeight = 0.5;  // clutter moves, and its cubes meet less sharply than planes
-
-/// What the judge's scanner says to one sample of the other scan.
-struct Answer {
-  SightKind kind = SightKind::unseen;
-  double area_m2 = 0.0;
-  double gain_m2 = 0.0;  // agreeing surface, 1 - d^2 / t^2 of the area
-
-  [[nodiscard]] double contradicted_m2() const { return kind == SightKind::free ? area_m2 : 0.0; }
-};
 
 /// What is asked of one scan, gathered: the samples that a look asks lie far apart in memory.
 struct Gathered {
@@ -51,28 +43,20 @@ Gathered gathered(const ScanView& scan, const AskedSamples& asked) {
   return all;
 }
 
-/// Asks `judge` about all of them, in order: `use(k, answer)`.
+/// Asks `judge` about all of them, in order, batch by batch: `use(begin, size, answers)`.
 template <typename Use>
 void ask_all(const Gathered& all, const ScanView& judge, const Rigid3& judge_from_scan,
              const ScoreOptions& options, const Use& use) {
   const LookTolerances tolerances{options.surface_m, 1.5 * options.surface_m, options.free_m};
   const std::size_t count = all.planes.size();
   Looks looks;
+  Answers answers;
   for (std::size_t begin = 0; begin < count; begin += kLookBatch) {
     const std::size_t size = std::min(kLookBatch, count - begin);
     judge.space->look_at_surface(all.columns, begin, size, judge_from_scan, tolerances, looks);
-    for (std::size_t k = 0; k < size; ++k) {
-      Answer answer;
-      answer.kind = static_cast<SightKind>(looks.kind[k]);
-      answer.area_m2 = static_cast<double>(all.areas_m2[begin + k]);
-      if (answer.kind == SightKind::surface) {
-        const bool planar = all.planes[begin + k] >= 0;
-        const double off =
-            static_cast<double>(looks.distance_m[k]) / (planar ? tolerances.surface_m : tolerances.clutter_m);
-        answer.gain_m2 = answer.area_m2 * (1.0 - off * off);
-      }
-      use(begin + k, answer);
-    }
+    weigh_looks(looks, all.areas_m2.data() + begin, all.columns.planar.data() + begin, tolerances, size,
+                answers);
+    use(begin, size, answers);
   }
 }
 
@@ -81,36 +65,61 @@ void ask_all(const Gathered& all, const ScanView& judge, const Rigid3& judge_fro
 constexpr double kPlaneLimit_m2 = 5.0;
 
 double saturated(double area_m2) {
+  if (area_m2 == 0.0) return 0.0;  // of most planes under most poses
   return kPlaneLimit_m2 * (1.0 - std::exp(-area_m2 / kPlaneLimit_m2));
+}
+
+/// What a scanner says to one sample after the other: they come plane by plane, clutter last.
+struct Tally {
+  std::int32_t plane = -1;
+  double of_plane = 0.0;
+  double planar = 0.0;
+  double clutter = 0.0;
+  double contradicted = 0.0;
+  double tested = 0.0;
+  double evidence_m2 = 0.0;
+
+  void end_plane(double factor) {
+    planar += of_plane;
+    evidence_m2 += saturated(factor * of_plane);
+    of_plane = 0.0;
+  }
+};
+
+/// By value, so that the sums stay out of memory.
+Tally added(Tally tally, const std::int32_t* planes, std::size_t size, const Answers& answers,
+            double factor) {
+  for (std::size_t k = 0; k < size; ++k) {
+    tally.contradicted += static_cast<double>(answers.contradicted_m2[k]);
+    tally.tested += static_cast<double>(answers.tested_m2[k]);
+    if (planes[k] != tally.plane) {
+      tally.end_plane(factor);
+      tally.plane = planes[k];
+    }
+    const double gain = static_cast<double>(answers.gain_m2[k]);
+    tally.of_plane += tally.plane >= 0 ? gain : 0.0;
+    tally.clutter += tally.plane >= 0 ? 0.0 : gain;
+  }
+  return tally;
 }
 
 /// Asks `judge` about what was gathered of a scan.
 PoseScore one_way(const Gathered& asked, const ScanView& judge, const Rigid3& judge_from_scan,
                   const ScoreOptions& options) {
   CancelScope::check();
-  PoseScore score;
   const double factor = asked.factor;
-  // Samples come plane by plane, clutter last.
-  std::int32_t plane = -1;
-  double of_plane = 0.0;
-  ask_all(asked, judge, judge_from_scan, options, [&](std::size_t k, const Answer& answer) {
-    const double gain = factor * answer.gain_m2;
-    score.agreeing_m2 += gain;
-    if (asked.planes[k] != plane) {
-      score.evidence_m2 += saturated(of_plane);
-      of_plane = 0.0;
-      plane = asked.planes[k];
-    }
-    if (plane >= 0) {
-      score.planar_m2 += gain;
-      of_plane += gain;
-    } else {
-      score.evidence_m2 += gain;
-    }
-    score.contradicted_m2 += factor * answer.contradicted_m2();
-    if (answer.kind != SightKind::unseen) score.tested_m2 += factor * answer.area_m2;
-  });
-  score.evidence_m2 += saturated(of_plane);
+  Tally tally;
+  ask_all(asked, judge, judge_from_scan, options,
+          [&](std::size_t begin, std::size_t size, const Answers& answers) {
+            tally = added(tally, asked.planes.data() + begin, size, answers, factor);
+          });
+  tally.end_plane(factor);
+  PoseScore score;
+  score.evidence_m2 = tally.evidence_m2 + factor * tally.clutter;
+  score.planar_m2 = factor * tally.planar;
+  score.agreeing_m2 = factor * (tally.planar + tally.clutter);
+  score.contradicted_m2 = factor * tally.contradicted;
+  score.tested_m2 = factor * tally.tested;
   return score;
 }
 
@@ -156,19 +165,24 @@ void add_contrast(const ScanView& scan, const ScanView& judge, const Rigid3& fir
   const Gathered asked = gathered(scan, asked_for_both(scan, judge, first, second, options));
   // Both ways are averaged, as in the score.
   const double share = 0.5 * asked.factor;
-  std::vector<Answer> of_first;
-  of_first.reserve(asked.planes.size());
-  ask_all(asked, judge, first, options,
-          [&](std::size_t, const Answer& answer) { of_first.push_back(answer); });
+  std::vector<float> gains(asked.planes.size());
+  std::vector<float> contradictions(asked.planes.size());
+  ask_all(asked, judge, first, options, [&](std::size_t begin, std::size_t size, const Answers& answers) {
+    const auto at = static_cast<std::ptrdiff_t>(begin);
+    std::copy_n(answers.gain_m2.begin(), size, gains.begin() + at);
+    std::copy_n(answers.contradicted_m2.begin(), size, contradictions.begin() + at);
+  });
   std::vector<PoseContrast> planes(scan.features->planes.size());
-  ask_all(asked, judge, second, options, [&](std::size_t k, const Answer& in_second) {
-    const Answer& in_first = of_first[k];
-    const double agreeing = share * (in_first.gain_m2 - in_second.gain_m2);
-    const std::int32_t plane = asked.planes[k];
-    add_lead(agreeing, plane >= 0 ? planes[static_cast<std::size_t>(plane)] : contrast);
-    // Matter where a ray passed is no coincidence: it counts in full.
-    add_lead(share * kContradictionWeight * (in_second.contradicted_m2() - in_first.contradicted_m2()),
-             contrast);
+  ask_all(asked, judge, second, options, [&](std::size_t begin, std::size_t size, const Answers& answers) {
+    for (std::size_t k = 0; k < size; ++k) {
+      const std::int32_t plane = asked.planes[begin + k];
+      const float agreeing = gains[begin + k] - answers.gain_m2[k];
+      const float contradicted = answers.contradicted_m2[k] - contradictions[begin + k];
+      add_lead(share * static_cast<double>(agreeing),
+               plane >= 0 ? planes[static_cast<std::size_t>(plane)] : contrast);
+      // Matter where a ray passed is no coincidence: it counts in full.
+      add_lead(share * kContradictionWeight * static_cast<double>(contradicted), contrast);
+    }
   });
   for (const PoseContrast& plane : planes) {
     contrast.for_first_m2 += saturated(plane.for_first_m2);

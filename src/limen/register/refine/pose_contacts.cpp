@@ -4,9 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "limen/register/prepare/asked_samples.h"
-#include "limen/sight/ask_in_batches.h"
+#include "limen/sight/surface_columns.h"
 
 namespace limen {
 namespace {
@@ -18,21 +19,50 @@ constexpr double kLeastAngleRad = 0.07;  // the normals of small planes are not 
 constexpr double kMostAngleRad = 0.3;
 constexpr double kTurnGateRad = 0.15;
 
-class Collector {
+/// The planar samples that one scan is asked about, gathered.
+struct AskedSurface {
+  std::vector<std::uint32_t> indices;
+  SurfaceColumns columns;
+  double factor = 1.0;  ///< surface that each stands for, as a multiple of its own
+};
+
+AskedSurface asked_surface(const ScanView& scan, const ScanView& judge, const Rigid3& judge_from_scan,
+                           std::size_t most) {
+  const std::vector<SurfaceSample>& samples = scan.features->samples;
+  AskedSamples all = asked_samples(scan, judge, judge_from_scan, most);
+  AskedSurface asked;
+  asked.factor = all.factor;
+  asked.indices = std::move(all.indices);
+  // Clutter follows the planes.
+  const auto clutter = std::find_if(asked.indices.begin(), asked.indices.end(),
+                                    [&](std::uint32_t i) { return samples[i].plane < 0; });
+  asked.indices.erase(clutter, asked.indices.end());
+  asked.columns.reserve(asked.indices.size());
+  for (const std::uint32_t i : asked.indices)
+    asked.columns.add(samples[i], scan.features->planes[static_cast<std::size_t>(samples[i].plane)].oriented);
+  return asked;
+}
+
+}  // namespace
+
+class ContactFinder::Collector {
  public:
   Collector(const ScanView& source, const ScanView& target, const RefineOptions& options)
-      : source_(source), target_(target), options_(options) {}
+      : source_(source), target_(target), options_(options), openings_(*source.features, *target.features) {
+    if (!options.planes) return;
+    // Of a model only what comes within the scan's reach is asked, which the pose decides.
+    if (!source.model) of_source_ = asked_surface(source, target, {}, options.samples);
+    if (!target.model) of_target_ = asked_surface(target, source, {}, options.samples);
+  }
 
   [[nodiscard]] Contacts run(const Rigid3& pose, const ContactGates& gates) const {
     Contacts contacts;
     if (options_.planes) {
-      collect(source_, target_, pose, gates.plane_m, true, pose, contacts.all);
-      collect(target_, source_, inverse(pose), gates.plane_m, false, pose, contacts.all);
+      collect(source_, target_, of_source_, pose, gates.plane_m, true, pose, contacts.all);
+      collect(target_, source_, of_target_, inverse(pose), gates.plane_m, false, pose, contacts.all);
     }
     if (!options_.openings) return contacts;
-    OpeningMatchOptions matching;
-    matching.gate_m = gates.opening_m;
-    contacts.openings = match_openings(*source_.features, *target_.features, pose, matching);
+    contacts.openings = openings_.under(pose, gates.opening_m);
     for (const OpeningMatch& match : contacts.openings)
       add_opening(match, pose, gates.opening_m, contacts.all);
     return contacts;
@@ -44,52 +74,45 @@ class Collector {
                      options_.flatness_m * options_.flatness_m);
   }
 
-  void collect(const ScanView& scan, const ScanView& judge, const Rigid3& judge_from_scan, double gate,
-               bool forth, const Rigid3& target_from_source, std::vector<Contact>& contacts) const {
+  void collect(const ScanView& scan, const ScanView& judge, const AskedSurface& fixed,
+               const Rigid3& judge_from_scan, double gate, bool forth, const Rigid3& target_from_source,
+               std::vector<Contact>& contacts) const {
     if (judge.space == nullptr) return;
+    if (!scan.model)
+      return collect_of(fixed, scan, judge, judge_from_scan, gate, forth, target_from_source, contacts);
+    collect_of(asked_surface(scan, judge, judge_from_scan, options_.samples), scan, judge, judge_from_scan,
+               gate, forth, target_from_source, contacts);
+  }
+
+  void collect_of(const AskedSurface& asked, const ScanView& scan, const ScanView& judge,
+                  const Rigid3& judge_from_scan, double gate, bool forth, const Rigid3& target_from_source,
+                  std::vector<Contact>& contacts) const {
     const double noise = std::max(scan.features->noise_m, 0.0005);
     // The nearer the planes, the better their normals have to agree.
     const double least_cosine = std::cos(std::clamp(kAnglePerGate * gate, kLeastAngleRad, kMostAngleRad));
-    const std::vector<SurfaceSample>& samples = scan.features->samples;
-    const AskedSamples asked = asked_samples(scan, judge, judge_from_scan, options_.samples);
-    const auto clutter = std::find_if(asked.indices.begin(), asked.indices.end(),
-                                      [&](std::uint32_t i) { return samples[i].plane < 0; });
-    const auto question = [&](std::size_t k) {
-      const SurfaceSample& sample = samples[asked.indices[k]];
-      SightQuery query;
-      query.surface_m = gate;
-      query.free_m = 1e9;
-      query.at = judge_from_scan * sample.mean;
-      query.normal = judge_from_scan.rotation * sample.normal;
-      query.oriented = scan.features->planes[static_cast<std::size_t>(sample.plane)].oriented;
-      return query;
-    };
-    const auto use = [&](std::size_t k, const SightQuery& query, const Sight& sight) {
-      const SurfaceSample& sample = samples[asked.indices[k]];
-      if (sight.kind != SightKind::surface || sight.plane < 0) return;
-      const PlanarPolygon& plane = judge.features->planes[static_cast<std::size_t>(sight.plane)];
-      if (std::abs(query.normal.dot(plane.plane.normal)) < least_cosine) return;
-      Contact contact;
-      contact.sigma_m = sigma_of(sample, noise);
-      contact.gate_m = gate;
-      contact.area_m2 = static_cast<double>(sample.area_m2) * asked.factor;
-      if (forth) {
-        contact.at = query.at;
-        contact.normal = plane.plane.normal;
-        contact.residual_m = -sight.distance_m;
-        contact.source_plane = sample.plane;
-        contact.target_plane = sight.plane;
-      } else {
-        contact.at = sample.mean;
-        contact.normal = target_from_source.rotation * plane.plane.normal;
-        contact.residual_m = sight.distance_m;
-        contact.source_plane = sight.plane;
-        contact.target_plane = sample.plane;
+    const LookTolerances tolerances{gate, gate, 1e9};
+    Looks looks;
+    for (std::size_t begin = 0; begin < asked.indices.size(); begin += kLookBatch) {
+      const std::size_t size = std::min(kLookBatch, asked.indices.size() - begin);
+      judge.space->look_at_surface(asked.columns, begin, size, judge_from_scan, tolerances, looks);
+      for (std::size_t k = 0; k < size; ++k) {
+        if (looks.kind[k] != static_cast<std::int32_t>(SightKind::surface) || looks.plane[k] < 0) continue;
+        const SurfaceSample& sample = scan.features->samples[asked.indices[begin + k]];
+        const Plane& plane = judge.features->planes[static_cast<std::size_t>(looks.plane[k])].plane;
+        if (std::abs((judge_from_scan.rotation * sample.normal).dot(plane.normal)) < least_cosine) continue;
+        const Vector3d at = judge_from_scan * sample.mean;
+        Contact contact;
+        contact.sigma_m = sigma_of(sample, noise);
+        contact.gate_m = gate;
+        contact.area_m2 = static_cast<double>(sample.area_m2) * asked.factor;
+        contact.at = forth ? at : sample.mean;
+        contact.normal = forth ? plane.normal : target_from_source.rotation * plane.normal;
+        contact.residual_m = (forth ? -1.0 : 1.0) * plane.signed_distance(at);
+        contact.source_plane = forth ? sample.plane : looks.plane[k];
+        contact.target_plane = forth ? looks.plane[k] : sample.plane;
+        contacts.push_back(contact);
       }
-      contacts.push_back(contact);
-    };
-    // Clutter follows the planes.
-    ask_in_batches(*judge.space, static_cast<std::size_t>(clutter - asked.indices.begin()), question, use);
+    }
   }
 
   /// What matched openings say: shifts within the wall, turns by the parallel faces, the gap between them.
@@ -174,13 +197,18 @@ class Collector {
   const ScanView& source_;
   const ScanView& target_;
   const RefineOptions& options_;
+  OpeningMatching openings_;
+  AskedSurface of_source_;
+  AskedSurface of_target_;
 };
 
-}  // namespace
+ContactFinder::ContactFinder(const ScanView& source, const ScanView& target, const RefineOptions& options)
+    : collector_(std::make_unique<Collector>(source, target, options)) {}
 
-Contacts find_contacts(const ScanView& source, const ScanView& target, const Rigid3& target_from_source,
-                       const ContactGates& gates, const RefineOptions& options) {
-  return Collector(source, target, options).run(target_from_source, gates);
+ContactFinder::~ContactFinder() = default;
+
+Contacts ContactFinder::near(const Rigid3& target_from_source, const ContactGates& gates) const {
+  return collector_->run(target_from_source, gates);
 }
 
 }  // namespace limen

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "limen/register/refine/refine_pose.h"
@@ -32,8 +33,21 @@ struct ContactGates {
   double opening_m = 0.1;
 };
 
-/// Everything the two scans say of a pose near `target_from_source` (local frames).
-Contacts find_contacts(const ScanView& source, const ScanView& target, const Rigid3& target_from_source,
-                       const ContactGates& gates, const RefineOptions& options);
+/// What two scans say of the poses that a refinement goes through: what does not depend on the pose is
+/// gathered once. Refers to what it is made of.
+class ContactFinder {
+ public:
+  ContactFinder(const ScanView& source, const ScanView& target, const RefineOptions& options);
+  ~ContactFinder();
+  ContactFinder(const ContactFinder&) = delete;
+  ContactFinder& operator=(const ContactFinder&) = delete;
+
+  /// Everything the two scans say of a pose near `target_from_source` (local frames).
+  [[nodiscard]] Contacts near(const Rigid3& target_from_source, const ContactGates& gates) const;
+
+ private:
+  class Collector;
+  std::unique_ptr<Collector> collector_;
+};
 
 }  // namespace limen

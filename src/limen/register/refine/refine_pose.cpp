@@ -22,7 +22,7 @@ constexpr double kGateSigma = 0.2;       // deviation of a tile far from the goa
 class Refiner {
  public:
   Refiner(const ScanView& source, const ScanView& target, const RefineOptions& options)
-      : source_(source), target_(target), options_(options) {}
+      : source_(source), target_(target), options_(options), contacts_(source, target, options) {}
 
   [[nodiscard]] RefinedPose run(const Rigid3& start) const {
     RefinedPose refined;
@@ -35,8 +35,7 @@ class Refiner {
       const double opening_gate =
           options_.first_opening_gate_m *
           std::pow(options_.last_opening_gate_m / options_.first_opening_gate_m, share);
-      const Contacts contacts =
-          find_contacts(source_, target_, refined.target_from_source, {gate, opening_gate}, options_);
+      const Contacts contacts = contacts_.near(refined.target_from_source, {gate, opening_gate});
       if (contacts.all.size() < 4) break;
       adjust(contacts.all, kGateSigma * (gate - options_.last_gate_m), refined);
     }
@@ -152,8 +151,8 @@ class Refiner {
   }
 
   void summarise(RefinedPose& refined) const {
-    const Contacts found = find_contacts(source_, target_, refined.target_from_source,
-                                         {options_.last_gate_m, options_.last_opening_gate_m}, options_);
+    const Contacts found =
+        contacts_.near(refined.target_from_source, {options_.last_gate_m, options_.last_opening_gate_m});
     refined.openings = found.openings;
     if (found.all.empty()) return;
     refined.centre = middle_of(found.all);
@@ -253,6 +252,7 @@ class Refiner {
   const ScanView& source_;
   const ScanView& target_;
   const RefineOptions& options_;
+  ContactFinder contacts_;
 };
 
 Matrix6d damped_inverse(const Matrix6d& information) {
