@@ -47,10 +47,10 @@ double automatic_threshold(const Scan& scan, const GrowOptions& grow,
   const Scan part = even_subset(scan, options.max_points);
   GrowOptions trial = grow;
   trial.min_inliers = std::max(50, grow.min_inliers / 2);
-  trial.inlier_threshold_m = 0.0;
+  const PlaneGround ground(part, trial);
   const double trials = 1.0 + static_cast<double>(options.factors.size());
   StagePart first_part(monitor, 0.0, 1.0 / trials);
-  const GrownPlanes first = grow_planes(part, trial, first_part);
+  const GrownPlanes first = ground.grow(0.0, first_part);
   ThresholdOptions choice;
   choice.min_inliers = static_cast<std::size_t>(trial.min_inliers);
   choice.thresholds_m.clear();
@@ -64,10 +64,9 @@ double automatic_threshold(const Scan& scan, const GrowOptions& grow,
   double tried = 0.0;
   const auto detector = [&](double threshold_m) {
     if (threshold_m == first.inlier_threshold_m) return detected(first);
-    trial.inlier_threshold_m = threshold_m;
     tried = std::min(tried + 1.0, trials - 1.0);
     StagePart next_part(monitor, tried / trials, (tried + 1.0) / trials);
-    return detected(grow_planes(part, trial, next_part));
+    return detected(ground.grow(threshold_m, next_part));
   };
   return choose_threshold({part.size(), extent.high - extent.low}, detector, choice).threshold_m;
 }
@@ -80,10 +79,8 @@ double a_contrario_threshold(const Scan& scan, const GrowOptions& grow, const Th
   ThresholdOptions among = choice;
   among.min_inliers = static_cast<std::size_t>(trial.min_inliers);
   const Extent extent = extent_of(part.points);
-  const auto detector = [&](double threshold_m) {
-    trial.inlier_threshold_m = threshold_m;
-    return detected(grow_planes(part, trial, monitor));
-  };
+  const PlaneGround ground(part, trial);
+  const auto detector = [&](double threshold_m) { return detected(ground.grow(threshold_m, monitor)); };
   return choose_threshold({part.size(), extent.high - extent.low}, detector, among).threshold_m;
 }
 

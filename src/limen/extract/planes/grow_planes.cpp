@@ -71,14 +71,12 @@ class LabelSums {
 
 class PlaneGrower {
  public:
-  PlaneGrower(const Scan& scan, const GrowOptions& options)
-      : options_(options),
-        sorted_(morton_order(scan.points, options.finest_cell_m)),
-        labels_(scan.size(), -1) {
+  PlaneGrower(const MortonOrder& sorted, const SettleGrid& grid, const GrowOptions& options)
+      : options_(options), sorted_(sorted), settle_grid_(grid), labels_(sorted.points.size(), -1) {
     threshold_m_ = options_.inlier_threshold_m;
     if (threshold_m_ > 0) return;
-    const CellGrid grid(sorted_, all_positions(scan.size()), level_of(0.16, options_.finest_cell_m));
-    noise_m_ = noise_of(grid);
+    const CellGrid cells(sorted_, all_positions(labels_.size()), level_of(0.16, options_.finest_cell_m));
+    noise_m_ = noise_of(cells);
     threshold_m_ = std::clamp(3.3 * noise_m_, 0.008, 0.03);
   }
 
@@ -86,8 +84,7 @@ class PlaneGrower {
     grow(monitor);
     monitor.throw_if_cancelled();
     const PointNormals normals(sorted_, kGateShare * threshold_m_);
-    const SettleGrid grid(sorted_, kSettleCellM);
-    const SettleScene scene{sorted_, normals, grid};
+    const SettleScene scene{sorted_, normals, settle_grid_};
     merge();
     const SettleOptions settling{.threshold_m = threshold_m_};
     for (int k = 0; k < kSettlings; ++k) {
@@ -192,7 +189,8 @@ class PlaneGrower {
   static constexpr double kSteps = kGrowSteps + kSettlings + 1.0;
 
   GrowOptions options_;
-  MortonOrder sorted_;
+  const MortonOrder& sorted_;
+  const SettleGrid& settle_grid_;
   std::vector<std::int32_t> labels_;  ///< by position along the curve
   std::vector<PointMoments> sums_;    ///< by label, about the curve's anchor
   double threshold_m_ = 0.01;
@@ -212,10 +210,31 @@ void GrowOptions::check() const {
     throw_bad_option("max_angle_deg", max_angle_deg, "within (0, 45)");
 }
 
-GrownPlanes grow_planes(const Scan& scan, const GrowOptions& options, Monitor& monitor) {
+struct PlaneGround::Ordered {
+  MortonOrder points;
+  SettleGrid grid;
+
+  Ordered(const Scan& scan, double finest_cell_m)
+      : points(morton_order(scan.points, finest_cell_m)), grid(points, kSettleCellM) {}
+};
+
+PlaneGround::PlaneGround(const Scan& scan, const GrowOptions& options) : options_(options) {
   options.check();
-  if (scan.size() == 0) return {};
-  return PlaneGrower(scan, options).run(monitor);
+  if (scan.size() > 0) ordered_ = std::make_unique<const Ordered>(scan, options.finest_cell_m);
+}
+
+PlaneGround::~PlaneGround() = default;
+
+GrownPlanes PlaneGround::grow(double inlier_threshold_m, Monitor& monitor) const {
+  GrowOptions options = options_;
+  options.inlier_threshold_m = inlier_threshold_m;
+  options.check();
+  if (ordered_ == nullptr) return {};
+  return PlaneGrower(ordered_->points, ordered_->grid, options).run(monitor);
+}
+
+GrownPlanes grow_planes(const Scan& scan, const GrowOptions& options, Monitor& monitor) {
+  return PlaneGround(scan, options).grow(options.inlier_threshold_m, monitor);
 }
 
 }  // namespace limen

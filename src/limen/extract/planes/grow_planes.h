@@ -26,6 +26,24 @@ struct GrownPlanes {
   double inlier_threshold_m = 0.0;  ///< the threshold used
 };
 
+/// The points of a scan in order, to grow planes in them at several thresholds.
+class PlaneGround {
+ public:
+  /// Throws Error for options out of bounds.
+  PlaneGround(const Scan& scan, const GrowOptions& options);
+  ~PlaneGround();
+  PlaneGround(const PlaneGround&) = delete;
+  PlaneGround& operator=(const PlaneGround&) = delete;
+
+  /// As grow_planes(), at this threshold; 0: that of the noise.
+  [[nodiscard]] GrownPlanes grow(double inlier_threshold_m, Monitor& monitor) const;
+
+ private:
+  struct Ordered;
+  GrowOptions options_;
+  std::unique_ptr<const Ordered> ordered_;
+};
+
 /// Planes of an unorganised cloud, coarse to fine: cubes whose points lie in a plane grow into regions,
 /// regions that continue one plane become one, points join the nearest plane of their neighbourhood; what is
 /// left is tried again with cubes half as large. The consensus of a region is taken by MSAC over its cubes
