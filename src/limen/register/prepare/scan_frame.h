@@ -15,7 +15,7 @@ struct ScanFrame {
   Matrix3d frame_from_scan = Matrix3d::Identity();  ///< rotation: x_in_frame = it * (x - corner)
   Vector3d corner = Vector3d::Zero();               ///< 0,0,0 of the frame, about the scan's local origin
   bool upright = false;                             ///< z points up
-  bool surely_upright = false;                      ///< beyond what a single observation could turn
+  bool surely_upright = false;                      ///< so clearly that no other way need be tried
   ScannerPlace place;                               ///< about the scan's local origin
 };
 

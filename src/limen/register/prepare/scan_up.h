@@ -14,7 +14,7 @@ namespace limen {
 struct ScanUp {
   Vector3d up = Vector3d::UnitZ();
   bool clear = false;
-  bool sure = false;  ///< clear beyond what a single observation could turn
+  bool sure = false;  ///< so clear that no other way need be tried
 };
 
 /// Up of a scan whose large planes are `planes`. `sample`: an even share of its points, with the place of its
