@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
+
 #include "limen/base/progress.h"
 #include "limen/extract/planes/plane_labels.h"
 #include "limen/model/scan.h"
