@@ -122,6 +122,7 @@ void TwinOptions::check() const {
   check_share("prior", prior);
   check_share("prior_apart", prior_apart);
   check_share("alike_share", alike_share);
+  check_share("least_alike", least_alike);
   if (!(apart_share > 0 && apart_share <= 1)) throw_bad_option("apart_share", apart_share, "within (0, 1]");
   kept.check("kept");
   check_share("lived_in", lived_in);
@@ -142,8 +143,8 @@ TwinEvidence weigh_twin(const IndividualMatter& individual, const TwinOptions& o
   const double alike_share = options.alike_share * std::pow(options.apart_share, in_both);
   const double same = log_likelihood(individual.faces, one_room());
   TwinEvidence evidence;
-  evidence.otherwise = prior * (1.0 - alike_share);
-  evidence.alike = prior * alike_share;
+  evidence.alike = std::max(prior * alike_share, options.least_alike);
+  evidence.otherwise = std::max(0.0, prior - evidence.alike);
   evidence.otherwise_nats = stayed - log_likelihood(individual.matter, chance) + same -
                             log_likelihood(individual.faces, furnished_otherwise());
   evidence.alike_nats = same - log_likelihood(individual.faces, furnished_alike());

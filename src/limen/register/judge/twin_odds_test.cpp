@@ -84,6 +84,16 @@ TEST(TwinOdds, ThingsThatAgreeToCentimetresMayBeATwinFurnishedAlike) {
   EXPECT_LT(probability_of_twin(apart), 0.5 * together);
 }
 
+TEST(TwinOdds, ThroughADoorNoBeliefAloneRegisters) {
+  // However much agrees: where no face was seen by both, rooms furnished alike would look the same.
+  IndividualMatter apart = seen({60, 1.0}, {});
+  apart.apart = true;
+  apart.in_both_rooms = 8.0;
+  EXPECT_GT(probability_of_twin(apart), 1.5 * kRisk);
+  apart.faces = seen({60, 1.0}, faces(4, 0.001)).faces;
+  EXPECT_LT(probability_of_twin(apart), kRisk);
+}
+
 TEST(TwinOdds, PiecesOfOneFaceAreOneObservation) {
   FaceOffsets one = faces(3, 0.002);
   FaceOffsets split = one;
