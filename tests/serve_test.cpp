@@ -292,18 +292,28 @@ TEST_F(ServeTest, WorkIsDoneAndFoundAgainByTheNext) {
 }
 
 TEST_F(ServeTest, WhatRunsEndsWithIt) {
-  ASSERT_EQ(run({"simulate", "museum", "-o", "museum", "--points-indoor", "400000"}).status, 0);
-  for (const std::string name : {"indoor_00.ply", "outdoor.ply"})
-    fs::rename(work() / "museum" / name, work() / "site" / "files" / name);
-  const std::string asked = R"({"kind": "register", "source": "indoor_00.ply", "target": "outdoor.ply"})";
-  EXPECT_EQ(status_in(server().ask("POST", "jobs", asked)), 202);
-  EXPECT_EQ(status_in(server().ask("POST", "jobs", asked)), 202);
-  server().state_with("\"state\": \"running\"");
-  EXPECT_EQ(status_in(server().ask("DELETE", "files/outdoor.ply")), 409);
-  EXPECT_EQ(server().end(SIGTERM), 0);
-  EXPECT_NE(read_whole(work() / "site" / "results" / "1.json").find("\"stopped\""), std::string::npos);
-  EXPECT_NE(read_whole(work() / "site" / "results" / "2.json").find("\"stopped\""), std::string::npos);
-  EXPECT_FALSE(fs::exists(work() / "site" / "results" / "1" / "result.json"));
+  // Work that by itself would not end within the test.
+  write_whole(work() / "endless",
+              "#!/bin/sh\necho $$ > \"" + (work() / "job").string() + "\"\nexec sleep 600\n");
+  fs::permissions(work() / "endless", fs::perms::owner_all);
+  setenv("LIMEN_PROGRAM_FILE", (work() / "endless").c_str(), 1);
+  RunningServer endless(work(), "other");
+  unsetenv("LIMEN_PROGRAM_FILE");
+  ASSERT_EQ(endless.token().size(), 32U) << endless.said();
+  for (const std::string name : {"a.xyz", "b.xyz"}) write_whole(work() / "other" / "files" / name, "0 0 0\n");
+  const std::string asked = R"({"kind": "register", "source": "a.xyz", "target": "b.xyz"})";
+  EXPECT_EQ(status_in(endless.ask("POST", "jobs", asked)), 202);
+  EXPECT_EQ(status_in(endless.ask("POST", "jobs", asked)), 202);
+  endless.state_with("\"state\": \"running\"");
+  EXPECT_EQ(status_in(endless.ask("DELETE", "files/b.xyz")), 409);
+  for (int k = 0; k < 600 && read_whole(work() / "job").find('\n') == std::string::npos; ++k)
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  const pid_t job = std::stoi(read_whole(work() / "job"));
+  EXPECT_EQ(kill(job, 0), 0);
+  EXPECT_EQ(endless.end(SIGTERM), 0);
+  EXPECT_EQ(kill(job, 0), -1);
+  EXPECT_NE(read_whole(work() / "other" / "results" / "1.json").find("\"stopped\""), std::string::npos);
+  EXPECT_NE(read_whole(work() / "other" / "results" / "2.json").find("\"stopped\""), std::string::npos);
 }
 
 TEST_F(ServeTest, OneServerAFolder) {
