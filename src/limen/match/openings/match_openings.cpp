@@ -216,7 +216,6 @@ std::optional<OpeningMatch> match_of(const Opening& source, const Rectangle& a, 
   if (across.sigma > kUnseenSigmaM && up.sigma > kUnseenSigmaM) return std::nullopt;
   match.shift_across_m = across.sigma > kUnseenSigmaM ? 0.0 : across.value;
   match.shift_up_m = up.sigma > kUnseenSigmaM ? 0.0 : up.value;
-  if (std::hypot(match.shift_across_m, match.shift_up_m) > options.gate_m) return std::nullopt;
   match.sigma_across_m = across.sigma;
   match.sigma_up_m = up.sigma;
   // Rectangles that nowhere overlap are not one opening, whatever a single edge says.
@@ -244,27 +243,21 @@ OpeningMatching::OpeningMatching(const Features& source, const Features& target,
       source_rectangles_(rectangles_of(source.openings)),
       target_rectangles_(rectangles_of(target.openings)) {}
 
-std::vector<OpeningMatch> OpeningMatching::under(const Rigid3& target_from_source) const {
-  return under(target_from_source, options_.gate_m);
-}
-
 std::vector<OpeningMatch> OpeningMatching::under(const Rigid3& target_from_source, double gate_m) const {
-  OpeningMatchOptions options = options_;
-  options.gate_m = gate_m;
   std::vector<OpeningMatch> all;
   for (std::size_t i = 0; i < sources_.size(); ++i) {
     const Rectangle& own = source_rectangles_[i];
     const Vector3d corner = target_from_source * own.origin;
-    const double reach = options.max_gap_m + own.width + own.height + options.gate_m;
+    const double reach = options_.max_gap_m + own.width + own.height + gate_m;
     for (std::size_t k = 0; k < targets_.size(); ++k) {
       const Rectangle& b = target_rectangles_[k];
       if ((b.origin - corner).squaredNorm() > (reach + b.width) * (reach + b.width)) continue;
-      if (auto match = match_of(sources_[i], moved(own, target_from_source), target_from_source, targets_[k],
-                                b, options)) {
-        match->source = static_cast<int>(i);
-        match->target = static_cast<int>(k);
-        all.push_back(*match);
-      }
+      auto match =
+          match_of(sources_[i], moved(own, target_from_source), target_from_source, targets_[k], b, options_);
+      if (!match || std::hypot(match->shift_across_m, match->shift_up_m) > gate_m) continue;
+      match->source = static_cast<int>(i);
+      match->target = static_cast<int>(k);
+      all.push_back(*match);
     }
   }
   std::stable_sort(all.begin(), all.end(), [](const OpeningMatch& a, const OpeningMatch& b) {
@@ -278,12 +271,6 @@ std::vector<OpeningMatch> OpeningMatching::under(const Rigid3& target_from_sourc
     if (!taken) matches.push_back(match);
   }
   return matches;
-}
-
-std::vector<OpeningMatch> match_openings(const Features& source, const Features& target,
-                                         const Rigid3& target_from_source,
-                                         const OpeningMatchOptions& options) {
-  return OpeningMatching(source, target, options).under(target_from_source);
 }
 
 }  // namespace limen

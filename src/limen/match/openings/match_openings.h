@@ -41,7 +41,6 @@ struct OpeningFrame {
 };
 
 struct OpeningMatchOptions {
-  double gate_m = 0.25;  ///< middles farther apart within the wall are no match
   double max_size_difference_m = 0.35;
   double min_gap_m = 0.04;  ///< of the two faces of a wall
   double max_gap_m = 1.3;
@@ -54,9 +53,10 @@ class OpeningMatching {
  public:
   OpeningMatching(const Features& source, const Features& target, const OpeningMatchOptions& options = {});
 
-  /// As match_openings().
-  [[nodiscard]] std::vector<OpeningMatch> under(const Rigid3& target_from_source) const;
-  /// The same with another gate.
+  /// One-to-one matches, nearest first; middles farther apart within the wall than `gate_m` are no match.
+  /// Openings that both scans saw arched or round match only where their outlines have one shape, and these
+  /// then hold the shift; where one saw a rectangle, rectangles are compared. `target_from_source`: local
+  /// frames.
   [[nodiscard]] std::vector<OpeningMatch> under(const Rigid3& target_from_source, double gate_m) const;
 
  private:
@@ -66,12 +66,5 @@ class OpeningMatching {
   std::vector<OpeningFrame> source_rectangles_;  ///< each in its own scan's frame
   std::vector<OpeningFrame> target_rectangles_;
 };
-
-/// One-to-one matches, nearest first. Openings that both scans saw arched or round match only where their
-/// outlines have one shape, and these then hold the shift; where one saw a rectangle, rectangles are
-/// compared. `target_from_source`: local frames.
-std::vector<OpeningMatch> match_openings(const Features& source, const Features& target,
-                                         const Rigid3& target_from_source,
-                                         const OpeningMatchOptions& options = {});
 
 }  // namespace limen

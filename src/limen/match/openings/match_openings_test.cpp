@@ -14,6 +14,11 @@ namespace limen {
 namespace {
 
 constexpr double kThickness = 0.4;
+constexpr double kGateM = 0.25;
+
+std::vector<OpeningMatch> match_openings(const Features& source, const Features& target, const Rigid3& pose) {
+  return OpeningMatching(source, target).under(pose, kGateM);
+}
 
 /// A rectangle in a wall that faces the scanner with `normal`: lower left corner, width, height.
 Opening rectangle(const Vector3d& corner, const Vector3d& across, double width, double height, int facade) {

@@ -36,7 +36,7 @@ Gathered gathered(const ScanView& scan, const AskedSamples& asked) {
   for (const std::uint32_t i : asked.indices) {
     const SurfaceSample& sample = scan.features->samples[i];
     const bool planar = sample.plane >= 0;
-    all.columns.add(sample, planar && scan.features->planes[static_cast<std::size_t>(sample.plane)].oriented);
+    all.columns.add(*scan.features, i);
     all.planes.push_back(planar ? sample.plane : -1);
     all.areas_m2.push_back(planar ? sample.area_m2 : static_cast<float>(kClutterWeight) * sample.area_m2);
   }
@@ -123,18 +123,12 @@ PoseScore one_way(const Gathered& asked, const ScanView& judge, const Rigid3& ju
   return score;
 }
 
-OpeningMatchOptions opening_matching(const ScoreOptions& options) {
-  OpeningMatchOptions matching;
-  matching.gate_m = options.opening_m;
-  return matching;
-}
-
 /// The area of each source opening that meets one of the target, clipped as surface is.
 std::vector<double> opening_gains(const OpeningMatching& openings, std::size_t sources, const Rigid3& pose,
                                   const ScoreOptions& options) {
   std::vector<double> gains(sources, 0.0);
   if (!options.openings) return gains;
-  for (const OpeningMatch& match : openings.under(pose)) {
+  for (const OpeningMatch& match : openings.under(pose, options.opening_m)) {
     const double off = std::hypot(match.shift_across_m, match.shift_up_m) / options.opening_m;
     gains[static_cast<std::size_t>(match.source)] = match.trust * match.area_m2 * (1.0 - off * off);
   }
@@ -202,7 +196,7 @@ PoseScorer::PoseScorer(const ScanView& source, const ScanView& target, const Sco
     : source_(source),
       target_(target),
       options_(options),
-      asked_(new Asked{{}, {}, {*source.features, *target.features, opening_matching(options)}}) {
+      asked_(new Asked{{}, {}, {*source.features, *target.features}}) {
   // Of a model only what comes within the scan's reach is asked, which the pose decides.
   if (!source.model) asked_->source = gathered(source, asked_samples(source, target, {}, options.samples));
   if (!target.model) asked_->target = gathered(target, asked_samples(target, source, {}, options.samples));
@@ -243,7 +237,7 @@ PoseContrast contrast_poses(const ScanView& source, const ScanView& target, cons
   PoseContrast contrast;
   add_contrast(source, target, first, second, options, contrast);
   add_contrast(target, source, inverse(first), inverse(second), options, contrast);
-  const OpeningMatching openings(*source.features, *target.features, opening_matching(options));
+  const OpeningMatching openings(*source.features, *target.features);
   const std::size_t sources = source.features->openings.size();
   const std::vector<double> in_first = opening_gains(openings, sources, first, options);
   const std::vector<double> in_second = opening_gains(openings, sources, second, options);
