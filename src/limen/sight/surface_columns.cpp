@@ -21,4 +21,9 @@ void SurfaceColumns::add(const SurfaceSample& sample, bool oriented_plane) {
   oriented.push_back(on_plane && oriented_plane ? 1.0F : 0.0F);
 }
 
+void SurfaceColumns::add(const Features& scan, std::size_t i) {
+  const SurfaceSample& sample = scan.samples[i];
+  add(sample, sample.plane >= 0 && scan.planes[static_cast<std::size_t>(sample.plane)].oriented);
+}
+
 }  // namespace limen

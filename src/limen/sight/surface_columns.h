@@ -25,6 +25,8 @@ struct SurfaceColumns {
   [[nodiscard]] Vector3d normal(std::size_t i) const { return {nx[i], ny[i], nz[i]}; }
   void reserve(std::size_t count);
   void add(const SurfaceSample& sample, bool oriented_plane);
+  /// The i-th sample of a scan.
+  void add(const Features& scan, std::size_t i);
 };
 
 struct LookTolerances {

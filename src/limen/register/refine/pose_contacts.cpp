@@ -38,8 +38,7 @@ AskedSurface asked_surface(const ScanView& scan, const ScanView& judge, const Ri
                                     [&](std::uint32_t i) { return samples[i].plane < 0; });
   asked.indices.erase(clutter, asked.indices.end());
   asked.columns.reserve(asked.indices.size());
-  for (const std::uint32_t i : asked.indices)
-    asked.columns.add(samples[i], scan.features->planes[static_cast<std::size_t>(samples[i].plane)].oriented);
+  for (const std::uint32_t i : asked.indices) asked.columns.add(*scan.features, i);
   return asked;
 }
 
