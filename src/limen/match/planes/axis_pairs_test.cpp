@@ -3,6 +3,7 @@
 #include "limen/match/planes/axis_pairs.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include <gtest/gtest.h>
 
@@ -63,6 +64,24 @@ TEST(AxisPairs, SupportAtAShiftIsTheSupportThere) {
   }
   EXPECT_GT(most, 0.0);
   EXPECT_GT(ended_early, 50);
+}
+
+TEST(AxisPairs, NothingGivesMoreThanTheBoundWhereOneWayAcrossIsKnown) {
+  const AxisPairs along = random_pairs(200);
+  RandomStream random(10, 1);
+  int tighter = 0;
+  for (int k = 0; k < 500; ++k) {
+    const ShiftSupport there = along.support_at(random.uniform(-3.2, 3.2), kTolerance);
+    const double angle = k % 2 == 0 ? 0.0 : random.uniform(0.0, 6.28);
+    const Vector2d way(std::cos(angle), std::sin(angle));
+    const Vector2d across(-way.y(), way.x());
+    const double along_m = random.uniform(-4.0, 4.0);
+    const double bound = there.most_where(way, along_m);
+    for (const double across_m : {-2.0, -0.5, 0.0, 0.7, 3.0})
+      EXPECT_GE(bound, there.at(along_m * way + across_m * across, -1.0));
+    tighter += bound < 0.9 * there.most() ? 1 : 0;
+  }
+  EXPECT_GT(tighter, 100);
 }
 
 TEST(AxisPairs, NothingGivesMoreThanTheBound) {
