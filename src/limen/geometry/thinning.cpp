@@ -134,19 +134,14 @@ class Representatives {
   std::vector<std::uint32_t> indices() {
     assign_cells();
     choose_cells();
-    std::vector<std::array<std::uint32_t, 8>> chosen(roles_.size());
-    std::vector<std::array<double, 8>> best(roles_.size());
-    for (auto& scores : best) scores.fill(-std::numeric_limits<double>::infinity());
+    std::vector<std::uint32_t> first(roles_.size() + 1, 0);
+    for (std::size_t cell = 0; cell < roles_.size(); ++cell) first[cell + 1] = first[cell] + kept_of(cell);
+    std::vector<std::uint32_t> kept(first.back());
+    std::vector<double> best(first.back(), -std::numeric_limits<double>::infinity());
     for (std::uint32_t i = 0; i < points_.size(); ++i) {
       const std::uint32_t cell = cell_of_point_[i];
       if (cell == CellTable::kNone || roles_[cell] == Role::dropped) continue;
-      offer(i, middle(cell), roles_[cell] == Role::edge, chosen[cell], best[cell]);
-    }
-    std::vector<std::uint32_t> kept;
-    for (std::size_t cell = 0; cell < roles_.size(); ++cell) {
-      if (roles_[cell] == Role::dropped) continue;
-      kept.insert(kept.end(), chosen[cell].begin(),
-                  chosen[cell].begin() + (roles_[cell] == Role::edge ? 8 : 1));
+      offer(i, middle(cell), kept_of(cell), &kept[first[cell]], &best[first[cell]]);
     }
     std::sort(kept.begin(), kept.end());
     kept.erase(std::unique(kept.begin(), kept.end()), kept.end());
@@ -155,6 +150,7 @@ class Representatives {
 
  private:
   enum class Role : char { dropped, inside, edge };
+  static constexpr std::uint32_t kWays = 8;  ///< in which the points of a cell at the edge reach furthest
 
   [[nodiscard]] std::int64_t cells_along(double low, double high) const {
     return static_cast<std::int64_t>(std::floor((high - low) / cell_m_)) + 1;
@@ -193,16 +189,21 @@ class Representatives {
     return origin_ + cell_m_ * Vector2d(static_cast<double>(x) + 0.5, static_cast<double>(y) + 0.5);
   }
 
-  void offer(std::uint32_t i, const Vector2d& about, bool edge, std::array<std::uint32_t, 8>& chosen,
-             std::array<double, 8>& best) const {
+  /// How many points stay of a cell, some of them perhaps the same.
+  [[nodiscard]] std::uint32_t kept_of(std::size_t cell) const {
+    return roles_[cell] == Role::dropped ? 0 : roles_[cell] == Role::edge ? kWays : 1;
+  }
+
+  void offer(std::uint32_t i, const Vector2d& about, std::uint32_t count, std::uint32_t* kept,
+             double* best) const {
     const Vector2d p = points_[i] - about;
-    std::array<double, 8> score{-p.squaredNorm()};
-    if (edge)
+    std::array<double, kWays> score{-p.squaredNorm()};
+    if (count == kWays)
       score = {p.x(), -p.x(), p.y(), -p.y(), p.x() + p.y(), -p.x() - p.y(), p.x() - p.y(), p.y() - p.x()};
-    for (std::size_t k = 0; k < (edge ? 8U : 1U); ++k) {
+    for (std::uint32_t k = 0; k < count; ++k) {
       if (score[k] <= best[k]) continue;
       best[k] = score[k];
-      chosen[k] = i;
+      kept[k] = i;
     }
   }
 

@@ -11,7 +11,6 @@
 #include "limen/base/error.h"
 #include "limen/base/text.h"
 #include "limen/io/cloud/thin_cloud.h"
-#include "limen/io/table/packed_rows.h"
 #include "limen/io/table/scan_builder.h"
 
 namespace limen {
@@ -38,41 +37,21 @@ class Reading {
   double done_ = 0.0;
 };
 
-/// Whether all columns lie in the file itself, so that any number of rows costs nothing.
-bool lies_in_file(const RecordTable& table, std::string_view bytes) {
-  return std::all_of(table.fields.begin(), table.fields.end(), [&](const Field& field) {
-    return field.data >= bytes.data() && field.data < bytes.data() + bytes.size();
-  });
-}
-
-/// All rows of a cloud as one table; none where the cloud is empty.
-std::optional<RecordTable> whole_table(const OpenPoints& input, std::size_t cloud, Reading& reading) {
-  const std::uint64_t points = input.file().clouds()[cloud].points;
+/// The file with one of its clouds as a scan; as it was where the cloud is empty.
+ScanFile with_cloud(ScanFile file, const OpenPoints& input, std::size_t cloud, const ReadOptions& options,
+                    Reading& reading) {
+  const CloudFacts& facts = input.file().clouds()[cloud];
   std::unique_ptr<PointStream> stream = input.file().read(cloud);
-  std::optional<RecordTable> first = stream->next(kStreamRows);
-  if (!first) return {};
-  if (first->rows < points && lies_in_file(*first, input.bytes())) {
-    stream = input.file().read(cloud);
-    first = stream->next(points);
-  }
-  if (first->rows >= points) {
-    reading.passed(first->rows);
-    // A stream may point into itself: it stays as long as the table.
-    first->keeper = std::make_shared<std::pair<std::shared_ptr<const void>, std::unique_ptr<PointStream>>>(
-        first->keeper, std::move(stream));
-    return first;
-  }
-  auto rows = std::make_shared<PackedRows>();
-  rows->require_columns(*first);
-  rows->reserve(points);
-  for (std::optional<RecordTable> piece = std::move(first); piece; piece = stream->next(kStreamRows)) {
-    rows->require_columns(*piece);
-    rows->append_all(*piece);
+  std::optional<RecordTable> piece = stream->next(kStreamRows);
+  if (!piece) return file;
+  ScanBuilder builder(facts.table, options);
+  builder.reserve(facts.points);
+  for (; piece; piece = stream->next(kStreamRows)) {
+    builder.add(*piece);
     reading.passed(piece->rows);
+    reading.forget();
   }
-  RecordTable table = rows->view();
-  table.keeper = std::move(rows);
-  return table;
+  return builder.finish(std::move(file));
 }
 
 bool has(const std::set<std::string>& fields, std::initializer_list<const char*> names) {
@@ -155,13 +134,10 @@ ScanFile read_clouds(const OpenPoints& input, const ReadOptions& options, Monito
   ScanFile file = begun(input);
   Reading reading(input, monitor);
   for (std::size_t k = 0; k < input.file().clouds().size(); ++k) {
-    const TableFacts& facts = input.file().clouds()[k].table;
-    const std::optional<RecordTable> table = whole_table(input, k, reading);
-    if (table) {
-      file = with_scan(std::move(file), *table, facts, options);
-    } else if (input.file().clouds().size() > 1) {
-      file.notes.push_back(fmt::format("{} holds no points", facts.name));
-    }
+    const std::size_t before = file.scans.size();
+    file = with_cloud(std::move(file), input, k, options, reading);
+    if (file.scans.size() == before && input.file().clouds().size() > 1)
+      file.notes.push_back(fmt::format("{} holds no points", input.file().clouds()[k].table.name));
   }
   require_scans(file, input);
   return file;
@@ -187,8 +163,7 @@ ScanFile read_one_cloud(const OpenPoints& input, std::size_t cloud, const ReadOp
     file.scans.back().topology = {};
     return file;
   }
-  const std::optional<RecordTable> table = whole_table(input, cloud, reading);
-  if (table) file = with_scan(std::move(file), *table, facts.table, options);
+  file = with_cloud(std::move(file), input, cloud, options, reading);
   require_scans(file, input);
   return file;
 }

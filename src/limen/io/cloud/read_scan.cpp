@@ -12,7 +12,6 @@
 #include "limen/io/cloud/open_points.h"
 #include "limen/io/cloud/read_cloud.h"
 #include "limen/io/pcd/read_pcd.h"
-#include "limen/io/ply/read_ply.h"
 #include "limen/io/ptx/read_ptx.h"
 #include "limen/io/text/read_xyz.h"
 #include "limen/io/trajectory/trajectory.h"
@@ -23,8 +22,6 @@ namespace {
 /// Formats that are small enough to be read from memory at once, by their own readers.
 ScanFile read_at_once(const OpenPoints& input, const ReadOptions& options, Monitor& monitor) {
   switch (input.format()) {
-    case PointFormat::ply:
-      return read_ply(input.bytes(), input.name(), options);
     case PointFormat::pcd:
       return read_pcd(input.bytes(), input.name(), options);
     case PointFormat::ptx:
@@ -33,6 +30,7 @@ ScanFile read_at_once(const OpenPoints& input, const ReadOptions& options, Monit
       return read_xyz(input.bytes(), input.name(), options);
     case PointFormat::e57:
     case PointFormat::las:
+    case PointFormat::ply:
       break;
   }
   return read_clouds(input, options, monitor);

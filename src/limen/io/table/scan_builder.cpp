@@ -7,6 +7,9 @@
 #include <cmath>
 #include <cstdint>
 #include <initializer_list>
+#include <limits>
+#include <optional>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -38,6 +41,23 @@ FieldTriple find_triple(const RecordTable& table, const std::string& suffix) {
 }
 bool whole(const FieldTriple& triple) {
   return triple[0] != nullptr && triple[1] != nullptr && triple[2] != nullptr;
+}
+
+FieldTriple find_colours(const RecordTable& table) {
+  return {table.find({"red", "r", "diffuse_red"}), table.find({"green", "g", "diffuse_green"}),
+          table.find({"blue", "b", "diffuse_blue"})};
+}
+const Field* find_intensities(const RecordTable& table) {
+  return table.find({"intensity", "reflectance", "scalar_intensity", "scalar_reflectance", "amplitude"});
+}
+const Field* find_lines(const RecordTable& table) {
+  return table.find({"scan_line", "scanline", "scan_line_index", "column_index"});
+}
+const Field* find_line_indices(const RecordTable& table) {
+  return table.find({"scan_index", "scanindex", "row_index"});
+}
+const Field* find_angles(const RecordTable& table) {
+  return table.find({"theta", "scalar_theta"});
 }
 
 std::string names_of(const RecordTable& table) {
@@ -74,72 +94,72 @@ TableFacts in_metres(TableFacts facts) {
   return facts;
 }
 
-/// The first usable point, world; the search is short unless the file begins with missing returns.
-Vector3d first_usable(const RecordTable& table, const FieldTriple& fields, const TableFacts& facts) {
+/// The first usable point, world; the search is short unless the table begins with missing returns.
+std::optional<Vector3d> first_usable(const RecordTable& table, const FieldTriple& fields,
+                                     const TableFacts& facts) {
   for (std::size_t i = 0; i < table.rows; ++i) {
     Vector3d x;
     for (std::size_t k = 0; k < 3; ++k) load_numbers(table, *fields[k], {i, i + 1}, &x[static_cast<int>(k)]);
     x *= unit_of(facts);
     if (usable(x)) return facts.offset + (facts.pose ? *facts.pose * x : x);
   }
-  throw Error("no usable points: every one has a coordinate that is not a number or absurdly large",
-              facts.name, "check how the file was exported");
+  return {};
 }
 
-/// Loads three columns as points, brought from the file's unit to metres and moved.
-std::vector<Vector3d> load_points(const RecordTable& table, const FieldTriple& fields, const Rigid3& motion,
-                                  double metres_per_unit) {
+/// Appends three columns as points, brought from the file's unit to metres and moved.
+void append_points(const RecordTable& table, const FieldTriple& fields, const Rigid3& motion,
+                   double metres_per_unit, std::vector<Vector3d>& points) {
   const bool scaled = metres_per_unit != 1.0;
   const bool turned = !motion.rotation.isIdentity(0.0);
-  std::vector<Vector3d> points(table.rows);
+  const std::size_t before = points.size();
+  points.resize(before + table.rows);
   parallel_for(table.rows, kScannedPerPiece, [&](std::size_t begin, std::size_t end) {
     for (std::size_t strip = begin; strip < end; strip += kScannedStrip) {
       const RowRange rows{strip, std::min(end, strip + kScannedStrip)};
+      Vector3d* const to = points.data() + before;
       for (int k = 0; k < 3; ++k)
-        load_numbers(table, *fields[static_cast<std::size_t>(k)], rows, points[strip].data() + k, 3);
+        load_numbers(table, *fields[static_cast<std::size_t>(k)], rows, to[strip].data() + k, 3);
       for (std::size_t i = rows.begin; i < rows.end; ++i) {
-        if (scaled) points[i] *= metres_per_unit;
-        if (turned) points[i] = motion.rotation * points[i];
-        points[i] += motion.translation;
+        if (scaled) to[i] *= metres_per_unit;
+        if (turned) to[i] = motion.rotation * to[i];
+        to[i] += motion.translation;
       }
     }
   });
-  return points;
 }
 
-template <typename Value>
-std::vector<Value> load_column(const RecordTable& table, const Field* field) {
-  if (field == nullptr) return {};
-  std::vector<Value> column(table.rows);
+/// Appends a column, every value made by `use`; nothing where there is no such column.
+template <typename Value, typename Use>
+void append_column(const RecordTable& table, const Field* field, std::vector<Value>& column, const Use& use) {
+  if (field == nullptr) return;
+  const std::size_t before = column.size();
+  column.resize(before + table.rows);
   parallel_for(table.rows, kScannedPerPiece, [&](std::size_t begin, std::size_t end) {
     std::array<double, kScannedStrip> strip{};
     for (std::size_t at = begin; at < end; at += kScannedStrip) {
       const std::size_t stop = std::min(end, at + kScannedStrip);
       load_numbers(table, *field, {at, stop}, strip.data());
-      for (std::size_t i = at; i < stop; ++i) column[i] = static_cast<Value>(strip[i - at]);
+      for (std::size_t i = at; i < stop; ++i) column[before + i] = use(strip[i - at]);
     }
   });
-  return column;
 }
 
-/// Whole numbers that fit; empty where some do not.
-std::vector<std::int32_t> load_integers(const RecordTable& table, const Field& field) {
-  const std::vector<double> numbers = load_column<double>(table, &field);
-  std::vector<std::int32_t> integers(numbers.size());
-  for (std::size_t i = 0; i < numbers.size(); ++i) {
-    if (!(std::abs(numbers[i]) <= 2147483647.0)) return {};
-    integers[i] = static_cast<std::int32_t>(numbers[i]);
-  }
-  return integers;
+template <typename Value>
+void append_column(const RecordTable& table, const Field* field, std::vector<Value>& column) {
+  append_column(table, field, column, [](double value) { return static_cast<Value>(value); });
 }
 
-ScanTopology stored_topology(const RecordTable& table) {
-  const Field* line = table.find({"scan_line", "scanline", "scan_line_index", "column_index"});
-  const Field* index = table.find({"scan_index", "scanindex", "row_index"});
-  if (line == nullptr || index == nullptr) return {};
-  ScanTopology topology{load_integers(table, *line), load_integers(table, *index)};
-  if (topology.line.empty() || topology.index.empty()) return {};
-  return topology;
+/// What stands for a number that is no whole one within 32 bits.
+constexpr std::int32_t kNoInteger = std::numeric_limits<std::int32_t>::min();
+
+void append_integers(const RecordTable& table, const Field* field, std::vector<std::int32_t>& integers) {
+  append_column(table, field, integers, [](double value) {
+    return std::abs(value) <= 2147483647.0 ? static_cast<std::int32_t>(value) : kNoInteger;
+  });
+}
+
+bool all_fit(const std::vector<std::int32_t>& integers) {
+  return std::find(integers.begin(), integers.end(), kNoInteger) == integers.end();
 }
 
 /// A raster whose fast index runs over `length` points.
@@ -156,97 +176,85 @@ ScanTopology grid_topology(std::size_t size, std::size_t length, bool by_column)
   return topology;
 }
 
-ScanTopology find_topology(const RecordTable& table, const TableFacts& facts,
-                           const std::vector<double>& times) {
-  ScanTopology topology = stored_topology(table);
-  if (topology.known()) return topology;
-  if (table.rows <= INT32_MAX && facts.columns > 1) return grid_topology(table.rows, facts.columns, false);
-  if (table.rows <= INT32_MAX && facts.column_length > 1) {
-    return grid_topology(table.rows, facts.column_length, true);
+/// Colours as they are stored, red, green and blue in turn, until all are known: of what kind they are shows
+/// in the largest.
+class ColourColumns {
+ public:
+  void reserve(std::size_t rows) { reserved_ = rows; }
+  void add(const RecordTable& table) {
+    const FieldTriple fields = find_colours(table);
+    if (!whole(fields)) return;
+    const bool small = std::all_of(fields.begin(), fields.end(), [](const Field* field) {
+      return field->plain() && (field->type == Scalar::uint8 || field->type == Scalar::uint16);
+    });
+    if (small)
+      append(table, fields, small_);
+    else
+      append(table, fields, wide_);
+    for (const Field* field : fields) bytes_ = bytes_ && field->type == Scalar::uint8;
   }
-  const Field* theta = table.find({"theta", "scalar_theta"});
-  if (theta == nullptr) return {};
-  return recover_profiles(load_column<double>(table, theta), times);
-}
+  /// 0 to 255: from that, from 0 to 65535, or from 0 to 1.
+  [[nodiscard]] std::vector<std::uint8_t> finish() { return small_.empty() ? scaled(wide_) : scaled(small_); }
 
-/// What one column of colours holds.
-struct ColourRange {
-  double largest = 0.0;
-  bool fractions = false;
-};
-
-ColourRange range_of(const std::vector<float>& values) {
-  ColourRange range;
-  for (const float value : values) {
-    range.largest = std::max(range.largest, static_cast<double>(value));
-    range.fractions = range.fractions || value != std::floor(value);
-  }
-  return range;
-}
-
-/// Brings a colour to 0..255: from 0..65535, or from 0..1.
-double colour_scale(const ColourRange& range) {
-  if (range.largest > 255.0) return 255.0 / 65535.0;
-  return range.largest <= 1.0 && range.fractions ? 255.0 : 1.0;
-}
-
-std::vector<std::uint8_t> interleaved(const RecordTable& table, const FieldTriple& fields, double scale) {
-  std::vector<std::uint8_t> colours(3 * table.rows);
-  parallel_for(table.rows, kScannedPerPiece, [&](std::size_t begin, std::size_t end) {
-    std::array<double, kScannedStrip> strip{};
-    for (std::size_t at = begin; at < end; at += kScannedStrip) {
-      const std::size_t stop = std::min(end, at + kScannedStrip);
-      for (std::size_t k = 0; k < 3; ++k) {
-        load_numbers(table, *fields[k], {at, stop}, strip.data());
-        for (std::size_t i = at; i < stop; ++i) {
-          const double value = scale * strip[i - at];
-          colours[3 * i + k] = value > 0.0 ? static_cast<std::uint8_t>(std::min(255.0, value + 0.5)) : 0;
+ private:
+  template <typename Value>
+  void append(const RecordTable& table, const FieldTriple& fields, std::vector<Value>& colours) const {
+    colours.reserve(3 * reserved_);
+    const std::size_t before = colours.size();
+    colours.resize(before + 3 * table.rows);
+    parallel_for(table.rows, kScannedPerPiece, [&](std::size_t begin, std::size_t end) {
+      std::array<double, kScannedStrip> strip{};
+      for (std::size_t at = begin; at < end; at += kScannedStrip) {
+        const std::size_t stop = std::min(end, at + kScannedStrip);
+        for (std::size_t k = 0; k < 3; ++k) {
+          load_numbers(table, *fields[k], {at, stop}, strip.data());
+          for (std::size_t i = at; i < stop; ++i)
+            colours[before + 3 * i + k] = static_cast<Value>(strip[i - at]);
         }
       }
-    }
-  });
-  return colours;
-}
-
-std::vector<std::uint8_t> load_colours(const RecordTable& table) {
-  const FieldTriple fields{table.find({"red", "r", "diffuse_red"}),
-                           table.find({"green", "g", "diffuse_green"}),
-                           table.find({"blue", "b", "diffuse_blue"})};
-  if (!whole(fields)) return {};
-  ColourRange all;
-  for (const Field* field : fields) {
-    if (field->type == Scalar::uint8) continue;
-    const ColourRange one = range_of(load_column<float>(table, field));
-    all = {std::max(all.largest, one.largest), all.fractions || one.fractions};
+    });
   }
-  return interleaved(table, fields, colour_scale(all));
-}
 
-/// Optical centres the file gives per point: one where all are the same, none where it gives none.
-std::vector<Vector3d> load_centres(const RecordTable& table, const Rigid3& motion, double metres_per_unit) {
-  const FieldTriple fields = find_triple(table, "_origin");
-  if (!whole(fields)) return {};
-  std::vector<Vector3d> centres = load_points(table, fields, motion, metres_per_unit);
+  template <typename Value>
+  [[nodiscard]] double scale_of(const std::vector<Value>& stored) const {
+    if (bytes_) return 1.0;
+    double largest = 0.0;
+    bool fractions = false;
+    for (const Value value : stored) {
+      largest = std::max(largest, static_cast<double>(value));
+      if constexpr (std::is_floating_point_v<Value>) fractions = fractions || value != std::floor(value);
+    }
+    if (largest > 255.0) return 255.0 / 65535.0;
+    return largest <= 1.0 && fractions ? 255.0 : 1.0;
+  }
+
+  template <typename Value>
+  [[nodiscard]] std::vector<std::uint8_t> scaled(std::vector<Value>& stored) const {
+    const double scale = scale_of(stored);
+    std::vector<std::uint8_t> colours(stored.size());
+    parallel_for(stored.size(), kScannedPerPiece, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        const double value = scale * static_cast<double>(stored[i]);
+        colours[i] = value > 0.0 ? static_cast<std::uint8_t>(std::min(255.0, value + 0.5)) : 0;
+      }
+    });
+    return colours;
+  }
+
+  std::vector<std::uint16_t> small_;
+  std::vector<float> wide_;
+  std::size_t reserved_ = 0;
+  bool bytes_ = true;
+};
+
+/// Of centres that are all the same one stays.
+void settle_centres(std::vector<Vector3d>& centres) {
+  if (centres.empty()) return;
   const bool same =
       std::all_of(centres.begin(), centres.end(), [&](const Vector3d& c) { return c == centres[0]; });
-  if (same) centres.resize(1);
-  return centres;
-}
-
-Scan load_scan(const RecordTable& table, const TableFacts& facts, const FieldTriple& fields) {
-  Scan scan;
-  scan.name = facts.name;
-  scan.local_origin = round_origin_near(first_usable(table, fields, facts));
-  Rigid3 motion = facts.pose.value_or(Rigid3{});
-  motion.translation += facts.offset - scan.local_origin;
-  scan.points = load_points(table, fields, motion, unit_of(facts));
-  scan.centres = load_centres(table, motion, unit_of(facts));
-  scan.times_s = load_column<double>(table, find_times(table));
-  scan.intensities = load_column<float>(
-      table, table.find({"intensity", "reflectance", "scalar_intensity", "scalar_reflectance", "amplitude"}));
-  scan.colours = load_colours(table);
-  scan.topology = find_topology(table, facts, scan.times_s);
-  return scan;
+  if (!same) return;
+  centres.resize(1);
+  centres.shrink_to_fit();
 }
 
 /// The scan without points that are no points, and how many those were.
@@ -323,35 +331,123 @@ Vector3d round_origin_near(const Vector3d& x) {
   return (x / kRoundM).array().round() * kRoundM;
 }
 
-ScanFile with_scan(ScanFile file, const RecordTable& table, const TableFacts& said,
-                   const ReadOptions& options) {
+struct ScanBuilder::Parts {
+  TableFacts facts;  ///< in metres
+  ReadOptions options;
+  Scan scan;
+  Rigid3 motion;            ///< of the numbers, in metres, to places about the local origin
+  bool has_origin = false;  ///< a usable point has come
+  std::size_t rows = 0;
+  std::size_t reserved = 0;
+  ScanTopology stored;         ///< as the columns of the file tell it
+  std::vector<double> angles;  ///< of a turning mirror
+  ColourColumns colours;
+
+  void settle_origin(const RecordTable& table, const FieldTriple& fields) {
+    if (has_origin) return;
+    const std::optional<Vector3d> first = first_usable(table, fields, facts);
+    has_origin = first.has_value();
+    scan.local_origin = first ? round_origin_near(*first) : Vector3d(Vector3d::Zero());
+    motion = facts.pose.value_or(Rigid3{});
+    motion.translation += facts.offset - scan.local_origin;
+  }
+
+  [[nodiscard]] ScanTopology topology() {
+    if (stored.known() && stored.line.size() == stored.index.size() && all_fit(stored.line) &&
+        all_fit(stored.index))
+      return std::move(stored);
+    if (rows <= INT32_MAX && facts.columns > 1) return grid_topology(rows, facts.columns, false);
+    if (rows <= INT32_MAX && facts.column_length > 1) return grid_topology(rows, facts.column_length, true);
+    if (angles.empty()) return {};
+    return recover_profiles(angles, scan.times_s);
+  }
+};
+
+ScanBuilder::ScanBuilder(const TableFacts& facts, const ReadOptions& options)
+    : parts_(std::make_unique<Parts>()) {
   options.check();
-  TableFacts facts = said;
-  if (options.metres_per_unit) facts.metres_per_unit = options.metres_per_unit;
-  facts = in_metres(std::move(facts));
-  file.metres_per_unit = unit_of(facts);
-  const FieldTriple fields = require_coordinates(table, facts);
-  if (table.rows == 0) throw Error("there are no points", facts.name, "check how the file was exported");
-  if (table.rows > 0xFFFFFFFFU) {
-    throw Error(fmt::format("{} points are too many for one scan", table.rows), facts.name,
+  parts_->facts = facts;
+  if (options.metres_per_unit) parts_->facts.metres_per_unit = options.metres_per_unit;
+  parts_->facts = in_metres(std::move(parts_->facts));
+  parts_->options = options;
+  parts_->scan.name = facts.name;
+}
+
+ScanBuilder::ScanBuilder(ScanBuilder&&) noexcept = default;
+ScanBuilder& ScanBuilder::operator=(ScanBuilder&&) noexcept = default;
+ScanBuilder::~ScanBuilder() = default;
+
+void ScanBuilder::reserve(std::size_t rows) {
+  parts_->reserved = rows;
+  parts_->colours.reserve(rows);
+}
+
+void ScanBuilder::add(const RecordTable& table) {
+  Parts& parts = *parts_;
+  const FieldTriple fields = require_coordinates(table, parts.facts);
+  parts.rows += table.rows;
+  if (parts.rows > 0xFFFFFFFFU) {
+    throw Error(fmt::format("{} points and more are too many for one scan", parts.rows), parts.facts.name,
                 "thin or split the file");
   }
-  auto [scan, unusable] = without_unusable(load_scan(table, facts, fields));
+  parts.settle_origin(table, fields);
+  Scan& scan = parts.scan;
+  const double unit = unit_of(parts.facts);
+  const auto roomy = [&](auto& column) -> auto& {
+    if (column.empty()) column.reserve(std::max(parts.reserved, table.rows));
+    return column;
+  };
+  append_points(table, fields, parts.motion, unit, roomy(scan.points));
+  if (const FieldTriple centres = find_triple(table, "_origin"); whole(centres))
+    append_points(table, centres, parts.motion, unit, roomy(scan.centres));
+  const auto append = [&](const Field* field, auto& column) {
+    if (field != nullptr) append_column(table, field, roomy(column));
+  };
+  append(find_times(table), scan.times_s);
+  append(find_intensities(table), scan.intensities);
+  append(find_angles(table), parts.angles);
+  if (find_lines(table) != nullptr && find_line_indices(table) != nullptr) {
+    append_integers(table, find_lines(table), roomy(parts.stored.line));
+    append_integers(table, find_line_indices(table), roomy(parts.stored.index));
+  }
+  parts.colours.add(table);
+}
+
+ScanFile ScanBuilder::finish(ScanFile file) {
+  Parts& parts = *parts_;
+  const TableFacts& facts = parts.facts;
+  file.metres_per_unit = unit_of(facts);
+  if (parts.rows == 0) throw Error("there are no points", facts.name, "check how the file was exported");
+  if (!parts.has_origin) {
+    throw Error("no usable points: every one has a coordinate that is not a number or absurdly large",
+                facts.name, "check how the file was exported");
+  }
+  parts.scan.colours = parts.colours.finish();
+  parts.scan.topology = parts.topology();
+  settle_centres(parts.scan.centres);
+  auto [scan, unusable] = without_unusable(std::move(parts.scan));
   if (scan.points.empty()) {
     throw Error("no usable points: none has finite coordinates and a finite optical centre", facts.name,
                 "check how the file was exported");
   }
   check_extent(scan);
-  scan.level = options.level;
+  scan.level = parts.options.level;
   if (unusable > facts.missing) {
     file.notes.push_back(fmt::format("{} points without finite coordinates below 100 000 km are left out",
                                      unusable - facts.missing));
   }
-  std::string note = settle_centre(scan, facts, options);
+  std::string note = settle_centre(scan, facts, parts.options);
   if (!note.empty()) file.notes.push_back(std::move(note));
   file.dropped += unusable;
   file.scans.push_back(std::move(scan));
   return file;
+}
+
+ScanFile with_scan(ScanFile file, const RecordTable& table, const TableFacts& facts,
+                   const ReadOptions& options) {
+  ScanBuilder builder(facts, options);
+  builder.add(table);
+  return builder.finish(std::move(file));
 }
 
 }  // namespace limen

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -26,9 +28,30 @@ struct TableFacts {
   std::size_t column_length = 0;            ///< points stored column by column, so many in one; 0: not so
 };
 
-/// Makes a scan of a table: picks the local origin, finds the columns by their names, leaves out what is not
-/// finite, recovers the topology. Appends to `notes` and `dropped` of `file` and adds the scan to it.
-/// Throws Error where x, y or z is missing or no point is usable.
+/// Makes a scan of tables with the same columns, one after the other: picks the local origin, finds the
+/// columns by their names, leaves out what is not finite, recovers the topology. Nothing of a table is needed
+/// once it was added.
+class ScanBuilder {
+ public:
+  ScanBuilder(const TableFacts& facts, const ReadOptions& options);
+  ScanBuilder(ScanBuilder&&) noexcept;
+  ScanBuilder& operator=(ScanBuilder&&) noexcept;
+  ~ScanBuilder();
+
+  /// Room for so many rows, made once the first come.
+  void reserve(std::size_t rows);
+  /// Throws Error where x, y or z is missing, or there are too many rows.
+  void add(const RecordTable& table);
+  /// Appends to `notes` and `dropped` of `file` and adds the scan to it. Throws Error where no point is
+  /// usable. To be called once.
+  ScanFile finish(ScanFile file);
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+/// The scan of one table.
 ScanFile with_scan(ScanFile file, const RecordTable& table, const TableFacts& facts,
                    const ReadOptions& options);
 
