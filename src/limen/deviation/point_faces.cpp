@@ -40,7 +40,7 @@ PointFaces lay_on_faces(const ScanInModel& scan, const FaceIndex& index, const D
   monitor.throw_if_cancelled();
   const double min_cosine = std::cos(radians(options.max_angle_deg));
   const auto lay = [&](std::uint32_t k) {
-    const std::size_t i = sorted.order[k];
+    const std::size_t i = sorted.index(k);
     FaceQuery query;
     query.x = scan.points[i];
     FaceHit hit;

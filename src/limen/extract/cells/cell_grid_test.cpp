@@ -46,21 +46,32 @@ TEST(MortonOrder, SortsStablyWhateverTheThreads) {
   set_thread_count(3);
   const MortonOrder three = morton_order(points, 0.1);
   set_thread_count(0);
-  EXPECT_EQ(one.order, three.order);
+  EXPECT_EQ(one.indices, three.indices);
   EXPECT_TRUE(std::is_sorted(one.codes.begin(), one.codes.end()));
-  std::vector<std::uint32_t> seen = one.order;
+  std::vector<std::uint32_t> seen = one.indices;
   std::sort(seen.begin(), seen.end());
   for (std::uint32_t i = 0; i < seen.size(); ++i) ASSERT_EQ(seen[i], i);
   for (std::size_t k = 0; k < points.size(); ++k) {
-    EXPECT_LT((one.points[k] + one.anchor - points[one.order[k]]).norm(), 1e-12);
+    EXPECT_LT((one.point(k) + one.anchor - points[one.indices[k]]).norm(), 1e-12);
     if (k > 0 && one.codes[k] == one.codes[k - 1]) {
-      EXPECT_LT(one.order[k - 1], one.order[k]);
+      EXPECT_LT(one.indices[k - 1], one.indices[k]);
     }
   }
 }
 
+TEST(MortonOrder, PointsThatLieAlongTheCurveAlreadyNeedNoOrder) {
+  const std::vector<Vector3d> points = cloud(5000, 1.0, 2);
+  const MortonOrder first = morton_order(points, 0.01);
+  std::vector<Vector3d> along;
+  for (std::size_t k = 0; k < first.size(); ++k) along.push_back(points[first.index(k)]);
+  const MortonOrder again = morton_order(along, 0.02);
+  EXPECT_TRUE(again.indices.empty());
+  EXPECT_EQ(again.index(7), 7U);
+  EXPECT_EQ(again.point(7), along[7] - again.anchor);
+}
+
 TEST(MortonOrder, TakesAnyExtent) {
-  EXPECT_TRUE(morton_order({}, 0.02).order.empty());
+  EXPECT_TRUE(morton_order({}, 0.02).indices.empty());
   EXPECT_EQ(morton_order({Vector3d(1, 2, 3)}, 0.02).codes, std::vector<std::uint64_t>{0});
   std::vector<Vector3d> points = cloud(1000, 1.0, 3);
   points.emplace_back(1e6, 1e6, -1e6);

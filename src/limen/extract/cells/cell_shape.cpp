@@ -28,7 +28,7 @@ double unevenness_of(const CellShape& shape, const MortonOrder& sorted, std::spa
     Child child;
     for (; k < points.size() && sorted.codes[points[k]] >> shift == code; ++k) {
       child.count += 1.0;
-      child.sum += plane.signed_distance(sorted.points[points[k]]);
+      child.sum += plane.signed_distance(sorted.point(points[k]));
     }
     if (child.count < kMinChildPoints) continue;
     const double explained = 3.0 * shape.thickness_m / std::sqrt(child.count);
@@ -41,7 +41,7 @@ PointMoments moments_of(const MortonOrder& sorted, std::span<const std::uint32_t
   // Written out, each product once: most of the time of finding planes goes here.
   double x = 0, y = 0, z = 0, xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;
   for (const std::uint32_t k : points) {
-    const Vector3d& p = sorted.points[k];
+    const Vector3d p = sorted.point(k);
     x += p[0];
     y += p[1];
     z += p[2];

@@ -6,6 +6,8 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <memory>
+#include <utility>
 
 #include "limen/base/parallel.h"
 #include "limen/model/scan.h"
@@ -127,16 +129,23 @@ MortonOrder morton_order(const std::vector<Vector3d>& points, double cell_m) {
   MortonOrder sorted;
   sorted.cell_m = cell_m;
   sorted.anchor = along.anchor;
-  sorted.order.resize(points.size());
   sorted.codes.resize(points.size());
-  sorted.points.resize(points.size());
+  bool in_order = true;
+  for (std::size_t k = 0; k < points.size() && in_order; ++k) in_order = along.places[k].index == k;
+  std::vector<Vector3d> moved(in_order ? 0 : points.size());
+  if (!in_order) sorted.indices.resize(points.size());
   parallel_for(points.size(), 65536, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
-      sorted.order[k] = along.places[k].index;
       sorted.codes[k] = along.places[k].code;
-      sorted.points[k] = points[along.places[k].index] - sorted.anchor;
+      if (in_order) continue;
+      sorted.indices[k] = along.places[k].index;
+      moved[k] = points[along.places[k].index];
     }
   });
+  if (in_order)
+    sorted.points = std::shared_ptr<const std::vector<Vector3d>>(std::shared_ptr<const void>(), &points);
+  else
+    sorted.points = std::make_shared<const std::vector<Vector3d>>(std::move(moved));
   return sorted;
 }
 

@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "limen/geometry/rigid.h"
@@ -12,14 +14,20 @@ namespace limen {
 /// Points in the order of a Morton curve over cubes: every cube of every level (a power of two of the finest)
 /// is one contiguous run. Stable, so the order does not depend on the thread count.
 struct MortonOrder {
-  std::vector<std::uint32_t> order;    ///< order[k]: index of the k-th point along the curve
+  std::shared_ptr<const std::vector<Vector3d>> points;  ///< along the curve; not owned where they lay so
+  std::vector<std::uint32_t> indices;  ///< of the points as they were given; empty: they lay so
   std::vector<std::uint64_t> codes;    ///< codes[k]: its finest cube
-  std::vector<Vector3d> points;        ///< points[k]: its coordinates about `anchor`, metres
   Vector3d anchor = Vector3d::Zero();  ///< corner of cell 0, 0, 0
   double cell_m = 0.02;                ///< edge of the finest cube
+
+  [[nodiscard]] std::size_t size() const { return codes.size(); }
+  [[nodiscard]] std::size_t index(std::size_t k) const { return indices.empty() ? k : indices[k]; }
+  /// The k-th point along the curve, about `anchor`, metres.
+  [[nodiscard]] Vector3d point(std::size_t k) const { return (*points)[k] - anchor; }
 };
 
-/// Sorts `points` along the curve. Cubes outside 2^21 cells per axis are clamped to the border.
+/// Sorts `points`, which must outlive the order, along the curve. Cubes outside 2^21 cells per axis are
+/// clamped to the border.
 MortonOrder morton_order(const std::vector<Vector3d>& points, double cell_m);
 
 /// A point's place along the curve.

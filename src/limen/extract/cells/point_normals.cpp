@@ -39,8 +39,8 @@ std::vector<LookedAt> cubes_with_enough(const MortonOrder& sorted, std::span<con
 
 PointNormals::PointNormals(const MortonOrder& sorted, double max_thickness_m, double finest_m,
                            double coarsest_m)
-    : of_point_(sorted.points.size(), kSparse) {
-  std::vector<std::uint32_t> open(sorted.points.size());
+    : of_point_(sorted.size(), kSparse) {
+  std::vector<std::uint32_t> open(sorted.size());
   std::iota(open.begin(), open.end(), 0U);
   const int coarsest = level_of(coarsest_m, sorted.cell_m);
   for (int level = level_of(finest_m, sorted.cell_m); level <= coarsest && !open.empty(); ++level) {

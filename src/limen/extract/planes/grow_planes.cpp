@@ -72,7 +72,7 @@ class LabelSums {
 class PlaneGrower {
  public:
   PlaneGrower(const MortonOrder& sorted, const SettleGrid& grid, const GrowOptions& options)
-      : options_(options), sorted_(sorted), settle_grid_(grid), labels_(sorted.points.size(), -1) {
+      : options_(options), sorted_(sorted), settle_grid_(grid), labels_(sorted.size(), -1) {
     threshold_m_ = options_.inlier_threshold_m;
     if (threshold_m_ > 0) return;
     const CellGrid cells(sorted_, all_positions(labels_.size()), level_of(0.16, options_.finest_cell_m));
@@ -143,7 +143,7 @@ class PlaneGrower {
         [&](std::size_t begin, std::size_t end) {
           Sums part(sums_.size());
           for (std::size_t k = begin; k < end; ++k) {
-            if (labels_[k] >= 0) part[static_cast<std::size_t>(labels_[k])].add(sorted_.points[k]);
+            if (labels_[k] >= 0) part[static_cast<std::size_t>(labels_[k])].add(sorted_.point(k));
           }
           return part;
         },
@@ -178,7 +178,7 @@ class PlaneGrower {
     parallel_for(labels_.size(), kPointsPerLabelling, [&](std::size_t begin, std::size_t end) {
       for (std::size_t k = begin; k < end; ++k) {
         if (labels_[k] >= 0)
-          grown.planes.labels[sorted_.order[k]] = final_label[static_cast<std::size_t>(labels_[k])];
+          grown.planes.labels[sorted_.index(k)] = final_label[static_cast<std::size_t>(labels_[k])];
       }
     });
     return grown;

@@ -31,7 +31,7 @@ struct GrownPlanes {
 /// The points of a scan in order, to grow planes in them at several thresholds.
 class PlaneGround {
  public:
-  /// Throws Error for options out of bounds.
+  /// `scan` must outlive it. Throws Error for options out of bounds.
   PlaneGround(const Scan& scan, const GrowOptions& options);
   ~PlaneGround();
   PlaneGround(const PlaneGround&) = delete;

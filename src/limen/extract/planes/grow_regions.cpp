@@ -219,7 +219,7 @@ void RegionGrower::label_points(const CellGrid& grid, const std::vector<std::uin
       }
       if (near.empty()) continue;
       for (std::uint32_t k = cell.begin; k < cell.end; ++k)
-        labels[active[k]] = nearest(sorted_->points[active[k]], near);
+        labels[active[k]] = nearest(sorted_->point(active[k]), near);
     }
   });
 }

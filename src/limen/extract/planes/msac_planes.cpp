@@ -24,11 +24,11 @@ constexpr int kMaxFailures = 3;  // samplings in a row without a plane that is l
 struct PlaneEstimator {
   using Model = Plane;
   static constexpr std::size_t kSampleSize = 3;
-  const std::vector<Vector3d>& points;
+  const MortonOrder& sorted;
   const std::vector<std::uint32_t>& free;
 
   [[nodiscard]] std::size_t size() const { return free.size(); }
-  [[nodiscard]] const Vector3d& at(std::uint32_t item) const { return points[free[item]]; }
+  [[nodiscard]] Vector3d at(std::uint32_t item) const { return sorted.point(free[item]); }
   [[nodiscard]] std::optional<Plane> estimate(const std::array<std::uint32_t, 3>& sample) const {
     const Vector3d ab = at(sample[1]) - at(sample[0]);
     const Vector3d ac = at(sample[2]) - at(sample[0]);
@@ -93,7 +93,7 @@ class MsacDetector {
   [[nodiscard]] std::size_t wanted() const { return static_cast<std::size_t>(options_.min_inliers); }
 
   [[nodiscard]] std::optional<Plane> best_plane(std::uint64_t round) const {
-    const PlaneEstimator estimator{sorted_.points, free_};
+    const PlaneEstimator estimator{sorted_, free_};
     const MsacOptions options{options_.inlier_threshold_m, options_.confidence, options_.most_trials,
                               options_.judges};
     const std::uint64_t seed = mix64(options_.seed) + round;
@@ -105,7 +105,7 @@ class MsacDetector {
   }
 
   [[nodiscard]] bool inlier(const Plane& plane, std::uint32_t position) const {
-    return std::abs(plane.signed_distance(sorted_.points[position])) <= options_.inlier_threshold_m;
+    return std::abs(plane.signed_distance(sorted_.point(position))) <= options_.inlier_threshold_m;
   }
 
   [[nodiscard]] PointMoments inliers_of(const Plane& plane) const {
@@ -114,7 +114,7 @@ class MsacDetector {
         [&](std::size_t begin, std::size_t end) {
           PointMoments sum;
           for (std::size_t k = begin; k < end; ++k) {
-            if (inlier(plane, free_[k])) sum.add(sorted_.points[free_[k]]);
+            if (inlier(plane, free_[k])) sum.add(sorted_.point(free_[k]));
           }
           return sum;
         },
@@ -163,7 +163,7 @@ class MsacDetector {
     result.labels.assign(labels_.size(), -1);
     for (std::size_t k = 0; k < labels_.size(); ++k) {
       if (labels_[k] >= 0)
-        result.labels[sorted_.order[k]] = final_label[static_cast<std::size_t>(labels_[k])];
+        result.labels[sorted_.index(k)] = final_label[static_cast<std::size_t>(labels_[k])];
     }
     return result;
   }

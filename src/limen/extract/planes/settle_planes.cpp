@@ -89,7 +89,7 @@ class Candidates {
 
   [[nodiscard]] const SupportGrid& grid() const { return grid_; }
   [[nodiscard]] double distance(std::uint32_t k, std::int32_t plane) const {
-    return std::abs(planes_[static_cast<std::size_t>(plane)].signed_distance(sorted_.points[k]));
+    return std::abs(planes_[static_cast<std::size_t>(plane)].signed_distance(sorted_.point(k)));
   }
   /// The surface at point k faces along with the plane, as far as is known.
   [[nodiscard]] bool fits(std::uint32_t k, std::int32_t plane) const {

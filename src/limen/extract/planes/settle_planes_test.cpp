@@ -35,13 +35,13 @@ struct Corner {
       points.emplace_back(random.uniform(), 0.002 * random.normal(), random.uniform());
     return points;
   }
-  [[nodiscard]] bool on_floor(std::size_t k) const { return sorted.order[k] < 5000; }
+  [[nodiscard]] bool on_floor(std::size_t k) const { return sorted.index(k) < 5000; }
 
   [[nodiscard]] std::vector<PointMoments> sums(const std::vector<std::int32_t>& labels,
                                                std::size_t planes) const {
     std::vector<PointMoments> sums(planes);
     for (std::size_t k = 0; k < labels.size(); ++k) {
-      if (labels[k] >= 0) sums[static_cast<std::size_t>(labels[k])].add(sorted.points[k]);
+      if (labels[k] >= 0) sums[static_cast<std::size_t>(labels[k])].add(sorted.point(k));
     }
     return sums;
   }
@@ -51,7 +51,7 @@ TEST(PointNormals, TellTheWayASurfaceFaces) {
   const Corner corner;
   std::size_t known = 0;
   std::size_t right = 0;
-  for (std::uint32_t k = 0; k < corner.sorted.points.size(); ++k) {
+  for (std::uint32_t k = 0; k < corner.sorted.size(); ++k) {
     const Vector3d* const normal = corner.normals.at(k);
     if (normal == nullptr) continue;
     EXPECT_FALSE(corner.normals.rough(k));
@@ -65,9 +65,9 @@ TEST(PointNormals, TellTheWayASurfaceFaces) {
 TEST(SettlePlanes, BordersComeRight) {
   const Corner corner;
   // The floor has taken all points within 6 cm of it, of the wall too; a third of the wall is free.
-  std::vector<std::int32_t> labels(corner.sorted.points.size());
+  std::vector<std::int32_t> labels(corner.sorted.size());
   for (std::size_t k = 0; k < labels.size(); ++k) {
-    const double height = corner.sorted.points[k].z() + corner.sorted.anchor.z();
+    const double height = corner.sorted.point(k).z() + corner.sorted.anchor.z();
     labels[k] = corner.on_floor(k) || height < 0.06 ? 0 : k % 3 == 0 ? -1 : 1;
   }
   const SettleOptions options{.threshold_m = 0.008};
@@ -82,9 +82,9 @@ TEST(SettlePlanes, BordersComeRight) {
 TEST(SettlePlanes, APlaneThroughAnEdgeIsExplained) {
   const Corner corner;
   // A third plane made of what lies close to the edge.
-  std::vector<std::int32_t> labels(corner.sorted.points.size());
+  std::vector<std::int32_t> labels(corner.sorted.size());
   for (std::size_t k = 0; k < labels.size(); ++k) {
-    const Vector3d x = corner.sorted.points[k] + corner.sorted.anchor;
+    const Vector3d x = corner.sorted.point(k) + corner.sorted.anchor;
     labels[k] = std::abs(x.y()) < 0.03 && x.z() < 0.03 ? 2 : corner.on_floor(k) ? 0 : 1;
   }
   const auto shares =
