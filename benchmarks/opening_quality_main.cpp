@@ -25,6 +25,7 @@
 #include <string>
 #include <vector>
 
+#include "kept_case.h"
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
@@ -47,6 +48,7 @@ struct Settings {
   std::size_t min_rays = 60;
   int threads = 0;
   bool list = false;
+  bool kept = false;
   bool errors = false;
 };
 
@@ -400,7 +402,8 @@ Tally run(const std::string& scene, int seed, const Settings& settings) {
     options.stations = settings.stations;
     options.points_outdoor = 0;
   }
-  const SimulatedCase simulated = simulate(options);
+  SimulatedCase simulated = simulate(options);
+  if (settings.kept) keep_as_features_do(simulated);
   Tally sum;
   for (std::size_t s = 0; s < simulated.scans.size(); ++s) {
     if (simulated.truth.scans[s].mobile != settings.outdoor) continue;
@@ -426,6 +429,7 @@ int main(int argc, char** argv) {
   app.add_option("--min-rays", settings.min_rays, "rays that met an opening in view");
   app.add_option("--threads", settings.threads, "0: the machine's");
   app.add_flag("--errors", settings.errors, "a line for each edge: outward error, deviation");
+  app.add_flag("--kept", settings.kept, "of dense scans the points that features are found on");
   app.add_flag("--list", settings.list, "name what was missed, wrong, or far off");
   CLI11_PARSE(app, argc, argv);
   set_thread_count(settings.threads);

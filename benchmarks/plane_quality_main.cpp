@@ -33,6 +33,7 @@
 #include <string>
 #include <vector>
 
+#include "kept_case.h"
 #include "plane_truth.h"
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -67,6 +68,7 @@ struct Settings {
   int threads = 0;
   int repeats = 1;
   bool list = false;
+  bool kept = false;
 };
 
 struct Counts {
@@ -208,6 +210,7 @@ Counts run(const std::string& scene, int seed, const Settings& settings) {
   (settings.outdoor ? options.points_outdoor : options.points_indoor) = settings.points;
   options.scanner.noise_m = settings.noise_m;
   SimulatedCase simulated = simulate(options);
+  if (settings.kept) keep_as_features_do(simulated);
   Counts sum;
   int stations = 0;
   for (std::size_t i = 0; i < simulated.scans.size(); ++i) {
@@ -246,6 +249,7 @@ void add_options(CLI::App& app, Settings& settings) {
   app.add_option("--finest-cell-m", settings.finest_cell_m, "of grow: edge of the last cubes");
   app.add_option("--threads", settings.threads, "0: the machine's");
   app.add_option("--repeats", settings.repeats, "runs of each detection; the fastest is told");
+  app.add_flag("--kept", settings.kept, "of dense scans the points that features are found on");
   app.add_flag("--list", settings.list, "name what was missed and what was not pure");
 }
 

@@ -15,7 +15,7 @@ namespace {
 /// allocator alone.
 void keep_memory() {
 #ifdef __GLIBC__
-  constexpr int kMostOfHeapBytes = 32 << 20;  // larger blocks are the system's own; the most that glibc takes
+  constexpr int kMostOfHeapBytes = 8 << 20;  // larger blocks are the system's own: whole clouds, few and long
   constexpr int kKeptBytes = 256 << 20;
   mallopt(M_MMAP_THRESHOLD, kMostOfHeapBytes);
   mallopt(M_TRIM_THRESHOLD, kKeptBytes);

@@ -130,7 +130,9 @@ Registered register_sides(const PythonSide& source, const PythonSide& target, Re
   const RegisterInput from = input_of(source);
   const RegisterInput to = input_of(target);
   report.result = register_inputs(from, to, options, monitor);
-  if (report.result.picture) registered.scene = make_scene(from, to, *report.result.picture);
+  if (const auto& picture = report.result.picture)
+    registered.scene = {with_picture(scene_side(from), picture->source),
+                        with_picture(scene_side(to), picture->target)};
   return registered;
 }
 

@@ -43,11 +43,11 @@ FileRecord make_scan_features(const ProjectFile& file, const ProjectOptions& opt
   for (std::size_t k = 0; k < read.scans.size(); ++k) {
     const auto at = [&](std::size_t i) { return kReading + (1.0 - kReading) * static_cast<double>(i) / all; };
     StagePart preparing(monitor, at(k), at(k + 1));
-    const Scan scan = along_trajectory(std::move(read.scans[k]), trajectories, record.notes);
+    Scan scan = along_trajectory(std::move(read.scans[k]), trajectories, record.notes);
     record.points.push_back(scan.size());
     PrepareOptions with_track = prepare_options(options.registering);
     with_track.track = true;
-    const PreparedScan prepared = prepare_scan(scan, with_track, preparing);
+    const PreparedScan prepared = prepare_scan(std::move(scan), with_track, preparing);
     into_store([&] { store.save_features(store.feature_key(file.sha256, static_cast<int>(k)), prepared); });
   }
   return record;

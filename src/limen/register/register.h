@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -59,6 +60,15 @@ struct RegisterInput {
 /// Where the planes of a scan propose no place at all in a model, its edges do (2023, IV).
 /// Throws Error where both sides are models or one is empty.
 RegistrationResult register_inputs(const RegisterInput& source, const RegisterInput& target,
+                                   const RegisterOptions& options = {}, Monitor& monitor = silent_monitor());
+
+/// Reads one side when its turn has come; called a second time only where a model is sought by its edges as
+/// well.
+using InputReader = std::function<RegisterInput()>;
+
+/// The same of sides that are given up once they lie in their frames: of two very large scans only one lies
+/// in memory at a time.
+RegistrationResult register_inputs(const InputReader& source, const InputReader& target,
                                    const RegisterOptions& options = {}, Monitor& monitor = silent_monitor());
 
 /// Registers two scans by planar polygons (2021), openings (2022) or both (2023), for any starting pose.

@@ -157,6 +157,31 @@ TEST(Register, WithoutOpticalCentresTheyAreEstimated) {
   EXPECT_LT(shift_m(pair, result.best), 0.002);
 }
 
+TEST(Register, SidesThatAreReadAndGivenUpAreRegisteredAsAnyOthers) {
+  const RegisteredPair pair = simulated_pair(small("room", 3), 0, 1);
+  const auto side_of = [](const Scan& scan) {
+    RegisterInput input;
+    input.scans.push_back({scan, {}});
+    return input;
+  };
+  RegisterOptions options;
+  options.picture = true;
+  const RegistrationResult kept = register_inputs(side_of(pair.source), side_of(pair.target), options);
+  int read = 0;
+  const auto reader = [&](const Scan& scan) {
+    return InputReader([&] {
+      ++read;
+      return side_of(scan);
+    });
+  };
+  const RegistrationResult given = register_inputs(reader(pair.source), reader(pair.target), options);
+  EXPECT_EQ(read, 2);
+  EXPECT_EQ(kept.outcome, given.outcome);
+  EXPECT_EQ(to_matrix(kept.best.target_from_source), to_matrix(given.best.target_from_source));
+  EXPECT_EQ(given.stages.front().name, std::string("reading"));
+  EXPECT_EQ(kept.picture->source.features.planes.size(), given.picture->source.features.planes.size());
+}
+
 TEST(Register, CancelledWorkThrows) {
   const RegisteredPair pair = simulated_pair(small("room", 3), 0, 1);
   Monitor monitor;

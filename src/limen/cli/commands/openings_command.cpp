@@ -6,6 +6,7 @@
 #include <array>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -64,7 +65,7 @@ int run(const OpeningsCommand& command, const Session& session) {
   const ReadOptions reading =
       with_choice(read_options(command.origin, "--origin", command.gravity), command.reading);
   session.monitor->begin_stage("reading");
-  const Scan scan = read_input(command.scan, reading, session);
+  Scan scan = read_input(command.scan, reading, session);
   // Opened before the long work: a place that cannot be written to is told at once.
   AtomicFile file(command.output);
   session.monitor->begin_stage("openings");
@@ -73,7 +74,7 @@ int run(const OpeningsCommand& command, const Session& session) {
   preparing.gravity = gravity_of(command.gravity);
   preparing.openings = command.openings;
   InputSummary input = summarise(command.scan, scan);
-  const Features features = features_of(scan, preparing, input, session);
+  const Features features = features_of(std::move(scan), preparing, input, session);
   if (input.place.source == PlaceSource::unknown) {
     throw Error("it is not known from where the scan was taken, and its points do not show it", command.scan,
                 "give the place of the scanner with --origin x,y,z");

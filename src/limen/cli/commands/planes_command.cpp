@@ -8,6 +8,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -95,7 +96,7 @@ int run(PlanesOptions options, const Session& session) {
   const ReadOptions reading =
       with_choice(read_options(options.origin, "--origin", options.gravity), options.reading);
   session.monitor->begin_stage("reading");
-  const Scan scan = read_input(options.scan, reading, session);
+  Scan scan = read_input(options.scan, reading, session);
   session.monitor->begin_stage("planes");
   // Opened before the long work: a place that cannot be written to is told at once.
   AtomicFile file(options.output);
@@ -104,7 +105,7 @@ int run(PlanesOptions options, const Session& session) {
   preparing.gravity = gravity_of(options.gravity);
   preparing.planes_only = true;
   InputSummary input = summarise(options.scan, scan);
-  const Features features = features_of(scan, preparing, input, session);
+  const Features features = features_of(std::move(scan), preparing, input, session);
   const std::string json = features_json(features, input);
   return deliver(file, json, summary(features, options), session);
 }

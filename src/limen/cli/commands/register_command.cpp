@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limen/cli/commands/register_command.h"
 
-#include <chrono>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -59,6 +58,12 @@ struct RegisterCommandOptions {
 struct Registered {
   RegistrationReport report;
   ReportScene scene;
+};
+
+/// What is left of a side to tell of and to draw, once its scans are given up.
+struct ToldSide {
+  InputSummary summary;
+  SceneSide scene;
 };
 
 Method method_of(const std::string& name) {
@@ -142,12 +147,6 @@ Registered register_files(const RegisterCommandOptions& options, const Session& 
   verdict.risk = options.risk;
   verdict.check();
   const std::optional<StartPrior> believed = start_of(options.start, options.start_sigma);
-  const auto start = std::chrono::steady_clock::now();
-  session.monitor->begin_stage("reading");
-  InputSide source = read_side({options.source, options.source_with, source_options}, session);
-  InputSide target = read_side({options.target, options.target_with, target_options}, session);
-  const std::chrono::duration<double> reading = std::chrono::steady_clock::now() - start;
-
   RegisterOptions registering;
   registering.gravity = gravity_of(options.gravity);
   registering.method = method_of(options.method);
@@ -157,18 +156,30 @@ Registered register_files(const RegisterCommandOptions& options, const Session& 
   registering.start = believed;
   registering.seed = session.common.seed;
   registering.picture = !options.no_report;
+  ToldSide source;
+  ToldSide target;
+  const auto reader = [&](const SideOptions& side, ToldSide& told) {
+    return [&session, &told, side, drawn = registering.picture] {
+      InputSide read = read_side(side, session);
+      told.summary = std::move(read.summary);
+      if (drawn) told.scene = scene_side(read.input);
+      return std::move(read.input);
+    };
+  };
   Registered registered;
   RegistrationReport& report = registered.report;
-  report.result = register_inputs(source.input, target.input, registering, *session.monitor);
-  report.result.stages.insert(report.result.stages.begin(), {"reading", reading.count()});
+  report.result = register_inputs(reader({options.source, options.source_with, source_options}, source),
+                                  reader({options.target, options.target_with, target_options}, target),
+                                  registering, *session.monitor);
   report.source = std::move(source.summary);
   report.target = std::move(target.summary);
   note_place(report.source, report.result.source_place, session);
   note_place(report.target, report.result.target_place, session);
   report.options = reported(options);
   report.seed = session.common.seed;
-  if (report.result.picture)
-    registered.scene = make_scene(source.input, target.input, *report.result.picture);
+  if (const auto& picture = report.result.picture)
+    registered.scene = {with_picture(std::move(source.scene), picture->source),
+                        with_picture(std::move(target.scene), picture->target)};
   return registered;
 }
 
@@ -177,7 +188,8 @@ Registered register_segment_lists(const RegisterCommandOptions& options, const S
   registered.report =
       register_segment_files(options.source, options.target, gravity_of(options.gravity), session);
   registered.report.options = reported(options);
-  if (registered.report.result.picture) registered.scene = make_scene(*registered.report.result.picture);
+  if (const auto& picture = registered.report.result.picture)
+    registered.scene = {with_picture({}, picture->source), with_picture({}, picture->target)};
   return registered;
 }
 

@@ -40,7 +40,7 @@ struct FoundSegments {
   const char* centre = "known";
 };
 
-FoundSegments segments_of(const Scan& scan, const SegmentsCommand& command, InputSummary& input,
+FoundSegments segments_of(Scan&& scan, const SegmentsCommand& command, InputSummary& input,
                           const Session& session) {
   session.monitor->begin_stage("segments");
   PrepareOptions preparing;
@@ -49,7 +49,7 @@ FoundSegments segments_of(const Scan& scan, const SegmentsCommand& command, Inpu
   preparing.planes_only = true;
   preparing.segments = true;
   preparing.edges = command.segments;
-  Features features = features_of(scan, preparing, input, session);
+  Features features = features_of(std::move(scan), preparing, input, session);
   FoundSegments found;
   found.segments = std::move(features.segments);
   found.local_origin = features.local_origin;
@@ -108,11 +108,11 @@ int run(const SegmentsCommand& command, const Session& session) {
   const ReadOptions reading =
       with_choice(read_options(command.origin, "--origin", command.gravity), command.reading);
   session.monitor->begin_stage("reading");
-  const Scan scan = read_input(command.scan, reading, session);
+  Scan scan = read_input(command.scan, reading, session);
   InputSummary input = summarise(command.scan, scan);
   // Opened before the long work: a place that cannot be written to is told at once.
   AtomicFile file(command.output);
-  const FoundSegments found = segments_of(scan, command, input, session);
+  const FoundSegments found = segments_of(std::move(scan), command, input, session);
   const std::string json = segments_json(found.segments, found.local_origin, input);
   return deliver(file, json, summary(found, command.output), session);
 }

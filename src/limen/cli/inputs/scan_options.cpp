@@ -222,9 +222,9 @@ void note_place(InputSummary& summary, const ScannerPlace& place, const Session&
                   summary.path, where, place.centre.x(), place.centre.y(), place.centre.z()));
 }
 
-Features features_of(const Scan& scan, const PrepareOptions& options, InputSummary& summary,
+Features features_of(Scan&& scan, const PrepareOptions& options, InputSummary& summary,
                      const Session& session) {
-  PreparedScan prepared = prepare_scan(scan, options, *session.monitor);
+  PreparedScan prepared = prepare_scan(std::move(scan), options, *session.monitor);
   note_place(summary, prepared.place, session);
   return in_own_frame(std::move(prepared));
 }

@@ -89,9 +89,10 @@ Gravity gravity_of(const std::string& name);
 /// right.
 void note_place(InputSummary& summary, const ScannerPlace& place, const Session& session);
 
-/// What is made of a scan for a command that takes features: frame, planes and what `options` ask for; its
-/// place is noted and entered. Everything about the returned features' local origin, in the scan's own frame.
-Features features_of(const Scan& scan, const PrepareOptions& options, InputSummary& summary,
+/// What is made of a scan, which is given up, for a command that takes features: frame, planes and what
+/// `options` ask for; its place is noted and entered. Everything about the returned features' local origin,
+/// in the scan's own frame.
+Features features_of(Scan&& scan, const PrepareOptions& options, InputSummary& summary,
                      const Session& session);
 
 /// The end of a command that takes features: `json` goes into the file and to who asked for it, `summary` to

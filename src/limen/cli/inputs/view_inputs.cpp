@@ -153,15 +153,15 @@ Scan read_share(const CloudToView& cloud, std::uint64_t share, std::optional<dou
 }
 
 ViewSide side_of_cloud(const ViewInput& input, const CloudToView& cloud, Scan scan, const Vector3d& origin) {
-  RegistrationPicture picture;
-  picture.source.features.local_origin = origin;
+  PicturedSide pictured;
+  pictured.features.local_origin = origin;
   RegisterInput placed;
   placed.scans.push_back({std::move(scan), place_of_scan(input)});
   ReportSceneOptions all;
   all.max_points = cloud.points;
   ViewSide side;
   side.points_read = cloud.points;
-  side.scene = make_scene(placed, {}, picture, all).source;
+  side.scene = with_picture(scene_side(placed, all), pictured);
   return side;
 }
 

@@ -3,7 +3,9 @@
 #include "limen/register/prepare/laid_scan.h"
 
 #include <algorithm>
-#include <array>
+#include <cstdint>
+#include <numeric>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -15,8 +17,6 @@ namespace {
 
 constexpr double kOrderM = 0.00125;
 constexpr std::size_t kLaidPerPiece = 65536;
-constexpr std::size_t kMostOfCube = 64;  // points kept of one cube, at most
-constexpr std::uint32_t kCoarsest = 12;  // 5 m
 
 /// Points in one cube of the curve's order are sorted by their coordinates.
 void settle_ties(std::vector<CurvePlace>& sorted, const std::vector<Vector3d>& points) {
@@ -35,98 +35,98 @@ void settle_ties(std::vector<CurvePlace>& sorted, const std::vector<Vector3d>& p
   }
 }
 
-/// Calls use(begin, end) for each run of places that lie in one cube of a level.
-template <typename Use>
-void for_each_cube(const std::vector<CurvePlace>& sorted, std::uint32_t level, const Use& use) {
-  for (std::size_t begin = 0; begin < sorted.size();) {
-    const std::uint64_t cube = sorted[begin].code >> (3 * level);
-    std::size_t end = begin + 1;
-    while (end < sorted.size() && sorted[end].code >> (3 * level) == cube) ++end;
-    use(begin, end);
-    begin = end;
-  }
-}
-
-/// The finest cubes of which there are no more than `most`.
-std::uint32_t level_for(const std::vector<CurvePlace>& sorted, std::size_t most) {
-  std::array<std::size_t, kCoarsest + 1> cubes{};
-  cubes.fill(1);
-  for (std::size_t k = 1; k < sorted.size(); ++k) {
-    const std::uint64_t differ = sorted[k].code ^ sorted[k - 1].code;
-    for (std::uint32_t level = 0; level <= kCoarsest && differ >> (3 * level) != 0; ++level) ++cubes[level];
-  }
-  std::uint32_t level = 0;
-  while (level < kCoarsest && cubes[level] > most) ++level;
-  return level;
-}
-
-/// How many points each cube of the level may keep so that there are no more than `most`.
-std::size_t share_for(const std::vector<CurvePlace>& sorted, std::uint32_t level, std::size_t most) {
-  std::array<std::size_t, kMostOfCube + 1> at_least{};  // cubes with so many points or more
-  for_each_cube(sorted, level, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = 1; k <= std::min(kMostOfCube, end - begin); ++k) ++at_least[k];
+/// values[i] for each i, made by `use` of the scan's value there.
+template <typename Value, typename Use>
+std::vector<Value> gathered(const std::vector<std::uint32_t>& indices, const Use& use) {
+  std::vector<Value> values(indices.size());
+  parallel_for(indices.size(), kLaidPerPiece, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) values[k] = use(indices[k]);
   });
-  std::size_t share = 1;
-  std::size_t kept = at_least[1];
-  while (share < kMostOfCube && kept + at_least[share + 1] <= most) kept += at_least[++share];
-  return share;
+  return values;
 }
 
-/// Of each cube the same number of points at most, evenly along the curve.
-std::vector<CurvePlace> thinned(const std::vector<CurvePlace>& sorted, std::size_t most) {
-  const std::uint32_t level = level_for(sorted, most);
-  const std::size_t share = share_for(sorted, level, most);
-  std::vector<CurvePlace> kept;
-  kept.reserve(most);
-  for_each_cube(sorted, level, [&](std::size_t begin, std::size_t end) {
-    const std::size_t size = end - begin;
-    const std::size_t few = std::min(share, size);
-    for (std::size_t k = 0; k < few; ++k) kept.push_back(sorted[begin + (2 * k + 1) * size / (2 * few)]);
+std::vector<std::uint32_t> all_indices(std::size_t size) {
+  std::vector<std::uint32_t> all(size);
+  std::iota(all.begin(), all.end(), 0U);
+  return all;
+}
+
+/// Indices of the kept points along the curve, and these in the frame.
+struct Curve {
+  std::vector<std::uint32_t> indices;
+  std::vector<Vector3d> points;
+};
+
+Curve sorted_along(const std::vector<Vector3d>& placed, const std::vector<std::uint32_t>& indices) {
+  std::vector<CurvePlace> places = along_curve(placed, kOrderM).places;
+  settle_ties(places, placed);
+  Curve curve{std::vector<std::uint32_t>(places.size()), std::vector<Vector3d>(places.size())};
+  parallel_for(places.size(), kLaidPerPiece, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      curve.indices[k] = indices[places[k].index];
+      curve.points[k] = placed[places[k].index];
+    }
   });
-  return kept;
+  return curve;
 }
 
-}  // namespace
+/// Gives the memory of a list back.
+template <typename Value>
+void drop(std::vector<Value>& list) {
+  std::vector<Value>().swap(list);
+}
 
-Scan laid_in(const Scan& scan, const ScanFrame& frame, std::size_t most, bool lines) {
+/// `own`: the scan, where its memory may be given back; else null.
+Scan lay(const Scan& scan, Scan* own, const ScanFrame& frame, const LayOptions& options) {
   const auto placed = [&](const Vector3d& x) { return Vector3d(frame.frame_from_scan * (x - frame.corner)); };
-  std::vector<Vector3d> points(scan.size());
-  parallel_for(scan.size(), kLaidPerPiece, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) points[i] = placed(scan.points[i]);
-  });
-  std::vector<CurvePlace> sorted = along_curve(points, kOrderM).places;
-  settle_ties(sorted, points);
-  if (most > 0 && sorted.size() > most) sorted = thinned(sorted, most);
   Scan laid;
   laid.name = scan.name;
   laid.local_origin = scan.local_origin + frame.corner;
   laid.level = frame.upright;
   laid.centre_source = frame.place.source;
-  laid.points.resize(sorted.size());
-  parallel_for(sorted.size(), kLaidPerPiece, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) laid.points[k] = points[sorted[k].index];
-  });
-  if (scan.mobile()) {
-    laid.centres.resize(sorted.size());
-    laid.times_s.resize(scan.times_s.empty() ? 0 : sorted.size());
-    parallel_for(sorted.size(), kLaidPerPiece, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t k = begin; k < end; ++k) {
-        laid.centres[k] = placed(scan.centres[sorted[k].index]);
-        if (!laid.times_s.empty()) laid.times_s[k] = scan.times_s[sorted[k].index];
-      }
-    });
+  const bool mobile = scan.mobile();
+  const bool times = options.times && mobile && !scan.times_s.empty();
+  std::optional<std::vector<std::uint32_t>> kept = kept_points(scan, frame, options.keep);
+  if (own != nullptr) {
+    drop(own->intensities);
+    drop(own->colours);
+    if (!times) drop(own->times_s);
+    if (!options.lines) own->topology = {};
+  }
+  std::vector<std::uint32_t> indices = kept ? std::move(*kept) : all_indices(scan.size());
+  {
+    const std::vector<Vector3d> points =
+        gathered<Vector3d>(indices, [&](std::uint32_t i) { return placed(scan.points[i]); });
+    if (own != nullptr) drop(own->points);
+    Curve curve = sorted_along(points, indices);
+    indices = std::move(curve.indices);
+    laid.points = std::move(curve.points);
+  }
+  if (mobile) {
+    laid.centres = gathered<Vector3d>(indices, [&](std::uint32_t i) { return placed(scan.centres[i]); });
+    if (own != nullptr) drop(own->centres);
+    if (times) laid.times_s = gathered<double>(indices, [&](std::uint32_t i) { return scan.times_s[i]; });
   } else if (frame.place.source != PlaceSource::unknown) {
     laid.centres = {placed(frame.place.centre)};
   }
-  if (lines && scan.topology.known()) {
-    laid.topology.line.reserve(sorted.size());
-    laid.topology.index.reserve(sorted.size());
-    for (const CurvePlace& place : sorted) {
-      laid.topology.line.push_back(scan.topology.line[place.index]);
-      laid.topology.index.push_back(scan.topology.index[place.index]);
-    }
+  if (options.lines && scan.topology.known()) {
+    laid.topology.line =
+        gathered<std::int32_t>(indices, [&](std::uint32_t i) { return scan.topology.line[i]; });
+    laid.topology.index =
+        gathered<std::int32_t>(indices, [&](std::uint32_t i) { return scan.topology.index[i]; });
   }
   return laid;
+}
+
+}  // namespace
+
+Scan laid_in(const Scan& scan, const ScanFrame& frame, const LayOptions& options) {
+  return lay(scan, nullptr, frame, options);
+}
+
+Scan laid_in(Scan&& scan, const ScanFrame& frame, const LayOptions& options) {
+  Scan own = std::move(scan);
+  return lay(own, &own, frame, options);
 }
 
 }  // namespace limen

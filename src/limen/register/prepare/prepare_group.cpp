@@ -19,9 +19,9 @@ constexpr double kSamePlaneM = 0.02;
 constexpr double kSameOpeningM = 0.2;
 
 /// The scan about `origin` in the group's frame.
-Scan placed_about(const PlacedScan& placed, const Vector3d& origin) {
+Scan placed_about(PlacedScan placed, const Vector3d& origin) {
   const Rigid3 local = to_local(placed.group_from_scan, placed.scan.local_origin, origin);
-  Scan scan = moved(placed.scan, local);
+  Scan scan = moved(std::move(placed.scan), local);
   scan.local_origin = origin;
   scan.level = scan.level && local.rotation(2, 2) > 0.99999;
   return scan;
@@ -105,7 +105,7 @@ class Joiner {
 };
 
 /// All parts in one frame: that of the first scan that shows which way is up, else that of the first.
-std::vector<PreparedScan> prepare_parts(const std::vector<Scan>& scans, const PrepareOptions& options,
+std::vector<PreparedScan> prepare_parts(std::vector<Scan> scans, const PrepareOptions& options,
                                         Monitor& monitor) {
   std::vector<ScanFrame> frames;
   for (const Scan& scan : scans) frames.push_back(find_scan_frame(scan, options.gravity, monitor));
@@ -116,24 +116,23 @@ std::vector<PreparedScan> prepare_parts(const std::vector<Scan>& scans, const Pr
   for (std::size_t k = 0; k < scans.size(); ++k) {
     ScanFrame frame = common;
     frame.place = frames[k].place;
-    parts.push_back(prepare_in_frame(scans[k], frame, options, monitor));
+    parts.push_back(prepare_in_frame(std::move(scans[k]), frame, options, monitor));
   }
   return parts;
 }
 
-}  // namespace
-
-PreparedScan prepare_group(const std::vector<PlacedScan>& scans, const PrepareOptions& options,
-                           Monitor& monitor) {
+bool is_alone(const std::vector<PlacedScan>& scans) {
   if (scans.empty()) throw Error("there is no scan", "group of scans", "give at least one");
-  if (scans.size() == 1 && to_matrix(scans.front().group_from_scan).isIdentity())
-    return prepare_scan(scans.front().scan, options, monitor);
+  return scans.size() == 1 && to_matrix(scans.front().group_from_scan).isIdentity();
+}
+
+PreparedScan joined(std::vector<PlacedScan> scans, const PrepareOptions& options, Monitor& monitor) {
   const PlacedScan& first = scans.front();
   // Near the points: turns about a far origin would amplify the smallest angle.
   const Vector3d origin = (first.group_from_scan * origin_near(first.scan)).array().round();
   std::vector<Scan> placed;
-  for (const PlacedScan& scan : scans) placed.push_back(placed_about(scan, origin));
-  std::vector<PreparedScan> parts = prepare_parts(placed, options, monitor);
+  for (PlacedScan& scan : scans) placed.push_back(placed_about(std::move(scan), origin));
+  std::vector<PreparedScan> parts = prepare_parts(std::move(placed), options, monitor);
   PreparedScan group;
   group.upright = parts.front().upright;
   group.surely_upright = parts.front().surely_upright;
@@ -152,6 +151,19 @@ PreparedScan prepare_group(const std::vector<PlacedScan>& scans, const PrepareOp
   group.space = joiner.space();
   group.settle_reach();
   return group;
+}
+
+}  // namespace
+
+PreparedScan prepare_group(const std::vector<PlacedScan>& scans, const PrepareOptions& options,
+                           Monitor& monitor) {
+  return is_alone(scans) ? prepare_scan(scans.front().scan, options, monitor)
+                         : joined(scans, options, monitor);
+}
+
+PreparedScan prepare_group(std::vector<PlacedScan>&& scans, const PrepareOptions& options, Monitor& monitor) {
+  return is_alone(scans) ? prepare_scan(std::move(scans.front().scan), options, monitor)
+                         : joined(std::move(scans), options, monitor);
 }
 
 }  // namespace limen

@@ -19,5 +19,8 @@ struct PlacedScan {
 /// of the first scan if its pose is the identity. Throws Error for an empty list.
 PreparedScan prepare_group(const std::vector<PlacedScan>& scans, const PrepareOptions& options = {},
                            Monitor& monitor = silent_monitor());
+/// The same of scans that are not needed any more: their memory is given back on the way.
+PreparedScan prepare_group(std::vector<PlacedScan>&& scans, const PrepareOptions& options = {},
+                           Monitor& monitor = silent_monitor());
 
 }  // namespace limen

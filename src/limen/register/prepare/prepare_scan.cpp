@@ -60,28 +60,21 @@ ScannerPlace in_world(ScannerPlace place, const Vector3d& local_origin) {
   return place;
 }
 
-}  // namespace
-
-void PreparedScan::settle_reach() {
-  reach.setEmpty();
-  for (const SurfaceSample& sample : extracted.features.samples) reach.extend(sample.mean);
-  reach.min().array() -= kReachM;
-  reach.max().array() += kReachM;
-  if (model) runs = SampleRuns(extracted.features.samples);
+/// Segments are found along the borders between neighbouring points, and lines are made of all their points.
+LayOptions laying_for(const PrepareOptions& options) {
+  const bool lines = options.segments || needs_lines(options.extract.detect.detector);
+  return {lines ? kKeepAll : options.keep, lines, options.track};
 }
 
-PreparedScan prepare_in_frame(const Scan& scan, const ScanFrame& frame, const PrepareOptions& options,
-                              Monitor& monitor) {
+PreparedScan prepare_laid(const Scan& laid, const ScanFrame& frame, const PrepareOptions& options,
+                          Monitor& monitor) {
   const CancelScope scope(monitor);
   PreparedScan prepared;
   prepared.upright = frame.upright;
   prepared.surely_upright = frame.surely_upright;
   prepared.upright_from_scan = frame.frame_from_scan;
-  prepared.place = in_world(frame.place, scan.local_origin);
-  prepared.mobile = scan.mobile();
-  // Segments are found along the borders between neighbouring points: all of them.
-  const bool lines = options.segments || needs_lines(options.extract.detect.detector);
-  const Scan laid = laid_in(scan, frame, options.segments ? 0 : options.most_points, lines);
+  prepared.place = in_world(frame.place, laid.local_origin - frame.corner);
+  prepared.mobile = laid.mobile();
   ExtractOptions extract = options.extract;
   extract.interior.enabled = extract.interior.enabled && (prepared.upright || prepared.mobile);
   {
@@ -94,8 +87,33 @@ PreparedScan prepare_in_frame(const Scan& scan, const ScanFrame& frame, const Pr
   return prepared;
 }
 
+}  // namespace
+
+void PreparedScan::settle_reach() {
+  reach.setEmpty();
+  for (const SurfaceSample& sample : extracted.features.samples) reach.extend(sample.mean);
+  reach.min().array() -= kReachM;
+  reach.max().array() += kReachM;
+  if (model) runs = SampleRuns(extracted.features.samples);
+}
+
+PreparedScan prepare_in_frame(const Scan& scan, const ScanFrame& frame, const PrepareOptions& options,
+                              Monitor& monitor) {
+  return prepare_laid(laid_in(scan, frame, laying_for(options)), frame, options, monitor);
+}
+
+PreparedScan prepare_in_frame(Scan&& scan, const ScanFrame& frame, const PrepareOptions& options,
+                              Monitor& monitor) {
+  return prepare_laid(laid_in(std::move(scan), frame, laying_for(options)), frame, options, monitor);
+}
+
 PreparedScan prepare_scan(const Scan& scan, const PrepareOptions& options, Monitor& monitor) {
   return prepare_in_frame(scan, find_scan_frame(scan, options.gravity, monitor), options, monitor);
+}
+
+PreparedScan prepare_scan(Scan&& scan, const PrepareOptions& options, Monitor& monitor) {
+  const ScanFrame frame = find_scan_frame(scan, options.gravity, monitor);
+  return prepare_in_frame(std::move(scan), frame, options, monitor);
 }
 
 Features in_own_frame(PreparedScan&& prepared) {

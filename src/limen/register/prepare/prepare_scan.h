@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstddef>
 #include <memory>
 #include <vector>
 
@@ -12,6 +11,7 @@
 #include "limen/extract/segments/segments.h"
 #include "limen/model/bim_model.h"
 #include "limen/model/method.h"
+#include "limen/register/prepare/kept_points.h"
 #include "limen/register/prepare/pass_track.h"
 #include "limen/register/prepare/scan_frame.h"
 #include "limen/register/prepare/scan_view.h"
@@ -52,24 +52,26 @@ struct PreparedScan {
 struct PrepareOptions {
   ExtractOptions extract;
   Gravity gravity = Gravity::automatic;
-  bool track = false;        ///< of a mobile scan, as a project needs it that bends drifting passes
-  bool planes_only = false;  ///< neither openings nor a view of space
-  bool segments = false;     ///< line segments as well
-  OpeningOptions openings;   ///< which openings are looked for
-  SegmentOptions edges;      ///< which segments are
-  /// Of a larger scan about so many points are kept, evenly spread, once it lies in its frame; 0: all. Saves
-  /// memory and time, but poses become worse than their deviations tell: cubes that hold the edge of a
-  /// surface's noise count as much as those that hold its middle.
-  std::size_t most_points = 0;
+  bool track = false;          ///< of a mobile scan, as a project needs it that bends drifting passes
+  bool planes_only = false;    ///< neither openings nor a view of space
+  bool segments = false;       ///< line segments as well
+  OpeningOptions openings;     ///< which openings are looked for
+  SegmentOptions edges;        ///< which segments are
+  KeepOptions keep;            ///< which points of a large or dense scan are looked at
   bool sampled_model = false;  ///< a model's from points spread over it (2023, IV-A), not its exact edges
 };
 
 /// Features of `scan` in its frame, openings included where the vertical and the scanner's place are known.
 PreparedScan prepare_scan(const Scan& scan, const PrepareOptions& options = {},
                           Monitor& monitor = silent_monitor());
+/// The same of a scan that is not needed any more: its memory is given back on the way.
+PreparedScan prepare_scan(Scan&& scan, const PrepareOptions& options = {},
+                          Monitor& monitor = silent_monitor());
 
-/// The same in a frame that is known already.
+/// Both in a frame that is known already.
 PreparedScan prepare_in_frame(const Scan& scan, const ScanFrame& frame, const PrepareOptions& options = {},
+                              Monitor& monitor = silent_monitor());
+PreparedScan prepare_in_frame(Scan&& scan, const ScanFrame& frame, const PrepareOptions& options = {},
                               Monitor& monitor = silent_monitor());
 
 /// The features turned back into the scan's own frame, about the same local origin; samples are left out.

@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 #include <complex>
-#include <iterator>
+#include <limits>
 #include <numbers>
 #include <utility>
 #include <vector>
@@ -120,36 +120,43 @@ Matrix3d turned_about_z(const Matrix3d& frame, double angle) {
   return Eigen::AngleAxisd(-angle, Vector3d::UnitZ()).toRotationMatrix() * frame;
 }
 
-/// The value below which `rank` others lie. Those near the lowest are singled out first, by what a part of
-/// them says, so that few have to be sorted; the answer is that of sorting all.
-double ranked(std::vector<double> values, std::size_t rank) {
+/// Of value(0) to value(size - 1) the one below which `rank` others lie. Those near the lowest are singled
+/// out first, by what a part of them says, so that few have to be kept and sorted; the answer is that of
+/// sorting all.
+template <typename ValueOf>
+double ranked(std::size_t size, std::size_t rank, const ValueOf& value) {
   constexpr std::size_t kPart = 64;
   const auto at = [](std::vector<double>& of, std::size_t place) {
     const auto it = of.begin() + static_cast<std::ptrdiff_t>(place);
     std::nth_element(of.begin(), it, of.end());
     return *it;
   };
-  if (values.size() < kPart * kPart * kPart) return at(values, rank);
-  std::vector<double> part;
-  part.reserve(values.size() / kPart + 1);
-  for (std::size_t i = 0; i < values.size(); i += kPart) part.push_back(values[i]);
-  const double bound = at(part, std::min(part.size() - 1, 2 * rank / kPart + 100));
+  const auto up_to = [&](double bound, std::size_t step) {
+    std::vector<double> values;
+    for (std::size_t i = 0; i < size; i += step) {
+      const double x = value(i);
+      if (x <= bound) values.push_back(x);
+    }
+    return values;
+  };
+  constexpr double kAny = std::numeric_limits<double>::infinity();
   std::vector<double> low;
-  std::copy_if(values.begin(), values.end(), std::back_inserter(low), [&](double x) { return x <= bound; });
-  return low.size() > rank ? at(low, rank) : at(values, rank);
+  if (size >= kPart * kPart * kPart) {
+    std::vector<double> part = up_to(kAny, kPart);
+    low = up_to(at(part, std::min(part.size() - 1, 2 * rank / kPart + 100)), 1);
+  }
+  if (low.size() <= rank) low = up_to(kAny, 1);
+  return at(low, rank);
 }
 
 /// A corner of the extent, a few stray points left out. Of all points: which were looked at must not show.
 Vector3d corner_of(const Matrix3d& frame, const std::vector<Vector3d>& points) {
   Vector3d corner;
+  const auto rank = static_cast<std::size_t>(kCornerShare * static_cast<double>(points.size()));
   parallel_for(3, 1, [&](std::size_t first, std::size_t last) {
-    for (auto k = static_cast<Eigen::Index>(first); k < static_cast<Eigen::Index>(last); ++k) {
-      std::vector<double> along;
-      along.reserve(points.size());
-      for (const Vector3d& x : points) along.push_back(frame.row(k).dot(x));
-      const auto rank = static_cast<std::size_t>(kCornerShare * static_cast<double>(along.size()));
-      corner[k] = ranked(std::move(along), rank) - kMarginM;
-    }
+    for (auto k = static_cast<Eigen::Index>(first); k < static_cast<Eigen::Index>(last); ++k)
+      corner[k] =
+          ranked(points.size(), rank, [&](std::size_t i) { return frame.row(k).dot(points[i]); }) - kMarginM;
   });
   return frame.transpose() * corner;
 }

@@ -111,7 +111,7 @@ PrepareOptions published_preparation(PublishedMethod method, Gravity gravity, st
   options.gravity = gravity;
   options.segments = method == PublishedMethod::segments_2023;
   options.sampled_model = options.segments;
-  options.most_points = 0;  // as printed: all
+  options.keep = kKeepAll;  // as printed
   return options;
 }
 

@@ -90,24 +90,6 @@ void add_faces(const BimModel& model, std::size_t most, SceneSide& side) {
   }
 }
 
-SceneSide make_side(const PicturedSide& pictured) {
-  SceneSide side;
-  side.origin = pictured.features.local_origin;
-  side.pictured = pictured;
-  return side;
-}
-
-SceneSide make_side(const RegisterInput& input, const PicturedSide& pictured,
-                    const ReportSceneOptions& options) {
-  SceneSide side = make_side(pictured);
-  if (input.model) {
-    add_faces(*input.model, options.max_faces, side);
-  } else {
-    add_points(input, options.max_points, side);
-  }
-  return side;
-}
-
 }  // namespace
 
 void ReportSceneOptions::check() const {
@@ -129,14 +111,28 @@ std::vector<std::uint32_t> spread_evenly(const std::vector<Vector3d>& points, st
   return kept;
 }
 
-ReportScene make_scene(const RegisterInput& source, const RegisterInput& target,
-                       const RegistrationPicture& picture, const ReportSceneOptions& options) {
+SceneSide scene_side(const RegisterInput& input, const ReportSceneOptions& options) {
   options.check();
-  return {make_side(source, picture.source, options), make_side(target, picture.target, options)};
+  SceneSide side;
+  if (input.model) {
+    side.origin = input.model->local_origin;
+    add_faces(*input.model, options.max_faces, side);
+  } else if (!input.scans.empty()) {
+    side.origin = input.scans.front().scan.local_origin;
+    add_points(input, options.max_points, side);
+  }
+  return side;
 }
 
-ReportScene make_scene(const RegistrationPicture& picture) {
-  return {make_side(picture.source), make_side(picture.target)};
+SceneSide with_picture(SceneSide side, const PicturedSide& pictured) {
+  const Vector3d shift = side.origin - pictured.features.local_origin;
+  for (Vector3d& point : side.points) point += shift;
+  for (Triangle3& face : side.faces) {
+    for (Vector3d& corner : face) corner += shift;
+  }
+  side.origin = pictured.features.local_origin;
+  side.pictured = pictured;
+  return side;
 }
 
 }  // namespace limen

@@ -38,12 +38,12 @@ struct ReportSceneOptions {
   void check() const;
 };
 
-/// What a report draws of scans or models: their points, thinned evenly over the surface, or faces.
-ReportScene make_scene(const RegisterInput& source, const RegisterInput& target,
-                       const RegistrationPicture& picture, const ReportSceneOptions& options = {});
+/// What a report draws of scans or a model besides what was found in them: their points, thinned evenly over
+/// the surface, or faces. About the first scan's local origin, or the model's.
+SceneSide scene_side(const RegisterInput& input, const ReportSceneOptions& options = {});
 
-/// The same of lists of segments: nothing but what `picture` holds.
-ReportScene make_scene(const RegistrationPicture& picture);
+/// The side about the origin of what was found in it, and this.
+SceneSide with_picture(SceneSide side, const PicturedSide& pictured);
 
 /// Indices, ascending, of at most `most` points spread evenly over the surface they show: one for each cube
 /// of a grid as coarse as it has to be.

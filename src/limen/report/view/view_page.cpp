@@ -71,12 +71,12 @@ void move_features(const Rigid3& moved_from_old, Features& features) {
 }  // namespace
 
 SceneSide view_of_model(const BimModel& model, const Rigid3& frame_from_model, const Vector3d& origin) {
-  RegistrationPicture picture;
-  picture.source.features = model_features(model).features;
-  const Vector3d old_origin = picture.source.features.local_origin;
+  PicturedSide pictured;
+  pictured.features = model_features(model).features;
+  const Vector3d old_origin = pictured.features.local_origin;
   RegisterInput input;
   input.model = model;
-  SceneSide side = make_scene(input, {}, picture).source;
+  SceneSide side = with_picture(scene_side(input), pictured);
   const Rigid3 local = to_local(frame_from_model, old_origin, origin);
   for (Triangle3& face : side.faces) {
     for (Vector3d& corner : face) corner = local * corner;
