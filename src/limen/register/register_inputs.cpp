@@ -149,7 +149,10 @@ class ReadingRun {
     PreparedPair pair;
     RegisterInput from = read(source);
     const bool first = is_large(from);
-    if (first) pair.source = prepared("source features", std::move(from));
+    if (first) {
+      pair.source = prepared("source features", std::move(from));
+      from = {};
+    }
     RegisterInput to = read(target);
     check_inputs(from, to, options_);
     if (!first && !is_large(to)) {
