@@ -17,6 +17,7 @@ namespace {
 constexpr double kWeakShare = 1e-4;      // of the information: less is the planes' error
 constexpr double kMaxCentreM = 20.0;     // the best known point is sought this far from the matched surface
 constexpr double kBuilderErrsM = 0.002;  // by how much a wall stands elsewhere than drawn, at least: 1 sigma
+constexpr int kLeastTilted = 8;          // tiles of a pair whose slopes are looked at
 constexpr double kGateSigma = 0.2;       // deviation of a tile far from the goal, as a share of the gate
 
 class Refiner {
@@ -122,24 +123,44 @@ class Refiner {
     pose.translation = move.rotation * (pose.translation - centre) + centre + step.tail<3>();
   }
 
-  /// What the tiles of one pair of planes say together.
+  using Matrix63 = Eigen::Matrix<double, 6, 3>;
+
+  /// What the tiles of one pair of planes say together. The pair may lie off, and be tilted, as a whole: by
+  /// an offset and by slopes along two axes of the plane, about the middle of its tiles.
   struct PairSums {
     Matrix6d information = Matrix6d::Zero();
-    Vector6d shared = Vector6d::Zero();  // sum of weight times row: how a common offset of the pair acts
+    Matrix63 shared = Matrix63::Zero();  // sum of weight, row and what moves with the offset and the slopes
+    Matrix3d common = Matrix3d::Zero();  // the same of these alone
+    Vector3d residuals = Vector3d::Zero();
+    Vector3d middle = Vector3d::Zero();
     double weight = 0.0;
-    double weighted_residual = 0.0;
     double area_m2 = 0.0;
     double distance = 0.0;  // area times distance
     int tiles = 0;
+
+    /// What the residuals would lose, were the pair freely tilted.
+    [[nodiscard]] double told_by_slopes() const {
+      const Eigen::Vector2d right = residuals.tail<2>();
+      const Eigen::Matrix2d moments = common.bottomRightCorner<2, 2>();
+      const Eigen::Matrix2d damped = moments + 1e-9 * (1e-12 + moments.trace()) * Eigen::Matrix2d::Identity();
+      return right.dot(damped.inverse() * right);
+    }
+  };
+  using PairMap = std::map<std::pair<int, int>, PairSums>;
+
+  /// How far the planes of pairs err as wholes, one standard deviation.
+  struct PairErrors {
+    double offset_m = 0.0;
+    double slope = 0.0;
   };
 
   /// Deviation common to all tiles of a pair of planes: the planes' own errors, a scanner's drift. Taken from
   /// how the pairs' mean residuals scatter, not less than a tenth of the noise, or than builders err.
-  [[nodiscard]] double pair_offset_m(const std::map<std::pair<int, int>, PairSums>& pairs) const {
+  [[nodiscard]] double pair_offset_m(const PairMap& pairs) const {
     double squares = 0.0;
     double areas = 0.0;
     for (const auto& [key, pair] : pairs) {
-      const double mean = pair.weighted_residual / pair.weight;
+      const double mean = pair.residuals[0] / pair.weight;
       squares += pair.area_m2 * mean * mean;
       areas += pair.area_m2;
     }
@@ -148,6 +169,24 @@ class Refiner {
     const double noise = std::max(source_.features->noise_m, target_.features->noise_m);
     const double least = source_.model || target_.model ? kBuilderErrsM : 0.1 * noise;
     return std::max(std::sqrt(freedoms * squares / areas), least);
+  }
+
+  /// Slopes common to all tiles of a pair: what the pairs' residuals would lose by tilting freely, beyond
+  /// what scatter that is `factor` times the weights' would explain.
+  static double pair_slope(const PairMap& pairs, double factor) {
+    double told = 0.0;
+    double levers = 0.0;
+    double slopes = 0.0;
+    for (const auto& [key, pair] : pairs) {
+      if (pair.tiles < kLeastTilted) continue;
+      told += pair.told_by_slopes();
+      levers += pair.common.bottomRightCorner<2, 2>().trace();
+      slopes += 2.0;
+    }
+    if (slopes <= 3.0) return 0.0;
+    // A turn of the pose has taken three of them.
+    const double freedoms = slopes / (slopes - 3.0);
+    return std::sqrt(std::max(0.0, freedoms * told - slopes * factor) / levers);
   }
 
   void summarise(RefinedPose& refined) const {
@@ -203,23 +242,54 @@ class Refiner {
     }
   }
 
-  /// What the tiles of matched planes hold.
-  void add_planes(const std::vector<Contact>& contacts, RefinedPose& refined) const {
-    double sum = 0.0;
-    double weights = 0.0;
-    std::map<std::pair<int, int>, PairSums> pairs;
+  [[nodiscard]] PairMap pairs_of(const std::vector<Contact>& contacts, const Vector3d& centre) const {
+    PairMap pairs;
+    // Each piece of surface is met twice, once from either scan.
+    const auto weight_of = [](const Contact& contact) { return 0.5 / (contact.sigma_m * contact.sigma_m); };
     for (const Contact& contact : contacts) {
-      // Each piece of surface is met twice, once from either scan.
-      const double weight = 0.5 / (contact.sigma_m * contact.sigma_m);
-      const Vector6d row = row_of(contact, refined.centre);
       PairSums& pair = pairs[{contact.source_plane, contact.target_plane}];
+      pair.weight += weight_of(contact);
+      pair.middle += weight_of(contact) * contact.at;
+    }
+    for (auto& [key, pair] : pairs) pair.middle /= pair.weight;
+    for (const Contact& contact : contacts) {
+      const double weight = weight_of(contact);
+      const Vector6d row = row_of(contact, centre);
+      PairSums& pair = pairs.at({contact.source_plane, contact.target_plane});
+      const Vector3d& normal =
+          target_.features->planes[static_cast<std::size_t>(contact.target_plane)].plane.normal;
+      const Vector3d across = normal.unitOrthogonal();
+      const Vector3d from_middle = contact.at - pair.middle;
+      const Vector3d whole(1.0, from_middle.dot(across), from_middle.dot(normal.cross(across)));
       pair.information += weight * row * row.transpose();
-      pair.shared += weight * row;
-      pair.weight += weight;
-      pair.weighted_residual += weight * contact.residual_m;
+      pair.shared += weight * row * whole.transpose();
+      pair.common += weight * whole * whole.transpose();
+      pair.residuals += weight * contact.residual_m * whole;
       pair.area_m2 += 0.5 * contact.area_m2;
       pair.distance += 0.5 * contact.area_m2 * -contact.residual_m;
       ++pair.tiles;
+    }
+    return pairs;
+  }
+
+  /// What a pair says of the pose where it errs as a whole by as much: its offset and slopes, of unknown
+  /// size, integrated in closed form. `factor`: of the variances that the weights stand for.
+  static Matrix6d information_of(const PairSums& pair, const PairErrors& errors, double factor) {
+    const Vector3d sizes(errors.offset_m, errors.slope, errors.slope);
+    const Matrix63 shared = pair.shared * sizes.asDiagonal() / factor;
+    const Matrix3d common =
+        Matrix3d::Identity() + Matrix3d(sizes.asDiagonal() * pair.common * sizes.asDiagonal() / factor);
+    return pair.information / factor - shared * inverse_of(common) * shared.transpose();
+  }
+
+  /// What the tiles of matched planes hold.
+  void add_planes(const std::vector<Contact>& contacts, RefinedPose& refined) const {
+    const PairMap pairs = pairs_of(contacts, refined.centre);
+    double sum = 0.0;
+    double weights = 0.0;
+    for (const Contact& contact : contacts) {
+      const double weight = 0.5 / (contact.sigma_m * contact.sigma_m);
+      const Vector6d row = row_of(contact, refined.centre);
       refined.geometry_m2 += 0.5 * contact.area_m2 * row * row.transpose();
       sum += weight * contact.residual_m * contact.residual_m;
       weights += weight;
@@ -228,13 +298,10 @@ class Refiner {
     // The residuals themselves say how good the weights were.
     const double factor =
         std::max(sum / std::max(1.0, 0.5 * static_cast<double>(contacts.size()) - 6.0), 1e-6);
-    const double offset = pair_offset_m(pairs);
+    const PairErrors errors{pair_offset_m(pairs), pair_slope(pairs, factor)};
     for (const auto& [key, pair] : pairs) {
-      // A common offset of unknown size takes its share of what the pair says about shifts along its normal.
-      const double offset_weight = offset * offset / (1.0 + offset * offset * pair.weight / factor);
       refined.formal_information += pair.information / factor;
-      refined.information += pair.information / factor -
-                             offset_weight * pair.shared * pair.shared.transpose() / (factor * factor);
+      refined.information += information_of(pair, errors, factor);
     }
     for (const auto& [key, pair] : pairs) {
       if (pair.tiles < 2) continue;
