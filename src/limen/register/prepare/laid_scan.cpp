@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <numeric>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -45,35 +44,21 @@ std::vector<Value> gathered(const std::vector<std::uint32_t>& indices, const Use
   return values;
 }
 
-std::vector<std::uint32_t> all_indices(std::size_t size) {
-  std::vector<std::uint32_t> all(size);
-  std::iota(all.begin(), all.end(), 0U);
-  return all;
-}
-
-/// Indices of the kept points along the curve, and these in the frame.
-struct Curve {
-  std::vector<std::uint32_t> indices;
-  std::vector<Vector3d> points;
-};
-
-Curve sorted_along(const std::vector<Vector3d>& placed, const std::vector<std::uint32_t>& indices) {
-  std::vector<CurvePlace> places = along_curve(placed, kOrderM).places;
-  settle_ties(places, placed);
-  Curve curve{std::vector<std::uint32_t>(places.size()), std::vector<Vector3d>(places.size())};
-  parallel_for(places.size(), kLaidPerPiece, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) {
-      curve.indices[k] = indices[places[k].index];
-      curve.points[k] = placed[places[k].index];
-    }
-  });
-  return curve;
-}
-
 /// Gives the memory of a list back.
 template <typename Value>
 void drop(std::vector<Value>& list) {
   std::vector<Value>().swap(list);
+}
+
+/// Points brought into the order of the curve, and where they stood before.
+std::vector<std::uint32_t> sort_along_curve(std::vector<Vector3d>& points) {
+  std::vector<CurvePlace> places = along_curve(points, kOrderM).places;
+  settle_ties(places, points);
+  std::vector<std::uint32_t> before(places.size());
+  for (std::size_t k = 0; k < places.size(); ++k) before[k] = places[k].index;
+  drop(places);
+  points = gathered<Vector3d>(before, [&](std::uint32_t i) { return points[i]; });
+  return before;
 }
 
 /// `own`: the scan, where its memory may be given back; else null.
@@ -93,14 +78,15 @@ Scan lay(const Scan& scan, Scan* own, const ScanFrame& frame, const LayOptions& 
     if (!times) drop(own->times_s);
     if (!options.lines) own->topology = {};
   }
-  std::vector<std::uint32_t> indices = kept ? std::move(*kept) : all_indices(scan.size());
-  {
-    const std::vector<Vector3d> points =
-        gathered<Vector3d>(indices, [&](std::uint32_t i) { return placed(scan.points[i]); });
-    if (own != nullptr) drop(own->points);
-    Curve curve = sorted_along(points, indices);
-    indices = std::move(curve.indices);
-    laid.points = std::move(curve.points);
+  laid.points.resize(kept ? kept->size() : scan.size());
+  parallel_for(laid.points.size(), kLaidPerPiece, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) laid.points[k] = placed(scan.points[kept ? (*kept)[k] : k]);
+  });
+  if (own != nullptr) drop(own->points);
+  std::vector<std::uint32_t> indices = sort_along_curve(laid.points);
+  if (kept) {
+    for (std::uint32_t& i : indices) i = (*kept)[i];
+    drop(*kept);
   }
   if (mobile) {
     laid.centres = gathered<Vector3d>(indices, [&](std::uint32_t i) { return placed(scan.centres[i]); });
