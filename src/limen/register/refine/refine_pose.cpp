@@ -242,10 +242,11 @@ class Refiner {
     }
   }
 
+  /// Each piece of surface is met twice, once from either scan.
+  static double weight_of(const Contact& contact) { return 0.5 / (contact.sigma_m * contact.sigma_m); }
+
   [[nodiscard]] PairMap pairs_of(const std::vector<Contact>& contacts, const Vector3d& centre) const {
     PairMap pairs;
-    // Each piece of surface is met twice, once from either scan.
-    const auto weight_of = [](const Contact& contact) { return 0.5 / (contact.sigma_m * contact.sigma_m); };
     for (const Contact& contact : contacts) {
       PairSums& pair = pairs[{contact.source_plane, contact.target_plane}];
       pair.weight += weight_of(contact);
@@ -288,7 +289,7 @@ class Refiner {
     double sum = 0.0;
     double weights = 0.0;
     for (const Contact& contact : contacts) {
-      const double weight = 0.5 / (contact.sigma_m * contact.sigma_m);
+      const double weight = weight_of(contact);
       const Vector6d row = row_of(contact, refined.centre);
       refined.geometry_m2 += 0.5 * contact.area_m2 * row * row.transpose();
       sum += weight * contact.residual_m * contact.residual_m;
