@@ -6,7 +6,6 @@
 #include <memory>
 
 #include "limen/base/error.h"
-#include "limen/base/parallel.h"
 
 namespace limen {
 namespace {
@@ -58,16 +57,6 @@ void PackedRows::append(const RecordTable& table, std::size_t row) {
   const std::size_t end = bytes_.size();
   bytes_.resize(end + record_bytes_);
   write(bytes_.data() + end, table, row);
-}
-
-void PackedRows::append_all(const RecordTable& table) {
-  constexpr std::size_t kPiece = 16384;
-  const std::size_t before = bytes_.size();
-  bytes_.resize(before + table.rows * record_bytes_);
-  parallel_for(table.rows, kPiece, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t row = begin; row < end; ++row)
-      write(bytes_.data() + before + row * record_bytes_, table, row);
-  });
 }
 
 void PackedRows::replace(std::size_t at, const RecordTable& table, std::size_t row) {

@@ -21,8 +21,6 @@ class PackedRows {
   void reserve(std::size_t rows) { bytes_.reserve(rows * record_bytes_); }
 
   void append(const RecordTable& table, std::size_t row);
-  /// All rows of a table, on all threads.
-  void append_all(const RecordTable& table);
   void replace(std::size_t at, const RecordTable& table, std::size_t row);
   /// Row `to` becomes the same as row `from`.
   void copy(std::size_t from, std::size_t to);
