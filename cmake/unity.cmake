@@ -7,9 +7,11 @@
 option(LIMEN_UNITY_BUILD "Compile the sources in groups: a third of the time for all, more for one" ON)
 
 # Bytes of source in a group; fewer where most lines are matrices, or make JSON.
-set(LIMEN_UNITY_BYTES 60000)
-set(LIMEN_UNITY_BYTES_DENSE 38000)
-set(LIMEN_UNITY_DENSE "cli;deviation;geometry;match;project;register;report;sight;python_src")
+set(LIMEN_UNITY_BYTES 50000)
+set(LIMEN_UNITY_BYTES_DENSE 36000)
+set(LIMEN_UNITY_BYTES_DENSEST 23000)
+set(LIMEN_UNITY_DENSE "cli;geometry;match;register;sight;python_src")
+set(LIMEN_UNITY_DENSEST "deviation;project;report")
 
 # limen_unity(TARGET SOURCES...)
 function(limen_unity target)
@@ -32,6 +34,8 @@ function(limen_unity target)
     set(most ${LIMEN_UNITY_BYTES})
     if(mine IN_LIST LIMEN_UNITY_DENSE)
       set(most ${LIMEN_UNITY_BYTES_DENSE})
+    elseif(mine IN_LIST LIMEN_UNITY_DENSEST)
+      set(most ${LIMEN_UNITY_BYTES_DENSEST})
     endif()
     math(EXPR bytes "${bytes} + ${size}")
     if(NOT mine STREQUAL floor)

@@ -156,12 +156,58 @@ describe('a model', () => {
 });
 
 describe('the page of a project', () => {
-  for (const scheme of ['light', 'dark']) {
-    test(`everybody can use it, ${scheme}`, async () => {
-      const { page, heard } = await openReport(browser.context, join(folder, 'project', 'report.html'), { ready: false, scheme });
+  const report = () => join(folder, 'project', 'report.html');
+
+  test('shows all scans, and one link alone before and after', async () => {
+    const { page, heard } = await openReport(browser.context, report());
+    const all = await pixels(page);
+    assert.ok(all.drawn > 0.03, `only ${all.drawn} of the canvas is drawn`);
+    assert.equal(await page.locator('.spot:not([hidden])').count(), 2);
+    assert.match(await page.locator('#sides').innerText(), /indoor_00\.ply\s+\w+; \d+ of \d{5} points/);
+    const hidden = await settled(page, () => page.uncheck('#links-shown'));
+    assert.notEqual(hidden.sum, all.sum);
+    assert.equal(await page.locator('.spot:not([hidden])').count(), 0);
+    await settled(page, () => page.check('#links-shown'));
+
+    const after_ = await settled(page, () => page.click('[data-link="0"]'));
+    assert.ok(after_.orange > 0.1 && after_.orange < 0.9, `${after_.orange} orange: both sides must be there`);
+    const words = await page.locator('#pair-words').innerText();
+    assert.match(words, /Source\s+indoor_0\d\.ply/);
+    assert.match(words, /Planes that agree/);
+    assert.equal(await page.locator('tr[aria-current="true"]').count(), 1);
+    const before_ = await settled(page, () => page.click('#before'));
+    assert.notEqual(before_.sum, after_.sum);
+    const again = await settled(page, () => page.click('#after'));
+    assert.equal(again.sum, after_.sum);
+    await settled(page, () => page.click('#all-scans'));
+    assert.equal(await page.inputValue('#pair'), '');
+    assert.equal(await page.locator('.spot:not([hidden])').count(), 2);
+    assert.match(await clickSomething(page), /At\s+-?[\d.]+ /);
+    assert.deepEqual(heard.problems, []);
+    assert.deepEqual(heard.requests.filter((url) => !url.startsWith('file:') && !url.startsWith('data:')), []);
+    await page.close();
+  });
+
+  test('colours by state, and sections cut all scans', async () => {
+    const { page } = await openReport(browser.context, report());
+    const byFile = await pixels(page);
+    assert.notEqual((await settled(page, () => page.check('input[value="state"]'))).sum, byFile.sum);
+    const whole = await pixels(page);
+    await settled(page, () => page.click('[data-view="top"]'));
+    assert.ok(await page.isChecked('#cut'));
+    assert.ok((await pixels(page)).drawn < whole.drawn);
+    await page.close();
+  });
+
+  for (const [width, height, scheme] of [[1280, 900, 'light'], [1280, 900, 'dark'], [390, 844, 'light']]) {
+    test(`everybody can use it, ${width} px, ${scheme}`, async () => {
+      const { page, heard } = await openReport(browser.context, report(), { viewport: { width, height }, scheme });
+      assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth));
+      assert.deepEqual(await accessibilityFaults(page), []);
+      await settled(page, () => page.click('[data-link="0"]'));
       assert.deepEqual(await accessibilityFaults(page), []);
       assert.deepEqual(heard.problems, []);
-      if (shots) await page.screenshot({ path: join(shots, `project-${scheme}.png`), fullPage: true });
+      if (shots) await page.screenshot({ path: join(shots, `project-${width}-${scheme}.png`), fullPage: true });
       await page.close();
     });
   }

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include <Eigen/Eigenvalues>
 #include <fmt/format.h>
 
 #include "limen/base/angles.h"
@@ -134,6 +135,7 @@ class Assembler {
     }
     const auto n = static_cast<std::size_t>(frame_node_.front());
     result_.frame_scan = static_cast<int>(nodes_[n].scan);
+    if (nodes_[n].digest.upright) result_.up = nodes_[n].digest.upright_from_scan.row(2).transpose();
     result_.frame_kind = nodes_[n].digest.mobile  ? "mobile"
                          : nodes_[n].digest.model ? "model"
                          : nodes_[n].grouped      ? "file"
@@ -169,7 +171,7 @@ class Assembler {
       scan.stations.push_back(*scan.frame_from_scan * (nodes_[n].digest.local_origin + station));
     tell_sigma(node, static_cast<int>(n), frame, scan);
     tell_bend(static_cast<int>(n), frame, scan);
-    tell_walls(nodes_[n].digest, scan);
+    tell_patches(nodes_[n].digest, scan);
     // Only the first component has the project's frame.
     if (node.component > 0 && scan.state != NodeState::floating) {
       scan.state = NodeState::floating;
@@ -205,22 +207,34 @@ class Assembler {
     scan.rigid.clear();
   }
 
-  /// The upright planes: as long as tiles spread along them.
-  static void tell_walls(const ScanDigest& digest, ProjectScan& scan) {
+  /// The planes that stand or lie: as large as tiles spread over them.
+  void tell_patches(const ScanDigest& digest, ProjectScan& scan) const {
     constexpr double kUpright = 0.1;
-    constexpr double kWallM2 = 1.5;
+    constexpr double kLevel = 0.995;
+    constexpr double kLeastM2 = 1.5;
     constexpr double kMostM = 40.0;
+    const Rigid3& frame_from_scan = *scan.frame_from_scan;
     for (const PlaneDigest& plane : digest.planes) {
-      const Vector3d normal = scan.frame_from_scan->rotation * plane.plane.normal;
-      if (std::abs(normal.z()) > kUpright || plane.area_m2 < kWallM2 || plane.moments.count < 3) continue;
-      const Vector3d along = Vector3d(-normal.y(), normal.x(), 0).normalized();
-      const Vector3d in_scan = scan.frame_from_scan->rotation.transpose() * along;
+      const Vector3d normal = frame_from_scan.rotation * plane.plane.normal;
+      const double rise = std::abs(normal.dot(result_.up));
+      if ((rise > kUpright && rise < kLevel) || plane.area_m2 < kLeastM2 || plane.moments.count < 3) continue;
+      PlanPatch patch;
+      patch.upright = rise <= kUpright;
+      const Matrix3d spread =
+          frame_from_scan.rotation * plane.moments.covariance() * frame_from_scan.rotation.transpose();
+      const Vector3d along =
+          patch.upright ? result_.up.cross(normal).normalized()
+                        : Vector3d(Eigen::SelfAdjointEigenSolver<Matrix3d>(spread).eigenvectors().col(2));
+      const Vector3d across = normal.cross(along).normalized();
       // Evenly spread tiles: the half length is the root of three deviations squared.
-      const double half = std::sqrt(3.0 * std::max(0.0, in_scan.dot(plane.moments.covariance() * in_scan)));
-      if (half > kMostM) continue;
-      const Vector3d middle =
-          *scan.frame_from_scan * (digest.local_origin + plane.centroid + plane.moments.mean());
-      scan.walls.push_back({middle - half * along, middle + half * along});
+      const auto half = [&](const Vector3d& way) {
+        return std::sqrt(3.0 * std::max(0.0, way.dot(spread * way))) * way;
+      };
+      patch.along = half(along);
+      patch.across = half(across);
+      if (std::max(patch.along.norm(), patch.across.norm()) > kMostM) continue;
+      patch.middle = frame_from_scan * (digest.local_origin + plane.centroid + plane.moments.mean());
+      scan.patches.push_back(patch);
     }
   }
 
@@ -281,6 +295,8 @@ class Assembler {
       const RegistrationResult& pair = pairs_[static_cast<std::size_t>(pair_of_[k])].result;
       told.pair = pair.outcome;
       told.reason = pair.reason;
+      told.matches = pair.matches;
+      told.openings = pair.openings;
     } else {
       told.pair = Outcome::registered;
       told.reason = "given by the file";
@@ -303,6 +319,8 @@ class Assembler {
       told.sigma = pair.sigma;
       told.twin = pair.others ? pair.others->twin : 0.0;
       told.pair = pair.outcome;
+      told.matches = pair.matches;
+      told.openings = pair.openings;
       const auto said = words_.pairs.find({pairs_[k].source, pairs_[k].target});
       const bool rejected = said != words_.pairs.end() && said->second.kind == DecisionKind::reject;
       told.reason = rejected ? "rejected by your decision" : pair.reason;

@@ -22,10 +22,12 @@ enum class ProjectOutcome {
 };
 const char* to_string(ProjectOutcome outcome);
 
-/// An upright plane as a plan shows it: its two ends.
-struct PlanWall {
-  Vector3d from = Vector3d::Zero();
-  Vector3d to = Vector3d::Zero();
+/// A plane as plans and elevations show it: a rectangle, given by its middle and two half sides.
+struct PlanPatch {
+  Vector3d middle = Vector3d::Zero();
+  Vector3d along = Vector3d::Zero();   ///< of an upright plane level
+  Vector3d across = Vector3d::Zero();  ///< of an upright plane upwards
+  bool upright = false;
 };
 
 /// By how much a mobile pass was moved where it was at a time.
@@ -70,7 +72,7 @@ struct ProjectScan {
   std::vector<Vector3d> stations;            ///< where the scanner stood, world of the component's frame
   std::optional<PassCorrection> correction;  ///< of a mobile pass that was bent
   std::string rigid;                         ///< why a mobile pass was not; empty: it was, or is none
-  std::vector<PlanWall> walls;               ///< its upright planes from above, the same frame
+  std::vector<PlanPatch> patches;            ///< its larger planes, upright or level, the same frame
 };
 
 struct ProjectAlternative {
@@ -94,6 +96,8 @@ struct ProjectLink {
   double chance = 0.0;  ///< ... and that it is wrong otherwise; both by the pair alone
   std::vector<ProjectAlternative> alternatives;
   std::string reason;
+  std::vector<PlaneMatch> matches;        ///< planes that agree under the pair's own best pose
+  std::vector<MatchedOpenings> openings;  ///< and openings
 };
 
 /// What would settle a doubt.
@@ -156,7 +160,8 @@ struct ProjectPoint {
 struct ProjectResult {
   ProjectOutcome outcome = ProjectOutcome::no_match;
   std::string reason;
-  std::string frame_kind;     ///< "control", "mobile", "model", "file", "station", or "none"
+  std::string frame_kind;           ///< "control", "mobile", "model", "file", "station", or "none"
+  Vector3d up = Vector3d::UnitZ();  ///< of the frame
   int frame_scan = -1;        ///< the scan whose world coordinates are the frame; -1: control's, or none
   std::string control_file;   ///< empty: none was given
   std::string control_words;  ///< what came of it

@@ -10,6 +10,7 @@
 #include "limen/base/stage_part.h"
 #include "limen/bim/read_bim.h"
 #include "limen/io/cloud/read_scan.h"
+#include "limen/project/store/scan_picture.h"
 #include "limen/register/prepare/prepare_model.h"
 
 namespace limen {
@@ -45,10 +46,12 @@ FileRecord make_scan_features(const ProjectFile& file, const ProjectOptions& opt
     StagePart preparing(monitor, at(k), at(k + 1));
     Scan scan = along_trajectory(std::move(read.scans[k]), trajectories, record.notes);
     record.points.push_back(scan.size());
+    const std::string key = store.feature_key(file.sha256, static_cast<int>(k));
+    into_store([&] { store.save_picture(key, picture_of(scan)); });
     PrepareOptions with_track = prepare_options(options.registering);
     with_track.track = true;
     const PreparedScan prepared = prepare_scan(std::move(scan), with_track, preparing);
-    into_store([&] { store.save_features(store.feature_key(file.sha256, static_cast<int>(k)), prepared); });
+    into_store([&] { store.save_features(key, prepared); });
   }
   return record;
 }

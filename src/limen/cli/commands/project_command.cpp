@@ -292,6 +292,15 @@ ProjectResult run_in(const std::filesystem::path& folder, const ProjectCommandOp
   }
 }
 
+std::vector<ProjectPicture> pictures_in(const std::filesystem::path& folder,
+                                        const ProjectCommandOptions& options,
+                                        const ToldTrajectories& trajectories, const Session& session,
+                                        const ProjectResult& result) {
+  ProjectOptions project = project_options(options, session);
+  project.trajectories = trajectories;
+  return project_pictures(folder, project, result, kMostProjectPoints);
+}
+
 int run(ProjectCommandOptions options, const Session& session) {
   if (options.folder.empty() && options.scans.size() == 2 && options.scans.front() == "status")
     return tell_status(options.scans.back(), session);
@@ -318,7 +327,8 @@ int run(ProjectCommandOptions options, const Session& session) {
   system.trajectories = trajectories;
   const std::string json = project_json(result, reported(options, session), system);
   session.monitor->throw_if_cancelled();
-  write_file(folder.path() / "report.html", project_page(result));
+  write_file(folder.path() / "report.html",
+             project_page(result, pictures_in(folder.path(), options, trajectories, session, result)));
   std::filesystem::remove(folder.path() / "report.pdf");  // an earlier run's
   // Last: where it is, the folder is complete.
   write_file(folder.path() / "project.json", json);

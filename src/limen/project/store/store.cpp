@@ -11,12 +11,13 @@
 #include "limen/project/store/byte_stream.h"
 #include "limen/project/store/packed_file.h"
 #include "limen/project/store/prepared_bytes.h"
+#include "limen/project/store/scan_picture.h"
 
 namespace limen {
 namespace {
 
 /// Of the files' contents; raise it where what is made, or how it is written, changes.
-constexpr std::uint32_t kFormat = 13;
+constexpr std::uint32_t kFormat = 14;
 
 std::string digits_of(const std::string& text) {
   std::uint64_t hash = 0x6c696d656e;
@@ -29,7 +30,7 @@ std::string digits_of(const std::string& text) {
 Store::Store(const std::filesystem::path& folder, const std::string& options)
     : folder_(folder), options_(digits_of(options + kVersion)) {
   std::error_code error;
-  for (const char* room : {"files", "features", "digests", "pairs"})
+  for (const char* room : {"files", "features", "digests", "pictures", "pairs"})
     std::filesystem::create_directories(folder_ / room, error);
   if (error) throw Error("cannot make the folder: " + error.message(), folder.string(), "give another place");
 }
@@ -78,6 +79,17 @@ std::optional<ScanDigest> Store::load_digest(const std::string& key) const {
   const std::optional<std::string> bytes = read_packed(path, "DIGE", kFormat);
   if (!bytes) return {};
   return digest_from(*bytes, path.string());
+}
+
+void Store::save_picture(const std::string& key, const Scan& picture) const {
+  write_packed(folder_ / "pictures" / key, "PICT", kFormat, picture_bytes(picture));
+}
+
+std::optional<Scan> Store::load_picture(const std::string& key, std::size_t most) const {
+  const std::filesystem::path path = folder_ / "pictures" / key;
+  const std::optional<std::string> bytes = read_packed(path, "PICT", kFormat);
+  if (!bytes) return {};
+  return picture_from(*bytes, path.string(), most);
 }
 
 std::filesystem::path Store::pair_path(const std::string& source, const std::string& target) const {

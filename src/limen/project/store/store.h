@@ -42,6 +42,10 @@ class Store {
   void save_features(const std::string& key, const PreparedScan& prepared) const;
   [[nodiscard]] std::optional<ScanDigest> load_digest(const std::string& key) const;
 
+  /// What reports draw (scan_picture.h); no result depends on it.
+  void save_picture(const std::string& key, const Scan& picture) const;
+  [[nodiscard]] std::optional<Scan> load_picture(const std::string& key, std::size_t most) const;
+
   [[nodiscard]] bool has_pair(const std::string& source, const std::string& target) const;
   [[nodiscard]] std::optional<RegistrationResult> load_pair(const std::string& source,
                                                             const std::string& target) const;

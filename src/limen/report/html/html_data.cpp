@@ -18,7 +18,6 @@
 namespace limen {
 namespace {
 
-constexpr std::size_t kMostCorners = 30000;  // of outlines, per side
 constexpr std::size_t kMostSegments = 20000;
 constexpr std::size_t kMostPoses = 200;
 
@@ -52,18 +51,18 @@ std::size_t corners_of(const std::vector<std::vector<Polygon>>& outlines) {
 }
 
 /// Outlines as fine as the page has room for.
-std::vector<std::vector<Polygon>> outlines_of(const Features& features) {
+std::vector<std::vector<Polygon>> outlines_of(const Features& features, std::size_t most_corners) {
   std::vector<std::vector<Polygon>> outlines;
   for (const PlanarPolygon& plane : features.planes) outlines.push_back(plane.parts);
-  for (double tolerance = 0.01; corners_of(outlines) > kMostCorners && tolerance < 1.0; tolerance *= 2.0) {
+  for (double tolerance = 0.01; corners_of(outlines) > most_corners && tolerance < 1.0; tolerance *= 2.0) {
     for (std::vector<Polygon>& parts : outlines) parts = simplified(parts, tolerance);
   }
   return outlines;
 }
 
-Json planes_json(const Features& features) {
+Json planes_json(const Features& features, std::size_t most_corners) {
   Json list = Json::array();
-  const std::vector<std::vector<Polygon>> outlines = outlines_of(features);
+  const std::vector<std::vector<Polygon>> outlines = outlines_of(features, most_corners);
   for (std::size_t k = 0; k < features.planes.size(); ++k) {
     const PlanarPolygon& plane = features.planes[k];
     Json parts = Json::array();
@@ -150,7 +149,8 @@ Json matches_json(const RegistrationResult& result) {
 
 }  // namespace
 
-Json side_json(const std::string& name, const SceneSide& side, const QuantisedPoints& points) {
+Json side_json(const std::string& name, const SceneSide& side, const QuantisedPoints& points,
+               std::size_t most_corners) {
   return {{"name", name},
           {"origin", json_of(side.origin)},
           {"low", json_of(points.low)},
@@ -159,7 +159,7 @@ Json side_json(const std::string& name, const SceneSide& side, const QuantisedPo
           {"shape", !side.points.empty() ? "points"
                     : side.faces.empty() ? "none"
                                          : "faces"},
-          {"planes", planes_json(side.pictured.features)},
+          {"planes", planes_json(side.pictured.features, most_corners)},
           {"openings", openings_json(side.pictured.features)},
           {"segments", segments_json(side.pictured.features)}};
 }

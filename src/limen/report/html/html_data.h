@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -13,8 +14,12 @@
 
 namespace limen {
 
+/// Corners of outlines that a page has room for, per side.
+inline constexpr std::size_t kMostCorners = 30000;
+
 /// One side as the page's script reads it, and the elements with its points; `planes`: as plane_of_points.
-Json side_json(const std::string& name, const SceneSide& side, const QuantisedPoints& points);
+Json side_json(const std::string& name, const SceneSide& side, const QuantisedPoints& points,
+               std::size_t most_corners = kMostCorners);
 std::string side_blobs(const std::string& name, const SceneSide& side, const QuantisedPoints& points,
                        const std::vector<std::uint8_t>& planes);
 /// The points of a side, else the corners of its faces.

@@ -11,6 +11,7 @@
 #include "limen/base/parallel.h"
 #include "limen/base/random.h"
 #include "limen/geometry/polygon_clip.h"
+#include "limen/geometry/spread_evenly.h"
 #include "limen/report/html/html_bytes.h"
 #include "limen/report/html/html_residuals.h"
 #include "limen/report/html/html_words.h"

@@ -45,8 +45,4 @@ SceneSide scene_side(const RegisterInput& input, const ReportSceneOptions& optio
 /// The side about the origin of what was found in it, and this.
 SceneSide with_picture(SceneSide side, const PicturedSide& pictured);
 
-/// Indices, ascending, of at most `most` points spread evenly over the surface they show: one for each cube
-/// of a grid as coarse as it has to be.
-std::vector<std::uint32_t> spread_evenly(const std::vector<Vector3d>& points, std::size_t most);
-
 }  // namespace limen

@@ -20,4 +20,9 @@ std::string_view view_pattern();
 std::string_view view_style();
 std::string_view view_script();
 
+/// The same of a project's page; its style adds to both.
+std::string_view project_pattern();
+std::string_view project_style();
+std::string_view project_script();
+
 }  // namespace limen

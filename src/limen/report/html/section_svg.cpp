@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "limen/base/error.h"
+#include "limen/geometry/spread_evenly.h"
 
 namespace limen {
 namespace {

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "limen/report/html/html_bytes.h"
+#include "limen/report/project/project_axes.h"
 
 namespace limen {
 namespace {
@@ -111,26 +112,26 @@ std::string pass_charts(const ProjectResult& result) {
     if (!scan.mobile || !scan.readable) continue;
     const bool is_bent = scan.correction && !scan.correction->knots.empty();
     if (!is_bent && scan.rigid.empty()) continue;
-    text +=
-        fmt::format("<p>{}: {}</p>\n", escaped(scan.file),
-                    is_bent ? fmt::format("bent back along {:.0f} m, by {:.1f} mm in the mean square",
-                                          scan.correction->knots.back().distance_m, rms_mm(*scan.correction))
-                            : escaped(scan.rigid));
-    if (is_bent) text += PassChart(*scan.correction).drawn();
+    const std::string words =
+        is_bent ? fmt::format("bent back along {:.0f} m, by {:.1f} mm in the mean square",
+                              scan.correction->knots.back().distance_m, rms_mm(*scan.correction))
+                : scan.rigid;
+    text += fmt::format("<div><p>{}: {}</p>\n{}</div>\n", escaped(shown_name(scan)), escaped(words),
+                        is_bent ? PassChart(*scan.correction).drawn() : "");
     bent = bent || is_bent;
   }
   if (text.empty()) return {};
   std::string key;
   for (std::size_t axis = 0; axis < 3; ++axis)
     key += fmt::format(" <b style=\"color:{}\">{}</b>", kColours[axis], kAxes[axis]);
-  std::string head = "<h2>Drift of the passes</h2>\n";
+  std::string head = "<section class=\"card wide keep drift\"><h2>Drift of the passes</h2>\n";
   if (bent)
     head += fmt::format(
         "<p class=\"soft\">By how many millimetres the scanner's place was moved along its way, beyond the "
         "pose "
         "of the whole pass, in the frame's{}; the bands are two standard deviations.</p>\n",
         key);
-  return head + text;
+  return head + "<div class=\"charts\">" + text + "</div></section>\n";
 }
 
 }  // namespace limen

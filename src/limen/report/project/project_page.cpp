@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limen/report/project/project_page.h"
 
+#include <algorithm>
 #include <cmath>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -10,19 +13,18 @@
 #include "limen/base/angles.h"
 #include "limen/base/version.h"
 #include "limen/report/html/html_bytes.h"
-#include "limen/report/html/table_page.h"
+#include "limen/report/html/html_elements.h"
+#include "limen/report/html/report_page.h"
 #include "limen/report/project/pass_charts.h"
+#include "limen/report/project/project_axes.h"
 #include "limen/report/project/project_plan.h"
+#include "limen/report/project/project_scene.h"
 
 namespace limen {
 namespace {
 
 std::string state_cell(const char* state) {
   return fmt::format("<td class=\"state {0}\">{0}</td>", state);
-}
-
-std::string scan_name(const ProjectScan& scan) {
-  return scan.index > 0 ? fmt::format("{} #{}", scan.file, scan.index) : scan.file;
 }
 
 /// The command that takes an answer, for a shell.
@@ -41,38 +43,37 @@ std::string questions(const ProjectResult& result) {
   if (result.questions.empty()) return {};
   std::string text = "<h2>Open questions</h2>\n";
   for (const ProjectQuestion& question : result.questions) {
-    text += fmt::format("<div class=\"card\"><p>{}</p>", escaped(question.text));
+    text += fmt::format("<div class=\"card ask keep\"><p>{}</p>", escaped(question.text));
     for (const Decision& answer : question.answers)
       text += fmt::format("<button type=\"button\" class=\"answer\" data-line=\"{}\">{}</button> ",
                           escaped(line_of(answer)), escaped(words_of(answer)));
     text += "</div>\n";
   }
   return text +
-         R"(<p class="soft" id="paste" hidden>Paste this line into a terminal, then run the project again
-(what is done is kept): <code></code></p>
-<script>
-document.addEventListener('click', (event) => {
-  let line = event.target.dataset && event.target.dataset.line;
-  if (!line) return;
-  // The folder is that of this page.
-  if (location.protocol === 'file:') {
-    const folder = decodeURIComponent(location.pathname).replace(/\/[^/]*$/, '') || '/';
-    line = line.replace(' DIR ', () => " '" + folder.replaceAll("'", "'\\''") + "' ");
+         "<p class=\"soft\" id=\"paste\" hidden>Paste this line into a terminal, then run the project again "
+         "(what is done is kept): <code></code></p>\n";
+}
+
+/// A card with a table; `head`: the cells of its first row, those of numbers begin with '#'.
+std::string table(const std::string& title, const std::string& id, const std::vector<std::string>& head,
+                  const std::string& rows, const std::string& note = {}) {
+  std::string cells;
+  for (const std::string& cell : head) {
+    const bool number = cell.starts_with('#');
+    cells += fmt::format("<th scope=\"col\"{}>{}</th>", number ? " class=\"n\"" : "",
+                         number ? cell.substr(1) : cell);
   }
-  const paste = document.getElementById('paste');
-  paste.hidden = false;
-  paste.querySelector('code').textContent = line;
-  if (navigator.clipboard) navigator.clipboard.writeText(line).catch(() => {});
-});
-</script>
-)";
+  return fmt::format(
+      "<section class=\"card wide keep\"{}><h2>{}</h2>\n{}<div class=\"scroll\" tabindex=\"0\" "
+      "role=\"region\" aria-label=\"{}\"><table><thead><tr>{}</tr></thead><tbody>\n{}</tbody></table></div>"
+      "</section>\n",
+      id.empty() ? "" : fmt::format(" id=\"{}\"", id), title,
+      note.empty() ? "" : fmt::format("<p class=\"soft\">{}</p>\n", note), title, cells, rows);
 }
 
 std::string decisions_table(const ProjectResult& result) {
   if (result.decisions.empty()) return {};
-  std::string text =
-      "<h2>Your decisions</h2>\n<div "
-      "class=\"scroll\" tabindex=\"0\"><table><tr><th>decision</th><th>state</th><th>why</th></tr>\n";
+  std::string text;
   for (const ProjectDecision& told : result.decisions) {
     const char* colour = told.state == DecisionState::kept           ? "verified"
                          : told.state == DecisionState::contradicted ? "rejected"
@@ -81,18 +82,15 @@ std::string decisions_table(const ProjectResult& result) {
         fmt::format("<tr><td>{}</td><td class=\"state {}\">{}</td><td>{}</td></tr>\n",
                     escaped(words_of(told.decision)), colour, to_string(told.state), escaped(told.reason));
   }
-  return text + "</table></div>\n";
+  return table("Your decisions", "", {"decision", "state", "why"}, text);
 }
 
 std::string scans_table(const ProjectResult& result) {
-  std::string text =
-      "<h2>Scans</h2>\n<div "
-      "class=\"scroll\" tabindex=\"0\"><table><tr><th>no.</th><th>file</th><th>state</th><th>component</th>"
-      "<th>sigma, mm</th><th>sigma, deg</th><th>why</th></tr>\n";
+  std::string text;
   for (std::size_t k = 0; k < result.scans.size(); ++k) {
     const ProjectScan& scan = result.scans[k];
     text += fmt::format("<tr id=\"scan{0}\"><td class=\"n\">{0}</td><td class=\"path\">{1}{2}</td>", k,
-                        escaped(scan_name(scan)), scan.model ? " <span class=\"soft\">model</span>" : "");
+                        escaped(shown_name(scan)), scan.model ? " <span class=\"soft\">model</span>" : "");
     text += state_cell(scan.readable ? to_string(scan.state) : "unreadable");
     text +=
         fmt::format("<td class=\"n\">{}</td>", scan.component >= 0 ? fmt::format("{}", scan.component) : "");
@@ -105,21 +103,19 @@ std::string scans_table(const ProjectResult& result) {
     }
     text += fmt::format("<td>{}</td></tr>\n", escaped(scan.reason));
   }
-  return text + "</table></div>\n";
+  return table("Scans", "scans", {"#no.", "file", "state", "#component", "#sigma, mm", "#sigma, deg", "why"},
+               text);
 }
 
 std::string links_table(const ProjectResult& result) {
   if (result.links.empty()) return {};
-  std::string text =
-      "<h2>Links</h2>\n<div class=\"scroll\" "
-      "tabindex=\"0\"><table><tr><th>no.</th><th>scans</th><th>state</th><th>the pair "
-      "alone</th>"
-      "<th>agreeing, m&sup2;</th><th>misses by, mm</th><th>deg</th><th>redundancy</th><th>other "
-      "poses</th></tr>\n";
+  std::string text;
   for (std::size_t k = 0; k < result.links.size(); ++k) {
     const ProjectLink& link = result.links[k];
     text += fmt::format(
-        "<tr><td class=\"n\">{0}</td><td><a href=\"#scan{1}\">{1}</a> and <a href=\"#scan{2}\">{2}</a></td>",
+        "<tr data-of-link=\"{0}\"><td class=\"n\"><button type=\"button\" class=\"link\" data-link=\"{0}\" "
+        "aria-label=\"Show link {0} alone\">{0}</button></td><td><a href=\"#scan{1}\">{1}</a> and <a "
+        "href=\"#scan{2}\">{2}</a></td>",
         k, link.source, link.target);
     text += state_cell(to_string(link.solved.state));
     text += fmt::format(
@@ -128,16 +124,15 @@ std::string links_table(const ProjectResult& result) {
         link.given ? "given" : to_string(link.pair), link.agreeing_m2, 1e3 * link.solved.loop_error_m,
         degrees(link.solved.loop_error_rad), link.solved.redundancy, link.alternatives.size());
   }
-  return text + "</table></div>\n";
+  return table("Links", "links",
+               {"#no.", "scans", "state", "the pair alone", "#agreeing, m&sup2;", "#misses by, mm", "#deg",
+                "#redundancy", "#other poses"},
+               text, "Click a number to see that link alone, before and after, with what agrees.");
 }
 
 std::string loops_table(const ProjectResult& result) {
   if (result.loops.empty()) return {};
-  std::string text =
-      "<h2>Loops</h2>\n<div class=\"scroll\" "
-      "tabindex=\"0\"><table><tr><th>links</th><th>closes</th><th>misses by, "
-      "mm</th><th>deg</th>"
-      "<th>chi squared of 6</th></tr>\n";
+  std::string text;
   for (const GraphLoop& loop : result.loops) {
     std::string links;
     for (const int link : loop.links) links += fmt::format("{}{}", links.empty() ? "" : ", ", link);
@@ -146,7 +141,7 @@ std::string loops_table(const ProjectResult& result) {
         "{:.1f}</td></tr>\n",
         links, loop.closes ? "yes" : "no", 1e3 * loop.error_m, degrees(loop.error_rad), loop.chi_square);
   }
-  return text + "</table></div>\n";
+  return table("Loops", "", {"links", "closes", "#misses by, mm", "#deg", "#chi squared of 6"}, text);
 }
 
 std::string millimetres(const Vector3d& metres) {
@@ -185,23 +180,21 @@ std::string points_table(const ProjectResult& result) {
     if (point.given) rows += point_row(point);
   }
   if (rows.empty()) return {};
-  return fmt::format(
-      "<h2>Control and check points</h2>\n<p class=\"soft\">{}. Given less found, with one standard "
-      "deviation; w: "
-      "the largest of the three tests; found with 80&nbsp;%: the smallest blunder along any axis that would "
-      "be "
-      "found.</p>\n<div class=\"scroll\" "
-      "tabindex=\"0\"><table><tr><th>point</th><th>role</th><th>state</th><th>seen by</th>"
-      "<th>x, mm</th><th>y</th><th>z</th><th>sigma x, mm</th><th>y</th><th>z</th><th>w</th>"
-      "<th>found with 80&nbsp;%, mm</th><th>why</th></tr>\n{}</table></div>\n",
-      escaped(result.control_words), rows);
+  return table(
+      "Control and check points", "",
+      {"point", "role", "state", "seen by", "#x, mm", "#y", "#z", "#sigma x, mm", "#y", "#z", "#w",
+       "#found with 80&nbsp;%, mm", "why"},
+      rows,
+      escaped(result.control_words) +
+          ". Given less found, with one standard deviation; w: the largest of the three tests; found with "
+          "80&nbsp;%: the smallest blunder along any axis that would be found.");
 }
 
 std::string notes(const ProjectResult& result) {
   if (result.notes.empty()) return {};
-  std::string text = "<h2>Notes</h2>\n<ul>\n";
+  std::string text = "<section class=\"card wide keep\"><h2>Notes</h2>\n<ul>\n";
   for (const std::string& note : result.notes) text += fmt::format("<li>{}</li>\n", escaped(note));
-  return text + "</ul>\n";
+  return text + "</ul></section>\n";
 }
 
 std::string frame_words(const ProjectResult& result) {
@@ -209,32 +202,78 @@ std::string frame_words(const ProjectResult& result) {
     return fmt::format("The frame is that of the control points in {}.", escaped(result.control_file));
   if (result.frame_scan < 0) return "Nothing was joined.";
   const ProjectScan& scan = result.scans[static_cast<std::size_t>(result.frame_scan)];
-  return fmt::format("The frame is that of {}.", escaped(scan_name(scan)));
+  return fmt::format("The frame is that of {}.", escaped(shown_name(scan)));
+}
+
+std::string heading(ProjectOutcome outcome) {
+  switch (outcome) {
+    case ProjectOutcome::registered:
+      return "Registered: all scans stand in one frame";
+    case ProjectOutcome::partial:
+      return "Partial: some scans stand in one frame";
+    case ProjectOutcome::no_match:
+      break;
+  }
+  return "No match: no scan was joined to another";
+}
+
+const char* symbol(ProjectOutcome outcome) {
+  switch (outcome) {
+    case ProjectOutcome::registered:
+      return "&#10003;";
+    case ProjectOutcome::partial:
+      return "?";
+    case ProjectOutcome::no_match:
+      break;
+  }
+  return "&#8800;";
+}
+
+/// What came of it, how well it is known, and whose frame it is.
+std::string lead(const ProjectResult& result) {
+  std::vector<double> sigmas;
+  for (const ProjectScan& scan : result.scans) {
+    if (!scan.model && scan.state == NodeState::registered && scan.component == 0)
+      sigmas.push_back(scan.sigma.translation_m.maxCoeff());
+  }
+  std::sort(sigmas.begin(), sigmas.end());
+  std::string text = fmt::format("<p>{}.</p>\n", escaped(result.reason));
+  if (sigmas.size() > 1)
+    text += fmt::format(
+        "<p>They are known to {:.1f} mm in the median and to {:.1f} mm at worst (one standard "
+        "deviation).</p>\n",
+        1e3 * sigmas[sigmas.size() / 2], 1e3 * sigmas.back());
+  return text + fmt::format("<p class=\"reason\">{} {} pairs were tried.</p>", frame_words(result),
+                            result.pairs_tried);
 }
 
 }  // namespace
 
-std::string project_page(const ProjectResult& result) {
-  std::string text =
-      "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n<meta name=\"viewport\" "
-      "content=\"width=device-width, initial-scale=1\">\n<title>limen: project</title>\n<style>";
-  text += table_page_style();
-  text += fmt::format(
-      "</style></head>\n<body data-outcome=\"{0}\"><main>\n<h1>{0}: {1}</h1>\n<p class=\"soft\">{2} {3} "
-      "pairs "
-      "were tried. limen {4}.</p>\n",
-      to_string(result.outcome), escaped(result.reason), frame_words(result), result.pairs_tried, kVersion);
-  text += questions(result) + decisions_table(result);
-  const std::string plan = project_plan(result);
-  if (!plan.empty())
-    text += "<h2>Plan</h2>\n" + plan +
-            "<p class=\"soft\">Lines: verified links are full, bridges dashed, ambiguous and rejected ones "
-            "dotted. Ellipses are "
-            "one sigma, enlarged 100 times. Triangles: control and check points.</p>\n";
-  text += pass_charts(result);
-  text +=
-      scans_table(result) + points_table(result) + links_table(result) + loops_table(result) + notes(result);
-  return text + "</main></body></html>\n";
+std::string project_page(const ProjectResult& result, std::vector<ProjectPicture> pictures) {
+  const std::string drawings = project_plan(result);
+  std::string plans;
+  if (!drawings.empty())
+    plans =
+        "<div class=\"plans\">" + drawings +
+        "</div>\n<p class=\"note\">Verified links are full, bridges dashed, ambiguous and rejected ones "
+        "dotted. "
+        "Ellipses are one standard deviation, 100 times as large. Triangles: control and check points.</p>\n";
+  plans += pass_charts(result);
+  const PageParts parts = {
+      {"title", "limen: project"},
+      {"style", std::string(report_style()) + std::string(view_style()) + std::string(project_style())},
+      {"version", kVersion},
+      {"outcome", to_string(result.outcome)},
+      {"symbol", symbol(result.outcome)},
+      {"heading", heading(result.outcome)},
+      {"lead", lead(result)},
+      {"questions", questions(result) + decisions_table(result)},
+      {"plans", plans},
+      {"tables", scans_table(result) + points_table(result) + links_table(result) + loops_table(result) +
+                     notes(result)},
+      {"scene", project_scene(result, std::move(pictures))},
+      {"script", std::string(project_script())}};
+  return filled_in(project_pattern(), parts);
 }
 
 }  // namespace limen

@@ -2,14 +2,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <string>
+#include <vector>
 
-#include "limen/project/project_result.h"
+#include "limen/project/project_pictures.h"
 
 namespace limen {
 
-/// report.html of a project: one page that needs nothing else. Questions first; a plan of each floor with
-/// every station and its links, coloured and dashed by their state; tables of scans, links and loops.
-std::string project_page(const ProjectResult& result);
+/// Points of all scans that a page shows.
+inline constexpr std::size_t kMostProjectPoints = 700'000;
+
+/// report.html of a project: one page that needs nothing else. Questions first; all scans in space, with the
+/// links between them and each link alone; a plan of each floor and sections; tables of scans, links and
+/// loops. `pictures`: of each scan of the result, or none: then no points are shown.
+std::string project_page(const ProjectResult& result, std::vector<ProjectPicture> pictures = {});
 
 }  // namespace limen

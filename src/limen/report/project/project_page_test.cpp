@@ -2,10 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limen/report/project/project_page.h"
 
+#include <cmath>
+
 #include "support/test_support.h"
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "limen/base/angles.h"
 #include "limen/report/project/project_json.h"
 #include "limen/report/project/read_project.h"
 
@@ -101,6 +104,73 @@ ProjectResult drifted_result() {
   result.scans[0].correction = correction;
   result.scans[1].rigid = "its points have no times";
   return result;
+}
+
+/// A room that is turned by 20 degrees, and its first storey; the picture of a scan holds three points.
+ProjectResult two_floors() {
+  ProjectResult result;
+  result.outcome = ProjectOutcome::registered;
+  const double turn = radians(20.0);
+  const Vector3d along(std::cos(turn), std::sin(turn), 0);
+  for (const double height : {1.5, 4.7}) {
+    ProjectScan scan;
+    scan.file = height < 2 ? "/a/folder/hall.ply" : "/a/folder/above.ply";
+    scan.component = 0;
+    scan.state = NodeState::registered;
+    Rigid3 pose;
+    pose.translation = {10.0, 0.0, height};
+    scan.frame_from_scan = pose;
+    scan.stations = {pose.translation};
+    scan.sigma.centre = pose.translation;
+    scan.patches.push_back({pose.translation + along, 2.0 * along, 1.2 * Vector3d::UnitZ(), true});
+    result.scans.push_back(scan);
+  }
+  ProjectLink link;
+  link.source = 1;
+  link.target = 0;
+  link.solved.state = LinkState::bridge;
+  link.target_from_source.translation = {0, 0, 3.2};
+  link.matches.push_back({4, 7, 0.001, 0.002, 3.5});
+  result.links.push_back(link);
+  return result;
+}
+
+nlohmann::json scene_of(const std::string& page) {
+  const std::size_t begin = page.find('{', page.find("id=\"scene\""));
+  return nlohmann::json::parse(page.substr(begin, page.find("</script>", begin) - begin));
+}
+
+TEST(ProjectPage, ShowsScansWhereTheyStandAlongTheBuildingsWalls) {
+  const ProjectResult result = two_floors();
+  std::vector<ProjectPicture> pictures(2);
+  pictures[0].points.points = {{0, 0, 0}, {1, 0, 0}, {0, 2, 0}};
+  pictures[0].points.local_origin = {100.0, 0.0, 0.0};
+  const std::string page = project_page(result, pictures);
+  const nlohmann::json scene = scene_of(page);
+  EXPECT_NEAR(scene["axes"][0][0].get<double>(), std::cos(radians(20.0)), 1e-9);
+  EXPECT_NEAR(scene["axes"][0][1].get<double>(), std::sin(radians(20.0)), 1e-9);
+  EXPECT_EQ(scene["side-0"]["name"], "hall.ply");
+  EXPECT_EQ(scene["side-0"]["count"], 3);
+  EXPECT_EQ(scene["side-1"]["shape"], "none");
+  EXPECT_EQ(page.find("/a/folder"), std::string::npos);
+  // A point's place in the frame is told again by the page's own numbers.
+  const auto number = [](const nlohmann::json& value) { return value.get<double>(); };
+  Vector3d in_frame = Vector3d::Zero();
+  for (Eigen::Index k = 0; k < 3; ++k) {
+    const auto row = static_cast<std::size_t>(k);
+    for (std::size_t c = 0; c < 3; ++c)
+      in_frame[static_cast<Eigen::Index>(c)] +=
+          number(scene["axes"][row][c]) * number(scene["side-0"]["place"][row][3]);
+  }
+  for (std::size_t c = 0; c < 3; ++c) in_frame[static_cast<Eigen::Index>(c)] += number(scene["origin"][c]);
+  EXPECT_LT((in_frame - Vector3d(110.0, 0.0, 1.5)).norm(), 1e-9);
+  ASSERT_EQ(scene["floors"].size(), 2U);
+  EXPECT_EQ(scene["floors"][1]["scans"], nlohmann::json({1}));
+  EXPECT_EQ(scene["links"][0]["matches"][0][1], 7);
+  // The link's pose is between the sides' own origins.
+  EXPECT_NEAR(number(scene["links"][0]["pose"][0][3]), -100.0, 1e-9);
+  EXPECT_NE(page.find("Plan of floor 2, stations at 4.7 m"), std::string::npos);
+  EXPECT_NE(page.find("Section from the side"), std::string::npos);
 }
 
 TEST(ProjectPage, DrawsHowPassesDriftedAndTellsWhyOthersStayRigid) {

@@ -8,8 +8,9 @@
 
 namespace limen {
 
-/// The project's component from above, one drawing (SVG) per floor: walls, stations with their numbers in the
-/// table of scans, links between them. Empty where no station stands in the frame.
+/// Drawings (SVG) of the project's component: a plan of each floor and a section from the front and from the
+/// side, each with walls or slabs, stations, links and surveyed points; ellipses are 100 times as large as
+/// the deviations.
 std::string project_plan(const ProjectResult& result);
 
 }  // namespace limen

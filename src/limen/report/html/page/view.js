@@ -1,21 +1,32 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
 
-// Any clouds and models in one frame: looking, cutting, measuring.
+// Any clouds and models in one frame, or the scans of a project: looking, cutting, measuring.
 
 const kTurnMs = 700;
-const kWhereItIs = fromAxes([1, 0, 0], [0, 1, 0], [0, 0, 1]);
 const kTints = 8;
 const kEyeHeight = 1.4;
-const kWaysToColour = [['side', 'By file'], ['own', 'As measured'], ['height', 'Height']];
+const kWaysToColour = [['side', 'By file'], ['state', 'By state'], ['own', 'As measured'], ['height', 'Height']];
 
-/** All sides with their boxes, and the box of all: of the central part, so that strays do not count. */
+/**
+ * All sides with their places and boxes, and the box of all: of the central part, so that strays do not count. Without
+ * places all lie in the page's axes; of a project those that stand nowhere, or in a frame of their own, are not shown.
+ */
 const loadView = () => {
   const scene = JSON.parse(element('scene').textContent);
-  scene.sides = scene.sides.map((id, k) => Object.assign(loadSide(scene, id), { tint: `--side-${k % kTints}`, shown: true }));
-  for (const side of scene.sides) side.box = boxOf(side, kWhereItIs);
-  const low = [0, 1, 2].map((k) => Math.min(...scene.sides.map(({ box }) => box.low[k])));
-  const high = [0, 1, 2].map((k) => Math.max(...scene.sides.map(({ box }) => box.high[k])));
+  const project = scene.links !== undefined;
+  scene.links ??= [];
+  scene.floors ??= [];
+  for (const link of scene.links) link.pose = fromRows(link.pose);
+  scene.viewFromFrame = scene.axes ? fromAxes(...scene.axes) : kWhereItIs;
+  scene.rise = dot(turn(scene.viewFromFrame, scene.origin), [0, 0, 1]);
+  scene.sides = scene.sides.map((id, k) => {
+    const side = loadSide(scene, id);
+    const place = project ? side.place && fromRows(side.place) : kWhereItIs;
+    const stands = !project || (Boolean(place) && side.component === 0 && hasContent(side));
+    return Object.assign(side, { tint: `--side-${k % kTints}`, place, stands, shown: stands });
+  });
+  const { low, high } = joinedBoxes(scene.sides.filter((side) => side.stands).map((side) => boxOf(side, side.place)));
   const margin = 0.03 * norm(sub(high, low)) + 0.2;
   // Sections begin at the height of an eye: through windows and doors.
   const eye = Math.min(low[2] + kEyeHeight, 0.5 * (low[2] + high[2]));
@@ -37,21 +48,23 @@ const describeLength = ([a, b]) => {
 };
 
 const describePlace = (scene, { side, point, plane, at }, name) => {
-  const lines = [[name, add(at, scene.origin).map((c) => c.toFixed(3)).join('  ')], ['Of', side.name]];
+  const told = add(turn(inverseRigid(scene.viewFromFrame), at), scene.origin);
+  const lines = [[name, told.map((c) => c.toFixed(3)).join('  ')], ['Of', side.name]];
   if (point < 0 && plane >= 0) lines.push(['Surface', `${side.planes[plane].area.toFixed(1)} m²`]);
   return lines;
 };
 
 const buildSides = (scene, changed) => {
   element('sides').append(...scene.sides.map((side, k) => made('label', { class: 'side' },
-    made('input', { type: 'checkbox', 'data-side': k, checked: true, onchange: (event) => { side.shown = event.target.checked; changed(); } }),
+    made('input', { type: 'checkbox', 'data-side': k, checked: side.shown, disabled: !side.stands, onchange: (event) => { side.shown = event.target.checked; changed(); } }),
     made('span', { class: 'mark', style: `background:var(${side.tint})` }),
     made('span', { class: 'name' }, side.name, made('span', { class: 'soft' }, side.about)))));
 };
 
 const buildWaysToColour = (scene, state, changed) => {
   const points = scene.sides.some((side) => side.shape === 'points');
-  const offered = kWaysToColour.filter(([value]) => value === 'side' || (points && (value !== 'own' || scene.sides.some((side) => side.own))));
+  const there = { side: true, state: scene.links.length > 0, own: points && scene.sides.some((side) => side.own), height: points };
+  const offered = kWaysToColour.filter(([value]) => there[value]);
   element('colours').append(...offered.map(([value, text]) => made('label', { class: 'line' }, made('input', {
     type: 'radio', name: 'colouring', value, checked: value === state.colouring, onchange: () => { state.colouring = value; changed(); },
   }), text)));
@@ -61,8 +74,8 @@ const buildWaysToColour = (scene, state, changed) => {
 const showColourLegend = (scene, state) => {
   const legend = element('legend');
   legend.replaceChildren();
-  if (state.colouring !== 'height') return;
-  const [low, high] = [scene.low[2], scene.high[2]].map((z) => (z + scene.origin[2]).toFixed(1));
+  if (state.colouring !== 'height') { legend.append(...linkLegend(scene)); return; }
+  const [low, high] = [scene.low[2], scene.high[2]].map((z) => (z + scene.rise).toFixed(1));
   legend.append(made('span', {}, `${low} m`, made('span', { class: 'ramp', style: `background:${rampCss()}` }), `${high} m`));
 };
 
@@ -70,35 +83,44 @@ const makeViewGpu = (gl, scene) => {
   const programs = makePrograms(gl);
   const paintSurfaces = makeSurfacePainter(gl, programs);
   const parts = scene.sides.map((side) => ({
-    side, cloud: makeCloud(gl, side), outlines: makeLines(gl).replace(side.planes.flatMap(outlineOf)), walls: makeLines(gl),
+    side, cloud: makeCloud(gl, side), outlines: makeLines(gl).replace(side.planes.flatMap(outlineOf)), openings: makeLines(gl).replace(openingLines(side)), walls: makeLines(gl),
   }));
+  const links = [...linkLines(scene, null).keys()].map((state) => ({ state, lines: makeLines(gl) }));
+  const join = (floor) => {
+    const ends = linkLines(scene, floor);
+    for (const { state, lines } of links) lines.replace(ends.get(state) ?? []);
+  };
+  join(null);
   const measured = makeLines(gl);
   const ways = ['side', 'own', 'residual', 'height'];
+  const wayOf = (state) => Math.max(0, ways.indexOf(state.pair ? 'side' : state.colouring));
 
-  const drawCloud = ({ side, cloud }, { look, state, ratio, plain }) => {
-    if (!cloud || cloud.shape !== 'points' || !side.shown) return;
+  const drawCloud = ({ side, cloud }, { look, state, ratio, plain, placeOf, tintOf }) => {
+    const place = placeOf(side);
+    if (!cloud || cloud.shape !== 'points' || !place) return;
     programs.points.use();
     gl.activeTexture(gl.TEXTURE0);
     gl.bindTexture(gl.TEXTURE_2D, cloud.normals);
     programs.points.set({
-      ...look, normals: 0, viewFromNumbers: side.fromNumbers, viewFromSide: [1, 0, 0, 0, 1, 0, 0, 0, 1], tint: styleColour(side.tint),
-      plain, colouring: ways.indexOf(state.colouring), heights: [scene.low[2], scene.high[2]], size: state.size * ratio,
+      ...look, normals: 0, viewFromNumbers: times(place, side.fromNumbers), viewFromSide: [0, 1, 2].flatMap((k) => place.slice(4 * k, 4 * k + 3)),
+      tint: styleColour(tintOf(side)), plain, colouring: wayOf(state), heights: [scene.low[2], scene.high[2]], size: state.size * ratio,
     });
     gl.bindVertexArray(cloud.array);
     gl.drawArrays(gl.POINTS, 0, cloud.count);
   };
-  const drawModel = ({ side, cloud }, { look, state }) => {
-    if (!cloud || cloud.shape !== 'faces' || !side.shown) return;
+  const drawModel = ({ side, cloud }, { look, state, placeOf, tintOf }) => {
+    const place = placeOf(side);
+    if (!cloud || cloud.shape !== 'faces' || !place) return;
     programs.faces.use();
-    programs.faces.set({ ...look, viewFromNumbers: side.fromNumbers, tint: styleColour(side.tint), alpha: state.cut.on ? 0.35 : 0.16 });
+    programs.faces.set({ ...look, viewFromNumbers: times(place, side.fromNumbers), tint: styleColour(tintOf(side)), alpha: state.cut.on ? 0.35 : 0.16 });
     gl.bindVertexArray(cloud.array);
     gl.drawArrays(gl.TRIANGLES, 0, cloud.count);
   };
-  const drawLines = (lines, { look, size, ratio }, { colour, width, alpha = 1, whole = false }) => {
+  const drawLines = (lines, { look, size, ratio }, { colour, width, alpha = 1, whole = false, dash = 0, place = kWhereItIs }) => {
     if (!lines.count) return;
     programs.lines.use();
     programs.lines.set({
-      ...look, cutAxis: whole ? [0, 0, 0] : look.cutAxis, viewFromSide: kWhereItIs, screen: size, width: width * ratio, dash: 0, colour: [...colour, alpha],
+      ...look, cutAxis: whole ? [0, 0, 0] : look.cutAxis, viewFromSide: place, screen: size, width: width * ratio, dash: dash * ratio, colour: [...colour, alpha],
     });
     gl.bindVertexArray(lines.array);
     gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, lines.count);
@@ -107,20 +129,32 @@ const makeViewGpu = (gl, scene) => {
     const ink = styleColour('--ink');
     Object.assign(frame, { plain: styleColour('--line'), shadow: ink.map((c) => (c > 0.5 ? 0.02 : c * 0.6)) });
     paintSurfaces(frame, () => { for (const part of parts) drawCloud(part, frame); }, () => { for (const part of parts) drawModel(part, frame); });
-    for (const { side, outlines, walls } of parts) {
-      if (!side.shown) continue;
-      drawLines(outlines, frame, { colour: styleColour(side.tint), width: 1.1, alpha: 0.7 });
-      if (frame.state.cut.on) drawLines(walls, frame, { colour: styleColour(side.tint), width: 2.4, whole: true });
+    const { ends, pair, cut, linksShown } = frame.state;
+    const project = scene.links.length > 0;
+    for (const { side, cloud, outlines, openings, walls } of parts) {
+      const place = frame.placeOf(side);
+      if (!place) continue;
+      const colour = styleColour(frame.tintOf(side));
+      // The outlines of many scans hide one another.
+      if (!project || pair || !cloud) drawLines(outlines, frame, { colour, place, width: 1.1, alpha: 0.7 });
+      if (pair) drawLines(openings, frame, { colour, place, width: 2.6 });
+      if (cut.on) drawLines(walls, frame, { colour, place, width: 2.4, whole: true });
     }
-    const { ends } = frame.state;
+    for (const { state, lines } of pair || !linksShown ? [] : links) {
+      drawLines(lines, frame, { colour: styleColour(stateTint(state)), width: state === 'rejected' ? 1.2 : 2.6, dash: kDashes[state] ?? 0, alpha: state === 'rejected' ? 0.4 : 0.85, whole: true });
+    }
     measured.replace(ends.length === 2 ? [...ends[0].at, ...ends[1].at] : []);
     drawLines(measured, frame, { colour: ink, width: 2.2, whole: true });
   };
-  const cut = ({ on, axis, place }) => {
+  const cut = ({ on, axis, place }, placeOf) => {
     const normal = [0, 1, 2].map((k) => (k === axis ? 1 : 0));
-    for (const { side, walls } of parts) walls.replace(on ? cutLines(side, normal, place[axis]) : []);
+    for (const { side, walls } of parts) {
+      const at = on && placeOf(side);
+      // The plane of the section, in the side's own axes.
+      walls.replace(at ? cutLines(side, turn(inverseRigid(at), normal), place[axis] - dot(normal, at.slice(12, 15))) : []);
+    }
   };
-  return { draw, cut };
+  return { draw, cut, join };
 };
 
 const runView = (gl, canvas) => {
@@ -128,11 +162,21 @@ const runView = (gl, canvas) => {
   const still = matchMedia('(prefers-reduced-motion: reduce)');
   const middle = scaled(add(scene.low, scene.high), 0.5);
   const state = {
-    view: 'free', colouring: scene.sides.length === 1 && scene.sides[0].own ? 'own' : 'side', size: 2, measuring: false, ends: [],
+    view: 'free', colouring: scene.sides.length === 1 && scene.sides[0].own ? 'own' : 'side', size: 2, measuring: false, ends: [], pair: null, share: 1, linksShown: true, floor: null,
     cut: { on: false, axis: 2, place: [middle[0], middle[1], scene.eye], thickness: 0.5 },
   };
   const gpu = makeViewGpu(gl, scene);
-  const reach = 3 * norm(sub(scene.high, scene.low)) + 20;
+  const spots = makeSpots(scene);
+  let reach = 3 * norm(sub(scene.high, scene.low)) + 20;
+  const placeOf = (side) => {
+    const { pair, share } = state;
+    if (!pair) return side.shown ? side.place : null;
+    return side === pair.target ? pair.places.still : side === pair.source ? pair.place(share) : null;
+  };
+  const tintOf = (side) => {
+    if (state.pair) return side === state.pair.target ? '--target' : '--source';
+    return state.colouring === 'state' ? stateTint(side.state) : side.tint;
+  };
   let camera = null;
   let motion = null;
   let look = null;
@@ -147,6 +191,7 @@ const runView = (gl, canvas) => {
     if (motion) {
       const share = smooth(clamp((now - motion.start) / kTurnMs, 0, 1));
       camera = share >= 1 ? motion.to : betweenCameras(motion.from, motion.to, share);
+      state.share = motion.shares[0] + share * (motion.shares[1] - motion.shares[0]);
       if (share >= 1) motion = null; else redraw();
     }
     draw();
@@ -164,7 +209,7 @@ const runView = (gl, canvas) => {
       css: [canvas.clientWidth, canvas.clientHeight], metresPerPx: camera.height / canvas.clientHeight,
       distance: camera.height / 2 / Math.tan(kFieldOfView / 2),
     };
-    gpu.draw({ look, state, size, ratio, height: camera.height });
+    gpu.draw({ look, state, size, ratio, height: camera.height, placeOf, tintOf });
     overlay();
     canvas.dataset.frames = String(+(canvas.dataset.frames ?? 0) + 1);
     canvas.dataset.moving = String(motion !== null);
@@ -181,6 +226,8 @@ const runView = (gl, canvas) => {
     element('scale-bar').style.width = `${length / look.metresPerPx}px`;
     element('scale-text').textContent = metres(length) + (camera.parallel ? '' : ' in the middle');
     for (const k of [0, 1]) put(element(`pin-${k}`), state.ends[k]?.at);
+    const marked = (number) => !state.pair && state.linksShown && (!state.floor || state.floor.scans.includes(number));
+    for (const { node, number, at } of spots) put(node, marked(number) ? at : null);
     const both = state.ends.length === 2;
     put(element('length'), both ? scaled(add(state.ends[0].at, state.ends[1].at), 0.5) : null);
     if (both) element('length').textContent = `${norm(sub(state.ends[1].at, state.ends[0].at)).toFixed(3)} m`;
@@ -196,7 +243,7 @@ const runView = (gl, canvas) => {
     element('measure').setAttribute('aria-pressed', String(measuring));
   };
   const pickAt = (px, py) => {
-    const found = pick(scene.sides.filter((side) => side.shown).map((side) => ({ side, place: kWhereItIs })), look, px, py);
+    const found = pick(scene.sides.map((side) => ({ side, place: placeOf(side) })).filter(({ place }) => place), look, px, py);
     if (found) state.ends = state.measuring && state.ends.length === 1 ? [...state.ends, found] : [found];
     tell();
     redraw();
@@ -205,16 +252,18 @@ const runView = (gl, canvas) => {
   const show = () => {
     for (const button of document.querySelectorAll('[data-view]')) button.setAttribute('aria-pressed', String(button.dataset.view === state.view));
   };
-  const fit = (turned) => {
-    const goal = fitted(state.view, scene, canvas.clientWidth / Math.max(1, canvas.clientHeight));
+  const fit = (turned, share = state.share) => {
+    const goal = fitted(state.view, state.pair ? state.pair.box(share) : scene, canvas.clientWidth / Math.max(1, canvas.clientHeight));
     if (!turned && camera) Object.assign(goal, { yaw: camera.yaw, pitch: camera.pitch });
     if (camera) goal.yaw += 2 * Math.PI * Math.round((camera.yaw - goal.yaw) / (2 * Math.PI));
-    motion = camera && !still.matches ? { from: camera, to: goal, start: performance.now() } : null;
-    if (!motion) camera = goal;
+    motion = camera && !still.matches ? { from: camera, to: goal, shares: [state.share, share], start: performance.now() } : null;
+    if (!motion) { camera = goal; state.share = share; }
     redraw();
   };
   const chooseView = (name) => {
-    state.view = name;
+    Object.assign(state, { view: name, floor: null });
+    element('floor').value = '';
+    gpu.join(null);
     const { axis } = kViews[name];
     state.cut.on = axis >= 0;
     if (axis >= 0) state.cut.axis = axis;
@@ -222,11 +271,54 @@ const runView = (gl, canvas) => {
     changed();
     fit(true);
   };
-  const setCamera = (next) => { motion = null; camera = next; redraw(); };
+  const setCamera = (next) => {
+    if (motion) [, state.share] = motion.shares;
+    motion = null;
+    camera = next;
+    redraw();
+  };
+  const showPair = () => {
+    const { pair } = state;
+    element('pair-group').hidden = !pair;
+    element('pair').value = pair ? String(pair.number) : '';
+    element('pair-words').replaceChildren(...(pair ? describePair(pair) : []));
+    for (const row of document.querySelectorAll('tr[data-of-link]')) row.setAttribute('aria-current', String(pair !== null && +row.dataset.ofLink === pair.number));
+  };
+  const toggle = (share) => {
+    for (const [id, at] of [['before', 0], ['after', 1]]) element(id).setAttribute('aria-pressed', String(at === share));
+    state.ends = [];
+    fit(false, share);
+    tell();
+  };
+  /** One link alone, or null: all scans. */
+  const choosePair = (number) => {
+    state.pair = number === null ? null : makePair(scene, number);
+    if (motion) motion = null;
+    state.share = 1;
+    if (state.pair) reach = Math.max(reach, ...[0, 1].map((share) => { const box = state.pair.box(share); return 3 * norm(sub(box.high, box.low)) + 20; }));
+    showPair();
+    toggle(1);
+    changed();
+  };
+  /** One floor from above, or null: all. */
+  const showFloor = (floor) => {
+    Object.assign(state, { view: floor ? 'top' : 'free', floor });
+    Object.assign(state.cut, { on: floor !== null, axis: 2, thickness: 2 });
+    if (floor) state.cut.place[2] = floor.z;
+    gpu.join(floor);
+    show();
+    changed();
+    fit(true);
+  };
   const cutRange = (axis) => [scene.low[axis], scene.high[axis]];
   const showSection = buildSection(state, cutRange, () => changed());
-  const changed = () => { showSection(); gpu.cut(state.cut); redraw(); };
-  buildSides(scene, redraw);
+  const changed = () => { showSection(); gpu.cut(state.cut, placeOf); redraw(); };
+  buildSides(scene, changed);
+  buildPairs(scene, { choose: choosePair, showFloor });
+  element('before').addEventListener('click', () => toggle(0));
+  element('after').addEventListener('click', () => toggle(1));
+  element('all-scans').addEventListener('click', () => choosePair(null));
+  element('links-shown').addEventListener('change', (event) => { state.linksShown = event.target.checked; redraw(); });
   const colourings = buildWaysToColour(scene, state, () => { showColourLegend(scene, state); redraw(); });
   listen(canvas, { get: () => camera, set: setCamera, click: pickAt });
   const actions = {
@@ -249,6 +341,8 @@ const runView = (gl, canvas) => {
 
 const openView = () => {
   const canvas = element('canvas');
+  // A project of which nothing could be read.
+  if (!JSON.parse(element('scene').textContent).sides.length) return;
   const gl = canvas.getContext('webgl2', { antialias: true, alpha: true, preserveDrawingBuffer: true });
   if (!gl) { element('fallback').hidden = false; return; }
   element('viewer').hidden = false;
