@@ -31,17 +31,33 @@ double area(const std::vector<Polygon>& polygons) {
   return total;
 }
 
-bool contains(const Ring& ring, const Vector2d& p) {
-  bool inside = false;
+namespace {
+
+/// Calls `take` with the x of every edge that crosses the line y.
+template <typename Take>
+void each_crossing(const Ring& ring, double y, const Take& take) {
   for (std::size_t i = 0, j = ring.size() - 1; i < ring.size(); j = i++) {
     const Vector2d& a = ring[i];
     const Vector2d& b = ring[j];
-    if ((a.y() > p.y()) != (b.y() > p.y()) &&
-        p.x() < (b.x() - a.x()) * (p.y() - a.y()) / (b.y() - a.y()) + a.x()) {
-      inside = !inside;
-    }
+    if ((a.y() > y) != (b.y() > y)) take((b.x() - a.x()) * (y - a.y()) / (b.y() - a.y()) + a.x());
   }
+}
+
+}  // namespace
+
+bool contains(const Ring& ring, const Vector2d& p) {
+  bool inside = false;
+  each_crossing(ring, p.y(), [&](double x) { inside = inside != (p.x() < x); });
   return inside;
+}
+
+std::vector<double> crossings(const Polygon& polygon, double y) {
+  std::vector<double> found;
+  const auto take = [&](double x) { found.push_back(x); };
+  each_crossing(polygon.outer, y, take);
+  for (const Ring& hole : polygon.holes) each_crossing(hole, y, take);
+  std::sort(found.begin(), found.end());
+  return found;
 }
 
 bool contains(const Polygon& polygon, const Vector2d& p) {

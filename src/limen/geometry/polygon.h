@@ -27,6 +27,10 @@ bool contains(const Ring& ring, const Vector2d& p);
 /// Inside the outer ring and in no hole.
 bool contains(const Polygon& polygon, const Vector2d& p);
 
+/// Where the line y crosses the polygon's rings, ascending: (x, y) lies in the polygon, as `contains` has it,
+/// where the number of crossings beyond x is odd. Holes must lie in the outer ring and apart.
+std::vector<double> crossings(const Polygon& polygon, double y);
+
 /// A bounded piece of a plane as a scan saw it: one plane, one or more polygons with holes (a wall behind a
 /// column has two parts), and the points that support it.
 struct PlanarPolygon {

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "limen/base/parallel.h"
 #include "limen/geometry/cell_key.h"
 #include "limen/geometry/polygon_clip.h"
 
@@ -13,22 +15,6 @@ namespace {
 
 constexpr double kPixelM = 0.05;
 constexpr double kCellM = 0.5;
-
-/// Abscissae at which the rings cross the height y, ascending.
-std::vector<double> crossings(const Polygon& polygon, double y) {
-  std::vector<double> xs;
-  const auto add = [&](const Ring& ring) {
-    Vector2d a = ring.back();
-    for (const Vector2d& b : ring) {
-      if ((a.y() <= y) != (b.y() <= y)) xs.push_back(a.x() + (b.x() - a.x()) * (y - a.y()) / (b.y() - a.y()));
-      a = b;
-    }
-  };
-  add(polygon.outer);
-  for (const Ring& hole : polygon.holes) add(hole);
-  std::sort(xs.begin(), xs.end());
-  return xs;
-}
 
 }  // namespace
 
@@ -60,53 +46,59 @@ ModelSpace::Mask ModelSpace::mask_of(const PlanarPolygon& polygon) {
   return mask;
 }
 
-bool ModelSpace::Mask::covers(const Vector3d& x) const {
-  const Vector2d p = (frame.to_plane(x) - low) / kPixelM;
-  if (!(p.x() >= 0 && p.y() >= 0 && p.x() < columns && p.y() < rows)) return false;
-  return bits[static_cast<std::size_t>(p.y()) * static_cast<std::size_t>(columns) +
-              static_cast<std::size_t>(p.x())];
+bool ModelSpace::Mask::covers(const Vector2d& pixel) const {
+  if (!(pixel.x() >= 0 && pixel.y() >= 0 && pixel.x() < columns && pixel.y() < rows)) return false;
+  return bits[static_cast<std::size_t>(pixel.y()) * static_cast<std::size_t>(columns) +
+              static_cast<std::size_t>(pixel.x())];
 }
 
-void ModelSpace::enter(std::int32_t index, double reach_m) {
-  const Mask& mask = masks_[static_cast<std::size_t>(index)];
+Vector2d ModelSpace::Mask::pixel_of(const Vector3d& x) const {
+  return (frame.to_plane(x) - low) / kPixelM;
+}
+
+std::vector<std::int64_t> ModelSpace::cells_near(const Mask& mask, double reach_m) {
   // Places a third of a cell apart on the plane, and as far before and behind it as questions reach.
   const double step = kCellM / 3.0;
   const int layers = static_cast<int>(std::ceil(reach_m / step));
+  std::vector<std::int64_t> cells;
   for (double v = 0.0; v < mask.rows * kPixelM + step; v += step) {
     for (double u = 0.0; u < mask.columns * kPixelM + step; u += step) {
-      const Vector3d x = mask.frame.to_space(mask.low + Vector2d(u, v));
       bool near = false;
       for (double dv = -step; dv <= step && !near; dv += kPixelM) {
         for (double du = -step; du <= step && !near; du += kPixelM)
-          near = mask.covers(mask.frame.to_space(mask.low + Vector2d(u + du, v + dv)));
+          near = mask.covers(Vector2d(u + du, v + dv) / kPixelM);
       }
       if (!near) continue;
-      for (int layer = -layers; layer <= layers; ++layer) {
-        std::vector<std::int32_t>& cell =
-            cells_[cell_key(cell_of(x + layer * step * mask.plane.normal, kCellM))];
-        if (cell.empty() || cell.back() != index) cell.push_back(index);
-      }
+      const Vector3d x = mask.frame.to_space(mask.low + Vector2d(u, v));
+      for (int layer = -layers; layer <= layers; ++layer)
+        cells.push_back(cell_key(cell_of(x + layer * step * mask.plane.normal, kCellM)));
     }
   }
+  std::sort(cells.begin(), cells.end());
+  cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+  return cells;
 }
 
 ModelSpace::ModelSpace(const Features& features, double reach_m) {
-  masks_.reserve(features.planes.size());
-  for (const PlanarPolygon& polygon : features.planes) {
-    masks_.push_back(mask_of(polygon));
-    enter(static_cast<std::int32_t>(masks_.size() - 1), reach_m);
-  }
+  const std::size_t count = features.planes.size();
+  masks_.resize(count);
+  std::vector<std::vector<std::int64_t>> near(count);
+  parallel_for(count, 16, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      masks_[k] = mask_of(features.planes[k]);
+      near[k] = cells_near(masks_[k], reach_m);
+    }
+  });
+  cells_ = CellLists(std::move(near));
 }
 
 Sight ModelSpace::look(const SightQuery& query) const {
   Sight sight{SightKind::unseen};
-  const auto found = cells_.find(cell_key(cell_of(query.at, kCellM)));
-  if (found == cells_.end()) return sight;
   double least = query.surface_m;
-  for (const std::int32_t index : found->second) {
+  for (const std::int32_t index : cells_.at(cell_key(cell_of(query.at, kCellM)))) {
     const Mask& mask = masks_[static_cast<std::size_t>(index)];
     const std::optional<double> distance = distance_if_same(query, {mask.plane, true});
-    if (!distance || std::abs(*distance) > least || !mask.covers(query.at)) continue;
+    if (!distance || std::abs(*distance) > least || !mask.covers(mask.pixel_of(query.at))) continue;
     least = std::abs(*distance);
     sight = {SightKind::surface, index, *distance};
   }

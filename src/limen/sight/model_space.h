@@ -3,9 +3,9 @@
 #pragma once
 
 #include <cstdint>
-#include <unordered_map>
 #include <vector>
 
+#include "limen/geometry/cell_lists.h"
 #include "limen/sight/space_view.h"
 
 namespace limen {
@@ -29,14 +29,17 @@ class ModelSpace : public SpaceView {
     int rows = 0;
     std::vector<bool> bits;
 
-    [[nodiscard]] bool covers(const Vector3d& x) const;
+    /// In the bitmap, not rounded.
+    [[nodiscard]] Vector2d pixel_of(const Vector3d& x) const;
+    [[nodiscard]] bool covers(const Vector2d& pixel) const;
   };
 
   [[nodiscard]] static Mask mask_of(const PlanarPolygon& polygon);
-  void enter(std::int32_t index, double reach_m);
+  /// The cells that a question about the surface may stand in, ascending.
+  [[nodiscard]] static std::vector<std::int64_t> cells_near(const Mask& mask, double reach_m);
 
   std::vector<Mask> masks_;
-  std::unordered_map<std::int64_t, std::vector<std::int32_t>> cells_;  ///< planes near each cell
+  CellLists cells_;  ///< planes near each cell
 };
 
 }  // namespace limen

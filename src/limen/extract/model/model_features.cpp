@@ -16,20 +16,39 @@ constexpr float kExact = 1e6F;          // points that a sample of a model is wo
 constexpr double kDrawnSigmaM = 0.005;  // by how much an opening is built otherwise than drawn
 constexpr double kInWallM = 0.01;
 
+/// One line of a polygon that is asked from left to right: which places on it lie inside.
+class LineAcross {
+ public:
+  LineAcross(const Polygon& polygon, double y) : crossings_(crossings(polygon, y)) {}
+
+  /// `x`: no less than before.
+  [[nodiscard]] bool contains(double x) {
+    while (passed_ < crossings_.size() && crossings_[passed_] <= x) ++passed_;
+    return (crossings_.size() - passed_) % 2 == 1;
+  }
+
+ private:
+  std::vector<double> crossings_;
+  std::size_t passed_ = 0;
+};
+
 std::vector<SurfaceSample> samples_of(const PlanarPolygon& polygon, std::int32_t index, double tile_m) {
   const Box2 box = box_of(polygon.parts);
   const double step = tile_m / kSubtiles;
   std::vector<SurfaceSample> samples;
   const auto first = [&](double x) { return std::floor(x / tile_m); };
   for (double row = first(box.low.y()); row * tile_m < box.high.y(); ++row) {
+    std::vector<LineAcross> lines;
+    const auto height = [&](int below) { return row * tile_m + (below + 0.5) * step; };
+    for (int below = 0; below < kSubtiles; ++below) lines.emplace_back(polygon.parts.front(), height(below));
     for (double column = first(box.low.x()); column * tile_m < box.high.x(); ++column) {
       Vector2d sum = Vector2d::Zero();
       int inside = 0;
       for (int k = 0; k < kSubtiles * kSubtiles; ++k) {
         const int below = k / kSubtiles;
         const int beside = k % kSubtiles;
-        const Vector2d p(column * tile_m + (beside + 0.5) * step, row * tile_m + (below + 0.5) * step);
-        if (!contains(polygon.parts.front(), p)) continue;
+        const Vector2d p(column * tile_m + (beside + 0.5) * step, height(below));
+        if (!lines[static_cast<std::size_t>(below)].contains(p.x())) continue;
         sum += p;
         ++inside;
       }

@@ -4,14 +4,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <map>
 #include <tuple>
+#include <utility>
 
 #include <Eigen/Geometry>
 
 #include "limen/base/error.h"
 #include "limen/base/parallel.h"
 #include "limen/extract/model/cross_section.h"
+#include "limen/geometry/cell_key.h"
 #include "limen/geometry/polygon_clip.h"
 
 namespace limen {
@@ -33,26 +36,85 @@ struct Body {
 
 std::vector<Body> bodies_of(const BimModel& model) {
   std::vector<Body> bodies(model.elements.size());
+  const BuiltMatter is_built(model);
   for (const BimFace& face : model.faces) {
     const auto element = static_cast<std::size_t>(face.element);
-    if (!is_built_matter(model, model.elements[element])) continue;
+    if (!is_built(model.elements[element])) continue;
     bodies[element].faces.push_back(&face);
     bodies[element].box.extend(box_of(face));
   }
   return bodies;
 }
 
+/// The bodies near a place, found by the cells of a grid that their boxes reach into.
+class BodyGrid {
+ public:
+  explicit BodyGrid(const std::vector<Body>& bodies) : bodies_(bodies) {
+    for (std::size_t k = 0; k < bodies.size(); ++k) {
+      if (bodies[k].faces.empty()) continue;
+      if (cells_within(bodies[k].box) > kMostCells) {
+        large_.push_back(k);
+        continue;
+      }
+      each_cell(bodies[k].box, [&](std::int64_t cell) { by_cell_.emplace_back(cell, k); });
+    }
+    std::sort(by_cell_.begin(), by_cell_.end());
+  }
+
+  /// Numbers, ascending, of the bodies whose boxes meet `box`.
+  [[nodiscard]] std::vector<std::size_t> meeting(const Box& box) const {
+    std::vector<std::size_t> found;
+    const auto add = [&](std::size_t k) {
+      if (bodies_[k].box.intersects(box)) found.push_back(k);
+    };
+    for (const std::size_t k : large_) add(k);
+    if (cells_within(box) > kMostCells) {
+      for (const auto& [cell, k] : by_cell_) add(k);
+    } else {
+      each_cell(box, [&](std::int64_t cell) {
+        for (auto it = std::lower_bound(by_cell_.begin(), by_cell_.end(), std::pair(cell, std::size_t{0}));
+             it != by_cell_.end() && it->first == cell; ++it)
+          add(it->second);
+      });
+    }
+    std::sort(found.begin(), found.end());
+    found.erase(std::unique(found.begin(), found.end()), found.end());
+    return found;
+  }
+
+ private:
+  static constexpr double kCellM = 4.0;
+  static constexpr double kMostCells = 512.0;
+
+  static double cells_within(const Box& box) { return (box.sizes().array() / kCellM + 1.0).prod(); }
+
+  template <typename Take>
+  static void each_cell(const Box& box, const Take& take) {
+    const Vector3d low = cell_of(box.min(), kCellM);
+    const Vector3d high = cell_of(box.max(), kCellM);
+    for (double x = low.x(); x <= high.x(); ++x) {
+      for (double y = low.y(); y <= high.y(); ++y) {
+        for (double z = low.z(); z <= high.z(); ++z) take(cell_key({x, y, z}));
+      }
+    }
+  }
+
+  const std::vector<Body>& bodies_;
+  std::vector<std::size_t> large_;
+  std::vector<std::pair<std::int64_t, std::size_t>> by_cell_;
+};
+
 /// Where the matter of other elements stands right before the face, in the face's coordinates.
-std::vector<Polygon> matter_before(const BimFace& face, const std::vector<Body>& bodies, double front_m) {
+std::vector<Polygon> matter_before(const BimFace& face, const std::vector<Body>& bodies, const BodyGrid& grid,
+                                   double front_m) {
   Box box = box_of(face);
   box.min().array() -= 2.0 * front_m;
   box.max().array() += 2.0 * front_m;
   PlaneFrame front = face.frame;
   front.origin += front_m * face.plane.normal;
   std::vector<Polygon> matter;
-  for (std::size_t k = 0; k < bodies.size(); ++k) {
-    if (static_cast<std::int32_t>(k) == face.element || bodies[k].faces.empty()) continue;
-    if (!bodies[k].box.intersects(box)) continue;
+  for (const std::size_t k : grid.meeting(box)) {
+    if (static_cast<std::int32_t>(k) == face.element) continue;
     const std::vector<Polygon> section = cross_section(bodies[k].faces, front);
     matter.insert(matter.end(), section.begin(), section.end());
   }
@@ -67,12 +129,13 @@ struct Rest {
 
 std::vector<Rest> uncovered(const BimModel& model, const ModelSurfaceOptions& options) {
   const std::vector<Body> bodies = bodies_of(model);
+  const BodyGrid grid(bodies);
   std::vector<Rest> rests(model.faces.size());
   parallel_for(model.faces.size(), 16, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const BimFace& face = model.faces[i];
       if (bodies[static_cast<std::size_t>(face.element)].faces.empty()) continue;
-      const std::vector<Polygon> matter = matter_before(face, bodies, options.front_m);
+      const std::vector<Polygon> matter = matter_before(face, bodies, grid, options.front_m);
       rests[i].face = &face;
       rests[i].parts =
           matter.empty() ? std::vector<Polygon>{face.outline} : difference({face.outline}, matter);
@@ -196,7 +259,11 @@ void ModelSurfaceOptions::check() const {
   if (!(min_area_m2 >= 0)) throw_bad_option("min_area_m2", min_area_m2, "0 or more");
 }
 
-bool is_built_matter(const BimModel& model, const BimElement& element) {
+BuiltMatter::BuiltMatter(const BimModel& model)
+    : no_kinds_(std::all_of(model.elements.begin(), model.elements.end(),
+                            [](const BimElement& e) { return e.kind == BimKind::other; })) {}
+
+bool BuiltMatter::operator()(const BimElement& element) const {
   switch (element.kind) {
     case BimKind::wall:
     case BimKind::slab:
@@ -208,8 +275,7 @@ bool is_built_matter(const BimModel& model, const BimElement& element) {
     case BimKind::terrain:
       return true;
     case BimKind::other:
-      return std::all_of(model.elements.begin(), model.elements.end(),
-                         [](const BimElement& e) { return e.kind == BimKind::other; });
+      return no_kinds_;
     default:
       return false;
   }

@@ -20,7 +20,14 @@ struct ModelSurfaceOptions {
 /// Whether a laser is stopped there today as on the day the model was drawn: walls, slabs, roofs, columns,
 /// beams, stairs, coverings, terrain. Not: panes, leaves, furniture, railings, and elements of no known kind,
 /// unless the file knows no kinds at all.
-bool is_built_matter(const BimModel& model, const BimElement& element);
+class BuiltMatter {
+ public:
+  explicit BuiltMatter(const BimModel& model);
+  bool operator()(const BimElement& element) const;
+
+ private:
+  bool no_kinds_;
+};
 
 /// The surface of a model's built matter as far as it borders on air: faces less what other elements stand
 /// against or penetrate them, flush faces of neighbouring elements made one. Each polygon has one part and

@@ -8,6 +8,7 @@ namespace limen {
 namespace {
 
 constexpr std::uint32_t kLongestRun = 24;
+constexpr std::size_t kRunsTogether = 32;
 constexpr double kWidestM = 4.0;  // of a run's box: a run that leaps to another plane tells nothing
 constexpr double kSlackM = 1e-6;  // rounding never decides: what is near a face is looked at by itself
 
@@ -27,19 +28,37 @@ SampleRuns::SampleRuns(const std::vector<SurfaceSample>& samples) {
     runs_.push_back({begin, end, box.center(), 0.5 * box.diagonal().norm() + kSlackM});
     begin = end;
   }
+  for (std::size_t begin = 0; begin < runs_.size(); begin += kRunsTogether) {
+    const std::size_t end = std::min(begin + kRunsTogether, runs_.size());
+    Eigen::AlignedBox3d box;
+    for (std::size_t k = begin; k < end; ++k) {
+      const Vector3d reach = Vector3d::Constant(runs_[k].radius_m);
+      box.extend(runs_[k].centre - reach).extend(runs_[k].centre + reach);
+    }
+    groups_.push_back({static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end), box.center(),
+                       0.5 * box.diagonal().norm() + kSlackM});
+  }
 }
 
 std::vector<std::uint32_t> SampleRuns::within(const Eigen::AlignedBox3d& box, const Rigid3& box_from_sample,
                                               const std::vector<SurfaceSample>& samples) const {
+  // Of a ball: how deep its centre lies inside, along the axis in which it is deepest outside, or nearest to
+  // a face.
+  const auto depth = [&](const Run& ball) {
+    const Vector3d centre = box_from_sample * ball.centre;
+    return std::min((centre - box.min()).minCoeff(), (box.max() - centre).minCoeff());
+  };
   std::vector<std::uint32_t> found;
-  for (const Run& run : runs_) {
-    const Vector3d centre = box_from_sample * run.centre;
-    // Along the axis in which the centre is deepest outside, or nearest to a face.
-    const double inside = std::min((centre - box.min()).minCoeff(), (box.max() - centre).minCoeff());
-    if (inside < -run.radius_m) continue;
-    const bool all = inside > run.radius_m;
-    for (std::uint32_t i = run.begin; i < run.end; ++i) {
-      if (all || box.contains(box_from_sample * samples[i].mean)) found.push_back(i);
+  for (const Run& group : groups_) {
+    if (depth(group) < -group.radius_m) continue;
+    for (std::uint32_t k = group.begin; k < group.end; ++k) {
+      const Run& run = runs_[k];
+      const double inside = depth(run);
+      if (inside < -run.radius_m) continue;
+      const bool all = inside > run.radius_m;
+      for (std::uint32_t i = run.begin; i < run.end; ++i) {
+        if (all || box.contains(box_from_sample * samples[i].mean)) found.push_back(i);
+      }
     }
   }
   return found;

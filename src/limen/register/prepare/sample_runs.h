@@ -33,6 +33,7 @@ class SampleRuns {
     double radius_m = 0.0;
   };
   std::vector<Run> runs_;
+  std::vector<Run> groups_;  ///< runs, so many that follow one another, in a ball together
 };
 
 }  // namespace limen

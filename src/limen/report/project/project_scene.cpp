@@ -141,6 +141,7 @@ std::string project_scene(const ProjectResult& result, std::vector<ProjectPictur
     told["about"] = words_of(scan, side.points.size());
     told["state"] = scan.readable ? to_string(scan.state) : "unreadable";
     told["component"] = scan.component;
+    told["mobile"] = scan.mobile;
     if (scan.frame_from_scan) {
       told["place"] = json_of(to_matrix(frame.page_from_local(*scan.frame_from_scan, side.origin)));
       if (!scan.model)

@@ -26,7 +26,10 @@ const loadView = () => {
     const stands = !project || (Boolean(place) && side.component === 0 && hasContent(side));
     return Object.assign(side, { tint: `--side-${k % kTints}`, place, stands, shown: stands });
   });
-  const { low, high } = joinedBoxes(scene.sides.filter((side) => side.stands).map((side) => boxOf(side, side.place)));
+  // Where there are stations they tell what is looked at: a pass sees the houses across the street as well.
+  const standing = scene.sides.filter((side) => side.stands);
+  const still = standing.filter((side) => !side.mobile);
+  const { low, high } = joinedBoxes((still.length ? still : standing).map((side) => boxOf(side, side.place)));
   const margin = 0.03 * norm(sub(high, low)) + 0.2;
   // Sections begin at the height of an eye: through windows and doors.
   const eye = Math.min(low[2] + kEyeHeight, 0.5 * (low[2] + high[2]));
@@ -167,7 +170,7 @@ const runView = (gl, canvas) => {
   };
   const gpu = makeViewGpu(gl, scene);
   const spots = makeSpots(scene);
-  let reach = 3 * norm(sub(scene.high, scene.low)) + 20;
+  let reach = 3 * norm(sub(scene.high, scene.low)) + 60;
   const placeOf = (side) => {
     const { pair, share } = state;
     if (!pair) return side.shown ? side.place : null;
