@@ -19,6 +19,7 @@
 #include "limen/bim/mesh/read_mesh_ply.h"
 #include "limen/bim/mesh/read_obj.h"
 #include "limen/bim/read_bim.h"
+#include "limen/cli/serve/http_request.h"
 #include "limen/files/zip_member.h"
 #include "limen/io/e57/e57_crc.h"
 #include "limen/io/e57/e57_poses.h"
@@ -176,6 +177,16 @@ void pose(std::string_view bytes) {
   read_pose_file(file.path());
 }
 
+/// The head of a request to `limen serve`, as it comes off the network.
+void http(std::string_view bytes) {
+  try {
+    const HttpRequest request = parse_http_head(bytes);
+    for (const auto& [name, value] : request.fields) static_cast<void>(request.field(name));
+  } catch (const HttpFault&) {
+    return;  // told to its sender
+  }
+}
+
 }  // namespace
 
 const std::vector<FuzzedReader>& fuzzed_readers() {
@@ -187,6 +198,7 @@ const std::vector<FuzzedReader>& fuzzed_readers() {
       {"step", step}, {"ifc_shapes", ifc_shapes},
       {"zip", zip},   {"segments", segments},
       {"pose", pose}, {"trajectory", trajectory},
+      {"http", http},
   };
   return kReaders;
 }

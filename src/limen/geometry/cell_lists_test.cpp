@@ -39,7 +39,7 @@ TEST(CellLists, TellsWhatAMapOfListsTells) {
   }
   EXPECT_TRUE(lists.at(cell_key({500.0, 0.0, 0.0})).empty());
   EXPECT_TRUE(CellLists().at(7).empty());
-  EXPECT_TRUE(CellLists({}).at(7).empty());
+  EXPECT_TRUE(CellLists(std::vector<std::vector<std::int64_t>>{}).at(7).empty());
 }
 
 TEST(Crossings, TellTheSameAsContains) {
