@@ -8,8 +8,8 @@ option(LIMEN_UNITY_BUILD "Compile the sources in groups: a third of the time for
 
 # Bytes of source in a group; fewer where most lines are matrices, or make JSON.
 set(LIMEN_UNITY_BYTES 50000)
-set(LIMEN_UNITY_BYTES_DENSE 36000)
-set(LIMEN_UNITY_BYTES_DENSEST 23000)
+set(LIMEN_UNITY_BYTES_DENSE 34000)
+set(LIMEN_UNITY_BYTES_DENSEST 18000)
 set(LIMEN_UNITY_DENSE "cli;geometry;match;register;sight;python_src")
 set(LIMEN_UNITY_DENSEST "deviation;project;report")
 
