@@ -295,8 +295,11 @@ class Assembler {
       const RegistrationResult& pair = pairs_[static_cast<std::size_t>(pair_of_[k])].result;
       told.pair = pair.outcome;
       told.reason = pair.reason;
-      told.matches = pair.matches;
-      told.openings = pair.openings;
+      // They are those of the pair's own best pose; of another one nothing is known.
+      if (told.number == 0) {
+        told.matches = pair.matches;
+        told.openings = pair.openings;
+      }
     } else {
       told.pair = Outcome::registered;
       told.reason = "given by the file";

@@ -15,6 +15,7 @@
 #include "limen/base/parallel.h"
 #include "limen/extract/model/cross_section.h"
 #include "limen/geometry/cell_key.h"
+#include "limen/geometry/cell_lists.h"
 #include "limen/geometry/polygon_clip.h"
 
 namespace limen {
@@ -50,15 +51,15 @@ std::vector<Body> bodies_of(const BimModel& model) {
 class BodyGrid {
  public:
   explicit BodyGrid(const std::vector<Body>& bodies) : bodies_(bodies) {
+    std::vector<std::vector<std::int64_t>> cells_of(bodies.size());
     for (std::size_t k = 0; k < bodies.size(); ++k) {
       if (bodies[k].faces.empty()) continue;
-      if (cells_within(bodies[k].box) > kMostCells) {
+      if (cells_within(bodies[k].box) > kMostCells)
         large_.push_back(k);
-        continue;
-      }
-      each_cell(bodies[k].box, [&](std::int64_t cell) { by_cell_.emplace_back(cell, k); });
+      else
+        each_cell(bodies[k].box, [&](std::int64_t cell) { cells_of[k].push_back(cell); });
     }
-    std::sort(by_cell_.begin(), by_cell_.end());
+    cells_ = CellLists(std::move(cells_of));
   }
 
   /// Numbers, ascending, of the bodies whose boxes meet `box`.
@@ -69,12 +70,10 @@ class BodyGrid {
     };
     for (const std::size_t k : large_) add(k);
     if (cells_within(box) > kMostCells) {
-      for (const auto& [cell, k] : by_cell_) add(k);
+      for (std::size_t k = 0; k < bodies_.size(); ++k) add(k);
     } else {
       each_cell(box, [&](std::int64_t cell) {
-        for (auto it = std::lower_bound(by_cell_.begin(), by_cell_.end(), std::pair(cell, std::size_t{0}));
-             it != by_cell_.end() && it->first == cell; ++it)
-          add(it->second);
+        for (const std::int32_t k : cells_.at(cell)) add(static_cast<std::size_t>(k));
       });
     }
     std::sort(found.begin(), found.end());
@@ -101,7 +100,7 @@ class BodyGrid {
 
   const std::vector<Body>& bodies_;
   std::vector<std::size_t> large_;
-  std::vector<std::pair<std::int64_t, std::size_t>> by_cell_;
+  CellLists cells_;
 };
 
 /// Where the matter of other elements stands right before the face, in the face's coordinates.
