@@ -76,7 +76,7 @@ TEST_F(IndoorOutdoorTest, RoomsThatRepeatAreAmbiguousWithTheTruthListed) {
   const Json pose = truth["scans"][0]["world_from_scan"];
   const auto off_m = [&](const Json& candidate) {
     double sum = 0.0;
-    for (int k = 0; k < 3; ++k)
+    for (std::size_t k = 0; k < 3; ++k)
       sum += std::pow(candidate["target_from_source"][k][3].get<double>() - pose[k][3].get<double>(), 2);
     return std::sqrt(sum);
   };

@@ -15,10 +15,13 @@ struct TwinEvidence {
   double alike = 0.0045;        ///< ... and of one furnished alike as well
   double otherwise_nats = 0.0;  ///< against the first
   double alike_nats = 0.0;      ///< against the second
+  /// What walls that are askew alike say against either. It holds for a whole building or not at all, and so
+  /// does not multiply over pairs.
+  double built_nats = 0.0;
 
   /// Odds of a twin of either kind.
   [[nodiscard]] double odds() const {
-    return (otherwise * std::exp(-otherwise_nats) + alike * std::exp(-alike_nats)) /
+    return std::exp(-built_nats) * (otherwise * std::exp(-otherwise_nats) + alike * std::exp(-alike_nats)) /
            (1.0 - otherwise - alike);
   }
   [[nodiscard]] double probability() const {

@@ -13,6 +13,7 @@
 #include "limen/register/judge/individual_matter.h"
 #include "limen/register/judge/posterior.h"
 #include "limen/register/judge/twin_odds.h"
+#include "limen/register/judge/uneven_walls.h"
 #include "limen/register/prepare/model_rooms.h"
 #include "limen/register/prepare/stage_clock.h"
 #include "limen/register/propose/propose.h"
@@ -164,15 +165,21 @@ double common_length_m(const RefinedPose& pose, const ScanView& source, const Sc
 
 /// What the data hold, and what the trajectory may be off where this place was scanned: the matched surface
 /// is seen within seconds, so that the error is one for all of it and does not average out.
-PoseSigma sigma_of(const RefinedPose& pose, const Vector3d& target_origin, double drift_m,
-                   double common_length_m) {
+Matrix6d covariance_with_drift(const RefinedPose& pose, const ScanView& source, const ScanView& target) {
+  const double shift_m = drift_m(source, target);
+  const double turn_rad =
+      shift_m / std::max(kDriftLengthM, common_length_m(pose, source, target) / kTurnOfWandering);
+  Matrix6d covariance = covariance_of(pose);
+  covariance.diagonal().head<3>().array() += turn_rad * turn_rad;
+  covariance.diagonal().tail<3>().array() += shift_m * shift_m;
+  return covariance;
+}
+
+PoseSigma sigma_of(const RefinedPose& pose, const PreparedPair& pair) {
   PoseSigma sigma;
-  sigma.centre = pose.centre + target_origin;
-  sigma.covariance = covariance_of(pose);
+  sigma.centre = pose.centre + pair.target.extracted.features.local_origin;
+  sigma.covariance = covariance_with_drift(pose, pair.source.view(), pair.target.view());
   sigma.formal_covariance = formal_covariance_of(pose);
-  const double drift_rad = drift_m / std::max(kDriftLengthM, common_length_m / kTurnOfWandering);
-  sigma.covariance.diagonal().head<3>().array() += drift_rad * drift_rad;
-  sigma.covariance.diagonal().tail<3>().array() += drift_m * drift_m;
   const Eigen::Matrix<double, 6, 1> deviation = sigma.covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
   sigma.rotation_rad = deviation.head<3>();
   sigma.translation_m = deviation.tail<3>();
@@ -184,9 +191,7 @@ Hypothesis to_hypothesis(const JudgedPose& pose, const PreparedPair& pair) {
   hypothesis.target_from_source =
       to_world(pose.refined.target_from_source, pair.source.extracted.features.local_origin,
                pair.target.extracted.features.local_origin);
-  hypothesis.sigma = sigma_of(pose.refined, pair.target.extracted.features.local_origin,
-                              drift_m(pair.source.view(), pair.target.view()),
-                              common_length_m(pose.refined, pair.source.view(), pair.target.view()));
+  hypothesis.sigma = sigma_of(pose.refined, pair);
   hypothesis.score = pose.score.value();
   hypothesis.agreeing_m2 = pose.score.agreeing_m2;
   hypothesis.contradicted_m2 = pose.score.contradicted_m2;
@@ -381,8 +386,10 @@ void tell(Verdict verdict, const std::vector<JudgedPose>& poses, const ContrastF
   Posterior all;
   if (!verdict.ranking.empty()) {
     all = posterior_of(poses, verdict, others, contrast, twin, model, !model && from.mobile != to.mobile);
-    // In a model the odds against chance have spoken already.
-    if (!model) verdict = with_posterior(std::move(verdict), all, options.verdict.risk);
+    verdict = with_posterior(std::move(verdict), all, options.verdict.risk);
+    const RefinedPose& pose = poses[verdict.ranking.front()].refined;
+    verdict =
+        with_drift(std::move(verdict), covariance_with_drift(pose, from.view(), to.view()), options.verdict);
   }
   result.outcome = verdict.outcome;
   result.judged_poses = poses.size();
@@ -471,6 +478,11 @@ RegistrationResult register_prepared(const PreparedPair& pair, const RegisterOpt
   judging.through_wall = !model && from.mobile != to.mobile;
   Verdict verdict = judge(poses, contrast, judging);
   std::optional<IndividualMatter> individual;  // under the best pose, once it was asked for
+  const auto matter_under = [&](const RefinedPose& pose) {
+    IndividualMatter matter = individual_matter(from.view(), to.view(), pose.target_from_source);
+    matter.built_nats = unevenness_nats(common_planes(pose, from.view(), to.view()));
+    return matter;
+  };
   // Of a room in use things stand where the other scan saw free space: no contradiction, if enough of the
   // rest is where it was to tell the room from its twins.
   if (verdict.outcome == Outcome::no_match && may_be_twin(from, to) && !verdict.ranking.empty()) {
@@ -478,8 +490,7 @@ RegistrationResult register_prepared(const PreparedPair& pair, const RegisterOpt
     bearing.max_contradiction = judging.max_contradiction_in_use;
     Verdict in_use = judge(poses, contrast, bearing);
     if (in_use.outcome != Outcome::no_match) {
-      const Rigid3& best = poses[in_use.ranking.front()].refined.target_from_source;
-      IndividualMatter matter = individual_matter(from.view(), to.view(), best);
+      IndividualMatter matter = matter_under(poses[in_use.ranking.front()].refined);
       if (probability_of_twin(matter, judging.twin) < kTwinRather) {
         verdict = std::move(in_use);
         individual = std::move(matter);
@@ -499,8 +510,9 @@ RegistrationResult register_prepared(const PreparedPair& pair, const RegisterOpt
   const std::optional<PreparedStart> start = prepared_start(from, to, options);
   double twin = 0.0;
   if (!verdict.ranking.empty() && verdict.outcome != Outcome::no_match && may_be_twin(from, to)) {
-    const Rigid3& best = poses[verdict.ranking.front()].refined.target_from_source;
-    if (!individual) individual = individual_matter(from.view(), to.view(), best);
+    const RefinedPose& refined = poses[verdict.ranking.front()].refined;
+    const Rigid3& best = refined.target_from_source;
+    if (!individual) individual = matter_under(refined);
     result.twin = weigh_twin(*individual, judging.twin);
     twin = result.twin->probability();
     if (start) twin = twin_beside_start(twin, start->prior, best, start->at, start->log_prior(best));

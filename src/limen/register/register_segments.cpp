@@ -213,10 +213,10 @@ class SegmentRegistration {
                                   rivals, rivals == 1 ? "" : "s", rivals == 1 ? "s" : "");
       return;
     }
-    VerdictOptions bounds;
-    bounds.max_sigma_m = options_.max_sigma_m;
-    bounds.max_sigma_deg = options_.max_sigma_deg;
-    if (result.unobserved.empty()) result.unobserved = loose_freedoms(best.pose, bounds);
+    if (result.unobserved.empty()) {
+      result.unobserved =
+          loose_freedoms(covariance_of(best.pose), options_.max_sigma_m, options_.max_sigma_deg);
+    }
     if (!result.unobserved.empty()) {
       result.outcome = Outcome::under_constrained;
       result.reason = "the segments in common do not fix the " + result.unobserved.front().name;

@@ -22,12 +22,7 @@
 namespace limen {
 namespace {
 
-struct OpeningsCommand {
-  std::string scan;
-  std::string output;
-  std::string origin;
-  std::string gravity = "auto";
-  ReadingChoice reading;
+struct OpeningsCommand : FeatureChoice {
   OpeningOptions openings;
 };
 
@@ -62,10 +57,7 @@ int run(const OpeningsCommand& command, const Session& session) {
   command.openings.check();
   refuse_same_file(command.output, command.scan);
   if (is_bim_file(command.scan)) return run_model(command, session);
-  const ReadOptions reading =
-      with_choice(read_options(command.origin, "--origin", command.gravity), command.reading);
-  session.monitor->begin_stage("reading");
-  Scan scan = read_input(command.scan, reading, session);
+  FeatureScan read = read_feature_scan(command, session);
   // Opened before the long work: a place that cannot be written to is told at once.
   AtomicFile file(command.output);
   session.monitor->begin_stage("openings");
@@ -73,13 +65,12 @@ int run(const OpeningsCommand& command, const Session& session) {
   preparing.extract.detect.seed = session.common.seed;
   preparing.gravity = gravity_of(command.gravity);
   preparing.openings = command.openings;
-  InputSummary input = summarise(command.scan, scan);
-  const Features features = features_of(std::move(scan), preparing, input, session);
-  if (input.place.source == PlaceSource::unknown) {
+  const Features features = features_of(std::move(read.scan), preparing, read.input, session);
+  if (read.input.place.source == PlaceSource::unknown) {
     throw Error("it is not known from where the scan was taken, and its points do not show it", command.scan,
                 "give the place of the scanner with --origin x,y,z");
   }
-  const std::string json = openings_json(features, input);
+  const std::string json = openings_json(features, read.input);
   return deliver(file, json, summary(features.openings, command.output), session);
 }
 
@@ -90,8 +81,7 @@ void add_openings_command(CommandLine& app, Session& session) {
   CommandLine* command =
       add_command(app, session, "openings", "Find the windows and doors of a scan or a model",
                   [options, &session] { return run(*options, session); });
-  add_feature_options(*command,
-                      {options->scan, options->output, options->origin, options->gravity, options->reading});
+  add_feature_options(*command, *options);
   OpeningOptions& o = options->openings;
   add_length_option(*command, "--min-width-m", o.min_width_m,
                     "Width of the narrowest opening (default 0.35)");

@@ -23,12 +23,7 @@
 namespace limen {
 namespace {
 
-struct PlanesOptions {
-  std::string scan;
-  std::string output;
-  std::string origin;
-  std::string gravity = "auto";
-  ReadingChoice reading;
+struct PlanesOptions : FeatureChoice {
   std::string detector = "auto";
   std::string threshold = "auto";
   ExtractOptions extract;
@@ -93,10 +88,7 @@ int run(PlanesOptions options, const Session& session) {
   options.extract.check();
   refuse_same_file(options.output, options.scan);
   if (is_bim_file(options.scan)) return run_model(options, session);
-  const ReadOptions reading =
-      with_choice(read_options(options.origin, "--origin", options.gravity), options.reading);
-  session.monitor->begin_stage("reading");
-  Scan scan = read_input(options.scan, reading, session);
+  FeatureScan read = read_feature_scan(options, session);
   session.monitor->begin_stage("planes");
   // Opened before the long work: a place that cannot be written to is told at once.
   AtomicFile file(options.output);
@@ -104,9 +96,8 @@ int run(PlanesOptions options, const Session& session) {
   preparing.extract = options.extract;
   preparing.gravity = gravity_of(options.gravity);
   preparing.planes_only = true;
-  InputSummary input = summarise(options.scan, scan);
-  const Features features = features_of(std::move(scan), preparing, input, session);
-  const std::string json = features_json(features, input);
+  const Features features = features_of(std::move(read.scan), preparing, read.input, session);
+  const std::string json = features_json(features, read.input);
   return deliver(file, json, summary(features, options), session);
 }
 
@@ -117,8 +108,7 @@ void add_planes_command(CommandLine& app, Session& session) {
   CommandLine* command =
       add_command(app, session, "planes", "Find the planes of a scan or a model and their outlines",
                   [options, &session] { return run(*options, session); });
-  add_feature_options(*command,
-                      {options->scan, options->output, options->origin, options->gravity, options->reading});
+  add_feature_options(*command, *options);
   std::vector<std::string> names;
   for (const auto& [name, detector] : detectors()) names.push_back(name);
   command

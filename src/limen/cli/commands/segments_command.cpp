@@ -23,12 +23,7 @@
 namespace limen {
 namespace {
 
-struct SegmentsCommand {
-  std::string scan;
-  std::string output;
-  std::string origin;
-  std::string gravity = "auto";
-  ReadingChoice reading;
+struct SegmentsCommand : FeatureChoice {
   SegmentOptions segments;
   double sampled_m = 0.0;
 };
@@ -105,15 +100,11 @@ int run(const SegmentsCommand& command, const Session& session) {
   command.segments.check();
   refuse_same_file(command.output, command.scan);
   if (is_bim_file(command.scan)) return run_model(command, session);
-  const ReadOptions reading =
-      with_choice(read_options(command.origin, "--origin", command.gravity), command.reading);
-  session.monitor->begin_stage("reading");
-  Scan scan = read_input(command.scan, reading, session);
-  InputSummary input = summarise(command.scan, scan);
+  FeatureScan read = read_feature_scan(command, session);
   // Opened before the long work: a place that cannot be written to is told at once.
   AtomicFile file(command.output);
-  const FoundSegments found = segments_of(std::move(scan), command, input, session);
-  const std::string json = segments_json(found.segments, found.local_origin, input);
+  const FoundSegments found = segments_of(std::move(read.scan), command, read.input, session);
+  const std::string json = segments_json(found.segments, found.local_origin, read.input);
   return deliver(file, json, summary(found, command.output), session);
 }
 
@@ -124,8 +115,7 @@ void add_segments_command(CommandLine& app, Session& session) {
   CommandLine* command = add_command(app, session, "segments",
                                      "Find the 3-D line segments of a scan or a building model: its edges",
                                      [options, &session] { return run(*options, session); });
-  add_feature_options(*command,
-                      {options->scan, options->output, options->origin, options->gravity, options->reading});
+  add_feature_options(*command, *options);
   SegmentOptions& o = options->segments;
   add_length_option(*command, "--min-length-m", o.min_length_m,
                     "Length of the shortest segment (default 0.2)");

@@ -144,17 +144,17 @@ ReadOptions with_choice(ReadOptions options, const ReadingChoice& choice) {
   return options;
 }
 
-void add_feature_options(CommandLine& command, const FeatureOptions& options) {
-  command.add_option("SCAN", options.scan, "A scan of any format limen reads")->required();
-  command.add_option("-o,--output", options.output, "The JSON file to write")->required()->type_name("FILE");
+void add_feature_options(CommandLine& command, FeatureChoice& choice) {
+  command.add_option("SCAN", choice.scan, "A scan of any format limen reads")->required();
+  command.add_option("-o,--output", choice.output, "The JSON file to write")->required()->type_name("FILE");
   command
-      .add_option("--origin", options.origin,
+      .add_option("--origin", choice.origin,
                   "From where the scan was taken, in the coordinates of its points, metres")
       ->type_name("x,y,z");
-  add_gravity_option(command, options.gravity, true);
-  add_units_option(command, options.reading.units);
-  add_memory_option(command, options.reading.memory);
-  add_trajectory_options(command, options.reading);
+  add_gravity_option(command, choice.gravity, true);
+  add_units_option(command, choice.reading.units);
+  add_memory_option(command, choice.reading.memory);
+  add_trajectory_options(command, choice.reading);
 }
 
 ReadOptions read_options(const std::string& origin, const std::string& option, const std::string& gravity) {
@@ -188,6 +188,15 @@ InputScan read_input_scan(const std::string& path, const ReadOptions& options, c
 
 Scan read_input(const std::string& path, const ReadOptions& options, const Session& session) {
   return read_input_scan(path, options, session).scan;
+}
+
+FeatureScan read_feature_scan(const FeatureChoice& choice, const Session& session) {
+  const ReadOptions reading =
+      with_choice(read_options(choice.origin, "--origin", choice.gravity), choice.reading);
+  session.monitor->begin_stage("reading");
+  FeatureScan read{read_input(choice.scan, reading, session), {}};
+  read.input = summarise(choice.scan, read.scan);
+  return read;
 }
 
 BimModel read_model_input(const std::string& path, const Session& session,

@@ -49,16 +49,16 @@ TrajectoryOptions trajectory_options(const ReadingChoice& choice);
 /// What read_options() gave, with the choice; reads the trajectory.
 ReadOptions with_choice(ReadOptions options, const ReadingChoice& choice);
 
-/// What every command that takes features from a scan to a file asks for.
-struct FeatureOptions {
-  std::string& scan;
-  std::string& output;
-  std::string& origin;
-  std::string& gravity;
-  ReadingChoice& reading;
+/// What every command that takes features from a scan to a file is told.
+struct FeatureChoice {
+  std::string scan;
+  std::string output;
+  std::string origin;
+  std::string gravity = "auto";
+  ReadingChoice reading;
 };
 /// Adds SCAN, --output, --origin, --gravity, --memory and --trajectory with what belongs to it.
-void add_feature_options(CommandLine& command, const FeatureOptions& options);
+void add_feature_options(CommandLine& command, FeatureChoice& choice);
 
 /// What the user said of a scan: `origin` "x,y,z" or empty (`option` names it in messages), `gravity`
 /// "auto", "up" or "unknown".
@@ -74,6 +74,13 @@ struct InputScan {
   double metres_per_unit = 1.0;  ///< of the file's numbers
 };
 InputScan read_input_scan(const std::string& path, const ReadOptions& options, const Session& session);
+
+/// The one scan of a command that takes features, and what is told of it. `choice.scan` is no model.
+struct FeatureScan {
+  Scan scan;
+  InputSummary input;
+};
+FeatureScan read_feature_scan(const FeatureChoice& choice, const Session& session);
 
 /// Reads a building model and notes its warnings; `metres_per_unit`: of a mesh, where the user says so.
 BimModel read_model_input(const std::string& path, const Session& session,

@@ -158,7 +158,8 @@ class DoubtSearch {
     const Cut otherwise =
         twin_cut({&TwinEvidence::otherwise, &TwinEvidence::otherwise_nats}, node, otherwise_);
     const Cut alike = twin_cut({&TwinEvidence::alike, &TwinEvidence::alike_nats}, node, alike_);
-    const double twin = otherwise.weight() + alike.weight();
+    const double built = std::exp(-std::max(otherwise.built_nats, alike.built_nats));
+    const double twin = built * (otherwise.weight() + alike.weight());
     const double none = 1.0 - otherwise.prior - alike.prior;
     doubt.twin = twin / (twin + none);
     doubt.twin_nats = std::log(twin / none);
@@ -168,8 +169,10 @@ class DoubtSearch {
   }
 
   struct Cut {
-    double prior = 0.0;       ///< of a twin, before things are asked; none where no pair's were
-    double nats = 0.0;        ///< what they say against it
+    double prior = 0.0;  ///< of a twin, before things are asked; none where no pair's were
+    double nats = 0.0;   ///< what they say against it
+    double built_nats =
+        0.0;  ///< what walls say against either kind: the most of all links, for it is one thing
     std::vector<int> links;   ///< that see different things
     std::vector<int> across;  ///< all
     [[nodiscard]] double weight() const { return prior * std::exp(-nats); }
@@ -222,6 +225,7 @@ class DoubtSearch {
       heard.push_back(voice.pair);
       if (voice.link < 0) continue;
       cut.across.push_back(voice.link);
+      cut.built_nats = std::max(cut.built_nats, voice.said.built_nats);
       if (fresh > kHardlyFresh) cut.links.push_back(voice.link);
       if (!is_asked(voice.link)) continue;
       const double prior = voice.said.*kind.prior;

@@ -70,6 +70,23 @@ TEST(Doubt, WhatOneDoubtfulBridgeHoldsIsNotRegistered) {
   }
 }
 
+TEST(Doubt, WhatWallsSayAgainstATwinCountsOnceForABuilding) {
+  const auto doubt_of = [](double built_nats, int links) {
+    Row row(2);
+    for (int k = 0; k < links; ++k) {
+      row.link(1, 0, 0.02, 0.0, 10.0 + k);
+      TwinEvidence said = twin_evidence_of(0.02);
+      said.built_nats = built_nats;
+      row.graph.links.back().evidence = said;
+      row.graph.links.back().twin = said.probability();
+    }
+    return solve_graph(row.graph, 0.001).nodes[1].doubt;
+  };
+  EXPECT_NEAR(doubt_of(0.0, 1), 0.02, 1e-4);
+  EXPECT_NEAR(doubt_of(std::log(20.0), 1), 0.02 / 20.0, 1e-4);
+  EXPECT_NEAR(doubt_of(std::log(20.0), 2), doubt_of(0.0, 2) / 20.0, 1e-5);
+}
+
 TEST(Doubt, LinksThatSeeDifferentSurfaceCheckOneAnotherWhereChanceIsFeared) {
   Row row(3);
   row.link(1, 0, 0.0, 0.0, 4.0);
@@ -149,7 +166,7 @@ TEST(Doubt, WhatIsRatherATwinIsTakenApartAndLeavesTheOthersSure) {
     row.graph.links.pop_back();
   }
   const SolvedGraph solved = solve_graph(row.graph);
-  for (const std::size_t node : {0, 1, 2}) {
+  for (const std::size_t node : {std::size_t{0}, std::size_t{1}, std::size_t{2}}) {
     EXPECT_EQ(solved.nodes[node].state, kYes) << node;
     EXPECT_EQ(solved.nodes[node].component, 0) << node;
   }

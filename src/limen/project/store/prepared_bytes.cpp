@@ -272,7 +272,8 @@ std::string bytes_of(const RegistrationResult& result) {
     writer.put(probability);
   writer.put(result.twin.has_value());
   const TwinEvidence twin = result.twin.value_or(TwinEvidence{});
-  for (const double told : {twin.otherwise, twin.alike, twin.otherwise_nats, twin.alike_nats})
+  for (const double told :
+       {twin.otherwise, twin.alike, twin.otherwise_nats, twin.alike_nats, twin.built_nats})
     writer.put(told);
   return writer.bytes();
 }
@@ -302,7 +303,8 @@ RegistrationResult result_from(std::string_view bytes, const std::string& where)
   if (others) result.others = told;
   const bool asked = reader.get<bool>();
   TwinEvidence twin;
-  for (double* value : {&twin.otherwise, &twin.alike, &twin.otherwise_nats, &twin.alike_nats})
+  for (double* value :
+       {&twin.otherwise, &twin.alike, &twin.otherwise_nats, &twin.alike_nats, &twin.built_nats})
     reader.get(*value);
   if (asked) result.twin = twin;
   return result;

@@ -42,6 +42,8 @@ struct IndividualMatter {
   bool apart = false;
   /// Observations that agree in either station's room: those of the room with fewer.
   double in_both_rooms = 0.0;
+  /// What walls that both scans saw askew alike say against a twin (unevenness_nats); not asked here.
+  double built_nats = 0.0;
 };
 
 /// Asks each scan about the other's individual matter under a pose (upright frames): pieces of surface on no

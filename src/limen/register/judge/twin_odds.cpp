@@ -148,6 +148,7 @@ TwinEvidence weigh_twin(const IndividualMatter& individual, const TwinOptions& o
   evidence.otherwise_nats = stayed - log_likelihood(individual.matter, chance) + same -
                             log_likelihood(individual.faces, furnished_otherwise());
   evidence.alike_nats = same - log_likelihood(individual.faces, furnished_alike());
+  evidence.built_nats = individual.built_nats;
   return evidence;
 }
 

@@ -109,6 +109,8 @@ void VerdictOptions::check() const {
   twin.check();
   if (!(max_sigma_m > 0)) throw_bad_option("max_sigma_m", max_sigma_m, "more than 0");
   if (!(max_sigma_deg > 0)) throw_bad_option("max_sigma_deg", max_sigma_deg, "more than 0");
+  if (!(max_drifting_m > 0)) throw_bad_option("max_drifting_m", max_drifting_m, "more than 0");
+  if (!(max_drifting_deg > 0)) throw_bad_option("max_drifting_deg", max_drifting_deg, "more than 0");
   if (!(min_held_m2 > 0)) throw_bad_option("min_held_m2", min_held_m2, "more than 0");
   // Nothing is more or less than a number that is none: such a bound would let any pose pass.
   const std::pair<const char*, double> bounds[] = {{"max_contradiction_in_use", max_contradiction_in_use},
@@ -144,8 +146,8 @@ std::vector<UnobservedFreedom> unobserved_freedoms(const RefinedPose& pose, doub
   return weak;
 }
 
-std::vector<UnobservedFreedom> loose_freedoms(const RefinedPose& pose, const VerdictOptions& options) {
-  const Matrix6d covariance = covariance_of(pose);
+std::vector<UnobservedFreedom> loose_freedoms(const Matrix6d& covariance, double max_sigma_m,
+                                              double max_sigma_deg) {
   std::vector<UnobservedFreedom> loose;
   const Spectrum3 shifts = spectrum_of(Matrix3d(covariance.bottomRightCorner<3, 3>()));
   const Spectrum3 turns = spectrum_of(Matrix3d(covariance.topLeftCorner<3, 3>()));
@@ -154,12 +156,12 @@ std::vector<UnobservedFreedom> loose_freedoms(const RefinedPose& pose, const Ver
     const double sigma_deg = degrees(std::sqrt(std::max(0.0, turns.values[k])));
     const Vector3d along = positive(shifts.vectors.col(k));
     const Vector3d about = positive(turns.vectors.col(k));
-    if (sigma_m > options.max_sigma_m) {
+    if (sigma_m > max_sigma_m) {
       loose.push_back({false, along,
                        fmt::format("shift along {}, known to {:.0f} mm only", direction_name(along),
                                    1e3 * std::min(sigma_m, 10.0))});
     }
-    if (sigma_deg > options.max_sigma_deg) {
+    if (sigma_deg > max_sigma_deg) {
       loose.push_back({true, about,
                        fmt::format("turn about {}, known to {:.2f} deg only", direction_name(about),
                                    std::min(sigma_deg, 180.0))});
@@ -299,7 +301,10 @@ Verdict judge(const std::vector<JudgedPose>& poses, const ContrastFunction& cont
         best.score.contradicted_m2);
     return verdict;
   }
-  if (verdict.unobserved.empty()) verdict.unobserved = loose_freedoms(best.refined, options);
+  if (verdict.unobserved.empty()) {
+    verdict.unobserved =
+        loose_freedoms(covariance_of(best.refined), options.max_sigma_m, options.max_sigma_deg);
+  }
   if (!verdict.unobserved.empty()) {
     verdict.outcome = Outcome::under_constrained;
     verdict.reason = "the common surface does not fix the " + verdict.unobserved.front().name;
@@ -320,6 +325,15 @@ Verdict with_twin(Verdict verdict, const IndividualMatter& individual, double pr
   verdict.outcome = Outcome::ambiguous;
   verdict.unobserved.clear();
   verdict.reason = twin_words(individual, probability);
+  return verdict;
+}
+
+Verdict with_drift(Verdict verdict, const Matrix6d& covariance, const VerdictOptions& options) {
+  if (verdict.outcome != Outcome::registered) return verdict;
+  verdict.unobserved = loose_freedoms(covariance, options.max_drifting_m, options.max_drifting_deg);
+  if (verdict.unobserved.empty()) return verdict;
+  verdict.outcome = Outcome::under_constrained;
+  verdict.reason = "the trajectory drifts, which leaves open the " + verdict.unobserved.front().name;
   return verdict;
 }
 

@@ -54,6 +54,8 @@ struct VerdictOptions {
   double min_held_m2 = 0.03;       ///< surface (times lever^2 for turns) that must hold each freedom
   double max_sigma_m = 0.012;      ///< a shift known less well than this counts as open
   double max_sigma_deg = 0.1;      ///< and so does a turn
+  double max_drifting_m = 0.05;    ///< the same with what a trajectory may be off by: beyond it a place a
+  double max_drifting_deg = 0.5;   ///< wall further on, or another wall of the room, fits as well
   double same_rotation_deg = 1.0;  ///< poses nearer than both bounds are one pose
   double same_shift_m = 0.05;
 
@@ -82,14 +84,19 @@ Verdict judge(const std::vector<JudgedPose>& poses, const ContrastFunction& cont
 Verdict with_twin(Verdict verdict, const IndividualMatter& individual, double probability,
                   const VerdictOptions& options = {});
 
+/// The verdict once what a trajectory may be off by is counted in the best pose's `covariance` (turns, then
+/// shifts; rad, m): a freedom that is known less well than the options ask for with it is open.
+Verdict with_drift(Verdict verdict, const Matrix6d& covariance, const VerdictOptions& options = {});
+
 /// Distinct poses, best value first: indices.
 std::vector<std::size_t> rank(const std::vector<JudgedPose>& poses, const VerdictOptions& options = {});
 
 /// Freedoms of a pose that less than `min_held_m2` of matched surface holds.
 std::vector<UnobservedFreedom> unobserved_freedoms(const RefinedPose& pose, double min_held_m2);
 
-/// Freedoms of a pose that are held, but not as well as the options ask for: by far-off or hardly seen
-/// openings, say. The name tells how well.
-std::vector<UnobservedFreedom> loose_freedoms(const RefinedPose& pose, const VerdictOptions& options = {});
+/// Freedoms that are held, but less well than the bounds ask for: by far-off or hardly seen openings, say, or
+/// by a trajectory that drifts. `covariance` of a pose: turns, then shifts (rad, m). The name tells how well.
+std::vector<UnobservedFreedom> loose_freedoms(const Matrix6d& covariance, double max_sigma_m,
+                                              double max_sigma_deg);
 
 }  // namespace limen

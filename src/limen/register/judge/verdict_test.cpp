@@ -146,6 +146,19 @@ TEST(Verdict, AShiftThatIsHardlyKnownIsNamed) {
   EXPECT_NE(verdict.unobserved[0].name.find("24 mm"), std::string::npos);
 }
 
+TEST(Verdict, ATrajectoryThatDriftsFarLeavesAShiftOpen) {
+  const Verdict sure = judge_all({pose(30, 0, 0)});
+  ASSERT_EQ(sure.outcome, Outcome::registered);
+  Matrix6d covariance = 1e-8 * Matrix6d::Identity();
+  covariance.bottomRightCorner<3, 3>() += 0.03 * 0.03 * Matrix3d::Identity();
+  EXPECT_EQ(with_drift(sure, covariance).outcome, Outcome::registered);
+  covariance(3, 3) = 0.06 * 0.06;
+  const Verdict open = with_drift(sure, covariance);
+  EXPECT_EQ(open.outcome, Outcome::under_constrained);
+  ASSERT_EQ(open.unobserved.size(), 1U);
+  EXPECT_NE(open.reason.find("60 mm"), std::string::npos);
+}
+
 TEST(Verdict, RivalsAlongAnOpenShiftAreTheSameAnswer) {
   JudgedPose open = pose(30, 0, 0);
   open.refined.geometry_m2(3, 3) = 0.0;

@@ -41,7 +41,7 @@ WholeBuilding building_of(const PairSetOptions& options, std::uint64_t day) {
 /// Chooses the rooms of a set.
 class Chooser {
  public:
-  Chooser(const WholeBuilding& building, RandomStream& random) : building_(building), random_(random) {
+  Chooser(const WholeBuilding& building, RandomStream& random) : building_(building) {
     const auto& rooms = building.world.buildings[0].plan.rooms;
     for (std::size_t room = 0; room < rooms.size(); ++room) {
       const bool joins = rooms[room].use == RoomUse::corridor || rooms[room].use == RoomUse::stairs;
@@ -105,7 +105,6 @@ class Chooser {
   }
 
   const WholeBuilding& building_;
-  RandomStream& random_;
   std::vector<std::size_t> living_;
 };
 
