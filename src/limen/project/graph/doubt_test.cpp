@@ -71,7 +71,7 @@ TEST(Doubt, WhatOneDoubtfulBridgeHoldsIsNotRegistered) {
 }
 
 TEST(Doubt, WhatWallsSayAgainstATwinCountsOnceForABuilding) {
-  const auto doubt_of = [](double built_nats, int links) {
+  const auto odds_of = [](double built_nats, int links) {
     Row row(2);
     for (int k = 0; k < links; ++k) {
       row.link(1, 0, 0.02, 0.0, 10.0 + k);
@@ -80,11 +80,12 @@ TEST(Doubt, WhatWallsSayAgainstATwinCountsOnceForABuilding) {
       row.graph.links.back().evidence = said;
       row.graph.links.back().twin = said.probability();
     }
-    return solve_graph(row.graph, 0.001).nodes[1].doubt;
+    const double doubt = solve_graph(row.graph, 0.001).nodes[1].doubt;
+    return doubt / (1.0 - doubt);
   };
-  EXPECT_NEAR(doubt_of(0.0, 1), 0.02, 1e-4);
-  EXPECT_NEAR(doubt_of(std::log(20.0), 1), 0.02 / 20.0, 1e-4);
-  EXPECT_NEAR(doubt_of(std::log(20.0), 2), doubt_of(0.0, 2) / 20.0, 1e-5);
+  EXPECT_NEAR(odds_of(0.0, 1), 0.02 / 0.98, 1e-4);
+  EXPECT_NEAR(odds_of(std::log(20.0), 1), odds_of(0.0, 1) / 20.0, 1e-5);
+  EXPECT_NEAR(odds_of(std::log(20.0), 2), odds_of(0.0, 2) / 20.0, 1e-5);
 }
 
 TEST(Doubt, LinksThatSeeDifferentSurfaceCheckOneAnotherWhereChanceIsFeared) {
