@@ -107,11 +107,16 @@ describe('work', () => {
   test('two files are registered, with progress, and the report can be looked at', async () => {
     await page.selectOption('#source', 'indoor_00.ply');
     await page.selectOption('#target', 'outdoor.ply');
+    await page.check('#pdf');
     await page.click('#register button');
+    await page.uncheck('#pdf');
     await page.waitForFunction(() => /(reading|features|scoring|refinement|hypotheses)/.test(document.querySelector('#job-1 .time')?.textContent ?? ''), null, { timeout: 60000, polling: 20 });
     if (shots) await page.screenshot({ path: join(shots, 'serve-running.png') });
     const card = await ended(1);
     assert.match(await card.innerText(), /registered/);
+    const printed = await page.request.get(await card.locator('a', { hasText: 'report.pdf' }).evaluate((link) => link.href));
+    assert.equal(printed.headers()['content-type'], 'application/pdf');
+    assert.equal((await printed.body()).subarray(0, 5).toString(), '%PDF-');
     const [report] = await Promise.all([page.context().waitForEvent('page'), card.locator('a', { hasText: 'report.html' }).click()]);
     await report.waitForSelector('html[data-ready]', { timeout: 60000 });
     assert.match(await report.locator('h1').innerText(), /fit/i);

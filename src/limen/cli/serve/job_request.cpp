@@ -42,6 +42,13 @@ struct Asked {
     return static_cast<int>(value);
   }
 
+  [[nodiscard]] bool flag(const char* key) const {
+    const auto found = json.find(key);
+    if (found == json.end() || found->is_null()) return false;
+    if (!found->is_boolean()) throw HttpFault(400, fmt::format("{} is neither true nor false", key));
+    return found->get<bool>();
+  }
+
   /// "files/NAME" of a file that is there.
   [[nodiscard]] std::string file(const std::string& name) const {
     std::error_code gone;
@@ -101,6 +108,7 @@ PageJob registering(const Asked& asked) {
   job.words = {"register", source, target, "-o", asked.results()};
   add_units(asked, "source_units", "--source-units", job.words);
   add_units(asked, "target_units", "--target-units", job.words);
+  if (asked.flag("pdf")) job.words.emplace_back("--pdf");
   job.title = fmt::format("{} into {}", last_name(source), last_name(target));
   return job;
 }
@@ -111,6 +119,7 @@ PageJob whole_project(const Asked& asked) {
   job.words = {"project"};
   job.words.insert(job.words.end(), files.begin(), files.end());
   job.words.insert(job.words.end(), {"-o", asked.results()});
+  if (asked.flag("pdf")) job.words.emplace_back("--pdf");
   job.title = joined_names(files);
   return job;
 }

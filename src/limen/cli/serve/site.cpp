@@ -16,6 +16,7 @@
 #include "limen/cli/serve/job_request.h"
 #include "limen/cli/serve/serve_page.h"
 #include "limen/files/text_numbers.h"
+#include "limen/report/html/print_pdf.h"
 
 namespace limen {
 namespace {
@@ -53,6 +54,14 @@ std::string type_of(const std::string& name) {
     if (name.ends_with(ending)) return type;
   }
   return "application/octet-stream";
+}
+
+bool has_browser() {
+  try {
+    return !find_chromium().empty();
+  } catch (const Error&) {
+    return false;
+  }
 }
 
 /// RFC 6266 and 8187: bytes beyond what every reader takes are encoded.
@@ -114,6 +123,7 @@ ServeSite::ServeSite(fs::path folder, Gate gate, std::uint64_t most_upload_bytes
     : folder_(std::move(folder)),
       gate_(std::move(gate)),
       most_upload_bytes_(most_upload_bytes),
+      prints_(has_browser()),
       jobs_(folder_) {
   std::error_code fault;
   for (const char* part : {"files", "results"}) {
@@ -167,6 +177,7 @@ HttpReply ServeSite::state() const {
   Json json = {{"version", kVersion},
                {"folder", folder_.filename().string()},
                {"most_upload_bytes", most_upload_bytes_},
+               {"prints", prints_},
                {"files", served_files_json(served_files(folder_ / "files"))},
                {"jobs", jobs_.as_json()}};
   return json_reply(json);

@@ -66,6 +66,7 @@ class ServeSite {
   std::filesystem::path folder_;
   Gate gate_;
   std::uint64_t most_upload_bytes_;
+  bool prints_;  ///< a browser that can print is on this machine
   JobBoard jobs_;
 };
 

@@ -267,6 +267,7 @@ const refresh = async () => {
   if (missed > 0) return;
   byId('folder').textContent = state.folder;
   byId('version').textContent = `limen ${state.version}`;
+  byId('prints').hidden = !state.prints;
   document.title = state.jobs.some((job) => job.state === 'running') ? 'limen: at work' : 'limen';
   showFiles();
   await showJobs();
@@ -295,10 +296,10 @@ for (const id of ['source-units', 'target-units']) {
 }
 byId('register').onsubmit = (event) => {
   event.preventDefault();
-  start({ kind: 'register', source: byId('source').value, target: byId('target').value, source_units: byId('source-units').value, target_units: byId('target-units').value });
+  start({ kind: 'register', source: byId('source').value, target: byId('target').value, source_units: byId('source-units').value, target_units: byId('target-units').value, pdf: byId('pdf').checked });
 };
 byId('many').onsubmit = (event) => {
   event.preventDefault();
-  start({ kind: event.submitter.value, files: state.files.map((file) => file.name).filter((name) => ticked.has(name)) });
+  start({ kind: event.submitter.value, files: state.files.map((file) => file.name).filter((name) => ticked.has(name)), pdf: byId('pdf').checked });
 };
 again();
