@@ -45,11 +45,13 @@ class Waves {
   }
 
  private:
+  using Done = std::set<std::pair<std::size_t, std::size_t>>;
+
   [[nodiscard]] PairList next_pairs(const std::vector<std::vector<std::size_t>>& ranked,
                                     const std::vector<TriedPair>& tried, std::size_t partners) const {
     const ProjectGraph made = make_graph(nodes_, tried, risk_, words_);
     const SolvedGraph solved = solve_graph(made.graph, risk_);
-    std::set<std::pair<std::size_t, std::size_t>> done;
+    Done done;
     for (const TriedPair& pair : tried) done.emplace(pair.source, pair.target);
     std::vector<int> held(nodes_.size(), 0);
     for (std::size_t k = 0; k < made.graph.links.size(); ++k) {
@@ -57,12 +59,20 @@ class Waves {
       ++held[static_cast<std::size_t>(made.graph.links[k].source)];
       ++held[static_cast<std::size_t>(made.graph.links[k].target)];
     }
-    PairList next = partners_by_place(solved, held, done);
-    for (std::size_t i = 0; i < nodes_.size(); ++i) {
-      // A room whose scans hold one another may still stand apart from the rest.
-      const int own = solved.nodes[i].component;
-      if (held[i] > 0 && own == 0) continue;
-      for (std::size_t k = 0; k < std::min(partners, ranked[i].size()); ++k) {
+    const PairList by_place = partners_by_place(solved, held, done);
+    return in_turns(by_place, joining_partners(ranked, solved, held, partners, done));
+  }
+
+  /// Of scans that nothing holds, or only scans that stand apart from the rest with them, the first in their
+  /// lists: the first of each, then the second of each, and so on.
+  [[nodiscard]] PairList joining_partners(const std::vector<std::vector<std::size_t>>& ranked,
+                                          const SolvedGraph& solved, const std::vector<int>& held,
+                                          std::size_t partners, Done& done) const {
+    PairList next;
+    for (std::size_t k = 0; k < partners; ++k) {
+      for (std::size_t i = 0; i < nodes_.size(); ++i) {
+        const int own = solved.nodes[i].component;
+        if ((held[i] > 0 && own == 0) || k >= ranked[i].size()) continue;
         const std::size_t partner = ranked[i][k];
         if (held[i] > 0 && solved.nodes[partner].component == own) continue;
         if (done.emplace(std::max(i, partner), std::min(i, partner)).second)
@@ -72,9 +82,18 @@ class Waves {
     return next;
   }
 
+  /// One of either list after the other: where there are too many for all, neither goes without.
+  [[nodiscard]] static PairList in_turns(const PairList& first, const PairList& second) {
+    PairList all;
+    for (std::size_t k = 0; k < std::max(first.size(), second.size()); ++k) {
+      if (k < first.size()) all.push_back(first[k]);
+      if (k < second.size()) all.push_back(second[k]);
+    }
+    return all;
+  }
+
   /// Less overlap, scan, partner.
   using Wish = std::tuple<double, std::size_t, std::size_t>;
-  using Done = std::set<std::pair<std::size_t, std::size_t>>;
 
   /// Of scans that are not held by links enough the partners that should see most of what they see, the most
   /// promising first, from where all stand by now; ties by number.
