@@ -51,6 +51,4 @@ function(limen_unity target)
   set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
   # A type of an unnamed namespace may stand in a class of the same file: it is that file's alone, here as there.
   target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
-  # A name of one function is no shadow of another file's; that clang warns of what gcc lets pass.
-  target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:Clang>:-Wno-shadow>)
 endfunction()

@@ -59,11 +59,11 @@ MappedFile::MappedFile(const std::filesystem::path& path) {
 }
 
 void MappedFile::read_stream(int descriptor, const std::string& name) {
-  constexpr std::size_t kPiece = std::size_t{1} << 20U;
+  constexpr std::size_t kStreamPiece = std::size_t{1} << 20U;
   for (;;) {
     const std::size_t before = read_.size();
-    read_.resize(before + kPiece);
-    const ssize_t got = read(descriptor, read_.data() + before, kPiece);
+    read_.resize(before + kStreamPiece);
+    const ssize_t got = read(descriptor, read_.data() + before, kStreamPiece);
     if (got < 0 && errno != EINTR) {
       throw Error("cannot be read: " + reason_of(errno), name, "check the file and its disk");
     }

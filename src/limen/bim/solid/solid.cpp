@@ -5,10 +5,10 @@
 namespace limen {
 
 Box3 box_of(const PolygonMesh& mesh) {
-  constexpr double kFarthest_m = 1e9;
+  constexpr double kFarthestOfBox_m = 1e9;
   Box3 box;
   for (const std::uint32_t corner : mesh.corners) {
-    if ((mesh.points[corner].array().abs() < kFarthest_m).all()) box.add(mesh.points[corner]);
+    if ((mesh.points[corner].array().abs() < kFarthestOfBox_m).all()) box.add(mesh.points[corner]);
   }
   return box;
 }
