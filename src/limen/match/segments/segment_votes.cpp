@@ -287,11 +287,11 @@ class Voting {
 }  // namespace
 
 VotingSegments::VotingSegments(const std::vector<Segment>& segments, std::size_t most) {
-  constexpr double kNoSegmentM = 1e-6;
+  constexpr double kNoVotingLengthM = 1e-6;
   std::vector<std::size_t> order;
   for (std::size_t i = 0; i < segments.size(); ++i) {
     const double length = segments[i].length();
-    if (length > kNoSegmentM && std::isfinite(length)) order.push_back(i);
+    if (length > kNoVotingLengthM && std::isfinite(length)) order.push_back(i);
   }
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return segments[a].length() > segments[b].length(); });
