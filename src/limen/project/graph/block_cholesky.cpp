@@ -161,6 +161,7 @@ void BlockCholesky::eliminate(std::size_t j, const std::vector<std::pair<std::si
 }
 
 Eigen::MatrixXd BlockCholesky::solve(const Eigen::MatrixXd& right) const {
+  if (right.cols() == 0) return right;  // of nothing Eigen may take no rows
   Eigen::MatrixXd x(right.rows(), right.cols());
   for (std::size_t j = 0; j < columns_.size(); ++j)
     x.middleRows<6>(first_row(j)) = right.middleRows<6>(first_row(static_cast<std::size_t>(old_of_[j])));
