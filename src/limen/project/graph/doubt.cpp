@@ -158,8 +158,7 @@ class DoubtSearch {
     const Cut otherwise =
         twin_cut({&TwinEvidence::otherwise, &TwinEvidence::otherwise_nats}, node, otherwise_);
     const Cut alike = twin_cut({&TwinEvidence::alike, &TwinEvidence::alike_nats}, node, alike_);
-    const double built = std::exp(-std::max(otherwise.built_nats, alike.built_nats));
-    const double twin = built * (otherwise.weight() + alike.weight());
+    const double twin = otherwise.weight() + alike.weight();
     const double none = 1.0 - otherwise.prior - alike.prior;
     doubt.twin = twin / (twin + none);
     doubt.twin_nats = std::log(twin / none);
@@ -171,11 +170,12 @@ class DoubtSearch {
   struct Cut {
     double prior = 0.0;  ///< of a twin, before things are asked; none where no pair's were
     double nats = 0.0;   ///< what they say against it
-    double built_nats =
-        0.0;  ///< what walls say against either kind: the most of all links, for it is one thing
+    /// What walls say against it, once for a building: by the link that shows most surface. The link that
+    /// says most would be chosen for what it says, and of many some say much by chance.
+    double built_nats = 0.0;
     std::vector<int> links;   ///< that see different things
     std::vector<int> across;  ///< all
-    [[nodiscard]] double weight() const { return prior * std::exp(-nats); }
+    [[nodiscard]] double weight() const { return prior * std::exp(-nats - built_nats); }
   };
 
   /// The side of `node` of the smallest cut between it and the reference; empty where enough is said across
@@ -215,6 +215,7 @@ class DoubtSearch {
       return std::abs(a.said.*kind.nats) > std::abs(b.said.*kind.nats);
     });
     Cut cut;
+    double most_shown_m2 = 0.0;
     std::vector<const GraphLink*> heard_for;
     std::vector<const GraphLink*> heard_against;
     for (const Voice& voice : voices) {
@@ -225,9 +226,12 @@ class DoubtSearch {
       heard.push_back(voice.pair);
       if (voice.link < 0) continue;
       cut.across.push_back(voice.link);
-      cut.built_nats = std::max(cut.built_nats, voice.said.built_nats);
       if (fresh > kHardlyFresh) cut.links.push_back(voice.link);
       if (!is_asked(voice.link)) continue;
+      if (const double shown_m2 = voice.pair->poses.front().agreeing_m2; shown_m2 > most_shown_m2) {
+        most_shown_m2 = shown_m2;
+        cut.built_nats = voice.said.built_nats;
+      }
       const double prior = voice.said.*kind.prior;
       cut.prior = cut.prior > 0.0 ? std::min(cut.prior, prior) : prior;
     }

@@ -88,6 +88,22 @@ TEST(Doubt, WhatWallsSayAgainstATwinCountsOnceForABuilding) {
   EXPECT_NEAR(odds_of(std::log(20.0), 2), odds_of(0.0, 2) / 20.0, 1e-5);
 }
 
+TEST(Doubt, WhatWallsSayIsAskedOfTheLinkThatShowsMost) {
+  const auto odds_of = [](double of_the_smaller, double of_the_larger) {
+    Row row(2);
+    for (const auto& [built_nats, agreeing_m2] :
+         {std::pair(of_the_smaller, 10.0), std::pair(of_the_larger, 40.0)}) {
+      row.link(1, 0, 0.02, 0.0, agreeing_m2);
+      row.graph.links.back().evidence = twin_evidence_of(0.02);
+      row.graph.links.back().evidence->built_nats = built_nats;
+    }
+    const double doubt = solve_graph(row.graph, 0.001).nodes[1].doubt;
+    return doubt / (1.0 - doubt);
+  };
+  EXPECT_NEAR(odds_of(std::log(20.0), 0.0), odds_of(0.0, 0.0), 1e-6);
+  EXPECT_NEAR(odds_of(0.0, std::log(20.0)), odds_of(0.0, 0.0) / 20.0, 1e-5);
+}
+
 TEST(Doubt, LinksThatSeeDifferentSurfaceCheckOneAnotherWhereChanceIsFeared) {
   Row row(3);
   row.link(1, 0, 0.0, 0.0, 4.0);
