@@ -18,6 +18,7 @@
 
 #include "limen/base/angles.h"
 #include "limen/base/random.h"
+#include "limen/geometry/random_vectors.h"
 #include "limen/io/cloud/read_scan.h"
 #include "limen/register/register.h"
 #include "limen/simulate/scene.h"
@@ -60,8 +61,7 @@ Rigid3 random_pose(std::uint64_t seed, std::uint64_t trial, bool level) {
   if (level) {
     pose.rotation = rotation_exp({0, 0, stream.uniform(-3.14159, 3.14159)});
   } else {
-    Eigen::Quaterniond q(stream.normal(), stream.normal(), stream.normal(), stream.normal());
-    pose.rotation = q.normalized().toRotationMatrix();
+    pose.rotation = uniform_rotation(stream);
   }
   pose.translation = {stream.uniform(-20, 20), stream.uniform(-20, 20), stream.uniform(-20, 20)};
   return pose;
@@ -72,8 +72,8 @@ Rigid3 table1_pose(std::uint64_t seed, std::size_t row) {
   static constexpr std::array<std::array<double, 2>, 4> kRows = {
       {{0.099, 0.001}, {0.44, 0.528}, {1.27, 3.0}, {4.15, 12.0}}};
   RandomStream stream(seed, row);
-  const Vector3d axis = Vector3d(stream.normal(), stream.normal(), stream.normal()).normalized();
-  const Vector3d way = Vector3d(stream.normal(), stream.normal(), stream.normal()).normalized();
+  const Vector3d axis = normal_vector(stream).normalized();
+  const Vector3d way = normal_vector(stream).normalized();
   return {rotation_exp(radians(kRows[row % 4][1]) * axis), kRows[row % 4][0] * way};
 }
 

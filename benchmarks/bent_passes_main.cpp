@@ -18,6 +18,7 @@
 #include "limen/base/angles.h"
 #include "limen/base/random.h"
 #include "limen/geometry/linear.h"
+#include "limen/geometry/random_vectors.h"
 #include "limen/geometry/spline_motion.h"
 #include "limen/project/passes/bent_passes.h"
 
@@ -165,9 +166,9 @@ class Site {
     const Vector3d normal = patch.u.cross(patch.v);
     const double common = kCommonM * random.normal();
     for (int k = 0; k < kTiles; ++k) {
-      const Vector3d point = patch.middle + random.uniform(-half_u, half_u) * patch.u +
-                             random.uniform(-1.5, 1.5) * patch.v +
-                             (common + kTileM * random.normal()) * normal;
+      const double off = common + kTileM * random.normal();
+      const Vector2d in = uniform_vector(Vector2d(-half_u, -1.5), Vector2d(half_u, 1.5), random);
+      const Vector3d point = patch.middle + in.x() * patch.u + in.y() * patch.v + off * normal;
       observation.moments.add(node_from_world * point - observation.anchor);
     }
     return observation;

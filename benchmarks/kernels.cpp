@@ -8,6 +8,7 @@
 #include "limen/extract/features/extract_features.h"
 #include "limen/geometry/alpha_shape.h"
 #include "limen/match/planes/enumerate_poses.h"
+#include "limen/register/judge/score_pose.h"
 #include "limen/register/prepare/prepare_scan.h"
 #include "limen/register/refine/refine_pose.h"
 #include "limen/simulate/scene.h"

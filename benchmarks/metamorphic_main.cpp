@@ -20,6 +20,7 @@
 #include <fmt/format.h>
 
 #include "limen/base/random.h"
+#include "limen/geometry/random_vectors.h"
 #include "limen/io/cloud/read_scan.h"
 #include "limen/register/register.h"
 #include "limen/simulate/scene.h"
@@ -100,8 +101,7 @@ Changed changed(const Scan& scan, const std::string& law, RandomStream stream) {
     return moved_somewhere(scan, rotation_exp({0.0, 0.0, angle}), stream);
   }
   if (law == "turn") {
-    const Eigen::Quaterniond q(stream.normal(), stream.normal(), stream.normal(), stream.normal());
-    return moved_somewhere(scan, q.normalized().toRotationMatrix(), stream);
+    return moved_somewhere(scan, uniform_rotation(stream), stream);
   }
   if (law == "permute") return {with_order(scan, stream), {}};
   if (law == "half") return {thinned_at_random(scan, 0.5, stream), {}};

@@ -17,6 +17,7 @@
 #include "limen/base/angles.h"
 #include "limen/base/error.h"
 #include "limen/base/random.h"
+#include "limen/geometry/random_vectors.h"
 #include "limen/register/register.h"
 #include "limen/simulate/scene.h"
 
@@ -51,7 +52,7 @@ struct Case {
 };
 
 Vector3d any_direction(RandomStream& random) {
-  return Vector3d(random.normal(), random.normal(), random.normal()).normalized();
+  return normal_vector(random).normalized();
 }
 
 /// The source put where it belongs, but for `start`: turned about its station and shifted, any way.

@@ -21,6 +21,7 @@
 
 #include "limen/base/parallel.h"
 #include "limen/base/random.h"
+#include "limen/geometry/random_vectors.h"
 #include "limen/project/project_graph.h"
 #include "limen/project/project_state.h"
 #include "limen/project/waves.h"
@@ -134,10 +135,11 @@ class Office {
     put({middle.x(), middle.y(), low}, ez, east - west, north - south);
     put({middle.x(), middle.y(), high}, -ez, east - west, north - south);
     for (int k = 0; k < 10; ++k) {
-      const Vector3d at(random.uniform(west, east), random.uniform(south, north),
-                        random.uniform(low + 0.3, low + 2.0));
+      const Vector3d at =
+          uniform_vector(Vector3d(west, south, low + 0.3), Vector3d(east, north, low + 2.0), random);
       const Vector3d normals[] = {ex, ey, -ex, -ey, ez};
-      put(at, normals[k % 5], random.uniform(0.6, 2.0), random.uniform(0.6, 1.5));
+      const Vector2d size = uniform_vector(Vector2d(0.6, 0.6), Vector2d(2.0, 1.5), random);
+      put(at, normals[k % 5], size.x(), size.y());
     }
     return room;
   }
@@ -154,8 +156,8 @@ class Office {
     const Room& room = rooms_[static_cast<std::size_t>(r)];
     Rigid3 pose;
     pose.rotation = rotation_exp({0.0, 0.0, random.uniform(-3.1, 3.1)});
-    pose.translation = Vector3d(6.0 * room.x + random.uniform(1.5, 4.5),
-                                5.0 * room.y + random.uniform(1.5, 3.5), 3.5 * room.floor + 1.6);
+    const Vector2d in = uniform_vector(Vector2d(1.5, 1.5), Vector2d(4.5, 3.5), random);
+    pose.translation = Vector3d(6.0 * room.x + in.x(), 5.0 * room.y + in.y(), 3.5 * room.floor + 1.6);
     ProjectNode node;
     node.scan = node.file = nodes_.size();
     node.digest.upright = true;
@@ -185,9 +187,9 @@ class Office {
     const double half = 0.5 * std::sqrt(surface.width_m * surface.height_m * share);
     constexpr int kTiles = 24;
     for (int k = 0; k < kTiles; ++k) {
-      const Vector3d point = surface.middle + random.uniform(-half, half) * u +
-                             random.uniform(-half, half) * v +
-                             (common + kTileM * random.normal()) * surface.normal;
+      const double off = common + kTileM * random.normal();
+      const Vector2d in = uniform_vector(Vector2d(-half, -half), Vector2d(half, half), random);
+      const Vector3d point = surface.middle + in.x() * u + in.y() * v + off * surface.normal;
       plane.moments.add(node_from_world * point - plane.centroid);
     }
     plane.plane.normal = node_from_world.rotation * surface.normal;

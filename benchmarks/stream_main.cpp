@@ -19,7 +19,7 @@
 #include <sys/wait.h>
 
 #include "limen/base/parallel.h"
-#include "limen/io/ply/ply_writer.h"
+#include "limen/io/cloud/cloud_writers.h"
 
 namespace {
 

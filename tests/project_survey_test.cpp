@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "limen/base/random.h"
+#include "limen/geometry/random_vectors.h"
 #include "limen/geometry/rigid.h"
 
 namespace limen {
@@ -63,9 +64,7 @@ class ProjectSurvey : public ProgramTest {
         {"A", {0.5, 0.5, 0.3}}, {"B", {4.5, 0.5, 2.2}}, {"C", {4.5, 3.5, 0.4}}, {"D", {0.5, 3.5, 2.4}},
         {"E", {2.5, 2.0, 0.1}}, {"F", {2.5, 0.2, 1.4}}, {"K1", {2, 1.5, 1.2}},  {"K2", {3.2, 2.4, 1.9}}};
     RandomStream random(1, 21);
-    const auto noise = [&]() -> Vector3d {
-      return kSigmaM * Vector3d(random.normal(), random.normal(), random.normal());
-    };
+    const auto noise = [&]() -> Vector3d { return kSigmaM * normal_vector(random); };
     std::string control = "# of the total station\nname,x,y,z,sigma\n";
     std::string check = "name;x;y;z;sigma_x;sigma_y;sigma_z\n";
     std::string targets = "name,scan,x,y,z,sigma\n";

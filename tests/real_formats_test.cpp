@@ -16,6 +16,7 @@
 #include <nlohmann/json.hpp>
 
 #include "limen/base/random.h"
+#include "limen/geometry/random_vectors.h"
 #include "limen/io/cloud/cloud_writers.h"
 #include "limen/io/cloud/read_scan.h"
 #include "limen/io/crs/proj_library.h"
@@ -149,9 +150,7 @@ class RealFormats : public ProgramTest {
   /// Targets that every scan sees, measured to 2 mm.
   void write_points() const {
     RandomStream random(5, 8);
-    const auto noise = [&]() -> Vector3d {
-      return 0.002 * Vector3d(random.normal(), random.normal(), random.normal());
-    };
+    const auto noise = [&]() -> Vector3d { return 0.002 * normal_vector(random); };
     const Vector3d middle = poses_.begin()->second.translation;
     std::string control = "name,x,y,z,sigma\n";
     std::string targets = "name,scan,x,y,z,sigma\n";

@@ -13,6 +13,7 @@
 #include "support/synthetic_segments.h"
 #include <nlohmann/json.hpp>
 
+#include "limen/geometry/random_vectors.h"
 #include "limen/register/register_segments.h"
 
 namespace limen {
@@ -44,7 +45,7 @@ bool is_true(const Rigid3& pose, const Rigid3& truth, const Vector3d& middle) {
 /// Moves the source of a pair at random, registers it, and counts what came out.
 void count(const Pair& pair, bool same_building, RandomStream& random, Tally& tally) {
   const Rigid3 truth{synthetic::random_rotation(random),
-                     Vector3d(random.uniform(-50, 50), random.uniform(-50, 50), random.uniform(-9, 9))};
+                     uniform_vector(Vector3d(-50, -50, -9), Vector3d(50, 50, 9), random)};
   const std::vector<Segment> source = synthetic::moved(pair.source, inverse(truth));
   const Vector3d middle = source[source.size() / 2].a;
   const RegistrationResult result =

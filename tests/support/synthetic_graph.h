@@ -9,6 +9,7 @@
 
 #include "limen/base/angles.h"
 #include "limen/base/random.h"
+#include "limen/geometry/random_vectors.h"
 #include "limen/project/graph/pose_graph.h"
 
 namespace limen {
@@ -38,8 +39,7 @@ inline LinkPose measured_pose(const Rigid3& truth, double agreeing_m2, RandomStr
   for (Eigen::Index k = 0; k < 6; ++k) error[k] = random.normal() * (k < 3 ? turn : kShift);
   pose.covariance = Matrix6d::Zero();
   for (Eigen::Index k = 0; k < 6; ++k) pose.covariance(k, k) = k < 3 ? turn * turn : kShift * kShift;
-  const Vector3d centre =
-      truth * Vector3d(random.uniform(-2, 2), random.uniform(-2, 2), random.uniform(0, 2));
+  const Vector3d centre = truth * uniform_vector(Vector3d(-2, -2, 0), Vector3d(2, 2, 2), random);
   Rigid3 noisy;
   noisy.rotation = rotation_exp(error.head<3>()) * truth.rotation;
   noisy.translation = rotation_exp(error.head<3>()) * (truth.translation - centre) + centre + error.tail<3>();

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "limen/base/random.h"
+#include "limen/geometry/random_vectors.h"
 #include "limen/geometry/segment.h"
 
 // For tests: the edges of random buildings, and what a detector would make of them.
@@ -14,8 +15,7 @@
 namespace limen::synthetic {
 
 inline Matrix3d random_rotation(RandomStream& random) {
-  Eigen::Quaterniond q(random.normal(), random.normal(), random.normal(), random.normal());
-  return q.normalized().toRotationMatrix();
+  return uniform_rotation(random);
 }
 
 /// A turn about the vertical.
@@ -150,7 +150,7 @@ inline std::vector<Segment> detect(const std::vector<Segment>& edges, const Dete
     for (int k = 0; k < 3; ++k) a[k] = random.uniform(low[k], high[k]);
     // Half of them along the building's axes: shadows' borders, furniture.
     Vector3d direction = Vector3d::Unit(static_cast<Eigen::Index>(random.below(3)));
-    if (n % 2 == 0) direction = Vector3d(random.normal(), random.normal(), random.normal()).normalized();
+    if (n % 2 == 0) direction = normal_vector(random).normalized();
     found.push_back({a, a + random.uniform(0.2, 1.5) * direction});
   }
   return found;

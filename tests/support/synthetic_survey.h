@@ -8,6 +8,7 @@
 
 #include "support/synthetic_graph.h"
 
+#include "limen/geometry/random_vectors.h"
 #include "limen/project/adjust/plane_adjustment.h"
 
 namespace limen {
@@ -22,7 +23,7 @@ struct SyntheticSurvey {
 };
 
 inline Vector3d noise3(double sigma_m, RandomStream& random) {
-  return sigma_m * Vector3d(random.normal(), random.normal(), random.normal());
+  return sigma_m * normal_vector(random);
 }
 
 /// `places` in the world of the building; coordinates and sights err by `sigma_m`, every point is seen by

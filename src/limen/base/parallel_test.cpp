@@ -14,6 +14,19 @@
 #include "limen/base/error.h"
 #include "limen/base/progress.h"
 
+#if defined(__has_feature)  // clang
+#if __has_feature(thread_sanitizer)
+#define LIMEN_SANITIZES_THREADS
+#endif
+#if __has_feature(address_sanitizer)
+#define LIMEN_SANITIZES_ADDRESSES
+#endif
+#elif defined(__SANITIZE_THREAD__)
+#define LIMEN_SANITIZES_THREADS
+#elif defined(__SANITIZE_ADDRESS__)
+#define LIMEN_SANITIZES_ADDRESSES
+#endif
+
 namespace limen {
 namespace {
 
@@ -106,7 +119,7 @@ int status_of_child(const Work& work) {
 }
 
 TEST_P(Threads, AForkedChildHasThreadsOfItsOwn) {
-#if defined(__SANITIZE_THREAD__)
+#if defined(LIMEN_SANITIZES_THREADS)
   GTEST_SKIP() << "the thread sanitizer allows no threads after a fork of a process with threads";
 #endif
   constexpr std::size_t kSum = 49995000;
@@ -121,10 +134,10 @@ TEST_P(Threads, AForkedChildHasThreadsOfItsOwn) {
 }
 
 TEST_P(Threads, AChildForkedAmidWorkHasThreadsOfItsOwn) {
-#if defined(__SANITIZE_THREAD__)
+#if defined(LIMEN_SANITIZES_THREADS)
   GTEST_SKIP() << "the thread sanitizer allows no threads after a fork of a process with threads";
 #endif
-#if defined(__SANITIZE_ADDRESS__)
+#if defined(LIMEN_SANITIZES_ADDRESSES)
   GTEST_SKIP() << "the allocator of the address sanitizer may be locked by another thread at the fork";
 #endif
   std::atomic<bool> stop{false};

@@ -12,6 +12,7 @@
 
 #include "limen/base/error.h"
 #include "limen/base/random.h"
+#include "limen/geometry/random_vectors.h"
 #include "limen/geometry/thinning.h"
 
 namespace limen {
@@ -103,7 +104,7 @@ std::vector<Vector2d> wall_with_window(std::uint64_t seed, int count) {
   RandomStream random(seed);
   std::vector<Vector2d> points;
   while (static_cast<int>(points.size()) < count) {
-    const Vector2d p(random.uniform(0.0, 6.0), random.uniform(0.0, 4.0));
+    const Vector2d p = uniform_vector(Vector2d(0.0, 0.0), Vector2d(6.0, 4.0), random);
     if (!in_rectangle(p, 2.0, 1.0, 3.0, 2.5)) points.push_back(p);
   }
   return points;
@@ -161,8 +162,8 @@ TEST(AlphaShape, KeepsSeparatePartsLargestFirst) {
   RandomStream random(3);
   std::vector<Vector2d> points;
   for (int i = 0; i < 4000; ++i) {
-    points.emplace_back(random.uniform(0.0, 1.0), random.uniform(0.0, 2.0));
-    points.emplace_back(random.uniform(3.0, 6.0), random.uniform(0.0, 2.0));
+    points.push_back(uniform_vector(Vector2d(0.0, 0.0), Vector2d(1.0, 2.0), random));
+    points.push_back(uniform_vector(Vector2d(3.0, 0.0), Vector2d(6.0, 2.0), random));
   }
   const auto shape = alpha_shape(points, options(0.25, true));
   ASSERT_EQ(shape.size(), 2U);
@@ -249,7 +250,8 @@ TEST(AlphaShape, RefusesOptionsOutOfBounds) {
 TEST(Thinned, LeavesAPointWithinThreeCellsOfEachAndAllOfASparseSet) {
   RandomStream random(9);
   std::vector<Vector2d> points;
-  for (int i = 0; i < 5000; ++i) points.emplace_back(random.uniform(-2.0, 2.0), random.uniform(-2.0, 2.0));
+  for (int i = 0; i < 5000; ++i)
+    points.push_back(uniform_vector(Vector2d(-2.0, -2.0), Vector2d(2.0, 2.0), random));
   const auto kept = thinned(points, 0.1);
   EXPECT_LT(kept.size(), points.size() / 2);
   for (const Vector2d& p : points) {

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "limen/base/random.h"
+#include "limen/geometry/random_vectors.h"
 
 namespace limen {
 namespace {
@@ -71,7 +72,7 @@ TEST(FaceIndex, FindsTheNearestFaceAsLookingAtAllDoes) {
   for (int i = 0; i < 5000; ++i) {
     FaceQuery query;
     query.x = {random.uniform(-4, 4), random.uniform(-4, 4), random.uniform(-4, 4)};
-    const Vector3d normal = Vector3d(random.normal(), random.normal(), random.normal()).normalized();
+    const Vector3d normal = normal_vector(random).normalized();
     const Vector3d eye(0.1, 0.2, 0.3);
     if (i % 2 == 0) query.normal = &normal;
     query.min_cosine = 0.7;
@@ -101,8 +102,8 @@ TEST(FaceIndex, FindsEveryFaceThatALineCrosses) {
   int crossed = 0;
   for (int i = 0; i < 2000; ++i) {
     const double most = i % 2 == 0 ? 3.0 : 30.0;
-    Vector3d from(random.uniform(-most, most), random.uniform(-most, most), random.uniform(-most, most));
-    const Vector3d to(random.uniform(-3, 3), random.uniform(-3, 3), random.uniform(-3, 3));
+    Vector3d from = uniform_vector(Vector3d(-most, -most, -most), Vector3d(most, most, most), random);
+    const Vector3d to = uniform_vector(Vector3d(-3, -3, -3), Vector3d(3, 3, 3), random);
     if (i % 10 == 0) from.head<2>() = to.head<2>();
     std::vector<int> expected;
     for (std::size_t k = 0; k < faces.size(); ++k) {

@@ -10,6 +10,7 @@
 
 #include "limen/base/error.h"
 #include "limen/base/random.h"
+#include "limen/geometry/random_vectors.h"
 
 namespace limen {
 namespace {
@@ -33,7 +34,7 @@ Rect random_rect(RandomStream& random) {
 
 /// A star-shaped ring with `corners` corners about a centre.
 Ring random_star(RandomStream& random, int corners) {
-  const Vector2d centre(random.uniform(-2.0, 2.0), random.uniform(-2.0, 2.0));
+  const Vector2d centre = uniform_vector(Vector2d(-2.0, -2.0), Vector2d(2.0, 2.0), random);
   Ring ring;
   for (int i = 0; i < corners; ++i) {
     const double angle = 2.0 * std::numbers::pi * (i + random.uniform(0.0, 0.9)) / corners;

@@ -10,6 +10,7 @@
 
 #include "limen/base/random.h"
 #include "limen/geometry/polygon_clip.h"
+#include "limen/geometry/random_vectors.h"
 
 namespace limen {
 namespace {
@@ -111,7 +112,7 @@ TEST(Triangulate, RandomStarsWithHolesAreCoveredOnce) {
     std::vector<Polygon> holes;
     const int count = static_cast<int>(random.below(9));
     for (int i = 0; i < count; ++i) {
-      const Vector2d at(random.uniform(-4.0, 4.0), random.uniform(-4.0, 4.0));
+      const Vector2d at = uniform_vector(Vector2d(-4.0, -4.0), Vector2d(4.0, 4.0), random);
       holes.push_back({star(random, at, random.uniform(0.2, 2.0)), {}});
     }
     const Polygon whole{star(random, Vector2d::Zero(), 6.0), {}};

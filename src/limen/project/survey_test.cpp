@@ -9,6 +9,8 @@
 #include "support/synthetic_survey.h"
 #include <gtest/gtest.h>
 
+#include "limen/geometry/random_vectors.h"
+
 namespace limen {
 namespace {
 
@@ -33,7 +35,7 @@ struct TargetsOnly {
 
   void add_point(int node, RandomStream& random) {
     const Matrix3d covariance = kSigmaM * kSigmaM * Matrix3d::Identity();
-    const Vector3d place(random.uniform(-4, 4), random.uniform(-4, 4), random.uniform(-1, 2));
+    const Vector3d place = uniform_vector(Vector3d(-4, -4, -1), Vector3d(4, 4, 2), random);
     SurveyMark mark;
     mark.name = "P";
     mark.name += std::to_string(survey.marks.size());

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "limen/base/random.h"
+#include "limen/geometry/random_vectors.h"
 #include "limen/register/register.h"
 #include "limen/simulate/scene.h"
 
@@ -46,8 +47,7 @@ double apart_sigma(const Rigid3& target_from_source) {
 
 Rigid3 any_motion(std::uint64_t trial) {
   RandomStream stream(21, trial);
-  const Eigen::Quaterniond q(stream.normal(), stream.normal(), stream.normal(), stream.normal());
-  return {q.normalized().toRotationMatrix(),
+  return {uniform_rotation(stream),
           {stream.uniform(-20, 20), stream.uniform(-20, 20), stream.uniform(-20, 20)}};
 }
 

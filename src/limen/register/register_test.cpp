@@ -10,6 +10,7 @@
 #include "limen/base/error.h"
 #include "limen/base/parallel.h"
 #include "limen/base/random.h"
+#include "limen/geometry/random_vectors.h"
 #include "limen/simulate/scene.h"
 
 namespace limen {
@@ -38,9 +39,7 @@ SceneOptions small(const std::string& name, std::uint64_t seed) {
 
 Rigid3 any_pose(std::uint64_t trial) {
   RandomStream stream(99, trial);
-  const Eigen::Quaterniond q(stream.normal(), stream.normal(), stream.normal(), stream.normal());
-  return {q.normalized().toRotationMatrix(),
-          {stream.uniform(-9, 9), stream.uniform(-9, 9), stream.uniform(-9, 9)}};
+  return {uniform_rotation(stream), {stream.uniform(-9, 9), stream.uniform(-9, 9), stream.uniform(-9, 9)}};
 }
 
 /// The pair with its source moved; the truth follows.

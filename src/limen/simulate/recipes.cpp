@@ -134,7 +134,8 @@ Recipe museum_recipe(const SceneOptions& options, RandomStream& random) {
 /// Every bay and storey alike: only what lies outside the grid can tell shifts apart.
 Recipe regular_recipe(const SceneOptions& options, RandomStream& random) {
   PlanOptions plan;
-  plan.main_bays_m.assign(2 * static_cast<std::size_t>(between(4, 6, random)), random.uniform(2.7, 3.3));
+  const double bay_m = random.uniform(2.7, 3.3);
+  plan.main_bays_m.assign(2 * static_cast<std::size_t>(between(4, 6, random)), bay_m);
   plan.south_depth_m = random.uniform(4.8, 6.0);
   plan.corridor_m = random.uniform(1.8, 2.4);
   plan.north_depth_m = plan.south_depth_m;

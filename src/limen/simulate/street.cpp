@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "limen/geometry/random_vectors.h"
+
 namespace limen {
 namespace {
 
@@ -26,13 +28,6 @@ void add_cylinder(Mesh& mesh, const Vector3d& base, double radius, double height
   mesh.add_prism(ring, height, surface_of(element));
 }
 
-Vector3d inside_ball(RandomStream& random) {
-  for (;;) {
-    Vector3d p(random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0));
-    if (p.squaredNorm() <= 1.0) return p;
-  }
-}
-
 /// A trunk and a crown of loose leaves: many small triangles that lie in no plane.
 void add_tree(Mesh& mesh, const Vector2d& at, RandomStream& random) {
   const double crown = random.uniform(1.0, 1.9);
@@ -42,9 +37,10 @@ void add_tree(Mesh& mesh, const Vector2d& at, RandomStream& random) {
   const Vector3d middle = lifted(at, trunk + crown);
   const int count = static_cast<int>(450.0 * crown * crown);
   for (int i = 0; i < count; ++i) {
-    const Vector3d p = middle + crown * inside_ball(random).cwiseProduct(Vector3d(1.0, 1.0, 1.25));
+    const Vector3d p = middle + crown * vector_in_ball(random).cwiseProduct(Vector3d(1.0, 1.0, 1.25));
     const double size = random.uniform(0.06, 0.16);
-    mesh.add_triangle(p, p + size * inside_ball(random), p + size * inside_ball(random), leaves);
+    const Vector3d tip = p + size * vector_in_ball(random);
+    mesh.add_triangle(p, p + size * vector_in_ball(random), tip, leaves);
   }
 }
 

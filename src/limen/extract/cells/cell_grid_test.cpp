@@ -10,6 +10,7 @@
 
 #include "limen/base/parallel.h"
 #include "limen/base/random.h"
+#include "limen/geometry/random_vectors.h"
 
 namespace limen {
 namespace {
@@ -18,7 +19,7 @@ std::vector<Vector3d> cloud(std::size_t count, double size, std::uint64_t seed) 
   RandomStream random(seed);
   std::vector<Vector3d> points;
   for (std::size_t i = 0; i < count; ++i)
-    points.emplace_back(random.uniform(0, size), random.uniform(0, size), random.uniform(0, size));
+    points.push_back(uniform_vector(Vector3d(0, 0, 0), Vector3d(size, size, size), random));
   return points;
 }
 
@@ -115,8 +116,9 @@ TEST(CellGrid, MeasuresThePointsOfItsCubes) {
   const Vector3d v = normal.cross(u);
   std::vector<Vector3d> points;
   for (int i = 0; i < 4000; ++i) {
-    points.emplace_back(random.uniform(-0.05, 0.05) * u + random.uniform(-0.05, 0.05) * v +
-                        0.002 * random.normal() * normal);
+    const double off = 0.002 * random.normal();
+    const Vector2d in = uniform_vector(Vector2d(-0.05, -0.05), Vector2d(0.05, 0.05), random);
+    points.emplace_back(in.x() * u + in.y() * v + off * normal);
   }
   const MortonOrder sorted = morton_order(points, 0.02);
   std::vector<std::uint32_t> active(points.size());

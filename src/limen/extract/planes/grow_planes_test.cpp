@@ -12,6 +12,7 @@
 #include "limen/base/error.h"
 #include "limen/base/parallel.h"
 #include "limen/base/random.h"
+#include "limen/geometry/random_vectors.h"
 
 namespace limen {
 namespace {
@@ -29,8 +30,9 @@ void add_patch(Scan& scan, const Patch& patch, double density, double noise_m, s
   const Vector3d cross = patch.u.cross(patch.v);
   const auto count = static_cast<std::size_t>(density * cross.norm());
   for (std::size_t i = 0; i < count; ++i) {
-    scan.points.emplace_back(patch.corner + random.uniform() * patch.u + random.uniform() * patch.v +
-                             noise_m * random.normal() * cross.normalized());
+    const double off = noise_m * random.normal();
+    const Vector2d in = uniform_vector(Vector2d(0.0, 0.0), Vector2d(1.0, 1.0), random);
+    scan.points.emplace_back(patch.corner + in.x() * patch.u + in.y() * patch.v + off * cross.normalized());
   }
 }
 
@@ -123,7 +125,7 @@ TEST(GrowPlanes, DoNotDependOnThreads) {
   add_patch(scan, {{0, 0, 0}, {0.1, 5, 0}, {0, 0, 2.5}}, 3000, 0.003, 3);
   RandomStream random(4);
   for (int i = 0; i < 20000; ++i)
-    scan.points.emplace_back(random.uniform(0, 4), random.uniform(0, 5), random.uniform(0, 2.5));
+    scan.points.push_back(uniform_vector(Vector3d(0, 0, 0), Vector3d(4, 5, 2.5), random));
   set_thread_count(1);
   const GrownPlanes one = grow_planes(scan);
   set_thread_count(2);

@@ -6,6 +6,7 @@
 
 #include "limen/base/angles.h"
 #include "limen/base/random.h"
+#include "limen/geometry/random_vectors.h"
 
 namespace limen {
 namespace {
@@ -17,8 +18,9 @@ PointMoments piece(const Vector3d& middle, double size_m, double turn_deg = 0.0,
   const Vector3d normal(-along.y(), along.x(), 0.0);
   PointMoments moments;
   for (int i = 0; i < count; ++i) {
-    moments.add(middle + random.uniform(-0.5, 0.5) * size_m * along +
-                random.uniform(-0.5, 0.5) * size_m * Vector3d::UnitZ() + 0.002 * random.normal() * normal);
+    const double off = 0.002 * random.normal();
+    const Vector2d in = size_m * uniform_vector(Vector2d(-0.5, -0.5), Vector2d(0.5, 0.5), random);
+    moments.add(middle + in.x() * along + in.y() * Vector3d::UnitZ() + off * normal);
   }
   return moments;
 }

@@ -11,6 +11,7 @@
 #include "limen/base/random.h"
 #include "limen/extract/surface/facades.h"
 #include "limen/extract/surface/outline_raster.h"
+#include "limen/geometry/random_vectors.h"
 
 namespace limen {
 namespace {
@@ -137,8 +138,7 @@ TEST(InteriorPoints, AreThoseOfBruteForceForAnyNumberOfThreads) {
   Scan scan;
   for (int i = 0; i < 40000; ++i) {
     scan.centres.emplace_back(1e-3 * i - 20.0, random.uniform(-0.1, 0.1), 2.0);
-    scan.points.emplace_back(random.uniform(-30.0, 30.0), random.uniform(-5.0, 40.0),
-                             random.uniform(-1.0, 15.0));
+    scan.points.push_back(uniform_vector(Vector3d(-30.0, -5.0, -1.0), Vector3d(30.0, 40.0, 15.0), random));
   }
   InteriorPointOptions exact;
   exact.outline = {0.0, 0.0};
@@ -226,7 +226,7 @@ TEST(OutlineRaster, AnswersAsTheExactTest) {
     }
     const OutlineRaster raster({star, {rectangle(3, -1, 4, 1), {}}}, 0.02 + 0.05 * random.uniform());
     for (int i = 0; i < 3000; ++i) {
-      const Vector2d p(random.uniform(-2.5, 4.5), random.uniform(-2.5, 2.5));
+      const Vector2d p = uniform_vector(Vector2d(-2.5, -2.5), Vector2d(4.5, 2.5), random);
       const bool expected = contains(star.outer, p) || (p.x() > 3 && p.x() < 4 && p.y() > -1 && p.y() < 1);
       ASSERT_EQ(raster.contains(p), expected) << p.transpose();
     }

@@ -8,6 +8,7 @@
 
 #include "limen/base/error.h"
 #include "limen/base/random.h"
+#include "limen/geometry/random_vectors.h"
 
 namespace limen {
 namespace {
@@ -20,7 +21,7 @@ Scan box_and_ball() {
   for (int i = 0; i < 4000; ++i)
     scan.points.emplace_back(2.04 + 0.001 * random.normal(), 0.5 * random.uniform(), 0.5 * random.uniform());
   for (int i = 0; i < 4000; ++i) {
-    const Vector3d d(random.normal(), random.normal(), random.normal());
+    const Vector3d d = normal_vector(random);
     scan.points.push_back(Vector3d(-2.05, 1.05, 0.55) + 0.04 * d.normalized());
   }
   return scan;

@@ -11,6 +11,7 @@
 #include "limen/base/angles.h"
 #include "limen/base/error.h"
 #include "limen/base/parallel.h"
+#include "limen/geometry/random_vectors.h"
 
 namespace limen {
 namespace {
@@ -203,7 +204,7 @@ TEST(EnumerateOpeningPoses, WithoutGravityAnyRotationIsFound) {
   RandomStream random(9);
   const std::vector<Window> all = synthetic::irregular();
   for (int trial = 0; trial < 20; ++trial) {
-    const auto any = [&] { return Vector3d(random.normal(), random.normal(), random.normal()); };
+    const auto any = [&] { return normal_vector(random); };
     const Rigid3 truth{rotation_exp(2.0 * any()), 10.0 * any()};
     const Features outside = synthetic::moved(truth, seen({south_wall(all)}, {false, 0.4, 0.004, 0.0, 10}));
     const Features inside =

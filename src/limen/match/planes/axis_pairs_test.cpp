@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "limen/base/random.h"
+#include "limen/geometry/random_vectors.h"
 
 namespace limen {
 namespace {
@@ -22,8 +23,8 @@ AxisPairs random_pairs(std::size_t count) {
   for (std::size_t i = 0; i < count; ++i) {
     const auto box = [&] {
       AxisBox made;
-      made.low = Vector2d(random.uniform(-5.0, 4.0), random.uniform(-5.0, 4.0));
-      made.high = made.low + Vector2d(random.uniform(0.2, 3.0), random.uniform(0.2, 3.0));
+      made.low = uniform_vector(Vector2d(-5.0, -5.0), Vector2d(4.0, 4.0), random);
+      made.high = made.low + uniform_vector(Vector2d(0.2, 0.2), Vector2d(3.0, 3.0), random);
       return made;
     };
     along.source_boxes.push_back({box(), box()});
@@ -42,7 +43,7 @@ TEST(AxisPairs, SupportAtAShiftIsTheSupportThere) {
   double most = 0.0;
   int ended_early = 0;
   for (int k = 0; k < 500; ++k) {
-    const Vector3d shift(random.uniform(-3.0, 3.0), random.uniform(-3.0, 3.0), random.uniform(-3.2, 3.2));
+    const Vector3d shift = uniform_vector(Vector3d(-3.0, -3.0, -3.2), Vector3d(3.0, 3.0, 3.2), random);
     const double value = along.axis.direction.dot(shift);
     const ShiftSupport there = along.support_at(value, kTolerance);
     const Vector2d in_plane(along.axis.frame.u.dot(shift), along.axis.frame.v.dot(shift));

@@ -9,6 +9,7 @@
 
 #include "limen/base/error.h"
 #include "limen/base/random.h"
+#include "limen/geometry/random_vectors.h"
 
 namespace limen {
 namespace {
@@ -42,7 +43,7 @@ TEST(DirectionClusters, OfARoomAreItsThreeAxesWhicheverWayNormalsPoint) {
   Planes room;
   for (int i = 0; i < 30; ++i) {
     const Vector3d axis = Vector3d::Unit(i % 3);
-    const Vector3d noise = 0.01 * Vector3d(random.normal(), random.normal(), random.normal());
+    const Vector3d noise = 0.01 * normal_vector(random);
     room.add((random.below(2) == 0 ? 1.0 : -1.0) * (axis + noise), random.uniform(10.0, 1000.0));
   }
   const auto found = cluster_directions(room.planes, room.weights, Vector3d::UnitZ());

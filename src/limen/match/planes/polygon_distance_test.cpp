@@ -9,6 +9,7 @@
 
 #include "limen/base/error.h"
 #include "limen/base/random.h"
+#include "limen/geometry/random_vectors.h"
 #include "limen/match/planes/threshold_matching.h"
 
 namespace limen {
@@ -46,9 +47,7 @@ TEST(Bisector, IsHalfwayWhicheverWayTheNormalsPoint) {
   // Points of a bisector are as far from one plane as from the other.
   RandomStream random(1);
   for (int trial = 0; trial < 50; ++trial) {
-    const auto direction = [&] {
-      return Vector3d(random.normal(), random.normal(), random.normal()).normalized();
-    };
+    const auto direction = [&] { return normal_vector(random).normalized(); };
     const Plane a{direction(), random.uniform(-3.0, 3.0)};
     const Plane b{direction(), random.uniform(-3.0, 3.0)};
     const Plane middle = bisector(a, b);
@@ -116,7 +115,7 @@ TEST(Agreement, NeverExceedsTheAreaAndIsSymmetric) {
     for (int i = 0; i < 6; ++i) {
       const double x = random.uniform(-2.0, 1.0);
       const double y = random.uniform(-2.0, 1.0);
-      const Rigid3 tilt{rotation_exp(0.03 * Vector3d(random.normal(), random.normal(), random.normal())),
+      const Rigid3 tilt{rotation_exp(0.03 * normal_vector(random)),
                         Vector3d(0.03 * random.normal(), 0.0, 0.0)};
       scan.push_back(transformed(
           tilt, rectangle(wall_at(0.0), x, y, x + random.uniform(0.2, 3.0), y + random.uniform(0.2, 3.0))));

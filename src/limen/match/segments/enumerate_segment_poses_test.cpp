@@ -7,6 +7,7 @@
 
 #include "limen/base/error.h"
 #include "limen/base/parallel.h"
+#include "limen/geometry/random_vectors.h"
 #include "limen/match/planes/direction_clusters.h"
 #include "limen/match/segments/segment_lookup.h"
 
@@ -120,7 +121,7 @@ TEST(EnumerateSegmentPoses, ParallelSegmentsLeaveTheirShiftOpen) {
   RandomStream random(8);
   std::vector<Segment> poles;
   for (int i = 0; i < 9; ++i) {
-    const Vector3d foot(random.uniform(0, 12), random.uniform(0, 9), random.uniform(-1, 1));
+    const Vector3d foot = uniform_vector(Vector3d(0, 0, -1), Vector3d(12, 9, 1), random);
     poles.push_back({foot, foot + Vector3d(0, 0, random.uniform(1, 3))});
   }
   const Rigid3 truth{synthetic::random_rotation(random), Vector3d(7, 8, 9)};
@@ -160,9 +161,7 @@ TEST(DirectionClusters, SegmentsClusterByLength) {
 TEST(SegmentLookup, AgreesWithLookingAtAll) {
   RandomStream random(2);
   std::vector<Segment> segments;
-  const auto point = [&] {
-    return Vector3d(random.uniform(-5, 5), random.uniform(-5, 5), random.uniform(-2, 2));
-  };
+  const auto point = [&] { return uniform_vector(Vector3d(-5, -5, -2), Vector3d(5, 5, 2), random); };
   for (int i = 0; i < 200; ++i) segments.push_back({point(), point()});
   const double reach = 0.3;
   const double angle = radians(30.0);

@@ -9,6 +9,7 @@
 
 #include "limen/base/error.h"
 #include "limen/base/random.h"
+#include "limen/geometry/random_vectors.h"
 
 namespace limen {
 namespace {
@@ -23,7 +24,7 @@ std::vector<Segment> messy_set(RandomStream& random, int count) {
   for (int i = 0; i < count; ++i) {
     const Vector3d start(random.uniform(0.0, 3.0), 0.05 * random.normal(), random.uniform(0.0, 2.0));
     const Vector3d axis = random.below(2) == 0 ? Vector3d::UnitX() : Vector3d::UnitZ();
-    const Vector3d tilt = 0.02 * Vector3d(random.normal(), random.normal(), random.normal());
+    const Vector3d tilt = 0.02 * normal_vector(random);
     const Vector3d end = start + random.uniform(0.3, 2.0) * (axis + tilt);
     set.push_back(random.below(2) == 0 ? Segment{start, end} : Segment{end, start});
   }
@@ -31,8 +32,7 @@ std::vector<Segment> messy_set(RandomStream& random, int count) {
 }
 
 Rigid3 some_pose(RandomStream& random) {
-  return {rotation_exp(Vector3d(random.normal(), random.normal(), random.normal())),
-          10.0 * Vector3d(random.normal(), random.normal(), random.normal())};
+  return {rotation_exp(normal_vector(random)), 10.0 * normal_vector(random)};
 }
 
 std::vector<Segment> moved(const Rigid3& pose, const std::vector<Segment>& set) {

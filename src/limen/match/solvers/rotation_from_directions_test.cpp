@@ -9,16 +9,18 @@
 #include "limen/base/angles.h"
 #include "limen/base/error.h"
 #include "limen/base/random.h"
+#include "limen/geometry/random_vectors.h"
 
 namespace limen {
 namespace {
 
 Vector3d random_direction(RandomStream& random) {
-  return Vector3d(random.normal(), random.normal(), random.normal()).normalized();
+  return normal_vector(random).normalized();
 }
 
 Matrix3d random_rotation(RandomStream& random, double max_angle) {
-  return rotation_exp(random.uniform(0.0, max_angle) * random_direction(random));
+  const Vector3d direction = random_direction(random);
+  return rotation_exp(random.uniform(0.0, max_angle) * direction);
 }
 
 TEST(RotationFromMainDirections, UndoesAMoveOfLessThan45Degrees) {
@@ -73,7 +75,7 @@ TEST(RotationFromDirections, AveragesNoiseBetterThanAPair) {
     std::vector<DirectionPair> pairs;
     for (int i = 0; i < 20; ++i) {
       const Vector3d d = Vector3d::Unit(i % 3);
-      const Vector3d noise = 0.01 * Vector3d(random.normal(), random.normal(), random.normal());
+      const Vector3d noise = 0.01 * normal_vector(random);
       pairs.push_back({d, (truth * d + noise).normalized(), 1.0});
     }
     const RotationFit fit = rotation_from_directions(pairs);

@@ -9,6 +9,7 @@
 #include "limen/base/angles.h"
 #include "limen/base/error.h"
 #include "limen/base/random.h"
+#include "limen/geometry/random_vectors.h"
 
 namespace limen {
 namespace {
@@ -19,8 +20,7 @@ std::vector<PlanePair> pairs_of(const Rigid3& truth, const std::vector<Vector3d>
   std::vector<PlanePair> pairs;
   for (const Vector3d& normal : normals) {
     PlanePair pair;
-    pair.source_point =
-        Vector3d(random.uniform(-5.0, 5.0), random.uniform(-5.0, 5.0), random.uniform(0.0, 3.0));
+    pair.source_point = uniform_vector(Vector3d(-5.0, -5.0, 0.0), Vector3d(5.0, 5.0, 3.0), random);
     pair.target.normal = normal.normalized() * (random.below(2) == 0 ? 1.0 : -1.0);
     pair.target.offset = pair.target.normal.dot(truth * pair.source_point) + noise_m * random.normal();
     pair.weight = random.uniform(0.5, 3.0);
@@ -32,8 +32,7 @@ std::vector<PlanePair> pairs_of(const Rigid3& truth, const std::vector<Vector3d>
 TEST(TranslationFromPlanes, SolvesThreePlanesExactlyOnTheNationalGrid) {
   RandomStream random(1);
   for (int trial = 0; trial < 100; ++trial) {
-    const Rigid3 truth{rotation_exp(Vector3d(random.normal(), random.normal(), random.normal())),
-                       Vector3d(1.05e6, 6.84e6, 150.0)};
+    const Rigid3 truth{rotation_exp(normal_vector(random)), Vector3d(1.05e6, 6.84e6, 150.0)};
     const auto pairs = pairs_of(truth, {{1.0, 0.1, 0.0}, {-0.3, 1.0, 0.05}, {0.0, 0.1, 1.0}}, random);
     const TranslationFit fit = translation_from_planes(truth.rotation, pairs);
     EXPECT_LT((fit.translation - truth.translation).norm(), 1e-6);

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "limen/base/random.h"
+#include "limen/geometry/random_vectors.h"
 #include "limen/geometry/spline_motion.h"
 
 namespace limen {
@@ -77,8 +78,9 @@ class DriftingStreet {
     observation.sigma_m = kTileNoiseM;
     observation.most_points = kTilesSeen;
     for (int k = 0; k < kTilesSeen; ++k) {
-      const Vector3d point = middle + random.uniform(-half_u, half_u) * u + random.uniform(-2.0, 2.0) * v +
-                             kTileNoiseM * random.normal() * u.cross(v);
+      const double off = kTileNoiseM * random.normal();
+      const Vector2d in = uniform_vector(Vector2d(-half_u, -2.0), Vector2d(half_u, 2.0), random);
+      const Vector3d point = middle + in.x() * u + in.y() * v + off * u.cross(v);
       const Vector3d given = rotation_exp(drift.head<3>()).transpose() * (point - drift.tail<3>());
       observation.moments.add(given - observation.anchor);
     }

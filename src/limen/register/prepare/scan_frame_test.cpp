@@ -11,6 +11,7 @@
 
 #include "limen/base/angles.h"
 #include "limen/base/random.h"
+#include "limen/geometry/random_vectors.h"
 #include "limen/register/prepare/laid_scan.h"
 #include "limen/register/prepare/prepare_scan.h"
 #include "limen/simulate/scene.h"
@@ -32,8 +33,7 @@ Scan room_of_a_flat() {
 
 Rigid3 some_motion(std::uint64_t trial) {
   RandomStream stream(4, trial);
-  const Eigen::Quaterniond q(stream.normal(), stream.normal(), stream.normal(), stream.normal());
-  return {q.normalized().toRotationMatrix(),
+  return {uniform_rotation(stream),
           {stream.uniform(-30, 30), stream.uniform(-30, 30), stream.uniform(-30, 30)}};
 }
 

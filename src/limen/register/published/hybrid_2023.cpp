@@ -67,7 +67,8 @@ std::optional<DrawnHybrid> draw(const Choice& choice, RandomStream& random) {
   result.wall_normal = to.normal;
   pose.rotation = wall_axes(to, 1.0) * wall_axes(from, -1.0).transpose();
   // A corner of an opening in each, and the shift between them within the plane.
-  const Vector3d shift = drawn(to.corners, random) - pose.rotation * drawn(from.corners, random);
+  const Vector3d turned = pose.rotation * drawn(from.corners, random);
+  const Vector3d shift = drawn(to.corners, random) - turned;
   pose.translation = shift - shift.dot(to.normal) * to.normal;
   // Two planes p3 and p4 of clusters across the façade, transformed.
   const std::vector<const DirectionCluster*> clusters = across(choice.clusters, from.normal);

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "limen/base/random.h"
+#include "limen/geometry/random_vectors.h"
 #include "limen/report/summary/words.h"
 
 namespace limen {
@@ -41,7 +42,7 @@ double share_within(const Matrix3d& covariance, double radius) {
   int within = 0;
   constexpr int kTrials = 40000;
   for (int k = 0; k < kTrials; ++k) {
-    const Vector3d x = root * Vector3d(random.normal(), random.normal(), random.normal());
+    const Vector3d x = root * normal_vector(random);
     within += x.norm() <= radius ? 1 : 0;
   }
   return static_cast<double>(within) / kTrials;

@@ -7,6 +7,8 @@
 #include <numbers>
 #include <vector>
 
+#include "limen/geometry/random_vectors.h"
+
 namespace limen {
 namespace {
 
@@ -23,16 +25,16 @@ struct Piece {
   std::vector<FurniturePart> parts;
 };
 
-Piece box_piece(double w, double d, double h) {
-  return {{w, d}, h, {{{0.0, 0.5 * d, 0.0}, {w, d, h}}}};
+Piece box_piece(const Vector3d& size) {
+  return {size.head<2>(), size.z(), {{{0.0, 0.5 * size.y(), 0.0}, size}}};
 }
 
 Piece cupboard(RandomStream& r) {
-  return box_piece(r.uniform(0.7, 1.7), r.uniform(0.38, 0.65), r.uniform(1.55, 2.15));
+  return box_piece(uniform_vector(Vector3d(0.7, 0.38, 1.55), Vector3d(1.7, 0.65, 2.15), r));
 }
 
 Piece sideboard(RandomStream& r) {
-  return box_piece(r.uniform(0.8, 1.8), r.uniform(0.38, 0.5), r.uniform(0.65, 0.95));
+  return box_piece(uniform_vector(Vector3d(0.8, 0.38, 0.65), Vector3d(1.8, 0.5, 0.95), r));
 }
 
 Piece shelf(RandomStream& r) {
@@ -131,7 +133,7 @@ Piece table(RandomStream& r) {
 Piece display_case(RandomStream& r) {
   const double w = r.uniform(0.7, 1.6);
   const double d = r.uniform(0.5, 0.8);
-  Piece piece = box_piece(w, d, r.uniform(0.75, 1.05));
+  Piece piece = box_piece({w, d, r.uniform(0.75, 1.05)});
   const double top = piece.parts[0].size.z();
   // An exhibit on it, in a few blocks.
   for (int i = 0; i < 3; ++i)
@@ -184,25 +186,31 @@ class FurnitureDecorator {
   void add_structure() {
     const double height = room_.ceiling_m - room_.floor_m;
     if (random_.uniform() < 0.45) {
-      const Piece breast = box_piece(random_.uniform(0.8, 1.7), random_.uniform(0.2, 0.5), height);
+      const Vector2d foot = uniform_vector(Vector2d(0.8, 0.2), Vector2d(1.7, 0.5), random_);
+      const Piece breast = box_piece({foot.x(), foot.y(), height});
       for (int attempt = 0; attempt < 12; ++attempt)
         if (try_at_wall(breast, 0.0, surface_of(Element::wall))) break;
     }
     if (signed_area(room_.outline) < 45.0) return;
     const double side = random_.uniform(0.3, 0.5);
-    for (int i = 0; i < 2; ++i) try_free(box_piece(side, side, height), surface_of(Element::wall), false);
+    for (int i = 0; i < 2; ++i) try_free(box_piece({side, side, height}), surface_of(Element::wall), false);
   }
 
   void along_walls(int count, const std::vector<Maker>& makers) {
     for (int i = 0; i < count; ++i) {
       const Piece piece = makers[random_.below(static_cast<std::uint32_t>(makers.size()))](random_);
-      for (int attempt = 0; attempt < 10; ++attempt)
-        if (try_at_wall(piece, random_.uniform(0.005, 0.05), wood())) break;
+      for (int attempt = 0; attempt < 10; ++attempt) {
+        const Surface surface = wood();
+        if (try_at_wall(piece, random_.uniform(0.005, 0.05), surface)) break;
+      }
     }
   }
 
   void free_standing(int count, Maker maker) {
-    for (int i = 0; i < count; ++i) try_free(maker(random_), wood(), true);
+    for (int i = 0; i < count; ++i) {
+      const Surface surface = wood();
+      try_free(maker(random_), surface, true);
+    }
   }
 
   Surface wood() {
@@ -249,7 +257,7 @@ class FurnitureDecorator {
       high = high.cwiseMax(p);
     }
     for (int attempt = 0; attempt < 25; ++attempt) {
-      const Vector2d at(random_.uniform(low.x(), high.x()), random_.uniform(low.y(), high.y()));
+      const Vector2d at = uniform_vector(low, high, random_);
       const Wall wall = random_wall();
       const double turn = turned && random_.uniform() < 0.3 ? random_.uniform(-0.6, 0.6) : 0.0;
       const Vector2d along(std::cos(turn) * wall.along.x() - std::sin(turn) * wall.along.y(),
@@ -302,9 +310,10 @@ class FurnitureDecorator {
       const Ring area = rectangle_ring(back + 0.06 * wall.in, wall.along, {w, 0.04});
       if (!fits(area, {w, 0.04}, 2.0)) continue;
       const Vector2d p = back + 0.0125 * wall.in;
+      const Surface surface = wood();
       mesh_.add_box({{p.x(), p.y(), room_.floor_m + random_.uniform(1.35, 1.5)},
                      std::atan2(wall.along.y(), wall.along.x())},
-                    {w, 0.025, h}, wood());
+                    {w, 0.025, h}, surface);
       building_.occupied[index_].push_back({area, 1.0});
     }
   }
@@ -320,8 +329,9 @@ class FurnitureDecorator {
       const double drop = random_.uniform(0.0, 0.4);
       const double z = room_.ceiling_m - drop - 0.14;
       if (drop > 0.03) mesh_.add_box({{p.x(), p.y(), z + 0.13}, 0.0}, {0.02, 0.02, drop + 0.01}, wood());
-      mesh_.add_box({{p.x(), p.y(), z}, random_.uniform(0.0, 3.0)},
-                    {size, size * random_.uniform(0.4, 1.0), 0.13}, wood());
+      const Surface surface = wood();
+      const double width = size * random_.uniform(0.4, 1.0);
+      mesh_.add_box({{p.x(), p.y(), z}, random_.uniform(0.0, 3.0)}, {size, width, 0.13}, surface);
     }
   }
 

@@ -144,7 +144,8 @@ class LayoutDecorator {
     return kinds[random_.below(static_cast<std::uint32_t>(kinds.size()))];
   }
   Piece new_piece(PieceKind kind) {
-    const std::uint64_t seed = (static_cast<std::uint64_t>(random_.next()) << 32U) + random_.next();
+    const std::uint64_t high = random_.next();
+    const std::uint64_t seed = (high << 32U) + random_.next();
     return {kind, seed, mix64(seed)};
   }
 
@@ -207,8 +208,13 @@ class LayoutDecorator {
     }
     const double x = random_.uniform(low.x(), high.x());
     const double y = random_.uniform(low.y(), high.y());
-    const double turn = random_.uniform() < 0.6 ? 1.5707963 * random_.below(4) + 0.05 * random_.normal()
-                                                : random_.uniform(0.0, 6.28);
+    double turn = 0.0;
+    if (random_.uniform() < 0.6) {
+      turn = 1.5707963 * random_.below(4);
+      turn += 0.05 * random_.normal();
+    } else {
+      turn = random_.uniform(0.0, 6.28);
+    }
     placed.along = {std::cos(turn), std::sin(turn)};
     placed.back = {x, y};
     return room_.fits(area_of(placed, size), size.z());
@@ -309,10 +315,11 @@ Layout as_placed(const Layout& layout, const World& world, std::size_t building,
     const double much = loose(placed.piece.kind) ? 3.0 : 1.0;
     const double turn = on_wall(placed.piece.kind) ? 0.0 : much * options.turn_rad * random.normal();
     const Vector2d along = std::cos(turn) * placed.along + std::sin(turn) * left_of(placed.along);
-    const Vector2d shift(much * options.shift_m * random.normal(), much * options.shift_m * random.normal());
+    const double outward = much * options.shift_m * random.normal();
+    const double sideways = much * options.shift_m * random.normal();
+    placed.back += sideways * placed.along;
     // Nothing is pushed into the wall it stands at.
-    placed.back += shift.x() * placed.along;
-    if (!on_wall(placed.piece.kind)) placed.back += std::abs(shift.y()) * left_of(placed.along);
+    if (!on_wall(placed.piece.kind)) placed.back += std::abs(outward) * left_of(placed.along);
     placed.along = along;
     result.push_back(placed);
   }

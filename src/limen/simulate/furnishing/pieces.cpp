@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "limen/geometry/random_vectors.h"
 #include "limen/simulate/furnishing/shapes.h"
 
 namespace limen {
@@ -36,19 +37,21 @@ void legs(Maker& m, const Vector2d& middle, const Vector2d& span, double height,
 void things_on(Maker& m, const Vector3d& top_middle, const Vector2d& span, int most) {
   const int count = static_cast<int>(m.things.below(static_cast<std::uint32_t>(most + 1)));
   for (int i = 0; i < count; ++i) {
-    const Vector3d at = top_middle + Vector3d(m.things.uniform(-0.4, 0.4) * span.x(),
-                                              m.things.uniform(-0.4, 0.4) * span.y(), 0.0);
+    const Vector2d share = uniform_vector(Vector2d(-0.4, -0.4), Vector2d(0.4, 0.4), m.things);
+    const Vector3d at = top_middle + Vector3d(share.x() * span.x(), share.y() * span.y(), 0.0);
     const double form = m.things.uniform();
-    if (form < 0.35)
-      m.shape.cylinder(at, m.things.uniform(0.03, 0.08), m.things.uniform(0.08, 0.32),
-                       m.things.uniform(0.4, 1.2));
-    else if (form < 0.75)
-      m.shape.box(at,
-                  {m.things.uniform(0.1, 0.35), m.things.uniform(0.08, 0.25), m.things.uniform(0.03, 0.3)},
-                  m.things.uniform(0.0, 3.0));
-    else
+    if (form < 0.35) {
+      const double reflectivity = m.things.uniform(0.4, 1.2);
+      const double height = m.things.uniform(0.08, 0.32);
+      m.shape.cylinder(at, m.things.uniform(0.03, 0.08), height, reflectivity);
+    } else if (form < 0.75) {
+      const double turn = m.things.uniform(0.0, 3.0);
+      m.shape.box(
+          at, {m.things.uniform(0.1, 0.35), m.things.uniform(0.08, 0.25), m.things.uniform(0.03, 0.3)}, turn);
+    } else {
       m.shape.ellipsoid(at + Vector3d(0.0, 0.0, 0.08),
                         {m.things.uniform(0.06, 0.18), m.things.uniform(0.06, 0.15), 0.08});
+    }
   }
 }
 
@@ -139,7 +142,8 @@ void desk(Maker& m) {
   const double x = m.things.uniform(-0.2, 0.2) * w;
   m.shape.cylinder({x, 0.3 * d, h}, 0.1, 0.015);
   m.shape.cylinder({x, 0.27 * d, h}, 0.025, 0.25);
-  m.shape.box({x, 0.3 * d, h + 0.13}, {m.make.uniform(0.5, 0.8), 0.03, 0.36}, m.things.uniform(-0.3, 0.3));
+  const double turn = m.things.uniform(-0.3, 0.3);
+  m.shape.box({x, 0.3 * d, h + 0.13}, {m.make.uniform(0.5, 0.8), 0.03, 0.36}, turn);
   things_on(m, {0.0, 0.6 * d, h}, {w, 0.6 * d}, 5);
 }
 
@@ -155,8 +159,9 @@ void table_with_chairs(Maker& m) {
   for (int i = 0; i < chairs; ++i) {
     for (const double side : {-1.0, 1.0}) {
       if (m.things.uniform() < 0.15) continue;
-      const Vector2d at = middle + Vector2d(w * ((i + 0.5) / chairs - 0.5) + m.things.uniform(-0.06, 0.06),
-                                            side * (0.5 * d + m.things.uniform(-0.1, 0.22)));
+      const Vector2d off = uniform_vector(Vector2d(-0.06, -0.1), Vector2d(0.06, 0.22), m.things);
+      const Vector2d at =
+          middle + Vector2d(w * ((i + 0.5) / chairs - 0.5) + off.x(), side * (0.5 * d + off.y()));
       chair(m, at, (side > 0.0 ? 0.0 : 3.14159) + m.things.uniform(-0.35, 0.35), 0.45);
     }
   }
@@ -243,9 +248,10 @@ void box_pile(Maker& m) {
   double z = 0.0;
   while (z < m.size.z() - 0.15) {
     const double h = m.things.uniform(0.2, 0.4);
-    m.shape.box({m.things.uniform(-0.08, 0.08), 0.5 * m.size.y(), z},
-                {m.size.x() * m.things.uniform(0.6, 0.85), m.size.y() * m.things.uniform(0.6, 0.85), h},
-                m.things.uniform(-0.2, 0.2));
+    const double turn = m.things.uniform(-0.2, 0.2);
+    const Vector3d size = {m.size.x() * m.things.uniform(0.6, 0.85), m.size.y() * m.things.uniform(0.6, 0.85),
+                           h};
+    m.shape.box({m.things.uniform(-0.08, 0.08), 0.5 * m.size.y(), z}, size, turn);
     z += h;
   }
 }

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "limen/geometry/random_vectors.h"
+
 namespace limen {
 namespace {
 
@@ -14,13 +16,6 @@ Vector3d unit_at(double turn, double rise) {
   const double a = 2.0 * std::numbers::pi * turn;
   const double b = std::numbers::pi * (rise - 0.5);
   return {std::cos(b) * std::cos(a), std::cos(b) * std::sin(a), std::sin(b)};
-}
-
-Vector3d in_ball(RandomStream& random) {
-  for (;;) {
-    const Vector3d p(random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0));
-    if (p.squaredNorm() <= 1.0) return p;
-  }
 }
 
 }  // namespace
@@ -86,9 +81,10 @@ void ShapeBuilder::ellipsoid(const Vector3d& middle, const Vector3d& radii) {
 void ShapeBuilder::leaves(const Vector3d& middle, const Vector3d& radii, int count, RandomStream& random) {
   const int id = mesh_.add_surface(round());
   for (int i = 0; i < count; ++i) {
-    const Vector3d p = at(middle + in_ball(random).cwiseProduct(radii));
+    const Vector3d p = at(middle + vector_in_ball(random).cwiseProduct(radii));
     const double size = random.uniform(0.04, 0.13);
-    mesh_.add_triangle(p, p + size * in_ball(random), p + size * in_ball(random), id);
+    const Vector3d tip = p + size * vector_in_ball(random);
+    mesh_.add_triangle(p, p + size * vector_in_ball(random), tip, id);
   }
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "limen/geometry/random_vectors.h"
 #include "limen/simulate/furnishing/pieces.h"
 #include "limen/simulate/model/bim_changes.h"
 #include "limen/simulate/scanner/ray_caster.h"
@@ -108,8 +109,8 @@ class Clutterer {
     const Vector3d foot = station.position + hit.range_m * direction;
     if (station.position.z() - foot.z() < 1.2) return false;
     const bool large = random_.uniform() < 0.4;
-    const Vector3d size(random_.uniform(0.3, large ? 1.8 : 0.7), random_.uniform(0.3, large ? 0.7 : 0.6),
-                        random_.uniform(0.3, large ? 2.0 : 0.9));
+    const Vector3d most = large ? Vector3d(1.8, 0.7, 2.0) : Vector3d(0.7, 0.6, 0.9);
+    const Vector3d size = uniform_vector(Vector3d(0.3, 0.3, 0.3), most, random_);
     const BoxPlace place{foot, random_.uniform() < 0.7 ? heading_of_wall(foot) : random_.uniform(0.0, 3.1)};
     if (!fits(place, size, 0.5 * std::hypot(size.x(), size.y()))) return false;
     add(place, size);

@@ -9,6 +9,7 @@
 
 #include "limen/base/error.h"
 #include "limen/geometry/polygon_clip.h"
+#include "limen/geometry/random_vectors.h"
 
 namespace limen {
 namespace {
@@ -77,8 +78,7 @@ class BimSurveyor {
     const BimRoom& room = rooms_[index];
     const Box2 box = box_of(room.outline);
     for (int attempt = 0; attempt < 400; ++attempt) {
-      const Vector2d at(random_.uniform(box.low.x(), box.high.x()),
-                        random_.uniform(box.low.y(), box.high.y()));
+      const Vector2d at = uniform_vector(box.low, box.high, random_);
       if (room_at({at.x(), at.y(), room.floor_m + 1.0}) != static_cast<int>(index)) continue;
       // From the middle of the height: the floor may lie a little above or below the named space's bottom.
       const auto place = on_floor({at.x(), at.y(), room.floor_m + 0.5 * std::min(room.height_m, 3.0)});

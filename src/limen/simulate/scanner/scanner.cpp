@@ -49,7 +49,9 @@ std::uint64_t cell_of(const TrueOpening& opening, const Vector3d& x) {
 Vector3d jittered(const Vector3d& direction, double sigma, RandomStream& random) {
   const Vector3d across = direction.unitOrthogonal();
   const Vector3d other = direction.cross(across);
-  return (direction + sigma * random.normal() * across + sigma * random.normal() * other).normalized();
+  const double by_other = sigma * random.normal();
+  const double by_across = sigma * random.normal();
+  return (direction + by_across * across + by_other * other).normalized();
 }
 
 /// Fires the pulses of one line and turns their returns into echoes.

@@ -7,6 +7,8 @@
 #include <numbers>
 #include <utility>
 
+#include "limen/geometry/random_vectors.h"
+
 namespace limen {
 
 Matrix3d any_heading(RandomStream& random) {
@@ -15,8 +17,7 @@ Matrix3d any_heading(RandomStream& random) {
 
 Matrix3d station_rotation(bool any_rotation, RandomStream& random) {
   if (!any_rotation) return any_heading(random);
-  const Eigen::Quaterniond q(random.normal(), random.normal(), random.normal(), random.normal());
-  return nearest_rotation(q.normalized().toRotationMatrix());
+  return uniform_rotation(random);
 }
 
 Vector3d rounded(const Vector3d& x) {

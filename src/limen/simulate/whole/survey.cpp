@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "limen/geometry/random_vectors.h"
 #include "limen/simulate/buildings/furniture.h"
 
 namespace limen {
@@ -49,7 +50,7 @@ class RoomSurvey {
       low = low.cwiseMin(p);
       high = high.cwiseMax(p);
     }
-    Vector2d share(random_.uniform(), random_.uniform());
+    Vector2d share = uniform_vector(Vector2d(0.0, 0.0), Vector2d(1.0, 1.0), random_);
     const Eigen::Index longer = high.x() - low.x() >= high.y() - low.y() ? 0 : 1;
     share[longer] = wish_.from + (wish_.to - wish_.from) * share[longer];
     const Vector2d p = low + share.cwiseProduct(high - low);

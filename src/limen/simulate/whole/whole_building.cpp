@@ -143,7 +143,8 @@ Design hotel_design(int size, RandomStream& random) {
 Design flats_design(int size, RandomStream& random) {
   const int storeys = std::min(8, 2 + (size + 1) / 2);
   const int sections = std::max(1, size - 2);
-  return {make_row_plan(flats_unit(random), row_of(sections, storeys, random)), regular_look(random), 3};
+  const RowOptions row = row_of(sections, storeys, random);
+  return {make_row_plan(flats_unit(random), row), regular_look(random), 3};
 }
 
 Design terrace_design(int size, RandomStream& random) {
