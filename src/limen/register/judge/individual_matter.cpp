@@ -39,6 +39,8 @@ constexpr double kOneFaceCosine = 0.97;  // ... facing the same way ...
 constexpr double kNextPieceM = 0.35;     // ... are of one face, piece by piece
 constexpr double kThingLengthM = 0.4;    // faces nearer than this tell the same ...
 constexpr double kFrontLengthM = 1.5;    // ... and those of one plane nearer than this
+constexpr double kFrontCosine = 0.99;    // a front is parallel to its wall to 8 degrees ...
+constexpr double kDeepestM = 0.7;        // ... and no further from it than cupboards are deep
 
 // Pieces nearer than this tell the same: the size of a chair, a box, a monitor. A moved table is few pieces.
 constexpr double kCorrelationM = 0.25;
@@ -80,6 +82,18 @@ class BuiltPlanes {
       found = Place::behind;
     }
     return found;
+  }
+
+  /// Whether a face at `x` may be the front of something that stands with its back to a wall.
+  [[nodiscard]] bool is_front(const Vector3d& x, const Vector3d& normal) const {
+    return std::any_of(parts_.begin(), parts_.end(), [&](const Part& part) {
+      if (std::abs(part.plane.normal.z()) > kUprightCosine) return false;
+      if (part.plane.normal.dot(normal) < kFrontCosine) return false;
+      const double distance = part.plane.signed_distance(x);
+      if (distance < 0.0 || distance > kDeepestM) return false;
+      const Vector2d margin = Vector2d::Constant(kBesideWallM);
+      return Box2{part.box.low - margin, part.box.high + margin}.contains(part.frame.to_plane(x));
+    });
   }
 
   /// Whether the way from `a` to `b` leads through a wall, or an opening of it.
@@ -175,7 +189,6 @@ struct Told {
   Vector3d at = Vector3d::Zero();
   double weight = 0.0;
   bool agrees = false;
-  bool of_source = false;  ///< it stands in the room of the source's station
 };
 
 /// A face of one scan that the other has as well, in the target's frame.
@@ -241,16 +254,6 @@ Observations observations(const std::vector<Told>& told, const std::vector<doubl
   return seen;
 }
 
-/// Observations that agree in the room of one station, and in that of the other: the fewer.
-double in_both_rooms(const std::vector<Told>& told, const std::vector<double>& shares) {
-  double of_source = 0.0;
-  double of_target = 0.0;
-  for (std::size_t i = 0; i < told.size(); ++i) {
-    if (told[i].agrees) (told[i].of_source ? of_source : of_target) += shares[i];
-  }
-  return std::min(of_source, of_target);
-}
-
 /// One scan with what is the building's and what is not.
 struct Side {
   ScanView view;
@@ -262,7 +265,7 @@ struct Side {
 
 /// Asks `judge` about the pieces of `scan`; what it does not know is left out.
 void ask_matter(const Side& scan, const Side& judge, const Rigid3& judge_from_scan,
-                const Rigid3& target_from_scan, bool scan_is_source, std::vector<Told>& told) {
+                const Rigid3& target_from_scan, std::vector<Told>& told) {
   if (!judge.view.knows_free) return;  // what it does not contradict it does not confirm either
   for (const Piece& piece : scan.pieces) {
     SightQuery query;
@@ -277,8 +280,8 @@ void ask_matter(const Side& scan, const Side& judge, const Rigid3& judge_from_sc
     // Beyond an opening of both stands what both rooms' neighbours have alike: corridors, façades.
     if (surface && piece.behind && place == BuiltPlanes::Place::behind) continue;
     if (surface && sight.plane >= 0 && judge.built.is_built(sight.plane)) continue;
-    told.push_back({target_from_scan * piece.detail->mean, static_cast<double>(piece.detail->area_m2),
-                    surface, piece.behind != scan_is_source});
+    told.push_back(
+        {target_from_scan * piece.detail->mean, static_cast<double>(piece.detail->area_m2), surface});
   }
 }
 
@@ -421,6 +424,9 @@ FaceOffsets face_offsets(const Side& source, const Side& target, const Rigid3& t
   for (const MetFace& face : faces) {
     offsets.offsets_m.push_back(face.offset_m);
     offsets.sigmas_m.push_back(std::hypot(kUnevenM, face.sigma_m, drift));
+    offsets.fronts.push_back(
+        target.built.is_front(face.at, face.normal) ||
+        source.built.is_front(source_from_target * face.at, source_from_target.rotation * face.normal));
   }
   offsets.shares = shares_of(faces, 8.0 * kThingLengthM);
   return offsets;
@@ -428,8 +434,8 @@ FaceOffsets face_offsets(const Side& source, const Side& target, const Rigid3& t
 
 std::vector<Told> told_of_matter(const Side& source, const Side& target, const Rigid3& target_from_source) {
   std::vector<Told> told;
-  ask_matter(source, target, target_from_source, target_from_source, true, told);
-  ask_matter(target, source, inverse(target_from_source), Rigid3{}, false, told);
+  ask_matter(source, target, target_from_source, target_from_source, told);
+  ask_matter(target, source, inverse(target_from_source), Rigid3{}, told);
   return told;
 }
 
@@ -468,7 +474,6 @@ IndividualMatter individual_matter(const ScanView& source_view, const ScanView& 
   const std::vector<Told> told = told_of_matter(source, target, target_from_source);
   const std::vector<double> shares = shares_of(told, 8.0 * kCorrelationM);
   individual.matter = observations(told, shares);
-  individual.in_both_rooms = in_both_rooms(told, shares);
   individual.chance = chance_of(source, target, target_from_source);
   individual.apart = wall_between(source, target, target_from_source) ||
                      wall_between(target, source, inverse(target_from_source));

@@ -23,6 +23,8 @@ struct FaceOffsets {
   std::vector<double> shares;
   /// What noise leaves between two measurements of one face, each; roughness and the pose come on top.
   std::vector<double> sigmas_m;
+  /// Fronts of what stands with its back to a wall, each: things of one make reach equally far from it.
+  std::vector<bool> fronts;
 };
 
 /// Pieces farther apart than this are not taken for one another.
@@ -40,8 +42,6 @@ struct IndividualMatter {
   double chance = 0.0;
   /// A wall stands between the two stations: what they have in common is seen through an opening.
   bool apart = false;
-  /// Observations that agree in either station's room: those of the room with fewer.
-  double in_both_rooms = 0.0;
   /// What walls that both scans saw askew alike say against a twin (unevenness_nats); not asked here.
   double built_nats = 0.0;
 };

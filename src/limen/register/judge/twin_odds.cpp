@@ -28,6 +28,8 @@ double normal_density(double offset_m, double sigma_m) {
   return std::exp(-0.5 * z * z) / (sigma_m * std::sqrt(2.0 * std::numbers::pi) * std::max(inside, 1e-9));
 }
 
+constexpr double kFlushM = 0.003;  // things of one make are as deep as one another, and walls are flat
+
 /// One way in which the offsets of one explanation may be spread: a share of the faces is where it was, a
 /// share was pushed, and the rest has nothing to do with one another.
 struct OffsetScene {
@@ -36,11 +38,14 @@ struct OffsetScene {
   double measured = 1.0;  ///< ... of which measuring leaves so many times what is thought
   double pushed = 0.0;    ///< share of the second ...
   double pushed_m = 0.0;  ///< ... spread by so much on top
+  double flush = 0.0;     ///< share of fronts that are of one make and stand flush with a wall
 
-  [[nodiscard]] double density(double offset_m, double sigma_m) const {
+  [[nodiscard]] double density(double offset_m, double sigma_m, bool front) const {
     double sum = (1.0 - placed - pushed) / (2.0 * kNearFaceM);
     if (placed > 0.0) sum += placed * normal_density(offset_m, measured * sigma_m);
     if (pushed > 0.0) sum += pushed * normal_density(offset_m, std::hypot(pushed_m, sigma_m));
+    if (front && flush > 0.0)
+      sum = (1.0 - flush) * sum + flush * normal_density(offset_m, std::hypot(kFlushM, sigma_m));
     return sum;
   }
 };
@@ -82,6 +87,20 @@ std::vector<OffsetScene> with_designed(const std::vector<OffsetScene>& scenes) {
   return both;
 }
 
+/// Fronts of things of one make that stand flush with walls are equally far from them, whoever put them
+/// there: most are, or few (`often`: how often the former).
+std::vector<OffsetScene> with_fronts(const std::vector<OffsetScene>& scenes, double often) {
+  std::vector<OffsetScene> both;
+  for (const OffsetScene& scene : scenes) {
+    for (const auto& [weight, flush] : {std::pair{often, 0.9}, std::pair{1.0 - often, 0.3}}) {
+      both.push_back(scene);
+      both.back().weight *= weight;
+      both.back().flush = flush;
+    }
+  }
+  return both;
+}
+
 /// Put up alike: by hand to some centimetres, where there are fittings or marks to under one.
 std::vector<OffsetScene> furnished_alike() {
   std::vector<OffsetScene> scenes;
@@ -103,7 +122,8 @@ double log_likelihood(const FaceOffsets& faces, const std::vector<OffsetScene>& 
   for (const OffsetScene& scene : scenes) {
     double sum = 0.0;
     for (std::size_t i = 0; i < faces.offsets_m.size(); ++i)
-      sum += faces.shares[i] * std::log(scene.density(faces.offsets_m[i], faces.sigmas_m[i]));
+      sum +=
+          faces.shares[i] * std::log(scene.density(faces.offsets_m[i], faces.sigmas_m[i], faces.fronts[i]));
     logs.push_back(std::log(scene.weight) + sum);
   }
   return log_sum_exp(logs);
@@ -123,7 +143,6 @@ void TwinOptions::check() const {
   check_share("prior_apart", prior_apart);
   check_share("alike_share", alike_share);
   check_share("least_alike", least_alike);
-  if (!(apart_share > 0 && apart_share <= 1)) throw_bad_option("apart_share", apart_share, "within (0, 1]");
   kept.check("kept");
   check_share("lived_in", lived_in);
   kept_lived_in.check("kept_lived_in");
@@ -139,15 +158,19 @@ TwinEvidence weigh_twin(const IndividualMatter& individual, const TwinOptions& o
       log_sum_exp({std::log(1.0 - options.lived_in) + log_likelihood(individual.matter, options.kept),
                    std::log(options.lived_in) + log_likelihood(individual.matter, options.kept_lived_in)});
   const double prior = individual.apart ? options.prior_apart : options.prior;
-  const double in_both = individual.apart ? std::clamp(individual.in_both_rooms, 0.0, 1.0) : 0.0;
-  const double alike_share = options.alike_share * std::pow(options.apart_share, in_both);
   const double same = log_likelihood(individual.faces, one_room());
+  // Of a whole room sides are seen as well as fronts, and by chance one stands elsewhere; through a door few
+  // things are, mostly their fronts.
+  const std::vector<OffsetScene> alike =
+      individual.apart ? with_fronts(furnished_alike(), 0.5) : furnished_alike();
+  const std::vector<OffsetScene> otherwise =
+      individual.apart ? with_fronts(furnished_otherwise(), 0.1) : furnished_otherwise();
   TwinEvidence evidence;
-  evidence.alike = std::max(prior * alike_share, options.least_alike);
+  evidence.alike = std::max(prior * options.alike_share, options.least_alike);
   evidence.otherwise = std::max(0.0, prior - evidence.alike);
-  evidence.otherwise_nats = stayed - log_likelihood(individual.matter, chance) + same -
-                            log_likelihood(individual.faces, furnished_otherwise());
-  evidence.alike_nats = same - log_likelihood(individual.faces, furnished_alike());
+  evidence.otherwise_nats =
+      stayed - log_likelihood(individual.matter, chance) + same - log_likelihood(individual.faces, otherwise);
+  evidence.alike_nats = same - log_likelihood(individual.faces, alike);
   evidence.built_nats = individual.built_nats;
   return evidence;
 }

@@ -14,7 +14,6 @@ struct TwinOptions {
   double prior = 0.15;        ///< of the pairs whose walls fit, those of two rooms built alike
   double prior_apart = 0.05;  ///< the same where a wall is between the stations: two neighbours must be alike
   double alike_share = 0.03;  ///< of those, furnished alike as well, to a few centimetres
-  double apart_share = 0.3;   ///< of those again, where things agree in two rooms: both must be alike
   /// Twins furnished alike are believed no less beforehand, twice the risk that is usual: where nothing that
   /// was seen speaks against them, no belief alone registers.
   double least_alike = 0.002;
