@@ -161,15 +161,16 @@ class DoubtSearch {
     const double twin = otherwise.weight() + alike.weight();
     const double none = 1.0 - otherwise.prior - alike.prior;
     doubt.twin = twin / (twin + none);
-    doubt.twin_nats = std::log(twin / none);
     const Cut& likelier = otherwise.weight() > alike.weight() ? otherwise : alike;
     doubt.links = likelier.links;
     doubt.across = likelier.across;
+    doubt.held_nats = likelier.held_nats;
   }
 
   struct Cut {
-    double prior = 0.0;  ///< of a twin, before things are asked; none where no pair's were
-    double nats = 0.0;   ///< what they say against it
+    double prior = 0.0;      ///< of a twin, before things are asked; none where no pair's were
+    double nats = 0.0;       ///< what they say against it
+    double held_nats = 0.0;  ///< the same of those only that do
     /// What walls say against it, once for a building: by the link that shows most surface. The link that
     /// says most would be chosen for what it says, and of many some say much by chance.
     double built_nats = 0.0;
@@ -223,6 +224,7 @@ class DoubtSearch {
       std::vector<const GraphLink*>& heard = nats > 0.0 ? heard_against : heard_for;
       const double fresh = 1.0 - views_.seen_already(*voice.pair, heard, side);
       cut.nats += fresh * nats;
+      cut.held_nats += fresh * std::max(0.0, nats);
       heard.push_back(voice.pair);
       if (voice.link < 0) continue;
       cut.across.push_back(voice.link);

@@ -14,7 +14,7 @@ struct NodeDoubt {
   double twin = 1.0;        ///< its side of the building is laid on another place built alike
   double chance = 1.0;      ///< the links that hold it are wrong in other ways
   std::vector<int> links;   ///< the links that hold it, where they are fewest or least sure
-  double twin_nats = 0.0;   ///< logarithm of the odds of `twin`
+  double held_nats = 0.0;   ///< what links say for its side, whatever speaks against it
   std::vector<int> across;  ///< all links that would lie on twins
 
   [[nodiscard]] double total() const { return twin + chance - twin * chance; }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <set>
 #include <utility>
@@ -15,7 +16,14 @@ namespace {
 
 // Poses within a part are not adjusted yet: what links miss one another by is judged more mildly.
 constexpr double kMild = 4.0;
-constexpr double kEnoughM2 = 20.0;  // more surface than this makes a link no surer
+constexpr double kMostJoinNats = 14.0;  // no link is surer than about one in a million
+constexpr double kLeastRight = 1e-9;
+constexpr double kGivenNats = 100.0;   // of what a file says
+constexpr double kJoinLoopNats = 7.0;  // sure links that are wrong close a loop once in a thousand
+constexpr int kMostLoops = 3;          // of a link that count: they share their errors
+constexpr double kSureNats = 6.9;      // of a join of open links that is as sure as one of a sure link: 0.001
+constexpr double kEnoughM2 = 20.0;     // more surface than this makes a link no surer ...
+constexpr double kSurfaceNats = 0.5;   // ... and less only decides between what is as sure
 
 /// One pose of a link between two parts, from the lower to the higher part.
 struct Crossing {
@@ -30,14 +38,23 @@ struct Crossing {
 /// A way to join two parts.
 struct Join {
   JoinTrust trust = JoinTrust::weak;
-  double evidence = -1.0;
+  double lead = -1.0;  ///< logarithm of the odds against every other way, and against none
   Rigid3 higher_from_lower;
   bool valid = false;
+
+  /// Weak links last: they leave a direction free.
+  [[nodiscard]] bool before(const Join& other) const {
+    const bool weak = trust == JoinTrust::weak;
+    const bool weak_other = other.trust == JoinTrust::weak;
+    return weak != weak_other ? weak_other : lead > other.lead;
+  }
 };
 
 class Grower {
  public:
-  Grower(const PoseGraph& graph, const std::vector<std::vector<int>>& votes) : graph_(graph), votes_(votes) {
+  Grower(const PoseGraph& graph, const std::vector<std::vector<int>>& votes,
+         const std::vector<bool>& left_out)
+      : graph_(graph), votes_(votes) {
     const auto nodes = static_cast<std::size_t>(graph.nodes);
     grown_.part_from_node.resize(nodes);
     grown_.trust.assign(nodes, JoinTrust::sure);
@@ -46,9 +63,12 @@ class Grower {
       members_.push_back({node});
     }
     neighbours_.resize(nodes);
-    for (std::size_t k = 0; k < graph.links.size(); ++k) {
-      const GraphLink& link = graph.links[k];
+    for (std::size_t k = 0; k < graph.links.size() + graph.against.size(); ++k) {
+      if (holds(k) && left_out[k]) continue;
+      const GraphLink& link = pair(k);
       between_[key(link.source, link.target)].push_back(k);
+      double& shared = shared_m2_[key(link.source, link.target)];
+      shared = std::max(shared, link.poses.front().agreeing_m2);
       neighbours_[static_cast<std::size_t>(link.source)].insert(link.target);
       neighbours_[static_cast<std::size_t>(link.target)].insert(link.source);
     }
@@ -61,6 +81,12 @@ class Grower {
   }
 
  private:
+  /// Pairs by number: the links, then what speaks against.
+  [[nodiscard]] bool holds(std::size_t k) const { return k < graph_.links.size(); }
+  [[nodiscard]] const GraphLink& pair(std::size_t k) const {
+    return holds(k) ? graph_.links[k] : graph_.against[k - graph_.links.size()];
+  }
+
   using Parts = std::pair<int, int>;
   static Parts key(int a, int b) { return {std::min(a, b), std::max(a, b)}; }
 
@@ -69,9 +95,7 @@ class Grower {
     Parts parts;
     for (const auto& [pair, join] : joins_) {
       if (!join.valid) continue;
-      if (best != nullptr &&
-          (join.trust > best->trust || (join.trust == best->trust && join.evidence <= best->evidence)))
-        continue;
+      if (best != nullptr && !join.before(*best)) continue;
       best = &join;
       parts = pair;
     }
@@ -118,9 +142,9 @@ class Grower {
   [[nodiscard]] std::vector<Crossing> crossings(const Parts& parts) const {
     std::vector<Crossing> list;
     for (const std::size_t k : between_.at(parts)) {
-      const GraphLink& link = graph_.links[k];
+      const GraphLink& link = pair(k);
       const bool forward = grown_.part[static_cast<std::size_t>(link.source)] == parts.first;
-      for (std::size_t p = 0; p < link.poses.size(); ++p) {
+      for (std::size_t p = 0; p < (holds(k) ? link.poses.size() : 1); ++p) {
         Crossing c;
         c.link = k;
         c.pose = p;
@@ -151,56 +175,95 @@ class Grower {
     return chi_square(missed, kMild * covariance) <= kChiSquareBound;
   }
 
-  [[nodiscard]] double value_of(const Crossing& c) const {
-    const GraphLink& link = graph_.links[c.link];
+  /// Logarithm of how much more probable a pose of a pair is than that none of its poses is right.
+  [[nodiscard]] double nats_of(const Crossing& c) const {
+    const GraphLink& link = pair(c.link);
+    if (link.trust == LinkTrust::given) return kGivenNats;
+    const double wrong =
+        std::clamp(link.chance + link.twin, std::exp(-kMostJoinNats), 1.0 - std::exp(-kMostJoinNats));
+    if (!holds(c.link)) return std::log((1.0 - wrong) / wrong);
+    const bool best = c.pose == 0 && link.trust <= LinkTrust::likely;
+    const double right = best ? 1.0 - wrong : link.poses[c.pose].probability;
+    const double own = std::clamp(std::log(std::max(right, kLeastRight) / wrong), 0.0, kMostJoinNats);
     const double surface = std::min(link.poses[c.pose].agreeing_m2, kEnoughM2) / kEnoughM2;
-    const double own = link.trust == LinkTrust::given    ? 100.0
-                       : link.trust == LinkTrust::sure   ? 1.0
-                       : link.trust == LinkTrust::likely ? 0.6
-                                                         : 0.3;
-    return own + votes_[c.link][c.pose] + 0.5 * surface;
+    return own + kJoinLoopNats * std::min(votes_[c.link][c.pose], kMostLoops) + kSurfaceNats * surface;
   }
 
-  /// Of a join that no sure link bears; `several`: links agree on it, and a loop of one of them closes.
-  [[nodiscard]] static JoinTrust lesser_trust(LinkTrust candidate, bool several) {
-    if (candidate == LinkTrust::weak) return JoinTrust::weak;
-    if (candidate == LinkTrust::likely) return JoinTrust::likely;
-    return several ? JoinTrust::sure : JoinTrust::open;
+  /// What it adds to what another has said: that there is a twin is believed of the place, once.
+  [[nodiscard]] double more_nats_of(const Crossing& c) const {
+    const GraphLink& link = pair(c.link);
+    if (!link.evidence) return nats_of(c);
+    return std::min({link.evidence->otherwise_nats, link.evidence->alike_nats, nats_of(c)});
   }
 
-  /// The joint pose of most evidence: the links that agree with a crossing speak for it, sure ones that do
-  /// not speak against it.
+  /// How much of what a crossing shows another shows as well: scans of one room say nearly the same.
+  [[nodiscard]] double seen_by(const Crossing& c, const Crossing& other) const {
+    const double surface = pair(c.link).poses[c.pose].agreeing_m2;
+    const auto share = [&](int a, int b) {
+      if (a == b || surface <= 0.0) return 1.0;
+      const auto found = shared_m2_.find(key(a, b));
+      return found == shared_m2_.end() ? 0.0 : std::min(1.0, found->second / surface);
+    };
+    return share(c.lower_node, other.lower_node) * share(c.higher_node, other.higher_node);
+  }
+
+  /// What crossings that agree say together; of each link the pose that says most.
+  [[nodiscard]] double nats_of(std::vector<const Crossing*> agreeing) const {
+    std::stable_sort(agreeing.begin(), agreeing.end(),
+                     [&](const Crossing* a, const Crossing* b) { return nats_of(*a) > nats_of(*b); });
+    std::set<std::size_t> links;
+    std::vector<const Crossing*> heard;
+    double sum = 0.0;
+    for (const Crossing* c : agreeing) {
+      if (!links.insert(c->link).second) continue;
+      double seen = 0.0;
+      for (const Crossing* other : heard) {
+        if (holds(c->link) == holds(other->link)) seen = std::max(seen, seen_by(*c, *other));
+      }
+      sum += (1.0 - seen) * (heard.empty() ? nats_of(*c) : more_nats_of(*c));
+      // Sure poses that are wrong agree by chance only, whatever they see.
+      if (!heard.empty() && holds(c->link) && pair(c->link).trust <= LinkTrust::sure) sum += kJoinLoopNats;
+      heard.push_back(c);
+    }
+    return sum;
+  }
+
+  [[nodiscard]] JoinTrust trust_of(const std::vector<const Crossing*>& agreeing, double lead) const {
+    LinkTrust surest = LinkTrust::weak;
+    for (const Crossing* c : agreeing) {
+      if (holds(c->link)) surest = std::min(surest, pair(c->link).trust);
+    }
+    if (surest == LinkTrust::weak) return JoinTrust::weak;
+    if (surest <= LinkTrust::sure || lead >= kSureNats) return JoinTrust::sure;
+    return surest == LinkTrust::likely ? JoinTrust::likely : JoinTrust::open;
+  }
+
+  /// The way that most is said for, by how much it leads before every other.
   [[nodiscard]] Join best_join(const Parts& parts) const {
     const std::vector<Crossing> all = crossings(parts);
-    Join best;
-    for (const Crossing& candidate : all) {
-      Join join;
-      join.higher_from_lower = candidate.higher_from_lower;
-      join.valid = true;
-      std::map<std::size_t, double> value;  // of each link: its best agreeing pose
-      std::set<std::size_t> against;
-      int firm = 0;
+    std::vector<std::vector<const Crossing*>> agreeing(all.size());
+    std::vector<double> nats;
+    for (std::size_t i = 0; i < all.size(); ++i) {
       for (const Crossing& other : all) {
-        const GraphLink& link = graph_.links[other.link];
-        const bool agrees = (other.link == candidate.link && other.pose == candidate.pose) ||
-                            (other.link != candidate.link && agree(candidate, other));
-        if (agrees) {
-          value[other.link] = std::max(value[other.link], value_of(other));
-          if (link.trust <= LinkTrust::sure) join.trust = JoinTrust::sure;
-          if (votes_[other.link][other.pose] > 0) ++firm;
-        } else if (link.trust <= LinkTrust::sure) {
-          against.insert(other.link);
-        }
+        if (&other == &all[i] || (other.link != all[i].link && agree(all[i], other)))
+          agreeing[i].push_back(&other);
       }
-      join.evidence = 0.0;
-      for (const auto& [link, worth] : value) join.evidence += worth;
-      for (const std::size_t link : against) join.evidence -= value.count(link) > 0 ? 0.0 : 0.5;
-      if (join.trust != JoinTrust::sure)
-        join.trust = lesser_trust(graph_.links[candidate.link].trust, firm >= 1 && value.size() >= 2);
-      const bool better = !best.valid || join.trust < best.trust ||
-                          (join.trust == best.trust && join.evidence > best.evidence);
-      if (better) best = join;
+      nats.push_back(holds(all[i].link) ? nats_of(agreeing[i]) : -std::numeric_limits<double>::infinity());
     }
+    Join best;
+    const bool none = std::none_of(all.begin(), all.end(), [&](const Crossing& c) { return holds(c.link); });
+    if (none) return best;
+    const auto most = static_cast<std::size_t>(std::max_element(nats.begin(), nats.end()) - nats.begin());
+    double second = 0.0;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      const bool same =
+          std::find(agreeing[most].begin(), agreeing[most].end(), &all[i]) != agreeing[most].end();
+      if (!same) second = std::max(second, nats[i]);
+    }
+    best.higher_from_lower = all[most].higher_from_lower;
+    best.lead = nats[most] - second;
+    best.trust = trust_of(agreeing[most], best.lead);
+    best.valid = true;
     return best;
   }
 
@@ -210,13 +273,15 @@ class Grower {
   std::vector<std::vector<int>> members_;
   std::vector<std::set<int>> neighbours_;
   std::map<Parts, std::vector<std::size_t>> between_;
+  std::map<Parts, double> shared_m2_;  ///< surface that two nodes show in common
   std::map<Parts, Join> joins_;
 };
 
 }  // namespace
 
-GrownParts grow_parts(const PoseGraph& graph, const std::vector<std::vector<int>>& votes) {
-  return Grower(graph, votes).run();
+GrownParts grow_parts(const PoseGraph& graph, const std::vector<std::vector<int>>& votes,
+                      const std::vector<bool>& left_out) {
+  return Grower(graph, votes, left_out).run();
 }
 
 }  // namespace limen

@@ -18,10 +18,12 @@ struct GrownParts {
   std::vector<JoinTrust> trust;  ///< the least sure join between the node and the larger rest of its part
 };
 
-/// Maximum-evidence forest: two parts are joined by the pose that most links between them agree on, the pair
-/// of parts with the most evidence first. `votes` of the loops count with a link's own evidence. First by
-/// poses that a sure link bears, or that two links agree on; then by those that may lie on a twin; then by
-/// open ones; then by weak ones.
-GrownParts grow_parts(const PoseGraph& graph, const std::vector<std::vector<int>>& votes);
+/// Maximum-evidence forest: two parts are joined in the way whose odds are best, the pair of parts first that
+/// is surest of its way. A pose speaks for a way by its probability against that none of its link is right;
+/// links that see the same say it once; what speaks for another way speaks against it. That a place has a
+/// twin is believed once, whatever number of links lay the parts on one another. `votes`: loops of sure links
+/// that a pose closes. Weak links come last, those `left_out` not at all.
+GrownParts grow_parts(const PoseGraph& graph, const std::vector<std::vector<int>>& votes,
+                      const std::vector<bool>& left_out);
 
 }  // namespace limen

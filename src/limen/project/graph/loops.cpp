@@ -116,9 +116,14 @@ std::vector<std::vector<int>> loop_votes(const PoseGraph& graph) {
   std::vector<std::vector<int>> votes;
   for (const GraphLink& link : graph.links) votes.emplace_back(link.poses.size(), 0);
   for_each_triangle(graph, [&](const Walk& walk) {
-    const auto count = [&](const Arm& arm) {
-      return graph.links[static_cast<std::size_t>(arm.link)].poses.size();
+    const auto link_of = [&](const Arm& arm) -> const GraphLink& {
+      return graph.links[static_cast<std::size_t>(arm.link)];
     };
+    // What repeats in a building closes loops of poses that are one of several, and of twins, too.
+    if (std::any_of(walk.begin(), walk.end(),
+                    [&](const Arm& arm) { return link_of(arm).trust > LinkTrust::sure; }))
+      return;
+    const auto count = [&](const Arm& arm) { return link_of(arm).poses.size(); };
     std::set<std::pair<int, std::size_t>> closing;
     for (std::size_t i = 0; i < count(walk[0]); ++i) {
       const LinkPose first = leg_of(graph, walk[0], i);

@@ -8,8 +8,8 @@
 
 namespace limen {
 
-/// How many loops of three links each pose of each link closes with some pose of the two others (covariances
-/// of all three added): `votes[link][pose]`.
+/// How many loops of three sure links each pose of each link closes with some pose of the two others
+/// (covariances of all three added): `votes[link][pose]`.
 std::vector<std::vector<int>> loop_votes(const PoseGraph& graph);
 
 /// Loops of three links, and of four where a link is in none of three, tested with the given poses; links

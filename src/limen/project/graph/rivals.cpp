@@ -3,6 +3,7 @@
 #include "limen/project/graph/rivals.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -14,10 +15,19 @@ namespace limen {
 namespace {
 
 constexpr double kMildRival = 4.0;
-constexpr std::size_t kClearLead =
-    3;  // as many independent links must speak for a place for each that speaks against
+constexpr double kMostRivalNats = 7.0;  // no link is surer than a thousand to one here: sure ones contradict
+constexpr double kRivalLoopNats = 7.0;  // sure links that are wrong agree once in a thousand
+constexpr double kClearNats = 6.9;      // a place that is a thousand times less probable is no question
+constexpr double kOpenWrong = 0.02;     // of links with several poses perhaps none is right
+constexpr double kLeastLikely = 1e-9;
 constexpr double kSameShiftM = 0.05;
 constexpr double kSameTurnRad = 0.0175;
+
+/// A link that crosses a cut, and by how much it speaks for a place.
+struct Voice {
+  int link = -1;
+  double nats = 0.0;
+};
 
 /// What a link makes of a movement of one of its ends.
 struct Bend {
@@ -58,11 +68,29 @@ class RivalSearch {
   [[nodiscard]] static bool fits(const LinkPose& pose, const Rigid3& predicted) {
     return chi_square(misfit(pose, predicted), kMildRival * pose.covariance) <= kChiSquareBound;
   }
-  [[nodiscard]] static bool any_fits(const GraphLink& link, const Rigid3& predicted) {
+  /// The likeliest pose of a link that fits, -1: none.
+  [[nodiscard]] static int fitting_pose(const GraphLink& link, const Rigid3& predicted) {
     // Other poses of a sure link are no real possibility.
-    if (link.trust <= LinkTrust::likely) return fits(link.poses.front(), predicted);
-    return std::any_of(link.poses.begin(), link.poses.end(),
-                       [&](const LinkPose& pose) { return fits(pose, predicted); });
+    const std::size_t count = link.trust <= LinkTrust::likely ? 1 : link.poses.size();
+    int likeliest = -1;
+    for (std::size_t p = 0; p < count; ++p) {
+      const bool likelier = likeliest < 0 || link.poses[p].probability >
+                                                 link.poses[static_cast<std::size_t>(likeliest)].probability;
+      if (likelier && fits(link.poses[p], predicted)) likeliest = static_cast<int>(p);
+    }
+    return likeliest;
+  }
+  [[nodiscard]] static bool any_fits(const GraphLink& link, const Rigid3& predicted) {
+    return fitting_pose(link, predicted) >= 0;
+  }
+
+  /// Logarithm of how much more probable a pose of a link is than that none of its poses is right.
+  [[nodiscard]] static double nats_of(const GraphLink& link, int pose) {
+    const double least = link.trust == LinkTrust::open ? kOpenWrong : std::exp(-kMostRivalNats);
+    const double wrong = std::clamp(link.chance + link.twin, least, 1.0 - kLeastLikely);
+    const bool best = pose == 0 && link.trust <= LinkTrust::likely;
+    const double right = best ? 1.0 - wrong : link.poses[static_cast<std::size_t>(pose)].probability;
+    return std::clamp(std::log(std::max(right, kLeastLikely) / wrong), 0.0, kMostRivalNats);
   }
 
   /// Whether a pose says no more than what is known of it allows, or than nobody cares about.
@@ -111,8 +139,10 @@ class RivalSearch {
       if (moved[static_cast<std::size_t>(node)]) question.moved.push_back(node);
     }
     std::vector<int> open_rivals;
-    for (std::size_t k = 0; k < graph_.links.size(); ++k) witness(k, moved, movement, question, open_rivals);
-    // Targets that fit their coordinates to millimetres are no matter of numbers of links.
+    std::vector<Voice> torn;  // links that both places explain, by how much this one explains them better
+    for (std::size_t k = 0; k < graph_.links.size(); ++k)
+      witness(k, moved, movement, question, open_rivals, torn);
+    // Targets that fit their coordinates to millimetres are no matter of odds of links.
     const bool surveyed = std::any_of(question.current.begin(), question.current.end(), [&](int k) {
       const GraphLink& link = graph_.links[static_cast<std::size_t>(k)];
       return graph_.anchor >= 0 && (link.source == graph_.anchor || link.target == graph_.anchor);
@@ -124,10 +154,40 @@ class RivalSearch {
       return graph_.links[static_cast<std::size_t>(k)].trust <= LinkTrust::sure;
     });
     if (!firm) question.rival.insert(question.rival.end(), open_rivals.begin(), open_rivals.end());
-    const std::size_t present = views_.independent(question.current, moved).size();
-    const std::size_t other = views_.independent(question.rival, moved).size();
-    if (present == 0 && other == 0 && !follow_together(moved, movement)) return;
-    if (kClearLead * other > present || present == 0) questions.push_back(std::move(question));
+    std::vector<Voice> present;
+    std::vector<Voice> other;
+    for (const Voice& voice : torn)
+      (voice.nats > 0.0 ? present : other).push_back({voice.link, std::abs(voice.nats)});
+    for (const int k : question.current)
+      present.push_back({k, nats_of(graph_.links[static_cast<std::size_t>(k)],
+                                    accepted_.pose[static_cast<std::size_t>(k)])});
+    for (const int k : question.rival)
+      other.push_back(
+          {k, nats_of(graph_.links[static_cast<std::size_t>(k)], rival_pose(k, moved, movement))});
+    if (question.current.empty() && question.rival.empty() && !follow_together(moved, movement)) return;
+    // That what holds a scan may be wrong says nothing of another place: doubts_of() asks for that.
+    const bool unrivalled = question.rival.empty() && !question.current.empty();
+    if (unrivalled || nats_of(present, moved) - nats_of(other, moved) >= kClearNats) return;
+    questions.push_back(std::move(question));
+  }
+
+  /// What links say together: those that see the same say it once, but that sure ones agree says more.
+  [[nodiscard]] double nats_of(std::vector<Voice> voices, const std::vector<bool>& moved) const {
+    std::stable_sort(voices.begin(), voices.end(),
+                     [](const Voice& a, const Voice& b) { return a.nats > b.nats; });
+    std::vector<int> links;
+    for (const Voice& voice : voices) links.push_back(voice.link);
+    const std::vector<int> chosen = views_.independent(links, moved);
+    double sum = 0.0;
+    bool first = true;
+    for (const Voice& voice : voices) {
+      if (std::find(chosen.begin(), chosen.end(), voice.link) == chosen.end()) continue;
+      sum += voice.nats;
+      const bool sure = graph_.links[static_cast<std::size_t>(voice.link)].trust <= LinkTrust::sure;
+      if (sure && !first) sum += kRivalLoopNats;
+      first = false;
+    }
+    return sum;
   }
 
   /// Links that could follow a movement each by itself, by what is known of them, may not do so all together.
@@ -213,9 +273,18 @@ class RivalSearch {
     return std::binary_search(nodes.begin(), nodes.end(), node);
   }
 
+  /// The pose of a link that crosses the cut once what moves has moved; -1: none.
+  [[nodiscard]] int rival_pose(int k, const std::vector<bool>& moved, const Rigid3& movement) const {
+    const GraphLink& link = graph_.links[static_cast<std::size_t>(k)];
+    const Rigid3 then = moved[static_cast<std::size_t>(link.source)]
+                            ? inverse(at(link.target)) * movement * at(link.source)
+                            : inverse(movement * at(link.target)) * at(link.source);
+    return fitting_pose(link, then);
+  }
+
   /// Notes for which place the link speaks, if it crosses the cut.
   void witness(std::size_t k, const std::vector<bool>& moved, const Rigid3& movement, GraphQuestion& question,
-               std::vector<int>& open_rivals) const {
+               std::vector<int>& open_rivals, std::vector<Voice>& torn) const {
     const GraphLink& link = graph_.links[k];
     const bool source = moved[static_cast<std::size_t>(link.source)];
     const bool target = moved[static_cast<std::size_t>(link.target)];
@@ -223,12 +292,15 @@ class RivalSearch {
     const bool here = accepted_.component[static_cast<std::size_t>(link.source)] == component &&
                       accepted_.component[static_cast<std::size_t>(link.target)] == component;
     if (source == target || !here || link.trust == LinkTrust::weak) return;
-    const Bend bend = bend_of(link, movement);
-    const bool follows = source ? bend.source_moves : bend.target_moves;
-    const bool stays = accepted_.pose[k] >= 0;
-    if (stays && !follows) question.current.push_back(static_cast<int>(k));
-    if (follows && !stays)
+    const int now = accepted_.pose[k];
+    const int then = rival_pose(static_cast<int>(k), moved, movement);
+    if (now >= 0 && then < 0) question.current.push_back(static_cast<int>(k));
+    if (now < 0 && then >= 0)
       (link.trust > LinkTrust::sure ? open_rivals : question.rival).push_back(static_cast<int>(k));
+    if (now >= 0 && then >= 0 && now != then) {
+      const double better = nats_of(link, now) - nats_of(link, then);
+      torn.push_back({static_cast<int>(k), better});
+    }
   }
 
   /// The nodes that go with the moving ones while the others stay.

@@ -14,7 +14,7 @@ namespace limen {
 /// of their poses cost nothing) divides the component; tried are the cut next to either end, and the one
 /// between what is linked to one end and the other. Links on the cut speak for the present place, the
 /// other place, or both; those that see the same surface count once. Listed are the movements for which the
-/// other place has more than a third of the present one's links.
+/// present place is not a thousand times as probable, by what the links say of their poses.
 std::vector<GraphQuestion> rival_places(const PoseGraph& graph, const AcceptedPoses& accepted);
 
 }  // namespace limen

@@ -24,6 +24,7 @@ constexpr double kFirstGate = 16.0;  // times the bound, before the first adjust
 constexpr std::size_t kLoopsPerLink = 8;
 constexpr double kFixedM = 0.05;  // a weak link's node that is known this well by several is held after all
 constexpr double kFixedRad = 0.01;
+constexpr int kMostGrown = 30;   // times that parts are grown anew
 constexpr double kRather = 0.5;  // probability of a twin above which it is the explanation
 
 class Solver {
@@ -35,12 +36,14 @@ class Solver {
   }
 
   SolvedGraph run() {
-    grown_ = grow_parts(graph_, loop_votes(graph_));
-    accepted_.frame_from_node = grown_.part_from_node;
-    accepted_.component = grown_.part;
-    accepted_.pose.assign(graph_.links.size(), -1);
+    votes_ = loop_votes(graph_);
+    grow();
     settle();
-    while (take_apart_twins()) settle();
+    for (int taken = 0; take_apart_twins(); ++taken) {
+      // What hung on links that are left out may hang on others.
+      if (taken < kMostGrown) grow();
+      settle();
+    }
     adjust(true);
     number_components();
     judge_nodes();
@@ -53,6 +56,13 @@ class Solver {
   }
 
  private:
+  void grow() {
+    grown_ = grow_parts(graph_, votes_, left_out_);
+    accepted_.frame_from_node = grown_.part_from_node;
+    accepted_.component = grown_.part;
+    accepted_.pose.assign(graph_.links.size(), -1);
+  }
+
   void settle() {
     for (int round = 0; round < kAcceptRounds; ++round) {
       accept(round == 0 ? kFirstGate : round + 1 < kAcceptRounds ? 4.0 : 1.0);
@@ -64,21 +74,22 @@ class Solver {
   }
 
   /// Where two sides of the building are more probably twins than one place, what lays them on one another is
-  /// left out, the likeliest first: it would make everything else doubtful. Whether any was.
+  /// left out: it would make everything else doubtful. First where least holds them together: one room that
+  /// was laid on its twin makes all doubtful that it is held against. Whether any was.
   bool take_apart_twins() {
     const std::vector<int> firsts = references();
     std::vector<int> reference;
     for (int node = 0; node < graph_.nodes; ++node)
       reference.push_back(firsts[static_cast<std::size_t>(component(node))]);
     const std::vector<NodeDoubt> doubts = doubts_of(graph_, accepted_, reference);
-    const NodeDoubt* likeliest = nullptr;
+    const NodeDoubt* loosest = nullptr;
     for (const NodeDoubt& doubt : doubts) {
       if (doubt.twin > kRather && !doubt.across.empty() &&
-          (likeliest == nullptr || doubt.twin_nats > likeliest->twin_nats))
-        likeliest = &doubt;
+          (loosest == nullptr || doubt.held_nats < loosest->held_nats))
+        loosest = &doubt;
     }
-    if (likeliest == nullptr) return false;
-    for (const int k : likeliest->across) left_out_[static_cast<std::size_t>(k)] = true;
+    if (loosest == nullptr) return false;
+    for (const int k : loosest->across) left_out_[static_cast<std::size_t>(k)] = true;
     return true;
   }
 
@@ -232,26 +243,14 @@ class Solver {
     }
   }
 
-  /// What might stand elsewhere is ambiguous: the side of the cut without the first node of the component.
+  /// What might stand elsewhere is ambiguous: the side of the cut without the node that lends the frame.
   void heed_questions() {
     for (GraphQuestion& question : solved_.questions) {
       const int home = accepted_.component[static_cast<std::size_t>(question.moved.front())];
       std::vector<bool> moves(solved_.nodes.size(), false);
       for (const int node : question.moved) moves[static_cast<std::size_t>(node)] = true;
-      std::size_t moving = 0;
-      std::size_t all = 0;
-      std::size_t first = solved_.nodes.size();
-      for (std::size_t i = 0; i < solved_.nodes.size(); ++i) {
-        if (accepted_.component[i] != home) continue;
-        first = std::min(first, i);
-        ++all;
-        moving += moves[i] ? 1 : 0;
-      }
-      // The smaller side is the one in doubt, but never the frame.
-      const bool anchored =
-          graph_.anchor >= 0 && accepted_.component[static_cast<std::size_t>(graph_.anchor)] == home;
-      const bool swap = anchored ? bool(moves[static_cast<std::size_t>(graph_.anchor)])
-                                 : 2 * moving > all || (2 * moving == all && moves[first]);
+      const int reference = reference_of_[static_cast<std::size_t>(home)];
+      const bool swap = moves[static_cast<std::size_t>(reference)];
       if (swap) {
         question.frame_from_frame = inverse(question.frame_from_frame);
         question.moved.clear();
@@ -337,6 +336,7 @@ class Solver {
   double risk_;
   std::vector<bool> left_out_;     ///< links that would lay a place on its twin
   std::vector<int> reference_of_;  ///< of each component: the node that keeps its pose
+  std::vector<std::vector<int>> votes_;
   GrownParts grown_;
   AcceptedPoses accepted_;
   std::vector<Matrix6d> covariance_;

@@ -103,6 +103,47 @@ TEST(SolveGraph, AnOpenLinkThatNothingSettlesLeavesItsScanAmbiguous) {
   EXPECT_FALSE(solved.questions.empty());
 }
 
+/// A room that is alike to one next door: three scans there say that it may be theirs, and close loops with
+/// one another; what two passes see through its windows leaves hardly a doubt.
+TEST(SolveGraph, ARoomGoesWhereItsWindowsSayNotOnItsTwin) {
+  RandomStream random(11, 1);
+  PoseGraph graph;
+  graph.nodes = 6;
+  std::vector<Rigid3> world_from_node;
+  for (int n = 0; n < graph.nodes; ++n) world_from_node.push_back(random_pose(random, 6.0));
+  const Rigid3 twin_from_room = random_pose(random, 6.0);
+  const auto link = [&](int source, int target, const Rigid3& moved) -> GraphLink& {
+    GraphLink made;
+    made.source = source;
+    made.target = target;
+    made.poses = {measured_pose(inverse(world_from_node[static_cast<std::size_t>(target)]) * moved *
+                                    world_from_node[static_cast<std::size_t>(source)],
+                                20.0, random)};
+    graph.links.push_back(made);
+    return graph.links.back();
+  };
+  link(1, 0, {}).poses[0].agreeing_m2 = 600.0;
+  for (const int neighbour : {2, 3, 4}) link(neighbour, 0, {});
+  link(3, 2, {});
+  link(4, 3, {});
+  for (const int neighbour : {2, 3, 4}) {
+    GraphLink& likely = link(5, neighbour, twin_from_room);
+    likely.trust = LinkTrust::likely;
+    likely.twin = 0.3;
+  }
+  GraphLink& open = link(5, 1, {});
+  open.trust = LinkTrust::open;
+  open.chance = 1e-4;
+  open.poses.push_back(measured_pose(random_pose(random, 6.0), 12.0, random));
+  open.poses[0].probability = 0.998;
+  open.poses[1].probability = 0.0019;
+  const SolvedGraph solved = solve_graph(graph);
+  const Rigid3 truth = inverse(world_from_node[0]) * world_from_node[5];
+  const Rigid3 found = inverse(solved.nodes[0].frame_from_node) * solved.nodes[5].frame_from_node;
+  EXPECT_EQ(solved.nodes[5].component, solved.nodes[0].component);
+  EXPECT_LT((truth.translation - found.translation).norm(), 0.05);
+}
+
 /// Passes that drift are known to one another to centimetres: a second pose that lies within that is the
 /// same place.
 TEST(SolveGraph, APoseWithinWhatIsKnownOfItsLinkIsNoOtherPlace) {
