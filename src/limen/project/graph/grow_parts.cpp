@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <iterator>
 #include <map>
 #include <set>
 #include <utility>
@@ -17,7 +17,8 @@ namespace {
 // Poses within a part are not adjusted yet: what links miss one another by is judged more mildly.
 constexpr double kMild = 4.0;
 constexpr double kMostJoinNats = 14.0;  // no link is surer than about one in a million
-constexpr double kLeastRight = 1e-9;
+constexpr double kNearM = 2.0;    // poses further apart than this are not one, whatever is known of them ...
+constexpr double kNearRad = 0.3;  // ... nor turned by more
 constexpr double kGivenNats = 100.0;   // of what a file says
 constexpr double kJoinLoopNats = 7.0;  // sure links that are wrong close a loop once in a thousand
 constexpr int kMostLoops = 3;          // of a link that count: they share their errors
@@ -32,23 +33,47 @@ struct Crossing {
   LinkPose between;  ///< target: a node of the higher part
   int lower_node = -1;
   int higher_node = -1;
-  Rigid3 higher_from_lower;  ///< frames of the parts
+  Rigid3 higher_from_lower;                 ///< frames of the parts
+  Vector3d meets_lower = Vector3d::Zero();  ///< where it is known best, in either part
+  Vector3d meets_higher = Vector3d::Zero();
+  double nats = 0.0;  ///< how much more probable the pose is than that none of its link's is right
+};
+
+/// What leads from one part to another. Parts are rigid: which of their crossings agree is asked once.
+struct Passage {
+  std::vector<std::size_t> links;
+  std::vector<std::vector<std::size_t>>
+      agreeing;                     ///< of each crossing, their poses in turn: those that agree
+  std::vector<std::size_t> blocks;  ///< so many crossings after one another have been held against each other
 };
 
 /// A way to join two parts.
 struct Join {
   JoinTrust trust = JoinTrust::weak;
   double lead = -1.0;  ///< logarithm of the odds against every other way, and against none
+  double most = 0.0;   ///< what is said for it, whatever is said for others
   Rigid3 higher_from_lower;
   bool valid = false;
+  bool known = true;  ///< otherwise `lead` and `most` are what they are at the most, and no more is known
 
   /// Weak links last: they leave a direction free.
   [[nodiscard]] bool before(const Join& other) const {
-    const bool weak = trust == JoinTrust::weak;
-    const bool weak_other = other.trust == JoinTrust::weak;
+    const bool weak = known && trust == JoinTrust::weak;
+    const bool weak_other = other.known && other.trust == JoinTrust::weak;
     return weak != weak_other ? weak_other : lead > other.lead;
   }
 };
+
+/// Of two sets of crossings between the same parts, what their union leads by at most: what is best by both
+/// gains what the others say for it, and that they agree.
+Join join_of_both(const Join& a, const Join& b) {
+  Join both = a.valid ? a : b;
+  both.known = false;
+  if (!a.valid || !b.valid) return both;
+  both.most = a.most + b.most + kJoinLoopNats;
+  both.lead = std::min(std::max(a.lead, 0.0) + b.most, std::max(b.lead, 0.0) + a.most) + kJoinLoopNats;
+  return both;
+}
 
 class Grower {
  public:
@@ -66,7 +91,10 @@ class Grower {
     for (std::size_t k = 0; k < graph.links.size() + graph.against.size(); ++k) {
       if (holds(k) && left_out[k]) continue;
       const GraphLink& link = pair(k);
-      between_[key(link.source, link.target)].push_back(k);
+      Passage& passage = between_[key(link.source, link.target)];
+      passage.links.push_back(k);
+      passage.blocks.push_back(poses_of(k));
+      passage.agreeing.resize(passage.agreeing.size() + poses_of(k));
       double& shared = shared_m2_[key(link.source, link.target)];
       shared = std::max(shared, link.poses.front().agreeing_m2);
       neighbours_[static_cast<std::size_t>(link.source)].insert(link.target);
@@ -75,7 +103,7 @@ class Grower {
   }
 
   GrownParts run() {
-    for (const auto& [parts, links] : between_) joins_[parts] = best_join(parts);
+    for (const auto& [parts, passage] : between_) joins_[parts] = best_join(parts);
     while (step()) CancelScope::check();
     return std::move(grown_);
   }
@@ -87,21 +115,33 @@ class Grower {
     return holds(k) ? graph_.links[k] : graph_.against[k - graph_.links.size()];
   }
 
+  /// How many of them count: of what speaks against, the best.
+  [[nodiscard]] std::size_t poses_of(std::size_t k) const { return holds(k) ? pair(k).poses.size() : 1; }
+
   using Parts = std::pair<int, int>;
   static Parts key(int a, int b) { return {std::min(a, b), std::max(a, b)}; }
 
+  /// Joins the two parts for which most is said; false: there are none. Of those that changed it is asked
+  /// only where they may come first.
   bool step() {
-    const Join* best = nullptr;
-    Parts parts;
-    for (const auto& [pair, join] : joins_) {
-      if (!join.valid) continue;
-      if (best != nullptr && !join.before(*best)) continue;
-      best = &join;
-      parts = pair;
+    for (;;) {
+      Join* best = nullptr;
+      Parts parts;
+      for (auto& [pair, join] : joins_) {
+        if (!join.valid) continue;
+        // Of equals one of which less is known comes first: it may fall behind.
+        const bool same = best != nullptr && !join.before(*best) && !best->before(join);
+        if (best != nullptr && !join.before(*best) && !(same && best->known && !join.known)) continue;
+        best = &join;
+        parts = pair;
+      }
+      if (best == nullptr) return false;
+      if (best->known) {
+        join(parts, Join(*best));
+        return true;
+      }
+      *best = best_join(parts);
     }
-    if (best == nullptr) return false;
-    join(parts, Join(*best));
-    return true;
   }
 
   void join(Parts parts, const Join& how) {
@@ -126,25 +166,36 @@ class Grower {
     own.erase(higher);
     for (const int other : neighbours_[static_cast<std::size_t>(higher)]) {
       if (other == lower) continue;
-      std::vector<std::size_t>& links = between_[key(lower, other)];
-      const std::vector<std::size_t>& more = between_[key(higher, other)];
-      links.insert(links.end(), more.begin(), more.end());
-      between_.erase(key(higher, other));
-      joins_.erase(key(higher, other));
+      take_over(key(higher, other), key(lower, other));
       neighbours_[static_cast<std::size_t>(other)].erase(higher);
       neighbours_[static_cast<std::size_t>(other)].insert(lower);
       own.insert(other);
-      joins_[key(lower, other)] = best_join(key(lower, other));
     }
     neighbours_[static_cast<std::size_t>(higher)].clear();
   }
 
+  /// What joins two parts once one of them has become part of another.
+  void take_over(const Parts& from, const Parts& to) {
+    Passage& passage = between_[to];
+    Passage& more = between_[from];
+    for (std::vector<std::size_t>& agreeing : more.agreeing) {
+      for (std::size_t& other : agreeing) other += passage.agreeing.size();
+    }
+    passage.links.insert(passage.links.end(), more.links.begin(), more.links.end());
+    passage.blocks.insert(passage.blocks.end(), more.blocks.begin(), more.blocks.end());
+    passage.agreeing.insert(passage.agreeing.end(), std::make_move_iterator(more.agreeing.begin()),
+                            std::make_move_iterator(more.agreeing.end()));
+    joins_[to] = join_of_both(joins_[to], joins_[from]);
+    between_.erase(from);
+    joins_.erase(from);
+  }
+
   [[nodiscard]] std::vector<Crossing> crossings(const Parts& parts) const {
     std::vector<Crossing> list;
-    for (const std::size_t k : between_.at(parts)) {
+    for (const std::size_t k : between_.at(parts).links) {
       const GraphLink& link = pair(k);
       const bool forward = grown_.part[static_cast<std::size_t>(link.source)] == parts.first;
-      for (std::size_t p = 0; p < (holds(k) ? link.poses.size() : 1); ++p) {
+      for (std::size_t p = 0; p < poses_of(k); ++p) {
         Crossing c;
         c.link = k;
         c.pose = p;
@@ -153,6 +204,9 @@ class Grower {
         c.higher_node = forward ? link.target : link.source;
         c.higher_from_lower =
             part_from(c.higher_node) * c.between.target_from_source * inverse(part_from(c.lower_node));
+        c.meets_higher = part_from(c.higher_node) * c.between.centre;
+        c.meets_lower = inverse(c.higher_from_lower) * c.meets_higher;
+        c.nats = nats_of(k, p);
         list.push_back(c);
       }
     }
@@ -165,35 +219,39 @@ class Grower {
 
   /// Whether two crossings put the parts together alike.
   [[nodiscard]] bool agree(const Crossing& a, const Crossing& b) const {
+    if ((a.higher_from_lower * b.meets_lower - b.meets_higher).squaredNorm() > kNearM * kNearM) return false;
     const Rigid3 target_from_part = inverse(part_from(b.higher_node));
     const Rigid3 predicted = target_from_part * a.higher_from_lower * part_from(b.lower_node);
     const Vector6d missed = misfit(b.between, predicted);
-    if (missed.tail<3>().squaredNorm() > 4.0 || missed.head<3>().squaredNorm() > 0.1) return false;
+    if (missed.head<3>().squaredNorm() > kNearRad * kNearRad) return false;
     const Matrix6d covariance =
         b.between.covariance +
         moved_covariance(a.between, target_from_part * part_from(a.higher_node), b.between.centre);
+    // The whole is no less than the shift alone, along the axis that is known least.
+    if (missed.tail<3>().squaredNorm() > kMild * kChiSquareBound * covariance.diagonal().tail<3>().sum())
+      return false;
     return chi_square(missed, kMild * covariance) <= kChiSquareBound;
   }
 
-  /// Logarithm of how much more probable a pose of a pair is than that none of its poses is right.
-  [[nodiscard]] double nats_of(const Crossing& c) const {
-    const GraphLink& link = pair(c.link);
+  /// What a pose of a pair says, with the loops that it closes; of a pair that speaks against, its odds.
+  [[nodiscard]] double nats_of(std::size_t k, std::size_t pose) const {
+    const GraphLink& link = pair(k);
     if (link.trust == LinkTrust::given) return kGivenNats;
-    const double wrong =
-        std::clamp(link.chance + link.twin, std::exp(-kMostJoinNats), 1.0 - std::exp(-kMostJoinNats));
-    if (!holds(c.link)) return std::log((1.0 - wrong) / wrong);
-    const bool best = c.pose == 0 && link.trust <= LinkTrust::likely;
-    const double right = best ? 1.0 - wrong : link.poses[c.pose].probability;
-    const double own = std::clamp(std::log(std::max(right, kLeastRight) / wrong), 0.0, kMostJoinNats);
-    const double surface = std::min(link.poses[c.pose].agreeing_m2, kEnoughM2) / kEnoughM2;
-    return own + kJoinLoopNats * std::min(votes_[c.link][c.pose], kMostLoops) + kSurfaceNats * surface;
+    if (!holds(k)) {
+      const double wrong =
+          std::clamp(link.chance + link.twin, std::exp(-kMostJoinNats), 1.0 - std::exp(-kMostJoinNats));
+      return std::log((1.0 - wrong) / wrong);
+    }
+    const double surface = std::min(link.poses[pose].agreeing_m2, kEnoughM2) / kEnoughM2;
+    return nats_for(link, pose, kMostJoinNats) + kJoinLoopNats * std::min(votes_[k][pose], kMostLoops) +
+           kSurfaceNats * surface;
   }
 
   /// What it adds to what another has said: that there is a twin is believed of the place, once.
   [[nodiscard]] double more_nats_of(const Crossing& c) const {
     const GraphLink& link = pair(c.link);
-    if (!link.evidence) return nats_of(c);
-    return std::min({link.evidence->otherwise_nats, link.evidence->alike_nats, nats_of(c)});
+    if (!link.evidence) return c.nats;
+    return std::min({link.evidence->otherwise_nats, link.evidence->alike_nats, c.nats});
   }
 
   /// How much of what a crossing shows another shows as well: scans of one room say nearly the same.
@@ -208,9 +266,9 @@ class Grower {
   }
 
   /// What crossings that agree say together; of each link the pose that says most.
-  [[nodiscard]] double nats_of(std::vector<const Crossing*> agreeing) const {
+  [[nodiscard]] double nats_of_all(std::vector<const Crossing*> agreeing) const {
     std::stable_sort(agreeing.begin(), agreeing.end(),
-                     [&](const Crossing* a, const Crossing* b) { return nats_of(*a) > nats_of(*b); });
+                     [&](const Crossing* a, const Crossing* b) { return a->nats > b->nats; });
     std::set<std::size_t> links;
     std::vector<const Crossing*> heard;
     double sum = 0.0;
@@ -220,7 +278,7 @@ class Grower {
       for (const Crossing* other : heard) {
         if (holds(c->link) == holds(other->link)) seen = std::max(seen, seen_by(*c, *other));
       }
-      sum += (1.0 - seen) * (heard.empty() ? nats_of(*c) : more_nats_of(*c));
+      sum += (1.0 - seen) * (heard.empty() ? c->nats : more_nats_of(*c));
       // Sure poses that are wrong agree by chance only, whatever they see.
       if (!heard.empty() && holds(c->link) && pair(c->link).trust <= LinkTrust::sure) sum += kJoinLoopNats;
       heard.push_back(c);
@@ -238,31 +296,82 @@ class Grower {
     return surest == LinkTrust::likely ? JoinTrust::likely : JoinTrust::open;
   }
 
-  /// The way that most is said for, by how much it leads before every other.
-  [[nodiscard]] Join best_join(const Parts& parts) const {
-    const std::vector<Crossing> all = crossings(parts);
-    std::vector<std::vector<const Crossing*>> agreeing(all.size());
-    std::vector<double> nats;
-    for (std::size_t i = 0; i < all.size(); ++i) {
-      for (const Crossing& other : all) {
-        if (&other == &all[i] || (other.link != all[i].link && agree(all[i], other)))
-          agreeing[i].push_back(&other);
+  /// What speaks for one way: a crossing, and all that agree with it.
+  struct Way {
+    const Crossing* middle = nullptr;
+    std::vector<const Crossing*> agreeing;
+    double at_most = 0.0;  ///< what they would say together if none showed what another shows
+    double nats = 0.0;
+  };
+
+  /// Holds crossings against each other that have not been.
+  void compare(const std::vector<Crossing>& all, Passage& passage) const {
+    const auto ask = [&](std::size_t i, std::size_t j) {
+      if (holds(all[i].link) && agree(all[i], all[j])) passage.agreeing[i].push_back(j);
+    };
+    std::size_t first = 0;
+    for (const std::size_t count : passage.blocks) {
+      for (std::size_t i = 0; i < first; ++i) {
+        for (std::size_t j = first; j < first + count; ++j) {
+          ask(i, j);
+          ask(j, i);
+        }
       }
-      nats.push_back(holds(all[i].link) ? nats_of(agreeing[i]) : -std::numeric_limits<double>::infinity());
+      first += count;
     }
-    Join best;
-    const bool none = std::none_of(all.begin(), all.end(), [&](const Crossing& c) { return holds(c.link); });
-    if (none) return best;
-    const auto most = static_cast<std::size_t>(std::max_element(nats.begin(), nats.end()) - nats.begin());
-    double second = 0.0;
+    passage.blocks = {first};
+    for (std::vector<std::size_t>& agreeing : passage.agreeing) std::sort(agreeing.begin(), agreeing.end());
+  }
+
+  /// A way about each crossing; one that only speaks against is none.
+  [[nodiscard]] std::vector<Way> ways_of(const std::vector<Crossing>& all, const Passage& passage) const {
+    std::vector<Way> ways(all.size());
     for (std::size_t i = 0; i < all.size(); ++i) {
-      const bool same =
-          std::find(agreeing[most].begin(), agreeing[most].end(), &all[i]) != agreeing[most].end();
-      if (!same) second = std::max(second, nats[i]);
+      if (!holds(all[i].link)) continue;
+      ways[i].middle = &all[i];
+      ways[i].agreeing.push_back(&all[i]);
+      for (const std::size_t other : passage.agreeing[i]) ways[i].agreeing.push_back(&all[other]);
+      for (const Crossing* c : ways[i].agreeing) ways[i].at_most += std::max(c->nats, 0.0);
     }
-    best.higher_from_lower = all[most].higher_from_lower;
-    best.lead = nats[most] - second;
-    best.trust = trust_of(agreeing[most], best.lead);
+    return ways;
+  }
+
+  /// The way that most is said for, by how much it leads before every other. Crossings that agree are one
+  /// way, about the one that agrees with most: each way is weighed once.
+  [[nodiscard]] Join best_join(const Parts& parts) {
+    const std::vector<Crossing> all = crossings(parts);
+    Passage& passage = between_.at(parts);
+    compare(all, passage);
+    std::vector<Way> ways = ways_of(all, passage);
+    std::vector<std::size_t> order;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      if (holds(all[i].link)) order.push_back(i);
+    }
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return ways[a].at_most > ways[b].at_most; });
+    Join best;
+    const Way* most = nullptr;
+    std::vector<const Way*> weighed;
+    std::vector<bool> same(all.size(), false);
+    for (const std::size_t i : order) {
+      if (same[i]) continue;
+      ways[i].nats = nats_of_all(ways[i].agreeing);
+      for (const Crossing* c : ways[i].agreeing) same[static_cast<std::size_t>(c - all.data())] = true;
+      weighed.push_back(&ways[i]);
+      if (most != nullptr && ways[i].nats <= most->nats) continue;
+      most = &ways[i];
+    }
+    if (most == nullptr) return best;
+    double second = 0.0;
+    for (const Way* way : weighed) {
+      const bool agrees =
+          std::find(most->agreeing.begin(), most->agreeing.end(), way->middle) != most->agreeing.end();
+      if (!agrees) second = std::max(second, way->nats);
+    }
+    best.higher_from_lower = most->middle->higher_from_lower;
+    best.most = most->nats;
+    best.lead = most->nats - second;
+    best.trust = trust_of(most->agreeing, best.lead);
     best.valid = true;
     return best;
   }
@@ -272,7 +381,7 @@ class Grower {
   GrownParts grown_;
   std::vector<std::vector<int>> members_;
   std::vector<std::set<int>> neighbours_;
-  std::map<Parts, std::vector<std::size_t>> between_;
+  std::map<Parts, Passage> between_;
   std::map<Parts, double> shared_m2_;  ///< surface that two nodes show in common
   std::map<Parts, Join> joins_;
 };

@@ -38,6 +38,10 @@ struct GraphLink {
   [[nodiscard]] int number_of(int pose) const { return pose == 0 ? best : pose == best ? 0 : pose; }
 };
 
+/// Logarithm of how much more probable a pose of a link is than that none of its poses is right: 0 ..
+/// `most_nats`. That none is right is never less probable than `least_wrong`.
+double nats_for(const GraphLink& link, std::size_t pose, double most_nats, double least_wrong = 0.0);
+
 /// Nodes are scans and models: 0 .. nodes - 1, the lower ones first where one has to be chosen.
 struct PoseGraph {
   int nodes = 0;

@@ -19,7 +19,6 @@ constexpr double kMostRivalNats = 7.0;  // no link is surer than a thousand to o
 constexpr double kRivalLoopNats = 7.0;  // sure links that are wrong agree once in a thousand
 constexpr double kClearNats = 6.9;      // a place that is a thousand times less probable is no question
 constexpr double kOpenWrong = 0.02;     // of links with several poses perhaps none is right
-constexpr double kLeastLikely = 1e-9;
 constexpr double kSameShiftM = 0.05;
 constexpr double kSameTurnRad = 0.0175;
 
@@ -84,13 +83,9 @@ class RivalSearch {
     return fitting_pose(link, predicted) >= 0;
   }
 
-  /// Logarithm of how much more probable a pose of a link is than that none of its poses is right.
   [[nodiscard]] static double nats_of(const GraphLink& link, int pose) {
-    const double least = link.trust == LinkTrust::open ? kOpenWrong : std::exp(-kMostRivalNats);
-    const double wrong = std::clamp(link.chance + link.twin, least, 1.0 - kLeastLikely);
-    const bool best = pose == 0 && link.trust <= LinkTrust::likely;
-    const double right = best ? 1.0 - wrong : link.poses[static_cast<std::size_t>(pose)].probability;
-    return std::clamp(std::log(std::max(right, kLeastLikely) / wrong), 0.0, kMostRivalNats);
+    return nats_for(link, static_cast<std::size_t>(pose), kMostRivalNats,
+                    link.trust == LinkTrust::open ? kOpenWrong : 0.0);
   }
 
   /// Whether a pose says no more than what is known of it allows, or than nobody cares about.
@@ -101,9 +96,15 @@ class RivalSearch {
     return near || chi_square(misfit(pose, present), pose.covariance) <= kChiSquareBound;
   }
 
+  /// What a link would measure once one of its ends has moved.
+  [[nodiscard]] Rigid3 moved_pose(const GraphLink& link, bool source_moves, const Rigid3& movement) const {
+    return source_moves ? inverse(at(link.target)) * movement * at(link.source)
+                        : inverse(movement * at(link.target)) * at(link.source);
+  }
+
   [[nodiscard]] Bend bend_of(const GraphLink& link, const Rigid3& movement) const {
-    return {any_fits(link, inverse(at(link.target)) * movement * at(link.source)),
-            any_fits(link, inverse(movement * at(link.target)) * at(link.source))};
+    return {any_fits(link, moved_pose(link, true, movement)),
+            any_fits(link, moved_pose(link, false, movement))};
   }
 
   void ask(const GraphLink& link, const LinkPose& pose, std::vector<GraphQuestion>& questions) const {
@@ -197,11 +198,8 @@ class RivalSearch {
       const GraphLink& link = graph_.links[k];
       const bool source = moved[static_cast<std::size_t>(link.source)];
       if (accepted_.pose[k] < 0 || source == moved[static_cast<std::size_t>(link.target)]) continue;
-      const Rigid3 before = at(link.target);
-      const Rigid3 now = inverse(before) * at(link.source);
-      const Rigid3 then = source ? inverse(before) * movement * at(link.source)
-                                 : inverse(movement * before) * at(link.source);
-      more += least_miss(link, then) - least_miss(link, now);
+      const Rigid3 now = inverse(at(link.target)) * at(link.source);
+      more += least_miss(link, moved_pose(link, source, movement)) - least_miss(link, now);
     }
     return more <= kChiSquareBound;
   }
@@ -276,10 +274,7 @@ class RivalSearch {
   /// The pose of a link that crosses the cut once what moves has moved; -1: none.
   [[nodiscard]] int rival_pose(int k, const std::vector<bool>& moved, const Rigid3& movement) const {
     const GraphLink& link = graph_.links[static_cast<std::size_t>(k)];
-    const Rigid3 then = moved[static_cast<std::size_t>(link.source)]
-                            ? inverse(at(link.target)) * movement * at(link.source)
-                            : inverse(movement * at(link.target)) * at(link.source);
-    return fitting_pose(link, then);
+    return fitting_pose(link, moved_pose(link, moved[static_cast<std::size_t>(link.source)], movement));
   }
 
   /// Notes for which place the link speaks, if it crosses the cut.
