@@ -30,6 +30,8 @@ constexpr double kStoreyM = 0.5;       // floors further apart are of different 
 constexpr double kWordWrong = 4e-4;    // probability that a user's word is wrong
 constexpr double kToldApartM = 0.05;   // deviation of the least known shift below which a pose is a place
 const double kToldApartRad = radians(0.5);
+constexpr double kOpenM = 0.25;  // where a pair calls a direction open: faces that are taken for one another
+const double kOpenRad = radians(3.0);
 constexpr double kLooser = 2.0;  // an alternative's deviations against those of the best pose
 
 Vector6d diagonal(const Vector3d& turn, const Vector3d& shift) {
@@ -47,6 +49,16 @@ Matrix6d with_floor(const Matrix6d& covariance, bool model) {
   const Vector6d floor =
       diagonal(Vector3d::Constant(kFloorRad), Vector3d::Constant(model ? kModelDrawnM : kFloorM));
   return known + Matrix6d(floor.array().square().matrix().asDiagonal());
+}
+
+/// What a pair itself calls open hangs on little: one small face, and if that is another one the pose is off
+/// by far more than its deviation. Loops have to fix such directions.
+void open_up(const std::vector<UnobservedFreedom>& unobserved, Matrix6d& covariance) {
+  for (const UnobservedFreedom& freedom : unobserved) {
+    const Eigen::Index first = freedom.rotation ? 0 : 3;
+    const double open = freedom.rotation ? kOpenRad : kOpenM;
+    covariance.block<3, 3>(first, first) += open * open * freedom.direction * freedom.direction.transpose();
+  }
 }
 
 class GraphMaker {
@@ -187,6 +199,7 @@ class GraphMaker {
     if (!pose.sigma.covariance.isZero()) {
       kept.centre = pose.sigma.centre - target.local_origin;
       kept.covariance = with_floor(pose.sigma.covariance, source.model || target.model);
+      open_up(found.unobserved, kept.covariance);
       return kept;
     }
     const double floor = source.model || target.model ? kModelDrawnM : kFloorM;
@@ -197,6 +210,7 @@ class GraphMaker {
       shift[axis] = std::hypot(looser * std::min(found.sigma.translation_m[axis], 100.0), floor);
     }
     kept.covariance = diagonal(turn, shift).array().square().matrix().asDiagonal();
+    open_up(found.unobserved, kept.covariance);
     return kept;
   }
 

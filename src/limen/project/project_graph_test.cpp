@@ -52,6 +52,21 @@ TEST(ProjectGraph, WhatIsKnownToCentimetresTellsOnePlaceFromAnother) {
   EXPECT_EQ(links_of(pair, 0.001).front().trust, LinkTrust::weak);
 }
 
+TEST(ProjectGraph, AlongWhatAPairCallsOpenItsDeviationIsNotBelieved) {
+  RegistrationResult pair = told(Outcome::under_constrained, 0.0);
+  pair.best.sigma.covariance = 1e-6 * Matrix6d::Identity();
+  pair.sigma = pair.best.sigma;
+  const Vector3d open = Vector3d(3, 4, 0).normalized();
+  pair.unobserved = {{false, open, "shift"}};
+  const Matrix6d covariance = links_of(pair, 0.001).front().poses.front().covariance;
+  const Matrix3d shift = covariance.bottomRightCorner<3, 3>();
+  EXPECT_GT(open.dot(shift * open), 0.04);
+  const Vector3d across = Vector3d::UnitZ().cross(open);
+  EXPECT_LT(across.dot(shift * across), 1e-3);
+  EXPECT_LT(shift(2, 2), 1e-3);
+  EXPECT_LT((Matrix3d(covariance.topLeftCorner<3, 3>()).norm()), 1e-3);
+}
+
 TEST(ProjectGraph, WhatATwinExplainsBetterIsNoLink) {
   EXPECT_TRUE(links_of(told(Outcome::ambiguous, 0.6), 0.001).empty());
   EXPECT_TRUE(links_of(told(Outcome::no_match, 0.0), 0.001).empty());
