@@ -37,6 +37,45 @@ int held_node(const TriedPair& pair, int node, bool source, const SharedPlanes& 
   return passes.node_at(problem, node, shared.places_of(node, planes));
 }
 
+/// The points as the adjustment has them: what a bent pass saw moves with that part of its way.
+std::vector<MarkedPoint> points_along(std::vector<MarkedPoint> points, const BentPasses& passes,
+                                      JointProblem& problem) {
+  for (MarkedPoint& point : points) {
+    for (PointSight& sight : point.sights) {
+      if (!sight.place || !passes.bends(sight.node)) continue;
+      sight.strayed_m = passes.unfollowed_m(sight.node);
+      sight.node = passes.node_at(problem, sight.node, {*sight.place}, false);
+    }
+  }
+  return points;
+}
+
+/// Takes over what entered of the points.
+void keep_points(const std::vector<MarkedPoint>& settled, std::vector<MarkedPoint>& points) {
+  for (std::size_t p = 0; p < points.size(); ++p) {
+    points[p].enters = settled[p].enters;
+    points[p].known_enters = settled[p].known_enters;
+    const std::vector<PointSight>& kept = settled[p].sights;
+    std::vector<PointSight>& sights = points[p].sights;
+    sights.erase(std::remove_if(sights.begin(), sights.end(),
+                                [&](const PointSight& sight) {
+                                  return std::none_of(kept.begin(), kept.end(), [&](const PointSight& k) {
+                                    return k.number == sight.number;
+                                  });
+                                }),
+                 sights.end());
+  }
+}
+
+/// Where sights have their points by the adjusted poses.
+void tell_places(const std::vector<MarkedPoint>& points, const std::vector<Rigid3>& frame_from_node,
+                 std::vector<std::vector<Vector3d>>& seen_at) {
+  for (std::size_t p = 0; p < points.size(); ++p) {
+    for (const PointSight& sight : points[p].sights)
+      seen_at[p][sight.number] = frame_from_node[static_cast<std::size_t>(sight.node)] * sight.x_in_node;
+  }
+}
+
 JointProblem joint_problem(const std::vector<ProjectNode>& nodes, const std::vector<TriedPair>& pairs,
                            const ProjectGraph& made, const SolvedGraph& solved, const PlacedSurvey& survey,
                            BentPasses& passes) {
@@ -66,6 +105,7 @@ JointProblem joint_problem(const std::vector<ProjectNode>& nodes, const std::vec
     problem.edges.push_back(edge);
   }
   shared.tell(taken, problem);
+  problem.points = points_along(survey.points, passes, problem);
   return problem;
 }
 
@@ -132,21 +172,27 @@ JointFinding adjust_once(const std::vector<ProjectNode>& nodes, JointProblem pro
     JointProblem links = problem;
     links.observations.clear();
     links.planes = 0;
-    links.points = survey.points;
     survey.settled = settle_points(links, survey.candidates);
     finding.contradicted = !survey.settled.firm;
     if (finding.contradicted) return finding;
+    tell_places(problem.points, survey.settled.solution.frame_from_node, survey.seen_at);
     passes.settle_frames(problem, components_of(solved), survey.settled.solution);
-    survey.points = problem.points = links.points;
+    problem.points = links.points;
+    keep_points(links.points, survey.points);
+    finding.passes = passes.told(survey.settled.solution);
     take(survey.settled.solution, solved);
     problem.frame_from_node = survey.settled.solution.frame_from_node;
   }
   if (problem.observations.empty() && !level) return finding;
   SettledPoints settled;
-  if (surveyed)
+  std::vector<std::vector<Vector3d>> seen_at = survey.seen_at;
+  if (surveyed) {
+    const std::vector<MarkedPoint> points = problem.points;
     settled = settle_points(problem, survey.candidates);
-  else
+    tell_places(points, settled.solution.frame_from_node, seen_at);
+  } else {
     settled.solution = adjust_jointly(problem);
+  }
   passes.settle_frames(problem, components_of(solved), settled.solution);
   find_torn(nodes, solved, settled.solution, finding);
   if (!finding.torn.empty() || !settled.firm) return finding;
@@ -159,7 +205,8 @@ JointFinding adjust_once(const std::vector<ProjectNode>& nodes, JointProblem pro
     const PointVerdict& before = survey.settled.verdicts[p];
     if (before.known_left_out && !problem.points[p].is_known()) settled.verdicts[p] = before;
   }
-  survey.points = problem.points;
+  keep_points(problem.points, survey.points);
+  survey.seen_at = std::move(seen_at);
   survey.settled = std::move(settled);
   return finding;
 }
@@ -170,7 +217,6 @@ void bend(const std::vector<ProjectNode>& nodes, const std::vector<TriedPair>& p
           const ProjectGraph& made, SolvedGraph solved, const PlacedSurvey& survey, BentPasses& passes) {
   for (int round = 0; round < kBendRounds; ++round) {
     JointProblem problem = joint_problem(nodes, pairs, made, solved, survey, passes);
-    problem.points = survey.points;
     JointSolution solution = adjust_jointly(problem);
     passes.settle_frames(problem, components_of(solved), solution);
     const double change = passes.take(problem, solution);

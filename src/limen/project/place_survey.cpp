@@ -168,6 +168,8 @@ class SurveyPlacer {
   /// Scans that are in doubt do not say where points are.
   void keep_firm_sights() {
     placed_.sights.resize(placed_.points.size());
+    for (const MarkedPoint& point : placed_.points)
+      placed_.seen_at.emplace_back(point.sights.size(), Vector3d::Zero());
     for (std::size_t p = 0; p < placed_.points.size(); ++p) {
       MarkedPoint& point = placed_.points[p];
       std::vector<PointSight> kept;
@@ -271,7 +273,7 @@ class Confirmer {
     const Vector3d at = placed.target_from_source * sight.x_in_node;
     const Matrix3d& turn = placed.target_from_source.rotation;
     const Matrix3d covariance = moved_covariance(placed, Rigid3{}, at).bottomRightCorner<3, 3>() +
-                                turn * sight.covariance * turn.transpose() + point.known->covariance;
+                                turn * sight.whole_covariance() * turn.transpose() + point.known->covariance;
     const Vector3d missed = at - point.known->x;
     return covariance.trace() < kSharpM * kSharpM &&
            missed.dot(solve_symmetric(covariance, missed)) <= kPointChiSquareBound;

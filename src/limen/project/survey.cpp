@@ -4,19 +4,44 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "limen/base/error.h"
+#include "limen/geometry/spline_motion.h"
 #include "limen/project/control/control_file.h"
 #include "limen/project/scan_names.h"
 
 namespace limen {
 namespace {
 
-constexpr double kScannerM = 1e-4;  // a scanner's place in its own scan is known
+constexpr double kScannerM = 1e-4;       // a scanner's place in its own scan is known
+constexpr double kLeastStrayedM = 0.02;  // trajectories stray by this though their own points do not show it
+constexpr double kBeyondS = 1.0;         // a target's time may lie so far before or after all points
+
+/// Where along its way a pass saw a target: at that time, or else where it came nearest; nothing where it was
+/// not under way then.
+std::optional<double> place_on(const PassWay& way, const SeenTarget& target, const Vector3d& x) {
+  if (target.time_s) {
+    const double beyond = std::max(way.times_s.front() - *target.time_s, *target.time_s - way.times_s.back());
+    return beyond > kBeyondS ? std::nullopt : std::optional(place_among(way.times_s, *target.time_s));
+  }
+  double nearest_m = std::numeric_limits<double>::infinity();
+  double place = 0.0;
+  for (std::size_t k = 0; k + 1 < way.places.size(); ++k) {
+    const Vector3d along = way.places[k + 1] - way.places[k];
+    const double share =
+        std::clamp((x - way.places[k]).dot(along) / std::max(along.squaredNorm(), 1e-12), 0.0, 1.0);
+    const double away_m = (way.places[k] + share * along - x).norm();
+    if (away_m >= nearest_m) continue;
+    nearest_m = away_m;
+    place = static_cast<double>(k) + share;
+  }
+  return place;
+}
 
 class SurveyReader {
  public:
@@ -36,6 +61,8 @@ class SurveyReader {
     }
     note("no scan sees", unseen);
     note("the targets are told of scans that are not part of the project:", strangers_);
+    note("the times of these targets lie before or after all points of their scan, and they do not count:",
+         late_);
     about_origin();
     for (const ProjectNode& node : nodes_) survey_.node_names.push_back(scan_name(scans_[node.scan]));
     return std::move(survey_);
@@ -74,12 +101,24 @@ class SurveyReader {
       }
       SurveyMark& mark = marks_[target.name];
       mark.name = target.name;
-      const Vector3d& origin = nodes_[static_cast<std::size_t>(node)].digest.local_origin;
-      mark.point.sights.push_back({node, target.x_in_scan - origin, target.covariance});
+      const ScanDigest& digest = nodes_[static_cast<std::size_t>(node)].digest;
+      PointSight sight{node, target.x_in_scan - digest.local_origin, target.covariance};
+      if (digest.mobile) sight.strayed_m = std::max(digest.drift_m, kLeastStrayedM);
+      if (digest.track.way.known()) {
+        sight.place = place_on(digest.track.way, target, sight.x_in_node);
+        if (!sight.place) {
+          late_.push_back(fmt::format("{} of {}", target.name, target.scan));
+          continue;
+        }
+      }
+      mark.point.sights.push_back(sight);
     }
     for (auto& [name, mark] : marks_) {
-      std::sort(mark.point.sights.begin(), mark.point.sights.end(),
-                [](const PointSight& a, const PointSight& b) { return a.node < b.node; });
+      std::vector<PointSight>& sights = mark.point.sights;
+      std::sort(sights.begin(), sights.end(), [](const PointSight& a, const PointSight& b) {
+        return std::pair(a.node, a.place) < std::pair(b.node, b.place);
+      });
+      for (std::size_t k = 0; k < sights.size(); ++k) sights[k].number = k;
     }
   }
 
@@ -119,6 +158,7 @@ class SurveyReader {
   Survey survey_;
   std::map<std::string, SurveyMark> marks_;
   std::vector<std::string> strangers_;
+  std::vector<std::string> late_;  ///< targets at times at which their pass was not under way
 };
 
 Vector3d sigmas(const Matrix3d& covariance) {
@@ -177,14 +217,11 @@ ProjectPoint told_point(const SurveyMark& mark, const PlacedSurvey& placed, std:
   const PointVerdict& verdict = placed.settled.verdicts[p];
   told.found = finding.x + survey.origin;
   told.found_sigma = sigmas(finding.covariance);
-  const std::vector<Rigid3>& poses = placed.settled.solution.frame_from_node;
   for (const std::size_t k : placed.sights[p]) {
-    const PointSight& sight = mark.point.sights[k];
-    const Vector3d place = poses[static_cast<std::size_t>(sight.node)] * sight.x_in_node;
-    told.sights[k].missed_m = (place - finding.x).norm();
-    told.sights[k].used = std::any_of(
-        placed.points[p].sights.begin(), placed.points[p].sights.end(),
-        [&](const PointSight& kept) { return placed.points[p].enters && kept.node == sight.node; });
+    told.sights[k].missed_m = (placed.seen_at[p][k] - finding.x).norm();
+    told.sights[k].used =
+        std::any_of(placed.points[p].sights.begin(), placed.points[p].sights.end(),
+                    [&](const PointSight& kept) { return placed.points[p].enters && kept.number == k; });
   }
   told.state = placed.points[p].is_known()       ? PointState::used
                : mark.role == PointRole::control ? PointState::left_out

@@ -51,9 +51,10 @@ struct PlacedSurvey {
   std::vector<bool> controlled;     ///< of each node: stands in the survey's frame
   std::vector<MarkedPoint> points;  ///< of each mark: as it enters the adjustment
   std::vector<std::vector<std::size_t>>
-      sights;                    ///< of each point: the numbers of the mark's sights that count
-  std::vector<bool> candidates;  ///< coordinates that may enter
-  SettledPoints settled;         ///< the last adjustment with them
+      sights;                                  ///< of each point: the numbers of the mark's sights that count
+  std::vector<std::vector<Vector3d>> seen_at;  ///< of each sight of each mark: its place, as it was adjusted
+  std::vector<bool> candidates;                ///< coordinates that may enter
+  SettledPoints settled;                       ///< the last adjustment with them
 };
 
 /// Takes the survey's node out of the graph and moves every component that control points hold in all six

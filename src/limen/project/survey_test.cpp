@@ -149,6 +149,113 @@ TEST(Survey, PointsThatOtherScansForetellConfirmAScanInDoubt) {
   EXPECT_EQ(solved.nodes[2].state, NodeState::ambiguous);
 }
 
+/// A pass of 120 m that strays by centimetres, and shares nothing with anything but targets.
+struct SurveyedPass {
+  static constexpr int kKnots = 25;
+  std::vector<ProjectNode> nodes = std::vector<ProjectNode>(1);
+  Rigid3 control_from_node;
+
+  SurveyedPass() {
+    ScanDigest& digest = nodes[0].digest;
+    digest.mobile = true;
+    digest.drift_m = 0.01;
+    for (int k = 0; k < kKnots; ++k) {
+      digest.track.way.times_s.push_back(500.0 + 2.0 * k);
+      digest.track.way.distances_m.push_back(5.0 * k);
+      digest.track.way.places.emplace_back(5.0 * k - 60.0, 0.0, 2.0);
+    }
+    RandomStream random(3, 2);
+    control_from_node = random_pose(random, 50.0);
+  }
+
+  /// Given less true, frame of the pass.
+  [[nodiscard]] static Vector3d strayed_m(double place) {
+    const double phase = 2.0 * M_PI * place / (kKnots - 1);
+    return {0.02 * std::sin(phase), 0.03 * std::cos(phase), -0.015 * std::sin(2.0 * phase)};
+  }
+
+  /// Control points on both sides, so many along the way, each seen when it is passed.
+  [[nodiscard]] Survey survey(int along) const {
+    RandomStream random(8, 4);
+    Survey made;
+    made.file = "control.csv";
+    made.node_names = {"pass"};
+    const Matrix3d covariance = kSigmaM * kSigmaM * Matrix3d::Identity();
+    for (int k = 0; k < 2 * along; ++k) {
+      const double place = (k / 2) * (kKnots - 1.0) / (along - 1.0);
+      const Vector3d truth(5.0 * place - 60.0, k % 2 == 0 ? 9.0 : -8.0, 0.5 + k % 3);
+      SurveyMark mark;
+      mark.name = "P";
+      mark.name += std::to_string(k);
+      mark.role = PointRole::control;
+      mark.point.known = KnownPlace{control_from_node * truth + noise3(kSigmaM, random), covariance};
+      mark.given = mark.point.known->x;
+      PointSight sight{0, truth + strayed_m(place) + noise3(kSigmaM, random), covariance};
+      sight.strayed_m = 0.02;
+      sight.place = place;
+      mark.point.sights.push_back(sight);
+      made.marks.push_back(mark);
+    }
+    return made;
+  }
+};
+
+TEST(Survey, TargetsSeenAtTheirTimesBendAPassBack) {
+  const SurveyedPass street;
+  Survey survey = street.survey(13);
+  ProjectGraph made = make_graph(street.nodes, {}, 0.001, {});
+  add_survey_links(survey, made);
+  SolvedGraph solved = solve_graph(made.graph, 0.001);
+  PlacedSurvey placed = place_survey(survey, made, solved);
+  const JointFinding finding = adjust_planes(street.nodes, {}, made, {}, solved, placed);
+  ASSERT_EQ(finding.passes.size(), 1U);
+  ASSERT_TRUE(placed.placed);
+  const BentPass& pass = finding.passes.front();
+  double squares = 0.0;
+  for (int k = 0; k < SurveyedPass::kKnots; ++k) {
+    const auto knot = static_cast<std::size_t>(k);
+    const Vector3d given = street.nodes[0].digest.track.way.places[knot];
+    const Vector3d wanted = street.control_from_node * (given - SurveyedPass::strayed_m(k));
+    const Vector3d whole = pass.frame_from_node * given;
+    const Vector3d lever = whole - pass.frame_from_node.translation;
+    const Vector3d found =
+        whole + pass.knots[knot].value.tail<3>() + pass.knots[knot].value.head<3>().cross(lever);
+    squares += (found - wanted).squaredNorm() / SurveyedPass::kKnots;
+  }
+  // As a whole it strays by 27 mm.
+  EXPECT_LT(std::sqrt(squares), 0.005);
+  for (const ProjectPoint& point : told_points(survey, placed, street.nodes)) {
+    EXPECT_EQ(point.state, PointState::used) << point.name << " " << point.reason;
+    EXPECT_TRUE(point.sights.front().used);
+    EXPECT_LT(point.sights.front().missed_m, 0.01) << point.name;
+  }
+}
+
+TEST(Survey, OfAPassATargetIsWhereItsTimeSaysOrWhereThePassCameNearest) {
+  const SurveyedPass street;
+  const std::filesystem::path folder = std::filesystem::temp_directory_path() / "limen_pass_targets_test";
+  std::filesystem::create_directories(folder);
+  ProjectInputs inputs;
+  inputs.targets = (folder / "targets.csv").string();
+  std::ofstream(inputs.targets) << "name,scan,x,y,z,sigma,time\n"
+                                   "P,pass.ply,1,9,1,0.002,523\nP,pass.ply,1.01,9,1,0.002,541.5\n"
+                                   "Q,pass.ply,-57.5,9,1,0.002,\nR,pass.ply,1,9,1,0.002,600\n";
+  std::vector<ProjectScan> scans(1);
+  scans[0].file = "pass.ply";
+  const Survey survey = read_survey(inputs, street.nodes, scans);
+  ASSERT_EQ(survey.marks.size(), 3U);
+  const std::vector<PointSight>& twice = survey.marks[0].point.sights;
+  ASSERT_EQ(twice.size(), 2U);
+  EXPECT_NEAR(twice[0].place.value_or(-1.0), 11.5, 1e-12);
+  EXPECT_NEAR(twice[1].place.value_or(-1.0), 20.75, 1e-12);
+  EXPECT_EQ(twice[1].number, 1U);
+  EXPECT_NEAR(survey.marks[1].point.sights.front().place.value_or(-1.0), 0.5, 1e-12);
+  EXPECT_TRUE(survey.marks[2].point.sights.empty());
+  ASSERT_FALSE(survey.notes.empty());
+  EXPECT_NE(survey.notes.back().find("R of pass.ply"), std::string::npos) << survey.notes.back();
+  std::filesystem::remove_all(folder);
+}
+
 TEST(Survey, NamesOfScansArePlacesOfScannersAndStrangersAreTold) {
   const std::filesystem::path folder = std::filesystem::temp_directory_path() / "limen_survey_test";
   std::filesystem::create_directories(folder);

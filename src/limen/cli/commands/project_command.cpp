@@ -402,8 +402,10 @@ void add_project_command(CommandLine& app, Session& session) {
           "becomes theirs. A point called as a scan is where its scanner stood")
       ->type_name("CSV");
   command
-      ->add_option("--targets", options->targets,
-                   "Where the scans see them: name,scan,x,y,z,sigma; x,y,z as in the scan's own file")
+      ->add_option(
+          "--targets", options->targets,
+          "Where the scans see them: name,scan,x,y,z,sigma; x,y,z as in the scan's own file; of a mobile "
+          "scan also time, in the seconds of its points")
       ->type_name("CSV");
   command
       ->add_option("--check", options->check,

@@ -18,7 +18,7 @@ PointTerms point_terms(const MarkedPoint& point, const std::vector<Rigid3>& fram
         -arm.z(), 0, arm.x(), 0, 1, 0,         //
         arm.y(), -arm.x(), 0, 0, 0, 1;
     const Matrix3d weight =
-        inverse_of(Matrix3d(node.rotation * sight.covariance * node.rotation.transpose()));
+        inverse_of(Matrix3d(node.rotation * sight.whole_covariance() * node.rotation.transpose()));
     const Vector3d place = node.translation + arm;
     terms.by_pose.push_back(by_pose);
     terms.weight.push_back(weight);

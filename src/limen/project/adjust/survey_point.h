@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <vector>
 
@@ -14,6 +15,14 @@ struct PointSight {
   int node = -1;
   Vector3d x_in_node = Vector3d::Zero();
   Matrix3d covariance = Matrix3d::Identity();  ///< node's axes, m^2
+  double strayed_m = 0.0;  ///< of a mobile pass: from its pose, along each axis, one standard deviation
+  std::optional<double> place = std::nullopt;  ///< along the way of a pass, in knots
+  std::size_t number = 0;                      ///< among the sights of its point, as they were given
+
+  /// Node's axes, m^2.
+  [[nodiscard]] Matrix3d whole_covariance() const {
+    return covariance + strayed_m * strayed_m * Matrix3d::Identity();
+  }
 };
 
 /// Coordinates that are an observation: never fixed.

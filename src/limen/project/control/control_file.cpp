@@ -8,6 +8,7 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <tuple>
 #include <utility>
 
 #include <fmt/format.h>
@@ -49,6 +50,13 @@ class Row {
     if (!value || !std::isfinite(*value))
       throw Error(fmt::format("\"{}\" in the column {} is no number", cell, column), where_, kControlRemedy);
     return *value;
+  }
+
+  /// Nothing where there is no such column, or nothing in it.
+  [[nodiscard]] std::optional<double> number_if_any(const std::string& column) const {
+    const auto found = columns_.find(column);
+    if (found == columns_.end() || found->second >= cells_.size() || cells_[found->second].empty()) return {};
+    return number(column);
   }
 
   [[nodiscard]] double sigma(const std::string& column) const {
@@ -160,12 +168,13 @@ std::vector<SurveyedPoint> read_surveyed_points(const std::filesystem::path& pat
 
 std::vector<SeenTarget> read_seen_targets(const std::filesystem::path& path) {
   std::vector<SeenTarget> targets;
-  std::set<std::pair<std::string, std::string>> known;
+  std::set<std::tuple<std::string, std::string, std::optional<double>>> known;
   read_table(path, [&](const Row& row) {
-    targets.push_back({row.text("name"), row.text("scan"), row.place(), row.covariance()});
-    if (!known.emplace(targets.back().name, targets.back().scan).second)
+    targets.push_back(
+        {row.text("name"), row.text("scan"), row.place(), row.covariance(), row.number_if_any("time")});
+    if (!known.emplace(targets.back().name, targets.back().scan, targets.back().time_s).second)
       throw Error(fmt::format("the scan {} sees {} twice", targets.back().scan, targets.back().name),
-                  row.where(), "take one of them out");
+                  row.where(), "take one of them out, or tell in a column time when a mobile scan saw each");
   });
   return targets;
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,7 @@ struct SeenTarget {
   std::string scan;                       ///< its file, as the user writes it; " #2" for one of several
   Vector3d x_in_scan = Vector3d::Zero();  ///< metres, the scan's own coordinates as they stand in its file
   Matrix3d covariance = Matrix3d::Identity();  ///< m^2, the scan's axes
+  std::optional<double> time_s;                ///< of a mobile scan: when it saw it, as its points' times are
 };
 
 /// Text with a header line that names its columns, between commas, semicolons or tabs: name, x, y, z (metres)
@@ -32,7 +34,8 @@ struct SeenTarget {
 /// deviation is not positive, a name stands twice.
 std::vector<SurveyedPoint> read_surveyed_points(const std::filesystem::path& path);
 
-/// The same with a column `scan`; a target may be seen by many scans, by each of them once.
+/// The same with a column `scan`, and perhaps `time` (seconds); a target may be seen by many scans, by each
+/// of them once at a time.
 std::vector<SeenTarget> read_seen_targets(const std::filesystem::path& path);
 
 }  // namespace limen

@@ -127,7 +127,8 @@ void BentPasses::add_chain(Pass& pass, JointProblem& problem) {
   }
 }
 
-int BentPasses::node_at(JointProblem& problem, int node, const std::vector<double>& places) const {
+int BentPasses::node_at(JointProblem& problem, int node, const std::vector<double>& places,
+                        bool untold) const {
   const Pass& pass = pass_of(node);
   std::map<int, double> weights;
   Vector6d by = Vector6d::Zero();
@@ -140,7 +141,7 @@ int BentPasses::node_at(JointProblem& problem, int node, const std::vector<doubl
     }
   }
   const Rigid3& whole = problem.frame_from_node[static_cast<std::size_t>(node)];
-  return add_blend(problem, NodeBlend(weights.begin(), weights.end()), bent(whole, by), true);
+  return add_blend(problem, NodeBlend(weights.begin(), weights.end()), bent(whole, by), untold);
 }
 
 Rigid3 BentPasses::pose_at(int node, const Rigid3& frame_from_node, double place) const {

@@ -50,8 +50,9 @@ class BentPasses {
   /// Makes the pass's node a blend of nodes that are added for its control points. Where the node was fixed,
   /// the control point in the middle is instead. Call once per problem, after all scans have a node.
   void add_to(JointProblem& problem);
-  /// A node that is added to the problem for the mean of places along the way, in knots.
-  int node_at(JointProblem& problem, int node, const std::vector<double>& places) const;
+  /// A node that is added to the problem for the mean of places along the way, in knots; `untold`: nobody
+  /// asks for its covariance.
+  int node_at(JointProblem& problem, int node, const std::vector<double>& places, bool untold = true) const;
   /// The pass as it is bent so far, there.
   [[nodiscard]] Rigid3 pose_at(int node, const Rigid3& frame_from_node, double place) const;
 
