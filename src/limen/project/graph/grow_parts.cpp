@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <iterator>
 #include <map>
 #include <set>
+#include <unordered_map>
 #include <utility>
 
 #include "limen/base/progress.h"
@@ -95,7 +97,7 @@ class Grower {
       passage.links.push_back(k);
       passage.blocks.push_back(poses_of(k));
       passage.agreeing.resize(passage.agreeing.size() + poses_of(k));
-      double& shared = shared_m2_[key(link.source, link.target)];
+      double& shared = shared_m2_[number_of(link.source, link.target)];
       shared = std::max(shared, link.poses.front().agreeing_m2);
       neighbours_[static_cast<std::size_t>(link.source)].insert(link.target);
       neighbours_[static_cast<std::size_t>(link.target)].insert(link.source);
@@ -120,6 +122,10 @@ class Grower {
 
   using Parts = std::pair<int, int>;
   static Parts key(int a, int b) { return {std::min(a, b), std::max(a, b)}; }
+  static std::uint64_t number_of(int a, int b) {
+    return std::uint64_t{static_cast<std::uint32_t>(std::min(a, b))} << 32 |
+           static_cast<std::uint32_t>(std::max(a, b));
+  }
 
   /// Joins the two parts for which most is said; false: there are none. Of those that changed it is asked
   /// only where they may come first.
@@ -259,7 +265,7 @@ class Grower {
     const double surface = pair(c.link).poses[c.pose].agreeing_m2;
     const auto share = [&](int a, int b) {
       if (a == b || surface <= 0.0) return 1.0;
-      const auto found = shared_m2_.find(key(a, b));
+      const auto found = shared_m2_.find(number_of(a, b));
       return found == shared_m2_.end() ? 0.0 : std::min(1.0, found->second / surface);
     };
     return share(c.lower_node, other.lower_node) * share(c.higher_node, other.higher_node);
@@ -276,6 +282,7 @@ class Grower {
       if (!links.insert(c->link).second) continue;
       double seen = 0.0;
       for (const Crossing* other : heard) {
+        if (seen >= 1.0) break;
         if (holds(c->link) == holds(other->link)) seen = std::max(seen, seen_by(*c, *other));
       }
       sum += (1.0 - seen) * (heard.empty() ? c->nats : more_nats_of(*c));
@@ -382,7 +389,7 @@ class Grower {
   std::vector<std::vector<int>> members_;
   std::vector<std::set<int>> neighbours_;
   std::map<Parts, Passage> between_;
-  std::map<Parts, double> shared_m2_;  ///< surface that two nodes show in common
+  std::unordered_map<std::uint64_t, double> shared_m2_;  ///< surface that two nodes show in common
   std::map<Parts, Join> joins_;
 };
 
