@@ -30,8 +30,8 @@ constexpr double kStoreyM = 0.5;       // floors further apart are of different 
 constexpr double kWordWrong = 4e-4;    // probability that a user's word is wrong
 constexpr double kToldApartM = 0.05;   // deviation of the least known shift below which a pose is a place
 const double kToldApartRad = radians(0.5);
-constexpr double kOpenM = 0.25;  // where a pair calls a direction open: faces that are taken for one another
-const double kOpenRad = radians(3.0);
+constexpr double kOpenM = 0.1;  // where a pair calls a direction open: faces taken for one another
+const double kOpenRad = radians(1.0);
 constexpr double kLooser = 2.0;  // an alternative's deviations against those of the best pose
 
 Vector6d diagonal(const Vector3d& turn, const Vector3d& shift) {

@@ -343,6 +343,16 @@ class Grower {
     return ways;
   }
 
+  /// Of what agrees the pose with the least deviation: nothing is adjusted until all parts stand.
+  [[nodiscard]] const Crossing& best_known(const Way& way) const {
+    const Crossing* best = way.middle;
+    const auto variance = [](const Crossing* c) { return c->between.covariance.diagonal().tail<3>().sum(); };
+    for (const Crossing* c : way.agreeing) {
+      if (holds(c->link) && variance(c) < variance(best)) best = c;
+    }
+    return *best;
+  }
+
   /// The way that most is said for, by how much it leads before every other. Crossings that agree are one
   /// way, about the one that agrees with most: each way is weighed once.
   [[nodiscard]] Join best_join(const Parts& parts) {
@@ -375,7 +385,7 @@ class Grower {
           std::find(most->agreeing.begin(), most->agreeing.end(), way->middle) != most->agreeing.end();
       if (!agrees) second = std::max(second, way->nats);
     }
-    best.higher_from_lower = most->middle->higher_from_lower;
+    best.higher_from_lower = best_known(*most).higher_from_lower;
     best.most = most->nats;
     best.lead = most->nats - second;
     best.trust = trust_of(most->agreeing, best.lead);
