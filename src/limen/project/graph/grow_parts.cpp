@@ -67,7 +67,8 @@ struct Join {
 };
 
 /// Of two sets of crossings between the same parts, what their union leads by at most: what is best by both
-/// gains what the others say for it, and that they agree.
+/// gains what the others say for it, and that they agree. (Where ways agree in part it may be more; then the
+/// parts are asked later than they might be.)
 Join join_of_both(const Join& a, const Join& b) {
   Join both = a.valid ? a : b;
   both.known = false;
