@@ -6,49 +6,15 @@
 #include <vector>
 
 #include "limen/base/angles.h"
-#include "limen/project/adjust/plane_adjustment.h"
-#include "limen/project/passes/bent_passes.h"
-#include "limen/project/project_graph.h"
-#include "limen/project/shared_planes.h"
-#include "limen/project/survey.h"
+#include "limen/project/joint_problem.h"
 #include "limen/project/word_terms.h"
 
 namespace limen {
 namespace {
 
-constexpr double kSharedM2 = 0.3;
-
-constexpr double kMostBentM = 0.5;  // of the pass's middle, beyond its pose as a whole
-const double kMostTurnedRad = radians(0.5);
-constexpr int kBendRounds = 8;
-constexpr int kLeastRounds = 2;
-constexpr double kSettled = 1.1;  // of a rate of drift, from round to round
-
 /// By how much the joint adjustment may move a node: more is a fault of the shared planes, not a finding.
 constexpr double kMostShiftM = 0.03;  // and three deviations of the links alone
 const double kMostTurnRad = radians(0.3);
-
-/// Where a link holds a pass that is bent: the node of its parts that saw what both see.
-int held_node(const TriedPair& pair, int node, bool source, const SharedPlanes& shared,
-              const BentPasses& passes, JointProblem& problem) {
-  if (!passes.bends(node)) return node;
-  std::vector<int> planes;
-  for (const PlaneMatch& match : pair.result.matches) planes.push_back(source ? match.source : match.target);
-  return passes.node_at(problem, node, shared.places_of(node, planes));
-}
-
-/// The points as the adjustment has them: what a bent pass saw moves with that part of its way.
-std::vector<MarkedPoint> points_along(std::vector<MarkedPoint> points, const BentPasses& passes,
-                                      JointProblem& problem) {
-  for (MarkedPoint& point : points) {
-    for (PointSight& sight : point.sights) {
-      if (!sight.place || !passes.bends(sight.node)) continue;
-      sight.strayed_m = passes.unfollowed_m(sight.node);
-      sight.node = passes.node_at(problem, sight.node, {*sight.place}, false);
-    }
-  }
-  return points;
-}
 
 /// Takes over what entered of the points.
 void keep_points(const std::vector<MarkedPoint>& settled, std::vector<MarkedPoint>& points) {
@@ -74,56 +40,6 @@ void tell_places(const std::vector<MarkedPoint>& points, const std::vector<Rigid
     for (const PointSight& sight : points[p].sights)
       seen_at[p][sight.number] = frame_from_node[static_cast<std::size_t>(sight.node)] * sight.x_in_node;
   }
-}
-
-JointProblem joint_problem(const std::vector<ProjectNode>& nodes, const std::vector<TriedPair>& pairs,
-                           const ProjectGraph& made, const SolvedGraph& solved, const PlacedSurvey& survey,
-                           BentPasses& passes) {
-  JointProblem problem;
-  std::vector<bool> taken;
-  for (std::size_t n = 0; n < nodes.size(); ++n) {
-    const SolvedNode& node = solved.nodes[n];
-    problem.frame_from_node.push_back(node.frame_from_node);
-    taken.push_back(node.component >= 0);
-    // The node that the graph left where it was is the frame of its component, if control points are not.
-    problem.fixed.push_back(node.component < 0 || (node.covariance.isZero() && !survey.controlled[n]));
-  }
-  passes.add_to(problem);
-  SharedPlanes shared(nodes, solved, passes);
-  for (std::size_t k = 0; k < made.graph.links.size(); ++k) {
-    const GraphLink& link = made.graph.links[k];
-    if (solved.links[k].pose < 0) continue;
-    PoseEdge edge{link.source, link.target, link.poses[static_cast<std::size_t>(solved.links[k].pose)]};
-    if (made.pair_of[k] >= 0 && solved.links[k].pose == link.best) {
-      const TriedPair& pair = pairs[static_cast<std::size_t>(made.pair_of[k])];
-      for (const PlaneMatch& match : pair.result.matches) {
-        if (match.overlap_m2 >= kSharedM2) shared.join(link.source, match.source, link.target, match.target);
-      }
-      edge.source = held_node(pair, link.source, true, shared, passes, problem);
-      edge.target = held_node(pair, link.target, false, shared, passes, problem);
-    }
-    problem.edges.push_back(edge);
-  }
-  shared.tell(taken, problem);
-  problem.points = points_along(survey.points, passes, problem);
-  return problem;
-}
-
-/// Passes with a way that stand in a component: what bends.
-BentPasses passes_to_bend(const std::vector<ProjectNode>& nodes, const SolvedGraph& solved) {
-  std::vector<PassToBend> passes;
-  for (std::size_t n = 0; n < nodes.size(); ++n) {
-    const ScanDigest& digest = nodes[n].digest;
-    if (!digest.mobile || !digest.track.way.known() || solved.nodes[n].component < 0) continue;
-    passes.push_back({static_cast<int>(n), &digest.track.way, digest.drift_m});
-  }
-  return BentPasses(passes);
-}
-
-std::vector<int> components_of(const SolvedGraph& solved) {
-  std::vector<int> components;
-  for (const SolvedNode& node : solved.nodes) components.push_back(node.component);
-  return components;
 }
 
 /// Three standard deviations of where a node's point lies, and of its turn.
@@ -209,30 +125,6 @@ JointFinding adjust_once(const std::vector<ProjectNode>& nodes, JointProblem pro
   survey.seen_at = std::move(seen_at);
   survey.settled = std::move(settled);
   return finding;
-}
-
-/// The shape of the passes, and how fast they drift, in the frame as it is solved so far: planes are joined
-/// anew once passes are bent.
-void bend(const std::vector<ProjectNode>& nodes, const std::vector<TriedPair>& pairs,
-          const ProjectGraph& made, SolvedGraph solved, const PlacedSurvey& survey, BentPasses& passes) {
-  for (int round = 0; round < kBendRounds; ++round) {
-    JointProblem problem = joint_problem(nodes, pairs, made, solved, survey, passes);
-    JointSolution solution = adjust_jointly(problem);
-    passes.settle_frames(problem, components_of(solved), solution);
-    const double change = passes.take(problem, solution);
-    for (std::size_t n = 0; n < solved.nodes.size(); ++n)
-      solved.nodes[n].frame_from_node = solution.frame_from_node[n];
-    if (round >= kLeastRounds && change < kSettled) break;
-  }
-}
-
-/// No trajectory that deserves the name is off by more: then something else is wrong, and passes stay rigid.
-bool drift_is_plausible(const std::vector<BentPass>& passes) {
-  return std::all_of(passes.begin(), passes.end(), [](const BentPass& pass) {
-    return std::all_of(pass.knots.begin(), pass.knots.end(), [](const BentKnot& knot) {
-      return knot.value.head<3>().norm() < kMostTurnedRad && knot.value.tail<3>().norm() < kMostBentM;
-    });
-  });
 }
 
 JointFinding adjust_with(const std::vector<ProjectNode>& nodes, const std::vector<TriedPair>& pairs,

@@ -35,6 +35,8 @@ class Assembler {
     add_survey_links(survey_, made);
     solved_ = solve_graph(made.graph, risk_);
     if (confirm_by_points(survey_, solved_, made)) solved_ = solve_graph(made.graph, risk_);
+    if (const std::optional<PoseGraph> straight = straightened(nodes_, pairs_, made, solved_))
+      solved_ = solve_graph(*straight, risk_);
     if (nodes_.size() == 1 && solved_.nodes.front().component < 0) {
       // A scan alone is its own frame.
       solved_.nodes.front().state = NodeState::registered;

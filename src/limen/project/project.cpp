@@ -10,6 +10,7 @@
 #include "limen/base/error.h"
 #include "limen/base/stage_part.h"
 #include "limen/project/control/control_file.h"
+#include "limen/project/own_drift.h"
 #include "limen/project/project_files.h"
 #include "limen/project/project_graph.h"
 #include "limen/project/project_state.h"
@@ -45,6 +46,7 @@ class Run {
       throw Error("no scan could be read; the first " + first.reason, first.file, "look at the files");
     }
     order_nodes();
+    learn_own_drift(nodes_);
     words_ = words_by_nodes(decisions_, nodes_, result_.scans);
     std::vector<TriedPair> tried = few() ? try_all(every_pair()) : waves();
     try_named(tried);

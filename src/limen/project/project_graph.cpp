@@ -32,7 +32,12 @@ constexpr double kToldApartM = 0.05;   // deviation of the least known shift bel
 const double kToldApartRad = radians(0.5);
 constexpr double kOpenM = 0.1;  // where a pair calls a direction open: faces taken for one another
 const double kOpenRad = radians(1.0);
-constexpr double kLooser = 2.0;  // an alternative's deviations against those of the best pose
+constexpr double kDriftLengthM = 5.0;  // what a trajectory is off by may turn a scan of so much of it
+constexpr double kLooser = 2.0;        // an alternative's deviations against those of the best pose
+
+double square(double x) {
+  return x * x;
+}
 
 Vector6d diagonal(const Vector3d& turn, const Vector3d& shift) {
   Vector6d all;
@@ -186,6 +191,19 @@ class GraphMaker {
     return std::max(0.0, 1.0 - *found.best.probability - twin);
   }
 
+  /// What is known of how trajectories drift beyond what the pair took for it.
+  struct Drift {
+    double more_m2 = 0.0;  ///< per axis; less than nothing where the pair took too much
+    [[nodiscard]] double turn_rad2() const { return std::max(0.0, more_m2) / square(kDriftLengthM); }
+  };
+  [[nodiscard]] Drift drift_of(const GraphLink& link) const {
+    const auto more_m2 = [&](int n) {
+      const ProjectNode& node = nodes_[static_cast<std::size_t>(n)];
+      return node.drift ? square(node.drift->strays_m) - square(node.digest.drift_m) : 0.0;
+    };
+    return {more_m2(link.source) + more_m2(link.target)};
+  }
+
   [[nodiscard]] LinkPose pose_of(const GraphLink& link, const RegistrationResult& found,
                                  const Hypothesis& pose, double looser) const {
     const ScanDigest& source = digest(link.source);
@@ -196,9 +214,13 @@ class GraphMaker {
     kept.centre = kept.target_from_source * (inverse(best) * (found.sigma.centre - target.local_origin));
     kept.agreeing_m2 = pose.agreeing_m2;
     kept.probability = pose.probability.value_or(1.0 / (1.0 + static_cast<double>(found.rivals)));
+    const Drift drift = drift_of(link);
     if (!pose.sigma.covariance.isZero()) {
       kept.centre = pose.sigma.centre - target.local_origin;
-      kept.covariance = with_floor(pose.sigma.covariance, source.model || target.model);
+      Matrix6d own = pose.sigma.covariance;
+      own.diagonal().tail<3>().array() += drift.more_m2;
+      own.diagonal().head<3>().array() += drift.turn_rad2();
+      kept.covariance = with_floor(own, source.model || target.model);
       open_up(found.unobserved, kept.covariance);
       return kept;
     }
@@ -206,8 +228,10 @@ class GraphMaker {
     Vector3d turn;
     Vector3d shift;
     for (Eigen::Index axis = 0; axis < 3; ++axis) {
-      turn[axis] = std::hypot(looser * std::min(found.sigma.rotation_rad[axis], 3.0), kFloorRad);
-      shift[axis] = std::hypot(looser * std::min(found.sigma.translation_m[axis], 100.0), floor);
+      const double turned = std::hypot(found.sigma.rotation_rad[axis], std::sqrt(drift.turn_rad2()));
+      const double shifted = square(found.sigma.translation_m[axis]) + drift.more_m2;
+      turn[axis] = std::hypot(looser * std::min(turned, 3.0), kFloorRad);
+      shift[axis] = std::hypot(looser * std::min(std::sqrt(std::max(0.0, shifted)), 100.0), floor);
     }
     kept.covariance = diagonal(turn, shift).array().square().matrix().asDiagonal();
     open_up(found.unobserved, kept.covariance);

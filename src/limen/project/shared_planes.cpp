@@ -7,6 +7,8 @@
 #include <set>
 #include <utility>
 
+#include <Eigen/Cholesky>
+
 #include "limen/base/angles.h"
 
 namespace limen {
@@ -20,6 +22,7 @@ constexpr double kBendPerM = 0.0003;  // a long wall bends
 constexpr double kTilesThatCount = 16.0;
 const double kSharedCosine = std::cos(radians(2.0));
 constexpr double kSharedM = 0.04;
+constexpr double kStrays = 3.0;
 
 // Of what a bent pass sees.
 constexpr double kPatchM =
@@ -33,6 +36,16 @@ std::vector<std::size_t> first_planes(const std::vector<ProjectNode>& nodes) {
   std::vector<std::size_t> first = {0};
   for (const ProjectNode& node : nodes) first.push_back(first.back() + node.digest.planes.size());
   return first;
+}
+
+/// Whether a scan saw its plane there: within what an even spread with its moments covers, and a metre.
+bool lies_on(const Vector3d& x, const PlaneDigest& plane) {
+  constexpr double kEven = 3.0;  // squared half width of an even spread, in variances
+  constexpr double kBeyondM = 1.0;
+  Matrix3d spread = kEven * plane.moments.covariance();
+  spread.diagonal().array() += kBeyondM * kBeyondM;
+  const Vector3d off = x - plane.centroid - plane.moments.mean();
+  return off.dot(spread.ldlt().solve(off)) <= 2.0;
 }
 
 }  // namespace
@@ -66,7 +79,9 @@ void SharedPlanes::join(int source, int source_plane, int target, int target_pla
   const Plane in_frame = transformed(frame_from_a, a.plane);
   const double cosine = in_frame.normal.dot(frame_from_b.rotation * b.plane.normal);
   if (std::abs(cosine) < kSharedCosine) return;
-  if (std::abs(in_frame.signed_distance(frame_from_b * b.centroid)) > kSharedM) return;
+  // Pieces of a pass stray from where the pass as a whole has them.
+  const double strays = std::hypot(nodes_[source_node].strays_m(), nodes_[target_node].strays_m());
+  if (std::abs(in_frame.signed_distance(frame_from_b * b.centroid)) > kSharedM + kStrays * strays) return;
   surfaces_.join(first_[source_node] + static_cast<std::size_t>(source_plane),
                  first_[target_node] + static_cast<std::size_t>(target_plane));
 }
@@ -79,7 +94,7 @@ PlaneObservation SharedPlanes::whole_plane(std::size_t node, const PlaneDigest& 
   const double length = std::sqrt(12.0 * seen.moments.covariance().trace());
   const double own = std::hypot(kFlatM, kBendPerM * length);
   // What a trajectory drifts by is one for the whole plane.
-  observation.sigma_m = std::hypot(own, digest(node).drift_m * std::sqrt(kTilesThatCount));
+  observation.sigma_m = std::hypot(own, nodes_[node].strays_m() * std::sqrt(kTilesThatCount));
   if (digest(node).model) observation.sigma_m = std::hypot(own, kDrawnM * std::sqrt(kTilesThatCount));
   observation.most_points = kTilesThatCount;
   return observation;
@@ -119,14 +134,14 @@ SharedPlanes::Seen SharedPlanes::seen_strip(std::size_t node, std::size_t strip)
   const int number = static_cast<int>(node);
   const bool bends = passes_.bends(number);
   double common = of.model ? kDrawnM : kStripM;
-  if (of.mobile) common = std::hypot(kStripM, bends ? passes_.unfollowed_m(number) : of.drift_m);
+  if (of.mobile) common = std::hypot(kStripM, bends ? passes_.unfollowed_m(number) : nodes_[node].strays_m());
   Seen seen;
   seen.observation.node = number;
   seen.observation.moments = saw.moments;
   seen.observation.anchor = saw.anchor;
   seen.observation.most_points = kStripTiles;
   seen.observation.sigma_m = std::hypot(kFlatM, common * std::sqrt(std::min(kStripTiles, saw.moments.count)));
-  seen.from = {node, bends ? static_cast<int>(2.0 * saw.place) : 0};
+  seen.from = {node, bends ? static_cast<int>(saw.place) : 0};
   seen.place = saw.place;
   return seen;
 }
@@ -172,16 +187,22 @@ void SharedPlanes::keep(const std::map<PatchKey, std::vector<Seen>>& patches, Jo
   }
 }
 
-std::vector<double> SharedPlanes::places_of(int node, const std::vector<int>& planes) const {
+std::vector<double> SharedPlanes::places_of(int node, const std::vector<SeenByBoth>& seen,
+                                            const Rigid3& other_from_node) const {
   const auto n = static_cast<std::size_t>(node);
   std::vector<std::pair<double, double>> strips;  // place along the way, and how much was seen there
   double all = 0.0;
-  for (const int plane : planes) {
-    for (const std::size_t k : strips_[n][static_cast<std::size_t>(plane)]) {
-      const PassStrip& strip = digest(n).track.strips[k];
-      strips.emplace_back(strip.place, strip.moments.count);
-      all += strip.moments.count;
+  for (const bool common : {true, false}) {
+    for (const SeenByBoth& surface : seen) {
+      for (const std::size_t k : strips_[n][static_cast<std::size_t>(surface.plane)]) {
+        const PassStrip& strip = digest(n).track.strips[k];
+        if (common && !lies_on(other_from_node * (strip.anchor + strip.moments.mean()), *surface.other))
+          continue;
+        strips.emplace_back(strip.place, strip.moments.count);
+        all += strip.moments.count;
+      }
     }
+    if (!strips.empty()) break;
   }
   if (strips.empty()) return {0.5 * (digest(n).track.way.knots() - 1)};
   std::sort(strips.begin(), strips.end());

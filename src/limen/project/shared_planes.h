@@ -29,9 +29,15 @@ class SharedPlanes {
   /// pass strip by strip, and of what it sees patch by patch, for long walls bend.
   void tell(const std::vector<bool>& taken, JointProblem& problem);
 
+  /// A plane of a pass, and that of another scan which is the same surface.
+  struct SeenByBoth {
+    int plane = -1;
+    const PlaneDigest* other = nullptr;
+  };
   /// Where along its way a pass saw what it shares with another scan, in knots: places that part the tiles of
-  /// these planes evenly.
-  [[nodiscard]] std::vector<double> places_of(int node, const std::vector<int>& planes) const;
+  /// these planes evenly, as far as the other scan saw them.
+  [[nodiscard]] std::vector<double> places_of(int node, const std::vector<SeenByBoth>& seen,
+                                              const Rigid3& other_from_node) const;
 
  private:
   /// A patch of a surface: its planes' root, and a square of it.

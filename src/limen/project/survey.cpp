@@ -103,7 +103,8 @@ class SurveyReader {
       mark.name = target.name;
       const ScanDigest& digest = nodes_[static_cast<std::size_t>(node)].digest;
       PointSight sight{node, target.x_in_scan - digest.local_origin, target.covariance};
-      if (digest.mobile) sight.strayed_m = std::max(digest.drift_m, kLeastStrayedM);
+      if (digest.mobile)
+        sight.strayed_m = std::max(nodes_[static_cast<std::size_t>(node)].strays_m(), kLeastStrayedM);
       if (digest.track.way.known()) {
         sight.place = place_on(digest.track.way, target, sight.x_in_node);
         if (!sight.place) {

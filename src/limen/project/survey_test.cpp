@@ -93,6 +93,25 @@ TEST(Survey, ScansThatOnlyTargetsJoinStandInOneFrame) {
   EXPECT_FALSE(placed.controlled[2]);
 }
 
+TEST(Survey, WhatStoodByTheSurveyAloneKeepsAFrameOfItsOwn) {
+  TargetsOnly building({4, 4, 0});
+  ProjectGraph made = make_graph(building.nodes, {building.pair(1, 0, 0.0, 0.0)}, 0.001, {});
+  add_survey_links(building.survey, made);
+  SolvedGraph solved = solve_graph(made.graph, 0.001);
+  // Both are in doubt: what they see holds no frame, and the survey's node, which was theirs, is gone.
+  for (SolvedNode& node : solved.nodes) node.state = NodeState::ambiguous;
+  const std::vector<TriedPair> pairs = {building.pair(1, 0, 0.0, 0.0)};
+  PlacedSurvey placed = place_survey(building.survey, made, solved);
+  EXPECT_FALSE(placed.placed);
+  adjust_planes(building.nodes, pairs, made, {}, solved, placed);
+  int frames = 0;
+  for (std::size_t n = 0; n < 2; ++n) {
+    frames += solved.nodes[n].covariance.isZero() ? 1 : 0;
+    EXPECT_LT(solved.nodes[n].covariance.diagonal().head<3>().maxCoeff(), 0.01) << n;
+  }
+  EXPECT_EQ(frames, 1);
+}
+
 TEST(Survey, TargetsRefuteALinkAndSettleATwin) {
   // c hangs on a by a link that is 0.3 m off, and on b by one that may lie on a twin.
   TargetsOnly building({4, 4, 4});

@@ -118,11 +118,11 @@ struct SolvedGraph {
 ///
 /// Parts are joined in the order of how sure it is in which way (grow_parts.h); least squares with a robust
 /// weight (Geman-McClure, made strict step by step) over what was accepted; what then misses its covariance
-/// is rejected. Sides of the building that are more probably twins than one place are taken apart (doubt.h),
-/// and parts are grown anew without what laid them on one another. In the end every pose that was not taken
-/// is tried again: where the present place is not a thousand times as probable by what the links say, the
-/// part that it would move is ambiguous (rivals.h). So is what no link holds that is wrong with a probability
-/// of `risk` at most.
+/// is rejected, but not what misses by no more than the solution itself is open there. Sides of the building
+/// that are more probably twins than one place are taken apart (doubt.h), and parts are grown anew without
+/// what laid them on one another. In the end every pose that was not taken is tried again: where the present
+/// place is not a thousand times as probable by what the links say, the part that it would move is ambiguous
+/// (rivals.h). So is what no link holds that is wrong with a probability of `risk` at most.
 SolvedGraph solve_graph(const PoseGraph& graph, double risk = 0.001);
 
 }  // namespace limen

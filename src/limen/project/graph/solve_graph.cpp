@@ -5,6 +5,7 @@
 #include <map>
 #include <utility>
 
+#include "limen/base/angles.h"
 #include "limen/base/disjoint_sets.h"
 #include "limen/base/progress.h"
 #include "limen/geometry/linear.h"
@@ -24,8 +25,12 @@ constexpr double kFirstGate = 16.0;  // times the bound, before the first adjust
 constexpr std::size_t kLoopsPerLink = 8;
 constexpr double kFixedM = 0.05;  // a weak link's node that is known this well by several is held after all
 constexpr double kFixedRad = 0.01;
-constexpr int kMostGrown = 30;   // times that parts are grown anew
-constexpr double kRather = 0.5;  // probability of a twin above which it is the explanation
+constexpr int kTakenBack = 3;       // times that links are taken back
+constexpr double kGivesWayM = 0.5;  // what misses by more shows another place
+const double kGivesWayRad = radians(5.0);
+constexpr double kTellsNothing = 1e6;  // variance of an edge that is there to be told
+constexpr int kMostGrown = 30;         // times that parts are grown anew
+constexpr double kRather = 0.5;        // probability of a twin above which it is the explanation
 
 class Solver {
  public:
@@ -71,6 +76,47 @@ class Solver {
     }
     accept(1.0);
     settle_components();
+    for (int round = 0; round < kTakenBack && take_back(); ++round) {
+      adjust(false);
+      accept(1.0);
+      settle_components();
+    }
+  }
+
+  /// Links that miss what was solved without them by no more than the solution is open there: each would have
+  /// been accepted, had it come first. Whether there are any.
+  bool take_back() {
+    std::vector<PoseEdge> list = edges();
+    const std::size_t accepted = list.size();
+    std::vector<std::pair<std::size_t, int>> near;  // links and poses
+    for (std::size_t k = 0; k < graph_.links.size(); ++k) {
+      const GraphLink& link = graph_.links[k];
+      if (accepted_.pose[k] >= 0 || left_out_[k] || link.trust == LinkTrust::weak) continue;
+      if (component(link.source) != component(link.target)) continue;
+      const std::size_t count = link.trust <= LinkTrust::likely ? 1 : link.poses.size();
+      for (std::size_t p = 0; p < count; ++p) {
+        const Vector6d missed = misfit(link.poses[p], predicted(link));
+        if (missed.head<3>().norm() > kGivesWayRad || missed.tail<3>().norm() > kGivesWayM) continue;
+        near.emplace_back(k, static_cast<int>(p));
+        PoseEdge edge{link.source, link.target, link.poses[p]};
+        edge.pose.covariance = kTellsNothing * Matrix6d::Identity();
+        list.push_back(edge);
+      }
+    }
+    if (near.empty()) return false;
+    const PoseAdjustment adjusted = adjust_from_references(list, {false, true});
+    std::map<std::size_t, double> nearest;
+    for (std::size_t i = 0; i < near.size(); ++i) {
+      const auto& [k, p] = near[i];
+      const LinkPose& pose = graph_.links[k].poses[static_cast<std::size_t>(p)];
+      const double squared = chi_square(misfit(pose, predicted(graph_.links[k])),
+                                        pose.covariance + adjusted.edge_covariance[accepted + i]);
+      const auto known = nearest.find(k);
+      if (squared > (known == nearest.end() ? kChiSquareBound : known->second)) continue;
+      nearest[k] = squared;
+      accepted_.pose[k] = p;
+    }
+    return !nearest.empty();
   }
 
   /// Where two sides of the building are more probably twins than one place, what lays them on one another is
@@ -186,7 +232,8 @@ class Solver {
     return first;
   }
 
-  void adjust(bool last) {
+  PoseAdjustment adjust_from_references(const std::vector<PoseEdge>& list,
+                                        const PoseAdjustmentOptions& options) const {
     const std::vector<int> references_of = references();
     std::vector<bool> fixed(static_cast<std::size_t>(graph_.nodes), false);
     for (const int reference : references_of) {
@@ -201,8 +248,11 @@ class Solver {
     for (const int reference : references_of) {
       if (reference >= 0) start[static_cast<std::size_t>(reference)] = Rigid3{};
     }
-    const std::vector<PoseEdge> list = edges();
-    PoseAdjustment adjusted = adjust_poses(start, fixed, list, {!last, last});
+    return adjust_poses(start, fixed, list, options);
+  }
+
+  void adjust(bool last) {
+    PoseAdjustment adjusted = adjust_from_references(edges(), {!last, last});
     accepted_.frame_from_node = std::move(adjusted.frame_from_node);
     if (!last) return;
     covariance_ = std::move(adjusted.covariance);

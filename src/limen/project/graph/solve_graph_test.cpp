@@ -73,6 +73,46 @@ TEST(SolveGraph, ALinkInNoLoopIsABridge) {
   EXPECT_EQ(solved.links.front().state, LinkState::verified);
 }
 
+/// Two groups of scans that a pass joins, which is off by decimetres where it sees each; what one scan of
+/// either sees of the other fits only once the pass gives way.
+TEST(SolveGraph, AnExactLinkThatComesLateIsTakenAndLooseOnesGiveWay) {
+  RandomStream random(12, 1);
+  PoseGraph graph;
+  graph.nodes = 7;
+  std::vector<Rigid3> world_from_node{Rigid3{}};
+  for (int n = 1; n < 7; ++n) world_from_node.push_back(random_pose(random, n < 4 ? 3.0 : 6.0));
+  const auto add = [&](int source, int target, double sigma_m, const Vector3d& off, double chance) {
+    GraphLink link;
+    link.source = source;
+    link.target = target;
+    link.trust = chance > 0.1 ? LinkTrust::open : LinkTrust::sure;
+    link.chance = chance;
+    const Rigid3 truth = inverse(world_from_node[static_cast<std::size_t>(target)]) *
+                         world_from_node[static_cast<std::size_t>(source)];
+    LinkPose pose = measured_pose(truth, 20.0, random);
+    pose.target_from_source.translation += off;
+    pose.covariance.diagonal().tail<3>().array() += sigma_m * sigma_m;
+    pose.probability = 1.0 - chance;
+    link.poses = {pose};
+    graph.links.push_back(link);
+  };
+  for (const int first : {1, 4}) {
+    add(first + 1, first, 0.0, Vector3d::Zero(), 1e-6);
+    add(first + 2, first, 0.0, Vector3d::Zero(), 1e-6);
+    add(first + 2, first + 1, 0.0, Vector3d::Zero(), 1e-6);
+    for (int n = first; n < first + 3; ++n)
+      add(n, 0, 0.05, Vector3d(first == 1 ? 0.07 : -0.07, 0.0, 0.0), 1e-6);
+  }
+  add(6, 3, 0.0, Vector3d::Zero(), 0.2);
+  const SolvedGraph solved = solve_graph(graph);
+  EXPECT_EQ(solved.links.back().pose, 0);
+  for (std::size_t k = 0; k < solved.links.size(); ++k) EXPECT_TRUE(taken(solved.links[k])) << k;
+  for (const SolvedNode& node : solved.nodes) EXPECT_EQ(node.state, NodeState::registered);
+  const Rigid3 found = inverse(solved.nodes[3].frame_from_node) * solved.nodes[6].frame_from_node;
+  const Rigid3 truth = inverse(world_from_node[3]) * world_from_node[6];
+  EXPECT_LT((found.translation - truth.translation).norm(), 0.03);
+}
+
 TEST(SolveGraph, AnOpenLinkIsSettledByItsLoop) {
   SyntheticGraph made = synthetic_graph(3, 1, 2, 0.0, 8);
   ASSERT_EQ(made.graph.links.size(), 3U);

@@ -10,10 +10,8 @@
 namespace limen {
 namespace {
 
-// What is believed of a random walk before the data speak: as much as so many numbers of them.
-constexpr double kBelieved = 0.1;
 constexpr double kLeastDriftM = 0.001;
-constexpr double kMostDriftM = 0.05;
+constexpr double kMostDriftM = 0.2;
 constexpr double kTurnAtM = 30.0;  // a turn moves what lies so far off as much as the shift does
 // Nothing drifts less than this: rates stay positive.
 constexpr double kLeastRateM2 = 1e-10;  // 0.1 mm over 100 m
@@ -67,9 +65,10 @@ BentPasses::BentPasses(const std::vector<PassToBend>& passes) {
     Pass pass;
     pass.given = given;
     const double drift = std::clamp(given.drift_m, kLeastDriftM, kMostDriftM);
-    // A walk of rate q strays from its own mean by q L / 6, squared.
-    pass.first_shift_rate = pass.shift_rate = 6.0 * drift * drift / length_of(*given.way);
-    pass.first_turn_rate = pass.turn_rate = pass.shift_rate / (kTurnAtM * kTurnAtM);
+    const double steps = drift / strays_m(1.0, length_of(*given.way));
+    pass.first_shift_rate = pass.shift_rate = steps * steps;
+    pass.turn_rate = given.turn_rate_rad2_per_m.value_or(pass.shift_rate / (kTurnAtM * kTurnAtM));
+    pass.first_turn_rate = pass.turn_rate;
     pass.controls.assign(given.way->times_s.size(), Vector6d::Zero());
     of_node_.emplace(given.node, passes_.size());
     passes_.push_back(std::move(pass));
@@ -203,15 +202,26 @@ double BentPasses::take(const JointProblem& problem, const JointSolution& soluti
           std::max(0.0, 3.0 - left.bottomRightCorner<3, 3>().trace() / edge.pose.covariance(3, 3));
     }
     const auto improve = [&](const WalkEvidence& evidence, double first, double least, double& rate) {
-      const double wanted = (kBelieved * first + evidence.squares) / (kBelieved + evidence.numbers);
+      const double wanted =
+          (pass.given.believed * first + evidence.squares) / (pass.given.believed + evidence.numbers);
       const double next = std::max(least, std::clamp(wanted, rate / kMostFaster, rate * kMostFaster));
       change = std::max({change, next / rate, rate / next});
       rate = next;
     };
     improve(shifts, pass.first_shift_rate, kLeastRateM2, pass.shift_rate);
-    improve(turns, pass.first_turn_rate, kLeastRateM2 / (kTurnAtM * kTurnAtM), pass.turn_rate);
+    if (!pass.given.turn_rate_rad2_per_m)
+      improve(turns, pass.first_turn_rate, kLeastRateM2 / (kTurnAtM * kTurnAtM), pass.turn_rate);
   }
   return change;
+}
+
+BentPasses::Rates BentPasses::rates_of(int node) const {
+  return {pass_of(node).shift_rate, pass_of(node).turn_rate};
+}
+
+double BentPasses::strays_m(double rate_m2_per_m, double length_m) {
+  // A walk of rate q has q L / 6 about its own mean, squared.
+  return std::sqrt(rate_m2_per_m * length_m / 6.0);
 }
 
 std::vector<BentPass> BentPasses::told(const JointSolution& solution) const {

@@ -16,7 +16,10 @@ namespace limen {
 struct PassToBend {
   int node = -1;
   const PassWay* way = nullptr;  ///< outlives the bending
-  double drift_m = 0.0;          ///< what its own surfaces show of it, one standard deviation per axis
+  double drift_m = 0.0;          ///< what is known of it beforehand, one standard deviation per axis ...
+  double believed = 0.1;         ///< ... as much as so many numbers of the data
+  /// Of the random walk of turns, where it is known; else it is learned.
+  std::optional<double> turn_rate_rad2_per_m = {};
 };
 
 /// By how much the points of a pass move at a knot, against what its pose alone says.
@@ -38,7 +41,7 @@ struct BentPass {
 /// Bends mobile passes within a joint adjustment. T(t) = exp(xi(t)) T_given, xi a natural cubic spline along
 /// the way; its control points are nodes of the adjustment, chained by a random walk whose rates are
 /// estimated from the data (evidence of a linear Gaussian model: MacKay, Bayesian interpolation, 1992,
-/// sec. 4.4), with a weak belief in what the pass itself shows. The pass as a whole is the mean of its
+/// sec. 4.4), with some belief in what is known beforehand. The pass as a whole is the mean of its
 /// control points.
 class BentPasses {
  public:
@@ -66,6 +69,14 @@ class BentPasses {
   /// Takes the shape of the passes from the solution, and the rates that make it most probable. Returns the
   /// largest change of a rate, as a factor.
   double take(const JointProblem& problem, const JointSolution& solution);
+  /// Of the random walks along the way, per axis, as they are learned so far.
+  struct Rates {
+    double shift_m2_per_m = 0.0;
+    double turn_rad2_per_m = 0.0;
+  };
+  [[nodiscard]] Rates rates_of(int node) const;
+  /// How far a walk of that rate strays from its own mean over a length, one standard deviation.
+  [[nodiscard]] static double strays_m(double rate_m2_per_m, double length_m);
   /// The passes as they were bent by a solution.
   [[nodiscard]] std::vector<BentPass> told(const JointSolution& solution) const;
 

@@ -14,14 +14,14 @@
 namespace limen {
 namespace {
 
-constexpr double kKnotM = 5.0;        // between knots, about
+constexpr double kKnotM = 2.5;        // between knots, about
 constexpr double kLeastWayM = 10.0;   // a shorter one hardly drifts
 constexpr double kMomentS = 0.05;     // places of one moment are averaged
 constexpr double kStepM = 0.25;       // what is less is no way but noise of the trajectory
 constexpr double kMostMoments = 4e6;  // a gap of years is no reason to run out of memory
 constexpr double kTrackTileM = 0.25;  // points of a tile count as one
 constexpr double kStripM = 2.0;       // a strip lies in a cube of this size
-constexpr double kStripsPerKnot = 2.0;
+constexpr double kStripsPerKnot = 1.0;
 constexpr std::size_t kMostLooked = 4000000;
 constexpr double kLeastTiles = 4.0;
 
