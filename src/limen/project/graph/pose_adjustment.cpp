@@ -32,6 +32,22 @@ class Adjuster {
     system_.factor();
   }
 
+  /// Geman-McClure with a bound that shrinks to chi-square's (Yang et al., Graduated non-convexity,
+  /// 2020, 4.1).
+  [[nodiscard]] std::vector<double> robust_weights(const std::vector<Rigid3>& poses, double control) const {
+    std::vector<double> weights;
+    for (std::size_t e = 0; e < edges_.size(); ++e) {
+      const PoseEdge& edge = edges_[e];
+      const Rigid3 predicted = inverse(poses[static_cast<std::size_t>(edge.target)]) *
+                               poses[static_cast<std::size_t>(edge.source)];
+      const Vector6d missed = misfit(edge.pose, predicted);
+      const double squared = missed.dot(information_[e] * missed);
+      const double ratio = control * kChiSquareBound / (squared + control * kChiSquareBound);
+      weights.push_back(ratio * ratio);
+    }
+    return weights;
+  }
+
   void invert() { system_.invert(); }
   [[nodiscard]] const PoseSystem& system() const { return system_; }
 
@@ -44,20 +60,7 @@ class Adjuster {
 constexpr int kEdgeRounds = 20;
 constexpr int kEdgeSteps = 6;
 constexpr double kEdgesDone = 1e-10;
-
-/// Geman-McClure with a bound that shrinks to chi-square's (Yang et al., Graduated non-convexity, 2020, 4.1).
-std::vector<double> robust_weights(const std::vector<PoseEdge>& edges, const std::vector<Rigid3>& poses,
-                                   double control) {
-  std::vector<double> weights;
-  for (const PoseEdge& edge : edges) {
-    const Rigid3 predicted =
-        inverse(poses[static_cast<std::size_t>(edge.target)]) * poses[static_cast<std::size_t>(edge.source)];
-    const double squared = chi_square(misfit(edge.pose, predicted), edge.pose.covariance);
-    const double ratio = control * kChiSquareBound / (squared + control * kChiSquareBound);
-    weights.push_back(ratio * ratio);
-  }
-  return weights;
-}
+constexpr double kOnTheWay = 1e-3;  // while the bound still shrinks
 
 void add_covariances(const Adjuster& adjuster, const std::vector<PoseEdge>& edges, PoseAdjustment& result) {
   const std::size_t nodes = result.frame_from_node.size();
@@ -121,11 +124,12 @@ PoseAdjustment adjust_poses(const std::vector<Rigid3>& start, const std::vector<
   double control = 64.0;
   for (int round = 0; round < kEdgeRounds; ++round) {
     CancelScope::check();
-    if (options.robust) result.weights = robust_weights(edges, result.frame_from_node, control);
+    if (options.robust) result.weights = adjuster.robust_weights(result.frame_from_node, control);
     double moved = 0.0;
+    const double done = options.robust && control > 1.0 ? kOnTheWay : kEdgesDone;
     for (int step = 0; step < kEdgeSteps; ++step) {
       moved = adjuster.step(result.frame_from_node, result.weights);
-      if (moved < kEdgesDone) break;
+      if (moved < done) break;
     }
     if (control <= 1.0 && moved < kEdgesDone) break;
     control = std::max(1.0, control / 2.0);

@@ -18,20 +18,33 @@ std::pair<int, int> ends_across(const GraphLink& pair, const std::vector<bool>& 
 }  // namespace
 
 SharedViews::SharedViews(const PoseGraph& graph, const AcceptedPoses& accepted)
-    : graph_(graph), neighbours_(static_cast<std::size_t>(graph.nodes)) {
+    : graph_(graph),
+      neighbours_(static_cast<std::size_t>(graph.nodes)),
+      with_first_(static_cast<std::size_t>(graph.nodes), 0.0),
+      with_second_(with_first_) {
   for (std::size_t k = 0; k < graph.links.size(); ++k) {
     if (accepted.pose[k] < 0) continue;
     const GraphLink& link = graph.links[k];
     const LinkPose& pose = link.poses[static_cast<std::size_t>(accepted.pose[k])];
-    shared_[std::minmax(link.source, link.target)] = pose.agreeing_m2;
-    neighbours_[static_cast<std::size_t>(link.source)].push_back(link.target);
-    neighbours_[static_cast<std::size_t>(link.target)].push_back(link.source);
+    neighbours_[static_cast<std::size_t>(link.source)].push_back({link.target, pose.agreeing_m2});
+    neighbours_[static_cast<std::size_t>(link.target)].push_back({link.source, pose.agreeing_m2});
   }
+  for (std::vector<Neighbour>& all : neighbours_) std::stable_sort(all.begin(), all.end(), by_node);
+}
+
+bool SharedViews::by_node(const Neighbour& a, const Neighbour& b) {
+  return a.node < b.node;
+}
+
+const SharedViews::Neighbour* SharedViews::neighbour(int a, int b) const {
+  const std::vector<Neighbour>& all = neighbours_[static_cast<std::size_t>(a)];
+  const auto found = std::lower_bound(all.begin(), all.end(), Neighbour{b, 0.0}, by_node);
+  return found == all.end() || found->node != b ? nullptr : &*found;
 }
 
 double SharedViews::shared(int a, int b) const {
-  const auto found = shared_.find(std::minmax(a, b));
-  return found == shared_.end() ? 0.0 : found->second;
+  const Neighbour* found = neighbour(a, b);
+  return found == nullptr ? 0.0 : found->shared_m2;
 }
 
 bool SharedViews::same_view(int a, int b, double surface_m2) const {
@@ -42,14 +55,23 @@ double SharedViews::seen_already(const GraphLink& pair, const std::vector<const 
                                  const std::vector<bool>& moved) const {
   const std::pair<int, int> own = ends_across(pair, moved);
   const double surface = pair.poses.front().agreeing_m2;
-  const auto share = [&](int a, int b) {
-    return a == b || surface <= 0.0 ? 1.0 : std::min(1.0, shared(a, b) / surface);
+  if (others.empty()) return 0.0;
+  if (surface <= 0.0) return 1.0;
+  const auto mark = [&](int node, std::vector<double>& share, bool on) {
+    share[static_cast<std::size_t>(node)] = on ? 1.0 : 0.0;
+    for (const Neighbour& other : neighbours_[static_cast<std::size_t>(node)])
+      share[static_cast<std::size_t>(other.node)] = on ? std::min(1.0, other.shared_m2 / surface) : 0.0;
   };
+  mark(own.first, with_first_, true);
+  mark(own.second, with_second_, true);
   double most = 0.0;
   for (const GraphLink* other : others) {
     const std::pair<int, int> theirs = ends_across(*other, moved);
-    most = std::max(most, share(own.first, theirs.first) * share(own.second, theirs.second));
+    most = std::max(most, with_first_[static_cast<std::size_t>(theirs.first)] *
+                              with_second_[static_cast<std::size_t>(theirs.second)]);
   }
+  mark(own.first, with_first_, false);
+  mark(own.second, with_second_, false);
   return most;
 }
 
@@ -70,8 +92,8 @@ std::vector<int> SharedViews::independent(const std::vector<int>& links,
 
 std::vector<int> SharedViews::like(int node, double surface_m2) const {
   std::vector<int> nodes = {node};
-  for (const int other : neighbours_[static_cast<std::size_t>(node)]) {
-    if (same_view(node, other, surface_m2)) nodes.push_back(other);
+  for (const Neighbour& other : neighbours_[static_cast<std::size_t>(node)]) {
+    if (other.shared_m2 > kSameView * surface_m2) nodes.push_back(other.node);
   }
   return nodes;
 }
@@ -82,7 +104,7 @@ int SharedViews::witnesses_like(int k) const {
   int count = 0;
   const std::vector<int> others = like(link.target, surface);
   for (const int a : like(link.source, surface)) {
-    for (const int b : others) count += shared_.count(std::minmax(a, b)) > 0 ? 1 : 0;
+    for (const int b : others) count += neighbour(a, b) != nullptr ? 1 : 0;
   }
   return std::max(1, count);
 }

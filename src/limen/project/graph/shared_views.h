@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <map>
-#include <utility>
 #include <vector>
 
 #include "limen/project/graph/pose_graph.h"
@@ -17,7 +15,7 @@ struct AcceptedPoses {
   std::vector<int> pose;       ///< of each link: the accepted one, -1: none
 };
 
-/// Which links are one witness: their ends see the same surface on either side.
+/// Which links are one witness: their ends see the same surface on either side. For one thread at a time.
 class SharedViews {
  public:
   SharedViews(const PoseGraph& graph, const AcceptedPoses& accepted);
@@ -35,14 +33,24 @@ class SharedViews {
   [[nodiscard]] int witnesses_like(int link) const;
 
  private:
+  /// What an accepted link joins to a node.
+  struct Neighbour {
+    int node = -1;
+    double shared_m2 = 0.0;
+  };
+  static bool by_node(const Neighbour& a, const Neighbour& b);
+  /// Null: no link joins the two.
+  [[nodiscard]] const Neighbour* neighbour(int a, int b) const;
   [[nodiscard]] double shared(int a, int b) const;
   /// Whether of `surface_m2` that a link shows both nodes see most.
   [[nodiscard]] bool same_view(int a, int b, double surface_m2) const;
   [[nodiscard]] std::vector<int> like(int node, double surface_m2) const;
 
   const PoseGraph& graph_;
-  std::map<std::pair<int, int>, double> shared_;  ///< by lower and higher node, m^2
-  std::vector<std::vector<int>> neighbours_;
+  std::vector<std::vector<Neighbour>> neighbours_;  ///< of each node, by number
+  // Of each node, while a pair is asked: the share of its surface that the node sees with either end; else 0.
+  mutable std::vector<double> with_first_;
+  mutable std::vector<double> with_second_;
 };
 
 }  // namespace limen

@@ -30,6 +30,7 @@ constexpr double kGivesWayM = 0.5;  // what misses by more shows another place
 const double kGivesWayRad = radians(5.0);
 constexpr double kTellsNothing = 1e6;  // variance of an edge that is there to be told
 constexpr int kMostGrown = 30;         // times that parts are grown anew
+constexpr double kAsLittleNats = 0.5;  // sides that are held by no more than this above the least go together
 constexpr double kRather = 0.5;        // probability of a twin above which it is the explanation
 
 class Solver {
@@ -69,10 +70,13 @@ class Solver {
   }
 
   void settle() {
+    std::vector<int> adjusted;
     for (int round = 0; round < kAcceptRounds; ++round) {
       accept(round == 0 ? kFirstGate : round + 1 < kAcceptRounds ? 4.0 : 1.0);
       settle_components();
+      if (accepted_.pose == adjusted) continue;
       adjust(false);
+      adjusted = accepted_.pose;
     }
     accept(1.0);
     settle_components();
@@ -121,22 +125,65 @@ class Solver {
 
   /// Where two sides of the building are more probably twins than one place, what lays them on one another is
   /// left out: it would make everything else doubtful. First where least holds them together: one room that
-  /// was laid on its twin makes all doubtful that it is held against. Whether any was.
+  /// was laid on its twin makes all doubtful that it is held against. With it go sides that are held as
+  /// little and that no pair joins to it. Whether any was.
   bool take_apart_twins() {
     const std::vector<int> firsts = references();
     std::vector<int> reference;
     for (int node = 0; node < graph_.nodes; ++node)
       reference.push_back(firsts[static_cast<std::size_t>(component(node))]);
     const std::vector<NodeDoubt> doubts = doubts_of(graph_, accepted_, reference);
-    const NodeDoubt* loosest = nullptr;
-    for (const NodeDoubt& doubt : doubts) {
-      if (doubt.twin > kRather && !doubt.across.empty() &&
-          (loosest == nullptr || doubt.held_nats < loosest->held_nats))
-        loosest = &doubt;
+    std::vector<int> order;
+    for (int node = 0; node < graph_.nodes; ++node) {
+      const NodeDoubt& doubt = doubts[static_cast<std::size_t>(node)];
+      if (doubt.twin > kRather && !doubt.across.empty()) order.push_back(node);
     }
-    if (loosest == nullptr) return false;
-    for (const int k : loosest->across) left_out_[static_cast<std::size_t>(k)] = true;
-    return true;
+    const auto held = [&](int node) { return doubts[static_cast<std::size_t>(node)].held_nats; };
+    std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return held(a) < held(b); });
+    const std::vector<std::vector<int>> beside = paired_nodes();
+    std::vector<bool> touched(static_cast<std::size_t>(graph_.nodes), false);
+    for (const int node : order) {
+      if (held(node) > held(order.front()) + kAsLittleNats) break;
+      const std::vector<int>& across = doubts[static_cast<std::size_t>(node)].across;
+      const std::vector<int> side = side_of(node, across);
+      if (std::any_of(side.begin(), side.end(), [&](int n) { return touched[static_cast<std::size_t>(n)]; }))
+        continue;
+      for (const int k : across) left_out_[static_cast<std::size_t>(k)] = true;
+      for (const int n : side) {
+        touched[static_cast<std::size_t>(n)] = true;
+        for (const int other : beside[static_cast<std::size_t>(n)])
+          touched[static_cast<std::size_t>(other)] = true;
+      }
+    }
+    return !order.empty();
+  }
+
+  /// The nodes that a pair joins to each, whatever became of it.
+  [[nodiscard]] std::vector<std::vector<int>> paired_nodes() const {
+    std::vector<std::vector<int>> beside(static_cast<std::size_t>(graph_.nodes));
+    for (const std::vector<GraphLink>* links : {&graph_.links, &graph_.against}) {
+      for (const GraphLink& link : *links) {
+        beside[static_cast<std::size_t>(link.source)].push_back(link.target);
+        beside[static_cast<std::size_t>(link.target)].push_back(link.source);
+      }
+    }
+    return beside;
+  }
+
+  /// What accepted links hold to a node without these.
+  [[nodiscard]] std::vector<int> side_of(int node, const std::vector<int>& without) const {
+    DisjointSets sets(static_cast<std::size_t>(graph_.nodes));
+    for (std::size_t k = 0; k < graph_.links.size(); ++k) {
+      if (accepted_.pose[k] >= 0 &&
+          std::find(without.begin(), without.end(), static_cast<int>(k)) == without.end())
+        join(sets, graph_.links[k]);
+    }
+    std::vector<int> side;
+    for (int n = 0; n < graph_.nodes; ++n) {
+      if (sets.find(static_cast<std::size_t>(n)) == sets.find(static_cast<std::size_t>(node)))
+        side.push_back(n);
+    }
+    return side;
   }
 
   [[nodiscard]] Rigid3 predicted(const GraphLink& link) const {
