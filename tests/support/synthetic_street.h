@@ -20,6 +20,7 @@ class SyntheticStreet {
  public:
   static constexpr int kKnots = 41;
   static constexpr double kKnotM = 2.5;
+  static constexpr double kPassSeesM = 8.0;  // ahead and behind
 
   SyntheticStreet(double drift_m, std::uint64_t seed) : random_(seed, 3) {
     // A walk in steps of a quarter of a knot, about its own mean.
@@ -51,7 +52,7 @@ class SyntheticStreet {
       node.digest.track.way.distances_m.push_back(kKnotM * k);
       node.digest.track.way.places.emplace_back(x_of(k), 0.0, 2.0);
     }
-    for (double part = 0.5; part < kKnots - 1; part += 1.0) see(x_of(part), part, 8.0, node.digest);
+    for (double part = 0.5; part < kKnots - 1; part += 1.0) see(x_of(part), part, kPassSeesM, node.digest);
     settle(node.digest);
     return node;
   }

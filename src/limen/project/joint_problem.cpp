@@ -3,6 +3,7 @@
 #include "limen/project/joint_problem.h"
 
 #include <algorithm>
+#include <map>
 #include <utility>
 
 #include "limen/base/angles.h"
@@ -93,6 +94,23 @@ JointProblem joint_problem(const std::vector<ProjectNode>& nodes, const std::vec
   shared.tell(taken, problem);
   problem.points = points_along(survey.points, passes, problem);
   return problem;
+}
+
+void give_references(const std::vector<bool>& controlled, SolvedGraph& solved) {
+  std::map<int, SolvedNode*> references;  // null: the component has a frame
+  for (std::size_t n = 0; n < solved.nodes.size(); ++n) {
+    SolvedNode& node = solved.nodes[n];
+    if (node.component < 0) continue;
+    const auto [known, fresh] = references.emplace(node.component, &node);
+    SolvedNode*& reference = known->second;
+    if (reference == nullptr) continue;
+    const bool firmer = reference->state != NodeState::registered && node.state == NodeState::registered;
+    if (firmer) reference = &node;
+    if (node.covariance.isZero() || controlled[n]) reference = nullptr;
+  }
+  for (const auto& [component, reference] : references) {
+    if (reference != nullptr) reference->covariance.setZero();
+  }
 }
 
 std::vector<int> components_of(const SolvedGraph& solved) {

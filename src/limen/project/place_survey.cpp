@@ -10,6 +10,7 @@
 #include "limen/base/angles.h"
 #include "limen/geometry/linear.h"
 #include "limen/project/control/control_datum.h"
+#include "limen/project/joint_problem.h"
 #include "limen/project/survey.h"
 
 namespace limen {
@@ -64,10 +65,8 @@ class SurveyPlacer {
     take_out_anchor();
     placed_.controlled.assign(solved_.nodes.size(), false);
     std::vector<bool> held(static_cast<std::size_t>(std::max(0, solved_.components)), false);
-    for (std::size_t c = 0; c < held.size(); ++c) {
-      held[c] = hold(static_cast<int>(c));
-      if (!held[c]) give_reference(static_cast<int>(c));
-    }
+    for (std::size_t c = 0; c < held.size(); ++c) held[c] = hold(static_cast<int>(c));
+    give_references(placed_.controlled, solved_);
     if (placed_.placed) renumber(held);
     keep_firm_sights();
     tell();
@@ -123,20 +122,6 @@ class SurveyPlacer {
     for (const std::size_t p : suspects_of(datum)) placed_.points[p].known_enters = true;
     placed_.placed = true;
     return true;
-  }
-
-  /// What stood by the survey's node alone gets a scan of its own as the frame: the first that stands firmly,
-  /// or the first.
-  void give_reference(int component) {
-    SolvedNode* reference = nullptr;
-    for (SolvedNode& node : solved_.nodes) {
-      if (node.component != component) continue;
-      if (node.covariance.isZero()) return;
-      const bool firmer = reference != nullptr && reference->state != NodeState::registered &&
-                          node.state == NodeState::registered;
-      if (reference == nullptr || firmer) reference = &node;
-    }
-    if (reference != nullptr) reference->covariance.setZero();
   }
 
   void refuse(int component, const ControlDatum& datum) {

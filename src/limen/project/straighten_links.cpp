@@ -5,14 +5,11 @@
 #include <utility>
 #include <vector>
 
-#include "limen/base/angles.h"
 #include "limen/project/joint_problem.h"
 
 namespace limen {
 namespace {
 
-constexpr double kMissedM = 1.0;  // a link that misses by more shows another place, not a drift
-const double kMissedRad = radians(3.0);
 constexpr double kUntoldM2 = 1e6;  // of an edge that is there to be told, and holds nothing
 
 /// The scans and what joins them, without the node of a survey.
@@ -34,6 +31,7 @@ ScansOnly scans_only(const ProjectGraph& made, const SolvedGraph& solved, std::s
     scans.solved.links.push_back(solved.links[k]);
     scans.link.push_back(k);
   }
+  give_references(std::vector<bool>(nodes, false), scans.solved);
   return scans;
 }
 
