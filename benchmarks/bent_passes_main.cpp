@@ -26,8 +26,9 @@ namespace {
 
 using namespace limen;  // NOLINT(google-build-using-namespace): a program, not a header
 
-constexpr double kKnotM = 5.0;
-constexpr int kFine = 16;  // steps of the walk from knot to knot
+constexpr double kKnotM = 2.5;    // as find_pass_track() has them
+constexpr double kCoarseM = 5.0;  // another spline to compare with
+constexpr int kFine = 8;          // steps of the walk from knot to knot
 constexpr double kTileM = 0.002;
 constexpr double kCommonM = 0.001;
 constexpr int kTiles = 8;
@@ -100,6 +101,7 @@ class Site {
   struct Missed {
     double points_m = 0.0;
     double spline_m = 0.0;
+    double coarse_m2 = 0.0;  ///< of a spline with knots 5 m apart
     double stations_m = 0.0;
     int within = 0;
     int numbers = 0;
@@ -249,14 +251,14 @@ class Site {
     }
   }
 
-  /// What the natural spline with the knots of a pass leaves that is fitted to its true drift, squared.
-  static double spline_leaves(const Pass& pass) {
-    const int knots = pass.way.knots();
+  /// What a natural spline with so many knots leaves that is fitted to a pass's true drift, squared.
+  static double spline_leaves(const Pass& pass, int knots) {
+    const double every = static_cast<double>(pass.error.size() - 1) / (knots - 1);
     Eigen::MatrixXd normal = 1e-9 * Eigen::MatrixXd::Identity(knots, knots);
     Eigen::MatrixXd right = Eigen::MatrixXd::Zero(knots, 3);
     const auto each = [&](const auto& use) {
       for (std::size_t i = 0; i < pass.error.size(); ++i)
-        use(spline_shares(knots, static_cast<double>(i) / kFine), pass.error[i]);
+        use(spline_shares(knots, static_cast<double>(i) / every), pass.error[i]);
     };
     each([&](const auto& shares, const Vector3d& error) {
       for (const SplineShare& a : shares) {
@@ -287,7 +289,10 @@ class Site {
         for (const BentKnot& knot : told[k].knots) values.push_back(knot.value);
         count_knots(pass, told[k], missed);
       }
-      spline += spline_leaves(pass) / static_cast<double>(passes_.size());
+      const double passes = static_cast<double>(passes_.size());
+      spline += spline_leaves(pass, pass.way.knots()) / passes;
+      const int coarse = static_cast<int>(std::lround(pass.way.distances_m.back() / kCoarseM)) + 1;
+      missed.coarse_m2 += spline_leaves(pass, coarse) / passes;
       for (std::size_t i = 0; i < pass.error.size(); ++i) {
         const double place = static_cast<double>(i) / kFine;
         const auto [x, out] =
@@ -343,8 +348,8 @@ class Site {
 void run(const Settings& settings) {
   fmt::print("{} passes of 100 m, drift {} mm (random walk), {} stations; mm, root of the mean square\n",
              settings.passes, 1e3 * settings.drift_m, settings.stations);
-  fmt::print("{:>4} {:>13} {:>12} {:>12} {:>7} {:>15} {:>14} {:>11}\n", "seed", "points rigid", "bent",
-             "own spline", "ratio", "stations rigid", "bent", "in 2 sigma");
+  fmt::print("{:>4} {:>13} {:>12} {:>12} {:>7} {:>12} {:>7} {:>15} {:>14} {:>11}\n", "seed", "points rigid",
+             "bent", "own spline", "ratio", "of 5 m", "ratio", "stations rigid", "bent", "in 2 sigma");
   double points = 0.0;
   double splines = 0.0;
   for (int seed = settings.first; seed < settings.first + settings.seeds; ++seed) {
@@ -353,9 +358,10 @@ void run(const Settings& settings) {
     const Site::Missed bent = site.run(true);
     points += bent.points_m * bent.points_m;
     splines += bent.spline_m * bent.spline_m;
-    fmt::print("{:4} {:13.2f} {:12.2f} {:12.2f} {:7.2f} {:15.2f} {:14.2f} {:9.1f} %\n", seed,
+    const double coarse_m = std::sqrt(bent.coarse_m2);
+    fmt::print("{:4} {:13.2f} {:12.2f} {:12.2f} {:7.2f} {:12.2f} {:7.2f} {:15.2f} {:14.2f} {:9.1f} %\n", seed,
                1e3 * rigid.points_m, 1e3 * bent.points_m, 1e3 * bent.spline_m, bent.points_m / bent.spline_m,
-               1e3 * rigid.stations_m, 1e3 * bent.stations_m,
+               1e3 * coarse_m, bent.points_m / coarse_m, 1e3 * rigid.stations_m, 1e3 * bent.stations_m,
                100.0 * bent.within / std::max(1, bent.numbers));
     std::fflush(stdout);
   }

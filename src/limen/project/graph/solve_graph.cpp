@@ -142,8 +142,10 @@ class Solver {
     std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return held(a) < held(b); });
     const std::vector<std::vector<int>> beside = paired_nodes();
     std::vector<bool> touched(static_cast<std::size_t>(graph_.nodes), false);
+    std::map<int, double> loosest;  // of each component
     for (const int node : order) {
-      if (held(node) > held(order.front()) + kAsLittleNats) break;
+      const double least = loosest.emplace(component(node), held(node)).first->second;
+      if (held(node) > least + kAsLittleNats) continue;
       const std::vector<int>& across = doubts[static_cast<std::size_t>(node)].across;
       const std::vector<int> side = side_of(node, across);
       if (std::any_of(side.begin(), side.end(), [&](int n) { return touched[static_cast<std::size_t>(n)]; }))
