@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limen/project/graph/link_pose.h"
 
+#include <cmath>
+
 #include "limen/geometry/linear.h"
 
 namespace limen {
@@ -30,8 +32,28 @@ Vector6d misfit(const LinkPose& measured, const Rigid3& predicted) {
   return e;
 }
 
+/// By a Cholesky factor on the stack: solving a graph asks for this millions of times.
 double chi_square(const Vector6d& misfit, const Matrix6d& covariance) {
-  return misfit.dot(solve_symmetric(covariance, misfit));
+  Matrix6d lower;
+  Vector6d whitened;
+  double squared = 0.0;
+  for (Eigen::Index i = 0; i < 6; ++i) {
+    for (Eigen::Index j = 0; j <= i; ++j) {
+      double left = covariance(i, j);
+      for (Eigen::Index k = 0; k < j; ++k) left -= lower(i, k) * lower(j, k);
+      if (i != j) {
+        lower(i, j) = left / lower(j, j);
+        continue;
+      }
+      if (!(left > 0.0)) return misfit.dot(solve_symmetric(covariance, misfit));
+      lower(i, i) = std::sqrt(left);
+    }
+    double left = misfit[i];
+    for (Eigen::Index k = 0; k < i; ++k) left -= lower(i, k) * whitened[k];
+    whitened[i] = left / lower(i, i);
+    squared += whitened[i] * whitened[i];
+  }
+  return squared;
 }
 
 }  // namespace limen
