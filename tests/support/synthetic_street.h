@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "limen/base/random.h"
+#include "limen/geometry/random_vectors.h"
 #include "limen/project/project_state.h"
 
 namespace limen {
@@ -27,9 +28,7 @@ class SyntheticStreet {
     const int steps = 4 * (kKnots - 1);
     const double step_m = drift_m * std::sqrt(6.0 / steps);
     walked_.emplace_back(Vector3d::Zero());
-    for (int k = 0; k < steps; ++k)
-      walked_.emplace_back(walked_.back() +
-                           step_m * Vector3d(random_.normal(), random_.normal(), random_.normal()));
+    for (int k = 0; k < steps; ++k) walked_.emplace_back(walked_.back() + step_m * normal_vector(random_));
     Vector3d mean = Vector3d::Zero();
     for (const Vector3d& at : walked_) mean += at / static_cast<double>(walked_.size());
     for (Vector3d& at : walked_) at -= mean;
@@ -123,7 +122,7 @@ class SyntheticStreet {
                               v * (k == 2 ? Vector3d::UnitY() : Vector3d::UnitZ()));
         }
       }
-      plane.area_m2 = 4.0 * plane.moments.count / 4.0;
+      plane.area_m2 = plane.moments.count;  // a square metre each
     }
   }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -35,8 +36,7 @@ class Assembler {
     add_survey_links(survey_, made);
     solved_ = solve_graph(made.graph, risk_);
     if (confirm_by_points(survey_, solved_, made)) solved_ = solve_graph(made.graph, risk_);
-    if (const std::optional<PoseGraph> straight = straightened(nodes_, pairs_, made, solved_))
-      solved_ = solve_graph(*straight, risk_);
+    straighten(made);
     if (nodes_.size() == 1 && solved_.nodes.front().component < 0) {
       // A scan alone is its own frame.
       solved_.nodes.front().state = NodeState::registered;
@@ -70,6 +70,12 @@ class Assembler {
     return several ? fmt::format("{} #{}", scan.file, scan.index) : scan.file;
   }
 
+  /// Links measured against the part of a bent pass that saw what is common: solved once more with them.
+  void straighten(const ProjectGraph& made) {
+    if (const std::optional<PoseGraph> straight = straightened(nodes_, pairs_, made, solved_))
+      solved_ = solve_graph(*straight, risk_);
+  }
+
   /// Where control points contradict one another for good, all is solved as if there were none.
   void adjust(ProjectGraph& made) {
     JointFinding finding = adjust_planes(nodes_, pairs_, made, words_, solved_, placed_);
@@ -82,6 +88,7 @@ class Assembler {
       words += " contradict the others, and without them too few are left to hold a frame";
       made = make_graph(nodes_, pairs_, risk_, words_);
       solved_ = solve_graph(made.graph, risk_);
+      straighten(made);
       const std::string file = std::exchange(survey_.file, {});
       for (SurveyMark& mark : survey_.marks) mark.point.known_enters = false;
       placed_ = place_survey(survey_, made, solved_);

@@ -7,9 +7,8 @@
 #include <set>
 #include <utility>
 
-#include <Eigen/Cholesky>
-
 #include "limen/base/angles.h"
+#include "limen/geometry/linear.h"
 
 namespace limen {
 namespace {
@@ -45,7 +44,7 @@ bool lies_on(const Vector3d& x, const PlaneDigest& plane) {
   Matrix3d spread = kEven * plane.moments.covariance();
   spread.diagonal().array() += kBeyondM * kBeyondM;
   const Vector3d off = x - plane.centroid - plane.moments.mean();
-  return off.dot(spread.ldlt().solve(off)) <= 2.0;
+  return off.dot(solve_symmetric(spread, off)) <= 2.0;
 }
 
 }  // namespace

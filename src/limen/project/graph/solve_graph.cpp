@@ -124,9 +124,9 @@ class Solver {
   }
 
   /// Where two sides of the building are more probably twins than one place, what lays them on one another is
-  /// left out: it would make everything else doubtful. First where least holds them together: one room that
-  /// was laid on its twin makes all doubtful that it is held against. With it go sides that are held as
-  /// little and that no pair joins to it. Whether any was.
+  /// left out: it would make everything else doubtful. Of each component first where least holds them
+  /// together: one room that was laid on its twin makes all doubtful that it is held against. With it go
+  /// sides that are held as little and that no pair joins to it. Whether any was.
   bool take_apart_twins() {
     const std::vector<int> firsts = references();
     std::vector<int> reference;
@@ -144,6 +144,7 @@ class Solver {
     std::vector<bool> touched(static_cast<std::size_t>(graph_.nodes), false);
     std::map<int, double> loosest;  // of each component
     for (const int node : order) {
+      if (touched[static_cast<std::size_t>(node)]) continue;
       const double least = loosest.emplace(component(node), held(node)).first->second;
       if (held(node) > least + kAsLittleNats) continue;
       const std::vector<int>& across = doubts[static_cast<std::size_t>(node)].across;
