@@ -59,6 +59,7 @@ void write_station_poses(const SimulatedCase& simulated, const std::filesystem::
 
 RoomChoice room_choice(const std::string& room) {
   if (room == "unique") return RoomChoice::unique;
+  if (room == "each") return RoomChoice::each;
   return room == "repeated" ? RoomChoice::repeated : RoomChoice::any;
 }
 
@@ -71,6 +72,8 @@ BimSceneOptions bim_options(const SimulateOptions& options) {
   if (options.scene.points_indoor > 0) bim.points = options.scene.points_indoor;
   bim.any_rotation = options.scene.any_rotation;
   bim.room = room_choice(options.room);
+  // Who scans a building room by room leaves the doors open.
+  if (bim.room == RoomChoice::each) bim.open_door_share = 0.9;
   bim.as_built.on = options.as_built;
   bim.scanner = options.scene.scanner;
   bim.check();
@@ -225,8 +228,10 @@ void add_simulate_command(CommandLine& app, Session& session) {
                     "Range noise, one standard deviation (default 0.003)");
   command->add_flag("--as-built", options->as_built,
                     "Of a model: some elements moved by 1 to 5 cm, some missing, furniture added");
-  command->add_option("--room", options->room, "Of a model: scan a room that is unique in it, or repeated")
-      ->one_of({"any", "unique", "repeated"});
+  command
+      ->add_option("--room", options->room,
+                   "Of a model: scan a room that is unique in it, or repeated, or each in turn")
+      ->one_of({"any", "unique", "repeated", "each"});
   command->add_option("--units", options->units, "Unit of office's model.ifc")->one_of({"m", "mm"});
   add_length_option(*command, "--drift-m", scene.drift_m,
                     "Slow error of the mobile scan's path (default 0, with --project 0.008)");

@@ -249,6 +249,21 @@ TEST(BimScene, ChoosesRoomsAsAsked) {
   }
 }
 
+TEST(BimScene, StationsGoThroughAllRoomsInTurn) {
+  const BimModel model = office();
+  BimSceneOptions options = quick();
+  options.room = RoomChoice::each;
+  options.points = 2000;
+  options.stations = 12;
+  const Truth truth = simulate_bim(model, options).truth;
+  std::set<int> rooms;
+  for (const ScanTruth& scan : truth.scans) rooms.insert(scan.room);
+  EXPECT_EQ(rooms.size(), 12U);
+  EXPECT_EQ(rooms.count(-1), 0U);
+  options.stations = 2000;
+  EXPECT_THROW(simulate_bim(model, options), Error);
+}
+
 TEST(BimScene, StationsSeeOneAnotherFromOneRoomOrAnother) {
   const BimModel model = office();
   int elsewhere = 0;

@@ -7,6 +7,8 @@
 #include <numbers>
 #include <optional>
 
+#include <fmt/format.h>
+
 #include "limen/base/error.h"
 #include "limen/geometry/polygon_clip.h"
 #include "limen/geometry/random_vectors.h"
@@ -15,6 +17,7 @@ namespace limen {
 namespace {
 
 constexpr double kLeastArea = 5.0;        // m^2
+constexpr double kLeastAreaOfAll = 2.0;   // m^2, where all rooms are scanned
 constexpr double kLeastHeight = 2.0;      // m
 constexpr double kClearance = 0.5;        // m
 constexpr double kBetween = 1.0;          // m, from one station to the next
@@ -49,6 +52,21 @@ class BimSurveyor {
     return choice == RoomChoice::any ? anywhere() : std::nullopt;
   }
 
+  /// One in each room that has space for it, in the order of the model; then a second one, and so on.
+  [[nodiscard]] std::vector<BimStation> through_all(std::size_t count) {
+    std::vector<BimStation> stations;
+    for (std::size_t before = 0; stations.size() < count;) {
+      for (std::size_t room = 0; room < rooms_.size() && stations.size() < count; ++room) {
+        if (rooms_[room].area_m2 < kLeastAreaOfAll || rooms_[room].height_m < kLeastHeight) continue;
+        const std::optional<BimStation> station = in_room(room);
+        if (station && are_apart(stations, *station)) stations.push_back(*station);
+      }
+      if (stations.size() == before) break;
+      before = stations.size();
+    }
+    return stations;
+  }
+
   /// Another one in sight of the first.
   [[nodiscard]] std::optional<BimStation> next(const std::vector<BimStation>& others) {
     const bool elsewhere = random_.uniform() < 0.5;
@@ -57,17 +75,20 @@ class BimSurveyor {
       if (!station) continue;
       // A room seen through a door is asked for; where there is none, the same room will do.
       if (elsewhere && attempt < 1500 && station->room == others.front().room) continue;
-      const bool apart = std::all_of(others.begin(), others.end(), [&](const BimStation& other) {
-        return (other.position - station->position).norm() >= kBetween;
-      });
-      if (apart) return station;
+      if (are_apart(others, *station)) return station;
     }
     return std::nullopt;
   }
 
  private:
+  [[nodiscard]] static bool are_apart(const std::vector<BimStation>& others, const BimStation& station) {
+    return std::all_of(others.begin(), others.end(), [&](const BimStation& other) {
+      return (other.position - station.position).norm() >= kBetween;
+    });
+  }
+
   [[nodiscard]] bool is_chosen(std::size_t room, RoomChoice choice) const {
-    if (choice == RoomChoice::any) return true;
+    if (choice == RoomChoice::any || choice == RoomChoice::each) return true;
     const bool repeated = std::any_of(rooms_.begin(), rooms_.end(), [&](const BimRoom& other) {
       return &other != &rooms_[room] && alike(rooms_[room], other);
     });
@@ -197,6 +218,12 @@ std::vector<BimStation> place_bim_stations(const std::vector<BimRoom>& rooms, co
                                            std::size_t count, RoomChoice choice, RandomStream& random) {
   BimSurveyor surveyor(rooms, caster, random);
   std::vector<BimStation> stations;
+  if (choice == RoomChoice::each) {
+    stations = surveyor.through_all(count);
+    if (stations.size() < count)
+      throw Error(fmt::format("the model's rooms have space for {} scanners", stations.size()),
+                  "limen simulate", "ask for no more --stations");
+  }
   while (stations.size() < count) {
     const auto station = stations.empty() ? surveyor.first(choice) : surveyor.next(stations);
     if (!station) {

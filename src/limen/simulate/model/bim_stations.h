@@ -15,8 +15,9 @@ namespace limen {
 /// What a station asks of a room.
 enum class RoomChoice {
   any,
-  unique,   ///< no other room of the model is like it
-  repeated  ///< another one is
+  unique,    ///< no other room of the model is like it
+  repeated,  ///< another one is
+  each       ///< the stations go through all rooms, one after the other
 };
 
 /// A tripod's place in a model.
@@ -29,9 +30,9 @@ struct BimStation {
 std::vector<Vector3d> spread_directions(int count);
 
 /// Free places: the first in a room of at least 5 m^2 and 2 m height, the others in its sight, in the same
-/// room or through doors; 1.4 to 1.8 m above the floor, at least 0.5 m from everything. Models without rooms
-/// are searched for places with a floor below, a ceiling above and walls around. Throws Error where there is
-/// none.
+/// room or through doors, or (`each`) in all rooms of at least 2 m^2 in turn, as long as there is space; 1.4
+/// to 1.8 m above the floor, at least 0.5 m from everything. Models without rooms are searched for places
+/// with a floor below, a ceiling above and walls around. Throws Error where there is none.
 std::vector<BimStation> place_bim_stations(const std::vector<BimRoom>& rooms, const RayCaster& caster,
                                            std::size_t count, RoomChoice choice, RandomStream& random);
 
