@@ -353,14 +353,24 @@ std::vector<std::size_t> told_alternatives(const Verdict& verdict, const Registe
   return told;
 }
 
+/// What is known of the best pose beside how much surface agrees.
+struct ThingsSaid {
+  double twin = 0.0;  ///< probability of one
+  /// Of the pose's value what things say, and what they say asked one by one; both 0 where they were not.
+  double things_m2 = 0.0;
+  double things_nats = 0.0;
+};
+
 /// Probabilities of the best pose and of `others`, and of what else may be.
 Posterior posterior_of(const std::vector<JudgedPose>& poses, const Verdict& verdict,
-                       const std::vector<std::size_t>& others, const ContrastFunction& contrast, double twin,
-                       bool model, bool through_wall) {
+                       const std::vector<std::size_t>& others, const ContrastFunction& contrast,
+                       const ThingsSaid& said, bool model, bool through_wall) {
   const std::size_t best = verdict.ranking.front();
   PosteriorEvidence evidence;
   evidence.best_value_m2 = poses[best].score.value();
-  evidence.twin = twin;
+  evidence.twin = said.twin;
+  evidence.things_m2 = said.things_m2;
+  evidence.things_nats = said.things_nats;
   evidence.through_wall = through_wall;
   const auto add_prior = [&](std::size_t pose) {
     evidence.log_priors.push_back(poses[pose].prior_m2 * PosteriorOptions{}.nats_per_m2);
@@ -377,7 +387,8 @@ Posterior posterior_of(const std::vector<JudgedPose>& poses, const Verdict& verd
 
 /// The result in the scans' own frames.
 void tell(Verdict verdict, const std::vector<JudgedPose>& poses, const ContrastFunction& contrast,
-          double twin, const PreparedPair& pair, const RegisterOptions& options, RegistrationResult& result) {
+          const ThingsSaid& said, const PreparedPair& pair, const RegisterOptions& options,
+          RegistrationResult& result) {
   const PreparedScan& from = pair.source;
   const PreparedScan& to = pair.target;
   const std::vector<std::size_t> others =
@@ -385,7 +396,7 @@ void tell(Verdict verdict, const std::vector<JudgedPose>& poses, const ContrastF
   const bool model = from.model || to.model;
   Posterior all;
   if (!verdict.ranking.empty()) {
-    all = posterior_of(poses, verdict, others, contrast, twin, model, !model && from.mobile != to.mobile);
+    all = posterior_of(poses, verdict, others, contrast, said, model, !model && from.mobile != to.mobile);
     verdict = with_posterior(std::move(verdict), all, options.verdict.risk);
     const RefinedPose& pose = poses[verdict.ranking.front()].refined;
     verdict =
@@ -508,22 +519,28 @@ RegistrationResult register_prepared(const PreparedPair& pair, const RegisterOpt
   const bool planes = options.method == Method::automatic || options.method == Method::polygons;
   if (verdict.outcome == Outcome::no_match && level && planes && !model) try_again(true, Proposal::sliding);
   const std::optional<PreparedStart> start = prepared_start(from, to, options);
-  double twin = 0.0;
+  ThingsSaid said;
   if (!verdict.ranking.empty() && verdict.outcome != Outcome::no_match && may_be_twin(from, to)) {
     const RefinedPose& refined = poses[verdict.ranking.front()].refined;
     const Rigid3& best = refined.target_from_source;
     if (!individual) individual = matter_under(refined);
     result.twin = weigh_twin(*individual, judging.twin);
-    twin = result.twin->probability();
-    if (start) twin = twin_beside_start(twin, start->prior, best, start->at, start->log_prior(best));
-    verdict = with_twin(std::move(verdict), *individual, twin, judging);
+    said.twin = result.twin->probability();
+    if (start)
+      said.twin = twin_beside_start(said.twin, start->prior, best, start->at, start->log_prior(best));
+    verdict = with_twin(std::move(verdict), *individual, said.twin, judging);
+    // Things that meet by chance agree as those of a room furnished otherwise do.
+    said.things_nats = result.twin->otherwise_nats;
+    said.things_m2 = evidence_of_things_m2(from.view(), to.view(), best,
+                                           fine_score(from.view(), to.view(), options.method),
+                                           planes_of_building(from.view()), planes_of_building(to.view()));
   }
   if (start && !verdict.ranking.empty()) {
     const StartMiss miss =
         miss_of_start(start->prior, poses[verdict.ranking.front()].refined.target_from_source, start->at);
     result.start = StartAgreement{miss.shift_m, miss.turn_rad, miss.sigmas};
   }
-  tell(verdict, poses, contrast, twin, pair, options, result);
+  tell(verdict, poses, contrast, said, pair, options, result);
   return result;
 }
 

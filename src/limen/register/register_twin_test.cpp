@@ -6,6 +6,9 @@
 
 #include <gtest/gtest.h>
 
+#include "limen/register/judge/individual_matter.h"
+#include "limen/register/judge/score_pose.h"
+#include "limen/register/prepare/prepare_scan.h"
 #include "limen/register/register.h"
 #include "limen/simulate/buildings/furniture.h"
 #include "limen/simulate/recipe_parts.h"
@@ -118,6 +121,29 @@ TEST(RegisterTwins, NorAreTwoFurnishedAlike) {
   ASSERT_TRUE(twins.others);
   // Rare as such twins are, it is far more probable than any risk that is taken.
   EXPECT_GT(twins.others->twin, 20.0 * VerdictOptions{}.risk);
+}
+
+TEST(RegisterTwins, WhatThingsSayIsApartOfWhatAgrees) {
+  const TwinCase rooms = twin_case(4, Furniture::own);
+  const PreparedScan source = prepare_scan(rooms.scans[1], prepare_options({}));
+  const PreparedScan target = prepare_scan(rooms.scans[0], prepare_options({}));
+  const Rigid3 truth =
+      to_local(inverse(rooms.scene_from_scan[0]) * rooms.scene_from_scan[1],
+               source.extracted.features.local_origin, target.extracted.features.local_origin);
+  const Rigid3 upright{target.upright_from_scan * truth.rotation * source.upright_from_scan.transpose(),
+                       target.upright_from_scan * truth.translation};
+  const ScanView from = source.view();
+  const ScanView to = target.view();
+  const auto things = [&](const std::vector<bool>& of_source, const std::vector<bool>& of_target) {
+    return evidence_of_things_m2(from, to, upright, {}, of_source, of_target);
+  };
+  const PoseScore all = score_pose(from, to, upright, {});
+  const std::vector<bool> none_from(from.features->planes.size(), false);
+  const std::vector<bool> none_to(to.features->planes.size(), false);
+  EXPECT_NEAR(things(none_from, none_to), all.evidence_m2 - all.opening_m2, 1e-9);
+  const double own = things(planes_of_building(from), planes_of_building(to));
+  EXPECT_GT(own, 0.2);
+  EXPECT_LT(own, 0.5 * all.evidence_m2);
 }
 
 TEST(RegisterTwins, BareRoomsCannotBeTold) {

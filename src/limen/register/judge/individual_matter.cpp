@@ -464,6 +464,14 @@ double chance_of(const Side& source, const Side& target, const Rigid3& target_fr
 
 }  // namespace
 
+std::vector<bool> planes_of_building(const ScanView& scan) {
+  const BuiltPlanes built(scan);
+  std::vector<bool> flags;
+  for (std::size_t i = 0; i < scan.features->planes.size(); ++i)
+    flags.push_back(built.is_built(static_cast<std::int32_t>(i)));
+  return flags;
+}
+
 IndividualMatter individual_matter(const ScanView& source_view, const ScanView& target_view,
                                    const Rigid3& target_from_source) {
   CancelScope::check();

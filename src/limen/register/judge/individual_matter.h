@@ -46,6 +46,9 @@ struct IndividualMatter {
   double built_nats = 0.0;
 };
 
+/// Of each plane of a scan, whether it is the building's: a wall, a slab, a strip of one.
+std::vector<bool> planes_of_building(const ScanView& scan);
+
 /// Asks each scan about the other's individual matter under a pose (upright frames): pieces of surface on no
 /// plane, or on a plane smaller than a wall, off all large planes of both scans. Neither side is a model.
 IndividualMatter individual_matter(const ScanView& source, const ScanView& target,

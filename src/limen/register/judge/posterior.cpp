@@ -31,7 +31,8 @@ Posterior posterior(const PosteriorEvidence& evidence, const PosteriorOptions& o
   const double search_nats = evidence.through_wall ? options.search_nats_through_wall : options.search_nats;
   const double chance =
       std::exp(evidence.log_odds_of_model ? -*evidence.log_odds_of_model
-                                          : search_nats - nats_per_m2 * evidence.best_value_m2);
+                                          : search_nats - evidence.things_nats -
+                                                nats_per_m2 * (evidence.best_value_m2 - evidence.things_m2));
   Posterior posterior;
   double total = 0.0;
   const auto add_pose = [&](double lead_m2) {

@@ -43,6 +43,10 @@ struct PosteriorEvidence {
   /// poses (model_odds.h).
   std::optional<double> log_odds_of_model = {};
   bool through_wall = false;  ///< one scan was taken in a room, the other along a street
+  /// Of the value what things say that are not the building's, m^2, and by how much they speak against chance
+  /// instead, natural logarithm, where they were asked one by one (twin_odds.h).
+  double things_m2 = 0.0;
+  double things_nats = 0.0;
   /// By how much a belief about the start makes each pose more probable, natural logarithm, the best one's
   /// first; empty: there is none (start_prior.h).
   std::vector<double> log_priors = {};

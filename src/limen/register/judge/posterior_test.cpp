@@ -32,6 +32,19 @@ TEST(Posterior, HardlyAnyCommonSurfaceMeansNothingShared) {
   EXPECT_GT(posterior({2.0, {0.1}, 0.0}).others.nothing_shared, 0.9);
 }
 
+TEST(Posterior, ThingsAskedOneByOneTakeThePlaceOfTheirSurface) {
+  // 7 m^2, of which things say one: 5 nats of chance are left, and 12 speak for the pose instead of 2.
+  PosteriorEvidence evidence{7.0, {}, 0.0};
+  const double before = posterior(evidence).others.nothing_shared;
+  evidence.things_m2 = 1.0;
+  evidence.things_nats = PosteriorOptions{}.nats_per_m2;
+  EXPECT_NEAR(posterior(evidence).others.nothing_shared, before, 1e-12);
+  evidence.things_nats = 12.0;
+  EXPECT_LT(posterior(evidence).others.nothing_shared, 1e-4 * before);
+  evidence.things_nats = -3.0;
+  EXPECT_GT(posterior(evidence).others.nothing_shared, before);
+}
+
 TEST(Posterior, AStreetShowsMuchThatRepeats) {
   PosteriorEvidence evidence{9.5, {}, 0.0};
   EXPECT_LT(posterior(evidence).others.nothing_shared, 1e-3);

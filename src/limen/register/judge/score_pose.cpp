@@ -184,6 +184,20 @@ void add_contrast(const ScanView& scan, const ScanView& judge, const Rigid3& fir
   }
 }
 
+/// What `judge` says of the things of `scan`.
+double things_one_way(const ScanView& scan, const ScanView& judge, const Rigid3& judge_from_scan,
+                      const ScoreOptions& options, const std::vector<bool>& built) {
+  if (judge.space == nullptr) return 0.0;
+  AskedSamples asked = asked_samples(scan, judge, judge_from_scan, options.samples);
+  const auto is_built = [&](std::uint32_t i) {
+    const std::int32_t plane = scan.features->samples[i].plane;
+    return plane >= 0 && built[static_cast<std::size_t>(plane)];
+  };
+  asked.indices.erase(std::remove_if(asked.indices.begin(), asked.indices.end(), is_built),
+                      asked.indices.end());
+  return one_way(gathered(scan, asked), judge, judge_from_scan, options).evidence_m2;
+}
+
 }  // namespace
 
 struct PoseScorer::Asked {
@@ -230,6 +244,13 @@ PoseScore PoseScorer::operator()(const Rigid3& target_from_source) const {
 PoseScore score_pose(const ScanView& source, const ScanView& target, const Rigid3& target_from_source,
                      const ScoreOptions& options) {
   return PoseScorer(source, target, options)(target_from_source);
+}
+
+double evidence_of_things_m2(const ScanView& source, const ScanView& target, const Rigid3& target_from_source,
+                             const ScoreOptions& options, const std::vector<bool>& source_built,
+                             const std::vector<bool>& target_built) {
+  return 0.5 * (things_one_way(source, target, target_from_source, options, source_built) +
+                things_one_way(target, source, inverse(target_from_source), options, target_built));
 }
 
 PoseContrast contrast_poses(const ScanView& source, const ScanView& target, const Rigid3& first,
