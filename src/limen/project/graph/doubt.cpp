@@ -25,10 +25,10 @@ constexpr double kUnits = 1000.0;       // of the flow, per nat
 
 class DoubtSearch {
  public:
-  DoubtSearch(const PoseGraph& graph, const AcceptedPoses& accepted)
+  DoubtSearch(const PoseGraph& graph, const AcceptedPoses& accepted, const DoubtOptions& options)
       : graph_(graph), accepted_(accepted), views_(graph, accepted) {
     for (std::size_t k = 0; k < graph.links.size(); ++k) {
-      if (accepted.pose[k] >= 0 && graph.links[k].trust != LinkTrust::weak)
+      if (accepted.pose[k] >= 0 && (options.weak_links_hold || graph.links[k].trust != LinkTrust::weak))
         held_.push_back(static_cast<int>(k));
     }
     for (const GraphLink& pair : graph.against) {
@@ -300,8 +300,8 @@ class DoubtSearch {
 }  // namespace
 
 std::vector<NodeDoubt> doubts_of(const PoseGraph& graph, const AcceptedPoses& accepted,
-                                 const std::vector<int>& reference) {
-  return DoubtSearch(graph, accepted).run(reference);
+                                 const std::vector<int>& reference, const DoubtOptions& options) {
+  return DoubtSearch(graph, accepted, options).run(reference);
 }
 
 }  // namespace limen

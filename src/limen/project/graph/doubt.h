@@ -20,6 +20,11 @@ struct NodeDoubt {
   [[nodiscard]] double total() const { return twin + chance - twin * chance; }
 };
 
+struct DoubtOptions {
+  /// Links that leave a direction free hold a node's place as well, but for that direction.
+  bool weak_links_hold = false;
+};
+
 /// How probable it is that each node stands wrongly against its component's `reference` (of each node: the
 /// node that lends its component the frame, -1: none).
 ///
@@ -31,6 +36,6 @@ struct NodeDoubt {
 /// Chance: links that see different surface err independently, and that wrong poses close a loop is rare in
 /// itself; the smallest cut between the node and the reference counts, links that see the same only once.
 std::vector<NodeDoubt> doubts_of(const PoseGraph& graph, const AcceptedPoses& accepted,
-                                 const std::vector<int>& reference);
+                                 const std::vector<int>& reference, const DoubtOptions& options = {});
 
 }  // namespace limen

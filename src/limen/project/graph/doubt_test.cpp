@@ -192,6 +192,30 @@ TEST(Doubt, WhatIsRatherATwinIsTakenApartAndLeavesTheOthersSure) {
   EXPECT_LT(solved.links[3].pose, 0);
 }
 
+TEST(Doubt, WhatAWeakLinkHoldsIsOpenOnlyAsFarAsTheLinkIsSure) {
+  for (const double chance : {1e-5, 0.3}) {
+    Row row(3);
+    row.link(1, 0, 0.0, 0.0);
+    row.link(2, 1, 0.0, chance);
+    GraphLink& weak = row.graph.links.back();
+    weak.trust = LinkTrust::weak;
+    weak.poses.front().covariance(3, 3) = 1e4;
+    const SolvedGraph solved = solve_graph(row.graph, 0.001);
+    EXPECT_EQ(solved.nodes[2].state, chance > 0.001 ? kOpen : NodeState::under_constrained);
+    EXPECT_NEAR(solved.nodes[2].doubt, chance, 1e-5);
+    EXPECT_EQ(solved.nodes[1].state, kYes);
+  }
+}
+
+TEST(Doubt, TheFrameIsNotLentAcrossALinkThatMayBeChance) {
+  Row row(4);
+  row.link(1, 0, 0.0, 0.02);
+  row.graph.links.back().trust = LinkTrust::sure;
+  row.link(2, 1, 0.0, 0.0);
+  row.link(3, 2, 0.0, 0.0);
+  EXPECT_EQ(states_of(solve_graph(row.graph, 0.001)), (States{kOpen, kYes, kYes, kYes}));
+}
+
 TEST(Doubt, TheLargestSurePartLendsTheFrame) {
   Row row(4);
   row.link(1, 0, 0.02, 0.0);

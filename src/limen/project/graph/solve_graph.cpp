@@ -262,7 +262,9 @@ class Solver {
     DisjointSets sure(accepted_.component.size());
     for (std::size_t k = 0; k < graph_.links.size(); ++k) {
       const GraphLink& link = graph_.links[k];
-      if (accepted_.pose[k] >= 0 && link.trust <= LinkTrust::open && link.twin <= risk_) join(sure, link);
+      if (accepted_.pose[k] >= 0 && link.trust <= LinkTrust::open && link.twin <= risk_ &&
+          link.chance <= risk_)
+        join(sure, link);
     }
     const auto firm = [&](int node) {
       return grown_.trust[static_cast<std::size_t>(node)] <= JoinTrust::likely;
@@ -375,13 +377,18 @@ class Solver {
       if (solved_.nodes[i].component >= 0)
         reference[i] = reference_of_[static_cast<std::size_t>(solved_.nodes[i].component)];
     }
-    const std::vector<NodeDoubt> doubts = doubts_of(graph_, accepted_, reference);
+    const auto is_open = [](const SolvedNode& node) { return node.state == NodeState::under_constrained; };
+    const bool any_open = std::any_of(solved_.nodes.begin(), solved_.nodes.end(), is_open);
+    const std::vector<NodeDoubt> firmly = doubts_of(graph_, accepted_, reference);
+    const std::vector<NodeDoubt> loosely =
+        any_open ? doubts_of(graph_, accepted_, reference, {true}) : std::vector<NodeDoubt>{};
     std::map<std::vector<int>, GraphQuestion> asked;
-    for (std::size_t i = 0; i < doubts.size(); ++i) {
+    for (std::size_t i = 0; i < firmly.size(); ++i) {
       SolvedNode& node = solved_.nodes[i];
       if (node.component < 0) continue;
+      const std::vector<NodeDoubt>& doubts = is_open(node) ? loosely : firmly;
       node.doubt = doubts[i].total();
-      if (node.state != NodeState::registered || node.doubt <= risk_) continue;
+      if (node.state == NodeState::ambiguous || node.doubt <= risk_) continue;
       node.state = NodeState::ambiguous;
       GraphQuestion& question = asked[doubts[i].links];
       question.moved.push_back(static_cast<int>(i));
