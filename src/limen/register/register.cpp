@@ -533,7 +533,7 @@ RegistrationResult register_prepared(const PreparedPair& pair, const RegisterOpt
     said.things_nats = result.twin->otherwise_nats;
     said.things_m2 = evidence_of_things_m2(from.view(), to.view(), best,
                                            fine_score(from.view(), to.view(), options.method),
-                                           planes_of_building(from.view()), planes_of_building(to.view()));
+                                           individual->source_built, individual->target_built);
   }
   if (start && !verdict.ranking.empty()) {
     const StartMiss miss =

@@ -141,7 +141,8 @@ TEST(RegisterTwins, WhatThingsSayIsApartOfWhatAgrees) {
   const std::vector<bool> none_from(from.features->planes.size(), false);
   const std::vector<bool> none_to(to.features->planes.size(), false);
   EXPECT_NEAR(things(none_from, none_to), all.evidence_m2 - all.opening_m2, 1e-9);
-  const double own = things(planes_of_building(from), planes_of_building(to));
+  const IndividualMatter individual = individual_matter(from, to, upright);
+  const double own = things(individual.source_built, individual.target_built);
   EXPECT_GT(own, 0.2);
   EXPECT_LT(own, 0.5 * all.evidence_m2);
 }

@@ -64,6 +64,8 @@ class BuiltPlanes {
 
   [[nodiscard]] bool is_built(std::int32_t plane) const { return built_[static_cast<std::size_t>(plane)]; }
 
+  [[nodiscard]] const std::vector<bool>& flags() const { return built_; }
+
   enum class Place { off, at_wall, behind };
   /// Where `x` stands to the walls: at one (or at the ceiling, or on stairs), or behind one.
   [[nodiscard]] Place place(const Vector3d& x) const {
@@ -464,18 +466,12 @@ double chance_of(const Side& source, const Side& target, const Rigid3& target_fr
 
 }  // namespace
 
-std::vector<bool> planes_of_building(const ScanView& scan) {
-  const BuiltPlanes built(scan);
-  std::vector<bool> flags;
-  for (std::size_t i = 0; i < scan.features->planes.size(); ++i)
-    flags.push_back(built.is_built(static_cast<std::int32_t>(i)));
-  return flags;
-}
-
 IndividualMatter individual_matter(const ScanView& source_view, const ScanView& target_view,
                                    const Rigid3& target_from_source) {
   CancelScope::check();
   IndividualMatter individual;
+  individual.source_built.assign(source_view.features->planes.size(), true);
+  individual.target_built.assign(target_view.features->planes.size(), true);
   if (source_view.space == nullptr || target_view.space == nullptr) return individual;
   const Side source(source_view);
   const Side target(target_view);
@@ -486,6 +482,8 @@ IndividualMatter individual_matter(const ScanView& source_view, const ScanView& 
   individual.apart = wall_between(source, target, target_from_source) ||
                      wall_between(target, source, inverse(target_from_source));
   individual.faces = face_offsets(source, target, target_from_source);
+  individual.source_built = source.built.flags();
+  individual.target_built = target.built.flags();
   return individual;
 }
 

@@ -42,12 +42,12 @@ struct IndividualMatter {
   double chance = 0.0;
   /// A wall stands between the two stations: what they have in common is seen through an opening.
   bool apart = false;
+  /// Of each plane of either scan, whether it is the building's: a wall, a slab, a strip of one.
+  std::vector<bool> source_built;
+  std::vector<bool> target_built;
   /// What walls that both scans saw askew alike say against a twin (unevenness_nats); not asked here.
   double built_nats = 0.0;
 };
-
-/// Of each plane of a scan, whether it is the building's: a wall, a slab, a strip of one.
-std::vector<bool> planes_of_building(const ScanView& scan);
 
 /// Asks each scan about the other's individual matter under a pose (upright frames): pieces of surface on no
 /// plane, or on a plane smaller than a wall, off all large planes of both scans. Neither side is a model.
