@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <utility>
 
 #include <Eigen/LU>
@@ -16,6 +17,7 @@
 #include "limen/base/parallel.h"
 #include "limen/base/progress.h"
 #include "limen/geometry/cell_key.h"
+#include "limen/geometry/cell_lists.h"
 #include "limen/match/planes/enumerate_rotations.h"
 
 namespace limen {
@@ -71,6 +73,55 @@ void narrow(const Box& shifts, const Vector3d& base, const Vector3d& along, Stre
   }
 }
 
+/// Planes of a model to be found by where they stand, in a grid.
+class PlanesByPlace {
+ public:
+  explicit PlanesByPlace(const std::vector<BoxedPlane>& planes) : planes_(planes) {
+    for (const BoxedPlane& plane : planes) all_.extend(plane.box);
+    if (planes.empty()) return;
+    cell_m_ = std::max(kCellM, all_.sizes().maxCoeff() / kMostCells);
+    std::vector<std::vector<std::int64_t>> cells_of(planes.size());
+    for (std::size_t i = 0; i < planes.size(); ++i)
+      for_cells(planes[i].box, [&](const Vector3d& cell) { cells_of[i].push_back(cell_key(cell)); });
+    cells_ = CellLists(std::move(cells_of));
+  }
+
+  /// Numbers of the planes whose boxes meet `box`, ascending.
+  void meeting(const Box& box, std::vector<std::int32_t>& found) const {
+    found.clear();
+    const Box asked = box.intersection(all_);
+    if (asked.isEmpty()) return;
+    const Vector3d first = cell_of(asked.min(), cell_m_);
+    for_cells(asked, [&](const Vector3d& cell) {
+      for (const std::int32_t i : cells_.at(cell_key(cell))) {
+        const Box& other = planes_[static_cast<std::size_t>(i)].box;
+        // Of the cells that both stand in the first one tells.
+        if (cell_of(other.min(), cell_m_).cwiseMax(first) == cell && other.intersects(box))
+          found.push_back(i);
+      }
+    });
+    std::sort(found.begin(), found.end());
+  }
+
+ private:
+  static constexpr double kCellM = 4.0;
+  static constexpr double kMostCells = 128.0;  // along each axis
+
+  template <typename Visit>
+  void for_cells(const Box& box, const Visit& visit) const {
+    const Vector3d low = cell_of(box.min(), cell_m_);
+    const Vector3d high = cell_of(box.max(), cell_m_);
+    for (double x = low.x(); x <= high.x(); ++x)
+      for (double y = low.y(); y <= high.y(); ++y)
+        for (double z = low.z(); z <= high.z(); ++z) visit(Vector3d(x, y, z));
+  }
+
+  const std::vector<BoxedPlane>& planes_;
+  Box all_;
+  double cell_m_ = kCellM;
+  CellLists cells_;
+};
+
 /// A plane of the model that an anchor may lie on, the shift along its normal that brings it there, and all
 /// shifts at which the boxes of both meet.
 struct Partner {
@@ -81,13 +132,21 @@ struct Partner {
 
 struct Anchor {
   BoxedPlane plane;
-  std::vector<Partner> partners;
+  std::vector<Partner> partners;              ///< in the order of the model's planes
+  std::vector<std::int32_t> partner_of = {};  ///< of each of them; -1: it is none
 };
 
 /// The shifts at which box `a` has kCommonShare of the smaller in common with box `b`, along each axis.
 Box meeting_shifts(const Box& a, const Box& b) {
   const Vector3d less = (kCommonShare * a.sizes().cwiseMin(b.sizes())).array() - kMeetM;
   return {b.min() - a.max() + less, b.max() - a.min() - less};
+}
+
+/// What holds every box that box `a` meets so under one of the shifts.
+Box met_under(const Box& a, const Box& shifts) {
+  constexpr double kSlackM = kMeetM + 1e-6;
+  return {shifts.min() + a.min() - Vector3d::Constant(kSlackM),
+          shifts.max() + a.max() + Vector3d::Constant(kSlackM)};
 }
 
 /// The share of box `a`, shifted, that lies in box `b`. Over planes side by side it adds up to 1 at most.
@@ -243,6 +302,7 @@ class ModelEnumerator {
                      [](const PlanarPolygon* a, const PlanarPolygon* b) { return a->area_m2 > b->area_m2; });
     if (largest_.size() > static_cast<std::size_t>(options.max_scan_planes))
       largest_.resize(static_cast<std::size_t>(options.max_scan_planes));
+    places_.emplace(model_);
   }
 
   /// The shifts under one rotation.
@@ -252,8 +312,9 @@ class ModelEnumerator {
     std::vector<ThirdAnchor> thirds;
     for (const Anchor& c : anchors[2]) thirds.push_back({&c, PartnersInOrder(c.partners)});
     Ballot ballot(options_.same_shift_m);
+    std::vector<std::int32_t> near;
     for (const Anchor& a : anchors[0]) {
-      for (const Anchor& b : anchors[1]) vote_pairs(a, b, thirds, ballot);
+      for (const Anchor& b : anchors[1]) vote_pairs(a, b, thirds, near, ballot);
     }
     return std::move(ballot).weightiest(static_cast<std::size_t>(options_.max_poses));
   }
@@ -274,7 +335,7 @@ class ModelEnumerator {
         directions[known++] = normal;
       }
       if (anchors[at].size() >= static_cast<std::size_t>(options_.anchors)) continue;
-      Anchor anchor{boxed(*polygon, rotation), {}};
+      Anchor anchor{boxed(*polygon, rotation), {}, {}};
       add_partners(anchor);
       if (!anchor.partners.empty()) anchors[at].push_back(std::move(anchor));
     }
@@ -299,27 +360,33 @@ class ModelEnumerator {
 
   void add_partners(Anchor& anchor) const {
     const double near = std::cos(radians(options_.direction_deg));
-    for (const BoxedPlane& plane : model_) {
+    anchor.partner_of.assign(model_.size(), -1);
+    for (std::size_t i = 0; i < model_.size(); ++i) {
+      const BoxedPlane& plane = model_[i];
       const double cosine = anchor.plane.normal.dot(plane.normal);
       const bool oriented = anchor.plane.polygon->oriented && plane.polygon->oriented;
       if ((oriented ? cosine : std::abs(cosine)) < near) continue;
+      anchor.partner_of[i] = static_cast<std::int32_t>(anchor.partners.size());
       anchor.partners.push_back({&plane, plane.polygon->plane.offset - plane.normal.dot(anchor.plane.middle),
                                  meeting_shifts(anchor.plane.box, plane.box)});
     }
   }
 
-  static void vote_pairs(const Anchor& a, const Anchor& b, const std::vector<ThirdAnchor>& thirds,
-                         Ballot& ballot) {
+  void vote_pairs(const Anchor& a, const Anchor& b, const std::vector<ThirdAnchor>& thirds,
+                  std::vector<std::int32_t>& near, Ballot& ballot) const {
     const Vector3d reach = a.plane.box.merged(b.plane.box).sizes();
     for (const Partner& p : a.partners) {
       CancelScope::check();
       Box around = p.plane->box;
       around.min() -= reach;
       around.max() += reach;
-      for (const Partner& q : b.partners) {
+      places_->meeting(around.intersection(met_under(b.plane.box, p.meeting)), near);
+      for (const std::int32_t i : near) {
+        const std::int32_t partner = b.partner_of[static_cast<std::size_t>(i)];
+        if (partner < 0) continue;
+        const Partner& q = b.partners[static_cast<std::size_t>(partner)];
         // One shift has to bring both pairs together.
-        if (!p.meeting.intersects(q.meeting) || !around.intersects(q.plane->box)) continue;
-        vote(a, p, b, q, thirds, ballot);
+        if (p.meeting.intersects(q.meeting)) vote(a, p, b, q, thirds, ballot);
       }
     }
   }
@@ -359,6 +426,7 @@ class ModelEnumerator {
 
   const ModelPoseOptions& options_;
   std::vector<BoxedPlane> model_;
+  std::optional<PlanesByPlace> places_;  ///< of these
   std::vector<const PlanarPolygon*> largest_;
 };
 
