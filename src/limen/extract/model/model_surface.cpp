@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
 #include <map>
 #include <tuple>
 #include <utility>
@@ -221,12 +222,25 @@ PlanarPolygon polygon_of(const Sheet& sheet, Polygon part) {
   return polygon;
 }
 
+bool may_overlap(const Box2& a, const Box2& b) {
+  return !a.empty() && !b.empty() && a.low.x() < b.high.x() && b.low.x() < a.high.x() &&
+         a.low.y() < b.high.y() && b.low.y() < a.high.y();
+}
+
+/// Parts of a sheet that one face gave, in the sheet's frame.
+struct MovedRest {
+  std::vector<Polygon> parts;
+  Box2 box;
+};
+
 /// The element that gives most of a polygon: that whose rest overlaps it most.
-std::int32_t owner_of(const Polygon& part, const std::vector<std::vector<Polygon>>& moved,
-                      const Sheet& sheet) {
+std::int32_t owner_of(const Polygon& part, const std::vector<MovedRest>& moved, const Sheet& sheet) {
+  const Box2 box = box_of(std::vector<Polygon>{part});
   std::map<std::int32_t, double> shares;
-  for (std::size_t k = 0; k < moved.size(); ++k)
-    shares[sheet.rests[k]->face->element] += intersection_area({part}, moved[k]);
+  for (std::size_t k = 0; k < moved.size(); ++k) {
+    if (may_overlap(box, moved[k].box))
+      shares[sheet.rests[k]->face->element] += intersection_area({part}, moved[k].parts);
+  }
   std::int32_t owner = sheet.rests.front()->face->element;
   for (const auto& [element, share] : shares) {
     if (share > shares[owner]) owner = element;
@@ -234,12 +248,15 @@ std::int32_t owner_of(const Polygon& part, const std::vector<std::vector<Polygon
   return owner;
 }
 
-void add_sheet(const Sheet& sheet, double min_area_m2, ModelSurface& surface) {
-  std::vector<std::vector<Polygon>> moved;
+ModelSurface surface_of_sheet(const Sheet& sheet, double min_area_m2) {
+  ModelSurface surface;
+  std::vector<MovedRest> moved;
   std::vector<Polygon> all;
   for (const Rest* rest : sheet.rests) {
-    moved.push_back(projected(rest->parts, rest->face->frame, sheet.frame));
-    all.insert(all.end(), moved.back().begin(), moved.back().end());
+    std::vector<Polygon> parts = projected(rest->parts, rest->face->frame, sheet.frame);
+    all.insert(all.end(), parts.begin(), parts.end());
+    const Box2 box = box_of(parts);
+    moved.push_back({std::move(parts), box});
   }
   if (sheet.rests.size() > 1 || all.size() > 1) all = merged(all);
   for (Polygon& part : all) {
@@ -248,6 +265,7 @@ void add_sheet(const Sheet& sheet, double min_area_m2, ModelSurface& surface) {
     surface.elements.push_back(alone ? sheet.rests.front()->face->element : owner_of(part, moved, sheet));
     surface.polygons.push_back(polygon_of(sheet, std::move(part)));
   }
+  return surface;
 }
 
 }  // namespace
@@ -289,8 +307,16 @@ ModelSurface visible_surface(const BimModel& model, const ModelSurfaceOptions& o
                    [](const Rest* a, const Rest* b) { return a->face->area_m2 > b->face->area_m2; });
   SheetMaker maker(options.same_plane_m);
   for (const Rest* rest : order) maker.add(*rest);
+  const std::vector<Sheet>& sheets = maker.sheets();
+  std::vector<ModelSurface> of_sheets(sheets.size());
+  parallel_for(sheets.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) of_sheets[i] = surface_of_sheet(sheets[i], options.min_area_m2);
+  });
   ModelSurface all;
-  for (const Sheet& sheet : maker.sheets()) add_sheet(sheet, options.min_area_m2, all);
+  for (ModelSurface& of_sheet : of_sheets) {
+    std::move(of_sheet.polygons.begin(), of_sheet.polygons.end(), std::back_inserter(all.polygons));
+    all.elements.insert(all.elements.end(), of_sheet.elements.begin(), of_sheet.elements.end());
+  }
   std::vector<std::size_t> by_area(all.polygons.size());
   for (std::size_t i = 0; i < by_area.size(); ++i) by_area[i] = i;
   std::stable_sort(by_area.begin(), by_area.end(), [&](std::size_t a, std::size_t b) {
