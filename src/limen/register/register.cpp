@@ -531,9 +531,9 @@ RegistrationResult register_prepared(const PreparedPair& pair, const RegisterOpt
     verdict = with_twin(std::move(verdict), *individual, said.twin, judging);
     // Things that meet by chance agree as those of a room furnished otherwise do.
     said.things_nats = result.twin->otherwise_nats;
-    said.things_m2 = evidence_of_things_m2(from.view(), to.view(), best,
-                                           fine_score(from.view(), to.view(), options.method),
-                                           individual->source_built, individual->target_built);
+    said.things_m2 =
+        value_of_things_m2(from.view(), to.view(), best, fine_score(from.view(), to.view(), options.method),
+                           individual->source_built, individual->target_built);
   }
   if (start && !verdict.ranking.empty()) {
     const StartMiss miss =

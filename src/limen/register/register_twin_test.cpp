@@ -135,16 +135,16 @@ TEST(RegisterTwins, WhatThingsSayIsApartOfWhatAgrees) {
   const ScanView from = source.view();
   const ScanView to = target.view();
   const auto things = [&](const std::vector<bool>& of_source, const std::vector<bool>& of_target) {
-    return evidence_of_things_m2(from, to, upright, {}, of_source, of_target);
+    return value_of_things_m2(from, to, upright, {}, of_source, of_target);
   };
   const PoseScore all = score_pose(from, to, upright, {});
   const std::vector<bool> none_from(from.features->planes.size(), false);
   const std::vector<bool> none_to(to.features->planes.size(), false);
-  EXPECT_NEAR(things(none_from, none_to), all.evidence_m2 - all.opening_m2, 1e-9);
+  EXPECT_NEAR(things(none_from, none_to), all.value() - all.opening_m2, 1e-9);
   const IndividualMatter individual = individual_matter(from, to, upright);
   const double own = things(individual.source_built, individual.target_built);
   EXPECT_GT(own, 0.2);
-  EXPECT_LT(own, 0.5 * all.evidence_m2);
+  EXPECT_LT(own, 0.5 * all.value());
 }
 
 TEST(RegisterTwins, BareRoomsCannotBeTold) {

@@ -195,7 +195,7 @@ double things_one_way(const ScanView& scan, const ScanView& judge, const Rigid3&
   };
   asked.indices.erase(std::remove_if(asked.indices.begin(), asked.indices.end(), is_built),
                       asked.indices.end());
-  return one_way(gathered(scan, asked), judge, judge_from_scan, options).evidence_m2;
+  return one_way(gathered(scan, asked), judge, judge_from_scan, options).value();
 }
 
 }  // namespace
@@ -246,9 +246,9 @@ PoseScore score_pose(const ScanView& source, const ScanView& target, const Rigid
   return PoseScorer(source, target, options)(target_from_source);
 }
 
-double evidence_of_things_m2(const ScanView& source, const ScanView& target, const Rigid3& target_from_source,
-                             const ScoreOptions& options, const std::vector<bool>& source_built,
-                             const std::vector<bool>& target_built) {
+double value_of_things_m2(const ScanView& source, const ScanView& target, const Rigid3& target_from_source,
+                          const ScoreOptions& options, const std::vector<bool>& source_built,
+                          const std::vector<bool>& target_built) {
   return 0.5 * (things_one_way(source, target, target_from_source, options, source_built) +
                 things_one_way(target, source, inverse(target_from_source), options, target_built));
 }

@@ -52,11 +52,11 @@ PoseContrast contrast_poses(const ScanView& source, const ScanView& target, cons
 PoseScore score_pose(const ScanView& source, const ScanView& target, const Rigid3& target_from_source,
                      const ScoreOptions& options);
 
-/// Of `PoseScore::evidence_m2` what things say: clutter and planes that are not the building's, whose flags
-/// are given for each plane of either scan.
-double evidence_of_things_m2(const ScanView& source, const ScanView& target, const Rigid3& target_from_source,
-                             const ScoreOptions& options, const std::vector<bool>& source_built,
-                             const std::vector<bool>& target_built);
+/// Of `PoseScore::value()` what things say, for the pose and against it: clutter and planes that are not the
+/// building's, whose flags are given for each plane of either scan.
+double value_of_things_m2(const ScanView& source, const ScanView& target, const Rigid3& target_from_source,
+                          const ScoreOptions& options, const std::vector<bool>& source_built,
+                          const std::vector<bool>& target_built);
 
 /// score_pose() for many poses of one pair: what does not depend on the pose is gathered once. Keeps copies
 /// of the views, not of what they point to. Any number of threads may ask it at once.
