@@ -87,11 +87,6 @@ Box2 joined(Box2 a, const Box2& b) {
   return a;
 }
 
-bool apart(const Box2& a, const Box2& b) {
-  return a.empty() || b.empty() || a.low.x() >= b.high.x() || b.low.x() >= a.high.x() ||
-         a.low.y() >= b.high.y() || b.low.y() >= a.high.y();
-}
-
 /// An outer ring, its holes, and what lies in the holes again.
 void collect(const PolyNode& node, const Grid& grid, std::vector<Polygon>& polygons) {
   Polygon polygon;
@@ -181,7 +176,7 @@ std::size_t farthest_from(const Ring& ring, const Vector2d& p) {
 }  // namespace
 
 std::vector<Polygon> intersection(const std::vector<Polygon>& a, const std::vector<Polygon>& b) {
-  if (apart(checked_box(a), checked_box(b))) return {};
+  if (checked_box(a).apart(checked_box(b))) return {};
   return combine(ClipperLib::ctIntersection, a, b);
 }
 
@@ -196,7 +191,7 @@ std::vector<Polygon> merged(const std::vector<Polygon>& a, const std::vector<Pol
 double intersection_area(const std::vector<Polygon>& a, const std::vector<Polygon>& b) {
   const Box2 box_a = checked_box(a);
   const Box2 box_b = checked_box(b);
-  if (apart(box_a, box_b)) return 0.0;
+  if (box_a.apart(box_b)) return 0.0;
   return area_of(ClipperLib::ctIntersection, Grid(joined(box_a, box_b)), a, b);
 }
 

@@ -51,6 +51,11 @@ struct Box2 {
   [[nodiscard]] bool contains(const Vector2d& p) const {
     return p.x() >= low.x() && p.y() >= low.y() && p.x() <= high.x() && p.y() <= high.y();
   }
+  /// Whether the boxes have no area in common; an empty one has none with any.
+  [[nodiscard]] bool apart(const Box2& other) const {
+    return empty() || other.empty() || low.x() >= other.high.x() || other.low.x() >= high.x() ||
+           low.y() >= other.high.y() || other.low.y() >= high.y();
+  }
 };
 Box2 box_of(const std::vector<Polygon>& polygons);
 

@@ -222,11 +222,6 @@ PlanarPolygon polygon_of(const Sheet& sheet, Polygon part) {
   return polygon;
 }
 
-bool may_overlap(const Box2& a, const Box2& b) {
-  return !a.empty() && !b.empty() && a.low.x() < b.high.x() && b.low.x() < a.high.x() &&
-         a.low.y() < b.high.y() && b.low.y() < a.high.y();
-}
-
 /// Parts of a sheet that one face gave, in the sheet's frame.
 struct MovedRest {
   std::vector<Polygon> parts;
@@ -238,7 +233,7 @@ std::int32_t owner_of(const Polygon& part, const std::vector<MovedRest>& moved, 
   const Box2 box = box_of(std::vector<Polygon>{part});
   std::map<std::int32_t, double> shares;
   for (std::size_t k = 0; k < moved.size(); ++k) {
-    if (may_overlap(box, moved[k].box))
+    if (!box.apart(moved[k].box))
       shares[sheet.rests[k]->face->element] += intersection_area({part}, moved[k].parts);
   }
   std::int32_t owner = sheet.rests.front()->face->element;

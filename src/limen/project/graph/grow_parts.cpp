@@ -85,7 +85,6 @@ class Grower {
       : graph_(graph), votes_(votes) {
     const auto nodes = static_cast<std::size_t>(graph.nodes);
     grown_.part_from_node.resize(nodes);
-    grown_.trust.assign(nodes, JoinTrust::sure);
     for (int node = 0; node < graph.nodes; ++node) {
       grown_.part.push_back(node);
       members_.push_back({node});
@@ -156,10 +155,9 @@ class Grower {
     const Rigid3 lower_from_higher = inverse(how.higher_from_lower);
     const std::vector<int>& low = members_[static_cast<std::size_t>(lower)];
     const std::vector<int>& high = members_[static_cast<std::size_t>(higher)];
-    for (const int node : low.size() < high.size() ? low : high) {
-      JoinTrust& trust = grown_.trust[static_cast<std::size_t>(node)];
-      trust = std::max(trust, how.trust);
-    }
+    const bool low_is_smaller = low.size() < high.size();
+    if (how.trust > JoinTrust::sure)
+      grown_.joins.push_back({low_is_smaller ? low : high, low_is_smaller ? high : low, how.trust});
     for (const int node : members_[static_cast<std::size_t>(higher)]) {
       const auto n = static_cast<std::size_t>(node);
       grown_.part[n] = lower;
@@ -405,6 +403,19 @@ class Grower {
 };
 
 }  // namespace
+
+std::vector<JoinTrust> GrownParts::trust_from(int reference) const {
+  std::vector<JoinTrust> trust(part.size(), JoinTrust::sure);
+  for (const GrownJoin& join : joins) {
+    const bool from_smaller =
+        std::find(join.smaller.begin(), join.smaller.end(), reference) != join.smaller.end();
+    for (const int node : from_smaller ? join.larger : join.smaller) {
+      JoinTrust& of_node = trust[static_cast<std::size_t>(node)];
+      of_node = std::max(of_node, join.trust);
+    }
+  }
+  return trust;
+}
 
 GrownParts grow_parts(const PoseGraph& graph, const std::vector<std::vector<int>>& votes,
                       const std::vector<bool>& left_out) {

@@ -11,11 +11,24 @@ namespace limen {
 /// How sure the join was that brought a node to its part.
 enum class JoinTrust { sure, likely, open, weak };
 
+/// Two parts that were put together in a way that is not sure.
+struct GrownJoin {
+  std::vector<int> smaller;
+  std::vector<int> larger;
+  JoinTrust trust = JoinTrust::likely;
+};
+
 /// Nodes put together step by step.
 struct GrownParts {
   std::vector<int> part;               ///< of each node: the lowest node of its part
   std::vector<Rigid3> part_from_node;  ///< in the frame of that lowest node
-  std::vector<JoinTrust> trust;  ///< the least sure join between the node and the larger rest of its part
+  std::vector<GrownJoin> joins;        ///< those that are not sure, in their order
+
+  /// Of each node the least sure join between it and `reference`; of joins that were made before the
+  /// reference came to its part, those between the node and the larger side.
+  [[nodiscard]] std::vector<JoinTrust> trust_from(int reference) const;
+  /// The same seen from the larger side of every join.
+  [[nodiscard]] std::vector<JoinTrust> trust() const { return trust_from(-1); }
 };
 
 /// Maximum-evidence forest: two parts are joined in the way whose odds are best, the pair of parts first that

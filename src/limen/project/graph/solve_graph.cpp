@@ -257,7 +257,8 @@ class Solver {
   }
 
   /// Of each component by its lowest node: the first node of the largest part that sure links hold together,
-  /// for what is in doubt against it must not lend it the frame.
+  /// for what is in doubt against it must not lend it the frame. Of equals the one that the rest is surest
+  /// of.
   [[nodiscard]] std::vector<int> references() const {
     DisjointSets sure(accepted_.component.size());
     for (std::size_t k = 0; k < graph_.links.size(); ++k) {
@@ -266,18 +267,33 @@ class Solver {
           link.chance <= risk_)
         join(sure, link);
     }
-    const auto firm = [&](int node) {
-      return grown_.trust[static_cast<std::size_t>(node)] <= JoinTrust::likely;
+    std::vector<std::vector<int>> parts(static_cast<std::size_t>(graph_.nodes));
+    for (int i = 0; i < graph_.nodes; ++i) parts[sure.find(static_cast<std::size_t>(i))].push_back(i);
+    const std::vector<JoinTrust> from_larger = grown_.trust();
+    const auto counted = [](const std::vector<int>& part, const std::vector<JoinTrust>& trust) {
+      return std::count_if(part.begin(), part.end(), [&](int node) {
+        return trust[static_cast<std::size_t>(node)] <= JoinTrust::likely;
+      });
     };
-    std::vector<int> size(static_cast<std::size_t>(graph_.nodes), 0);
-    for (int i = 0; i < graph_.nodes; ++i) size[sure.find(static_cast<std::size_t>(i))] += firm(i) ? 1 : 0;
-    const auto size_of = [&](int node) {
-      return firm(node) ? size[sure.find(static_cast<std::size_t>(node))] : 0;
-    };
+    using Weight = std::pair<std::ptrdiff_t, std::ptrdiff_t>;
     std::vector<int> first(static_cast<std::size_t>(graph_.nodes), -1);
-    for (int i = 0; i < graph_.nodes; ++i) {
-      int& reference = first[static_cast<std::size_t>(component(i))];
-      if (reference < 0 || size_of(i) > size_of(reference)) reference = i;
+    std::vector<Weight> most(first.size());
+    for (const std::vector<int>& part : parts) {
+      if (part.empty()) continue;
+      const auto firm = std::find_if(part.begin(), part.end(), [&](int node) {
+        return from_larger[static_cast<std::size_t>(node)] <= JoinTrust::likely;
+      });
+      const int candidate = firm == part.end() ? part.front() : *firm;
+      const std::ptrdiff_t firm_count = counted(part, from_larger);
+      const std::ptrdiff_t count = firm_count == static_cast<std::ptrdiff_t>(part.size())
+                                       ? firm_count
+                                       : counted(part, grown_.trust_from(candidate));
+      const auto home = static_cast<std::size_t>(component(candidate));
+      const Weight weight{count, firm_count};
+      const bool earlier = weight == most[home] && candidate < first[home];
+      if (first[home] >= 0 && weight <= most[home] && !earlier) continue;
+      first[home] = candidate;
+      most[home] = weight;
     }
     if (graph_.anchor >= 0 && component(graph_.anchor) >= 0)
       first[static_cast<std::size_t>(component(graph_.anchor))] = graph_.anchor;
@@ -330,6 +346,8 @@ class Solver {
   }
 
   void judge_nodes() {
+    std::vector<std::vector<JoinTrust>> trusts;  // of each component
+    for (const int reference : reference_of_) trusts.push_back(grown_.trust_from(reference));
     for (std::size_t i = 0; i < solved_.nodes.size(); ++i) {
       SolvedNode& node = solved_.nodes[i];
       node.component = accepted_.component[i];
@@ -340,7 +358,8 @@ class Solver {
       const bool held = variances.head<3>().maxCoeff() < kFixedRad * kFixedRad &&
                         variances.tail<3>().maxCoeff() < kFixedM * kFixedM;
       // Of what a weak link joined the covariance tells whether other links hold it by now.
-      node.state = grown_.trust[i] == JoinTrust::open ? NodeState::ambiguous : NodeState::registered;
+      const JoinTrust trust = trusts[static_cast<std::size_t>(node.component)][i];
+      node.state = trust == JoinTrust::open ? NodeState::ambiguous : NodeState::registered;
       if (node.state == NodeState::registered && !held) node.state = NodeState::under_constrained;
     }
   }

@@ -113,6 +113,40 @@ TEST(SolveGraph, AnExactLinkThatComesLateIsTakenAndLooseOnesGiveWay) {
   EXPECT_LT((found.translation - truth.translation).norm(), 0.03);
 }
 
+/// Three scans that sure links hold together, and four others that only links with two ways each do: the
+/// three lend the frame, and are registered, though they are the smaller side of the join.
+TEST(SolveGraph, WhatSureLinksHoldTogetherLendsTheFrame) {
+  RandomStream random(15, 1);
+  PoseGraph graph;
+  graph.nodes = 7;
+  std::vector<Rigid3> world_from_node;
+  for (int n = 0; n < 7; ++n) world_from_node.push_back(random_pose(random, 5.0));
+  const auto add = [&](int source, int target, bool open) {
+    GraphLink link;
+    link.source = source;
+    link.target = target;
+    link.trust = open ? LinkTrust::open : LinkTrust::sure;
+    link.chance = link.twin = 1e-6;
+    const Rigid3 truth = inverse(world_from_node[static_cast<std::size_t>(target)]) *
+                         world_from_node[static_cast<std::size_t>(source)];
+    link.poses = {measured_pose(truth, 20.0, random)};
+    if (open) {
+      link.chance = 0.02;
+      link.poses.push_back(measured_pose(random_pose(random, 5.0), 20.0, random));
+    }
+    for (LinkPose& pose : link.poses) pose.probability = (1.0 - link.chance) / (open ? 2.0 : 1.0);
+    graph.links.push_back(link);
+  };
+  for (int n = 1; n < 5; ++n) add(n, n - 1, true);
+  add(5, 4, false);
+  add(6, 4, false);
+  add(6, 5, false);
+  const SolvedGraph solved = solve_graph(graph);
+  ASSERT_EQ(solved.components, 1);
+  for (std::size_t n = 0; n < 7; ++n)
+    EXPECT_EQ(solved.nodes[n].state, n < 4 ? NodeState::ambiguous : NodeState::registered) << n;
+}
+
 TEST(SolveGraph, AnOpenLinkIsSettledByItsLoop) {
   SyntheticGraph made = synthetic_graph(3, 1, 2, 0.0, 8);
   ASSERT_EQ(made.graph.links.size(), 3U);

@@ -65,6 +65,39 @@ TEST(ScanFrame, IsTheSameHoweverTheScanLies) {
   }
 }
 
+/// Some scanners see no zenith either: the wider of two blind cones is then not the one below.
+TEST(ScanFrame, AScannerThatIsBlindAboveTooIsNotTurnedOver) {
+  for (const double highest_deg : {45.0, 55.0, 90.0}) {
+    const Scan scan = box_scan(60000, radians(-60.0), radians(std::min(highest_deg, 89.9)));
+    const ScanFrame frame = find_scan_frame(scan, Gravity::automatic);
+    EXPECT_GT(frame.frame_from_scan(2, 2), 0.99) << highest_deg;
+    EXPECT_TRUE(frame.upright) << highest_deg;
+  }
+}
+
+/// An open sky is no blind cone where nothing tells that the rays started at the assumed place.
+TEST(ScanFrame, AnOpenSkyIsNotBelowTheScanner) {
+  RandomStream random(9);
+  Scan scan;
+  for (int k = 0; k < 60000; ++k) {  // a yard, seen everywhere, with screens about it
+    const double heading = radians(40.0 * static_cast<double>(random.below(9)) + 5.0);
+    const Vector3d away(std::cos(heading), std::sin(heading), 0.0);
+    const Vector3d along(-away.y(), away.x(), 0.0);
+    const double noise = random.uniform(-0.003, 0.003);
+    if (k % 5 == 0) {
+      const double range = 8.0 * std::sqrt(random.uniform());
+      const double round = random.uniform(0.0, 6.2831);
+      scan.points.emplace_back(range * std::cos(round), range * std::sin(round), -1.5 + noise);
+    } else {
+      scan.points.emplace_back(away * (6.0 + noise) + along * random.uniform(-1.0, 1.0) +
+                               Vector3d(0, 0, random.uniform(-1.0, 1.5)));
+    }
+  }
+  scan.centres = {Vector3d(2.0, 0.0, 0.0)};  // it was not there
+  scan.centre_source = PlaceSource::assumed;
+  EXPECT_GT(find_scan_frame(scan, Gravity::automatic).frame_from_scan(2, 2), 0.99);
+}
+
 TEST(ScanFrame, AndItsPointsDoNotDependOnTheirOrder) {
   const Scan scan = room_of_a_flat();
   std::vector<std::uint32_t> order(scan.size());

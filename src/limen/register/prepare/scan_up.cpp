@@ -21,10 +21,11 @@ constexpr double kPerConeDeg = 0.25;
 constexpr double kMostConeDeg = 40.0;
 constexpr double kLeastConeDeg = 8.0;  // any direction of a room seen by hand has as much by chance
 constexpr double kAlongShare = 8.0;
+constexpr double kRingDeg = 6.0;  // about a cone: what bounds it
 constexpr double kClosedBelow = 2.0;
 constexpr double kClosedAbove = 1.0;
 constexpr double kStandsOnFloor = 2.0;
-constexpr double kNearerToFloor = 1.0;
+constexpr double kStandsAtEyeHeight = 1.0;
 constexpr double kDoubt = 0.4;  // of what a place says that the points do not bear out
 constexpr double kGroundUnderPath = 10.0;
 constexpr double kFilesZ = 3.0;
@@ -36,6 +37,8 @@ constexpr double kZGoodDeg = 5.0;  // a file's z counts whole up to here, and no
 constexpr double kZBadDeg = 20.0;
 constexpr double kLowestTripodM = 0.3;
 constexpr double kHighestTripodM = 3.0;
+constexpr double kLowestEyeM = 1.2;  // most are set up so that one can look at the instrument
+constexpr double kHighestEyeM = 2.0;
 constexpr double kLowPathM = 1.0;
 constexpr double kHighPathM = 5.0;
 constexpr double kPathSpreadM = 0.6;
@@ -156,7 +159,7 @@ double storey_evidence(const Scan& sample, const std::vector<FramePlane>& planes
   const double stands = sample.centre(0).dot(up) - storey.floor_m;
   const double trust = place_sure ? 1.0 : kDoubt;
   if (stands > kLowestTripodM && stands < kHighestTripodM) evidence += trust * kStandsOnFloor;
-  if (stands > 0.0 && stands < storey.ceiling_m - storey.floor_m - stands) evidence += trust * kNearerToFloor;
+  if (stands > kLowestEyeM && stands < kHighestEyeM) evidence += trust * kStandsAtEyeHeight;
   return evidence;
 }
 
@@ -187,14 +190,45 @@ bool ground_under_path(const Scan& sample, const std::vector<FramePlane>& planes
   });
 }
 
+/// Share of what bounds the empty cone below that lies on the floor, of which a blind cone leaves a disc out.
+double share_cut_from_floor(const Scan& sample, const Vector3d& up, double cone_deg, double floor_m) {
+  const double inner = std::cos(radians(cone_deg));
+  const double outer = std::cos(radians(cone_deg + kRingDeg));
+  std::size_t ring = 0;
+  std::size_t on_floor = 0;
+  for (std::size_t i = 0; i < sample.size(); i += 1 + sample.size() / kConePoints) {
+    const Vector3d ray = sample.points[i] - sample.centre(i);
+    const double cosine = -ray.normalized().dot(up);
+    if (cosine > inner || cosine < outer) continue;
+    ++ring;
+    on_floor += std::abs(sample.points[i].dot(up) - floor_m) < 0.1 ? 1U : 0U;
+  }
+  return ring == 0 ? 0.0 : static_cast<double>(on_floor) / static_cast<double>(ring);
+}
+
+/// What the directions say in which nothing was seen. Every scanner is blind below it; some see no zenith
+/// either, and of two blind cones the wider may be either. Where the points do not bear out that rays started
+/// at the place, an empty cone may be a sky, and counts as far as it is cut out of a floor.
+double cone_evidence(const Scan& sample, const std::vector<FramePlane>& planes, const Vector3d& up,
+                     bool place_sure) {
+  const double below = empty_cone_deg(sample, -up);
+  const double above = empty_cone_deg(sample, up);
+  const auto counted = [](double cone) { return std::min(cone, kMostConeDeg) - kLeastConeDeg; };
+  if (below <= kLeastConeDeg) return 0.0;
+  const double blind_below = std::min(1.0, below / kLeastConeDeg - 1.0);
+  const double deg = counted(below) + blind_below * std::max(0.0, counted(above) - counted(below));
+  const double trust =
+      place_sure ? 1.0 : share_cut_from_floor(sample, up, below, storey_along(planes, up).floor_m);
+  return trust * kPerConeDeg * deg;
+}
+
 double evidence_for(const Scan& sample, const std::vector<FramePlane>& planes, const Vector3d& up,
                     Gravity gravity, bool place_sure) {
   double evidence = kAlongShare * along_share(planes, up) + storey_evidence(sample, planes, up, place_sure);
   if (sample.mobile()) {
     if (ground_under_path(sample, planes, up)) evidence += kGroundUnderPath;
   } else if (sample.centre_known()) {
-    const double cone = std::clamp(empty_cone_deg(sample, -up), kLeastConeDeg, kMostConeDeg);
-    evidence += kPerConeDeg * (cone - kLeastConeDeg);
+    evidence += cone_evidence(sample, planes, up, place_sure);
   }
   if (gravity == Gravity::unknown) return evidence;
   const double off = degrees(std::acos(std::clamp(up.z(), -1.0, 1.0)));

@@ -88,7 +88,7 @@ class BimSurveyor {
   }
 
   [[nodiscard]] bool is_chosen(std::size_t room, RoomChoice choice) const {
-    if (choice == RoomChoice::any || choice == RoomChoice::each) return true;
+    if (choice == RoomChoice::any) return true;
     const bool repeated = std::any_of(rooms_.begin(), rooms_.end(), [&](const BimRoom& other) {
       return &other != &rooms_[room] && alike(rooms_[room], other);
     });
