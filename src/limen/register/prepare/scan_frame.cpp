@@ -226,7 +226,7 @@ ScanFrame find_scan_frame(const Scan& scan, Gravity gravity, Monitor& monitor) {
   const Matrix3d axes = frame_by(first, main_normal(first), few, Gravity::unknown);
   found.place = find_scanner_place(scan, first, axes);
   sample = seen_from(std::move(sample), found.place);
-  const ScanUp up = find_up(sample, first, gravity, found.place.confirmed);
+  const ScanUp up = find_up(sample, first, gravity, found.place);
   found.upright = up.clear;
   found.surely_upright = up.sure;
   const Matrix3d about = frame_by(first, up.up, sample, gravity);

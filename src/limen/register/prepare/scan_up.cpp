@@ -150,14 +150,14 @@ double closed(double share) {
 
 /// What the room's shape says for `up`.
 double storey_evidence(const Scan& sample, const std::vector<FramePlane>& planes, const Vector3d& up,
-                       bool place_sure) {
+                       const ScannerPlace& place) {
   const Storey storey = storey_along(planes, up);
   if (!storey.seen) return 0.0;
   double evidence = kClosedBelow * closed(share_beyond(sample, -up, -storey.floor_m)) +
                     kClosedAbove * closed(share_beyond(sample, up, storey.ceiling_m));
   if (!sample.centre_known() || sample.mobile()) return evidence;
   const double stands = sample.centre(0).dot(up) - storey.floor_m;
-  const double trust = place_sure ? 1.0 : kDoubt;
+  const double trust = place.confirmed ? 1.0 : kDoubt;
   if (stands > kLowestTripodM && stands < kHighestTripodM) evidence += trust * kStandsOnFloor;
   if (stands > kLowestEyeM && stands < kHighestEyeM) evidence += trust * kStandsAtEyeHeight;
   return evidence;
@@ -208,27 +208,29 @@ double share_cut_from_floor(const Scan& sample, const Vector3d& up, double cone_
 
 /// What the directions say in which nothing was seen. Every scanner is blind below it; some see no zenith
 /// either, and of two blind cones the wider may be either. Where the points do not bear out that rays started
-/// at the place, an empty cone may be a sky, and counts as far as it is cut out of a floor.
+/// at the place, an empty cone may be a sky, and counts as far as it is cut out of a floor; where somebody
+/// told the place no less than what else is said of it.
 double cone_evidence(const Scan& sample, const std::vector<FramePlane>& planes, const Vector3d& up,
-                     bool place_sure) {
+                     const ScannerPlace& place) {
   const double below = empty_cone_deg(sample, -up);
   const double above = empty_cone_deg(sample, up);
   const auto counted = [](double cone) { return std::min(cone, kMostConeDeg) - kLeastConeDeg; };
   if (below <= kLeastConeDeg) return 0.0;
   const double blind_below = std::min(1.0, below / kLeastConeDeg - 1.0);
   const double deg = counted(below) + blind_below * std::max(0.0, counted(above) - counted(below));
-  const double trust =
-      place_sure ? 1.0 : share_cut_from_floor(sample, up, below, storey_along(planes, up).floor_m);
+  if (place.confirmed) return kPerConeDeg * deg;
+  const double from_floor = share_cut_from_floor(sample, up, below, storey_along(planes, up).floor_m);
+  const double trust = std::max(place.source == PlaceSource::assumed ? 0.0 : kDoubt, from_floor);
   return trust * kPerConeDeg * deg;
 }
 
 double evidence_for(const Scan& sample, const std::vector<FramePlane>& planes, const Vector3d& up,
-                    Gravity gravity, bool place_sure) {
-  double evidence = kAlongShare * along_share(planes, up) + storey_evidence(sample, planes, up, place_sure);
+                    Gravity gravity, const ScannerPlace& place) {
+  double evidence = kAlongShare * along_share(planes, up) + storey_evidence(sample, planes, up, place);
   if (sample.mobile()) {
     if (ground_under_path(sample, planes, up)) evidence += kGroundUnderPath;
   } else if (sample.centre_known()) {
-    evidence += cone_evidence(sample, planes, up, place_sure);
+    evidence += cone_evidence(sample, planes, up, place);
   }
   if (gravity == Gravity::unknown) return evidence;
   const double off = degrees(std::acos(std::clamp(up.z(), -1.0, 1.0)));
@@ -238,7 +240,8 @@ double evidence_for(const Scan& sample, const std::vector<FramePlane>& planes, c
 
 }  // namespace
 
-ScanUp find_up(const Scan& sample, const std::vector<FramePlane>& planes, Gravity gravity, bool place_sure) {
+ScanUp find_up(const Scan& sample, const std::vector<FramePlane>& planes, Gravity gravity,
+               const ScannerPlace& place) {
   std::vector<AreaAxis> axes = main_axes(planes);
   const bool z_told = gravity != Gravity::unknown;
   const auto near_z = [](const AreaAxis& axis) {
@@ -253,7 +256,7 @@ ScanUp find_up(const Scan& sample, const std::vector<FramePlane>& planes, Gravit
   for (const AreaAxis& axis : axes) {
     for (const double sign : {1.0, -1.0}) {
       const Vector3d up = sign * axis.direction;
-      rated.push_back({up, evidence_for(sample, planes, up, gravity, place_sure)});
+      rated.push_back({up, evidence_for(sample, planes, up, gravity, place)});
     }
   }
   std::stable_sort(rated.begin(), rated.end(),

@@ -6,6 +6,7 @@
 
 #include "limen/model/method.h"
 #include "limen/model/scan.h"
+#include "limen/model/scanner_place.h"
 #include "limen/register/prepare/frame_planes.h"
 
 namespace limen {
@@ -18,8 +19,9 @@ struct ScanUp {
 };
 
 /// Up of a scan whose large planes are `planes`. `sample`: an even share of its points, with the place of its
-/// scanner where that is known; `place_sure`: the points bear it out.
-ScanUp find_up(const Scan& sample, const std::vector<FramePlane>& planes, Gravity gravity, bool place_sure);
+/// scanner where that is known; `place`: how much is known of that.
+ScanUp find_up(const Scan& sample, const std::vector<FramePlane>& planes, Gravity gravity,
+               const ScannerPlace& place);
 
 /// `up` settled on the planes: as well as can be across the floors and along the walls.
 Vector3d settled_up(const Vector3d& up, const std::vector<FramePlane>& planes, bool mobile);
