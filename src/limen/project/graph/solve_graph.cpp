@@ -280,15 +280,17 @@ class Solver {
     std::vector<Weight> most(first.size());
     for (const std::vector<int>& part : parts) {
       if (part.empty()) continue;
+      const auto home = static_cast<std::size_t>(component(part.front()));
+      if (static_cast<std::ptrdiff_t>(part.size()) < most[home].first) continue;
       const auto firm = std::find_if(part.begin(), part.end(), [&](int node) {
         return from_larger[static_cast<std::size_t>(node)] <= JoinTrust::likely;
       });
       const int candidate = firm == part.end() ? part.front() : *firm;
       const std::ptrdiff_t firm_count = counted(part, from_larger);
-      const std::ptrdiff_t count = firm_count == static_cast<std::ptrdiff_t>(part.size())
-                                       ? firm_count
-                                       : counted(part, grown_.trust_from(candidate));
-      const auto home = static_cast<std::size_t>(component(candidate));
+      const bool all_firm = firm_count == static_cast<std::ptrdiff_t>(part.size());
+      // Every node is sure of itself.
+      const std::ptrdiff_t count = all_firm || part.size() == 1 ? static_cast<std::ptrdiff_t>(part.size())
+                                                                : counted(part, grown_.trust_from(candidate));
       const Weight weight{count, firm_count};
       const bool earlier = weight == most[home] && candidate < first[home];
       if (first[home] >= 0 && weight <= most[home] && !earlier) continue;

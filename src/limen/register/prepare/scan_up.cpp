@@ -83,8 +83,15 @@ std::vector<AreaAxis> main_axes(const std::vector<FramePlane>& planes) {
   return axes;
 }
 
-/// Degrees from `axis` to the first points about it.
-double empty_cone_deg(const Scan& sample, const Vector3d& axis) {
+/// Degrees from either end of an axis to the first points about it.
+struct EmptyCones {
+  double along_deg = 0.0;
+  double against_deg = 0.0;
+
+  [[nodiscard]] EmptyCones reversed() const { return {against_deg, along_deg}; }
+};
+
+EmptyCones empty_cones(const Scan& sample, const Vector3d& axis) {
   std::vector<double> cosines;
   cosines.reserve(kConePoints + 1);
   for (std::size_t i = 0; i < sample.size(); i += 1 + sample.size() / kConePoints) {
@@ -92,10 +99,14 @@ double empty_cone_deg(const Scan& sample, const Vector3d& axis) {
     const double range = ray.norm();
     if (range > 0.05) cosines.push_back(ray.dot(axis) / range);
   }
-  if (cosines.size() < 100) return 0.0;
+  if (cosines.size() < 100) return {};
   const auto strays = static_cast<std::ptrdiff_t>(kStrayShare * static_cast<double>(cosines.size()));
-  std::nth_element(cosines.begin(), cosines.begin() + strays, cosines.end(), std::greater<>());
-  return degrees(std::acos(std::clamp(cosines[static_cast<std::size_t>(strays)], -1.0, 1.0)));
+  const auto stray = cosines.begin() + strays;
+  const auto cone_deg = [](double cosine) { return degrees(std::acos(std::clamp(cosine, -1.0, 1.0))); };
+  std::nth_element(cosines.begin(), stray, cosines.end(), std::greater<>());
+  const double along_deg = cone_deg(*stray);
+  std::nth_element(cosines.begin(), stray, cosines.end());
+  return {along_deg, cone_deg(-*stray)};
 }
 
 /// Share of the planes' area that lies along or across `up`.
@@ -211,9 +222,9 @@ double share_cut_from_floor(const Scan& sample, const Vector3d& up, double cone_
 /// at the place, an empty cone may be a sky, and counts as far as it is cut out of a floor; where somebody
 /// told the place no less than what else is said of it.
 double cone_evidence(const Scan& sample, const std::vector<FramePlane>& planes, const Vector3d& up,
-                     const ScannerPlace& place) {
-  const double below = empty_cone_deg(sample, -up);
-  const double above = empty_cone_deg(sample, up);
+                     const EmptyCones& cones, const ScannerPlace& place) {
+  const double below = cones.against_deg;
+  const double above = cones.along_deg;
   const auto counted = [](double cone) { return std::min(cone, kMostConeDeg) - kLeastConeDeg; };
   if (below <= kLeastConeDeg) return 0.0;
   const double blind_below = std::min(1.0, below / kLeastConeDeg - 1.0);
@@ -225,12 +236,12 @@ double cone_evidence(const Scan& sample, const std::vector<FramePlane>& planes, 
 }
 
 double evidence_for(const Scan& sample, const std::vector<FramePlane>& planes, const Vector3d& up,
-                    Gravity gravity, const ScannerPlace& place) {
+                    const EmptyCones& cones, Gravity gravity, const ScannerPlace& place) {
   double evidence = kAlongShare * along_share(planes, up) + storey_evidence(sample, planes, up, place);
   if (sample.mobile()) {
     if (ground_under_path(sample, planes, up)) evidence += kGroundUnderPath;
   } else if (sample.centre_known()) {
-    evidence += cone_evidence(sample, planes, up, place);
+    evidence += cone_evidence(sample, planes, up, cones, place);
   }
   if (gravity == Gravity::unknown) return evidence;
   const double off = degrees(std::acos(std::clamp(up.z(), -1.0, 1.0)));
@@ -253,11 +264,12 @@ ScanUp find_up(const Scan& sample, const std::vector<FramePlane>& planes, Gravit
     double evidence;
   };
   std::vector<Rated> rated;
+  const bool sees_cones = sample.centre_known() && !sample.mobile();
   for (const AreaAxis& axis : axes) {
-    for (const double sign : {1.0, -1.0}) {
-      const Vector3d up = sign * axis.direction;
-      rated.push_back({up, evidence_for(sample, planes, up, gravity, place)});
-    }
+    const EmptyCones cones = sees_cones ? empty_cones(sample, axis.direction) : EmptyCones{};
+    rated.push_back({axis.direction, evidence_for(sample, planes, axis.direction, cones, gravity, place)});
+    rated.push_back(
+        {-axis.direction, evidence_for(sample, planes, -axis.direction, cones.reversed(), gravity, place)});
   }
   std::stable_sort(rated.begin(), rated.end(),
                    [](const Rated& a, const Rated& b) { return a.evidence > b.evidence; });
