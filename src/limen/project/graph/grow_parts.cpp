@@ -155,9 +155,8 @@ class Grower {
     const Rigid3 lower_from_higher = inverse(how.higher_from_lower);
     const std::vector<int>& low = members_[static_cast<std::size_t>(lower)];
     const std::vector<int>& high = members_[static_cast<std::size_t>(higher)];
-    const bool low_is_smaller = low.size() < high.size();
     if (how.trust > JoinTrust::sure)
-      grown_.joins.push_back({low_is_smaller ? low : high, low_is_smaller ? high : low, how.trust});
+      grown_.joins.push_back({low.size() < high.size() ? low : high, how.trust});
     for (const int node : members_[static_cast<std::size_t>(higher)]) {
       const auto n = static_cast<std::size_t>(node);
       grown_.part[n] = lower;
@@ -407,11 +406,12 @@ class Grower {
 std::vector<JoinTrust> GrownParts::trust_from(int reference) const {
   std::vector<JoinTrust> trust(part.size(), JoinTrust::sure);
   for (const GrownJoin& join : joins) {
-    const bool from_smaller =
-        std::find(join.smaller.begin(), join.smaller.end(), reference) != join.smaller.end();
-    for (const int node : from_smaller ? join.larger : join.smaller) {
-      JoinTrust& of_node = trust[static_cast<std::size_t>(node)];
-      of_node = std::max(of_node, join.trust);
+    std::vector<bool> within(part.size(), false);
+    for (const int node : join.smaller) within[static_cast<std::size_t>(node)] = true;
+    const bool from_smaller = reference >= 0 && within[static_cast<std::size_t>(reference)];
+    const int home = part[static_cast<std::size_t>(join.smaller.front())];
+    for (std::size_t node = 0; node < part.size(); ++node) {
+      if (within[node] != from_smaller && part[node] == home) trust[node] = std::max(trust[node], join.trust);
     }
   }
   return trust;

@@ -11,10 +11,9 @@ namespace limen {
 /// How sure the join was that brought a node to its part.
 enum class JoinTrust { sure, likely, open, weak };
 
-/// Two parts that were put together in a way that is not sure.
+/// A part that was put together with a larger one in a way that is not sure.
 struct GrownJoin {
   std::vector<int> smaller;
-  std::vector<int> larger;
   JoinTrust trust = JoinTrust::likely;
 };
 
@@ -24,8 +23,8 @@ struct GrownParts {
   std::vector<Rigid3> part_from_node;  ///< in the frame of that lowest node
   std::vector<GrownJoin> joins;        ///< those that are not sure, in their order
 
-  /// Of each node the least sure join between it and `reference`; of joins that were made before the
-  /// reference came to its part, those between the node and the larger side.
+  /// Of each node the least sure join between it and `reference`. From the smaller side of a join all else is
+  /// no surer than that, also what came to the part later, for it may hang on the larger side.
   [[nodiscard]] std::vector<JoinTrust> trust_from(int reference) const;
   /// The same seen from the larger side of every join.
   [[nodiscard]] std::vector<JoinTrust> trust() const { return trust_from(-1); }
