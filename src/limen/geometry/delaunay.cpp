@@ -211,11 +211,13 @@ class DelaunayBuilder {
     const Whole& a = at(face.corners[0]);
     const Whole& b = at(face.corners[1]);
     const Whole& c = at(face.corners[2]);
-    const auto length = [](const Whole& p, const Whole& q) {
-      return std::hypot(static_cast<double>(p.x - q.x), static_cast<double>(p.y - q.y));
+    const auto squared = [](const Whole& p, const Whole& q) {
+      const auto x = static_cast<double>(p.x - q.x);
+      const auto y = static_cast<double>(p.y - q.y);
+      return x * x + y * y;
     };
     const auto twice_area = static_cast<double>(side_of_line(a, b, c));
-    return length(a, b) * length(b, c) * length(c, a) <= 2.0 * twice_area * most_radius;
+    return std::sqrt(squared(a, b) * squared(b, c) * squared(c, a)) <= 2.0 * twice_area * most_radius;
   }
 
   std::int32_t inner_;  ///< points before the three outer corners

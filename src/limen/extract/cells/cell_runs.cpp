@@ -19,6 +19,46 @@ std::uint32_t place_in_cells(std::uint32_t x, std::uint32_t y, std::uint32_t z) 
   return (x & 1U) | (y & 1U) << 1U | (z & 1U) << 2U | (x & 2U) << 2U | (y & 2U) << 3U | (z & 2U) << 4U;
 }
 
+/// One of the cubes around a cube.
+struct Step {
+  std::uint8_t block;  ///< in which of the eight blocks around it lies, as in `CellRuns::neighbours`
+  std::uint8_t place;  ///< where in it
+};
+constexpr std::size_t kSteps = 26;
+constexpr std::size_t kPlaces = 64;
+
+/// The steps from each place in a block.
+std::array<std::array<Step, kSteps>, kPlaces> all_steps() {
+  std::array<std::array<Step, kSteps>, kPlaces> all{};
+  for (std::uint32_t from = 0; from < kPlaces; ++from) {
+    const CellIndex in_block = morton_decode(from);
+    const CellIndex at = {in_block.x + 4, in_block.y + 4, in_block.z + 4};
+    const auto upper = [](std::uint32_t to, std::uint32_t of) {
+      return to >> 2U == (of - 1) >> 2U ? 0U : 1U;
+    };
+    std::size_t count = 0;
+    for (std::uint32_t step = 0; step < 27; ++step) {
+      if (step == 13) continue;
+      const std::uint32_t x = at.x + step % 3 - 1;
+      const std::uint32_t y = at.y + step / 3 % 3 - 1;
+      const std::uint32_t z = at.z + step / 9 - 1;
+      all[from][count++] = {
+          static_cast<std::uint8_t>(upper(x, at.x) | upper(y, at.y) << 1U | upper(z, at.z) << 2U),
+          static_cast<std::uint8_t>(place_in_cells(x, y, z))};
+    }
+  }
+  return all;
+}
+
+/// How many bits are set. Not every processor that this runs on has an instruction for it, and a call takes
+/// longer.
+std::int32_t count_bits(std::uint64_t bits) {
+  bits -= (bits >> 1U) & 0x5555555555555555ULL;
+  bits = (bits & 0x3333333333333333ULL) + ((bits >> 2U) & 0x3333333333333333ULL);
+  bits = (bits + (bits >> 4U)) & 0x0f0f0f0f0f0f0f0fULL;
+  return static_cast<std::int32_t>((bits * 0x0101010101010101ULL) >> 56U);
+}
+
 }  // namespace
 
 int level_of(double cell_m, double finest_m) {
@@ -79,25 +119,21 @@ CellNeighbours CellRuns::neighbours(std::size_t i) const {
   const auto straddles = [](std::uint32_t x) { return (x - 1) >> 2U != (x + 1) >> 2U ? 1U : 0U; };
   const std::uint32_t two = straddles(at.x) | straddles(at.y) << 1U | straddles(at.z) << 2U;
   const auto block_of = [](std::uint32_t x, bool upper) { return (upper ? x + 1 : x - 1) >> 2U; };
-  std::array<const Block*, 8> blocks{};
+  static const Block none;
+  std::array<const Block*, 8> blocks{&none, &none, &none, &none, &none, &none, &none, &none};
   for (std::uint32_t side = 0; side < 8; ++side) {
     if ((side & ~two) != 0) continue;
-    blocks[side] = find(morton_encode(block_of(at.x, (side & 1U) != 0), block_of(at.y, (side & 2U) != 0),
-                                      block_of(at.z, (side & 4U) != 0)));
+    const Block* const block =
+        find(morton_encode(block_of(at.x, (side & 1U) != 0), block_of(at.y, (side & 2U) != 0),
+                           block_of(at.z, (side & 4U) != 0)));
+    if (block != nullptr) blocks[side] = block;
   }
+  static const std::array<std::array<Step, kSteps>, kPlaces> steps = all_steps();
   CellNeighbours found;
-  for (std::uint32_t step = 0; step < 27; ++step) {
-    if (step == 13) continue;
-    const std::uint32_t x = at.x + step % 3 - 1;
-    const std::uint32_t y = at.y + step / 3 % 3 - 1;
-    const std::uint32_t z = at.z + step / 9 - 1;
-    const auto upper = [](std::uint32_t to, std::uint32_t from) {
-      return to >> 2U == (from - 1) >> 2U ? 0U : 1U;
-    };
-    const Block* const block = blocks[upper(x, at.x) | upper(y, at.y) << 1U | upper(z, at.z) << 2U];
-    const std::uint32_t place = place_in_cells(x, y, z);
-    if (block == nullptr || (block->mask >> place & 1U) == 0) continue;
-    found.add(block->first + std::popcount(block->mask & ((std::uint64_t{1} << place) - 1U)));
+  for (const Step& step : steps[codes_[i] & kInBlock]) {
+    const Block& block = *blocks[step.block];
+    if ((block.mask >> step.place & 1U) == 0) continue;
+    found.add(block.first + count_bits(block.mask & ((std::uint64_t{1} << step.place) - 1U)));
   }
   return found;
 }

@@ -79,13 +79,6 @@ void radix_pass(const std::vector<CurvePlace>& from, std::vector<CurvePlace>& to
   });
 }
 
-/// Digits above the highest bit in which any two codes differ need no pass.
-std::uint32_t differing_bits(const std::vector<CurvePlace>& items) {
-  std::uint64_t differ = 0;
-  for (const CurvePlace& item : items) differ |= item.code ^ items.front().code;
-  return static_cast<std::uint32_t>(std::bit_width(differ));
-}
-
 }  // namespace
 
 std::uint64_t morton_encode(std::uint32_t x, std::uint32_t y, std::uint32_t z) {
@@ -103,20 +96,30 @@ CurveOrder along_curve(const std::vector<Vector3d>& points, double cell_m) {
   for (int axis = 0; axis < 3; ++axis) sorted.anchor[axis] = first_cell(points, extent, axis, cell_m);
   std::vector<CurvePlace>& items = sorted.places;
   items.resize(points.size());
-  parallel_for(points.size(), 65536, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const Vector3d x = points[i] - sorted.anchor;
-      items[i] = {morton_encode(cell_coordinate(x.x(), cell_m), cell_coordinate(x.y(), cell_m),
-                                cell_coordinate(x.z(), cell_m)),
-                  static_cast<std::uint32_t>(i)};
-    }
-  });
+  const auto code_of = [&](const Vector3d& point) {
+    const Vector3d x = point - sorted.anchor;
+    return morton_encode(cell_coordinate(x.x(), cell_m), cell_coordinate(x.y(), cell_m),
+                         cell_coordinate(x.z(), cell_m));
+  };
+  const std::uint64_t first = code_of(points.front());
+  const std::uint64_t differ = parallel_reduce(
+      points.size(), 65536, std::uint64_t{0},
+      [&](std::size_t begin, std::size_t end) {
+        std::uint64_t part = 0;
+        for (std::size_t i = begin; i < end; ++i) {
+          items[i] = {code_of(points[i]), static_cast<std::uint32_t>(i)};
+          part |= items[i].code ^ first;
+        }
+        return part;
+      },
+      [](std::uint64_t a, std::uint64_t b) { return a | b; });
   // Points that were laid along the curve once stay so, also with larger cubes.
   if (std::is_sorted(items.begin(), items.end(),
                      [](const CurvePlace& a, const CurvePlace& b) { return a.code < b.code; }))
     return sorted;
   std::vector<CurvePlace> other(items.size());
-  const std::uint32_t bits = differing_bits(items);
+  // Digits above the highest bit in which any two codes differ need no pass.
+  const auto bits = static_cast<std::uint32_t>(std::bit_width(differ));
   for (std::uint32_t shift = 0; shift < bits; shift += kDigitBits) {
     radix_pass(items, other, shift);
     items.swap(other);

@@ -77,10 +77,18 @@ Line best_line(const std::vector<SidePoint>& points, double slope, double width)
   return best;
 }
 
+/// What no line through the points exceeds.
+double most_score(const std::vector<SidePoint>& points) {
+  WindowScore all;
+  for (const SidePoint& p : points) all.add(p.depth);
+  return all.score();
+}
+
 /// The side through points at most depths; straight unless a splayed one is clearly better.
 Line find_line(const std::vector<SidePoint>& points, double width) {
   Line best = best_line(points, 0.0, width);
   best.score *= kSplayGain;
+  if (best.score >= most_score(points)) return best;
   for (double slope = kSlopeStep; slope < kMaxSlope; slope += kSlopeStep) {
     for (const double signed_slope : {slope, -slope}) {
       const Line line = best_line(points, signed_slope, width);

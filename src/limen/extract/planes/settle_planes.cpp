@@ -99,11 +99,14 @@ class Candidates {
   }
   [[nodiscard]] std::int32_t nearest(std::uint32_t k, const std::vector<std::int32_t>& near) const {
     // Far from the others of its plane a point keeps it, unless the surface there faces another way.
-    std::int32_t best = labels_[k] >= 0 && fits(k, labels_[k]) ? labels_[k] : -1;
+    const std::int32_t own = labels_[k];
+    const bool own_fits = own >= 0 && fits(k, own);
+    std::int32_t best = own_fits ? own : -1;
+    if (near.size() == 1 && near.front() == own) return best;
     double smallest = threshold_m_;
     for (const std::int32_t i : near) {
       const double d = distance(k, i);
-      if (d >= smallest || !fits(k, i)) continue;
+      if (d >= smallest || !(i == own ? own_fits : fits(k, i))) continue;
       smallest = d;
       best = i;
     }

@@ -110,7 +110,7 @@ double trust_of(const Opening& opening) {
 
 Edge difference(const Edge& target, const Edge& source) {
   if (target.sigma >= kUnseenSigmaM || source.sigma >= kUnseenSigmaM) return {};
-  return {target.at - source.at, std::hypot(target.sigma, source.sigma, kFloorSigmaM)};
+  return {target.at - source.at, Vector3d(target.sigma, source.sigma, kFloorSigmaM).norm()};
 }
 
 /// The outline in the axes of the target's rectangle, counter-clockwise there.

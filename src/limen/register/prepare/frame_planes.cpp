@@ -3,7 +3,9 @@
 #include "limen/register/prepare/frame_planes.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -11,6 +13,7 @@
 #include "limen/base/parallel.h"
 #include "limen/extract/cells/cell_grid.h"
 #include "limen/geometry/linear.h"
+#include "limen/register/prepare/tukey_sums.h"
 
 namespace limen {
 namespace {
@@ -141,70 +144,38 @@ std::vector<FramePlane> layers_of(const std::vector<PlanePiece>& pieces, std::ve
   return planes;
 }
 
-/// Sums with weights: mean and covariance of what lies near a plane.
-struct Weighted {
-  double weight = 0.0;
-  Vector3d mean = Vector3d::Zero();
-  Matrix3d covariance = Matrix3d::Zero();
-};
-
-Weighted near_plane(const std::vector<Vector3d>& points, const Plane& plane, const Vector3d& anchor,
-                    double width_m) {
-  Weighted sums;
-  // Written out, each product once: a good part of laying a scan in its frame is spent here.
-  double xx = 0, yx = 0, yy = 0, zx = 0, zy = 0, zz = 0;
-  for (const Vector3d& x : points) {
-    const double off = plane.signed_distance(x) / width_m;
-    if (std::abs(off) >= 1.0) continue;
-    const double root = 1.0 - off * off;
-    const Vector3d about = x - anchor;
-    const double weight = root * root;
-    sums.weight += weight;
-    const Vector3d weighted = weight * about;
-    sums.mean += weighted;
-    xx += weighted[0] * about[0];
-    yx += weighted[1] * about[0];
-    yy += weighted[1] * about[1];
-    zx += weighted[2] * about[0];
-    zy += weighted[2] * about[1];
-    zz += weighted[2] * about[2];
-  }
-  if (sums.weight <= 0.0) return sums;
-  Matrix3d outer;
-  outer << xx, yx, zx, yx, yy, zy, zx, zy, zz;
-  sums.mean /= sums.weight;
-  sums.covariance = outer / sums.weight - sums.mean * sums.mean.transpose();
-  sums.mean += anchor;
-  return sums;
-}
-
 /// Tukey's fit from `start`, to rest: what it rests at does not depend on where near it it started.
-std::optional<FramePlane> settled(const std::vector<Vector3d>& points, const FramePlane& guess) {
-  const Plane& start = guess.plane;
-  std::vector<Vector3d> gathered;
-  Vector3d anchor = Vector3d::Zero();
-  for (const Vector3d& x : points) {
-    if (std::abs(start.signed_distance(x)) > kGatherM) continue;
-    gathered.push_back(x);
-    anchor += x;
-  }
-  if (gathered.size() < 50) return std::nullopt;
-  anchor /= static_cast<double>(gathered.size());
+std::optional<FramePlane> settled(const PointColumns& points, const FramePlane& guess) {
+  PointColumns near = near_plane(points, guess.plane, kGatherM);
+  if (near.size() < 50) return std::nullopt;
+  // About their middle, for the digits of the products.
+  const auto centred = [&](std::vector<double>& values) {
+    const double mean =
+        std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+    for (double& value : values) value -= mean;
+    return mean;
+  };
+  const Vector3d anchor(centred(near.x), centred(near.y), centred(near.z));
   FramePlane found = guess;
   for (int round = 0; round < kSettlings; ++round) {
-    const double width = round < 2 ? 2.0 * kTukeyM : kTukeyM;
-    const Weighted sums = near_plane(gathered, found.plane, anchor, width);
-    if (sums.weight < 30.0) return std::nullopt;
-    const Spectrum3 spectrum = spectrum_of(sums.covariance);
+    const double width_m = round < 2 ? 2.0 * kTukeyM : kTukeyM;
+    const Plane about{found.plane.normal, -found.plane.signed_distance(anchor)};
+    const std::array<double, 10> sums = tukey_sums(near, about, width_m);
+    if (sums[0] < 30.0) return std::nullopt;
+    const Vector3d mean = Vector3d(sums[1], sums[2], sums[3]) / sums[0];
+    Matrix3d outer;
+    outer << sums[4], sums[5], sums[6], sums[5], sums[7], sums[8], sums[6], sums[8], sums[9];
+    const Spectrum3 spectrum = spectrum_of(Matrix3d(outer / sums[0] - mean * mean.transpose()));
     Vector3d normal = spectrum.vectors.col(0);
     if (normal.dot(found.plane.normal) < 0) normal = -normal;
+    const Vector3d middle = mean + anchor;
     const double turn = (normal - found.plane.normal).norm();
-    const double shift = found.plane.signed_distance(sums.mean);
-    found.plane = {normal, normal.dot(sums.mean)};
-    found.middle = sums.mean;
+    const double shift = found.plane.signed_distance(middle);
+    found.plane = {normal, normal.dot(middle)};
+    found.middle = middle;
     if (round > 2 && turn < 1e-9 && std::abs(shift) < 1e-9) break;
   }
-  if (found.plane.normal.dot(start.normal) < std::cos(kSeedRad)) return std::nullopt;
+  if (found.plane.normal.dot(guess.plane.normal) < std::cos(kSeedRad)) return std::nullopt;
   return found;
 }
 
@@ -234,9 +205,11 @@ std::vector<FramePlane> frame_planes(const std::vector<Vector3d>& points) {
     const std::vector<FramePlane> layers = layers_of(pieces, members, *direction, least, found.edge_m);
     starts.insert(starts.end(), layers.begin(), layers.end());
   }
+  PointColumns columns;
+  for (const Vector3d& x : points) columns.add(x.x(), x.y(), x.z());
   std::vector<std::optional<FramePlane>> fits(starts.size());
   parallel_for(starts.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) fits[k] = settled(points, starts[k]);
+    for (std::size_t k = begin; k < end; ++k) fits[k] = settled(columns, starts[k]);
   });
   std::vector<FramePlane> planes;
   for (const std::optional<FramePlane>& fit : fits) {

@@ -24,14 +24,23 @@ void settle_ties(std::vector<CurvePlace>& sorted, const std::vector<Vector3d>& p
     const Vector3d& q = points[b.index];
     return std::lexicographical_compare(p.data(), p.data() + 3, q.data(), q.data() + 3);
   };
-  for (std::size_t begin = 0; begin < sorted.size();) {
-    std::size_t end = begin + 1;
-    while (end < sorted.size() && sorted[end].code == sorted[begin].code) ++end;
-    if (end - begin > 1)
-      std::stable_sort(sorted.begin() + static_cast<std::ptrdiff_t>(begin),
-                       sorted.begin() + static_cast<std::ptrdiff_t>(end), before);
-    begin = end;
+  std::vector<std::size_t> starts;  // of pieces that part no cube
+  for (std::size_t k = 0; k < sorted.size(); k += kLaidPerPiece) {
+    std::size_t start = starts.empty() ? 0 : std::max(k, starts.back());
+    while (start > 0 && start < sorted.size() && sorted[start].code == sorted[start - 1].code) ++start;
+    starts.push_back(start);
   }
+  starts.push_back(sorted.size());
+  parallel_for(starts.size() - 1, 1, [&](std::size_t first, std::size_t last) {
+    for (std::size_t begin = starts[first]; begin < starts[last];) {
+      std::size_t end = begin + 1;
+      while (end < sorted.size() && sorted[end].code == sorted[begin].code) ++end;
+      if (end - begin > 1)
+        std::stable_sort(sorted.begin() + static_cast<std::ptrdiff_t>(begin),
+                         sorted.begin() + static_cast<std::ptrdiff_t>(end), before);
+      begin = end;
+    }
+  });
 }
 
 /// values[i] for each i, made by `use` of the scan's value there.

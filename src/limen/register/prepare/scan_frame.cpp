@@ -229,7 +229,7 @@ ScanFrame find_scan_frame(const Scan& scan, Gravity gravity, Monitor& monitor) {
   const ScanUp up = find_up(sample, first, gravity, found.place);
   found.upright = up.clear;
   found.surely_upright = up.sure;
-  const Matrix3d about = frame_by(first, up.up, sample, gravity);
+  const Matrix3d about = frame_by(first, up.up, few, gravity);
   monitor.throw_if_cancelled();
   const std::vector<FramePlane> planes = planes_in(about, corner_of(about, sample.points), sample);
   found.place = refined_place(found.place, scan, planes, about);

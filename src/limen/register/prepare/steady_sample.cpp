@@ -3,8 +3,9 @@
 #include "limen/register/prepare/steady_sample.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <utility>
+#include <numeric>
 
 #include "limen/base/parallel.h"
 #include "limen/base/random.h"
@@ -16,6 +17,7 @@ constexpr std::size_t kSampledPerPiece = 65536;
 /// Spherical shells this thick are chosen or left out as a whole: thin, so that every surface has its share;
 /// thick against the rounding of 32-bit coordinates.
 constexpr double kShellM = 1e-3;
+constexpr std::uint64_t kNearShells = 32768;
 /// The middle is rounded to this: the order of summation must not show.
 constexpr double kMiddleM = 1e-7;
 
@@ -32,27 +34,84 @@ Vector3d middle_of(const std::vector<Vector3d>& points) {
   return ((mean / kMiddleM).array().round() * kMiddleM).matrix();
 }
 
+/// A point by how far it lies from the middle.
+struct Ranged {
+  double range_m;
+  std::uint32_t index;
+};
+
+std::uint64_t shell_of(double range_m) {
+  return static_cast<std::uint64_t>(std::min(1e15, range_m / kShellM));
+}
+
+/// Which shells are chosen; of the nearest it is looked up.
+class ChosenShells {
+ public:
+  ChosenShells(std::size_t points, std::size_t most) : all_(points <= most) {
+    const double share = std::min(1.0, static_cast<double>(most) / static_cast<double>(points + 1));
+    bound_ = static_cast<std::uint64_t>(share * 18446744073709549568.0);
+    for (std::uint64_t shell = 0; shell < kNearShells; ++shell) near_[shell] = decide(shell);
+  }
+  [[nodiscard]] bool has(std::uint64_t shell) const {
+    return shell < kNearShells ? near_[shell] : decide(shell);
+  }
+
+ private:
+  [[nodiscard]] bool decide(std::uint64_t shell) const { return all_ || mix64(shell + 1) < bound_; }
+
+  bool all_;
+  std::uint64_t bound_ = 0;
+  std::array<bool, kNearShells> near_{};
+};
+
+std::vector<Ranged> chosen_points(const std::vector<Vector3d>& points, const Vector3d& middle,
+                                  std::size_t most) {
+  const ChosenShells shells(points.size(), most);
+  std::vector<std::vector<Ranged>> parts((points.size() + kSampledPerPiece - 1) / kSampledPerPiece);
+  parallel_for(points.size(), kSampledPerPiece, [&](std::size_t begin, std::size_t end) {
+    std::vector<Ranged>& part = parts[begin / kSampledPerPiece];
+    for (std::size_t i = begin; i < end; ++i) {
+      const double range_m = (points[i] - middle).norm();
+      if (shells.has(shell_of(range_m))) part.push_back({range_m, static_cast<std::uint32_t>(i)});
+    }
+  });
+  std::vector<Ranged> chosen;
+  for (const std::vector<Ranged>& part : parts) chosen.insert(chosen.end(), part.begin(), part.end());
+  return chosen;
+}
+
+/// Nearest first, points equally far by their coordinates. Shells are sorted each for itself.
+std::vector<Ranged> sorted_outwards(const std::vector<Ranged>& chosen, const std::vector<Vector3d>& points) {
+  const auto bucket = [](const Ranged& point) { return std::min(shell_of(point.range_m), kNearShells); };
+  std::vector<std::size_t> ends(kNearShells + 2, 0);
+  for (const Ranged& point : chosen) ++ends[bucket(point) + 1];
+  std::partial_sum(ends.begin(), ends.end(), ends.begin());
+  std::vector<Ranged> sorted(chosen.size());
+  for (const Ranged& point : chosen) sorted[ends[bucket(point)]++] = point;
+  const auto nearer = [&](const Ranged& a, const Ranged& b) {
+    if (a.range_m != b.range_m) return a.range_m < b.range_m;
+    const Vector3d& p = points[a.index];
+    const Vector3d& q = points[b.index];
+    return std::lexicographical_compare(p.data(), p.data() + 3, q.data(), q.data() + 3);
+  };
+  std::size_t begin = 0;
+  for (const std::size_t end : ends) {
+    if (end > begin + 1)
+      std::sort(sorted.begin() + static_cast<std::ptrdiff_t>(begin),
+                sorted.begin() + static_cast<std::ptrdiff_t>(end), nearer);
+    begin = std::max(begin, end);
+  }
+  return sorted;
+}
+
 }  // namespace
 
 std::vector<std::uint32_t> steady_sample(const Scan& scan, std::size_t most) {
-  const Vector3d middle = middle_of(scan.points);
-  const double share = std::min(1.0, static_cast<double>(most) / static_cast<double>(scan.size() + 1));
-  const auto bound = static_cast<std::uint64_t>(share * 18446744073709549568.0);
-  std::vector<std::pair<double, std::uint32_t>> chosen;
-  for (std::uint32_t i = 0; i < scan.size(); ++i) {
-    const double range = (scan.points[i] - middle).norm();
-    const auto shell = static_cast<std::uint64_t>(std::min(1e15, range / kShellM));
-    if (scan.size() <= most || mix64(shell + 1) < bound) chosen.emplace_back(range, i);
-  }
-  std::sort(chosen.begin(), chosen.end(), [&](const auto& a, const auto& b) {
-    if (a.first != b.first) return a.first < b.first;
-    const Vector3d& p = scan.points[a.second];
-    const Vector3d& q = scan.points[b.second];
-    return std::lexicographical_compare(p.data(), p.data() + 3, q.data(), q.data() + 3);
-  });
+  const std::vector<Ranged> sorted =
+      sorted_outwards(chosen_points(scan.points, middle_of(scan.points), most), scan.points);
   std::vector<std::uint32_t> indices;
-  indices.reserve(chosen.size());
-  for (const auto& [range, index] : chosen) indices.push_back(index);
+  indices.reserve(sorted.size());
+  for (const Ranged& point : sorted) indices.push_back(point.index);
   return indices;
 }
 

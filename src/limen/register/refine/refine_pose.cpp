@@ -107,10 +107,11 @@ class Refiner {
     NormalEquations openings;
     for (const Contact& contact : contacts) {
       const bool plane = contact.source_plane >= 0;
-      const double sigma = plane ? std::hypot(contact.sigma_m, plane_sigma_m) : contact.sigma_m;
+      const double variance =
+          contact.sigma_m * contact.sigma_m + (plane ? plane_sigma_m * plane_sigma_m : 0.0);
       (plane ? planes : openings)
           .add(row_of(contact, centre), contact.residual_m,
-               robust_weight(contact.residual_m, contact.gate_m) / (sigma * sigma));
+               robust_weight(contact.residual_m, contact.gate_m) / variance);
     }
     const NormalEquations held = without_weak(planes);
     const Matrix6d normal = held.normal + openings.normal;
