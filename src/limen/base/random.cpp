@@ -6,13 +6,6 @@
 
 namespace limen {
 
-std::uint64_t mix64(std::uint64_t value) {
-  value += 0x9e3779b97f4a7c15ULL;
-  value = (value ^ (value >> 30U)) * 0xbf58476d1ce4e5b9ULL;
-  value = (value ^ (value >> 27U)) * 0x94d049bb133111ebULL;
-  return value ^ (value >> 31U);
-}
-
 RandomStream::RandomStream(std::uint64_t seed, std::uint64_t trial)
     : state_(mix64(seed ^ mix64(trial))), increment_((mix64(trial + 0x5851f42d4c957f2dULL) << 1U) | 1U) {
   next();

@@ -55,7 +55,7 @@ double first_cell(const std::vector<Vector3d>& points, const Extent& extent, int
 }
 
 /// One stable pass of a radix sort on `shift`'s digit; pieces keep their order, whoever works on them.
-void radix_pass(const std::vector<CurvePlace>& from, std::vector<CurvePlace>& to, std::uint32_t shift) {
+void radix_pass(const CurvePlaces& from, CurvePlaces& to, std::uint32_t shift) {
   const std::size_t n = from.size();
   const std::size_t grain = (n + kPieces - 1) / kPieces;
   std::vector<std::array<std::uint32_t, kDigits>> starts(kPieces);
@@ -94,7 +94,7 @@ CurveOrder along_curve(const std::vector<Vector3d>& points, double cell_m) {
   if (points.empty()) return sorted;
   const Extent extent = extent_of(points);
   for (int axis = 0; axis < 3; ++axis) sorted.anchor[axis] = first_cell(points, extent, axis, cell_m);
-  std::vector<CurvePlace>& items = sorted.places;
+  CurvePlaces& items = sorted.places;
   items.resize(points.size());
   const auto code_of = [&](const Vector3d& point) {
     const Vector3d x = point - sorted.anchor;
@@ -117,7 +117,7 @@ CurveOrder along_curve(const std::vector<Vector3d>& points, double cell_m) {
   if (std::is_sorted(items.begin(), items.end(),
                      [](const CurvePlace& a, const CurvePlace& b) { return a.code < b.code; }))
     return sorted;
-  std::vector<CurvePlace> other(items.size());
+  CurvePlaces other(items.size());
   // Digits above the highest bit in which any two codes differ need no pass.
   const auto bits = static_cast<std::uint32_t>(std::bit_width(differ));
   for (std::uint32_t shift = 0; shift < bits; shift += kDigitBits) {

@@ -7,6 +7,7 @@
 #include <memory>
 #include <vector>
 
+#include "limen/base/unset_allocator.h"
 #include "limen/geometry/rigid.h"
 
 namespace limen {
@@ -32,13 +33,14 @@ MortonOrder morton_order(const std::vector<Vector3d>& points, double cell_m);
 
 /// A point's place along the curve.
 struct CurvePlace {
-  std::uint64_t code = 0;   ///< its finest cube
-  std::uint32_t index = 0;  ///< of the point
+  std::uint64_t code;   ///< its finest cube
+  std::uint32_t index;  ///< of the point
 };
+using CurvePlaces = std::vector<CurvePlace, UnsetAllocator<CurvePlace>>;
 
 /// The order alone, for those who need no copy of the points. Points of one cube stay in their order.
 struct CurveOrder {
-  std::vector<CurvePlace> places;
+  CurvePlaces places;
   Vector3d anchor = Vector3d::Zero();  ///< corner of cell 0, 0, 0
 };
 CurveOrder along_curve(const std::vector<Vector3d>& points, double cell_m);

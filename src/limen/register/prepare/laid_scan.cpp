@@ -18,7 +18,7 @@ constexpr double kOrderM = 0.00125;
 constexpr std::size_t kLaidPerPiece = 65536;
 
 /// Points in one cube of the curve's order are sorted by their coordinates.
-void settle_ties(std::vector<CurvePlace>& sorted, const std::vector<Vector3d>& points) {
+void settle_ties(CurvePlaces& sorted, const std::vector<Vector3d>& points) {
   const auto before = [&](const CurvePlace& a, const CurvePlace& b) {
     const Vector3d& p = points[a.index];
     const Vector3d& q = points[b.index];
@@ -54,14 +54,14 @@ std::vector<Value> gathered(const std::vector<std::uint32_t>& indices, const Use
 }
 
 /// Gives the memory of a list back.
-template <typename Value>
-void drop(std::vector<Value>& list) {
-  std::vector<Value>().swap(list);
+template <typename List>
+void drop(List& list) {
+  List().swap(list);
 }
 
 /// Points brought into the order of the curve, and where they stood before.
 std::vector<std::uint32_t> sort_along_curve(std::vector<Vector3d>& points) {
-  std::vector<CurvePlace> places = along_curve(points, kOrderM).places;
+  CurvePlaces places = along_curve(points, kOrderM).places;
   settle_ties(places, points);
   std::vector<std::uint32_t> before(places.size());
   for (std::size_t k = 0; k < places.size(); ++k) before[k] = places[k].index;

@@ -8,6 +8,7 @@
 #include <complex>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -224,7 +225,8 @@ ScanFrame find_scan_frame(const Scan& scan, Gravity gravity, Monitor& monitor) {
   const std::vector<FramePlane> first = frame_planes(few.points);
   monitor.throw_if_cancelled();
   const Matrix3d axes = frame_by(first, main_normal(first), few, Gravity::unknown);
-  found.place = find_scanner_place(scan, first, axes);
+  std::optional<Scan> enough = sample_for_place(scan);
+  found.place = find_scanner_place(enough ? *enough : scan, first, axes);
   sample = seen_from(std::move(sample), found.place);
   const ScanUp up = find_up(sample, first, gravity, found.place);
   found.upright = up.clear;
@@ -232,7 +234,8 @@ ScanFrame find_scan_frame(const Scan& scan, Gravity gravity, Monitor& monitor) {
   const Matrix3d about = frame_by(first, up.up, few, gravity);
   monitor.throw_if_cancelled();
   const std::vector<FramePlane> planes = planes_in(about, corner_of(about, sample.points), sample);
-  found.place = refined_place(found.place, scan, planes, about);
+  found.place = refined_place(found.place, enough ? *enough : scan, planes, about);
+  enough.reset();
   found.frame_from_scan = frame_by(planes, about.row(2).transpose(), sample, gravity);
   found.corner = corner_of(found.frame_from_scan, scan.points);
   return found;

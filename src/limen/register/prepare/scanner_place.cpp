@@ -101,6 +101,11 @@ ScannerPlace tested(const Scan& scan, const Features& features, const Matrix3d& 
 
 }  // namespace
 
+std::optional<Scan> sample_for_place(const Scan& scan) {
+  if (scan.mobile() || scan.size() <= 2 * kEnough) return std::nullopt;
+  return subset(scan, steady_sample(scan, kEnough));
+}
+
 ScannerPlace find_scanner_place(const Scan& scan, const std::vector<FramePlane>& planes,
                                 const Matrix3d& axes) {
   ScannerPlace place;
@@ -108,8 +113,6 @@ ScannerPlace find_scanner_place(const Scan& scan, const std::vector<FramePlane>&
     place.source = PlaceSource::per_point;
     return place;
   }
-  if (scan.size() > 2 * kEnough)
-    return find_scanner_place(subset(scan, steady_sample(scan, kEnough)), planes, axes);
   const Features features = tiled(scan, planes, axes);
   if (scan.centre_known()) return tested(scan, features, axes);
   const std::optional<EstimatedCentre> found = estimate_centre(features);
@@ -119,8 +122,6 @@ ScannerPlace find_scanner_place(const Scan& scan, const std::vector<FramePlane>&
 ScannerPlace refined_place(const ScannerPlace& place, const Scan& scan, const std::vector<FramePlane>& planes,
                            const Matrix3d& axes) {
   if (place.source != PlaceSource::estimated) return place;
-  if (scan.size() > 2 * kEnough)
-    return refined_place(place, subset(scan, steady_sample(scan, kEnough)), planes, axes);
   const std::optional<TestedCentre> test = test_centre(tiled(scan, planes, axes), axes * place.centre);
   if (!test || test->nearby.misfit > kHolds) return place;
   ScannerPlace refined = estimated(test->nearby, axes);

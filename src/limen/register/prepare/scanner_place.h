@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "limen/model/scan.h"
@@ -9,9 +10,12 @@
 
 namespace limen {
 
+/// As many points of a large static scan as its scanner's place needs; none of a scan that is not large: it
+/// serves itself.
+std::optional<Scan> sample_for_place(const Scan& scan);
+
 /// Where the scanner of `scan` stood, about its local origin: what is claimed is tested and kept, or replaced
-/// by what the data show, or unknown. `sample`: an even share of the scan's points with its claim; `planes`:
-/// its large planes.
+/// by what the data show, or unknown. `planes`: its large planes.
 ///
 /// The data speak by the density of the points on planes (sight/estimate_centre.h), and a place that many
 /// seen surfaces hide from what else was seen cannot be the scanner's. A place is only refuted by a better

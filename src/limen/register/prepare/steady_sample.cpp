@@ -18,6 +18,7 @@ constexpr std::size_t kSampledPerPiece = 65536;
 /// thick against the rounding of 32-bit coordinates.
 constexpr double kShellM = 1e-3;
 constexpr std::uint64_t kNearShells = 32768;
+constexpr std::size_t kShellsPerPiece = 512;
 /// The middle is rounded to this: the order of summation must not show.
 constexpr double kMiddleM = 1e-7;
 
@@ -83,7 +84,7 @@ std::vector<Ranged> chosen_points(const std::vector<Vector3d>& points, const Vec
 /// Nearest first, points equally far by their coordinates. Shells are sorted each for itself.
 std::vector<Ranged> sorted_outwards(const std::vector<Ranged>& chosen, const std::vector<Vector3d>& points) {
   const auto bucket = [](const Ranged& point) { return std::min(shell_of(point.range_m), kNearShells); };
-  std::vector<std::size_t> ends(kNearShells + 2, 0);
+  std::vector<std::size_t> ends(kNearShells + 2, 0);  // shifted by one: where each shell begins
   for (const Ranged& point : chosen) ++ends[bucket(point) + 1];
   std::partial_sum(ends.begin(), ends.end(), ends.begin());
   std::vector<Ranged> sorted(chosen.size());
@@ -94,13 +95,15 @@ std::vector<Ranged> sorted_outwards(const std::vector<Ranged>& chosen, const std
     const Vector3d& q = points[b.index];
     return std::lexicographical_compare(p.data(), p.data() + 3, q.data(), q.data() + 3);
   };
-  std::size_t begin = 0;
-  for (const std::size_t end : ends) {
-    if (end > begin + 1)
-      std::sort(sorted.begin() + static_cast<std::ptrdiff_t>(begin),
-                sorted.begin() + static_cast<std::ptrdiff_t>(end), nearer);
-    begin = std::max(begin, end);
-  }
+  // `ends` holds where each shell ends by now.
+  parallel_for(ends.size(), kShellsPerPiece, [&](std::size_t first, std::size_t last) {
+    for (std::size_t shell = first; shell < last; ++shell) {
+      const std::size_t begin = shell == 0 ? 0 : ends[shell - 1];
+      if (ends[shell] > begin + 1)
+        std::sort(sorted.begin() + static_cast<std::ptrdiff_t>(begin),
+                  sorted.begin() + static_cast<std::ptrdiff_t>(ends[shell]), nearer);
+    }
+  });
   return sorted;
 }
 
