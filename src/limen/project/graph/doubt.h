@@ -18,6 +18,12 @@ struct NodeDoubt {
   std::vector<int> across;  ///< all links that would lie on twins
 
   [[nodiscard]] double total() const { return twin + chance - twin * chance; }
+  /// The same where the odds that a side of the project stands apart from the rest are these, 1 before.
+  [[nodiscard]] NodeDoubt where_few_stand_apart(double odds) const {
+    NodeDoubt less = *this;
+    less.twin = twin * odds / (1.0 - twin + twin * odds);
+    return less;
+  }
 };
 
 struct DoubtOptions {

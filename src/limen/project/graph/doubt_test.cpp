@@ -58,7 +58,8 @@ TEST(Doubt, WhatOneDoubtfulBridgeHoldsIsNotRegistered) {
     row.link(3, 2, twin ? 0.01 : 0.0, twin ? 0.0 : 0.01);
     const SolvedGraph solved = solve_graph(row.graph, 0.001);
     EXPECT_EQ(states_of(solved), (States{kYes, kYes, kYes, kOpen})) << twin;
-    EXPECT_NEAR(solved.nodes[3].doubt, 0.01, 1e-5);
+    // Two others of three are held: it stands apart by odds of 2 : 3.
+    EXPECT_NEAR(solved.nodes[3].doubt, twin ? 0.01 * 2.0 / 3.0 : 0.01, 1e-4);
     EXPECT_LT(solved.nodes[2].doubt, 1e-5);
     ASSERT_EQ(solved.questions.size(), 1U);
     EXPECT_EQ(solved.questions[0].moved, std::vector<int>{3});
@@ -151,6 +152,21 @@ TEST(Doubt, ATwinIsBelievedOnceAndRefutedByEveryLinkThatSeesOtherThings) {
   // Odds of 0.15 : 0.85 beforehand, which each link makes less, and but for the 5 % that both see.
   const double factor = (0.01 / 0.99) / (0.15 / 0.85);
   EXPECT_NEAR(solved.nodes[2].doubt, 0.15 / 0.85 * std::pow(factor, 1.95), 1e-5);
+}
+
+TEST(Doubt, ATwinIsRarerTheFewerScansStandApart) {
+  const auto doubt_with = [](int held, int floating, bool twin) {
+    Row row(1 + held + floating + 1);
+    for (int k = 1; k <= held; ++k) row.link(k, k - 1, 0.0, 0.0);
+    row.link(row.graph.nodes - 1, 0, twin ? 0.004 : 0.0, twin ? 0.0 : 0.004);
+    return solve_graph(row.graph, 0.001).nodes.back().doubt;
+  };
+  EXPECT_NEAR(doubt_with(0, 0, true), 0.004, 1e-5);
+  EXPECT_NEAR(doubt_with(10, 0, true), 0.004 * 2.0 / 11.0, 1e-5);
+  EXPECT_NEAR(doubt_with(10, 3, true), 0.004 * 5.0 / 11.0, 1e-5);
+  EXPECT_NEAR(doubt_with(3, 10, true), 0.004, 1e-5);
+  // That a link is wrong by chance does not depend on the others.
+  EXPECT_NEAR(doubt_with(10, 0, false), 0.004, 1e-5);
 }
 
 TEST(Doubt, WhatSpeaksForATwinCountsToo) {

@@ -391,6 +391,25 @@ class Solver {
     }
   }
 
+  /// Of each node the odds that a scan shares nothing with any other of its project, by how many others are
+  /// surely held (Laplace's rule, the scan itself taken for one that does not), 1 at most. What lies on a
+  /// twin shares nothing with what is around it in truth, or that would hold it there.
+  [[nodiscard]] std::vector<double> odds_of_standing_apart(const std::vector<NodeDoubt>& doubts,
+                                                           const std::vector<int>& reference) const {
+    std::vector<bool> held(doubts.size(), false);
+    for (std::size_t i = 0; i < held.size(); ++i) {
+      held[i] = reference[i] >= 0 && reference[i] != static_cast<int>(i) &&
+                solved_.nodes[i].state != NodeState::ambiguous && doubts[i].total() <= risk_;
+    }
+    const auto count = static_cast<double>(std::count(held.begin(), held.end(), true));
+    std::vector<double> odds;
+    for (const bool own : held) {
+      const double others = count - (own ? 1.0 : 0.0);
+      odds.push_back(std::min(1.0, (static_cast<double>(held.size()) - others) / (others + 1.0)));
+    }
+    return odds;
+  }
+
   /// What no link holds surely enough is ambiguous; nodes that hang on the same links are one question.
   void heed_doubts() {
     std::vector<int> reference(solved_.nodes.size(), -1);
@@ -403,12 +422,13 @@ class Solver {
     const std::vector<NodeDoubt> firmly = doubts_of(graph_, accepted_, reference);
     const std::vector<NodeDoubt> loosely =
         any_open ? doubts_of(graph_, accepted_, reference, {true}) : std::vector<NodeDoubt>{};
+    const std::vector<double> apart = odds_of_standing_apart(firmly, reference);
     std::map<std::vector<int>, GraphQuestion> asked;
     for (std::size_t i = 0; i < firmly.size(); ++i) {
       SolvedNode& node = solved_.nodes[i];
       if (node.component < 0) continue;
       const std::vector<NodeDoubt>& doubts = is_open(node) ? loosely : firmly;
-      node.doubt = doubts[i].total();
+      node.doubt = doubts[i].where_few_stand_apart(apart[i]).total();
       if (node.state == NodeState::ambiguous || node.doubt <= risk_) continue;
       node.state = NodeState::ambiguous;
       GraphQuestion& question = asked[doubts[i].links];
