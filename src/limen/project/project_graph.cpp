@@ -107,6 +107,15 @@ class GraphMaker {
       graph_.against.push_back(std::move(link));
       return;
     }
+    if (found.built_alike && !spoken) {
+      // What stands about tells that this is another place, whatever the pair's pose is.
+      GraphLink alike = link;
+      alike.evidence = found.built_alike->said;
+      alike.twin = found.built_alike->said.probability();
+      alike.trust = LinkTrust::likely;
+      alike.poses = {pose_of(link, found, found.built_alike->pose, 1.0)};
+      graph_.against.push_back(std::move(alike));
+    }
     for (const Hypothesis& other : found.alternatives) {
       if (link.poses.size() >= kMostPoses) break;
       if (other.score < kRivalShare * found.best.score) continue;

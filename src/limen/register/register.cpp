@@ -10,6 +10,7 @@
 #include "limen/base/error.h"
 #include "limen/base/parallel.h"
 #include "limen/geometry/polygon_clip.h"
+#include "limen/register/judge/hear_places.h"
 #include "limen/register/judge/individual_matter.h"
 #include "limen/register/judge/posterior.h"
 #include "limen/register/judge/twin_odds.h"
@@ -361,10 +362,11 @@ struct ThingsSaid {
   double things_nats = 0.0;
 };
 
-/// Probabilities of the best pose and of `others`, and of what else may be.
+/// Probabilities of the best pose, of `others` and of `twins`, and of what else may be.
 Posterior posterior_of(const std::vector<JudgedPose>& poses, const Verdict& verdict,
-                       const std::vector<std::size_t>& others, const ContrastFunction& contrast,
-                       const ThingsSaid& said, bool model, bool through_wall) {
+                       const std::vector<std::size_t>& others, const std::vector<TwinPlace>& twins,
+                       const ContrastFunction& contrast, const ThingsSaid& said, bool model,
+                       bool through_wall) {
   const std::size_t best = verdict.ranking.front();
   PosteriorEvidence evidence;
   evidence.best_value_m2 = poses[best].score.value();
@@ -382,21 +384,29 @@ Posterior posterior_of(const std::vector<JudgedPose>& poses, const Verdict& verd
     evidence.leads_m2.push_back(apart.for_first_m2 - apart.for_second_m2);
     add_prior(other);
   }
+  // Each pose that is wrong lays a place on its twin or meets by chance, whatever the others do.
+  const double best_wrong = said.twin / std::max(1e-12, 1.0 - said.twin) + chance_of(evidence);
+  for (const TwinPlace& twin : twins) {
+    evidence.leads_of_twins.push_back(std::log(twin.said.odds()) - std::log(std::max(1e-12, best_wrong)));
+    add_prior(twin.pose);
+  }
   return posterior(evidence);
 }
 
 /// The result in the scans' own frames.
-void tell(Verdict verdict, const std::vector<JudgedPose>& poses, const ContrastFunction& contrast,
-          const ThingsSaid& said, const PreparedPair& pair, const RegisterOptions& options,
-          RegistrationResult& result) {
+void tell(Verdict verdict, const std::vector<JudgedPose>& poses, const std::vector<TwinPlace>& twins,
+          const ContrastFunction& contrast, const ThingsSaid& said, const PreparedPair& pair,
+          const RegisterOptions& options, RegistrationResult& result) {
   const PreparedScan& from = pair.source;
   const PreparedScan& to = pair.target;
-  const std::vector<std::size_t> others =
+  std::vector<std::size_t> others =
       verdict.ranking.empty() ? std::vector<std::size_t>{} : told_alternatives(verdict, options);
   const bool model = from.model || to.model;
   Posterior all;
   if (!verdict.ranking.empty()) {
-    all = posterior_of(poses, verdict, others, contrast, said, model, !model && from.mobile != to.mobile);
+    all = posterior_of(poses, verdict, others, twins, contrast, said, model,
+                       !model && from.mobile != to.mobile);
+    for (const TwinPlace& twin : twins) others.push_back(twin.pose);
     verdict = with_posterior(std::move(verdict), all, options.verdict.risk);
     const RefinedPose& pose = poses[verdict.ranking.front()].refined;
     verdict =
@@ -425,8 +435,12 @@ void tell(Verdict verdict, const std::vector<JudgedPose>& poses, const ContrastF
     result.alternatives.back().tie =
         std::find(verdict.rivals.begin(), verdict.rivals.end(), others[k]) != verdict.rivals.end();
   }
+  if (!twins.empty())
+    result.built_alike = PlaceBuiltAlike{
+        to_hypothesis(in_own_frames(poses[twins.front().pose], from, to), pair), twins.front().said};
 }
 
+constexpr double kMostAlike = 0.25;  // of the pairs, beforehand, those of rooms furnished alike
 constexpr double kTwinRather = 0.5;  // probability of a twin above which things tell two rooms
 
 /// Whether two rooms built alike could be taken for one: of a model, or of the house seen from the street,
@@ -489,11 +503,12 @@ RegistrationResult register_prepared(const PreparedPair& pair, const RegisterOpt
   judging.through_wall = !model && from.mobile != to.mobile;
   Verdict verdict = judge(poses, contrast, judging);
   std::optional<IndividualMatter> individual;  // under the best pose, once it was asked for
-  const auto matter_under = [&](const RefinedPose& pose) {
+  const MatterFunction matter_under = [&](const RefinedPose& pose) {
     IndividualMatter matter = individual_matter(from.view(), to.view(), pose.target_from_source);
     matter.built_nats = unevenness_nats(common_planes(pose, from.view(), to.view()));
     return matter;
   };
+  bool used_in_between = false;
   // Of a room in use things stand where the other scan saw free space: no contradiction, if enough of the
   // rest is where it was to tell the room from its twins.
   if (verdict.outcome == Outcome::no_match && may_be_twin(from, to) && !verdict.ranking.empty()) {
@@ -505,6 +520,7 @@ RegistrationResult register_prepared(const PreparedPair& pair, const RegisterOpt
       if (probability_of_twin(matter, judging.twin) < kTwinRather) {
         verdict = std::move(in_use);
         individual = std::move(matter);
+        used_in_between = true;
       }
     }
   }
@@ -513,6 +529,17 @@ RegistrationResult register_prepared(const PreparedPair& pair, const RegisterOpt
     poses.insert(poses.end(), more.begin(), more.end());
     verdict = judge(poses, contrast, judging);
   };
+  // A place built alike shows more surface than a door leaves of the right one.
+  std::vector<TwinPlace> twins;
+  if (may_be_twin(from, to) && !verdict.ranking.empty()) {
+    std::optional<HeardPlaces> heard = hear_past_twins(poses, verdict, contrast, matter_under, judging);
+    if (heard) {
+      verdict = std::move(heard->verdict);
+      twins = std::move(heard->twins);
+      individual.reset();
+      used_in_between = false;
+    }
+  }
   const bool sure = from.surely_upright && to.surely_upright;
   if (verdict.outcome == Outcome::no_match && level && !sure && options.gravity != Gravity::up)
     try_again(false, Proposal::held);
@@ -525,6 +552,9 @@ RegistrationResult register_prepared(const PreparedPair& pair, const RegisterOpt
     const Rigid3& best = refined.target_from_source;
     if (!individual) individual = matter_under(refined);
     result.twin = weigh_twin(*individual, judging.twin);
+    // One room in five is used in between; a twin furnished alike always looks so.
+    if (used_in_between)
+      result.twin->alike = std::min(kMostAlike, result.twin->alike / judging.twin.lived_in);
     said.twin = result.twin->probability();
     if (start)
       said.twin = twin_beside_start(said.twin, start->prior, best, start->at, start->log_prior(best));
@@ -540,7 +570,7 @@ RegistrationResult register_prepared(const PreparedPair& pair, const RegisterOpt
         miss_of_start(start->prior, poses[verdict.ranking.front()].refined.target_from_source, start->at);
     result.start = StartAgreement{miss.shift_m, miss.turn_rad, miss.sigmas};
   }
-  tell(verdict, poses, contrast, said, pair, options, result);
+  tell(verdict, poses, twins, contrast, said, pair, options, result);
   return result;
 }
 

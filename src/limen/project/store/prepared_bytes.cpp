@@ -213,6 +213,23 @@ std::vector<SurfaceDetail> get_details(ByteReader& reader) {
   return details;
 }
 
+void put_twin(ByteWriter& writer, const std::optional<TwinEvidence>& said) {
+  writer.put(said.has_value());
+  const TwinEvidence twin = said.value_or(TwinEvidence{});
+  for (const double told :
+       {twin.otherwise, twin.alike, twin.otherwise_nats, twin.alike_nats, twin.built_nats})
+    writer.put(told);
+}
+
+std::optional<TwinEvidence> get_twin(ByteReader& reader) {
+  const bool asked = reader.get<bool>();
+  TwinEvidence twin;
+  for (double* value :
+       {&twin.otherwise, &twin.alike, &twin.otherwise_nats, &twin.alike_nats, &twin.built_nats})
+    reader.get(*value);
+  return asked ? std::optional(twin) : std::nullopt;
+}
+
 }  // namespace
 
 std::string bytes_of(const PreparedScan& prepared) {
@@ -270,11 +287,9 @@ std::string bytes_of(const RegistrationResult& result) {
   const OtherExplanations others = result.others.value_or(OtherExplanations{});
   for (const double probability : {others.nothing_shared, others.twin, others.unlisted_pose})
     writer.put(probability);
-  writer.put(result.twin.has_value());
-  const TwinEvidence twin = result.twin.value_or(TwinEvidence{});
-  for (const double told :
-       {twin.otherwise, twin.alike, twin.otherwise_nats, twin.alike_nats, twin.built_nats})
-    writer.put(told);
+  put_twin(writer, result.twin);
+  put_twin(writer, result.built_alike ? std::optional(result.built_alike->said) : std::nullopt);
+  if (result.built_alike) put_pose(writer, result.built_alike->pose);
   return writer.bytes();
 }
 
@@ -301,12 +316,9 @@ RegistrationResult result_from(std::string_view bytes, const std::string& where)
   for (double* probability : {&told.nothing_shared, &told.twin, &told.unlisted_pose})
     reader.get(*probability);
   if (others) result.others = told;
-  const bool asked = reader.get<bool>();
-  TwinEvidence twin;
-  for (double* value :
-       {&twin.otherwise, &twin.alike, &twin.otherwise_nats, &twin.alike_nats, &twin.built_nats})
-    reader.get(*value);
-  if (asked) result.twin = twin;
+  result.twin = get_twin(reader);
+  if (const std::optional<TwinEvidence> alike = get_twin(reader))
+    result.built_alike = PlaceBuiltAlike{get_pose(reader), *alike};
   return result;
 }
 

@@ -23,29 +23,33 @@ void PosteriorOptions::check() const {
   if (!(unlisted >= 0 && unlisted < 1)) throw_bad_option("unlisted", unlisted, "within [0, 1)");
 }
 
+double chance_of(const PosteriorEvidence& evidence, const PosteriorOptions& options) {
+  if (evidence.log_odds_of_model) return std::exp(-*evidence.log_odds_of_model);
+  const double nats_per_m2 = evidence.through_wall ? options.nats_per_m2_through_wall : options.nats_per_m2;
+  const double search_nats = evidence.through_wall ? options.search_nats_through_wall : options.search_nats;
+  return std::exp(search_nats - evidence.things_nats -
+                  nats_per_m2 * (evidence.best_value_m2 - evidence.things_m2));
+}
+
 Posterior posterior(const PosteriorEvidence& evidence, const PosteriorOptions& options) {
   options.check();
   // Weights against the best pose, whose likelihood is 1; the best wrong pose is as likely as the right one
   // where its value is what a search reaches by chance.
   const double nats_per_m2 = evidence.through_wall ? options.nats_per_m2_through_wall : options.nats_per_m2;
-  const double search_nats = evidence.through_wall ? options.search_nats_through_wall : options.search_nats;
-  const double chance =
-      std::exp(evidence.log_odds_of_model ? -*evidence.log_odds_of_model
-                                          : search_nats - evidence.things_nats -
-                                                nats_per_m2 * (evidence.best_value_m2 - evidence.things_m2));
+  const double chance = chance_of(evidence, options);
   Posterior posterior;
   double total = 0.0;
-  const auto add_pose = [&](double lead_m2) {
+  const auto add_pose = [&](double lead) {
     const std::size_t k = posterior.poses.size();
     const double log_prior = k < evidence.log_priors.size() ? evidence.log_priors[k] : 0.0;
-    const double weight =
-        options.prior_shared * (1.0 - options.unlisted) * std::exp(log_prior - nats_per_m2 * lead_m2);
+    const double weight = options.prior_shared * (1.0 - options.unlisted) * std::exp(log_prior - lead);
     posterior.poses.push_back(weight * (1.0 - evidence.twin));
     posterior.others.twin += weight * evidence.twin;
     total += weight;
   };
   add_pose(0.0);
-  for (const double lead : evidence.leads_m2) add_pose(lead);
+  for (const double lead_m2 : evidence.leads_m2) add_pose(nats_per_m2 * lead_m2);
+  for (const double lead : evidence.leads_of_twins) add_pose(lead);
   posterior.others.unlisted_pose = options.prior_shared * options.unlisted * chance;
   posterior.others.nothing_shared = (1.0 - options.prior_shared) * chance;
   total += posterior.others.unlisted_pose + posterior.others.nothing_shared;

@@ -42,6 +42,9 @@ struct PosteriorEvidence {
   /// Of a scan in a model: logarithm of the odds of the best pose against chance, learned from the other
   /// poses (model_odds.h).
   std::optional<double> log_odds_of_model = {};
+  /// By how much the best pose is more probable than each that lays a place on its twin, natural logarithm:
+  /// these come after the poses of `leads_m2`.
+  std::vector<double> leads_of_twins = {};
   bool through_wall = false;  ///< one scan was taken in a room, the other along a street
   /// Of the value what things say that are not the building's, m^2, and by how much they speak against chance
   /// instead, natural logarithm, where they were asked one by one (twin_odds.h).
@@ -51,6 +54,9 @@ struct PosteriorEvidence {
   /// first; empty: there is none (start_prior.h).
   std::vector<double> log_priors = {};
 };
+
+/// Probability that what agrees under the best pose is chance, over that it is not.
+double chance_of(const PosteriorEvidence& evidence, const PosteriorOptions& options = {});
 
 /// Bayes' rule over the poses found, a twin, a pose not proposed, and nothing shared.
 Posterior posterior(const PosteriorEvidence& evidence, const PosteriorOptions& options = {});
