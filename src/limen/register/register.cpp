@@ -384,12 +384,7 @@ Posterior posterior_of(const std::vector<JudgedPose>& poses, const Verdict& verd
     evidence.leads_m2.push_back(apart.for_first_m2 - apart.for_second_m2);
     add_prior(other);
   }
-  // Each pose that is wrong lays a place on its twin or meets by chance, whatever the others do.
-  const double best_wrong = said.twin / std::max(1e-12, 1.0 - said.twin) + chance_of(evidence);
-  for (const TwinPlace& twin : twins) {
-    evidence.leads_of_twins.push_back(std::log(twin.said.odds()) - std::log(std::max(1e-12, best_wrong)));
-    add_prior(twin.pose);
-  }
+  for (const TwinPlace& twin : twins) evidence.odds_of_twins.push_back(twin.said.odds());
   return posterior(evidence);
 }
 
@@ -531,7 +526,7 @@ RegistrationResult register_prepared(const PreparedPair& pair, const RegisterOpt
   };
   // A place built alike shows more surface than a door leaves of the right one.
   std::vector<TwinPlace> twins;
-  if (may_be_twin(from, to) && !verdict.ranking.empty()) {
+  if (may_be_twin(from, to) && !options.start && !verdict.ranking.empty()) {
     std::optional<HeardPlaces> heard = hear_past_twins(poses, verdict, contrast, matter_under, judging);
     if (heard) {
       verdict = std::move(heard->verdict);

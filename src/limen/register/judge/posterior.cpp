@@ -39,22 +39,29 @@ Posterior posterior(const PosteriorEvidence& evidence, const PosteriorOptions& o
   const double chance = chance_of(evidence, options);
   Posterior posterior;
   double total = 0.0;
-  const auto add_pose = [&](double lead) {
+  const auto add_pose = [&](double lead_m2) {
     const std::size_t k = posterior.poses.size();
     const double log_prior = k < evidence.log_priors.size() ? evidence.log_priors[k] : 0.0;
-    const double weight = options.prior_shared * (1.0 - options.unlisted) * std::exp(log_prior - lead);
+    const double weight =
+        options.prior_shared * (1.0 - options.unlisted) * std::exp(log_prior - nats_per_m2 * lead_m2);
     posterior.poses.push_back(weight * (1.0 - evidence.twin));
     posterior.others.twin += weight * evidence.twin;
     total += weight;
   };
   add_pose(0.0);
-  for (const double lead_m2 : evidence.leads_m2) add_pose(nats_per_m2 * lead_m2);
-  for (const double lead : evidence.leads_of_twins) add_pose(lead);
+  for (const double lead : evidence.leads_m2) add_pose(lead);
   posterior.others.unlisted_pose = options.prior_shared * options.unlisted * chance;
   posterior.others.nothing_shared = (1.0 - options.prior_shared) * chance;
   total += posterior.others.unlisted_pose + posterior.others.nothing_shared;
   for (double& pose : posterior.poses) pose /= total;
   posterior.others.twin /= total;
+  double elsewhere = 1.0;  // of the weights of where a place is whose twin was seen: nowhere that was seen
+  for (const double odds : evidence.odds_of_twins) elsewhere += 1.0 / (1.0 + odds);
+  const double twin = posterior.others.twin;
+  for (const double odds : evidence.odds_of_twins) {
+    posterior.poses.push_back(twin / (1.0 + odds) / elsewhere);
+    posterior.others.twin -= posterior.poses.back();
+  }
   posterior.others.unlisted_pose /= total;
   posterior.others.nothing_shared /= total;
   return posterior;

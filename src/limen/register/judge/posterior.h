@@ -42,9 +42,10 @@ struct PosteriorEvidence {
   /// Of a scan in a model: logarithm of the odds of the best pose against chance, learned from the other
   /// poses (model_odds.h).
   std::optional<double> log_odds_of_model = {};
-  /// By how much the best pose is more probable than each that lays a place on its twin, natural logarithm:
-  /// these come after the poses of `leads_m2`.
-  std::vector<double> leads_of_twins = {};
+  /// Of each pose that was set aside, odds of a twin against one place there (hear_places.h). Where it is
+  /// right after all the best pose is a twin's: it is a part of that probability. They come after the poses
+  /// of `leads_m2`.
+  std::vector<double> odds_of_twins = {};
   bool through_wall = false;  ///< one scan was taken in a room, the other along a street
   /// Of the value what things say that are not the building's, m^2, and by how much they speak against chance
   /// instead, natural logarithm, where they were asked one by one (twin_odds.h).

@@ -22,6 +22,18 @@ TEST(Posterior, EverythingSumsToOne) {
   }
 }
 
+TEST(Posterior, APoseSetAsideIsAPartOfTheTwin) {
+  PosteriorEvidence evidence{20.0, {3.0}, 0.02};
+  const Posterior before = posterior(evidence);
+  evidence.odds_of_twins = {4.0, 0.5};
+  const Posterior all = posterior(evidence);
+  EXPECT_NEAR(sum(all), 1.0, 1e-12);
+  ASSERT_EQ(all.poses.size(), 4U);
+  EXPECT_EQ(all.poses[0], before.poses[0]);
+  EXPECT_LT(all.poses[2], all.poses[3]);
+  EXPECT_NEAR(all.others.twin + all.poses[2] + all.poses[3], before.others.twin, 1e-12);
+}
+
 TEST(Posterior, MuchCommonSurfaceLeavesTheBestAlone) {
   const Posterior all = posterior({30.0, {12.0}, 0.0});
   EXPECT_GT(all.poses[0], 0.999);
