@@ -12,10 +12,12 @@ namespace limen {
 template <typename Value>
 class UnsetAllocator : public std::allocator<Value> {
  public:
+  // NOLINTBEGIN(readability-identifier-naming): the names of the standard's requirements of an allocator
   template <typename Other>
   struct rebind {
     using other = UnsetAllocator<Other>;
   };
+  // NOLINTEND(readability-identifier-naming)
 
   template <typename Other>
   void construct(Other* place) noexcept {

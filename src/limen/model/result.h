@@ -109,6 +109,9 @@ struct OtherExplanations {
 struct PlaceBuiltAlike {
   Hypothesis pose;
   TwinEvidence said;
+  /// Probability that this pose or another like it is right after all, and so `best` a twin's: a part of what
+  /// there is of twins that the alternatives have.
+  double probability = 0.0;
 };
 
 /// What became of a start that was given.

@@ -87,7 +87,8 @@ class GraphMaker {
   void add_pair(std::size_t k) {
     const RegistrationResult& found = pairs_[k].result;
     // Loops cannot settle what a twin says: rooms built alike laid on one another close their loops too.
-    const double twin = found.others ? found.others->twin : 0.0;
+    const double twin = (found.others ? found.others->twin : 0.0) +
+                        (found.built_alike ? found.built_alike->probability : 0.0);
     const auto said = words_.pairs.find({pairs_[k].source, pairs_[k].target});
     const bool spoken = said != words_.pairs.end();
     if (spoken && said->second.kind == DecisionKind::reject) return;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <numeric>
 #include <utility>
 
 #include "limen/base/error.h"
@@ -430,9 +431,12 @@ void tell(Verdict verdict, const std::vector<JudgedPose>& poses, const std::vect
     result.alternatives.back().tie =
         std::find(verdict.rivals.begin(), verdict.rivals.end(), others[k]) != verdict.rivals.end();
   }
-  if (!twins.empty())
+  if (!twins.empty()) {
+    const double right =
+        std::accumulate(all.poses.end() - static_cast<std::ptrdiff_t>(twins.size()), all.poses.end(), 0.0);
     result.built_alike = PlaceBuiltAlike{
-        to_hypothesis(in_own_frames(poses[twins.front().pose], from, to), pair), twins.front().said};
+        to_hypothesis(in_own_frames(poses[twins.front().pose], from, to), pair), twins.front().said, right};
+  }
 }
 
 constexpr double kMostAlike = 0.25;  // of the pairs, beforehand, those of rooms furnished alike

@@ -289,7 +289,10 @@ std::string bytes_of(const RegistrationResult& result) {
     writer.put(probability);
   put_twin(writer, result.twin);
   put_twin(writer, result.built_alike ? std::optional(result.built_alike->said) : std::nullopt);
-  if (result.built_alike) put_pose(writer, result.built_alike->pose);
+  if (result.built_alike) {
+    put_pose(writer, result.built_alike->pose);
+    writer.put(result.built_alike->probability);
+  }
   return writer.bytes();
 }
 
@@ -317,8 +320,11 @@ RegistrationResult result_from(std::string_view bytes, const std::string& where)
     reader.get(*probability);
   if (others) result.others = told;
   result.twin = get_twin(reader);
-  if (const std::optional<TwinEvidence> alike = get_twin(reader))
-    result.built_alike = PlaceBuiltAlike{get_pose(reader), *alike};
+  if (const std::optional<TwinEvidence> said = get_twin(reader)) {
+    PlaceBuiltAlike alike{get_pose(reader), *said};
+    reader.get(alike.probability);
+    result.built_alike = alike;
+  }
   return result;
 }
 
