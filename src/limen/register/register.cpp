@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <map>
 #include <numeric>
 #include <utility>
 
@@ -502,10 +503,13 @@ RegistrationResult register_prepared(const PreparedPair& pair, const RegisterOpt
   judging.through_wall = !model && from.mobile != to.mobile;
   Verdict verdict = judge(poses, contrast, judging);
   std::optional<IndividualMatter> individual;  // under the best pose, once it was asked for
+  std::map<const RefinedPose*, IndividualMatter> asked;
   const MatterFunction matter_under = [&](const RefinedPose& pose) {
+    const auto known = asked.find(&pose);
+    if (known != asked.end()) return known->second;
     IndividualMatter matter = individual_matter(from.view(), to.view(), pose.target_from_source);
     matter.built_nats = unevenness_nats(common_planes(pose, from.view(), to.view()));
-    return matter;
+    return asked.emplace(&pose, std::move(matter)).first->second;
   };
   bool used_in_between = false;
   // Of a room in use things stand where the other scan saw free space: no contradiction, if enough of the
@@ -525,6 +529,7 @@ RegistrationResult register_prepared(const PreparedPair& pair, const RegisterOpt
   }
   const auto try_again = [&](bool gravity_known, Proposal proposal) {
     const std::vector<JudgedPose> more = attempt(from, to, gravity_known, proposal, options, clock);
+    asked.clear();  // the poses move
     poses.insert(poses.end(), more.begin(), more.end());
     verdict = judge(poses, contrast, judging);
   };

@@ -72,19 +72,23 @@ class PlaceHearing {
                           second.target_from_source.rotation) > kElsewhereRad;
   }
 
-  /// Whether surface leaves it open which of several places is right, one of which may fit by design.
+  /// Whether surface leaves it open which of several places is right, one of which may fit by design, or
+  /// things refute what surface tells.
   [[nodiscard]] bool may_be_another(const Verdict& verdict) const {
     const std::size_t best = verdict.ranking.front();
     const bool registered = verdict.outcome == Outcome::registered;
-    return std::any_of(verdict.ranking.begin() + 1, verdict.ranking.end(), [&](std::size_t other) {
-      const bool both = fits_by_design(best) || fits_by_design(other);
+    bool any = false;
+    for (auto other = verdict.ranking.begin() + 1; other != verdict.ranking.end(); ++other) {
+      const bool both = fits_by_design(best) || fits_by_design(*other);
       const bool credible =
-          poses_[best].score.value() >= kCredibleM2 || poses_[other].score.value() >= kCredibleM2;
-      if (!both || !credible || !elsewhere(best, other)) return false;
+          poses_[best].score.value() >= kCredibleM2 || poses_[*other].score.value() >= kCredibleM2;
+      if (!both || !credible || !elsewhere(best, *other)) continue;
       if (!registered) return true;
-      const PoseContrast apart = contrast_(best, other);
-      return apart.for_first_m2 - apart.for_second_m2 < kSettledM2;
-    });
+      const PoseContrast apart = contrast_(best, *other);
+      if (apart.for_first_m2 - apart.for_second_m2 < kSettledM2) return true;
+      any = any || poses_[*other].score.value() >= kCredibleM2;
+    }
+    return any && weigh_twin(matter_(poses_[best].refined), options_.twin).odds() > 1.0;
   }
 
   /// Asks things of the best poses of several places.
