@@ -9,6 +9,7 @@
 //   bench_calibration --report rows.csv --svg reliability.svg         the tables of rows made before
 // A pose is the true one within 5 cm at the scanner and half a degree.
 #include <chrono>
+#include <filesystem>
 #include <optional>
 #include <set>
 #include <type_traits>
@@ -19,6 +20,7 @@
 #include <CLI/CLI.hpp>
 
 #include "limen/base/angles.h"
+#include "limen/io/ply/write_ply.h"
 #include "limen/register/register.h"
 #include "limen/simulate/whole/pair_set.h"
 
@@ -39,6 +41,7 @@ struct Settings {
   bool plain = false;
   std::string output;
   std::string matter;
+  std::string wrong;
   std::string report;
   std::string svg;
 };
@@ -198,8 +201,20 @@ class Calibration {
     to.put_back(j, std::move(pair.target));
     ++made_;
     if (file_.is_open()) file_ << text_of(row) << "\n" << std::flush;
-    if (row.wrong()) fmt::print("WRONG {}\n", text_of(row));
+    if (row.wrong()) {
+      fmt::print("WRONG {}\n", text_of(row));
+      keep(row, from, i);
+      keep(row, to, j);
+    }
     rows_.push_back(row);
+  }
+
+  void keep(const Row& row, const Ready& set, std::size_t scan) const {
+    if (s_.wrong.empty()) return;
+    std::filesystem::create_directories(s_.wrong);
+    const PairSetScan& kept = set.set().scans[scan];
+    const std::string name = fmt::format("{}_{}_{}.ply", row.building, set.set().seed, kept.truth.name);
+    write_ply(std::filesystem::path(s_.wrong) / name, kept.scan);
   }
 
   /// Of poses that lay a room on itself, or on one that is known to be built alike.
@@ -273,6 +288,8 @@ int main(int argc, char** argv) {
                  "rows are added to this file; what it has is not done again");
   app.add_option("--matter", settings.matter,
                  "what things say of the poses is added to this file (JSON lines)");
+  app.add_option("--wrong", settings.wrong,
+                 "the scans of wrongly registered pairs are written to this folder");
   app.add_option("--report", settings.report, "only the tables of such a file");
   app.add_option("--svg", settings.svg, "a picture of the reliability table");
   CLI11_PARSE(app, argc, argv);
