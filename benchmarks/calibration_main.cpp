@@ -42,6 +42,7 @@ struct Settings {
   std::string output;
   std::string matter;
   std::string wrong;
+  bool lost = false;
   std::string report;
   std::string svg;
 };
@@ -201,12 +202,18 @@ class Calibration {
     to.put_back(j, std::move(pair.target));
     ++made_;
     if (file_.is_open()) file_ << text_of(row) << "\n" << std::flush;
-    if (row.wrong()) {
-      fmt::print("WRONG {}\n", text_of(row));
+    if (row.wrong()) fmt::print("WRONG {}\n", text_of(row));
+    if (row.wrong() || (s_.lost && is_lost(row))) {
       keep(row, from, i);
       keep(row, to, j);
     }
     rows_.push_back(row);
+  }
+
+  /// Whether the two show one place and the right pose is not even among the alternatives.
+  static bool is_lost(const Row& row) {
+    const bool shared = row.kind != "twin" && row.kind != "other_room" && row.kind != "other_building";
+    return shared && !row.near && !row.listed;
   }
 
   void keep(const Row& row, const Ready& set, std::size_t scan) const {
@@ -215,11 +222,18 @@ class Calibration {
     const PairSetScan& kept = set.set().scans[scan];
     const std::string name = fmt::format("{}_{}_{}.ply", row.building, set.set().seed, kept.truth.name);
     write_ply(std::filesystem::path(s_.wrong) / name, kept.scan);
+    // Where it stood in truth, in the frame of all scans of the building: four rows of four.
+    std::ofstream pose(std::filesystem::path(s_.wrong) / (name + ".pose"));
+    const Rigid3& at = kept.truth.local_from_scan;
+    for (int r = 0; r < 3; ++r)
+      pose << fmt::format("{} {} {} {}\n", at.rotation(r, 0), at.rotation(r, 1), at.rotation(r, 2),
+                          at.translation[r]);
+    pose << "0 0 0 1\n";
   }
 
   /// Of poses that lay a room on itself, or on one that is known to be built alike.
   void tell_matter(const Row& row, const PreparedPair& pair, const RegistrationResult& result) {
-    if (s_.matter.empty() || !(row.near || row.kind == "twin") || !result.twin) return;
+    if (s_.matter.empty() || !(row.near || row.kind == "twin" || row.wrong()) || !result.twin) return;
     if (!matter_.is_open()) matter_.open(s_.matter, std::ios::app);
     const std::string about = fmt::format(
         R"("building": "{}", "purpose": "{}", "seed": {}, "source": "{}", "target": "{}", "kind": "{}", )"
@@ -290,6 +304,7 @@ int main(int argc, char** argv) {
                  "what things say of the poses is added to this file (JSON lines)");
   app.add_option("--wrong", settings.wrong,
                  "the scans of wrongly registered pairs are written to this folder");
+  app.add_flag("--lost", settings.lost, "so are those of pairs of one place whose pose was not found");
   app.add_option("--report", settings.report, "only the tables of such a file");
   app.add_option("--svg", settings.svg, "a picture of the reliability table");
   CLI11_PARSE(app, argc, argv);

@@ -449,6 +449,15 @@ bool may_be_twin(const PreparedScan& from, const PreparedScan& to) {
   return !from.model && !to.model && !from.mobile && !to.mobile;
 }
 
+/// Whether poses that no third plane fixes are worth a search: none was found, or the best leaves a shift
+/// open and reaches no more than the best of all wrong ones does.
+bool is_to_slide(const std::vector<JudgedPose>& poses, const Verdict& verdict) {
+  if (verdict.outcome == Outcome::no_match || verdict.ranking.empty()) return true;
+  const PosteriorOptions odds;
+  return verdict.outcome == Outcome::under_constrained &&
+         odds.nats_per_m2 * poses[verdict.ranking.front()].score.value() < odds.search_nats;
+}
+
 }  // namespace
 
 ExtractOptions features_for_registration() {
@@ -548,7 +557,7 @@ RegistrationResult register_prepared(const PreparedPair& pair, const RegisterOpt
   if (verdict.outcome == Outcome::no_match && level && !sure && options.gravity != Gravity::up)
     try_again(false, Proposal::held);
   const bool planes = options.method == Method::automatic || options.method == Method::polygons;
-  if (verdict.outcome == Outcome::no_match && level && planes && !model) try_again(true, Proposal::sliding);
+  if (is_to_slide(poses, verdict) && level && planes && !model) try_again(true, Proposal::sliding);
   const std::optional<PreparedStart> start = prepared_start(from, to, options);
   ThingsSaid said;
   if (!verdict.ranking.empty() && verdict.outcome != Outcome::no_match && may_be_twin(from, to)) {

@@ -67,6 +67,13 @@ class DoubtSearch {
     return doubts;
   }
 
+  [[nodiscard]] NodeDoubt of_side(const std::vector<bool>& side) const {
+    NodeDoubt doubt;
+    tell_twins(across(kOtherwise, side), across(kAlike, side), doubt);
+    tell_chance(side, doubt);
+    return doubt;
+  }
+
  private:
   [[nodiscard]] const GraphLink& link(int k) const { return graph_.links[static_cast<std::size_t>(k)]; }
   [[nodiscard]] double loop_nats(int k) const {
@@ -107,6 +114,9 @@ class DoubtSearch {
     double TwinEvidence::*prior;
     double TwinEvidence::*nats;
   };
+
+  static constexpr Kind kOtherwise{&TwinEvidence::otherwise, &TwinEvidence::otherwise_nats};
+  static constexpr Kind kAlike{&TwinEvidence::alike, &TwinEvidence::alike_nats};
 
   /// Smallest cuts by one measure of what the links say. `held`: nodes between which and their reference
   /// enough is said across every cut, the references among them: no smaller cut parts them, so that a cut
@@ -155,9 +165,11 @@ class DoubtSearch {
   }
 
   void add_twins(int node, NodeDoubt& doubt) {
-    const Cut otherwise =
-        twin_cut({&TwinEvidence::otherwise, &TwinEvidence::otherwise_nats}, node, otherwise_);
-    const Cut alike = twin_cut({&TwinEvidence::alike, &TwinEvidence::alike_nats}, node, alike_);
+    tell_twins(twin_cut(kOtherwise, node, otherwise_), twin_cut(kAlike, node, alike_), doubt);
+  }
+
+  struct Cut;
+  static void tell_twins(const Cut& otherwise, const Cut& alike, NodeDoubt& doubt) {
     const double twin = otherwise.weight() + alike.weight();
     const double none = 1.0 - otherwise.prior - alike.prior;
     doubt.twin = twin / (twin + none);
@@ -268,10 +280,13 @@ class DoubtSearch {
   void add_chance(int node, NodeDoubt& doubt) {
     const std::optional<std::vector<bool>> side = smallest_cut(chance_, node);
     doubt.chance = 0.0;
-    if (!side) return;
-    std::vector<int> crossing = crossing_links(*side);
+    if (side) tell_chance(*side, doubt);
+  }
+
+  void tell_chance(const std::vector<bool>& side, NodeDoubt& doubt) const {
+    std::vector<int> crossing = crossing_links(side);
     std::stable_sort(crossing.begin(), crossing.end(), [&](int a, int b) { return nats(a) > nats(b); });
-    const std::vector<int> chosen = views_.independent(crossing, *side);
+    const std::vector<int> chosen = views_.independent(crossing, side);
     double all = 0.0;
     double most = 0.0;  // the first link that holds closes no loop
     for (const int k : chosen) {
@@ -302,6 +317,11 @@ class DoubtSearch {
 std::vector<NodeDoubt> doubts_of(const PoseGraph& graph, const AcceptedPoses& accepted,
                                  const std::vector<int>& reference, const DoubtOptions& options) {
   return DoubtSearch(graph, accepted, options).run(reference);
+}
+
+NodeDoubt doubt_of_side(const PoseGraph& graph, const AcceptedPoses& accepted,
+                        const std::vector<bool>& side) {
+  return DoubtSearch(graph, accepted, {}).of_side(side);
 }
 
 }  // namespace limen

@@ -44,4 +44,8 @@ struct DoubtOptions {
 std::vector<NodeDoubt> doubts_of(const PoseGraph& graph, const AcceptedPoses& accepted,
                                  const std::vector<int>& reference, const DoubtOptions& options = {});
 
+/// The same of a whole side against the rest of its component: how probable it is that the two stand wrongly
+/// against one another, by what the links across say.
+NodeDoubt doubt_of_side(const PoseGraph& graph, const AcceptedPoses& accepted, const std::vector<bool>& side);
+
 }  // namespace limen

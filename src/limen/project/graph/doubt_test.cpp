@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limen/project/graph/doubt.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -167,6 +168,56 @@ TEST(Doubt, ATwinIsRarerTheFewerScansStandApart) {
   EXPECT_NEAR(doubt_with(3, 10, true), 0.004, 1e-5);
   // That a link is wrong by chance does not depend on the others.
   EXPECT_NEAR(doubt_with(10, 0, false), 0.004, 1e-5);
+}
+
+TEST(Doubt, WhatHasBeenLearnedOfTheBuildingSettlesWhereAScanStands) {
+  // Two pairs hold the last scan in one place, each of which a twin explains once in a hundred times, and a
+  // third says it stands 2 m off.
+  const auto solved_with = [](int held) {
+    Row row(held + 1);
+    for (std::size_t k = 0; k < row.truth.size(); ++k)
+      row.truth[k].translation = {3.0 * static_cast<double>(k % 10), 0.3 * static_cast<double>(k), 0};
+    for (int k = 1; k < held; ++k) row.link(k, k - std::min(k, 10), 0.0, 0.0, 0.5);
+    row.link(held, held - 1, 0.01, 0.0);
+    row.link(held, held - 2, 0.01, 0.0);
+    row.link(held, held - 3, 0.0, 0.05, 6.0);
+    row.graph.links.back().poses.front().target_from_source.translation.y() += 2.0;
+    return solve_graph(row.graph, 0.001);
+  };
+  const SolvedGraph few = solved_with(5);
+  ASSERT_EQ(few.questions.size(), 1U);
+  EXPECT_EQ(few.questions[0].moved, std::vector<int>{5});
+  EXPECT_EQ(few.questions[0].rival.size(), 1U);
+  EXPECT_EQ(few.nodes.back().state, kOpen);
+  // In a building whose scans all hang together twins are rare.
+  const SolvedGraph many = solved_with(100);
+  EXPECT_TRUE(many.questions.empty());
+  EXPECT_EQ(many.nodes.back().state, kYes);
+}
+
+TEST(Doubt, TheDoubtOfASideIsThatOfTheLinksAcross) {
+  Row row(4);
+  row.link(1, 0, 0.0, 0.0, 0.5);
+  row.link(3, 2, 0.0, 0.0, 0.5);
+  row.link(2, 1, 0.01, 0.0);
+  row.link(3, 0, 0.0, 0.02);
+  const SolvedGraph solved = solve_graph(row.graph);
+  AcceptedPoses accepted;
+  for (const SolvedLink& link : solved.links) accepted.pose.push_back(link.pose);
+  for (const SolvedNode& node : solved.nodes) {
+    accepted.frame_from_node.push_back(node.frame_from_node);
+    accepted.component.push_back(node.component);
+  }
+  const std::vector<bool> side{false, false, true, true};
+  const NodeDoubt both = doubt_of_side(row.graph, accepted, side);
+  EXPECT_LT(both.total(), 0.001);
+  // Without the link that no twin explains, a twin does; without the other, chance.
+  accepted.pose[3] = -1;
+  EXPECT_NEAR(doubt_of_side(row.graph, accepted, side).twin, 0.01, 1e-6);
+  EXPECT_LT(doubt_of_side(row.graph, accepted, side).chance, 1e-6);
+  accepted.pose[3] = 0;
+  accepted.pose[2] = -1;
+  EXPECT_NEAR(doubt_of_side(row.graph, accepted, side).chance, 0.02, 1e-6);
 }
 
 TEST(Doubt, WhatSpeaksForATwinCountsToo) {

@@ -94,6 +94,7 @@ struct GraphQuestion {
   std::vector<int> current;  ///< links that speak for the present place only
   std::vector<int> rival;    ///< links that speak for the other place only
   Rigid3 frame_from_frame;   ///< how they would move; without meaning where `doubt` is set
+  double rival_nats = 0.0;   ///< by how much links speak for the other place
   double doubt = 0.0;        ///< no other place is known, but the links are wrong with this probability
 };
 

@@ -17,7 +17,6 @@ namespace {
 constexpr double kMildRival = 4.0;
 constexpr double kMostRivalNats = 7.0;  // no link is surer than a thousand to one here: sure ones contradict
 constexpr double kRivalLoopNats = 7.0;  // sure links that are wrong agree once in a thousand
-constexpr double kClearNats = 6.9;      // a place that is a thousand times less probable is no question
 constexpr double kOpenWrong = 0.02;     // of links with several poses perhaps none is right
 constexpr double kSameShiftM = 0.05;
 constexpr double kSameTurnRad = 0.0175;
@@ -168,7 +167,8 @@ class RivalSearch {
     if (question.current.empty() && question.rival.empty() && !follow_together(moved, movement)) return;
     // That what holds a scan may be wrong says nothing of another place: doubts_of() asks for that.
     const bool unrivalled = question.rival.empty() && !question.current.empty();
-    if (unrivalled || nats_of(present, moved) - nats_of(other, moved) >= kClearNats) return;
+    question.rival_nats = nats_of(other, moved);
+    if (unrivalled || nats_of(present, moved) - question.rival_nats >= kRivalClearNats) return;
     questions.push_back(std::move(question));
   }
 

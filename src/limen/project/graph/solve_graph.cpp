@@ -31,6 +31,7 @@ const double kGivesWayRad = radians(5.0);
 constexpr double kTellsNothing = 1e6;  // variance of an edge that is there to be told
 constexpr int kMostGrown = 30;         // times that parts are grown anew
 constexpr double kAsLittleNats = 0.5;  // sides that are held by no more than this above the least go together
+constexpr double kLeastDoubt = 1e-6;   // no side is held more surely
 constexpr double kRather = 0.5;        // probability of a twin above which it is the explanation
 
 class Solver {
@@ -54,6 +55,7 @@ class Solver {
     number_components();
     judge_nodes();
     solved_.questions = rival_places(graph_, accepted_);
+    drop_settled_questions();
     heed_questions();
     heed_doubts();
     judge_links();
@@ -366,6 +368,49 @@ class Solver {
     }
   }
 
+  /// Of each node the node that lends its component the frame, -1: none.
+  [[nodiscard]] std::vector<int> reference_of_nodes() const {
+    std::vector<int> reference(solved_.nodes.size(), -1);
+    for (std::size_t i = 0; i < reference.size(); ++i) {
+      if (solved_.nodes[i].component >= 0)
+        reference[i] = reference_of_[static_cast<std::size_t>(solved_.nodes[i].component)];
+    }
+    return reference;
+  }
+
+  /// What links say each for itself bounds how sure the present place is. So does the doubt of its side by
+  /// the links that speak for it alone, which knows of the building what all links have taught: how seldom
+  /// places are built alike, and stand apart.
+  void drop_settled_questions() {
+    if (solved_.questions.empty()) return;
+    const std::vector<int> reference = reference_of_nodes();
+    std::vector<NodeDoubt> doubts = doubts_of(graph_, accepted_, reference);
+    for (const GraphQuestion& question : solved_.questions)
+      for (const int node : question.moved) doubts[static_cast<std::size_t>(node)].chance = 1.0;  // not held
+    const std::vector<double> apart = odds_of_standing_apart(doubts, reference);
+    const auto settled = [&](const GraphQuestion& question) {
+      std::vector<bool> side(solved_.nodes.size(), false);
+      double odds = 0.0;
+      for (const int node : question.moved) {
+        side[static_cast<std::size_t>(node)] = true;
+        odds = std::max(odds, apart[static_cast<std::size_t>(node)]);
+      }
+      AcceptedPoses telling = accepted_;
+      for (std::size_t k = 0; k < graph_.links.size(); ++k) {
+        const GraphLink& link = graph_.links[k];
+        const bool across =
+            side[static_cast<std::size_t>(link.source)] != side[static_cast<std::size_t>(link.target)];
+        const bool tells = std::find(question.current.begin(), question.current.end(), static_cast<int>(k)) !=
+                           question.current.end();
+        if (across && !tells) telling.pose[k] = -1;
+      }
+      const double doubt = doubt_of_side(graph_, telling, side).where_few_stand_apart(odds).total();
+      return -std::log(std::max(doubt, kLeastDoubt)) - question.rival_nats >= kRivalClearNats;
+    };
+    std::vector<GraphQuestion>& all = solved_.questions;
+    all.erase(std::remove_if(all.begin(), all.end(), settled), all.end());
+  }
+
   /// What might stand elsewhere is ambiguous: the side of the cut without the node that lends the frame.
   void heed_questions() {
     for (GraphQuestion& question : solved_.questions) {
@@ -412,11 +457,7 @@ class Solver {
 
   /// What no link holds surely enough is ambiguous; nodes that hang on the same links are one question.
   void heed_doubts() {
-    std::vector<int> reference(solved_.nodes.size(), -1);
-    for (std::size_t i = 0; i < reference.size(); ++i) {
-      if (solved_.nodes[i].component >= 0)
-        reference[i] = reference_of_[static_cast<std::size_t>(solved_.nodes[i].component)];
-    }
+    const std::vector<int> reference = reference_of_nodes();
     const auto is_open = [](const SolvedNode& node) { return node.state == NodeState::under_constrained; };
     const bool any_open = std::any_of(solved_.nodes.begin(), solved_.nodes.end(), is_open);
     const std::vector<NodeDoubt> firmly = doubts_of(graph_, accepted_, reference);
