@@ -203,11 +203,18 @@ class Calibration {
     ++made_;
     if (file_.is_open()) file_ << text_of(row) << "\n" << std::flush;
     if (row.wrong()) fmt::print("WRONG {}\n", text_of(row));
-    if (row.wrong() || (s_.lost && is_lost(row))) {
+    if (row.wrong() || told_wrongly(row) || (s_.lost && is_lost(row))) {
       keep(row, from, i);
       keep(row, to, j);
     }
     rows_.push_back(row);
+  }
+
+  /// Whether a wrong pose is told to be nearly sure, whatever the outcome.
+  static bool told_wrongly(const Row& row) {
+    constexpr double kSurely = 0.99;
+    return !row.statements.empty() && row.statements.front().probability > kSurely &&
+           !row.statements.front().right;
   }
 
   /// Whether the two show one place and the right pose is not even among the alternatives.
@@ -303,7 +310,7 @@ int main(int argc, char** argv) {
   app.add_option("--matter", settings.matter,
                  "what things say of the poses is added to this file (JSON lines)");
   app.add_option("--wrong", settings.wrong,
-                 "the scans of wrongly registered pairs are written to this folder");
+                 "the scans of pairs of which a wrong pose is told to be sure are written to this folder");
   app.add_flag("--lost", settings.lost, "so are those of pairs of one place whose pose was not found");
   app.add_option("--report", settings.report, "only the tables of such a file");
   app.add_option("--svg", settings.svg, "a picture of the reliability table");

@@ -384,6 +384,7 @@ Posterior posterior_of(const std::vector<JudgedPose>& poses, const Verdict& verd
   for (const std::size_t other : others) {
     const PoseContrast apart = contrast(best, other);
     evidence.leads_m2.push_back(apart.for_first_m2 - apart.for_second_m2);
+    evidence.values_m2.push_back(poses[other].score.value());
     add_prior(other);
   }
   for (const TwinPlace& twin : twins) evidence.odds_of_twins.push_back(twin.said.odds());
@@ -449,13 +450,24 @@ bool may_be_twin(const PreparedScan& from, const PreparedScan& to) {
   return !from.model && !to.model && !from.mobile && !to.mobile;
 }
 
+/// Whether more agrees under the best pose than any wrong one reaches by chance.
+bool is_beyond_chance(const JudgedPose& best) {
+  const PosteriorOptions odds;
+  return odds.nats_per_m2 * best.score.value() > odds.search_nats;
+}
+
+/// Whether what things say of a twin is to be known: of a pose that is refused as well where nothing else
+/// would make it improbable.
+bool is_to_ask_for_twins(const std::vector<JudgedPose>& poses, const Verdict& verdict) {
+  if (verdict.ranking.empty()) return false;
+  return verdict.outcome != Outcome::no_match || is_beyond_chance(poses[verdict.ranking.front()]);
+}
+
 /// Whether poses that no third plane fixes are worth a search: none was found, or the best leaves a shift
 /// open and reaches no more than the best of all wrong ones does.
 bool is_to_slide(const std::vector<JudgedPose>& poses, const Verdict& verdict) {
   if (verdict.outcome == Outcome::no_match || verdict.ranking.empty()) return true;
-  const PosteriorOptions odds;
-  return verdict.outcome == Outcome::under_constrained &&
-         odds.nats_per_m2 * poses[verdict.ranking.front()].score.value() < odds.search_nats;
+  return verdict.outcome == Outcome::under_constrained && !is_beyond_chance(poses[verdict.ranking.front()]);
 }
 
 }  // namespace
@@ -560,23 +572,24 @@ RegistrationResult register_prepared(const PreparedPair& pair, const RegisterOpt
   if (is_to_slide(poses, verdict) && level && planes && !model) try_again(true, Proposal::sliding);
   const std::optional<PreparedStart> start = prepared_start(from, to, options);
   ThingsSaid said;
-  if (!verdict.ranking.empty() && verdict.outcome != Outcome::no_match && may_be_twin(from, to)) {
+  if (is_to_ask_for_twins(poses, verdict) && may_be_twin(from, to)) {
+    const bool refused = verdict.outcome == Outcome::no_match;
     const RefinedPose& refined = poses[verdict.ranking.front()].refined;
     const Rigid3& best = refined.target_from_source;
     if (!individual) individual = matter_under(refined);
-    result.twin = weigh_twin(*individual, judging.twin);
+    TwinEvidence twin = weigh_twin(*individual, judging.twin);
     // One room in five is used in between; a twin furnished alike always looks so.
-    if (used_in_between)
-      result.twin->alike = std::min(kMostAlike, result.twin->alike / judging.twin.lived_in);
-    said.twin = result.twin->probability();
+    if (used_in_between || refused) twin.alike = std::min(kMostAlike, twin.alike / judging.twin.lived_in);
+    said.twin = twin.probability();
     if (start)
       said.twin = twin_beside_start(said.twin, start->prior, best, start->at, start->log_prior(best));
     verdict = with_twin(std::move(verdict), *individual, said.twin, judging);
     // Things that meet by chance agree as those of a room furnished otherwise do.
-    said.things_nats = result.twin->otherwise_nats;
+    said.things_nats = twin.otherwise_nats;
     said.things_m2 =
         value_of_things_m2(from.view(), to.view(), best, fine_score(from.view(), to.view(), options.method),
                            individual->source_built, individual->target_built);
+    if (!refused) result.twin = twin;
   }
   if (start && !verdict.ranking.empty()) {
     const StartMiss miss =

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limen/register/judge/posterior.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
@@ -31,12 +32,37 @@ double chance_of(const PosteriorEvidence& evidence, const PosteriorOptions& opti
                   nats_per_m2 * (evidence.best_value_m2 - evidence.things_m2));
 }
 
+namespace {
+
+constexpr double kClearLeadM2 = 4.0;  // by so much what tells two poses apart settles which one leads
+
+/// Chance against the best pose. Where what tells two poses apart speaks for another one chance is asked of
+/// that one, as far as it leads: what the best has more of does not count.
+double chance_of_leader(const PosteriorEvidence& evidence, const PosteriorOptions& options) {
+  const double of_best = chance_of(evidence, options);
+  if (evidence.log_odds_of_model) return of_best;
+  const double nats_per_m2 = evidence.through_wall ? options.nats_per_m2_through_wall : options.nats_per_m2;
+  const double search_nats = evidence.through_wall ? options.search_nats_through_wall : options.search_nats;
+  double most = of_best;
+  for (std::size_t k = 0; k < std::min(evidence.leads_m2.size(), evidence.values_m2.size()); ++k) {
+    const double lead_m2 = -evidence.leads_m2[k];
+    if (lead_m2 <= 0.0) continue;
+    const double share = std::min(1.0, lead_m2 / kClearLeadM2);
+    const double nats = (1.0 - share) * std::log(of_best) +
+                        share * (search_nats - nats_per_m2 * evidence.values_m2[k]) + nats_per_m2 * lead_m2;
+    most = std::max(most, std::exp(nats));
+  }
+  return most;
+}
+
+}  // namespace
+
 Posterior posterior(const PosteriorEvidence& evidence, const PosteriorOptions& options) {
   options.check();
   // Weights against the best pose, whose likelihood is 1; the best wrong pose is as likely as the right one
   // where its value is what a search reaches by chance.
   const double nats_per_m2 = evidence.through_wall ? options.nats_per_m2_through_wall : options.nats_per_m2;
-  const double chance = chance_of(evidence, options);
+  const double chance = chance_of_leader(evidence, options);
   Posterior posterior;
   double total = 0.0;
   const auto add_pose = [&](double lead_m2) {

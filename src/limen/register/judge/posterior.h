@@ -54,6 +54,8 @@ struct PosteriorEvidence {
   /// By how much a belief about the start makes each pose more probable, natural logarithm, the best one's
   /// first; empty: there is none (start_prior.h).
   std::vector<double> log_priors = {};
+  /// `PoseScore::value` of each pose of `leads_m2`; empty: no other pose leads.
+  std::vector<double> values_m2 = {};
 };
 
 /// Probability that what agrees under the best pose is chance, over that it is not.

@@ -57,6 +57,23 @@ TEST(Posterior, ThingsAskedOneByOneTakeThePlaceOfTheirSurface) {
   EXPECT_GT(posterior(evidence).others.nothing_shared, before);
 }
 
+TEST(Posterior, ChanceIsAskedOfThePoseThatLeads) {
+  // 40 m^2 that a pose of 4 m^2 contradicts: neither is probable.
+  PosteriorEvidence evidence{40.0, {-20.0}, 0.0};
+  evidence.values_m2 = {4.0};
+  const Posterior all = posterior(evidence);
+  EXPECT_NEAR(sum(all), 1.0, 1e-12);
+  EXPECT_GT(all.others.nothing_shared, 0.5);
+  EXPECT_LT(all.poses[1], 0.5);
+  // One of as much value is as sure as the best would be.
+  evidence.values_m2 = {39.0};
+  EXPECT_GT(posterior(evidence).poses[1], 0.999);
+  // What does not lead changes nothing.
+  evidence.leads_m2 = {3.0};
+  evidence.values_m2 = {4.0};
+  EXPECT_EQ(posterior(evidence).poses, posterior({40.0, {3.0}, 0.0}).poses);
+}
+
 TEST(Posterior, AStreetShowsMuchThatRepeats) {
   PosteriorEvidence evidence{9.5, {}, 0.0};
   EXPECT_LT(posterior(evidence).others.nothing_shared, 1e-3);
