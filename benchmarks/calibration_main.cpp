@@ -238,9 +238,10 @@ class Calibration {
     pose << "0 0 0 1\n";
   }
 
-  /// Of poses that lay a room on itself, or on one that is known to be built alike.
+  /// Of poses that lay a room on itself, or on another one of its building.
   void tell_matter(const Row& row, const PreparedPair& pair, const RegistrationResult& result) {
-    if (s_.matter.empty() || !(row.near || row.kind == "twin" || row.wrong()) || !result.twin) return;
+    const bool other = row.kind == "twin" || row.kind == "other_room";
+    if (s_.matter.empty() || !(row.near || other || row.wrong()) || !result.twin) return;
     if (!matter_.is_open()) matter_.open(s_.matter, std::ios::app);
     const std::string about = fmt::format(
         R"("building": "{}", "purpose": "{}", "seed": {}, "source": "{}", "target": "{}", "kind": "{}", )"

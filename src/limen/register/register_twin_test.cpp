@@ -19,7 +19,7 @@
 namespace limen {
 namespace {
 
-enum class Furniture { own, alike, none };
+enum class Furniture { own, alike, none, leaf };
 
 constexpr std::size_t kPoints = 80000;
 
@@ -53,15 +53,35 @@ Recipe equal_rooms(RandomStream& random) {
   return recipe;
 }
 
+/// From a place in room 1 to the same place in room 2.
+Vector2d next_room(const World& world) {
+  const FloorPlan& plan = world.buildings[0].plan;
+  return plan.rooms[2].outline[0] - plan.rooms[1].outline[0];
+}
+
+/// Nothing but a leaf that stands open, at the same angle in both rooms.
+void add_leaves(World& world) {
+  const FloorPlan& plan = world.buildings[0].plan;
+  Vector2d middle = Vector2d::Zero();
+  for (const Vector2d& corner : plan.rooms[1].outline)
+    middle += corner / static_cast<double>(plan.rooms[1].outline.size());
+  for (const Vector2d& shift : {Vector2d(0, 0), next_room(world)}) {
+    const Vector2d at = middle + shift + Vector2d(0.8, 1.2);
+    world.mesh.add_box({{at.x(), at.y(), plan.rooms[1].floor_m}, 0.3}, {0.9, 0.04, 2.0},
+                       surface_of(Element::furniture));
+  }
+}
+
 /// Rooms 1 and 2 with furniture of their own, or with the same pieces 3 cm off their places.
 void furnish_both(World& world, Furniture furniture, RandomStream& random) {
   if (furniture == Furniture::none) return;
+  if (furniture == Furniture::leaf) return add_leaves(world);
   const std::size_t surfaces = world.mesh.surfaces().size();
   const std::size_t triangles = world.mesh.triangles().size();
   furnish(world, 0, 1, 0.4, random);
   if (furniture == Furniture::own) return furnish(world, 0, 2, 0.4, random);
   Building& building = world.buildings[0];
-  const Vector2d shift = building.plan.rooms[2].outline[0] - building.plan.rooms[1].outline[0];
+  const Vector2d shift = next_room(world);
   world.mesh.add_shifted(surfaces, {triangles, world.mesh.triangles().size()},
                          {shift.x() + 0.03, shift.y() - 0.025, 0.0});
   for (Footprint copy : building.occupied[1]) {
@@ -123,28 +143,52 @@ TEST(RegisterTwins, NorAreTwoFurnishedAlike) {
   EXPECT_GT(twins.others->twin, 20.0 * VerdictOptions{}.risk);
 }
 
-TEST(RegisterTwins, WhatThingsSayIsApartOfWhatAgrees) {
-  const TwinCase rooms = twin_case(4, Furniture::own);
-  const PreparedScan source = prepare_scan(rooms.scans[1], prepare_options({}));
-  const PreparedScan target = prepare_scan(rooms.scans[0], prepare_options({}));
+/// What things say of two scans of one room.
+struct AskedRoom {
+  PreparedScan source;
+  PreparedScan target;
+  Rigid3 upright;
+  IndividualMatter individual;
+};
+
+AskedRoom asked_room(const TwinCase& rooms) {
+  AskedRoom asked;
+  asked.source = prepare_scan(rooms.scans[1], prepare_options({}));
+  asked.target = prepare_scan(rooms.scans[0], prepare_options({}));
   const Rigid3 truth =
       to_local(inverse(rooms.scene_from_scan[0]) * rooms.scene_from_scan[1],
-               source.extracted.features.local_origin, target.extracted.features.local_origin);
-  const Rigid3 upright{target.upright_from_scan * truth.rotation * source.upright_from_scan.transpose(),
-                       target.upright_from_scan * truth.translation};
-  const ScanView from = source.view();
-  const ScanView to = target.view();
+               asked.source.extracted.features.local_origin, asked.target.extracted.features.local_origin);
+  asked.upright = {
+      asked.target.upright_from_scan * truth.rotation * asked.source.upright_from_scan.transpose(),
+      asked.target.upright_from_scan * truth.translation};
+  asked.individual = individual_matter(asked.source.view(), asked.target.view(), asked.upright);
+  return asked;
+}
+
+TEST(RegisterTwins, WhatThingsSayIsApartOfWhatAgrees) {
+  const AskedRoom asked = asked_room(twin_case(4, Furniture::own));
+  const ScanView from = asked.source.view();
+  const ScanView to = asked.target.view();
   const auto things = [&](const std::vector<bool>& of_source, const std::vector<bool>& of_target) {
-    return value_of_things_m2(from, to, upright, {}, of_source, of_target);
+    return value_of_things_m2(from, to, asked.upright, {}, of_source, of_target);
   };
-  const PoseScore all = score_pose(from, to, upright, {});
+  const PoseScore all = score_pose(from, to, asked.upright, {});
   const std::vector<bool> none_from(from.features->planes.size(), false);
   const std::vector<bool> none_to(to.features->planes.size(), false);
   EXPECT_NEAR(things(none_from, none_to), all.value() - all.opening_m2, 1e-9);
-  const IndividualMatter individual = individual_matter(from, to, upright);
-  const double own = things(individual.source_built, individual.target_built);
+  const double own = things(asked.individual.source_built, asked.individual.target_built);
   EXPECT_GT(own, 0.2);
   EXPECT_LT(own, 0.5 * all.value());
+}
+
+TEST(RegisterTwins, OneLeafIsOneThing) {
+  for (const std::uint64_t seed : {6U, 7U}) {
+    const IndividualMatter leaf = asked_room(twin_case(seed, Furniture::leaf)).individual;
+    const IndividualMatter furnished = asked_room(twin_case(seed, Furniture::own)).individual;
+    EXPECT_GT(leaf.matter.count, 0.5) << seed;
+    EXPECT_LT(leaf.matter.count, 4.0) << seed;
+    EXPECT_GT(furnished.matter.count, 2.0 * leaf.matter.count) << seed;
+  }
 }
 
 TEST(RegisterTwins, BareRoomsCannotBeTold) {

@@ -189,6 +189,7 @@ std::vector<Piece> pieces_of(const ScanView& view, const BuiltPlanes& built) {
 /// An answer of one scan to a piece of the other, in the target's frame.
 struct Told {
   Vector3d at = Vector3d::Zero();
+  Vector3d normal = Vector3d::Zero();  ///< of a flat piece; else zero
   double weight = 0.0;
   bool agrees = false;
 };
@@ -210,8 +211,11 @@ double correlation(const MetFace& a, const MetFace& b) {
   return std::exp(-apart.norm() / (one_plane ? kFrontLengthM : kThingLengthM));
 }
 
+/// A leaf, a cupboard's front, a table top is one thing: it is there or not.
 double correlation(const Told& a, const Told& b) {
-  return std::exp(-(a.at - b.at).norm() / kCorrelationM);
+  const Vector3d apart = a.at - b.at;
+  const bool one_plane = a.normal.dot(b.normal) > kOneFaceCosine && std::abs(apart.dot(a.normal)) < kOneFaceM;
+  return std::exp(-apart.norm() / (one_plane ? kFrontLengthM : kCorrelationM));
 }
 
 /// Each piece's share of an observation, w_i / sum_j w_j rho_ij: neighbours that tell the same make one
@@ -282,8 +286,10 @@ void ask_matter(const Side& scan, const Side& judge, const Rigid3& judge_from_sc
     // Beyond an opening of both stands what both rooms' neighbours have alike: corridors, façades.
     if (surface && piece.behind && place == BuiltPlanes::Place::behind) continue;
     if (surface && sight.plane >= 0 && judge.built.is_built(sight.plane)) continue;
-    told.push_back(
-        {target_from_scan * piece.detail->mean, static_cast<double>(piece.detail->area_m2), surface});
+    const SurfaceDetail& detail = *piece.detail;
+    const Vector3d normal =
+        detail.flat() ? Vector3d(target_from_scan.rotation * detail.normal) : Vector3d::Zero();
+    told.push_back({target_from_scan * detail.mean, normal, static_cast<double>(detail.area_m2), surface});
   }
 }
 
@@ -360,14 +366,15 @@ std::vector<MetFace> met_faces(const Side& scan, const Side& judge, const Rigid3
   return faces;
 }
 
-/// Whether a piece goes on where those of a face, given by their numbers, end.
+/// Whether a piece goes on where those of a face, given by their numbers, end. What lies in one plane above
+/// one another is of one leaf or cupboard, of which something hides the middle.
 bool continues(const MetFace& piece, const std::vector<MetFace>& pieces,
                const std::vector<std::size_t>& face) {
   const MetFace& first = pieces[face.front()];
   if (piece.normal.dot(first.normal) < kOneFaceCosine) return false;
   if (std::abs(first.normal.dot(piece.at - first.at)) > kOneFaceM) return false;
   return std::any_of(face.rbegin(), face.rend(), [&](std::size_t k) {
-    return (pieces[k].at - piece.at).squaredNorm() < kNextPieceM * kNextPieceM;
+    return (pieces[k].at - piece.at).head<2>().squaredNorm() < kNextPieceM * kNextPieceM;
   });
 }
 
@@ -476,7 +483,7 @@ IndividualMatter individual_matter(const ScanView& source_view, const ScanView& 
   const Side source(source_view);
   const Side target(target_view);
   const std::vector<Told> told = told_of_matter(source, target, target_from_source);
-  const std::vector<double> shares = shares_of(told, 8.0 * kCorrelationM);
+  const std::vector<double> shares = shares_of(told, 8.0 * kThingLengthM);
   individual.matter = observations(told, shares);
   individual.chance = chance_of(source, target, target_from_source);
   individual.apart = wall_between(source, target, target_from_source) ||

@@ -56,14 +56,21 @@ struct OffsetScene {
 std::vector<OffsetScene> one_room() {
   constexpr std::array<std::pair<double, double>, 4> kMeasured = {
       {{0.3, 0.35}, {0.3, 1.0}, {0.3, 2.0}, {0.1, 3.5}}};
+  // As it was; or used in between. Scans of one day and of two, about as many of each (scripts/fit_judge).
+  constexpr std::array<OffsetScene, 8> kUses = {{{.weight = 0.30, .placed = 0.95},
+                                                 {.weight = 0.10, .placed = 0.75},
+                                                 {0.30, 0.6, 1.0, 0.35, 0.01},
+                                                 {0.10, 0.4, 1.0, 0.4, 0.01},
+                                                 {0.05, 0.3, 1.0, 0.2, 0.01},
+                                                 {0.05, 0.6, 1.0, 0.35, 0.02},
+                                                 {0.05, 0.4, 1.0, 0.4, 0.02},
+                                                 {0.05, 0.3, 1.0, 0.2, 0.02}}};
   std::vector<OffsetScene> scenes;
   for (const auto& [weight, measured] : kMeasured) {
-    scenes.push_back({0.45 * weight, 0.95, measured});  // as it was
-    scenes.push_back({0.15 * weight, 0.75, measured});
-    for (const double pushed_m : {0.01, 0.02}) {  // used in between
-      scenes.push_back({0.075 * weight, 0.6, measured, 0.35, pushed_m});
-      scenes.push_back({0.075 * weight, 0.4, measured, 0.4, pushed_m});
-      scenes.push_back({0.05 * weight, 0.3, measured, 0.2, pushed_m});
+    for (OffsetScene scene : kUses) {
+      scene.weight *= weight;
+      scene.measured = measured;
+      scenes.push_back(scene);
     }
   }
   return scenes;

@@ -22,8 +22,8 @@ struct TwinOptions {
   ShareBelief kept{0.9, 7.0};
   double lived_in = 0.2;  ///< share of such pairs
   ShareBelief kept_lived_in{0.55, 4.0};
-  double more_than_chance = 0.1;  ///< rooms are furnished along walls and round tables: added to chance
-  double chance_strength = 20.0;  ///< how well chance is known, in observations
+  double more_than_chance = 0.05;  ///< rooms are furnished along walls and round tables: added to chance
+  double chance_strength = 20.0;   ///< how well chance is known, in observations
 
   void check() const;
 };
