@@ -11,6 +11,7 @@
 #include "limen/base/angles.h"
 #include "limen/base/error.h"
 #include "limen/geometry/linear.h"
+#include "limen/register/judge/posterior.h"
 
 namespace limen {
 namespace {
@@ -58,11 +59,19 @@ bool possible(const PoseScore& other, const PoseScore& best, const VerdictOption
          other.contradicted_m2 <= bearable;
 }
 
+/// A pose that this much less surface speaks for than for the best is less probable than the risk
+/// (posterior.h).
+double clear_lead_m2(const VerdictOptions& options) {
+  const PosteriorOptions posterior;
+  return std::log((1.0 - options.risk) / options.risk) /
+         (options.through_wall ? posterior.nats_per_m2_through_wall : posterior.nats_per_m2);
+}
+
 bool is_rival(PoseContrast contrast, double prior_lead_m2, const VerdictOptions& options) {
   (prior_lead_m2 > 0 ? contrast.for_first_m2 : contrast.for_second_m2) += std::abs(prior_lead_m2);
   const double lead = contrast.for_first_m2 - contrast.for_second_m2;
   return lead < options.min_lead_m2 ||
-         (lead < options.clear_lead_m2 &&
+         (lead < clear_lead_m2(options) &&
           contrast.for_second_m2 > options.max_rival_share * contrast.for_first_m2);
 }
 
@@ -123,7 +132,6 @@ void VerdictOptions::check() const {
                                                    {"excess_contradiction_m2", excess_contradiction_m2},
                                                    {"excess_contradiction_share", excess_contradiction_share},
                                                    {"min_rival_value", min_rival_value},
-                                                   {"clear_lead_m2", clear_lead_m2},
                                                    {"min_lead_m2", min_lead_m2},
                                                    {"same_rotation_deg", same_rotation_deg},
                                                    {"same_shift_m", same_shift_m}};

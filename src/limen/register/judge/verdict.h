@@ -48,8 +48,8 @@ struct VerdictOptions {
   double excess_contradiction_share = 0.02;  ///< ... and this share of its agreeing surface
   double min_rival_value = 0.65;  ///< a pose whose value is a smaller share of the best one's is no rival
   double max_rival_share =
-      0.40;  ///< a pose is a rival if this share of what tells it from the best speaks for it
-  double clear_lead_m2 = 4.0;      ///< ... unless this much more surface speaks for the best
+      0.40;  ///< a pose is a rival if this share of what tells it from the best speaks for it, unless
+             ///< so much more speaks for the best that it is less probable than `risk`
   double min_lead_m2 = 0.75;       ///< or if less surface than this speaks for the best against it
   double min_held_m2 = 0.03;       ///< surface (times lever^2 for turns) that must hold each freedom
   double max_sigma_m = 0.012;      ///< a shift known less well than this counts as open

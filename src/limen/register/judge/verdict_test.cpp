@@ -52,6 +52,29 @@ TEST(Verdict, SurfaceThatAgreesUnderBothPosesTellsNothing) {
   EXPECT_EQ(judge(poses, even).outcome, Outcome::ambiguous);
 }
 
+TEST(Verdict, APoseLessProbableThanTheRiskIsNoRival) {
+  // Nearly as much speaks for the second pose; by so much less it is less probable than one in a thousand.
+  const std::vector<JudgedPose> poses{pose(40, 0, 0), pose(36, 0, 3)};
+  const auto outcome = [&](double lead_m2, double risk, bool through_wall) {
+    VerdictOptions options;
+    options.risk = risk;
+    options.through_wall = through_wall;
+    return judge(
+               poses,
+               [&](std::size_t, std::size_t) {
+                 return PoseContrast{8.0 + lead_m2, 8.0};
+               },
+               options)
+        .outcome;
+  };
+  EXPECT_EQ(outcome(3.7, 0.001, false), Outcome::registered);
+  EXPECT_EQ(outcome(3.5, 0.001, false), Outcome::ambiguous);
+  EXPECT_EQ(outcome(3.7, 1e-5, false), Outcome::ambiguous);
+  EXPECT_EQ(outcome(6.2, 1e-5, false), Outcome::registered);
+  EXPECT_EQ(outcome(4.2, 0.001, true), Outcome::ambiguous);
+  EXPECT_EQ(outcome(4.4, 0.001, true), Outcome::registered);
+}
+
 /// A pose in a model, with a share of fourteen observations of walls on its surface.
 JudgedPose pose_in_model(double agreeing_m2, double shift_m, double share) {
   JudgedPose judged = pose(agreeing_m2, 0, shift_m);
