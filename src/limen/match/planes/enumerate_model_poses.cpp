@@ -160,41 +160,107 @@ double common_share(const Box& a, const Box& b, const Vector3d& shift) {
   return share;
 }
 
+constexpr double kOneWay = 1e-6;  // normals that differ by less face one way
+
+/// A stretch of a line of shifts, base + s * along.
+struct ShiftWay {
+  Vector3d base;
+  Vector3d along;
+  Stretch stretch;
+
+  [[nodiscard]] Vector3d at(double s) const { return base + s * along; }
+};
+
+/// A partner that a way of shifts meets, and where.
+struct MetPartner {
+  std::uint32_t number = 0;
+  Vector3d shift;
+};
+
+/// The lines of shifts that two pairs of planes leave open, by their normals. Most pairs that follow one
+/// another have the same.
+struct OpenLine {
+  Vector3d first = Vector3d::Zero();
+  Vector3d second = Vector3d::Zero();
+  Matrix3d solve = Matrix3d::Identity();  ///< shift from the two offsets and the place along
+  bool open = false;                      ///< whether the two are no one direction
+
+  /// Makes it that of two normals.
+  void be_of(const Vector3d& p, const Vector3d& q) {
+    if (p == first && q == second) return;
+    first = p;
+    second = q;
+    const Vector3d across = p.cross(q);
+    open = across.norm() >= 0.3;
+    if (!open) return;
+    Matrix3d rows;
+    rows << p.transpose(), q.transpose(), across.normalized().transpose();
+    solve = rows.inverse();
+  }
+};
+
+/// What voting needs again and again.
+struct VoteRoom {
+  std::vector<std::int32_t> near;
+  std::vector<MetPartner> met;
+  OpenLine line;
+};
+
 /// The partners of an anchor, to be found by where they cross a line of shifts: those that face exactly one
 /// way lie along it in the order of their offsets.
 class PartnersInOrder {
  public:
   explicit PartnersInOrder(const std::vector<Partner>& partners) {
-    for (std::uint32_t i = 0; i < partners.size(); ++i)
-      row_of(partners[i].plane->normal).by_shift.emplace_back(partners[i].shift, i);
-    for (Row& row : rows_) std::sort(row.by_shift.begin(), row.by_shift.end());
+    for (std::uint32_t i = 0; i < partners.size(); ++i) {
+      const Partner& partner = partners[i];
+      row_of(partner.plane->normal)
+          .entries.push_back({partner.shift, i, partner.plane->normal, partner.meeting});
+    }
+    for (Row& row : rows_) {
+      std::sort(row.entries.begin(), row.entries.end(), [](const Entry& a, const Entry& b) {
+        return a.shift != b.shift ? a.shift < b.shift : a.number < b.number;
+      });
+    }
   }
 
-  /// Partners that may cross the stretch, in their own order; none that crosses it is left out.
-  [[nodiscard]] std::vector<std::uint32_t> crossing(const Vector3d& base, const Vector3d& along,
-                                                    const Stretch& stretch) const {
-    const Vector3d begin = base + stretch.from * along;
-    const Vector3d end = base + stretch.to * along;
+  /// Partners that the way meets, in their own order.
+  void met_on(const ShiftWay& way, std::vector<MetPartner>& met) const {
+    met.clear();
+    const Vector3d begin = way.at(way.stretch.from);
+    const Vector3d end = way.at(way.stretch.to);
     const double slack = 1e-9 + kOneWay * (begin.norm() + end.norm());
-    std::vector<std::uint32_t> found;
     for (const Row& row : rows_) {
       const double at_begin = row.normal.dot(begin);
       const double at_end = row.normal.dot(end);
       const double most = std::max(at_begin, at_end) + slack;
-      auto place = std::lower_bound(row.by_shift.begin(), row.by_shift.end(),
-                                    std::make_pair(std::min(at_begin, at_end) - slack, std::uint32_t{0}));
-      for (; place != row.by_shift.end() && place->first <= most; ++place) found.push_back(place->second);
+      auto place =
+          std::lower_bound(row.entries.begin(), row.entries.end(), std::min(at_begin, at_end) - slack,
+                           [](const Entry& entry, double shift) { return entry.shift < shift; });
+      for (; place != row.entries.end() && place->shift <= most; ++place) place->meet(way, met);
     }
-    std::sort(found.begin(), found.end());
-    return found;
+    std::sort(met.begin(), met.end(),
+              [](const MetPartner& a, const MetPartner& b) { return a.number < b.number; });
   }
 
  private:
-  static constexpr double kOneWay = 1e-6;  // normals that differ by less face one way
+  struct Entry {
+    double shift = 0.0;
+    std::uint32_t number = 0;
+    Vector3d normal;
+    Box meeting;
 
+    void meet(const ShiftWay& way, std::vector<MetPartner>& met) const {
+      const double slope = normal.dot(way.along);
+      if (std::abs(slope) < kMinNormalDeterminant) return;
+      const double s = (shift - normal.dot(way.base)) / slope;
+      if (s < way.stretch.from || s > way.stretch.to) return;
+      const Vector3d at = way.at(s);
+      if (meeting.contains(at)) met.push_back({number, at});
+    }
+  };
   struct Row {
     Vector3d normal;
-    std::vector<std::pair<double, std::uint32_t>> by_shift;
+    std::vector<Entry> entries;  ///< by shift
   };
 
   Row& row_of(const Vector3d& normal) {
@@ -312,9 +378,9 @@ class ModelEnumerator {
     std::vector<ThirdAnchor> thirds;
     for (const Anchor& c : anchors[2]) thirds.push_back({&c, PartnersInOrder(c.partners)});
     Ballot ballot(options_.same_shift_m);
-    std::vector<std::int32_t> near;
+    VoteRoom room;
     for (const Anchor& a : anchors[0]) {
-      for (const Anchor& b : anchors[1]) vote_pairs(a, b, thirds, near, ballot);
+      for (const Anchor& b : anchors[1]) vote_pairs(a, b, thirds, room, ballot);
     }
     return std::move(ballot).weightiest(static_cast<std::size_t>(options_.max_poses));
   }
@@ -372,54 +438,45 @@ class ModelEnumerator {
     }
   }
 
-  void vote_pairs(const Anchor& a, const Anchor& b, const std::vector<ThirdAnchor>& thirds,
-                  std::vector<std::int32_t>& near, Ballot& ballot) const {
+  void vote_pairs(const Anchor& a, const Anchor& b, const std::vector<ThirdAnchor>& thirds, VoteRoom& room,
+                  Ballot& ballot) const {
     const Vector3d reach = a.plane.box.merged(b.plane.box).sizes();
     for (const Partner& p : a.partners) {
       CancelScope::check();
       Box around = p.plane->box;
       around.min() -= reach;
       around.max() += reach;
-      places_->meeting(around.intersection(met_under(b.plane.box, p.meeting)), near);
-      for (const std::int32_t i : near) {
+      places_->meeting(around.intersection(met_under(b.plane.box, p.meeting)), room.near);
+      for (const std::int32_t i : room.near) {
         const std::int32_t partner = b.partner_of[static_cast<std::size_t>(i)];
         if (partner < 0) continue;
         const Partner& q = b.partners[static_cast<std::size_t>(partner)];
         // One shift has to bring both pairs together.
-        if (p.meeting.intersects(q.meeting)) vote(a, p, b, q, thirds, ballot);
+        if (p.meeting.intersects(q.meeting)) vote(a, p, b, q, thirds, room, ballot);
       }
     }
   }
 
   /// Two pairs leave a line of shifts open; every third pair that is met on it closes it.
   static void vote(const Anchor& a, const Partner& p, const Anchor& b, const Partner& q,
-                   const std::vector<ThirdAnchor>& thirds, Ballot& ballot) {
-    Matrix3d rows;
-    rows.row(0) = p.plane->normal.transpose();
-    rows.row(1) = q.plane->normal.transpose();
-    const Vector3d open = p.plane->normal.cross(q.plane->normal);
-    if (open.norm() < 0.3) return;
-    rows.row(2) = open.normalized().transpose();
-    const Matrix3d solve = rows.inverse();
-    const Vector3d base = solve * Vector3d(p.shift, q.shift, 0.0);
-    const Vector3d along = solve.col(2);
+                   const std::vector<ThirdAnchor>& thirds, VoteRoom& room, Ballot& ballot) {
+    room.line.be_of(p.plane->normal, q.plane->normal);
+    if (!room.line.open) return;
+    const Vector3d base = room.line.solve * Vector3d(p.shift, q.shift, 0.0);
+    const Vector3d along = room.line.solve.col(2);
     Stretch stretch;
     narrow(p.meeting, base, along, stretch);
     narrow(q.meeting, base, along, stretch);
     if (stretch.empty()) return;
+    const ShiftWay way{base, along, stretch};
     for (const ThirdAnchor& c : thirds) {
-      for (const std::uint32_t i : c.partners.crossing(base, along, stretch)) {
-        const Partner& r = c.anchor->partners[i];
-        const double slope = r.plane->normal.dot(along);
-        if (std::abs(slope) < kMinNormalDeterminant) continue;
-        const double s = (r.shift - r.plane->normal.dot(base)) / slope;
-        if (s < stretch.from || s > stretch.to) continue;
-        const Vector3d shift = base + s * along;
-        if (!r.meeting.contains(shift)) continue;
-        const double common = std::min({common_share(a.plane.box, p.plane->box, shift),
-                                        common_share(b.plane.box, q.plane->box, shift),
-                                        common_share(c.anchor->plane.box, r.plane->box, shift)});
-        ballot.add(shift, common);
+      c.partners.met_on(way, room.met);
+      for (const MetPartner& met : room.met) {
+        const Partner& r = c.anchor->partners[met.number];
+        const double common = std::min({common_share(a.plane.box, p.plane->box, met.shift),
+                                        common_share(b.plane.box, q.plane->box, met.shift),
+                                        common_share(c.anchor->plane.box, r.plane->box, met.shift)});
+        ballot.add(met.shift, common);
       }
     }
   }

@@ -373,7 +373,7 @@ class PoseEnumerator {
           if (pose.precedence > least) poses.push_back(pose);
         }
       }
-      if (poses.size() > 2 * most) {
+      if (poses.size() > most + most / 4) {
         keep_best(poses, most);
         least = std::max(poses.back().precedence, of_all.value());
       }

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limen/register/prepare/asked_samples.h"
 
+#include <utility>
+
 namespace limen {
 
 AskedSamples asked_samples(const ScanView& scan, const ScanView& judge, const Rigid3& judge_from_scan,
@@ -9,8 +11,12 @@ AskedSamples asked_samples(const ScanView& scan, const ScanView& judge, const Ri
   const std::vector<SurfaceSample>& samples = scan.features->samples;
   AskedSamples asked;
   if (scan.model && scan.runs != nullptr) {
-    asked.indices = scan.runs->within(judge.reach, judge_from_scan, samples);
-  } else if (scan.model) {
+    SampleRuns::Within within = scan.runs->within(judge.reach, judge_from_scan, samples, most);
+    asked.indices = std::move(within.indices);
+    asked.factor = static_cast<double>(within.stride);
+    return asked;
+  }
+  if (scan.model) {
     for (std::uint32_t i = 0; i < samples.size(); ++i) {
       if (judge.reach.contains(judge_from_scan * samples[i].mean)) asked.indices.push_back(i);
     }

@@ -19,11 +19,16 @@ class SampleRuns {
   SampleRuns() = default;
   explicit SampleRuns(const std::vector<SurfaceSample>& samples);
 
+  /// Samples that lie in a box: every `stride`-th.
+  struct Within {
+    std::vector<std::uint32_t> indices;
+    std::size_t stride = 1;
+  };
   /// The samples that lie in `box` once moved, in their order: exactly those for which
-  /// box.contains(box_from_sample * mean). `samples`: those the runs were made of.
-  [[nodiscard]] std::vector<std::uint32_t> within(const Eigen::AlignedBox3d& box,
-                                                  const Rigid3& box_from_sample,
-                                                  const std::vector<SurfaceSample>& samples) const;
+  /// box.contains(box_from_sample * mean); evenly thinned to no more than `most` (0: all). `samples`: those
+  /// the runs were made of.
+  [[nodiscard]] Within within(const Eigen::AlignedBox3d& box, const Rigid3& box_from_sample,
+                              const std::vector<SurfaceSample>& samples, std::size_t most = 0) const;
 
  private:
   struct Run {

@@ -39,13 +39,18 @@ TEST(SampleRuns, FindTheSamplesThatALookAtEachFinds) {
     for (std::uint32_t i = 0; i < samples.size(); ++i) {
       if (box.contains(pose * samples[i].mean)) by_itself.push_back(i);
     }
-    EXPECT_EQ(runs.within(box, pose, samples), by_itself);
+    EXPECT_EQ(runs.within(box, pose, samples).indices, by_itself);
     found += by_itself.size();
+    const SampleRuns::Within few = runs.within(box, pose, samples, 50);
+    EXPECT_EQ(few.stride, 1 + by_itself.size() / 50);
+    std::vector<std::uint32_t> thinned;
+    for (std::size_t k = 0; k < by_itself.size(); k += few.stride) thinned.push_back(by_itself[k]);
+    EXPECT_EQ(few.indices, thinned);
   }
   EXPECT_GT(found, 1000U);
-  EXPECT_TRUE(SampleRuns().within({}, {}, samples).empty());
+  EXPECT_TRUE(SampleRuns().within({}, {}, samples).indices.empty());
   const Eigen::AlignedBox3d nothing;
-  EXPECT_TRUE(runs.within(nothing, {}, samples).empty());
+  EXPECT_TRUE(runs.within(nothing, {}, samples).indices.empty());
 }
 
 }  // namespace
