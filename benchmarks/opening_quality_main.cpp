@@ -49,6 +49,7 @@ struct Settings {
   int threads = 0;
   bool list = false;
   bool kept = false;
+  KeepOptions keep;
   bool errors = false;
 };
 
@@ -403,7 +404,7 @@ Tally run(const std::string& scene, int seed, const Settings& settings) {
     options.points_outdoor = 0;
   }
   SimulatedCase simulated = simulate(options);
-  if (settings.kept) keep_as_features_do(simulated);
+  if (settings.kept) keep_as_features_do(simulated, settings.keep);
   Tally sum;
   for (std::size_t s = 0; s < simulated.scans.size(); ++s) {
     if (simulated.truth.scans[s].mobile != settings.outdoor) continue;
@@ -430,6 +431,9 @@ int main(int argc, char** argv) {
   app.add_option("--threads", settings.threads, "0: the machine's");
   app.add_flag("--errors", settings.errors, "a line for each edge: outward error, deviation");
   app.add_flag("--kept", settings.kept, "of dense scans the points that features are found on");
+  app.add_option("--kept-per-m2", settings.keep.most_per_m2,
+                 "with --kept: so many on a square metre, of stations");
+  app.add_option("--kept-per-m2-of-way", settings.keep.most_per_m2_of_way, "the same of mobile scans");
   app.add_flag("--list", settings.list, "name what was missed, wrong, or far off");
   CLI11_PARSE(app, argc, argv);
   set_thread_count(settings.threads);

@@ -69,6 +69,7 @@ struct Settings {
   int repeats = 1;
   bool list = false;
   bool kept = false;
+  KeepOptions keep;
 };
 
 struct Counts {
@@ -210,7 +211,7 @@ Counts run(const std::string& scene, int seed, const Settings& settings) {
   (settings.outdoor ? options.points_outdoor : options.points_indoor) = settings.points;
   options.scanner.noise_m = settings.noise_m;
   SimulatedCase simulated = simulate(options);
-  if (settings.kept) keep_as_features_do(simulated);
+  if (settings.kept) keep_as_features_do(simulated, settings.keep);
   Counts sum;
   int stations = 0;
   for (std::size_t i = 0; i < simulated.scans.size(); ++i) {
@@ -250,6 +251,9 @@ void add_options(CLI::App& app, Settings& settings) {
   app.add_option("--threads", settings.threads, "0: the machine's");
   app.add_option("--repeats", settings.repeats, "runs of each detection; the fastest is told");
   app.add_flag("--kept", settings.kept, "of dense scans the points that features are found on");
+  app.add_option("--kept-per-m2", settings.keep.most_per_m2,
+                 "with --kept: so many on a square metre, of stations");
+  app.add_option("--kept-per-m2-of-way", settings.keep.most_per_m2_of_way, "the same of mobile scans");
   app.add_flag("--list", settings.list, "name what was missed and what was not pure");
 }
 

@@ -163,9 +163,10 @@ class Representatives {
     std::uint32_t last = CellTable::kNone;
     for (std::size_t i = 0; i < points_.size(); ++i) {
       if (!usable(points_[i])) continue;
+      // None lies below the origin.
       const Vector2d scaled = (points_[i] - origin_) / cell_m_;
-      const auto x = static_cast<std::int64_t>(std::floor(scaled.x()));
-      const auto y = static_cast<std::int64_t>(std::floor(scaled.y()));
+      const auto x = static_cast<std::int64_t>(scaled.x());
+      const auto y = static_cast<std::int64_t>(scaled.y());
       if (last == CellTable::kNone || x != last_x || y != last_y)
         last = table_.insert(last_x = x, last_y = y);
       cell_of_point_[i] = last;

@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
+#include <vector>
 
 #include "limen/base/parallel.h"
 #include "limen/geometry/linear.h"
@@ -14,6 +17,9 @@ namespace {
 constexpr std::size_t kMinTiles = 150;
 constexpr std::size_t kMaxUps = 6;
 constexpr double kMaxMisfit = 0.08;
+constexpr double kNearestM = 0.1;
+constexpr double kLeastHeightM = 0.01;
+constexpr double kLeastCosine = 0.05;  // of the elevation
 
 struct Tile {
   Vector3d mean;
@@ -35,30 +41,60 @@ std::vector<Tile> full_tiles(const Features& features) {
   return tiles;
 }
 
-/// Log of the density the model gives at a tile, less the unknown rate.
-double model(const Tile& tile, const Vector3d& centre, const Vector3d& up) {
-  const Vector3d ray = tile.mean - centre;
-  const double range = std::max(0.1, ray.norm());
-  const double height = std::max(0.01, std::abs(tile.plane.signed_distance(centre)));
-  const double cosine = ray.cross(up).norm() / range;
-  return std::log(height) - 3.0 * std::log(range) - std::log(std::max(0.05, cosine));
-}
+/// From a tile to a centre: what the density there depends on, each kept away from where the law has no
+/// meaning.
+struct SeenTile {
+  Vector3d ray;
+  double height = 0.0;      ///< signed
+  double along = 0.0;       ///< of the ray along the axis
+  double squared_m2 = 0.0;  ///< of the ray
+  double across_m2 = 0.0;   ///< of the ray across the axis
 
-double median(std::vector<double> values) {
+  SeenTile(const Tile& tile, const Vector3d& centre, const Vector3d& up)
+      : ray(tile.mean - centre),
+        height(tile.plane.signed_distance(centre)),
+        along(ray.dot(up)),
+        squared_m2(std::max(kNearestM * kNearestM, ray.squaredNorm())),
+        across_m2(std::max(kLeastCosine * kLeastCosine * squared_m2, ray.squaredNorm() - along * along)) {}
+
+  /// h / (r^3 cos e) = h / (r^2 |r x up|)
+  [[nodiscard]] double log_density() const {
+    const double h = std::max(kLeastHeightM, std::abs(height));
+    return 0.5 * std::log(h * h / (squared_m2 * squared_m2 * across_m2));
+  }
+  /// Of log_density(), by the centre.
+  [[nodiscard]] Vector3d slope(const Tile& tile, const Vector3d& up) const {
+    const double squared = ray.squaredNorm();
+    Vector3d sum = Vector3d::Zero();
+    if (std::abs(height) > kLeastHeightM) sum += tile.plane.normal / height;
+    const bool flat = across_m2 > kLeastCosine * kLeastCosine * squared_m2;
+    if (squared > kNearestM * kNearestM) sum += (flat ? 2.0 : 3.0) / squared * ray;
+    if (flat) sum += (ray - along * up) / across_m2;
+    return sum;
+  }
+};
+
+/// Reorders the values.
+double median(std::vector<double>& values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
 }
 
+/// Median absolute deviation of residuals from their median.
+double spread_of(std::vector<double> residuals) {
+  const double rate = median(residuals);
+  for (double& r : residuals) r = std::abs(r - rate);
+  return median(residuals);
+}
+
 /// Median absolute deviation of the log density from the model, the rate being its median.
 double misfit(const std::vector<Tile>& tiles, const Vector3d& centre, const Vector3d& up, std::size_t step) {
   std::vector<double> residuals;
-  for (std::size_t i = 0; i < tiles.size(); i += step) {
-    residuals.push_back(tiles[i].log_density - model(tiles[i], centre, up));
-  }
-  const double rate = median(residuals);
-  for (double& r : residuals) r = std::abs(r - rate);
-  return median(std::move(residuals));
+  residuals.reserve(tiles.size() / step + 1);
+  for (std::size_t i = 0; i < tiles.size(); i += step)
+    residuals.push_back(tiles[i].log_density - SeenTile(tiles[i], centre, up).log_density());
+  return spread_of(std::move(residuals));
 }
 
 /// The best of a grid of half a metre over the middle of the tiles.
@@ -101,27 +137,30 @@ struct Settled {
 /// Neighbouring tiles err alike (speckle, furniture before them, thinning): so many of them are one.
 constexpr double kTilesAlike = 4.0;
 
-/// Gauss-Newton with Cauchy weights over centre and rate, derivatives by differences.
+/// Gauss-Newton with Cauchy weights over centre and rate.
 Settled refine(const std::vector<Tile>& tiles, Vector3d centre, const Vector3d& up) {
   std::vector<double> residuals(tiles.size());
-  for (std::size_t i = 0; i < tiles.size(); ++i)
-    residuals[i] = tiles[i].log_density - model(tiles[i], centre, up);
-  double rate = median(residuals);
+  std::vector<Vector3d> slopes(tiles.size());
+  std::optional<double> rate;
   double sigma_m = 0.0;
   for (int round = 0; round < 25; ++round) {
-    const double spread = misfit(tiles, centre, up, 1);
+    for (std::size_t i = 0; i < tiles.size(); ++i) {
+      const SeenTile seen(tiles[i], centre, up);
+      residuals[i] = tiles[i].log_density - seen.log_density();
+      slopes[i] = seen.slope(tiles[i], up);
+    }
+    if (!rate) {
+      std::vector<double> first = residuals;
+      rate = median(first);
+    }
+    const double spread = spread_of(residuals);
     const double scale = std::max(0.05, spread);
     Eigen::Matrix4d normal = Eigen::Matrix4d::Identity() * 1e-6;
     Eigen::Vector4d right = Eigen::Vector4d::Zero();
-    for (const Tile& tile : tiles) {
-      const double at = model(tile, centre, up);
-      const double residual = tile.log_density - rate - at;
+    for (std::size_t i = 0; i < tiles.size(); ++i) {
+      const double residual = residuals[i] - *rate;
       const double weight = 1.0 / (1.0 + residual * residual / (4.0 * scale * scale));
-      Eigen::Vector4d slope;
-      for (int axis = 0; axis < 3; ++axis) {
-        slope[axis] = (model(tile, centre + 1e-4 * Vector3d::Unit(axis), up) - at) / 1e-4;
-      }
-      slope[3] = 1.0;
+      const Eigen::Vector4d slope(slopes[i].x(), slopes[i].y(), slopes[i].z(), 1.0);
       normal += weight * slope * slope.transpose();
       right += weight * residual * slope;
     }
@@ -129,7 +168,7 @@ Settled refine(const std::vector<Tile>& tiles, Vector3d centre, const Vector3d& 
     const double length = step.head<3>().norm();
     if (length > 0.3) step *= 0.3 / length;
     centre += step.head<3>();
-    rate += step[3];
+    *rate += step[3];
     const Eigen::Matrix4d inverse = inverse_of(normal);
     sigma_m = 1.4826 * spread * std::sqrt(kTilesAlike * inverse.diagonal().head<3>().maxCoeff());
     if (length < 1e-4) break;

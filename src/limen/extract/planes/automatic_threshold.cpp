@@ -54,6 +54,7 @@ double automatic_threshold(const Scan& scan, const GrowOptions& grow,
   ThresholdOptions choice;
   choice.min_inliers = static_cast<std::size_t>(trial.min_inliers);
   choice.thresholds_m.clear();
+  choice.until_worse = true;
   for (const double factor : options.factors) {
     const double threshold = std::min(options.max_threshold_m, factor * first.inlier_threshold_m);
     if (choice.thresholds_m.empty() || threshold > choice.thresholds_m.back())

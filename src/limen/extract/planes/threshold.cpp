@@ -118,7 +118,10 @@ ThresholdChoice choose_threshold(const CloudSize& cloud, const ThresholdTrial& d
   for (const double threshold_m : options.thresholds_m) {
     const std::vector<DetectedPlane> planes = detector(threshold_m);
     choice.scores.push_back({threshold_m, planes.size(), score_of(cloud, planes, threshold_m, options)});
-    if (better(choice.scores.back(), choice.scores[best], options.criterion)) best = choice.scores.size() - 1;
+    if (better(choice.scores.back(), choice.scores[best], options.criterion))
+      best = choice.scores.size() - 1;
+    else if (options.until_worse && choice.scores.size() > 1)
+      break;
   }
   choice.threshold_m = choice.scores[best].threshold_m;
   choice.meaningful = choice.scores[best].log10_nfa < 0.0;

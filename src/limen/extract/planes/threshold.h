@@ -31,6 +31,8 @@ struct ThresholdOptions {
   std::vector<double> thresholds_m = {0.005, 0.01, 0.015, 0.02, 0.03, 0.05};  ///< > 0, ascending
   ThresholdCriterion criterion = ThresholdCriterion::per_plane;
   std::size_t min_inliers = 200;  ///< min_size of equation 3, >= 3
+  /// Stops at the first threshold that is worse than the one before: noise has one scale.
+  bool until_worse = false;
 
   void check() const;
 };

@@ -91,6 +91,20 @@ TEST(ChooseThreshold, PrefersNotToFuseParallelWalls) {
   EXPECT_LE(choice.threshold_m, 0.015);
 }
 
+TEST(ChooseThreshold, StopsOnceItGetsWorseIfAsked) {
+  const CloudSize cloud{140000, Vector3d(5.0, 4.0, 3.0)};
+  const auto detector = [](double t) { return walls_with_noise(0.004, t); };
+  ThresholdOptions options;
+  const ThresholdChoice all = choose_threshold(cloud, detector, options);
+  options.until_worse = true;
+  const ThresholdChoice few = choose_threshold(cloud, detector, options);
+  EXPECT_EQ(few.threshold_m, all.threshold_m);
+  EXPECT_LT(few.scores.size(), all.scores.size());
+  // The last one tried is the first that is worse.
+  ASSERT_GE(few.scores.size(), 2U);
+  EXPECT_EQ(few.scores[few.scores.size() - 2].threshold_m, few.threshold_m);
+}
+
 TEST(ChooseThreshold, BreaksTiesAndSaysWhenNothingIsThere) {
   const CloudSize cloud{100000, Vector3d(5.0, 4.0, 3.0)};
   const auto nothing = choose_threshold(cloud, [](double) { return std::vector<DetectedPlane>{}; });

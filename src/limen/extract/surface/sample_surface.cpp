@@ -27,8 +27,14 @@ struct Tile {
   Vector3d sum = Vector3d::Zero();
 };
 
-std::int64_t key_of(double u, double v, double w) {
-  const auto part = [](double x) { return static_cast<std::int64_t>(std::floor(x)) & 0x1fffff; };
+/// std::floor is a call where the processor's own is not presumed.
+std::int64_t floor_of(double x) {
+  const auto whole = static_cast<std::int64_t>(x);
+  return whole - (x < static_cast<double>(whole) ? 1 : 0);
+}
+
+std::int64_t key_of(std::int64_t u, std::int64_t v, std::int64_t w) {
+  const auto part = [](std::int64_t x) { return x & 0x1fffff; };
   return (part(w) << 42) | (part(v) << 21) | part(u);
 }
 
@@ -61,13 +67,16 @@ std::vector<SurfaceSample> plane_samples(const Scan& scan, const PlanarPolygon& 
   Tiles tiles;
   for (const std::uint32_t i : points) {
     const Vector2d p = plane.frame.to_plane(scan.points[i]) / tile_m;
-    const auto fine = [](double x) {
-      return std::min(kSubtilesPerEdge - 1, static_cast<int>((x - std::floor(x)) * kSubtilesPerEdge));
+    const std::int64_t u = floor_of(p.x());
+    const std::int64_t v = floor_of(p.y());
+    const auto fine = [](double x, std::int64_t whole) {
+      return std::min(kSubtilesPerEdge - 1,
+                      static_cast<int>((x - static_cast<double>(whole)) * kSubtilesPerEdge));
     };
-    Tile& tile = tiles.at(key_of(p.x(), p.y(), 0));
+    Tile& tile = tiles.at(key_of(u, v, 0));
     tile.count += 1;
     tile.sum += scan.points[i];
-    tile.occupied |= 1U << static_cast<std::uint32_t>(fine(p.y()) * kSubtilesPerEdge + fine(p.x()));
+    tile.occupied |= 1U << static_cast<std::uint32_t>(fine(p.y(), v) * kSubtilesPerEdge + fine(p.x(), u));
   }
   std::vector<SurfaceSample> samples;
   for (const Tile& tile : std::move(tiles).sorted()) {
@@ -85,7 +94,7 @@ std::vector<SurfaceSample> clutter_samples(const Scan& scan, const std::vector<s
   for (std::uint32_t i = 0; i < scan.size(); ++i) {
     if (labels[i] >= 0) continue;
     const Vector3d p = scan.points[i] / cube_m;
-    Tile& tile = tiles.at(key_of(p.x(), p.y(), p.z()));
+    Tile& tile = tiles.at(key_of(floor_of(p.x()), floor_of(p.y()), floor_of(p.z())));
     tile.count += 1;
     tile.sum += scan.points[i];
   }
@@ -110,7 +119,7 @@ std::vector<SurfaceSample> sample_surface(const Scan& scan, const std::vector<st
                                           const SampleOptions& options) {
   options.check();
   const std::vector<std::vector<std::uint32_t>> points = points_of(labels, planes.size());
-  std::vector<std::vector<SurfaceSample>> parts(planes.size() + 1);
+  std::vector<std::vector<SurfaceSample>> parts(planes.size() + (options.clutter ? 1 : 0));
   parallel_for(parts.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       parts[k] = k < planes.size()

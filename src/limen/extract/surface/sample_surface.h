@@ -9,6 +9,7 @@ namespace limen {
 struct SampleOptions {
   double tile_m = 0.25;     ///< edge of the tiles of planes
   double clutter_m = 0.25;  ///< edge of the cubes of points in no plane
+  bool clutter = true;      ///< whether these are sampled at all
 
   void check() const;
 };

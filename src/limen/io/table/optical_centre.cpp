@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 
 #include "limen/model/scan.h"
@@ -49,26 +50,28 @@ bool inside_grown_box(const std::vector<Vector3d>& points, const Vector3d& candi
 }  // namespace
 
 double hidden_share(const std::vector<Vector3d>& points, const Vector3d& candidate) {
+  struct Seen {
+    std::uint32_t cell;
+    float range;
+  };
   const std::size_t stride = std::max<std::size_t>(1, points.size() / kEnough);
   const std::size_t cells = cells_for(points.size());
   std::vector<float> nearest(6 * cells * cells, std::numeric_limits<float>::max());
+  std::vector<Seen> all;
+  all.reserve(points.size() / stride + 1);
   for (std::size_t i = 0; i < points.size(); i += stride) {
     const Vector3d ray = points[i] - candidate;
     const auto range = static_cast<float>(ray.norm());
     if (range <= 0.0F) continue;
-    float& best = nearest[cell_of(ray, cells)];
-    best = std::min(best, range);
+    const std::size_t cell = cell_of(ray, cells);
+    all.push_back({static_cast<std::uint32_t>(cell), range});
+    nearest[cell] = std::min(nearest[cell], range);
   }
-  std::size_t hidden = 0;
-  std::size_t all = 0;
-  for (std::size_t i = 0; i < points.size(); i += stride) {
-    const Vector3d ray = points[i] - candidate;
-    const auto range = static_cast<float>(ray.norm());
-    if (range <= 0.0F) continue;
-    ++all;
-    hidden += range > 1.2F * nearest[cell_of(ray, cells)] + 0.2F ? 1U : 0U;
-  }
-  return all == 0 ? 0.0 : static_cast<double>(hidden) / static_cast<double>(all);
+  if (all.empty()) return 0.0;
+  const auto hidden = std::count_if(all.begin(), all.end(), [&](const Seen& seen) {
+    return seen.range > 1.2F * nearest[seen.cell] + 0.2F;
+  });
+  return static_cast<double>(hidden) / static_cast<double>(all.size());
 }
 
 bool can_be_scanner(const std::vector<Vector3d>& points, const Vector3d& candidate) {

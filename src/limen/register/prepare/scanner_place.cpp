@@ -54,6 +54,7 @@ Features tiled(const Scan& scan, const std::vector<FramePlane>& planes, const Ma
   });
   SampleOptions options;
   options.tile_m = kTileM;
+  options.clutter = false;
   features.samples = sample_surface(scan, labels, features.planes, options);
   for (PlanarPolygon& polygon : features.planes)
     polygon.plane = transformed({axes, Vector3d::Zero()}, polygon.plane);
