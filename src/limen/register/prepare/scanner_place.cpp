@@ -11,6 +11,7 @@
 #include "limen/io/table/optical_centre.h"
 #include "limen/model/features.h"
 #include "limen/register/prepare/steady_sample.h"
+#include "limen/register/prepare/tukey_sums.h"
 #include "limen/sight/estimate_centre.h"
 
 namespace limen {
@@ -31,26 +32,20 @@ constexpr double kAsHidden = 0.03;  // share of the points by which two places m
 /// Tiles of the large planes, turned by `axes`.
 Features tiled(const Scan& scan, const std::vector<FramePlane>& planes, const Matrix3d& axes) {
   Features features;
-  for (const FramePlane& large : planes) {
+  for (const FramePlane& plane : planes) {
     PlanarPolygon polygon;
-    polygon.plane = large.plane;
-    polygon.frame = make_frame(transformed({axes, Vector3d::Zero()}, large.plane), axes * large.middle);
+    polygon.plane = plane.plane;
+    polygon.frame = make_frame(transformed({axes, Vector3d::Zero()}, plane.plane), axes * plane.middle);
     polygon.frame = {axes.transpose() * polygon.frame.origin, axes.transpose() * polygon.frame.u,
                      axes.transpose() * polygon.frame.v};
-    polygon.area_m2 = large.area_m2;
+    polygon.area_m2 = plane.area_m2;
     features.planes.push_back(polygon);
   }
   std::vector<std::int32_t> labels(scan.size(), -1);
+  std::vector<Plane> large;
+  for (const FramePlane& plane : planes) large.push_back(plane.plane);
   parallel_for(scan.size(), kLookedPerPiece, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      double nearest = kOnPlaneM;
-      for (std::size_t k = 0; k < planes.size(); ++k) {
-        const double off = std::abs(planes[k].plane.signed_distance(scan.points[i]));
-        if (off >= nearest) continue;
-        nearest = off;
-        labels[i] = static_cast<std::int32_t>(k);
-      }
-    }
+    label_nearest(scan.points, begin, end, large, kOnPlaneM, labels);
   });
   SampleOptions options;
   options.tile_m = kTileM;

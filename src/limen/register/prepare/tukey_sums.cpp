@@ -31,6 +31,17 @@ LIMEN_WIDE void fill_distances(const Columns& at, std::size_t count, const Slab&
     distance[i] = std::abs(slab.nx * at.x[i] + slab.ny * at.y[i] + slab.nz * at.z[i] - slab.offset);
 }
 
+/// Where the slab's plane is nearer than what is known, it is what is known.
+LIMEN_WIDE void keep_nearer(const Columns& at, std::size_t count, const Slab& slab, double number,
+                            double* nearest, double* label) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const double off = std::abs(slab.nx * at.x[i] + slab.ny * at.y[i] + slab.nz * at.z[i] - slab.offset);
+    const bool nearer = off < nearest[i];
+    label[i] = nearer ? number : label[i];
+    nearest[i] = nearer ? off : nearest[i];
+  }
+}
+
 /// Several numbers in one, as GCC and Clang know them.
 using Lanes = double __attribute__((vector_size(kLanes * sizeof(double))));
 
@@ -85,6 +96,31 @@ PointColumns near_plane(const PointColumns& points, const Plane& plane, double w
     }
   }
   return near;
+}
+
+void label_nearest(const std::vector<Vector3d>& points, std::size_t begin, std::size_t end,
+                   const std::vector<Plane>& planes, double within_m, std::vector<std::int32_t>& labels) {
+  std::array<double, kBlock> x;
+  std::array<double, kBlock> y;
+  std::array<double, kBlock> z;
+  std::array<double, kBlock> nearest;
+  std::array<double, kBlock> label;
+  for (std::size_t first = begin; first < end; first += kBlock) {
+    const std::size_t count = std::min(kBlock, end - first);
+    for (std::size_t i = 0; i < count; ++i) {
+      x[i] = points[first + i].x();
+      y[i] = points[first + i].y();
+      z[i] = points[first + i].z();
+    }
+    nearest.fill(within_m);
+    label.fill(-1.0);
+    for (std::size_t k = 0; k < planes.size(); ++k)
+      keep_nearer({x.data(), y.data(), z.data()}, count, slab_of(planes[k], 1.0), static_cast<double>(k),
+                  nearest.data(), label.data());
+    for (std::size_t i = 0; i < count; ++i) {
+      if (label[i] >= 0.0) labels[first + i] = static_cast<std::int32_t>(label[i]);
+    }
+  }
 }
 
 std::array<double, 10> tukey_sums(const PointColumns& points, const Plane& plane, double width_m) {

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "limen/geometry/plane.h"
@@ -24,6 +25,11 @@ struct PointColumns {
 
 /// Those within `within_m` of a plane, in their order.
 PointColumns near_plane(const PointColumns& points, const Plane& plane, double within_m);
+
+/// Of points `begin` to `end` the number of the plane that is nearest, where one is nearer than `within_m`;
+/// the first of equals. Any other label stays.
+void label_nearest(const std::vector<Vector3d>& points, std::size_t begin, std::size_t end,
+                   const std::vector<Plane>& planes, double within_m, std::vector<std::int32_t>& labels);
 
 /// Sums of w, wx, wy, wz, wxx, wxy, wxz, wyy, wyz, wzz with Tukey's weight w of the distance from a plane
 /// over `width_m`.
