@@ -29,6 +29,7 @@
 #include "limen/base/parallel.h"
 #include "limen/extract/openings/opening_curtains.h"
 #include "limen/extract/openings/opening_evidence.h"
+#include "limen/extract/openings/opening_front.h"
 #include "limen/extract/openings/opening_grid.h"
 #include "limen/extract/openings/opening_outline.h"
 #include "limen/extract/openings/opening_rectangles.h"
@@ -262,8 +263,10 @@ std::vector<Opening> openings_of(const Scan& scan, const Features& features, con
     if (scan.mobile() && is_niche(evidence, grid, rectangle.box, options.max_niche_m)) continue;
     const OpeningOutline outline = find_outline(evidence, grid, rectangle);
     if (!outline.ring.empty()) rectangle.box = outline.box;
+    const std::optional<double> front = front_depth(scan, evidence, grid, rectangle);
+    if (front && scan.mobile() && outline.ring.empty()) narrow_sides(scan, evidence, grid, *front, rectangle);
     std::array<Reveal, 4> reveals =
-        find_reveals(scan, evidence, grid, rectangle, std::max(features.noise_m, 0.001));
+        find_reveals(scan, evidence, grid, rectangle, std::max(features.noise_m, 0.001), front);
     if (!outline.ring.empty()) drop_bent_sides(outline, reveals);
     refine_sides(features, evidence.wall, reveals, rectangle);
     openings.push_back(make_opening(rectangle, evidence.wall));
