@@ -28,7 +28,7 @@ constexpr double kLayerRough_m = 0.001;  // of a side's surface
 constexpr double kMinLayerDepth_m = 0.004;
 constexpr double kFrontMargin_m = 0.008;  // before what stands in the opening
 constexpr double kRayBeside_m = 0.003;    // rays of one row cross the face this near to each other
-constexpr double kLayerMargin_m = 0.005;  // of the mean of many points
+constexpr double kLayerMargin_m = 0.005;  // before the front of the middle one of many points
 constexpr double kLayerShare = 0.5;       // of the rays that met the face where theirs did
 
 /// Depth at which a side begins: a few points nearer are strays.
@@ -141,7 +141,7 @@ class RevealFinder {
     }
     const Layer layer = outermost_layer(near);
     const auto count = static_cast<double>(layer.count);
-    if (layer.count == 0 || layer.depth_m > *front_m_ - std::max(kLayerMargin_m, 1.5 * noise_m_)) return {};
+    if (layer.count == 0 || layer.depth_m > *front_m_ - std::max(kLayerMargin_m, 2.0 * noise_m_)) return {};
     if (count < kLayerShare * static_cast<double>(std::max(before, rays_at(side, all, layer)))) return {};
     Reveal reveal;
     reveal.found = true;
@@ -151,7 +151,7 @@ class RevealFinder {
     return reveal;
   }
 
-  /// Points in one straight side, their means and where their rays met the face.
+  /// Points in one straight side, their mean place and median depth, and where their rays met the face.
   struct Layer {
     std::size_t count = 0;
     double across = 0.0;
@@ -178,15 +178,18 @@ class RevealFinder {
 
   static Layer layer_about(const std::vector<SidePoint>& points, std::size_t begin, double from) {
     Layer layer;
+    std::vector<double> depths;
     for (std::size_t i = begin; i < points.size() && points[i].across >= from; ++i) {
       layer.across += points[i].across;
-      layer.depth_m += points[i].depth;
+      depths.push_back(points[i].depth);
       layer.crossed.push_back(points[i].crossed);
       ++layer.count;
     }
     std::sort(layer.crossed.begin(), layer.crossed.end());
     layer.across /= static_cast<double>(layer.count);
-    layer.depth_m /= static_cast<double>(layer.count);
+    const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(layer.count / 2);
+    std::nth_element(depths.begin(), middle, depths.end());
+    layer.depth_m = *middle;
     return layer;
   }
 
