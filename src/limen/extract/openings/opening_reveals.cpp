@@ -27,6 +27,7 @@ constexpr double kLayerSlope = 0.03;     // of sides seen at one depth: deviatio
 constexpr double kLayerRough_m = 0.001;  // of a side's surface
 constexpr double kMinLayerDepth_m = 0.004;
 constexpr double kFrontMargin_m = 0.008;  // before what stands in the opening
+constexpr double kFrontDepth_m = 0.08;    // of frames and sashes
 constexpr double kRayBeside_m = 0.003;    // rays of one row cross the face this near to each other
 constexpr double kLayerMargin_m = 0.005;  // before the front of the middle one of many points
 constexpr double kLayerShare = 0.5;       // of the rays that met the face where theirs did
@@ -147,7 +148,11 @@ class RevealFinder {
     reveal.found = true;
     reveal.place = outward(side) * layer.across;
     reveal.sigma_m = std::hypot(kSideFloor_m, kLayerSlope * layer.depth_m);
-    reveal.depth_m = layer.depth_m;
+    const SideLine line{layer.across, 0.0, 0.0};
+    std::vector<SidePoint> on = near_side_line(all, line, std::max(5.0 * noise_m_, 0.01));
+    std::erase_if(on, [](const SidePoint& p) { return p.depth > kMaxDepth_m; });
+    set_depth(on, all, line, reveal);
+    reveal.depth_m = std::max(reveal.depth_m, layer.depth_m);
     return reveal;
   }
 
@@ -225,19 +230,21 @@ class RevealFinder {
     return points;
   }
 
-  /// Whether points near one line are a side: at several depths before what stands in the opening, from the
+  /// Whether points near one line are a side: at several depths but those of frames, from the
   /// wall's face on. A row of rays that crossed it in one place meets a side at
   /// one depth: where it has several they blend two surfaces.
   [[nodiscard]] bool surely_side(Side side, const std::vector<SidePoint>& all,
                                  const std::vector<SidePoint>& points) const {
-    std::vector<SidePoint> before;
+    std::vector<SidePoint> off_frame;
     for (const SidePoint& p : points) {
-      if (!front_m_ || p.depth < *front_m_ - kFrontMargin_m) before.push_back(p);
+      if (!front_m_ || p.depth < *front_m_ - kFrontMargin_m || p.depth > *front_m_ + kFrontDepth_m)
+        off_frame.push_back(p);
     }
-    if (before.size() < kMinRevealPoints || side_depths(before) < kMinBins || start_of(before) > kMaxStart_m)
+    if (off_frame.size() < kMinRevealPoints || side_depths(off_frame) < kMinBins ||
+        start_of(off_frame) > kMaxStart_m)
       return false;
-    const auto rays = static_cast<double>(rays_at(side, all, layer_about(before, 0, -1e9)));
-    return static_cast<double>(before.size()) >= kSideShare * rays;
+    const auto rays = static_cast<double>(rays_at(side, all, layer_about(off_frame, 0, -1e9)));
+    return static_cast<double>(off_frame.size()) >= kSideShare * rays;
   }
 
   /// A frame stands where the side ends: behind it the opening may be wider, but the wall goes on.
