@@ -233,7 +233,7 @@ class Tracer {
     if (off_m < kMinStandOff_m || off_m <= before_m) return;
     const Vector3d ray = x - centre;
     const double share = off_m / (off_m - before_m);
-    const Vector2d at = crossing(wall, centre, x);
+    const Vector2d at = wall.frame.to_plane(centre + share * ray);
     if (!wall.box.contains(at)) return;
     if (before_m > 0.0 &&
         (share - 1.0) * (share - 1.0) * ray.squaredNorm() > kMaxExtension_m * kMaxExtension_m)

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace limen {
 namespace {
@@ -116,17 +117,28 @@ std::vector<std::size_t> one_of_each(const std::vector<FrameSide>& sides) {
   return chosen;
 }
 
-/// What the sides met by other lines than `own` (all, where it is null) say of a common width; how much
-/// likelier they are with one is told by its mean.
-Widths common_width(const std::vector<FrameSide>& sides, const std::vector<std::size_t>& chosen,
-                    const FrameSide* own) {
-  Widths product;
-  product.fill(1.0);
+/// A common width's density, mean 1, and the log of how much likelier the sides are with one than with any.
+struct CommonWidth {
+  Widths density;
+  double log_evidence = 0.0;
+};
+
+/// What the sides say that other lines met than `own`; all, where it is null.
+CommonWidth common_width(const std::vector<FrameSide>& sides, const std::vector<std::size_t>& chosen,
+                         const FrameSide* own) {
+  CommonWidth common;
+  common.density.fill(1.0);
   for (const std::size_t i : chosen) {
     if (own != nullptr && same_lines(sides[i], *own)) continue;
-    for (std::size_t k = 0; k < kFrameWidths; ++k) product[k] *= sides[i].likelihood[k];
+    double mean = 0.0;
+    for (std::size_t k = 0; k < kFrameWidths; ++k) {
+      common.density[k] *= sides[i].likelihood[k];
+      mean += common.density[k] / static_cast<double>(kFrameWidths);
+    }
+    for (double& value : common.density) value /= mean;
+    common.log_evidence += std::log(mean);
   }
-  return product;
+  return common;
 }
 
 /// Places a side again where its frame is as wide as the widths say.
@@ -158,12 +170,32 @@ void share_among(std::vector<FramedRectangle>& windows) {
   const std::vector<FrameSide> sides = frame_sides(windows);
   const std::vector<std::size_t> chosen = one_of_each(sides);
   if (chosen.size() < 3) return;
-  const Widths all = common_width(sides, chosen, nullptr);
-  double mean = 0.0;
-  for (const double value : all) mean += value / static_cast<double>(kFrameWidths);
-  if (!(std::log(std::max(mean, 1e-300)) > kMinEvidenceForOne)) return;
+  if (!(common_width(sides, chosen, nullptr).log_evidence > kMinEvidenceForOne)) return;
   for (const FrameSide& side : sides)
-    place_by_frame(side, common_width(sides, chosen, &side), windows[side.window].rectangle);
+    place_by_frame(side, common_width(sides, chosen, &side).density, windows[side.window].rectangle);
+}
+
+/// For either upright side what lies about it in the front's plane: the frame's bar or wall, or neither.
+std::array<std::vector<SideMark>, 2> frame_marks(const Scan& scan, const WallEvidence& evidence,
+                                                 const OpeningGrid& grid, const Box2& box, double front_m) {
+  const double trim_m = kFrameTrim * (box.high.y() - box.low.y());
+  Box2 around = box;
+  around.low.x() -= kMaxFrameBar_m;
+  around.high.x() += kMaxFrameBar_m;
+  std::array<std::vector<SideMark>, 2> marks;
+  for (const std::uint32_t i : grid.samples_in(around)) {
+    const WallSample& sample = evidence.samples[i];
+    const double depth_m = static_cast<double>(sample.depth_m);
+    const bool wall = sample.kind == SampleKind::wall;
+    if (!wall && (sample.kind == SampleKind::cover || depth_m < front_m - kFrameLayer_m)) continue;
+    Vector2d at(sample.u, sample.v);
+    if (!wall) at += front_m / depth_m * (evidence.wall.frame.to_plane(scan.points[sample.point]) - at);
+    if (at.y() < box.low.y() + trim_m || at.y() > box.high.y() - trim_m) continue;
+    const bool bar = wall || depth_m < front_m + kFrameLayer_m;
+    marks[0].push_back({at.x(), bar});
+    marks[1].push_back({-at.x(), bar});
+  }
+  return marks;
 }
 
 }  // namespace
@@ -171,36 +203,16 @@ void share_among(std::vector<FramedRectangle>& windows) {
 std::array<SideSeparator, 2> frame_edges(const Scan& scan, const WallEvidence& evidence,
                                          const OpeningGrid& grid, const OpeningRectangle& rectangle,
                                          double front_m) {
+  constexpr double kBeyond_m = 0.05;
   const Box2& box = rectangle.box;
-  const double trim_m = kFrameTrim * (box.high.y() - box.low.y());
-  std::array<std::vector<SideMark>, 2> marks;
-  Box2 around = box;
-  around.low.x() -= kMaxFrameBar_m;
-  around.high.x() += kMaxFrameBar_m;
-  for (const std::uint32_t i : grid.samples_in(around)) {
-    const WallSample& sample = evidence.samples[i];
-    const double depth_m = static_cast<double>(sample.depth_m);
-    const bool wall = sample.kind == SampleKind::wall;
-    if (!wall && (sample.kind == SampleKind::cover || depth_m < front_m - kFrameLayer_m)) continue;
-    const Vector2d crossed(sample.u, sample.v);
-    Vector2d at = crossed;
-    if (!wall) {
-      at = evidence.wall.frame.to_plane(scan.points[sample.point]);
-      at = crossed + front_m / depth_m * (at - crossed);
-    }
-    if (at.y() < box.low.y() + trim_m || at.y() > box.high.y() - trim_m) continue;
-    for (const Side side : {Side::right, Side::left})
-      marks[side == Side::right ? 0 : 1].push_back(
-          {outward(side) * at.x(), wall || depth_m < front_m + kFrameLayer_m});
-  }
+  auto marks = frame_marks(scan, evidence, grid, box, front_m);
   std::array<SideSeparator, 2> edges;
-  for (const Side side : {Side::right, Side::left}) {
-    std::vector<SideMark>& of = marks[side == Side::right ? 0 : 1];
-    const double place = outward(side) * place_of(box, side);
+  for (const std::size_t k : {0U, 1U}) {
+    const double place = k == 0 ? box.high.x() : -box.low.x();
     const double from = place - std::min(kMaxFrameBar_m, 0.4 * (box.high.x() - box.low.x()));
-    const double to = place + 0.05;
-    std::erase_if(of, [&](const SideMark& mark) { return mark.at < from || mark.at > to; });
-    edges[side == Side::right ? 0 : 1] = separate(std::move(of), from, to);
+    const double to = place + kBeyond_m;
+    std::erase_if(marks[k], [&](const SideMark& mark) { return mark.at < from || mark.at > to; });
+    edges[k] = separate(std::move(marks[k]), from, to);
   }
   return edges;
 }

@@ -230,9 +230,9 @@ class RevealFinder {
     return points;
   }
 
-  /// Whether points near one line are a side: at several depths but those of frames, from the
-  /// wall's face on. A row of rays that crossed it in one place meets a side at
-  /// one depth: where it has several they blend two surfaces.
+  /// Whether points near one line are a side: at several depths, those of frames left out, from the wall's
+  /// face on. A row of rays that crossed the face in one place meets a side at one depth: where it has
+  /// several, they blend two surfaces, and most of the row does not.
   [[nodiscard]] bool surely_side(Side side, const std::vector<SidePoint>& all,
                                  const std::vector<SidePoint>& points) const {
     std::vector<SidePoint> off_frame;

@@ -45,6 +45,9 @@ constexpr double kMinWallRound = 0.5;
 constexpr double kThroughShare = 0.05;
 constexpr double kFoot_m = 0.15;  // a door's lower end is no higher above the foot of the wall beside it
 
+/// Of outer walls: sides that end sooner end at a rebate or a splay.
+constexpr double kThinnestFacade_m = 0.25;
+
 /// The lowest wall beside a rectangle, within an opening's breadth; very low where there is none.
 double foot_beside(const WallEvidence& evidence, const OpeningGrid& grid, const Box2& box) {
   constexpr double kBeside_m = 0.6;
@@ -234,11 +237,10 @@ void drop_bent_sides(const OpeningOutline& outline, std::array<Reveal, 4>& revea
 void set_reveal(const std::array<Reveal, 4>& reveals, bool outside, Opening& opening) {
   constexpr double kUnknownEnd_m = 0.02;
   const auto& of = [&](Side side) -> const Reveal& { return reveals[static_cast<std::size_t>(side)]; };
-  constexpr double kThinnest_m = 0.25;  // of outer walls: sides that end sooner end at a rebate or a splay
   for (const Side side : {Side::left, Side::right, Side::top}) {
     const Reveal& reveal = of(side);
     // From the street a lintel may be the crown of a flat arch.
-    if (outside && (side == Side::top || reveal.depth_m < kThinnest_m)) continue;
+    if (outside && (side == Side::top || reveal.depth_m < kThinnestFacade_m)) continue;
     if (!reveal.complete || (opening.reveal_complete && reveal.depth_m >= opening.reveal_depth_m)) continue;
     opening.reveal_depth_m = reveal.depth_m;
     opening.reveal_sigma_m = reveal.depth_sigma_m;
@@ -265,11 +267,13 @@ FoundHole make_hole(const Scan& scan, const Features& features, const WallEviden
   const bool straight = hole.outline.ring.empty();
   if (!straight) rectangle.box = hole.outline.box;
   const std::optional<double> front_m = front_depth(scan, evidence, grid, rectangle);
-  if (front_m && scan.mobile() && straight) narrow_sides(scan, evidence, grid, *front_m, rectangle);
+  // Of façades; a door's leaf may stand farther behind the face than its wall is thick.
+  const bool framed = front_m && scan.mobile() && straight;
+  if (framed) narrow_sides(scan, evidence, grid, std::min(*front_m, kThinnestFacade_m), rectangle);
   hole.reveals = find_reveals(scan, evidence, grid, rectangle, std::max(features.noise_m, 0.001), front_m);
   if (!straight) drop_bent_sides(hole.outline, hole.reveals);
   refine_sides(features, evidence.wall, hole.reveals, rectangle);
-  if (front_m && scan.mobile() && straight) {
+  if (framed) {
     hole.framed.front_m = front_m;
     hole.framed.inner = frame_edges(scan, evidence, grid, rectangle, *front_m);
   }
