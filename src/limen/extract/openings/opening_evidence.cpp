@@ -140,6 +140,13 @@ WallTarget make_target(const OpeningWall& wall) {
   return {&wall, box};
 }
 
+/// Where the ray from the centre to a point meets the wall's plane.
+Vector2d crossing(const OpeningWall& wall, const Vector3d& centre, const Vector3d& x) {
+  const double off_m = wall.plane.signed_distance(centre);
+  const double share = off_m / (off_m - wall.plane.signed_distance(x));
+  return wall.frame.to_plane(centre + share * (x - centre));
+}
+
 /// Traces the rays of a scan to its walls.
 class Tracer {
  public:
@@ -254,7 +261,7 @@ class Tracer {
 
 /// Points that count as wall but lie a little behind what is wall around them are the sides of openings: with
 /// a threshold of 2.5 cm they reach that far into the opening. Walls bulge: what is wall is told locally.
-void part_sides(WallEvidence& evidence, double noise_m) {
+void part_sides(const Scan& scan, const OpeningOptions& options, double noise_m, WallEvidence& evidence) {
   constexpr double kTile_m = 0.5;
   constexpr double kMinBehind_m = 0.004;
   const Vector2d size = evidence.wall.box.high - evidence.wall.box.low;
@@ -281,8 +288,12 @@ void part_sides(WallEvidence& evidence, double noise_m) {
   }
   const double behind_m = std::max(kMinBehind_m, 2.0 * noise_m);
   for (WallSample& sample : evidence.samples) {
-    if (sample.kind == SampleKind::wall && sample.depth_m > depth[tile_of(sample)] + behind_m)
-      sample.kind = SampleKind::shallow;
+    if (sample.kind != SampleKind::wall || !(sample.depth_m > depth[tile_of(sample)] + behind_m)) continue;
+    sample.kind = SampleKind::shallow;
+    const Vector2d at =
+        crossing(evidence.wall, centre_of(scan, options, sample.point), scan.points[sample.point]);
+    sample.u = static_cast<float>(at.x());
+    sample.v = static_cast<float>(at.y());
   }
 }
 
@@ -344,7 +355,8 @@ std::vector<WallEvidence> opening_evidence(const Scan& scan, const ExtractedFeat
     piece = {};
   }
   parallel_for(evidence.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t w = begin; w < end; ++w) part_sides(evidence[w], extracted.features.noise_m);
+    for (std::size_t w = begin; w < end; ++w)
+      part_sides(scan, options, extracted.features.noise_m, evidence[w]);
   });
   return evidence;
 }

@@ -4,143 +4,33 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
+#include <optional>
 #include <utility>
 #include <vector>
+
+#include "limen/extract/openings/opening_side_lines.h"
 
 namespace limen {
 namespace {
 
 constexpr double kMaxDepth_m = 1.0;    // walls are thinner
 constexpr double kMinDepth_m = 0.008;  // nearer to the face a point may belong to the wall itself
-constexpr double kDepthBin_m = 0.015;
-constexpr std::size_t kMinBins = 4;  // depths at which a side must be seen: a frame's face has one or two
+constexpr std::size_t kMinBins = 4;    // depths at which a side must be seen: a frame's face has one or two
+constexpr double kSideShare = 0.4;     // of the rays that met the face where theirs did end on a side
 constexpr std::size_t kMinRevealPoints = 8;
 constexpr double kCorner_m = 0.05;       // left out at either end of a side
 constexpr double kRevealReach_m = 0.12;  // of a side from where crossings and wall part
-constexpr double kMaxSlope = 0.5;        // of splayed sides, metres per metre
-constexpr double kSlopeStep = 0.05;
-constexpr double kSplayGain = 1.3;     // a splayed side must fit that much better than a straight one
-constexpr double kMinGraze = 0.08;     // tangent between ray and side: beams that touch an edge run along it
-constexpr double kMaxStart_m = 0.05;   // a side begins at the wall's face; a frame's bar does not
-constexpr double kMinBeyond_m = 0.03;  // of a point past a side whose ray did not end on it
-constexpr double kFloor_m = 0.002;     // no side is known better
-
-/// A point seen through the opening, as one of its sides sees it.
-struct SidePoint {
-  double across = 0.0;   ///< of the point, growing outwards
-  double crossed = 0.0;  ///< of its ray on the wall's face
-  double depth = 0.0;    ///< behind the wall's face
-
-  /// Tangent of the angle at which the ray meets a side of this slope.
-  [[nodiscard]] double graze(double slope) const { return (across - crossed) / depth - slope; }
-};
-
-struct Line {
-  double place = 0.0;
-  double slope = 0.0;
-  double score = 0.0;
-};
-
-/// Different depths among the points with `across - slope * depth` in a window that starts at the k-th.
-class WindowScore {
- public:
-  void add(double depth) { score_ += ++count_[bin(depth)] <= kPerDepth ? 1.0 : 0.0; }
-  void remove(double depth) { score_ -= --count_[bin(depth)] < kPerDepth ? 1.0 : 0.0; }
-  [[nodiscard]] double score() const { return score_; }
-
- private:
-  static std::size_t bin(double depth) {
-    return std::min(kBins - 1, static_cast<std::size_t>(depth / kDepthBin_m));
-  }
-  static constexpr std::size_t kBins = 70;
-  static constexpr int kPerDepth = 3;  // more points at one depth say no more
-  std::array<int, kBins> count_{};
-  double score_ = 0.0;
-};
-
-Line best_line(const std::vector<SidePoint>& points, double slope, double width) {
-  std::vector<std::pair<double, double>> sorted;  // place, depth
-  for (const SidePoint& p : points) {
-    if (p.graze(slope) >= kMinGraze) sorted.emplace_back(p.across - slope * p.depth, p.depth);
-  }
-  std::sort(sorted.begin(), sorted.end());
-  WindowScore window;
-  Line best{0.0, slope, 0.0};
-  std::size_t begin = 0;
-  for (std::size_t end = 0; end < sorted.size(); ++end) {
-    window.add(sorted[end].second);
-    while (sorted[end].first - sorted[begin].first > width) window.remove(sorted[begin++].second);
-    const double score = window.score();
-    if (score > best.score) best = {0.5 * (sorted[begin].first + sorted[end].first), slope, score};
-  }
-  return best;
-}
-
-/// What no line through the points exceeds.
-double most_score(const std::vector<SidePoint>& points) {
-  WindowScore all;
-  for (const SidePoint& p : points) all.add(p.depth);
-  return all.score();
-}
-
-/// The side through points at most depths; straight unless a splayed one is clearly better.
-Line find_line(const std::vector<SidePoint>& points, double width) {
-  Line best = best_line(points, 0.0, width);
-  best.score *= kSplayGain;
-  if (best.score >= most_score(points)) return best;
-  for (double slope = kSlopeStep; slope < kMaxSlope; slope += kSlopeStep) {
-    for (const double signed_slope : {slope, -slope}) {
-      const Line line = best_line(points, signed_slope, width);
-      if (line.score > best.score) best = line;
-    }
-  }
-  return best;
-}
-
-struct FittedLine {
-  Line line;
-  double sigma_m = 1.0;
-};
-
-/// Least squares over the points near the line; a straight side keeps its direction. Frames and stray points
-/// pass for a side: its deviation is that of points anywhere within `width_m`.
-FittedLine refined(const std::vector<SidePoint>& points, const Line& line, double width_m) {
-  double n = 0.0;
-  double sd = 0.0;
-  double sa = 0.0;
-  double sdd = 0.0;
-  double sda = 0.0;
-  for (const SidePoint& p : points) {
-    n += 1.0;
-    sd += p.depth;
-    sa += p.across;
-    sdd += p.depth * p.depth;
-    sda += p.depth * p.across;
-  }
-  const double spread = sdd / n - sd * sd / (n * n);
-  FittedLine fitted{line, 1.0};
-  if (line.slope == 0.0) {
-    fitted.line.place = sa / n;
-    fitted.sigma_m = std::hypot(width_m / std::sqrt(n), kFloor_m);
-  } else {
-    fitted.line.slope = (sda / n - sd * sa / (n * n)) / std::max(spread, 1e-9);
-    fitted.line.place = (sa - fitted.line.slope * sd) / n;
-    const double mean = sd / n;
-    fitted.sigma_m =
-        std::hypot(width_m * std::sqrt((1.0 + mean * mean / std::max(spread, 1e-9)) / n), kFloor_m);
-  }
-  return fitted;
-}
-
-std::vector<SidePoint> near_line(const std::vector<SidePoint>& points, const Line& line, double within_m) {
-  std::vector<SidePoint> near;
-  for (const SidePoint& p : points) {
-    if (p.graze(line.slope) < kMinGraze) continue;
-    if (std::abs(p.across - line.place - line.slope * p.depth) <= within_m) near.push_back(p);
-  }
-  return near;
-}
+constexpr double kMaxStart_m = 0.05;     // a side begins at the wall's face; a frame's bar does not
+constexpr double kMinBeyond_m = 0.03;    // of a point past a side whose ray did not end on it
+constexpr double kMinLayerGraze = 0.03;  // of what tells a side by one depth only
+constexpr double kLayerSlope = 0.03;     // of sides seen at one depth: deviation from straight
+constexpr double kLayerRough_m = 0.001;  // of a side's surface
+constexpr double kMinLayerDepth_m = 0.004;
+constexpr double kFrontMargin_m = 0.008;  // before what stands in the opening
+constexpr double kFrontDepth_m = 0.08;    // of frames and sashes
+constexpr double kRayBeside_m = 0.003;    // rays of one row cross the face this near to each other
+constexpr double kLayerMargin_m = 0.005;  // before the front of the middle one of many points
+constexpr double kLayerShare = 0.5;       // of the rays that met the face where theirs did
 
 /// Depth at which a side begins: a few points nearer are strays.
 double start_of(const std::vector<SidePoint>& points) {
@@ -175,8 +65,8 @@ struct Passage {
 class RevealFinder {
  public:
   RevealFinder(const Scan& scan, const WallEvidence& evidence, const OpeningGrid& grid,
-               const OpeningRectangle& rectangle, double noise_m)
-      : rectangle_(rectangle), noise_m_(noise_m) {
+               const OpeningRectangle& rectangle, double noise_m, std::optional<double> front_m)
+      : rectangle_(rectangle), noise_m_(noise_m), front_m_(front_m) {
     const Vector2d middle = 0.5 * (rectangle.box.low + rectangle.box.high);
     spacing_m_ = grid.spacing_m(middle);
     Box2 around = rectangle.box;
@@ -184,8 +74,9 @@ class RevealFinder {
     around.high.array() += kRevealReach_m;
     for (const std::uint32_t i : grid.samples_in(around)) {
       const WallSample& sample = evidence.samples[i];
+      if (sample.kind == SampleKind::wall) walls_.emplace_back(sample.u, sample.v);
       if (sample.kind != SampleKind::open && sample.kind != SampleKind::shallow) continue;
-      if (sample.depth_m < kMinDepth_m) continue;
+      if (sample.depth_m < kMinLayerDepth_m) continue;
       seen_.push_back({{sample.u, sample.v},
                        evidence.wall.frame.to_plane(scan.points[sample.point]),
                        static_cast<double>(sample.depth_m)});
@@ -194,27 +85,10 @@ class RevealFinder {
 
   [[nodiscard]] Reveal find(Side side) const {
     const std::vector<SidePoint> all = points_of(side);
-    const double place = outward(side) * place_of(rectangle_.box, side);
-    const double sigma_m = rectangle_.sigma_m[static_cast<std::size_t>(side)];
-    const double reach_m = std::min(2.5 * sigma_m + 0.01, kRevealReach_m);
-    const double width_m = std::max(5.0 * noise_m_, 0.01);
-    std::vector<SidePoint> near;
-    for (const SidePoint& p : all) {
-      if (p.depth < kMaxDepth_m && std::abs(p.across - place) <= reach_m + kMaxSlope * p.depth)
-        near.push_back(p);
-    }
-    if (near.size() < kMinRevealPoints) return {};
-    const Line line = find_line(near, width_m);
-    std::vector<SidePoint> on = near_line(near, line, width_m);
-    if (on.size() < kMinRevealPoints || depths_of(on) < kMinBins || start_of(on) > kMaxStart_m) return {};
-    const FittedLine fitted = refined(on, line, 2.0 * width_m);
-    if (std::abs(fitted.line.place - place) > reach_m) return {};
-    Reveal reveal;
-    reveal.found = true;
-    reveal.place = outward(side) * fitted.line.place;
-    reveal.sigma_m = fitted.sigma_m;
-    set_depth(near_line(on, fitted.line, width_m), all, fitted.line, reveal);
-    return reveal;
+    const Reveal straight = at_depths(side, all, false);
+    if (straight.found) return straight;
+    const Reveal layer = before_front(side, all);
+    return layer.found ? layer : at_depths(side, all, true);
   }
 
  private:
@@ -223,6 +97,124 @@ class RevealFinder {
     Vector2d at;
     double depth;
   };
+
+  /// The side through points at several depths.
+  [[nodiscard]] Reveal at_depths(Side side, const std::vector<SidePoint>& all, bool splayed) const {
+    const double place = outward(side) * place_of(rectangle_.box, side);
+    const double sigma_m = rectangle_.sigma_m[static_cast<std::size_t>(side)];
+    const double reach_m = std::min(2.5 * sigma_m + 0.01, kRevealReach_m);
+    const double width_m = std::max(5.0 * noise_m_, 0.01);
+    std::vector<SidePoint> near;
+    for (const SidePoint& p : all) {
+      if (p.depth > kMinDepth_m && p.depth < kMaxDepth_m &&
+          std::abs(p.across - place) <= reach_m + kSideMaxSlope * p.depth)
+        near.push_back(p);
+    }
+    if (near.size() < kMinRevealPoints) return {};
+    const SideLine line = find_side_line(near, width_m, splayed);
+    std::vector<SidePoint> on = near_side_line(near, line, width_m);
+    if (!surely_side(side, all, on)) return {};
+    const FittedSideLine fitted = refined_side_line(on, line, 2.0 * width_m);
+    if (std::abs(fitted.line.place - place) > reach_m) return {};
+    Reveal reveal;
+    reveal.found = true;
+    reveal.place = outward(side) * fitted.line.place;
+    reveal.sigma_m = fitted.sigma_m;
+    set_depth(near_side_line(on, fitted.line, width_m), all, fitted.line, reveal);
+    return reveal;
+  }
+
+  /// A scan line may meet a side at one depth only. Before what stands in the opening there is nothing but
+  /// its sides: where points lie there in one straight side, within what the noise of their ranges allows, it
+  /// is the side.
+  [[nodiscard]] Reveal before_front(Side side, const std::vector<SidePoint>& all) const {
+    if (!front_m_) return {};
+    const double place = outward(side) * place_of(rectangle_.box, side);
+    const double sigma_m = rectangle_.sigma_m[static_cast<std::size_t>(side)];
+    const double reach_m = std::min(2.5 * sigma_m + 0.01, kRevealReach_m);
+    std::vector<SidePoint> near;
+    std::size_t before = 0;
+    for (const SidePoint& p : all) {
+      if (p.depth > *front_m_ + 3.0 * noise_m_ || std::abs(p.across - place) > reach_m) continue;
+      if (p.graze(0.0) < kMinLayerGraze) continue;
+      near.push_back(p);
+      before += p.depth < *front_m_ - std::max(kFrontMargin_m, 3.0 * noise_m_) ? 1 : 0;
+    }
+    const Layer layer = outermost_layer(near);
+    const auto count = static_cast<double>(layer.count);
+    if (layer.count == 0 || layer.depth_m > *front_m_ - std::max(kLayerMargin_m, 2.0 * noise_m_)) return {};
+    if (count < kLayerShare * static_cast<double>(std::max(before, rays_at(side, all, layer)))) return {};
+    Reveal reveal;
+    reveal.found = true;
+    reveal.place = outward(side) * layer.across;
+    reveal.sigma_m = std::hypot(kSideFloor_m, kLayerSlope * layer.depth_m);
+    const SideLine line{layer.across, 0.0, 0.0};
+    std::vector<SidePoint> on = near_side_line(all, line, std::max(5.0 * noise_m_, 0.01));
+    std::erase_if(on, [](const SidePoint& p) { return p.depth > kMaxDepth_m; });
+    set_depth(on, all, line, reveal);
+    reveal.depth_m = std::max(reveal.depth_m, layer.depth_m);
+    return reveal;
+  }
+
+  /// Points in one straight side, their mean place and median depth, and where their rays met the face.
+  struct Layer {
+    std::size_t count = 0;
+    double across = 0.0;
+    double depth_m = 0.0;
+    std::vector<double> crossed;  ///< ascending
+  };
+
+  /// What lies in one straight side as far out as anything does.
+  [[nodiscard]] Layer outermost_layer(std::vector<SidePoint>& points) const {
+    const auto tolerance_m = [&](const SidePoint& p) {
+      const double graze = p.graze(0.0);
+      return 3.0 * std::hypot(noise_m_ * graze / std::sqrt(1.0 + graze * graze), kLayerRough_m);
+    };
+    std::sort(points.begin(), points.end(),
+              [](const SidePoint& a, const SidePoint& b) { return a.across > b.across; });
+    for (std::size_t i = 0; i + kMinRevealPoints <= points.size(); ++i) {
+      const SidePoint& middle = points[i + kMinRevealPoints / 2];
+      const double wide_m = 1.5 * tolerance_m(middle);
+      if (points[i].across - points[i + kMinRevealPoints - 1].across > wide_m) continue;
+      return layer_about(points, i, points[i].across - wide_m);
+    }
+    return {};
+  }
+
+  static Layer layer_about(const std::vector<SidePoint>& points, std::size_t begin, double from) {
+    Layer layer;
+    std::vector<double> depths;
+    for (std::size_t i = begin; i < points.size() && points[i].across >= from; ++i) {
+      layer.across += points[i].across;
+      depths.push_back(points[i].depth);
+      layer.crossed.push_back(points[i].crossed);
+      ++layer.count;
+    }
+    std::sort(layer.crossed.begin(), layer.crossed.end());
+    layer.across /= static_cast<double>(layer.count);
+    const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(layer.count / 2);
+    std::nth_element(depths.begin(), middle, depths.end());
+    layer.depth_m = *middle;
+    return layer;
+  }
+
+  /// How many rays met the face there, whatever they hit: of those that a side stops all but a few are
+  /// stopped, of those that blend two surfaces at an edge few.
+  [[nodiscard]] std::size_t rays_at(Side side, const std::vector<SidePoint>& all, const Layer& layer) const {
+    const Eigen::Index axis = axis_of(side);
+    const auto there = [&](double at) {
+      const auto next = std::lower_bound(layer.crossed.begin(), layer.crossed.end(), at - kRayBeside_m);
+      return next != layer.crossed.end() && *next <= at + kRayBeside_m;
+    };
+    const auto behind =
+        std::count_if(all.begin(), all.end(), [&](const SidePoint& p) { return there(p.crossed); });
+    const double low = rectangle_.box.low[1 - axis] + kCorner_m;
+    const double high = rectangle_.box.high[1 - axis] - kCorner_m;
+    const auto before = std::count_if(walls_.begin(), walls_.end(), [&](const Vector2d& wall) {
+      return wall[1 - axis] > low && wall[1 - axis] < high && there(outward(side) * wall[axis]);
+    });
+    return static_cast<std::size_t>(behind + before);
+  }
 
   /// The points as a side sees them, those about its corners left out.
   [[nodiscard]] std::vector<SidePoint> points_of(Side side) const {
@@ -238,14 +230,25 @@ class RevealFinder {
     return points;
   }
 
-  static std::size_t depths_of(const std::vector<SidePoint>& points) {
-    std::set<int> bins;
-    for (const SidePoint& p : points) bins.insert(static_cast<int>(p.depth / kDepthBin_m));
-    return bins.size();
+  /// Whether points near one line are a side: at several depths, those of frames left out, from the wall's
+  /// face on. A row of rays that crossed the face in one place meets a side at one depth: where it has
+  /// several, they blend two surfaces, and most of the row does not.
+  [[nodiscard]] bool surely_side(Side side, const std::vector<SidePoint>& all,
+                                 const std::vector<SidePoint>& points) const {
+    std::vector<SidePoint> off_frame;
+    for (const SidePoint& p : points) {
+      if (!front_m_ || p.depth < *front_m_ - kFrontMargin_m || p.depth > *front_m_ + kFrontDepth_m)
+        off_frame.push_back(p);
+    }
+    if (off_frame.size() < kMinRevealPoints || side_depths(off_frame) < kMinBins ||
+        start_of(off_frame) > kMaxStart_m)
+      return false;
+    const auto rays = static_cast<double>(rays_at(side, all, layer_about(off_frame, 0, -1e9)));
+    return static_cast<double>(off_frame.size()) >= kSideShare * rays;
   }
 
   /// A frame stands where the side ends: behind it the opening may be wider, but the wall goes on.
-  static bool ends_at_frame(const std::vector<SidePoint>& all, const Line& line, double depth_m) {
+  static bool ends_at_frame(const std::vector<SidePoint>& all, const SideLine& line, double depth_m) {
     constexpr double kFrame_m = 0.08;  // depth of a frame, and a little
     constexpr double kBar_m = 0.12;
     constexpr std::ptrdiff_t kPoints = 3;
@@ -258,7 +261,7 @@ class RevealFinder {
 
   /// How deep the side goes, and whether it ends there: the shallowest rays that cut through where it would
   /// go on.
-  void set_depth(const std::vector<SidePoint>& on, const std::vector<SidePoint>& all, const Line& line,
+  void set_depth(const std::vector<SidePoint>& on, const std::vector<SidePoint>& all, const SideLine& line,
                  Reveal& reveal) const {
     if (on.empty()) return;
     const double max_gap_m = std::max(0.08, 3.0 * spacing_m_);
@@ -288,15 +291,18 @@ class RevealFinder {
 
   const OpeningRectangle& rectangle_;
   double noise_m_;
+  std::optional<double> front_m_;
   double spacing_m_ = 0.05;
   std::vector<Seen> seen_;
+  std::vector<Vector2d> walls_;
 };
 
 }  // namespace
 
 std::array<Reveal, 4> find_reveals(const Scan& scan, const WallEvidence& evidence, const OpeningGrid& grid,
-                                   const OpeningRectangle& rectangle, double noise_m) {
-  const RevealFinder finder(scan, evidence, grid, rectangle, noise_m);
+                                   const OpeningRectangle& rectangle, double noise_m,
+                                   std::optional<double> front_m) {
+  const RevealFinder finder(scan, evidence, grid, rectangle, noise_m, front_m);
   std::array<Reveal, 4> reveals;
   for (const Side side : kSides) reveals[static_cast<std::size_t>(side)] = finder.find(side);
   return reveals;

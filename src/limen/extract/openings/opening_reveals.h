@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 
 #include "limen/extract/openings/opening_rectangles.h"
 
@@ -19,8 +20,9 @@ struct Reveal {
 };
 
 /// The reveals of a rectangle in the order of `kSides`, from the points whose rays crossed the wall in it.
-/// `noise_m`: one standard deviation of the points.
+/// `noise_m`: one standard deviation of the points; `front_m`: as front_depth() says.
 std::array<Reveal, 4> find_reveals(const Scan& scan, const WallEvidence& evidence, const OpeningGrid& grid,
-                                   const OpeningRectangle& rectangle, double noise_m);
+                                   const OpeningRectangle& rectangle, double noise_m,
+                                   std::optional<double> front_m);
 
 }  // namespace limen

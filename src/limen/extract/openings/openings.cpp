@@ -29,6 +29,8 @@
 #include "limen/base/parallel.h"
 #include "limen/extract/openings/opening_curtains.h"
 #include "limen/extract/openings/opening_evidence.h"
+#include "limen/extract/openings/opening_frames.h"
+#include "limen/extract/openings/opening_front.h"
 #include "limen/extract/openings/opening_grid.h"
 #include "limen/extract/openings/opening_outline.h"
 #include "limen/extract/openings/opening_rectangles.h"
@@ -42,6 +44,9 @@ constexpr std::size_t kMinEvidence = 20;  // rays
 constexpr double kMinWallRound = 0.5;
 constexpr double kThroughShare = 0.05;
 constexpr double kFoot_m = 0.15;  // a door's lower end is no higher above the foot of the wall beside it
+
+/// Of outer walls: sides that end sooner end at a rebate or a splay.
+constexpr double kThinnestFacade_m = 0.25;
 
 /// The lowest wall beside a rectangle, within an opening's breadth; very low where there is none.
 double foot_beside(const WallEvidence& evidence, const OpeningGrid& grid, const Box2& box) {
@@ -232,11 +237,10 @@ void drop_bent_sides(const OpeningOutline& outline, std::array<Reveal, 4>& revea
 void set_reveal(const std::array<Reveal, 4>& reveals, bool outside, Opening& opening) {
   constexpr double kUnknownEnd_m = 0.02;
   const auto& of = [&](Side side) -> const Reveal& { return reveals[static_cast<std::size_t>(side)]; };
-  constexpr double kThinnest_m = 0.25;  // of outer walls: sides that end sooner end at a rebate or a splay
   for (const Side side : {Side::left, Side::right, Side::top}) {
     const Reveal& reveal = of(side);
     // From the street a lintel may be the crown of a flat arch.
-    if (outside && (side == Side::top || reveal.depth_m < kThinnest_m)) continue;
+    if (outside && (side == Side::top || reveal.depth_m < kThinnestFacade_m)) continue;
     if (!reveal.complete || (opening.reveal_complete && reveal.depth_m >= opening.reveal_depth_m)) continue;
     opening.reveal_depth_m = reveal.depth_m;
     opening.reveal_sigma_m = reveal.depth_sigma_m;
@@ -248,6 +252,49 @@ void set_reveal(const std::array<Reveal, 4>& reveals, bool outside, Opening& ope
   if (opening.reveal_depth_m > 0.0) opening.reveal_sigma_m = kUnknownEnd_m;
 }
 
+/// An opening as it is found in its wall.
+struct FoundHole {
+  FramedRectangle framed;
+  std::array<Reveal, 4> reveals;
+  OpeningOutline outline;
+};
+
+FoundHole make_hole(const Scan& scan, const Features& features, const WallEvidence& evidence,
+                    const OpeningGrid& grid, const OpeningRectangle& found) {
+  FoundHole hole;
+  OpeningRectangle& rectangle = hole.framed.rectangle = found;
+  hole.outline = find_outline(evidence, grid, rectangle);
+  const bool straight = hole.outline.ring.empty();
+  if (!straight) rectangle.box = hole.outline.box;
+  const std::optional<double> front_m = front_depth(scan, evidence, grid, rectangle);
+  // Of façades; a door's leaf may stand farther behind the face than its wall is thick.
+  const bool framed = front_m && scan.mobile() && straight;
+  if (framed) narrow_sides(scan, evidence, grid, std::min(*front_m, kThinnestFacade_m), rectangle);
+  hole.reveals = find_reveals(scan, evidence, grid, rectangle, std::max(features.noise_m, 0.001), front_m);
+  if (!straight) drop_bent_sides(hole.outline, hole.reveals);
+  refine_sides(features, evidence.wall, hole.reveals, rectangle);
+  if (framed) {
+    hole.framed.front_m = front_m;
+    hole.framed.inner = frame_edges(scan, evidence, grid, rectangle, *front_m);
+  }
+  return hole;
+}
+
+std::vector<FoundHole> holes_of(const Scan& scan, const Features& features, const WallEvidence& evidence,
+                                const OpeningGrid& grid, const OpeningOptions& options) {
+  std::vector<FoundHole> holes;
+  std::vector<FramedRectangle> framed;
+  for (const OpeningRectangle& rectangle : opening_rectangles(evidence, grid, options)) {
+    if (!acceptable(features, rectangle, evidence, grid, options)) continue;
+    if (scan.mobile() && is_niche(evidence, grid, rectangle.box, options.max_niche_m)) continue;
+    holes.push_back(make_hole(scan, features, evidence, grid, rectangle));
+    framed.push_back(holes.back().framed);
+  }
+  share_frame_widths(framed);
+  for (std::size_t i = 0; i < holes.size(); ++i) holes[i].framed = framed[i];
+  return holes;
+}
+
 std::vector<Opening> openings_of(const Scan& scan, const Features& features, const WallEvidence& evidence,
                                  const DirectionMap& directions, const OpeningOptions& options) {
   const bool any =
@@ -257,18 +304,11 @@ std::vector<Opening> openings_of(const Scan& scan, const Features& features, con
   if (!any) return {};
   const OpeningGrid grid(evidence, directions);
   std::vector<Opening> openings;
-  for (OpeningRectangle& rectangle : opening_rectangles(evidence, grid, options)) {
-    if (!acceptable(features, rectangle, evidence, grid, options)) continue;
-    if (scan.mobile() && is_niche(evidence, grid, rectangle.box, options.max_niche_m)) continue;
-    const OpeningOutline outline = find_outline(evidence, grid, rectangle);
-    if (!outline.ring.empty()) rectangle.box = outline.box;
-    std::array<Reveal, 4> reveals =
-        find_reveals(scan, evidence, grid, rectangle, std::max(features.noise_m, 0.001));
-    if (!outline.ring.empty()) drop_bent_sides(outline, reveals);
-    refine_sides(features, evidence.wall, reveals, rectangle);
-    openings.push_back(make_opening(rectangle, evidence.wall));
-    set_reveal(reveals, scan.mobile(), openings.back());
-    for (const Vector2d& p : outline.ring) openings.back().outline.push_back(evidence.wall.frame.to_space(p));
+  for (const FoundHole& hole : holes_of(scan, features, evidence, grid, options)) {
+    openings.push_back(make_opening(hole.framed.rectangle, evidence.wall));
+    set_reveal(hole.reveals, scan.mobile(), openings.back());
+    for (const Vector2d& p : hole.outline.ring)
+      openings.back().outline.push_back(evidence.wall.frame.to_space(p));
   }
   // A curtain hangs in the room; before a façade hang flags.
   if (scan.mobile()) return openings;

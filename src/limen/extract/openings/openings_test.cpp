@@ -43,12 +43,13 @@ class WallScene {
   Thing in_opening = nothing;  ///< met by rays through the opening
   Thing before = nothing;      ///< met by any ray
   Matrix3d turn = Matrix3d::Identity();
+  double line_step_rad = kStep_rad;  ///< between upright scan lines
 
   [[nodiscard]] Scan scan() const {
     Scan scan;
     scan.name = "wall";
     RandomStream random(7);
-    for (double azimuth = -0.9; azimuth < 0.9; azimuth += kStep_rad) {
+    for (double azimuth = -0.9; azimuth < 0.9; azimuth += line_step_rad) {
       for (double elevation = -0.6; elevation < 0.6; elevation += kStep_rad) {
         const Vector3d ray(std::sin(azimuth) * std::cos(elevation), std::cos(azimuth) * std::cos(elevation),
                            std::sin(elevation));
@@ -121,6 +122,38 @@ TEST(Openings, AWindowIsFoundToMillimetresWithTheWallsThickness) {
   for (const double sigma : it.edge_sigma_m) EXPECT_LT(sigma, 0.012);
   EXPECT_TRUE(it.reveal_complete);
   EXPECT_NEAR(it.reveal_depth_m, kWall_m, 0.02);
+}
+
+/// A window with a frame round its pane 12 cm behind the face.
+WallScene framed_window(double right) {
+  WallScene scene;
+  scene.hole = wall_rectangle(0.4, -0.6, right, 0.9);
+  scene.in_opening = [=](double u, double v) {
+    const bool pane = u > 0.48 && u < right - 0.08 && v > -0.52 && v < 0.82 && std::abs(u - 1.0) > 0.04;
+    return pane ? std::nan("") : 0.12;
+  };
+  return scene;
+}
+
+TEST(Openings, ASideThatOneScanLineMetAtOneDepthIsKnownToMillimetres) {
+  // Lines 8 cm apart: one meets the right side 4.5 cm behind the face, the next one the wall.
+  WallScene scene = framed_window(1.585);
+  scene.line_step_rad = 0.02;
+  const std::vector<Opening> openings = openings_of(scene);
+  ASSERT_EQ(openings.size(), 1U);
+  EXPECT_NEAR(box_of(scene, openings[0]).high.x(), 1.585, 0.004);
+  EXPECT_LT(openings[0].edge_sigma_m[1], 0.006);
+}
+
+TEST(Openings, AFrameAtTheEndOfASideIsNotTheSide) {
+  // Of the right side no line sees anything; the last one before it meets the frame.
+  WallScene scene = framed_window(1.632);
+  scene.line_step_rad = 0.02;
+  const std::vector<Opening> openings = openings_of(scene);
+  ASSERT_EQ(openings.size(), 1U);
+  const double error = box_of(scene, openings[0]).high.x() - 1.632;
+  EXPECT_LT(std::abs(error), 2.0 * openings[0].edge_sigma_m[1]);
+  EXPECT_GT(openings[0].edge_sigma_m[1], 0.004);
 }
 
 TEST(Openings, CornersRunFromLowerLeftAsTheScannerSeesThem) {
