@@ -76,6 +76,8 @@ PreparedScan prepare_laid(const Scan& laid, const ScanFrame& frame, const Prepar
   prepared.place = in_world(frame.place, laid.local_origin - frame.corner);
   prepared.mobile = laid.mobile();
   ExtractOptions extract = options.extract;
+  // Poses are sought with few and large planes.
+  extract.detect.relief = extract.detect.relief && (options.planes_only || options.segments);
   extract.interior.enabled = extract.interior.enabled && (prepared.upright || prepared.mobile);
   {
     StagePart extracting(monitor, kFramed, kExtracted);
