@@ -60,6 +60,7 @@ struct Settings {
   std::string threshold = "auto";
   double threshold_m = 0.0;
   double noise_m = 0.003;
+  double drift_m = 0.0;
   FitOptions fit;
   std::size_t min_true = 1000;
   int min_inliers = 200;
@@ -68,6 +69,7 @@ struct Settings {
   int threads = 0;
   int repeats = 1;
   bool list = false;
+  bool no_relief = false;
   bool kept = false;
   KeepOptions keep;
 };
@@ -174,6 +176,7 @@ ScanTopology station_lines(const Scan& scan) {
 
 DetectOptions detect_options(const Settings& settings) {
   DetectOptions options;
+  options.relief = !settings.no_relief;
   if (settings.detector == "grow") options.detector = PlaneDetector::grow;
   if (settings.detector == "scan_lines") options.detector = PlaneDetector::scan_lines;
   if (settings.detector == "msac") options.detector = PlaneDetector::msac;
@@ -210,6 +213,7 @@ Counts run(const std::string& scene, int seed, const Settings& settings) {
   options.seed = static_cast<std::uint64_t>(seed);
   (settings.outdoor ? options.points_outdoor : options.points_indoor) = settings.points;
   options.scanner.noise_m = settings.noise_m;
+  options.drift_m = settings.drift_m;
   SimulatedCase simulated = simulate(options);
   if (settings.kept) keep_as_features_do(simulated, settings.keep);
   Counts sum;
@@ -242,6 +246,7 @@ void add_options(CLI::App& app, Settings& settings) {
   app.add_option("--threshold", settings.threshold, "auto, noise or a_contrario");
   app.add_option("--threshold-m", settings.threshold_m, "inlier threshold; 0: by --threshold");
   app.add_option("--noise-m", settings.noise_m, "range noise of the scanner");
+  app.add_option("--drift-m", settings.drift_m, "slow error of a mobile scan's trajectory, per axis");
   app.add_option("--fit-m", settings.fit.fit_m, "a point fits the true planes within this; 0: its own alone");
   app.add_option("--same-m", settings.fit.same_m, "true planes nearer than this, facing one way, are one");
   app.add_option("--min-true", settings.min_true, "points of a true plane that counts");
@@ -254,6 +259,8 @@ void add_options(CLI::App& app, Settings& settings) {
   app.add_option("--kept-per-m2", settings.keep.most_per_m2,
                  "with --kept: so many on a square metre, of stations");
   app.add_option("--kept-per-m2-of-way", settings.keep.most_per_m2_of_way, "the same of mobile scans");
+  app.add_flag("--no-relief", settings.no_relief,
+               "of mobile scans: as registration does, fewer and larger planes");
   app.add_flag("--list", settings.list, "name what was missed and what was not pure");
 }
 

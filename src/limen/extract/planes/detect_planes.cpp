@@ -4,10 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <vector>
 
 #include "limen/base/stage_part.h"
 #include "limen/extract/planes/automatic_threshold.h"
+#include "limen/extract/planes/fine_planes.h"
 #include "limen/extract/planes/msac_planes.h"
+#include "limen/extract/planes/straight_scan.h"
 #include "limen/extract/planes/topology_planes.h"
 
 namespace limen {
@@ -31,9 +35,13 @@ double noise_about(const PlaneLabels& planes) {
 }
 
 /// 0 leaves the choice to the detector.
-double threshold_for(const Scan& scan, ThresholdRule rule, const GrowOptions& grow, Monitor& monitor) {
+double threshold_for(const Scan& scan, const DetectOptions& options, const GrowOptions& grow,
+                     Monitor& monitor) {
+  const ThresholdRule rule = options.threshold;
   if (grow.inlier_threshold_m > 0.0) return grow.inlier_threshold_m;
   if (rule == ThresholdRule::automatic && !scan.mobile()) return automatic_threshold(scan, grow, {}, monitor);
+  // The noise of the whole cloud: on a subset cubes are so large that relief counts as noise.
+  if (rule == ThresholdRule::automatic && options.relief) return 0.0;
   if (rule == ThresholdRule::automatic) {
     // A street is too wide for the choice on a subset, and façades have relief of centimetres, whatever the
     // noise.
@@ -72,6 +80,40 @@ PlaneLabels planes_by(PlaneDetector detector, const Scan& scan, const DetectOpti
   return grow_planes(scan, grow, monitor).planes;
 }
 
+/// The planes about the scan's own points.
+std::vector<PlaneFit> refitted(const Scan& scan, const PlaneLabels& planes) {
+  const Vector3d anchor = scan.points.front();
+  std::vector<PointMoments> sums(planes.fits.size());
+  for (std::size_t i = 0; i < planes.labels.size(); ++i) {
+    if (planes.labels[i] >= 0) sums[static_cast<std::size_t>(planes.labels[i])].add(scan.points[i] - anchor);
+  }
+  std::vector<PlaneFit> fits;
+  for (const PointMoments& sum : sums) {
+    PlaneFit fit = fit_plane(sum);
+    fit.plane = shifted(fit.plane, -anchor);
+    fit.centroid += anchor;
+    fits.push_back(fit);
+  }
+  return fits;
+}
+
+/// Planes with the relief of walls apart: in the scan freed of its drift, which would break walls into bands.
+DetectedPlanes detect_relief(const Scan& scan, const GrowOptions& grow, Monitor& monitor) {
+  const ScanDrift drift = scan_drift(scan, {}, monitor);
+  std::optional<Scan> straight;
+  if (!drift.knots.empty()) straight = straightened(scan, drift);
+  const Scan& seen = straight ? *straight : scan;
+  DetectedPlanes detected;
+  detected.planes = grow_planes(seen, grow, monitor).planes;
+  FineOptions fine;
+  fine.noise_m = noise_about(detected.planes);
+  fine.min_inliers = grow.min_inliers;
+  detected.planes = fine_planes(seen, detected.planes, fine);
+  detected.noise_m = noise_about(detected.planes);
+  if (straight) detected.planes.fits = refitted(scan, detected.planes);
+  return detected;
+}
+
 }  // namespace
 
 PlaneDetector detector_for(const Scan& /*scan*/) {
@@ -89,8 +131,10 @@ DetectedPlanes detect_planes(const Scan& scan, const DetectOptions& options, con
   GrowOptions used = grow;
   constexpr double kThresholdShare = 0.4;  // of the work, about
   StagePart choosing(monitor, 0.0, kThresholdShare);
-  used.inlier_threshold_m = threshold_for(scan, options.threshold, grow, choosing);
+  used.inlier_threshold_m = threshold_for(scan, options, grow, choosing);
   StagePart finding(monitor, kThresholdShare, 1.0);
+  if (scan.mobile() && options.relief && detector == PlaneDetector::grow)
+    return detect_relief(scan, used, finding);
   DetectedPlanes detected;
   detected.detector = detector;
   detected.planes = planes_by(detector, scan, options, used, finding);

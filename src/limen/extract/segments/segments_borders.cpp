@@ -13,9 +13,11 @@ constexpr double kBin = 1.5;           // width of a bin in units of the spacing
 constexpr double kDepth = 6.0;         // how far inward gaps are measured, in units of the spacing
 constexpr double kTowardsMean = 0.16;  // measured on samples at random; rows have one value for both
 constexpr int kFewestBins = 5;
-constexpr double kBend_m = 0.002;     // a line may seem to bend by this,
-constexpr double kBendSigmas = 3.5;   // or by this many standard deviations
-constexpr double kUniform = 0.57735;  // standard deviation of what is uniform in [-1, 1]
+constexpr double kBend_m = 0.002;        // a line may seem to bend by this,
+constexpr double kBendSigmas = 3.5;      // or by this many standard deviations
+constexpr double kShortfallKnown = 0.2;  // of the shortfall: how far its mean is told wrong, one deviation
+constexpr double kNarrow = 0.5;          // of the spacing: points less deep are one row
+constexpr double kUniform = 0.57735;     // standard deviation of what is uniform in [-1, 1]
 
 /// The points along a run, bin by bin, outermost first.
 struct BinnedPoints {
@@ -71,6 +73,18 @@ Shortfall shortfall_of(const BinnedPoints& points, double depth_m) {
     shorter += gaps[k++];
   const double middle = (0.5 * sum - shorter) / static_cast<double>(gaps.size() - k);
   return {0.5 * squares / sum, middle};
+}
+
+/// How deep a bin's points reach inward, in the middle of the bins. A surface narrower than its points are
+/// apart shows one row of them: where it ends they do not tell.
+double depth_of(const BinnedPoints& points) {
+  std::vector<double> depths;
+  for (const auto& bin : points.bins)
+    if (!bin.empty()) depths.push_back(bin.back().first - bin.front().first);
+  if (depths.empty()) return 0.0;
+  const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
+  std::nth_element(depths.begin(), middle, depths.end());
+  return *middle;
 }
 
 struct Line2 {
@@ -206,7 +220,9 @@ bool judge(BorderFit& fit, double core_begin, double core_end) {
   const double expected = kUniform * fit.shortfall_m;
   const double own = expected > 0.0 ? std::max(0.0, 1.0 - spread * spread / (expected * expected)) : 0.0;
   const double count = std::max(1.0, independent(heights));
-  fit.sigma_m = std::sqrt(spread * spread / count + expected * expected * own);
+  // Nor do the gaps further in tell the shortfall itself better than to a part of it.
+  const double told = kShortfallKnown * fit.shortfall_m;
+  fit.sigma_m = std::sqrt(spread * spread / count + expected * expected * own + told * told);
   fit.angle_sigma_rad = std::sqrt(12.0 / count) * std::max(spread, 0.3 * expected) /
                         std::max(0.01, places.back() - places.front());
   return true;
@@ -258,6 +274,7 @@ std::optional<BorderFit> fit_border(const PlaneImage& image, const StraightRun& 
   strip.high_m = reach + kDepth * spacing;
   const double bin_m = std::max(0.005, kBin * spacing);
   const BinnedPoints points = binned(image, strip, bin_m, ambiguous);
+  if (depth_of(points) < kNarrow * spacing) return std::nullopt;
   BorderFit fit;
   fit.bin_m = bin_m;
   const Shortfall shortfall = shortfall_of(points, kDepth * spacing);

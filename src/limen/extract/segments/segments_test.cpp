@@ -205,6 +205,31 @@ TEST(SegmentBorders, SpacingIsMadeUpForInRowsAndAtRandom) {
   }
 }
 
+/// Borders along u that are told for points of the band 0 < v < `width_m`, in rows of even v.
+int borders_of_band(double width_m, double rows_m, double along_m) {
+  RandomStream stream(5);
+  std::vector<Vector3d> points;
+  for (double v = 0.5 * rows_m; v < width_m; v += rows_m)
+    for (double u = stream.uniform(0.0, along_m); u < 4.0; u += along_m)
+      points.emplace_back(u, v + 0.002 * stream.normal(), 0.0);
+  std::vector<std::uint32_t> all(points.size());
+  for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<std::uint32_t>(i);
+  const PlaneImage image(points, all, PlaneFrame{}, 4.0 * width_m);
+  int told = 0;
+  for (const StraightRun& run : straight_runs(image, 0.5)) {
+    if (std::abs(run.line.along.x()) < 0.99) continue;
+    const std::optional<BorderFit> fit = fit_border(image, run, 0.0, {});
+    if (fit && fit->sigma_m < 0.006) ++told;
+  }
+  return told;
+}
+
+TEST(SegmentBorders, ASingleRowDoesNotTellWhereItsSurfaceEnds) {
+  EXPECT_EQ(borders_of_band(0.06, 0.1, 0.05), 0);
+  EXPECT_EQ(borders_of_band(0.5, 0.1, 0.05), 0);  // rows too far apart
+  EXPECT_GT(borders_of_band(0.5, 0.01, 0.01), 0);
+}
+
 TEST(SegmentImage, ContoursGoRoundHolesTheOtherWay) {
   std::vector<Vector3d> points;
   std::vector<std::uint32_t> all;

@@ -60,10 +60,19 @@ ScannerPlace in_world(ScannerPlace place, const Vector3d& local_origin) {
   return place;
 }
 
-/// Segments are found along the borders between neighbouring points, and lines are made of all their points.
+/// Whether the relief of façades is told; poses are sought with few and large planes.
+bool wants_relief(const PrepareOptions& options) {
+  return options.extract.detect.relief && (options.planes_only || options.segments);
+}
+
+/// Segments are found along the borders between neighbouring points, and lines are made of all their points;
+/// relief shows in a row of points here and there, once what a trajectory drifts with time is taken out.
 LayOptions laying_for(const PrepareOptions& options) {
   const bool lines = options.segments || needs_lines(options.extract.detect.detector);
-  return {lines ? kKeepAll : options.keep, lines, options.track};
+  const bool relief = wants_relief(options);
+  LayOptions laying{lines ? kKeepAll : options.keep, lines, options.track || relief};
+  if (relief) laying.keep.most_per_m2_of_way = 0.0;
+  return laying;
 }
 
 PreparedScan prepare_laid(const Scan& laid, const ScanFrame& frame, const PrepareOptions& options,
@@ -76,6 +85,7 @@ PreparedScan prepare_laid(const Scan& laid, const ScanFrame& frame, const Prepar
   prepared.place = in_world(frame.place, laid.local_origin - frame.corner);
   prepared.mobile = laid.mobile();
   ExtractOptions extract = options.extract;
+  extract.detect.relief = wants_relief(options);
   extract.interior.enabled = extract.interior.enabled && (prepared.upright || prepared.mobile);
   {
     StagePart extracting(monitor, kFramed, kExtracted);

@@ -1,0 +1,23 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "limen/extract/planes/plane_labels.h"
+#include "limen/model/scan.h"
+
+namespace limen {
+
+struct FineOptions {
+  double noise_m = 0.003;   ///< of a point about its plane, one standard deviation
+  double drift_m = 0.0005;  ///< by which parts of one surface may stray beside the noise
+  int min_inliers = 200;    ///< smallest plane, points
+
+  void check() const;
+};
+
+/// Planes of a mobile scan as finely as its noise tells them apart: parts that only a gate had put together
+/// come apart (join_pieces.h), and the relief of walls is found (relief_sheets.h). `planes` were found at the
+/// threshold of the noise. A scan without optical centres keeps its planes' two sides together.
+PlaneLabels fine_planes(const Scan& scan, const PlaneLabels& planes, const FineOptions& options);
+
+}  // namespace limen

@@ -1,0 +1,147 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/extract/planes/join_pieces.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <utility>
+
+#include "limen/base/angles.h"
+#include "limen/base/error.h"
+#include "limen/extract/planes/merge_planes.h"
+
+namespace limen {
+namespace {
+
+constexpr double kChiSquared = 16.3;  // of three freedoms, exceeded once in a thousand
+constexpr double kWideNoises = 8.0;   // times the noise: a piece so wide has a normal of its own
+
+double squares_about_own(const PointMoments& moments, const PlaneFit& fit) {
+  return moments.count * fit.rms_m * fit.rms_m;
+}
+
+/// How much worse the common plane is than two of their own, in units of what is allowed; more than 1: two
+/// planes.
+class PieceJoin {
+ public:
+  explicit PieceJoin(const JoinOptions& options)
+      : o_(options), cosine_(std::cos(radians(options.max_angle_deg))) {}
+
+  [[nodiscard]] double strain(const PlanePiece& piece, const PlaneFit& a_fit, const PlanePiece& other,
+                              const PlaneFit& b_fit) const {
+    constexpr double kNever = std::numeric_limits<double>::infinity();
+    const PointMoments& a = piece.moments;
+    const PointMoments& b = other.moments;
+    if (rms_about(b, a_fit.plane) > o_.reach_m) return kNever;
+    if (piece.sight.dot(a_fit.plane.normal) * other.sight.dot(a_fit.plane.normal) < 0.0) return kNever;
+    if (wide(a_fit) && wide(b_fit) && std::abs(a_fit.plane.normal.dot(b_fit.plane.normal)) < cosine_)
+      return kNever;
+    PointMoments both = a;
+    both += b;
+    const double added =
+        squares_about_own(both, fit_plane(both)) - squares_about_own(a, a_fit) - squares_about_own(b, b_fit);
+    const double together = a.count * b.count / (a.count + b.count);
+    const double allowed = kChiSquared * o_.noise_m * o_.noise_m + together * o_.drift_m * o_.drift_m;
+    return added / allowed;
+  }
+
+ private:
+  [[nodiscard]] bool wide(const PlaneFit& fit) const {
+    return std::sqrt(12.0 * fit.variances[1]) > std::max(0.3, kWideNoises * o_.noise_m);
+  }
+
+  JoinOptions o_;
+  double cosine_;
+};
+
+bool larger(const PlanePiece& a, const PlanePiece& b) {
+  return a.points.size() > b.points.size();
+}
+
+}  // namespace
+
+void JoinOptions::check() const {
+  if (!(noise_m > 0)) throw_bad_option("noise_m", noise_m, "more than 0");
+  if (!(drift_m >= 0)) throw_bad_option("drift_m", drift_m, "0 or more");
+  if (!(reach_m > 0)) throw_bad_option("reach_m", reach_m, "more than 0");
+  if (!(max_angle_deg > 0 && max_angle_deg < 45))
+    throw_bad_option("max_angle_deg", max_angle_deg, "within (0, 45)");
+}
+
+PlanePiece piece_of(const Scan& scan, std::vector<std::uint32_t> points, const Vector3d& anchor) {
+  PlanePiece piece;
+  for (const std::uint32_t i : points) {
+    piece.moments.add(scan.points[i] - anchor);
+    if (scan.centre_known()) piece.sight += scan.centre(i) - scan.points[i];
+  }
+  piece.points = std::move(points);
+  return piece;
+}
+
+std::vector<PlanePiece> parts_of(const Scan& scan, const PlaneFit& fit,
+                                 const std::vector<std::uint32_t>& points, double gap_m,
+                                 const Vector3d& anchor) {
+  using Place = std::array<int, 3>;
+  const PlaneFrame frame = make_frame(fit.plane, fit.centroid);
+  std::map<Place, std::vector<std::uint32_t>> cells;
+  for (const std::uint32_t i : points) {
+    const Vector2d p = frame.to_plane(scan.points[i]) / gap_m;
+    const int side = scan.centre_known() && fit.plane.signed_distance(scan.centre(i)) < 0.0 ? 1 : 0;
+    cells[{side, static_cast<int>(std::floor(p.x())), static_cast<int>(std::floor(p.y()))}].push_back(i);
+  }
+  std::vector<PlanePiece> parts;
+  while (!cells.empty()) {
+    std::vector<std::uint32_t> part;
+    std::vector<Place> open = {cells.begin()->first};
+    while (!open.empty()) {
+      const Place at = open.back();
+      open.pop_back();
+      const auto found = cells.find(at);
+      if (found == cells.end()) continue;
+      part.insert(part.end(), found->second.begin(), found->second.end());
+      cells.erase(found);
+      for (int step = 0; step < 9; ++step)
+        open.push_back({at[0], at[1] + step % 3 - 1, at[2] + step / 3 - 1});
+    }
+    std::sort(part.begin(), part.end());
+    parts.push_back(piece_of(scan, std::move(part), anchor));
+  }
+  std::stable_sort(parts.begin(), parts.end(), larger);
+  return parts;
+}
+
+std::vector<PlanePiece> joined_pieces(std::vector<PlanePiece> pieces, const JoinOptions& options) {
+  options.check();
+  std::stable_sort(pieces.begin(), pieces.end(), larger);
+  const PieceJoin join(options);
+  std::vector<PlanePiece> planes;
+  std::vector<PlaneFit> fits;
+  for (PlanePiece& piece : pieces) {
+    if (piece.points.size() < 3) continue;
+    const PlaneFit own = fit_plane(piece.moments);
+    std::size_t best = planes.size();
+    double least = 1.0;
+    for (std::size_t k = 0; k < planes.size(); ++k) {
+      const double strain = join.strain(planes[k], fits[k], piece, own);
+      if (strain > least) continue;
+      least = strain;
+      best = k;
+    }
+    if (best == planes.size()) {
+      planes.push_back(std::move(piece));
+      fits.push_back(own);
+      continue;
+    }
+    planes[best].moments += piece.moments;
+    planes[best].sight += piece.sight;
+    planes[best].points.insert(planes[best].points.end(), piece.points.begin(), piece.points.end());
+    fits[best] = fit_plane(planes[best].moments);
+  }
+  std::stable_sort(planes.begin(), planes.end(), larger);
+  return planes;
+}
+
+}  // namespace limen

@@ -1,0 +1,44 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "limen/geometry/plane.h"
+#include "limen/model/scan.h"
+
+namespace limen {
+
+/// When pieces lie in one plane.
+struct JoinOptions {
+  double noise_m = 0.003;   ///< of a point about its plane, one standard deviation
+  double drift_m = 0.0005;  ///< by which parts of one surface may stray beside the noise: trajectories drift
+  double reach_m = 0.03;    ///< root mean square distance of a piece from a plane it may belong to
+  double max_angle_deg = 3.0;  ///< between the normals of pieces wide enough to have one
+
+  void check() const;
+};
+
+/// Points of one plane that hang together.
+struct PlanePiece {
+  std::vector<std::uint32_t> points;  ///< of the scan, ascending
+  PointMoments moments;               ///< about the anchor
+  Vector3d sight = Vector3d::Zero();  ///< sum of the ways to the optical centres, where they are known
+};
+
+PlanePiece piece_of(const Scan& scan, std::vector<std::uint32_t> points, const Vector3d& anchor);
+
+/// The parts of a plane's points that hang together and were seen from one side: cells of `gap_m` that touch,
+/// also at a corner. Largest first.
+std::vector<PlanePiece> parts_of(const Scan& scan, const PlaneFit& fit,
+                                 const std::vector<std::uint32_t>& points, double gap_m,
+                                 const Vector3d& anchor);
+
+/// Pieces that lie in one plane become one: what the common plane adds to the squares of their residuals is
+/// held against the noise (three parameters, chi squared) and the drift. A gate on the spread alone lets a
+/// common plane tilt between two cars in one line, 14 mm apart. Two sides of one sheet stay two. In the order
+/// of their largest pieces.
+std::vector<PlanePiece> joined_pieces(std::vector<PlanePiece> pieces, const JoinOptions& options);
+
+}  // namespace limen
