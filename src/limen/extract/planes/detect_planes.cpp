@@ -99,12 +99,15 @@ std::vector<PlaneFit> refitted(const Scan& scan, const PlaneLabels& planes) {
 
 /// Planes with the relief of walls apart: in the scan freed of its drift, which would break walls into bands.
 DetectedPlanes detect_relief(const Scan& scan, const GrowOptions& grow, Monitor& monitor) {
-  const ScanDrift drift = scan_drift(scan, {}, monitor);
+  constexpr double kDriftShare = 0.3;  // of the work, about
+  StagePart straightening(monitor, 0.0, kDriftShare);
+  const ScanDrift drift = scan_drift(scan, {}, straightening);
   std::optional<Scan> straight;
   if (!drift.knots.empty()) straight = straightened(scan, drift);
   const Scan& seen = straight ? *straight : scan;
+  StagePart growing(monitor, kDriftShare, 1.0);
   DetectedPlanes detected;
-  detected.planes = grow_planes(seen, grow, monitor).planes;
+  detected.planes = grow_planes(seen, grow, growing).planes;
   FineOptions fine;
   fine.noise_m = noise_about(detected.planes);
   fine.min_inliers = grow.min_inliers;
