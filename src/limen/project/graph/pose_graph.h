@@ -126,7 +126,7 @@ struct SolvedGraph {
 /// place is not a thousand times as probable by what the links say, the part that it would move is ambiguous
 /// (rivals.h). So is what no link holds that is wrong with a probability of `risk` at most.
 /// `hearing`: where there is one, another place is refuted as well by what others saw there
-/// (refuted_places.h).
+/// (refuted_places.h), and all that stand around a node are heard of its place (hear_around.h).
 SolvedGraph solve_graph(const PoseGraph& graph, double risk = 0.001, const PoseHearing& hearing = {});
 
 }  // namespace limen

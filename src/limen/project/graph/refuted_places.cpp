@@ -13,11 +13,12 @@ constexpr double kAgainstNatsPerM2 = 7.6;
 constexpr double kMovedM2 = 1.0;
 constexpr double kMovedShare = 0.25;  // of what agrees, in rooms that were used in between
 
-double beyond_what_moves(const PoseHeard& heard) {
-  return std::max(0.0, heard.contradicted_m2 - kMovedM2 - kMovedShare * heard.agreeing_m2);
-}
-
 }  // namespace
+
+double nats_of_contradiction(const PoseHeard& heard) {
+  return kAgainstNatsPerM2 *
+         std::max(0.0, heard.contradicted_m2 - kMovedM2 - kMovedShare * heard.agreeing_m2);
+}
 
 double nats_against_place(const AcceptedPoses& accepted, int node, const Rigid3& frame_from_frame,
                           const std::vector<bool>& firm, const PoseHearing& hearing) {
@@ -30,12 +31,12 @@ double nats_against_place(const AcceptedPoses& accepted, int node, const Rigid3&
     if (!firm[k] || k == own || accepted.component[k] != accepted.component[own]) continue;
     const Rigid3 node_from_frame = inverse(accepted.frame_from_node[k]);
     const auto said = [&](const Rigid3& place) {
-      return beyond_what_moves(hearing(node, static_cast<int>(k), node_from_frame * place));
+      return nats_of_contradiction(hearing.surface(node, static_cast<int>(k), node_from_frame * place));
     };
     against_other = std::max(against_other, said(moved));
     against_present += said(present);
   }
-  return kAgainstNatsPerM2 * (against_other - against_present);
+  return against_other - against_present;
 }
 
 }  // namespace limen

@@ -9,6 +9,10 @@
 
 namespace limen {
 
+/// By how much what two nodes contradict speaks against their pose, natural logarithm: nothing, as far as
+/// doors and furniture may have moved.
+double nats_of_contradiction(const PoseHeard& heard);
+
 /// By how much what others saw of another place for `node` speaks against it, natural logarithm; less than
 /// nothing where they speak against the present one rather.
 ///

@@ -37,12 +37,13 @@ struct OfTwoPlaces {
 
   /// Node 2 speaks against the fourth where it would stand `off`, and where it stands.
   [[nodiscard]] PoseHearing hearing(double against_other_m2, double against_present_m2) const {
-    return [=, this](int source, int target, const Rigid3& target_from_source) -> PoseHeard {
+    const auto surface = [=, this](int source, int target, const Rigid3& target_from_source) -> PoseHeard {
       if (source != 3 || target != 2) return {};
       const Rigid3 world = made.world_from_node[2] * target_from_source;
       const bool other = (world.translation - place.translation).norm() > 1.0;
       return {2.0, other ? against_other_m2 : against_present_m2};
     };
+    return {surface, {}};
   }
 
   [[nodiscard]] SolvedNode solved(const PoseHearing& hearing) const {
@@ -73,9 +74,10 @@ TEST(RefutedPlaces, OnlyWhatStandsFirmIsHeardAndTheLoudestOnce) {
   accepted.frame_from_node.resize(4);
   accepted.component = {0, 0, 0, 1};
   const Rigid3 movement{Matrix3d::Identity(), {3.0, 0.0, 0.0}};
-  const PoseHearing hearing = [](int /*source*/, int target, const Rigid3& pose) -> PoseHeard {
-    return {0.0, pose.translation.norm() > 1.0 ? 3.0 + target : 0.0};
-  };
+  const PoseHearing hearing{[](int /*source*/, int target, const Rigid3& pose) -> PoseHeard {
+                              return {0.0, pose.translation.norm() > 1.0 ? 3.0 + target : 0.0};
+                            },
+                            {}};
   const auto nats = [&](const std::vector<bool>& firm) {
     return nats_against_place(accepted, 0, movement, firm, hearing);
   };

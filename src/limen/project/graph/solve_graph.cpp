@@ -12,6 +12,7 @@
 #include "limen/project/graph/bridges.h"
 #include "limen/project/graph/doubt.h"
 #include "limen/project/graph/grow_parts.h"
+#include "limen/project/graph/hear_around.h"
 #include "limen/project/graph/loops.h"
 #include "limen/project/graph/pose_adjustment.h"
 #include "limen/project/graph/pose_graph.h"
@@ -57,6 +58,7 @@ class Solver {
     number_components();
     judge_nodes();
     solved_.questions = rival_places(graph_, accepted_);
+    hear_the_others();
     drop_settled_questions();
     heed_questions();
     heed_doubts();
@@ -378,6 +380,20 @@ class Solver {
         reference[i] = reference_of_[static_cast<std::size_t>(solved_.nodes[i].component)];
     }
     return reference;
+  }
+
+  /// All that stand around a node are asked of its place, not only those that a link holds it to.
+  void hear_the_others() {
+    if (!hearing_) return;
+    const std::vector<int> reference = reference_of_nodes();
+    const std::vector<NodeDoubt> doubts = doubts_of(graph_, accepted_, reference);
+    const std::vector<double> apart = odds_of_standing_apart(doubts, reference);
+    std::vector<double> total(doubts.size(), 1.0);
+    for (std::size_t i = 0; i < total.size(); ++i) {
+      if (reference[i] >= 0 && solved_.nodes[i].state != NodeState::ambiguous)
+        total[i] = doubts[i].where_few_stand_apart(apart[i]).total();
+    }
+    accepted_.heard = hear_around(graph_, accepted_, total, risk_, hearing_);
   }
 
   /// What links say each for itself bounds how sure the present place is. So does the doubt of its side by

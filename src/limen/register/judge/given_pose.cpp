@@ -5,10 +5,21 @@
 #include <algorithm>
 #include <cmath>
 
+#include "limen/register/judge/individual_matter.h"
+
 namespace limen {
 namespace {
 
 constexpr double kAsBuiltM = 0.05;  // by how much built matter may miss its drawing and count
+
+/// A pose between the scans' worlds, told between the frames that they were prepared in.
+Rigid3 between_prepared(const PreparedScan& source, const PreparedScan& target,
+                        const Rigid3& target_from_source) {
+  const Rigid3 own = to_local(target_from_source, source.extracted.features.local_origin,
+                              target.extracted.features.local_origin);
+  return {target.upright_from_scan * own.rotation * source.upright_from_scan.transpose(),
+          target.upright_from_scan * own.translation};
+}
 
 }  // namespace
 
@@ -30,11 +41,15 @@ ScoreOptions fine_score(const ScanView& source, const ScanView& target, Method m
 
 PoseScore score_given_pose(const PreparedScan& source, const PreparedScan& target,
                            const Rigid3& target_from_source, Method method) {
-  const Rigid3 own = to_local(target_from_source, source.extracted.features.local_origin,
-                              target.extracted.features.local_origin);
-  const Rigid3 upright{target.upright_from_scan * own.rotation * source.upright_from_scan.transpose(),
-                       target.upright_from_scan * own.translation};
-  return score_pose(source.view(), target.view(), upright, fine_score(source.view(), target.view(), method));
+  return score_pose(source.view(), target.view(), between_prepared(source, target, target_from_source),
+                    fine_score(source.view(), target.view(), method));
+}
+
+TwinEvidence twin_of_given_pose(const PreparedScan& source, const PreparedScan& target,
+                                const Rigid3& target_from_source, const TwinOptions& options) {
+  return weigh_twin(
+      individual_matter(source.view(), target.view(), between_prepared(source, target, target_from_source)),
+      options);
 }
 
 }  // namespace limen

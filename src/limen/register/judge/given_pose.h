@@ -4,6 +4,7 @@
 
 #include "limen/model/method.h"
 #include "limen/register/judge/score_pose.h"
+#include "limen/register/judge/twin_odds.h"
 #include "limen/register/prepare/prepare_scan.h"
 
 namespace limen {
@@ -18,5 +19,9 @@ ScoreOptions fine_score(const ScanView& source, const ScanView& target, Method m
 /// pose is scored in the end, and not refined.
 PoseScore score_given_pose(const PreparedScan& source, const PreparedScan& target,
                            const Rigid3& target_from_source, Method method = Method::automatic);
+
+/// What things say there of whether the scans show one room, or two built alike.
+TwinEvidence twin_of_given_pose(const PreparedScan& source, const PreparedScan& target,
+                                const Rigid3& target_from_source, const TwinOptions& options = {});
 
 }  // namespace limen
