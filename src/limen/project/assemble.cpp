@@ -23,19 +23,20 @@ namespace {
 class Assembler {
  public:
   Assembler(const std::vector<ProjectNode>& nodes, const std::vector<TriedPair>& pairs, Survey survey,
-            const UserWords& words, double risk, ProjectResult& result)
+            const UserWords& words, double risk, const PoseHearing& hearing, ProjectResult& result)
       : nodes_(nodes),
         pairs_(pairs),
         words_(words),
         survey_(std::move(survey)),
         risk_(risk),
+        hearing_(hearing),
         result_(result) {}
 
   void run() {
     ProjectGraph made = make_graph(nodes_, pairs_, risk_, words_);
     add_survey_links(survey_, made);
-    solved_ = solve_graph(made.graph, risk_);
-    if (confirm_by_points(survey_, solved_, made)) solved_ = solve_graph(made.graph, risk_);
+    solved_ = solve_graph(made.graph, risk_, hearing_);
+    if (confirm_by_points(survey_, solved_, made)) solved_ = solve_graph(made.graph, risk_, hearing_);
     straighten(made);
     if (nodes_.size() == 1 && solved_.nodes.front().component < 0) {
       // A scan alone is its own frame.
@@ -73,7 +74,7 @@ class Assembler {
   /// Links measured against the part of a bent pass that saw what is common: solved once more with them.
   void straighten(const ProjectGraph& made) {
     if (const std::optional<PoseGraph> straight = straightened(nodes_, pairs_, made, solved_))
-      solved_ = solve_graph(*straight, risk_);
+      solved_ = solve_graph(*straight, risk_, hearing_);
   }
 
   /// Where control points contradict one another for good, all is solved as if there were none.
@@ -87,7 +88,7 @@ class Assembler {
       }
       words += " contradict the others, and without them too few are left to hold a frame";
       made = make_graph(nodes_, pairs_, risk_, words_);
-      solved_ = solve_graph(made.graph, risk_);
+      solved_ = solve_graph(made.graph, risk_, hearing_);
       straighten(made);
       const std::string file = std::exchange(survey_.file, {});
       for (SurveyMark& mark : survey_.marks) mark.point.known_enters = false;
@@ -449,6 +450,7 @@ class Assembler {
   Survey survey_;
   PlacedSurvey placed_;
   double risk_;
+  const PoseHearing& hearing_;
   ProjectResult& result_;
   PoseGraph graph_;
   SolvedGraph solved_;
@@ -459,8 +461,9 @@ class Assembler {
 }  // namespace
 
 void assemble(const std::vector<ProjectNode>& nodes, const std::vector<TriedPair>& pairs,
-              const ProjectInputs& inputs, const UserWords& words, double risk, ProjectResult& result) {
-  Assembler(nodes, pairs, read_survey(inputs, nodes, result.scans), words, risk, result).run();
+              const ProjectInputs& inputs, const UserWords& words, double risk, const PoseHearing& hearing,
+              ProjectResult& result) {
+  Assembler(nodes, pairs, read_survey(inputs, nodes, result.scans), words, risk, hearing, result).run();
 }
 
 }  // namespace limen

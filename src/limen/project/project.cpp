@@ -10,6 +10,7 @@
 #include "limen/base/error.h"
 #include "limen/base/stage_part.h"
 #include "limen/project/control/control_file.h"
+#include "limen/project/hear_scans.h"
 #include "limen/project/own_drift.h"
 #include "limen/project/project_files.h"
 #include "limen/project/project_graph.h"
@@ -54,7 +55,9 @@ class Run {
     engine_.reset();
     monitor_.begin_stage("adjustment");
     result_.pairs_tried = tried.size();
-    assemble(nodes_, tried, inputs_, words_, risk(), result_);
+    ScanCache heard(store_, kHeardInMemory);
+    assemble(nodes_, tried, inputs_, words_, risk(), hearing_of_scans(nodes_, options_.registering, heard),
+             result_);
     if (options_.rigid_passes) {
       for (ProjectScan& scan : result_.scans) scan.rigid = scan.mobile ? "as you asked" : "";
     }
@@ -260,6 +263,7 @@ class Run {
   }
 
   static constexpr double kOnePlaceM = 0.05;
+  static constexpr std::size_t kHeardInMemory = 32;
 
   const ProjectInputs& inputs_;
   std::filesystem::path folder_;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "limen/project/engine/job_engine.h"
+#include "limen/project/graph/pose_hearing.h"
 #include "limen/project/project.h"
 #include "limen/project/store/store.h"
 
@@ -71,8 +72,10 @@ std::vector<TriedPair> try_pairs(const std::vector<std::pair<std::size_t, std::s
                                  Monitor& monitor);
 
 /// The frame, the states and the words (`risk`: that a scan told as registered may be wrong with): everything
-/// of `result` but its scans' files. Throws Error where a file of the survey is no good.
+/// of `result` but its scans' files. `hearing`: what scans say of places that no pair proposed. Throws Error
+/// where a file of the survey is no good.
 void assemble(const std::vector<ProjectNode>& nodes, const std::vector<TriedPair>& pairs,
-              const ProjectInputs& inputs, const UserWords& words, double risk, ProjectResult& result);
+              const ProjectInputs& inputs, const UserWords& words, double risk, const PoseHearing& hearing,
+              ProjectResult& result);
 
 }  // namespace limen

@@ -12,6 +12,7 @@
 #include "limen/base/error.h"
 #include "limen/base/parallel.h"
 #include "limen/geometry/polygon_clip.h"
+#include "limen/register/judge/given_pose.h"
 #include "limen/register/judge/hear_places.h"
 #include "limen/register/judge/individual_matter.h"
 #include "limen/register/judge/posterior.h"
@@ -31,7 +32,6 @@ constexpr int kSettleSteps = 16;  // either way along a shift that the planes le
 constexpr double kSettleStepM = 0.02;
 constexpr std::size_t kSettleLooks = 5;  // of those steps that get a look at everything
 constexpr double kCarefulGateM = 0.04;
-constexpr double kAsBuiltM = 0.05;                 // by how much built matter may miss its drawing and count
 constexpr std::size_t kPolished = 4;               // poses refined on every sample
 constexpr int kModelPoses = 128;                   // refined at least where a scan is sought in a model
 constexpr std::size_t kModelRefineSamples = 1500;  // of each side, for all but the best of them
@@ -58,23 +58,6 @@ std::vector<MatchedOpenings> matched_openings(const RefinedPose& pose) {
   for (const OpeningMatch& match : pose.openings)
     list.push_back({match.source, match.target, match.shift_across_m, match.shift_up_m, match.by_outline});
   return list;
-}
-
-double drift_m(const ScanView& source, const ScanView& target) {
-  return std::hypot(source.features->drift_m, target.features->drift_m);
-}
-
-/// Tolerances of the final score, from the noise of the scans and the error of their trajectories.
-ScoreOptions fine_score(const ScanView& source, const ScanView& target, Method method) {
-  ScoreOptions fine;
-  fine.openings = method != Method::polygons;
-  const double noise = std::max(source.features->noise_m, target.features->noise_m);
-  fine.surface_m = std::clamp(std::max(4.0 * noise, 3.0 * drift_m(source, target)), 0.02, 0.05);
-  // Nothing is built quite as it is drawn.
-  if (source.model || target.model) fine.surface_m = kAsBuiltM;
-  fine.free_m = fine.surface_m + 0.03;
-  fine.opening_m = 0.1;
-  return fine;
 }
 
 /// What the method refines on, and how near surfaces have to be.

@@ -21,6 +21,7 @@ constexpr double kOpenLoopNats = 3.0;  // ... or one of several, which repeat wh
 constexpr double kEnoughNats = 30.0;
 constexpr double kHardlyFresh = 0.05;   // share of what a link shows that no other has shown
 constexpr double kMostBelieved = 0.45;  // of each kind of twin, beforehand
+constexpr double kMostHeardNats = 5.0;  // of pairs that hold nothing, against chance: one wrong pose in 200
 constexpr double kUnits = 1000.0;       // of the flow, per nat
 
 class DoubtSearch {
@@ -32,7 +33,7 @@ class DoubtSearch {
         held_.push_back(static_cast<int>(k));
     }
     for (const GraphLink& pair : graph.against) {
-      if (pair.evidence && is_laid_so(pair)) against_.push_back(&pair);
+      if (pair.evidence && is_laid_so(pair, accepted)) against_.push_back(&pair);
     }
     evidence_.resize(graph.links.size());
     for (const int k : held_) evidence_[static_cast<std::size_t>(k)] = evidence_of(k);
@@ -46,11 +47,16 @@ class DoubtSearch {
     otherwise_ = search_over([&](int k) { return evidence(k).otherwise_nats; });
     alike_ = search_over([&](int k) { return evidence(k).alike_nats; });
     chance_ = search_over([&](int k) { return nats(k) + loop_nats(k); });
+    if (accepted.heard.empty()) return;
+    otherwise_heard_ =
+        with_heard(otherwise_, [](const HeardPair& heard) { return heard.pair.evidence->otherwise_nats; });
+    chance_heard_ = with_heard(chance_, [](const HeardPair& heard) { return heard.chance_nats; });
   }
 
   std::vector<NodeDoubt> run(const std::vector<int>& reference) {
     std::vector<NodeDoubt> doubts(static_cast<std::size_t>(graph_.nodes));
-    for (CutSearch* search : {&otherwise_, &alike_, &chance_}) {
+    for (CutSearch* search : {&otherwise_, &alike_, &chance_, &otherwise_heard_, &chance_heard_}) {
+      if (!search->network) continue;
       for (const int root : reference) {
         if (root >= 0) search->held[static_cast<std::size_t>(root)] = true;
       }
@@ -139,6 +145,17 @@ class DoubtSearch {
     return search;
   }
 
+  /// The same with what pairs that hold nothing say for the solution.
+  template <typename NatsOf>
+  [[nodiscard]] CutSearch with_heard(const CutSearch& search, const NatsOf& nats_of) const {
+    CutSearch more = search;
+    for (const HeardPair& heard : accepted_.heard) {
+      const auto room = static_cast<int>(std::lround(kUnits * std::max(0.0, nats_of(heard))));
+      if (room > 0) more.network->connect(heard.pair.source, heard.pair.target, room, room);
+    }
+    return more;
+  }
+
   /// All nodes, from the references outwards along the links that hold: a node's neighbours are mostly held
   /// when its own cut is sought.
   [[nodiscard]] std::vector<int> outwards(const std::vector<int>& reference) const {
@@ -165,7 +182,12 @@ class DoubtSearch {
   }
 
   void add_twins(int node, NodeDoubt& doubt) {
-    tell_twins(twin_cut(kOtherwise, node, otherwise_), twin_cut(kAlike, node, alike_), doubt);
+    Cut otherwise = twin_cut(kOtherwise, node, otherwise_);
+    if (otherwise_heard_.network) {
+      Cut heard = twin_cut(kOtherwise, node, otherwise_heard_);
+      if (heard.weight() > otherwise.weight()) otherwise = std::move(heard);
+    }
+    tell_twins(otherwise, twin_cut(kAlike, node, alike_), doubt);
   }
 
   struct Cut;
@@ -224,6 +246,9 @@ class DoubtSearch {
       if (side[static_cast<std::size_t>(pair->source)] != side[static_cast<std::size_t>(pair->target)])
         voices.push_back({pair, *pair->evidence});
     }
+    for (const HeardPair& heard : accepted_.heard) {
+      if (speaks_of(heard, side)) voices.push_back({&heard.pair, *heard.pair.evidence});
+    }
     std::stable_sort(voices.begin(), voices.end(), [&](const Voice& a, const Voice& b) {
       return std::abs(a.said.*kind.nats) > std::abs(b.said.*kind.nats);
     });
@@ -254,18 +279,6 @@ class DoubtSearch {
     return cut;
   }
 
-  /// Whether the solution lays the two as the pair's best pose does.
-  [[nodiscard]] bool is_laid_so(const GraphLink& pair) const {
-    constexpr double kNearM = 0.3;
-    const auto s = static_cast<std::size_t>(pair.source);
-    const auto t = static_cast<std::size_t>(pair.target);
-    if (accepted_.component[s] < 0 || accepted_.component[s] != accepted_.component[t]) return false;
-    const Rigid3 laid = inverse(accepted_.frame_from_node[t]) * accepted_.frame_from_node[s];
-    const LinkPose& pose = pair.poses.front();
-    const Vector3d at = inverse(pose.target_from_source) * pose.centre;
-    return (laid * at - pose.centre).norm() < kNearM;
-  }
-
   [[nodiscard]] const TwinEvidence& evidence(int k) const { return evidence_[static_cast<std::size_t>(k)]; }
 
   [[nodiscard]] std::vector<int> crossing_links(const std::vector<bool>& side) const {
@@ -280,7 +293,44 @@ class DoubtSearch {
   void add_chance(int node, NodeDoubt& doubt) {
     const std::optional<std::vector<bool>> side = smallest_cut(chance_, node);
     doubt.chance = 0.0;
-    if (side) tell_chance(*side, doubt);
+    if (!side) return;
+    std::optional<std::vector<bool>> heard;
+    if (chance_heard_.network) heard = smallest_cut(chance_heard_, node);
+    if (!heard) return tell_chance(*side, doubt);
+    NodeDoubt other = doubt;
+    tell_chance(*heard, other);
+    tell_chance(*side, doubt);
+    if (other.chance > doubt.chance) doubt = other;
+  }
+
+  /// Whether a pair tells of a side that is asked for, and not of the rest.
+  [[nodiscard]] static bool speaks_of(const HeardPair& heard, const std::vector<bool>& side) {
+    return side[static_cast<std::size_t>(heard.pair.source)] &&
+           !side[static_cast<std::size_t>(heard.pair.target)];
+  }
+
+  /// What pairs that hold nothing say across a cut against chance, as far as neither the links nor others of
+  /// them have said it, those first that say most; and for it, all of them.
+  [[nodiscard]] double heard_against_chance(const std::vector<bool>& side,
+                                            const std::vector<int>& links) const {
+    std::vector<const HeardPair*> voices;
+    for (const HeardPair& heard : accepted_.heard) {
+      if (speaks_of(heard, side)) voices.push_back(&heard);
+    }
+    std::stable_sort(voices.begin(), voices.end(),
+                     [](const HeardPair* a, const HeardPair* b) { return a->chance_nats > b->chance_nats; });
+    std::vector<const GraphLink*> told;
+    for (const int k : links) told.push_back(&link(k));
+    double against = 0.0;
+    double speaks_for = 0.0;
+    for (const HeardPair* heard : voices) {
+      if (heard->chance_nats > 0.0)
+        against += heard->chance_nats * (1.0 - views_.seen_already(heard->pair, told, side));
+      else
+        speaks_for += heard->chance_nats;
+      told.push_back(&heard->pair);
+    }
+    return std::min(against, kMostHeardNats) + speaks_for;
   }
 
   void tell_chance(const std::vector<bool>& side, NodeDoubt& doubt) const {
@@ -293,7 +343,7 @@ class DoubtSearch {
       all += nats(k) + loop_nats(k);
       most = std::max(most, loop_nats(k));
     }
-    all -= most;
+    all += heard_against_chance(side, chosen) - most;
     doubt.chance = std::exp(-std::max(0.0, all));
     if (doubt.chance > doubt.twin) doubt.links = chosen;
   }
@@ -304,10 +354,12 @@ class DoubtSearch {
   std::vector<int> held_;            ///< accepted links that hold
   std::vector<int> witnesses_like_;  ///< of each of them: how many links see what it sees
   std::vector<const GraphLink*>
-      against_;          ///< of the pairs that speak for twins those that the solution lays so
-  CutSearch otherwise_;  ///< by what is said against twins furnished otherwise
-  CutSearch alike_;      ///< and alike
-  CutSearch chance_;     ///< by how hardly links are wrong by chance
+      against_;                ///< of the pairs that speak for twins those that the solution lays so
+  CutSearch otherwise_;        ///< by what is said against twins furnished otherwise
+  CutSearch alike_;            ///< and alike
+  CutSearch chance_;           ///< by how hardly links are wrong by chance
+  CutSearch otherwise_heard_;  ///< the same with what pairs say that hold nothing; without a network: none do
+  CutSearch chance_heard_;
   std::optional<TwinRate> rate_;
   std::vector<TwinEvidence> evidence_;  ///< of each link
 };

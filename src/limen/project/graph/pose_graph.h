@@ -8,6 +8,7 @@
 
 #include "limen/model/twin_evidence.h"
 #include "limen/project/graph/link_pose.h"
+#include "limen/project/graph/pose_hearing.h"
 
 namespace limen {
 
@@ -124,6 +125,8 @@ struct SolvedGraph {
 /// what laid them on one another. In the end every pose that was not taken is tried again: where the present
 /// place is not a thousand times as probable by what the links say, the part that it would move is ambiguous
 /// (rivals.h). So is what no link holds that is wrong with a probability of `risk` at most.
-SolvedGraph solve_graph(const PoseGraph& graph, double risk = 0.001);
+/// `hearing`: where there is one, another place is refuted as well by what others saw there
+/// (refuted_places.h), and all that stand around a node are heard of its place (hear_around.h).
+SolvedGraph solve_graph(const PoseGraph& graph, double risk = 0.001, const PoseHearing& hearing = {});
 
 }  // namespace limen

@@ -17,6 +17,17 @@ std::pair<int, int> ends_across(const GraphLink& pair, const std::vector<bool>& 
 
 }  // namespace
 
+bool is_laid_so(const GraphLink& pair, const AcceptedPoses& accepted) {
+  constexpr double kNearM = 0.3;
+  const auto s = static_cast<std::size_t>(pair.source);
+  const auto t = static_cast<std::size_t>(pair.target);
+  if (accepted.component[s] < 0 || accepted.component[s] != accepted.component[t]) return false;
+  const Rigid3 laid = inverse(accepted.frame_from_node[t]) * accepted.frame_from_node[s];
+  const LinkPose& pose = pair.poses.front();
+  const Vector3d at = inverse(pose.target_from_source) * pose.centre;
+  return (laid * at - pose.centre).norm() < kNearM;
+}
+
 SharedViews::SharedViews(const PoseGraph& graph, const AcceptedPoses& accepted)
     : graph_(graph),
       neighbours_(static_cast<std::size_t>(graph.nodes)),

@@ -8,12 +8,23 @@
 
 namespace limen {
 
+/// What two nodes say of the pose that the solution gives them, where no accepted link holds the two. The
+/// source stands less surely: what they say is of its place.
+struct HeardPair {
+  GraphLink pair;            ///< that pose, and what speaks there against twins
+  double chance_nats = 0.0;  ///< by how much surface speaks against chance
+};
+
 /// A solution to be put to the test.
 struct AcceptedPoses {
   std::vector<Rigid3> frame_from_node;
   std::vector<int> component;  ///< of each node, -1: none
   std::vector<int> pose;       ///< of each link: the accepted one, -1: none
+  std::vector<HeardPair> heard = {};
 };
+
+/// Whether the solution lays the two as the pair's best pose does.
+[[nodiscard]] bool is_laid_so(const GraphLink& pair, const AcceptedPoses& accepted);
 
 /// Which links are one witness: their ends see the same surface on either side. For one thread at a time.
 class SharedViews {

@@ -12,9 +12,11 @@
 #include "limen/project/graph/bridges.h"
 #include "limen/project/graph/doubt.h"
 #include "limen/project/graph/grow_parts.h"
+#include "limen/project/graph/hear_around.h"
 #include "limen/project/graph/loops.h"
 #include "limen/project/graph/pose_adjustment.h"
 #include "limen/project/graph/pose_graph.h"
+#include "limen/project/graph/refuted_places.h"
 #include "limen/project/graph/rivals.h"
 
 namespace limen {
@@ -36,7 +38,8 @@ constexpr double kRather = 0.5;        // probability of a twin above which it i
 
 class Solver {
  public:
-  Solver(const PoseGraph& graph, double risk) : graph_(graph), risk_(risk) {
+  Solver(const PoseGraph& graph, double risk, const PoseHearing& hearing)
+      : graph_(graph), risk_(risk), hearing_(hearing) {
     solved_.nodes.resize(static_cast<std::size_t>(graph.nodes));
     solved_.links.resize(graph.links.size());
     left_out_.resize(graph.links.size(), false);
@@ -55,6 +58,7 @@ class Solver {
     number_components();
     judge_nodes();
     solved_.questions = rival_places(graph_, accepted_);
+    hear_the_others();
     drop_settled_questions();
     heed_questions();
     heed_doubts();
@@ -378,16 +382,32 @@ class Solver {
     return reference;
   }
 
+  /// All that stand around a node are asked of its place, not only those that a link holds it to.
+  void hear_the_others() {
+    if (!hearing_) return;
+    const std::vector<int> reference = reference_of_nodes();
+    const std::vector<NodeDoubt> doubts = doubts_of(graph_, accepted_, reference);
+    const std::vector<double> apart = odds_of_standing_apart(doubts, reference);
+    std::vector<double> total(doubts.size(), 1.0);
+    for (std::size_t i = 0; i < total.size(); ++i) {
+      if (reference[i] >= 0 && solved_.nodes[i].state != NodeState::ambiguous)
+        total[i] = doubts[i].where_few_stand_apart(apart[i]).total();
+    }
+    accepted_.heard = hear_around(graph_, accepted_, total, risk_, hearing_);
+  }
+
   /// What links say each for itself bounds how sure the present place is. So does the doubt of its side by
   /// the links that speak for it alone, which knows of the building what all links have taught: how seldom
   /// places are built alike, and stand apart.
   void drop_settled_questions() {
     if (solved_.questions.empty()) return;
     const std::vector<int> reference = reference_of_nodes();
-    std::vector<NodeDoubt> doubts = doubts_of(graph_, accepted_, reference);
+    const std::vector<NodeDoubt> all_doubts = doubts_of(graph_, accepted_, reference);
+    std::vector<NodeDoubt> doubts = all_doubts;
     for (const GraphQuestion& question : solved_.questions)
       for (const int node : question.moved) doubts[static_cast<std::size_t>(node)].chance = 1.0;  // not held
     const std::vector<double> apart = odds_of_standing_apart(doubts, reference);
+    const std::vector<bool> firm = unquestioned_nodes(all_doubts, apart, reference);
     const auto settled = [&](const GraphQuestion& question) {
       std::vector<bool> side(solved_.nodes.size(), false);
       double odds = 0.0;
@@ -405,27 +425,56 @@ class Solver {
         if (across && !tells) telling.pose[k] = -1;
       }
       const double doubt = doubt_of_side(graph_, telling, side).where_few_stand_apart(odds).total();
-      return -std::log(std::max(doubt, kLeastDoubt)) - question.rival_nats >= kRivalClearNats;
+      const double lead = -std::log(std::max(doubt, kLeastDoubt)) - question.rival_nats;
+      return lead >= kRivalClearNats || is_refuted(question, kRivalClearNats - lead, firm);
     };
     std::vector<GraphQuestion>& all = solved_.questions;
     all.erase(std::remove_if(all.begin(), all.end(), settled), all.end());
   }
 
+  /// The movement as one of the side without the node that lends the frame.
+  [[nodiscard]] GraphQuestion seen_from_frame(GraphQuestion question) const {
+    const int home = accepted_.component[static_cast<std::size_t>(question.moved.front())];
+    std::vector<bool> moves(solved_.nodes.size(), false);
+    for (const int node : question.moved) moves[static_cast<std::size_t>(node)] = true;
+    const int reference = reference_of_[static_cast<std::size_t>(home)];
+    if (!moves[static_cast<std::size_t>(reference)]) return question;
+    question.frame_from_frame = inverse(question.frame_from_frame);
+    question.moved.clear();
+    for (std::size_t i = 0; i < solved_.nodes.size(); ++i) {
+      if (accepted_.component[i] == home && !moves[i]) question.moved.push_back(static_cast<int>(i));
+    }
+    return question;
+  }
+
+  /// Nodes that are not in doubt and that no question would move: what they saw of other places counts.
+  [[nodiscard]] std::vector<bool> unquestioned_nodes(const std::vector<NodeDoubt>& doubts,
+                                                     const std::vector<double>& apart,
+                                                     const std::vector<int>& reference) const {
+    std::vector<bool> firm(doubts.size(), false);
+    for (std::size_t i = 0; i < firm.size(); ++i) {
+      firm[i] = reference[i] >= 0 && solved_.nodes[i].state == NodeState::registered &&
+                doubts[i].where_few_stand_apart(apart[i]).total() <= risk_;
+    }
+    for (const GraphQuestion& question : solved_.questions)
+      for (const int node : seen_from_frame(question).moved) firm[static_cast<std::size_t>(node)] = false;
+    return firm;
+  }
+
+  /// Whether what others saw refutes the other place of each node that would move, by so much.
+  [[nodiscard]] bool is_refuted(const GraphQuestion& asked, double nats,
+                                const std::vector<bool>& firm) const {
+    if (!hearing_) return false;
+    const GraphQuestion question = seen_from_frame(asked);
+    return std::all_of(question.moved.begin(), question.moved.end(), [&](int node) {
+      return nats_against_place(accepted_, node, question.frame_from_frame, firm, hearing_) >= nats;
+    });
+  }
+
   /// What might stand elsewhere is ambiguous: the side of the cut without the node that lends the frame.
   void heed_questions() {
     for (GraphQuestion& question : solved_.questions) {
-      const int home = accepted_.component[static_cast<std::size_t>(question.moved.front())];
-      std::vector<bool> moves(solved_.nodes.size(), false);
-      for (const int node : question.moved) moves[static_cast<std::size_t>(node)] = true;
-      const int reference = reference_of_[static_cast<std::size_t>(home)];
-      const bool swap = moves[static_cast<std::size_t>(reference)];
-      if (swap) {
-        question.frame_from_frame = inverse(question.frame_from_frame);
-        question.moved.clear();
-        for (std::size_t i = 0; i < solved_.nodes.size(); ++i) {
-          if (accepted_.component[i] == home && !moves[i]) question.moved.push_back(static_cast<int>(i));
-        }
-      }
+      question = seen_from_frame(std::move(question));
       for (const int moved : question.moved) {
         SolvedNode& node = solved_.nodes[static_cast<std::size_t>(moved)];
         node.state = NodeState::ambiguous;
@@ -523,6 +572,7 @@ class Solver {
 
   const PoseGraph& graph_;
   double risk_;
+  const PoseHearing& hearing_;
   std::vector<bool> left_out_;     ///< links that would lay a place on its twin
   std::vector<int> reference_of_;  ///< of each component: the node that keeps its pose
   std::vector<std::vector<int>> votes_;
@@ -537,8 +587,8 @@ class Solver {
 
 }  // namespace
 
-SolvedGraph solve_graph(const PoseGraph& graph, double risk) {
-  return Solver(graph, risk).run();
+SolvedGraph solve_graph(const PoseGraph& graph, double risk, const PoseHearing& hearing) {
+  return Solver(graph, risk, hearing).run();
 }
 
 }  // namespace limen

@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <optional>
+
+#include "limen/geometry/rigid.h"
+#include "limen/model/twin_evidence.h"
+
+namespace limen {
+
+/// What the surface of two nodes says of a pose, as a pair's pose is scored; m^2.
+struct PoseHeard {
+  double agreeing_m2 = 0.0;
+  double contradicted_m2 = 0.0;  ///< stands where the other saw free space
+  double value_m2 = 0.0;         ///< what poses are ranked by
+};
+
+/// Asks two nodes of a pose that neither proposed (`target_from_source`); of those that cannot be asked
+/// nothing is heard. Any number of threads may ask at once.
+struct PoseHearing {
+  std::function<PoseHeard(int source, int target, const Rigid3& target_from_source)> surface = {};
+  /// What things say of a twin.
+  std::function<std::optional<TwinEvidence>(int source, int target, const Rigid3& target_from_source)>
+      things = {};
+
+  explicit operator bool() const { return static_cast<bool>(surface); }
+};
+
+}  // namespace limen

@@ -1,0 +1,27 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "limen/model/method.h"
+#include "limen/register/judge/score_pose.h"
+#include "limen/register/judge/twin_odds.h"
+#include "limen/register/prepare/prepare_scan.h"
+
+namespace limen {
+
+/// By how far the trajectories of both may be off, one standard deviation.
+double drift_m(const ScanView& source, const ScanView& target);
+
+/// Tolerances of the final score, from the noise of the scans and the error of their trajectories.
+ScoreOptions fine_score(const ScanView& source, const ScanView& target, Method method);
+
+/// What two scans say of a pose that nobody searched for (world to world, the scans' own axes): as a pair's
+/// pose is scored in the end, and not refined.
+PoseScore score_given_pose(const PreparedScan& source, const PreparedScan& target,
+                           const Rigid3& target_from_source, Method method = Method::automatic);
+
+/// What things say there of whether the scans show one room, or two built alike.
+TwinEvidence twin_of_given_pose(const PreparedScan& source, const PreparedScan& target,
+                                const Rigid3& target_from_source, const TwinOptions& options = {});
+
+}  // namespace limen
