@@ -342,7 +342,9 @@ Tally match(const std::vector<Opening>& openings, const std::vector<Wanted>& wan
 
 Tally run_scan(const SimulatedCase& simulated, std::size_t s, const Settings& settings) {
   const Scan& scan = simulated.scans[s];
-  const ExtractedFeatures extracted = extract_features(scan);
+  ExtractOptions extract;
+  extract.detect.relief = false;  // as openings are sought by the program
+  const ExtractedFeatures extracted = extract_features(scan, extract);
   // A simulated station may lie at any rotation: its vertical is known from the truth.
   const ScanTruth& truth = simulated.truth.scans[s];
   const Vector3d up = truth.mobile ? Vector3d(Vector3d::UnitZ())

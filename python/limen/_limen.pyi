@@ -88,7 +88,10 @@ class DetectOptions:
     detector: str
     threshold: str
     seed: int
-    def __init__(self, *, detector: str = ..., threshold: str = ..., seed: int = ...) -> None: ...
+    relief: bool
+    def __init__(
+        self, *, detector: str = ..., threshold: str = ..., seed: int = ..., relief: bool = ...
+    ) -> None: ...
 
 class GrowOptions:
     inlier_threshold_m: float

@@ -25,7 +25,9 @@ struct Wanted {
 
 ExtractedFeatures extract_all(const Scan& scan, const Wanted& wanted, Monitor& monitor) {
   monitor.begin_stage("planes");
-  ExtractedFeatures extracted = limen::extract_features(scan, wanted.extract, monitor);
+  ExtractOptions extract = wanted.extract;
+  extract.detect.relief = extract.detect.relief && !wanted.openings;  // they are holes of whole façades
+  ExtractedFeatures extracted = limen::extract_features(scan, extract, monitor);
   Scan placed;  // the same scan where its centre has to be estimated
   const Scan* seen = &scan;
   if (!scan.centre_known() && (wanted.openings || wanted.segments)) {

@@ -115,7 +115,9 @@ void bind_extraction(py::module_& module) {
   Binder<DetectOptions>(module, "DetectOptions", "How planes are found.")
       .choice("detector", &DetectOptions::detector, kDetectors, "auto, grow, scan_lines or msac")
       .choice("threshold", &DetectOptions::threshold, kRules, "auto, noise or a_contrario")
-      .field("seed", &DetectOptions::seed, "of the detectors that draw samples");
+      .field("seed", &DetectOptions::seed, "of the detectors that draw samples")
+      .field("relief", &DetectOptions::relief,
+             "of mobile scans: the relief of façades apart, where no openings are sought");
   Binder<GrowOptions>(module, "GrowOptions", "Planes of an unorganised cloud.")
       .field("inlier_threshold_m", &GrowOptions::inlier_threshold_m, "0: by the rule DetectOptions.threshold")
       .field("min_inliers", &GrowOptions::min_inliers, "smallest plane, points")

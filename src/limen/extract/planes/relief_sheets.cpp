@@ -15,7 +15,7 @@
 namespace limen {
 namespace {
 
-constexpr int kBins = 4;            // of the histogram of offsets, per threshold
+constexpr std::size_t kBins = 4;    // of the histogram of offsets, per threshold
 constexpr double kPatchM = 0.5;     // edge of the squares in which a sheet is denser than what lies beside it
 constexpr std::size_t kDenser = 3;  // times: a square's slab against what lies beside it
 constexpr double kUprightSine = 0.17;  // walls: at most so much of the normal is up
@@ -86,7 +86,7 @@ struct ReliefPoint {
 class OffsetCounts {
  public:
   OffsetCounts(double low, double high, double threshold_m)
-      : low_(low - 8.0 * threshold_m), step_(threshold_m / kBins) {
+      : low_(low - 8.0 * threshold_m), step_(threshold_m / static_cast<double>(kBins)) {
     sums_.assign(static_cast<std::size_t>((high - low + 16.0 * threshold_m) / step_) + 2, 0);
   }
   void add(double offset) { ++sums_[bin_of(offset) + 1]; }
