@@ -124,6 +124,14 @@ void list_impure(const Overlaps& overlaps, const Truth& truth, std::size_t k) {
   fmt::print("\n");
 }
 
+void list_pieces(const Overlaps& overlaps, const Truth& truth, std::int32_t plane) {
+  fmt::print("#  in pieces {}:", describe(truth, plane));
+  for (std::size_t k = 0; k < overlaps.size.size(); ++k) {
+    if (overlaps.owner(k) == plane) fmt::print(" #{} with {}", k, overlaps.size[k]);
+  }
+  fmt::print("\n");
+}
+
 Counts compare(const Overlaps& overlaps, const Truth& truth, const Settings& settings) {
   Counts counts;
   std::map<std::int32_t, int> large_pieces;
@@ -145,6 +153,7 @@ Counts compare(const Overlaps& overlaps, const Truth& truth, const Settings& set
     if (size < settings.min_true) continue;
     ++counts.true_planes;
     counts.pieces += std::max(0, large_pieces[plane] - 1);
+    if (settings.list && large_pieces[plane] > 1) list_pieces(overlaps, truth, plane);
     bool found = false;
     for (std::size_t k = 0; k < overlaps.size.size(); ++k) {
       if (overlaps.cover(k, plane) < kCovered) continue;

@@ -10,6 +10,7 @@
 #include "limen/base/stage_part.h"
 #include "limen/extract/planes/automatic_threshold.h"
 #include "limen/extract/planes/fine_planes.h"
+#include "limen/extract/planes/fine_station.h"
 #include "limen/extract/planes/msac_planes.h"
 #include "limen/extract/planes/straight_scan.h"
 #include "limen/extract/planes/topology_planes.h"
@@ -117,6 +118,19 @@ DetectedPlanes detect_relief(const Scan& scan, const GrowOptions& grow, Monitor&
   return detected;
 }
 
+/// Planes of a station with what stands a few millimetres before or behind them apart.
+DetectedPlanes detect_fine(const Scan& scan, const GrowOptions& grow, Monitor& monitor) {
+  const PlaneGround ground(scan, grow);
+  DetectedPlanes detected;
+  detected.planes = ground.grow(grow.inlier_threshold_m, monitor).planes;
+  FineStationOptions fine;
+  fine.noise_m = noise_about(detected.planes);
+  fine.min_inliers = grow.min_inliers;
+  detected.planes = fine_station_planes(scan, ground.order(), detected.planes, fine);
+  detected.noise_m = noise_about(detected.planes);
+  return detected;
+}
+
 }  // namespace
 
 PlaneDetector detector_for(const Scan& /*scan*/) {
@@ -136,8 +150,8 @@ DetectedPlanes detect_planes(const Scan& scan, const DetectOptions& options, con
   StagePart choosing(monitor, 0.0, kThresholdShare);
   used.inlier_threshold_m = threshold_for(scan, options, grow, choosing);
   StagePart finding(monitor, kThresholdShare, 1.0);
-  if (scan.mobile() && options.relief && detector == PlaneDetector::grow)
-    return detect_relief(scan, used, finding);
+  if (options.relief && detector == PlaneDetector::grow)
+    return scan.mobile() ? detect_relief(scan, used, finding) : detect_fine(scan, used, finding);
   DetectedPlanes detected;
   detected.detector = detector;
   detected.planes = planes_by(detector, scan, options, used, finding);

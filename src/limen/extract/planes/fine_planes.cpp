@@ -19,11 +19,7 @@ constexpr double kLeastNoiseM = 0.001;
 constexpr double kNoisesOfThreshold = 3.3;
 
 std::vector<PlanePiece> hanging_parts(const Scan& scan, const PlaneLabels& planes, const Vector3d& anchor) {
-  std::vector<std::vector<std::uint32_t>> points(planes.fits.size());
-  for (std::size_t i = 0; i < planes.labels.size(); ++i) {
-    if (planes.labels[i] >= 0)
-      points[static_cast<std::size_t>(planes.labels[i])].push_back(static_cast<std::uint32_t>(i));
-  }
+  const std::vector<std::vector<std::uint32_t>> points = points_of(planes.labels, planes.fits.size());
   std::vector<PlanePiece> parts;
   for (std::size_t k = 0; k < points.size(); ++k) {
     for (PlanePiece& part : parts_of(scan, planes.fits[k], points[k], kGapM, anchor))

@@ -225,6 +225,11 @@ PlaneGround::PlaneGround(const Scan& scan, const GrowOptions& options) : options
 
 PlaneGround::~PlaneGround() = default;
 
+const MortonOrder& PlaneGround::order() const {
+  static const MortonOrder kNone;
+  return ordered_ == nullptr ? kNone : ordered_->points;
+}
+
 GrownPlanes PlaneGround::grow(double inlier_threshold_m, Monitor& monitor) const {
   GrowOptions options = options_;
   options.inlier_threshold_m = inlier_threshold_m;

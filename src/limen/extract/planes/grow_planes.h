@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "limen/base/progress.h"
+#include "limen/extract/cells/morton_order.h"
 #include "limen/extract/planes/plane_labels.h"
 #include "limen/model/scan.h"
 
@@ -36,6 +37,9 @@ class PlaneGround {
   ~PlaneGround();
   PlaneGround(const PlaneGround&) = delete;
   PlaneGround& operator=(const PlaneGround&) = delete;
+
+  /// Its points in order.
+  [[nodiscard]] const MortonOrder& order() const;
 
   /// As grow_planes(), at this threshold; 0: that of the noise.
   [[nodiscard]] GrownPlanes grow(double inlier_threshold_m, Monitor& monitor) const;

@@ -16,4 +16,8 @@ struct PlaneLabels {
   double inlier_threshold_m = 0.0;   ///< that the detector used
 };
 
+/// Indices of the points of each plane: points_of(labels, planes)[k] lists those with label k, ascending.
+std::vector<std::vector<std::uint32_t>> points_of(const std::vector<std::int32_t>& labels,
+                                                  std::size_t planes);
+
 }  // namespace limen

@@ -20,6 +20,7 @@ constexpr double kPatchM = 0.5;     // edge of the squares in which a sheet is d
 constexpr std::size_t kDenser = 3;  // times: a square's slab against what lies beside it
 constexpr double kUprightSine = 0.17;  // walls: at most so much of the normal is up
 constexpr int kRefits = 2;
+constexpr double kParallel = 0.97;
 
 /// A wall with its three directions and the box of its relief, in its own coordinates.
 struct WallSpace {
@@ -79,6 +80,7 @@ std::optional<WallSpace> wall_space(const Scan& scan, const PlaneLabels& planes,
 /// A point near a wall: its place in the wall's space.
 struct ReliefPoint {
   std::uint32_t index = 0;
+  const Vector3d* tail = nullptr;  ///< normal of the plane whose noise may have brought it here
   Vector3d at = Vector3d::Zero();
 };
 
@@ -137,6 +139,7 @@ class SheetSearch {
     for (const ReliefPoint& point : free) {
       const double towards = wall_.axes[axis].dot(scan_.centre(point.index) - scan_.points[point.index]);
       if (taken[point.index] != 0 || sign * towards <= 0.0) continue;
+      if (point.tail != nullptr && std::abs(point.tail->dot(wall_.axes[axis])) > kParallel) continue;
       seen.push_back(point);
       counts.add(point.at[static_cast<int>(axis)]);
     }
@@ -209,15 +212,6 @@ class SheetSearch {
   const SheetOptions& o_;
 };
 
-std::vector<std::vector<std::uint32_t>> points_by_plane(const PlaneLabels& planes) {
-  std::vector<std::vector<std::uint32_t>> points(planes.fits.size());
-  for (std::size_t i = 0; i < planes.labels.size(); ++i) {
-    if (planes.labels[i] >= 0)
-      points[static_cast<std::size_t>(planes.labels[i])].push_back(static_cast<std::uint32_t>(i));
-  }
-  return points;
-}
-
 }  // namespace
 
 void SheetOptions::check() const {
@@ -227,21 +221,27 @@ void SheetOptions::check() const {
 }
 
 std::vector<PlanePiece> relief_sheets(const Scan& scan, const PlaneLabels& planes, const Vector3d& anchor,
-                                      const SheetOptions& options) {
+                                      const SheetOptions& options, const std::vector<std::int32_t>& tails) {
   options.check();
   if (!scan.centre_known()) return {};
   std::vector<char> taken(scan.size(), 0);
   for (std::size_t i = 0; i < taken.size(); ++i) taken[i] = planes.labels[i] >= 0 ? 1 : 0;
-  const std::vector<std::vector<std::uint32_t>> points = points_by_plane(planes);
+  const std::vector<std::vector<std::uint32_t>> points = points_of(planes.labels, planes.fits.size());
+  std::vector<std::uint32_t> loose;
+  for (std::size_t i = 0; i < taken.size(); ++i) {
+    if (taken[i] == 0) loose.push_back(static_cast<std::uint32_t>(i));
+  }
   std::vector<PlanePiece> sheets;
   for (std::size_t k = 0; k < points.size(); ++k) {
     const std::optional<WallSpace> wall = wall_space(scan, planes, k, points[k], options);
     if (!wall) continue;
     std::vector<ReliefPoint> free;
-    for (std::size_t i = 0; i < taken.size(); ++i) {
+    for (const std::uint32_t i : loose) {
       if (taken[i] != 0) continue;
       const Vector3d at = wall->of(scan.points[i]);
-      if (wall->holds(at)) free.push_back({static_cast<std::uint32_t>(i), at});
+      if (!wall->holds(at)) continue;
+      const std::int32_t tail = tails.empty() ? -1 : tails[i];
+      free.push_back({i, tail < 0 ? nullptr : &planes.fits[static_cast<std::size_t>(tail)].plane.normal, at});
     }
     const SheetSearch search(scan, *wall, anchor, options);
     for (const auto& [axis, sign] :

@@ -30,7 +30,10 @@ struct SheetOptions {
 /// the points near a wall that belong to no plane, the offsets along each of these three directions are
 /// counted, and where many more lie than on either side of it there is a sheet. Within it, points stay where
 /// they are denser than beside it.
+/// `tails`: per point the plane whose noise may have brought it there, or -1, or empty: such a point tells of
+/// no sheet parallel to that plane.
 std::vector<PlanePiece> relief_sheets(const Scan& scan, const PlaneLabels& planes, const Vector3d& anchor,
-                                      const SheetOptions& options);
+                                      const SheetOptions& options,
+                                      const std::vector<std::int32_t>& tails = {});
 
 }  // namespace limen

@@ -65,20 +65,6 @@ void PolygonOptions::check() const {
   if (simplify_m < 0) throw_bad_option("simplify_m", simplify_m, "0 or more");
 }
 
-std::vector<std::vector<std::uint32_t>> points_of(const std::vector<std::int32_t>& labels,
-                                                  std::size_t planes) {
-  std::vector<std::size_t> counts(planes, 0);
-  for (const std::int32_t label : labels) {
-    if (label >= 0) ++counts[static_cast<std::size_t>(label)];
-  }
-  std::vector<std::vector<std::uint32_t>> points(planes);
-  for (std::size_t k = 0; k < points.size(); ++k) points[k].reserve(counts[k]);
-  for (std::size_t i = 0; i < labels.size(); ++i) {
-    if (labels[i] >= 0) points[static_cast<std::size_t>(labels[i])].push_back(static_cast<std::uint32_t>(i));
-  }
-  return points;
-}
-
 std::vector<PlanarPolygon> make_polygons(const Scan& scan, const PlaneLabels& labels,
                                          const PolygonOptions& options, Monitor& monitor) {
   options.check();

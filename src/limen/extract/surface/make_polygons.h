@@ -23,8 +23,4 @@ std::vector<PlanarPolygon> make_polygons(const Scan& scan, const PlaneLabels& la
                                          const PolygonOptions& options = {},
                                          Monitor& monitor = silent_monitor());
 
-/// Indices of the points of each plane: points_of(labels, planes)[k] lists those with label k, ascending.
-std::vector<std::vector<std::uint32_t>> points_of(const std::vector<std::int32_t>& labels,
-                                                  std::size_t planes);
-
 }  // namespace limen

@@ -82,14 +82,6 @@ TEST(MakePolygons, OfNothing) {
   EXPECT_THROW(make_polygons(Scan{}, PlaneLabels{}, {.alpha_m = -1.0}), Error);
 }
 
-TEST(PointsOf, ListsThePointsOfEachPlane) {
-  const auto points = points_of({1, -1, 0, 1, 1}, 3);
-  ASSERT_EQ(points.size(), 3U);
-  EXPECT_EQ(points[0], (std::vector<std::uint32_t>{2}));
-  EXPECT_EQ(points[1], (std::vector<std::uint32_t>{0, 3, 4}));
-  EXPECT_TRUE(points[2].empty());
-}
-
 TEST(SampleSurface, CoversTheSurfaceEvenly) {
   Wall wall;
   // Clutter before the wall: a cluster of ten points, and a lone one.

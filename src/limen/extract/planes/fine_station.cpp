@@ -1,0 +1,207 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/extract/planes/fine_station.h"
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+#include <vector>
+
+#include "limen/base/error.h"
+#include "limen/base/parallel.h"
+#include "limen/extract/cells/point_normals.h"
+#include "limen/extract/planes/coherent_labels.h"
+#include "limen/extract/planes/grow_regions.h"
+#include "limen/extract/planes/join_pieces.h"
+#include "limen/extract/planes/relief_sheets.h"
+#include "limen/extract/planes/settle_planes.h"
+#include "limen/extract/planes/split_at_steps.h"
+
+namespace limen {
+namespace {
+
+constexpr double kChoiceCellM = 0.04;  // points choose among the planes of their cube and those around
+constexpr double kLeastStationNoiseM = 0.001;
+constexpr double kNoisesOfSheet = 3.3;
+constexpr double kNoisesOfTail = 4.0;    // farther from its plane noise brings hardly a point
+constexpr std::size_t kLeastPart = 100;  // points of what may become a plane
+constexpr double kTakenByOthers = 0.8;   // of a plane that cuts along the edge of others
+
+/// Labels along the curve, with the planes' sums.
+class CurveLabels {
+ public:
+  CurveLabels(const Scan& scan, const MortonOrder& order, const PlaneLabels& planes,
+              const FineStationOptions& options)
+      : scan_(scan),
+        order_(order),
+        grid_(order, kChoiceCellM),
+        normals_(order, kGateShare * planes.inlier_threshold_m),
+        scene_{order_, normals_, grid_},
+        anchor_(planes.fits.front().centroid),
+        threshold_m_(planes.inlier_threshold_m) {
+    noise_m_ = std::max(kLeastStationNoiseM, options.noise_m);
+    drift_m_ = options.drift_m;
+    take(planes.labels, planes.fits.size());
+  }
+
+  void add_sheets() {
+    const PlaneLabels planes = by_scan(1);
+    SheetOptions options;
+    options.threshold_m = std::min(threshold_m_, kNoisesOfSheet * noise_m_);
+    const std::vector<PlanePiece> sheets = relief_sheets(scan_, planes, anchor_, options, tails());
+    std::vector<std::int32_t> labels = planes.labels;
+    std::size_t count = planes.fits.size();
+    for (const PlanePiece& sheet : sheets) {
+      for (const std::uint32_t i : sheet.points) labels[i] = static_cast<std::int32_t>(count);
+      ++count;
+    }
+    take(labels, count);
+  }
+
+  void split() {
+    const PlaneLabels planes = by_scan(1);
+    const std::vector<std::vector<std::uint32_t>> points = points_of(planes.labels, planes.fits.size());
+    StepOptions steps;
+    steps.drift_m = drift_m_;
+    std::vector<std::vector<PlanePiece>> of_plane(points.size());
+    parallel_for(points.size(), 1, [&](std::size_t k, std::size_t /*end*/) {
+      for (std::vector<std::uint32_t>& part : split_at_steps(scan_, planes.fits[k], points[k], steps))
+        of_plane[k].push_back(piece_of(scan_, std::move(part), anchor_));
+    });
+    std::vector<PlanePiece> pieces;
+    for (std::vector<PlanePiece>& parts : of_plane)
+      std::move(parts.begin(), parts.end(), std::back_inserter(pieces));
+    join(std::move(pieces));
+  }
+
+  /// Planes whose points lie in one plane become one.
+  void join() {
+    const PlaneLabels planes = by_scan(kLeastPart);
+    std::vector<PlanePiece> pieces;
+    for (std::vector<std::uint32_t>& points : points_of(planes.labels, planes.fits.size()))
+      pieces.push_back(piece_of(scan_, std::move(points), anchor_));
+    join(std::move(pieces));
+  }
+
+  void choose() {
+    CoherentOptions options;
+    options.threshold_m = threshold_m_;
+    options.noise_m = noise_m_;
+    coherent_labels(scene_, options, labels_, sums_);
+  }
+
+  /// Planes whose points others would take give them back.
+  void dissolve() {
+    SettleOptions options;
+    options.threshold_m = threshold_m_;
+    options.cell_m = kChoiceCellM;
+    const std::vector<double> explained = explained_shares(scene_, labels_, sums_, options);
+    for (std::int32_t& label : labels_) {
+      if (label >= 0 && explained[static_cast<std::size_t>(label)] > kTakenByOthers) label = -1;
+    }
+    for (std::size_t p = 0; p < sums_.size(); ++p) {
+      if (explained[p] > kTakenByOthers) sums_[p] = {};
+    }
+  }
+
+  /// Planes of at least so many points, largest first.
+  [[nodiscard]] PlaneLabels by_scan(double least) const {
+    std::vector<std::size_t> kept;
+    for (std::size_t p = 0; p < sums_.size(); ++p) {
+      if (sums_[p].count >= least) kept.push_back(p);
+    }
+    std::stable_sort(kept.begin(), kept.end(),
+                     [&](std::size_t a, std::size_t b) { return sums_[a].count > sums_[b].count; });
+    PlaneLabels planes;
+    planes.inlier_threshold_m = threshold_m_;
+    std::vector<std::int32_t> number(sums_.size(), -1);
+    for (const std::size_t p : kept) {
+      number[p] = static_cast<std::int32_t>(planes.fits.size());
+      PlaneFit fit = fit_plane(sums_[p]);
+      fit.plane = shifted(fit.plane, -order_.anchor);
+      fit.centroid += order_.anchor;
+      planes.fits.push_back(fit);
+    }
+    planes.labels.assign(labels_.size(), -1);
+    for (std::size_t k = 0; k < labels_.size(); ++k) {
+      if (labels_[k] >= 0) planes.labels[order_.index(k)] = number[static_cast<std::size_t>(labels_[k])];
+    }
+    return planes;
+  }
+
+ private:
+  void join(std::vector<PlanePiece> pieces) {
+    JoinOptions options;
+    options.noise_m = noise_m_;
+    options.drift_m = drift_m_;
+    pieces = joined_pieces(std::move(pieces), options);
+    std::vector<std::int32_t> labels(scan_.size(), -1);
+    std::size_t count = 0;
+    for (const PlanePiece& piece : pieces) {
+      if (piece.points.size() < kLeastPart) continue;
+      for (const std::uint32_t i : piece.points) labels[i] = static_cast<std::int32_t>(count);
+      ++count;
+    }
+    take(labels, count);
+  }
+
+  void take(const std::vector<std::int32_t>& by_scan, std::size_t count) {
+    labels_.resize(by_scan.size());
+    sums_.assign(count, {});
+    for (std::size_t k = 0; k < labels_.size(); ++k) {
+      labels_[k] = by_scan[order_.index(k)];
+      if (labels_[k] >= 0) sums_[static_cast<std::size_t>(labels_[k])].add(order_.point(k));
+    }
+  }
+
+  /// Per point of the scan the plane whose noise may have brought it there.
+  [[nodiscard]] std::vector<std::int32_t> tails() const {
+    CoherentOptions options;
+    options.threshold_m = kNoisesOfTail * noise_m_;
+    options.noise_m = noise_m_;
+    std::vector<std::int32_t> labels = labels_;
+    std::vector<PointMoments> sums = sums_;
+    coherent_labels(scene_, options, labels, sums);
+    std::vector<std::int32_t> tails(labels.size());
+    for (std::size_t k = 0; k < labels.size(); ++k) tails[order_.index(k)] = labels[k];
+    return tails;
+  }
+
+  const Scan& scan_;
+  const MortonOrder& order_;
+  SettleGrid grid_;
+  PointNormals normals_;
+  SettleScene scene_;
+  Vector3d anchor_;
+  double threshold_m_;
+  double noise_m_ = 0.0;
+  double drift_m_ = 0.0;
+  std::vector<std::int32_t> labels_;
+  std::vector<PointMoments> sums_;
+};
+
+}  // namespace
+
+void FineStationOptions::check() const {
+  if (!(noise_m >= 0)) throw_bad_option("noise_m", noise_m, "0 or more");
+  if (!(drift_m >= 0)) throw_bad_option("drift_m", drift_m, "0 or more");
+  if (min_inliers < 3) throw_bad_option("min_inliers", min_inliers, "3 or more");
+}
+
+PlaneLabels fine_station_planes(const Scan& scan, const MortonOrder& order, const PlaneLabels& planes,
+                                const FineStationOptions& options) {
+  options.check();
+  if (planes.fits.empty()) return planes;
+  CurveLabels labels(scan, order, planes, options);
+  labels.add_sheets();
+  labels.choose();
+  labels.split();
+  labels.choose();
+  labels.dissolve();
+  labels.choose();
+  labels.join();
+  labels.choose();
+  return labels.by_scan(options.min_inliers);
+}
+
+}  // namespace limen

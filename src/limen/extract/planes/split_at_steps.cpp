@@ -1,0 +1,359 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/extract/planes/split_at_steps.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <queue>
+#include <tuple>
+#include <utility>
+
+#include "limen/base/error.h"
+#include "limen/extract/planes/height_sums.h"
+
+namespace limen {
+namespace {
+
+constexpr double kChiSquared = 16.3;  // of three freedoms, exceeded once in a thousand
+constexpr double kSlope = 0.01;       // one standard deviation: a part is turned from its plane by little
+constexpr double kLeastNoiseM = 0.0005;
+constexpr int kInnerCells = 12;  // of a part that may be a piece of a bulging surface
+constexpr double kShared = 3.0;  // pairs of cells at a border that share a cell, about
+constexpr double kBorderPairs = 6.0;
+
+/// Cells of a plane by their places: open addressing, in the order of their first points.
+class CellTable {
+ public:
+  explicit CellTable(std::size_t points) {
+    std::size_t size = 64;
+    while (size < points / 2) size *= 2;
+    slots_.assign(size, {0, -1});
+  }
+  /// The number of the cell at (x, y); a new one at its first call.
+  std::int32_t add(std::int32_t x, std::int32_t y) {
+    if (2 * keys_.size() >= slots_.size()) grow();
+    const std::uint64_t key = key_of(x, y);
+    std::size_t i = place(key);
+    while (slots_[i].cell >= 0) {
+      if (slots_[i].key == key) return slots_[i].cell;
+      i = (i + 1) & (slots_.size() - 1);
+    }
+    slots_[i] = {key, static_cast<std::int32_t>(keys_.size())};
+    keys_.push_back(key);
+    return slots_[i].cell;
+  }
+  /// The cell so many cells from another, or -1.
+  [[nodiscard]] std::int32_t beside(std::size_t cell, int dx, int dy) const {
+    const std::uint64_t key = key_of(static_cast<std::int32_t>(keys_[cell] >> 32U) + dx,
+                                     static_cast<std::int32_t>(keys_[cell] & 0xffffffffU) + dy);
+    std::size_t i = place(key);
+    while (slots_[i].cell >= 0) {
+      if (slots_[i].key == key) return slots_[i].cell;
+      i = (i + 1) & (slots_.size() - 1);
+    }
+    return -1;
+  }
+
+ private:
+  struct Slot {
+    std::uint64_t key;
+    std::int32_t cell;
+  };
+  static std::uint64_t key_of(std::int32_t x, std::int32_t y) {
+    return (static_cast<std::uint64_t>(static_cast<std::uint32_t>(x)) << 32U) | static_cast<std::uint32_t>(y);
+  }
+  [[nodiscard]] std::size_t place(std::uint64_t key) const {
+    return (key * 0x9e3779b97f4a7c15U) >> 32U & (slots_.size() - 1);
+  }
+  void grow() {
+    slots_.assign(2 * slots_.size(), {0, -1});
+    for (std::size_t c = 0; c < keys_.size(); ++c) {
+      std::size_t i = place(keys_[c]);
+      while (slots_[i].cell >= 0) i = (i + 1) & (slots_.size() - 1);
+      slots_[i] = {keys_[c], static_cast<std::int32_t>(c)};
+    }
+  }
+
+  std::vector<Slot> slots_;
+  std::vector<std::uint64_t> keys_;
+};
+
+/// What two touching parts show where they touch: mean of the second less that of the first.
+struct Border {
+  double sum = 0.0;
+  double weight = 0.0;
+  double pairs = 0.0;
+};
+
+/// The cells of a plane and their parts.
+class StepParts {
+ public:
+  StepParts(const Scan& scan, const PlaneFit& fit, const std::vector<std::uint32_t>& points,
+            const StepOptions& options)
+      : o_(options), points_(points), table_(points.size()) {
+    const PlaneFrame frame = make_frame(fit.plane, fit.centroid);
+    places_.reserve(points.size());
+    for (const std::uint32_t i : points) {
+      const Vector2d p = frame.to_plane(scan.points[i]);
+      places_.push_back({p.x(), p.y(), fit.plane.signed_distance(scan.points[i])});
+    }
+    bin(edge());
+    noise_ = noise();
+    ridge_ = noise_ * noise_ / (kSlope * kSlope);
+  }
+
+  std::vector<std::vector<std::uint32_t>> run() {
+    parts_.resize(cells_.size());
+    std::iota(parts_.begin(), parts_.end(), 0);
+    squares_.reserve(cells_.size());
+    for (const HeightSums& cell : cells_) squares_.push_back(cell.squares(ridge_));
+    join_alike();
+    join_bulging();
+    join_apart();
+    return parts();
+  }
+
+ private:
+  struct Place {
+    double u, v, h;
+  };
+
+  /// So that a cell holds some points where the plane is as dense as for most of its points.
+  [[nodiscard]] double edge() const {
+    constexpr double kLookM = 0.1;
+    constexpr std::size_t kLooks = 4096;
+    const std::size_t step = std::max<std::size_t>(1, places_.size() / kLooks);
+    CellTable look(kLooks);
+    std::vector<std::int32_t> of;
+    std::vector<double> counts;
+    for (std::size_t k = 0; k < places_.size(); k += step) {
+      of.push_back(look.add(static_cast<std::int32_t>(std::floor(places_[k].u / kLookM)),
+                            static_cast<std::int32_t>(std::floor(places_[k].v / kLookM))));
+      counts.resize(std::max(counts.size(), static_cast<std::size_t>(of.back()) + 1));
+      counts[static_cast<std::size_t>(of.back())] += static_cast<double>(step);
+    }
+    std::vector<double> around;
+    around.reserve(of.size());
+    for (const std::int32_t c : of) around.push_back(counts[static_cast<std::size_t>(c)]);
+    const auto middle = around.begin() + static_cast<std::ptrdiff_t>(around.size() / 2);
+    std::nth_element(around.begin(), middle, around.end());
+    return std::clamp(kLookM * std::sqrt(o_.points_of_cell / *middle), o_.finest_m, o_.coarsest_m);
+  }
+
+  void bin(double edge) {
+    cell_of_.reserve(places_.size());
+    for (const Place& p : places_) {
+      const std::int32_t c = table_.add(static_cast<std::int32_t>(std::floor(p.u / edge)),
+                                        static_cast<std::int32_t>(std::floor(p.v / edge)));
+      if (static_cast<std::size_t>(c) == cells_.size()) cells_.emplace_back();
+      cells_[static_cast<std::size_t>(c)].add(p.u, p.v, p.h);
+      cell_of_.push_back(c);
+    }
+    own_ = cells_;
+  }
+
+  /// Within the cells.
+  [[nodiscard]] double noise() const {
+    constexpr double kUnknownM = 0.01;
+    double squares = 0.0;
+    double freedoms = 0.0;
+    for (const HeightSums& c : cells_) {
+      if (c.n < 4.0) continue;
+      squares += c.hh - c.h * c.h / c.n;
+      freedoms += c.n - 1.0;
+    }
+    return freedoms > 0.0 ? std::max(kLeastNoiseM, std::sqrt(squares / freedoms)) : kUnknownM;
+  }
+
+  std::size_t root_of(std::size_t c) {
+    while (static_cast<std::size_t>(parts_[c]) != c) {
+      parts_[c] = parts_[static_cast<std::size_t>(parts_[c])];
+      c = static_cast<std::size_t>(parts_[c]);
+    }
+    return c;
+  }
+
+  struct Joined {
+    HeightSums sums;
+    double squares = 0.0;
+    double strain = 0.0;  ///< what the common plane adds, in units of what is allowed
+  };
+  [[nodiscard]] Joined joined(std::size_t a, std::size_t b, double drift_m) const {
+    Joined both{cells_[a]};
+    both.sums.add(cells_[b]);
+    both.squares = both.sums.squares(ridge_);
+    const double together = cells_[a].n * cells_[b].n / both.sums.n;
+    both.strain = (both.squares - squares_[a] - squares_[b]) /
+                  (kChiSquared * noise_ * noise_ + together * drift_m * drift_m);
+    return both;
+  }
+  void join(std::size_t a, std::size_t b, const Joined& both) {
+    if (cells_[a].n < cells_[b].n) std::swap(a, b);
+    cells_[a] = both.sums;
+    squares_[a] = both.squares;
+    parts_[b] = static_cast<std::int32_t>(a);
+  }
+
+  /// f(cell, neighbour) for each pair of cells that touch.
+  template <typename F>
+  void for_touching(const F& f) const {
+    constexpr std::array<std::pair<int, int>, 4> kHalf{{{1, 0}, {0, 1}, {1, 1}, {1, -1}}};
+    for (std::size_t c = 0; c < own_.size(); ++c) {
+      for (const auto& [dx, dy] : kHalf) {
+        const std::int32_t other = table_.beside(c, dx, dy);
+        if (other >= 0) f(c, static_cast<std::size_t>(other));
+      }
+    }
+  }
+
+  void join_alike() {
+    struct Edge {
+      double strain;
+      double count;  ///< of both parts when it was looked at
+      std::size_t a, b;
+      bool operator<(const Edge& o) const { return std::tie(strain, a, b) > std::tie(o.strain, o.a, o.b); }
+    };
+    std::priority_queue<Edge> edges;
+    for_touching([&](std::size_t a, std::size_t b) {
+      const double strain = joined(a, b, o_.drift_m).strain;
+      if (strain <= 1.0) edges.push({strain, cells_[a].n + cells_[b].n, a, b});
+    });
+    while (!edges.empty()) {
+      Edge top = edges.top();
+      edges.pop();
+      const std::size_t a = root_of(top.a);
+      const std::size_t b = root_of(top.b);
+      if (a == b) continue;
+      const Joined both = joined(a, b, o_.drift_m);
+      if (both.sums.n == top.count) {
+        join(a, b, both);
+      } else if (both.strain <= 1.0) {
+        edges.push({both.strain, both.sums.n, top.a, top.b});
+      }
+    }
+  }
+
+  /// Cells all of whose neighbours are of their part.
+  std::vector<int> inner_cells() {
+    std::vector<int> neighbours(cells_.size(), 0);
+    for_touching([&](std::size_t a, std::size_t b) {
+      const int same = root_of(a) == root_of(b) ? 1 : -8;
+      neighbours[a] += same;
+      neighbours[b] += same;
+    });
+    std::vector<int> inner(cells_.size(), 0);
+    for (std::size_t c = 0; c < cells_.size(); ++c) {
+      constexpr int kMost = 5;
+      if (neighbours[c] >= kMost) ++inner[root_of(c)];
+    }
+    return inner;
+  }
+
+  void join_bulging() {
+    const std::vector<int> inner = inner_cells();
+    std::map<std::pair<std::size_t, std::size_t>, Border> borders;
+    for_touching([&](std::size_t a, std::size_t b) {
+      std::size_t i = root_of(a);
+      std::size_t j = root_of(b);
+      if (i == j || inner[i] < kInnerCells || inner[j] < kInnerCells) return;
+      if (i > j) {
+        std::swap(i, j);
+        std::swap(a, b);
+      }
+      const double weight = own_[a].n * own_[b].n / (own_[a].n + own_[b].n);
+      Border& border = borders[{i, j}];
+      border.sum += weight * (own_[b].h / own_[b].n - own_[a].h / own_[a].n);
+      border.weight += weight;
+      border.pairs += 1.0;
+    });
+    for (const auto& [parts, border] : borders) {
+      const double step = std::abs(border.sum) / border.weight;
+      const double sigma = noise_ * std::sqrt(kShared / border.weight);
+      if (border.pairs < kBorderPairs || step > o_.step_m || 2.0 * sigma > o_.step_m) continue;
+      const std::size_t a = root_of(parts.first);
+      const std::size_t b = root_of(parts.second);
+      if (a != b) join(a, b, joined(a, b, o_.drift_m));
+    }
+  }
+
+  /// By which the part strays from its plane beside the noise.
+  [[nodiscard]] double bulge(std::size_t part) const {
+    return std::sqrt(std::max(0.0, squares_[part] / cells_[part].n - noise_ * noise_));
+  }
+
+  void join_apart() {
+    std::vector<std::size_t> roots;
+    for (std::size_t c = 0; c < cells_.size(); ++c) {
+      if (root_of(c) == c && cells_[c].n >= o_.least_points) roots.push_back(c);
+    }
+    std::stable_sort(roots.begin(), roots.end(),
+                     [&](std::size_t a, std::size_t b) { return cells_[a].n > cells_[b].n; });
+    std::vector<std::size_t> kept;
+    for (const std::size_t c : roots) {
+      Joined best;
+      best.strain = 1.0;
+      std::size_t with = c;
+      for (const std::size_t k : kept) {
+        const Joined both = joined(k, c, std::max({o_.drift_m, bulge(k), bulge(c)}));
+        if (both.strain > best.strain) continue;
+        best = both;
+        with = k;
+      }
+      if (with == c) {
+        kept.push_back(c);
+      } else {
+        join(with, c, best);
+      }
+    }
+  }
+
+  std::vector<std::vector<std::uint32_t>> parts() {
+    std::vector<std::int32_t> number(cells_.size(), -1);
+    std::vector<std::vector<std::uint32_t>> parts;
+    for (std::size_t k = 0; k < points_.size(); ++k) {
+      const std::size_t root = root_of(static_cast<std::size_t>(cell_of_[k]));
+      if (cells_[root].n < o_.least_points) continue;
+      if (number[root] < 0) {
+        number[root] = static_cast<std::int32_t>(parts.size());
+        parts.emplace_back();
+      }
+      parts[static_cast<std::size_t>(number[root])].push_back(points_[k]);
+    }
+    return parts;
+  }
+
+  StepOptions o_;
+  const std::vector<std::uint32_t>& points_;
+  CellTable table_;
+  std::vector<Place> places_;
+  std::vector<std::int32_t> cell_of_;  ///< by point
+  std::vector<HeightSums> own_;        ///< of each cell
+  std::vector<HeightSums> cells_;      ///< at a part's root those of the part
+  std::vector<double> squares_;        ///< likewise, about its plane
+  std::vector<std::int32_t> parts_;    ///< by cell: towards the root of its part
+  double noise_ = 0.0;
+  double ridge_ = 0.0;
+};
+
+}  // namespace
+
+void StepOptions::check() const {
+  if (!(drift_m >= 0)) throw_bad_option("drift_m", drift_m, "0 or more");
+  if (!(step_m >= 0)) throw_bad_option("step_m", step_m, "0 or more");
+  if (!(points_of_cell >= 1)) throw_bad_option("points_of_cell", points_of_cell, "1 or more");
+  if (!(finest_m > 0)) throw_bad_option("finest_m", finest_m, "more than 0");
+  if (!(coarsest_m >= finest_m)) throw_bad_option("coarsest_m", coarsest_m, "at least finest_m");
+}
+
+std::vector<std::vector<std::uint32_t>> split_at_steps(const Scan& scan, const PlaneFit& fit,
+                                                       const std::vector<std::uint32_t>& points,
+                                                       const StepOptions& options) {
+  options.check();
+  if (points.empty()) return {};
+  return StepParts(scan, fit, points, options).run();
+}
+
+}  // namespace limen
