@@ -64,8 +64,9 @@ class ShiftSupport {
   [[nodiscard]] double at(const Vector2d& in_plane, double enough) const;
   /// No shift gives more, m^2.
   [[nodiscard]] double most() const { return most_m2_; }
-  /// No shift that goes `along_m` along the unit vector `way` of the axis's plane gives more, m^2.
-  [[nodiscard]] double most_where(const Vector2d& way, double along_m) const;
+  /// For each of `along_m`: no shift that goes so far along the unit vector `way` of the axis's plane gives
+  /// more, m^2.
+  [[nodiscard]] std::vector<double> most_where(const Vector2d& way, const std::vector<double>& along_m) const;
 
  private:
   struct PairPlace {
