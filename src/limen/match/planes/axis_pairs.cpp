@@ -47,6 +47,7 @@ double ShiftSupport::at(const Vector2d& in_plane, double enough) const {
   for (std::size_t i = 0; i < pairs_.size(); ++i) {
     if (sum + rest <= enough) return std::max(0.0, sum + rest);
     rest -= pairs_[i].limit_m2 * pairs_[i].weight;
+    if (!pairs_[i].meets(in_plane)) continue;
     const std::size_t end = i + 1 < pairs_.size() ? pairs_[i + 1].first : boxes_.size();
     double overlap = 0.0;
     for (std::size_t k = pairs_[i].first; k < end; ++k)
