@@ -19,9 +19,9 @@ constexpr double kSmallestScanM = 0.1;
 constexpr double kLongestScanM = 1e5;   // a day of a mobile scanner
 constexpr double kThickestScanM = 1e3;  // the least of its three sides; of a city less
 constexpr double kSmallestModelM = 0.5;
-constexpr double kMostModelM2 = 2e6;  // ten times the surface of a large hospital
-constexpr std::size_t kLookedAt = 100000;
-constexpr std::size_t kLeftOut = 100;  // one point in so many, at either end of an axis
+constexpr double kMostModelM2 = 2e6;      // ten times the surface of a large hospital
+constexpr std::size_t kLookedAt = 10000;  // points, for three numbers that tell metres from millimetres
+constexpr std::size_t kLeftOut = 100;     // one point in so many, at either end of an axis
 constexpr const char* kUnits =
     "limen takes the numbers of a file that names no unit as metres: tell the unit (--units, --source-units, "
     "--target-units: mm, cm, ft, in, us-ft), or export it again in metres";

@@ -364,11 +364,14 @@ Posterior posterior_of(const std::vector<JudgedPose>& poses, const Verdict& verd
   };
   add_prior(best);
   if (model) evidence.log_odds_of_model = verdict.log_odds_of_model;
-  for (const std::size_t other : others) {
-    const PoseContrast apart = contrast(best, other);
-    evidence.leads_m2.push_back(apart.for_first_m2 - apart.for_second_m2);
-    evidence.values_m2.push_back(poses[other].score.value());
-    add_prior(other);
+  std::vector<PoseContrast> apart(others.size());
+  parallel_for(others.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) apart[k] = contrast(best, others[k]);
+  });
+  for (std::size_t k = 0; k < others.size(); ++k) {
+    evidence.leads_m2.push_back(apart[k].for_first_m2 - apart[k].for_second_m2);
+    evidence.values_m2.push_back(poses[others[k]].score.value());
+    add_prior(others[k]);
   }
   for (const TwinPlace& twin : twins) evidence.odds_of_twins.push_back(twin.said.odds());
   return posterior(evidence);

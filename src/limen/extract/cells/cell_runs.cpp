@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 
+#include "limen/base/parallel.h"
 #include "limen/base/random.h"
 
 namespace limen {
@@ -13,6 +14,7 @@ namespace {
 
 constexpr std::uint32_t kBlockBits = 6;  // of a code: its place in a block of 4 x 4 x 4
 constexpr std::uint64_t kInBlock = 63;
+constexpr std::size_t kPlacesPerPiece = 65536;
 
 /// Bits of the curve's code of a step along each axis, of the place in a block.
 std::uint32_t place_in_cells(std::uint32_t x, std::uint32_t y, std::uint32_t z) {
@@ -67,21 +69,31 @@ int level_of(double cell_m, double finest_m) {
 
 CellRuns::CellRuns(const MortonOrder& sorted, const std::vector<std::uint32_t>& active, int level) {
   const int shift = 3 * level;
-  for (std::uint32_t k = 0; k < active.size(); ++k) add(sorted.codes[active[k]] >> shift, k);
-  finish(static_cast<std::uint32_t>(active.size()));
+  make_runs(active.size(), [&](std::size_t k) { return sorted.codes[active[k]] >> shift; });
 }
 
 CellRuns::CellRuns(const MortonOrder& sorted, int level) {
   const int shift = 3 * level;
-  const auto size = static_cast<std::uint32_t>(sorted.codes.size());
-  for (std::uint32_t k = 0; k < size; ++k) add(sorted.codes[k] >> shift, k);
-  finish(size);
+  make_runs(sorted.codes.size(), [&](std::size_t k) { return sorted.codes[k] >> shift; });
 }
 
-void CellRuns::add(std::uint64_t code, std::uint32_t place) {
-  if (!codes_.empty() && codes_.back() == code) return;
-  codes_.push_back(code);
-  begins_.push_back(place);
+template <typename CodeAt>
+void CellRuns::make_runs(std::size_t places, const CodeAt& code_at) {
+  std::vector<std::vector<std::uint32_t>> pieces((places + kPlacesPerPiece - 1) / kPlacesPerPiece);
+  parallel_for(places, kPlacesPerPiece, [&](std::size_t begin, std::size_t end) {
+    std::vector<std::uint32_t>& piece = pieces[begin / kPlacesPerPiece];
+    for (std::size_t k = begin; k < end; ++k) {
+      if (k == 0 || code_at(k) != code_at(k - 1)) piece.push_back(static_cast<std::uint32_t>(k));
+    }
+  });
+  std::size_t runs = 0;
+  for (const std::vector<std::uint32_t>& piece : pieces) runs += piece.size();
+  begins_.reserve(runs + 1);
+  for (const std::vector<std::uint32_t>& piece : pieces)
+    begins_.insert(begins_.end(), piece.begin(), piece.end());
+  codes_.reserve(runs);
+  for (const std::uint32_t begin : begins_) codes_.push_back(code_at(begin));
+  finish(static_cast<std::uint32_t>(places));
 }
 
 void CellRuns::finish(std::uint32_t places) {

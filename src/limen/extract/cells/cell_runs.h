@@ -44,7 +44,9 @@ class CellRuns {
   [[nodiscard]] CellNeighbours neighbours(std::size_t i) const;
 
  private:
-  void add(std::uint64_t code, std::uint32_t place);
+  /// Of `places` points along the curve; code_at(k): the cube of the k-th.
+  template <typename CodeAt>
+  void make_runs(std::size_t places, const CodeAt& code_at);
   void finish(std::uint32_t places);
   /// The cubes of one block, which follow each other.
   struct Block {

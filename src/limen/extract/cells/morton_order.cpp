@@ -40,7 +40,8 @@ std::uint32_t gather(std::uint64_t v) {
 }
 
 std::uint32_t cell_coordinate(double x, double cell_m) {
-  return static_cast<std::uint32_t>(std::clamp(std::floor(x / cell_m), 0.0, 2.0 * kMiddle - 1.0));
+  // Of a number that is not negative what is cut off is what std::floor, a call, would take away.
+  return static_cast<std::uint32_t>(std::clamp(x / cell_m, 0.0, 2.0 * kMiddle - 1.0));
 }
 
 /// Where cell 0 begins along one axis: the lowest point, or, where stray points stretch the extent past 2^21

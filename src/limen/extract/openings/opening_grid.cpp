@@ -5,8 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <utility>
+
+#include "limen/extract/openings/nearest_cells.h"
 
 namespace limen {
 namespace {
@@ -29,6 +30,7 @@ OpeningGrid::OpeningGrid(const WallEvidence& evidence, const DirectionMap& direc
   columns_ = static_cast<int>(size.x() / cell_m_) + 1;
   rows_ = static_cast<int>(size.y() / cell_m_) + 1;
   count_samples(evidence);
+  set_spacing();
   spread();
   mark_silent(evidence.wall, directions);
 }
@@ -82,56 +84,36 @@ void OpeningGrid::count_samples(const WallEvidence& evidence) {
   }
 }
 
-/// Every cell without samples becomes what the nearest cell with samples is, if that is near enough. Two
-/// sweeps that pass on the nearest cell so far.
-void OpeningGrid::spread() {
+/// The typical distance between samples, tile by tile.
+void OpeningGrid::set_spacing() {
   tile_cells_ = std::max(1, static_cast<int>(std::lround(kTile_m / cell_m_)));
   tile_columns_ = (columns_ + tile_cells_ - 1) / tile_cells_;
-  const int tile_rows = (rows_ + tile_cells_ - 1) / tile_cells_;
-  std::vector<std::uint32_t> count(
-      static_cast<std::size_t>(tile_columns_) * static_cast<std::size_t>(tile_rows), 0);
-  for (int r = 0; r < rows_; ++r) {
-    for (int c = 0; c < columns_; ++c) count[tile(c, r)] += begin_[index(c, r) + 1] - begin_[index(c, r)];
-  }
   const double tile_m2 = tile_cells_ * tile_cells_ * cell_m_ * cell_m_;
-  for (const std::uint32_t n : count)
-    tile_spacing_m_.push_back(static_cast<float>(std::sqrt(tile_m2 / std::max(n, 1U))));
-
-  constexpr int kNone = std::numeric_limits<int>::min() / 2;
-  std::vector<std::pair<int, int>> nearest(cells_.size(), {kNone, kNone});
-  const auto distance2 = [&](std::pair<int, int> to, int c, int r) {
-    return to.first == kNone ? std::numeric_limits<int>::max()
-                             : (to.first - c) * (to.first - c) + (to.second - r) * (to.second - r);
-  };
-  for (int r = 0; r < rows_; ++r) {
-    for (int c = 0; c < columns_; ++c) {
-      if (cells_[index(c, r)] != Cell::unknown) nearest[index(c, r)] = {c, r};
+  for (int low = 0; low < rows_; low += tile_cells_) {
+    for (int left = 0; left < columns_; left += tile_cells_) {
+      const int right = std::min(columns_, left + tile_cells_) - 1;
+      std::uint32_t count = 0;
+      for (int r = low; r < std::min(rows_, low + tile_cells_); ++r)
+        count += begin_[index(right, r) + 1] - begin_[index(left, r)];
+      tile_spacing_m_.push_back(static_cast<float>(std::sqrt(tile_m2 / std::max(count, 1U))));
     }
   }
-  const auto take = [&](int c, int r, int dc, int dr) {
-    if (c + dc < 0 || c + dc >= columns_ || r + dr < 0 || r + dr >= rows_) return;
-    const std::pair<int, int> other = nearest[index(c + dc, r + dr)];
-    if (distance2(other, c, r) < distance2(nearest[index(c, r)], c, r)) nearest[index(c, r)] = other;
-  };
-  for (int r = 0; r < rows_; ++r) {
-    for (int c = 0; c < columns_; ++c)
-      for (const auto& [dc, dr] : {std::pair{-1, 0}, {-1, -1}, {0, -1}, {1, -1}}) take(c, r, dc, dr);
-    for (int c = columns_ - 1; c >= 0; --c) take(c, r, 1, 0);
-  }
-  for (int r = rows_ - 1; r >= 0; --r) {
-    for (int c = columns_ - 1; c >= 0; --c)
-      for (const auto& [dc, dr] : {std::pair{1, 0}, {1, 1}, {0, 1}, {-1, 1}}) take(c, r, dc, dr);
-    for (int c = 0; c < columns_; ++c) take(c, r, -1, 0);
-  }
+}
+
+/// Every cell without samples becomes what the nearest cell with samples is, if that is near enough.
+void OpeningGrid::spread() {
+  const NearestCells nearest(columns_, rows_,
+                             [&](int c, int r) { return cells_[index(c, r)] != Cell::unknown; });
   std::vector<Cell> spread = cells_;
   for (int r = 0; r < rows_; ++r) {
-    for (int c = 0; c < columns_; ++c) {
-      const std::pair<int, int> from = nearest[index(c, r)];
-      if (from.first == kNone) continue;
-      const double reach_m = std::min(kMaxReach_m, kReachPerSpacing * tile_spacing_m_[tile(c, r)]);
+    for (int left = 0; left < columns_; left += tile_cells_) {
+      const double reach_m = std::min(kMaxReach_m, kReachPerSpacing * tile_spacing_m_[tile(left, r)]);
       const double reach = std::max(1.5, reach_m / cell_m_);
-      if (distance2(from, c, r) <= reach * reach)
-        spread[index(c, r)] = cells_[index(from.first, from.second)];
+      for (int c = left; c < std::min(columns_, left + tile_cells_); ++c) {
+        const NearestCells::Way& way = nearest.from(c, r);
+        if (way.known() && static_cast<double>(way.squared()) <= reach * reach)
+          spread[index(c, r)] = cells_[index(c + way.columns, r + way.rows)];
+      }
     }
   }
   cells_ = std::move(spread);

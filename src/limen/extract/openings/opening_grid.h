@@ -51,6 +51,7 @@ class OpeningGrid {
 
  private:
   void count_samples(const WallEvidence& evidence);
+  void set_spacing();
   void spread();
   void mark_silent(const OpeningWall& wall, const DirectionMap& directions);
   [[nodiscard]] std::size_t index(int column, int row) const {

@@ -29,10 +29,9 @@ class Fitter {
     Box2 around = region;
     around.low.array() -= 2.0 * search_m;
     around.high.array() += 2.0 * search_m;
-    const std::vector<std::uint32_t> near = grid_.samples_in(around);
     for (int round = 0; round < kRounds; ++round) {
       for (const Side side : kSides) {
-        const SideSeparator found = place_side(rectangle.box, side, search_m, near);
+        const SideSeparator found = place_side(rectangle.box, side, search_m, around);
         if (!found.found) continue;
         set_place(rectangle.box, side, outward(side) * found.place);
         rectangle.sigma_m[static_cast<std::size_t>(side)] = found.sigma_m;
@@ -42,50 +41,72 @@ class Fitter {
   }
 
  private:
-  [[nodiscard]] SideSeparator place_side(const Box2& box, Side side, double search_m,
-                                         const std::vector<std::uint32_t>& near) const {
-    const Eigen::Index axis = axis_of(side);
-    const Eigen::Index other = 1 - axis;
-    const double length = box.high[other] - box.low[other];
-    const double low = box.low[other] + kTrimShare * length;
-    const double high = box.high[other] - kTrimShare * length;
-    const double size = box.high[axis] - box.low[axis];
-    const double sign = outward(side);
-    const double at = sign * place_of(box, side);
-    const double from = at - std::min(search_m, 0.5 * size);
-    const double to = at + search_m;
-    std::vector<SideMark> marks;
-    for (const std::uint32_t i : near) {
-      const WallSample& sample = evidence_.samples[i];
-      if (sample.kind == SampleKind::cover) continue;
-      const Vector2d p(sample.u, sample.v);
-      const double t = sign * p[axis];
-      if (p[other] < low || p[other] > high || t < from || t > to) continue;
-      marks.push_back({t, sample.kind == SampleKind::wall});
+  /// The part of the wall that tells where a side is: along the side, and as far across as it may lie.
+  struct SideStrip {
+    Eigen::Index axis = 0;  ///< across the side
+    double sign = 1.0;      ///< of the axis: outwards
+    double from = 0.0;      ///< across, outwards
+    double to = 0.0;
+    double low = 0.0;  ///< along
+    double high = 0.0;
+
+    [[nodiscard]] double across(const Vector2d& p) const { return sign * p[axis]; }
+    [[nodiscard]] bool contains(const Vector2d& p) const {
+      return p[1 - axis] >= low && p[1 - axis] <= high && across(p) >= from && across(p) <= to;
     }
-    add_silent(box, side, {from, to}, {low, high}, marks);
-    SideSeparator found = separate(std::move(marks), from, to);
+    [[nodiscard]] Box2 box() const {
+      Box2 all;
+      all.add(Vector2d::Unit(axis) * sign * from + Vector2d::Unit(1 - axis) * low);
+      all.add(Vector2d::Unit(axis) * sign * to + Vector2d::Unit(1 - axis) * high);
+      return all;
+    }
+  };
+
+  static SideStrip strip_of(const Box2& box, Side side, double search_m) {
+    SideStrip strip{.axis = axis_of(side), .sign = outward(side)};
+    const Eigen::Index other = 1 - strip.axis;
+    const double length = box.high[other] - box.low[other];
+    strip.low = box.low[other] + kTrimShare * length;
+    strip.high = box.high[other] - kTrimShare * length;
+    const double size = box.high[strip.axis] - box.low[strip.axis];
+    const double at = strip.sign * place_of(box, side);
+    strip.from = at - std::min(search_m, 0.5 * size);
+    strip.to = at + search_m;
+    return strip;
+  }
+
+  /// By the samples within `around`.
+  [[nodiscard]] SideSeparator place_side(const Box2& box, Side side, double search_m,
+                                         const Box2& around) const {
+    const SideStrip strip = strip_of(box, side, search_m);
+    Box2 part = strip.box();
+    part.low = part.low.cwiseMax(around.low);
+    part.high = part.high.cwiseMin(around.high);
+    std::vector<SideMark> marks;
+    for (const std::uint32_t i : grid_.samples_in(part)) {
+      const WallSample& sample = evidence_.samples[i];
+      const Vector2d p(sample.u, sample.v);
+      if (sample.kind != SampleKind::cover && strip.contains(p))
+        marks.push_back({strip.across(p), sample.kind == SampleKind::wall});
+    }
+    add_silent(strip, marks);
+    SideSeparator found = separate(std::move(marks), strip.from, strip.to);
     if (found.found && found.sigma_m >= kUnboundedSigma_m)
-      found.place = behind_occluder(found.place, side, {low, high});
+      found.place = behind_occluder(found.place, side, {strip.low, strip.high});
     return found;
   }
 
   /// Silent cells are open: a mark for each, as coarse as the cells.
-  void add_silent(const Box2& box, Side side, const Vector2d& across, const Vector2d& along,
-                  std::vector<SideMark>& marks) const {
-    const Eigen::Index axis = axis_of(side);
-    const double sign = outward(side);
-    const double reach_m = across.y() - across.x();
-    const int c0 = grid_.column(box.low.x() - reach_m);
-    const int c1 = grid_.column(box.high.x() + reach_m);
-    const int r1 = grid_.row(box.high.y() + reach_m);
-    for (int r = grid_.row(box.low.y() - reach_m); r <= r1; ++r) {
+  void add_silent(const SideStrip& strip, std::vector<SideMark>& marks) const {
+    const Box2 box = strip.box();
+    const int c0 = std::max(0, grid_.column(box.low.x()));
+    const int c1 = std::min(grid_.columns() - 1, grid_.column(box.high.x()));
+    const int r1 = std::min(grid_.rows() - 1, grid_.row(box.high.y()));
+    for (int r = std::max(0, grid_.row(box.low.y())); r <= r1; ++r) {
       for (int c = c0; c <= c1; ++c) {
         if (grid_.at(c, r) != OpeningGrid::Cell::silent) continue;
         const Vector2d p = grid_.middle(c, r);
-        const double t = sign * p[axis];
-        if (p[1 - axis] < along.x() || p[1 - axis] > along.y() || t < across.x() || t > across.y()) continue;
-        marks.push_back({t, false});
+        if (strip.contains(p)) marks.push_back({strip.across(p), false});
       }
     }
   }

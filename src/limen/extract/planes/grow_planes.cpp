@@ -6,10 +6,12 @@
 #include <array>
 #include <cmath>
 #include <numeric>
+#include <optional>
 
 #include "limen/base/angles.h"
 #include "limen/base/error.h"
 #include "limen/base/parallel.h"
+#include "limen/base/run_both.h"
 #include "limen/extract/cells/cell_grid.h"
 #include "limen/extract/cells/point_normals.h"
 #include "limen/extract/planes/grow_regions.h"
@@ -81,10 +83,11 @@ class PlaneGrower {
   }
 
   GrownPlanes run(Monitor& monitor) {
-    grow(monitor);
+    // Regions grow one after the other: meanwhile it is seen how the surface faces at each point.
+    std::optional<PointNormals> normals;
+    run_both([&] { grow(monitor); }, [&] { normals.emplace(sorted_, kGateShare * threshold_m_); });
     monitor.throw_if_cancelled();
-    const PointNormals normals(sorted_, kGateShare * threshold_m_);
-    const SettleScene scene{sorted_, normals, settle_grid_};
+    const SettleScene scene{sorted_, *normals, settle_grid_};
     merge();
     const SettleOptions settling{.threshold_m = threshold_m_};
     for (int k = 0; k < kSettlings; ++k) {

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <iterator>
 #include <limits>
+#include <optional>
+#include <utility>
 
 #include "limen/base/error.h"
 #include "limen/base/parallel.h"
@@ -43,13 +45,18 @@ Extent box_of(const PlaneFrame& frame, const std::vector<Polygon>& outline) {
 
 std::vector<OutlineTarget> make_targets(const std::vector<PlanarPolygon>& polygons,
                                         const std::vector<int>& walls, const InteriorPointOptions& options) {
+  std::vector<std::optional<OutlineRaster>> outlines(walls.size());
+  parallel_for(walls.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k)
+      outlines[k].emplace(wall_outline(polygons, walls[k], options.outline));
+  });
   std::vector<OutlineTarget> targets;
-  for (const int wall : walls) {
-    const PlanarPolygon& polygon = polygons.at(static_cast<std::size_t>(wall));
-    OutlineRaster outline(wall_outline(polygons, wall, options.outline));
-    if (outline.box().empty()) continue;
-    const Extent box = box_of(polygon.frame, outline.polygons());
-    targets.push_back({wall, polygon.plane, polygon.frame, polygon.oriented, std::move(outline), box});
+  for (std::size_t k = 0; k < walls.size(); ++k) {
+    if (outlines[k]->box().empty()) continue;
+    const PlanarPolygon& polygon = polygons.at(static_cast<std::size_t>(walls[k]));
+    const Extent box = box_of(polygon.frame, outlines[k]->polygons());
+    targets.push_back(
+        {walls[k], polygon.plane, polygon.frame, polygon.oriented, std::move(*outlines[k]), box});
   }
   return targets;
 }

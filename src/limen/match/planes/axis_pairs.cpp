@@ -47,6 +47,7 @@ double ShiftSupport::at(const Vector2d& in_plane, double enough) const {
   for (std::size_t i = 0; i < pairs_.size(); ++i) {
     if (sum + rest <= enough) return std::max(0.0, sum + rest);
     rest -= pairs_[i].limit_m2 * pairs_[i].weight;
+    if (!pairs_[i].meets(in_plane)) continue;
     const std::size_t end = i + 1 < pairs_.size() ? pairs_[i + 1].first : boxes_.size();
     double overlap = 0.0;
     for (std::size_t k = pairs_[i].first; k < end; ++k)
@@ -56,26 +57,33 @@ double ShiftSupport::at(const Vector2d& in_plane, double enough) const {
   return sum;
 }
 
-double ShiftSupport::most_where(const Vector2d& way, double along_m) const {
+std::vector<double> ShiftSupport::most_where(const Vector2d& way, const std::vector<double>& along_m) const {
   const Vector2d across(-way.y(), way.x());
-  double sum = 0.0;
+  const std::size_t count = along_m.size();
+  std::vector<double> sums(count, 0.0);
+  std::vector<double> overlaps(count);
   for (std::size_t i = 0; i < pairs_.size(); ++i) {
     const std::size_t end = i + 1 < pairs_.size() ? pairs_[i + 1].first : boxes_.size();
-    double overlap = 0.0;
+    std::fill(overlaps.begin(), overlaps.end(), 0.0);
     for (std::size_t k = pairs_[i].first; k < end; ++k) {
       const AxisBox& a = boxes_[k].source;
       const AxisBox& b = boxes_[k].target;
       const BoxReach from = reach_along(a, way);
       const BoxReach to = reach_along(b, way);
-      const double common = std::min(from.high + along_m, to.high) - std::max(from.low + along_m, to.low);
-      if (!(common > 0.0)) continue;
       const BoxReach wide_a = reach_along(a, across);
       const BoxReach wide_b = reach_along(b, across);
-      overlap += common * std::min(wide_a.high - wide_a.low, wide_b.high - wide_b.low) * a.fill * b.fill;
+      const double width = std::min(wide_a.high - wide_a.low, wide_b.high - wide_b.low) * a.fill * b.fill;
+      for (std::size_t n = 0; n < count; ++n) {
+        const double common =
+            std::min(from.high + along_m[n], to.high) - std::max(from.low + along_m[n], to.low);
+        overlaps[n] += std::max(common, 0.0) * width;
+      }
     }
-    sum += std::min(overlap, pairs_[i].limit_m2) * pairs_[i].weight;
+    for (std::size_t n = 0; n < count; ++n)
+      sums[n] += std::min(overlaps[n], pairs_[i].limit_m2) * pairs_[i].weight;
   }
-  return 1.000001 * sum + 1e-9;  // so that rounding does no harm
+  for (double& sum : sums) sum = 1.000001 * sum + 1e-9;  // so that rounding does no harm
+  return sums;
 }
 
 void AxisPairs::index(double tolerance) {

@@ -54,24 +54,40 @@ struct AxisShift {
 class ShiftSupport {
  public:
   void begin_pair(double limit_m2, double weight) {
-    pairs_.push_back({limit_m2, weight, boxes_.size()});
+    pairs_.push_back({.limit_m2 = limit_m2, .weight = weight, .first = boxes_.size()});
     most_m2_ += limit_m2 * weight;
   }
-  void add(const AxisBox& source, const AxisBox& target) { boxes_.push_back({source, target}); }
+  /// A box of either plane of the pair begun last.
+  void add(const AxisBox& source, const AxisBox& target) {
+    constexpr double kSlackM = 1e-9;  // so that rounding does no harm
+    boxes_.push_back({source, target});
+    PairPlace& pair = pairs_.back();
+    pair.meets_from = pair.meets_from.cwiseMin(target.low - source.high - Vector2d::Constant(kSlackM));
+    pair.meets_to = pair.meets_to.cwiseMax(target.high - source.low + Vector2d::Constant(kSlackM));
+  }
 
   /// m^2, at a shift `in_plane` of the source across the axis. Where it is plain that it is no more than
   /// `enough`, something between it and `enough`.
   [[nodiscard]] double at(const Vector2d& in_plane, double enough) const;
   /// No shift gives more, m^2.
   [[nodiscard]] double most() const { return most_m2_; }
-  /// No shift that goes `along_m` along the unit vector `way` of the axis's plane gives more, m^2.
-  [[nodiscard]] double most_where(const Vector2d& way, double along_m) const;
+  /// For each of `along_m`: no shift that goes so far along the unit vector `way` of the axis's plane gives
+  /// more, m^2.
+  [[nodiscard]] std::vector<double> most_where(const Vector2d& way, const std::vector<double>& along_m) const;
 
  private:
   struct PairPlace {
     double limit_m2;
     double weight;
     std::size_t first;  // of its boxes
+    // No boxes of the pair meet at a shift outside these.
+    Vector2d meets_from = Vector2d::Constant(1e300);
+    Vector2d meets_to = Vector2d::Constant(-1e300);
+
+    [[nodiscard]] bool meets(const Vector2d& shift) const {
+      return shift.x() > meets_from.x() && shift.x() < meets_to.x() && shift.y() > meets_from.y() &&
+             shift.y() < meets_to.y();
+    }
   };
   struct BoxPair {
     AxisBox source;

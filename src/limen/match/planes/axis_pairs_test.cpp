@@ -77,7 +77,7 @@ TEST(AxisPairs, NothingGivesMoreThanTheBoundWhereOneWayAcrossIsKnown) {
     const Vector2d way(std::cos(angle), std::sin(angle));
     const Vector2d across(-way.y(), way.x());
     const double along_m = random.uniform(-4.0, 4.0);
-    const double bound = there.most_where(way, along_m);
+    const double bound = there.most_where(way, {along_m}).front();
     for (const double across_m : {-2.0, -0.5, 0.0, 0.7, 3.0})
       EXPECT_GE(bound, there.at(along_m * way + across_m * across, -1.0));
     tighter += bound < 0.9 * there.most() ? 1 : 0;

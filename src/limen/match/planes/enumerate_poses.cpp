@@ -16,6 +16,7 @@
 #include "limen/match/planes/axis_pairs.h"
 #include "limen/match/planes/enumerate_rotations.h"
 #include "limen/match/planes/least_precedence.h"
+#include "limen/match/planes/shift_triples.h"
 
 namespace limen {
 namespace {
@@ -232,158 +233,127 @@ class PoseEnumerator {
     return poses_of_triples(rotation, axes, basis, open, of_all);
   }
 
-  /// The most that a shift along one axis of the basis brings together where the shift along a second is
-  /// known as well: it moves the planes of the first across. Reckoned where it is asked for.
-  struct TwoShifts {
-    Vector2d way = Vector2d::UnitX();  ///< across the first axis, where the second points
-    double per_own = 0.0;              ///< the way gone, by metres along the first ...
-    double per_other = 0.0;            ///< ... and the second
-    std::size_t others = 0;
-    std::vector<double> most_m2;  ///< by own shift and other shift; less than 0: not reckoned yet
+  /// What the axes outside the basis, of `axes`, can bring together.
+  struct OtherAxes {
+    std::vector<const AxisPairs*> list;
+    double most_m2 = 0.0;
   };
 
-  static TwoShifts two_shifts(const AxisPairs& own, const AxisPairs& other) {
-    TwoShifts two;
-    const Vector3d& along = own.axis.direction;
-    const double common = other.axis.direction.dot(along);
-    const Vector3d across = other.axis.direction - common * along;
-    const double length = across.norm();
-    two.way = {own.axis.frame.u.dot(across) / length, own.axis.frame.v.dot(across) / length};
-    two.per_own = -common / length;
-    two.per_other = 1.0 / length;
-    two.others = other.shifts.size();
-    two.most_m2.assign(own.shifts.size() * other.shifts.size(), -1.0);
-    return two;
-  }
-
-  /// The three axes whose shifts make a pose, with what each of their shifts brings together.
-  struct Basis {
-    std::array<std::size_t, 3> axis{};
-    std::array<std::vector<ShiftSupport>, 3> supports;
-    Matrix3d solve = Matrix3d::Identity();        ///< shift from the three values along the axes
-    std::vector<std::size_t> others;              ///< all other axes
-    double others_m2 = 0.0;                       ///< the most that they can add
-    std::array<std::array<TwoShifts, 3>, 3> two;  ///< of the one axis, where another's shift is known too
-  };
-
-  /// The most that the k-th axis of the basis brings together at one triple of shifts.
-  [[nodiscard]] static double most_of(const std::vector<AxisPairs>& axes, Basis& basis, std::size_t k,
-                                      const std::array<std::size_t, 3>& at) {
-    const ShiftSupport& support = basis.supports[k][at[k]];
-    double most = support.most();
-    if (most == 0.0) return 0.0;
-    for (std::size_t m = 0; m < 3; ++m) {
-      if (m == k) continue;
-      TwoShifts& two = basis.two[k][m];
-      double& known = two.most_m2[at[k] * two.others + at[m]];
-      if (known < 0.0)
-        known = support.most_where(two.way, two.per_own * axes[basis.axis[k]].shifts[at[k]].value +
-                                                two.per_other * axes[basis.axis[m]].shifts[at[m]].value);
-      most = std::min(most, known);
+  static OtherAxes others_of(const std::vector<AxisPairs>& axes, const std::vector<std::size_t>& basis) {
+    OtherAxes others;
+    for (std::size_t k = 0; k < axes.size(); ++k) {
+      const bool in_basis = std::find(basis.begin(), basis.end(), k) != basis.end();
+      if (in_basis || axes[k].pairs.empty()) continue;
+      others.list.push_back(&axes[k]);
+      others.most_m2 += axes[k].shifts.front().limit_m2;
     }
-    return most;
+    return others;
   }
 
-  [[nodiscard]] Basis prepared(const std::vector<AxisPairs>& axes, const std::vector<std::size_t>& of) const {
+  /// The three axes whose shifts make a pose.
+  struct Basis {
+    std::array<const AxisPairs*, 3> axis{};
+    Matrix3d solve = Matrix3d::Identity();  ///< shift from the three values along the axes
+    OtherAxes others;
+
+    [[nodiscard]] Vector3d translation(const ShiftPlaces& at) const {
+      return solve * Vector3d(axis[0]->shifts[at[0]].value, axis[1]->shifts[at[1]].value,
+                              axis[2]->shifts[at[2]].value);
+    }
+  };
+
+  static Basis make_basis(const std::vector<AxisPairs>& axes, const std::vector<std::size_t>& of) {
     Basis basis;
     Matrix3d normals;
     for (std::size_t k = 0; k < 3; ++k) {
-      basis.axis[k] = of[k];
+      basis.axis[k] = &axes[of[k]];
       normals.row(static_cast<Eigen::Index>(k)) = axes[of[k]].axis.direction.transpose();
-      for (const AxisShift& shift : axes[of[k]].shifts)
-        basis.supports[k].push_back(axes[of[k]].support_at(shift.value, options_.offset_tolerance_m));
     }
     basis.solve = normals.inverse();
-    for (std::size_t k = 0; k < 3; ++k) {
-      for (std::size_t m = 0; m < 3; ++m) {
-        if (m != k) basis.two[k][m] = two_shifts(axes[of[k]], axes[of[m]]);
-      }
-    }
-    for (std::size_t k = 0; k < axes.size(); ++k) {
-      const bool in_basis = std::find(of.begin(), of.end(), k) != of.end();
-      if (in_basis || axes[k].pairs.empty()) continue;
-      basis.others.push_back(k);
-      basis.others_m2 += axes[k].shifts.front().limit_m2;
-    }
+    basis.others = others_of(axes, of);
     return basis;
   }
 
-  /// The surface that comes together at a shift; 0 once it is plain that it is no more than `least`.
-  [[nodiscard]] double precedence_of(const Vector3d& translation, const std::vector<AxisPairs>& axes,
-                                     Basis& basis, const std::array<std::size_t, 3>& at, double least) const {
-    double bound = basis.others_m2;
-    std::array<double, 3> most{};
-    for (std::size_t k = 0; k < 3; ++k) bound += basis.supports[k][at[k]].most();
-    if (bound <= least) return 0.0;
-    for (std::size_t k = 0; k < 3; ++k) {
-      most[k] = most_of(axes, basis, k, at);
-      bound += most[k] - basis.supports[k][at[k]].most();
-      if (bound <= least) return 0.0;
-    }
-    bound -= basis.others_m2;
-    for (const std::size_t k : basis.others)
-      bound += axes[k].most_near(axes[k].axis.direction.dot(translation));
+  /// The surface that comes together at a triple of shifts; 0 once it is plain that it is no more than
+  /// `least`.
+  [[nodiscard]] double precedence_of(const Basis& basis, const ShiftTriples& triples,
+                                     const ShiftTriples::Triple& triple, double least) const {
+    const Vector3d translation = basis.translation(triple.at);
+    double bound = triple.most_m2 - basis.others.most_m2;
+    for (const AxisPairs* axis : basis.others.list)
+      bound += axis->most_near(axis->axis.direction.dot(translation));
     if (bound <= least) return 0.0;
     double sum = 0.0;
     for (std::size_t k = 0; k < 3; ++k) {
-      const AxisPairs& along = axes[basis.axis[k]];
-      const double here = basis.supports[k][at[k]].at(
-          {along.axis.frame.u.dot(translation), along.axis.frame.v.dot(translation)},
-          least - (bound - most[k]));
+      const PlaneFrame& frame = basis.axis[k]->axis.frame;
+      const double most = triples.most_of(k, triple.at);
+      const double here =
+          triples.support(k, triple.at[k])
+              .at({frame.u.dot(translation), frame.v.dot(translation)}, least - (bound - most));
       sum += here;
-      bound += here - most[k];
+      bound += here - most;
       if (bound <= least) return 0.0;
     }
-    for (const std::size_t k : basis.others) {
-      const double here = axes[k].support(translation, options_.offset_tolerance_m);
+    for (const AxisPairs* axis : basis.others.list) {
+      const double here = axis->support(translation, options_.offset_tolerance_m);
       sum += here;
-      bound += here - axes[k].most_near(axes[k].axis.direction.dot(translation));
+      bound += here - axis->most_near(axis->axis.direction.dot(translation));
       if (bound <= least) return 0.0;
     }
     return sum;
+  }
+
+  /// A triple of shifts, and what comes together there.
+  struct RatedShifts {
+    double precedence = 0.0;
+    ShiftPlaces at{};
+
+    /// A strict order: which of them are the best does not depend on the order in which they are found.
+    bool operator<(const RatedShifts& other) const {
+      return precedence != other.precedence ? precedence > other.precedence : at < other.at;
+    }
+  };
+
+  /// The best `most` triples, best first. Those that can bring most together are asked first, so that soon
+  /// most of the others cannot be among the best.
+  [[nodiscard]] std::vector<RatedShifts> best_triples(const Basis& basis, const ShiftTriples& triples,
+                                                      std::size_t most, const LeastPrecedence& of_all) const {
+    double least = of_all.value();
+    std::vector<RatedShifts> best;
+    for (const ShiftTriples::Triple& triple : triples.best_first()) {
+      if (triple.most_m2 <= least) continue;
+      const double precedence = precedence_of(basis, triples, triple, least);
+      if (precedence <= least) continue;
+      best.push_back({precedence, triple.at});
+      if (best.size() <= most + most / 4) continue;
+      const auto last = best.begin() + static_cast<std::ptrdiff_t>(most - 1);
+      std::nth_element(best.begin(), last, best.end());
+      // A little less: those that are equal to it may still be among the best.
+      least = std::max(last->precedence * (1.0 - 1e-9), of_all.value());
+      best.resize(most);
+    }
+    std::sort(best.begin(), best.end());
+    if (best.size() > most) best.resize(most);
+    return best;
   }
 
   [[nodiscard]] std::vector<PoseCandidate> poses_of_triples(const Matrix3d& rotation,
                                                             const std::vector<AxisPairs>& axes,
                                                             const std::vector<std::size_t>& basis_axes,
                                                             int open, const LeastPrecedence& of_all) const {
-    Basis basis = prepared(axes, basis_axes);
-    // Shifts come heaviest first, so that a loop ends where even the limits cannot reach the best so far.
-    const double others = basis.others_m2;
-    const std::vector<AxisShift>& first = axes[basis.axis[0]].shifts;
-    const std::vector<AxisShift>& second = axes[basis.axis[1]].shifts;
-    const std::vector<AxisShift>& third = axes[basis.axis[2]].shifts;
+    const Basis basis = make_basis(axes, basis_axes);
+    const ShiftTriples triples(axes, {basis_axes[0], basis_axes[1], basis_axes[2]}, basis.others.most_m2,
+                               options_.offset_tolerance_m, of_all.value());
     const std::size_t most =
         std::min<std::size_t>(kMostOfRotation, 2 * static_cast<std::size_t>(options_.max_poses));
-    double least = of_all.value();
     std::vector<PoseCandidate> poses;
-    for (std::size_t i = 0; i < first.size(); ++i) {
-      const AxisShift& a = first[i];
-      if (a.limit_m2 + second.front().limit_m2 + third.front().limit_m2 + others <= least) break;
-      for (std::size_t j = 0; j < second.size(); ++j) {
-        const AxisShift& b = second[j];
-        if (a.limit_m2 + b.limit_m2 + third.front().limit_m2 + others <= least) break;
-        for (std::size_t k = 0; k < third.size(); ++k) {
-          const AxisShift& c = third[k];
-          if (a.limit_m2 + b.limit_m2 + c.limit_m2 + others <= least) break;
-          PoseCandidate pose;
-          pose.target_from_source = {rotation, basis.solve * Vector3d(a.value, b.value, c.value)};
-          pose.precedence = precedence_of(pose.target_from_source.translation, axes, basis, {i, j, k}, least);
-          pose.free_translations = open;
-          if (pose.precedence > least) poses.push_back(pose);
-        }
-      }
-      if (poses.size() > most + most / 4) {
-        keep_best(poses, most);
-        least = std::max(poses.back().precedence, of_all.value());
-      }
-    }
+    for (const RatedShifts& rated : best_triples(basis, triples, most, of_all))
+      poses.push_back({{rotation, basis.translation(rated.at)}, rated.precedence, open});
     return distinct(poses);
   }
 
-  /// The best poses of one rotation, no two nearer than kSameShiftM.
-  [[nodiscard]] std::vector<PoseCandidate> distinct(std::vector<PoseCandidate>& poses) const {
-    keep_best(poses, kMostOfRotation);
+  /// Of poses of one rotation, best first, those of which no two are nearer than kSameShiftM.
+  [[nodiscard]] std::vector<PoseCandidate> distinct(const std::vector<PoseCandidate>& poses) const {
     std::vector<PoseCandidate> kept;
     std::unordered_map<std::int64_t, std::vector<Vector3d>> known;  // by cubes as wide as poses are apart
     for (const PoseCandidate& pose : poses) {

@@ -3,8 +3,11 @@
 #include "limen/register/prepare/prepare_scan.h"
 
 #include <algorithm>
+#include <memory>
 #include <utility>
+#include <vector>
 
+#include "limen/base/run_both.h"
 #include "limen/base/stage_part.h"
 #include "limen/match/planes/polygon_distance.h"
 #include "limen/register/prepare/laid_scan.h"
@@ -28,23 +31,34 @@ DetailOptions details_for(double noise_m) {
   return options;
 }
 
-/// The view of space, the openings, and the segments of a scan in its frame.
+/// What rays of the scan passed and met.
+std::shared_ptr<const SpaceView> space_of(const Scan& laid, const ExtractedFeatures& extracted) {
+  if (laid.centres.size() == 1)
+    return std::make_shared<Panorama>(laid, extracted.labels, extracted.features, laid.centre(0));
+  return std::make_shared<VoxelMap>(laid, extracted.features);
+}
+
+/// The view of space, the openings, and the segments of a scan in its frame. Neither of the first two needs
+/// the other: what one does alone is done beside the other.
 void look_around(const Scan& laid, const PrepareOptions& options, PreparedScan& prepared, Monitor& monitor) {
   Features& features = prepared.extracted.features;
   if (laid.centres.size() == 1) prepared.stations = laid.centres;
-  if (options.planes_only) {
-    // No look at space.
-  } else if (laid.centres.size() == 1) {
-    prepared.space = std::make_unique<Panorama>(laid, prepared.extracted.labels, features, laid.centre(0));
-  } else {
-    prepared.space = std::make_unique<VoxelMap>(laid, features);
+  if (!options.planes_only) {
+    std::vector<Opening> openings;
+    run_both(
+        [&] {
+          if (prepared.upright && laid.centre_known())
+            openings = find_openings(laid, prepared.extracted, Vector3d::UnitZ(), options.openings, monitor);
+        },
+        [&] {
+          prepared.space = space_of(laid, prepared.extracted);
+          if (!laid.mobile())
+            prepared.details = find_surface_details(laid, prepared.extracted.labels, features.planes,
+                                                    details_for(features.noise_m));
+        });
+    features.openings = std::move(openings);
   }
   monitor.advance(kSpaceKnown, 1.0);
-  if (!options.planes_only && prepared.upright && laid.centre_known())
-    features.openings = find_openings(laid, prepared.extracted, Vector3d::UnitZ(), options.openings, monitor);
-  if (!options.planes_only && !laid.mobile())
-    prepared.details =
-        find_surface_details(laid, prepared.extracted.labels, features.planes, details_for(features.noise_m));
   if (options.segments) features.segments = find_segments(laid, prepared.extracted, options.edges, monitor);
   prepared.settle_reach();
 }
