@@ -74,15 +74,6 @@ class CurveLabels {
     join(std::move(pieces));
   }
 
-  /// Planes whose points lie in one plane become one.
-  void join() {
-    const PlaneLabels planes = by_scan(kLeastPart);
-    std::vector<PlanePiece> pieces;
-    for (std::vector<std::uint32_t>& points : points_of(planes.labels, planes.fits.size()))
-      pieces.push_back(piece_of(scan_, std::move(points), anchor_));
-    join(std::move(pieces));
-  }
-
   void choose() {
     CoherentOptions options;
     options.threshold_m = threshold_m_;
@@ -198,8 +189,6 @@ PlaneLabels fine_station_planes(const Scan& scan, const MortonOrder& order, cons
   labels.split();
   labels.choose();
   labels.dissolve();
-  labels.choose();
-  labels.join();
   labels.choose();
   return labels.by_scan(options.min_inliers);
 }

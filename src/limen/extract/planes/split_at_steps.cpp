@@ -287,7 +287,7 @@ class StepParts {
   void join_apart() {
     std::vector<std::size_t> roots;
     for (std::size_t c = 0; c < cells_.size(); ++c) {
-      if (root_of(c) == c && cells_[c].n >= o_.least_points) roots.push_back(c);
+      if (root_of(c) == c) roots.push_back(c);
     }
     std::stable_sort(roots.begin(), roots.end(),
                      [&](std::size_t a, std::size_t b) { return cells_[a].n > cells_[b].n; });
@@ -302,10 +302,10 @@ class StepParts {
         best = both;
         with = k;
       }
-      if (with == c) {
-        kept.push_back(c);
-      } else {
+      if (with != c) {
         join(with, c, best);
+      } else if (cells_[c].n >= o_.least_points) {
+        kept.push_back(c);
       }
     }
   }

@@ -14,7 +14,7 @@ struct StepOptions {
   double drift_m = 0.001;  ///< by which parts of one surface may stray beside the noise
   double step_m = 0.0015;  ///< mean step where two parts touch, up to which they are one bulging surface
   double points_of_cell = 16.0;  ///< about so many points of a cell of the plane
-  double least_points = 30.0;    ///< smaller parts are left out
+  double least_points = 30.0;    ///< smaller parts that join no other are left out
   double finest_m = 0.012;       ///< edge of the smallest cell
   double coarsest_m = 0.5;       ///< and of the largest
 
@@ -29,7 +29,8 @@ struct StepOptions {
 ///    squares of their residuals than noise (three freedoms, chi squared; the noise is that within the cells)
 ///    and drift explain.
 /// 2. Large parts that touch and show no step where they do are one surface that bulges.
-/// 3. Parts that do not touch are held to the first rule; one that bulges may stray by as much.
+/// 3. Parts that do not touch - far from the scanner each point is one - are held to the first rule; one that
+///    bulges may stray by as much.
 /// Indices of the scan's points, in their order. A point of no part is in none.
 std::vector<std::vector<std::uint32_t>> split_at_steps(const Scan& scan, const PlaneFit& fit,
                                                        const std::vector<std::uint32_t>& points,
