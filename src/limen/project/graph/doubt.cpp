@@ -20,6 +20,7 @@ constexpr double kOpenLoopNats = 3.0;  // ... or one of several, which repeat wh
 constexpr double kEnoughNats = 30.0;
 constexpr double kHardlyFresh = 0.05;   // share of what a link shows that no other has shown
 constexpr double kMostBelieved = 0.45;  // of each kind of twin, beforehand
+constexpr double kLeastAlike = 0.002;   // of those furnished alike, where there are twins (twin_odds.h)
 constexpr double kMostHeardNats = 5.0;  // of pairs that hold nothing, against chance: one wrong pose in 200
 constexpr double kUnits = 1000.0;       // of the flow, per nat
 
@@ -114,6 +115,12 @@ class DoubtSearch {
       if (pair.evidence) all.push_back({pair.source, pair.target, *pair.evidence});
     }
     return all;
+  }
+
+  /// Whether some pair shows two places that are built alike.
+  [[nodiscard]] bool has_twins() const {
+    return std::any_of(graph_.against.begin(), graph_.against.end(),
+                       [](const GraphLink& pair) { return pair.evidence.has_value(); });
   }
 
   [[nodiscard]] bool is_asked(int k) const { return link(k).evidence || link(k).twin > 0.0; }
@@ -294,7 +301,9 @@ class DoubtSearch {
       const double prior = voice.said.*kind.prior;
       cut.prior = cut.prior > 0.0 ? std::min(cut.prior, prior) : prior;
     }
-    cut.prior = std::min(kMostBelieved, cut.prior * (rate_->factors(side).*kind.factor));
+    // Rooms of another design teach nothing of how this one is furnished in its twins.
+    const double least = kind.nats == kAlike.nats && has_twins() ? std::min(cut.prior, kLeastAlike) : 0.0;
+    cut.prior = std::clamp(cut.prior * (rate_->factors(side).*kind.factor), least, kMostBelieved);
     std::sort(cut.links.begin(), cut.links.end());
     return cut;
   }
@@ -353,6 +362,13 @@ class DoubtSearch {
     return std::min(against, kMostHeardNats) + speaks_for;
   }
 
+  /// What passes say of a node alone.
+  [[nodiscard]] double heard_beyond(const std::vector<bool>& side) const {
+    if (accepted_.beyond_nats.empty() || std::count(side.begin(), side.end(), true) != 1) return 0.0;
+    return accepted_
+        .beyond_nats[static_cast<std::size_t>(std::find(side.begin(), side.end(), true) - side.begin())];
+  }
+
   void tell_chance(const std::vector<bool>& side, NodeDoubt& doubt) const {
     std::vector<int> crossing = crossing_links(side);
     std::stable_sort(crossing.begin(), crossing.end(), [&](int a, int b) { return nats(a) > nats(b); });
@@ -363,7 +379,7 @@ class DoubtSearch {
       all += nats(k) + loop_nats(k);
       most = std::max(most, loop_nats(k));
     }
-    all += heard_against_chance(side, chosen) - most;
+    all += heard_against_chance(side, chosen) + heard_beyond(side) - most;
     doubt.chance = std::exp(-std::max(0.0, all));
     if (doubt.chance > doubt.twin) doubt.links = chosen;
   }

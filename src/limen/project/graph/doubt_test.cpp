@@ -110,8 +110,14 @@ TEST(Doubt, WhatWallsSayIsAskedOfTheLinkThatShowsMost) {
 /// otherwise, faces tell nothing. However many such pairs there are, the last is not held more surely for
 /// them; those that faces tell are taken for a sign that twins are not furnished alike here.
 TEST(Doubt, HowSeldomTwinsAreFurnishedAlikeIsLearnedFromWhatSpeaksOfThem) {
-  const auto doubt_beside = [](int pairs, double alike_nats) {
+  const auto doubt_beside = [](int pairs, double alike_nats, bool twins = false) {
     Row row(pairs + 2);
+    if (twins) {
+      row.link(2, 0, 0.9, 0.0);
+      row.graph.links.back().evidence = twin_evidence_of(0.9);
+      row.graph.against.push_back(row.graph.links.back());
+      row.graph.links.clear();
+    }
     for (int k = 0; k <= pairs; ++k) {
       const bool last = k == pairs;
       TwinEvidence said;
@@ -126,8 +132,10 @@ TEST(Doubt, HowSeldomTwinsAreFurnishedAlikeIsLearnedFromWhatSpeaksOfThem) {
   };
   const double alone = doubt_beside(0, 0.0);
   EXPECT_NEAR(alone, 0.0045 / 0.85, 2e-4);
-  EXPECT_GT(doubt_beside(10, 0.0), 0.95 * alone);
+  EXPECT_GT(doubt_beside(10, 0.0), 0.85 * alone);
   EXPECT_LT(doubt_beside(10, 9.0), 0.2 * alone);
+  // Where places are built alike other rooms alone do not settle it.
+  EXPECT_GT(doubt_beside(10, 9.0, true), 0.0019);
 }
 
 /// Station 1 is held to the frame's two stations, by one link that speaks against a twin and one that speaks
@@ -149,7 +157,7 @@ TEST(Doubt, WhatHangsOnADoubtfulScanIsAsDoubtful) {
   const AcceptedPoses accepted{row.truth, {0, 0, 0, 0}, {0, 0, 0, 0}};
   const std::vector<NodeDoubt> doubts = doubts_of(row.graph, accepted, {0, 0, 0, 0});
   EXPECT_GT(doubts[1].twin, 1e-3);
-  EXPECT_NEAR(doubts[3].twin, doubts[1].twin, 1e-6);
+  EXPECT_NEAR(doubts[3].twin, doubts[1].twin, 1e-5);
   EXPECT_EQ(doubts[3].links, doubts[1].links);
 }
 

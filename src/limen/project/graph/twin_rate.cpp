@@ -14,8 +14,8 @@ namespace {
 
 constexpr double kLeastFactor = 1.0 / 15.0;
 constexpr double kMostNats = 50.0;
-constexpr int kTwinShares = 120;
-constexpr int kAlikeShares = 16;  // of those
+constexpr int kOtherwiseShares = 120;
+constexpr int kAlikeShares = 16;  // of the rest
 
 double likelihood(double nats_against) {
   return std::exp(-std::clamp(nats_against, -kMostNats, kMostNats));
@@ -75,19 +75,20 @@ std::vector<std::size_t> most_telling(int nodes, const std::vector<TwinWitness>&
 }  // namespace
 
 double TwinRate::Lesson::log_likelihood(const Shares& shares) const {
-  return std::log(1.0 - shares.otherwise * (1.0 - otherwise) - shares.alike * (1.0 - alike));
+  const double rest = 1.0 - shares.otherwise;
+  return std::log(shares.otherwise * otherwise + rest * (1.0 - shares.alike_of_rest * (1.0 - alike)));
 }
 
 TwinRate::TwinRate(int nodes, const std::vector<TwinWitness>& witnesses) {
-  // Of a Dirichlet distribution the share of twins and that of those furnished alike among them are
-  // independent, each a beta distribution.
+  // Of a Dirichlet distribution the share of one kind and that of another in the rest are independent, each
+  // a beta distribution.
   const TwinEvidence alone;
-  const double twins = alone.otherwise + alone.alike;
-  const std::vector<BetaCell> alike_cells = beta_cells(kAlikeShares, alone.alike, alone.otherwise);
-  for (const BetaCell& twin : beta_cells(kTwinShares, twins, 1.0 - twins)) {
+  const double one_room = 1.0 - alone.otherwise - alone.alike;
+  const std::vector<BetaCell> alike_cells = beta_cells(kAlikeShares, alone.alike, one_room);
+  for (const BetaCell& otherwise : beta_cells(kOtherwiseShares, alone.otherwise, 1.0 - alone.otherwise)) {
     for (const BetaCell& alike : alike_cells)
-      shares_.push_back({twin.mean * (1.0 - alike.mean), twin.mean * alike.mean,
-                         std::log(twin.believed) + std::log(alike.believed)});
+      shares_.push_back(
+          {otherwise.mean, alike.mean, std::log(otherwise.believed) + std::log(alike.believed)});
   }
   mean_before_ = mean(shares_);
   for (const std::size_t k : most_telling(nodes, witnesses)) {
@@ -107,9 +108,9 @@ TwinRate::Shares TwinRate::mean(const std::vector<Shares>& all) {
     const double believed = std::exp(shares.log_believed - most);
     weight += believed;
     sum.otherwise += believed * shares.otherwise;
-    sum.alike += believed * shares.alike;
+    sum.alike_of_rest += believed * shares.alike_of_rest;
   }
-  return {sum.otherwise / weight, sum.alike / weight, 0.0};
+  return {sum.otherwise / weight, sum.alike_of_rest / weight, 0.0};
 }
 
 TwinFactors TwinRate::factors(const std::vector<bool>& side) const {
@@ -121,7 +122,7 @@ TwinFactors TwinRate::factors(const std::vector<bool>& side) const {
   }
   const Shares now = mean(all);
   return {std::max(kLeastFactor, now.otherwise / mean_before_.otherwise),
-          std::max(kLeastFactor, now.alike / mean_before_.alike)};
+          std::max(kLeastFactor, now.alike_of_rest / mean_before_.alike_of_rest)};
 }
 
 }  // namespace limen

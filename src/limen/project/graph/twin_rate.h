@@ -29,9 +29,9 @@ struct TwinFactors {
 ///
 ///   likelihood of a pair  =  1 - r - a + r exp(-o) + a exp(-a').
 ///
-/// What says nothing teaches nothing, and what speaks against twins furnished otherwise alone says nothing of
-/// how seldom they are furnished alike. Of pairs that lie in a loop only the most telling ones count, so that
-/// one room seen from many places is not many.
+/// What says nothing teaches nothing. Twins furnished alike are weighed against one room, by a / (1 - r):
+/// what speaks for or against twins furnished otherwise alone says nothing of these. Of pairs that lie in a
+/// loop only the most telling ones count, so that one room seen from many places is not many.
 class TwinRate {
  public:
   TwinRate(int nodes, const std::vector<TwinWitness>& witnesses);
@@ -44,7 +44,7 @@ class TwinRate {
   /// Shares of both kinds, and how probable they are.
   struct Shares {
     double otherwise = 0.0;
-    double alike = 0.0;
+    double alike_of_rest = 0.0;  ///< of what is no twin furnished otherwise
     double log_believed = 0.0;
   };
   struct Lesson {

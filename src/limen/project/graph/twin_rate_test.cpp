@@ -71,11 +71,12 @@ TwinFactors told_by(std::size_t count, double otherwise_nats, double alike_nats)
 TEST(TwinRate, WhatTellsThingsApartSaysNothingOfTwinsThatAreFurnishedAlike) {
   const TwinFactors things = told_by(10, 9.0, 0.0);
   EXPECT_LT(things.otherwise, 0.1);
-  EXPECT_GT(things.alike, 1.0);
-  EXPECT_LT(things.alike, 2.0);
+  EXPECT_NEAR(things.alike, 1.0, 1e-3);
+  // However many twins furnished otherwise there are.
+  EXPECT_NEAR(told_by(10, -4.0, 0.0).alike, 1.0, 1e-9);
   const TwinFactors faces = told_by(10, 9.0, 9.0);
   EXPECT_NEAR(faces.otherwise, 1.0 / 11.0, 2e-3);
-  EXPECT_NEAR(faces.alike, 1.0 / 11.0, 2e-3);
+  EXPECT_NEAR(faces.alike, 0.85 / 10.85, 0.02);  // their shares are few
 }
 
 TEST(TwinRate, TwinsThatAreFoundTeachOfTheirOwnKind) {
