@@ -4,9 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <map>
 #include <optional>
-#include <utility>
 
 #include "limen/base/progress.h"
 #include "limen/project/graph/flow_network.h"
@@ -21,6 +20,7 @@ constexpr double kOpenLoopNats = 3.0;  // ... or one of several, which repeat wh
 constexpr double kEnoughNats = 30.0;
 constexpr double kHardlyFresh = 0.05;   // share of what a link shows that no other has shown
 constexpr double kMostBelieved = 0.45;  // of each kind of twin, beforehand
+constexpr double kLeastAlike = 0.002;   // of those furnished alike, where there are twins (twin_odds.h)
 constexpr double kMostHeardNats = 5.0;  // of pairs that hold nothing, against chance: one wrong pose in 200
 constexpr double kUnits = 1000.0;       // of the flow, per nat
 
@@ -61,13 +61,26 @@ class DoubtSearch {
         if (root >= 0) search->held[static_cast<std::size_t>(root)] = true;
       }
     }
-    for (const int node : outwards(reference)) {
+    const std::vector<int> order = outwards(reference);
+    const auto is_held = [&](int node) {
+      const int root = reference[static_cast<std::size_t>(node)];
+      return root >= 0 && root != node;
+    };
+    Sides otherwise;
+    Sides alike;
+    for (const int node : order) {
       CancelScope::check();
+      if (!is_held(node)) continue;
+      add_sides(kOtherwise, node, otherwise_, otherwise);
+      if (otherwise_heard_.network) add_sides(kOtherwise, node, otherwise_heard_, otherwise);
+      add_sides(kAlike, node, alike_, alike);
+    }
+    for (const int node : order) {
       const int root = reference[static_cast<std::size_t>(node)];
       NodeDoubt& doubt = doubts[static_cast<std::size_t>(node)];
       if (root == node) doubt.twin = doubt.chance = 0.0;
-      if (root < 0 || root == node) continue;
-      add_twins(node, doubt);
+      if (!is_held(node)) continue;
+      tell_twins(least_said(otherwise, node, root), least_said(alike, node, root), doubt);
       add_chance(node, doubt);
     }
     return doubts;
@@ -104,6 +117,12 @@ class DoubtSearch {
     return all;
   }
 
+  /// Whether some pair shows two places that are built alike.
+  [[nodiscard]] bool has_twins() const {
+    return std::any_of(graph_.against.begin(), graph_.against.end(),
+                       [](const GraphLink& pair) { return pair.evidence.has_value(); });
+  }
+
   [[nodiscard]] bool is_asked(int k) const { return link(k).evidence || link(k).twin > 0.0; }
 
   /// Of a pair whose things were not asked the other places are among its poses: what speaks against them
@@ -119,10 +138,12 @@ class DoubtSearch {
   struct Kind {
     double TwinEvidence::*prior;
     double TwinEvidence::*nats;
+    double TwinFactors::*factor;
   };
 
-  static constexpr Kind kOtherwise{&TwinEvidence::otherwise, &TwinEvidence::otherwise_nats};
-  static constexpr Kind kAlike{&TwinEvidence::alike, &TwinEvidence::alike_nats};
+  static constexpr Kind kOtherwise{&TwinEvidence::otherwise, &TwinEvidence::otherwise_nats,
+                                   &TwinFactors::otherwise};
+  static constexpr Kind kAlike{&TwinEvidence::alike, &TwinEvidence::alike_nats, &TwinFactors::alike};
 
   /// Smallest cuts by one measure of what the links say. `held`: nodes between which and their reference
   /// enough is said across every cut, the references among them: no smaller cut parts them, so that a cut
@@ -181,15 +202,6 @@ class DoubtSearch {
     return order;
   }
 
-  void add_twins(int node, NodeDoubt& doubt) {
-    Cut otherwise = twin_cut(kOtherwise, node, otherwise_);
-    if (otherwise_heard_.network) {
-      Cut heard = twin_cut(kOtherwise, node, otherwise_heard_);
-      if (heard.weight() > otherwise.weight()) otherwise = std::move(heard);
-    }
-    tell_twins(otherwise, twin_cut(kAlike, node, alike_), doubt);
-  }
-
   struct Cut;
   static void tell_twins(const Cut& otherwise, const Cut& alike, NodeDoubt& doubt) {
     const double twin = otherwise.weight() + alike.weight();
@@ -222,15 +234,30 @@ class DoubtSearch {
     return side;
   }
 
-  /// The cut across which least is said against a twin.
-  [[nodiscard]] Cut twin_cut(const Kind& kind, int node, CutSearch& search) const {
+  /// Sides that may lie on a twin, and what is said across their cuts.
+  using Sides = std::map<std::vector<bool>, Cut>;
+
+  /// The node alone, and its side of the smallest cut between it and the reference.
+  void add_sides(const Kind& kind, int node, CutSearch& search, Sides& sides) const {
+    const auto add = [&](const std::vector<bool>& side) {
+      if (sides.count(side) == 0) sides.emplace(side, across(kind, side));
+    };
     std::vector<bool> alone(static_cast<std::size_t>(graph_.nodes), false);
     alone[static_cast<std::size_t>(node)] = true;
-    Cut least = across(kind, alone);
-    const std::optional<std::vector<bool>> side = smallest_cut(search, node);
-    if (!side) return least;
-    Cut found = across(kind, *side);
-    return found.weight() >= least.weight() ? found : least;
+    add(alone);
+    if (const std::optional<std::vector<bool>> side = smallest_cut(search, node)) add(*side);
+  }
+
+  /// Of all sides that hold the node and not the reference the one that is a twin most probably: where it is,
+  /// the node stands wrongly, whichever node it was that the side was found for. (A network knows of what is
+  /// said against a cut, not of what is said for it, so that a node's own smallest cut need not be that.)
+  [[nodiscard]] static const Cut& least_said(const Sides& sides, int node, int reference) {
+    const Cut* least = nullptr;
+    for (const auto& [side, cut] : sides) {
+      if (!side[static_cast<std::size_t>(node)] || side[static_cast<std::size_t>(reference)]) continue;
+      if (least == nullptr || cut.weight() > least->weight()) least = &cut;
+    }
+    return *least;  // the node alone is one
   }
 
   /// What is said across a cut for and against a twin, by those first that say most.
@@ -274,7 +301,9 @@ class DoubtSearch {
       const double prior = voice.said.*kind.prior;
       cut.prior = cut.prior > 0.0 ? std::min(cut.prior, prior) : prior;
     }
-    cut.prior = std::min(kMostBelieved, cut.prior * rate_->factor(side));
+    // Rooms of another design teach nothing of how this one is furnished in its twins.
+    const double least = kind.nats == kAlike.nats && has_twins() ? std::min(cut.prior, kLeastAlike) : 0.0;
+    cut.prior = std::clamp(cut.prior * (rate_->factors(side).*kind.factor), least, kMostBelieved);
     std::sort(cut.links.begin(), cut.links.end());
     return cut;
   }
@@ -333,6 +362,13 @@ class DoubtSearch {
     return std::min(against, kMostHeardNats) + speaks_for;
   }
 
+  /// What passes say of a node alone.
+  [[nodiscard]] double heard_beyond(const std::vector<bool>& side) const {
+    if (accepted_.beyond_nats.empty() || std::count(side.begin(), side.end(), true) != 1) return 0.0;
+    return accepted_
+        .beyond_nats[static_cast<std::size_t>(std::find(side.begin(), side.end(), true) - side.begin())];
+  }
+
   void tell_chance(const std::vector<bool>& side, NodeDoubt& doubt) const {
     std::vector<int> crossing = crossing_links(side);
     std::stable_sort(crossing.begin(), crossing.end(), [&](int a, int b) { return nats(a) > nats(b); });
@@ -343,7 +379,7 @@ class DoubtSearch {
       all += nats(k) + loop_nats(k);
       most = std::max(most, loop_nats(k));
     }
-    all += heard_against_chance(side, chosen) - most;
+    all += heard_against_chance(side, chosen) + heard_beyond(side) - most;
     doubt.chance = std::exp(-std::max(0.0, all));
     if (doubt.chance > doubt.twin) doubt.links = chosen;
   }

@@ -106,6 +106,61 @@ TEST(Doubt, WhatWallsSayIsAskedOfTheLinkThatShowsMost) {
   EXPECT_NEAR(odds_of(0.0, std::log(20.0)), odds_of(0.0, 0.0) / 20.0, 1e-5);
 }
 
+/// A terrace of houses that are furnished alike: things tell each pair apart from what is furnished
+/// otherwise, faces tell nothing. However many such pairs there are, the last is not held more surely for
+/// them; those that faces tell are taken for a sign that twins are not furnished alike here.
+TEST(Doubt, HowSeldomTwinsAreFurnishedAlikeIsLearnedFromWhatSpeaksOfThem) {
+  const auto doubt_beside = [](int pairs, double alike_nats, bool twins = false) {
+    Row row(pairs + 2);
+    if (twins) {
+      row.link(2, 0, 0.9, 0.0);
+      row.graph.links.back().evidence = twin_evidence_of(0.9);
+      row.graph.against.push_back(row.graph.links.back());
+      row.graph.links.clear();
+    }
+    for (int k = 0; k <= pairs; ++k) {
+      const bool last = k == pairs;
+      TwinEvidence said;
+      said.otherwise_nats = 9.0;
+      said.alike_nats = last ? 0.0 : alike_nats;
+      row.link(k + 1, k, said.probability(), 0.0);
+      row.graph.links.back().evidence = said;
+    }
+    AcceptedPoses accepted{row.truth, std::vector<int>(row.truth.size(), 0),
+                           std::vector<int>(row.graph.links.size(), 0)};
+    return doubts_of(row.graph, accepted, std::vector<int>(row.truth.size(), 0)).back().twin;
+  };
+  const double alone = doubt_beside(0, 0.0);
+  EXPECT_NEAR(alone, 0.0045 / 0.85, 2e-4);
+  EXPECT_GT(doubt_beside(10, 0.0), 0.85 * alone);
+  EXPECT_LT(doubt_beside(10, 9.0), 0.2 * alone);
+  // Where places are built alike other rooms alone do not settle it.
+  EXPECT_GT(doubt_beside(10, 9.0, true), 0.0019);
+}
+
+/// Station 1 is held to the frame's two stations, by one link that speaks against a twin and one that speaks
+/// for it; station 3 hangs on it by a link that speaks against one by less than the former. It stands no more
+/// surely than what it hangs on.
+TEST(Doubt, WhatHangsOnADoubtfulScanIsAsDoubtful) {
+  Row row(4);
+  row.link(2, 0, 0.0, 0.0, 1.0);
+  const auto link = [&](int source, int target, double otherwise_nats, double agreeing_m2) {
+    TwinEvidence said;
+    said.otherwise_nats = otherwise_nats;
+    said.alike_nats = 12.0;
+    row.link(source, target, said.probability(), 0.0, agreeing_m2);
+    row.graph.links.back().evidence = said;
+  };
+  link(1, 0, 3.0, 10.0);
+  link(1, 2, -2.5, 5.0);
+  link(3, 1, 2.5, 10.0);
+  const AcceptedPoses accepted{row.truth, {0, 0, 0, 0}, {0, 0, 0, 0}};
+  const std::vector<NodeDoubt> doubts = doubts_of(row.graph, accepted, {0, 0, 0, 0});
+  EXPECT_GT(doubts[1].twin, 1e-3);
+  EXPECT_NEAR(doubts[3].twin, doubts[1].twin, 1e-5);
+  EXPECT_EQ(doubts[3].links, doubts[1].links);
+}
+
 TEST(Doubt, LinksThatSeeDifferentSurfaceCheckOneAnotherWhereChanceIsFeared) {
   Row row(3);
   row.link(1, 0, 0.0, 0.0, 4.0);

@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <optional>
+#include <vector>
 
 #include "limen/geometry/rigid.h"
 #include "limen/model/twin_evidence.h"
@@ -17,6 +18,12 @@ struct PoseHeard {
   double value_m2 = 0.0;         ///< what poses are ranked by
 };
 
+/// A node, and the pose that another has in it.
+struct NodePose {
+  int target = -1;
+  Rigid3 target_from_source;
+};
+
 /// Asks two nodes of a pose that neither proposed (`target_from_source`); of those that cannot be asked
 /// nothing is heard. Any number of threads may ask at once.
 struct PoseHearing {
@@ -24,6 +31,10 @@ struct PoseHearing {
   /// What things say of a twin.
   std::function<std::optional<TwinEvidence>(int source, int target, const Rigid3& target_from_source)>
       things = {};
+  /// How much surface of a station mobile passes confirm beyond what `held` confirm, m^2, less what they
+  /// contradict beyond it, as poses are ranked. `others`: where the station stands in all that may be asked.
+  std::function<double(int source, const std::vector<NodePose>& held, const std::vector<NodePose>& others)>
+      beyond = {};
 
   explicit operator bool() const { return static_cast<bool>(surface); }
 };

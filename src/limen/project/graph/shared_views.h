@@ -21,6 +21,9 @@ struct AcceptedPoses {
   std::vector<int> component;  ///< of each node, -1: none
   std::vector<int> pose;       ///< of each link: the accepted one, -1: none
   std::vector<HeardPair> heard = {};
+  /// Of each node, where any was asked: by how much passes that see it beyond the links that hold it speak
+  /// against chance.
+  std::vector<double> beyond_nats = {};
 };
 
 /// Whether the solution lays the two as the pair's best pose does.

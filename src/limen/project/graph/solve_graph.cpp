@@ -13,6 +13,7 @@
 #include "limen/project/graph/doubt.h"
 #include "limen/project/graph/grow_parts.h"
 #include "limen/project/graph/hear_around.h"
+#include "limen/project/graph/hear_beyond.h"
 #include "limen/project/graph/loops.h"
 #include "limen/project/graph/pose_adjustment.h"
 #include "limen/project/graph/pose_graph.h"
@@ -394,6 +395,10 @@ class Solver {
         total[i] = doubts[i].where_few_stand_apart(apart[i]).total();
     }
     accepted_.heard = hear_around(graph_, accepted_, total, risk_, hearing_);
+    std::vector<bool> firm(total.size(), false);
+    for (std::size_t i = 0; i < total.size(); ++i) firm[i] = total[i] <= risk_;
+    const std::vector<NodeDoubt> heard = doubts_of(graph_, accepted_, reference);
+    accepted_.beyond_nats = hear_beyond(graph_, accepted_, heard, firm, risk_, hearing_);
   }
 
   /// What links say each for itself bounds how sure the present place is. So does the doubt of its side by
@@ -416,6 +421,7 @@ class Solver {
         odds = std::max(odds, apart[static_cast<std::size_t>(node)]);
       }
       AcceptedPoses telling = accepted_;
+      telling.beyond_nats.clear();  // said beside other links
       for (std::size_t k = 0; k < graph_.links.size(); ++k) {
         const GraphLink& link = graph_.links[k];
         const bool across =

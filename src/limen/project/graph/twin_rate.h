@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
-#include <cstddef>
 #include <vector>
 
 #include "limen/model/twin_evidence.h"
@@ -17,34 +15,49 @@ struct TwinWitness {
   TwinEvidence evidence;
 };
 
-/// How many of the pairs whose walls fit are twins is a property of a building: a hotel has many, a villa
-/// none. It is known as a beta distribution with the mean that one pair alone is given and the strength of
-/// one observation, and learned from all pairs whose things say something. What says nothing teaches nothing.
-/// Of pairs that lie in a loop only the most telling ones count, so that one room seen from many places is
-/// not many.
+/// Of each kind of twin, by what to multiply the probability that is believed beforehand of one pair alone.
+struct TwinFactors {
+  double otherwise = 1.0;
+  double alike = 1.0;
+};
+
+/// How many of the pairs whose walls fit are twins is a property of a building, and how many of these are
+/// furnished alike is as well: a hotel has many of both, a terrace many of the first, a villa none. The
+/// shares of the three, r of twins furnished otherwise, a of those furnished alike, 1 - r - a of one room,
+/// are known as a Dirichlet distribution with the means that one pair alone is given and the strength of one
+/// observation, and learned from all pairs whose things say something: of nats o and a',
+///
+///   likelihood of a pair  =  1 - r - a + r exp(-o) + a exp(-a').
+///
+/// What says nothing teaches nothing. Twins furnished alike are weighed against one room, by a / (1 - r):
+/// what speaks for or against twins furnished otherwise alone says nothing of these. Of pairs that lie in a
+/// loop only the most telling ones count, so that one room seen from many places is not many.
 class TwinRate {
  public:
   TwinRate(int nodes, const std::vector<TwinWitness>& witnesses);
 
-  /// By what to multiply the probability of a twin that is believed beforehand of one pair alone, for links
-  /// from the nodes on one `side` to those on the other; what pairs say that lead across teaches them
-  /// nothing. Never less than a fifteenth: no number of other rooms makes two bare ones the same.
-  [[nodiscard]] double factor(const std::vector<bool>& side) const;
+  /// For links from the nodes on one `side` to those on the other; what pairs say that lead across teaches
+  /// them nothing. Never less than a fifteenth: no number of other rooms makes two bare ones the same.
+  [[nodiscard]] TwinFactors factors(const std::vector<bool>& side) const;
 
  private:
-  static constexpr std::size_t kRates = 200;
-  using Grid = std::array<double, kRates>;
-  static double rate(std::size_t i) { return (static_cast<double>(i) + 0.5) / static_cast<double>(kRates); }
-  static double mean_rate(const Grid& logs);
-
+  /// Shares of both kinds, and how probable they are.
+  struct Shares {
+    double otherwise = 0.0;
+    double alike_of_rest = 0.0;  ///< of what is no twin furnished otherwise
+    double log_believed = 0.0;
+  };
   struct Lesson {
     int source = -1;
     int target = -1;
-    Grid logs{};
+    double otherwise = 1.0;  ///< by how much more probable a twin makes what was seen than one room does
+    double alike = 1.0;
+    [[nodiscard]] double log_likelihood(const Shares& shares) const;
   };
+  static Shares mean(const std::vector<Shares>& all);
 
-  Grid logs_{};  ///< of what is believed of each rate
-  double mean_before_ = 0.0;
+  std::vector<Shares> shares_;
+  Shares mean_before_;
   std::vector<Lesson> lessons_;
 };
 

@@ -22,7 +22,8 @@ std::vector<TwinWitness> pairs_in_a_row(const std::vector<double>& probabilities
 double believed(const std::vector<TwinWitness>& witnesses) {
   std::vector<bool> last(kNodes, false);
   last.back() = true;
-  return kAlone * TwinRate(kNodes, witnesses).factor(last);
+  const TwinFactors factors = TwinRate(kNodes, witnesses).factors(last);
+  return TwinEvidence{}.otherwise * factors.otherwise + TwinEvidence{}.alike * factors.alike;
 }
 
 TEST(TwinRate, WhatSaysNothingTeachesNothing) {
@@ -53,6 +54,38 @@ TEST(TwinRate, WhatLeadsAcrossTeachesItselfNothing) {
 
 TEST(TwinRate, NoNumberOfOtherRoomsMakesBareOnesTheSame) {
   EXPECT_NEAR(believed(pairs_in_a_row(std::vector<double>(60, 1e-9))), kAlone / 15.0, 1e-12);
+}
+
+/// What is told of both kinds by `count` pairs that say so much against either.
+TwinFactors told_by(std::size_t count, double otherwise_nats, double alike_nats) {
+  std::vector<TwinWitness> witnesses;
+  for (int k = 0; k < static_cast<int>(count); ++k) {
+    TwinEvidence said;
+    said.otherwise_nats = otherwise_nats;
+    said.alike_nats = alike_nats;
+    witnesses.push_back({k, k + 1, said});
+  }
+  return TwinRate(kNodes, witnesses).factors(std::vector<bool>(kNodes, false));
+}
+
+TEST(TwinRate, WhatTellsThingsApartSaysNothingOfTwinsThatAreFurnishedAlike) {
+  const TwinFactors things = told_by(10, 9.0, 0.0);
+  EXPECT_LT(things.otherwise, 0.1);
+  EXPECT_NEAR(things.alike, 1.0, 1e-3);
+  // However many twins furnished otherwise there are.
+  EXPECT_NEAR(told_by(10, -4.0, 0.0).alike, 1.0, 1e-9);
+  const TwinFactors faces = told_by(10, 9.0, 9.0);
+  EXPECT_NEAR(faces.otherwise, 1.0 / 11.0, 2e-3);
+  EXPECT_NEAR(faces.alike, 0.85 / 10.85, 0.02);  // their shares are few
+}
+
+TEST(TwinRate, TwinsThatAreFoundTeachOfTheirOwnKind) {
+  const TwinFactors alike = told_by(3, 8.0, -4.0);
+  EXPECT_GT(alike.alike, 5.0);
+  EXPECT_LT(alike.otherwise, 0.5);
+  const TwinFactors otherwise = told_by(3, -8.0, 4.0);
+  EXPECT_GT(otherwise.otherwise, 4.0);
+  EXPECT_LT(otherwise.alike, 1.5);
 }
 
 }  // namespace

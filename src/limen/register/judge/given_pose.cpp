@@ -45,6 +45,16 @@ PoseScore score_given_pose(const PreparedScan& source, const PreparedScan& targe
                     fine_score(source.view(), target.view(), method));
 }
 
+JointScore score_given_poses(const PreparedScan& source, const std::vector<GivenPose>& poses, Method method) {
+  std::vector<PosedJudge> judges;
+  for (const GivenPose& given : poses) {
+    const ScanView target = given.target->view();
+    judges.push_back({target, between_prepared(source, *given.target, given.target_from_source),
+                      fine_score(source.view(), target, method)});
+  }
+  return score_together(source.view(), judges);
+}
+
 TwinEvidence twin_of_given_pose(const PreparedScan& source, const PreparedScan& target,
                                 const Rigid3& target_from_source, const TwinOptions& options) {
   return weigh_twin(

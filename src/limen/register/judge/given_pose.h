@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <vector>
+
 #include "limen/model/method.h"
 #include "limen/register/judge/score_pose.h"
 #include "limen/register/judge/twin_odds.h"
@@ -19,6 +21,16 @@ ScoreOptions fine_score(const ScanView& source, const ScanView& target, Method m
 /// pose is scored in the end, and not refined.
 PoseScore score_given_pose(const PreparedScan& source, const PreparedScan& target,
                            const Rigid3& target_from_source, Method method = Method::automatic);
+
+/// A scan, and a pose that another is given in it.
+struct GivenPose {
+  const PreparedScan* target = nullptr;
+  Rigid3 target_from_source;  ///< as above
+};
+
+/// What several scans say of the surface of one together, each at a pose that nobody searched for.
+JointScore score_given_poses(const PreparedScan& source, const std::vector<GivenPose>& poses,
+                             Method method = Method::automatic);
 
 /// What things say there of whether the scans show one room, or two built alike.
 TwinEvidence twin_of_given_pose(const PreparedScan& source, const PreparedScan& target,

@@ -31,7 +31,7 @@ constexpr double kUnseenFlightM = 1.5;  // of the flight, either way
 
 struct Riser {
   Vector3d at = Vector3d::Zero();
-  Vector2d up = Vector2d::UnitX();
+  Vector2d in = Vector2d::UnitX();  ///< away from who sees it
   Vector3d last = Vector3d::Zero();
   double pieces = 0.0;
 };
@@ -41,14 +41,14 @@ std::vector<Riser> upright_faces(const std::vector<SurfaceDetail>& details) {
   std::vector<Riser> faces;
   for (const SurfaceDetail& piece : details) {
     if (!piece.flat() || std::abs(piece.normal.z()) > kRiserUpright) continue;
-    const Vector2d up = -piece.normal.head<2>().normalized();
+    const Vector2d in = -piece.normal.head<2>().normalized();
     const auto found = std::find_if(faces.begin(), faces.end(), [&](const Riser& face) {
       const Vector3d apart = piece.mean - face.at;
-      return face.up.dot(up) > kParallelRisers && std::abs(apart.head<2>().dot(face.up)) < kOneRiserM &&
+      return face.in.dot(in) > kParallelRisers && std::abs(apart.head<2>().dot(face.in)) < kOneRiserM &&
              (piece.mean - face.last).norm() < kNextToRiserM + 0.1 * face.pieces;
     });
     if (found == faces.end()) {
-      faces.push_back({piece.mean, up, piece.mean, 1.0});
+      faces.push_back({piece.mean, in, piece.mean, 1.0});
       continue;
     }
     found->at = (found->pieces * found->at + piece.mean) / (found->pieces + 1.0);
@@ -58,18 +58,27 @@ std::vector<Riser> upright_faces(const std::vector<SurfaceDetail>& details) {
   return faces;
 }
 
+/// Who climbs sees the risers' fronts; who stands below the flight, or behind one without risers' boards,
+/// sees their backs, and the flight leads up towards him.
 struct Step {
+  bool fronts = true;
   double run_m = 0.0;
   double rise_m = 0.0;
+
+  [[nodiscard]] bool is_like(const Step& other) const {
+    return fronts == other.fronts && std::abs(run_m - other.run_m) < kSameRunM &&
+           std::abs(rise_m - other.rise_m) < kSameRiseM;
+  }
 };
 
 /// The step that leads from one riser to the other, if one does.
 std::optional<Step> step_between(const Riser& lower, const Riser& upper) {
-  if (lower.up.dot(upper.up) < kParallelRisers) return std::nullopt;
+  if (lower.in.dot(upper.in) < kParallelRisers) return std::nullopt;
   const Vector3d apart = upper.at - lower.at;
   const Vector2d level = apart.head<2>();
-  const Step step{level.dot(lower.up), apart.z()};
-  const double beside = std::abs(lower.up.x() * level.y() - lower.up.y() * level.x());
+  const double run = level.dot(lower.in);
+  const Step step{run > 0.0, std::abs(run), apart.z()};
+  const double beside = std::abs(lower.in.x() * level.y() - lower.in.y() * level.x());
   const bool climbs = step.run_m > kLeastRunM && step.run_m < kMostRunM && step.rise_m > kLeastRiseM &&
                       step.rise_m < kMostRiseM && beside < kBesideStepM;
   return climbs ? std::optional(step) : std::nullopt;
@@ -98,15 +107,15 @@ std::vector<Flight> find_flights(const std::vector<SurfaceDetail>& details) {
       if (!step) continue;
       const auto third = std::find_if(faces.begin(), faces.end(), [&](const Riser& face) {
         const std::optional<Step> next = step_between(second, face);
-        return next && std::abs(next->run_m - step->run_m) < kSameRunM &&
-               std::abs(next->rise_m - step->rise_m) < kSameRiseM;
+        return next && next->is_like(*step);
       });
       if (third == faces.end()) continue;
       const Vector3d all = third->at - first.at;
-      const double run = all.head<2>().dot(first.up);
-      Flight flight{first.at, first.up, all.z() / run, run};
+      const Vector2d up = step->fronts ? first.in : Vector2d(-first.in);
+      const double run = all.head<2>().dot(up);
+      Flight flight{first.at, up, all.z() / run, run};
       for (const Riser& face : faces) {
-        if (!flight.contains(face.at) || face.up.dot(flight.up) < kParallelRisers) continue;
+        if (!flight.contains(face.at) || face.in.dot(first.in) < kParallelRisers) continue;
         flight.length_m = std::max(flight.length_m, (face.at - flight.foot).head<2>().dot(flight.up));
       }
       flights.push_back(flight);

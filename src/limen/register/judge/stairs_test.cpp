@@ -39,6 +39,19 @@ TEST(Stairs, AFlightIsFoundWithItsRailingsAndUnseenSteps) {
   EXPECT_FALSE(flights[0].contains({1.6, 3.0, 0.5}));  // beside
 }
 
+/// From below, or from behind where nothing closes the steps: the backs of the risers.
+TEST(Stairs, AFlightIsFoundFromBelow) {
+  std::vector<SurfaceDetail> backs = risers(5, 0.18, 0.17);
+  for (SurfaceDetail& piece : backs) piece.normal = Vector3d::UnitX();
+  const std::vector<Flight> flights = find_flights(backs);
+  ASSERT_EQ(flights.size(), 1U);
+  EXPECT_GT(flights[0].up.x(), 0.99);
+  EXPECT_NEAR(flights[0].slope, 0.17 / 0.18, 0.02);
+  EXPECT_NEAR(flights[0].length_m, 4 * 0.18, 0.05);
+  EXPECT_TRUE(flights[0].contains({1.4, 0.3, 0.4}));
+  EXPECT_FALSE(flights[0].contains({1.6, 0.3, -1.0}));  // on the floor below
+}
+
 TEST(Stairs, FurnitureInRowsIsNone) {
   EXPECT_TRUE(find_flights(risers(6, 0.28, 0.0)).empty());   // a row of chairs
   EXPECT_TRUE(find_flights(risers(6, 0.01, 0.35)).empty());  // boards of a shelf
