@@ -13,6 +13,7 @@
 #include "limen/extract/planes/coherent_labels.h"
 #include "limen/extract/planes/grow_regions.h"
 #include "limen/extract/planes/join_pieces.h"
+#include "limen/extract/planes/label_sums.h"
 #include "limen/extract/planes/relief_sheets.h"
 #include "limen/extract/planes/settle_planes.h"
 #include "limen/extract/planes/split_at_steps.h"
@@ -138,11 +139,8 @@ class CurveLabels {
 
   void take(const std::vector<std::int32_t>& by_scan, std::size_t count) {
     labels_.resize(by_scan.size());
-    sums_.assign(count, {});
-    for (std::size_t k = 0; k < labels_.size(); ++k) {
-      labels_[k] = by_scan[order_.index(k)];
-      if (labels_[k] >= 0) sums_[static_cast<std::size_t>(labels_[k])].add(order_.point(k));
-    }
+    for (std::size_t k = 0; k < labels_.size(); ++k) labels_[k] = by_scan[order_.index(k)];
+    sums_ = label_sums(order_, labels_, count);
   }
 
   /// Per point of the scan the plane whose noise may have brought it there.

@@ -15,6 +15,7 @@
 #include "limen/extract/cells/cell_grid.h"
 #include "limen/extract/cells/point_normals.h"
 #include "limen/extract/planes/grow_regions.h"
+#include "limen/extract/planes/label_sums.h"
 #include "limen/extract/planes/merge_planes.h"
 #include "limen/extract/planes/settle_planes.h"
 
@@ -46,30 +47,6 @@ std::vector<std::uint32_t> all_positions(std::size_t size) {
   std::iota(positions.begin(), positions.end(), 0U);
   return positions;
 }
-
-/// Moments of the points of a plane, each product once.
-class LabelSums {
- public:
-  void add(const Vector3d& p) {
-    const std::array<double, 10> of_point{1.0,         p[0],        p[1],        p[2],        p[0] * p[0],
-                                          p[0] * p[1], p[0] * p[2], p[1] * p[1], p[1] * p[2], p[2] * p[2]};
-    for (std::size_t i = 0; i < sums_.size(); ++i) sums_[i] += of_point[i];
-  }
-  void add(const LabelSums& other) {
-    for (std::size_t i = 0; i < sums_.size(); ++i) sums_[i] += other.sums_[i];
-  }
-  [[nodiscard]] PointMoments moments() const {
-    const std::array<double, 10>& s = sums_;
-    PointMoments moments;
-    moments.count = s[0];
-    moments.sum = {s[1], s[2], s[3]};
-    moments.outer << s[4], s[5], s[6], s[5], s[7], s[8], s[6], s[8], s[9];
-    return moments;
-  }
-
- private:
-  std::array<double, 10> sums_{};  // 1, x, y, z, xx, xy, xz, yy, yz, zz
-};
 
 class PlaneGrower {
  public:
@@ -139,24 +116,7 @@ class PlaneGrower {
     }
   }
 
-  void sum_up() {
-    using Sums = std::vector<LabelSums>;
-    const Sums sums = parallel_reduce(
-        labels_.size(), kPointsPerLabelling, Sums(sums_.size()),
-        [&](std::size_t begin, std::size_t end) {
-          Sums part(sums_.size());
-          for (std::size_t k = begin; k < end; ++k) {
-            if (labels_[k] >= 0) part[static_cast<std::size_t>(labels_[k])].add(sorted_.point(k));
-          }
-          return part;
-        },
-        [](Sums a, const Sums& b) {
-          for (std::size_t i = 0; i < a.size(); ++i) a[i].add(b[i]);
-          return a;
-        });
-    std::transform(sums.begin(), sums.end(), sums_.begin(),
-                   [](const LabelSums& sum) { return sum.moments(); });
-  }
+  void sum_up() { sums_ = label_sums(sorted_, labels_, sums_.size()); }
 
   [[nodiscard]] GrownPlanes finish() const {
     GrownPlanes grown;

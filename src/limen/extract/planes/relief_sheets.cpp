@@ -20,7 +20,7 @@ constexpr double kPatchM = 0.5;     // edge of the squares in which a sheet is d
 constexpr std::size_t kDenser = 3;  // times: a square's slab against what lies beside it
 constexpr double kUprightSine = 0.17;  // walls: at most so much of the normal is up
 constexpr int kRefits = 2;
-constexpr double kParallel = 0.97;
+constexpr double kAlongAxis = 0.97;
 
 /// A wall with its three directions and the box of its relief, in its own coordinates.
 struct WallSpace {
@@ -139,7 +139,7 @@ class SheetSearch {
     for (const ReliefPoint& point : free) {
       const double towards = wall_.axes[axis].dot(scan_.centre(point.index) - scan_.points[point.index]);
       if (taken[point.index] != 0 || sign * towards <= 0.0) continue;
-      if (point.tail != nullptr && std::abs(point.tail->dot(wall_.axes[axis])) > kParallel) continue;
+      if (point.tail != nullptr && std::abs(point.tail->dot(wall_.axes[axis])) > kAlongAxis) continue;
       seen.push_back(point);
       counts.add(point.at[static_cast<int>(axis)]);
     }

@@ -17,9 +17,9 @@
 namespace limen {
 namespace {
 
-constexpr double kChiSquared = 16.3;  // of three freedoms, exceeded once in a thousand
-constexpr double kSlope = 0.01;       // one standard deviation: a part is turned from its plane by little
-constexpr double kLeastNoiseM = 0.0005;
+constexpr double kStepChiSquared = 16.3;  // of three freedoms, exceeded once in a thousand
+constexpr double kSlope = 0.01;           // one standard deviation: a part is turned from its plane by little
+constexpr double kLeastCellNoiseM = 0.0005;
 constexpr int kInnerCells = 12;  // of a part that may be a piece of a bulging surface
 constexpr double kShared = 3.0;  // pairs of cells at a border that share a cell, about
 constexpr double kBorderPairs = 6.0;
@@ -45,10 +45,15 @@ class CellTable {
     keys_.push_back(key);
     return slots_[i].cell;
   }
+  [[nodiscard]] std::int32_t x(std::size_t cell) const {
+    return static_cast<std::int32_t>(keys_[cell] >> 32U);
+  }
+  [[nodiscard]] std::int32_t y(std::size_t cell) const {
+    return static_cast<std::int32_t>(keys_[cell] & 0xffffffffU);
+  }
   /// The cell so many cells from another, or -1.
   [[nodiscard]] std::int32_t beside(std::size_t cell, int dx, int dy) const {
-    const std::uint64_t key = key_of(static_cast<std::int32_t>(keys_[cell] >> 32U) + dx,
-                                     static_cast<std::int32_t>(keys_[cell] & 0xffffffffU) + dy);
+    const std::uint64_t key = key_of(x(cell) + dx, y(cell) + dy);
     std::size_t i = place(key);
     while (slots_[i].cell >= 0) {
       if (slots_[i].key == key) return slots_[i].cell;
@@ -110,6 +115,7 @@ class StepParts {
     std::iota(parts_.begin(), parts_.end(), 0);
     squares_.reserve(cells_.size());
     for (const HeightSums& cell : cells_) squares_.push_back(cell.squares(ridge_));
+    join_blocks();
     join_alike();
     join_bulging();
     join_apart();
@@ -165,7 +171,7 @@ class StepParts {
       squares += c.hh - c.h * c.h / c.n;
       freedoms += c.n - 1.0;
     }
-    return freedoms > 0.0 ? std::max(kLeastNoiseM, std::sqrt(squares / freedoms)) : kUnknownM;
+    return freedoms > 0.0 ? std::max(kLeastCellNoiseM, std::sqrt(squares / freedoms)) : kUnknownM;
   }
 
   std::size_t root_of(std::size_t c) {
@@ -187,7 +193,7 @@ class StepParts {
     both.squares = both.sums.squares(ridge_);
     const double together = cells_[a].n * cells_[b].n / both.sums.n;
     both.strain = (both.squares - squares_[a] - squares_[b]) /
-                  (kChiSquared * noise_ * noise_ + together * drift_m * drift_m);
+                  (kStepChiSquared * noise_ * noise_ + together * drift_m * drift_m);
     return both;
   }
   void join(std::size_t a, std::size_t b, const Joined& both) {
@@ -209,6 +215,63 @@ class StepParts {
     }
   }
 
+  /// A square of two by two smaller ones.
+  struct Block {
+    HeightSums sums;
+    double squares_of_parts = 0.0;
+    double squares = 0.0;
+    std::int32_t first = -1;  ///< of its cells
+    bool even = true;         ///< it and all squares in it have no step
+  };
+
+  /// Where nothing shows a step cells become one part square by square, two by two: what chance makes alike
+  /// is not sought out, and there is less to join.
+  void join_blocks() {
+    constexpr int kLevels = 7;
+    CellTable places = table_;
+    std::vector<Block> blocks(own_.size());
+    std::vector<std::int32_t> block_of(own_.size());  // by cell: its largest even block at this level, or -1
+    for (std::size_t c = 0; c < own_.size(); ++c) {
+      blocks[c] = {own_[c], squares_[c], squares_[c], static_cast<std::int32_t>(c)};
+      block_of[c] = static_cast<std::int32_t>(c);
+    }
+    for (int level = 0; level < kLevels; ++level) {
+      CellTable larger(blocks.size());
+      std::vector<Block> parents;
+      std::vector<std::int32_t> parent_of(blocks.size());
+      for (std::size_t b = 0; b < blocks.size(); ++b) {
+        parent_of[b] = larger.add(places.x(b) >> 1, places.y(b) >> 1);
+        if (static_cast<std::size_t>(parent_of[b]) == parents.size()) {
+          parents.emplace_back();
+          parents.back().first = blocks[b].first;
+        }
+        Block& parent = parents[static_cast<std::size_t>(parent_of[b])];
+        parent.sums.add(blocks[b].sums);
+        parent.squares_of_parts += blocks[b].squares;
+        parent.even = parent.even && blocks[b].even;
+      }
+      for (Block& parent : parents) even_out(parent);
+      for (std::size_t c = 0; c < own_.size(); ++c) {
+        if (block_of[c] < 0) continue;
+        const std::int32_t parent = parent_of[static_cast<std::size_t>(block_of[c])];
+        const Block& block = parents[static_cast<std::size_t>(parent)];
+        block_of[c] = block.even ? parent : -1;
+        if (!block.even) continue;
+        parts_[c] = block.first;
+        cells_[static_cast<std::size_t>(block.first)] = block.sums;
+        squares_[static_cast<std::size_t>(block.first)] = block.squares;
+      }
+      blocks = std::move(parents);
+      places = std::move(larger);
+    }
+  }
+  void even_out(Block& block) const {
+    if (!block.even) return;
+    block.squares = block.sums.squares(ridge_);
+    const double allowed = 7.8 * noise_ * noise_ + 0.25 * block.sums.n * o_.drift_m * o_.drift_m;
+    block.even = block.squares - block.squares_of_parts <= allowed;
+  }
+
   void join_alike() {
     struct Edge {
       double strain;
@@ -217,10 +280,18 @@ class StepParts {
       bool operator<(const Edge& o) const { return std::tie(strain, a, b) > std::tie(o.strain, o.a, o.b); }
     };
     std::priority_queue<Edge> edges;
+    std::vector<std::pair<std::size_t, std::size_t>> touching;
     for_touching([&](std::size_t a, std::size_t b) {
+      const std::size_t i = root_of(a);
+      const std::size_t j = root_of(b);
+      if (i != j) touching.emplace_back(std::min(i, j), std::max(i, j));
+    });
+    std::sort(touching.begin(), touching.end());
+    touching.erase(std::unique(touching.begin(), touching.end()), touching.end());
+    for (const auto& [a, b] : touching) {
       const double strain = joined(a, b, o_.drift_m).strain;
       if (strain <= 1.0) edges.push({strain, cells_[a].n + cells_[b].n, a, b});
-    });
+    }
     while (!edges.empty()) {
       Edge top = edges.top();
       edges.pop();

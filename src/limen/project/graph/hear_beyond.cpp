@@ -10,7 +10,7 @@ namespace limen {
 namespace {
 
 constexpr double kNatsPerM2 = 0.7;
-constexpr double kMostNats = 3.0;
+constexpr double kMostBeyond = 3.0;
 
 /// The nodes that these links hold a node to; none where one of them holds another node.
 std::vector<int> held_to(const PoseGraph& graph, int node, const std::vector<int>& links) {
@@ -48,7 +48,7 @@ std::vector<double> hear_beyond(const PoseGraph& graph, const AcceptedPoses& acc
         const auto o = static_cast<std::size_t>(other);
         if (firm[o] && accepted.component[o] == accepted.component[n]) others.push_back(pose_in(node, other));
       }
-      nats[n] = std::clamp(kNatsPerM2 * hearing.beyond(node, held, others), 0.0, kMostNats);
+      nats[n] = std::clamp(kNatsPerM2 * hearing.beyond(node, held, others), 0.0, kMostBeyond);
     }
   });
   return nats;

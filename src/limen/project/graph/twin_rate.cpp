@@ -13,12 +13,12 @@ namespace limen {
 namespace {
 
 constexpr double kLeastFactor = 1.0 / 15.0;
-constexpr double kMostNats = 50.0;
+constexpr double kMostOfPair = 50.0;
 constexpr int kOtherwiseShares = 120;
 constexpr int kAlikeShares = 16;  // of the rest
 
 double likelihood(double nats_against) {
-  return std::exp(-std::clamp(nats_against, -kMostNats, kMostNats));
+  return std::exp(-std::clamp(nats_against, -kMostOfPair, kMostOfPair));
 }
 
 /// By how much more probable a twin of either kind makes what was seen than one room does.

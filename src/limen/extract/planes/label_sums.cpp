@@ -1,0 +1,63 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/extract/planes/label_sums.h"
+
+#include <algorithm>
+#include <array>
+
+#include "limen/base/parallel.h"
+
+namespace limen {
+namespace {
+
+constexpr std::size_t kPointsPerSum = 131072;
+
+/// Moments of the points of a plane, each product once.
+class LabelSums {
+ public:
+  void add(const Vector3d& p) {
+    const std::array<double, 10> of_point{1.0,         p[0],        p[1],        p[2],        p[0] * p[0],
+                                          p[0] * p[1], p[0] * p[2], p[1] * p[1], p[1] * p[2], p[2] * p[2]};
+    for (std::size_t i = 0; i < sums_.size(); ++i) sums_[i] += of_point[i];
+  }
+  void add(const LabelSums& other) {
+    for (std::size_t i = 0; i < sums_.size(); ++i) sums_[i] += other.sums_[i];
+  }
+  [[nodiscard]] PointMoments moments() const {
+    const std::array<double, 10>& s = sums_;
+    PointMoments moments;
+    moments.count = s[0];
+    moments.sum = {s[1], s[2], s[3]};
+    moments.outer << s[4], s[5], s[6], s[5], s[7], s[8], s[6], s[8], s[9];
+    return moments;
+  }
+
+ private:
+  std::array<double, 10> sums_{};  // 1, x, y, z, xx, xy, xz, yy, yz, zz
+};
+
+}  // namespace
+
+std::vector<PointMoments> label_sums(const MortonOrder& order, const std::vector<std::int32_t>& labels,
+                                     std::size_t planes) {
+  using Sums = std::vector<LabelSums>;
+  const Sums sums = parallel_reduce(
+      labels.size(), kPointsPerSum, Sums(planes),
+      [&](std::size_t begin, std::size_t end) {
+        Sums part(planes);
+        for (std::size_t k = begin; k < end; ++k) {
+          if (labels[k] >= 0) part[static_cast<std::size_t>(labels[k])].add(order.point(k));
+        }
+        return part;
+      },
+      [](Sums a, const Sums& b) {
+        for (std::size_t i = 0; i < a.size(); ++i) a[i].add(b[i]);
+        return a;
+      });
+  std::vector<PointMoments> moments(planes);
+  std::transform(sums.begin(), sums.end(), moments.begin(),
+                 [](const LabelSums& sum) { return sum.moments(); });
+  return moments;
+}
+
+}  // namespace limen
