@@ -98,26 +98,8 @@ class CurveLabels {
 
   /// Planes of at least so many points, largest first.
   [[nodiscard]] PlaneLabels by_scan(double least) const {
-    std::vector<std::size_t> kept;
-    for (std::size_t p = 0; p < sums_.size(); ++p) {
-      if (sums_[p].count >= least) kept.push_back(p);
-    }
-    std::stable_sort(kept.begin(), kept.end(),
-                     [&](std::size_t a, std::size_t b) { return sums_[a].count > sums_[b].count; });
-    PlaneLabels planes;
+    PlaneLabels planes = planes_by_scan(order_, labels_, sums_, least);
     planes.inlier_threshold_m = threshold_m_;
-    std::vector<std::int32_t> number(sums_.size(), -1);
-    for (const std::size_t p : kept) {
-      number[p] = static_cast<std::int32_t>(planes.fits.size());
-      PlaneFit fit = fit_plane(sums_[p]);
-      fit.plane = shifted(fit.plane, -order_.anchor);
-      fit.centroid += order_.anchor;
-      planes.fits.push_back(fit);
-    }
-    planes.labels.assign(labels_.size(), -1);
-    for (std::size_t k = 0; k < labels_.size(); ++k) {
-      if (labels_[k] >= 0) planes.labels[order_.index(k)] = number[static_cast<std::size_t>(labels_[k])];
-    }
     return planes;
   }
 

@@ -10,7 +10,6 @@
 
 #include "limen/base/angles.h"
 #include "limen/base/error.h"
-#include "limen/base/parallel.h"
 #include "limen/base/run_both.h"
 #include "limen/extract/cells/cell_grid.h"
 #include "limen/extract/cells/point_normals.h"
@@ -26,7 +25,6 @@ constexpr int kSparseLevels = 3;  // coarser than the first cubes, for what lies
 constexpr int kSettlings = 2;
 constexpr double kSettleCellM = 0.08;  // points choose among the planes of their cube and those around
 constexpr double kExplained = 0.65;    // of a plane's points: others would take them
-constexpr std::size_t kPointsPerLabelling = 131072;
 
 double noise_of(const CellGrid& grid) {
   std::vector<double> thickness;
@@ -122,28 +120,8 @@ class PlaneGrower {
     GrownPlanes grown;
     grown.noise_m = noise_m_;
     grown.inlier_threshold_m = threshold_m_;
+    grown.planes = planes_by_scan(sorted_, labels_, sums_, options_.min_inliers);
     grown.planes.inlier_threshold_m = threshold_m_;
-    std::vector<std::size_t> kept;
-    for (std::size_t i = 0; i < sums_.size(); ++i) {
-      if (sums_[i].count >= options_.min_inliers) kept.push_back(i);
-    }
-    std::stable_sort(kept.begin(), kept.end(),
-                     [&](std::size_t a, std::size_t b) { return sums_[a].count > sums_[b].count; });
-    std::vector<std::int32_t> final_label(sums_.size(), -1);
-    for (const std::size_t i : kept) {
-      final_label[i] = static_cast<std::int32_t>(grown.planes.fits.size());
-      PlaneFit fit = fit_plane(sums_[i]);
-      fit.plane = shifted(fit.plane, -sorted_.anchor);
-      fit.centroid += sorted_.anchor;
-      grown.planes.fits.push_back(fit);
-    }
-    grown.planes.labels.assign(labels_.size(), -1);
-    parallel_for(labels_.size(), kPointsPerLabelling, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t k = begin; k < end; ++k) {
-        if (labels_[k] >= 0)
-          grown.planes.labels[sorted_.index(k)] = final_label[static_cast<std::size_t>(labels_[k])];
-      }
-    });
     return grown;
   }
 

@@ -11,6 +11,7 @@ namespace limen {
 namespace {
 
 constexpr std::size_t kPointsPerSum = 131072;
+constexpr std::size_t kPointsPerLabelling = 131072;
 
 /// Moments of the points of a plane, each product once.
 class LabelSums {
@@ -58,6 +59,32 @@ std::vector<PointMoments> label_sums(const MortonOrder& order, const std::vector
   std::transform(sums.begin(), sums.end(), moments.begin(),
                  [](const LabelSums& sum) { return sum.moments(); });
   return moments;
+}
+
+PlaneLabels planes_by_scan(const MortonOrder& order, const std::vector<std::int32_t>& labels,
+                           const std::vector<PointMoments>& sums, double least) {
+  std::vector<std::size_t> kept;
+  for (std::size_t p = 0; p < sums.size(); ++p) {
+    if (sums[p].count >= least) kept.push_back(p);
+  }
+  std::stable_sort(kept.begin(), kept.end(),
+                   [&](std::size_t a, std::size_t b) { return sums[a].count > sums[b].count; });
+  PlaneLabels planes;
+  std::vector<std::int32_t> number(sums.size(), -1);
+  for (const std::size_t p : kept) {
+    number[p] = static_cast<std::int32_t>(planes.fits.size());
+    PlaneFit fit = fit_plane(sums[p]);
+    fit.plane = shifted(fit.plane, -order.anchor);
+    fit.centroid += order.anchor;
+    planes.fits.push_back(fit);
+  }
+  planes.labels.assign(labels.size(), -1);
+  parallel_for(labels.size(), kPointsPerLabelling, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      if (labels[k] >= 0) planes.labels[order.index(k)] = number[static_cast<std::size_t>(labels[k])];
+    }
+  });
+  return planes;
 }
 
 }  // namespace limen

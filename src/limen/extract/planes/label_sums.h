@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "limen/extract/cells/morton_order.h"
+#include "limen/extract/planes/plane_labels.h"
 #include "limen/geometry/plane.h"
 
 namespace limen {
@@ -14,5 +15,10 @@ namespace limen {
 /// the curve, or -1. The same for any number of threads.
 std::vector<PointMoments> label_sums(const MortonOrder& order, const std::vector<std::int32_t>& labels,
                                      std::size_t planes);
+
+/// The planes of such labels and sums that have at least `least` points, most points first, and the plane of
+/// each point of the scan. `inlier_threshold_m` is left to the caller.
+PlaneLabels planes_by_scan(const MortonOrder& order, const std::vector<std::int32_t>& labels,
+                           const std::vector<PointMoments>& sums, double least = 0.0);
 
 }  // namespace limen

@@ -12,6 +12,7 @@
 #include "limen/base/parallel.h"
 #include "limen/consensus/msac.h"
 #include "limen/extract/cells/morton_order.h"
+#include "limen/extract/planes/label_sums.h"
 
 namespace limen {
 namespace {
@@ -146,25 +147,8 @@ class MsacDetector {
   }
 
   [[nodiscard]] PlaneLabels finish() const {
-    std::vector<std::size_t> order(found_.size());
-    std::iota(order.begin(), order.end(), 0U);
-    std::stable_sort(order.begin(), order.end(),
-                     [&](std::size_t a, std::size_t b) { return found_[a].count > found_[b].count; });
-    PlaneLabels result;
+    PlaneLabels result = planes_by_scan(sorted_, labels_, found_);
     result.inlier_threshold_m = options_.inlier_threshold_m;
-    std::vector<std::int32_t> final_label(found_.size());
-    for (const std::size_t k : order) {
-      final_label[k] = static_cast<std::int32_t>(result.fits.size());
-      PlaneFit fit = fit_plane(found_[k]);
-      fit.plane = shifted(fit.plane, -sorted_.anchor);
-      fit.centroid += sorted_.anchor;
-      result.fits.push_back(fit);
-    }
-    result.labels.assign(labels_.size(), -1);
-    for (std::size_t k = 0; k < labels_.size(); ++k) {
-      if (labels_[k] >= 0)
-        result.labels[sorted_.index(k)] = final_label[static_cast<std::size_t>(labels_[k])];
-    }
     return result;
   }
 
