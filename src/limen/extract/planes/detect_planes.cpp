@@ -19,6 +19,7 @@ namespace limen {
 namespace {
 
 constexpr double kMobileThresholdM = 0.025;  // least inlier threshold for the façades of a mobile scan
+constexpr double kStationDriftM = 0.001;     // by which parts of one surface may stray in a station
 
 double noise_about(const PlaneLabels& planes) {
   std::vector<std::size_t> counts(planes.fits.size(), 0);
@@ -123,8 +124,9 @@ DetectedPlanes detect_fine(const Scan& scan, const GrowOptions& grow, Monitor& m
   const PlaneGround ground(scan, grow);
   DetectedPlanes detected;
   detected.planes = ground.grow(grow.inlier_threshold_m, monitor).planes;
-  FineStationOptions fine;
+  FineOptions fine;
   fine.noise_m = noise_about(detected.planes);
+  fine.drift_m = kStationDriftM;
   fine.min_inliers = grow.min_inliers;
   detected.planes = fine_station_planes(scan, ground.order(), detected.planes, fine);
   detected.noise_m = noise_about(detected.planes);

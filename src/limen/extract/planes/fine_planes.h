@@ -7,9 +7,10 @@
 
 namespace limen {
 
+/// Of fine_planes() and fine_station_planes() (fine_station.h).
 struct FineOptions {
   double noise_m = 0.003;   ///< of a point about its plane, one standard deviation
-  double drift_m = 0.0005;  ///< by which parts of one surface may stray beside the noise
+  double drift_m = 0.0005;  ///< by which parts of one surface may stray beside the noise; stations: 0.001
   int min_inliers = 200;    ///< smallest plane, points
 
   void check() const;

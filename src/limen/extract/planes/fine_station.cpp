@@ -7,7 +7,6 @@
 #include <utility>
 #include <vector>
 
-#include "limen/base/error.h"
 #include "limen/base/parallel.h"
 #include "limen/extract/cells/point_normals.h"
 #include "limen/extract/planes/coherent_labels.h"
@@ -32,7 +31,7 @@ constexpr double kTakenByOthers = 0.8;   // of a plane that cuts along the edge 
 class CurveLabels {
  public:
   CurveLabels(const Scan& scan, const MortonOrder& order, const PlaneLabels& planes,
-              const FineStationOptions& options)
+              const FineOptions& options)
       : scan_(scan),
         order_(order),
         grid_(order, kChoiceCellM),
@@ -153,14 +152,8 @@ class CurveLabels {
 
 }  // namespace
 
-void FineStationOptions::check() const {
-  if (!(noise_m >= 0)) throw_bad_option("noise_m", noise_m, "0 or more");
-  if (!(drift_m >= 0)) throw_bad_option("drift_m", drift_m, "0 or more");
-  if (min_inliers < 3) throw_bad_option("min_inliers", min_inliers, "3 or more");
-}
-
 PlaneLabels fine_station_planes(const Scan& scan, const MortonOrder& order, const PlaneLabels& planes,
-                                const FineStationOptions& options) {
+                                const FineOptions& options) {
   options.check();
   if (planes.fits.empty()) return planes;
   CurveLabels labels(scan, order, planes, options);

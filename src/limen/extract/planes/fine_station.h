@@ -3,18 +3,9 @@
 #pragma once
 
 #include "limen/extract/cells/morton_order.h"
-#include "limen/extract/planes/plane_labels.h"
-#include "limen/model/scan.h"
+#include "limen/extract/planes/fine_planes.h"
 
 namespace limen {
-
-struct FineStationOptions {
-  double noise_m = 0.003;  ///< of a point about its plane, one standard deviation
-  double drift_m = 0.001;  ///< by which parts of one surface may stray beside the noise
-  int min_inliers = 200;   ///< smallest plane, points
-
-  void check() const;
-};
 
 /// Planes of a station as finely as its noise tells them apart. `planes` were found at a threshold of about
 /// three times the noise, in cubes: they hold neighbours that stand a few millimetres before or behind, and
@@ -25,6 +16,6 @@ struct FineStationOptions {
 /// 3. Points choose their planes anew (coherent_labels.h); what cuts along the edge of others is given back.
 /// `order`: the scan's points along a curve.
 PlaneLabels fine_station_planes(const Scan& scan, const MortonOrder& order, const PlaneLabels& planes,
-                                const FineStationOptions& options);
+                                const FineOptions& options);
 
 }  // namespace limen
