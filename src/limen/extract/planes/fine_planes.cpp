@@ -28,16 +28,13 @@ std::vector<PlanePiece> hanging_parts(const Scan& scan, const PlaneLabels& plane
   return parts;
 }
 
-/// Labels of those planes that are large enough.
+/// A plane per piece.
 PlaneLabels labelled_planes(const Scan& scan, const std::vector<PlanePiece>& pieces, const Vector3d& anchor,
-                            double threshold_m, int min_inliers) {
+                            double threshold_m) {
   PlaneLabels planes;
   planes.inlier_threshold_m = threshold_m;
-  planes.labels.assign(scan.size(), -1);
+  planes.labels = labels_with(std::vector<std::int32_t>(scan.size(), -1), pieces);
   for (const PlanePiece& piece : pieces) {
-    if (piece.points.size() < static_cast<std::size_t>(min_inliers)) continue;
-    for (const std::uint32_t i : piece.points)
-      planes.labels[i] = static_cast<std::int32_t>(planes.fits.size());
     PlaneFit fit = fit_plane(piece.moments);
     fit.plane = shifted(fit.plane, -anchor);
     fit.centroid += anchor;
@@ -56,25 +53,23 @@ void FineOptions::check() const {
 
 PlaneLabels fine_planes(const Scan& scan, const PlaneLabels& planes, const FineOptions& options) {
   options.check();
-  const int min_inliers = options.min_inliers;
   if (planes.fits.empty()) return planes;
+  const auto least = static_cast<std::size_t>(options.min_inliers);
   const Vector3d anchor = planes.fits.front().centroid;
   JoinOptions join;
   join.noise_m = std::max(kLeastNoiseM, options.noise_m);
   join.drift_m = options.drift_m;
   const double threshold_m = planes.inlier_threshold_m;
   std::vector<PlanePiece> pieces = joined_pieces(hanging_parts(scan, planes, anchor), join);
-  const PlaneLabels apart = labelled_planes(scan, pieces, anchor, threshold_m, min_inliers);
+  std::erase_if(pieces, [&](const PlanePiece& piece) { return piece.points.size() < least; });
+  const PlaneLabels apart = labelled_planes(scan, pieces, anchor, threshold_m);
   SheetOptions sheets;
   sheets.threshold_m = std::min(threshold_m, kNoisesOfThreshold * join.noise_m);
-  sheets.min_inliers = min_inliers;
-  std::erase_if(pieces, [&](const PlanePiece& piece) {
-    return piece.points.size() < static_cast<std::size_t>(min_inliers);
-  });
+  sheets.min_inliers = options.min_inliers;
   for (PlanePiece& sheet : relief_sheets(scan, apart, anchor, sheets)) pieces.push_back(std::move(sheet));
-  const PlaneLabels relief =
-      labelled_planes(scan, joined_pieces(std::move(pieces), join), anchor, threshold_m, min_inliers);
-  return with_strips(scan, relief, {.threshold_m = sheets.threshold_m});
+  pieces = joined_pieces(std::move(pieces), join);
+  return with_strips(scan, labelled_planes(scan, pieces, anchor, threshold_m),
+                     {.threshold_m = sheets.threshold_m});
 }
 
 }  // namespace limen

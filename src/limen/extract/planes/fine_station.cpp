@@ -49,13 +49,7 @@ class CurveLabels {
     SheetOptions options;
     options.threshold_m = std::min(threshold_m_, kNoisesOfSheet * noise_m_);
     const std::vector<PlanePiece> sheets = relief_sheets(scan_, planes, anchor_, options, tails());
-    std::vector<std::int32_t> labels = planes.labels;
-    std::size_t count = planes.fits.size();
-    for (const PlanePiece& sheet : sheets) {
-      for (const std::uint32_t i : sheet.points) labels[i] = static_cast<std::int32_t>(count);
-      ++count;
-    }
-    take(labels, count);
+    take(labels_with(planes.labels, sheets, planes.fits.size()), planes.fits.size() + sheets.size());
   }
 
   void split() {
@@ -108,14 +102,8 @@ class CurveLabels {
     options.noise_m = noise_m_;
     options.drift_m = drift_m_;
     pieces = joined_pieces(std::move(pieces), options);
-    std::vector<std::int32_t> labels(scan_.size(), -1);
-    std::size_t count = 0;
-    for (const PlanePiece& piece : pieces) {
-      if (piece.points.size() < kLeastPart) continue;
-      for (const std::uint32_t i : piece.points) labels[i] = static_cast<std::int32_t>(count);
-      ++count;
-    }
-    take(labels, count);
+    std::erase_if(pieces, [](const PlanePiece& piece) { return piece.points.size() < kLeastPart; });
+    take(labels_with(std::vector<std::int32_t>(scan_.size(), -1), pieces), pieces.size());
   }
 
   void take(const std::vector<std::int32_t>& by_scan, std::size_t count) {

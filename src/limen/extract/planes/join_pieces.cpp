@@ -81,6 +81,14 @@ PlanePiece piece_of(const Scan& scan, std::vector<std::uint32_t> points, const V
   return piece;
 }
 
+std::vector<std::int32_t> labels_with(std::vector<std::int32_t> labels, const std::vector<PlanePiece>& pieces,
+                                      std::size_t first) {
+  for (std::size_t p = 0; p < pieces.size(); ++p) {
+    for (const std::uint32_t i : pieces[p].points) labels[i] = static_cast<std::int32_t>(first + p);
+  }
+  return labels;
+}
+
 std::vector<PlanePiece> parts_of(const Scan& scan, const PlaneFit& fit,
                                  const std::vector<std::uint32_t>& points, double gap_m,
                                  const Vector3d& anchor) {

@@ -29,6 +29,10 @@ struct PlanePiece {
 
 PlanePiece piece_of(const Scan& scan, std::vector<std::uint32_t> points, const Vector3d& anchor);
 
+/// Labels per point of the scan, with those of the pieces' points: `first` for the first piece, and on.
+std::vector<std::int32_t> labels_with(std::vector<std::int32_t> labels, const std::vector<PlanePiece>& pieces,
+                                      std::size_t first = 0);
+
 /// The parts of a plane's points that hang together and were seen from one side: cells of `gap_m` that touch,
 /// also at a corner. Largest first.
 std::vector<PlanePiece> parts_of(const Scan& scan, const PlaneFit& fit,
