@@ -6,12 +6,12 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <utility>
 
 #include "limen/base/angles.h"
 #include "limen/base/error.h"
 #include "limen/extract/planes/merge_planes.h"
+#include "limen/extract/planes/touching_parts.h"
 
 namespace limen {
 namespace {
@@ -92,30 +92,15 @@ std::vector<std::int32_t> labels_with(std::vector<std::int32_t> labels, const st
 std::vector<PlanePiece> parts_of(const Scan& scan, const PlaneFit& fit,
                                  const std::vector<std::uint32_t>& points, double gap_m,
                                  const Vector3d& anchor) {
-  using Place = std::array<int, 3>;
-  const PlaneFrame frame = make_frame(fit.plane, fit.centroid);
-  std::map<Place, std::vector<std::uint32_t>> cells;
+  std::array<std::vector<std::uint32_t>, 2> of_side;
   for (const std::uint32_t i : points) {
-    const Vector2d p = frame.to_plane(scan.points[i]) / gap_m;
-    const int side = scan.centre_known() && fit.plane.signed_distance(scan.centre(i)) < 0.0 ? 1 : 0;
-    cells[{side, static_cast<int>(std::floor(p.x())), static_cast<int>(std::floor(p.y()))}].push_back(i);
+    const bool behind = scan.centre_known() && fit.plane.signed_distance(scan.centre(i)) < 0.0;
+    of_side[behind ? 1 : 0].push_back(i);
   }
   std::vector<PlanePiece> parts;
-  while (!cells.empty()) {
-    std::vector<std::uint32_t> part;
-    std::vector<Place> open = {cells.begin()->first};
-    while (!open.empty()) {
-      const Place at = open.back();
-      open.pop_back();
-      const auto found = cells.find(at);
-      if (found == cells.end()) continue;
-      part.insert(part.end(), found->second.begin(), found->second.end());
-      cells.erase(found);
-      for (int step = 0; step < 9; ++step)
-        open.push_back({at[0], at[1] + step % 3 - 1, at[2] + step / 3 - 1});
-    }
-    std::sort(part.begin(), part.end());
-    parts.push_back(piece_of(scan, std::move(part), anchor));
+  for (const std::vector<std::uint32_t>& side : of_side) {
+    for (std::vector<std::uint32_t>& part : touching_parts(scan, fit, side, gap_m))
+      parts.push_back(piece_of(scan, std::move(part), anchor));
   }
   std::stable_sort(parts.begin(), parts.end(), larger);
   return parts;

@@ -33,8 +33,8 @@ PlanePiece piece_of(const Scan& scan, std::vector<std::uint32_t> points, const V
 std::vector<std::int32_t> labels_with(std::vector<std::int32_t> labels, const std::vector<PlanePiece>& pieces,
                                       std::size_t first = 0);
 
-/// The parts of a plane's points that hang together and were seen from one side: cells of `gap_m` that touch,
-/// also at a corner. Largest first.
+/// The parts of a plane's points that hang together and were seen from one side (touching_parts.h). Largest
+/// first.
 std::vector<PlanePiece> parts_of(const Scan& scan, const PlaneFit& fit,
                                  const std::vector<std::uint32_t>& points, double gap_m,
                                  const Vector3d& anchor);
