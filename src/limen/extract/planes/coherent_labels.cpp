@@ -2,61 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limen/extract/planes/coherent_labels.h"
 
-#include <algorithm>
 #include <cmath>
-#include <numeric>
-#include <span>
+#include <utility>
 
 #include "limen/base/angles.h"
 #include "limen/base/error.h"
 #include "limen/base/parallel.h"
+#include "limen/extract/planes/cube_counts.h"
 
 namespace limen {
 namespace {
-
-struct PlaneCount {
-  std::int32_t plane = -1;
-  double count = 0.0;
-};
-
-void add(std::vector<PlaneCount>& counts, std::size_t begin, std::int32_t plane, double count) {
-  for (std::size_t i = begin; i < counts.size(); ++i) {
-    if (counts[i].plane != plane) continue;
-    counts[i].count += count;
-    return;
-  }
-  counts.push_back({plane, count});
-}
-
-/// How many points of which planes each cube holds.
-class CubeCounts {
- public:
-  CubeCounts(const CellRuns& runs, const std::vector<std::int32_t>& labels) : begins_(runs.size() + 1, 0) {
-    constexpr std::size_t kCubes = 1024;
-    std::vector<std::vector<PlaneCount>> pieces((runs.size() + kCubes - 1) / kCubes);
-    parallel_for(runs.size(), kCubes, [&](std::size_t begin, std::size_t end) {
-      std::vector<PlaneCount>& piece = pieces[begin / kCubes];
-      for (std::size_t i = begin; i < end; ++i) {
-        const std::size_t before = piece.size();
-        for (std::uint32_t k = runs.begin(i); k < runs.end(i); ++k) {
-          if (labels[k] >= 0) add(piece, before, labels[k], 1.0);
-        }
-        begins_[i + 1] = piece.size() - before;
-      }
-    });
-    std::partial_sum(begins_.begin(), begins_.end(), begins_.begin());
-    counts_.reserve(begins_.back());
-    for (const auto& piece : pieces) counts_.insert(counts_.end(), piece.begin(), piece.end());
-  }
-
-  [[nodiscard]] std::span<const PlaneCount> of(std::size_t cube) const {
-    return {counts_.data() + begins_[cube], begins_[cube + 1] - begins_[cube]};
-  }
-
- private:
-  std::vector<std::size_t> begins_;
-  std::vector<PlaneCount> counts_;
-};
 
 /// One round.
 class CoherentChoice {
@@ -76,7 +31,7 @@ class CoherentChoice {
         near.assign(counts_.of(i).begin(), counts_.of(i).end());
         for (const std::int32_t j : scene_.grid.around(i)) {
           for (const PlaneCount& other : counts_.of(static_cast<std::size_t>(j)))
-            add(near, 0, other.plane, o_.around * other.count);
+            add_count(near, 0, {other.plane, o_.around * other.count});
         }
         if (settled(i, near)) continue;
         for (PlaneCount& it : near) it.count = std::log(it.count);

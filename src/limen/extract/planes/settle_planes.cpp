@@ -9,40 +9,16 @@
 #include "limen/base/angles.h"
 #include "limen/base/parallel.h"
 #include "limen/extract/cells/cell_grid.h"
+#include "limen/extract/planes/cube_counts.h"
 
 namespace limen {
 namespace {
 
-/// A plane with some points in a cube.
-struct NeighbourSupport {
-  std::int32_t plane = -1;
-  std::uint32_t count = 0;
-};
-
-/// Planes by cube, in the order of their first points; cubes are runs of the curve.
+/// Planes by cube.
 class SupportGrid {
  public:
   SupportGrid(const SettleGrid& grid, const std::vector<std::int32_t>& labels, std::uint32_t min_support)
-      : grid_(grid), begins_(grid.runs().size() + 1, 0) {
-    constexpr std::size_t kCubes = 1024;
-    std::vector<std::vector<std::int32_t>> pieces((runs().size() + kCubes - 1) / kCubes);
-    parallel_for(runs().size(), kCubes, [&](std::size_t begin, std::size_t end) {
-      std::vector<std::int32_t>& piece = pieces[begin / kCubes];
-      std::vector<NeighbourSupport> support;
-      for (std::size_t i = begin; i < end; ++i) {
-        support.clear();
-        for (std::uint32_t k = runs().begin(i); k < runs().end(i); ++k) count(labels[k], support);
-        const std::size_t before = piece.size();
-        for (const NeighbourSupport& s : support) {
-          if (s.count >= min_support) piece.push_back(s.plane);
-        }
-        begins_[i + 1] = piece.size() - before;
-      }
-    });
-    std::partial_sum(begins_.begin(), begins_.end(), begins_.begin());
-    planes_.reserve(begins_.back());
-    for (const auto& piece : pieces) planes_.insert(planes_.end(), piece.begin(), piece.end());
-  }
+      : grid_(grid), counts_(grid.runs(), labels, min_support) {}
 
   [[nodiscard]] const CellRuns& runs() const { return grid_.runs(); }
 
@@ -50,8 +26,8 @@ class SupportGrid {
   void near(std::size_t cube, std::vector<std::int32_t>& planes) const {
     planes.clear();
     const auto add = [&](std::size_t i) {
-      for (std::size_t k = begins_[i]; k < begins_[i + 1]; ++k) {
-        if (std::find(planes.begin(), planes.end(), planes_[k]) == planes.end()) planes.push_back(planes_[k]);
+      for (const PlaneCount& it : counts_.of(i)) {
+        if (std::find(planes.begin(), planes.end(), it.plane) == planes.end()) planes.push_back(it.plane);
       }
     };
     add(cube);
@@ -59,19 +35,8 @@ class SupportGrid {
   }
 
  private:
-  static void count(std::int32_t label, std::vector<NeighbourSupport>& support) {
-    if (label < 0) return;
-    for (NeighbourSupport& s : support) {
-      if (s.plane != label) continue;
-      ++s.count;
-      return;
-    }
-    support.push_back({label, 1});
-  }
-
   const SettleGrid& grid_;
-  std::vector<std::size_t> begins_;  ///< of each cube's planes
-  std::vector<std::int32_t> planes_;
+  CubeCounts counts_;
 };
 
 /// Which planes a point may belong to.
