@@ -61,6 +61,10 @@ add_test(NAME installed_package
                  -P ${PROJECT_SOURCE_DIR}/cmake/test_install.cmake)
 set_tests_properties(installed_package PROPERTIES LABELS acceptance)
 
+if(NOT LIMEN_BUILD_BENCHMARKS AND NOT CMAKE_CXX_FLAGS MATCHES "sanitize")
+  include(cmake/read_benchmarks.cmake)
+endif()
+
 # The sanitizers' own libraries are not for handing on.
 if(LIMEN_BUILD_IFC AND NOT "${CMAKE_CXX_FLAGS} ${CMAKE_EXE_LINKER_FLAGS}" MATCHES "sanitize")
   add_test(NAME bundle_runs_anywhere COMMAND ${PROJECT_SOURCE_DIR}/tests/tools/bundle_test ${PROJECT_BINARY_DIR})
