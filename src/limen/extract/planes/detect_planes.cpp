@@ -122,13 +122,13 @@ DetectedPlanes detect_relief(const Scan& scan, const GrowOptions& grow, Monitor&
 /// Planes of a station with what stands a few millimetres before or behind them apart.
 DetectedPlanes detect_fine(const Scan& scan, const GrowOptions& grow, Monitor& monitor) {
   const PlaneGround ground(scan, grow);
-  DetectedPlanes detected;
-  detected.planes = ground.grow(grow.inlier_threshold_m, monitor).planes;
+  const GrownPlanes grown = ground.grow(grow.inlier_threshold_m, monitor);
   FineOptions fine;
-  fine.noise_m = noise_about(detected.planes);
+  fine.noise_m = noise_about(grown.planes);
   fine.drift_m = kStationDriftM;
   fine.min_inliers = grow.min_inliers;
-  detected.planes = fine_station_planes(scan, ground.order(), detected.planes, fine);
+  DetectedPlanes detected;
+  detected.planes = fine_station_planes(scan, ground.order(), grown, fine);
   detected.noise_m = noise_about(detected.planes);
   return detected;
 }

@@ -8,9 +8,7 @@
 #include <vector>
 
 #include "limen/base/parallel.h"
-#include "limen/extract/cells/point_normals.h"
 #include "limen/extract/planes/coherent_labels.h"
-#include "limen/extract/planes/grow_regions.h"
 #include "limen/extract/planes/join_pieces.h"
 #include "limen/extract/planes/label_sums.h"
 #include "limen/extract/planes/relief_sheets.h"
@@ -30,18 +28,17 @@ constexpr double kTakenByOthers = 0.8;   // of a plane that cuts along the edge 
 /// Labels along the curve, with the planes' sums.
 class CurveLabels {
  public:
-  CurveLabels(const Scan& scan, const MortonOrder& order, const PlaneLabels& planes,
+  CurveLabels(const Scan& scan, const MortonOrder& order, const GrownPlanes& grown,
               const FineOptions& options)
       : scan_(scan),
         order_(order),
         grid_(order, kChoiceCellM),
-        normals_(order, kGateShare * planes.inlier_threshold_m),
-        scene_{order_, normals_, grid_},
-        anchor_(planes.fits.front().centroid),
-        threshold_m_(planes.inlier_threshold_m) {
+        scene_{order_, *grown.normals, grid_},
+        anchor_(grown.planes.fits.front().centroid),
+        threshold_m_(grown.inlier_threshold_m) {
     noise_m_ = std::max(kLeastStationNoiseM, options.noise_m);
     drift_m_ = options.drift_m;
-    take(planes.labels, planes.fits.size());
+    take(grown.planes.labels, grown.planes.fits.size());
   }
 
   void add_sheets() {
@@ -128,7 +125,6 @@ class CurveLabels {
   const Scan& scan_;
   const MortonOrder& order_;
   SettleGrid grid_;
-  PointNormals normals_;
   SettleScene scene_;
   Vector3d anchor_;
   double threshold_m_;
@@ -140,11 +136,11 @@ class CurveLabels {
 
 }  // namespace
 
-PlaneLabels fine_station_planes(const Scan& scan, const MortonOrder& order, const PlaneLabels& planes,
+PlaneLabels fine_station_planes(const Scan& scan, const MortonOrder& order, const GrownPlanes& grown,
                                 const FineOptions& options) {
   options.check();
-  if (planes.fits.empty()) return planes;
-  CurveLabels labels(scan, order, planes, options);
+  if (grown.planes.fits.empty()) return grown.planes;
+  CurveLabels labels(scan, order, grown, options);
   labels.add_sheets();
   labels.choose();
   labels.split();

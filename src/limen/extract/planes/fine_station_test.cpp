@@ -196,8 +196,8 @@ TEST(FineStation, LabelsAreOfThePlanesAndThesePlanesHoldEnough) {
 
 TEST(FineStation, OfNothing) {
   const Scan scan;
-  EXPECT_TRUE(fine_station_planes(scan, MortonOrder{}, PlaneLabels{}, {}).fits.empty());
-  EXPECT_THROW(fine_station_planes(scan, MortonOrder{}, PlaneLabels{}, {.min_inliers = 1}), Error);
+  EXPECT_TRUE(fine_station_planes(scan, MortonOrder{}, GrownPlanes{}, {}).fits.empty());
+  EXPECT_THROW(fine_station_planes(scan, MortonOrder{}, GrownPlanes{}, {.min_inliers = 1}), Error);
   EXPECT_TRUE(detect_planes(scan).planes.fits.empty());
 }
 

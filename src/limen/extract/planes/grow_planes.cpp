@@ -5,8 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
 #include <numeric>
-#include <optional>
+#include <utility>
 
 #include "limen/base/angles.h"
 #include "limen/base/error.h"
@@ -59,8 +60,9 @@ class PlaneGrower {
 
   GrownPlanes run(Monitor& monitor) {
     // Regions grow one after the other: meanwhile it is seen how the surface faces at each point.
-    std::optional<PointNormals> normals;
-    run_both([&] { grow(monitor); }, [&] { normals.emplace(sorted_, kGateShare * threshold_m_); });
+    std::shared_ptr<const PointNormals> normals;
+    run_both([&] { grow(monitor); },
+             [&] { normals = std::make_shared<const PointNormals>(sorted_, kGateShare * threshold_m_); });
     monitor.throw_if_cancelled();
     const SettleScene scene{sorted_, *normals, settle_grid_};
     merge();
@@ -74,7 +76,9 @@ class PlaneGrower {
     dissolve(explained_shares(scene, labels_, sums_, settling));
     labels_ = settled(scene, labels_, sums_, settling);
     merge();
-    return finish();
+    GrownPlanes grown = finish();
+    grown.normals = std::move(normals);
+    return grown;
   }
 
  private:

@@ -11,6 +11,8 @@
 
 namespace limen {
 
+class PointNormals;
+
 /// Options of the plane detector for unorganised clouds.
 struct GrowOptions {
   double inlier_threshold_m = 0.0;  ///< 0: 3.3 times the noise found in the cloud, between 8 and 30 mm
@@ -27,6 +29,8 @@ struct GrownPlanes {
   /// One standard deviation of points about their local planes, where the threshold is made of it; else 0.
   double noise_m = 0.0;
   double inlier_threshold_m = 0.0;  ///< the threshold used
+  /// Which way the surface faces at each point of the ground's order; null: there are no points.
+  std::shared_ptr<const PointNormals> normals;
 };
 
 /// The points of a scan in order, to grow planes in them at several thresholds.
