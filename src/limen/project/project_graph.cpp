@@ -11,7 +11,6 @@
 #include "limen/base/angles.h"
 #include "limen/geometry/linear.h"
 #include "limen/project/word_terms.h"
-#include "limen/register/judge/twin_odds.h"
 
 namespace limen {
 namespace {
@@ -67,17 +66,6 @@ void open_up(const std::vector<UnobservedFreedom>& unobserved, Matrix6d& covaria
   }
 }
 
-/// That a room was used in between, or is a twin furnished alike, which always looks so, a pair counts in
-/// what it believes beforehand. It is something that the pair saw: beside others that saw nothing of the kind
-/// it has to stay.
-std::optional<TwinEvidence> as_seen(std::optional<TwinEvidence> said) {
-  const TwinOptions believed;
-  if (!said || said->alike <= 1.001 * believed.prior * believed.alike_share) return said;
-  said->alike *= believed.lived_in;
-  said->alike_nats += std::log(believed.lived_in);
-  return said;
-}
-
 class GraphMaker {
  public:
   GraphMaker(const std::vector<ProjectNode>& nodes, const std::vector<TriedPair>& pairs, double risk,
@@ -113,7 +101,7 @@ class GraphMaker {
     link.target = static_cast<int>(pairs_[k].target);
     link.trust = trust_of(found, twin);
     link.twin = twin;
-    link.evidence = as_seen(found.twin);
+    link.evidence = found.twin;
     link.chance = chance_of(found, twin, link.trust);
     link.poses.push_back(pose_of(link, found, found.best, 1.0));
     if (twin > kLikelier && !spoken) {

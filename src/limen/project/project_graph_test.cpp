@@ -44,23 +44,6 @@ TEST(ProjectGraph, ATwinThatIsMoreProbableThanTheRiskMakesALinkNoMoreThanLikely)
   EXPECT_EQ(trust(told(Outcome::ambiguous, 0.01, 1), 0.05), LinkTrust::open);
 }
 
-/// A pair believes five times as much beforehand in twins furnished alike where its rooms were used in
-/// between: among other pairs that is something it saw, and as probable alone.
-TEST(ProjectGraph, ThatRoomsWereUsedInBetweenIsSeenAndNotBelieved) {
-  RegistrationResult pair = told(Outcome::ambiguous, 0.01);
-  pair.twin.emplace();
-  pair.twin->alike_nats = 3.0;
-  pair.twin->alike = 0.0045;
-  EXPECT_NEAR(links_of(pair, 0.001).front().evidence->alike, 0.0045, 1e-12);
-  EXPECT_NEAR(links_of(pair, 0.001).front().evidence->alike_nats, 3.0, 1e-12);
-  for (const double used : {0.0225, 0.01}) {
-    pair.twin->alike = used;
-    const TwinEvidence seen = *links_of(pair, 0.001).front().evidence;
-    EXPECT_NEAR(seen.alike, used / 5.0, 1e-12);
-    EXPECT_NEAR(seen.alike * std::exp(-seen.alike_nats), used * std::exp(-3.0), 1e-12);
-  }
-}
-
 TEST(ProjectGraph, WhatIsKnownToCentimetresTellsOnePlaceFromAnother) {
   RegistrationResult pair = told(Outcome::under_constrained, 0.0);
   pair.sigma.translation_m = {0.003, 0.02, 0.003};

@@ -427,7 +427,6 @@ void tell(Verdict verdict, const std::vector<JudgedPose>& poses, const std::vect
   }
 }
 
-constexpr double kMostAlike = 0.25;  // of the pairs, beforehand, those of rooms furnished alike
 constexpr double kTwinRather = 0.5;  // probability of a twin above which things tell two rooms
 
 /// Whether two rooms built alike could be taken for one: of a model, or of the house seen from the street,
@@ -518,7 +517,6 @@ RegistrationResult register_prepared(const PreparedPair& pair, const RegisterOpt
     matter.built_nats = unevenness_nats(common_planes(pose, from.view(), to.view()));
     return asked.emplace(&pose, std::move(matter)).first->second;
   };
-  bool used_in_between = false;
   // Of a room in use things stand where the other scan saw free space: no contradiction, if enough of the
   // rest is where it was to tell the room from its twins.
   if (verdict.outcome == Outcome::no_match && may_be_twin(from, to) && !verdict.ranking.empty()) {
@@ -530,7 +528,6 @@ RegistrationResult register_prepared(const PreparedPair& pair, const RegisterOpt
       if (probability_of_twin(matter, judging.twin) < kTwinRather) {
         verdict = std::move(in_use);
         individual = std::move(matter);
-        used_in_between = true;
       }
     }
   }
@@ -548,7 +545,6 @@ RegistrationResult register_prepared(const PreparedPair& pair, const RegisterOpt
       verdict = std::move(heard->verdict);
       twins = std::move(heard->twins);
       individual.reset();
-      used_in_between = false;
     }
   }
   const bool sure = from.surely_upright && to.surely_upright;
@@ -563,9 +559,7 @@ RegistrationResult register_prepared(const PreparedPair& pair, const RegisterOpt
     const RefinedPose& refined = poses[verdict.ranking.front()].refined;
     const Rigid3& best = refined.target_from_source;
     if (!individual) individual = matter_under(refined);
-    TwinEvidence twin = weigh_twin(*individual, judging.twin);
-    // One room in five is used in between; a twin furnished alike always looks so.
-    if (used_in_between || refused) twin.alike = std::min(kMostAlike, twin.alike / judging.twin.lived_in);
+    const TwinEvidence twin = weigh_twin(*individual, judging.twin);
     said.twin = twin.probability();
     if (start)
       said.twin = twin_beside_start(said.twin, start->prior, best, start->at, start->log_prior(best));

@@ -11,164 +11,37 @@
 
 #include "limen/base/progress.h"
 #include "limen/geometry/polygon_clip.h"
-#include "limen/register/judge/stairs.h"
+#include "limen/register/judge/built_planes.h"
+#include "limen/register/judge/figures.h"
+#include "limen/register/judge/met_faces.h"
 
 namespace limen {
 namespace {
 
-// What is the building's: its large planes, and what is near them.
-constexpr double kBeforeWallM = 0.25;   // frames, sills, radiators, skirtings: built with the wall
-constexpr double kBehindWallM = 0.6;    // reveals, frames, panes
-constexpr double kBesideWallM = 0.3;    // beyond the outline that was seen of it
-constexpr double kBelowCeilingM = 0.5;  // lintels, beams, what shows of a wall above furniture
-constexpr double kSameWallM = 0.04;     // strips of a wall that furniture cuts in pieces lie in one plane ...
-constexpr double kSameWallCosine = 0.9994;  // ... to 2 degrees
-constexpr double kLevelCosine = 0.95;
-constexpr double kAtStripM = 0.1;  // before and beside a strip
-
 // When a piece agrees.
-constexpr double kMatterM = 0.08;        // pieces are 0.1 m, means of round ones lie off all surface
-constexpr double kFreeM = 0.15;          // rays passed this far beyond
-constexpr double kUprightCosine = 0.3;   // of a face's normal to the vertical
-constexpr double kSlopedCosine = 0.7;    // of a face that tells shifts along the floor, to the vertical
-constexpr double kSameNormal = 0.94;     // cosine: normals of small pieces are known to some degrees
-constexpr double kBesideM = 0.15;        // along the face, between the middles of two pieces of it
-constexpr double kUnevenM = 0.001;       // roughness, and the pose, at least
-constexpr double kOneFaceM = 0.04;       // pieces that lie so in one plane ...
-constexpr double kOneFaceCosine = 0.97;  // ... facing the same way ...
-constexpr double kNextPieceM = 0.35;     // ... are of one face, piece by piece
-constexpr double kThingLengthM = 0.4;    // faces nearer than this tell the same ...
-constexpr double kFrontLengthM = 1.5;    // ... and those of one plane nearer than this
-constexpr double kFrontCosine = 0.99;    // a front is parallel to its wall to 8 degrees ...
-constexpr double kDeepestM = 0.7;        // ... and no further from it than cupboards are deep
+constexpr double kMatterM = 0.08;       // pieces are 0.1 m, means of round ones lie off all surface
+constexpr double kFreeM = 0.15;         // rays passed this far beyond
+constexpr double kSlopedCosine = 0.7;   // of a face that tells shifts along the floor, to the vertical
+constexpr double kSameNormal = 0.94;    // cosine: normals of small pieces are known to some degrees
+constexpr double kBesideM = 0.15;       // along the face, between the middles of two pieces of it
+constexpr double kUnevenM = 0.001;      // roughness, and the pose, at least
 
 // Pieces nearer than this tell the same: the size of a chair, a box, a monitor. A moved table is few pieces.
 constexpr double kCorrelationM = 0.25;
 constexpr std::size_t kMostPieces = 1200;  // of each kind and scan, evenly chosen
 
+// People come and go. Where six figures of ten are people, one is gone in one room with a probability of 0.64
+// and in two rooms of 0.97: that tells a fifth of what another thing does that is gone (0.1 and 0.93).
+constexpr double kFigureGoneShare = 0.2;  // less than this of it agrees
+constexpr double kFigureTells = 0.2;      // of an observation
+
 constexpr int kDisplacements = 8;
-
-/// One scan's large planes as boxes in the planes' own coordinates, one for each part.
-class BuiltPlanes {
- public:
-  explicit BuiltPlanes(const ScanView& view) : built_(view.features->planes.size(), false) {
-    const std::vector<PlanarPolygon>& planes = view.features->planes;
-    if (view.details != nullptr) flights_ = find_flights(*view.details);
-    for (std::size_t i = 0; i < planes.size(); ++i)
-      if (of_building(planes[i])) add(i, planes[i], false);
-    const std::vector<Part> large = parts_;
-    for (std::size_t i = 0; i < planes.size(); ++i)
-      if (!built_[i] && (reaches_ceiling(planes[i], large) || continues_wall(planes[i], large)))
-        add(i, planes[i], true);
-  }
-
-  [[nodiscard]] bool is_built(std::int32_t plane) const { return built_[static_cast<std::size_t>(plane)]; }
-
-  [[nodiscard]] const std::vector<bool>& flags() const { return built_; }
-
-  enum class Place { off, at_wall, behind };
-  /// Where `x` stands to the walls: at one (or at the ceiling, or on stairs), or behind one.
-  [[nodiscard]] Place place(const Vector3d& x) const {
-    Place found = Place::off;
-    if (std::any_of(flights_.begin(), flights_.end(), [&](const Flight& f) { return f.contains(x); }))
-      return Place::at_wall;
-    for (const Part& part : parts_) {
-      if (is_below(x, part)) return Place::at_wall;
-      const double distance = part.plane.signed_distance(x);
-      if (distance > (part.strip ? kAtStripM : kBeforeWallM)) continue;
-      if (part.strip && distance < -kBehindWallM) continue;
-      const Vector2d at = part.frame.to_plane(x);
-      const Vector2d margin = Vector2d::Constant(part.strip ? kAtStripM : kBesideWallM);
-      if (!Box2{part.box.low - margin, part.box.high + margin}.contains(at)) continue;
-      if (distance > -kBehindWallM) return Place::at_wall;
-      found = Place::behind;
-    }
-    return found;
-  }
-
-  /// Whether a face at `x` may be the front of something that stands with its back to a wall.
-  [[nodiscard]] bool is_front(const Vector3d& x, const Vector3d& normal) const {
-    return std::any_of(parts_.begin(), parts_.end(), [&](const Part& part) {
-      if (std::abs(part.plane.normal.z()) > kUprightCosine) return false;
-      if (part.plane.normal.dot(normal) < kFrontCosine) return false;
-      const double distance = part.plane.signed_distance(x);
-      if (distance < 0.0 || distance > kDeepestM) return false;
-      const Vector2d margin = Vector2d::Constant(kBesideWallM);
-      return Box2{part.box.low - margin, part.box.high + margin}.contains(part.frame.to_plane(x));
-    });
-  }
-
-  /// Whether the way from `a` to `b` leads through a wall, or an opening of it.
-  [[nodiscard]] bool between(const Vector3d& a, const Vector3d& b) const {
-    return std::any_of(parts_.begin(), parts_.end(), [&](const Part& part) {
-      const double from = part.plane.signed_distance(a);
-      const double to = part.plane.signed_distance(b);
-      if (from * to >= 0.0) return false;
-      const Vector3d crossing = a + (b - a) * (from / (from - to));
-      const Vector2d margin = Vector2d::Constant(kBesideWallM);
-      return Box2{part.box.low - margin, part.box.high + margin}.contains(part.frame.to_plane(crossing));
-    });
-  }
-
- private:
-  struct Part {
-    Plane plane;
-    PlaneFrame frame;
-    Box2 box;
-    bool strip = false;
-  };
-
-  void add(std::size_t i, const PlanarPolygon& plane, bool strip) {
-    built_[i] = true;
-    for (const Polygon& part : plane.parts)
-      parts_.push_back({plane.plane, plane.frame, box_of({part}), strip});
-  }
-
-  /// Whether `x` is right below a ceiling.
-  static bool is_below(const Vector3d& x, const Part& part) {
-    if (part.plane.normal.z() > -kLevelCosine) return false;
-    const double below = part.plane.signed_distance(x);
-    if (below <= 0.0 || below > kBelowCeilingM) return false;
-    const Vector2d margin = Vector2d::Constant(kBesideWallM);
-    return Box2{part.box.low - margin, part.box.high + margin}.contains(part.frame.to_plane(x));
-  }
-
-  static bool reaches_ceiling(const PlanarPolygon& plane, const std::vector<Part>& large) {
-    if (std::abs(plane.plane.normal.z()) > kUprightCosine) return false;
-    for (const Polygon& part : plane.parts) {
-      for (const Vector2d& corner : part.outer) {
-        const Vector3d x = plane.frame.to_space(corner);
-        if (std::any_of(large.begin(), large.end(), [&](const Part& one) { return is_below(x, one); }))
-          return true;
-      }
-    }
-    return false;
-  }
-
-  static bool continues_wall(const PlanarPolygon& plane, const std::vector<Part>& large) {
-    const Box2 box = box_of(plane.parts);
-    if (box.empty()) return false;
-    const Vector3d middle = plane.frame.to_space(0.5 * (box.low + box.high));
-    return std::any_of(large.begin(), large.end(), [&](const Part& wall) {
-      return std::abs(wall.plane.normal.z()) < kUprightCosine &&
-             wall.plane.normal.dot(plane.plane.normal) > kSameWallCosine &&
-             std::abs(wall.plane.signed_distance(middle)) < kSameWallM;
-    });
-  }
-
-  std::vector<bool> built_;
-  std::vector<Part> parts_;
-  std::vector<Flight> flights_;
-};
-
-double square(double x) {
-  return x * x;
-}
 
 /// A piece of individual matter of one scan.
 struct Piece {
   const SurfaceDetail* detail = nullptr;
   bool behind = false;  ///< seen through an opening of this scan's walls
+  int figure = -1;      ///< that may be a person
 };
 
 std::vector<Piece> pieces_of(const ScanView& view, const BuiltPlanes& built) {
@@ -177,8 +50,14 @@ std::vector<Piece> pieces_of(const ScanView& view, const BuiltPlanes& built) {
   for (const SurfaceDetail& detail : *view.details) {
     const BuiltPlanes::Place place = built.place(detail.mean);
     if (place != BuiltPlanes::Place::at_wall)
-      pieces.push_back({&detail, place == BuiltPlanes::Place::behind});
+      pieces.push_back({&detail, place == BuiltPlanes::Place::behind, -1});
   }
+  std::vector<Vector3d> middles;
+  middles.reserve(pieces.size());
+  for (const Piece& piece : pieces) middles.push_back(piece.detail->mean);
+  const std::vector<int> figures =
+      find_figures(middles, [&](const Vector3d& x) { return built.floor_below(x); });
+  for (std::size_t i = 0; i < pieces.size(); ++i) pieces[i].figure = figures[i];
   const std::size_t stride = 1 + pieces.size() / kMostPieces;
   std::size_t kept = 0;
   for (std::size_t i = 0; i < pieces.size(); i += stride) pieces[kept++] = pieces[i];
@@ -192,60 +71,56 @@ struct Told {
   Vector3d normal = Vector3d::Zero();  ///< of a flat piece; else zero
   double weight = 0.0;
   bool agrees = false;
+  int figure = -1;  ///< of either scan, that may be a person
 };
-
-/// A face of one scan that the other has as well, in the target's frame.
-struct MetFace {
-  Vector3d at = Vector3d::Zero();
-  Vector3d normal = Vector3d::Zero();
-  double offset_m = 0.0;
-  double sigma_m = 0.0;
-  double weight = 1.0;  ///< pieces
-};
-
-/// Faces near one another may be of one thing, or were pushed together; those in one plane are of one
-/// cupboard or board even where something hides what lies between.
-double correlation(const MetFace& a, const MetFace& b) {
-  const Vector3d apart = a.at - b.at;
-  const bool one_plane = a.normal.dot(b.normal) > kOneFaceCosine && std::abs(apart.dot(a.normal)) < kOneFaceM;
-  return std::exp(-apart.norm() / (one_plane ? kFrontLengthM : kThingLengthM));
-}
 
 /// A leaf, a cupboard's front, a table top is one thing: it is there or not.
 double correlation(const Told& a, const Told& b) {
   const Vector3d apart = a.at - b.at;
-  const bool one_plane = a.normal.dot(b.normal) > kOneFaceCosine && std::abs(apart.dot(a.normal)) < kOneFaceM;
-  return std::exp(-apart.norm() / (one_plane ? kFrontLengthM : kCorrelationM));
+  return std::exp(-apart.norm() / (in_one_face(apart, a.normal, b.normal) ? kFrontLengthM : kCorrelationM));
 }
 
-/// Each piece's share of an observation, w_i / sum_j w_j rho_ij: neighbours that tell the same make one
-/// together, however many they are, and what stands alone is one of its own. Farther apart than `reach_m`
-/// none are correlated.
-template <typename Item>
-std::vector<double> shares_of(const std::vector<Item>& items, double reach_m) {
-  std::vector<double> together(items.size());
-  for (std::size_t i = 0; i < items.size(); ++i) {
-    together[i] += items[i].weight;
-    for (std::size_t j = 0; j < i; ++j) {
-      if ((items[j].at - items[i].at).squaredNorm() > reach_m * reach_m) continue;
-      const double rho = correlation(items[i], items[j]);
-      together[i] += items[j].weight * rho;
-      together[j] += items[i].weight * rho;
-    }
+/// Of each figure whether it has gone, or had not come: what the other scan knows of it is that it saw
+/// through there.
+std::vector<bool> gone_figures(const std::vector<Told>& told) {
+  int count = 0;
+  for (const Told& one : told) count = std::max(count, one.figure + 1);
+  std::vector<double> agreeing(static_cast<std::size_t>(count));
+  std::vector<double> total(static_cast<std::size_t>(count));
+  for (const Told& one : told) {
+    if (one.figure < 0) continue;
+    total[static_cast<std::size_t>(one.figure)] += one.weight;
+    if (one.agrees) agreeing[static_cast<std::size_t>(one.figure)] += one.weight;
   }
-  for (std::size_t i = 0; i < items.size(); ++i)
-    together[i] = together[i] > 0.0 ? items[i].weight / together[i] : 0.0;
-  return together;
+  std::vector<bool> gone(static_cast<std::size_t>(count));
+  for (std::size_t k = 0; k < gone.size(); ++k) gone[k] = agreeing[k] < kFigureGoneShare * total[k];
+  return gone;
 }
 
 double agreeing_share(const std::vector<Told>& told) {
+  const std::vector<bool> gone = gone_figures(told);
   double total = 0.0;
   double agreeing = 0.0;
   for (const Told& one : told) {
+    if (one.figure >= 0 && gone[static_cast<std::size_t>(one.figure)]) continue;
     total += one.weight;
     if (one.agrees) agreeing += one.weight;
   }
   return total > 0.0 ? agreeing / total : 0.0;
+}
+
+/// Each answer's share of an observation; all that a figure says which has gone is one answer, and less.
+std::vector<double> shares_of_told(const std::vector<Told>& told) {
+  std::vector<double> shares = shares_of(told, 8.0 * kThingLengthM);
+  const std::vector<bool> gone = gone_figures(told);
+  std::vector<double> sums(gone.size());
+  for (std::size_t i = 0; i < told.size(); ++i)
+    if (told[i].figure >= 0) sums[static_cast<std::size_t>(told[i].figure)] += shares[i];
+  for (std::size_t i = 0; i < told.size(); ++i) {
+    if (told[i].figure < 0 || !gone[static_cast<std::size_t>(told[i].figure)]) continue;
+    shares[i] *= std::min(1.0, kFigureTells / sums[static_cast<std::size_t>(told[i].figure)]);
+  }
+  return shares;
 }
 
 /// `shares`: each answer's, of an observation.
@@ -273,6 +148,8 @@ struct Side {
 void ask_matter(const Side& scan, const Side& judge, const Rigid3& judge_from_scan,
                 const Rigid3& target_from_scan, std::vector<Told>& told) {
   if (!judge.view.knows_free) return;  // what it does not contradict it does not confirm either
+  int first_figure = 0;
+  for (const Told& one : told) first_figure = std::max(first_figure, one.figure + 1);
   for (const Piece& piece : scan.pieces) {
     SightQuery query;
     query.at = judge_from_scan * piece.detail->mean;
@@ -289,7 +166,9 @@ void ask_matter(const Side& scan, const Side& judge, const Rigid3& judge_from_sc
     const SurfaceDetail& detail = *piece.detail;
     const Vector3d normal =
         detail.flat() ? Vector3d(target_from_scan.rotation * detail.normal) : Vector3d::Zero();
-    told.push_back({target_from_scan * detail.mean, normal, static_cast<double>(detail.area_m2), surface});
+    const int figure = piece.figure < 0 ? -1 : first_figure + piece.figure;
+    told.push_back(
+        {target_from_scan * detail.mean, normal, static_cast<double>(detail.area_m2), surface, figure});
   }
 }
 
@@ -366,59 +245,6 @@ std::vector<MetFace> met_faces(const Side& scan, const Side& judge, const Rigid3
   return faces;
 }
 
-/// Whether a piece goes on where those of a face, given by their numbers, end. What lies in one plane above
-/// one another is of one leaf or cupboard, of which something hides the middle.
-bool continues(const MetFace& piece, const std::vector<MetFace>& pieces,
-               const std::vector<std::size_t>& face) {
-  const MetFace& first = pieces[face.front()];
-  if (piece.normal.dot(first.normal) < kOneFaceCosine) return false;
-  if (std::abs(first.normal.dot(piece.at - first.at)) > kOneFaceM) return false;
-  return std::any_of(face.rbegin(), face.rend(), [&](std::size_t k) {
-    return (pieces[k].at - piece.at).head<2>().squaredNorm() < kNextPieceM * kNextPieceM;
-  });
-}
-
-/// What the pieces of one face say together.
-MetFace mean_of(const std::vector<MetFace>& pieces, const std::vector<std::size_t>& face) {
-  constexpr double kLeastSigmaM = 1e-4;
-  MetFace mean;
-  double weights = 0.0;
-  for (const std::size_t k : face) {
-    const double weight = 1.0 / (square(pieces[k].sigma_m) + square(kLeastSigmaM));
-    mean.offset_m += weight * pieces[k].offset_m;
-    mean.at += pieces[k].at;
-    mean.normal += pieces[k].normal;
-    weights += weight;
-  }
-  const auto count = static_cast<double>(face.size());
-  mean.offset_m /= weights;
-  mean.at /= count;
-  mean.normal.normalize();
-  mean.weight = count;
-  double scatter = 0.0;
-  for (const std::size_t k : face) scatter += square(pieces[k].offset_m - mean.offset_m);
-  mean.sigma_m = std::sqrt(1.0 / weights + scatter / square(count));
-  return mean;
-}
-
-/// The pieces of one face were put where they are together: they make one observation, a better one the more
-/// they are.
-std::vector<MetFace> joined(const std::vector<MetFace>& pieces) {
-  std::vector<std::vector<std::size_t>> faces;
-  for (std::size_t k = 0; k < pieces.size(); ++k) {
-    const auto found = std::find_if(faces.begin(), faces.end(),
-                                    [&](const auto& face) { return continues(pieces[k], pieces, face); });
-    if (found != faces.end())
-      found->push_back(k);
-    else
-      faces.push_back({k});
-  }
-  std::vector<MetFace> means;
-  means.reserve(faces.size());
-  for (const std::vector<std::size_t>& face : faces) means.push_back(mean_of(pieces, face));
-  return means;
-}
-
 /// What stands in a room is its own to the millimetre: offsets between pieces that both scans have.
 FaceOffsets face_offsets(const Side& source, const Side& target, const Rigid3& target_from_source) {
   const Rigid3 source_from_target = inverse(target_from_source);
@@ -483,8 +309,7 @@ IndividualMatter individual_matter(const ScanView& source_view, const ScanView& 
   const Side source(source_view);
   const Side target(target_view);
   const std::vector<Told> told = told_of_matter(source, target, target_from_source);
-  const std::vector<double> shares = shares_of(told, 8.0 * kThingLengthM);
-  individual.matter = observations(told, shares);
+  individual.matter = observations(told, shares_of_told(told));
   individual.chance = chance_of(source, target, target_from_source);
   individual.apart = wall_between(source, target, target_from_source) ||
                      wall_between(target, source, inverse(target_from_source));

@@ -153,6 +153,8 @@ void TwinOptions::check() const {
   kept.check("kept");
   check_share("lived_in", lived_in);
   kept_lived_in.check("kept_lived_in");
+  put_alike.check("put_alike");
+  check_share("nothing_own", nothing_own);
   if (!(more_than_chance >= 0)) throw_bad_option("more_than_chance", more_than_chance, "0 or more");
   if (!(chance_strength > 0)) throw_bad_option("chance_strength", chance_strength, "more than 0");
 }
@@ -164,6 +166,9 @@ TwinEvidence weigh_twin(const IndividualMatter& individual, const TwinOptions& o
   const double stayed =
       log_sum_exp({std::log(1.0 - options.lived_in) + log_likelihood(individual.matter, options.kept),
                    std::log(options.lived_in) + log_likelihood(individual.matter, options.kept_lived_in)});
+  const double as_put = log_sum_exp(
+      {std::log(options.nothing_own) + log_likelihood(individual.matter, options.kept),
+       std::log(1.0 - options.nothing_own) + log_likelihood(individual.matter, options.put_alike)});
   const double prior = individual.apart ? options.prior_apart : options.prior;
   const double same = log_likelihood(individual.faces, one_room());
   // Of a whole room sides are seen as well as fronts, and by chance one stands elsewhere; through a door few
@@ -177,7 +182,7 @@ TwinEvidence weigh_twin(const IndividualMatter& individual, const TwinOptions& o
   evidence.otherwise = std::max(0.0, prior - evidence.alike);
   evidence.otherwise_nats =
       stayed - log_likelihood(individual.matter, chance) + same - log_likelihood(individual.faces, otherwise);
-  evidence.alike_nats = same - log_likelihood(individual.faces, alike);
+  evidence.alike_nats = stayed - as_put + same - log_likelihood(individual.faces, alike);
   evidence.built_nats = individual.built_nats;
   return evidence;
 }

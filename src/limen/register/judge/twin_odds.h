@@ -22,6 +22,10 @@ struct TwinOptions {
   ShareBelief kept{0.9, 7.0};
   double lived_in = 0.2;  ///< share of such pairs
   ShareBelief kept_lived_in{0.55, 4.0};
+  /// Rooms furnished alike have the same furniture, and people's own things in and on it; in some nothing but
+  /// what is alike.
+  ShareBelief put_alike{0.62, 6.0};
+  double nothing_own = 0.5;        ///< share of such pairs: their things agree as those of one room
   double more_than_chance = 0.05;  ///< rooms are furnished along walls and round tables: added to chance
   double chance_strength = 20.0;   ///< how well chance is known, in observations
 

@@ -1,0 +1,58 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "limen/geometry/polygon_clip.h"
+#include "limen/geometry/plane.h"
+#include "limen/register/judge/stairs.h"
+#include "limen/register/prepare/scan_view.h"
+
+namespace limen {
+
+/// What is the building's of one scan: its large planes as boxes in the planes' own coordinates, one for each
+/// part, what is near them, and flights of stairs. Upright frame.
+class BuiltPlanes {
+ public:
+  explicit BuiltPlanes(const ScanView& view);
+
+  [[nodiscard]] bool is_built(std::int32_t plane) const { return built_[static_cast<std::size_t>(plane)]; }
+
+  [[nodiscard]] const std::vector<bool>& flags() const { return built_; }
+
+  /// How high the uppermost floor below `x` is.
+  [[nodiscard]] std::optional<double> floor_below(const Vector3d& x) const;
+
+  enum class Place { off, at_wall, behind };
+  /// Where `x` stands to the walls: at one (or at the ceiling, or on stairs), or behind one.
+  [[nodiscard]] Place place(const Vector3d& x) const;
+
+  /// Whether a face at `x` may be the front of something that stands with its back to a wall.
+  [[nodiscard]] bool is_front(const Vector3d& x, const Vector3d& normal) const;
+
+  /// Whether the way from `a` to `b` leads through a wall, or an opening of it.
+  [[nodiscard]] bool between(const Vector3d& a, const Vector3d& b) const;
+
+ private:
+  struct Part {
+    Plane plane;
+    PlaneFrame frame;
+    Box2 box;
+    bool strip = false;
+
+    /// Whether `x` is right below a ceiling.
+    [[nodiscard]] bool is_above(const Vector3d& x) const;
+  };
+
+  void add(std::size_t i, const PlanarPolygon& plane, bool strip);
+  static bool reaches_ceiling(const PlanarPolygon& plane, const std::vector<Part>& large);
+  static bool continues_wall(const PlanarPolygon& plane, const std::vector<Part>& large);
+
+  std::vector<bool> built_;
+  std::vector<Part> parts_;
+  std::vector<Flight> flights_;
+};
+
+}  // namespace limen
