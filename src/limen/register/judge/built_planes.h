@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
-#include "limen/geometry/polygon_clip.h"
 #include "limen/geometry/plane.h"
+#include "limen/geometry/polygon_clip.h"
 #include "limen/register/judge/stairs.h"
 #include "limen/register/prepare/scan_view.h"
 

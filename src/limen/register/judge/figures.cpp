@@ -14,7 +14,7 @@ namespace limen {
 namespace {
 
 constexpr double kJoinedM = 0.3;  // pieces of one thing: cubes of 10 to 20 cm, and some that were not seen
-constexpr double kReachM = 0.5;   // level, from the middle: shoulders, an arm, a bag
+constexpr double kFigureReachM = 0.5;  // level, from the middle: shoulders, an arm, a bag
 constexpr double kLeastExtentM = 0.6;  // of what is seen of a person, in height
 constexpr double kMostExtentM = 2.0;
 constexpr double kLeastTopM = 1.3;  // above the floor: what is lower may be a chair
@@ -57,7 +57,7 @@ bool is_figure(const std::vector<Vector3d>& pieces, const std::vector<std::size_
   if (high - low < kLeastExtentM || high - low > kMostExtentM) return false;
   middle /= static_cast<double>(thing.size());
   const bool narrow = std::all_of(thing.begin(), thing.end(), [&](std::size_t i) {
-    return (pieces[i] - middle).head<2>().squaredNorm() < kReachM * kReachM;
+    return (pieces[i] - middle).head<2>().squaredNorm() < kFigureReachM * kFigureReachM;
   });
   if (!narrow) return false;
   const std::optional<double> floor = floor_below(middle);

@@ -19,12 +19,12 @@ namespace limen {
 namespace {
 
 // When a piece agrees.
-constexpr double kMatterM = 0.08;       // pieces are 0.1 m, means of round ones lie off all surface
-constexpr double kFreeM = 0.15;         // rays passed this far beyond
-constexpr double kSlopedCosine = 0.7;   // of a face that tells shifts along the floor, to the vertical
-constexpr double kSameNormal = 0.94;    // cosine: normals of small pieces are known to some degrees
-constexpr double kBesideM = 0.15;       // along the face, between the middles of two pieces of it
-constexpr double kUnevenM = 0.001;      // roughness, and the pose, at least
+constexpr double kMatterM = 0.08;      // pieces are 0.1 m, means of round ones lie off all surface
+constexpr double kFreeM = 0.15;        // rays passed this far beyond
+constexpr double kSlopedCosine = 0.7;  // of a face that tells shifts along the floor, to the vertical
+constexpr double kSameNormal = 0.94;   // cosine: normals of small pieces are known to some degrees
+constexpr double kBesideM = 0.15;      // along the face, between the middles of two pieces of it
+constexpr double kUnevenM = 0.001;     // roughness, and the pose, at least
 
 // Pieces nearer than this tell the same: the size of a chair, a box, a monitor. A moved table is few pieces.
 constexpr double kCorrelationM = 0.25;
