@@ -510,10 +510,12 @@ RegistrationResult register_prepared(const PreparedPair& pair, const RegisterOpt
   Verdict verdict = judge(poses, contrast, judging);
   std::optional<IndividualMatter> individual;  // under the best pose, once it was asked for
   std::map<const RefinedPose*, IndividualMatter> asked;
+  std::optional<MatterAsker> ask_matter;
   const MatterFunction matter_under = [&](const RefinedPose& pose) {
     const auto known = asked.find(&pose);
     if (known != asked.end()) return known->second;
-    IndividualMatter matter = individual_matter(from.view(), to.view(), pose.target_from_source);
+    if (!ask_matter) ask_matter.emplace(from.view(), to.view());
+    IndividualMatter matter = (*ask_matter)(pose.target_from_source);
     matter.built_nats = unevenness_nats(common_planes(pose, from.view(), to.view()));
     return asked.emplace(&pose, std::move(matter)).first->second;
   };

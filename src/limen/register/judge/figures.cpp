@@ -3,12 +3,12 @@
 #include "limen/register/judge/figures.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <unordered_map>
 
 #include "limen/base/disjoint_sets.h"
+#include "limen/geometry/cell_key.h"
 
 namespace limen {
 namespace {
@@ -20,27 +20,20 @@ constexpr double kMostExtentM = 2.0;
 constexpr double kLeastTopM = 1.3;  // above the floor: what is lower may be a chair
 constexpr double kMostTopM = 2.1;
 
-std::int64_t cell_of(const Vector3d& x, int dx = 0, int dy = 0, int dz = 0) {
-  const auto part = [](double at, int step) {
-    return (static_cast<std::int64_t>(std::floor(at / kJoinedM)) + step) & 0x1fffff;
-  };
-  return (part(x.z(), dz) << 42) | (part(x.y(), dy) << 21) | part(x.x(), dx);
-}
-
 /// Pieces joined one by one.
 DisjointSets things_of(const std::vector<Vector3d>& pieces) {
   std::unordered_map<std::int64_t, std::vector<std::size_t>> cells;
-  for (std::size_t i = 0; i < pieces.size(); ++i) cells[cell_of(pieces[i])].push_back(i);
   DisjointSets things(pieces.size());
-  for (std::size_t i = 0; i < pieces.size(); ++i)
-    for (int dx = -1; dx <= 1; ++dx)
-      for (int dy = -1; dy <= 1; ++dy)
-        for (int dz = -1; dz <= 1; ++dz) {
-          const auto found = cells.find(cell_of(pieces[i], dx, dy, dz));
-          if (found == cells.end()) continue;
-          for (const std::size_t j : found->second)
-            if (j < i && (pieces[i] - pieces[j]).squaredNorm() < kJoinedM * kJoinedM) things.join(i, j);
-        }
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    const Vector3d cell = cell_of(pieces[i], kJoinedM);
+    for (int k = 0; k < 27; ++k) {
+      const auto found = cells.find(cell_key(cell + way_to_cell(k)));
+      if (found == cells.end()) continue;
+      for (const std::size_t j : found->second)
+        if ((pieces[i] - pieces[j]).squaredNorm() < kJoinedM * kJoinedM) things.join(i, j);
+    }
+    cells[cell_key(cell)].push_back(i);
+  }
   return things;
 }
 

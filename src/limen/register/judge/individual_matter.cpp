@@ -299,15 +299,24 @@ double chance_of(const Side& source, const Side& target, const Rigid3& target_fr
 
 }  // namespace
 
-IndividualMatter individual_matter(const ScanView& source_view, const ScanView& target_view,
-                                   const Rigid3& target_from_source) {
+struct MatterAsker::Sides {
+  Side source;
+  Side target;
+};
+
+MatterAsker::MatterAsker(const ScanView& source, const ScanView& target)
+    : sides_(new Sides{Side(source), Side(target)}) {}
+
+MatterAsker::~MatterAsker() = default;
+
+IndividualMatter MatterAsker::operator()(const Rigid3& target_from_source) const {
   CancelScope::check();
+  const Side& source = sides_->source;
+  const Side& target = sides_->target;
   IndividualMatter individual;
-  individual.source_built.assign(source_view.features->planes.size(), true);
-  individual.target_built.assign(target_view.features->planes.size(), true);
-  if (source_view.space == nullptr || target_view.space == nullptr) return individual;
-  const Side source(source_view);
-  const Side target(target_view);
+  individual.source_built.assign(source.view.features->planes.size(), true);
+  individual.target_built.assign(target.view.features->planes.size(), true);
+  if (source.view.space == nullptr || target.view.space == nullptr) return individual;
   const std::vector<Told> told = told_of_matter(source, target, target_from_source);
   individual.matter = observations(told, shares_of_told(told));
   individual.chance = chance_of(source, target, target_from_source);
@@ -317,6 +326,11 @@ IndividualMatter individual_matter(const ScanView& source_view, const ScanView& 
   individual.source_built = source.built.flags();
   individual.target_built = target.built.flags();
   return individual;
+}
+
+IndividualMatter individual_matter(const ScanView& source, const ScanView& target,
+                                   const Rigid3& target_from_source) {
+  return MatterAsker(source, target)(target_from_source);
 }
 
 }  // namespace limen

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "limen/register/prepare/scan_view.h"
@@ -49,8 +50,24 @@ struct IndividualMatter {
   double built_nats = 0.0;
 };
 
-/// Asks each scan about the other's individual matter under a pose (upright frames): pieces of surface on no
+/// Asks each scan about the other's individual matter under poses (upright frames): pieces of surface on no
 /// plane, or on a plane smaller than a wall, off all large planes of both scans. Neither side is a model.
+/// What is the building's of either scan is found once; what the views point to has to outlive this.
+class MatterAsker {
+ public:
+  MatterAsker(const ScanView& source, const ScanView& target);
+  ~MatterAsker();
+  MatterAsker(const MatterAsker&) = delete;
+  MatterAsker& operator=(const MatterAsker&) = delete;
+
+  [[nodiscard]] IndividualMatter operator()(const Rigid3& target_from_source) const;
+
+ private:
+  struct Sides;
+  std::unique_ptr<Sides> sides_;
+};
+
+/// The same of one pose.
 IndividualMatter individual_matter(const ScanView& source, const ScanView& target,
                                    const Rigid3& target_from_source);
 

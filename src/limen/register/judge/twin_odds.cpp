@@ -21,6 +21,13 @@ double log_likelihood(const Observations& seen, const ShareBelief& belief) {
   return log_beta_binomial(agreeing, seen.count - agreeing, belief);
 }
 
+/// Of pairs of two kinds, a share of the second.
+double log_likelihood(const Observations& seen, const ShareBelief& first, const ShareBelief& second,
+                      double share_of_second) {
+  return log_sum_exp({std::log(1.0 - share_of_second) + log_likelihood(seen, first),
+                      std::log(share_of_second) + log_likelihood(seen, second)});
+}
+
 /// Normal density of an offset, cut off at +-kNearFaceM.
 double normal_density(double offset_m, double sigma_m) {
   const double z = offset_m / sigma_m;
@@ -164,11 +171,9 @@ TwinEvidence weigh_twin(const IndividualMatter& individual, const TwinOptions& o
   const ShareBelief chance{std::clamp(individual.chance + options.more_than_chance, 0.01, 0.7),
                            options.chance_strength};
   const double stayed =
-      log_sum_exp({std::log(1.0 - options.lived_in) + log_likelihood(individual.matter, options.kept),
-                   std::log(options.lived_in) + log_likelihood(individual.matter, options.kept_lived_in)});
-  const double as_put = log_sum_exp(
-      {std::log(options.nothing_own) + log_likelihood(individual.matter, options.kept),
-       std::log(1.0 - options.nothing_own) + log_likelihood(individual.matter, options.put_alike)});
+      log_likelihood(individual.matter, options.kept, options.kept_lived_in, options.lived_in);
+  const double as_put =
+      log_likelihood(individual.matter, options.put_alike, options.kept, options.nothing_own);
   const double prior = individual.apart ? options.prior_apart : options.prior;
   const double same = log_likelihood(individual.faces, one_room());
   // Of a whole room sides are seen as well as fronts, and by chance one stands elsewhere; through a door few
@@ -182,7 +187,9 @@ TwinEvidence weigh_twin(const IndividualMatter& individual, const TwinOptions& o
   evidence.otherwise = std::max(0.0, prior - evidence.alike);
   evidence.otherwise_nats =
       stayed - log_likelihood(individual.matter, chance) + same - log_likelihood(individual.faces, otherwise);
-  evidence.alike_nats = stayed - as_put + same - log_likelihood(individual.faces, alike);
+  // Things that agree to centimetres speak against no twin furnished alike: how much of its rooms' things is
+  // their own is a property of a building, and would count anew in each of its pairs.
+  evidence.alike_nats = std::min(0.0, stayed - as_put) + same - log_likelihood(individual.faces, alike);
   evidence.built_nats = individual.built_nats;
   return evidence;
 }

@@ -85,22 +85,21 @@ TEST(TwinOdds, ThingsThatAgreeToCentimetresMayBeATwinFurnishedAlike) {
   EXPECT_LT(probability_of_twin(apart), together);
 }
 
-TEST(TwinOdds, OfRoomsFurnishedAlikeSomeOfWhatLiesAboutIsTheirOwn) {
+TEST(TwinOdds, ThingsThatAreOthersSpeakForATwinFurnishedAlike) {
   const FaceOffsets few = faces(3, 0.002);
-  const double all = probability_of_twin(seen({20, 1.0}, few));
-  const double most = probability_of_twin(seen({20, 0.85}, few));
-  const double some = probability_of_twin(seen({20, 0.6}, few));
-  EXPECT_LT(all, most);
-  EXPECT_LT(2.0 * all, some);
-  // That all of it agrees tells less than one face to the millimetre: there may be nothing of their own.
-  EXPECT_GT(2.5 * all, probability_of_twin(seen({8, 0.9}, few)));
+  const double all = weigh_twin(seen({20, 1.0}, few)).alike_nats;
+  EXPECT_DOUBLE_EQ(all, weigh_twin(seen({0, 0.0}, few)).alike_nats);
+  // A third of the things lies elsewhere: so it is in one pair of five of one room, and in most of those.
+  EXPECT_LT(weigh_twin(seen({20, 0.65}, few)).alike_nats, all - 0.5);
 }
 
 TEST(TwinOdds, ThroughADoorNoBeliefAloneRegisters) {
   // However much agrees: where no face was seen by both, rooms furnished alike would look the same.
   IndividualMatter apart = seen({60, 1.0}, {});
   apart.apart = true;
-  EXPECT_GT(probability_of_twin(apart), 1.2 * kRisk);
+  EXPECT_GT(probability_of_twin(apart), 1.5 * kRisk);
+  // Nor does it against them in many pairs together.
+  EXPECT_DOUBLE_EQ(weigh_twin(apart).alike_nats, 0.0);
   apart.faces = seen({60, 1.0}, faces(4, 0.001)).faces;
   EXPECT_LT(probability_of_twin(apart), kRisk);
 }
