@@ -87,12 +87,13 @@ class RivalSearch {
                     link.trust == LinkTrust::open ? kOpenWrong : 0.0);
   }
 
-  /// Whether a pose says no more than what is known of it allows, or than nobody cares about.
+  /// Whether a pose says no more than what is known of it allows (as mildly as it would be heard for another
+  /// place: a street's openings miss by three deviations at times), or than nobody cares about.
   [[nodiscard]] static bool is_present_place(const LinkPose& pose, const Rigid3& present) {
     const Rigid3 movement = present * inverse(pose.target_from_source);
     const bool near = (movement * pose.centre - pose.centre).norm() < kSameShiftM &&
                       rotation_angle(movement.rotation) < kSameTurnRad;
-    return near || chi_square(misfit(pose, present), pose.covariance) <= kChiSquareBound;
+    return near || fits(pose, present);
   }
 
   /// What a link would measure once one of its ends has moved.
@@ -290,7 +291,9 @@ class RivalSearch {
     const int now = accepted_.pose[k];
     const int then = rival_pose(static_cast<int>(k), moved, movement);
     if (now >= 0 && then < 0) question.current.push_back(static_cast<int>(k));
-    if (now < 0 && then >= 0)
+    const bool fits_both = then >= 0 && fits(link.poses[static_cast<std::size_t>(then)],
+                                             inverse(at(link.target)) * at(link.source));
+    if (now < 0 && then >= 0 && !fits_both)
       (link.trust > LinkTrust::sure ? open_rivals : question.rival).push_back(static_cast<int>(k));
     if (now >= 0 && then >= 0 && now != then) {
       const double better = nats_of(link, now) - nats_of(link, then);
