@@ -180,6 +180,7 @@ class RegisterOptions:
     method: str
     gravity: str
     wall_thickness_m: float
+    nothing_repeats: bool
     seed: int
     extract: ExtractOptions
     refined_poses: int
@@ -190,6 +191,7 @@ class RegisterOptions:
         method: str = ...,
         gravity: str = ...,
         wall_thickness_m: float = ...,
+        nothing_repeats: bool = ...,
         seed: int = ...,
         extract: ExtractOptions = ...,
         refined_poses: int = ...,

@@ -312,6 +312,7 @@ def register(
     method: str = _DEFAULTS.method,
     gravity: str = _DEFAULTS.gravity,
     wall_thickness_m: float = _DEFAULTS.wall_thickness_m,
+    nothing_repeats: bool = _DEFAULTS.nothing_repeats,
     seed: int = _DEFAULTS.seed,
     centre: Optional[npt.ArrayLike] = None,
     source_centre: Optional[npt.ArrayLike] = None,
@@ -324,7 +325,8 @@ def register(
     Either side is a Scan, a Model, a file of either, an array of points (n, 3) in metres, or a list of
     (scan, pose) known to one another. centre: from where arrays were seen, one place or one per point;
     source_centre and target_centre where the two differ.
-    method: auto, polygons, openings, hybrid or segments. gravity: auto, up or unknown.
+    method: auto, polygons, openings, hybrid or segments. gravity: auto, up or unknown. nothing_repeats: no
+    room, flat or storey of the building was built like another, as you know it (docs/judge.md).
     `options` has all that the keywords have and more; keywords that are not at their defaults count first.
     """
     asked = copy.copy(_DEFAULTS if options is None else options)
@@ -332,6 +334,7 @@ def register(
         ("method", method),
         ("gravity", gravity),
         ("wall_thickness_m", wall_thickness_m),
+        ("nothing_repeats", nothing_repeats),
         ("seed", seed),
     ):
         if value != getattr(_DEFAULTS, name):

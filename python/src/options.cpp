@@ -166,6 +166,8 @@ void bind_options(py::module_& module) {
       .choice("method", &RegisterOptions::method, kMethods, "auto, polygons, openings, hybrid or segments")
       .choice("gravity", &RegisterOptions::gravity, kGravities, "auto, up or unknown")
       .field("wall_thickness_m", &RegisterOptions::wall_thickness_m, "of the outer walls; 0: not known")
+      .field("nothing_repeats", &RegisterOptions::nothing_repeats,
+             "no room, flat or storey of the building was built like another, as you know it")
       .field("seed", &RegisterOptions::seed, "of every random choice")
       .field("extract", &RegisterOptions::extract, "planes of the scans")
       .field("refined_poses", &RegisterOptions::refined_poses, "candidates that are refined and judged")

@@ -154,6 +154,7 @@ void bind_registration(py::module_& module) {
     OptionList& told = registered.report.options;
     for (const char* name : {"method", "gravity"})
       told.emplace_back(name, asked.attr(name).cast<std::string>());
+    if (options.nothing_repeats) told.emplace_back("repeats", "none");
     if (options.wall_thickness_m > 0) told.emplace_back("wall_thickness_m", options.wall_thickness_m);
     return registered;
   });

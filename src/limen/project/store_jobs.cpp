@@ -71,6 +71,7 @@ std::string store_options(const ProjectOptions& options) {
                                  static_cast<int>(registering.method), static_cast<int>(registering.gravity),
                                  registering.wall_thickness_m, registering.seed, options.reading.level,
                                  options.reading.memory_bytes);
+  if (registering.nothing_repeats) text += " nothing repeats";
   if (const std::string key = key_of(options.trajectories); !key.empty()) text += " trajectories " + key;
   return text;
 }

@@ -42,6 +42,7 @@ Order options_order(const ProjectOptions& options) {
           {"gravity", static_cast<int>(registering.gravity)},
           {"wall_thickness_m", registering.wall_thickness_m},
           {"seed", registering.seed},
+          {"nothing_repeats", registering.nothing_repeats},
           {"level", options.reading.level},
           {"memory_bytes", options.reading.memory_bytes},
           {"trajectories", told.files},
@@ -57,6 +58,7 @@ ProjectOptions options_from(const Order& order) {
   options.registering.gravity = static_cast<Gravity>(order.at("gravity").get<int>());
   options.registering.wall_thickness_m = order.at("wall_thickness_m");
   options.registering.seed = order.at("seed");
+  options.registering.nothing_repeats = order.at("nothing_repeats");
   options.reading.level = order.at("level");
   options.reading.memory_bytes = order.at("memory_bytes");
   ToldTrajectories& told = options.trajectories;

@@ -485,6 +485,10 @@ void RegisterOptions::check() const {
   if (alternatives < 0) throw_bad_option("alternatives", alternatives, "0 or more");
 }
 
+TwinOptions RegisterOptions::twins() const {
+  return nothing_repeats ? where_nothing_repeats(verdict.twin) : verdict.twin;
+}
+
 RegistrationResult register_prepared(const PreparedPair& pair, const RegisterOptions& options,
                                      Monitor& monitor) {
   options.check();
@@ -504,6 +508,7 @@ RegistrationResult register_prepared(const PreparedPair& pair, const RegisterOpt
                           fine_score(from.view(), to.view(), options.method));
   };
   VerdictOptions judging = options.verdict;
+  judging.twin = options.twins();
   const bool model = from.model || to.model;
   judging.in_model = model;
   judging.through_wall = !model && from.mobile != to.mobile;

@@ -35,11 +35,14 @@ struct RegisterOptions {
   RefineOptions refine;
   VerdictOptions verdict;
   std::optional<StartPrior> start = {};  ///< what is believed of the pose beforehand, world to world
+  bool nothing_repeats = false;          ///< a user says so of the building's rooms, flats and storeys
   int refined_poses = 32;                ///< candidates that are refined and judged
   int alternatives = 8;                  ///< different poses reported besides the best
   bool picture = false;                  ///< keep what a report draws
 
   void check() const;
+  /// What is believed of twins, the user's words counted.
+  [[nodiscard]] TwinOptions twins() const;
 };
 
 /// How the scans of a pair are to be prepared.

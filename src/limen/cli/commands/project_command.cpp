@@ -49,6 +49,7 @@ struct ProjectCommandOptions {
   std::string crs;
   TrajectoryChoice trajectories;
   double risk = VerdictOptions{}.risk;
+  std::string repeats = "unknown";
   bool apart = false;
   bool rigid_passes = false;
   std::string engine = "local";
@@ -86,6 +87,7 @@ ProjectOptions project_options(const ProjectCommandOptions& options, const Sessi
   project.reading = with_choice(read_options("", "--origin", options.gravity), reading);
   project.registering.verdict.risk = options.risk;
   project.registering.verdict.check();
+  project.registering.nothing_repeats = options.repeats == "none";
   project.all_pairs = options.pairs == "all";
   project.stations_apart = options.apart;
   project.rigid_passes = options.rigid_passes;
@@ -100,6 +102,7 @@ OptionList reported(const ProjectCommandOptions& options, const Session& session
   if (options.apart) list.emplace_back("stations_apart", true);
   if (options.rigid_passes) list.emplace_back("rigid_passes", true);
   if (options.risk != VerdictOptions{}.risk) list.emplace_back("risk", options.risk);
+  if (options.repeats != "unknown") list.emplace_back("repeats", options.repeats);
   if (!options.memory.empty()) list.emplace_back("memory", options.memory);
   if (!options.control.empty()) list.emplace_back("control", options.control);
   if (!options.check.empty()) list.emplace_back("check", options.check);
@@ -420,6 +423,7 @@ void add_project_command(CommandLine& app, Session& session) {
                    "Tell a scan as registered only where it stands elsewhere with less than this probability "
                    "(default 0.001)")
       ->type_name("P");
+  add_repeats_option(*command, options->repeats);
   add_engine_options(*command, *options);
   add_pdf_option(*command, options->pdf);
   add_crs_option(*command, options->crs);

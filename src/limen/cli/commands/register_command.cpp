@@ -40,6 +40,7 @@ struct RegisterCommandOptions {
   std::vector<std::string> target_with;
   std::string start;
   std::string start_sigma;
+  std::string repeats = "unknown";
   double wall_thickness_m = 0.0;
   double risk = VerdictOptions{}.risk;
   bool no_report = false;
@@ -119,6 +120,7 @@ OptionList reported(const RegisterCommandOptions& options) {
     list.emplace_back("target_trajectory", options.target_reading.trajectory);
   if (!options.start.empty()) list.emplace_back("start", options.start);
   if (!options.start_sigma.empty()) list.emplace_back("start_sigma", options.start_sigma);
+  if (options.repeats != "unknown") list.emplace_back("repeats", options.repeats);
   if (options.wall_thickness_m > 0) list.emplace_back("wall_thickness_m", options.wall_thickness_m);
   if (options.risk != VerdictOptions{}.risk) list.emplace_back("risk", options.risk);
   return list;
@@ -154,6 +156,7 @@ Registered register_files(const RegisterCommandOptions& options, const Session& 
   registering.wall_thickness_m = options.wall_thickness_m;
   registering.verdict = verdict;
   registering.start = believed;
+  registering.nothing_repeats = options.repeats == "none";
   registering.seed = session.common.seed;
   registering.picture = !options.no_report;
   ToldSide source;
@@ -335,6 +338,7 @@ void add_register_command(CommandLine& app, Session& session) {
       ->add_option("--start-sigma", options->start_sigma,
                    "How well the start is known, one standard deviation of place and turn (default 2m,5deg)")
       ->type_name("LENGTH,ANGLE");
+  add_repeats_option(*command, options->repeats);
   add_with_option(*command, "--source-with", options->source_with, "SOURCE");
   add_with_option(*command, "--target-with", options->target_with, "TARGET");
   add_pdf_option(*command, options->pdf);

@@ -49,6 +49,14 @@ void add_gravity_option(CommandLine& command, std::string& gravity, bool with_au
       ->one_of(known);
 }
 
+void add_repeats_option(CommandLine& command, std::string& repeats) {
+  command
+      .add_option("--repeats", repeats,
+                  "none: no room, flat or storey of the building was built like another, as you know it. "
+                  "Evidence like any other: twenty times less is then asked against a twin (default unknown)")
+      ->one_of({"unknown", "none"});
+}
+
 std::uint64_t parse_memory(const std::string& text) {
   if (text.empty()) return 0;
   double number = 0.0;

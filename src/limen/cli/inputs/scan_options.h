@@ -23,6 +23,9 @@ Vector3d parse_point(const std::string& text, const std::string& option);
 /// Adds --gravity up|unknown, and auto where that is offered: whether the z axis of the files points up.
 void add_gravity_option(CommandLine& command, std::string& gravity, bool with_auto = false);
 
+/// Adds --repeats unknown|none: what is known of rooms built alike.
+void add_repeats_option(CommandLine& command, std::string& repeats);
+
 /// What the user says of how scans are to be read, beside their origin.
 struct ReadingChoice {
   std::string memory;      ///< "1G" or empty

@@ -166,6 +166,13 @@ void TwinOptions::check() const {
   if (!(chance_strength > 0)) throw_bad_option("chance_strength", chance_strength, "more than 0");
 }
 
+TwinOptions where_nothing_repeats(TwinOptions options) {
+  constexpr double kWordsWrong = 0.05;
+  for (double* believed : {&options.prior, &options.prior_apart, &options.least_alike})
+    *believed *= kWordsWrong;
+  return options;
+}
+
 TwinEvidence weigh_twin(const IndividualMatter& individual, const TwinOptions& options) {
   options.check();
   const ShareBelief chance{std::clamp(individual.chance + options.more_than_chance, 0.01, 0.7),

@@ -85,6 +85,17 @@ TEST(TwinOdds, ThingsThatAgreeToCentimetresMayBeATwinFurnishedAlike) {
   EXPECT_LT(probability_of_twin(apart), together);
 }
 
+TEST(TwinOdds, WordsThatNothingRepeatsAreEvidenceAndNoMore) {
+  const TwinOptions told = where_nothing_repeats({});
+  // Two bare rooms stay in doubt, and so does what lies elsewhere.
+  EXPECT_GT(probability_of_twin({}, told), kRisk);
+  EXPECT_GT(probability_of_twin(seen({20, 0.1}, faces(4, 0.02)), told), 0.2);
+  // Few things that agree are enough then.
+  const IndividualMatter few = seen({5, 1.0}, {});
+  EXPECT_GT(probability_of_twin(few), kRisk);
+  EXPECT_LT(probability_of_twin(few, told), kRisk);
+}
+
 TEST(TwinOdds, ThingsThatAreOthersSpeakForATwinFurnishedAlike) {
   const FaceOffsets few = faces(3, 0.002);
   const double all = weigh_twin(seen({20, 1.0}, few)).alike_nats;
