@@ -38,18 +38,13 @@ Order options_order(const ProjectOptions& options) {
   const RegisterOptions& registering = options.registering;
   const ToldTrajectories& told = options.trajectories;
   const Vector3d& arm = told.reading.lever_arm_m;
-  return {{"method", static_cast<int>(registering.method)},
-          {"gravity", static_cast<int>(registering.gravity)},
-          {"wall_thickness_m", registering.wall_thickness_m},
-          {"seed", registering.seed},
-          {"nothing_repeats", registering.nothing_repeats},
-          {"level", options.reading.level},
-          {"memory_bytes", options.reading.memory_bytes},
-          {"trajectories", told.files},
-          {"trajectory_columns", told.reading.columns},
-          {"utm_zone", told.reading.utm_zone},
-          {"time_offset_s", told.reading.time_offset_s},
-          {"lever_arm_m", {arm.x(), arm.y(), arm.z()}}};
+  return {
+      {"method", static_cast<int>(registering.method)},   {"gravity", static_cast<int>(registering.gravity)},
+      {"wall_thickness_m", registering.wall_thickness_m}, {"seed", registering.seed},
+      {"nothing_repeats", registering.nothing_repeats},   {"level", options.reading.level},
+      {"memory_bytes", options.reading.memory_bytes},     {"trajectories", told.files},
+      {"trajectory_columns", told.reading.columns},       {"utm_zone", told.reading.utm_zone},
+      {"time_offset_s", told.reading.time_offset_s},      {"lever_arm_m", {arm.x(), arm.y(), arm.z()}}};
 }
 
 ProjectOptions options_from(const Order& order) {
