@@ -31,9 +31,9 @@ inline std::string matter_line(const PreparedPair& pair, const Rigid3& pose, con
   const IndividualMatter seen =
       individual_matter(pair.source.view(), pair.target.view(), in_prepared_frames(pose, pair));
   std::string faces;
-  for (std::size_t k = 0; k < seen.faces.offsets_m.size(); ++k)
-    faces += fmt::format("{}[{:.6f}, {:.4f}, {:.6f}, {}]", k > 0 ? ", " : "", seen.faces.offsets_m[k],
-                         seen.faces.shares[k], seen.faces.sigmas_m[k], seen.faces.fronts[k] ? 1 : 0);
+  for (const FaceMiss& face : seen.faces)
+    faces += fmt::format("{}[{:.6f}, {:.4f}, {:.6f}, {}, {}]", faces.empty() ? "" : ", ", face.offset_m,
+                         face.share, face.sigma_m, face.front ? 1 : 0, face.thing);
   return fmt::format(R"({{{}, "twin": {}, "count": {:.3f}, "share": {:.4f}, "chance": {:.4f}, "apart": {}, )"
                      R"("faces": [{}]}})",
                      about, twin, seen.matter.count, seen.matter.share, seen.chance, seen.apart, faces);

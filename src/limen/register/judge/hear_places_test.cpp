@@ -23,12 +23,8 @@ IndividualMatter things(double count, double share) {
   matter.matter = {count, share};
   matter.chance = 0.05;
   matter.apart = true;
-  for (int k = 0; share > 0.5 && k < 12; ++k) {
-    matter.faces.offsets_m.push_back(0.0);
-    matter.faces.shares.push_back(1.0);
-    matter.faces.sigmas_m.push_back(0.001);
-    matter.faces.fronts.push_back(false);
-  }
+  for (int k = 0; share > 0.5 && k < 12; ++k)
+    matter.faces.push_back({.offset_m = 0.0, .sigma_m = 0.001, .thing = k});
   return matter;
 }
 

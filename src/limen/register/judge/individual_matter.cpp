@@ -246,7 +246,7 @@ std::vector<MetFace> met_faces(const Side& scan, const Side& judge, const Rigid3
 }
 
 /// What stands in a room is its own to the millimetre: offsets between pieces that both scans have.
-FaceOffsets face_offsets(const Side& source, const Side& target, const Rigid3& target_from_source) {
+std::vector<FaceMiss> face_offsets(const Side& source, const Side& target, const Rigid3& target_from_source) {
   const Rigid3 source_from_target = inverse(target_from_source);
   // Nearness is mutual, about: the sparser scan asks.
   const bool source_asks = source.view.details != nullptr && target.view.details != nullptr &&
@@ -254,16 +254,18 @@ FaceOffsets face_offsets(const Side& source, const Side& target, const Rigid3& t
   const std::vector<MetFace> faces =
       joined(source_asks ? met_faces(source, target, target_from_source, Rigid3{})
                          : met_faces(target, source, source_from_target, target_from_source));
-  FaceOffsets offsets;
+  const std::vector<double> shares = shares_of(faces, 8.0 * kThingLengthM);
+  const std::vector<int> things = things_of(faces);
   const double drift = std::hypot(source.view.features->drift_m, target.view.features->drift_m);
-  for (const MetFace& face : faces) {
-    offsets.offsets_m.push_back(face.offset_m);
-    offsets.sigmas_m.push_back(std::hypot(kUnevenM, face.sigma_m, drift));
-    offsets.fronts.push_back(
+  std::vector<FaceMiss> offsets;
+  for (std::size_t k = 0; k < faces.size(); ++k) {
+    const MetFace& face = faces[k];
+    const bool front =
         target.built.is_front(face.at, face.normal) ||
-        source.built.is_front(source_from_target * face.at, source_from_target.rotation * face.normal));
+        source.built.is_front(source_from_target * face.at, source_from_target.rotation * face.normal);
+    offsets.push_back(
+        {face.offset_m, shares[k], std::hypot(kUnevenM, face.sigma_m, drift), front, things[k]});
   }
-  offsets.shares = shares_of(faces, 8.0 * kThingLengthM);
   return offsets;
 }
 

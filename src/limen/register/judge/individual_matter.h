@@ -17,15 +17,15 @@ struct Observations {
   [[nodiscard]] double agreeing() const { return count * share; }
 };
 
-/// Distances across between flat faces of things, each scan's to the other's.
-struct FaceOffsets {
-  std::vector<double> offsets_m;  ///< signed, within `kNearFaceM`
-  /// Of one observation, each: faces of one thing make about one together, however many they are.
-  std::vector<double> shares;
-  /// What noise leaves between two measurements of one face, each; roughness and the pose come on top.
-  std::vector<double> sigmas_m;
-  /// Fronts of what stands with its back to a wall, each: things of one make reach equally far from it.
-  std::vector<bool> fronts;
+/// How far apart across a flat face of a thing lies in two scans.
+struct FaceMiss {
+  double offset_m = 0.0;  ///< signed, within `kNearFaceM`
+  double share = 1.0;     ///< of one observation: faces that tell the same make one together
+  /// What noise leaves between two measurements of the face; roughness and the pose come on top.
+  double sigma_m = 0.0;
+  bool front =
+      false;      ///< of what stands with its back to a wall: things of one make reach equally far from it
+  int thing = 0;  ///< faces near one another are of one thing: what it is, all of them are
 };
 
 /// Pieces farther apart than this are not taken for one another.
@@ -38,7 +38,7 @@ struct IndividualMatter {
   /// Pieces that the other scan saw either as matter or as free space.
   Observations matter;
   /// Flat faces of things that the other scan has nearby as well, and how far apart the two are.
-  FaceOffsets faces;
+  std::vector<FaceMiss> faces;
   /// Share of `matter` that agrees when one room's things are shifted about in the other: chance.
   double chance = 0.0;
   /// A wall stands between the two stations: what they have in common is seen through an opening.
