@@ -182,17 +182,27 @@ std::optional<Json> object_in(const std::string& text, const fs::path& path) {
   }
 }
 
+std::vector<TrueScan> scans_of(const Json& truth, const fs::path& path) {
+  std::vector<TrueScan> scans;
+  for (const Json& scan : truth["scans"]) {
+    if (!scan.is_object()) continue;
+    for (const char* key : {"world_from_scan", "to_world"}) {
+      if (!scan.contains(key)) continue;
+      scans.push_back({text_at(scan, "file"), text_at(scan, "name"), pose_from(scan[key], key, path),
+                       vector_at(scan, "scanner")});
+      break;
+    }
+  }
+  return scans;
+}
+
 /// The pose of a scan, or of the model: that is where the world is.
 Rigid3 world_from_input(const Json& truth, const std::string& scan_path, const fs::path& path) {
   const fs::path wanted(scan_path);
   const Json model = truth.value("model", Json());
   if (model.is_object() && text_at(model, "file") == wanted.filename()) return {};
-  for (const Json& scan : truth["scans"]) {
-    if (!scan.is_object()) continue;
-    if (text_at(scan, "file") != wanted.filename() && text_at(scan, "name") != wanted.stem()) continue;
-    for (const char* key : {"world_from_scan", "to_world"}) {
-      if (scan.contains(key)) return pose_from(scan[key], key, path);
-    }
+  for (const TrueScan& scan : scans_of(truth, path)) {
+    if (scan.is_of(wanted)) return scan.world_from_scan;
   }
   throw Error(fmt::format("holds no pose of the scan {}", wanted.filename().string()), path.string(),
               "give the truth of the scans that were registered");
@@ -219,6 +229,15 @@ Rigid3 chosen_pose(const PoseFile& file, int choice, const fs::path& path) {
   if (file.target_from_source) return *file.target_from_source;
   throw Error("holds no pose: nothing in common was found", path.string(),
               "give the result of a registration that found one");
+}
+
+std::vector<TrueScan> read_true_scans(const fs::path& path) {
+  const std::optional<Json> object = object_in(read_text(path), path);
+  if (!object || !object->contains("scans") || !(*object)["scans"].is_array())
+    throw Error("holds no poses by scan", path.string(),
+                "give the truth that limen simulate wrote, or an object with scans, each with file and "
+                "world_from_scan");
+  return scans_of(*object, path);
 }
 
 Rigid3 read_true_pose(const fs::path& path, const PoseFile& result) {

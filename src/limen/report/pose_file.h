@@ -41,4 +41,19 @@ PoseFile read_pose_file(const std::filesystem::path& path);
 /// Error where a scan is not in it.
 Rigid3 read_true_pose(const std::filesystem::path& path, const PoseFile& result);
 
+/// A scan of such a truth.
+struct TrueScan {
+  std::string file;  ///< name, without folders; empty where only `name` is told
+  std::string name;  ///< of the file, less its ending
+  Rigid3 world_from_scan;
+  std::optional<Vector3d> scanner;  ///< where a station's scanner stood, in the scan's own frame
+
+  [[nodiscard]] bool is_of(const std::filesystem::path& path) const {
+    return file == path.filename() || name == path.stem();
+  }
+};
+
+/// The scans of the truth of a simulated case or project. Throws Error as read_true_pose().
+std::vector<TrueScan> read_true_scans(const std::filesystem::path& path);
+
 }  // namespace limen

@@ -4,12 +4,14 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include "limen/base/angles.h"
 #include "limen/report/evaluation.h"
 #include "limen/report/json/json_values.h"
+#include "limen/report/project/evaluate_project.h"
 
 namespace limen {
 namespace {
@@ -20,6 +22,8 @@ constexpr double kWithinSigmas = 3.0;
 struct EvaluateOptions {
   std::string result;
   std::string truth;
+  double within_m = 0.02;
+  double within_deg = 0.1;
 };
 
 std::string as_json(const PoseFile& result, const std::optional<PoseError>& error) {
@@ -53,7 +57,66 @@ std::string as_text(const PoseFile& result, const std::optional<PoseError>& erro
   return text;
 }
 
+bool is_within(const PlaceError& error, const EvaluateOptions& options) {
+  return error.shift_m <= options.within_m && degrees(error.turn_rad) <= options.within_deg;
+}
+
+std::vector<PlaceError> beyond(const ProjectErrors& errors, const EvaluateOptions& options) {
+  std::vector<PlaceError> all;
+  for (const PlaceError& error : errors.each) {
+    if (!is_within(error, options)) all.push_back(error);
+  }
+  return all;
+}
+
+std::string project_json(const ProjectErrors& errors, const EvaluateOptions& options) {
+  const auto told = [](const std::vector<PlaceError>& list) {
+    Json all = Json::array();
+    for (const PlaceError& error : list)
+      all.push_back({{"file", error.file},
+                     {"translation_error_m", error.shift_m},
+                     {"rotation_error_deg", degrees(error.turn_rad)}});
+    return all;
+  };
+  const std::vector<PlaceError> far = beyond(errors, options);
+  Json json;
+  json["scans"] = errors.scans;
+  json["registered"] = errors.each.size();
+  json["reference"] = errors.each.empty() ? Json() : Json(errors.reference);
+  json["within_m"] = options.within_m;
+  json["within_deg"] = options.within_deg;
+  json["within"] = errors.each.size() - far.size();
+  json["translation_error_median_m"] = errors.shift_of(0.5);
+  json["translation_error_largest_m"] = errors.shift_of(1.0);
+  json["beyond"] = told(far);
+  json["errors"] = told(errors.each);
+  return to_text(json);
+}
+
+std::string project_text(const ProjectErrors& errors, const EvaluateOptions& options) {
+  std::string text = fmt::format("registered         {} of {} scans\n", errors.each.size(), errors.scans);
+  if (errors.each.size() < 2) return text + "no places to compare\n";
+  const std::vector<PlaceError> far = beyond(errors, options);
+  text += fmt::format("within             {} of them, {:g} m and {:g} deg\n", errors.each.size() - far.size(),
+                      options.within_m, options.within_deg);
+  text += fmt::format("translation error  median {:.4f} m, largest {:.4f} m, against {}\n",
+                      errors.shift_of(0.5), errors.shift_of(1.0), errors.reference);
+  for (const PlaceError& error : far)
+    text += fmt::format("beyond             {}: {:.4f} m, {:.4f} deg\n", error.file, error.shift_m,
+                        degrees(error.turn_rad));
+  return text;
+}
+
+int run_project(const EvaluateOptions& options, const Session& session) {
+  const ProjectErrors errors =
+      evaluate_project(read_project(options.result), read_true_scans(options.truth), options.truth);
+  session.say(project_text(errors, options));
+  session.answer(project_json(errors, options));
+  return kExitOk;
+}
+
 int run(const EvaluateOptions& options, const Session& session) {
+  if (is_project(options.result)) return run_project(options, session);
   const PoseFile result = read_pose_file(options.result);
   const Rigid3 truth = read_true_pose(options.truth, result);
   std::optional<PoseError> error;
@@ -67,15 +130,23 @@ int run(const EvaluateOptions& options, const Session& session) {
 
 void add_evaluate_command(CommandLine& app, Session& session) {
   auto options = std::make_shared<EvaluateOptions>();
-  CommandLine* command = add_command(app, session, "evaluate", "Compare a pose with the true one",
-                                     [options, &session] { return run(*options, session); });
-  command->add_option("RESULT", options->result, "result.json, or a text of 4 x 4 numbers")->required();
+  CommandLine* command =
+      add_command(app, session, "evaluate", "Compare a pose, or the places of a project, with the true ones",
+                  [options, &session] { return run(*options, session); });
+  command->add_option("RESULT", options->result, "result.json, a text of 4 x 4 numbers, or project.json")
+      ->required();
   command
       ->add_option(
           "TRUTH", options->truth,
           "The true pose: a text of 4 x 4 numbers, a JSON object with transform, or the truth.json of "
-          "limen simulate")
+          "limen simulate; of a project its truth/project.json")
       ->required();
+  command
+      ->add_option("--within-m", options->within_m,
+                   "Of a project: which scans are told one by one, those farther off (default 0.02)")
+      ->type_name("M");
+  command->add_option("--within-deg", options->within_deg, "The same of their turns (default 0.1)")
+      ->type_name("DEG");
 }
 
 }  // namespace limen

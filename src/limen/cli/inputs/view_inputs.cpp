@@ -69,12 +69,6 @@ std::vector<ViewInput> scans_of_project(const std::string& path, const Session& 
   return inputs;
 }
 
-bool is_project(const std::string& path) {
-  std::ifstream stream(path, std::ios::binary);
-  const Json json = Json::parse(stream, nullptr, false);
-  return json.is_object() && json.contains("scans") && json.contains("links");
-}
-
 void check_bytes(const ViewInput& input) {
   if (input.sha256.empty()) return;
   const std::string hash = sha256_of_file(input.path);

@@ -98,6 +98,10 @@ ProjectEntry entry_of(const Json& scan) {
 
 }  // namespace
 
+bool is_project(const std::filesystem::path& path) {
+  return parse(path).has_value();
+}
+
 CoordinateSystem read_project_system(const std::filesystem::path& path) {
   const std::optional<Json> json = parse(path);
   if (!json) throw Error("is not a project", path.string(), "give the project.json that limen project wrote");

@@ -30,6 +30,9 @@ struct ProjectEntry {
   std::vector<double> knot_times_s;          ///< of that
 };
 
+/// Whether a file is a project.json, by what it holds.
+bool is_project(const std::filesystem::path& path);
+
 /// The coordinate system of its frame; not known where it tells none. Throws Error as read_project().
 CoordinateSystem read_project_system(const std::filesystem::path& path);
 

@@ -1,0 +1,105 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/report/project/evaluate_project.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include <fmt/format.h>
+
+#include "limen/base/error.h"
+
+namespace limen {
+namespace {
+
+/// A registered scan: where it stands, and where it should.
+struct Placed {
+  std::string file;
+  Rigid3 frame_from_scan;
+  Rigid3 world_from_scan;
+  Vector3d at = Vector3d::Zero();  ///< where errors are measured, its own frame
+};
+
+const TrueScan& truth_of(const ProjectEntry& entry, const std::vector<TrueScan>& truth,
+                         const std::filesystem::path& path) {
+  const auto found =
+      std::find_if(truth.begin(), truth.end(), [&](const TrueScan& scan) { return scan.is_of(entry.file); });
+  if (found != truth.end()) return *found;
+  throw Error(
+      fmt::format("holds no pose of the scan {}", std::filesystem::path(entry.file).filename().string()),
+      path.string(), "give the truth of the scans that were put together");
+}
+
+/// The middle of where the scanners stood; nothing where no scanner's place is told.
+std::optional<Vector3d> middle_of(const std::vector<TrueScan>& truth) {
+  Vector3d sum = Vector3d::Zero();
+  int count = 0;
+  for (const TrueScan& scan : truth) {
+    if (!scan.scanner) continue;
+    sum += scan.world_from_scan * *scan.scanner;
+    ++count;
+  }
+  if (count == 0) return std::nullopt;
+  return sum / count;
+}
+
+std::vector<Placed> placed_of(const std::vector<ProjectEntry>& project, const std::vector<TrueScan>& truth,
+                              const std::filesystem::path& path) {
+  const std::optional<Vector3d> middle = middle_of(truth);
+  std::vector<Placed> placed;
+  for (const ProjectEntry& entry : project) {
+    if (entry.model || !entry.frame_from_scan || entry.state != "registered") continue;
+    const TrueScan& scan = truth_of(entry, truth, path);
+    Placed made{entry.file, *entry.frame_from_scan, scan.world_from_scan};
+    if (scan.scanner)
+      made.at = *scan.scanner;
+    else if (middle)
+      made.at = inverse(scan.world_from_scan) * *middle;
+    placed.push_back(made);
+  }
+  return placed;
+}
+
+PlaceError error_against(const Placed& reference, const Placed& scan) {
+  const Rigid3 found = reference.world_from_scan * inverse(reference.frame_from_scan) * scan.frame_from_scan;
+  return {scan.file, (found * scan.at - scan.world_from_scan * scan.at).norm(),
+          rotation_angle(found.rotation.transpose() * scan.world_from_scan.rotation)};
+}
+
+double quantile(std::vector<double> values, double share) {
+  if (values.empty()) return 0.0;
+  const auto at = values.begin() +
+                  static_cast<std::ptrdiff_t>(std::lround(share * static_cast<double>(values.size() - 1)));
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
+}  // namespace
+
+double ProjectErrors::shift_of(double share) const {
+  std::vector<double> shifts;
+  for (const PlaceError& error : each) {
+    if (error.file != reference) shifts.push_back(error.shift_m);
+  }
+  return quantile(std::move(shifts), share);
+}
+
+ProjectErrors evaluate_project(const std::vector<ProjectEntry>& project, const std::vector<TrueScan>& truth,
+                               const std::filesystem::path& truth_path) {
+  const std::vector<Placed> placed = placed_of(project, truth, truth_path);
+  ProjectErrors best;
+  for (const Placed& reference : placed) {
+    ProjectErrors errors;
+    errors.reference = reference.file;
+    for (const Placed& scan : placed) errors.each.push_back(error_against(reference, scan));
+    if (best.each.empty() || errors.shift_of(0.5) < best.shift_of(0.5)) best = std::move(errors);
+  }
+  best.scans =
+      static_cast<std::size_t>(std::count_if(project.begin(), project.end(), [](const ProjectEntry& entry) {
+        return !entry.model && entry.copy_of.empty();
+      }));
+  return best;
+}
+
+}  // namespace limen

@@ -1,0 +1,86 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/report/project/evaluate_project.h"
+
+#include <gtest/gtest.h>
+
+#include "limen/base/error.h"
+#include "limen/geometry/rigid.h"
+
+namespace limen {
+namespace {
+
+const Vector3d kGrid(1050012.5, 6840987.25, 151.125);
+
+/// Four stations, and a pass whose points are on the grid; the project's frame is its own.
+struct Building {
+  std::vector<ProjectEntry> project;
+  std::vector<TrueScan> truth;
+
+  Building() {
+    const Rigid3 frame_from_world{rotation_exp(Vector3d(0.01, 0.02, 1.3)), Vector3d(3.0, -4.0, 5.0) - kGrid};
+    for (int k = 0; k < 5; ++k) {
+      const bool pass = k == 4;
+      TrueScan scan;
+      scan.name = pass ? "pass" : "station_" + std::to_string(k);
+      scan.file = scan.name + ".ply";
+      if (!pass) {
+        scan.world_from_scan = {rotation_exp(Vector3d(0.0, 0.0, 0.7 * k)), kGrid + Vector3d(4.0 * k, k, 0.0)};
+        scan.scanner = Vector3d(0.1, 0.2, 1.6);
+      }
+      ProjectEntry entry;
+      entry.file = "scans/" + scan.file;
+      entry.state = "registered";
+      entry.frame_from_scan = frame_from_world * scan.world_from_scan;
+      truth.push_back(scan);
+      project.push_back(entry);
+    }
+  }
+  [[nodiscard]] ProjectErrors errors() const { return evaluate_project(project, truth, "truth.json"); }
+};
+
+TEST(EvaluateProject, TheFrameOfTheProjectIsItsOwn) {
+  const ProjectErrors errors = Building().errors();
+  EXPECT_EQ(errors.scans, 5U);
+  ASSERT_EQ(errors.each.size(), 5U);
+  for (const PlaceError& error : errors.each) {
+    EXPECT_LT(error.shift_m, 1e-7) << error.file;
+    EXPECT_LT(error.turn_rad, 1e-9) << error.file;
+  }
+}
+
+TEST(EvaluateProject, OneScanThatStandsElsewhereIsTheOneThatErrs) {
+  Building building;
+  building.project[0].frame_from_scan->translation += Vector3d(0.0, 3.0, 0.0);
+  const ProjectErrors errors = building.errors();
+  EXPECT_NE(errors.reference, building.project[0].file);
+  EXPECT_NEAR(errors.each[0].shift_m, 3.0, 1e-6);
+  EXPECT_NEAR(errors.shift_of(1.0), 3.0, 1e-6);
+  EXPECT_LT(errors.shift_of(0.5), 1e-6);
+}
+
+TEST(EvaluateProject, OnlyRegisteredScansAreHeldAgainstTheTruth) {
+  Building building;
+  building.project[1].state = "ambiguous";
+  building.project[1].frame_from_scan->translation += Vector3d(0.0, 3.0, 0.0);
+  building.project[2].state = "floating";
+  building.project[2].frame_from_scan.reset();
+  const ProjectErrors errors = building.errors();
+  EXPECT_EQ(errors.scans, 5U);
+  ASSERT_EQ(errors.each.size(), 3U);
+  EXPECT_LT(errors.shift_of(1.0), 1e-6);
+}
+
+TEST(EvaluateProject, ATruthThatLacksAScanIsNamed) {
+  Building building;
+  building.truth.erase(building.truth.begin() + 3);
+  try {
+    FAIL() << building.errors().reference;
+  } catch (const Error& error) {
+    EXPECT_EQ(error.where(), "truth.json");
+    EXPECT_NE(error.problem().find("station_3.ply"), std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace limen
