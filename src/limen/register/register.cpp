@@ -81,17 +81,19 @@ JudgedPose refined_if_better(const ScanView& source, const ScanView& target, con
     pose.score = score_of(pose.refined.target_from_source);
     return pose;
   };
+  // Openings agree as well as what is known of their places allows.
+  const auto value_of = [](const PoseScore& score) { return score.value() + score.unsure_opening_m2; };
   JudgedPose pose = judged(options);
   // Clearly worse: by a little the score may fall where a pose gets better.
-  const double start_value = score_of(start).value();
+  const double start_value = value_of(score_of(start));
   const double before = start_value - std::max(0.3, 0.05 * start_value);
   RefineOptions careful = options;
-  if (pose.score.value() < before) {
+  if (value_of(pose.score) < before) {
     careful.first_gate_m = std::max(careful.last_gate_m, kCarefulGateM);
     careful.first_opening_gate_m = std::max(careful.last_opening_gate_m, 2.0 * kCarefulGateM);
     pose = judged(careful);
   }
-  if (pose.score.value() < before) {
+  if (value_of(pose.score) < before) {
     careful.rounds = 0;
     pose = judged(careful);
   }

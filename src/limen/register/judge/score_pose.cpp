@@ -123,14 +123,28 @@ PoseScore one_way(const Gathered& asked, const ScanView& judge, const Rigid3& ju
   return score;
 }
 
-/// The area of each source opening that meets one of the target, clipped as surface is.
-std::vector<double> opening_gains(const OpeningMatching& openings, std::size_t sources, const Rigid3& pose,
-                                  const ScoreOptions& options) {
-  std::vector<double> gains(sources, 0.0);
+/// The area of a source opening that meets one of the target, clipped as surface is.
+struct OpeningGain {
+  double m2 = 0.0;
+  double unsure_m2 = 0.0;  ///< more, by two deviations of its place
+};
+
+/// Of each source opening.
+std::vector<OpeningGain> opening_gains(const OpeningMatching& openings, std::size_t sources,
+                                       const Rigid3& pose, const ScoreOptions& options) {
+  std::vector<OpeningGain> gains(sources);
   if (!options.openings) return gains;
   for (const OpeningMatch& match : openings.under(pose, options.opening_m)) {
+    const double area_m2 = match.trust * match.area_m2;
     const double off = std::hypot(match.shift_across_m, match.shift_up_m) / options.opening_m;
-    gains[static_cast<std::size_t>(match.source)] = match.trust * match.area_m2 * (1.0 - off * off);
+    const auto beyond = [](double shift_m, double sigma_m) {
+      return std::max(0.0, std::abs(shift_m) - 2.0 * sigma_m);
+    };
+    const double surely = std::hypot(beyond(match.shift_across_m, match.sigma_across_m),
+                                     beyond(match.shift_up_m, match.sigma_up_m)) /
+                          options.opening_m;
+    gains[static_cast<std::size_t>(match.source)] = {area_m2 * (1.0 - off * off),
+                                                     area_m2 * (off * off - surely * surely)};
   }
   return gains;
 }
@@ -233,9 +247,11 @@ PoseScore PoseScorer::operator()(const Rigid3& target_from_source) const {
   both.planar_m2 = 0.5 * (forth.planar_m2 + back.planar_m2);
   both.contradicted_m2 = 0.5 * (forth.contradicted_m2 + back.contradicted_m2);
   both.tested_m2 = 0.5 * (forth.tested_m2 + back.tested_m2);
-  for (const double gain :
-       opening_gains(asked_->openings, source_.features->openings.size(), target_from_source, options_))
-    both.opening_m2 += gain;
+  for (const OpeningGain& gain :
+       opening_gains(asked_->openings, source_.features->openings.size(), target_from_source, options_)) {
+    both.opening_m2 += gain.m2;
+    both.unsure_opening_m2 += gain.unsure_m2;
+  }
   both.agreeing_m2 += both.opening_m2;
   both.evidence_m2 = 0.5 * (forth.evidence_m2 + back.evidence_m2) + both.opening_m2;
   return both;
@@ -286,10 +302,10 @@ PoseContrast contrast_poses(const ScanView& source, const ScanView& target, cons
   add_contrast(target, source, inverse(first), inverse(second), options, contrast);
   const OpeningMatching openings(*source.features, *target.features);
   const std::size_t sources = source.features->openings.size();
-  const std::vector<double> in_first = opening_gains(openings, sources, first, options);
-  const std::vector<double> in_second = opening_gains(openings, sources, second, options);
+  const std::vector<OpeningGain> in_first = opening_gains(openings, sources, first, options);
+  const std::vector<OpeningGain> in_second = opening_gains(openings, sources, second, options);
   for (std::size_t i = 0; i < in_first.size(); ++i) {
-    add_lead(in_first[i] - in_second[i], contrast);
+    add_lead(in_first[i].m2 - in_second[i].m2, contrast);
   }
   return contrast;
 }

@@ -33,6 +33,9 @@ struct PoseScore {
   /// Agreeing surface, each plane counting for no more than 5 m^2, however large: that two façades lie in one
   /// plane is one coincidence, not many.
   double evidence_m2 = 0.0;
+  /// What openings would agree more, were each off by two of its deviations less: far windows are known to
+  /// centimetres only, and a pose that is not where they are nearest may be none the worse.
+  double unsure_opening_m2 = 0.0;
 
   /// What poses are ranked by, m^2. One contradicted square metre outweighs several agreeing ones: surfaces
   /// meet by chance, but matter cannot stand where a ray passed.

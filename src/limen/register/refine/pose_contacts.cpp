@@ -19,6 +19,11 @@ constexpr double kLeastAngleRad = 0.07;  // the normals of small planes are not 
 constexpr double kMostAngleRad = 0.3;
 constexpr double kTurnGateRad = 0.15;
 
+// Openings above one another in one wall.
+constexpr double kOneWallCosine = 0.99;
+constexpr double kOneWallM = 0.3;
+constexpr double kOneColumnM = 0.15;
+
 /// The planar samples that one scan is asked about, gathered.
 struct AskedSurface {
   std::vector<std::uint32_t> indices;
@@ -63,7 +68,7 @@ class ContactFinder::Collector {
     if (!options_.openings) return contacts;
     contacts.openings = openings_.under(pose, gates.opening_m);
     for (const OpeningMatch& match : contacts.openings)
-      add_opening(match, pose, gates.opening_m, contacts.all);
+      add_opening(match, stacked_with(match, contacts.openings), pose, gates.opening_m, contacts.all);
     return contacts;
   }
 
@@ -114,8 +119,20 @@ class ContactFinder::Collector {
     }
   }
 
+  /// How many matches lie above one another in one wall, this one counted. A scanner sweeps upright: the same
+  /// of its columns met the sides of all of them, and what lies between two columns errs for all alike.
+  static double stacked_with(const OpeningMatch& match, const std::vector<OpeningMatch>& matches) {
+    return static_cast<double>(std::count_if(matches.begin(), matches.end(), [&](const OpeningMatch& other) {
+      const Vector3d apart = other.at - match.at;
+      return other.opposite == match.opposite && std::abs(other.across.dot(match.across)) > kOneWallCosine &&
+             std::abs(apart.dot(match.across)) < kOneColumnM &&
+             std::abs(apart.dot(match.across.cross(match.up))) < kOneWallM;
+    }));
+  }
+
   /// What matched openings say: shifts within the wall, turns by the parallel faces, the gap between them.
-  void add_opening(const OpeningMatch& match, const Rigid3& pose, double gate,
+  /// `stacked`: of how many the shift across is one observation.
+  void add_opening(const OpeningMatch& match, double stacked, const Rigid3& pose, double gate,
                    std::vector<Contact>& contacts) const {
     const double spread = 1.0 / match.trust;
     Contact contact;
@@ -125,7 +142,7 @@ class ContactFinder::Collector {
     if (match.sigma_across_m < 0.5) {
       contact.normal = match.across;
       contact.residual_m = match.shift_across_m;
-      contact.sigma_m = spread * match.sigma_across_m;
+      contact.sigma_m = spread * match.sigma_across_m * std::sqrt(stacked);
       contacts.push_back(contact);
     }
     if (match.sigma_up_m < 0.5) {
