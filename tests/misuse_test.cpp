@@ -170,7 +170,7 @@ TEST_F(MisuseTest, WhatIsNoFileOrTheWrongOne) {
       {{"transform", "result/result.json", "a.ply", "out.ply"}, "holds no pose"},
       {{"transform", "project/project.json", "a.ply", "out.ply"}, "project.json"},
       {{"transform", "result/result.json", "-o", "out"}, "is not a project"},
-      {{"evaluate", "project/project.json", "pose.txt"}, "project.json"},
+      {{"evaluate", "project/project.json", "pose.txt"}, "holds no poses by scan"},
       {{"evaluate", "pose.txt", "words.csv"}, "words.csv"},
       {{"info", "a.ply", "--trajectory", "missing.txt"}, "missing.txt"},
       {{"register", "a.ply", "b.ply", "--source-trajectory", "a.ply", "-o", "out"}, "a.ply"},
