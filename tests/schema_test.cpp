@@ -60,6 +60,9 @@ TEST_F(SchemaTest, FilesOfAPairAndOfAProject) {
   EXPECT_EQ(project["links"].size(), 1U);
   EXPECT_EQ(project["points"].size(), 2U);
   EXPECT_EQ(file_fault("project", "building/project.json"), "");
+  const ProgramRun held = run({"evaluate", "building/project.json", "truth/truth.json", "--json"});
+  ASSERT_EQ(held.status, 0) << held.err;
+  EXPECT_EQ(fault("project-evaluation", held.out), "");
 }
 
 TEST_F(SchemaTest, FilesAboutAModel) {

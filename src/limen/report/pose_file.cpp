@@ -182,18 +182,21 @@ std::optional<Json> object_in(const std::string& text, const fs::path& path) {
   }
 }
 
-std::vector<TrueScan> scans_of(const Json& truth, const fs::path& path) {
-  std::vector<TrueScan> scans;
-  for (const Json& scan : truth["scans"]) {
-    if (!scan.is_object()) continue;
-    for (const char* key : {"world_from_scan", "to_world"}) {
-      if (!scan.contains(key)) continue;
-      scans.push_back({text_at(scan, "file"), text_at(scan, "name"), pose_from(scan[key], key, path),
-                       vector_at(scan, "scanner")});
-      break;
-    }
+/// A scan of a truth as it is called there; its pose is not read yet.
+TrueScan called(const Json& scan) {
+  TrueScan told;
+  told.file = text_at(scan, "file");
+  told.name = text_at(scan, "name");
+  const auto index = scan.find("index");
+  if (index != scan.end() && index->is_number_integer()) told.index = index->get<int>();
+  return told;
+}
+
+std::optional<Rigid3> world_from(const Json& scan, const fs::path& path) {
+  for (const char* key : {"world_from_scan", "to_world"}) {
+    if (scan.contains(key)) return pose_from(scan[key], key, path);
   }
-  return scans;
+  return std::nullopt;
 }
 
 /// The pose of a scan, or of the model: that is where the world is.
@@ -201,8 +204,9 @@ Rigid3 world_from_input(const Json& truth, const std::string& scan_path, const f
   const fs::path wanted(scan_path);
   const Json model = truth.value("model", Json());
   if (model.is_object() && text_at(model, "file") == wanted.filename()) return {};
-  for (const TrueScan& scan : scans_of(truth, path)) {
-    if (scan.is_of(wanted)) return scan.world_from_scan;
+  for (const Json& scan : truth["scans"]) {
+    if (!scan.is_object() || !called(scan).is_of(wanted)) continue;
+    if (const std::optional<Rigid3> pose = world_from(scan, path)) return *pose;
   }
   throw Error(fmt::format("holds no pose of the scan {}", wanted.filename().string()), path.string(),
               "give the truth of the scans that were registered");
@@ -237,7 +241,15 @@ std::vector<TrueScan> read_true_scans(const fs::path& path) {
     throw Error("holds no poses by scan", path.string(),
                 "give the truth that limen simulate wrote, or an object with scans, each with file and "
                 "world_from_scan");
-  return scans_of(*object, path);
+  std::vector<TrueScan> scans;
+  for (const Json& scan : (*object)["scans"]) {
+    const std::optional<Rigid3> pose = scan.is_object() ? world_from(scan, path) : std::nullopt;
+    if (!pose) continue;
+    scans.push_back(called(scan));
+    scans.back().world_from_scan = *pose;
+    scans.back().scanner = vector_at(scan, "scanner");
+  }
+  return scans;
 }
 
 Rigid3 read_true_pose(const fs::path& path, const PoseFile& result) {

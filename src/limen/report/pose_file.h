@@ -45,6 +45,7 @@ Rigid3 read_true_pose(const std::filesystem::path& path, const PoseFile& result)
 struct TrueScan {
   std::string file;  ///< name, without folders; empty where only `name` is told
   std::string name;  ///< of the file, less its ending
+  int index = 0;     ///< within the file
   Rigid3 world_from_scan;
   std::optional<Vector3d> scanner;  ///< where a station's scanner stood, in the scan's own frame
 

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "limen/base/angles.h"
+#include "limen/base/error.h"
 #include "limen/report/evaluation.h"
 #include "limen/report/json/json_values.h"
 #include "limen/report/project/evaluate_project.h"
@@ -82,7 +83,7 @@ std::string project_json(const ProjectErrors& errors, const EvaluateOptions& opt
   Json json;
   json["scans"] = errors.scans;
   json["registered"] = errors.each.size();
-  json["reference"] = errors.each.empty() ? Json() : Json(errors.reference);
+  json["reference"] = errors.each.empty() ? Json() : Json(errors.each[errors.reference].file);
   json["within_m"] = options.within_m;
   json["within_deg"] = options.within_deg;
   json["within"] = errors.each.size() - far.size();
@@ -100,7 +101,7 @@ std::string project_text(const ProjectErrors& errors, const EvaluateOptions& opt
   text += fmt::format("within             {} of them, {:g} m and {:g} deg\n", errors.each.size() - far.size(),
                       options.within_m, options.within_deg);
   text += fmt::format("translation error  median {:.4f} m, largest {:.4f} m, against {}\n",
-                      errors.shift_of(0.5), errors.shift_of(1.0), errors.reference);
+                      errors.shift_of(0.5), errors.shift_of(1.0), errors.each[errors.reference].file);
   for (const PlaceError& error : far)
     text += fmt::format("beyond             {}: {:.4f} m, {:.4f} deg\n", error.file, error.shift_m,
                         degrees(error.turn_rad));
@@ -108,6 +109,8 @@ std::string project_text(const ProjectErrors& errors, const EvaluateOptions& opt
 }
 
 int run_project(const EvaluateOptions& options, const Session& session) {
+  if (!(options.within_deg >= 0.0))
+    throw Error("is not an angle of 0 or more", "--within-deg", "give degrees, as 0.1");
   const ProjectErrors errors =
       evaluate_project(read_project(options.result), read_true_scans(options.truth), options.truth);
   session.say(project_text(errors, options));
@@ -141,10 +144,8 @@ void add_evaluate_command(CommandLine& app, Session& session) {
           "The true pose: a text of 4 x 4 numbers, a JSON object with transform, or the truth.json of "
           "limen simulate; of a project its truth/project.json")
       ->required();
-  command
-      ->add_option("--within-m", options->within_m,
-                   "Of a project: which scans are told one by one, those farther off (default 0.02)")
-      ->type_name("M");
+  add_length_option(*command, "--within-m", options->within_m,
+                    "Of a project: which scans are told one by one, those farther off (default 0.02)");
   command->add_option("--within-deg", options->within_deg, "The same of their turns (default 0.1)")
       ->type_name("DEG");
 }

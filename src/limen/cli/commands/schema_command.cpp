@@ -24,7 +24,8 @@ const std::map<std::string, SchemaMaker>& schema_makers() {
       {"deviation", deviation_schema}, {"evaluation", evaluation_schema},
       {"openings", openings_schema},   {"planes", planes_schema},
       {"project", project_schema},     {"project-deviation", project_deviation_schema},
-      {"result", result_schema},       {"segments", segments_schema}};
+      {"result", result_schema},       {"project-evaluation", project_evaluation_schema},
+      {"segments", segments_schema}};
   return makers;
 }
 
@@ -43,7 +44,7 @@ void add_schema_command(CommandLine& app, Session& session) {
       ->add_option("FILE", *file,
                    "Which file: result (of register), project, deviation, project-deviation, planes, "
                    "openings, segments, or "
-                   "evaluation (what evaluate prints)")
+                   "evaluation and project-evaluation (what evaluate prints of a pair and of a project)")
       ->required()
       ->one_of(names);
 }

@@ -63,6 +63,11 @@ class RivalSearch {
     return accepted_.frame_from_node[static_cast<std::size_t>(node)];
   }
 
+  /// What a link would measure, were all places right.
+  [[nodiscard]] Rigid3 present_pose(const GraphLink& link) const {
+    return inverse(at(link.target)) * at(link.source);
+  }
+
   [[nodiscard]] static bool fits(const LinkPose& pose, const Rigid3& predicted) {
     return chi_square(misfit(pose, predicted), kMildRival * pose.covariance) <= kChiSquareBound;
   }
@@ -110,7 +115,7 @@ class RivalSearch {
   void ask(const GraphLink& link, const LinkPose& pose, std::vector<GraphQuestion>& questions) const {
     // The source would stand at movement * its present place.
     const Rigid3 movement = at(link.target) * pose.target_from_source * inverse(at(link.source));
-    if (is_present_place(pose, inverse(at(link.target)) * at(link.source))) return;
+    if (is_present_place(pose, present_pose(link))) return;
     // Shifts are told where the two meet: a frame's own origin may be far away, on a national grid.
     const Vector3d meets = at(link.target) * pose.centre;
     const Vector3d from = inverse(movement) * meets;
@@ -199,7 +204,7 @@ class RivalSearch {
       const GraphLink& link = graph_.links[k];
       const bool source = moved[static_cast<std::size_t>(link.source)];
       if (accepted_.pose[k] < 0 || source == moved[static_cast<std::size_t>(link.target)]) continue;
-      const Rigid3 now = inverse(at(link.target)) * at(link.source);
+      const Rigid3 now = present_pose(link);
       more += least_miss(link, moved_pose(link, source, movement)) - least_miss(link, now);
     }
     return more <= kChiSquareBound;
@@ -291,8 +296,7 @@ class RivalSearch {
     const int now = accepted_.pose[k];
     const int then = rival_pose(static_cast<int>(k), moved, movement);
     if (now >= 0 && then < 0) question.current.push_back(static_cast<int>(k));
-    const bool fits_both = then >= 0 && fits(link.poses[static_cast<std::size_t>(then)],
-                                             inverse(at(link.target)) * at(link.source));
+    const bool fits_both = then >= 0 && fits(link.poses[static_cast<std::size_t>(then)], present_pose(link));
     if (now < 0 && then >= 0 && !fits_both)
       (link.trust > LinkTrust::sure ? open_rivals : question.rival).push_back(static_cast<int>(k));
     if (now >= 0 && then >= 0 && now != then) {

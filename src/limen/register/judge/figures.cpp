@@ -7,8 +7,7 @@
 #include <cstdint>
 #include <unordered_map>
 
-#include "limen/base/disjoint_sets.h"
-#include "limen/geometry/cell_key.h"
+#include "limen/geometry/joined_points.h"
 
 namespace limen {
 namespace {
@@ -19,23 +18,6 @@ constexpr double kLeastExtentM = 0.6;  // of what is seen of a person, in height
 constexpr double kMostExtentM = 2.0;
 constexpr double kLeastTopM = 1.3;  // above the floor: what is lower may be a chair
 constexpr double kMostTopM = 2.1;
-
-/// Pieces joined one by one.
-DisjointSets things_of(const std::vector<Vector3d>& pieces) {
-  std::unordered_map<std::int64_t, std::vector<std::size_t>> cells;
-  DisjointSets things(pieces.size());
-  for (std::size_t i = 0; i < pieces.size(); ++i) {
-    const Vector3d cell = cell_of(pieces[i], kJoinedM);
-    for (int k = 0; k < 27; ++k) {
-      const auto found = cells.find(cell_key(cell + way_to_cell(k)));
-      if (found == cells.end()) continue;
-      for (const std::size_t j : found->second)
-        if ((pieces[i] - pieces[j]).squaredNorm() < kJoinedM * kJoinedM) things.join(i, j);
-    }
-    cells[cell_key(cell)].push_back(i);
-  }
-  return things;
-}
 
 bool is_figure(const std::vector<Vector3d>& pieces, const std::vector<std::size_t>& thing,
                const FloorBelow& floor_below) {
@@ -60,7 +42,7 @@ bool is_figure(const std::vector<Vector3d>& pieces, const std::vector<std::size_
 }  // namespace
 
 std::vector<int> find_figures(const std::vector<Vector3d>& pieces, const FloorBelow& floor_below) {
-  DisjointSets sets = things_of(pieces);
+  DisjointSets sets = joined_points(pieces, kJoinedM);
   std::vector<std::vector<std::size_t>> things(pieces.size());
   for (std::size_t i = 0; i < pieces.size(); ++i) things[sets.find(i)].push_back(i);
   std::vector<int> figures(pieces.size(), -1);

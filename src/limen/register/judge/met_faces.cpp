@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "limen/base/disjoint_sets.h"
+#include "limen/geometry/joined_points.h"
 
 namespace limen {
 namespace {
@@ -61,11 +61,9 @@ double correlation(const MetFace& a, const MetFace& b) {
 }
 
 std::vector<int> things_of(const std::vector<MetFace>& faces) {
-  DisjointSets sets(faces.size());
-  for (std::size_t i = 0; i < faces.size(); ++i) {
-    for (std::size_t j = 0; j < i; ++j)
-      if ((faces[i].at - faces[j].at).norm() < kThingLengthM) sets.join(i, j);
-  }
+  std::vector<Vector3d> places;
+  for (const MetFace& face : faces) places.push_back(face.at);
+  DisjointSets sets = joined_points(places, kThingLengthM);
   std::vector<int> things;
   for (std::size_t i = 0; i < faces.size(); ++i) things.push_back(static_cast<int>(sets.find(i)));
   return things;

@@ -148,9 +148,10 @@ double log_likelihood(const std::vector<FaceMiss>& faces, const std::vector<Offs
       ThingLogs& thing = things[face.thing];
       const double put = scene.density(face.offset_m, face.sigma_m, face.front);
       thing.put += face.share * std::log(put);
-      thing.designed +=
-          face.share *
-          std::log((1.0 - kStrayFace) * normal_density(face.offset_m, face.sigma_m) + kStrayFace * put);
+      if (scene.designed > 0.0)
+        thing.designed +=
+            face.share *
+            std::log((1.0 - kStrayFace) * normal_density(face.offset_m, face.sigma_m) + kStrayFace * put);
     }
     double sum = std::log(scene.weight);
     for (const auto& [number, thing] : things)

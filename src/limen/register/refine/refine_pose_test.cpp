@@ -10,6 +10,7 @@
 
 #include "limen/base/random.h"
 #include "limen/geometry/rigid.h"
+#include "limen/register/judge/score_pose.h"
 #include "limen/register/prepare/prepare_scan.h"
 #include "limen/register/register.h"
 
@@ -69,6 +70,64 @@ TEST(RefinePose, WallsThatLeanEachOnItsOwnAreInTheDeviationOfTurns) {
   EXPECT_GT(squares.formal, 9.0);
   EXPECT_LT(squares.stated, 2.0);
   EXPECT_GT(squares.stated, 0.2);
+}
+
+/// A wall's windows, `columns` side by side and `rows` above one another, their sides known to 4 cm.
+Features windows(int columns, int rows) {
+  Features features;
+  for (int i = 0; i < columns; ++i) {
+    for (int j = 0; j < rows; ++j) {
+      const Vector3d corner(3.0 * i, 0.0, 3.0 * j);
+      Opening opening;
+      const Vector3d across = Vector3d::UnitX();
+      const Vector3d up = 1.5 * Vector3d::UnitZ();
+      const std::array<Vector3d, 4> corners = {corner, corner + across, corner + across + up, corner + up};
+      for (std::size_t k = 0; k < corners.size(); ++k) {
+        opening.corners[k] = corners[k];
+        opening.edge_sigma_m[k] = 0.04;
+      }
+      features.openings.push_back(opening);
+    }
+  }
+  return features;
+}
+
+/// What openings say of shifts along `axis`, 1/m^2.
+double told_along(const Vector3d& axis, int columns, int rows) {
+  const Features features = windows(columns, rows);
+  ScanView view;
+  view.features = &features;
+  RefineOptions options;
+  options.planes = false;
+  const RefinedPose pose = refine_pose(view, view, Rigid3{}, options);
+  EXPECT_EQ(pose.openings.size(), static_cast<std::size_t>(columns * rows));
+  return axis.dot(pose.information.bottomRightCorner<3, 3>() * axis);
+}
+
+TEST(RefinePose, WindowsAboveOneAnotherTellOneShiftAlongTheirWall) {
+  const Vector3d along = Vector3d::UnitX();
+  const double one = told_along(along, 1, 1);
+  EXPECT_GT(one, 0.0);
+  EXPECT_NEAR(told_along(along, 1, 3), one, 1e-6 * one);
+  EXPECT_NEAR(told_along(along, 3, 1), 3.0 * one, 1e-6 * one);
+  EXPECT_NEAR(told_along(along, 3, 3), 3.0 * one, 1e-6 * one);
+  const Vector3d up = Vector3d::UnitZ();
+  EXPECT_NEAR(told_along(up, 1, 3), 3.0 * told_along(up, 1, 1), 1e-6 * one);
+}
+
+TEST(ScorePose, OpeningsOfPoorlyKnownPlacesMayAgreeMore) {
+  Features features = windows(1, 1);
+  ScanView view;
+  view.features = &features;
+  const Rigid3 off{Matrix3d::Identity(), Vector3d(0.1, 0.0, 0.0)};
+  // Known to 4 cm on either side: 10 cm are less than two deviations.
+  const PoseScore poorly = score_pose(view, view, off, {});
+  EXPECT_GT(poorly.unsure_opening_m2, 0.1);
+  EXPECT_NEAR(poorly.opening_m2 + poorly.unsure_opening_m2, score_pose(view, view, {}, {}).opening_m2, 0.02);
+  for (double& sigma : features.openings.front().edge_sigma_m) sigma = 0.001;
+  const PoseScore well = score_pose(view, view, off, {});
+  EXPECT_NEAR(well.opening_m2, poorly.opening_m2, 1e-9);
+  EXPECT_LT(well.unsure_opening_m2, 0.3 * poorly.unsure_opening_m2);
 }
 
 }  // namespace

@@ -29,4 +29,29 @@ std::string evaluation_schema() {
       Json::object());
 }
 
+std::string project_evaluation_schema() {
+  using namespace schema;
+  const Json error = object({{"file", text("of the scan")},
+                             {"translation_error_m", number("at its scanner; of a pass, amid the stations")},
+                             {"rotation_error_deg", number("angle of the turn between the two")}},
+                            {"file", "translation_error_m", "rotation_error_deg"});
+  Json reference = text("the scan against which the others err least");
+  reference["type"] = {"string", "null"};
+  return schema_text(
+      "What limen evaluate prints of a project",
+      object({{"scans", whole("of the project, models and copies not counted")},
+              {"registered", whole("of them")},
+              {"reference", reference},
+              {"within_m", number("the bound of --within-m")},
+              {"within_deg", number("the bound of --within-deg")},
+              {"within", whole("registered scans that err by no more than both")},
+              {"translation_error_median_m", number("of registered scans, the reference left out")},
+              {"translation_error_largest_m", number("of the same")},
+              {"beyond", list_of(error, "registered scans that are not within the bounds")},
+              {"errors", list_of(error, "all registered scans")}},
+             {"scans", "registered", "reference", "within_m", "within_deg", "within",
+              "translation_error_median_m", "translation_error_largest_m", "beyond", "errors"}),
+      Json::object());
+}
+
 }  // namespace limen

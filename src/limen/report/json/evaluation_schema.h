@@ -9,4 +9,7 @@ namespace limen {
 /// JSON Schema (draft 2020-12) of what limen evaluate --json prints.
 std::string evaluation_schema();
 
+/// The same of what it prints of a project.
+std::string project_evaluation_schema();
+
 }  // namespace limen

@@ -23,11 +23,13 @@ struct Placed {
 
 const TrueScan& truth_of(const ProjectEntry& entry, const std::vector<TrueScan>& truth,
                          const std::filesystem::path& path) {
-  const auto found =
-      std::find_if(truth.begin(), truth.end(), [&](const TrueScan& scan) { return scan.is_of(entry.file); });
+  const auto found = std::find_if(truth.begin(), truth.end(), [&](const TrueScan& scan) {
+    return scan.is_of(entry.file) && scan.index == entry.index;
+  });
   if (found != truth.end()) return *found;
   throw Error(
-      fmt::format("holds no pose of the scan {}", std::filesystem::path(entry.file).filename().string()),
+      fmt::format("holds no pose of the scan {}{}", std::filesystem::path(entry.file).filename().string(),
+                  entry.index > 0 ? fmt::format(", index {}", entry.index) : ""),
       path.string(), "give the truth of the scans that were put together");
 }
 
@@ -80,7 +82,7 @@ double quantile(std::vector<double> values, double share) {
 double ProjectErrors::shift_of(double share) const {
   std::vector<double> shifts;
   for (const PlaceError& error : each) {
-    if (error.file != reference) shifts.push_back(error.shift_m);
+    if (&error != &each[reference]) shifts.push_back(error.shift_m);
   }
   return quantile(std::move(shifts), share);
 }
@@ -89,10 +91,10 @@ ProjectErrors evaluate_project(const std::vector<ProjectEntry>& project, const s
                                const std::filesystem::path& truth_path) {
   const std::vector<Placed> placed = placed_of(project, truth, truth_path);
   ProjectErrors best;
-  for (const Placed& reference : placed) {
+  for (std::size_t k = 0; k < placed.size(); ++k) {
     ProjectErrors errors;
-    errors.reference = reference.file;
-    for (const Placed& scan : placed) errors.each.push_back(error_against(reference, scan));
+    errors.reference = k;
+    for (const Placed& scan : placed) errors.each.push_back(error_against(placed[k], scan));
     if (best.each.empty() || errors.shift_of(0.5) < best.shift_of(0.5)) best = std::move(errors);
   }
   best.scans =

@@ -20,8 +20,8 @@ struct PlaceError {
 
 struct ProjectErrors {
   std::size_t scans = 0;         ///< of the project, models and copies not counted
-  std::string reference;         ///< the registered scan against which the others err least (the median)
   std::vector<PlaceError> each;  ///< of registered scans, in the project's order, the reference too
+  std::size_t reference = 0;     ///< which of them: that against which the others err least (the median)
 
   /// Metres; 0 where nothing but the reference is registered. `share`: 0.5 for the median.
   [[nodiscard]] double shift_of(double share) const;

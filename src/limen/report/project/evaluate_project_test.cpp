@@ -53,7 +53,7 @@ TEST(EvaluateProject, OneScanThatStandsElsewhereIsTheOneThatErrs) {
   Building building;
   building.project[0].frame_from_scan->translation += Vector3d(0.0, 3.0, 0.0);
   const ProjectErrors errors = building.errors();
-  EXPECT_NE(errors.reference, building.project[0].file);
+  EXPECT_NE(errors.reference, 0U);
   EXPECT_NEAR(errors.each[0].shift_m, 3.0, 1e-6);
   EXPECT_NEAR(errors.shift_of(1.0), 3.0, 1e-6);
   EXPECT_LT(errors.shift_of(0.5), 1e-6);
@@ -71,11 +71,23 @@ TEST(EvaluateProject, OnlyRegisteredScansAreHeldAgainstTheTruth) {
   EXPECT_LT(errors.shift_of(1.0), 1e-6);
 }
 
+TEST(EvaluateProject, StationsOfOneFileAreToldApart) {
+  Building building;
+  for (std::size_t k = 0; k < 4; ++k) {
+    building.project[k].file = "scans/all.e57";
+    building.truth[k].file = "all.e57";
+    building.project[k].index = building.truth[k].index = static_cast<int>(k);
+  }
+  EXPECT_LT(building.errors().shift_of(1.0), 1e-6);
+  building.project[2].frame_from_scan->translation += Vector3d(0.0, 3.0, 0.0);
+  EXPECT_NEAR(building.errors().shift_of(1.0), 3.0, 1e-6);
+}
+
 TEST(EvaluateProject, ATruthThatLacksAScanIsNamed) {
   Building building;
   building.truth.erase(building.truth.begin() + 3);
   try {
-    FAIL() << building.errors().reference;
+    FAIL() << building.errors().scans << " scans";
   } catch (const Error& error) {
     EXPECT_EQ(error.where(), "truth.json");
     EXPECT_NE(error.problem().find("station_3.ply"), std::string::npos);
