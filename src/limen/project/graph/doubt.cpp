@@ -123,12 +123,12 @@ class DoubtSearch {
                        [](const GraphLink& pair) { return pair.evidence.has_value(); });
   }
 
-  [[nodiscard]] bool is_asked(int k) const { return link(k).evidence || link(k).twin > 0.0; }
+  [[nodiscard]] bool is_asked(int k) const { return link(k).asks_for_twins(); }
 
   /// Of a pair whose things were not asked the other places are among its poses: what speaks against them
   /// speaks against twins.
   [[nodiscard]] TwinEvidence evidence_of(int k) const {
-    if (is_asked(k)) return link(k).evidence.value_or(twin_evidence_of(link(k).twin));
+    if (is_asked(k)) return link(k).against_twins();
     TwinEvidence evidence;
     evidence.otherwise_nats = evidence.alike_nats = nats(k);
     return evidence;
@@ -281,18 +281,16 @@ class DoubtSearch {
     });
     Cut cut;
     double most_shown_m2 = 0.0;
-    std::vector<const GraphLink*> heard_for;
-    std::vector<const GraphLink*> heard_against;
-    for (const Voice& voice : voices) {
-      const double nats = voice.said.*kind.nats;
-      std::vector<const GraphLink*>& heard = nats > 0.0 ? heard_against : heard_for;
-      const double fresh = 1.0 - views_.seen_already(*voice.pair, heard, side);
-      cut.nats += fresh * nats;
-      cut.held_nats += fresh * std::max(0.0, nats);
-      heard.push_back(voice.pair);
+    std::vector<SaidByPair> said;
+    for (const Voice& voice : voices) said.push_back({voice.pair, voice.said.*kind.nats});
+    const std::vector<double> fresh = views_.fresh_shares(said, side);
+    for (std::size_t i = 0; i < voices.size(); ++i) {
+      const Voice& voice = voices[i];
+      cut.nats += fresh[i] * said[i].nats;
+      cut.held_nats += fresh[i] * std::max(0.0, said[i].nats);
       if (voice.link < 0) continue;
       cut.across.push_back(voice.link);
-      if (fresh > kHardlyFresh) cut.links.push_back(voice.link);
+      if (fresh[i] > kHardlyFresh) cut.links.push_back(voice.link);
       if (!is_asked(voice.link)) continue;
       if (const double shown_m2 = voice.pair->poses.front().agreeing_m2; shown_m2 > most_shown_m2) {
         most_shown_m2 = shown_m2;

@@ -35,6 +35,10 @@ struct GraphLink {
   /// took its place.
   int best = 0;
 
+  /// Whether its things were asked: else other places are among its poses.
+  [[nodiscard]] bool asks_for_twins() const { return evidence || twin > 0.0; }
+  [[nodiscard]] TwinEvidence against_twins() const { return evidence.value_or(twin_evidence_of(twin)); }
+
   /// The number that the pair itself gives a pose.
   [[nodiscard]] int number_of(int pose) const { return pose == 0 ? best : pose == best ? 0 : pose; }
 };

@@ -17,6 +17,7 @@ namespace {
 constexpr double kMildRival = 4.0;
 constexpr double kMostRivalNats = 7.0;  // no link is surer than a thousand to one here: sure ones contradict
 constexpr double kRivalLoopNats = 7.0;  // sure links that are wrong agree once in a thousand
+constexpr double kMostTwinNats = 14.0;  // no pair is surer of twins than about one in a million
 constexpr double kOpenWrong = 0.02;     // of links with several poses perhaps none is right
 constexpr double kSameShiftM = 0.05;
 constexpr double kSameTurnRad = 0.0175;
@@ -125,15 +126,20 @@ class RivalSearch {
           rotation_angle(known.frame_from_frame.rotation.transpose() * movement.rotation) < kSameTurnRad;
       if (same && contains(known.moved, link.source) && !contains(known.moved, link.target)) return;
     }
+    // Rooms built alike lie one storey or one bay from one another, so that links of many places speak for
+    // one movement, and together they would cut the building in two: each is asked by itself as well.
     const Sides sides = sides_of(link, movement);
-    std::vector<std::vector<bool>> cuts;
-    for (const Sides& tried :
-         {sides, with_neighbours(sides, movement, true), with_neighbours(sides, movement, false)}) {
-      const std::vector<bool> moved = smallest_cut(tried, movement);
-      if (std::find(cuts.begin(), cuts.end(), moved) != cuts.end()) continue;
-      cuts.push_back(moved);
-      weigh(moved, movement, questions);
+    const Sides ends = ends_of(link);
+    std::vector<std::vector<bool>> cuts = {ends.moving, ends.staying};
+    cuts.back().flip();
+    for (const auto& [apart, by] : {std::pair(&sides, CutBy::count), std::pair(&ends, CutBy::nats)}) {
+      for (const Sides& tried :
+           {*apart, with_neighbours(*apart, movement, true), with_neighbours(*apart, movement, false)}) {
+        std::vector<bool> moved = smallest_cut(tried, movement, by);
+        if (std::find(cuts.begin(), cuts.end(), moved) == cuts.end()) cuts.push_back(std::move(moved));
+      }
     }
+    for (const std::vector<bool>& moved : cuts) weigh(moved, movement, questions);
   }
 
   /// Asks where what speaks for the present place is not clearly more.
@@ -162,20 +168,68 @@ class RivalSearch {
     if (!firm) question.rival.insert(question.rival.end(), open_rivals.begin(), open_rivals.end());
     std::vector<Voice> present;
     std::vector<Voice> other;
-    for (const Voice& voice : torn)
-      (voice.nats > 0.0 ? present : other).push_back({voice.link, std::abs(voice.nats)});
     for (const int k : question.current)
       present.push_back({k, nats_of(graph_.links[static_cast<std::size_t>(k)],
                                     accepted_.pose[static_cast<std::size_t>(k)])});
     for (const int k : question.rival)
       other.push_back(
           {k, nats_of(graph_.links[static_cast<std::size_t>(k)], rival_pose(k, moved, movement))});
+    std::vector<Voice> torn_present;
+    std::vector<Voice> torn_other;
+    for (const Voice& voice : torn)
+      (voice.nats > 0.0 ? torn_present : torn_other).push_back({voice.link, std::abs(voice.nats)});
     if (question.current.empty() && question.rival.empty() && !follow_together(moved, movement)) return;
     // That what holds a scan may be wrong says nothing of another place: doubts_of() asks for that.
     const bool unrivalled = question.rival.empty() && !question.current.empty();
-    question.rival_nats = nats_of(other, moved);
-    if (unrivalled || nats_of(present, moved) - question.rival_nats >= kRivalClearNats) return;
+    question.rival_nats = nats_of(other, torn_other, moved);
+    if (unrivalled || nats_of(present, torn_present, moved) - question.rival_nats >= kRivalClearNats) return;
     questions.push_back(std::move(question));
+  }
+
+  /// What links that know of one place only say for it, and those that choose between the two. The former may
+  /// all lie on a twin together, however many they are and however surely each shows what it shows.
+  [[nodiscard]] double nats_of(const std::vector<Voice>& one_place, const std::vector<Voice>& torn,
+                               const std::vector<bool>& moved) const {
+    std::vector<Voice> all = torn;
+    all.insert(all.end(), one_place.begin(), one_place.end());
+    const double by_chance = nats_of(one_place, moved);
+    const double chosen = nats_of(std::move(all), moved) - by_chance;
+    return chosen - std::log(std::exp(-by_chance) + odds_of_twin(one_place, moved));
+  }
+
+  /// Of links that cross a cut, that a place built alike explains what all of them show, against one place.
+  /// That there is one is believed once; what things say against it multiplies, as far as they are different
+  /// ones. 0 where no things were asked.
+  [[nodiscard]] double odds_of_twin(const std::vector<Voice>& voices, const std::vector<bool>& moved) const {
+    TwinEvidence all;
+    double most_shown_m2 = -1.0;
+    for (const Voice& voice : voices) {
+      const GraphLink& link = graph_.links[static_cast<std::size_t>(voice.link)];
+      if (!link.asks_for_twins()) continue;
+      const TwinEvidence said = link.against_twins();
+      const bool first = most_shown_m2 < 0.0;
+      all.otherwise = first ? said.otherwise : std::min(all.otherwise, said.otherwise);
+      all.alike = first ? said.alike : std::min(all.alike, said.alike);
+      if (const double shown_m2 = link.poses.front().agreeing_m2; shown_m2 > most_shown_m2) {
+        most_shown_m2 = shown_m2;
+        all.built_nats = said.built_nats;
+      }
+    }
+    if (most_shown_m2 < 0.0) return 0.0;
+    for (double TwinEvidence::*nats : {&TwinEvidence::otherwise_nats, &TwinEvidence::alike_nats}) {
+      std::vector<SaidByPair> said;
+      for (const Voice& voice : voices) {
+        const GraphLink& link = graph_.links[static_cast<std::size_t>(voice.link)];
+        said.push_back({&link, link.asks_for_twins() ? std::min(link.against_twins().*nats, kMostTwinNats)
+                                                     : voice.nats});
+      }
+      std::stable_sort(said.begin(), said.end(), [](const SaidByPair& a, const SaidByPair& b) {
+        return std::abs(a.nats) > std::abs(b.nats);
+      });
+      const std::vector<double> fresh = views_.fresh_shares(said, moved);
+      for (std::size_t i = 0; i < said.size(); ++i) all.*nats += fresh[i] * said[i].nats;
+    }
+    return all.odds();
   }
 
   /// What links say together: those that see the same say it once, but that sure ones agree says more.
@@ -226,11 +280,18 @@ class RivalSearch {
     std::vector<bool> staying;
   };
 
-  /// The ends of all links that speak for the movement and not for the present places.
-  [[nodiscard]] Sides sides_of(const GraphLink& first, const Rigid3& movement) const {
+  [[nodiscard]] Sides ends_of(const GraphLink& link) const {
     Sides sides;
     sides.moving.assign(static_cast<std::size_t>(graph_.nodes), false);
     sides.staying = sides.moving;
+    sides.moving[static_cast<std::size_t>(link.source)] = true;
+    sides.staying[static_cast<std::size_t>(link.target)] = true;
+    return sides;
+  }
+
+  /// The ends of all links that speak for the movement and not for the present places.
+  [[nodiscard]] Sides sides_of(const GraphLink& first, const Rigid3& movement) const {
+    Sides sides = ends_of(first);
     const auto add = [&](int moving, int staying) {
       const auto m = static_cast<std::size_t>(moving);
       const auto s = static_cast<std::size_t>(staying);
@@ -238,7 +299,6 @@ class RivalSearch {
       sides.moving[m] = true;
       sides.staying[s] = true;
     };
-    add(first.source, first.target);
     const int home = accepted_.component[static_cast<std::size_t>(first.source)];
     for (std::size_t k = 0; k < graph_.links.size(); ++k) {
       const GraphLink& link = graph_.links[k];
@@ -305,13 +365,27 @@ class RivalSearch {
     }
   }
 
+  /// By what a cut is small: how many links it breaks, or how little these say.
+  enum class CutBy { count, nats };
+
+  /// What a link says once it is granted that there are twins.
+  [[nodiscard]] double nats_beside_twins(int k) const {
+    const GraphLink& link = graph_.links[static_cast<std::size_t>(k)];
+    const double nats = nats_of(link, accepted_.pose[static_cast<std::size_t>(k)]);
+    if (!link.asks_for_twins()) return nats;
+    const TwinEvidence said = link.against_twins();
+    return std::max(0.0, std::min({nats, said.otherwise_nats, said.alike_nats}));
+  }
+
   /// The nodes that go with the moving ones while the others stay.
-  [[nodiscard]] std::vector<bool> smallest_cut(const Sides& sides, const Rigid3& movement) const {
+  [[nodiscard]] std::vector<bool> smallest_cut(const Sides& sides, const Rigid3& movement, CutBy by) const {
     FlowNetwork network(static_cast<std::size_t>(graph_.nodes));
     for (std::size_t k = 0; k < graph_.links.size(); ++k) {
       if (accepted_.pose[k] < 0) continue;
       const GraphLink& link = graph_.links[k];
-      const int firm = link.trust == LinkTrust::weak ? 1 : link.trust == LinkTrust::given ? 1000 : 10;
+      const int usual =
+          by == CutBy::count ? 10 : 1 + static_cast<int>(10.0 * nats_beside_twins(static_cast<int>(k)));
+      const int firm = link.trust == LinkTrust::weak ? 1 : link.trust == LinkTrust::given ? 1000 : usual;
       const Bend bend = bend_of(link, movement);
       network.connect(link.source, link.target, bend.source_moves ? 0 : firm, bend.target_moves ? 0 : firm);
     }

@@ -86,6 +86,20 @@ double SharedViews::seen_already(const GraphLink& pair, const std::vector<const 
   return most;
 }
 
+std::vector<double> SharedViews::fresh_shares(const std::vector<SaidByPair>& said,
+                                              const std::vector<bool>& moved) const {
+  std::vector<double> fresh;
+  fresh.reserve(said.size());
+  std::vector<const GraphLink*> heard_for;
+  std::vector<const GraphLink*> heard_against;
+  for (const SaidByPair& one : said) {
+    std::vector<const GraphLink*>& heard = one.nats > 0.0 ? heard_for : heard_against;
+    fresh.push_back(1.0 - seen_already(*one.pair, heard, moved));
+    heard.push_back(one.pair);
+  }
+  return fresh;
+}
+
 std::vector<int> SharedViews::independent(const std::vector<int>& links,
                                           const std::vector<bool>& moved) const {
   std::vector<int> chosen;

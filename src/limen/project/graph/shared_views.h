@@ -26,6 +26,12 @@ struct AcceptedPoses {
   std::vector<double> beyond_nats = {};
 };
 
+/// A pair and what it says, natural logarithms: for something, or against it (less than 0).
+struct SaidByPair {
+  const GraphLink* pair = nullptr;
+  double nats = 0.0;
+};
+
 /// Whether the solution lays the two as the pair's best pose does.
 [[nodiscard]] bool is_laid_so(const GraphLink& pair, const AcceptedPoses& accepted);
 
@@ -42,6 +48,11 @@ class SharedViews {
   /// How much of what a pair shows others that cross the same cut have shown already, in [0, 1].
   [[nodiscard]] double seen_already(const GraphLink& pair, const std::vector<const GraphLink*>& others,
                                     const std::vector<bool>& moved) const;
+
+  /// Of each pair, all across one cut, the share of what it says that none before it which says likewise (for
+  /// or against) has said.
+  [[nodiscard]] std::vector<double> fresh_shares(const std::vector<SaidByPair>& said,
+                                                 const std::vector<bool>& moved) const;
 
   /// How many accepted links see what an accepted link sees, itself included.
   [[nodiscard]] int witnesses_like(int link) const;

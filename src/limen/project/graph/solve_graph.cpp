@@ -405,12 +405,20 @@ class Solver {
   /// the links that speak for it alone, which knows of the building what all links have taught: how seldom
   /// places are built alike, and stand apart.
   void drop_settled_questions() {
-    if (solved_.questions.empty()) return;
+    // What a question that was settled would have moved is held: that may settle others.
+    for (std::size_t open = 0; open != solved_.questions.size();) {
+      open = solved_.questions.size();
+      drop_questions_settled_by_the_rest();
+    }
+  }
+
+  void drop_questions_settled_by_the_rest() {
     const std::vector<int> reference = reference_of_nodes();
     const std::vector<NodeDoubt> all_doubts = doubts_of(graph_, accepted_, reference);
     std::vector<NodeDoubt> doubts = all_doubts;
     for (const GraphQuestion& question : solved_.questions)
-      for (const int node : question.moved) doubts[static_cast<std::size_t>(node)].chance = 1.0;  // not held
+      for (const int node : seen_from_frame(question).moved)
+        doubts[static_cast<std::size_t>(node)].chance = 1.0;  // not held
     const std::vector<double> apart = odds_of_standing_apart(doubts, reference);
     const std::vector<bool> firm = unquestioned_nodes(all_doubts, apart, reference);
     const auto settled = [&](const GraphQuestion& question) {

@@ -354,6 +354,56 @@ TEST(SolveGraph, TwinRoomsLinkedWronglyAreNeverRegisteredBoth) {
   }
 }
 
+/// A corridor that was laid on that of the storey above, by what is furnished alike around both: links to its
+/// own storey, as sure as these, say otherwise. So do many links elsewhere that take one storey for the
+/// other, and that would move a whole storey at once.
+TEST(SolveGraph, ARoomBetweenTwoStoreysIsAskedByItself) {
+  RandomStream random(9, 1);
+  PoseGraph graph;
+  constexpr int kRooms = 4;
+  constexpr int kCorridor = 2 * kRooms;
+  graph.nodes = kCorridor + 1;
+  const Vector3d storey(0, 0, 3.2);
+  std::vector<Rigid3> truth(static_cast<std::size_t>(graph.nodes));
+  for (int k = 0; k < kRooms; ++k) {
+    truth[static_cast<std::size_t>(k)].translation = {4.0 * k, 0, 0};
+    truth[static_cast<std::size_t>(kRooms + k)].translation = Vector3d(4.0 * k, 0, 0) + storey;
+  }
+  truth.back().translation = {6, 3, 0};
+  // `up`: how many storeys too high the link takes its source to be.
+  const auto add = [&](int source, int target, double up, double otherwise_nats, double alike_nats) {
+    Rigid3 from = truth[static_cast<std::size_t>(source)];
+    from.translation += up * storey;
+    GraphLink link;
+    link.source = source;
+    link.target = target;
+    link.poses = {measured_pose(inverse(truth[static_cast<std::size_t>(target)]) * from, 40.0, random)};
+    link.evidence = TwinEvidence{0.1455, 0.0045, otherwise_nats, alike_nats};
+    link.twin = link.evidence->probability();
+    link.trust = link.twin > 0.001 ? LinkTrust::likely : LinkTrust::sure;
+    graph.links.push_back(link);
+  };
+  for (int a = 0; a < kRooms; ++a) {
+    for (int b = 0; b < a; ++b) {
+      add(a, b, 0.0, 14.0, 14.0);
+      add(kRooms + a, kRooms + b, 0.0, 14.0, 14.0);
+    }
+    // A staircase joins the storeys; rooms above one another are taken for one.
+    add(kRooms + a, a, a == 0 ? 0.0 : -1.0, a == 0 ? 14.0 : 3.0, a == 0 ? 14.0 : 0.0);
+  }
+  for (int a = 1; a < kRooms; ++a) add(kCorridor, kRooms + a, 1.0, 7.0, 1.0);
+  add(kCorridor, 1, 0.0, 9.0, 0.0);
+  add(kCorridor, 2, 0.0, 9.0, 0.5);
+  const SolvedGraph solved = solve_graph(graph);
+  const Rigid3 right = inverse(truth.front()) * truth.back();
+  const Rigid3 found = inverse(solved.nodes.front().frame_from_node) * solved.nodes.back().frame_from_node;
+  EXPECT_TRUE(solved.nodes.back().state == NodeState::ambiguous ||
+              (found.translation - right.translation).norm() < 0.05)
+      << to_string(solved.nodes.back().state) << ", doubt " << solved.nodes.back().doubt;
+  for (int n = 0; n < kCorridor; ++n)
+    EXPECT_EQ(solved.nodes[static_cast<std::size_t>(n)].state, NodeState::registered) << n;
+}
+
 TEST(SolveGraph, TheSameGraphGivesTheSameBits) {
   const SyntheticGraph made = synthetic_graph(5, 4, 5, 0.2, 2);
   const SolvedGraph a = solve_graph(made.graph);
