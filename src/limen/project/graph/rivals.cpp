@@ -220,8 +220,10 @@ class RivalSearch {
       std::vector<SaidByPair> said;
       for (const Voice& voice : voices) {
         const GraphLink& link = graph_.links[static_cast<std::size_t>(voice.link)];
-        said.push_back({&link, link.asks_for_twins() ? std::min(link.against_twins().*nats, kMostTwinNats)
-                                                     : voice.nats});
+        // Where things were not asked the other places were searched too.
+        const double searched = link.trust <= LinkTrust::sure ? nats_for(link, 0, kMostTwinNats) : voice.nats;
+        said.push_back(
+            {&link, link.asks_for_twins() ? std::min(link.against_twins().*nats, kMostTwinNats) : searched});
       }
       std::stable_sort(said.begin(), said.end(), [](const SaidByPair& a, const SaidByPair& b) {
         return std::abs(a.nats) > std::abs(b.nats);
