@@ -6,10 +6,12 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <utility>
 
 #include "limen/base/progress.h"
 #include "limen/project/graph/flow_network.h"
 #include "limen/project/graph/twin_rate.h"
+#include "limen/project/graph/twins_across.h"
 
 namespace limen {
 namespace {
@@ -71,9 +73,9 @@ class DoubtSearch {
     for (const int node : order) {
       CancelScope::check();
       if (!is_held(node)) continue;
-      add_sides(kOtherwise, node, otherwise_, otherwise);
-      if (otherwise_heard_.network) add_sides(kOtherwise, node, otherwise_heard_, otherwise);
-      add_sides(kAlike, node, alike_, alike);
+      add_sides(kTwinOtherwise, node, otherwise_, otherwise);
+      if (otherwise_heard_.network) add_sides(kTwinOtherwise, node, otherwise_heard_, otherwise);
+      add_sides(kTwinAlike, node, alike_, alike);
     }
     for (const int node : order) {
       const int root = reference[static_cast<std::size_t>(node)];
@@ -88,7 +90,7 @@ class DoubtSearch {
 
   [[nodiscard]] NodeDoubt of_side(const std::vector<bool>& side) const {
     NodeDoubt doubt;
-    tell_twins(across(kOtherwise, side), across(kAlike, side), doubt);
+    tell_twins(across(kTwinOtherwise, side), across(kTwinAlike, side), doubt);
     tell_chance(side, doubt);
     return doubt;
   }
@@ -133,17 +135,6 @@ class DoubtSearch {
     evidence.otherwise_nats = evidence.alike_nats = nats(k);
     return evidence;
   }
-
-  /// Twins of one kind.
-  struct Kind {
-    double TwinEvidence::*prior;
-    double TwinEvidence::*nats;
-    double TwinFactors::*factor;
-  };
-
-  static constexpr Kind kOtherwise{&TwinEvidence::otherwise, &TwinEvidence::otherwise_nats,
-                                   &TwinFactors::otherwise};
-  static constexpr Kind kAlike{&TwinEvidence::alike, &TwinEvidence::alike_nats, &TwinFactors::alike};
 
   /// Smallest cuts by one measure of what the links say. `held`: nodes between which and their reference
   /// enough is said across every cut, the references among them: no smaller cut parts them, so that a cut
@@ -214,15 +205,12 @@ class DoubtSearch {
   }
 
   struct Cut {
-    double prior = 0.0;      ///< of a twin, before things are asked; none where no pair's were
-    double nats = 0.0;       ///< what they say against it
-    double held_nats = 0.0;  ///< the same of those only that do
-    /// What walls say against it, once for a building: by the link that shows most surface. The link that
-    /// says most would be chosen for what it says, and of many some say much by chance.
-    double built_nats = 0.0;
+    double prior = 0.0;       ///< of a twin, by what was learned of the building
+    double nats = 0.0;        ///< what things and walls say against it
+    double held_nats = 0.0;   ///< of the former those only that do
     std::vector<int> links;   ///< that see different things
     std::vector<int> across;  ///< all
-    [[nodiscard]] double weight() const { return prior * std::exp(-nats - built_nats); }
+    [[nodiscard]] double weight() const { return prior * std::exp(-nats); }
   };
 
   /// The side of `node` of the smallest cut between it and the reference; empty where enough is said across
@@ -238,7 +226,7 @@ class DoubtSearch {
   using Sides = std::map<std::vector<bool>, Cut>;
 
   /// The node alone, and its side of the smallest cut between it and the reference.
-  void add_sides(const Kind& kind, int node, CutSearch& search, Sides& sides) const {
+  void add_sides(const TwinKind& kind, int node, CutSearch& search, Sides& sides) const {
     const auto add = [&](const std::vector<bool>& side) {
       if (sides.count(side) == 0) sides.emplace(side, across(kind, side));
     };
@@ -261,14 +249,9 @@ class DoubtSearch {
   }
 
   /// What is said across a cut for and against a twin, by those first that say most.
-  [[nodiscard]] Cut across(const Kind& kind, const std::vector<bool>& side) const {
-    struct Voice {
-      const GraphLink* pair = nullptr;
-      TwinEvidence said;
-      int link = -1;  ///< -1: a pair that holds nothing
-    };
-    std::vector<Voice> voices;
-    for (const int k : crossing_links(side)) voices.push_back({&link(k), evidence(k), k});
+  [[nodiscard]] Cut across(const TwinKind& kind, const std::vector<bool>& side) const {
+    std::vector<TwinVoice> voices;
+    for (const int k : crossing_links(side)) voices.push_back({&link(k), evidence(k), is_asked(k), k});
     for (const GraphLink* pair : against_) {
       if (side[static_cast<std::size_t>(pair->source)] != side[static_cast<std::size_t>(pair->target)])
         voices.push_back({pair, *pair->evidence});
@@ -276,32 +259,19 @@ class DoubtSearch {
     for (const HeardPair& heard : accepted_.heard) {
       if (speaks_of(heard, side)) voices.push_back({&heard.pair, *heard.pair.evidence});
     }
-    std::stable_sort(voices.begin(), voices.end(), [&](const Voice& a, const Voice& b) {
-      return std::abs(a.said.*kind.nats) > std::abs(b.said.*kind.nats);
-    });
-    Cut cut;
-    double most_shown_m2 = 0.0;
-    std::vector<SaidByPair> said;
-    for (const Voice& voice : voices) said.push_back({voice.pair, voice.said.*kind.nats});
-    const std::vector<double> fresh = views_.fresh_shares(said, side);
-    for (std::size_t i = 0; i < voices.size(); ++i) {
-      const Voice& voice = voices[i];
-      cut.nats += fresh[i] * said[i].nats;
-      cut.held_nats += fresh[i] * std::max(0.0, said[i].nats);
-      if (voice.link < 0) continue;
-      cut.across.push_back(voice.link);
-      if (fresh[i] > kHardlyFresh) cut.links.push_back(voice.link);
-      if (!is_asked(voice.link)) continue;
-      if (const double shown_m2 = voice.pair->poses.front().agreeing_m2; shown_m2 > most_shown_m2) {
-        most_shown_m2 = shown_m2;
-        cut.built_nats = voice.said.built_nats;
-      }
-      const double prior = voice.said.*kind.prior;
-      cut.prior = cut.prior > 0.0 ? std::min(cut.prior, prior) : prior;
+    const TwinsAcross all = twins_across(views_, kind, std::move(voices), side);
+    Cut cut{all.prior, all.nats + all.built_nats, all.held_nats, {}, {}};
+    for (std::size_t i = 0; i < all.voices.size(); ++i) {
+      const int link = all.voices[i].link;
+      if (link < 0) continue;
+      cut.across.push_back(link);
+      if (all.fresh[i] > kHardlyFresh) cut.links.push_back(link);
     }
+    const bool alike = kind.nats == kTwinAlike.nats;
+    const TwinFactors learned = rate_->factors(side);
     // Rooms of another design teach nothing of how this one is furnished in its twins.
-    const double least = kind.nats == kAlike.nats && has_twins() ? std::min(cut.prior, kLeastAlike) : 0.0;
-    cut.prior = std::clamp(cut.prior * (rate_->factors(side).*kind.factor), least, kMostBelieved);
+    const double least = alike && has_twins() ? std::min(cut.prior, kLeastAlike) : 0.0;
+    cut.prior = std::clamp(cut.prior * (alike ? learned.alike : learned.otherwise), least, kMostBelieved);
     std::sort(cut.links.begin(), cut.links.end());
     return cut;
   }

@@ -10,6 +10,7 @@
 #include "limen/base/progress.h"
 #include "limen/project/graph/flow_network.h"
 #include "limen/project/graph/shared_views.h"
+#include "limen/project/graph/twins_across.h"
 
 namespace limen {
 namespace {
@@ -32,20 +33,30 @@ struct Voice {
 struct Bend {
   bool source_moves = false;  ///< it follows where its source moves and its target stays ...
   bool target_moves = false;  ///< ... or the other way round
+  [[nodiscard]] bool any() const { return source_moves || target_moves; }
+};
+
+/// How a part would move, and what each link makes of it.
+struct Movement {
+  Rigid3 by;
+  std::vector<Bend> bends;
 };
 
 class RivalSearch {
  public:
   RivalSearch(const PoseGraph& graph, const AcceptedPoses& accepted)
-      : graph_(graph), accepted_(accepted), views_(graph, accepted) {}
+      : graph_(graph), accepted_(accepted), views_(graph, accepted) {
+    for (std::size_t k = 0; k < graph.links.size(); ++k)
+      beside_twins_.push_back(accepted.pose[k] < 0 ? 0.0 : nats_beside_twins(static_cast<int>(k)));
+  }
 
   std::vector<GraphQuestion> run() {
     std::vector<GraphQuestion> questions;
     for (std::size_t k = 0; k < graph_.links.size(); ++k) {
       CancelScope::check();
       const GraphLink& link = graph_.links[k];
-      const int component = accepted_.component[static_cast<std::size_t>(link.source)];
-      if (component < 0 || component != accepted_.component[static_cast<std::size_t>(link.target)]) continue;
+      const int component = component_of(link.source);
+      if (component < 0 || component != component_of(link.target)) continue;
       if (link.trust == LinkTrust::weak || link.trust == LinkTrust::given) continue;
       // Of a sure link that was accepted the others are not as likely; of one that was not, only the best is.
       const bool sure = link.trust <= LinkTrust::likely;
@@ -62,6 +73,9 @@ class RivalSearch {
  private:
   [[nodiscard]] const Rigid3& at(int node) const {
     return accepted_.frame_from_node[static_cast<std::size_t>(node)];
+  }
+  [[nodiscard]] int component_of(int node) const {
+    return accepted_.component[static_cast<std::size_t>(node)];
   }
 
   /// What a link would measure, were all places right.
@@ -108,9 +122,16 @@ class RivalSearch {
                         : inverse(movement * at(link.target)) * at(link.source);
   }
 
-  [[nodiscard]] Bend bend_of(const GraphLink& link, const Rigid3& movement) const {
-    return {any_fits(link, moved_pose(link, true, movement)),
-            any_fits(link, moved_pose(link, false, movement))};
+  /// Of the links of a component.
+  [[nodiscard]] std::vector<Bend> bends_of(int component, const Rigid3& movement) const {
+    std::vector<Bend> bends(graph_.links.size());
+    for (std::size_t k = 0; k < bends.size(); ++k) {
+      const GraphLink& link = graph_.links[k];
+      if (component_of(link.source) != component || component_of(link.target) != component) continue;
+      bends[k] = {any_fits(link, moved_pose(link, true, movement)),
+                  any_fits(link, moved_pose(link, false, movement))};
+    }
+    return bends;
   }
 
   void ask(const GraphLink& link, const LinkPose& pose, std::vector<GraphQuestion>& questions) const {
@@ -126,20 +147,28 @@ class RivalSearch {
           rotation_angle(known.frame_from_frame.rotation.transpose() * movement.rotation) < kSameTurnRad;
       if (same && contains(known.moved, link.source) && !contains(known.moved, link.target)) return;
     }
+    const Movement asked{movement, bends_of(component_of(link.source), movement)};
     // Rooms built alike lie one storey or one bay from one another, so that links of many places speak for
     // one movement, and together they would cut the building in two: each is asked by itself as well.
-    const Sides sides = sides_of(link, movement);
+    const Sides sides = sides_of(link, asked);
     const Sides ends = ends_of(link);
-    std::vector<std::vector<bool>> cuts = {ends.moving, ends.staying};
-    cuts.back().flip();
+    std::vector<std::vector<bool>> cuts = {ends.moving, all_but(link.target)};
     for (const auto& [apart, by] : {std::pair(&sides, CutBy::count), std::pair(&ends, CutBy::nats)}) {
       for (const Sides& tried :
-           {*apart, with_neighbours(*apart, movement, true), with_neighbours(*apart, movement, false)}) {
-        std::vector<bool> moved = smallest_cut(tried, movement, by);
+           {*apart, with_neighbours(*apart, asked, true), with_neighbours(*apart, asked, false)}) {
+        std::vector<bool> moved = smallest_cut(tried, asked, by);
         if (std::find(cuts.begin(), cuts.end(), moved) == cuts.end()) cuts.push_back(std::move(moved));
       }
     }
     for (const std::vector<bool>& moved : cuts) weigh(moved, movement, questions);
+  }
+
+  /// The nodes of a node's component without it.
+  [[nodiscard]] std::vector<bool> all_but(int node) const {
+    std::vector<bool> others(static_cast<std::size_t>(graph_.nodes), false);
+    for (int other = 0; other < graph_.nodes; ++other)
+      others[static_cast<std::size_t>(other)] = other != node && component_of(other) == component_of(node);
+    return others;
   }
 
   /// Asks where what speaks for the present place is not clearly more.
@@ -197,41 +226,29 @@ class RivalSearch {
     return chosen - std::log(std::exp(-by_chance) + odds_of_twin(one_place, moved));
   }
 
-  /// Of links that cross a cut, that a place built alike explains what all of them show, against one place.
-  /// That there is one is believed once; what things say against it multiplies, as far as they are different
-  /// ones. 0 where no things were asked.
+  /// Of links that cross a cut, that a place built alike explains what all of them show, against one place. 0
+  /// where no things were asked.
   [[nodiscard]] double odds_of_twin(const std::vector<Voice>& voices, const std::vector<bool>& moved) const {
-    TwinEvidence all;
-    double most_shown_m2 = -1.0;
+    std::vector<TwinVoice> all;
     for (const Voice& voice : voices) {
       const GraphLink& link = graph_.links[static_cast<std::size_t>(voice.link)];
-      if (!link.asks_for_twins()) continue;
-      const TwinEvidence said = link.against_twins();
-      const bool first = most_shown_m2 < 0.0;
-      all.otherwise = first ? said.otherwise : std::min(all.otherwise, said.otherwise);
-      all.alike = first ? said.alike : std::min(all.alike, said.alike);
-      if (const double shown_m2 = link.poses.front().agreeing_m2; shown_m2 > most_shown_m2) {
-        most_shown_m2 = shown_m2;
-        all.built_nats = said.built_nats;
-      }
+      TwinVoice said{&link, link.against_twins(), link.asks_for_twins(), voice.link};
+      // Where things were not asked the other places were searched too.
+      if (!said.asked)
+        said.said.otherwise_nats = said.said.alike_nats =
+            link.trust <= LinkTrust::sure ? nats_for(link, 0, kMostTwinNats) : voice.nats;
+      for (const TwinKind& kind : {kTwinOtherwise, kTwinAlike})
+        said.said.*kind.nats = std::min(said.said.*kind.nats, kMostTwinNats);
+      all.push_back(said);
     }
-    if (most_shown_m2 < 0.0) return 0.0;
-    for (double TwinEvidence::*nats : {&TwinEvidence::otherwise_nats, &TwinEvidence::alike_nats}) {
-      std::vector<SaidByPair> said;
-      for (const Voice& voice : voices) {
-        const GraphLink& link = graph_.links[static_cast<std::size_t>(voice.link)];
-        // Where things were not asked the other places were searched too.
-        const double searched = link.trust <= LinkTrust::sure ? nats_for(link, 0, kMostTwinNats) : voice.nats;
-        said.push_back(
-            {&link, link.asks_for_twins() ? std::min(link.against_twins().*nats, kMostTwinNats) : searched});
-      }
-      std::stable_sort(said.begin(), said.end(), [](const SaidByPair& a, const SaidByPair& b) {
-        return std::abs(a.nats) > std::abs(b.nats);
-      });
-      const std::vector<double> fresh = views_.fresh_shares(said, moved);
-      for (std::size_t i = 0; i < said.size(); ++i) all.*nats += fresh[i] * said[i].nats;
+    TwinEvidence evidence;
+    for (const TwinKind& kind : {kTwinOtherwise, kTwinAlike}) {
+      const TwinsAcross across = twins_across(views_, kind, all, moved);
+      evidence.*kind.prior = across.prior;
+      evidence.*kind.nats = across.nats;
+      evidence.built_nats = across.built_nats;
     }
-    return all.odds();
+    return evidence.odds();
   }
 
   /// What links say together: those that see the same say it once, but that sure ones agree says more.
@@ -292,7 +309,7 @@ class RivalSearch {
   }
 
   /// The ends of all links that speak for the movement and not for the present places.
-  [[nodiscard]] Sides sides_of(const GraphLink& first, const Rigid3& movement) const {
+  [[nodiscard]] Sides sides_of(const GraphLink& first, const Movement& movement) const {
     Sides sides = ends_of(first);
     const auto add = [&](int moving, int staying) {
       const auto m = static_cast<std::size_t>(moving);
@@ -301,14 +318,10 @@ class RivalSearch {
       sides.moving[m] = true;
       sides.staying[s] = true;
     };
-    const int home = accepted_.component[static_cast<std::size_t>(first.source)];
     for (std::size_t k = 0; k < graph_.links.size(); ++k) {
       const GraphLink& link = graph_.links[k];
       if (accepted_.pose[k] >= 0 || link.trust == LinkTrust::weak) continue;
-      if (accepted_.component[static_cast<std::size_t>(link.source)] != home ||
-          accepted_.component[static_cast<std::size_t>(link.target)] != home)
-        continue;
-      const Bend bend = bend_of(link, movement);
+      const Bend& bend = movement.bends[k];
       if (bend.source_moves) add(link.source, link.target);
       if (bend.target_moves) add(link.target, link.source);
     }
@@ -317,7 +330,7 @@ class RivalSearch {
 
   /// The same with what is linked to one of the sides: a room that another was taken for goes with what its
   /// own links say, not with the other room.
-  [[nodiscard]] Sides with_neighbours(const Sides& sides, const Rigid3& movement, bool of_moving) const {
+  [[nodiscard]] Sides with_neighbours(const Sides& sides, const Movement& movement, bool of_moving) const {
     Sides more = sides;
     const std::vector<bool>& own = of_moving ? sides.moving : sides.staying;
     const std::vector<bool>& other = of_moving ? sides.staying : sides.moving;
@@ -325,10 +338,9 @@ class RivalSearch {
     for (std::size_t k = 0; k < graph_.links.size(); ++k) {
       const GraphLink& link = graph_.links[k];
       if (accepted_.pose[k] < 0 || link.trust == LinkTrust::weak) continue;
+      if (movement.bends[k].any()) continue;
       const auto s = static_cast<std::size_t>(link.source);
       const auto t = static_cast<std::size_t>(link.target);
-      const Bend bend = bend_of(link, movement);
-      if (bend.source_moves || bend.target_moves) continue;
       if (own[s] && !other[t]) grown[t] = true;
       if (own[t] && !other[s]) grown[s] = true;
     }
@@ -351,9 +363,8 @@ class RivalSearch {
     const GraphLink& link = graph_.links[k];
     const bool source = moved[static_cast<std::size_t>(link.source)];
     const bool target = moved[static_cast<std::size_t>(link.target)];
-    const int component = accepted_.component[static_cast<std::size_t>(question.moved.front())];
-    const bool here = accepted_.component[static_cast<std::size_t>(link.source)] == component &&
-                      accepted_.component[static_cast<std::size_t>(link.target)] == component;
+    const int component = component_of(question.moved.front());
+    const bool here = component_of(link.source) == component && component_of(link.target) == component;
     if (source == target || !here || link.trust == LinkTrust::weak) return;
     const int now = accepted_.pose[k];
     const int then = rival_pose(static_cast<int>(k), moved, movement);
@@ -380,15 +391,14 @@ class RivalSearch {
   }
 
   /// The nodes that go with the moving ones while the others stay.
-  [[nodiscard]] std::vector<bool> smallest_cut(const Sides& sides, const Rigid3& movement, CutBy by) const {
+  [[nodiscard]] std::vector<bool> smallest_cut(const Sides& sides, const Movement& movement, CutBy by) const {
     FlowNetwork network(static_cast<std::size_t>(graph_.nodes));
     for (std::size_t k = 0; k < graph_.links.size(); ++k) {
       if (accepted_.pose[k] < 0) continue;
       const GraphLink& link = graph_.links[k];
-      const int usual =
-          by == CutBy::count ? 10 : 1 + static_cast<int>(10.0 * nats_beside_twins(static_cast<int>(k)));
+      const int usual = by == CutBy::count ? 10 : 1 + static_cast<int>(10.0 * beside_twins_[k]);
       const int firm = link.trust == LinkTrust::weak ? 1 : link.trust == LinkTrust::given ? 1000 : usual;
-      const Bend bend = bend_of(link, movement);
+      const Bend& bend = movement.bends[k];
       network.connect(link.source, link.target, bend.source_moves ? 0 : firm, bend.target_moves ? 0 : firm);
     }
     std::vector<int> moving;
@@ -402,6 +412,7 @@ class RivalSearch {
   const PoseGraph& graph_;
   const AcceptedPoses& accepted_;
   SharedViews views_;
+  std::vector<double> beside_twins_;  ///< of each link that was accepted
 };
 
 }  // namespace

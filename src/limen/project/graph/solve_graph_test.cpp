@@ -354,17 +354,25 @@ TEST(SolveGraph, TwinRoomsLinkedWronglyAreNeverRegisteredBoth) {
   }
 }
 
+constexpr int kRooms = 4;
+constexpr int kCorridor = 2 * kRooms;
+
+struct TwoStoreys {
+  PoseGraph graph;
+  std::vector<Rigid3> world_from_node;
+};
+
 /// A corridor that was laid on that of the storey above, by what is furnished alike around both: links to its
 /// own storey, as sure as these, say otherwise. So do many links elsewhere that take one storey for the
 /// other, and that would move a whole storey at once.
-TEST(SolveGraph, ARoomBetweenTwoStoreysIsAskedByItself) {
+TwoStoreys two_storeys(bool corridor_is_source = true) {
   RandomStream random(9, 1);
-  PoseGraph graph;
-  constexpr int kRooms = 4;
-  constexpr int kCorridor = 2 * kRooms;
+  TwoStoreys made;
+  PoseGraph& graph = made.graph;
   graph.nodes = kCorridor + 1;
   const Vector3d storey(0, 0, 3.2);
-  std::vector<Rigid3> truth(static_cast<std::size_t>(graph.nodes));
+  std::vector<Rigid3>& truth = made.world_from_node;
+  truth.resize(static_cast<std::size_t>(graph.nodes));
   for (int k = 0; k < kRooms; ++k) {
     truth[static_cast<std::size_t>(k)].translation = {4.0 * k, 0, 0};
     truth[static_cast<std::size_t>(kRooms + k)].translation = Vector3d(4.0 * k, 0, 0) + storey;
@@ -391,10 +399,21 @@ TEST(SolveGraph, ARoomBetweenTwoStoreysIsAskedByItself) {
     // A staircase joins the storeys; rooms above one another are taken for one.
     add(kRooms + a, a, a == 0 ? 0.0 : -1.0, a == 0 ? 14.0 : 3.0, a == 0 ? 14.0 : 0.0);
   }
-  for (int a = 1; a < kRooms; ++a) add(kCorridor, kRooms + a, 1.0, 7.0, 1.0);
-  add(kCorridor, 1, 0.0, 9.0, 0.0);
-  add(kCorridor, 2, 0.0, 9.0, 0.5);
-  const SolvedGraph solved = solve_graph(graph);
+  const auto add_corridor = [&](int room, double up, double otherwise_nats, double alike_nats) {
+    if (corridor_is_source)
+      add(kCorridor, room, up, otherwise_nats, alike_nats);
+    else
+      add(room, kCorridor, -up, otherwise_nats, alike_nats);
+  };
+  for (int a = 1; a < kRooms; ++a) add_corridor(kRooms + a, 1.0, 7.0, 1.0);
+  add_corridor(1, 0.0, 9.0, 0.0);
+  add_corridor(2, 0.0, 9.0, 0.5);
+  return made;
+}
+
+TEST(SolveGraph, ARoomBetweenTwoStoreysIsAskedByItself) {
+  const std::vector<Rigid3> truth = two_storeys().world_from_node;
+  const SolvedGraph solved = solve_graph(two_storeys().graph);
   const Rigid3 right = inverse(truth.front()) * truth.back();
   const Rigid3 found = inverse(solved.nodes.front().frame_from_node) * solved.nodes.back().frame_from_node;
   EXPECT_TRUE(solved.nodes.back().state == NodeState::ambiguous ||
@@ -402,6 +421,52 @@ TEST(SolveGraph, ARoomBetweenTwoStoreysIsAskedByItself) {
       << to_string(solved.nodes.back().state) << ", doubt " << solved.nodes.back().doubt;
   for (int n = 0; n < kCorridor; ++n)
     EXPECT_EQ(solved.nodes[static_cast<std::size_t>(n)].state, NodeState::registered) << n;
+}
+
+/// What is asked of a building is asked of it beside another one as well, that no link joins to it, and of
+/// nothing else.
+void expect_same_beside_another(const PoseGraph& alone) {
+  const SyntheticGraph other = synthetic_graph(3, 1, 2, 0.0, 4);
+  const int first = other.graph.nodes + 1;    // and a scan that nothing holds
+  ASSERT_LT(other.graph.nodes, alone.nodes);  // the larger one is the first component
+  PoseGraph both = other.graph;
+  both.nodes = first + alone.nodes;
+  for (GraphLink link : alone.links) {
+    link.source += first;
+    link.target += first;
+    both.links.push_back(link);
+  }
+  const SolvedGraph solved = solve_graph(alone);
+  const SolvedGraph beside = solve_graph(both);
+  ASSERT_FALSE(solved.questions.empty());
+  ASSERT_EQ(beside.questions.size(), solved.questions.size());
+  for (std::size_t q = 0; q < solved.questions.size(); ++q) {
+    std::vector<int> moved = solved.questions[q].moved;
+    for (int& node : moved) node += first;
+    EXPECT_EQ(beside.questions[q].moved, moved) << q;
+  }
+  for (std::size_t n = 0; n < solved.nodes.size(); ++n) {
+    const SolvedNode& there = beside.nodes[n + static_cast<std::size_t>(first)];
+    EXPECT_EQ(there.state, solved.nodes[n].state) << n;
+    EXPECT_EQ(there.alternatives.size(), solved.nodes[n].alternatives.size()) << n;
+  }
+  for (std::size_t n = 0; n < static_cast<std::size_t>(first); ++n)
+    EXPECT_TRUE(beside.nodes[n].alternatives.empty()) << n;
+}
+
+TEST(SolveGraph, ABuildingThatNothingJoinsChangesNothing) {
+  expect_same_beside_another(two_storeys().graph);
+  expect_same_beside_another(two_storeys(false).graph);
+  // A scan that an open link holds, which has it as its target.
+  SyntheticGraph made = synthetic_graph(4, 1, 3, 0.0, 6);
+  RandomStream random(6, 1);
+  GraphLink link;
+  link.source = 0;
+  link.target = made.graph.nodes++;
+  link.trust = LinkTrust::open;
+  for (int k = 0; k < 2; ++k) link.poses.push_back(measured_pose(random_pose(random, 5.0), 10.0, random));
+  made.graph.links.push_back(link);
+  expect_same_beside_another(made.graph);
 }
 
 TEST(SolveGraph, TheSameGraphGivesTheSameBits) {
