@@ -36,12 +36,6 @@ struct Bend {
   [[nodiscard]] bool any() const { return source_moves || target_moves; }
 };
 
-/// How a part would move, and what each link makes of it.
-struct Movement {
-  Rigid3 by;
-  std::vector<Bend> bends;
-};
-
 class RivalSearch {
  public:
   RivalSearch(const PoseGraph& graph, const AcceptedPoses& accepted)
@@ -147,16 +141,16 @@ class RivalSearch {
           rotation_angle(known.frame_from_frame.rotation.transpose() * movement.rotation) < kSameTurnRad;
       if (same && contains(known.moved, link.source) && !contains(known.moved, link.target)) return;
     }
-    const Movement asked{movement, bends_of(component_of(link.source), movement)};
+    const std::vector<Bend> bends = bends_of(component_of(link.source), movement);
     // Rooms built alike lie one storey or one bay from one another, so that links of many places speak for
     // one movement, and together they would cut the building in two: each is asked by itself as well.
-    const Sides sides = sides_of(link, asked);
+    const Sides sides = sides_of(link, bends);
     const Sides ends = ends_of(link);
     std::vector<std::vector<bool>> cuts = {ends.moving, all_but(link.target)};
     for (const auto& [apart, by] : {std::pair(&sides, CutBy::count), std::pair(&ends, CutBy::nats)}) {
       for (const Sides& tried :
-           {*apart, with_neighbours(*apart, asked, true), with_neighbours(*apart, asked, false)}) {
-        std::vector<bool> moved = smallest_cut(tried, asked, by);
+           {*apart, with_neighbours(*apart, bends, true), with_neighbours(*apart, bends, false)}) {
+        std::vector<bool> moved = smallest_cut(tried, bends, by);
         if (std::find(cuts.begin(), cuts.end(), moved) == cuts.end()) cuts.push_back(std::move(moved));
       }
     }
@@ -309,7 +303,7 @@ class RivalSearch {
   }
 
   /// The ends of all links that speak for the movement and not for the present places.
-  [[nodiscard]] Sides sides_of(const GraphLink& first, const Movement& movement) const {
+  [[nodiscard]] Sides sides_of(const GraphLink& first, const std::vector<Bend>& bends) const {
     Sides sides = ends_of(first);
     const auto add = [&](int moving, int staying) {
       const auto m = static_cast<std::size_t>(moving);
@@ -321,7 +315,7 @@ class RivalSearch {
     for (std::size_t k = 0; k < graph_.links.size(); ++k) {
       const GraphLink& link = graph_.links[k];
       if (accepted_.pose[k] >= 0 || link.trust == LinkTrust::weak) continue;
-      const Bend& bend = movement.bends[k];
+      const Bend& bend = bends[k];
       if (bend.source_moves) add(link.source, link.target);
       if (bend.target_moves) add(link.target, link.source);
     }
@@ -330,7 +324,8 @@ class RivalSearch {
 
   /// The same with what is linked to one of the sides: a room that another was taken for goes with what its
   /// own links say, not with the other room.
-  [[nodiscard]] Sides with_neighbours(const Sides& sides, const Movement& movement, bool of_moving) const {
+  [[nodiscard]] Sides with_neighbours(const Sides& sides, const std::vector<Bend>& bends,
+                                      bool of_moving) const {
     Sides more = sides;
     const std::vector<bool>& own = of_moving ? sides.moving : sides.staying;
     const std::vector<bool>& other = of_moving ? sides.staying : sides.moving;
@@ -338,7 +333,7 @@ class RivalSearch {
     for (std::size_t k = 0; k < graph_.links.size(); ++k) {
       const GraphLink& link = graph_.links[k];
       if (accepted_.pose[k] < 0 || link.trust == LinkTrust::weak) continue;
-      if (movement.bends[k].any()) continue;
+      if (bends[k].any()) continue;
       const auto s = static_cast<std::size_t>(link.source);
       const auto t = static_cast<std::size_t>(link.target);
       if (own[s] && !other[t]) grown[t] = true;
@@ -391,14 +386,15 @@ class RivalSearch {
   }
 
   /// The nodes that go with the moving ones while the others stay.
-  [[nodiscard]] std::vector<bool> smallest_cut(const Sides& sides, const Movement& movement, CutBy by) const {
+  [[nodiscard]] std::vector<bool> smallest_cut(const Sides& sides, const std::vector<Bend>& bends,
+                                               CutBy by) const {
     FlowNetwork network(static_cast<std::size_t>(graph_.nodes));
     for (std::size_t k = 0; k < graph_.links.size(); ++k) {
       if (accepted_.pose[k] < 0) continue;
       const GraphLink& link = graph_.links[k];
       const int usual = by == CutBy::count ? 10 : 1 + static_cast<int>(10.0 * beside_twins_[k]);
       const int firm = link.trust == LinkTrust::weak ? 1 : link.trust == LinkTrust::given ? 1000 : usual;
-      const Bend& bend = movement.bends[k];
+      const Bend& bend = bends[k];
       network.connect(link.source, link.target, bend.source_moves ? 0 : firm, bend.target_moves ? 0 : firm);
     }
     std::vector<int> moving;
