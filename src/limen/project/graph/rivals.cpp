@@ -148,9 +148,10 @@ class RivalSearch {
     const Sides ends = ends_of(link);
     std::vector<std::vector<bool>> cuts = {ends.moving, all_but(link.target)};
     for (const auto& [apart, by] : {std::pair(&sides, CutBy::count), std::pair(&ends, CutBy::nats)}) {
+      FlowNetwork network = network_of(bends, by);
       for (const Sides& tried :
            {*apart, with_neighbours(*apart, bends, true), with_neighbours(*apart, bends, false)}) {
-        std::vector<bool> moved = smallest_cut(tried, bends, by);
+        std::vector<bool> moved = smallest_cut(network, tried);
         if (std::find(cuts.begin(), cuts.end(), moved) == cuts.end()) cuts.push_back(std::move(moved));
       }
     }
@@ -385,9 +386,8 @@ class RivalSearch {
     return std::max(0.0, std::min({nats, said.otherwise_nats, said.alike_nats}));
   }
 
-  /// The nodes that go with the moving ones while the others stay.
-  [[nodiscard]] std::vector<bool> smallest_cut(const Sides& sides, const std::vector<Bend>& bends,
-                                               CutBy by) const {
+  /// What holds the nodes of the graph together against a movement.
+  [[nodiscard]] FlowNetwork network_of(const std::vector<Bend>& bends, CutBy by) const {
     FlowNetwork network(static_cast<std::size_t>(graph_.nodes));
     for (std::size_t k = 0; k < graph_.links.size(); ++k) {
       if (accepted_.pose[k] < 0) continue;
@@ -397,9 +397,14 @@ class RivalSearch {
       const Bend& bend = bends[k];
       network.connect(link.source, link.target, bend.source_moves ? 0 : firm, bend.target_moves ? 0 : firm);
     }
+    return network;
+  }
+
+  /// The nodes that go with the moving ones while the others stay.
+  [[nodiscard]] static std::vector<bool> smallest_cut(FlowNetwork& network, const Sides& sides) {
     std::vector<int> moving;
-    for (int node = 0; node < graph_.nodes; ++node) {
-      if (sides.moving[static_cast<std::size_t>(node)]) moving.push_back(node);
+    for (std::size_t node = 0; node < sides.moving.size(); ++node) {
+      if (sides.moving[node]) moving.push_back(static_cast<int>(node));
     }
     return network.smallest_cut(moving, sides.staying, std::numeric_limits<int>::max())
         .value_or(sides.moving);
