@@ -39,6 +39,7 @@ class MisuseTest : public ProgramTest {
     write_whole(work() / "names.txt", "missing.ply\n");
     write_whole(work() / "empty.json", "");
     write_whole(work() / "words.csv", "there,is\nno,point\n");
+    write_whole(work() / "commas.csv", "name,x,y,sigma\nA,1,5,2,5,3\n");
     write_whole(work() / "nan.xyz", "nan nan nan\nnan nan nan\nnan nan nan\n");
     fs::create_directory(work() / "folder");
   }
@@ -168,8 +169,15 @@ TEST_F(MisuseTest, WhatIsNoFileOrTheWrongOne) {
       {{"transform", "m.ifc", "a.ply", "out.ply"}, "is not a pose"},
       {{"transform", "result/report.html", "a.ply", "out.ply"}, "is not a pose"},
       {{"transform", "result/result.json", "a.ply", "out.ply"}, "holds no pose"},
-      {{"transform", "project/project.json", "a.ply", "out.ply"}, "project.json"},
+      {{"transform", "project/project.json", "a.ply", "out.ply"}, "with -o OUT and takes no cloud"},
       {{"transform", "result/result.json", "-o", "out"}, "is not a project"},
+      {{"transform", "missing.json", "-o", "out"}, "missing.json: there is no such file"},
+      {{"deviation", "missing/project.json", "m.ifc", "-o", "out"}, "project.json: there is no such file"},
+      {{"project", "--scans", "folder", "-o", "out"}, "folder: is a folder, not a list"},
+      {{"project", "a.ply", "b.ply", "--control", "folder", "-o", "out"}, "folder: is a folder, not a table"},
+      {{"project", "a.ply", "b.ply", "--check", "missing.csv", "-o", "out"}, "there is no such file"},
+      {{"project", "a.ply", "b.ply", "--targets", "commas.csv", "-o", "out"},
+       "commas.csv, line 2: 6 fields, 4 columns"},
       {{"evaluate", "project/project.json", "pose.txt"}, "holds no poses by scan"},
       {{"evaluate", "pose.txt", "words.csv"}, "words.csv"},
       {{"info", "a.ply", "--trajectory", "missing.txt"}, "missing.txt"},
@@ -235,6 +243,12 @@ TEST_F(MisuseTest, WordsAndNumbersThatCannotBe) {
       {registering({"--source-units", "km"}), "--source-units"},
       {{"deviation", "a.ply", "m.ifc", "--identity", "--result", "pose.txt", "-o", "out"},
        "exclude each other"},
+      {{"transform", "project/project.json", "-o", "all.e57"}, "add --merge"},
+      {{"transform", "project/project.json", "-o", "folder/all.PLY", "--as", "ply"}, "add --merge"},
+      {{"transform", "project/project.json", "-o", "out", "--invert"},
+       "--invert does not apply to a project"},
+      {{"transform", "project/project.json", "-o", "out", "--alternative", "1"},
+       "--alternative does not apply to a project"},
       {{"schema", "everything"}, "everything"},
       {{"schema"}, "FILE is required"},
       {{"completion"}, "SHELL is required"},
@@ -249,6 +263,20 @@ TEST_F(MisuseTest, WordsAndNumbersThatCannotBe) {
       {{"project", "decide", "project", "choose", "a.ply", "b.ply", "x"}, "choose"},
       {{"project", "decide", "project", "level", "nobody"}, "no scan that is called nobody"},
   });
+}
+
+TEST_F(MisuseTest, NamesThatJsonCannotTellAreRefusedBeforeTheWork) {
+  const std::string latin = "caf\xe9.ply";
+  fs::copy_file(work() / "b.ply", work() / latin);
+  const std::string must_say = "caf?.ply: is not UTF-8";
+  expect_told({
+      {{"register", "a.ply", latin, "-o", "out"}, must_say},
+      {{"project", "a.ply", latin, "-o", "out"}, must_say},
+      {{"project", "a.ply", "--model", latin, "-o", "out"}, must_say},
+      {{"planes", latin, "-o", "out.json"}, must_say},
+      {{"info", latin, "--json"}, must_say},
+  });
+  EXPECT_EQ(run({"info", latin}).status, 0) << "it tells no JSON";
 }
 
 TEST_F(MisuseTest, PlacesThatCannotBeWrittenTo) {

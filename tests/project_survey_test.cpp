@@ -153,6 +153,7 @@ TEST_F(ProjectSurvey, FilesThatAreNoGoodAreToldBeforeAnythingIsDone) {
       {"name,x,y,z\nA,1,2,3\n", "no column sigma"},
       {"name,x,y,z,sigma\nA,1,two,3,0.002\n", "line 2"},
       {"name,x,y,z,sigma\nA,1,2,3,0\n", "not above 0"},
+      {"name,x,y,z,sigma\nA,1,5,2,5,3,5,0,002\n", "line 2: 9 fields, 5 columns (write decimal points"},
       {"name,x,y,z,sigma\nA,1,2,3,0.1\nA,1,2,3,0.1\n", "given twice"},
       {"name,x,y,z,cov_xx,cov_xy,cov_xz,cov_yy,cov_yz,cov_zz\nA,1,2,3,1,2,0,1,0,1\n", "positive definite"}};
   for (const auto& [text, words] : faults) {

@@ -3,6 +3,7 @@
 // limen project from outside: a small simulated building, run again, shuffled, killed.
 #include <algorithm>
 #include <csignal>
+#include <cstdint>
 #include <cstdlib>
 #include <filesystem>
 #include <map>
@@ -133,6 +134,64 @@ TEST_F(Project, StationsStandWhereTheTruthHasThemAndBytesNeverDiffer) {
     const Matrix4d pose = matrix_of(scan["frame_from_scan"]);
     EXPECT_LT((pose - Matrix4d::Identity()).cwiseAbs().maxCoeff(), 0.01);
   }
+
+  // Scans of one file are told, and called, by their numbers from 0.
+  EXPECT_NE(run({"info", "all.e57"}).out.find("scan 1 of 2 (all.e57 #0)"), std::string::npos);
+  const ProgramRun unclear = run({"project", "decide", "reread", "level", "all.e57"});
+  EXPECT_EQ(unclear.status, 2);
+  EXPECT_NE(unclear.err.find("all.e57 #0, all.e57 #1"), std::string::npos) << unclear.err;
+  EXPECT_EQ(run({"project", "decide", "reread", "level", "all.e57 #0"}).status, 0);
+  const ProgramRun heeded = run({"project", "all.e57", "-o", "reread"});
+  EXPECT_NE(heeded.out.find("all.e57 #0  ("), std::string::npos) << heeded.out;
+  const json decided = json::parse(text_of("reread"));
+  EXPECT_EQ(decided["decisions"][0]["decision"], "level 'all.e57 #0'");
+  EXPECT_EQ(decided["decisions"][0]["state"], "kept");
+}
+
+/// Cuts the first file of a store's room to so much of it.
+void cut_first(const std::filesystem::path& room, double share) {
+  ASSERT_FALSE(std::filesystem::is_empty(room)) << room;
+  const std::filesystem::path file = std::filesystem::directory_iterator(room)->path();
+  const auto bytes = static_cast<double>(std::filesystem::file_size(file));
+  std::filesystem::resize_file(file, static_cast<std::uintmax_t>(share * bytes));
+}
+
+TEST_F(Project, WhatIsDamagedInTheStoreIsMadeAgain) {
+  const std::vector<std::string> scans = simulate();
+  ASSERT_EQ(run(call(scans, "out")).status, 0);
+  const std::string project = text_of("out");
+  const std::string page = read_whole(work() / "out" / "report.html");
+  for (const double share : {0.0, 0.5}) {
+    for (const char* room : {"files", "features", "digests", "pictures", "pairs"}) {
+      cut_first(work() / "out" / "store" / room, share);
+      const ProgramRun again = run(call(scans, "out"));
+      EXPECT_EQ(again.status, 0) << room << again.err;
+      EXPECT_EQ(text_of("out"), project) << room;
+      EXPECT_EQ(read_whole(work() / "out" / "report.html"), page) << room;
+    }
+  }
+}
+
+TEST_F(Project, WhatTheStoreKeepsOfAFileTellsNoOldNameAndIsOfNoOtherKind) {
+  const std::vector<std::string> scans = simulate();
+  const auto thinned = [&](const std::string& scan, const std::string& out) {
+    EXPECT_EQ(run({"project", scan, "-o", out, "--memory", "1M", "--quiet"}).status, 0);
+    return text_of(out);
+  };
+  EXPECT_NE(thinned(scans[0], "out").find("indoor_00.ply: to stay within the memory"), std::string::npos);
+  std::filesystem::copy(work() / scans[0], work() / "renamed.ply");
+  const std::string renamed = thinned("renamed.ply", "out");
+  EXPECT_EQ(renamed, thinned("renamed.ply", "fresh"));
+  EXPECT_EQ(renamed.find("indoor_00"), std::string::npos);
+
+  // A cloud is no model, also where it is kept as a scan.
+  EXPECT_EQ(run(call(scans, "out")).status, 0);
+  const auto as_model = [&](const std::string& out) {
+    return run({"project", scans[1], "--model", scans[0], "-o", out, "--quiet"}).status;
+  };
+  EXPECT_EQ(as_model("out"), 3);
+  EXPECT_EQ(as_model("new"), 3);
+  EXPECT_EQ(text_of("out"), text_of("new"));
 }
 
 /// Squares of the distances of two passes' points from where they are in truth, once a shift of all is taken
@@ -221,10 +280,55 @@ TEST_F(Project, ScansThatCannotBeReadAndCopiesAreToldAndStopNothing) {
   EXPECT_EQ(by_name.size(), 4U);
   EXPECT_EQ(by_name["broken.ply"]["readable"], false);
   EXPECT_EQ(by_name["missing.ply"]["readable"], false);
+  EXPECT_EQ(by_name["missing.ply"]["reason"], "there is no such file");
   const bool copy_told =
       by_name["copy.ply"].contains("copy_of") || by_name[scans.front()].contains("copy_of");
   EXPECT_TRUE(copy_told);
   EXPECT_NE(done.out.find("more than once"), std::string::npos);
+  const ProgramRun of_copy = run({"project", "decide", "out", "level", "copy.ply"});
+  EXPECT_EQ(of_copy.status, 2);
+  EXPECT_NE(of_copy.err.find("name that: case/indoor_00.ply"), std::string::npos) << of_copy.err;
+  EXPECT_EQ(run({"project", "status", "out"}).out,
+            "stage done: 4 files: 1 ready, 1 copy, 2 unreadable; 0 of 0 pairs tried\n");
+  const json status = json::parse(run({"project", "status", "out", "--json"}).out);
+  EXPECT_EQ(status["files"], 4);
+  EXPECT_EQ(status["files_copies"], 1);
+}
+
+TEST_F(Project, APairThatIsTriedAnyWayRoundOnceMoreCountsOnce) {
+  for (const char* seed : {"1", "7"})
+    ASSERT_EQ(run({"simulate", "room", "--points-indoor", "20000", "--seed", seed, "-o", seed}).status, 0);
+  ASSERT_EQ(run(call({"1/indoor_00.ply", "7/indoor_00.ply"}, "out")).status, 4);
+  EXPECT_EQ(json::parse(text_of("out"))["pairs_tried"], 1);
+  EXPECT_EQ(run({"project", "status", "out"}).out, "stage done: 2 files: 2 ready; 1 of 1 pairs tried\n");
+}
+
+TEST_F(Project, AllFilesAreHeldAgainstTheProjectBeforeOneIsMoved) {
+  const std::vector<std::string> scans = simulate();
+  ASSERT_EQ(run(call(scans, "out")).status, 0);
+  const std::string bytes = read_whole(work() / scans[1]);
+  const auto refused = [&](const std::vector<std::string>& more, const std::string& must_say) {
+    std::vector<std::string> words = {"transform", "out/project.json", "-o"};
+    words.insert(words.end(), more.begin(), more.end());
+    const ProgramRun done = run(words);
+    EXPECT_EQ(done.status, 2);
+    EXPECT_NE(done.err.find(scans[1] + ": " + must_say), std::string::npos) << done.err;
+    EXPECT_FALSE(std::filesystem::exists(work() / "placed"));
+    EXPECT_FALSE(std::filesystem::exists(work() / "all.ply"));
+  };
+  write_whole(work() / scans[1], read_whole(work() / scans[0]));
+  refused({"placed"}, "is not the file that out/project.json is about");
+  refused({"all.ply", "--merge"}, "is not the file that out/project.json is about");
+  const ProgramRun forced = run({"transform", "out/project.json", "-o", "forced", "--force", "--quiet"});
+  EXPECT_EQ(forced.status, 0) << forced.err;
+  std::filesystem::remove(work() / scans[1]);
+  refused({"placed"}, "there is no such file");
+  refused({"placed", "--force"}, "there is no such file");
+  write_whole(work() / scans[1], bytes);
+  const ProgramRun moved = run({"transform", "out/project.json", "-o", "placed", "--quiet"});
+  EXPECT_EQ(moved.status, 0) << moved.err;
+  // None is written over another.
+  EXPECT_EQ(run({"transform", "out/project.json", "-o", "case"}).status, 2);
 }
 
 TEST_F(Project, DecisionsAreHeededTestedAndSurviveRuns) {
@@ -233,6 +337,10 @@ TEST_F(Project, DecisionsAreHeededTestedAndSurviveRuns) {
   const std::string before = text_of("out");
   EXPECT_EQ(run({"project", "decide", "nowhere", "reject", "indoor_00.ply", "indoor_01.ply"}).status, 2);
   EXPECT_EQ(run({"project", "decide", "out", "reject", "indoor_00.ply"}).status, 2);
+  const ProgramRun no_pose =
+      run({"project", "decide", "out", "choose", "indoor_00.ply", "indoor_01.ply", "700"});
+  EXPECT_EQ(no_pose.status, 2);
+  EXPECT_NE(no_pose.err.find("has no pose 700"), std::string::npos) << no_pose.err;
   EXPECT_EQ(run({"project", "decide", "out", "reject", "indoor_01.ply", "indoor_00.ply"}).status, 0);
   for (int again = 0; again < 2; ++again) {
     EXPECT_EQ(run(call(scans, "out")).status, 4);
@@ -256,6 +364,9 @@ TEST_F(Project, DecisionsAreHeededTestedAndSurviveRuns) {
   EXPECT_NE(read_whole(work() / "out" / "report.html").find("Your decisions"), std::string::npos);
   EXPECT_EQ(run({"project", "decide", "out", "forget", "indoor_00.ply", "indoor_01.ply"}).status, 0);
   EXPECT_EQ(run({"project", "decide", "out", "forget", "cellar.ply"}).status, 0);
+  const ProgramRun unsaid = run({"project", "decide", "out", "forget", "cellar.ply"});
+  EXPECT_EQ(unsaid.status, 0);
+  EXPECT_NE(unsaid.out.find("nothing was said"), std::string::npos) << unsaid.out;
   EXPECT_EQ(run(call(scans, "out")).status, 0);
   EXPECT_EQ(text_of("out"), before);
   write_whole(work() / "words.json", R"({"decisions": [{"agree": ["a"]}]})");

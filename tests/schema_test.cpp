@@ -65,6 +65,18 @@ TEST_F(SchemaTest, FilesOfAPairAndOfAProject) {
   EXPECT_EQ(fault("project-evaluation", held.out), "");
 }
 
+TEST_F(SchemaTest, WhatIsSaidOfAProjectWithoutARegisteredScan) {
+  write_whole(work() / "project.json", R"({"links": [], "scans": [{"file": "a.ply", "index": 0,
+    "kind": "scan", "state": "floating", "frame_from_scan": null}]})");
+  write_whole(work() / "truth.json", R"({"scans": []})");
+  const ProgramRun held = run({"evaluate", "project.json", "truth.json", "--json"});
+  ASSERT_EQ(held.status, 0) << held.err;
+  const SchemaJson told = SchemaJson::parse(held.out);
+  EXPECT_TRUE(told["translation_error_median_m"].is_null());
+  EXPECT_TRUE(told["translation_error_largest_m"].is_null());
+  EXPECT_EQ(fault("project-evaluation", held.out), "");
+}
+
 TEST_F(SchemaTest, FilesAboutAModel) {
   must_run({"simulate", "office", "--points-indoor", "60000", "-o", "."});
   const SchemaJson truth = SchemaJson::parse(read_whole(work() / "truth/truth.json"));

@@ -13,22 +13,29 @@ bool blank(char c) {
   return c == ' ' || c == '\t' || c == '\r' || c == '\n';
 }
 
-/// Bytes of the UTF-8 character that `text` begins with; 0 where it begins with none, or with one that
-/// commands a terminal.
-std::size_t printable_length(std::string_view text) {
+/// Bytes of the UTF-8 character that `text` begins with; 0 where it begins with none.
+std::size_t utf8_length(std::string_view text) {
   const auto byte = [&](std::size_t k) { return static_cast<unsigned char>(text[k]); };
   const unsigned char first = byte(0);
-  if (first < 0x80U) return first >= 0x20U && first != 0x7FU ? 1 : 0;
+  if (first < 0x80U) return 1;
   const std::size_t length = first >= 0xF0U ? 4 : first >= 0xE0U ? 3 : 2;
   if (first < 0xC2U || first > 0xF4U || text.size() < length) return 0;
   for (std::size_t k = 1; k < length; ++k) {
     if ((byte(k) & 0xC0U) != 0x80U) return 0;
   }
-  // U+0080 to U+009F are controls; what is longer than it need be, half of a pair or beyond Unicode is none.
-  const bool control = first == 0xC2U && byte(1) < 0xA0U;
+  // What is longer than it need be, half of a pair or beyond Unicode is none.
   const bool wrong = (first == 0xE0U && byte(1) < 0xA0U) || (first == 0xEDU && byte(1) > 0x9FU) ||
                      (first == 0xF0U && byte(1) < 0x90U) || (first == 0xF4U && byte(1) > 0x8FU);
-  return control || wrong ? 0 : length;
+  return wrong ? 0 : length;
+}
+
+/// The same; 0 also for a character that commands a terminal.
+std::size_t printable_length(std::string_view text) {
+  const std::size_t length = utf8_length(text);
+  const auto first = static_cast<unsigned char>(text[0]);
+  if (length == 1) return first >= 0x20U && first != 0x7FU ? 1 : 0;
+  // U+0080 to U+009F are controls.
+  return length == 2 && first == 0xC2U && static_cast<unsigned char>(text[1]) < 0xA0U ? 0 : length;
 }
 
 }  // namespace
@@ -41,6 +48,15 @@ std::string printable(std::string_view text) {
     text.remove_prefix(std::max<std::size_t>(length, 1));
   }
   return shown;
+}
+
+bool is_utf8(std::string_view text) {
+  while (!text.empty()) {
+    const std::size_t length = utf8_length(text);
+    if (length == 0) return false;
+    text.remove_prefix(length);
+  }
+  return true;
 }
 
 std::string lower_case(std::string_view text) {
@@ -70,6 +86,20 @@ std::string one_line(std::string text) {
     if (c == '\n' || c == '\r' || c == '\0') c = ' ';
   }
   return text;
+}
+
+std::string shell_word(const std::string& text) {
+  constexpr const char* kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./,:=+@%";
+  if (!text.empty() && text.find_first_not_of(kPlain) == std::string::npos) return text;
+  std::string word = "'";
+  for (const char c : text) {
+    if (c == '\'') {
+      word += "'\\''";
+    } else {
+      word += c;
+    }
+  }
+  return word + "'";
 }
 
 std::string reason_of(int error_number) {

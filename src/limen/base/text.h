@@ -18,8 +18,14 @@ std::string_view trimmed(std::string_view text);
 /// a damaged file holds must not command a terminal.
 std::string printable(std::string_view text);
 
+/// Whether all bytes are characters in UTF-8; JSON tells no others.
+bool is_utf8(std::string_view text);
+
 /// With spaces for ends of lines and zero bytes.
 std::string one_line(std::string text);
+
+/// Text as a shell takes it for one word.
+std::string shell_word(const std::string& text);
 
 /// What the system says of an error number (errno), in words.
 std::string reason_of(int error_number);

@@ -34,6 +34,14 @@ TEST(Text, WhatCommandsATerminalIsNotShown) {
   EXPECT_EQ(printable("\xc0\xaf\xed\xa0\x80\xf4\x90\x80\x80"), "?????????") << "no characters of Unicode";
 }
 
+TEST(Text, Utf8MayHoldControlsAndNoOtherBytes) {
+  EXPECT_TRUE(is_utf8(""));
+  EXPECT_TRUE(is_utf8("a\tb\x1b Gr\xc3\xbc\xc3\x9f\x65 \xf0\x9f\x8f\xa0"));
+  EXPECT_FALSE(is_utf8("caf\xe9.ply"));
+  EXPECT_FALSE(is_utf8("a\xc3"));
+  EXPECT_FALSE(is_utf8("\xed\xa0\x80"));
+}
+
 TEST(Text, ReasonIsTold) {
   EXPECT_NE(reason_of(ENOENT), reason_of(EACCES));
   EXPECT_FALSE(reason_of(ENOENT).empty());

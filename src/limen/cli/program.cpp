@@ -9,6 +9,7 @@
 #include <iostream>
 #include <memory>
 #include <new>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -121,6 +122,17 @@ std::string usage_error(const CLI::App& app, const CLI::ParseError& error) {
   return fmt::format("{} (limen --help tells the usage)", problem);
 }
 
+/// Names that JSON cannot tell are refused before the work, not at its end. Throws Error.
+void require_utf8(const CLI::App& app, const std::vector<std::string>& words, bool json) {
+  const std::set<std::string> telling = {"register", "project",  "planes",
+                                         "openings", "segments", "deviation"};
+  const std::vector<CLI::App*> chosen = app.get_subcommands();
+  if (!json && (chosen.empty() || telling.count(chosen.front()->get_name()) == 0)) return;
+  for (const std::string& word : words) {
+    if (!is_utf8(word)) throw Error("is not UTF-8, and JSON could not tell of it", word, "rename it");
+  }
+}
+
 /// `limen help` is `limen --help`, and `limen help COMMAND` is `limen COMMAND --help`.
 std::vector<std::string> without_help_command(int argc, char** argv) {
   std::vector<std::string> words(argv, argv + argc);
@@ -181,9 +193,10 @@ int fail_as(const Session& session, const std::string& message, int status) {
 }
 
 /// Runs what the command line asked for; every exception becomes one line and a status.
-int run_action(Session& session) {
+int run_action(const CLI::App& app, const std::vector<std::string>& words, Session& session) {
   constexpr int kReaderGone = 128 + SIGPIPE;
   try {
+    require_utf8(app, words, session.common.json);
     set_thread_count(session.common.threads);
     session.monitor = make_monitor(session.common.quiet);
     const int status = run_guarded(session);
@@ -234,7 +247,7 @@ int run_program(int argc, char** argv) {
     if (error.get_exit_code() == 0) return app.exit(error, std::cout, std::cerr);
     return fail(usage_error(app, error), kExitBadInput);
   }
-  return run_action(session);
+  return run_action(app, texts, session);
 }
 
 }  // namespace limen

@@ -3,6 +3,7 @@
 #include "limen/files/file_hash.h"
 
 #include <array>
+#include <cerrno>
 #include <fstream>
 #include <memory>
 #include <vector>
@@ -10,11 +11,13 @@
 #include <openssl/evp.h>
 
 #include "limen/base/error.h"
+#include "limen/base/text.h"
 
 namespace limen {
 namespace {
 
 constexpr std::size_t kPiece = std::size_t{1} << 20;
+constexpr const char* kRemedy = "look at the file and the disk";
 
 std::string hexadecimal(const unsigned char* bytes, unsigned int count) {
   static constexpr char kDigits[] = "0123456789abcdef";
@@ -31,7 +34,9 @@ std::string hexadecimal(const unsigned char* bytes, unsigned int count) {
 std::string sha256_of_file(const std::filesystem::path& path) {
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(path, ignored)) return {};
+  errno = 0;
   std::ifstream file(path, std::ios::binary);
+  if (!file) throw Error(errno == 0 ? "cannot be read" : reason_of(errno), path.string(), kRemedy);
   const std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> context(EVP_MD_CTX_new(), &EVP_MD_CTX_free);
   if (!context || EVP_DigestInit_ex(context.get(), EVP_sha256(), nullptr) != 1)
     throw Error("no SHA-256 to be had", "libcrypto", "look at its configuration", Fault::internal);
@@ -40,7 +45,7 @@ std::string sha256_of_file(const std::filesystem::path& path) {
     file.read(piece.data(), static_cast<std::streamsize>(piece.size()));
     EVP_DigestUpdate(context.get(), piece.data(), static_cast<std::size_t>(file.gcount()));
   }
-  if (!file.eof()) throw Error("cannot be read", path.string(), "look at the file and the disk");
+  if (!file.eof()) throw Error("cannot be read", path.string(), kRemedy);
   std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
   unsigned int size = 0;
   EVP_DigestFinal_ex(context.get(), digest.data(), &size);

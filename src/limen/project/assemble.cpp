@@ -14,6 +14,7 @@
 #include "limen/project/judge_decisions.h"
 #include "limen/project/project_graph.h"
 #include "limen/project/project_state.h"
+#include "limen/project/scan_names.h"
 #include "limen/project/survey.h"
 #include "limen/project/told_passes.h"
 
@@ -38,12 +39,7 @@ class Assembler {
     solved_ = solve_graph(made.graph, risk_, hearing_);
     if (confirm_by_points(survey_, solved_, made)) solved_ = solve_graph(made.graph, risk_, hearing_);
     straighten(made);
-    if (nodes_.size() == 1 && solved_.nodes.front().component < 0) {
-      // A scan alone is its own frame.
-      solved_.nodes.front().state = NodeState::registered;
-      solved_.nodes.front().component = 0;
-      solved_.components = 1;
-    }
+    stand_alone();
     placed_ = place_survey(survey_, made, solved_);
     adjust(made);
     graph_ = made.graph;
@@ -66,9 +62,15 @@ class Assembler {
     return nodes_[static_cast<std::size_t>(node)].digest;
   }
   [[nodiscard]] std::string name_of(int node) const {
-    const ProjectScan& scan = result_.scans[nodes_[static_cast<std::size_t>(node)].scan];
-    const bool several = nodes_[static_cast<std::size_t>(node)].grouped || scan.index > 0;
-    return several ? fmt::format("{} #{}", scan.file, scan.index) : scan.file;
+    return scan_name(result_.scans[nodes_[static_cast<std::size_t>(node)].scan]);
+  }
+
+  /// A scan alone is its own frame.
+  void stand_alone() {
+    if (nodes_.size() != 1 || solved_.nodes.front().component >= 0) return;
+    solved_.nodes.front().state = NodeState::registered;
+    solved_.nodes.front().component = 0;
+    solved_.components = 1;
   }
 
   /// Links measured against the part of a bent pass that saw what is common: solved once more with them.
@@ -90,6 +92,7 @@ class Assembler {
       made = make_graph(nodes_, pairs_, risk_, words_);
       solved_ = solve_graph(made.graph, risk_, hearing_);
       straighten(made);
+      stand_alone();
       const std::string file = std::exchange(survey_.file, {});
       for (SurveyMark& mark : survey_.marks) mark.point.known_enters = false;
       placed_ = place_survey(survey_, made, solved_);
@@ -142,6 +145,11 @@ class Assembler {
       frame_node_.front() = kSurvey;
       result_.frame_kind = "control";
       return;
+    }
+    for (std::size_t node = 0; node < nodes_.size(); ++node) {
+      const SolvedNode& solved = solved_.nodes[node];
+      if (solved.component == 0 && solved.covariance.isZero())
+        result_.sigma_scan = static_cast<int>(nodes_[node].scan);
     }
     const auto n = static_cast<std::size_t>(frame_node_.front());
     result_.frame_scan = static_cast<int>(nodes_[n].scan);
@@ -248,6 +256,17 @@ class Assembler {
     }
   }
 
+  /// Known points that a node sees and that count.
+  [[nodiscard]] std::size_t known_targets_of(int node) const {
+    std::size_t count = 0;
+    for (const MarkedPoint& point : placed_.points) {
+      const bool seen = std::any_of(point.sights.begin(), point.sights.end(),
+                                    [&](const PointSight& sight) { return sight.node == node; });
+      count += point.is_known() && seen ? 1 : 0;
+    }
+    return count;
+  }
+
   [[nodiscard]] std::string reason_of(std::size_t n) const {
     std::size_t verified = 0;
     std::size_t bridges = 0;
@@ -261,7 +280,11 @@ class Assembler {
       case NodeState::registered:
         if (verified > 0)
           return fmt::format("held by {} link{} checked by loops", verified, verified == 1 ? "" : "s");
-        if (bridges == 0 && placed_.controlled[n]) return "held by its own targets";
+        if (bridges == 0 && placed_.controlled[n])
+          return known_targets_of(static_cast<int>(n)) > 3 ? "held by its own targets"
+                                                           : "held by three targets of its own: that one of "
+                                                             "them is off across their plane would not "
+                                                             "show";
         if (bridges == 0) return "is alone";
         return fmt::format("held by {} link{} that no loop checks", bridges, bridges == 1 ? "" : "s");
       case NodeState::ambiguous:

@@ -2,11 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limen/project/pass_trajectories.h"
 
+#include <algorithm>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "limen/files/file_hash.h"
+#include "limen/project/store/kept_notes.h"
 
 namespace limen {
 
@@ -31,7 +33,10 @@ Scan along_trajectory(Scan scan, const Trajectories& trajectories, std::vector<s
   const Trajectory* trajectory = covering_trajectory(scan, trajectories);
   if (trajectory == nullptr) return scan;
   FollowedScan followed = with_trajectory(scan, *trajectory);
-  notes.push_back(fmt::format("{} was measured along {}", scan.name, trajectory->name()));
+  const auto found = std::find_if(trajectories.begin(), trajectories.end(),
+                                  [&](const auto& other) { return other.get() == trajectory; });
+  const auto number = static_cast<std::size_t>(found - trajectories.begin());
+  notes.push_back(fmt::format("{} was measured along {}", scan.name, name_mark(number + 1)));
   if (followed.left_out > 0)
     notes.push_back(
         fmt::format("{} points at times that the trajectory does not cover are left out", followed.left_out));

@@ -23,7 +23,7 @@ Trajectories read_trajectories(const ToldTrajectories& told);
 std::string key_of(const ToldTrajectories& told);
 
 /// The scan with the places of its scanner along the trajectory that covers it, as it was where none does;
-/// `notes` tells which it was.
+/// `notes` tells which it was, by its mark (store/kept_notes.h): number 1 is the first of the trajectories.
 Scan along_trajectory(Scan scan, const Trajectories& trajectories, std::vector<std::string>& notes);
 
 }  // namespace limen

@@ -9,6 +9,7 @@
 
 #include "limen/base/error.h"
 #include "limen/base/stage_part.h"
+#include "limen/files/table_cells.h"
 #include "limen/project/control/control_file.h"
 #include "limen/project/hear_scans.h"
 #include "limen/project/own_drift.h"
@@ -39,12 +40,12 @@ class Run {
 
   ProjectResult run() {
     result_.notes = files_.notes;
-    status_.scans = files_.files.size();
+    count_files();
     if (engine_) prepare_elsewhere();
     prepare_files();
     if (nodes_.empty()) {
       const ProjectScan& first = result_.scans.front();
-      throw Error("no scan could be read; the first " + first.reason, first.file, "look at the files");
+      throw Error("no scan could be read; the first: " + first.reason, first.file, "look at the files");
     }
     order_nodes();
     learn_own_drift(nodes_);
@@ -55,18 +56,31 @@ class Run {
     engine_.reset();
     monitor_.begin_stage("adjustment");
     result_.pairs_tried = tried.size();
-    ScanCache heard(store_, kHeardInMemory);
+    ScanCache heard(store_, kHeardInMemory, names_of_keys(nodes_, result_.scans));
     assemble(nodes_, tried, inputs_, words_, risk(), hearing_of_scans(nodes_, options_.registering, heard),
              result_);
     if (options_.rigid_passes) {
       for (ProjectScan& scan : result_.scans) scan.rigid = scan.mobile ? "as you asked" : "";
     }
     status_.stage = "done";
+    // Some were tried twice: as scans that stand upright, and any way round.
+    status_.pairs = status_.tried = result_.pairs_tried;
     write_status(folder_, status_);
     return std::move(result_);
   }
 
  private:
+  void count_files() {
+    status_.scans = files_.files.size();
+    for (const ProjectFile& file : files_.files) {
+      if (!file.fault.empty()) {
+        ++status_.unreadable;
+      } else if (!file.copy_of.empty()) {
+        ++status_.copies;
+      }
+    }
+  }
+
   void prepare_files() {
     monitor_.begin_stage("features");
     status_.stage = "features";
@@ -86,13 +100,14 @@ class Run {
       }
       try {
         add_file(k, make_features(file, options_, store_, part));
+        ++status_.ready;
       } catch (const StoreFault&) {
         throw;
       } catch (const Error& error) {
         if (error.fault() != Fault::input) throw;
         add_unreadable(file, told_fault(file, error.what()));
+        ++status_.unreadable;
       }
-      ++status_.ready;
       write_status(folder_, status_);
     }
   }
@@ -104,12 +119,12 @@ class Run {
     std::vector<Job> jobs;
     std::vector<ProjectFile*> files;
     for (ProjectFile& file : files_.files) {
-      if (!file.fault.empty() || !file.copy_of.empty() || kept_record(store_, file.sha256)) continue;
+      if (!file.fault.empty() || !file.copy_of.empty() || kept_record(store_, file, options_)) continue;
       jobs.push_back(features_job(folder_, file, store_));
       files.push_back(&file);
     }
     status_.stage = "features";
-    const std::size_t kept = files_.files.size() - jobs.size();
+    const std::size_t kept = files_.files.size() - jobs.size() - status_.copies - status_.unreadable;
     const auto on_done = [&](std::size_t done) {
       status_.ready = kept + done;
       write_status(folder_, status_);
@@ -117,13 +132,16 @@ class Run {
     };
     const std::vector<JobResult> results = engine_->run(jobs, on_done, monitor_);
     for (std::size_t k = 0; k < results.size(); ++k) {
-      if (results[k].state != JobState::done) files[k]->fault = told_fault(*files[k], results[k].words);
+      if (results[k].state == JobState::done) continue;
+      files[k]->fault = told_fault(*files[k], results[k].words);
+      ++status_.unreadable;
     }
     status_.ready = 0;
   }
 
   static std::string told_fault(const ProjectFile& file, const std::string& words) {
-    return lists_files(file.path) ? "it names other files; give it as --scans " + file.path : words;
+    return "cannot be read: " +
+           (lists_files(file.path) ? "it names other files; give it as --scans " + file.path : words);
   }
 
   void add_unreadable(const ProjectFile& file, const std::string& fault) {
@@ -132,7 +150,7 @@ class Run {
     scan.sha256 = file.sha256;
     scan.model = file.model;
     scan.readable = false;
-    scan.reason = "cannot be read: " + fault;
+    scan.reason = fault;
     result_.scans.push_back(std::move(scan));
   }
 
@@ -155,14 +173,16 @@ class Run {
       ProjectNode node;
       node.scan = result_.scans.size();
       node.file = number;
-      node.key = store_.feature_key(file.sha256, static_cast<int>(k));
+      node.key = store_.feature_key(file.key(), static_cast<int>(k));
       const std::optional<ScanDigest> digest = store_.load_digest(node.key);
-      if (!digest) throw Error("features cannot be read back", folder_.string(), "look at the disk");
+      if (!digest)
+        throw Error("its features cannot be read back from the store", file.path, "look at the disk");
       node.digest = *digest;
       if (options_.rigid_passes) node.digest.track.way = {};
       ProjectScan scan;
       scan.file = file.path;
       scan.index = static_cast<int>(k);
+      scan.several = record.points.size() > 1;
       scan.sha256 = file.sha256;
       scan.model = file.model;
       scan.mobile = node.digest.mobile;
@@ -305,6 +325,9 @@ ProjectResult run_project(const ProjectInputs& inputs, const std::filesystem::pa
   options.check();
   if (inputs.scans.empty()) throw Error("there is no scan", "project", "give at least one");
   // A fault in a small file is told before hours of work.
+  for (const std::string& table : {inputs.control, inputs.check, inputs.targets}) {
+    if (!table.empty()) require_table_width(table);
+  }
   for (const std::string& file : {inputs.control, inputs.check}) {
     if (!file.empty()) static_cast<void>(read_surveyed_points(file));
   }

@@ -8,13 +8,17 @@
 #include <fstream>
 #include <map>
 #include <set>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "limen/base/error.h"
 #include "limen/base/parallel.h"
+#include "limen/base/text.h"
 #include "limen/bim/read_bim.h"
 #include "limen/files/file_hash.h"
+#include "limen/files/readable.h"
+#include "limen/files/table_cells.h"
 
 namespace limen {
 namespace {
@@ -32,6 +36,8 @@ std::string number_at(const std::string& text, std::size_t& at) {
 }
 
 void take_hash(ProjectFile& file) {
+  file.fault = why_unreadable(file.path);
+  if (!file.fault.empty()) return;
   try {
     file.sha256 = sha256_of_file(file.path);
     if (file.sha256.empty()) file.fault = "is not a file that can be read several times";
@@ -50,8 +56,7 @@ bool lists_files(const std::string& path) {
   std::string line;
   line.resize(kLongest);
   while (stream.getline(line.data(), kLongest)) {
-    std::string name(line.c_str());
-    while (!name.empty() && std::isspace(static_cast<unsigned char>(name.back())) != 0) name.pop_back();
+    const std::string_view name = trimmed(without_byte_order_mark(line.c_str()));
     if (name.empty() || name.front() == '#') continue;
     std::error_code ignored;
     return std::filesystem::is_regular_file(std::filesystem::path(path).parent_path() / name, ignored);
@@ -103,10 +108,10 @@ ProjectFiles list_files(const ProjectInputs& inputs, Monitor& monitor) {
     take_hash(list.files[k]);
     monitor.advance(static_cast<double>(k + 1), static_cast<double>(list.files.size()));
   }
-  std::map<std::string, std::string> first;
+  std::map<std::pair<std::string, bool>, std::string> first;
   for (ProjectFile& file : list.files) {
     if (file.sha256.empty()) continue;
-    const auto [known_file, fresh] = first.emplace(file.sha256, file.path);
+    const auto [known_file, fresh] = first.emplace(std::pair(file.sha256, file.model), file.path);
     if (!fresh) file.copy_of = known_file->second;
   }
   return list;

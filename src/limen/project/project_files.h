@@ -7,6 +7,7 @@
 
 #include "limen/base/progress.h"
 #include "limen/project/project.h"
+#include "limen/project/store/store.h"
 
 namespace limen {
 
@@ -15,8 +16,11 @@ struct ProjectFile {
   std::string path;  ///< as the user wrote it
   bool model = false;
   std::string sha256;   ///< empty where it cannot be read
-  std::string copy_of;  ///< the first file with the same bytes; empty: none
-  std::string fault;    ///< why it cannot be read; empty: it can
+  std::string copy_of;  ///< the first file with the same bytes, taken as the same; empty: none
+  std::string fault;    ///< why it cannot be read, in words; empty: it can
+
+  /// As the store knows it.
+  [[nodiscard]] FileKey key() const { return {sha256, model}; }
 };
 
 struct ProjectFiles {

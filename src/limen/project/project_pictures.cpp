@@ -23,7 +23,7 @@ std::vector<ProjectPicture> project_pictures(const std::filesystem::path& folder
     for (std::size_t k = begin; k < end; ++k) {
       const ProjectScan& scan = result.scans[k];
       if (!scan.readable || scan.sha256.empty()) continue;
-      const std::string key = store.feature_key(scan.sha256, scan.index);
+      const std::string key = store.feature_key({scan.sha256, scan.model}, scan.index);
       if (std::optional<Scan> points = store.load_picture(key, each)) pictures[k].points = std::move(*points);
       if (!scan.model && result.scans.size() > kMostOutlined) continue;
       if (std::optional<PreparedScan> prepared = store.load_features(key))

@@ -53,9 +53,10 @@ struct PassCorrection {
 
 /// One scan (a station, a mobile pass) or one building model.
 struct ProjectScan {
-  std::string file;    ///< as the user wrote it
-  int index = 0;       ///< of the scan within its file, from 0
-  std::string sha256;  ///< of the file's bytes
+  std::string file;      ///< as the user wrote it
+  int index = 0;         ///< of the scan within its file, from 0
+  bool several = false;  ///< its file holds others
+  std::string sha256;    ///< of the file's bytes
   bool model = false;
   bool mobile = false;
   bool readable = true;
@@ -65,7 +66,7 @@ struct ProjectScan {
   int component = -1;  ///< 0: the project's; others have a frame of their own; -1: joined to nothing
   /// World of the component's frame from the scan's world; empty where it was joined to nothing.
   std::optional<Rigid3> frame_from_scan;
-  PoseSigma sigma;                           ///< against the frame's own scan, frame axes
+  PoseSigma sigma;                           ///< against `ProjectResult::sigma_scan`, frame axes
   std::vector<Rigid3> alternatives;          ///< of an ambiguous scan: other places that explain as much
   double doubt = 0.0;                        ///< probability that it stands elsewhere than told
   std::string reason;                        ///< one sentence for a user
@@ -163,6 +164,7 @@ struct ProjectResult {
   std::string frame_kind;           ///< "control", "mobile", "model", "file", "station", or "none"
   Vector3d up = Vector3d::UnitZ();  ///< of the frame
   int frame_scan = -1;        ///< the scan whose world coordinates are the frame; -1: control's, or none
+  int sigma_scan = -1;        ///< the scan that is held fixed, against which deviations are told; -1: none is
   std::string control_file;   ///< empty: none was given
   std::string control_words;  ///< what came of it
   double control_factor =

@@ -28,10 +28,11 @@ std::filesystem::path status_path(const std::filesystem::path& folder) {
 }  // namespace
 
 void write_status(const std::filesystem::path& folder, const ProjectStatus& status) {
-  write_file(
-      status_path(folder),
-      fmt::format("{{\"stage\": \"{}\", \"scans\": {}, \"ready\": {}, \"pairs\": {}, \"tried\": {}}}\n",
-                  status.stage, status.scans, status.ready, status.pairs, status.tried));
+  const nlohmann::ordered_json json = {{"stage", status.stage},          {"scans", status.scans},
+                                       {"ready", status.ready},          {"pairs", status.pairs},
+                                       {"tried", status.tried},          {"copies", status.copies},
+                                       {"unreadable", status.unreadable}};
+  write_file(status_path(folder), json.dump() + "\n");
 }
 
 ProjectStatus project_status(const std::filesystem::path& folder) {
@@ -40,7 +41,14 @@ ProjectStatus project_status(const std::filesystem::path& folder) {
     throw Error("holds no project", folder.string(), "give the folder that a project was written to");
   try {
     const nlohmann::json json = nlohmann::json::parse(stream);
-    return {json.at("stage"), json.at("scans"), json.at("ready"), json.at("pairs"), json.at("tried")};
+    // An earlier version told neither of the last two.
+    return {json.at("stage"),
+            json.at("scans"),
+            json.at("ready"),
+            json.at("pairs"),
+            json.at("tried"),
+            json.value("copies", std::size_t{0}),
+            json.value("unreadable", std::size_t{0})};
   } catch (const nlohmann::json::exception&) {
     throw Error("the status is damaged", status_path(folder).string(), "run the project again");
   }
@@ -99,7 +107,7 @@ std::vector<TriedPair> try_pairs(const std::vector<std::pair<std::size_t, std::s
   }
   std::vector<std::string> faults(pairs.size());
   if (work.engine != nullptr) faults = made_elsewhere(pairs, keys, work, status, monitor);
-  ScanCache cache(work.store, kScansInMemory);
+  ScanCache cache(work.store, kScansInMemory, names_of_keys(work.nodes, work.scans));
   std::mutex mutex;
   std::size_t done = 0;
   parallel_for(pairs.size(), 1, [&](std::size_t begin, std::size_t end) {

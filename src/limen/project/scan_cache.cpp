@@ -20,7 +20,8 @@ std::shared_ptr<const PreparedScan> ScanCache::get(const std::string& key) {
     }
   }
   std::optional<PreparedScan> loaded = store_.load_features(key);
-  if (!loaded) throw Error("features are gone from the store", key, "run the project again");
+  if (!loaded)
+    throw Error("its features are gone from the store, or damaged", name_(key), "run the project again");
   auto scan = std::make_shared<const PreparedScan>(std::move(*loaded));
   const std::lock_guard<std::mutex> lock(mutex_);
   entries_[key] = {scan, ++clock_};

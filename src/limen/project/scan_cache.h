@@ -4,10 +4,12 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <string>
+#include <utility>
 
 #include "limen/project/store/store.h"
 
@@ -16,9 +18,13 @@ namespace limen {
 /// Prepared scans from the store, as many as are needed at a time: a thousand never lie in memory at once.
 class ScanCache {
  public:
-  ScanCache(const Store& store, std::size_t most) : store_(store), most_(most) {}
+  /// What a user calls the scan of a key.
+  using NameOfKey = std::function<std::string(const std::string& key)>;
 
-  /// Throws Error where the store does not hold it any more.
+  ScanCache(const Store& store, std::size_t most, NameOfKey name)
+      : store_(store), most_(most), name_(std::move(name)) {}
+
+  /// Throws Error that names the scan where the store does not hold it, or not whole, any more.
   std::shared_ptr<const PreparedScan> get(const std::string& key);
 
  private:
@@ -29,6 +35,7 @@ class ScanCache {
 
   const Store& store_;
   std::size_t most_;
+  NameOfKey name_;
   std::mutex mutex_;
   std::map<std::string, Entry> entries_;
   std::uint64_t clock_ = 0;

@@ -27,26 +27,48 @@ std::pair<std::string, std::optional<int>> parts_of(const std::string& name) {
 
 }  // namespace
 
+std::string scan_name(const NumberedScan& scan) {
+  return scan.several || scan.index > 0 ? fmt::format("{} #{}", scan.file, scan.index)
+                                        : std::string(scan.file);
+}
+
 std::string scan_name(const ProjectScan& scan) {
-  return scan.index > 0 ? fmt::format("{} #{}", scan.file, scan.index) : scan.file;
+  return scan_name(NumberedScan{scan.file, scan.index, scan.several});
+}
+
+std::vector<std::size_t> scans_called(const std::string& name, std::size_t count,
+                                      const std::function<NumberedScan(std::size_t)>& scan) {
+  const auto [file, index] = parts_of(name);
+  std::vector<std::size_t> found;
+  for (const bool whole : {true, false}) {
+    for (std::size_t k = 0; k < count; ++k) {
+      const NumberedScan other = scan(k);
+      if (index && other.index != *index) continue;
+      const bool fits = whole ? other.file == file : std::filesystem::path(other.file).filename() == file;
+      if (fits) found.push_back(k);
+    }
+    if (!found.empty()) break;
+  }
+  return found;
 }
 
 int node_called(const std::string& name, const std::vector<ProjectNode>& nodes,
                 const std::vector<ProjectScan>& scans) {
-  const auto [file, index] = parts_of(name);
-  for (const bool whole : {true, false}) {
-    int found = -1;
-    int count = 0;
-    for (std::size_t n = 0; n < nodes.size(); ++n) {
-      const ProjectScan& scan = scans[nodes[n].scan];
-      const std::string own = whole ? scan.file : std::filesystem::path(scan.file).filename().string();
-      if (own != file || (index && scan.index != *index)) continue;
-      found = static_cast<int>(n);
-      ++count;
+  const std::vector<std::size_t> found = scans_called(name, nodes.size(), [&](std::size_t n) {
+    const ProjectScan& scan = scans[nodes[n].scan];
+    return NumberedScan{scan.file, scan.index, scan.several};
+  });
+  return found.size() == 1 ? static_cast<int>(found.front()) : -1;
+}
+
+std::function<std::string(const std::string& key)> names_of_keys(const std::vector<ProjectNode>& nodes,
+                                                                 const std::vector<ProjectScan>& scans) {
+  return [&](const std::string& key) {
+    for (const ProjectNode& node : nodes) {
+      if (node.key == key) return scan_name(scans[node.scan]);
     }
-    if (count == 1) return found;
-  }
-  return -1;
+    return key;
+  };
 }
 
 }  // namespace limen

@@ -10,6 +10,7 @@
 #include "limen/base/stage_part.h"
 #include "limen/bim/read_bim.h"
 #include "limen/io/cloud/read_scan.h"
+#include "limen/project/store/kept_notes.h"
 #include "limen/project/store/scan_picture.h"
 #include "limen/register/prepare/prepare_model.h"
 
@@ -46,21 +47,31 @@ FileRecord make_scan_features(const ProjectFile& file, const ProjectOptions& opt
     StagePart preparing(monitor, at(k), at(k + 1));
     Scan scan = along_trajectory(std::move(read.scans[k]), trajectories, record.notes);
     record.points.push_back(scan.size());
-    const std::string key = store.feature_key(file.sha256, static_cast<int>(k));
-    into_store([&] { store.save_picture(key, picture_of(scan)); });
+    const std::string key = store.feature_key(file.key(), static_cast<int>(k));
+    if (!store.has_picture(key)) into_store([&] { store.save_picture(key, picture_of(scan)); });
+    if (store.has_features(key)) continue;
     PrepareOptions with_track = prepare_options(options.registering);
     with_track.track = true;
     const PreparedScan prepared = prepare_scan(std::move(scan), with_track, preparing);
     into_store([&] { store.save_features(key, prepared); });
   }
+  record.notes = without_name(std::move(record.notes), file.path);
   return record;
 }
 
 FileRecord make_model_features(const ProjectFile& file, const Store& store, Monitor& monitor) {
   const BimModel model = read_bim(file.path, monitor);
   const PreparedScan prepared = prepare_model(model, {}, monitor);
-  into_store([&] { store.save_features(store.feature_key(file.sha256, 0), prepared); });
-  return {{0}, model.warnings};
+  into_store([&] { store.save_features(store.feature_key(file.key(), 0), prepared); });
+  return {{0}, without_name(model.warnings, file.path)};
+}
+
+/// A record as it is told in this run.
+FileRecord told_record(FileRecord record, const ProjectFile& file, const ProjectOptions& options) {
+  std::vector<std::string> names{file.path};
+  names.insert(names.end(), options.trajectories.files.begin(), options.trajectories.files.end());
+  record.notes = with_names(std::move(record.notes), names);
+  return record;
 }
 
 }  // namespace
@@ -76,23 +87,24 @@ std::string store_options(const ProjectOptions& options) {
   return text;
 }
 
-std::optional<FileRecord> kept_record(const Store& store, const std::string& sha256) {
-  std::optional<FileRecord> record = store.load_file(sha256);
+std::optional<FileRecord> kept_record(const Store& store, const ProjectFile& file,
+                                      const ProjectOptions& options) {
+  std::optional<FileRecord> record = store.load_file(file.key());
   if (!record) return {};
   for (std::size_t k = 0; k < record->points.size(); ++k) {
-    const std::string key = store.feature_key(sha256, static_cast<int>(k));
-    if (!store.has_features(key) || !store.load_digest(key)) return {};
+    const std::string key = store.feature_key(file.key(), static_cast<int>(k));
+    if (!store.has_features(key) || (!file.model && !store.has_picture(key))) return {};
   }
-  return record;
+  return told_record(std::move(*record), file, options);
 }
 
 FileRecord make_features(const ProjectFile& file, const ProjectOptions& options, const Store& store,
                          Monitor& monitor) {
-  if (const std::optional<FileRecord> kept = kept_record(store, file.sha256)) return *kept;
+  if (std::optional<FileRecord> kept = kept_record(store, file, options)) return std::move(*kept);
   FileRecord record = file.model ? make_model_features(file, store, monitor)
                                  : make_scan_features(file, options, store, monitor);
-  into_store([&] { store.save_file(file.sha256, record); });
-  return record;
+  into_store([&] { store.save_file(file.key(), record); });
+  return told_record(std::move(record), file, options);
 }
 
 RegistrationResult make_pair_result(const PairKey& pair, const RegisterOptions& options, const Store& store,

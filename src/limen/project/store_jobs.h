@@ -23,11 +23,13 @@ class StoreFault : public Error {
 /// Everything that features and pairs depend on beside the files.
 std::string store_options(const ProjectOptions& options);
 
-/// The record of a file whose features are all kept.
-std::optional<FileRecord> kept_record(const Store& store, const std::string& sha256);
+/// The record of a file of which all is kept, and whole: features, and pictures of scans. Its notes tell the
+/// names of this run.
+std::optional<FileRecord> kept_record(const Store& store, const ProjectFile& file,
+                                      const ProjectOptions& options);
 
-/// Features of all scans in the file, or of the model. Throws StoreFault, and Error where the file is no
-/// good.
+/// Features of all scans in the file, or of the model; what the store holds whole is not made again. Throws
+/// StoreFault, and Error where the file is no good.
 FileRecord make_features(const ProjectFile& file, const ProjectOptions& options, const Store& store,
                          Monitor& monitor);
 

@@ -26,8 +26,13 @@ struct Unavailable {
   std::string words;
 };
 
+/// A file in the order: by its bytes, and by what it is taken as.
+std::string name_in_order(const ProjectFile& file) {
+  return file.sha256 + (file.model ? "-model" : "");
+}
+
 std::string key_of_file(const ProjectFile& file, const Store& store) {
-  return file.sha256 + "-" + store.options_key();
+  return name_in_order(file) + "-" + store.options_key();
 }
 
 fs::path order_path(const fs::path& folder, const std::string& options_key) {
@@ -99,11 +104,11 @@ class Worker {
   }
 
   WorkAnswer features(const std::string& key, Monitor& monitor) const {
-    const std::string sha256 = key.substr(0, key.find('-'));
+    const std::string name = key.substr(0, key.rfind('-'));
     const Order& files = order_.at("files");
-    if (!files.contains(sha256)) throw Unavailable{"the file is not part of the project's last run"};
-    const Order& told = files.at(sha256);
-    ProjectFile file{told.at("path"), told.at("model"), sha256, {}, {}};
+    if (!files.contains(name)) throw Unavailable{"the file is not part of the project's last run"};
+    const Order& told = files.at(name);
+    ProjectFile file{told.at("path"), told.at("model"), name.substr(0, name.find('-')), {}, {}};
     require_whole(file.path, told.at("bytes"));
     try {
       make_features(file, options_, *store_, monitor);
@@ -119,15 +124,25 @@ class Worker {
 
   WorkAnswer pair(const PairKey& pair) const {
     for (const std::string& key : {pair.source, pair.target}) {
-      if (!store_->has_features(key)) throw Unavailable{"features are not in the store: " + key};
+      if (!store_->has_features(key))
+        throw Unavailable{"features are not in the store, or damaged: " + file_of(key)};
     }
     constexpr std::size_t kTwo = 2;
-    ScanCache cache(*store_, kTwo);
+    ScanCache cache(*store_, kTwo, [this](const std::string& key) { return file_of(key); });
     make_pair_result(pair, options_.registering, *store_, cache);
     return {"done", {}};
   }
 
  private:
+  /// The file that a key of features is of.
+  [[nodiscard]] std::string file_of(const std::string& key) const {
+    const bool model = key.find("-model-") != std::string::npos;
+    for (const auto& [name, told] : order_.at("files").items()) {
+      if (told.at("model") == model && name.starts_with(key.substr(0, key.find('-')))) return told.at("path");
+    }
+    return key;
+  }
+
   static void require_whole(const std::string& path, std::uintmax_t bytes) {
     std::error_code error;
     const std::uintmax_t size = fs::file_size(path, error);
@@ -159,7 +174,7 @@ void write_work_order(const fs::path& folder, const std::vector<ProjectFile>& fi
   for (const ProjectFile& file : files) {
     if (file.sha256.empty() || !file.copy_of.empty()) continue;
     std::error_code ignored;
-    order["files"][file.sha256] = {
+    order["files"][name_in_order(file)] = {
         {"path", file.path}, {"model", file.model}, {"bytes", fs::file_size(file.path, ignored)}};
   }
   const fs::path path = order_path(folder, store.options_key());

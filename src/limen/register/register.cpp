@@ -379,6 +379,20 @@ Posterior posterior_of(const std::vector<JudgedPose>& poses, const Verdict& verd
   return posterior(evidence);
 }
 
+/// Puts the alternatives in the order of their probabilities, which stand behind that of the best pose.
+void sort_by_probability(std::vector<std::size_t>& others, std::vector<double>& probabilities) {
+  std::vector<std::size_t> order(others.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return probabilities[a + 1] > probabilities[b + 1]; });
+  const std::vector<std::size_t> poses = others;
+  const std::vector<double> before = probabilities;
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    others[k] = poses[order[k]];
+    probabilities[k + 1] = before[order[k] + 1];
+  }
+}
+
 /// The result in the scans' own frames.
 void tell(Verdict verdict, const std::vector<JudgedPose>& poses, const std::vector<TwinPlace>& twins,
           const ContrastFunction& contrast, const ThingsSaid& said, const PreparedPair& pair,
@@ -392,6 +406,7 @@ void tell(Verdict verdict, const std::vector<JudgedPose>& poses, const std::vect
   if (!verdict.ranking.empty()) {
     all = posterior_of(poses, verdict, others, twins, contrast, said, model,
                        !model && from.mobile != to.mobile);
+    sort_by_probability(others, all.poses);
     for (const TwinPlace& twin : twins) others.push_back(twin.pose);
     verdict = with_posterior(std::move(verdict), all, options.verdict.risk);
     const RefinedPose& pose = poses[verdict.ranking.front()].refined;
@@ -561,6 +576,11 @@ RegistrationResult register_prepared(const PreparedPair& pair, const RegisterOpt
     try_again(false, Proposal::held);
   const bool planes = options.method == Method::automatic || options.method == Method::polygons;
   if (is_to_slide(poses, verdict) && level && planes && !model) try_again(true, Proposal::sliding);
+  if (!verdict.ranking.empty()) {
+    const std::size_t led = verdict.ranking.front();
+    verdict = led_by_likeliest(std::move(verdict), poses, contrast, judging);
+    if (verdict.ranking.front() != led) individual.reset();
+  }
   const std::optional<PreparedStart> start = prepared_start(from, to, options);
   ThingsSaid said;
   if (is_to_ask_for_twins(poses, verdict) && may_be_twin(from, to)) {

@@ -214,6 +214,18 @@ Rigid3 world_from_input(const Json& truth, const std::string& scan_path, const f
 
 }  // namespace
 
+int TrueScan::names_shared_with(const fs::path& path) const {
+  const fs::path own = file.empty() ? fs::path(name) : fs::path(file);
+  if (own.filename() != path.filename() && fs::path(name).filename() != path.stem()) return 0;
+  const fs::path mine = own.lexically_normal().parent_path();
+  const fs::path theirs = path.lexically_normal().parent_path();
+  int shared = 1;
+  for (auto a = mine.end(), b = theirs.end(); a != mine.begin() && b != theirs.begin(); ++shared) {
+    if (*--a != *--b) break;
+  }
+  return shared;
+}
+
 PoseFile read_pose_file(const fs::path& path) {
   const std::string text = read_text(path);
   if (const std::optional<Json> object = object_in(text, path)) return pose_from_object(*object, path);

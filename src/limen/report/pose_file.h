@@ -43,7 +43,7 @@ Rigid3 read_true_pose(const std::filesystem::path& path, const PoseFile& result)
 
 /// A scan of such a truth.
 struct TrueScan {
-  std::string file;  ///< name, without folders; empty where only `name` is told
+  std::string file;  ///< name, perhaps with folders; empty where only `name` is told
   std::string name;  ///< of the file, less its ending
   int index = 0;     ///< within the file
   Rigid3 world_from_scan;
@@ -52,6 +52,9 @@ struct TrueScan {
   [[nodiscard]] bool is_of(const std::filesystem::path& path) const {
     return file == path.filename() || name == path.stem();
   }
+  /// How many names at the end of a path, the file's and those of the folders before it, are the same as in
+  /// `file`; 0: it is another file.
+  [[nodiscard]] int names_shared_with(const std::filesystem::path& path) const;
 };
 
 /// The scans of the truth of a simulated case or project. Throws Error as read_true_pose().

@@ -13,10 +13,10 @@
 #include "limen/base/atomic_file.h"
 #include "limen/base/error.h"
 #include "limen/cli/inputs/project_trajectories.h"
+#include "limen/cli/inputs/registered_file.h"
 #include "limen/cli/inputs/scan_options.h"
 #include "limen/deviation/building_deviation.h"
 #include "limen/deviation/join_models.h"
-#include "limen/files/file_hash.h"
 #include "limen/io/cloud/read_scan.h"
 #include "limen/io/cloud/thin_cloud.h"
 #include "limen/register/prepare/scan_frame.h"
@@ -31,17 +31,6 @@ namespace fs = std::filesystem;
 
 constexpr std::uint64_t kCloudBytes = 600'000'000;  // that thinning the coloured cloud may take
 constexpr std::size_t kPlacesOfPass = 200;          // of the scanner of a mobile pass
-
-std::string told_name(const ProjectEntry& entry) {
-  return entry.index > 0 ? fmt::format("{} #{}", entry.file, entry.index) : entry.file;
-}
-
-/// A pose holds for the bytes that were registered.
-void require_same_bytes(const ProjectEntry& entry, const ProjectDeviation& command) {
-  if (command.force || entry.sha256.empty() || sha256_of_file(entry.file) == entry.sha256) return;
-  throw Error(fmt::format("is not the file that {} is about: its SHA-256 is another one", command.project),
-              entry.file, "give the file that was registered, or --force where it lies in the same frame");
-}
 
 bool stands(const ProjectEntry& entry) {
   return entry.frame_from_scan && entry.state == "registered";
@@ -67,7 +56,7 @@ class ModelChoice {
     std::vector<BuildingModel> models;
     for (const ProjectEntry& entry : entries_) {
       if (stands(entry)) {
-        require_same_bytes(entry, command_);
+        require_registered_file(entry, command_.project, command_.force);
         models.push_back({entry.file, 0, *entry.frame_from_scan, "project"});
       } else {
         session_.note(
@@ -87,7 +76,9 @@ class ModelChoice {
     for (const std::string& path : command_.models) {
       const ProjectEntry* entry = entry_of(path);
       if (entry != nullptr && stands(*entry)) {
-        require_same_bytes(*entry, command_);
+        ProjectEntry named = *entry;
+        named.file = path;
+        require_registered_file(named, command_.project, command_.force);
         models.push_back({path, 0, *entry->frame_from_scan, "project"});
         continue;
       }
@@ -248,7 +239,7 @@ std::vector<ProjectEntry> scans_of(const std::vector<ProjectEntry>& entries, con
     if (reason.empty()) {
       scans.push_back(entry);
     } else {
-      session.note(fmt::format("{} is left out: {}", told_name(entry), reason));
+      session.note(fmt::format("{} is left out: {}", scan_name(entry), reason));
       all.report.left_out.push_back({entry.file, entry.index, reason});
     }
   }
@@ -273,7 +264,7 @@ void measure_scans(const std::vector<ProjectEntry>& scans, const ProjectDeviatio
   std::string checked;
   for (const ProjectEntry& entry : scans) {
     session.monitor->begin_stage("reading");
-    if (entry.file != checked) require_same_bytes(entry, command);
+    if (entry.file != checked) require_registered_file(entry, command.project, command.force);
     checked = entry.file;
     Scan scan = read_one_scan(entry.file, static_cast<std::size_t>(entry.index), reading, *session.monitor);
     if (const Trajectory* trajectory = covering_trajectory(scan, trajectories))
@@ -281,7 +272,7 @@ void measure_scans(const std::vector<ProjectEntry>& scans, const ProjectDeviatio
     settle_place(scan, session);
     if (!scan.centre_known())
       session.note(fmt::format("{}: it is not known from where it was taken, so nothing can be missed by it",
-                               told_name(entry)));
+                               scan_name(entry)));
     scan = placed_scan(std::move(scan), entry, all.model_from_frame, origin);
     session.monitor->begin_stage("distances");
     const LaidScan laid = measurement.add(scan, {}, entry.sigma_m, *session.monitor);

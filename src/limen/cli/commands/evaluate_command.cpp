@@ -87,8 +87,10 @@ std::string project_json(const ProjectErrors& errors, const EvaluateOptions& opt
   json["within_m"] = options.within_m;
   json["within_deg"] = options.within_deg;
   json["within"] = errors.each.size() - far.size();
-  json["translation_error_median_m"] = errors.shift_of(0.5);
-  json["translation_error_largest_m"] = errors.shift_of(1.0);
+  // Of the reference alone there is no error.
+  const bool compared = errors.each.size() > 1;
+  json["translation_error_median_m"] = compared ? Json(errors.shift_of(0.5)) : Json();
+  json["translation_error_largest_m"] = compared ? Json(errors.shift_of(1.0)) : Json();
   json["beyond"] = told(far);
   json["errors"] = told(errors.each);
   return to_text(json);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -19,6 +20,7 @@
 #include "limen/cli/inputs/scan_options.h"
 #include "limen/io/cloud/read_scan.h"
 #include "limen/model/plausible_size.h"
+#include "limen/project/scan_names.h"
 #include "limen/register/prepare/scan_frame.h"
 #include "limen/report/json/json_values.h"
 
@@ -184,8 +186,10 @@ std::string text_of(const Json& file) {
     text += fmt::format("coordinates     {}\n", words_of(system));
   }
   const bool several = file["scans"].size() > 1;
+  const std::string name = std::filesystem::path(file["file"].get<std::string>()).filename().string();
   for (std::size_t i = 0; i < file["scans"].size(); ++i) {
-    if (several) text += fmt::format("\nscan {} of {}\n", i + 1, file["scans"].size());
+    const NumberedScan scan{name, static_cast<int>(i), several};
+    if (several) text += fmt::format("\nscan {} of {} ({})\n", i + 1, file["scans"].size(), scan_name(scan));
     text += scan_text(file["scans"][i]);
   }
   for (const Json& note : file["notes"]) text += fmt::format("note            {}\n", note.get<std::string>());

@@ -6,7 +6,6 @@
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <string>
 #include <vector>
@@ -18,13 +17,16 @@
 #include "limen/base/angles.h"
 #include "limen/base/atomic_file.h"
 #include "limen/base/error.h"
-#include "limen/base/text.h"
 #include "limen/cli/inputs/frame_system.h"
+#include "limen/cli/inputs/known_decision.h"
 #include "limen/cli/inputs/pdf_option.h"
 #include "limen/cli/inputs/project_trajectories.h"
+#include "limen/cli/inputs/scan_list.h"
 #include "limen/cli/inputs/scan_options.h"
 #include "limen/files/mapped_file.h"
 #include "limen/project/project.h"
+#include "limen/project/scan_names.h"
+#include "limen/project/words.h"
 #include "limen/project/work.h"
 #include "limen/report/json/json_values.h"
 #include "limen/report/project/project_json.h"
@@ -56,25 +58,6 @@ struct ProjectCommandOptions {
   EngineOptions dask;
   bool pdf = false;
 };
-
-/// The names in a list: one a line, relative to the list's folder; empty lines and those that begin with #
-/// do not count.
-std::vector<std::string> names_in(const std::string& path) {
-  std::ifstream stream(path);
-  if (!stream) throw Error("cannot be read", path, "give a text file with the name of a scan on each line");
-  std::vector<std::string> names;
-  for (std::string line; std::getline(stream, line);) {
-    if (printable(trimmed(line)) != trimmed(line) && line.find('\t') == std::string::npos)
-      throw Error("is no list of names: it holds bytes that are no text", path,
-                  "give a text file with the name of a scan on each line");
-    while (!line.empty() && (line.back() == '\r' || line.back() == ' ' || line.back() == '\t'))
-      line.pop_back();
-    if (line.empty() || line.front() == '#') continue;
-    const std::filesystem::path name(line);
-    names.push_back(name.is_absolute() ? line : (std::filesystem::path(path).parent_path() / name).string());
-  }
-  return names;
-}
 
 ProjectOptions project_options(const ProjectCommandOptions& options, const Session& session) {
   ProjectOptions project;
@@ -114,9 +97,8 @@ OptionList reported(const ProjectCommandOptions& options, const Session& session
 }
 
 std::string scan_line(const ProjectScan& scan) {
-  std::string name = scan.file;
-  if (scan.index > 0) name += fmt::format(" #{}", scan.index);
-  std::string line = fmt::format("{:<17} {}", scan.readable ? to_string(scan.state) : "unreadable", name);
+  std::string line =
+      fmt::format("{:<17} {}", scan.readable ? to_string(scan.state) : "unreadable", scan_name(scan));
   if (scan.readable && scan.state == NodeState::registered) {
     line += fmt::format("  (sigma {:.1f} mm, {:.3f} deg)", 1e3 * scan.sigma.translation_m.maxCoeff(),
                         degrees(scan.sigma.rotation_rad.maxCoeff()));
@@ -183,53 +165,42 @@ int status_of(ProjectOutcome outcome) {
   return kExitNoMatch;
 }
 
+/// "9 files: 3 ready, 6 unreadable"
+std::string file_counts(const ProjectStatus& status) {
+  std::string text = fmt::format("{} files: {} ready", status.scans, status.ready);
+  if (status.copies > 0)
+    text += fmt::format(", {} {}", status.copies, status.copies == 1 ? "copy" : "copies");
+  if (status.unreadable > 0) text += fmt::format(", {} unreadable", status.unreadable);
+  return text;
+}
+
 int tell_status(const std::string& folder, const Session& session) {
   const ProjectStatus status = project_status(folder);
   Json json = {{"stage", status.stage},
                {"files", status.scans},
                {"files_ready", status.ready},
+               {"files_copies", status.copies},
+               {"files_unreadable", status.unreadable},
                {"pairs", status.pairs},
                {"pairs_tried", status.tried}};
-  session.say(fmt::format("stage {}: {} of {} files ready, {} of {} pairs tried\n", status.stage,
-                          status.ready, status.scans, status.tried, status.pairs));
+  session.say(fmt::format("stage {}: {}; {} of {} pairs tried\n", status.stage, file_counts(status),
+                          status.tried, status.pairs));
   session.answer(to_text(json));
   return kExitOk;
-}
-
-/// Whether a scan is called so: by its file or the file's name, where it has several with the scan's number.
-bool is_called(const ProjectEntry& scan, const std::string& name) {
-  const std::string numbered = fmt::format(" #{}", scan.index);
-  const std::string file = name.ends_with(numbered) ? name.substr(0, name.size() - numbered.size()) : name;
-  return file == scan.file || file == std::filesystem::path(scan.file).filename();
-}
-
-/// A slip in a name would never be heeded. Throws Error that tells the names; a project that was not finished
-/// tells none, and any is taken.
-void require_known(const Decision& decision, const std::filesystem::path& folder) {
-  std::error_code ignored;
-  if (!std::filesystem::exists(folder / "project.json", ignored)) return;
-  const std::vector<ProjectEntry> scans = read_project(folder / "project.json");
-  for (const std::string& name : decision.scans) {
-    const auto called = [&](const ProjectEntry& scan) { return is_called(scan, name); };
-    if (std::any_of(scans.begin(), scans.end(), called)) continue;
-    constexpr std::size_t kShown = 6;
-    std::string names;
-    for (std::size_t k = 0; k < std::min(kShown, scans.size()); ++k)
-      names += (k == 0 ? "" : ", ") + scans[k].file;
-    throw Error(
-        fmt::format("has no scan that is called {}", name), folder.string(),
-        fmt::format("name two of its {}: {}{}", scans.size(), names, scans.size() > kShown ? ", ..." : ""));
-  }
 }
 
 /// Words: decide, the folder, and the decision.
 int take_decision(const std::vector<std::string>& words, const Session& session) {
   const Decision decision = decision_from({words.begin() + 2, words.end()});
   if (decision.kind != DecisionKind::forget) require_known(decision, words[1]);
+  const std::size_t before = kept_decisions(words[1], {}).size();
   const std::vector<Decision> all = decide(words[1], decision);
-  session.say(
-      fmt::format("{}: kept with {} in all; run the project again, and it will be heeded and tested\n",
-                  words_of(decision), all.size()));
+  const bool forgets = decision.kind == DecisionKind::forget;
+  const char* told =
+      !forgets ? "{}: kept with {} in all; run the project again, and it will be heeded and tested\n"
+      : all.size() == before ? "{}: nothing was said of just that; {} in all are kept as they were\n"
+                             : "{}: forgotten; {} in all are kept; run the project again\n";
+  session.say(fmt::format(fmt::runtime(told), words_of(decision), all.size()));
   session.answer(decisions_text(all));
   return kExitOk;
 }
@@ -317,7 +288,7 @@ int run(ProjectCommandOptions options, const Session& session) {
                 "say project status DIR, or project decide DIR accept A B");
   if (options.folder.empty()) throw Error("there is no folder to write to", "--output", "give one: -o DIR");
   if (!options.list.empty()) {
-    for (std::string& name : names_in(options.list)) options.scans.push_back(std::move(name));
+    for (std::string& name : names_in_list(options.list)) options.scans.push_back(std::move(name));
   }
   require_files(options);
   const std::filesystem::path browser = browser_for_pdf(options.pdf);

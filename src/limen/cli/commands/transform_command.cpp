@@ -16,6 +16,7 @@
 #include "limen/io/cloud/transform_cloud.h"
 #include "limen/report/json/json_values.h"
 #include "limen/report/pose_file.h"
+#include "limen/report/project/read_project.h"
 
 namespace limen {
 namespace {
@@ -82,6 +83,9 @@ Rigid3 read_pose(const TransformOptions& options, const PoseFile& pose) {
 }
 
 int run(const TransformOptions& options, const Session& session) {
+  if (is_project(options.result))
+    throw Error("is a project, which is transformed with -o OUT and takes no cloud", options.result,
+                fmt::format("say limen transform {} -o OUT, which moves all of its scans", options.result));
   refuse_same_file(options.output, options.cloud);
   refuse_same_file(options.output, options.result);
   const PoseFile pose = read_pose_file(options.result);

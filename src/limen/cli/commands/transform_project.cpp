@@ -9,15 +9,19 @@
 #include <set>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "limen/base/atomic_file.h"
 #include "limen/base/error.h"
+#include "limen/base/text.h"
 #include "limen/cli/inputs/frame_system.h"
 #include "limen/cli/inputs/project_trajectories.h"
+#include "limen/cli/inputs/registered_file.h"
 #include "limen/cli/inputs/scan_options.h"
+#include "limen/files/readable.h"
 #include "limen/io/cloud/cloud_writers.h"
 #include "limen/io/cloud/transform_cloud.h"
 #include "limen/report/json/json_values.h"
@@ -34,7 +38,10 @@ struct ProjectMoveOptions {
   std::string output;   ///< a folder, or with `merge` a file
   std::string ending;   ///< "e57", "las", "ply", or empty: each as it is
   bool merge = false;   ///< all in one file
+  bool force = false;   ///< also of files that are not those that were registered
   std::string crs;      ///< of the frame, where the user says it
+  bool invert = false;  ///< of a pair alone, as the next
+  int alternative = 0;
 };
 
 /// A scan that is written, and to where.
@@ -44,6 +51,22 @@ struct Move {
   fs::path output;
 };
 
+/// Words of a pair's transform would be passed over, and a folder that is called like a file taken for one.
+void check_words(const ProjectMoveOptions& options) {
+  for (const auto& [given, name] :
+       {std::pair(options.invert, "--invert"), std::pair(options.alternative != 0, "--alternative")}) {
+    if (given)
+      throw Error(fmt::format("{} does not apply to a project", name), options.project,
+                  "leave it out: every scan has one place in the frame");
+  }
+  const std::string ending = lower_case(fs::path(options.output).extension().string());
+  const bool cloud = !ending.empty() && (is_cloud_ending(options.output) || ending == ".pcd" ||
+                                         ending == ".ptx" || ending == ".pts");
+  if (cloud && !options.merge)
+    throw Error("is called like a file, but without --merge each scan goes into a file of its own",
+                options.output, "add --merge for one file of all, or give a folder's name");
+}
+
 /// The scans with a place, by file; others are named.
 std::vector<Move> moves_of(const std::vector<ProjectEntry>& entries, const Session& session) {
   std::map<std::string, int> in_file;
@@ -52,11 +75,11 @@ std::vector<Move> moves_of(const std::vector<ProjectEntry>& entries, const Sessi
   for (const ProjectEntry& entry : entries) {
     if (entry.model) continue;
     if (!entry.frame_from_scan) {
-      session.note(fmt::format("{}: {}, not written", entry.file, entry.state));
+      session.note(fmt::format("{}: {}, not written", scan_name(entry), entry.state));
       continue;
     }
     if (entry.state != "registered")
-      session.note(fmt::format("{}: its place is {}: check it", entry.file, entry.state));
+      session.note(fmt::format("{}: its place is {}: check it", scan_name(entry), entry.state));
     moves.push_back({entry, in_file[entry.file] > 1, {}});
   }
   return moves;
@@ -80,14 +103,40 @@ void name_outputs(std::vector<Move>& moves, const fs::path& folder, const std::s
   }
 }
 
+/// All that will be read is there, and what the project is about: else the first scans would be written
+/// before the last is missed.
+void check_inputs(const std::vector<Move>& moves, const ToldTrajectories& trajectories,
+                  const ProjectMoveOptions& options, const Session& session) {
+  session.monitor->begin_stage("files");
+  std::set<std::string> checked;
+  bool bent = false;
+  for (std::size_t k = 0; k < moves.size(); ++k) {
+    session.monitor->throw_if_cancelled();
+    const ProjectEntry& entry = moves[k].entry;
+    bent = bent || entry.bend;
+    if (checked.insert(entry.file).second) require_registered_file(entry, options.project, options.force);
+    session.monitor->advance(static_cast<double>(k + 1), static_cast<double>(moves.size()));
+  }
+  if (!bent || options.merge) return;
+  for (const std::string& file : trajectories.files) require_readable(file, "bring the trajectory back");
+}
+
+/// None of what is written replaces a scan of the project.
+void check_output(const fs::path& output, const std::vector<Move>& moves) {
+  std::error_code ignored;
+  if (!fs::exists(output, ignored)) return;
+  for (const Move& move : moves) refuse_same_file(output.string(), move.entry.file);
+}
+
 std::size_t write_each(std::vector<Move>& moves, const ProjectMoveOptions& options,
                        const CoordinateSystem& system, const Session& session) {
-  const OutputFolder folder(options.output);
   const ToldTrajectories trajectories = read_project_trajectories(options.project);
+  check_inputs(moves, trajectories, options, session);
+  const OutputFolder folder(options.output);
   name_outputs(moves, folder.path(), options.ending);
+  for (const Move& move : moves) check_output(move.output, moves);
   std::size_t points = 0;
   for (const Move& move : moves) {
-    refuse_same_file(move.output.string(), move.entry.file);
     const Rigid3& pose = *move.entry.frame_from_scan;
     const StationToMove station{move.entry.file, static_cast<std::size_t>(move.entry.index), pose,
                                 move.entry.bend};
@@ -110,9 +159,10 @@ std::size_t write_merged(const std::vector<Move>& moves, const ProjectMoveOption
                          const CoordinateSystem& system, const Session& session) {
   fs::path output(options.output);
   if (!options.ending.empty() && output.extension() != "." + options.ending) output += "." + options.ending;
+  check_inputs(moves, {}, options, session);
+  check_output(output, moves);
   std::vector<StationToMove> stations;
   for (const Move& move : moves) {
-    refuse_same_file(output.string(), move.entry.file);
     stations.push_back({move.entry.file, static_cast<std::size_t>(move.entry.index),
                         *move.entry.frame_from_scan, move.entry.bend});
   }
@@ -123,7 +173,9 @@ std::size_t write_merged(const std::vector<Move>& moves, const ProjectMoveOption
 
 int run(const ProjectMoveOptions& options, const Session& session) {
   const CancelScope scope(*session.monitor);
-  std::vector<Move> moves = moves_of(read_project(options.project), session);
+  const std::vector<ProjectEntry> entries = read_project(options.project);
+  check_words(options);
+  std::vector<Move> moves = moves_of(entries, session);
   const CoordinateSystem told = read_project_system(options.project);
   const CoordinateSystem chosen = chosen_system(options.crs);
   if (!same_system(told, chosen))
@@ -164,7 +216,13 @@ void add_transform_project_command(CommandLine& app, Session& session) {
   command->add_option("--as", options->ending, "Format of what is written; else each scan's own")
       ->one_of({"e57", "las", "laz", "ply"});
   command->add_flag("--merge", options->merge, "All scans in one file");
+  command->add_flag(
+      "--force", options->force,
+      "Move files although they are not those that were registered: copies in the same frame, say");
   add_crs_option(*command, options->crs);
+  // Words of a pair's transform, to be told that they do not apply.
+  command->add_flag("--invert", options->invert, "Of a pair alone")->group("");
+  command->add_option("--alternative", options->alternative, "Of a pair alone")->group("");
 }
 
 }  // namespace limen

@@ -60,7 +60,7 @@ std::vector<ViewInput> scans_of_project(const std::string& path, const Session& 
   std::vector<ViewInput> inputs;
   for (const ProjectEntry& entry : read_project(path)) {
     if (!entry.frame_from_scan) {
-      session.note(fmt::format("{}: {}, not shown", entry.file, entry.state));
+      session.note(fmt::format("{}: {}, not shown", scan_name(entry), entry.state));
       continue;
     }
     inputs.push_back({found_beside(entry.file, path), entry.model ? -1 : entry.index, *entry.frame_from_scan,

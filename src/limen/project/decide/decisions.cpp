@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "limen/base/error.h"
+#include "limen/base/text.h"
 #include "limen/files/text_numbers.h"
 
 namespace limen {
@@ -90,7 +91,7 @@ const char* to_string(DecisionKind kind) {
 
 std::string words_of(const Decision& decision) {
   std::string text = to_string(decision.kind);
-  for (const std::string& scan : decision.scans) text += " " + scan;
+  for (const std::string& scan : decision.scans) text += " " + shell_word(scan);
   if (decision.kind == DecisionKind::choose) text += fmt::format(" {}", decision.pose);
   return text;
 }

@@ -25,7 +25,7 @@ struct Decision {
   int pose = 0;                    ///< of choose: its number, as project.json tells it
 };
 
-/// A decision in a few words, as `limen project decide DIR` takes it.
+/// A decision in a few words, as a shell gives them to `limen project decide DIR`: 'all.e57 #0' is one.
 std::string words_of(const Decision& decision);
 
 /// From words: accept A B, reject A B, choose A B N, level A, same-floor A B, forget A [B]. Throws Error.

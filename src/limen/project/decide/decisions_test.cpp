@@ -19,6 +19,7 @@ TEST(Decisions, WordsComeBackAsTheyWereAndPairsInOneOrder) {
   EXPECT_EQ(words_of(decision_from({"choose", "b.ply", "a.ply", "2"})), "choose a.ply b.ply 2");
   EXPECT_EQ(words_of(decision_from({"level", "a.ply"})), "level a.ply");
   EXPECT_EQ(words_of(decision_from({"same-floor", "b", "a"})), "same-floor a b");
+  EXPECT_EQ(words_of(decision_from({"accept", "b.ply", "all.e57 #0"})), "accept 'all.e57 #0' b.ply");
   const std::vector<std::vector<std::string>> faults = {{},
                                                         {"agree", "a", "b"},
                                                         {"accept", "a"},

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <optional>
 #include <utility>
@@ -195,10 +196,12 @@ class DoubtSearch {
 
   struct Cut;
   static void tell_twins(const Cut& otherwise, const Cut& alike, NodeDoubt& doubt) {
-    const double twin = otherwise.weight() + alike.weight();
+    // Much may be said for a twin: against the largest of the three nothing overflows.
     const double none = 1.0 - otherwise.prior - alike.prior;
-    doubt.twin = twin / (twin + none);
-    const Cut& likelier = otherwise.weight() > alike.weight() ? otherwise : alike;
+    const double most = std::max({otherwise.log_weight(), alike.log_weight(), std::log(none)});
+    const double twin = std::exp(otherwise.log_weight() - most) + std::exp(alike.log_weight() - most);
+    doubt.twin = twin / (twin + std::exp(std::log(none) - most));
+    const Cut& likelier = otherwise.log_weight() > alike.log_weight() ? otherwise : alike;
     doubt.links = likelier.links;
     doubt.across = likelier.across;
     doubt.held_nats = likelier.held_nats;
@@ -210,7 +213,10 @@ class DoubtSearch {
     double held_nats = 0.0;   ///< of the former those only that do
     std::vector<int> links;   ///< that see different things
     std::vector<int> across;  ///< all
-    [[nodiscard]] double weight() const { return prior * std::exp(-nats); }
+    /// Of the probability of a twin, against that of none.
+    [[nodiscard]] double log_weight() const {
+      return prior > 0.0 ? std::log(prior) - nats : -std::numeric_limits<double>::infinity();
+    }
   };
 
   /// The side of `node` of the smallest cut between it and the reference; empty where enough is said across
@@ -243,7 +249,7 @@ class DoubtSearch {
     const Cut* least = nullptr;
     for (const auto& [side, cut] : sides) {
       if (!side[static_cast<std::size_t>(node)] || side[static_cast<std::size_t>(reference)]) continue;
-      if (least == nullptr || cut.weight() > least->weight()) least = &cut;
+      if (least == nullptr || cut.log_weight() > least->log_weight()) least = &cut;
     }
     return *least;  // the node alone is one
   }

@@ -291,6 +291,30 @@ TEST(Doubt, WhatSpeaksForATwinCountsToo) {
   EXPECT_EQ(states_of(solve_graph(row.graph)), (States{kYes, kYes, kYes}));
 }
 
+TEST(Doubt, HoweverMuchSpeaksForATwinItsProbabilityIsANumber) {
+  Row row(162);
+  for (int k = 0; k < 80; ++k) {
+    // Two storeys, all rooms of which say that they are twins.
+    row.link(2 * k + 2, 2 * k, 0.0, 0.0, 0.0);
+    row.link(2 * k + 3, 2 * k + 1, 0.0, 0.0, 0.0);
+    row.link(2 * k + 1, 2 * k, 0.9, 0.0);
+    GraphLink pair = row.graph.links.back();
+    row.graph.links.pop_back();
+    pair.evidence = TwinEvidence{0.1455, 0.0045, -10.0, -10.0};
+    row.graph.against.push_back(pair);
+  }
+  row.link(161, 160, 0.05, 0.0);
+  AcceptedPoses accepted;
+  accepted.pose.assign(row.graph.links.size(), 0);
+  accepted.frame_from_node = row.truth;
+  accepted.component.assign(162, 0);
+  std::vector<bool> side;
+  for (int k = 0; k < 162; ++k) side.push_back(k % 2 == 1);
+  const NodeDoubt doubt = doubt_of_side(row.graph, accepted, side);
+  EXPECT_GT(doubt.twin, 0.999);
+  EXPECT_LE(doubt.twin, 1.0);
+}
+
 TEST(Doubt, WhatIsRatherATwinIsTakenApartAndLeavesTheOthersSure) {
   // 3 and 4 are of one room. A bare pair lays them on 1, and pairs with other scans there say: twins.
   Row row(5);

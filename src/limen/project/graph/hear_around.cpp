@@ -47,21 +47,23 @@ Pairs pairs_around(const PoseGraph& graph, const AcceptedPoses& accepted, const 
   return pairs;
 }
 
+/// Where the node that is asked stands in the other.
+Rigid3 pose_of(const std::pair<int, int>& pair, const AcceptedPoses& accepted) {
+  return inverse(accepted.frame_from_node[static_cast<std::size_t>(pair.second)]) *
+         accepted.frame_from_node[static_cast<std::size_t>(pair.first)];
+}
+
 struct Contact {
   PoseHeard surface;
   double otherwise_nats = 0.0;
-  LinkPose pose;
 };
 
 Contact contact_of(const std::pair<int, int>& pair, bool in_doubt, const AcceptedPoses& accepted,
                    const PoseHearing& hearing) {
   const auto& [asked, other] = pair;
+  const Rigid3 pose = pose_of(pair, accepted);
   Contact contact;
-  contact.pose.target_from_source = inverse(accepted.frame_from_node[static_cast<std::size_t>(other)]) *
-                                    accepted.frame_from_node[static_cast<std::size_t>(asked)];
-  const Rigid3& pose = contact.pose.target_from_source;
   contact.surface = hearing.surface(asked, other, pose);
-  contact.pose.agreeing_m2 = contact.surface.agreeing_m2;
   const double met_m2 = contact.surface.agreeing_m2 + contact.surface.contradicted_m2;
   if (!in_doubt || met_m2 < kLeastContactM2 || !hearing.things) return contact;
   if (const std::optional<TwinEvidence> things = hearing.things(asked, other, pose))
@@ -72,7 +74,8 @@ Contact contact_of(const std::pair<int, int>& pair, bool in_doubt, const Accepte
 /// What a pair says of the place of the node that is asked. Faces to the millimetre tell twins furnished
 /// alike, and a pose that others found is not known so well: of these nothing is said but that walls
 /// contradict.
-HeardPair heard_pair(const std::pair<int, int>& pair, const Contact& contact, bool in_doubt, bool refuted) {
+HeardPair heard_pair(const std::pair<int, int>& pair, const AcceptedPoses& accepted, const Contact& contact,
+                     bool in_doubt, bool refuted) {
   const double against = std::min(kMostAgainstNats, nats_of_contradiction(contact.surface));
   const bool speaks_for = in_doubt && !refuted && contact.surface.value_m2 > 0.0;
   const auto allowed = [&](double nats) {
@@ -81,7 +84,10 @@ HeardPair heard_pair(const std::pair<int, int>& pair, const Contact& contact, bo
   HeardPair heard;
   heard.pair.source = pair.first;
   heard.pair.target = pair.second;
-  heard.pair.poses = {contact.pose};
+  LinkPose pose;
+  pose.target_from_source = pose_of(pair, accepted);
+  pose.agreeing_m2 = contact.surface.agreeing_m2;
+  heard.pair.poses = {pose};
   heard.pair.evidence.emplace();
   heard.pair.evidence->otherwise_nats = allowed(contact.otherwise_nats);
   heard.pair.evidence->alike_nats = -against;
@@ -107,8 +113,9 @@ std::vector<HeardPair> hear_around(const PoseGraph& graph, const AcceptedPoses& 
   }
   std::vector<HeardPair> heard;
   for (std::size_t k = 0; k < pairs.size(); ++k) {
-    const HeardPair said = heard_pair(pairs[k], contacts[k], doubt[asked(k)] > risk, refuted[asked(k)]);
-    if (said.chance_nats != 0.0 || said.pair.evidence->otherwise_nats != 0.0) heard.push_back(said);
+    HeardPair said = heard_pair(pairs[k], accepted, contacts[k], doubt[asked(k)] > risk, refuted[asked(k)]);
+    if (said.chance_nats != 0.0 || said.pair.evidence->otherwise_nats != 0.0)
+      heard.push_back(std::move(said));
   }
   return heard;
 }

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limen/project/graph/refuted_places.h"
 
+#include <utility>
+
 #include "support/synthetic_graph.h"
 #include <gtest/gtest.h>
 
@@ -67,6 +69,21 @@ TEST(RefutedPlaces, WhatMayHaveBeenMovedRefutesNothing) {
 TEST(RefutedPlaces, WhatSpeaksAgainstBothPlacesSettlesNothing) {
   const OfTwoPlaces scans;
   EXPECT_EQ(scans.solved(scans.hearing(5.0, 5.0)).state, NodeState::ambiguous);
+}
+
+TEST(RefutedPlaces, WhichWayALinkLeadsDoesNotMatter) {
+  for (const double against_m2 : {0.0, 1.0, 1.6, 1.8, 1.9, 2.0, 2.1, 2.2, 2.5, 4.0}) {
+    OfTwoPlaces scans;
+    GraphLink& present = scans.made.graph.links[scans.made.graph.links.size() - 2];
+    present.chance = 1e-6;
+    const SolvedNode forth = scans.solved(scans.hearing(0.0, against_m2));
+    GraphLink& other = scans.made.graph.links.back();
+    std::swap(other.source, other.target);
+    for (LinkPose& pose : other.poses) pose = reversed(pose);
+    const SolvedNode back = scans.solved(scans.hearing(0.0, against_m2));
+    EXPECT_EQ(forth.state, back.state) << against_m2;
+    EXPECT_EQ(forth.alternatives.size(), back.alternatives.size()) << against_m2;
+  }
 }
 
 TEST(RefutedPlaces, OnlyWhatStandsFirmIsHeardAndTheLoudestOnce) {

@@ -421,7 +421,9 @@ class Solver {
         doubts[static_cast<std::size_t>(node)].chance = 1.0;  // not held
     const std::vector<double> apart = odds_of_standing_apart(doubts, reference);
     const std::vector<bool> firm = unquestioned_nodes(all_doubts, apart, reference);
-    const auto settled = [&](const GraphQuestion& question) {
+    const auto settled = [&](const GraphQuestion& asked) {
+      // What was heard of a place speaks of the side without the node that lends the frame.
+      const GraphQuestion question = seen_from_frame(asked);
       std::vector<bool> side(solved_.nodes.size(), false);
       double odds = 0.0;
       for (const int node : question.moved) {

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limen/project/store/store.h"
 
+#include <string_view>
+
 #include <fmt/format.h>
 
 #include "limen/base/atomic_file.h"
@@ -17,12 +19,16 @@ namespace limen {
 namespace {
 
 /// Of the files' contents; raise it where what is made, or how it is written, changes.
-constexpr std::uint32_t kFormat = 30;
+constexpr std::uint32_t kFormat = 31;
 
 std::string digits_of(const std::string& text) {
   std::uint64_t hash = 0x6c696d656e;
   for (const char c : text) hash = mix64(hash ^ static_cast<unsigned char>(c));
   return fmt::format("{:016x}", hash);
+}
+
+bool is_whole(const std::filesystem::path& path, std::string_view kind) {
+  return read_packed(path, kind, kFormat).has_value();
 }
 
 }  // namespace
@@ -35,12 +41,18 @@ Store::Store(const std::filesystem::path& folder, const std::string& options)
   if (error) throw Error("cannot make the folder: " + error.message(), folder.string(), "give another place");
 }
 
-std::string Store::feature_key(const std::string& sha256, int index) const {
-  return fmt::format("{}-{}-{}", sha256.substr(0, 32), index, options_);
+std::string Store::feature_key(const FileKey& file, int index) const {
+  return fmt::format("{}-{}-{}", file.sha256.substr(0, 32), file.model ? "model" : std::to_string(index),
+                     options_);
 }
 
-std::optional<FileRecord> Store::load_file(const std::string& sha256) const {
-  const std::filesystem::path path = folder_ / "files" / (sha256.substr(0, 32) + "-" + options_);
+std::filesystem::path Store::file_path(const FileKey& file) const {
+  return folder_ / "files" /
+         fmt::format("{}-{}{}", file.sha256.substr(0, 32), file.model ? "model-" : "", options_);
+}
+
+std::optional<FileRecord> Store::load_file(const FileKey& file) const {
+  const std::filesystem::path path = file_path(file);
   const std::optional<std::string> bytes = read_packed(path, "FILE", kFormat);
   if (!bytes) return {};
   ByteReader reader(*bytes, path.string());
@@ -50,15 +62,15 @@ std::optional<FileRecord> Store::load_file(const std::string& sha256) const {
   return record;
 }
 
-void Store::save_file(const std::string& sha256, const FileRecord& record) const {
+void Store::save_file(const FileKey& file, const FileRecord& record) const {
   ByteWriter writer;
   writer.put_all(record.points);
   writer.put_all(record.notes);
-  write_packed(folder_ / "files" / (sha256.substr(0, 32) + "-" + options_), "FILE", kFormat, writer.bytes());
+  write_packed(file_path(file), "FILE", kFormat, writer.bytes());
 }
 
 bool Store::has_features(const std::string& key) const {
-  return std::filesystem::exists(folder_ / "features" / key);
+  return is_whole(folder_ / "digests" / key, "DIGE") && is_whole(folder_ / "features" / key, "SCAN");
 }
 
 std::optional<PreparedScan> Store::load_features(const std::string& key) const {
@@ -85,6 +97,10 @@ void Store::save_picture(const std::string& key, const Scan& picture) const {
   write_packed(folder_ / "pictures" / key, "PICT", kFormat, picture_bytes(picture));
 }
 
+bool Store::has_picture(const std::string& key) const {
+  return is_whole(folder_ / "pictures" / key, "PICT");
+}
+
 std::optional<Scan> Store::load_picture(const std::string& key, std::size_t most) const {
   const std::filesystem::path path = folder_ / "pictures" / key;
   const std::optional<std::string> bytes = read_packed(path, "PICT", kFormat);
@@ -97,7 +113,7 @@ std::filesystem::path Store::pair_path(const std::string& source, const std::str
 }
 
 bool Store::has_pair(const std::string& source, const std::string& target) const {
-  return std::filesystem::exists(pair_path(source, target));
+  return is_whole(pair_path(source, target), "PAIR");
 }
 
 std::optional<RegistrationResult> Store::load_pair(const std::string& source,

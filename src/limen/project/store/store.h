@@ -18,7 +18,13 @@ namespace limen {
 /// What is kept of a file beside the features of its scans.
 struct FileRecord {
   std::vector<std::size_t> points;  ///< of each scan in it
-  std::vector<std::string> notes;
+  std::vector<std::string> notes;   ///< without names of files (kept_notes.h)
+};
+
+/// A file by its bytes, and by what it is taken as: the same bytes are read otherwise as a model.
+struct FileKey {
+  std::string sha256;
+  bool model = false;
 };
 
 /// Results on disk, each in a file of its own that appears whole or not at all: what is there need not be
@@ -31,11 +37,12 @@ class Store {
 
   /// Of the options and the version: the last part of all keys.
   [[nodiscard]] const std::string& options_key() const { return options_; }
-  [[nodiscard]] std::string feature_key(const std::string& sha256, int index) const;
+  [[nodiscard]] std::string feature_key(const FileKey& file, int index) const;
 
-  [[nodiscard]] std::optional<FileRecord> load_file(const std::string& sha256) const;
-  void save_file(const std::string& sha256, const FileRecord& record) const;
+  [[nodiscard]] std::optional<FileRecord> load_file(const FileKey& file) const;
+  void save_file(const FileKey& file, const FileRecord& record) const;
 
+  /// Whether features and digest are there and whole: all of them is read.
   [[nodiscard]] bool has_features(const std::string& key) const;
   [[nodiscard]] std::optional<PreparedScan> load_features(const std::string& key) const;
   /// The digest is kept with them, in a file of its own.
@@ -44,8 +51,11 @@ class Store {
 
   /// What reports draw (scan_picture.h); no result depends on it.
   void save_picture(const std::string& key, const Scan& picture) const;
+  /// Whole, as has_features().
+  [[nodiscard]] bool has_picture(const std::string& key) const;
   [[nodiscard]] std::optional<Scan> load_picture(const std::string& key, std::size_t most) const;
 
+  /// Whole, as has_features().
   [[nodiscard]] bool has_pair(const std::string& source, const std::string& target) const;
   [[nodiscard]] std::optional<RegistrationResult> load_pair(const std::string& source,
                                                             const std::string& target) const;
@@ -53,6 +63,7 @@ class Store {
                  const RegistrationResult& result) const;
 
  private:
+  [[nodiscard]] std::filesystem::path file_path(const FileKey& file) const;
   [[nodiscard]] std::filesystem::path pair_path(const std::string& source, const std::string& target) const;
 
   std::filesystem::path folder_;

@@ -195,29 +195,41 @@ std::vector<std::size_t> rank(const std::vector<JudgedPose>& poses, const Verdic
 
 namespace {
 
-/// Leaves those poses of a ranking in a model whose walls the model explains better than chance does, and
-/// tells the odds of the best of them: its walls', and by how much its value exceeds that of the best pose
-/// that chance explains. False where chance is the better explanation of all of them.
-bool leave_chance_out(const std::vector<JudgedPose>& poses, const VerdictOptions& options, Verdict& verdict) {
+/// Of each pose of a ranking in a model the odds that its walls are the model's, and by how much its value
+/// exceeds that of the best pose that chance explains.
+struct ModelRanking {
+  std::vector<std::size_t> poses;  ///< those that the model explains better than chance does
+  std::vector<double> log_odds;
+  double log_odds_of_first = 0.0;  ///< of the ranking's first, whether it is one of them or not
+};
+
+ModelRanking ranking_in_model(const std::vector<JudgedPose>& poses, const std::vector<std::size_t>& ranking,
+                              const VerdictOptions& options) {
   std::vector<WallBalance> walls;
-  for (const std::size_t i : verdict.ranking) walls.push_back(poses[i].walls);
+  for (const std::size_t i : ranking) walls.push_back(poses[i].walls);
   const std::vector<double> odds = log_odds_of_model(walls, options.model_odds);
-  std::vector<std::size_t> left;
   double by_chance = 0.0;
   for (std::size_t k = 0; k < odds.size(); ++k) {
-    const std::size_t pose = verdict.ranking[k];
-    if (odds[k] <= 0) {
-      by_chance = std::max(by_chance, poses[pose].score.value());
-      continue;
-    }
-    if (left.empty()) verdict.log_odds_of_model = odds[k];
-    left.push_back(pose);
+    if (odds[k] <= 0) by_chance = std::max(by_chance, poses[ranking[k]].score.value());
   }
-  verdict.log_odds_of_model +=
-      left.empty() ? odds.front()
-                   : options.model_odds.nats_per_m2 * (poses[left.front()].score.value() - by_chance);
-  const std::size_t best = left.empty() ? verdict.ranking.front() : left.front();
-  verdict.ranking = std::move(left);
+  ModelRanking left;
+  left.log_odds_of_first = odds.front();
+  for (std::size_t k = 0; k < odds.size(); ++k) {
+    if (odds[k] <= 0) continue;
+    left.poses.push_back(ranking[k]);
+    left.log_odds.push_back(odds[k] +
+                            options.model_odds.nats_per_m2 * (poses[ranking[k]].score.value() - by_chance));
+  }
+  return left;
+}
+
+/// Leaves those poses of a ranking in a model whose walls the model explains better than chance does, and
+/// tells the odds of the best of them. False where chance is the better explanation of all of them.
+bool leave_chance_out(const std::vector<JudgedPose>& poses, const VerdictOptions& options, Verdict& verdict) {
+  const ModelRanking left = ranking_in_model(poses, verdict.ranking, options);
+  const std::size_t best = left.poses.empty() ? verdict.ranking.front() : left.poses.front();
+  verdict.log_odds_of_model = left.poses.empty() ? left.log_odds_of_first : left.log_odds.front();
+  verdict.ranking = left.poses;
   if (verdict.log_odds_of_model > 0) return true;
   verdict.ranking = {best};
   verdict.reason = fmt::format(
@@ -322,6 +334,53 @@ Verdict judge(const std::vector<JudgedPose>& poses, const ContrastFunction& cont
   verdict.reason =
       fmt::format("{:.1f} m2 of surface agree, {:.1f} m2 are contradicted, no different pose comes near",
                   best.score.agreeing_m2, best.score.contradicted_m2);
+  return verdict;
+}
+
+namespace {
+
+/// Whether a pose would be an answer, were it the best.
+bool may_lead(const JudgedPose& pose, const VerdictOptions& options) {
+  return pose.score.planar_m2 >= options.min_agreeing_m2 && !contradicted(pose.score, options) &&
+         !too_loose(unobserved_freedoms(pose.refined, options.min_held_m2));
+}
+
+}  // namespace
+
+Verdict led_by_likeliest(Verdict verdict, const std::vector<JudgedPose>& poses,
+                         const ContrastFunction& contrast, const VerdictOptions& options) {
+  if (verdict.outcome != Outcome::ambiguous || verdict.rivals.empty()) return verdict;
+  const std::size_t first = verdict.ranking.front();
+  std::size_t leader = first;
+  std::vector<std::size_t> asked = verdict.rivals;  // contrasts are not transitive: each leads once
+  for (bool changed = true; changed;) {
+    changed = false;
+    double most_m2 = 0.0;
+    std::size_t next = leader;
+    for (const std::size_t other : asked) {
+      const PoseContrast apart = contrast(leader, other);
+      const double lead_m2 =
+          apart.for_second_m2 - apart.for_first_m2 + poses[other].prior_m2 - poses[leader].prior_m2;
+      if (lead_m2 <= most_m2 || !may_lead(poses[other], options)) continue;
+      most_m2 = lead_m2;
+      next = other;
+    }
+    changed = next != leader;
+    leader = next;
+    asked.erase(std::remove(asked.begin(), asked.end(), leader), asked.end());
+  }
+  if (leader == first) return verdict;
+  if (options.in_model) {
+    const ModelRanking all = ranking_in_model(poses, rank(poses, options), options);
+    const auto found = std::find(all.poses.begin(), all.poses.end(), leader);
+    verdict.log_odds_of_model = all.log_odds[static_cast<std::size_t>(found - all.poses.begin())];
+  }
+  std::replace(verdict.rivals.begin(), verdict.rivals.end(), leader, first);
+  const auto place = std::find(verdict.ranking.begin(), verdict.ranking.end(), leader);
+  std::rotate(verdict.ranking.begin(), place, place + 1);
+  verdict.unobserved = unobserved_freedoms(poses[leader].refined, options.min_held_m2);
+  verdict.reason =
+      "what tells it from another pose speaks for it, but more surface agrees under that other one";
   return verdict;
 }
 

@@ -79,6 +79,11 @@ using ContrastFunction = std::function<PoseContrast(std::size_t first, std::size
 Verdict judge(const std::vector<JudgedPose>& poses, const ContrastFunction& contrast,
               const VerdictOptions& options = {});
 
+/// Of an ambiguous verdict the likeliest pose leads: where more surface agrees under one, but what tells the
+/// two apart speaks for another, the answer is that other one.
+Verdict led_by_likeliest(Verdict verdict, const std::vector<JudgedPose>& poses,
+                         const ContrastFunction& contrast, const VerdictOptions& options = {});
+
 /// The verdict once it is known how probable it is that the scans show two places built alike: what a twin
 /// explains as well is not registered.
 Verdict with_twin(Verdict verdict, const IndividualMatter& individual, double probability,

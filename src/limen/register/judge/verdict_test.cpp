@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limen/register/judge/verdict.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -50,6 +51,35 @@ TEST(Verdict, SurfaceThatAgreesUnderBothPosesTellsNothing) {
   EXPECT_EQ(judge(poses, contrast).outcome, Outcome::registered);
   const auto even = [](std::size_t, std::size_t) { return PoseContrast{3.0, 2.0}; };
   EXPECT_EQ(judge(poses, even).outcome, Outcome::ambiguous);
+}
+
+TEST(Verdict, OfAnAmbiguousPairThePoseLeadsThatWhatTellsThemApartSpeaksFor) {
+  // More surface agrees under the first; of what tells the two apart 4 m2 speak for the second.
+  const std::vector<JudgedPose> poses{pose(34, 0, 0), pose(32, 0, 2), pose(30, 0, 4)};
+  const auto contrast = [](std::size_t a, std::size_t b) {
+    const double said[] = {2.0, 6.0, 1.0};
+    return PoseContrast{said[a], said[b]};
+  };
+  Verdict verdict = judge(poses, contrast);
+  ASSERT_EQ(verdict.outcome, Outcome::ambiguous);
+  EXPECT_EQ(verdict.ranking.front(), 0U);
+  const std::vector<std::size_t> rivals = verdict.rivals;
+  verdict = led_by_likeliest(verdict, poses, contrast);
+  EXPECT_EQ(verdict.outcome, Outcome::ambiguous);
+  EXPECT_EQ(verdict.ranking, (std::vector<std::size_t>{1, 0, 2}));
+  EXPECT_EQ(verdict.rivals.size(), rivals.size());
+  EXPECT_NE(std::find(verdict.rivals.begin(), verdict.rivals.end(), 0U), verdict.rivals.end());
+  EXPECT_EQ(std::find(verdict.rivals.begin(), verdict.rivals.end(), 1U), verdict.rivals.end());
+  // What is asked in a ring comes to an end.
+  const auto ring = [](std::size_t a, std::size_t b) {
+    return (b + 3 - a) % 3 == 1 ? PoseContrast{1.0, 2.0} : PoseContrast{2.0, 1.0};
+  };
+  verdict = led_by_likeliest(judge(poses, ring), poses, ring);
+  EXPECT_EQ(verdict.ranking.size(), 3U);
+  // A pose that is no answer does not lead.
+  std::vector<JudgedPose> loose = poses;
+  loose[1].refined.geometry_m2.topLeftCorner<3, 3>().setZero();
+  EXPECT_EQ(led_by_likeliest(judge(loose, contrast), loose, contrast).ranking.front(), 0U);
 }
 
 TEST(Verdict, APoseLessProbableThanTheRiskIsNoRival) {

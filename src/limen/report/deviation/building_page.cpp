@@ -194,6 +194,14 @@ std::string matter_table(const BuildingReport& report) {
          rows + "</table></div>\n";
 }
 
+/// " #0" where the file has several scans.
+std::string number_of(const BuildingReport& report, const std::string& path, int index) {
+  const auto same = [&](const auto& other) { return other.path == path; };
+  const auto count = std::count_if(report.scans.begin(), report.scans.end(), same) +
+                     std::count_if(report.left_out.begin(), report.left_out.end(), same);
+  return count > 1 || index > 0 ? fmt::format(" #{}", index) : std::string();
+}
+
 std::string shares_table(const BuildingReport& report) {
   std::string text =
       "<h2>Scans</h2>\n<div class=\"scroll\" tabindex=\"0\"><table><tr><th>file</th><th>points</th><th>on "
@@ -205,7 +213,7 @@ std::string shares_table(const BuildingReport& report) {
     text += fmt::format(
         "<tr><td class=\"path\">{}{}</td><td class=\"n\">{}</td><td class=\"n\">{:.0f}&nbsp;%</td><td "
         "class=\"n\">{:.1f}</td><td class=\"n\">{:.1f} {:.1f} {:.1f}</td><td>{}{}</td></tr>\n",
-        escaped(scan.path), scan.index > 0 ? fmt::format(" #{}", scan.index) : "", share.points,
+        escaped(scan.path), number_of(report, scan.path, scan.index), share.points,
         100.0 * static_cast<double>(share.matched) /
             static_cast<double>(std::max<std::size_t>(1, share.points)),
         1e3 * scan.pose_sigma_m, common.x() + 0.0, common.y() + 0.0, common.z() + 0.0,
@@ -215,7 +223,7 @@ std::string shares_table(const BuildingReport& report) {
   for (const BuildingLeftOut& it : report.left_out)
     text += fmt::format(
         "<tr><td class=\"path\">{}{}</td><td></td><td></td><td></td><td></td><td>left out: {}</td></tr>\n",
-        escaped(it.path), it.index > 0 ? fmt::format(" #{}", it.index) : "", escaped(it.reason));
+        escaped(it.path), number_of(report, it.path, it.index), escaped(it.reason));
   return text + "</table></div>\n";
 }
 

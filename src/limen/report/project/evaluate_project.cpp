@@ -21,16 +21,58 @@ struct Placed {
   Vector3d at = Vector3d::Zero();  ///< where errors are measured, its own frame
 };
 
-const TrueScan& truth_of(const ProjectEntry& entry, const std::vector<TrueScan>& truth,
-                         const std::filesystem::path& path) {
-  const auto found = std::find_if(truth.begin(), truth.end(), [&](const TrueScan& scan) {
-    return scan.is_of(entry.file) && scan.index == entry.index;
-  });
-  if (found != truth.end()) return *found;
-  throw Error(
-      fmt::format("holds no pose of the scan {}{}", std::filesystem::path(entry.file).filename().string(),
-                  entry.index > 0 ? fmt::format(", index {}", entry.index) : ""),
-      path.string(), "give the truth of the scans that were put together");
+const std::string& name_in_truth(const TrueScan& scan) {
+  return scan.file.empty() ? scan.name : scan.file;
+}
+
+/// Models have no truth, and copies no place of their own.
+bool counts(const ProjectEntry& entry) {
+  return !entry.model && entry.copy_of.empty();
+}
+
+std::string called(const ProjectEntry& entry) {
+  return entry.file + (entry.index > 0 ? fmt::format(", index {}", entry.index) : "");
+}
+
+int names_shared(const TrueScan& scan, const ProjectEntry& entry) {
+  return scan.index == entry.index ? scan.names_shared_with(entry.file) : 0;
+}
+
+[[noreturn]] void throw_several(const std::string& problem, const std::filesystem::path& path) {
+  throw Error(problem, path.string(), "name the scans in the truth with the folders that tell them apart");
+}
+
+/// The truth of a scan: that whose path ends with the most names of its own. Of several scans of the project
+/// that are called alike it is the one's that shares most of them.
+const TrueScan& truth_of(const ProjectEntry& entry, const std::vector<ProjectEntry>& project,
+                         const std::vector<TrueScan>& truth, const std::filesystem::path& path) {
+  const TrueScan* best = nullptr;
+  const TrueScan* second = nullptr;
+  int most = 0;
+  for (const TrueScan& scan : truth) {
+    const int shared = names_shared(scan, entry);
+    if (shared == 0 || shared < most) continue;
+    second = shared == most ? &scan : nullptr;
+    if (shared > most) best = &scan;
+    most = shared;
+  }
+  if (second != nullptr)
+    throw_several(fmt::format("cannot tell which of {} and {} the scan {} is", name_in_truth(*best),
+                              name_in_truth(*second), called(entry)),
+                  path);
+  bool lent = false;
+  for (const ProjectEntry& other : project) {
+    if (best == nullptr || &other == &entry || !counts(other)) continue;
+    const int shared = names_shared(*best, other);
+    lent = lent || shared > most;
+    if (shared == most)
+      throw_several(fmt::format("cannot tell which of the scans {} and {} its {} is", called(entry),
+                                called(other), name_in_truth(*best)),
+                    path);
+  }
+  if (best != nullptr && !lent) return *best;
+  throw Error("holds no pose of the scan " + called(entry), path.string(),
+              "give the truth of the scans that were put together");
 }
 
 /// The middle of where the scanners stood; nothing where no scanner's place is told.
@@ -51,8 +93,8 @@ std::vector<Placed> placed_of(const std::vector<ProjectEntry>& project, const st
   const std::optional<Vector3d> middle = middle_of(truth);
   std::vector<Placed> placed;
   for (const ProjectEntry& entry : project) {
-    if (entry.model || !entry.frame_from_scan || entry.state != "registered") continue;
-    const TrueScan& scan = truth_of(entry, truth, path);
+    if (!counts(entry) || !entry.frame_from_scan || entry.state != "registered") continue;
+    const TrueScan& scan = truth_of(entry, project, truth, path);
     Placed made{entry.file, *entry.frame_from_scan, scan.world_from_scan};
     if (scan.scanner)
       made.at = *scan.scanner;
@@ -97,10 +139,7 @@ ProjectErrors evaluate_project(const std::vector<ProjectEntry>& project, const s
     for (const Placed& scan : placed) errors.each.push_back(error_against(placed[k], scan));
     if (best.each.empty() || errors.shift_of(0.5) < best.shift_of(0.5)) best = std::move(errors);
   }
-  best.scans =
-      static_cast<std::size_t>(std::count_if(project.begin(), project.end(), [](const ProjectEntry& entry) {
-        return !entry.model && entry.copy_of.empty();
-      }));
+  best.scans = static_cast<std::size_t>(std::count_if(project.begin(), project.end(), counts));
   return best;
 }
 

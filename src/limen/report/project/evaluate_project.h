@@ -20,7 +20,7 @@ struct PlaceError {
 
 struct ProjectErrors {
   std::size_t scans = 0;         ///< of the project, models and copies not counted
-  std::vector<PlaceError> each;  ///< of registered scans, in the project's order, the reference too
+  std::vector<PlaceError> each;  ///< of those registered, in the project's order, the reference too
   std::size_t reference = 0;     ///< which of them: that against which the others err least (the median)
 
   /// Metres; 0 where nothing but the reference is registered. `share`: 0.5 for the median.
@@ -28,8 +28,9 @@ struct ProjectErrors {
 };
 
 /// Holds the places of all `registered` scans against the truth. A project's frame is its own: all are
-/// compared as they stand to one of them. Throws Error, which names `truth_path`, where the truth lacks a
-/// scan.
+/// compared as they stand to one of them. A scan's truth is that of its file's name; where several are called
+/// alike their folders tell, as many as both paths end with. Throws Error, which names `truth_path`, where
+/// the truth lacks a scan or cannot be told from another's.
 ProjectErrors evaluate_project(const std::vector<ProjectEntry>& project, const std::vector<TrueScan>& truth,
                                const std::filesystem::path& truth_path);
 

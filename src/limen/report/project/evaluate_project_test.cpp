@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limen/report/project/evaluate_project.h"
 
+#include <string>
+#include <utility>
+
 #include <gtest/gtest.h>
 
 #include "limen/base/error.h"
@@ -81,6 +84,60 @@ TEST(EvaluateProject, StationsOfOneFileAreToldApart) {
   EXPECT_LT(building.errors().shift_of(1.0), 1e-6);
   building.project[2].frame_from_scan->translation += Vector3d(0.0, 3.0, 0.0);
   EXPECT_NEAR(building.errors().shift_of(1.0), 3.0, 1e-6);
+}
+
+/// Stations of two storeys, called alike in a folder of each; the truth tells their folders or not.
+Building two_storeys(const std::string& truth_folder) {
+  Building building;
+  for (std::size_t k = 0; k < 4; ++k) {
+    const std::string file = (k < 2 ? "first/" : "ground/") + std::to_string(k % 2) + ".ply";
+    building.project[k].file = "scans/" + file;
+    building.truth[k].file = truth_folder.empty() ? std::to_string(k % 2) + ".ply" : truth_folder + file;
+    building.truth[k].name.clear();
+  }
+  return building;
+}
+
+std::string fault_of_truth(const Building& building) {
+  try {
+    return std::to_string(building.errors().scans) + " scans";
+  } catch (const Error& error) {
+    return error.where() + ": " + error.problem();
+  }
+}
+
+TEST(EvaluateProject, ScansThatAreCalledAlikeAreToldApartByTheirFolders) {
+  for (const char* folder : {"scans/", "elsewhere/", "./"})
+    EXPECT_LT(two_storeys(folder).errors().shift_of(1.0), 1e-6) << folder;
+  Building building = two_storeys("scans/");
+  std::swap(building.truth[0], building.truth[2]);
+  EXPECT_LT(building.errors().shift_of(1.0), 1e-6) << "their order tells nothing";
+}
+
+TEST(EvaluateProject, ScansThatCannotBeToldApartAreNamed) {
+  const std::string truth = fault_of_truth(two_storeys(""));
+  EXPECT_NE(truth.find("cannot tell"), std::string::npos) << truth;
+  EXPECT_NE(truth.find("scans/first/0.ply"), std::string::npos) << truth;
+  // One place for two scans, whether or not both are registered.
+  Building building = two_storeys("");
+  building.truth.erase(building.truth.begin() + 2, building.truth.begin() + 4);
+  building.project[2].state = building.project[3].state = "floating";
+  const std::string project = fault_of_truth(building);
+  EXPECT_NE(project.find("scans/first/0.ply and scans/ground/0.ply"), std::string::npos) << project;
+  // The other has no truth.
+  building = two_storeys("scans/");
+  building.truth.erase(building.truth.begin() + 2);
+  EXPECT_EQ(fault_of_truth(building), "truth.json: holds no pose of the scan scans/ground/0.ply");
+}
+
+TEST(EvaluateProject, CopiesCountOnce) {
+  Building building;
+  building.project.push_back(building.project[0]);
+  building.project.back().file = "copies/station_0.ply";
+  building.project.back().copy_of = building.project[0].file;
+  const ProjectErrors errors = building.errors();
+  EXPECT_EQ(errors.scans, 5U);
+  EXPECT_EQ(errors.each.size(), 5U);
 }
 
 TEST(EvaluateProject, ATruthThatLacksAScanIsNamed) {

@@ -6,9 +6,8 @@
 #include <cmath>
 #include <filesystem>
 
-#include <fmt/format.h>
-
 #include "limen/geometry/linear.h"
+#include "limen/project/scan_names.h"
 
 namespace limen {
 namespace {
@@ -51,7 +50,7 @@ Matrix3d project_axes(const ProjectResult& result) {
 
 std::string shown_name(const ProjectScan& scan) {
   const std::string name = std::filesystem::path(scan.file).filename().string();
-  return scan.index > 0 ? fmt::format("{} #{}", name, scan.index) : name;
+  return scan_name(NumberedScan{name, scan.index, scan.several});
 }
 
 std::vector<std::vector<PlanSpot>> project_floors(const ProjectResult& result, const Matrix3d& axes) {

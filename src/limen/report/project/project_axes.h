@@ -14,7 +14,7 @@ namespace limen {
 /// zenith, in the project's frame; along the building's walls, turned from the frame by 45 degrees at most.
 Matrix3d project_axes(const ProjectResult& result);
 
-/// The file's name without its folders, and the scan's number where the file has several.
+/// The file's name without its folders, and the scan's number where the file has several: " #0" is the first.
 std::string shown_name(const ProjectScan& scan);
 
 /// A scan of the project's component as a plan shows it.

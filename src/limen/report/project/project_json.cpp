@@ -151,7 +151,8 @@ std::string project_json(const ProjectResult& result, const OptionList& options,
                    {"scan", of_scan ? Json(result.frame_scan) : Json()},
                    {"file", of_scan ? Json(result.scans[static_cast<std::size_t>(result.frame_scan)].file)
                             : result.frame_kind == "control" ? Json(result.control_file)
-                                                             : Json()}};
+                                                             : Json()},
+                   {"sigma_against", result.sigma_scan >= 0 ? Json(result.sigma_scan) : Json()}};
   if (system.system.known())
     json["frame"]["crs"] = {{"name", system.system.name},
                             {"code", system.system.code},

@@ -132,6 +132,11 @@ Json project_fields() {
       object({{"kind", words({"control", "mobile", "model", "file", "station", "none"})},
               {"scan", {{"type", {"integer", "null"}}, {"description", "whose frame it is, from 0"}}},
               {"file", {{"type", {"string", "null"}}, {"description", "whose frame it is"}}},
+              {"sigma_against",
+               {{"type", {"integer", "null"}},
+                {"description",
+                 "the scan, from 0, that is held fixed: sigma of every other is against it; null: none is, "
+                 "sigma is against the control points"}}},
               {"crs", crs}},
              {"kind", "scan", "file"});
   const Json trajectories =

@@ -7,12 +7,18 @@
 #include <cmath>
 #include <fstream>
 #include <functional>
+#include <map>
+#include <utility>
 
 #include "limen/base/error.h"
+#include "limen/files/readable.h"
+#include "limen/project/scan_names.h"
 #include "limen/report/json/json_values.h"
 
 namespace limen {
 namespace {
+
+constexpr const char* kProjectRemedy = "give the project.json that limen project wrote";
 
 std::optional<Json> parse(const std::filesystem::path& path) {
   std::error_code ignored;
@@ -25,6 +31,13 @@ std::optional<Json> parse(const std::filesystem::path& path) {
   if (json.is_discarded() || !json.contains("scans") || !json.contains("links") || !json["scans"].is_array())
     return {};
   return json;
+}
+
+Json project_at(const std::filesystem::path& path) {
+  require_readable(path, kProjectRemedy);
+  std::optional<Json> json = parse(path);
+  if (!json) throw Error("is not a project", path.string(), kProjectRemedy);
+  return std::move(*json);
 }
 
 Rigid3 pose_of(const Json& rows) {
@@ -103,11 +116,10 @@ bool is_project(const std::filesystem::path& path) {
 }
 
 CoordinateSystem read_project_system(const std::filesystem::path& path) {
-  const std::optional<Json> json = parse(path);
-  if (!json) throw Error("is not a project", path.string(), "give the project.json that limen project wrote");
+  const Json json = project_at(path);
   CoordinateSystem system;
-  if (!json->contains("frame") || !(*json)["frame"].contains("crs")) return system;
-  const Json& crs = (*json)["frame"]["crs"];
+  if (!json.contains("frame") || !json["frame"].contains("crs")) return system;
+  const Json& crs = json["frame"]["crs"];
   system.name = crs.value("name", "");
   system.code = crs.value("code", "");
   system.told = crs.value("wkt", "");
@@ -116,13 +128,11 @@ CoordinateSystem read_project_system(const std::filesystem::path& path) {
 }
 
 ToldTrajectories read_project_trajectories(const std::filesystem::path& path) {
-  const char* remedy = "give the project.json that limen project wrote";
-  const std::optional<Json> json = parse(path);
-  if (!json) throw Error("is not a project", path.string(), remedy);
+  const Json json = project_at(path);
   ToldTrajectories told;
-  if (!json->contains("trajectories")) return told;
+  if (!json.contains("trajectories")) return told;
   try {
-    const Json& all = (*json)["trajectories"];
+    const Json& all = json["trajectories"];
     told.files = all.at("files").get<std::vector<std::string>>();
     told.reading.columns = all.at("columns").get<std::vector<std::string>>();
     told.reading.utm_zone = all.at("utm_zone").get<std::string>();
@@ -130,20 +140,48 @@ ToldTrajectories read_project_trajectories(const std::filesystem::path& path) {
     told.reading.lever_arm_m = numbers_of(all.at("lever_arm_m"));
     return told;
   } catch (const Json::exception&) {
-    throw Error("the trajectories of the project are not told as they should be", path.string(), remedy);
+    throw Error("the trajectories of the project are not told as they should be", path.string(),
+                kProjectRemedy);
   }
 }
 
+std::vector<ProjectPoses> read_project_poses(const std::filesystem::path& path) {
+  const Json json = project_at(path);
+  try {
+    std::vector<ProjectPoses> all;
+    for (const Json& link : json["links"]) {
+      const Json& others = link.at("alternatives");
+      if (link.at("state") == "rejected" && others.empty()) continue;
+      ProjectPoses poses{link.at("source").get<std::size_t>(),
+                         link.at("target").get<std::size_t>(),
+                         {link.at("pose_number").get<int>()}};
+      for (const Json& other : others) poses.numbers.push_back(other.at("number").get<int>());
+      std::sort(poses.numbers.begin(), poses.numbers.end());
+      all.push_back(std::move(poses));
+    }
+    return all;
+  } catch (const Json::exception&) {
+    throw Error("a link of the project is not told as it should be", path.string(), kProjectRemedy);
+  }
+}
+
+std::string scan_name(const ProjectEntry& entry) {
+  return scan_name(NumberedScan{entry.file, entry.index, entry.several});
+}
+
 std::vector<ProjectEntry> read_project(const std::filesystem::path& path) {
-  const char* remedy = "give the project.json that limen project wrote";
-  const std::optional<Json> json = parse(path);
-  if (!json) throw Error("is not a project", path.string(), remedy);
+  const Json json = project_at(path);
   try {
     std::vector<ProjectEntry> entries;
-    for (const Json& scan : (*json)["scans"]) entries.push_back(entry_of(scan));
+    std::map<std::string, int> in_file;
+    for (const Json& scan : json["scans"]) {
+      entries.push_back(entry_of(scan));
+      ++in_file[entries.back().file];
+    }
+    for (ProjectEntry& entry : entries) entry.several = in_file[entry.file] > 1;
     return entries;
   } catch (const Json::exception&) {
-    throw Error("a scan of the project is not told as it should be", path.string(), remedy);
+    throw Error("a scan of the project is not told as it should be", path.string(), kProjectRemedy);
   }
 }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -19,6 +20,7 @@ namespace limen {
 struct ProjectEntry {
   std::string file;
   int index = 0;
+  bool several = false;  ///< its file holds other scans
   bool model = false;
   std::string state;
   std::string sha256;   ///< of the file's bytes
@@ -30,6 +32,16 @@ struct ProjectEntry {
   std::vector<double> knot_times_s;          ///< of that
 };
 
+/// What the scan is called (project/scan_names.h).
+std::string scan_name(const ProjectEntry& entry);
+
+/// The poses that a link of two scans may have, by their numbers.
+struct ProjectPoses {
+  std::size_t source = 0;  ///< among the scans of read_project()
+  std::size_t target = 0;
+  std::vector<int> numbers;
+};
+
 /// Whether a file is a project.json, by what it holds.
 bool is_project(const std::filesystem::path& path);
 
@@ -39,6 +51,10 @@ CoordinateSystem read_project_system(const std::filesystem::path& path);
 /// The trajectories that its passes were measured along; no files where it tells none. Throws Error as
 /// read_project().
 ToldTrajectories read_project_trajectories(const std::filesystem::path& path);
+
+/// Of all links that tell their poses: one that is left out as a twin does not. Throws Error as
+/// read_project().
+std::vector<ProjectPoses> read_project_poses(const std::filesystem::path& path);
 
 /// Its scans and models. Throws Error that names the file and the fault.
 std::vector<ProjectEntry> read_project(const std::filesystem::path& path);

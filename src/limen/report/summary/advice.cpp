@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "limen/base/text.h"
 #include "limen/report/summary/words.h"
 
 namespace limen {

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "limen/base/random.h"
+#include "limen/base/text.h"
 #include "limen/geometry/random_vectors.h"
 #include "limen/report/summary/words.h"
 

@@ -54,20 +54,6 @@ std::string file_name(const InputSummary& input) {
   return input.path.substr(input.path.find_last_of('/') + 1);
 }
 
-std::string shell_word(const std::string& text) {
-  constexpr const char* kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./,:=+@%";
-  if (!text.empty() && text.find_first_not_of(kPlain) == std::string::npos) return text;
-  std::string word = "'";
-  for (const char c : text) {
-    if (c == '\'') {
-      word += "'\\''";
-    } else {
-      word += c;
-    }
-  }
-  return word + "'";
-}
-
 bool is_open(const RegistrationResult& result, bool rotation, int axis) {
   for (const UnobservedFreedom& freedom : result.unobserved) {
     if (freedom.rotation == rotation && std::abs(freedom.direction[axis]) > kShareOfAxis) return true;

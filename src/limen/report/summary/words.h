@@ -26,9 +26,6 @@ std::string size_words(const Vector3d& size_m);
 /// The path's last part.
 std::string file_name(const InputSummary& input);
 
-/// Text as a shell takes it for one word.
-std::string shell_word(const std::string& text);
-
 /// A shift along an axis, or a turn about it, is left open by the data.
 bool is_open(const RegistrationResult& result, bool rotation, int axis);
 

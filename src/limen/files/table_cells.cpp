@@ -1,0 +1,82 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/files/table_cells.h"
+
+#include <fstream>
+
+#include <fmt/format.h>
+
+#include "limen/base/error.h"
+#include "limen/base/text.h"
+#include "limen/files/readable.h"
+
+namespace limen {
+namespace {
+
+/// Cells up to the last that holds something.
+std::size_t filled(const std::vector<std::string>& cells) {
+  std::size_t count = cells.size();
+  while (count > 0 && cells[count - 1].empty()) --count;
+  return count;
+}
+
+const char* remedy_for(char mark) {
+  return mark == ','
+             ? "write decimal points; for decimal commas put semicolons between the columns, in all lines"
+             : "name all columns in the first line, or take out what is too much";
+}
+
+}  // namespace
+
+std::string_view without_byte_order_mark(std::string_view text) {
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+  if (text.substr(0, kByteOrderMark.size()) == kByteOrderMark) text.remove_prefix(kByteOrderMark.size());
+  return text;
+}
+
+char table_mark(std::string_view header) {
+  for (const char mark : {';', '\t'}) {
+    if (header.find(mark) != std::string_view::npos) return mark;
+  }
+  return ',';
+}
+
+std::vector<std::string> table_cells(std::string_view line, char mark) {
+  std::vector<std::string> cells(1);
+  bool quoted = false;
+  for (const char c : line) {
+    if (c == '"') {
+      quoted = !quoted;
+    } else if (c == mark && !quoted) {
+      cells.emplace_back();
+    } else {
+      cells.back() += c;
+    }
+  }
+  for (std::string& cell : cells) cell = std::string(trimmed(cell));
+  return cells;
+}
+
+void require_table_width(const std::filesystem::path& path) {
+  require_readable(path, "give a text file whose first line names the columns", "table");
+  std::ifstream stream(path, std::ios::binary);
+  std::size_t columns = 0;
+  char mark = ',';
+  int number = 0;
+  for (std::string line; std::getline(stream, line);) {
+    ++number;
+    const std::string_view text = trimmed(number == 1 ? without_byte_order_mark(line) : line);
+    if (text.empty() || text.front() == '#') continue;
+    if (columns == 0) {
+      mark = table_mark(text);
+      columns = table_cells(text, mark).size();
+      continue;
+    }
+    const std::size_t fields = filled(table_cells(text, mark));
+    if (fields > columns)
+      throw Error(fmt::format("{} fields, {} columns", fields, columns),
+                  fmt::format("{}, line {}", path.string(), number), remedy_for(mark));
+  }
+}
+
+}  // namespace limen

@@ -1,0 +1,63 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/files/table_cells.h"
+
+#include <string>
+
+#include "support/test_support.h"
+#include <gtest/gtest.h>
+
+#include "limen/base/error.h"
+
+namespace limen {
+namespace {
+
+using testing_io::TemporaryFolder;
+
+/// What is wrong with a table, and with which line; nothing where it is as wide as it says.
+std::string fault_of(const std::string& text) {
+  const TemporaryFolder folder;
+  const auto path = folder.write("a.csv", text);
+  try {
+    require_table_width(path);
+    return {};
+  } catch (const Error& error) {
+    return error.where().substr(path.parent_path().string().size() + 1) + ": " + error.problem() + " (" +
+           error.remedy() + ")";
+  }
+}
+
+TEST(TableCells, ACellInQuotesMayHoldTheMark) {
+  EXPECT_EQ(table_cells(" a ,\"b, c\",", ','), (std::vector<std::string>{"a", "b, c", ""}));
+  EXPECT_EQ(table_mark("name;x;y"), ';');
+  EXPECT_EQ(table_mark("name\tx,y"), '\t');
+  EXPECT_EQ(table_mark("name,x"), ',');
+}
+
+TEST(TableCells, ALineWithMoreFieldsThanColumnsIsToldWithBoth) {
+  const std::string told = fault_of("name,x,y,z,sigma\n# 1,2,3,4,5,6\nA,1,5,2,5,3,5,0,002\n");
+  EXPECT_EQ(told.substr(0, 43), "a.csv, line 3: 9 fields, 5 columns (write d") << told;
+  EXPECT_NE(told.find("decimal commas"), std::string::npos) << told;
+  EXPECT_NE(fault_of("name;x\nA;1;2\n").find("line 2: 3 fields, 2 columns"), std::string::npos);
+}
+
+TEST(TableCells, EmptyCellsAtTheEndAndShortLinesAreNoFault) {
+  EXPECT_EQ(fault_of("name,x,y\nA,1,2,,\nB,1\n\n"), "");
+  EXPECT_EQ(fault_of("\xEF\xBB\xBFname;x;y\nA;1,5;2,5\n"), "");
+  EXPECT_EQ(fault_of(""), "");
+}
+
+TEST(TableCells, WhatIsNoFileIsTold) {
+  const TemporaryFolder folder;
+  const auto path = folder.write("a.csv", "name\n");
+  try {
+    require_table_width(path.parent_path());
+    ADD_FAILURE() << "nothing was thrown";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.problem(), "is a folder, not a table");
+  }
+  EXPECT_THROW(require_table_width(path.parent_path() / "b.csv"), Error);
+}
+
+}  // namespace
+}  // namespace limen
