@@ -102,6 +102,28 @@ std::string shell_word(const std::string& text) {
   return word + "'";
 }
 
+std::vector<std::string> shell_words(const std::string& line) {
+  std::vector<std::string> words;
+  bool quoted = false;
+  bool within = false;  // of a word
+  for (std::size_t k = 0; k < line.size(); ++k) {
+    if (!quoted && line[k] == ' ') {
+      within = false;
+      continue;
+    }
+    if (!within) words.emplace_back();
+    within = true;
+    if (line[k] == '\'') {
+      quoted = !quoted;
+    } else if (!quoted && line[k] == '\\' && k + 1 < line.size()) {
+      words.back() += line[++k];
+    } else {
+      words.back() += line[k];
+    }
+  }
+  return words;
+}
+
 std::string reason_of(int error_number) {
   return std::generic_category().message(error_number);
 }

@@ -4,6 +4,7 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace limen {
 
@@ -26,6 +27,9 @@ std::string one_line(std::string text);
 
 /// Text as a shell takes it for one word.
 std::string shell_word(const std::string& text);
+
+/// Words that `shell_word` made, with blanks between them.
+std::vector<std::string> shell_words(const std::string& line);
 
 /// What the system says of an error number (errno), in words.
 std::string reason_of(int error_number);

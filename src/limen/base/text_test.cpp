@@ -42,6 +42,15 @@ TEST(Text, Utf8MayHoldControlsAndNoOtherBytes) {
   EXPECT_FALSE(is_utf8("\xed\xa0\x80"));
 }
 
+TEST(Text, WordsForAShellAreReadBack) {
+  const std::vector<std::string> words = {"accept",       "z1.e57 #0", "o'clock.ply", "", "a\\b",
+                                          "my  scan.ply", "2"};
+  std::string line;
+  for (const std::string& word : words) line += (line.empty() ? "" : " ") + shell_word(word);
+  EXPECT_EQ(shell_words(line), words);
+  EXPECT_TRUE(shell_words("  ").empty());
+}
+
 TEST(Text, ReasonIsTold) {
   EXPECT_NE(reason_of(ENOENT), reason_of(EACCES));
   EXPECT_FALSE(reason_of(ENOENT).empty());

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "limen/base/length_unit.h"
+#include "limen/base/text.h"
 #include "limen/cli/serve/gate.h"
 #include "limen/cli/serve/http_request.h"
 
@@ -181,21 +182,6 @@ Json read_json(const fs::path& path) {
   return Json::parse(stream, nullptr, false);
 }
 
-/// The words of a decision: names hold no blanks but before the number of a scan in its file.
-std::vector<std::string> words_of_answer(const std::string& answer) {
-  std::vector<std::string> words;
-  for (std::size_t begin = 0; begin < answer.size();) {
-    const std::size_t end = std::min(answer.find(' ', begin), answer.size());
-    const std::string word = answer.substr(begin, end - begin);
-    if (!words.empty() && word.starts_with('#'))
-      words.back() += " " + word;
-    else
-      words.push_back(word);
-    begin = end + 1;
-  }
-  return words;
-}
-
 PageJob deciding(const Asked& asked) {
   PageJob job;
   const PageJob& of = asked.of("project");
@@ -208,7 +194,7 @@ PageJob deciding(const Asked& asked) {
     offered = offered || std::find(answers.begin(), answers.end(), Json(answer)) != answers.end();
   }
   if (!offered) throw HttpFault(400, "none of the project's questions has this answer");
-  const std::vector<std::string> words = words_of_answer(answer);
+  const std::vector<std::string> words = shell_words(answer);
   if (std::any_of(words.begin(), words.end(), [](const std::string& word) { return word.starts_with('-'); }))
     throw HttpFault(400, "that is no answer");
   job.words = {"project", "decide", fmt::format("results/{}", of.id)};

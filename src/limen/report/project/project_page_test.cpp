@@ -68,7 +68,7 @@ TEST(ProjectJson, PointsDecisionsAndAnswersAreTold) {
   const nlohmann::json told = nlohmann::json::parse(project_json(some_result(), {}));
   EXPECT_EQ(told["frame"]["file"], "control.csv");
   EXPECT_TRUE(told["frame"]["scan"].is_null());
-  EXPECT_EQ(told["questions"][0]["answers"][0], "choose hall.ply o'clock.ply 2");
+  EXPECT_EQ(told["questions"][0]["answers"][0], R"(choose hall.ply 'o'\''clock.ply' 2)");
   EXPECT_EQ(told["decisions"][0]["state"], "contradicted");
   const nlohmann::json& point = told["points"][0];
   EXPECT_EQ(point["state"], "left_out");
