@@ -9,7 +9,6 @@
 #include <iostream>
 #include <memory>
 #include <new>
-#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -123,11 +122,7 @@ std::string usage_error(const CLI::App& app, const CLI::ParseError& error) {
 }
 
 /// Names that JSON cannot tell are refused before the work, not at its end. Throws Error.
-void require_utf8(const CLI::App& app, const std::vector<std::string>& words, bool json) {
-  const std::set<std::string> telling = {"register", "project",  "planes",
-                                         "openings", "segments", "deviation"};
-  const std::vector<CLI::App*> chosen = app.get_subcommands();
-  if (!json && (chosen.empty() || telling.count(chosen.front()->get_name()) == 0)) return;
+void require_utf8(const std::vector<std::string>& words) {
   for (const std::string& word : words) {
     if (!is_utf8(word)) throw Error("is not UTF-8, and JSON could not tell of it", word, "rename it");
   }
@@ -193,10 +188,10 @@ int fail_as(const Session& session, const std::string& message, int status) {
 }
 
 /// Runs what the command line asked for; every exception becomes one line and a status.
-int run_action(const CLI::App& app, const std::vector<std::string>& words, Session& session) {
+int run_action(const std::vector<std::string>& words, Session& session) {
   constexpr int kReaderGone = 128 + SIGPIPE;
   try {
-    require_utf8(app, words, session.common.json);
+    require_utf8(words);
     set_thread_count(session.common.threads);
     session.monitor = make_monitor(session.common.quiet);
     const int status = run_guarded(session);
@@ -247,7 +242,7 @@ int run_program(int argc, char** argv) {
     if (error.get_exit_code() == 0) return app.exit(error, std::cout, std::cerr);
     return fail(usage_error(app, error), kExitBadInput);
   }
-  return run_action(app, texts, session);
+  return run_action(texts, session);
 }
 
 }  // namespace limen
