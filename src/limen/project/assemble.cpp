@@ -194,9 +194,8 @@ class Assembler {
     if (node.component > 0 && scan.state != NodeState::floating) {
       scan.state = NodeState::floating;
       scan.reason = fmt::format(
-          "stands firmly with the other scans of component {}, but nothing joins them to the "
-          "project's frame",
-          node.component);
+          "stands {} with the other scans of component {}, but nothing joins them to the project's frame",
+          node.state == NodeState::registered ? "firmly" : "in doubt", node.component);
       return;
     }
     scan.reason = reason_of(n);
@@ -388,6 +387,18 @@ class Assembler {
     told.answers.push_back({DecisionKind::reject, scans, 0});
   }
 
+  /// Accepted links between these nodes and the others, those that know of several places.
+  [[nodiscard]] std::vector<int> links_across(const std::vector<int>& moved) const {
+    const auto moves = [&](int node) { return std::find(moved.begin(), moved.end(), node) != moved.end(); };
+    std::vector<int> across;
+    for (std::size_t k = 0; k < graph_.links.size(); ++k) {
+      const GraphLink& link = graph_.links[k];
+      if (solved_.links[k].pose >= 0 && link.poses.size() > 1 && moves(link.source) != moves(link.target))
+        across.push_back(static_cast<int>(k));
+    }
+    return across;
+  }
+
   void tell_question(const GraphQuestion& question) {
     ProjectQuestion told;
     // Of one part there may be doubts about many places; its scans list them all.
@@ -406,6 +417,11 @@ class Assembler {
     told.rival = question.rival;
     for (const std::vector<int>* links : {&question.current, &question.rival}) {
       for (std::size_t k = 0; k < links->size() && k < kMostAnswers; ++k) add_answers((*links)[k], told);
+    }
+    if (question.current.empty() && question.rival.empty()) {
+      for (const int link : links_across(question.moved)) {
+        if (told.answers.size() < kMostAnswers) add_answers(link, told);
+      }
     }
     if (question.doubt > 0.0) {
       told.text = fmt::format(

@@ -20,8 +20,6 @@ constexpr double kMostRivalNats = 7.0;  // no link is surer than a thousand to o
 constexpr double kRivalLoopNats = 7.0;  // sure links that are wrong agree once in a thousand
 constexpr double kMostTwinNats = 14.0;  // no pair is surer of twins than about one in a million
 constexpr double kOpenWrong = 0.02;     // of links with several poses perhaps none is right
-constexpr double kSameShiftM = 0.05;
-constexpr double kSameTurnRad = 0.0175;
 
 /// A link that crosses a cut, and by how much it speaks for a place.
 struct Voice {
@@ -105,8 +103,8 @@ class RivalSearch {
   /// place: a street's openings miss by three deviations at times), or than nobody cares about.
   [[nodiscard]] static bool is_present_place(const LinkPose& pose, const Rigid3& present) {
     const Rigid3 movement = present * inverse(pose.target_from_source);
-    const bool near = (movement * pose.centre - pose.centre).norm() < kSameShiftM &&
-                      rotation_angle(movement.rotation) < kSameTurnRad;
+    const bool near = (movement * pose.centre - pose.centre).norm() < kSamePlaceM &&
+                      rotation_angle(movement.rotation) < kSamePlaceRad;
     return near || fits(pose, present);
   }
 
@@ -137,8 +135,8 @@ class RivalSearch {
     const Vector3d from = inverse(movement) * meets;
     for (const GraphQuestion& known : questions) {
       const bool same =
-          (known.frame_from_frame * from - meets).norm() < kSameShiftM &&
-          rotation_angle(known.frame_from_frame.rotation.transpose() * movement.rotation) < kSameTurnRad;
+          (known.frame_from_frame * from - meets).norm() < kSamePlaceM &&
+          rotation_angle(known.frame_from_frame.rotation.transpose() * movement.rotation) < kSamePlaceRad;
       if (same && contains(known.moved, link.source) && !contains(known.moved, link.target)) return;
     }
     const std::vector<Bend> bends = bends_of(component_of(link.source), movement);

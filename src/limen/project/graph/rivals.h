@@ -12,6 +12,10 @@ namespace limen {
 /// Of a place that is a thousand times as probable as another there is no question.
 inline constexpr double kRivalClearNats = 6.9;
 
+/// Places nearer than both are one.
+inline constexpr double kSamePlaceM = 0.05;
+inline constexpr double kSamePlaceRad = 0.0175;
+
 /// Every pose that was not accepted would move one of its ends, and with it all that hangs together with that
 /// end: the smallest cut of the accepted links that the movement breaks (those that can follow it by another
 /// of their poses cost nothing) divides the component; tried are the cut next to either end, and the one

@@ -494,7 +494,13 @@ class Solver {
       for (const int moved : question.moved) {
         SolvedNode& node = solved_.nodes[static_cast<std::size_t>(moved)];
         node.state = NodeState::ambiguous;
-        node.alternatives.push_back(question.frame_from_frame * node.frame_from_node);
+        const Rigid3 other = question.frame_from_frame * node.frame_from_node;
+        const bool known =
+            std::any_of(node.alternatives.begin(), node.alternatives.end(), [&](const Rigid3& a) {
+              return (a.translation - other.translation).norm() < kSamePlaceM &&
+                     rotation_angle(a.rotation.transpose() * other.rotation) < kSamePlaceRad;
+            });
+        if (!known) node.alternatives.push_back(other);
       }
       for (const int link : question.current) doubted_[link] = true;
       for (const int link : question.rival) doubted_[link] = true;
