@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "limen/base/angles.h"
+#include "limen/base/progress.h"
 #include "limen/geometry/linear.h"
 #include "limen/project/control/control_datum.h"
 #include "limen/project/joint_problem.h"
@@ -244,6 +245,7 @@ class Confirmer {
   /// Where the scan stands in the survey's frame by the points of all others; empty where they do not tell,
   /// or it sees its own elsewhere, or none.
   [[nodiscard]] std::optional<LinkPose> place(int node) const {
+    if (!sees_known(node)) return {};
     FramedNodes others = framed_;
     others.member[static_cast<std::size_t>(node)] = false;
     const ControlDatum datum = control_datum(apart_from(node), others);
@@ -256,19 +258,23 @@ class Confirmer {
     const LinkPose in_frame{own, framed_.covariance[static_cast<std::size_t>(node)], own.translation, 0.0};
     placed.covariance = moved_covariance(in_frame, survey, placed.centre) +
                         moved_covariance(datum.fit.pose, Rigid3{}, placed.centre);
-    int agreeing = 0;
     for (const MarkedPoint& point : points_) {
       for (const PointSight& sight : point.sights) {
-        if (sight.node != node || !point.is_known()) continue;
-        if (!foretold(point, sight, placed)) return {};
-        ++agreeing;
+        if (sight.node == node && point.is_known() && !foretold(point, sight, placed)) return {};
       }
     }
-    return agreeing > 0 ? std::optional<LinkPose>(placed) : std::nullopt;
+    return placed;
   }
 
  private:
   static constexpr double kSharpM = 0.15;  // twins stand further apart than what is foretold as well as this
+
+  [[nodiscard]] bool sees_known(int node) const {
+    return std::any_of(points_.begin(), points_.end(), [&](const MarkedPoint& point) {
+      return point.is_known() && std::any_of(point.sights.begin(), point.sights.end(),
+                                             [&](const PointSight& sight) { return sight.node == node; });
+    });
+  }
 
   [[nodiscard]] static bool foretold(const MarkedPoint& point, const PointSight& sight,
                                      const LinkPose& placed) {
@@ -309,6 +315,7 @@ bool confirm_by_points(const Survey& survey, const SolvedGraph& solved, ProjectG
   for (int component = 0; component < solved.components; ++component) {
     const Confirmer confirmer(survey, solved, component);
     for (int n = 0; n < nodes; ++n) {
+      CancelScope::check();
       const SolvedNode& node = solved.nodes[static_cast<std::size_t>(n)];
       if (linked.count(n) > 0 || node.component != component || node.state == NodeState::under_constrained)
         continue;
