@@ -14,7 +14,8 @@
 namespace limen {
 namespace {
 
-constexpr double kKnotM = 2.5;        // between knots, about
+constexpr double kKnotM = 2.5;   // between knots, about
+constexpr int kMostSpans = 400;  // the whole of a pass is a mean over its knots: the square of their number
 constexpr double kLeastWayM = 10.0;   // a shorter one hardly drifts
 constexpr double kMomentS = 0.05;     // places of one moment are averaged
 constexpr double kStepM = 0.25;       // what is less is no way but noise of the trajectory
@@ -69,7 +70,7 @@ PassWay way_of(const Moments& moments) {
   if (distances.back() < kLeastWayM) return way;
   // What came after the last step is part of the way.
   times.back() = std::max(times.back(), moments.times_s.back());
-  const int spans = std::max(2, static_cast<int>(std::lround(distances.back() / kKnotM)));
+  const auto spans = static_cast<int>(std::clamp(distances.back() / kKnotM + 0.5, 2.0, double{kMostSpans}));
   for (int k = 0; k <= spans; ++k) {
     const double at = place_among(distances, distances.back() * k / spans);
     const auto before = std::min(static_cast<std::size_t>(at), times.size() - 2);

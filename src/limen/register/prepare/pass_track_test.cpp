@@ -42,6 +42,15 @@ TEST(PassTrack, KnotsStandEvenlyAlongTheWay) {
   EXPECT_GT(track.way.times_s[10] - track.way.times_s[6], 60.0);
 }
 
+TEST(PassTrack, OfALongWayThereAreNoMoreKnotsThanCanBeSolved) {
+  EXPECT_EQ(find_pass_track(drive_along_wall(900.0).scan, drive_along_wall(900.0).extracted).way.knots(),
+            361);
+  const Drive drive = drive_along_wall(6000.0);
+  const PassTrack track = find_pass_track(drive.scan, drive.extracted);
+  ASSERT_EQ(track.way.knots(), 401);
+  EXPECT_NEAR(track.way.distances_m[200], 3000.0, 1.0);
+}
+
 TEST(PassTrack, StripsHoldWhatWasSeenWhereTheyLie) {
   const Drive drive = drive_along_wall(40.0);
   const PassTrack track = find_pass_track(drive.scan, drive.extracted);
