@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "limen/project/shared_planes.h"
 #include "limen/project/word_terms.h"
 
 namespace limen {
@@ -182,6 +183,24 @@ struct TwoScans {
     return adjust_jointly(problem);
   }
 };
+
+TEST(SharedPlanes, WhatThePairItselfSeesInTwoPlanesIsNotOneSurface) {
+  // Two floors, 2 m apart, in one plane as the scans stand; by the pair one may be a step of 2 cm.
+  const std::vector<ProjectNode> nodes = {over_a_floor(0), over_a_floor(1)};
+  for (const double step_m : {0.001, 0.02}) {
+    SolvedGraph solved;
+    solved.nodes.resize(2);
+    solved.nodes[1].frame_from_node.translation = {2, 0, 0};
+    const BentPasses none({});
+    SharedPlanes shared(nodes, solved, none);
+    Rigid3 pose;
+    pose.translation = {2, 0, step_m};
+    shared.join(1, 0, 0, 0, pose);
+    JointProblem problem;
+    shared.tell({true, true}, problem);
+    EXPECT_EQ(problem.planes, step_m < 0.01 ? 1 : 0) << step_m;
+  }
+}
 
 UserWords said(DecisionKind kind) {
   UserWords words;

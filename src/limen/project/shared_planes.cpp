@@ -68,7 +68,20 @@ void SharedPlanes::for_each(const Visit& visit) {
   }
 }
 
-void SharedPlanes::join(int source, int source_plane, int target, int target_plane) {
+/// Whether two planes go on in one another by the pair's own pose, which knows them where both scans see
+/// them: of a façade with bays and reliefs two scans may each see another part, centimetres before or behind.
+bool SharedPlanes::go_on(const PlaneDigest& a, const PlaneDigest& b, const Rigid3& b_from_a,
+                         double strays_m) {
+  const Plane a_in_b = transformed(b_from_a, a.plane);
+  const Vector3d middle = b_from_a * a.centroid;
+  const double apart = (middle - b.centroid).norm();
+  const double bound = kStrays * std::hypot(std::sqrt(2.0) * kFlatM, kBendPerM * apart, strays_m);
+  return std::abs(a_in_b.signed_distance(b.centroid)) <= bound &&
+         std::abs(b.plane.signed_distance(middle)) <= bound;
+}
+
+void SharedPlanes::join(int source, int source_plane, int target, int target_plane,
+                        const Rigid3& target_from_source) {
   const auto source_node = static_cast<std::size_t>(source);
   const auto target_node = static_cast<std::size_t>(target);
   const PlaneDigest& a = digest(source_node).planes[static_cast<std::size_t>(source_plane)];
@@ -81,6 +94,8 @@ void SharedPlanes::join(int source, int source_plane, int target, int target_pla
   // Pieces of a pass stray from where the pass as a whole has them.
   const double strays = std::hypot(nodes_[source_node].strays_m(), nodes_[target_node].strays_m());
   if (std::abs(in_frame.signed_distance(frame_from_b * b.centroid)) > kSharedM + kStrays * strays) return;
+  const bool drawn = digest(source_node).model || digest(target_node).model;
+  if (!go_on(a, b, target_from_source, std::hypot(strays, drawn ? kDrawnM : 0.0))) return;
   surfaces_.join(first_[source_node] + static_cast<std::size_t>(source_plane),
                  first_[target_node] + static_cast<std::size_t>(target_plane));
 }

@@ -22,8 +22,8 @@ class SharedPlanes {
   /// `solved`: the poses by which planes are compared; `passes` as they are bent so far. All outlive this.
   SharedPlanes(const std::vector<ProjectNode>& nodes, const SolvedGraph& solved, const BentPasses& passes);
 
-  /// Joins two planes where they lie in one under the solved poses as well.
-  void join(int source, int source_plane, int target, int target_plane);
+  /// Joins two planes where they lie in one under the solved poses and under the pair's own.
+  void join(int source, int source_plane, int target, int target_plane, const Rigid3& target_from_source);
 
   /// Adds the observations of the planes that two nodes or more see, or a bent pass at two times: of a bent
   /// pass strip by strip, and of what it sees patch by patch, for long walls bend.
@@ -40,6 +40,7 @@ class SharedPlanes {
                                               const Rigid3& other_from_node) const;
 
  private:
+  static bool go_on(const PlaneDigest& a, const PlaneDigest& b, const Rigid3& b_from_a, double strays_m);
   /// A patch of a surface: its planes' root, and a square of it.
   using PatchKey = std::tuple<std::size_t, int, int>;
   struct Seen {
