@@ -15,6 +15,9 @@ std::string upper_case(std::string_view text);
 /// Without spaces, tabs and ends of lines at either end.
 std::string_view trimmed(std::string_view text);
 
+/// Without the byte order mark that some programs put before UTF-8.
+std::string_view without_byte_order_mark(std::string_view text);
+
 /// With a question mark for every byte that is neither a printable character nor part of one in UTF-8: what
 /// a damaged file holds must not command a terminal.
 std::string printable(std::string_view text);

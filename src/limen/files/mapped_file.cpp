@@ -10,6 +10,7 @@
 
 #include "limen/base/error.h"
 #include "limen/base/text.h"
+#include "limen/files/readable.h"
 
 namespace limen {
 namespace {
@@ -19,7 +20,7 @@ class Descriptor {
   explicit Descriptor(const std::string& name) : value_(open(name.c_str(), O_RDONLY | O_CLOEXEC)) {
     if (value_ >= 0) return;
     const int reason = errno;
-    if (reason == ENOENT || reason == ENOTDIR) missing(name);
+    if (reason == ENOENT || reason == ENOTDIR) throw missing_file(name);
     throw Error("cannot be opened: " + reason_of(reason), name, "check the path and its permissions");
   }
   ~Descriptor() { close(value_); }
@@ -28,13 +29,6 @@ class Descriptor {
   [[nodiscard]] int value() const { return value_; }
 
  private:
-  [[noreturn]] static void missing(const std::string& name) {
-    if (name.empty()) throw Error("the name of a file is empty", "", "name a file");
-    if (name.find("://") != std::string::npos)
-      throw Error("is an address, and limen reads files only", name, "download it, and name the file");
-    throw Error("there is no such file", name, "check the path");
-  }
-
   int value_;
 };
 

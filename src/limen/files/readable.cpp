@@ -7,24 +7,21 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "limen/base/error.h"
 #include "limen/base/text.h"
 
 namespace limen {
-namespace {
 
-std::string why_missing(const std::string& name) {
-  if (name.empty()) return "the name of a file is empty";
-  if (name.find("://") != std::string::npos) return "is an address, and limen reads files only";
-  return "there is no such file";
+Error missing_file(const std::string& name) {
+  if (name.empty()) return {"the name of a file is empty", "", "name a file"};
+  if (name.find("://") != std::string::npos)
+    return {"is an address, and limen reads files only", name, "download it, and name the file"};
+  return {"there is no such file", name, "check the path"};
 }
-
-}  // namespace
 
 std::string why_unreadable(const std::filesystem::path& path, const char* wanted) {
   struct stat status {};
   if (stat(path.c_str(), &status) != 0)
-    return errno == ENOENT || errno == ENOTDIR ? why_missing(path.string()) : reason_of(errno);
+    return errno == ENOENT || errno == ENOTDIR ? missing_file(path.string()).problem() : reason_of(errno);
   if (S_ISDIR(status.st_mode)) return std::string("is a folder, not a ") + wanted;
   return access(path.c_str(), R_OK) == 0 ? "" : reason_of(errno);
 }

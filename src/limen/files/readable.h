@@ -5,7 +5,12 @@
 #include <filesystem>
 #include <string>
 
+#include "limen/base/error.h"
+
 namespace limen {
+
+/// That there is no file of this name, and what to do.
+Error missing_file(const std::string& name);
 
 /// Why a file cannot be read: that there is none, that it is a folder ("is a folder, not a {wanted}"), or
 /// what the system says. Empty where it can be read.

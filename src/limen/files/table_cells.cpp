@@ -28,12 +28,6 @@ const char* remedy_for(char mark) {
 
 }  // namespace
 
-std::string_view without_byte_order_mark(std::string_view text) {
-  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-  if (text.substr(0, kByteOrderMark.size()) == kByteOrderMark) text.remove_prefix(kByteOrderMark.size());
-  return text;
-}
-
 char table_mark(std::string_view header) {
   for (const char mark : {';', '\t'}) {
     if (header.find(mark) != std::string_view::npos) return mark;
@@ -57,26 +51,27 @@ std::vector<std::string> table_cells(std::string_view line, char mark) {
   return cells;
 }
 
-void require_table_width(const std::filesystem::path& path) {
+TextTable read_text_table(const std::filesystem::path& path) {
   require_readable(path, "give a text file whose first line names the columns", "table");
   std::ifstream stream(path, std::ios::binary);
-  std::size_t columns = 0;
-  char mark = ',';
+  TextTable table;
   int number = 0;
   for (std::string line; std::getline(stream, line);) {
     ++number;
     const std::string_view text = trimmed(number == 1 ? without_byte_order_mark(line) : line);
     if (text.empty() || text.front() == '#') continue;
-    if (columns == 0) {
-      mark = table_mark(text);
-      columns = table_cells(text, mark).size();
+    if (table.columns.line == 0) {
+      table.mark = table_mark(text);
+      table.columns = {table_cells(text, table.mark), number};
       continue;
     }
-    const std::size_t fields = filled(table_cells(text, mark));
-    if (fields > columns)
-      throw Error(fmt::format("{} fields, {} columns", fields, columns),
-                  fmt::format("{}, line {}", path.string(), number), remedy_for(mark));
+    table.rows.push_back({table_cells(text, table.mark), number});
+    const std::size_t fields = filled(table.rows.back().cells);
+    if (fields > table.columns.cells.size())
+      throw Error(fmt::format("{} fields, {} columns", fields, table.columns.cells.size()),
+                  fmt::format("{}, line {}", path.string(), number), remedy_for(table.mark));
   }
+  return table;
 }
 
 }  // namespace limen

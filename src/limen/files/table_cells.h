@@ -9,18 +9,28 @@
 
 namespace limen {
 
-/// Without the byte order mark that some programs put before UTF-8.
-std::string_view without_byte_order_mark(std::string_view text);
-
 /// What stands between the columns of a table whose first line this is: a semicolon, a tab, else a comma.
 char table_mark(std::string_view header);
 
 /// The cells of a line, without blanks around; a quoted cell may hold the mark.
 std::vector<std::string> table_cells(std::string_view line, char mark);
 
-/// No line of a table has more cells than its first has columns; empty ones at the end do not count, nor do
-/// lines that are empty or begin with #. Throws Error that names the file, the line and both numbers, or says
-/// why the file cannot be read.
-void require_table_width(const std::filesystem::path& path);
+/// A line of a table.
+struct TableRow {
+  std::vector<std::string> cells;
+  int line = 0;  ///< from 1
+};
+
+struct TextTable {
+  char mark = ',';  ///< between the columns
+  TableRow columns;
+  std::vector<TableRow> rows;
+};
+
+/// Reads a table whose first line names the columns; lines that are empty or begin with # do not count. Where
+/// there is none it has no columns. Throws Error that names the file, the line and both numbers where a line
+/// has more cells than there are columns (empty ones at the end do not count), or says why the file cannot be
+/// read.
+TextTable read_text_table(const std::filesystem::path& path);
 
 }  // namespace limen

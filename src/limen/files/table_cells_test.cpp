@@ -19,7 +19,7 @@ std::string fault_of(const std::string& text) {
   const TemporaryFolder folder;
   const auto path = folder.write("a.csv", text);
   try {
-    require_table_width(path);
+    read_text_table(path);
     return {};
   } catch (const Error& error) {
     return error.where().substr(path.parent_path().string().size() + 1) + ": " + error.problem() + " (" +
@@ -51,12 +51,12 @@ TEST(TableCells, WhatIsNoFileIsTold) {
   const TemporaryFolder folder;
   const auto path = folder.write("a.csv", "name\n");
   try {
-    require_table_width(path.parent_path());
+    read_text_table(path.parent_path());
     ADD_FAILURE() << "nothing was thrown";
   } catch (const Error& error) {
     EXPECT_EQ(error.problem(), "is a folder, not a table");
   }
-  EXPECT_THROW(require_table_width(path.parent_path() / "b.csv"), Error);
+  EXPECT_THROW(read_text_table(path.parent_path() / "b.csv"), Error);
 }
 
 }  // namespace

@@ -9,7 +9,6 @@
 
 #include "limen/base/error.h"
 #include "limen/base/stage_part.h"
-#include "limen/files/table_cells.h"
 #include "limen/project/control/control_file.h"
 #include "limen/project/hear_scans.h"
 #include "limen/project/own_drift.h"
@@ -325,9 +324,6 @@ ProjectResult run_project(const ProjectInputs& inputs, const std::filesystem::pa
   options.check();
   if (inputs.scans.empty()) throw Error("there is no scan", "project", "give at least one");
   // A fault in a small file is told before hours of work.
-  for (const std::string& table : {inputs.control, inputs.check, inputs.targets}) {
-    if (!table.empty()) require_table_width(table);
-  }
   for (const std::string& file : {inputs.control, inputs.check}) {
     if (!file.empty()) static_cast<void>(read_surveyed_points(file));
   }

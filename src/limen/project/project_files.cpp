@@ -18,7 +18,6 @@
 #include "limen/bim/read_bim.h"
 #include "limen/files/file_hash.h"
 #include "limen/files/readable.h"
-#include "limen/files/table_cells.h"
 
 namespace limen {
 namespace {

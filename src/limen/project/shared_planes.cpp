@@ -47,6 +47,17 @@ bool lies_on(const Vector3d& x, const PlaneDigest& plane) {
   return off.dot(solve_symmetric(spread, off)) <= 2.0;
 }
 
+/// Whether two planes go on in one another by the pair's own pose, which knows them where both scans see
+/// them: of a façade with bays and reliefs two scans may each see another part, centimetres before or behind.
+bool go_on(const PlaneDigest& a, const PlaneDigest& b, const Rigid3& b_from_a, double strays_m) {
+  const Plane a_in_b = transformed(b_from_a, a.plane);
+  const Vector3d middle = b_from_a * a.centroid;
+  const double apart = (middle - b.centroid).norm();
+  const double bound = kStrays * std::hypot(std::sqrt(2.0) * kFlatM, kBendPerM * apart, strays_m);
+  return std::abs(a_in_b.signed_distance(b.centroid)) <= bound &&
+         std::abs(b.plane.signed_distance(middle)) <= bound;
+}
+
 }  // namespace
 
 SharedPlanes::SharedPlanes(const std::vector<ProjectNode>& nodes, const SolvedGraph& solved,
@@ -66,18 +77,6 @@ void SharedPlanes::for_each(const Visit& visit) {
     for (std::size_t plane = 0; plane < digest(node).planes.size(); ++plane)
       visit(node, plane, surfaces_.find(first_[node] + plane));
   }
-}
-
-/// Whether two planes go on in one another by the pair's own pose, which knows them where both scans see
-/// them: of a façade with bays and reliefs two scans may each see another part, centimetres before or behind.
-bool SharedPlanes::go_on(const PlaneDigest& a, const PlaneDigest& b, const Rigid3& b_from_a,
-                         double strays_m) {
-  const Plane a_in_b = transformed(b_from_a, a.plane);
-  const Vector3d middle = b_from_a * a.centroid;
-  const double apart = (middle - b.centroid).norm();
-  const double bound = kStrays * std::hypot(std::sqrt(2.0) * kFlatM, kBendPerM * apart, strays_m);
-  return std::abs(a_in_b.signed_distance(b.centroid)) <= bound &&
-         std::abs(b.plane.signed_distance(middle)) <= bound;
 }
 
 void SharedPlanes::join(int source, int source_plane, int target, int target_plane,

@@ -40,7 +40,6 @@ class SharedPlanes {
                                               const Rigid3& other_from_node) const;
 
  private:
-  static bool go_on(const PlaneDigest& a, const PlaneDigest& b, const Rigid3& b_from_a, double strays_m);
   /// A patch of a surface: its planes' root, and a square of it.
   using PatchKey = std::tuple<std::size_t, int, int>;
   struct Seen {

@@ -248,8 +248,7 @@ std::vector<ZipMember> ifc_members(std::string_view bytes) {
 }  // namespace
 
 bool looks_like_step(std::string_view bytes) {
-  constexpr std::string_view kByteOrderMark("\xEF\xBB\xBF", 3);
-  if (bytes.substr(0, 3) == kByteOrderMark) bytes.remove_prefix(3);
+  bytes = without_byte_order_mark(bytes);
   const std::size_t begin = bytes.find_first_not_of(" \t\r\n");
   return begin != std::string_view::npos && bytes.substr(begin, 13) == "ISO-10303-21;";
 }

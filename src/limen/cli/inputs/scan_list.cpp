@@ -9,7 +9,6 @@
 #include "limen/base/error.h"
 #include "limen/base/text.h"
 #include "limen/files/readable.h"
-#include "limen/files/table_cells.h"
 
 namespace limen {
 

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <map>
 #include <optional>
 #include <set>
@@ -15,6 +14,7 @@
 
 #include "limen/base/error.h"
 #include "limen/base/text.h"
+#include "limen/files/table_cells.h"
 #include "limen/files/text_numbers.h"
 #include "limen/geometry/linear.h"
 
@@ -101,56 +101,18 @@ class Row {
   std::string where_;
 };
 
-/// The cells of a line; a quoted cell may hold the mark.
-std::vector<std::string> cells_of(std::string_view line, char mark) {
-  std::vector<std::string> cells(1);
-  bool quoted = false;
-  for (const char c : line) {
-    if (c == '"') {
-      quoted = !quoted;
-    } else if (c == mark && !quoted) {
-      cells.emplace_back();
-    } else {
-      cells.back() += c;
-    }
-  }
-  for (std::string& cell : cells) cell = std::string(trimmed(cell));
-  return cells;
-}
-
-char mark_of(std::string_view header) {
-  for (const char mark : {';', '\t'}) {
-    if (header.find(mark) != std::string_view::npos) return mark;
-  }
-  return ',';
-}
-
 /// Calls `visit` with each row of the table.
 template <typename Visit>
 void read_table(const std::filesystem::path& path, const Visit& visit) {
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream) throw Error("cannot be read", path.string(), "look whether the name is right");
+  const TextTable table = read_text_table(path);
+  if (table.columns.line == 0) throw Error("holds no line", path.string(), kControlRemedy);
+  const auto where = [&](const TableRow& row) { return fmt::format("{}, line {}", path.string(), row.line); };
   std::map<std::string, std::size_t> columns;
-  char mark = ',';
-  int number = 0;
-  for (std::string line; std::getline(stream, line);) {
-    ++number;
-    std::string_view text = trimmed(line);
-    constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-    if (number == 1 && text.substr(0, kByteOrderMark.size()) == kByteOrderMark)
-      text.remove_prefix(kByteOrderMark.size());
-    if (text.empty() || text.front() == '#') continue;
-    const std::string where = fmt::format("{}, line {}", path.string(), number);
-    if (columns.empty()) {
-      mark = mark_of(text);
-      const std::vector<std::string> names = cells_of(text, mark);
-      for (std::size_t k = 0; k < names.size(); ++k) columns.emplace(lower_case(names[k]), k);
-      if (columns.count("name") == 0) throw Error("no column is called name", where, kControlRemedy);
-      continue;
-    }
-    visit(Row(columns, cells_of(text, mark), mark, where));
-  }
-  if (columns.empty()) throw Error("holds no line", path.string(), kControlRemedy);
+  for (std::size_t k = 0; k < table.columns.cells.size(); ++k)
+    columns.emplace(lower_case(table.columns.cells[k]), k);
+  if (columns.count("name") == 0)
+    throw Error("no column is called name", where(table.columns), kControlRemedy);
+  for (const TableRow& row : table.rows) visit(Row(columns, row.cells, table.mark, where(row)));
 }
 
 }  // namespace

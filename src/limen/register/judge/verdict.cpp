@@ -353,8 +353,7 @@ Verdict led_by_likeliest(Verdict verdict, const std::vector<JudgedPose>& poses,
   const std::size_t first = verdict.ranking.front();
   std::size_t leader = first;
   std::vector<std::size_t> asked = verdict.rivals;  // contrasts are not transitive: each leads once
-  for (bool changed = true; changed;) {
-    changed = false;
+  for (;;) {
     double most_m2 = 0.0;
     std::size_t next = leader;
     for (const std::size_t other : asked) {
@@ -365,7 +364,7 @@ Verdict led_by_likeliest(Verdict verdict, const std::vector<JudgedPose>& poses,
       most_m2 = lead_m2;
       next = other;
     }
-    changed = next != leader;
+    if (next == leader) break;
     leader = next;
     asked.erase(std::remove(asked.begin(), asked.end(), leader), asked.end());
   }

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "limen/base/version.h"
+#include "limen/project/scan_names.h"
 #include "limen/report/deviation/building_report.h"
 #include "limen/report/deviation/deviation_report.h"
 #include "limen/report/html/html_bytes.h"
@@ -194,12 +195,11 @@ std::string matter_table(const BuildingReport& report) {
          rows + "</table></div>\n";
 }
 
-/// " #0" where the file has several scans.
-std::string number_of(const BuildingReport& report, const std::string& path, int index) {
+std::string name_of(const BuildingReport& report, const std::string& path, int index) {
   const auto same = [&](const auto& other) { return other.path == path; };
   const auto count = std::count_if(report.scans.begin(), report.scans.end(), same) +
                      std::count_if(report.left_out.begin(), report.left_out.end(), same);
-  return count > 1 || index > 0 ? fmt::format(" #{}", index) : std::string();
+  return scan_name(NumberedScan{path, index, count > 1});
 }
 
 std::string shares_table(const BuildingReport& report) {
@@ -211,9 +211,9 @@ std::string shares_table(const BuildingReport& report) {
     const ScanShare& share = report.deviation.scans[k];
     const Vector3d common = 1e3 * share.common.shift_m;
     text += fmt::format(
-        "<tr><td class=\"path\">{}{}</td><td class=\"n\">{}</td><td class=\"n\">{:.0f}&nbsp;%</td><td "
+        "<tr><td class=\"path\">{}</td><td class=\"n\">{}</td><td class=\"n\">{:.0f}&nbsp;%</td><td "
         "class=\"n\">{:.1f}</td><td class=\"n\">{:.1f} {:.1f} {:.1f}</td><td>{}{}</td></tr>\n",
-        escaped(scan.path), number_of(report, scan.path, scan.index), share.points,
+        escaped(name_of(report, scan.path, scan.index)), share.points,
         100.0 * static_cast<double>(share.matched) /
             static_cast<double>(std::max<std::size_t>(1, share.points)),
         1e3 * scan.pose_sigma_m, common.x() + 0.0, common.y() + 0.0, common.z() + 0.0,
@@ -222,8 +222,8 @@ std::string shares_table(const BuildingReport& report) {
   }
   for (const BuildingLeftOut& it : report.left_out)
     text += fmt::format(
-        "<tr><td class=\"path\">{}{}</td><td></td><td></td><td></td><td></td><td>left out: {}</td></tr>\n",
-        escaped(it.path), number_of(report, it.path, it.index), escaped(it.reason));
+        "<tr><td class=\"path\">{}</td><td></td><td></td><td></td><td></td><td>left out: {}</td></tr>\n",
+        escaped(name_of(report, it.path, it.index)), escaped(it.reason));
   return text + "</table></div>\n";
 }
 
