@@ -134,7 +134,7 @@ class Assembler {
     for (const bool firm : {true, false}) {
       for (int n = 0; n < graph_.nodes; ++n) {
         const SolvedNode& node = solved_.nodes[static_cast<std::size_t>(n)];
-        if (node.component < 0 || (firm && node.state != NodeState::registered)) continue;
+        if (node.component < 0 || (firm && !is_placed(node.state))) continue;
         int& frame = frame_node_[static_cast<std::size_t>(node.component)];
         if (frame < 0) frame = n;
       }
@@ -195,7 +195,7 @@ class Assembler {
       scan.state = NodeState::floating;
       scan.reason = fmt::format(
           "stands {} with the other scans of component {}, but nothing joins them to the project's frame",
-          node.state == NodeState::registered ? "firmly" : "in doubt", node.component);
+          is_placed(node.state) ? "firmly" : "in doubt", node.component);
       return;
     }
     scan.reason = reason_of(n);
@@ -286,6 +286,9 @@ class Assembler {
                                                              "show";
         if (bridges == 0) return "is alone";
         return fmt::format("held by {} link{} that no loop checks", bridges, bridges == 1 ? "" : "s");
+      case NodeState::probable:
+        return fmt::format("placed, {:.1f} % sure; the limit for registered is {:.3g} %",
+                           100.0 * (1.0 - solved_.nodes[n].doubt), 100.0 * (1.0 - risk_));
       case NodeState::ambiguous:
         if (solved_.nodes[n].alternatives.empty())
           return fmt::format("may stand elsewhere ({:.2g} %): see questions", 100.0 * solved_.nodes[n].doubt);

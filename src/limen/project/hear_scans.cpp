@@ -10,6 +10,9 @@
 namespace limen {
 namespace {
 
+// Of a placement that no search refined: deviations add up from scan to scan.
+constexpr double kPlacementM = 0.1;
+
 class ScanHearing {
  public:
   ScanHearing(const std::vector<ProjectNode>& nodes, const RegisterOptions& options, ScanCache& cache)
@@ -19,7 +22,7 @@ class ScanHearing {
     if (!meet(source, target, target_from_source)) return {};
     const PoseScore score =
         score_given_pose(*cache_->get(node(source).key), *cache_->get(node(target).key),
-                         world_pose(source, target, target_from_source), options_->method);
+                         world_pose(source, target, target_from_source), options_->method, kPlacementM);
     return {score.agreeing_m2, score.contradicted_m2, score.value()};
   }
 
@@ -28,34 +31,6 @@ class ScanHearing {
     if (!meet(source, target, target_from_source)) return std::nullopt;
     return twin_of_given_pose(*cache_->get(node(source).key), *cache_->get(node(target).key),
                               world_pose(source, target, target_from_source), options_->twins());
-  }
-
-  [[nodiscard]] double beyond(int source, const std::vector<NodePose>& held,
-                              const std::vector<NodePose>& others) const {
-    if (!is_station(source)) return 0.0;
-    std::vector<std::shared_ptr<const PreparedScan>> asked;
-    std::vector<GivenPose> poses;
-    const auto ask = [&](const NodePose& other) {
-      asked.push_back(cache_->get(node(other.target).key));
-      poses.push_back({asked.back().get(), world_pose(source, other.target, other.target_from_source)});
-    };
-    const auto is_seen = [&](const NodePose& other) {
-      return static_cast<std::size_t>(other.target) < nodes_->size() && !node(other.target).digest.model;
-    };
-    for (const NodePose& other : held) {
-      if (is_seen(other)) ask(other);
-    }
-    const std::size_t first = poses.size();
-    for (const NodePose& other : others) {
-      if (is_seen(other) && node(other.target).digest.mobile) ask(other);
-    }
-    if (poses.size() == first) return 0.0;
-    const std::shared_ptr<const PreparedScan> own = cache_->get(node(source).key);
-    const JointScore all = score_given_poses(*own, poses, options_->method);
-    poses.resize(first);
-    const JointScore known = score_given_poses(*own, poses, options_->method);
-    return all.evidence_m2 - known.evidence_m2 -
-           kContradictionWeight * (all.contradicted_m2 - known.contradicted_m2);
   }
 
  private:
@@ -85,10 +60,7 @@ PoseHearing hearing_of_scans(const std::vector<ProjectNode>& nodes, const Regist
                              ScanCache& cache) {
   const ScanHearing scans(nodes, options, cache);
   return {[scans](int source, int target, const Rigid3& pose) { return scans.surface(source, target, pose); },
-          [scans](int source, int target, const Rigid3& pose) { return scans.things(source, target, pose); },
-          [scans](int source, const std::vector<NodePose>& held, const std::vector<NodePose>& others) {
-            return scans.beyond(source, held, others);
-          }};
+          [scans](int source, int target, const Rigid3& pose) { return scans.things(source, target, pose); }};
 }
 
 }  // namespace limen

@@ -105,7 +105,7 @@ class SurveyPlacer {
     for (const SolvedNode& node : solved_.nodes) {
       nodes.frame_from_node.push_back(node.frame_from_node);
       nodes.covariance.push_back(node.covariance);
-      nodes.member.push_back(node.component == component && node.state == NodeState::registered);
+      nodes.member.push_back(node.component == component && is_placed(node.state));
     }
     const ControlDatum datum = control_datum(placed_.points, nodes);
     if (datum.points.empty()) return false;
@@ -179,7 +179,7 @@ class SurveyPlacer {
       for (std::size_t k = 0; k < point.sights.size(); ++k) {
         const auto n = static_cast<std::size_t>(point.sights[k].node);
         const SolvedNode& node = solved_.nodes[n];
-        if (node.component != 0 || node.state != NodeState::registered) continue;
+        if (node.component != 0 || !is_placed(node.state)) continue;
         if (placed_.placed && !placed_.controlled[n]) continue;
         kept.push_back(point.sights[k]);
         placed_.sights[p].push_back(k);
@@ -238,7 +238,7 @@ class Confirmer {
       framed_.frame_from_node.push_back(node.frame_from_node);
       framed_.covariance.push_back(node.covariance);
       framed_.member.push_back(node.component == component &&
-                               (node.state == NodeState::registered || node.state == NodeState::ambiguous));
+                               (is_placed(node.state) || node.state == NodeState::ambiguous));
     }
   }
 

@@ -102,7 +102,7 @@ class GraphMaker {
     link.trust = trust_of(found, twin);
     link.twin = twin;
     link.evidence = found.twin;
-    link.chance = chance_of(found, twin, link.trust);
+    link.chance = found.others ? by_chance(found) : kOfUnknown;
     link.poses.push_back(pose_of(link, found, found.best, 1.0));
     if (twin > kLikelier && !spoken) {
       graph_.against.push_back(std::move(link));
@@ -191,14 +191,6 @@ class GraphMaker {
   /// Probability that none of a pair's poses is right, twins apart.
   [[nodiscard]] static double by_chance(const RegistrationResult& found) {
     return found.others ? found.others->nothing_shared + found.others->unlisted_pose : 0.0;
-  }
-
-  /// Probability that no pose of the link is right, or of a link with one pose that this is wrong, twins
-  /// apart.
-  [[nodiscard]] static double chance_of(const RegistrationResult& found, double twin, LinkTrust trust) {
-    if (!found.others || !found.best.probability) return kOfUnknown;
-    if (trust == LinkTrust::open) return by_chance(found);
-    return std::max(0.0, 1.0 - *found.best.probability - twin);
   }
 
   /// What is known of how trajectories drift beyond what the pair took for it.

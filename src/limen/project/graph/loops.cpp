@@ -112,36 +112,6 @@ std::optional<Walk> square_through(const std::vector<std::vector<Arm>>& arms, co
 
 }  // namespace
 
-std::vector<std::vector<int>> loop_votes(const PoseGraph& graph) {
-  std::vector<std::vector<int>> votes;
-  for (const GraphLink& link : graph.links) votes.emplace_back(link.poses.size(), 0);
-  for_each_triangle(graph, [&](const Walk& walk) {
-    const auto link_of = [&](const Arm& arm) -> const GraphLink& {
-      return graph.links[static_cast<std::size_t>(arm.link)];
-    };
-    // What repeats in a building closes loops of poses that are one of several, and of twins, too.
-    if (std::any_of(walk.begin(), walk.end(),
-                    [&](const Arm& arm) { return link_of(arm).trust > LinkTrust::sure; }))
-      return;
-    const auto count = [&](const Arm& arm) { return link_of(arm).poses.size(); };
-    std::set<std::pair<int, std::size_t>> closing;
-    for (std::size_t i = 0; i < count(walk[0]); ++i) {
-      const LinkPose first = leg_of(graph, walk[0], i);
-      for (std::size_t j = 0; j < count(walk[1]); ++j) {
-        const LinkPose second = leg_of(graph, walk[1], j);
-        for (std::size_t k = 0; k < count(walk[2]); ++k) {
-          if (close({first, second, leg_of(graph, walk[2], k)}).chi_square > kChiSquareBound) continue;
-          closing.insert({walk[0].link, i});
-          closing.insert({walk[1].link, j});
-          closing.insert({walk[2].link, k});
-        }
-      }
-    }
-    for (const auto& [link, pose] : closing) ++votes[static_cast<std::size_t>(link)][pose];
-  });
-  return votes;
-}
-
 std::vector<GraphLoop> tested_loops(const PoseGraph& graph, const std::vector<int>& poses, std::size_t most) {
   std::vector<GraphLoop> loops;
   std::vector<std::size_t> seen(graph.links.size(), 0);

@@ -8,10 +8,6 @@
 
 namespace limen {
 
-/// How many loops of three sure links each pose of each link closes with some pose of the two others
-/// (covariances of all three added): `votes[link][pose]`.
-std::vector<std::vector<int>> loop_votes(const PoseGraph& graph);
-
 /// Loops of three links, and of four where a link is in none of three, tested with the given poses; links
 /// with pose -1 are tested with their best. At most `most` per link.
 std::vector<GraphLoop> tested_loops(const PoseGraph& graph, const std::vector<int>& poses, std::size_t most);

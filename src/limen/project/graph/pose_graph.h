@@ -30,7 +30,7 @@ struct GraphLink {
   double twin = 0.0;            ///< probability that the best pose lays a place on another one built alike
   /// What that probability comes from, where things were asked.
   std::optional<TwinEvidence> evidence;
-  double chance = 0.0;  ///< probability that none of its poses is right, for any other reason
+  double chance = 0.0;  ///< probability that none of its poses is right, look-alikes aside
   /// Where the pair's best pose stands among `poses`: elsewhere than first where a user chose another, which
   /// took its place.
   int best = 0;
@@ -42,10 +42,6 @@ struct GraphLink {
   /// The number that the pair itself gives a pose.
   [[nodiscard]] int number_of(int pose) const { return pose == 0 ? best : pose == best ? 0 : pose; }
 };
-
-/// Logarithm of how much more probable a pose of a link is than that none of its poses is right: 0 ..
-/// `most_nats`. That none is right is never less probable than `least_wrong`.
-double nats_for(const GraphLink& link, std::size_t pose, double most_nats, double least_wrong = 0.0);
 
 /// Nodes are scans and models: 0 .. nodes - 1, the lower ones first where one has to be chosen.
 struct PoseGraph {
@@ -78,11 +74,16 @@ struct SolvedLink {
 
 enum class NodeState {
   registered,
-  ambiguous,          ///< stands elsewhere just as well
+  probable,           ///< placed, but with a doubt above the risk
+  ambiguous,          ///< another place explains as much
   under_constrained,  ///< held, but some direction is free
   floating            ///< joined to nothing
 };
 const char* to_string(NodeState state);
+/// Whether one place is as good as certain.
+inline bool is_placed(NodeState state) {
+  return state == NodeState::registered || state == NodeState::probable;
+}
 
 struct SolvedNode {
   NodeState state = NodeState::floating;
@@ -122,15 +123,12 @@ struct SolvedGraph {
 
 /// Puts all nodes that the links hold together into one frame per component.
 ///
-/// Parts are joined in the order of how sure it is in which way (grow_parts.h); least squares with a robust
-/// weight (Geman-McClure, made strict step by step) over what was accepted; what then misses its covariance
-/// is rejected, but not what misses by no more than the solution itself is open there. Sides of the building
-/// that are more probably twins than one place are taken apart (doubt.h), and parts are grown anew without
-/// what laid them on one another. In the end every pose that was not taken is tried again: where the present
-/// place is not a thousand times as probable by what the links say, the part that it would move is ambiguous
-/// (rivals.h). So is what no link holds that is wrong with a probability of `risk` at most.
-/// `hearing`: where there is one, another place is refuted as well by what others saw there
-/// (refuted_places.h), and all that stand around a node are heard of its place (hear_around.h).
-SolvedGraph solve_graph(const PoseGraph& graph, double risk = 0.001, const PoseHearing& hearing = {});
+/// The configuration that the pairs agree on best (configuration.h) is asked how surely each of its sides is
+/// where it is (placement_odds.h), by the links, and with `hearing` by all pairs that it places in sight of
+/// each other. A side that is more probably elsewhere leaves its component. The doubt of a node is the
+/// probability that a side that it is part of is elsewhere, at a place that a link proposes or at none that
+/// is known.
+SolvedGraph solve_graph(const PoseGraph& graph, double risk = 0.001, const PoseHearing& hearing = {},
+                        double probable_risk = 0.05);
 
 }  // namespace limen

@@ -10,6 +10,7 @@
 namespace limen {
 namespace {
 
+constexpr double kSigmas = 3.0;
 constexpr double kAsBuiltM = 0.05;  // by how much built matter may miss its drawing and count
 
 /// A pose between the scans' worlds, told between the frames that they were prepared in.
@@ -40,19 +41,12 @@ ScoreOptions fine_score(const ScanView& source, const ScanView& target, Method m
 }
 
 PoseScore score_given_pose(const PreparedScan& source, const PreparedScan& target,
-                           const Rigid3& target_from_source, Method method) {
+                           const Rigid3& target_from_source, Method method, double uncertainty_m) {
+  ScoreOptions score = fine_score(source.view(), target.view(), method);
+  score.surface_m += uncertainty_m;
+  score.free_m += kSigmas * uncertainty_m;
   return score_pose(source.view(), target.view(), between_prepared(source, target, target_from_source),
-                    fine_score(source.view(), target.view(), method));
-}
-
-JointScore score_given_poses(const PreparedScan& source, const std::vector<GivenPose>& poses, Method method) {
-  std::vector<PosedJudge> judges;
-  for (const GivenPose& given : poses) {
-    const ScanView target = given.target->view();
-    judges.push_back({target, between_prepared(source, *given.target, given.target_from_source),
-                      fine_score(source.view(), target, method)});
-  }
-  return score_together(source.view(), judges);
+                    score);
 }
 
 TwinEvidence twin_of_given_pose(const PreparedScan& source, const PreparedScan& target,

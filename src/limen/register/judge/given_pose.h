@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <vector>
-
 #include "limen/model/method.h"
 #include "limen/register/judge/score_pose.h"
 #include "limen/register/judge/twin_odds.h"
@@ -18,19 +16,11 @@ double drift_m(const ScanView& source, const ScanView& target);
 ScoreOptions fine_score(const ScanView& source, const ScanView& target, Method method);
 
 /// What two scans say of a pose that nobody searched for (world to world, the scans' own axes): as a pair's
-/// pose is scored in the end, and not refined.
+/// pose is scored in the end, and not refined. `uncertainty_m`: how well the pose is known where the scans
+/// see the same, one standard deviation.
 PoseScore score_given_pose(const PreparedScan& source, const PreparedScan& target,
-                           const Rigid3& target_from_source, Method method = Method::automatic);
-
-/// A scan, and a pose that another is given in it.
-struct GivenPose {
-  const PreparedScan* target = nullptr;
-  Rigid3 target_from_source;  ///< as above
-};
-
-/// What several scans say of the surface of one together, each at a pose that nobody searched for.
-JointScore score_given_poses(const PreparedScan& source, const std::vector<GivenPose>& poses,
-                             Method method = Method::automatic);
+                           const Rigid3& target_from_source, Method method = Method::automatic,
+                           double uncertainty_m = 0.0);
 
 /// What things say there of whether the scans show one room, or two built alike.
 TwinEvidence twin_of_given_pose(const PreparedScan& source, const PreparedScan& target,

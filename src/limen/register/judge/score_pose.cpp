@@ -269,32 +269,6 @@ double value_of_things_m2(const ScanView& source, const ScanView& target, const 
                 things_one_way(target, source, inverse(target_from_source), options, target_built));
 }
 
-JointScore score_together(const ScanView& scan, const std::vector<PosedJudge>& judges) {
-  JointScore together;
-  const Gathered asked = gathered(scan, asked_samples(scan, scan, {}, 0));
-  std::vector<double> best(asked.planes.size(), 0.0);
-  for (const PosedJudge& judge : judges) {
-    CancelScope::check();
-    if (judge.view.space == nullptr) continue;
-    double contradicted = 0.0;
-    ask_all(asked, judge.view, judge.judge_from_scan, judge.options,
-            [&](std::size_t begin, std::size_t size, const Answers& answers) {
-              for (std::size_t k = 0; k < size; ++k) {
-                best[begin + k] = std::max(best[begin + k], static_cast<double>(answers.gain_m2[k]));
-                contradicted += static_cast<double>(answers.contradicted_m2[k]);
-              }
-            });
-    together.contradicted_m2 = std::max(together.contradicted_m2, asked.factor * contradicted);
-  }
-  std::vector<double> planes(scan.features->planes.size(), 0.0);
-  for (std::size_t k = 0; k < best.size(); ++k) {
-    const std::int32_t plane = asked.planes[k];
-    (plane >= 0 ? planes[static_cast<std::size_t>(plane)] : together.evidence_m2) += asked.factor * best[k];
-  }
-  for (const double area_m2 : planes) together.evidence_m2 += saturated(area_m2);
-  return together;
-}
-
 PoseContrast contrast_poses(const ScanView& source, const ScanView& target, const Rigid3& first,
                             const Rigid3& second, const ScoreOptions& options) {
   PoseContrast contrast;

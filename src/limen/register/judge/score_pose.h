@@ -61,23 +61,6 @@ double value_of_things_m2(const ScanView& source, const ScanView& target, const 
                           const ScoreOptions& options, const std::vector<bool>& source_built,
                           const std::vector<bool>& target_built);
 
-/// A scan that is asked about another, and where.
-struct PosedJudge {
-  ScanView view;
-  Rigid3 judge_from_scan;
-  ScoreOptions options;
-};
-
-/// What several scans say of the surface of one together.
-struct JointScore {
-  /// `PoseScore::evidence_m2` of what any of them confirms, each piece by the one that confirms it best; of
-  /// the scan's own surface, not averaged with what it says of theirs.
-  double evidence_m2 = 0.0;
-  double contradicted_m2 = 0.0;  ///< by the one that contradicts most
-};
-
-JointScore score_together(const ScanView& scan, const std::vector<PosedJudge>& judges);
-
 /// score_pose() for many poses of one pair: what does not depend on the pose is gathered once. Keeps copies
 /// of the views, not of what they point to. Any number of threads may ask it at once.
 class PoseScorer {

@@ -1,0 +1,71 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+#include "limen/project/graph/pair_evidence.h"
+#include "limen/project/graph/pose_graph.h"
+
+namespace limen {
+
+/// Which scans lie in one frame, and where.
+struct Configuration {
+  std::vector<Rigid3> frame_from_node;  ///< in the frame of the component's first node
+  std::vector<int> component;           ///< of each node: the lowest node of its component
+  std::vector<int> pose;  ///< of each link: the pose that the configuration agrees with; -1: none
+
+  [[nodiscard]] Rigid3 target_from_source(const GraphLink& link) const;
+  [[nodiscard]] bool joins(const GraphLink& link) const;
+};
+
+/// Which poses of links agree with a placement.
+class LinkMatcher {
+ public:
+  explicit LinkMatcher(const PoseGraph& graph);
+
+  /// The pose of a link that is nearest to `target_from_source`, if its squared distance in standard
+  /// deviations is no more than `gate` times kChiSquareBound; -1: none.
+  [[nodiscard]] int nearest(std::size_t link, const Rigid3& target_from_source, double gate) const;
+  /// The same with the evidence of the poses.
+  [[nodiscard]] const PairEvidence& evidence(std::size_t link, int pose) const;
+  /// Of a pair that more probably shows two places built alike: whether the placement lays it so.
+  [[nodiscard]] static bool is_laid_so(const GraphLink& pair, const Rigid3& target_from_source);
+
+ private:
+  const PoseGraph& graph_;
+  std::vector<std::vector<Matrix6d>> information_;
+  std::vector<std::vector<PairEvidence>> evidence_;
+};
+
+/// What all pairs between two sets of nodes say together of one placement of the two against each other.
+class JoinEvidence {
+ public:
+  void add(const PairEvidence& evidence) {
+    in_loop_ += evidence.in_loop();
+    least_loss_ = count_ == 0 ? evidence.in_loop() - evidence.alone()
+                              : std::min(least_loss_, evidence.in_loop() - evidence.alone());
+    ++count_;
+  }
+  void add_against(double nats) { in_loop_ += std::min(0.0, nats); }
+  /// The first pair that joins the two closes no loop.
+  [[nodiscard]] double nats() const { return in_loop_ - least_loss_; }
+  [[nodiscard]] int count() const { return count_; }
+
+ private:
+  double in_loop_ = 0.0;
+  double least_loss_ = 0.0;
+  int count_ = 0;
+};
+
+/// The configuration that the pairs agree on best. Parts are joined step by step, each time the two parts
+/// whose best placement leads its rivals most, by the sum over all pairs between them; then scans and parts
+/// are moved to every place that any pose of a link proposes, as long as that sum grows, and least squares
+/// settles the poses.
+Configuration best_configuration(const PoseGraph& graph, const LinkMatcher& matcher);
+
+/// What no agreeing link joins any more becomes a component of its own.
+void find_components(const PoseGraph& graph, Configuration& configuration);
+
+}  // namespace limen

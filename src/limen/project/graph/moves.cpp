@@ -1,0 +1,146 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/project/graph/moves.h"
+
+#include <optional>
+#include <set>
+#include <utility>
+
+#include "limen/base/progress.h"
+#include "limen/project/graph/weakest_cut.h"
+
+namespace limen {
+namespace {
+
+// No place repeats nearer than a wall is thick.
+constexpr double kSamePlaceM = 0.15;
+constexpr double kSamePlaceRad = 0.03;
+constexpr double kAgreementGate = 4.0;  // times the bound: what a moved side agrees with is not settled yet
+
+class MoveSearch {
+ public:
+  MoveSearch(const PoseGraph& graph, const LinkMatcher& matcher, const Configuration& configuration)
+      : graph_(graph),
+        matcher_(matcher),
+        present_(configuration),
+        links_of_(static_cast<std::size_t>(graph.nodes)) {
+    for (std::size_t k = 0; k < graph.links.size(); ++k) {
+      links_of_[static_cast<std::size_t>(graph.links[k].source)].push_back(k);
+      links_of_[static_cast<std::size_t>(graph.links[k].target)].push_back(k);
+    }
+  }
+
+  std::vector<Move> run() {
+    WeakestCut cut(graph_.nodes);
+    for (std::size_t k = 0; k < graph_.links.size(); ++k) {
+      const int pose = present_.pose[k];
+      if (pose >= 0)
+        cut.connect(graph_.links[k].source, graph_.links[k].target, matcher_.evidence(k, pose).in_loop());
+    }
+    std::vector<Move> moves;
+    for (std::size_t k = 0; k < graph_.links.size(); ++k) {
+      const GraphLink& link = graph_.links[k];
+      if (!present_.joins(link) || link.trust == LinkTrust::weak || link.trust == LinkTrust::given) continue;
+      std::optional<std::set<std::vector<bool>>> sides;
+      for (std::size_t p = 0; p < link.poses.size(); ++p) {
+        if (static_cast<int>(p) == present_.pose[k]) continue;
+        if (matcher_.evidence(k, static_cast<int>(p)).alone() <= 0.0 || is_here(link, link.poses[p]))
+          continue;
+        CancelScope::check();
+        if (!sides) sides = sides_of(link, cut);
+        for (const std::vector<bool>& side : *sides) {
+          Move move = move_of(side, link, link.poses[p].target_from_source);
+          if (!move.present.empty()) moves.push_back(std::move(move));
+        }
+      }
+    }
+    return moves;
+  }
+
+ private:
+  [[nodiscard]] const Rigid3& at(int node) const {
+    return present_.frame_from_node[static_cast<std::size_t>(node)];
+  }
+
+  /// Whether a pose means the present place, which its link knows less well than it says.
+  [[nodiscard]] bool is_here(const GraphLink& link, const LinkPose& pose) const {
+    const Vector6d missed = misfit(pose, present_.target_from_source(link));
+    return missed.head<3>().norm() < kSamePlaceRad && missed.tail<3>().norm() < kSamePlaceM;
+  }
+
+  /// Either end alone, and what hangs together with it.
+  [[nodiscard]] std::set<std::vector<bool>> sides_of(const GraphLink& link, WeakestCut& cut) const {
+    std::set<std::vector<bool>> sides;
+    for (const auto& [own, other] :
+         {std::pair(link.source, link.target), std::pair(link.target, link.source)}) {
+      std::vector<bool> alone(present_.component.size(), false);
+      alone[static_cast<std::size_t>(own)] = true;
+      sides.insert(std::move(alone));
+      if (std::vector<bool> side = cut.side(own, other); !side.empty()) sides.insert(std::move(side));
+    }
+    return sides;
+  }
+
+  [[nodiscard]] Move move_of(const std::vector<bool>& side, const GraphLink& link,
+                             const Rigid3& target_from_source) const {
+    Move move;
+    move.side = side;
+    move.frame_from_frame = side[static_cast<std::size_t>(link.source)]
+                                ? at(link.target) * target_from_source * inverse(at(link.source))
+                                : at(link.source) * inverse(target_from_source) * inverse(at(link.target));
+    JoinEvidence now;
+    JoinEvidence then;
+    for (std::size_t n = 0; n < side.size(); ++n) {
+      if (!side[n]) continue;
+      for (const std::size_t k : links_of_[n]) weigh(k, move, now, then);
+    }
+    for (const GraphLink& pair : graph_.against) weigh_against(pair, move, now, then);
+    move.present_nats = now.nats();
+    move.moved_nats = then.nats();
+    return move;
+  }
+
+  [[nodiscard]] bool crosses(const GraphLink& link, const std::vector<bool>& side) const {
+    return present_.joins(link) &&
+           side[static_cast<std::size_t>(link.source)] != side[static_cast<std::size_t>(link.target)];
+  }
+
+  [[nodiscard]] Rigid3 moved_pose(const GraphLink& link, const Move& move) const {
+    const auto place = [&](int node) {
+      return move.side[static_cast<std::size_t>(node)] ? move.frame_from_frame * at(node) : at(node);
+    };
+    return inverse(place(link.target)) * place(link.source);
+  }
+
+  void weigh(std::size_t k, Move& move, JoinEvidence& now, JoinEvidence& then) const {
+    const GraphLink& link = graph_.links[k];
+    if (!crosses(link, move.side)) return;
+    const int present = present_.pose[k];
+    const int moved = matcher_.nearest(k, moved_pose(link, move), kAgreementGate);
+    if (present >= 0) now.add(matcher_.evidence(k, present));
+    if (moved >= 0) then.add(matcher_.evidence(k, moved));
+    if (present >= 0 && moved < 0) move.present.push_back(static_cast<int>(k));
+    if (moved >= 0 && present < 0) move.moved.push_back(static_cast<int>(k));
+  }
+
+  void weigh_against(const GraphLink& pair, const Move& move, JoinEvidence& now, JoinEvidence& then) const {
+    if (!crosses(pair, move.side)) return;
+    const double nats = evidence_of(pair, 0).alone();
+    if (LinkMatcher::is_laid_so(pair, present_.target_from_source(pair))) now.add_against(nats);
+    if (LinkMatcher::is_laid_so(pair, moved_pose(pair, move))) then.add_against(nats);
+  }
+
+  const PoseGraph& graph_;
+  const LinkMatcher& matcher_;
+  const Configuration& present_;
+  std::vector<std::vector<std::size_t>> links_of_;
+};
+
+}  // namespace
+
+std::vector<Move> proposed_moves(const PoseGraph& graph, const LinkMatcher& matcher,
+                                 const Configuration& configuration) {
+  return MoveSearch(graph, matcher, configuration).run();
+}
+
+}  // namespace limen

@@ -1,0 +1,27 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "limen/project/graph/configuration.h"
+
+namespace limen {
+
+/// A side of the building moved to a place that a pose of a link proposes.
+struct Move {
+  std::vector<bool> side;
+  Rigid3 frame_from_frame;
+  double present_nats = 0.0;  ///< what pairs across the cut say of the present place ...
+  double moved_nats = 0.0;    ///< ... and of the other
+  std::vector<int> present;   ///< links that agree with the present place only
+  std::vector<int> moved;     ///< links that agree with the other place only
+
+  [[nodiscard]] double gain() const { return moved_nats - present_nats; }
+};
+
+/// Every move that a pose of a link proposes which the configuration does not agree with.
+std::vector<Move> proposed_moves(const PoseGraph& graph, const LinkMatcher& matcher,
+                                 const Configuration& configuration);
+
+}  // namespace limen

@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+
+#include "limen/project/graph/pose_graph.h"
+
+namespace limen {
+
+/// What one pair of nodes says of one relative pose, as logarithms of likelihood ratios (nats).
+struct PairEvidence {
+  double chance_nats = 0.0;  ///< against "the pair shares nothing"
+  /// Against the same where other links already lay the pair so: wrong poses seldom agree by chance.
+  double coincidence_nats = 0.0;
+  TwinEvidence twins;  ///< against look-alike places
+  bool looks_for_twins =
+      false;  ///< `twins` was measured; else a look-alike place is one of the pair's own poses
+
+  [[nodiscard]] double odds_of_twin() const { return looks_for_twins ? twins.odds() : 0.0; }
+  /// Against every other explanation, where nothing else joins the two nodes.
+  [[nodiscard]] double alone() const;
+  /// The same where other links join them as well.
+  [[nodiscard]] double in_loop() const;
+};
+
+/// No pair is surer than this. Of 115 answers with a probability above 0.999 all are right
+/// (benchmarks/calibration): a single pair is trusted to one in ten thousand.
+inline constexpr double kMostPairNats = 9.2;
+
+/// Of a pose of a link.
+PairEvidence evidence_of(const GraphLink& link, std::size_t pose);
+
+}  // namespace limen

@@ -1,0 +1,154 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/project/graph/placement_odds.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <utility>
+
+#include "limen/base/progress.h"
+#include "limen/project/graph/weakest_cut.h"
+
+namespace limen {
+namespace {
+
+constexpr double kRateStrength = 4.0;   // scans: what is believed of look-alikes before any is seen
+constexpr double kMostBelieved = 0.45;  // of look-alikes, beforehand
+constexpr double kHardlyFresh = 0.05;   // share of a pair's surface that no other shows
+
+}  // namespace
+
+/// Look-alikes furnished otherwise, or alike.
+struct PlacementOdds::Kind {
+  double TwinEvidence::*prior;
+  double TwinEvidence::*nats;
+
+  [[nodiscard]] double against(const PlacedPair& pair) const {
+    const PairEvidence& evidence = pair.evidence;
+    if (!evidence.looks_for_twins) return evidence.chance_nats;
+    return std::clamp(evidence.twins.*nats + evidence.twins.built_nats, -kMostPairNats, kMostPairNats);
+  }
+  static const Kind& otherwise() {
+    static const Kind kind{&TwinEvidence::otherwise, &TwinEvidence::otherwise_nats};
+    return kind;
+  }
+  static const Kind& alike() {
+    static const Kind kind{&TwinEvidence::alike, &TwinEvidence::alike_nats};
+    return kind;
+  }
+};
+
+PlacementOdds::PlacementOdds(int nodes, std::vector<PlacedPair> pairs)
+    : nodes_(nodes), pairs_(std::move(pairs)), views_(nodes, pairs_) {}
+
+double PlacementOdds::rate_of_twins(const std::vector<bool>& side) const {
+  const TwinEvidence alone;
+  const double believed = alone.otherwise + alone.alike;
+  // Of each node by the pair that tells most; pairs across the cut are what the rate is asked for.
+  std::vector<double> twin_of_node(side.size(), 0.5);
+  for (const PlacedPair& pair : pairs_) {
+    const auto source = static_cast<std::size_t>(pair.source);
+    const auto target = static_cast<std::size_t>(pair.target);
+    if (pair.link < 0 || !pair.evidence.looks_for_twins || side[source] != side[target]) continue;
+    const double twin = pair.evidence.twins.probability();
+    for (const std::size_t node : {source, target}) {
+      if (std::abs(twin - 0.5) > std::abs(twin_of_node[node] - 0.5)) twin_of_node[node] = twin;
+    }
+  }
+  double twins = kRateStrength * believed;
+  double all = kRateStrength;
+  for (const double twin : twin_of_node) {
+    const double tells = std::abs(2.0 * twin - 1.0);
+    twins += tells * twin;
+    all += tells;
+  }
+  return twins / all / believed;
+}
+
+PlacementOdds::LookAlike PlacementOdds::look_alike(const Kind& kind,
+                                                   const std::vector<const PlacedPair*>& across,
+                                                   const std::vector<bool>& side) const {
+  std::vector<const PlacedPair*> ordered = across;
+  std::stable_sort(ordered.begin(), ordered.end(), [&](const PlacedPair* a, const PlacedPair* b) {
+    return std::abs(kind.against(*a)) > std::abs(kind.against(*b));
+  });
+  LookAlike found;
+  bool believed = false;  // once, as little as any pair believes it
+  for (const PlacedPair* pair : ordered) {
+    if (pair->link < 0 || !pair->evidence.looks_for_twins) continue;
+    const double prior = pair->evidence.twins.*kind.prior;
+    found.prior = believed ? std::min(found.prior, prior) : prior;
+    believed = true;
+  }
+  found.prior = std::min(kMostBelieved, found.prior * rate_of_twins(side));
+  const std::vector<double> fresh = views_.fresh_shares(ordered, side);
+  for (std::size_t k = 0; k < ordered.size(); ++k) found.against += fresh[k] * kind.against(*ordered[k]);
+  return found;
+}
+
+double PlacementOdds::log_odds_of_chance(std::vector<const PlacedPair*> across, const std::vector<bool>& side,
+                                         SideOdds& odds) const {
+  std::stable_sort(across.begin(), across.end(), [&](const PlacedPair* a, const PlacedPair* b) {
+    return std::pair(a->link < 0, -a->evidence.chance_nats) <
+           std::pair(b->link < 0, -b->evidence.chance_nats);
+  });
+  const std::vector<double> fresh = views_.fresh_shares(across, side);
+  double against = 0.0;
+  double first = 0.0;  // closes no loop
+  for (std::size_t k = 0; k < across.size(); ++k) {
+    const double coincidence = across[k]->evidence.coincidence_nats;
+    against += fresh[k] * (across[k]->evidence.chance_nats + coincidence);
+    first = std::max(first, fresh[k] * coincidence);
+    if (across[k]->link >= 0 && fresh[k] > kHardlyFresh) odds.links.push_back(across[k]->link);
+  }
+  std::sort(odds.links.begin(), odds.links.end());
+  return first - against;
+}
+
+const SideOdds& PlacementOdds::of(const std::vector<bool>& side) {
+  const auto [known, fresh] = known_.try_emplace(side);
+  if (!fresh) return known->second;
+  CancelScope::check();
+  std::vector<const PlacedPair*> across;
+  for (const PlacedPair& pair : pairs_) {
+    if (side[static_cast<std::size_t>(pair.source)] != side[static_cast<std::size_t>(pair.target)])
+      across.push_back(&pair);
+  }
+  SideOdds& odds = known->second;
+  odds.chance = std::exp(log_odds_of_chance(across, side, odds));
+  const LookAlike otherwise = look_alike(Kind::otherwise(), across, side);
+  const LookAlike alike = look_alike(Kind::alike(), across, side);
+  odds.twin = (otherwise.prior * std::exp(-otherwise.against) + alike.prior * std::exp(-alike.against)) /
+              (1.0 - otherwise.prior - alike.prior);
+  return odds;
+}
+
+std::vector<std::vector<bool>> PlacementOdds::weak_sides(const std::vector<int>& reference) const {
+  std::set<std::vector<bool>> sides;
+  std::vector<WeakestCut> cuts(3, WeakestCut(nodes_));
+  for (const PlacedPair& pair : pairs_) {
+    if (pair.link < 0) continue;
+    cuts[0].connect(pair.source, pair.target, Kind::otherwise().against(pair));
+    cuts[1].connect(pair.source, pair.target, Kind::alike().against(pair));
+    cuts[2].connect(pair.source, pair.target, pair.evidence.chance_nats + pair.evidence.coincidence_nats);
+  }
+  for (const int root : reference) {
+    for (WeakestCut& cut : cuts) {
+      if (root >= 0) cut.hold(root);
+    }
+  }
+  for (int n = 0; n < nodes_; ++n) {
+    if (reference[static_cast<std::size_t>(n)] < 0 || reference[static_cast<std::size_t>(n)] == n) continue;
+    CancelScope::check();
+    std::vector<bool> alone(static_cast<std::size_t>(nodes_), false);
+    alone[static_cast<std::size_t>(n)] = true;
+    sides.insert(std::move(alone));
+    for (WeakestCut& cut : cuts) {
+      if (std::vector<bool> side = cut.side_of(n); !side.empty()) sides.insert(std::move(side));
+    }
+  }
+  return {sides.begin(), sides.end()};
+}
+
+}  // namespace limen

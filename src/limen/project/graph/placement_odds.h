@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <vector>
+
+#include "limen/project/graph/shared_views.h"
+
+namespace limen {
+
+/// Odds that a side of a component is elsewhere, against that it is where a configuration has it.
+struct SideOdds {
+  double twin = 0.0;       ///< the side lies on a look-alike place
+  double chance = 0.0;     ///< the pairs across agree by chance
+  std::vector<int> links;  ///< that hold it, but for those that show nothing new
+
+  [[nodiscard]] double total() const { return twin + chance; }
+};
+
+/// Odds of sides, by all pairs that a configuration places in sight of each other.
+///
+/// Look-alike places: that there is one is believed once for a side, as often as it happens in this building
+/// (learned from the other scans); what things and walls say against it multiplies over the pairs across, as
+/// far as they show different surface. Chance: pairs err independently as far as they show different surface,
+/// and wrong poses agree with one another seldom.
+class PlacementOdds {
+ public:
+  PlacementOdds(int nodes, std::vector<PlacedPair> pairs);
+
+  [[nodiscard]] const SideOdds& of(const std::vector<bool>& side);
+  [[nodiscard]] const std::vector<PlacedPair>& pairs() const { return pairs_; }
+
+  /// Sides on which each node may be elsewhere: alone, and on its side of the weakest cuts between it and its
+  /// `reference` (of each node; -1: none).
+  [[nodiscard]] std::vector<std::vector<bool>> weak_sides(const std::vector<int>& reference) const;
+
+ private:
+  struct Kind;
+  struct LookAlike {
+    double prior = 0.0;
+    double against = 0.0;  ///< nats
+  };
+  [[nodiscard]] LookAlike look_alike(const Kind& kind, const std::vector<const PlacedPair*>& across,
+                                     const std::vector<bool>& side) const;
+  [[nodiscard]] double log_odds_of_chance(std::vector<const PlacedPair*> across,
+                                          const std::vector<bool>& side, SideOdds& odds) const;
+  [[nodiscard]] double rate_of_twins(const std::vector<bool>& side) const;
+
+  int nodes_;
+  std::vector<PlacedPair> pairs_;
+  SharedViews views_;
+  std::map<std::vector<bool>, SideOdds> known_;
+};
+
+}  // namespace limen

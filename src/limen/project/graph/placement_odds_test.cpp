@@ -1,0 +1,88 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/project/graph/placement_odds.h"
+
+#include <algorithm>
+#include <cmath>
+#include <initializer_list>
+
+#include <gtest/gtest.h>
+
+namespace limen {
+namespace {
+
+PlacedPair pair(int source, int target, double chance_nats, double otherwise_nats, double alike_nats,
+                int link, double shared_m2 = 20.0) {
+  PlacedPair made{source, target, shared_m2, {}, link};
+  made.evidence.chance_nats = chance_nats;
+  made.evidence.coincidence_nats = 6.9;
+  made.evidence.looks_for_twins = true;
+  made.evidence.twins.otherwise_nats = otherwise_nats;
+  made.evidence.twins.alike_nats = alike_nats;
+  return made;
+}
+
+std::vector<bool> side(std::initializer_list<int> nodes, std::size_t count) {
+  std::vector<bool> all(count, false);
+  for (const int n : nodes) all[static_cast<std::size_t>(n)] = true;
+  return all;
+}
+
+/// Of a single pair the odds are what the pair itself says.
+TEST(PlacementOdds, OfOnePairAreThePairs) {
+  const PlacedPair only = pair(1, 0, 5.0, 3.0, 1.0, 0);
+  PlacementOdds odds(2, {only});
+  const SideOdds& said = odds.of(side({1}, 2));
+  EXPECT_NEAR(said.chance, std::exp(-5.0), 1e-9);
+  EXPECT_NEAR(said.twin, only.evidence.twins.odds(), 0.2 * only.evidence.twins.odds());
+}
+
+/// That there is a look-alike place is believed once for a side, what is seen against it counts for each
+/// pair.
+TEST(PlacementOdds, EvidenceOfPairsThatShowDifferentThingsMultiplies) {
+  PlacementOdds one(3, {pair(2, 0, 5.0, 4.0, 2.0, 0)});
+  PlacementOdds two(3, {pair(2, 0, 5.0, 4.0, 2.0, 0), pair(2, 1, 5.0, 4.0, 2.0, 1)});
+  const std::vector<bool> alone = side({2}, 3);
+  EXPECT_NEAR(std::log(one.of(alone).twin / two.of(alone).twin), 3.0, 1.1);
+  EXPECT_NEAR(std::log(one.of(alone).chance / two.of(alone).chance), 5.0 + 6.9, 0.2);
+}
+
+/// Two scanner positions in one place see what a third one sees twice, but it is the same.
+TEST(PlacementOdds, TheSameSurfaceSeenTwiceCountsOnce) {
+  PlacementOdds different(3, {pair(2, 0, 5.0, 4.0, 2.0, 0), pair(2, 1, 5.0, 4.0, 2.0, 1)});
+  PlacementOdds same(
+      3, {pair(2, 0, 5.0, 4.0, 2.0, 0), pair(2, 1, 5.0, 4.0, 2.0, 1), pair(1, 0, 9.0, 9.0, 9.0, 2)});
+  const std::vector<bool> alone = side({2}, 3);
+  EXPECT_GT(same.of(alone).twin, 3.0 * different.of(alone).twin);
+}
+
+/// What contradicts a placement makes it less probable, whatever agrees.
+TEST(PlacementOdds, APairThatContradictsCounts) {
+  PlacementOdds without(3, {pair(2, 0, 6.0, 3.0, 3.0, 0)});
+  PlacementOdds with(3, {pair(2, 0, 6.0, 3.0, 3.0, 0), pair(2, 1, -8.0, -8.0, -8.0, -1)});
+  const std::vector<bool> alone = side({2}, 3);
+  EXPECT_GT(with.of(alone).total(), 100.0 * without.of(alone).total());
+}
+
+/// In a building whose scans show no look-alike places the next one is believed less.
+TEST(PlacementOdds, HowOftenPlacesRepeatIsLearned) {
+  std::vector<PlacedPair> pairs;
+  for (int n = 1; n < 30; ++n)
+    pairs.push_back(pair(n, n - 1, 9.0, n == 29 ? 0.0 : 9.0, n == 29 ? 0.0 : 9.0, n));
+  PlacementOdds many(30, pairs);
+  PlacementOdds few(2, {pair(1, 0, 9.0, 0.0, 0.0, 0)});
+  EXPECT_LT(many.of(side({29}, 30)).twin, 0.25 * few.of(side({1}, 2)).twin);
+}
+
+/// A storey that hangs on one staircase is one side.
+TEST(PlacementOdds, WeakSidesHoldWhatHangsTogether) {
+  std::vector<PlacedPair> pairs = {pair(1, 0, 9, 9, 9, 0), pair(2, 1, 9, 9, 9, 1), pair(2, 0, 9, 9, 9, 2),
+                                   pair(4, 3, 9, 9, 9, 3), pair(5, 4, 9, 9, 9, 4), pair(5, 3, 9, 9, 9, 5),
+                                   pair(3, 2, 3, 1, 0, 6)};
+  const PlacementOdds odds(6, pairs);
+  const std::vector<std::vector<bool>> sides = odds.weak_sides({0, 0, 0, 0, 0, 0});
+  EXPECT_NE(std::find(sides.begin(), sides.end(), side({3, 4, 5}, 6)), sides.end());
+}
+
+}  // namespace
+}  // namespace limen
