@@ -13,8 +13,8 @@ namespace limen {
 namespace {
 
 // No place repeats nearer than a wall is thick.
-constexpr double kSamePlaceM = 0.15;
-constexpr double kSamePlaceRad = 0.03;
+constexpr double kNoOtherPlaceM = 0.15;
+constexpr double kNoOtherPlaceRad = 0.03;
 constexpr double kAgreementGate = 4.0;  // times the bound: what a moved side agrees with is not settled yet
 
 class MoveSearch {
@@ -65,7 +65,7 @@ class MoveSearch {
   /// Whether a pose means the present place, which its link knows less well than it says.
   [[nodiscard]] bool is_here(const GraphLink& link, const LinkPose& pose) const {
     const Vector6d missed = misfit(pose, present_.target_from_source(link));
-    return missed.head<3>().norm() < kSamePlaceRad && missed.tail<3>().norm() < kSamePlaceM;
+    return missed.head<3>().norm() < kNoOtherPlaceRad && missed.tail<3>().norm() < kNoOtherPlaceM;
   }
 
   /// Either end alone, and what hangs together with it.

@@ -23,9 +23,9 @@ namespace {
 constexpr std::size_t kLoopsPerLink = 8;
 constexpr double kHeldM = 0.05;  // a node whose place is known less well is under-constrained
 constexpr double kHeldRad = 0.01;
-constexpr double kSamePlaceM = 0.05;
-constexpr double kSamePlaceRad = 0.0175;
-constexpr double kLikelier = 1.0;      // odds above which a side is taken to be elsewhere
+constexpr double kOneAlternativeM = 0.05;
+constexpr double kOneAlternativeRad = 0.0175;
+constexpr double kElsewhereLikelier = 1.0;      // odds above which a side is taken to be elsewhere
 constexpr double kFirmShare = 0.05;    // doubt below which a node may lend its component the frame
 constexpr double kLeastListed = 0.01;  // of an alternative place, as a share of the risk, to be listed
 
@@ -91,7 +91,7 @@ class Solver {
   /// The side that is most probably elsewhere leaves its component; whether there was one.
   bool take_apart() {
     const std::vector<bool>* worst = nullptr;
-    double most = kLikelier;
+    double most = kElsewhereLikelier;
     const std::vector<std::vector<bool>> sides = odds_->weak_sides(reference_);
     for (const std::vector<bool>& side : sides) {
       const double odds = odds_->of(side).total();
@@ -228,8 +228,8 @@ class Solver {
   void add_alternative(const Move& move, SolvedNode& node) const {
     const Rigid3 other = move.frame_from_frame * node.frame_from_node;
     const bool known = std::any_of(node.alternatives.begin(), node.alternatives.end(), [&](const Rigid3& a) {
-      return (a.translation - other.translation).norm() < kSamePlaceM &&
-             rotation_angle(a.rotation.transpose() * other.rotation) < kSamePlaceRad;
+      return (a.translation - other.translation).norm() < kOneAlternativeM &&
+             rotation_angle(a.rotation.transpose() * other.rotation) < kOneAlternativeRad;
     });
     if (!known) node.alternatives.push_back(other);
   }
