@@ -19,21 +19,25 @@ def sha256(path):
 
 
 class Runner:
-    def __init__(self, program, work, jobs):
+    def __init__(self, program, work, jobs, kept_only=False):
         self.program = str(pathlib.Path(program).resolve())
         self.runs = work / "runs"
         self.runs.mkdir(parents=True, exist_ok=True)
         self.jobs = jobs
+        self.kept_only = kept_only
 
     def key(self, arguments, files):
         told = [sha256(self.program), arguments, [[sha256(str(f)), pathlib.Path(f).name] for f in files]]
         return hashlib.sha256(json.dumps(told).encode()).hexdigest()[:24]
 
     def answer(self, command, files, options, answer_name, threads):
-        """The answer's JSON, with the exit status, CPU and wall seconds of the run that made it."""
+        """The answer's JSON, with the exit status, CPU and wall seconds of the run that made it; None where it may not
+        be run and was not."""
         kept = self.runs / f"{self.key([command, *options], files)}.json"
         if kept.is_file():
             return json.loads(kept.read_text())
+        if self.kept_only:
+            return None
         with tempfile.TemporaryDirectory(dir=self.runs, prefix="run-") as folder:
             out = pathlib.Path(folder)
             run = self.run([self.program, command, *map(str, files), *options, "--threads", str(threads), "--quiet",
@@ -68,7 +72,8 @@ class Runner:
         """The answers, in the order of the pairs; one thread of the program for each job."""
         def one(pair):
             run = self.pair(pair)
-            on_done(pair, run)
+            if run:
+                on_done(pair, run)
             return run
         with concurrent.futures.ThreadPoolExecutor(self.jobs) as pool:
             return list(pool.map(one, pairs))
