@@ -49,6 +49,9 @@ set_tests_properties(floors floors_are_checked names names_are_checked PROPERTIE
 add_test(NAME links_of_the_documentation COMMAND ${PROJECT_SOURCE_DIR}/tests/tools/links_test)
 set_tests_properties(links_of_the_documentation PROPERTIES LABELS unit)
 
+add_test(NAME calibration_counts COMMAND ${PROJECT_SOURCE_DIR}/tests/tools/calibration_test)
+set_tests_properties(calibration_counts PROPERTIES LABELS unit)
+
 # What the first page of the documentation says is run.
 add_test(NAME commands_of_the_first_hour COMMAND ${PROJECT_SOURCE_DIR}/tests/tools/docs_test $<TARGET_FILE:limen_program>)
 set_tests_properties(commands_of_the_first_hour PROPERTIES LABELS acceptance)

@@ -1,0 +1,3 @@
+# SPDX-FileCopyrightText: The limen authors
+# SPDX-License-Identifier: Apache-2.0
+"""The parts of benchmarks/calibration."""

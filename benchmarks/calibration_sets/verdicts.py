@@ -1,0 +1,66 @@
+# SPDX-FileCopyrightText: The limen authors
+# SPDX-License-Identifier: Apache-2.0
+"""What an answer of the program is worth, held against the truth. Plain Python, so that it can be tested anywhere."""
+from . import poses
+
+
+def within(error, one):
+    return error[0] <= one.within_m and error[1] <= one.within_deg
+
+
+def pair_row(pair, result):
+    """What the tables need of a pair. right: the best pose is the true one; listed: it or an alternative is;
+    right_across: as right, but what the answer calls unobserved is not asked for."""
+    row = {"name": pair.name, "set": pair.of.name if pair.truth else "foreign", "shared_m2": round(pair.shared_m2, 2),
+           "outcome": result.get("outcome", "error"), "probability": result.get("probability"),
+           "right": False, "right_across": False, "listed": False, "error_m": None, "error_deg": None}
+    best = result.get("target_from_source")
+    row["posed"] = best is not None
+    if best is None or pair.truth is None:
+        return row
+    error = poses.errors(best, pair.truth, pair.middle)
+    row["error_m"], row["error_deg"] = error
+    row["right"] = within(error, pair.of)
+    across = poses.errors(best, pair.truth, pair.middle, result.get("unobserved", ()))
+    row["right_across"] = row["right"] or within(across, pair.of)
+    row["listed"] = row["right"] or any(
+        within(poses.errors(other["target_from_source"], pair.truth, pair.middle), pair.of)
+        for other in result.get("alternatives", ()))
+    return row
+
+
+def agreeing(anchor, placed, one):
+    """The scans of a component that stand right as seen from one of them, and how far off they are together."""
+    off = [(scan, poses.errors(poses.relative(anchor["pose"], scan["pose"]),
+                               poses.relative(anchor["scan"].world_from_scan, scan["scan"].world_from_scan),
+                               scan["scan"].middle)) for scan in placed]
+    good = [(scan, error) for scan, error in off if within(error, one)]
+    return [scan for scan, _ in good], sum(error[0] for _, error in good)
+
+
+def majority(placed, one):
+    """Of a component the largest group of scans that stand right to one scan of it."""
+    groups = [agreeing(anchor, placed, one) for anchor in placed]
+    return min(groups, key=lambda group: (-len(group[0]), group[1]))[0]
+
+
+def project_rows(one, told):
+    """A row for each scan of a set. placed: it stands in a frame with others; right: where the majority there has it;
+    in_frame: that frame is the project's."""
+    by_name = {scan["file"].replace("\\", "/").rsplit("/", 1)[-1]: scan for scan in told.get("scans", ())}
+    rows, components = [], {}
+    for scan in one.scans:
+        of = by_name.get(scan.path.name, {})
+        pose = of.get("frame_from_scan") or of.get("component_from_scan")
+        row = {"name": f"{one.name}: {scan.name}", "state": of.get("state", "error"), "doubt": of.get("doubt"),
+               "in_frame": of.get("frame_from_scan") is not None, "placed": False, "right": False}
+        rows.append(row)
+        if pose:
+            components.setdefault(of.get("component"), []).append({"row": row, "scan": scan, "pose": pose})
+    for placed in components.values():
+        if len(placed) > 1:
+            for scan in placed:
+                scan["row"]["placed"] = True
+            for scan in majority(placed, one):
+                scan["row"]["right"] = True
+    return rows
