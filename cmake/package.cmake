@@ -22,6 +22,6 @@ endif()
 # What knows coordinate systems by their numbers; found when the program runs.
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS libproj25)
 # What --engine dask needs, and what builds with find_package(limen) need besides.
-set(CPACK_DEBIAN_PACKAGE_SUGGESTS "python3-distributed, libeigen3-dev, libfmt-dev, zlib1g-dev, libpugixml-dev, libpolyclipping-dev, libssl-dev")
+set(CPACK_DEBIAN_PACKAGE_SUGGESTS "python3-distributed, python3-cryptography, libeigen3-dev, libfmt-dev, zlib1g-dev, libpugixml-dev, libpolyclipping-dev, libssl-dev")
 set(CPACK_GENERATOR TGZ)
 include(CPack)

@@ -163,7 +163,9 @@ TEST_F(DeviationProgramTest, AWholeProjectAgainstItsModel) {
     of_elements += text.find("<Selection>") != std::string::npos ? 1 : 0;
   EXPECT_GE(expected, 3U);  // two are missing, one was moved
   EXPECT_EQ(of_elements, expected);
-  EXPECT_NE(read_whole(work() / "out/report.html").find("<h2>Elements"), std::string::npos);
+  const std::string page = read_whole(work() / "out/report.html");
+  EXPECT_NE(page.find("<h2>Elements"), std::string::npos);
+  EXPECT_LT(page.find("\"Content-Security-Policy\" content=\"default-src 'none'"), page.find("</head>"));
 
   // Other threads, the same bytes; a scan in doubt is left out and told.
   ASSERT_EQ(run({"deviation", "project.json", "-o", "again", "--threads", "1", "--bcf", "again.bcf",

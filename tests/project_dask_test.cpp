@@ -6,6 +6,7 @@
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
+#include <sstream>
 #include <string>
 #include <thread>
 #include <utility>
@@ -64,6 +65,7 @@ class ProjectDask : public ProgramTest {
   }
   void TearDown() override {
     unsetenv("LIMEN_PROGRAM");
+    forget_certificate();
     ProgramTest::TearDown();
   }
 
@@ -91,6 +93,29 @@ class ProjectDask : public ProgramTest {
     write_whole(script, head + harm + "\nexec " + LIMEN_PROGRAM + " \"$@\"\n");
     fs::permissions(script, fs::perms::owner_all);
     setenv("LIMEN_PROGRAM", script.c_str(), 1);
+  }
+
+  /// A certificate that signs itself, and Dask's configuration that names it.
+  void make_certificate() const {
+    const std::string made = "cd " + work().string() +
+                             " && /usr/bin/python3 -c 'from distributed.security import Security\n"
+                             "made = Security.temporary()\nopen(\"ca.pem\", \"w\").write(made.tls_ca_file)\n"
+                             "open(\"key.pem\", \"w\").write(made.tls_client_key)'";
+    ASSERT_EQ(std::system(made.c_str()), 0);
+    const std::string pem = (work() / "ca.pem").string();
+    const std::string key = (work() / "key.pem").string();
+    setenv("DASK_DISTRIBUTED__COMM__TLS__CA_FILE", pem.c_str(), 1);
+    for (const std::string role : {"CLIENT", "WORKER", "SCHEDULER"}) {
+      setenv(("DASK_DISTRIBUTED__COMM__TLS__" + role + "__CERT").c_str(), pem.c_str(), 1);
+      setenv(("DASK_DISTRIBUTED__COMM__TLS__" + role + "__KEY").c_str(), key.c_str(), 1);
+    }
+  }
+  static void forget_certificate() {
+    unsetenv("DASK_DISTRIBUTED__COMM__TLS__CA_FILE");
+    for (const std::string role : {"CLIENT", "WORKER", "SCHEDULER"}) {
+      unsetenv(("DASK_DISTRIBUTED__COMM__TLS__" + role + "__CERT").c_str());
+      unsetenv(("DASK_DISTRIBUTED__COMM__TLS__" + role + "__KEY").c_str());
+    }
   }
 
   void expect_bytes_of_the_local_run(const std::string& out, const ProgramRun& done) const {
@@ -157,11 +182,34 @@ TEST_F(ProjectDask, AFullDiskAndAFolderThatVanishesAreWaitedFor) {
   expect_bytes_of_the_local_run("dask", done);
 }
 
+TEST_F(ProjectDask, NobodyElseReachesWhatRuns) {
+  const std::string look = (fs::path(LIMEN_CORPUS).parent_path() / "tools" / "open_ports").string() + " " +
+                           std::to_string(getpid());
+  workers_run("if [ \"$4\" = pair ] && mkdir looked 2> /dev/null; then " + look + " > ports 2>&1; fi");
+  const ProgramRun done = project("dask", {"--engine", "dask"});
+  std::istringstream ports(read_whole(work() / "ports"));
+  int closed = 0;
+  for (std::string line; std::getline(ports, line);) {
+    std::istringstream words(line);
+    std::string address;
+    std::string port;
+    std::string found;
+    words >> address >> port >> found;
+    EXPECT_EQ(address, "127.0.0.1") << line;
+    EXPECT_TRUE(found == "closed" || found == "empty") << line;
+    closed += found == "closed" ? 1 : 0;
+  }
+  EXPECT_GE(closed, 3) << "a scheduler and two workers";
+  unsetenv("LIMEN_PROGRAM");
+  expect_bytes_of_the_local_run("dask", done);
+}
+
 TEST_F(ProjectDask, ASchedulerThatIsKilledAndStartedAgainCostsOnlyWhatRan) {
+  make_certificate();
   const std::string cd = "cd " + work().string() + "; ";
-  const std::string scheduler =
-      cd +
-      "rm -f at; exec dask-scheduler --host 127.0.0.1 --port 0 --no-dashboard --scheduler-file at 2> log";
+  const std::string scheduler = cd +
+                                "rm -f at; exec dask-scheduler --protocol tls --host 127.0.0.1 --port 0 "
+                                "--no-dashboard --scheduler-file at 2> log";
   const std::string workers =
       cd +
       "while :; do dask-worker --scheduler-file at --nthreads 1 --no-dashboard --host 127.0.0.1 "
@@ -184,9 +232,16 @@ TEST_F(ProjectDask, ASchedulerThatIsKilledAndStartedAgainCostsOnlyWhatRan) {
 }
 
 TEST_F(ProjectDask, WhatIsMissingOrUnsafeIsOneError) {
-  const ProgramRun open = project("out", {"--engine", "dask", "--scheduler", "tcp://192.0.2.1:8786"});
-  EXPECT_EQ(open.status, 2);
-  EXPECT_NE(open.err.find("TLS"), std::string::npos) << open.err;
+  write_whole(work() / "at", R"({"address": "tcp://127.0.0.1:8786"})");
+  for (const std::string host : {"192.0.2.1", "127.0.0.1", "localhost", "127.evil.example", "[::1]"}) {
+    const ProgramRun open = project("out", {"--engine", "dask", "--scheduler", "tcp://" + host + ":8786"});
+    EXPECT_EQ(open.status, 2);
+    EXPECT_NE(open.err.find("is not protected by TLS"), std::string::npos) << open.err;
+  }
+  EXPECT_EQ(project("out", {"--engine", "dask", "--scheduler-file", "at"}).status, 2);
+  const ProgramRun unsigned_one = project("out", {"--engine", "dask", "--scheduler", "tls://127.0.0.1:8786"});
+  EXPECT_EQ(unsigned_one.status, 2);
+  EXPECT_NE(unsigned_one.err.find("distributed.comm.tls"), std::string::npos) << unsigned_one.err;
   EXPECT_EQ(project("out", {"--scheduler", "tcp://127.0.0.1:8786"}).status, 2);
   EXPECT_EQ(project("out", {"--engine", "dask", "--tls-ca", "ca.pem"}).status, 2);
   EXPECT_EQ(run({"project", "work", "nowhere", "features"}).status, 2);

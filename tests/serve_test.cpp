@@ -2,155 +2,23 @@
 // SPDX-License-Identifier: Apache-2.0
 // limen serve as a program meets it that does not mean well: who is let in, what can be reached, what is too
 // much, and how it ends. What a browser does with its page is in tests/browser/serve_test.mjs.
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <sstream>
 #include <thread>
 
-#include "run_program.h"
-#include <arpa/inet.h>
-#include <fcntl.h>
-#include <netinet/in.h>
-#include <poll.h>
-#include <sys/socket.h>
+#include "running_server.h"
 
 #include "limen/base/random.h"
+#include "limen/cli/serve/server.h"
 
 namespace limen {
 namespace {
 
 namespace fs = std::filesystem;
-using SteadyClock = std::chrono::steady_clock;
-
-/// The program at work on a folder; ended with the object.
-class RunningServer {
- public:
-  RunningServer(const fs::path& work, const std::string& folder) : said_(work / "said") {
-    const std::string program = LIMEN_PROGRAM;
-    id_ = fork();
-    if (id_ == 0) {
-      const int said = open(said_.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
-      dup2(said, STDOUT_FILENO);
-      dup2(said, STDERR_FILENO);
-      if (chdir(work.c_str()) == 0)
-        execl(program.c_str(), program.c_str(), "serve", folder.c_str(), "--most-upload", "1M", nullptr);
-      _exit(127);
-    }
-    for (int k = 0; k < 500 && token_.empty(); ++k) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(20));
-      const std::string text = read_whole(said_);
-      const std::size_t at = text.find("http://127.0.0.1:");
-      if (at == std::string::npos || text.find('\n', at) == std::string::npos) continue;
-      std::istringstream words(text.substr(at + 17));
-      char slash = 0;
-      words >> port_ >> slash >> token_;
-      token_.pop_back();
-    }
-  }
-  ~RunningServer() {
-    if (id_ > 0) kill(id_, SIGKILL);
-    if (id_ > 0) waitpid(id_, nullptr, 0);
-  }
-  RunningServer(const RunningServer&) = delete;
-  RunningServer& operator=(const RunningServer&) = delete;
-
-  [[nodiscard]] int connected() const {
-    const int descriptor = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
-    sockaddr_in address = {};
-    address.sin_family = AF_INET;
-    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    address.sin_port = htons(static_cast<std::uint16_t>(port_));
-    EXPECT_EQ(connect(descriptor, reinterpret_cast<sockaddr*>(&address), sizeof address), 0);
-    return descriptor;
-  }
-
-  /// All that is answered to these bytes.
-  [[nodiscard]] std::string say(const std::string& bytes) const {
-    const int descriptor = connected();
-    for (std::size_t at = 0; at < bytes.size();) {
-      const ssize_t sent = send(descriptor, bytes.data() + at, bytes.size() - at, MSG_NOSIGNAL);
-      if (sent <= 0) break;
-      at += static_cast<std::size_t>(sent);
-    }
-    const std::string answer = rest_of(descriptor);
-    close(descriptor);
-    return answer;
-  }
-
-  static std::string rest_of(int descriptor) {
-    std::string answer;
-    char piece[4096];
-    for (pollfd wanted = {descriptor, POLLIN, 0}; poll(&wanted, 1, 20000) > 0;) {
-      const ssize_t got = recv(descriptor, piece, sizeof piece, 0);
-      if (got <= 0) break;
-      answer.append(piece, static_cast<std::size_t>(got));
-    }
-    return answer;
-  }
-
-  [[nodiscard]] std::string host() const { return "Host: 127.0.0.1:" + std::to_string(port_) + "\r\n"; }
-
-  /// A request as our page makes it, below the token.
-  [[nodiscard]] std::string ask(const std::string& method, const std::string& path,
-                                const std::string& body = "", const std::string& more = "") const {
-    return say(method + " /" + token_ + "/" + path + " HTTP/1.1\r\n" + host() +
-               "Content-Length: " + std::to_string(body.size()) + "\r\n" + more + "\r\n" + body);
-  }
-
-  /// What `state` tells once `words` stand in it.
-  std::string state_with(const std::string& words) const {
-    std::string state;
-    for (int k = 0; k < 600; ++k) {
-      state = ask("GET", "state");
-      if (state.find(words) != std::string::npos) return state;
-      std::this_thread::sleep_for(std::chrono::milliseconds(50));
-    }
-    ADD_FAILURE() << words << " was not told: " << state;
-    return state;
-  }
-
-  int end(int signal) {
-    kill(id_, signal);
-    int status = 0;
-    waitpid(id_, &status, 0);
-    id_ = -1;
-    return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-  }
-
-  [[nodiscard]] const std::string& token() const { return token_; }
-  [[nodiscard]] int port() const { return port_; }
-  [[nodiscard]] std::string said() const { return read_whole(said_); }
-
- private:
-  fs::path said_;
-  pid_t id_ = -1;
-  int port_ = 0;
-  std::string token_;
-};
-
-int status_in(const std::string& answer) {
-  return answer.rfind("HTTP/1.1 ", 0) == 0 ? std::stoi(answer.substr(9)) : 0;
-}
-
-class ServeTest : public ProgramTest {
- protected:
-  void SetUp() override {
-    ProgramTest::SetUp();
-    server_ = std::make_unique<RunningServer>(work(), "site");
-    ASSERT_EQ(server_->token().size(), 32U) << server_->said();
-  }
-  void TearDown() override {
-    server_.reset();
-    ProgramTest::TearDown();
-  }
-  [[nodiscard]] RunningServer& server() const { return *server_; }
-
- private:
-  std::unique_ptr<RunningServer> server_;
-};
 
 TEST_F(ServeTest, LetsInOnlyWhoKnowsTheAddress) {
   EXPECT_EQ(status_in(server().ask("GET", "")), 200);
@@ -320,6 +188,82 @@ TEST_F(ServeTest, OneServerAFolder) {
   const ProgramRun second = run({"serve", "site"});
   EXPECT_EQ(second.status, 2);
   EXPECT_NE(second.err.find("is served already"), std::string::npos) << second.err;
+}
+
+TEST_F(ServeTest, KeptWorkOfSomebodyElseIsLookedAtAsNewWorkIs) {
+  const fs::path site = work() / "hostile";
+  fs::create_directories(site / "files");
+  fs::create_directories(site / "results" / "4");
+  fs::create_directories(work() / "outside");
+  for (const std::string name : {"a.xyz", "b.xyz"}) write_whole(site / "files" / name, "0 0 0\n");
+  fs::create_directory_symlink(work() / "outside", site / "results" / "4" / "store");
+  const std::string rest = R"("title": "t", "status": 0, "seconds": 0.0, "said": "", )";
+  const std::string words =
+      R"("words": ["simulate", "room", "-o", "../outside/room", "--points-indoor", "2000"])";
+  const auto keep = [&](int id, const std::string& more) {
+    write_whole(site / "results" / (std::to_string(id) + ".json"),
+                "{\"id\": " + std::to_string(id) + ", \"kind\": \"project\", " + rest + more + "}");
+  };
+  keep(1, R"("state": "queued", )" + words);
+  keep(2, R"("state": "done", )" + words);
+  keep(3, R"("state": "done", "asked": {"kind": "project", "files": ["../../outside/x", "--output"]})");
+  keep(4, R"("state": "done", "asked": {"kind": "project", "files": ["a.xyz", "b.xyz"]})");
+  keep(5, R"("state": "done", "asked": {"kind": "view", "files": ["a.xyz"]})");
+  keep(6, R"("state": "done", "asked": )" + std::string(130000, '[') + std::string(130000, ']'));
+  RunningServer server(work(), "hostile");
+  ASSERT_EQ(server.token().size(), 32U) << server.said();
+  EXPECT_EQ(server.ask("GET", "state").find("queued"), std::string::npos);
+  for (int id = 1; id <= 6; ++id) {
+    const std::string again = "{\"kind\": \"again\", \"of\": " + std::to_string(id) + "}";
+    const int status = status_in(server.ask("POST", "jobs", again));
+    EXPECT_TRUE(status >= 400 && status < 500) << id << " " << status;
+  }
+  // A place is never told from kept words either.
+  EXPECT_GE(status_in(server.ask("POST", "jobs", R"({"kind": "decide", "of": 4, "answer": "accept a b"})")),
+            400);
+  EXPECT_EQ(server.end(SIGINT), 0);
+  EXPECT_TRUE(fs::is_empty(work() / "outside"));
+}
+
+bool is_closed(int descriptor) {
+  char byte = 0;
+  return recv(descriptor, &byte, 1, MSG_DONTWAIT | MSG_PEEK) == 0;
+}
+
+/// As many connections as there are places, each of which begins with these bytes and stops.
+std::vector<int> that_fall_silent(const RunningServer& server, std::size_t count, const std::string& bytes) {
+  std::vector<int> descriptors;
+  for (std::size_t k = 0; k < count; ++k) {
+    descriptors.push_back(server.connected());
+    EXPECT_EQ(send(descriptors.back(), bytes.data(), bytes.size(), MSG_NOSIGNAL),
+              static_cast<ssize_t>(bytes.size()));
+  }
+  return descriptors;
+}
+
+TEST_F(ServeTest, ASilentConnectionIsLeftForANewOne) {
+  std::vector<int> silent = that_fall_silent(server(), kMostConnections, "");
+  EXPECT_EQ(status_in(server().ask("GET", "state")), 200);
+  EXPECT_EQ(std::count_if(silent.begin(), silent.end(), is_closed), 1);
+  EXPECT_TRUE(is_closed(silent.front()));
+  for (const int descriptor : silent) close(descriptor);
+}
+
+TEST_F(ServeTest, OfUploadsThatStallOneIsLeftAndSilentStrangersGoFirst) {
+  const std::string head = "PUT /" + server().token() + "/files/half.bin HTTP/1.1\r\n" + server().host() +
+                           "Content-Length: 1000\r\n\r\nonly this";
+  std::vector<int> stalled = that_fall_silent(server(), kMostConnections - 1, head);
+  const std::vector<int> stranger = that_fall_silent(server(), 1, "GET ");
+  EXPECT_EQ(status_in(server().ask("GET", "state")), 200);
+  EXPECT_EQ(std::count_if(stalled.begin(), stalled.end(), is_closed), 0);
+  EXPECT_TRUE(is_closed(stranger.front()));
+  stalled.push_back(server().connected());
+  const std::string same = head;
+  EXPECT_EQ(send(stalled.back(), same.data(), same.size(), MSG_NOSIGNAL), static_cast<ssize_t>(same.size()));
+  EXPECT_EQ(status_in(server().ask("GET", "state")), 200);
+  EXPECT_EQ(std::count_if(stalled.begin(), stalled.end(), is_closed), 1);
+  for (const int descriptor : stalled) close(descriptor);
+  close(stranger.front());
 }
 
 TEST_F(ServeTest, NoBytesBringItDown) {

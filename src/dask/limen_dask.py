@@ -13,6 +13,7 @@ Workers may have another limen: LIMEN_PROGRAM in their environment names it.
 """
 import argparse
 import json
+import logging
 import os
 import queue
 import sys
@@ -20,7 +21,7 @@ import threading
 import time
 
 DEBIAN_PYTHON = "/usr/bin/python3"
-PACKAGE = "python3-distributed"
+PACKAGES = "python3-distributed python3-cryptography"
 CRASHES = 3  # of limen itself, before a job is given up
 PATIENCE_S = 90.0  # with a folder that is not there or a disk that is full
 SCHEDULER_PATIENCE_S = 300.0  # with a scheduler that is gone
@@ -82,7 +83,11 @@ class Job:
 
 
 class Cluster:
-    """The connection to Dask: to a scheduler that was named, or to workers of our own on the loopback."""
+    """The connection to Dask: to a scheduler that was named, or to workers of our own on the loopback.
+
+    Whoever reaches a scheduler or a worker without TLS runs programs as its user: ours ask for a certificate that
+    is made for this run and never leaves its processes.
+    """
 
     def __init__(self, options):
         self.options = options
@@ -97,49 +102,65 @@ class Cluster:
             return
         if self.own is None:
             self.own = self.started()
-        self.client = Client(self.own, timeout=CONNECT_S, set_as_default=False)
+        self.client = Client(self.own, security=self.own.security, timeout=CONNECT_S, set_as_default=False)
 
     def started(self):
-        from distributed import LocalCluster
+        import dask
+        from distributed import Nanny, Scheduler, SpecCluster
+        from distributed.security import Security
 
-        return LocalCluster(
-            n_workers=self.options.workers,
-            threads_per_worker=1,
-            processes=True,
-            host="127.0.0.1",
-            memory_limit=None,
-            dashboard_address=None,
+        # A server for pages cannot be left out: it listens on the loopback alone, and has none.
+        dask.config.set({"distributed.scheduler.http.routes": [], "distributed.worker.http.routes": []})
+        security = Security.temporary()
+        both = {
+            "host": "127.0.0.1",
+            "protocol": "tls://",
+            "security": security,
+            "dashboard": False,
+            "dashboard_address": "127.0.0.1:0",
+        }
+        worker = {"cls": Nanny, "options": dict(both, nthreads=1, memory_limit=None, silence_logs=logging.WARN)}
+        return SpecCluster(
+            scheduler={"cls": Scheduler, "options": dict(both, port=0)},
+            workers={number: worker for number in range(self.options.workers)},
+            worker=worker,
+            security=security,
+            silence_logs=logging.WARN,
         )
 
     def address(self):
-        """The scheduler's; refused where anybody on the way could run programs in our name."""
+        """The scheduler's; refused where others could be it, or run programs in our name."""
         address = self.options.scheduler
         if not address:
             with open(self.options.scheduler_file, encoding="utf-8") as file:
                 address = json.load(file)["address"]
-        protocol, _, rest = address.rpartition("://")
-        host = rest.rpartition(":")[0].strip("[]")
-        loopback = host in ("localhost", "::1") or host.startswith("127.")
-        if not loopback and not self.options.trust_network and (protocol != "tls" or not self.options.tls_ca):
+        if not address.startswith("tls://") and not self.options.trust_network:
             fault(
-                f"the scheduler {address} is on another machine and not protected by TLS",
+                f"the scheduler {address} is not protected by TLS: whoever reaches it, from this machine too, can run "
+                "programs as you",
                 "--scheduler",
-                "give a tls:// address with --tls-ca, --tls-cert and --tls-key, or --trust-network",
+                "start it with --protocol tls and give its tls:// address, or --trust-network where nobody else is",
             )
         return address
 
     def security(self):
+        """Certificates that were named, else those of Dask's own configuration."""
         from distributed.security import Security
 
         options = self.options
-        if not options.tls_ca:
-            return None
-        return Security(
-            tls_ca_file=options.tls_ca,
-            tls_client_cert=options.tls_cert,
-            tls_client_key=options.tls_key,
-            require_encryption=True,
-        )
+        named = {
+            "tls_ca_file": options.tls_ca,
+            "tls_client_cert": options.tls_cert,
+            "tls_client_key": options.tls_key,
+        }
+        security = Security(**{key: value for key, value in named.items() if value})
+        if self.address().startswith("tls://") and not security.tls_ca_file:
+            fault(
+                "it is not known who signed the scheduler's certificate",
+                "--tls-ca",
+                "give --tls-ca, --tls-cert and --tls-key, or set distributed.comm.tls in Dask's configuration",
+            )
+        return security
 
     def alive(self):
         return self.client is not None and self.client.status == "running"
@@ -217,7 +238,7 @@ class Driver:
                 if not first:
                     say(note="the scheduler is back")
                 return
-            except (OSError, ValueError, KeyError) as error:  # the file may be written at this moment
+            except (OSError, ValueError, KeyError, TypeError) as error:  # the file may be written at this moment
                 self.cluster.drop()
                 where = self.cluster.options.scheduler or self.cluster.options.scheduler_file or "this machine"
                 if time.monotonic() - start > (CONNECT_S if first else SCHEDULER_PATIENCE_S):
@@ -335,15 +356,16 @@ def parsed():
 def main():
     options = parsed()
     try:
+        import cryptography  # noqa: F401
         import distributed  # noqa: F401
     except ImportError:
         # The python3 of the PATH may be another than the one that Debian's packages are for.
         if os.path.exists(DEBIAN_PYTHON) and sys.prefix != "/usr":
             os.execv(DEBIAN_PYTHON, [DEBIAN_PYTHON, *sys.argv])
         fault(
-            f"--engine dask needs {PACKAGE}, which is not installed",
+            f"--engine dask needs {PACKAGES}, which are not all installed",
             sys.executable,
-            f"install it (apt-get install {PACKAGE}), or leave --engine away",
+            f"install them (apt-get install {PACKAGES}), or leave --engine away",
         )
     Driver(options).run()
 

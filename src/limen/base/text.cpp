@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <system_error>
+
+#include <fmt/format.h>
 
 namespace limen {
 namespace {
@@ -29,6 +32,19 @@ std::size_t utf8_length(std::string_view text) {
   return wrong ? 0 : length;
 }
 
+/// U+061C, 200E, 200F, 2028 to 202E and 2066 to 2069 as \uXXXX: they steer how the rest of a line is shown.
+/// Nothing for other characters.
+std::string steering_character(std::string_view character) {
+  std::uint32_t code = 0;
+  if (character.size() == 2) code = static_cast<unsigned char>(character[0]) & 0x1FU;
+  if (character.size() == 3) code = static_cast<unsigned char>(character[0]) & 0x0FU;
+  for (std::size_t k = 1; k < character.size(); ++k)
+    code = code << 6U | (static_cast<unsigned char>(character[k]) & 0x3FU);
+  const bool steers = code == 0x061CU || code == 0x200EU || code == 0x200FU ||
+                      (code >= 0x2028U && code <= 0x202EU) || (code >= 0x2066U && code <= 0x2069U);
+  return steers && character.size() < 4 ? fmt::format("\\u{:04X}", code) : std::string();
+}
+
 /// The same; 0 also for a character that commands a terminal.
 std::size_t printable_length(std::string_view text) {
   const std::size_t length = utf8_length(text);
@@ -44,10 +60,41 @@ std::string printable(std::string_view text) {
   std::string shown;
   while (!text.empty()) {
     const std::size_t length = printable_length(text);
-    shown += length == 0 ? std::string_view("?") : text.substr(0, length);
+    const std::string steering = steering_character(text.substr(0, length));
+    if (length == 0)
+      shown += '?';
+    else if (steering.empty())
+      shown += text.substr(0, length);
+    else
+      shown += steering;
     text.remove_prefix(std::max<std::size_t>(length, 1));
   }
   return shown;
+}
+
+std::string printable_lines(std::string_view text) {
+  std::string shown;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find_first_of("\n\t", begin), text.size());
+    shown += printable(text.substr(begin, end - begin));
+    if (end < text.size()) shown += text[end];
+    begin = end + 1;
+  }
+  return shown;
+}
+
+std::string shortened(std::string_view text, std::size_t most_bytes) {
+  if (text.size() <= most_bytes) return std::string(text);
+  constexpr std::size_t kRoomForNumber = 40;
+  const std::size_t kept = most_bytes > kRoomForNumber ? most_bytes - kRoomForNumber : 0;
+  const auto within = [&](std::size_t k) {
+    return k < text.size() && (static_cast<unsigned char>(text[k]) & 0xC0U) == 0x80U;
+  };
+  std::size_t head = kept - kept / 3;
+  std::size_t tail = text.size() - kept / 3;
+  while (head > 0 && within(head)) --head;
+  while (within(tail)) ++tail;
+  return fmt::format("{} [{} bytes left out] {}", text.substr(0, head), tail - head, text.substr(tail));
 }
 
 bool is_utf8(std::string_view text) {

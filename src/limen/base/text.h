@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -19,8 +20,15 @@ std::string_view trimmed(std::string_view text);
 std::string_view without_byte_order_mark(std::string_view text);
 
 /// With a question mark for every byte that is neither a printable character nor part of one in UTF-8: what
-/// a damaged file holds must not command a terminal.
+/// a damaged file holds must not command a terminal. Characters that change the direction of what follows, or
+/// end its line, are written as \u202E: a name must not look like another.
 std::string printable(std::string_view text);
+
+/// The same of several lines: their ends and tabs stay.
+std::string printable_lines(std::string_view text);
+
+/// In at most so many bytes: of a longer text its beginning and its end, and how much is between.
+std::string shortened(std::string_view text, std::size_t most_bytes);
 
 /// Whether all bytes are characters in UTF-8; JSON tells no others.
 bool is_utf8(std::string_view text);

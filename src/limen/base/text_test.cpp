@@ -34,6 +34,33 @@ TEST(Text, WhatCommandsATerminalIsNotShown) {
   EXPECT_EQ(printable("\xc0\xaf\xed\xa0\x80\xf4\x90\x80\x80"), "?????????") << "no characters of Unicode";
 }
 
+TEST(Text, ACharacterThatTurnsTheLineRoundIsWrittenAsItsNumber) {
+  EXPECT_EQ(printable("scan\xe2\x80\xaeylp.exe"), "scan\\u202Eylp.exe");
+  EXPECT_EQ(printable("\xd8\x9c\xe2\x81\xa6\xe2\x80\xa8"), "\\u061C\\u2066\\u2028");
+  // Letters that are written from the right, and what joins them, are letters.
+  const std::string persian = "\xd9\x85\xdb\x8c\xe2\x80\x8c\xd8\xae";
+  EXPECT_EQ(printable(persian), persian);
+}
+
+TEST(Text, LinesAndTabsStayWhereLinesAreShown) {
+  EXPECT_EQ(printable_lines("a\tb\n\x1b[2J\n"), "a\tb\n?[2J\n");
+  EXPECT_EQ(printable_lines(""), "");
+}
+
+TEST(Text, AShortenedTextKeepsItsBeginningAndItsEnd) {
+  EXPECT_EQ(shortened("short", 5), "short");
+  const std::string text = "begin" + std::string(5000, 'x') + "end";
+  const std::string shown = shortened(text, 300);
+  EXPECT_LE(shown.size(), 300U);
+  EXPECT_TRUE(shown.starts_with("beginx"));
+  EXPECT_TRUE(shown.ends_with("xend"));
+  EXPECT_NE(shown.find(" bytes left out] "), std::string::npos) << shown;
+  // No character is cut in two.
+  std::string wide;
+  for (int k = 0; k < 1000; ++k) wide += "\xe2\x82\xac";
+  for (std::size_t most = 100; most < 110; ++most) EXPECT_TRUE(is_utf8(shortened(wide, most))) << most;
+}
+
 TEST(Text, Utf8MayHoldControlsAndNoOtherBytes) {
   EXPECT_TRUE(is_utf8(""));
   EXPECT_TRUE(is_utf8("a\tb\x1b Gr\xc3\xbc\xc3\x9f\x65 \xf0\x9f\x8f\xa0"));

@@ -49,15 +49,10 @@
 namespace limen {
 namespace {
 
-/// One line that a terminal shows as it is, whatever the message holds.
-std::string told_in_one_line(const std::string& message) {
-  return printable(trimmed(one_line(message)));
-}
-
 int fail(const std::string& message, int status) {
   std::fflush(stdout);
   // Not fmt::print: a terminal that is gone is no reason to throw.
-  std::fputs(fmt::format("limen: error: {}\n", told_in_one_line(message)).c_str(), stderr);
+  std::fputs(fmt::format("limen: error: {}\n", message_line(message)).c_str(), stderr);
   return status;
 }
 

@@ -51,6 +51,20 @@ std::vector<std::string> table_cells(std::string_view line, char mark) {
   return cells;
 }
 
+std::string csv_field(std::string_view text) {
+  constexpr std::string_view kFormulaMarks = "=+-@\t\r\n";
+  std::string field;
+  if (!text.empty() && kFormulaMarks.find(text.front()) != std::string_view::npos) field += '\'';
+  field += text;
+  if (field.find_first_of(",\"\r\n") == std::string::npos) return field;
+  std::string quoted = "\"";
+  for (const char c : field) {
+    if (c == '"') quoted += '"';
+    quoted += c;
+  }
+  return quoted + '"';
+}
+
 TextTable read_text_table(const std::filesystem::path& path) {
   require_readable(path, "give a text file whose first line names the columns", "table");
   std::ifstream stream(path, std::ios::binary);

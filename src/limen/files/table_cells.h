@@ -15,6 +15,10 @@ char table_mark(std::string_view header);
 /// The cells of a line, without blanks around; a quoted cell may hold the mark.
 std::vector<std::string> table_cells(std::string_view line, char mark);
 
+/// A text as a field of a CSV that limen writes, quoted where it must be (RFC 4180). What a spreadsheet would
+/// take for a formula, because it begins with = + - @ or a tab or end of line, gets an apostrophe before it.
+std::string csv_field(std::string_view text);
+
 /// A line of a table.
 struct TableRow {
   std::vector<std::string> cells;

@@ -34,6 +34,16 @@ TEST(TableCells, ACellInQuotesMayHoldTheMark) {
   EXPECT_EQ(table_mark("name,x"), ',');
 }
 
+TEST(TableCells, AFieldIsQuotedAndNoFormula) {
+  EXPECT_EQ(csv_field("Wall-3"), "Wall-3");
+  EXPECT_EQ(csv_field("a, \"b\""), "\"a, \"\"b\"\"\"");
+  for (const std::string name : {"=cmd|'/c calc'!A1", "+1", "-1", "@SUM(A1)"})
+    EXPECT_EQ(csv_field(name), "'" + name);
+  EXPECT_EQ(csv_field("=1,2"), "\"'=1,2\"");
+  EXPECT_EQ(csv_field("\t=1"), "'\t=1");
+  EXPECT_EQ(csv_field("\r=1"), "\"'\r=1\"");
+}
+
 TEST(TableCells, ALineWithMoreFieldsThanColumnsIsToldWithBoth) {
   const std::string told = fault_of("name,x,y,z,sigma\n# 1,2,3,4,5,6\nA,1,5,2,5,3,5,0,002\n");
   EXPECT_EQ(told.substr(0, 43), "a.csv, line 3: 9 fields, 5 columns (write d") << told;

@@ -11,6 +11,7 @@
 #include "limen/base/atomic_file.h"
 #include "limen/base/error.h"
 #include "limen/base/parallel.h"
+#include "limen/files/bounded_json.h"
 #include "limen/project/scan_cache.h"
 #include "limen/project/scan_names.h"
 #include "limen/project/store_jobs.h"
@@ -40,7 +41,7 @@ ProjectStatus project_status(const std::filesystem::path& folder) {
   if (!stream)
     throw Error("holds no project", folder.string(), "give the folder that a project was written to");
   try {
-    const nlohmann::json json = nlohmann::json::parse(stream);
+    const nlohmann::json json = json_or_nothing<nlohmann::json>(stream);
     // An earlier version told neither of the last two.
     return {json.at("stage"),
             json.at("scans"),

@@ -12,6 +12,7 @@
 
 #include "limen/base/atomic_file.h"
 #include "limen/base/version.h"
+#include "limen/files/bounded_json.h"
 
 namespace limen {
 namespace {
@@ -80,7 +81,7 @@ std::string options_key_in(std::string_view key) {
 Order read_order(const fs::path& folder, const std::string& options_key) {
   const fs::path path = order_path(folder, options_key);
   std::ifstream stream(path);
-  const Order order = Order::parse(stream, nullptr, false);
+  const Order order = json_or_nothing<Order>(stream);
   if (!stream || !order.is_object())
     throw Unavailable{"the project's folder is not to be seen there: no " + path.string()};
   if (order.value("limen", "") != kVersion)

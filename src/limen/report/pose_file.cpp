@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "limen/base/error.h"
+#include "limen/files/bounded_json.h"
 #include "limen/report/json/json_values.h"
 
 namespace limen {
@@ -176,8 +177,8 @@ std::optional<Json> object_in(const std::string& text, const fs::path& path) {
   const std::size_t first = text.find_first_not_of(" \t\r\n");
   if (text[first] != '{') return std::nullopt;
   try {
-    return Json::parse(text);
-  } catch (const Json::exception& error) {
+    return parsed_json<Json>(text);
+  } catch (const std::exception& error) {
     throw Error(fmt::format("is not valid JSON: {}", error.what()), path.string(), kRemedy);
   }
 }

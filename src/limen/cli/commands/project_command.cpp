@@ -17,6 +17,7 @@
 #include "limen/base/angles.h"
 #include "limen/base/atomic_file.h"
 #include "limen/base/error.h"
+#include "limen/base/folder_lock.h"
 #include "limen/cli/inputs/frame_system.h"
 #include "limen/cli/inputs/known_decision.h"
 #include "limen/cli/inputs/pdf_option.h"
@@ -245,8 +246,9 @@ bool keeps_nothing(const std::filesystem::path& folder) {
   std::error_code stop;
   std::filesystem::recursive_directory_iterator entry(folder, stop);
   for (; !stop && entry != std::filesystem::recursive_directory_iterator(); entry.increment(stop)) {
-    if (!entry->is_directory(stop) && entry->path().filename() != "status.json" &&
-        entry->path().filename() != "dask.log")
+    const std::filesystem::path name = entry->path().filename();
+    if (!entry->is_directory(stop) && name != "status.json" && name != "dask.log" &&
+        name != FolderLock::kFile)
       return false;
   }
   return !stop;
@@ -294,6 +296,8 @@ int run(ProjectCommandOptions options, const Session& session) {
   const std::filesystem::path browser = browser_for_pdf(options.pdf);
   const CoordinateSystem chosen = chosen_system(options.crs);
   const OutputFolder folder(options.folder);
+  const FolderLock lock(folder.path(), "another limen works in this folder",
+                        "wait until it has ended, or give another folder");
   const ToldTrajectories trajectories = told_trajectories(options.trajectories, chosen);
   const ProjectResult result = run_in(folder.path(), options, trajectories, session);
   std::vector<std::string> of_system;
@@ -326,17 +330,15 @@ void add_engine_options(CommandLine& command, ProjectCommandOptions& options) {
       ->one_of({"local", "dask"})
       ->group(group);
   add("--scheduler", dask.scheduler, "ADDRESS",
-      "Dask's scheduler, tcp://HOST:PORT or tls://HOST:PORT; without one, workers on this machine are "
-      "started");
+      "Dask's scheduler, tls://HOST:PORT; without one, workers on this machine are started");
   add("--scheduler-file", dask.scheduler_file, "FILE",
       "The same by the file that dask-scheduler --scheduler-file writes");
   add("--tls-ca", dask.tls_ca, "PEM", "Who signed the scheduler's certificate");
   add("--tls-cert", dask.tls_cert, "PEM", "The certificate to show to the scheduler");
   add("--tls-key", dask.tls_key, "PEM", "Its key");
   command
-      .add_flag(
-          "--trust-network", dask.trust_network,
-          "Reach a scheduler on another machine without TLS: whoever reaches it can run programs as you")
+      .add_flag("--trust-network", dask.trust_network,
+                "Reach a scheduler without TLS: whoever reaches it can run programs as you")
       ->group(group);
 }
 

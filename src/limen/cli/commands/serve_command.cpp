@@ -2,19 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limen/cli/commands/serve_command.h"
 
-#include <cerrno>
 #include <filesystem>
 #include <memory>
 #include <string>
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/file.h>
-#include <unistd.h>
 
 #include "limen/base/atomic_file.h"
 #include "limen/base/error.h"
-#include "limen/base/text.h"
+#include "limen/base/folder_lock.h"
 #include "limen/cli/inputs/scan_options.h"
 #include "limen/cli/serve/server.h"
 #include "limen/cli/terminal/terminal.h"
@@ -29,27 +25,6 @@ struct ServeCommand {
   std::string most_upload = "20G";
 };
 
-/// One server a folder: two would give their work the same numbers.
-class FolderLock {
- public:
-  explicit FolderLock(const std::filesystem::path& folder)
-      : descriptor_(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
-    if (descriptor_ >= 0 && flock(descriptor_, LOCK_EX | LOCK_NB) == 0) return;
-    const int reason = errno;
-    if (descriptor_ >= 0) close(descriptor_);
-    if (reason == EWOULDBLOCK)
-      throw Error("is served already", folder.string(),
-                  "open that page, end that server, or give another folder");
-    throw Error("cannot be used: " + reason_of(reason), folder.string(), "give a folder you may write to");
-  }
-  ~FolderLock() { close(descriptor_); }
-  FolderLock(const FolderLock&) = delete;
-  FolderLock& operator=(const FolderLock&) = delete;
-
- private:
-  int descriptor_;
-};
-
 std::uint64_t upload_bound(const std::string& text) {
   try {
     return parse_memory(text);
@@ -62,7 +37,9 @@ std::uint64_t upload_bound(const std::string& text) {
 int run(const ServeCommand& command, const Session& session) {
   const std::uint64_t most_upload = upload_bound(command.most_upload);
   const OutputFolder folder(command.folder);
-  const FolderLock lock(folder.path());
+  // Two would give their work the same numbers.
+  const FolderLock lock(folder.path(), "is served already",
+                        "open that page, end that server, or give another folder");
   const LoopbackSocket socket(command.port);
   const Gate gate{new_token(), socket.port()};
   ServeSite site(std::filesystem::canonical(folder.path()), gate, most_upload);

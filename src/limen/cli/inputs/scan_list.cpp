@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limen/cli/inputs/scan_list.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <string_view>
@@ -11,6 +12,13 @@
 #include "limen/files/readable.h"
 
 namespace limen {
+namespace {
+
+bool is_control(char c) {
+  return (static_cast<unsigned char>(c) < 0x20U && c != '\t') || c == '\x7f';
+}
+
+}  // namespace
 
 std::vector<std::string> names_in_list(const std::string& path) {
   constexpr const char* kListRemedy = "give a text file with the name of a scan on each line";
@@ -20,7 +28,7 @@ std::vector<std::string> names_in_list(const std::string& path) {
   bool first = true;
   for (std::string line; std::getline(stream, line); first = false) {
     const std::string_view text = trimmed(first ? without_byte_order_mark(line) : line);
-    if (!is_utf8(text) || (printable(text) != text && text.find('\t') == std::string_view::npos))
+    if (!is_utf8(text) || std::any_of(text.begin(), text.end(), is_control))
       throw Error("is no list of names: it holds bytes that are no text", path, kListRemedy);
     if (text.empty() || text.front() == '#') continue;
     const std::filesystem::path name(text);

@@ -63,7 +63,7 @@ std::string head_of(const HttpReply& reply, std::uint64_t bytes) {
 }  // namespace
 
 Connection::Connection(int socket, ServeSite& site, Clock::time_point now)
-    : socket_(socket), site_(site), deadline_(now + kLongestHead) {}
+    : socket_(socket), site_(site), deadline_(now + kLongestHead), last_moved_(now) {}
 
 Connection::~Connection() {
   if (file_ >= 0) close(file_);
@@ -80,6 +80,7 @@ void Connection::read_more(Clock::time_point now) {
     return;
   }
   if (state_ == State::draining) return;
+  last_moved_ = now;
   try {
     take(piece.substr(0, static_cast<std::size_t>(got)), now);
   } catch (const HttpFault& fault) {
@@ -113,6 +114,7 @@ void Connection::take_head() {
   request_ = parse_http_head(in_);
   in_.clear();
   upload_ = site_.begin(request_);
+  let_in_ = true;
   body_left_ = request_.content_bytes;
   state_ = State::body;
   if (request_.expects_continue && body_left_ > 0) out_ = "HTTP/1.1 100 Continue\r\n\r\n";
@@ -163,12 +165,17 @@ void Connection::write_more(Clock::time_point now) {
 }
 
 void Connection::sent(Clock::time_point now) {
+  last_moved_ = now;
   deadline_ = now + kLongestSilence;
   if (wants_to_write() || state_ != State::reply) return;
   // Closing at once would take the answer away from who still sends.
   shutdown(socket_, SHUT_WR);
   state_ = State::draining;
   deadline_ = now + kLongestDraining;
+}
+
+bool Connection::goes_before(const Connection& other) const {
+  return let_in_ != other.let_in_ ? other.let_in_ : last_moved_ < other.last_moved_;
 }
 
 void Connection::look_at_clock(Clock::time_point now) {

@@ -29,6 +29,10 @@ class Connection {
   [[nodiscard]] bool wants_to_read() const { return !wants_to_write() && state_ != State::done; }
   [[nodiscard]] bool done() const { return state_ == State::done; }
 
+  /// Of many it is the first to go where there is no room for one more: who has not told the token goes
+  /// before who has, and who is silent longer before who is not.
+  [[nodiscard]] bool goes_before(const Connection& other) const;
+
   void read_more(Clock::time_point now);
   void write_more(Clock::time_point now);
   /// Ends it where it took too long.
@@ -48,6 +52,8 @@ class Connection {
   ServeSite& site_;
   State state_ = State::head;
   Clock::time_point deadline_;
+  Clock::time_point last_moved_;  ///< when bytes last went either way
+  bool let_in_ = false;
   std::string in_;
   HttpRequest request_;
   std::uint64_t body_left_ = 0;

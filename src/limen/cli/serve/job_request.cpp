@@ -12,6 +12,7 @@
 #include "limen/base/text.h"
 #include "limen/cli/serve/gate.h"
 #include "limen/cli/serve/http_request.h"
+#include "limen/files/bounded_json.h"
 
 namespace limen {
 namespace {
@@ -26,6 +27,7 @@ struct Asked {
   const Json& json;
   const fs::path& folder;
   const JobBoard& board;
+  int id = 0;  ///< of the job that is asked for
 
   [[nodiscard]] std::string text(const char* key) const {
     const auto found = json.find(key);
@@ -59,6 +61,8 @@ struct Asked {
     return "files/" + name;
   }
 
+  [[nodiscard]] std::string file_at(const char* key) const { return file(text(key)); }
+
   [[nodiscard]] std::vector<std::string> files() const {
     const auto found = json.find("files");
     if (found == json.end() || !found->is_array() || found->empty() || found->size() > kMostFiles)
@@ -79,7 +83,18 @@ struct Asked {
     return job;
   }
 
-  [[nodiscard]] std::string results() const { return fmt::format("results/{}", board.next_id()); }
+  /// The folder of results of a job, to write into. A link in it could lead out of the folder.
+  [[nodiscard]] std::string results(int of) const {
+    const std::string name = fmt::format("results/{}", of);
+    std::error_code stop;
+    bool link = fs::is_symlink(folder / name, stop);
+    fs::recursive_directory_iterator entry(folder / name, stop);
+    for (; !link && !stop && entry != fs::recursive_directory_iterator(); entry.increment(stop))
+      link = entry->is_symlink(stop);
+    if (link) throw HttpFault(409, fmt::format("{} holds a link: work writes into plain folders only", name));
+    return name;
+  }
+  [[nodiscard]] std::string results() const { return results(id); }
 };
 
 std::string last_name(const std::string& path) {
@@ -103,8 +118,8 @@ void add_units(const Asked& asked, const char* key, const char* option, std::vec
 
 PageJob registering(const Asked& asked) {
   PageJob job;
-  const std::string source = asked.file(asked.text("source"));
-  const std::string target = asked.file(asked.text("target"));
+  const std::string source = asked.file_at("source");
+  const std::string target = asked.file_at("target");
   if (source == target) throw HttpFault(400, "choose two different files");
   job.words = {"register", source, target, "-o", asked.results()};
   add_units(asked, "source_units", "--source-units", job.words);
@@ -168,7 +183,7 @@ PageJob placing(const Asked& asked) {
     job.title = of.title;
     return job;
   }
-  const std::string source = of.words.at(1);
+  const std::string source = Asked{of.asked, asked.folder, asked.board}.file_at("source");
   const fs::path name = last_name(source);
   job.words = {
       "transform", result_of(of), source,
@@ -178,8 +193,10 @@ PageJob placing(const Asked& asked) {
 }
 
 Json read_json(const fs::path& path) {
+  std::error_code gone;
+  if (!fs::is_regular_file(fs::symlink_status(path, gone))) return {};
   std::ifstream stream(path);
-  return Json::parse(stream, nullptr, false);
+  return json_or_nothing<Json>(stream);
 }
 
 PageJob deciding(const Asked& asked) {
@@ -190,14 +207,14 @@ PageJob deciding(const Asked& asked) {
   bool offered = false;
   for (const Json& question :
        project.is_object() ? project.value("questions", Json::array()) : Json::array()) {
-    const Json answers = question.value("answers", Json::array());
+    const Json answers = question.is_object() ? question.value("answers", Json::array()) : Json::array();
     offered = offered || std::find(answers.begin(), answers.end(), Json(answer)) != answers.end();
   }
   if (!offered) throw HttpFault(400, "none of the project's questions has this answer");
   const std::vector<std::string> words = shell_words(answer);
   if (std::any_of(words.begin(), words.end(), [](const std::string& word) { return word.starts_with('-'); }))
     throw HttpFault(400, "that is no answer");
-  job.words = {"project", "decide", fmt::format("results/{}", of.id)};
+  job.words = {"project", "decide", asked.results(of.id)};
   job.words.insert(job.words.end(), words.begin(), words.end());
   job.title = answer;
   return job;
@@ -205,10 +222,9 @@ PageJob deciding(const Asked& asked) {
 
 }  // namespace
 
-PageJob job_from_request(const std::string& body, const fs::path& folder, const JobBoard& board) {
-  const Json json = Json::parse(body, nullptr, false);
+PageJob job_from_request(const Json& json, const fs::path& folder, const JobBoard& board, int id) {
   if (!json.is_object()) throw HttpFault(400, "the work is not told as JSON");
-  const Asked asked{json, folder, board};
+  const Asked asked{json, folder, board, id};
   const std::string kind = asked.text("kind");
   constexpr std::pair<const char*, PageJob (*)(const Asked&)> kKinds[] = {{"register", registering},
                                                                           {"project", whole_project},
@@ -219,6 +235,7 @@ PageJob job_from_request(const std::string& body, const fs::path& folder, const 
     if (kind != name) continue;
     PageJob job = make(asked);
     job.kind = kind;
+    job.asked = json;
     return job;
   }
   throw HttpFault(400, "this kind of work is not known");

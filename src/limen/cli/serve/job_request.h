@@ -16,7 +16,8 @@ namespace limen {
 ///   place     of: a job, with alternative where one of its poses is meant
 ///   decide    of: a project, answer: one of those that its questions name
 /// Every file is one of files/, every answer one that was offered: no word of the page reaches the command
-/// line unseen. `next_id` names the folder of its results. Throws HttpFault that tells what is wrong.
-PageJob job_from_request(const std::string& body, const std::filesystem::path& folder, const JobBoard& board);
+/// line unseen. `id` names the folder of its results. Throws HttpFault that tells what is wrong.
+PageJob job_from_request(const Json& asked, const std::filesystem::path& folder, const JobBoard& board,
+                         int id);
 
 }  // namespace limen

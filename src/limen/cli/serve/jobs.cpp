@@ -16,6 +16,7 @@
 #include "limen/cli/serve/gate.h"
 #include "limen/cli/serve/http_request.h"
 #include "limen/cli/terminal/command.h"
+#include "limen/files/bounded_json.h"
 #include "limen/files/text_numbers.h"
 
 namespace limen {
@@ -40,36 +41,37 @@ std::string state_of(int status, bool stopped) {
 
 Json kept_json(const PageJob& job) {
   return {{"id", job.id},           {"kind", job.kind},
-          {"title", job.title},     {"words", job.words},
+          {"title", job.title},     {"asked", job.asked},
           {"state", job.state},     {"status", job.status},
           {"seconds", job.seconds}, {"said", printable_lines(job.said)}};
 }
 
+/// What lies in the folder may be of somebody else: nothing of it is run before it was looked at as what the
+/// page asks for is, and what did not end does not go on.
 PageJob job_from(const Json& json) {
   PageJob job;
   job.id = json.at("id").get<int>();
-  job.kind = json.at("kind").get<std::string>();
-  job.title = json.at("title").get<std::string>();
-  job.words = json.at("words").get<std::vector<std::string>>();
+  job.kind = printable(json.at("kind").get<std::string>());
+  job.title = printable(json.at("title").get<std::string>());
+  job.asked = json.value("asked", Json::object());
   job.state = json.at("state").get<std::string>();
+  if (job.state != "done" && job.state != "failed") job.state = "stopped";
   job.status = json.at("status").get<int>();
   job.seconds = json.at("seconds").get<double>();
   job.said = json.at("said").get<std::string>();
   return job;
 }
 
-}  // namespace
-
-std::string printable_lines(const std::string& text) {
-  std::string shown;
-  std::size_t begin = 0;
-  while (begin < text.size()) {
-    const std::size_t end = std::min(text.find('\n', begin), text.size());
-    shown += printable(text.substr(begin, end - begin)) + "\n";
-    begin = end + 1;
-  }
-  return shown;
+Json read_kept(const fs::path& path) {
+  constexpr std::uintmax_t kMostBytes = 1U << 20U;
+  std::error_code gone;
+  if (!fs::is_regular_file(fs::symlink_status(path, gone)) || fs::file_size(path, gone) > kMostBytes)
+    return {};
+  std::ifstream stream(path);
+  return json_or_nothing<Json>(stream);
 }
+
+}  // namespace
 
 std::vector<ServedFile> served_files(const fs::path& folder) {
   std::vector<ServedFile> files;
@@ -112,8 +114,7 @@ void JobBoard::find_kept() {
     next_id_ = std::max(next_id_, static_cast<int>(*number) + 1);
     if (entry->path().extension() != ".json" || jobs_.size() == kMostKept) continue;
     try {
-      std::ifstream stream(entry->path());
-      PageJob job = job_from(Json::parse(stream));
+      PageJob job = job_from(read_kept(entry->path()));
       if (job.id != static_cast<int>(*number)) continue;
       job.outputs = served_files(results_of(job.id));
       jobs_.push_back(std::move(job));
@@ -149,9 +150,10 @@ void JobBoard::add(PageJob job) {
   jobs_.push_back(std::move(job));
 }
 
-void JobBoard::again(int id) {
+void JobBoard::again(int id, std::vector<std::string> words) {
   PageJob& job = find(id);
   if (!has_ended(job)) throw HttpFault(409, "this work has not ended yet");
+  job.words = std::move(words);
   job.state = "queued";
   job.status = -1;
   job.said.clear();

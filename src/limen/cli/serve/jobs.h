@@ -25,15 +25,13 @@ struct ServedFile {
 std::vector<ServedFile> served_files(const std::filesystem::path& folder);
 Json served_files_json(const std::vector<ServedFile>& files);
 
-/// Lines of what a program said, without what could command a terminal or be no UTF-8.
-std::string printable_lines(const std::string& text);
-
 /// One piece of work: a run of limen, whose results lie in results/ID.
 struct PageJob {
   int id = 0;
   std::string kind;                ///< register, project, view, place or decide
   std::string title;               ///< for a reader
-  std::vector<std::string> words;  ///< of the command line
+  Json asked;                      ///< what the page asked for, by name: it alone is kept
+  std::vector<std::string> words;  ///< of the command line, made of that; none where it was found on the disk
   std::string state = "queued";    ///< queued, running, done, failed or stopped
   int status = -1;                 ///< exit status; -1 before it ended
   double seconds = 0.0;
@@ -53,8 +51,9 @@ class JobBoard {
   [[nodiscard]] int next_id() const { return next_id_; }
   /// Throws HttpFault where too many wait.
   void add(PageJob job);
-  /// Once more, into the same folder. Throws HttpFault where there is no such job, or it has not ended.
-  void again(int id);
+  /// Once more, with these words, into the same folder. Throws HttpFault where there is no such job, or it
+  /// has not ended.
+  void again(int id, std::vector<std::string> words);
   /// Throws HttpFault where there is no such job. What has ended stays as it is.
   void stop(int id);
   /// Throws HttpFault where there is none.

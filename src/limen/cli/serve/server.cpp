@@ -28,13 +28,12 @@ constexpr int kWaitingConnections = 16;
               "choose another --port, or leave it out");
 }
 
-/// What is waited for, in the order of connections and ears; the listening socket first where there is room.
+/// What is waited for: the listening socket, then connections and ears in their order.
 std::vector<pollfd> all_of(const LoopbackSocket& socket,
                            const std::deque<std::unique_ptr<Connection>>& connections,
                            const std::vector<int>& ears) {
   std::vector<pollfd> all;
-  const bool room = connections.size() < kMostConnections;
-  all.push_back({room ? socket.descriptor() : -1, POLLIN, 0});
+  all.push_back({socket.descriptor(), POLLIN, 0});
   for (const auto& connection : connections) {
     const int events =
         (connection->wants_to_read() ? POLLIN : 0) | (connection->wants_to_write() ? POLLOUT : 0);
@@ -42,6 +41,12 @@ std::vector<pollfd> all_of(const LoopbackSocket& socket,
   }
   for (const int ear : ears) all.push_back({ear, POLLIN, 0});
   return all;
+}
+
+void make_room(std::deque<std::unique_ptr<Connection>>& connections) {
+  if (connections.size() < kMostConnections) return;
+  connections.erase(std::min_element(connections.begin(), connections.end(),
+                                     [](const auto& a, const auto& b) { return a->goes_before(*b); }));
 }
 
 void move_on(Connection& connection, int events, Connection::Clock::time_point now) {
@@ -89,7 +94,10 @@ void serve_site(const LoopbackSocket& socket, ServeSite& site, const std::functi
     std::erase_if(connections, [](const auto& connection) { return connection->done(); });
     if ((all.front().revents & POLLIN) != 0) {
       const int accepted = accept4(socket.descriptor(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK);
-      if (accepted >= 0) connections.push_back(std::make_unique<Connection>(accepted, site, now));
+      if (accepted >= 0) {
+        make_room(connections);
+        connections.push_back(std::make_unique<Connection>(accepted, site, now));
+      }
     }
     site.jobs().tick();
   }

@@ -27,7 +27,7 @@ class LoopbackSocket {
   int port_ = 0;
 };
 
-/// More wait in the system's queue until one of these has ended.
+/// For one more the one that has been silent longest is left: what says nothing keeps nobody out.
 inline constexpr std::size_t kMostConnections = 32;
 
 /// Serves until `ended` says so, in this thread alone: connections, and the work that they asked for.

@@ -15,6 +15,7 @@
 #include "limen/base/version.h"
 #include "limen/cli/serve/job_request.h"
 #include "limen/cli/serve/serve_page.h"
+#include "limen/files/bounded_json.h"
 #include "limen/files/text_numbers.h"
 #include "limen/report/html/print_pdf.h"
 
@@ -231,16 +232,17 @@ HttpReply ServeSite::result_file(const HttpRequest& request) const {
 }
 
 HttpReply ServeSite::take_job(const std::string& body) {
-  const Json json = Json::parse(body, nullptr, false);
+  const Json json = json_or_nothing<Json>(body);
   if (json.is_object() && json.value("kind", Json()) == "again") {
     const Json of = json.value("of", Json());
     const int id = of.is_number_integer() ? of.get<int>() : 0;
-    if (jobs_.job(id).kind != "project") throw HttpFault(409, "only projects are run again");
-    jobs_.again(id);
+    PageJob job = job_from_request(jobs_.job(id).asked, folder_, jobs_, id);
+    if (job.kind != "project") throw HttpFault(409, "only projects are run again");
+    jobs_.again(id, std::move(job.words));
     return json_reply({{"id", id}}, 202);
   }
   const int id = jobs_.next_id();
-  jobs_.add(job_from_request(body, folder_, jobs_));
+  jobs_.add(job_from_request(json, folder_, jobs_, id));
   return json_reply({{"id", id}}, 202);
 }
 

@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "limen/base/text.h"
 #include "limen/cli/terminal/terminal.h"
 
 namespace limen {
@@ -21,10 +22,15 @@ std::string ended(std::string_view text) {
 
 }  // namespace
 
+std::string message_line(std::string_view message) {
+  constexpr std::size_t kMostBytes = 1000;
+  return shortened(printable(trimmed(one_line(std::string(message)))), kMostBytes);
+}
+
 void Session::say(std::string_view text) const {
   if (common.quiet || common.json) return;
   wipe_progress();
-  print_out(ended(text));
+  print_out(ended(printable_lines(text)));
 }
 
 void Session::answer(std::string_view json_text) const {
@@ -34,11 +40,11 @@ void Session::answer(std::string_view json_text) const {
 }
 
 void Session::note(std::string_view text) const {
-  if (!common.quiet) tell_line(ended(fmt::format("limen: {}", text)));
+  if (!common.quiet) tell_line(fmt::format("limen: {}\n", message_line(text)));
 }
 
 void Session::warn(std::string_view text) const {
-  tell_line(ended(fmt::format("limen: warning: {}", text)));
+  tell_line(fmt::format("limen: warning: {}\n", message_line(text)));
 }
 
 void Session::tell_line(const std::string& line) const {

@@ -56,6 +56,10 @@ struct Session {
   void tell_line(const std::string& line) const;
 };
 
+/// A message as one line that a terminal shows as it is, whatever words of files and users it holds; of long
+/// ones beginning and end.
+std::string message_line(std::string_view message);
+
 /// Adds the subcommand `name` with its common options. The command adds its own to what is returned; its
 /// `run` is called after parsing and returns an exit status.
 ///

@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "limen/base/error.h"
+#include "limen/files/bounded_json.h"
 #include "limen/files/mapped_file.h"
 #include "limen/files/text_numbers.h"
 
@@ -168,13 +169,15 @@ std::vector<Segment> from_json(std::string_view text, const std::string& name) {
   text = without_mark(text);
   json object;
   try {
-    object = json::parse(text.begin(), text.end());
+    object = parsed_json<json>(text);
   } catch (const json::parse_error& error) {
     const auto end = text.begin() + static_cast<std::ptrdiff_t>(std::min(error.byte, text.size()));
     const auto line = static_cast<std::size_t>(std::count(text.begin(), end, '\n')) + 1;
     throw Error("is not JSON", place(name, line), "correct the file, or write it anew");
   } catch (const json::out_of_range&) {
     throw Error("has a number that is too large", name, "correct the file, or write it anew");
+  } catch (const JsonTooDeep& deep) {
+    throw Error(deep.what(), name, "correct the file, or write it anew");
   }
   for (const char* key : {"segments", "openings"}) {
     if (!object.contains(key)) continue;

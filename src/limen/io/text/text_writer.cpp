@@ -14,6 +14,7 @@
 #include "limen/base/atomic_file.h"
 #include "limen/base/error.h"
 #include "limen/base/text.h"
+#include "limen/files/table_cells.h"
 
 namespace limen {
 namespace {
@@ -64,7 +65,7 @@ class TextWriter : public CloudWriter {
     std::string names;
     for (const ColumnPlan& column : plan_.columns) {
       if (!names.empty()) names += separator();
-      names += column_word(column.name);
+      names += commas_ ? csv_field(column_word(column.name)) : column_word(column.name);
     }
     return text + (commas_ ? "" : "// ") + names + "\n";
   }

@@ -12,6 +12,7 @@
 
 #include "limen/base/error.h"
 #include "limen/base/text.h"
+#include "limen/files/bounded_json.h"
 #include "limen/files/text_numbers.h"
 
 namespace limen {
@@ -117,7 +118,7 @@ Decision decision_from(const std::vector<std::string>& words) {
 std::vector<Decision> read_decisions(const std::filesystem::path& path) {
   std::ifstream stream(path);
   if (!stream) throw Error("cannot be read", path.string(), "look whether the name is right");
-  const Json json = Json::parse(stream, nullptr, false);
+  const Json json = json_or_nothing<Json>(stream);
   if (!json.is_object() || !json.contains("decisions") || !json["decisions"].is_array())
     throw Error("is no file of decisions", path.string(), R"(write {"decisions": [{"accept": ["A", "B"]}]})");
   std::vector<Decision> decisions;

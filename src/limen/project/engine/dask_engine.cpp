@@ -14,6 +14,7 @@
 #include "limen/base/error.h"
 #include "limen/base/parallel.h"
 #include "limen/base/start_program.h"
+#include "limen/files/bounded_json.h"
 #include "limen/project/engine/helper_process.h"
 #include "limen/project/engine/job_engine.h"
 
@@ -98,9 +99,10 @@ class DaskEngine : public JobEngine {
       if (!text) {
         if (!helper_.ended()) continue;
         throw Error("the Python program that gives jobs to Dask has ended", log_,
-                    "install python3 and python3-distributed, look into this file, or leave --engine away");
+                    "install python3, python3-distributed and python3-cryptography, look into this file, or "
+                    "leave --engine away");
       }
-      Line line = Line::parse(*text, nullptr, false);
+      Line line = json_or_nothing<Line>(*text);
       if (!line.is_object()) continue;
       if (line.contains("fault"))
         throw Error(line.at("fault").get<std::string>(), line.value("where", "Dask"),

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "limen/base/version.h"
+#include "limen/files/table_cells.h"
 #include "limen/report/deviation/building_report.h"
 #include "limen/report/deviation/deviation_report.h"
 #include "limen/report/deviation/deviation_words.h"

@@ -10,6 +10,8 @@
 #include "limen/report/deviation/building_report.h"
 #include "limen/report/deviation/deviation_report.h"
 #include "limen/report/html/html_bytes.h"
+#include "limen/report/html/html_elements.h"
+#include "limen/report/html/report_page.h"
 #include "limen/report/html/table_page.h"
 
 namespace limen {
@@ -248,13 +250,11 @@ std::string building_page(const BuildingReport& report) {
     ++counts[static_cast<std::size_t>(it.presence)];
     moved += has_moved(it, report.issues.moved_m) ? 1 : 0;
   }
-  std::string text =
-      "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n<meta name=\"viewport\" "
-      "content=\"width=device-width, initial-scale=1\">\n<title>limen: deviation</title>\n<style>";
-  text += table_page_style();
-  text += kBuildingStyle;
+  std::string text = filled_in(page_head(), {{"title", "limen: deviation"},
+                                             {"style", std::string(table_page_style()) + kBuildingStyle},
+                                             {"version", kVersion}});
   text += fmt::format(
-      "</style></head>\n<body><main>\n<h1>{} missing, {} moved by more than {:.0f} mm, of {} elements that "
+      "<body><main>\n<h1>{} missing, {} moved by more than {:.0f} mm, of {} elements that "
       "were "
       "judged</h1>\n<p class=\"soft\">{} points of {} scans against {} elements; {} of the points lie on "
       "faces of the "

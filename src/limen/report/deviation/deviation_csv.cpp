@@ -1,9 +1,8 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
-#include <string_view>
-
 #include <fmt/format.h>
 
+#include "limen/files/table_cells.h"
 #include "limen/report/deviation/deviation_report.h"
 
 namespace limen {
@@ -29,16 +28,6 @@ std::string figures(const ElementDeviation& it) {
 }
 
 }  // namespace
-
-std::string csv_field(std::string_view text) {
-  if (text.find_first_of(",\"\r\n") == std::string_view::npos) return std::string(text);
-  std::string quoted = "\"";
-  for (const char c : text) {
-    if (c == '"') quoted += '"';
-    quoted += c;
-  }
-  return quoted + '"';
-}
 
 std::string deviation_columns() {
   return "element,kind,type,guid,name,storey,presence,points,area_m2,covered_m2,passed_m2,covered_share,"

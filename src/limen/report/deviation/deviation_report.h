@@ -38,8 +38,6 @@ std::string deviation_csv(const DeviationReport& report, const BimModel& model);
 /// The names of the columns of a row of the table, and the row; neither ends its line.
 std::string deviation_columns();
 std::string deviation_row(const ElementDeviation& it, const BimElement& element);
-/// A field of a CSV, quoted where it must be.
-std::string csv_field(std::string_view text);
 
 /// Red, green and blue of a deviation: blue for missing matter (negative), light grey at 0, orange for matter
 /// that stands out; full colour from `limit_m` on. Told apart with every kind of colour vision.

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "limen/base/text.h"
+#include "limen/files/bounded_json.h"
 #include "limen/report/json/json_values.h"
 
 namespace limen {
@@ -92,9 +94,9 @@ std::string base64(const std::vector<std::uint8_t>& bytes) {
 std::string escaped(const std::string& text) {
   // The JSON library knows what is UTF-8: there and back, bad bytes replaced.
   const std::string valid =
-      Json::parse(Json(text).dump(-1, ' ', false, Json::error_handler_t::replace)).get<std::string>();
+      parsed_json<Json>(Json(text).dump(-1, ' ', false, Json::error_handler_t::replace)).get<std::string>();
   std::string safe;
-  for (const char c : valid) {
+  for (const char c : printable_lines(valid)) {
     switch (c) {
       case '&':
         safe += "&amp;";

@@ -202,7 +202,7 @@ std::string scene_elements(const RegistrationReport& report, const ReportScene& 
     json["residual_range"] = residuals.range_m;
     blobs += blob_element("source-residuals", residuals.values);
   }
-  return json_element(json) + blobs;
+  return json_element(std::move(json)) + blobs;
 }
 
 }  // namespace limen

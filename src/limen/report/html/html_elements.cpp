@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "limen/base/text.h"
 #include "limen/report/html/html_bytes.h"
 
 namespace limen {
@@ -13,6 +14,13 @@ std::string script_element(const char* type, const std::string& id, const std::s
   return fmt::format("<script type=\"{}\" id=\"{}\">{}</script>\n", type, id, content);
 }
 
+/// The page shows its texts, which hold names of files and elements.
+void make_printable(Json& json) {
+  if (json.is_string()) json = printable_lines(json.get_ref<const std::string&>());
+  if (!json.is_structured()) return;
+  for (Json& part : json) make_printable(part);
+}
+
 }  // namespace
 
 std::string blob_element(const std::string& id, const std::vector<std::uint8_t>& bytes) {
@@ -20,7 +28,8 @@ std::string blob_element(const std::string& id, const std::vector<std::uint8_t>&
   return script_element("text/plain", id, base64(bytes));
 }
 
-std::string json_element(const Json& json) {
+std::string json_element(Json json) {
+  make_printable(json);
   std::string safe;
   for (const char c : json.dump(-1, ' ', false, Json::error_handler_t::replace)) {
     if (c == '<') {

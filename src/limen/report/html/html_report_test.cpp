@@ -149,6 +149,7 @@ TEST(HtmlBytes, EscapesWhatHtmlWouldTakeForItself) {
   EXPECT_EQ(escaped("a<b>&\"c'"), "a&lt;b&gt;&amp;&quot;c&#39;");
   EXPECT_EQ(escaped("Zürich €"), "Zürich €");
   EXPECT_EQ(escaped("bad\xff"), "bad\xef\xbf\xbd");
+  EXPECT_EQ(escaped("a\xe2\x80\xae<b\nc"), "a\\u202E&lt;b\nc");
 }
 
 TEST(HtmlScene, ThinsEvenlyAndNoMoreThanAsked) {

@@ -8,7 +8,9 @@ namespace limen {
 
 // The page's own sources (report/page), built into the library: no file is looked for when it runs.
 
-/// HTML with {{name}} where parts go.
+/// HTML with {{name}} where parts go: the head of every page, with the policy that it may load nothing.
+std::string_view page_head();
+/// The same of the whole page of a registration.
 std::string_view report_pattern();
 /// CSS
 std::string_view report_style();

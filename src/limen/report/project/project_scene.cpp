@@ -154,7 +154,7 @@ std::string project_scene(const ProjectResult& result, std::vector<ProjectPictur
   }
   json["links"] = links_of(result, origins);
   json["floors"] = floors_of(result, frame);
-  return json_element(json) + blobs;
+  return json_element(std::move(json)) + blobs;
 }
 
 }  // namespace limen

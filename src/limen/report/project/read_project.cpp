@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "limen/base/error.h"
+#include "limen/files/bounded_json.h"
 #include "limen/files/readable.h"
 #include "limen/project/scan_names.h"
 #include "limen/report/json/json_values.h"
@@ -27,7 +28,7 @@ std::optional<Json> parse(const std::filesystem::path& path) {
   // Anything but an object is another kind of file: a cloud must not be read whole.
   while (stream && std::isspace(stream.peek()) != 0) stream.get();
   if (!stream || stream.peek() != '{') return {};
-  Json json = Json::parse(stream, nullptr, false);
+  Json json = json_or_nothing<Json>(stream);
   if (json.is_discarded() || !json.contains("scans") || !json.contains("links") || !json["scans"].is_array())
     return {};
   return json;

@@ -49,7 +49,7 @@ std::string scene_of(const ViewScene& scene) {
     blobs += side_blobs(id_of(k), side.scene, points,
                         planes ? plane_of_points(side.scene) : std::vector<std::uint8_t>{});
   }
-  return json_element(json) + blobs;
+  return json_element(std::move(json)) + blobs;
 }
 
 void move_features(const Rigid3& moved_from_old, Features& features) {
