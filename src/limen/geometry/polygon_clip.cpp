@@ -25,7 +25,7 @@ using ClipperLib::PolyTree;
 
 constexpr double kGrid_m = 1e-5;
 constexpr double kMaxClipped_m = 1e9;
-constexpr std::size_t kMostCrossings = 1000000;
+constexpr std::size_t kMostCrossings = 1000000;  // they take Clipper about a second
 
 /// Conversion between metres about an origin and Clipper's integers.
 class Grid {
