@@ -24,6 +24,8 @@ class Monitor {
   virtual void advance(double /*done*/, double /*total*/) {}
   /// What advance() counts until the next stage begins; steps where nothing is said.
   virtual void set_unit(WorkUnit /*unit*/) {}
+  /// A sentence for the user that is part of no result; may be called from any thread.
+  virtual void note(std::string_view /*text*/) {}
 
   void cancel() noexcept { cancelled_.store(true, std::memory_order_relaxed); }
   [[nodiscard]] bool cancelled() const noexcept { return cancelled_.load(std::memory_order_relaxed); }

@@ -17,7 +17,9 @@ namespace {
 
 class Descriptor {
  public:
-  explicit Descriptor(const std::string& name) : value_(open(name.c_str(), O_RDONLY | O_CLOEXEC)) {
+  /// Does not wait for who writes to a pipe.
+  explicit Descriptor(const std::string& name)
+      : value_(open(name.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {
     if (value_ >= 0) return;
     const int reason = errno;
     if (reason == ENOENT || reason == ENOTDIR) throw missing_file(name);
@@ -41,29 +43,30 @@ MappedFile::MappedFile(const std::filesystem::path& path) {
   if (fstat(file.value(), &status) != 0) {
     throw Error("cannot be examined: " + reason_of(errno), name, "check the path and its permissions");
   }
-  if (S_ISDIR(status.st_mode)) throw Error("is a folder, not a file", name, "name the file in it");
-  if (S_ISREG(status.st_mode) && status.st_size > 0) {
+  if (const std::string other = why_no_file(status.st_mode); !other.empty())
+    throw Error(other, name,
+                S_ISDIR(status.st_mode) ? "name the file in it" : "write it to a file, and name that");
+  if (status.st_size > 0) {
     size_ = static_cast<std::size_t>(status.st_size);
     const int kept = fcntl(file.value(), F_DUPFD_CLOEXEC, 0);
     if (kept >= 0) mapping_ = std::make_unique<const GuardedMapping>(kept, size_, name);
     if (mapping_) data_ = mapping_->data();
   }
-  if (data_ == nullptr) read_stream(file.value(), name);
+  if (data_ == nullptr) read_whole(file.value(), name);
   if (size_ == 0) throw Error("the file is empty", name, "check how it was written or copied");
 }
 
-void MappedFile::read_stream(int descriptor, const std::string& name) {
-  constexpr std::size_t kStreamPiece = std::size_t{1} << 20U;
-  for (;;) {
-    const std::size_t before = read_.size();
-    read_.resize(before + kStreamPiece);
-    const ssize_t got = read(descriptor, read_.data() + before, kStreamPiece);
-    if (got < 0 && errno != EINTR) {
+void MappedFile::read_whole(int descriptor, const std::string& name) {
+  read_.resize(size_);
+  std::size_t there = 0;
+  while (there < size_) {
+    const ssize_t got = read(descriptor, read_.data() + there, size_ - there);
+    if (got < 0 && errno != EINTR)
       throw Error("cannot be read: " + reason_of(errno), name, "check the file and its disk");
-    }
-    read_.resize(before + (got > 0 ? static_cast<std::size_t>(got) : 0));
     if (got == 0) break;
+    there += got > 0 ? static_cast<std::size_t>(got) : 0;
   }
+  read_.resize(there);
   data_ = read_.data();
   size_ = read_.size();
 }

@@ -12,12 +12,12 @@
 
 namespace limen {
 
-/// The bytes of a file, read-only, as long as the object lives: mapped where the file is a regular one, read
-/// into memory where it is not (a pipe). Where the file becomes shorter meanwhile, what is missing reads as
+/// The bytes of a regular file, read-only, as long as the object lives: mapped, or read into memory where its
+/// disk cannot map it. Where the file becomes shorter meanwhile, what is missing reads as
 /// zeros, and require_inputs_whole() tells of it (base/guarded_mapping.h).
 class MappedFile {
  public:
-  /// Throws Error where the path is missing, a folder, unreadable or empty.
+  /// Throws Error where the path is missing, no regular file, unreadable or empty.
   explicit MappedFile(const std::filesystem::path& path);
   MappedFile(const MappedFile&) = delete;
   MappedFile& operator=(const MappedFile&) = delete;
@@ -31,7 +31,7 @@ class MappedFile {
   }
 
  private:
-  void read_stream(int descriptor, const std::string& name);
+  void read_whole(int descriptor, const std::string& name);
 
   const char* data_ = nullptr;
   std::size_t size_ = 0;

@@ -103,5 +103,19 @@ TEST(MappedFile, ABusErrorElsewhereEndsTheProcessAsEver) {
   EXPECT_TRUE(WIFSIGNALED(status) || WEXITSTATUS(status) != 0);
 }
 
+TEST(MappedFile, APipeIsRefusedAndNotWaitedFor) {
+  const TemporaryFolder folder;
+  ASSERT_EQ(mkfifo((folder / "pipe").c_str(), 0600), 0);
+  for (const std::filesystem::path& path : {folder / "pipe", std::filesystem::path("/dev/zero")}) {
+    try {
+      const MappedFile file(path);
+      ADD_FAILURE() << "nothing was thrown";
+    } catch (const Error& error) {
+      EXPECT_EQ(error.fault(), Fault::input);
+      EXPECT_NE(error.problem().find("is a pipe or a device"), std::string::npos) << error.problem();
+    }
+  }
+}
+
 }  // namespace
 }  // namespace limen

@@ -4,6 +4,7 @@
 
 #include <cerrno>
 
+#include <fmt/format.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -18,11 +19,16 @@ Error missing_file(const std::string& name) {
   return {"there is no such file", name, "check the path"};
 }
 
+std::string why_no_file(unsigned mode, const char* wanted) {
+  if (S_ISREG(mode)) return {};
+  return fmt::format("is a {}, not a {}", S_ISDIR(mode) ? "folder" : "pipe or a device", wanted);
+}
+
 std::string why_unreadable(const std::filesystem::path& path, const char* wanted) {
   struct stat status {};
   if (stat(path.c_str(), &status) != 0)
     return errno == ENOENT || errno == ENOTDIR ? missing_file(path.string()).problem() : reason_of(errno);
-  if (S_ISDIR(status.st_mode)) return std::string("is a folder, not a ") + wanted;
+  if (std::string other = why_no_file(status.st_mode, wanted); !other.empty()) return other;
   return access(path.c_str(), R_OK) == 0 ? "" : reason_of(errno);
 }
 

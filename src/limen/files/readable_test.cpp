@@ -7,6 +7,7 @@
 
 #include "support/test_support.h"
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include "limen/base/error.h"
 #include "limen/base/text.h"
@@ -34,6 +35,13 @@ TEST(Readable, TheReasonIsToldOrTheSystemsOwnWords) {
     EXPECT_EQ(error.where(), beside("b.txt").string());
     EXPECT_EQ(error.problem(), "there is no such file");
   }
+}
+
+TEST(Readable, APipeOrADeviceIsNoFile) {
+  const TemporaryFolder folder;
+  ASSERT_EQ(mkfifo((folder / "pipe").c_str(), 0600), 0);
+  EXPECT_EQ(why_unreadable(folder / "pipe"), "is a pipe or a device, not a file");
+  EXPECT_EQ(why_unreadable("/dev/zero", "list"), "is a pipe or a device, not a list");
 }
 
 }  // namespace

@@ -45,6 +45,17 @@ void each_crossing(const Ring& ring, double y, const Take& take) {
 
 }  // namespace
 
+double outline_length(const Polygon& polygon) {
+  const auto length = [](const Ring& ring) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < ring.size(); ++i) sum += (ring[(i + 1) % ring.size()] - ring[i]).norm();
+    return sum;
+  };
+  double sum = length(polygon.outer);
+  for (const Ring& hole : polygon.holes) sum += length(hole);
+  return sum;
+}
+
 bool contains(const Ring& ring, const Vector2d& p) {
   bool inside = false;
   each_crossing(ring, p.y(), [&](double x) { inside = inside != (p.x() < x); });

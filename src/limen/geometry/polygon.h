@@ -22,6 +22,8 @@ double signed_area(const Ring& ring);
 /// Area of the polygon less its holes, m^2.
 double area(const Polygon& polygon);
 double area(const std::vector<Polygon>& polygons);
+/// Length of all rings, m.
+double outline_length(const Polygon& polygon);
 /// Even-odd test against one ring.
 bool contains(const Ring& ring, const Vector2d& p);
 /// Inside the outer ring and in no hole.

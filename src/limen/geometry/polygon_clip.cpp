@@ -4,10 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <utility>
 
+#include <fmt/format.h>
 #include <polyclipping/clipper.hpp>
 
 #include "limen/base/error.h"
+#include "limen/base/progress.h"
 
 namespace limen {
 namespace {
@@ -21,6 +25,7 @@ using ClipperLib::PolyTree;
 
 constexpr double kGrid_m = 1e-5;
 constexpr double kMaxClipped_m = 1e9;
+constexpr std::size_t kMostCrossings = 1000000;  // they take Clipper about a second
 
 /// Conversion between metres about an origin and Clipper's integers.
 class Grid {
@@ -106,11 +111,84 @@ std::vector<Polygon> from_tree(const PolyTree& tree, const Grid& grid) {
   return polygons;
 }
 
+/// A side of a ring, its lower end first.
+struct ClippedSide {
+  Vector2d low;
+  Vector2d high;
+};
+
+std::size_t side_count(const std::vector<Polygon>& polygons) {
+  std::size_t count = 0;
+  for (const Polygon& polygon : polygons) {
+    count += polygon.outer.size();
+    for (const Ring& hole : polygon.holes) count += hole.size();
+  }
+  return count;
+}
+
+std::vector<ClippedSide> sides_upwards(const std::vector<Polygon>& a, const std::vector<Polygon>& b) {
+  std::vector<ClippedSide> sides;
+  const auto add = [&](const Ring& ring) {
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+      const Vector2d& from = ring[i];
+      const Vector2d& to = ring[i + 1 == ring.size() ? 0 : i + 1];
+      sides.push_back(from.y() < to.y() ? ClippedSide{from, to} : ClippedSide{to, from});
+    }
+  };
+  for (const std::vector<Polygon>* polygons : {&a, &b}) {
+    for (const Polygon& polygon : *polygons) {
+      add(polygon.outer);
+      for (const Ring& hole : polygon.holes) add(hole);
+    }
+  }
+  std::sort(sides.begin(), sides.end(),
+            [](const ClippedSide& p, const ClippedSide& q) { return p.low.y() < q.low.y(); });
+  return sides;
+}
+
+/// Whether both ends of each lie on different sides of the other; what only touches does not cross.
+bool cross(const ClippedSide& p, const ClippedSide& q) {
+  const auto turn = [](const ClippedSide& side, const Vector2d& x) {
+    const Vector2d along = side.high - side.low;
+    return along.x() * (x.y() - side.low.y()) - along.y() * (x.x() - side.low.x());
+  };
+  return turn(p, q.low) * turn(p, q.high) < 0.0 && turn(q, p.low) * turn(q, p.high) < 0.0;
+}
+
+/// Throws Error where sides cross so often that Clipper, which cannot be stopped, would take minutes: its
+/// work grows with their number.
+void require_few_crossings(const std::vector<Polygon>& a, const std::vector<Polygon>& b) {
+  const std::size_t count = side_count(a) + side_count(b);
+  if (count * count <= 2 * kMostCrossings) return;
+  const std::vector<ClippedSide> sides = sides_upwards(a, b);
+  std::size_t crossings = 0;
+  std::vector<const ClippedSide*> open;
+  for (const ClippedSide& side : sides) {
+    CancelScope::check();
+    std::erase_if(open, [&](const ClippedSide* other) { return other->high.y() < side.low.y(); });
+    const auto [left, right] = std::minmax(side.low.x(), side.high.x());
+    for (const ClippedSide* other : open) {
+      if (std::max(other->low.x(), other->high.x()) < left ||
+          std::min(other->low.x(), other->high.x()) > right)
+        continue;
+      crossings += cross(side, *other) ? 1 : 0;
+    }
+    if (crossings > kMostCrossings) {
+      throw Error(fmt::format("outlines of {} sides cross one another more than {} times", sides.size(),
+                              kMostCrossings),
+                  "polygon operation", "mend the outlines");
+    }
+    open.push_back(&side);
+  }
+}
+
 /// One run of Clipper over both arguments, into Paths or a PolyTree (which must not be copied, so it is not
 /// returned).
 template <typename Result>
 void run(ClipperLib::ClipType type, const Grid& grid, const std::vector<Polygon>& a,
          const std::vector<Polygon>& b, Result& result) {
+  CancelScope::check();
+  require_few_crossings(a, b);
   Clipper clipper;
   const bool any_a = clipper.AddPaths(grid.paths(a), ClipperLib::ptSubject, true);
   const bool any_b = clipper.AddPaths(grid.paths(b), ClipperLib::ptClip, true);
@@ -143,6 +221,7 @@ void keep_farthest(const Ring& ring, std::size_t first, std::size_t last, double
                    std::vector<char>& keep) {
   std::vector<std::pair<std::size_t, std::size_t>> chains{{first, last}};
   while (!chains.empty()) {
+    CancelScope::check();
     const auto [begin, end] = chains.back();
     chains.pop_back();
     const Vector2d& a = ring[begin % ring.size()];

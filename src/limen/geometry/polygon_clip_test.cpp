@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "limen/base/error.h"
+#include "limen/base/progress.h"
 #include "limen/base/random.h"
 #include "limen/geometry/random_vectors.h"
 
@@ -187,6 +188,47 @@ TEST(Projected, MovesAPolygonIntoAnotherFrame) {
   EXPECT_LT((other.to_space(seen[0].outer[2]) - frame.to_space(door[0].outer[2])).norm(), 1e-12);
   const Rigid3 tilt{rotation_exp(Vector3d(0.0, std::numbers::pi / 3.0, 0.0)), Vector3d(1.0, 2.0, 3.0)};
   EXPECT_NEAR(area(projected(door, frame, frame, tilt)), 1.0, 1e-12);
+}
+
+/// A star of an odd number of corners: each side crosses nearly all others.
+Ring star(int corners) {
+  Ring ring;
+  for (int k = 0; k < corners; ++k) {
+    const double angle = std::numbers::pi * (corners - 1.0) / corners * k;
+    ring.emplace_back(10.0 * std::cos(angle), 10.0 * std::sin(angle));
+  }
+  return ring;
+}
+
+TEST(PolygonClip, RingsThatCrossAMillionTimesAreRefused) {
+  EXPECT_NO_THROW((void)merged({{star(101), {}}}));
+  EXPECT_THROW((void)merged({{star(3001), {}}}), Error);
+  EXPECT_THROW((void)union_area({{star(3001), {}}}), Error);
+  std::vector<Polygon> bars;
+  for (int k = 0; k < 1100; ++k) {
+    bars.push_back(Rect{0.01 * k, 0.0, 0.01 * k + 0.005, 11.0}.polygon());
+    bars.push_back(Rect{0.0, 0.01 * k, 11.0, 0.01 * k + 0.005}.polygon());
+  }
+  EXPECT_THROW((void)merged(bars), Error);
+}
+
+TEST(PolygonClip, RingsOfManyCornersThatDoNotCrossAreTaken) {
+  constexpr int kTeeth = 3000;
+  Ring comb{{0.0, -1.0}};
+  for (int k = 0; k < kTeeth; ++k) {
+    comb.emplace_back(0.001 * k, 0.0);
+    comb.emplace_back(0.001 * k + 0.0005, 1.0);
+  }
+  comb.emplace_back(0.001 * kTeeth, -1.0);
+  std::reverse(comb.begin(), comb.end());
+  EXPECT_NEAR(area(merged({{comb, {}}})), std::abs(signed_area(comb)), 1e-3);
+}
+
+TEST(PolygonClip, CanBeStopped) {
+  Monitor monitor;
+  const CancelScope scope(monitor);
+  monitor.cancel();
+  EXPECT_THROW((void)merged({Rect{0, 0, 1, 1}.polygon()}), Error);
 }
 
 }  // namespace

@@ -20,6 +20,7 @@ constexpr double kLongestScanM = 1e5;   // a day of a mobile scanner
 constexpr double kThickestScanM = 1e3;  // the least of its three sides; of a city less
 constexpr double kSmallestModelM = 0.5;
 constexpr double kMostModelM2 = 2e6;      // ten times the surface of a large hospital
+constexpr double kMostOutlineM = 1e7;     // all that surface in plates of 0.8 m: 5 m of outline for each m2
 constexpr std::size_t kLookedAt = 10000;  // points, for three numbers that tell metres from millimetres
 constexpr std::size_t kLeftOut = 100;     // one point in so many, at either end of an axis
 constexpr const char* kUnits =
@@ -59,6 +60,11 @@ double longest_side_of(const BimModel& model) {
     }
   }
   return (high - low).maxCoeff();
+}
+
+/// Whether it is of a file that says neither its unit nor where up is.
+bool is_mesh(const BimModel& model) {
+  return model.schema == "OBJ" || model.schema == "PLY";
 }
 
 Vector3d sides_of(const Scan& scan) {
@@ -107,7 +113,7 @@ std::string size_hint(const Scan& scan) {
 }
 
 std::string axes_hint(const BimModel& model) {
-  if (model.schema != "OBJ" && model.schema != "PLY") return {};
+  if (!is_mesh(model)) return {};
   Vector3d facing = Vector3d::Zero();  // m^2 of faces along each axis
   Vector3d low = Vector3d::Constant(1e300);
   Vector3d high = Vector3d::Constant(-1e300);
@@ -145,16 +151,19 @@ void require_plausible_size(const BimModel& model) {
   if (model.faces.empty()) return;
   const double side = longest_side_of(model);
   double area_m2 = 0.0;
-  for (const BimFace& face : model.faces) area_m2 += face.area_m2;
-  if (side >= kSmallestModelM && area_m2 <= kMostModelM2) return;
-  throw Error(
-      fmt::format("the model measures {} from end to end and has {:.3g} m2 of surface, which no building "
-                  "does (1 unit of the file = {:.6g} m): {}",
-                  told(side), area_m2, model.metres_per_unit, guess(side)),
-      model.name,
-      side < kSmallestModelM ? kUnits
-                             : "check the unit of the file and export it again in metres, or leave out "
-                               "what lies around the building");
+  double outline_m = 0.0;
+  for (const BimFace& face : model.faces) {
+    area_m2 += face.area_m2;
+    outline_m += outline_length(face.outline);
+  }
+  if (side >= kSmallestModelM && area_m2 <= kMostModelM2 && outline_m <= kMostOutlineM) return;
+  throw Error(fmt::format("the model measures {} from end to end and has {:.3g} m2 of surface with {:.3g} m "
+                          "of outlines, which no building does (1 unit of the file = {:.6g} m): {}",
+                          told(side), area_m2, outline_m, model.metres_per_unit, guess(side)),
+              model.name,
+              is_mesh(model) ? kUnits
+                             : "check the unit of the file and export it again in metres, or leave out what "
+                               "lies around the building");
 }
 
 }  // namespace limen

@@ -28,7 +28,8 @@ std::string size_hint(const Scan& scan);
 std::string axes_hint(const BimModel& model);
 
 /// Throws Error where a model cannot be a building in metres: it is smaller than a chair, or has so much
-/// surface that no computer of today could look at every hand's breadth of it.
+/// surface that no computer of today could look at every hand's breadth of it, or such long outlines of
+/// faces. Bounds what is made of a model's surface and edges: visible_surface() asks first.
 void require_plausible_size(const BimModel& model);
 
 }  // namespace limen

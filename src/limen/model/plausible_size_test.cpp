@@ -112,5 +112,22 @@ TEST(PlausibleSize, OfAModelItsSurfaceCounts) {
   EXPECT_NE(refusal_of(square(0.01)).find("kilometres?"), std::string::npos);
 }
 
+TEST(PlausibleSize, OfAModelTheOutlinesOfItsFacesCount) {
+  BimModel model = square(10.0);
+  model.faces.front().outline.outer = {{0, 0}, {6e6, 0}, {6e6, 1e-3}};
+  model.faces.front().area_m2 = 3e3;
+  EXPECT_NE(refusal_of(model).find("outlines"), std::string::npos);
+  model.faces.front().outline.outer = {{0, 0}, {4e6, 0}, {4e6, 1e-3}};
+  EXPECT_EQ(refusal_of(model), "");
+}
+
+TEST(PlausibleSize, OnlyAMeshIsAskedForItsUnit) {
+  BimModel model = square(10000.0);
+  model.schema = "OBJ";
+  EXPECT_NE(refusal_of(model).find("--units"), std::string::npos);
+  model.schema = "IFC4";
+  EXPECT_EQ(refusal_of(model).find("--units"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace limen

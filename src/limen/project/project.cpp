@@ -32,7 +32,7 @@ class Run {
         folder_(std::move(folder)),
         options_(options),
         monitor_(monitor),
-        store_(folder_ / "store", store_options(options)),
+        store_(folder_ / "store", store_options(options), monitor),
         engine_(make_engine(options.engine, (folder_ / "store" / "dask.log").string(), monitor)),
         files_(list_files(inputs, monitor)),
         decisions_(kept_decisions(folder_, inputs.decisions)) {}

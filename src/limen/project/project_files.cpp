@@ -39,7 +39,6 @@ void take_hash(ProjectFile& file) {
   if (!file.fault.empty()) return;
   try {
     file.sha256 = sha256_of_file(file.path);
-    if (file.sha256.empty()) file.fault = "is not a file that can be read several times";
     file.model = file.model || is_bim_file(file.path);
   } catch (const Error& error) {
     if (error.fault() == Fault::cancelled) throw;
@@ -51,6 +50,7 @@ void take_hash(ProjectFile& file) {
 
 bool lists_files(const std::string& path) {
   constexpr std::streamsize kLongest = 4096;
+  if (!why_unreadable(path).empty()) return false;
   std::ifstream stream(path);
   std::string line;
   line.resize(kLongest);

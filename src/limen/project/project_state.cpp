@@ -70,7 +70,7 @@ std::vector<std::string> made_elsewhere(const std::vector<std::pair<std::size_t,
   std::vector<Job> jobs;
   std::vector<std::size_t> places;
   for (std::size_t k = 0; k < keys.size(); ++k) {
-    if (work.store.has_pair(keys[k].source, keys[k].target_name())) continue;
+    if (work.store.has_pair(keys[k].source, keys[k].target_name(), keys[k].counts)) continue;
     const auto name = [&](std::size_t node) { return scan_name(work.scans[work.nodes[node].scan]); };
     jobs.push_back(pair_job(work.folder, name(pairs[k].first) + " and " + name(pairs[k].second), keys[k]));
     places.push_back(k);
@@ -103,8 +103,10 @@ std::vector<TriedPair> try_pairs(const std::vector<std::pair<std::size_t, std::s
     const ProjectNode& source = work.nodes[pairs[k].first];
     const ProjectNode& target = work.nodes[pairs[k].second];
     tried[k] = {pairs[k].first, pairs[k].second, {}, {}};
-    keys[k] = {source.key, target.key,
-               search == PairSearch::level && seem_level(source, target, work.options)};
+    keys[k] = {source.key,
+               target.key,
+               search == PairSearch::level && seem_level(source, target, work.options),
+               {source.digest.counts(), target.digest.counts()}};
   }
   std::vector<std::string> faults(pairs.size());
   if (work.engine != nullptr) faults = made_elsewhere(pairs, keys, work, status, monitor);

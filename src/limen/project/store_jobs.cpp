@@ -9,6 +9,7 @@
 
 #include "limen/base/stage_part.h"
 #include "limen/bim/read_bim.h"
+#include "limen/files/file_hash.h"
 #include "limen/io/cloud/read_scan.h"
 #include "limen/project/store/kept_notes.h"
 #include "limen/project/store/scan_picture.h"
@@ -28,6 +29,13 @@ void into_store(const Save& save) {
   }
 }
 
+/// Throws Error where the file is not any more what its hash was taken of: what was read of it would be kept
+/// under the wrong key, and used in all later runs.
+void require_unchanged(const ProjectFile& file) {
+  if (sha256_of_file(file.path) != file.sha256)
+    throw Error("was changed while it was read", file.path, "run the project again once it is written");
+}
+
 FileRecord make_scan_features(const ProjectFile& file, const ProjectOptions& options, const Store& store,
                               Monitor& monitor) {
   constexpr double kReading = 0.3;
@@ -36,6 +44,7 @@ FileRecord make_scan_features(const ProjectFile& file, const ProjectOptions& opt
     StagePart reading(monitor, 0.0, kReading);
     read = read_scan_file(file.path, options.reading, reading);
   }
+  require_unchanged(file);
   const bool timed =
       std::any_of(read.scans.begin(), read.scans.end(), [](const Scan& it) { return !it.times_s.empty(); });
   const Trajectories trajectories = timed ? read_trajectories(options.trajectories) : Trajectories{};
@@ -61,6 +70,7 @@ FileRecord make_scan_features(const ProjectFile& file, const ProjectOptions& opt
 
 FileRecord make_model_features(const ProjectFile& file, const Store& store, Monitor& monitor) {
   const BimModel model = read_bim(file.path, monitor);
+  require_unchanged(file);
   const PreparedScan prepared = prepare_model(model, {}, monitor);
   into_store([&] { store.save_features(store.feature_key(file.key(), 0), prepared); });
   return {{0}, without_name(model.warnings, file.path)};
@@ -109,7 +119,7 @@ FileRecord make_features(const ProjectFile& file, const ProjectOptions& options,
 
 RegistrationResult make_pair_result(const PairKey& pair, const RegisterOptions& options, const Store& store,
                                     ScanCache& cache) {
-  std::optional<RegistrationResult> kept = store.load_pair(pair.source, pair.target_name());
+  std::optional<RegistrationResult> kept = store.load_pair(pair.source, pair.target_name(), pair.counts);
   if (!kept) {
     RegisterOptions own = options;
     // What is kept of a pair does not depend on the risk: the project weighs it.
@@ -119,7 +129,7 @@ RegistrationResult make_pair_result(const PairKey& pair, const RegisterOptions& 
     const PreparedPair prepared{*cache.get(pair.source), *cache.get(pair.target)};
     const RegistrationResult result = register_prepared(prepared, own);
     into_store([&] { store.save_pair(pair.source, pair.target_name(), result); });
-    kept = store.load_pair(pair.source, pair.target_name());
+    kept = store.load_pair(pair.source, pair.target_name(), pair.counts);
   }
   if (!kept) throw StoreFault("the result of a pair cannot be read back", pair.source, "look at the disk");
   return std::move(*kept);

@@ -38,6 +38,7 @@ struct PairKey {
   std::string source;
   std::string target;
   bool level = false;
+  PairCounts counts = {};  ///< no part of the key: what its result may point to
 
   /// The second half of the name that the result is kept by.
   [[nodiscard]] std::string target_name() const { return target + (level ? "-level" : ""); }

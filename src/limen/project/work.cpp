@@ -92,7 +92,7 @@ Order read_order(const fs::path& folder, const std::string& options_key) {
 
 class Worker {
  public:
-  Worker(fs::path folder, const std::string& options_key)
+  Worker(fs::path folder, const std::string& options_key, Monitor& monitor)
       : folder_(std::move(folder)), order_(read_order(folder_, options_key)) {
     options_ = options_from(order_.at("options"));
     std::error_code error;
@@ -100,7 +100,7 @@ class Worker {
     if (error)
       throw Unavailable{"the folder that the scans' names are relative to: " + error.message() + ": " +
                         order_.at("folder").get<std::string>()};
-    store_.emplace(folder_ / "store", store_options(options_));
+    store_.emplace(folder_ / "store", store_options(options_), monitor);
     if (store_->options_key() != options_key) throw Unavailable{"the job is of another version of limen"};
   }
 
@@ -123,11 +123,8 @@ class Worker {
     return {"done", {}};
   }
 
-  WorkAnswer pair(const PairKey& pair) const {
-    for (const std::string& key : {pair.source, pair.target}) {
-      if (!store_->has_features(key))
-        throw Unavailable{"features are not in the store, or damaged: " + file_of(key)};
-    }
+  WorkAnswer pair(PairKey pair) const {
+    pair.counts = {counts_of(pair.source), counts_of(pair.target)};
     constexpr std::size_t kTwo = 2;
     ScanCache cache(*store_, kTwo, [this](const std::string& key) { return file_of(key); });
     make_pair_result(pair, options_.registering, *store_, cache);
@@ -135,6 +132,13 @@ class Worker {
   }
 
  private:
+  [[nodiscard]] FeatureCounts counts_of(const std::string& key) const {
+    const std::optional<ScanDigest> digest = store_->load_digest(key);
+    if (!digest || !store_->has_features(key))
+      throw Unavailable{"features are not in the store, or damaged: " + file_of(key)};
+    return digest->counts();
+  }
+
   /// The file that a key of features is of.
   [[nodiscard]] std::string file_of(const std::string& key) const {
     const bool model = key.find("-model-") != std::string::npos;
@@ -157,7 +161,7 @@ class Worker {
 };
 
 WorkAnswer do_job(const std::vector<std::string>& words, Monitor& monitor) {
-  const Worker worker(words[0], options_key_in(words[2]));
+  const Worker worker(words[0], options_key_in(words[2]), monitor);
   if (words[1] == "features") return worker.features(words[2], monitor);
   PairKey pair{words[2], words[3], words[3].ends_with(kLevel)};
   if (pair.level) pair.target.resize(pair.target.size() - kLevel.size());

@@ -13,6 +13,7 @@
 
 #include "limen/base/error.h"
 #include "limen/files/bounded_json.h"
+#include "limen/files/readable.h"
 #include "limen/report/json/json_values.h"
 
 namespace limen {
@@ -28,12 +29,9 @@ constexpr std::uintmax_t kMostBytes = 256U << 20U;
 
 std::string read_text(const fs::path& path) {
   std::error_code error;
-  const fs::file_status status = fs::status(path, error);
-  if (!fs::exists(status)) throw Error("does not exist", path.string(), kRemedy);
-  if (fs::is_directory(status)) throw Error("is a folder, not a file", path.string(), kRemedy);
-  if (fs::is_regular_file(status) && fs::file_size(path, error) > kMostBytes) {
+  require_readable(path, kRemedy);
+  if (fs::file_size(path, error) > kMostBytes)
     throw Error("is far too large for a pose", path.string(), kRemedy);
-  }
   std::ifstream stream(path, std::ios::binary);
   std::string text((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
   if (!stream) throw Error("cannot be read", path.string(), "look at its permissions");

@@ -5,7 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <utility>
+#include <vector>
 
+#include <fmt/format.h>
+
+#include "limen/base/error.h"
 #include "limen/base/parallel.h"
 #include "limen/geometry/cell_key.h"
 #include "limen/geometry/polygon_clip.h"
@@ -15,6 +19,21 @@ namespace {
 
 constexpr double kPixelM = 0.05;
 constexpr double kCellM = 0.5;
+
+/// A mask covers its polygon's box, however little of that the polygon fills. Throws Error where all of them
+/// would take more than 1 GB.
+void require_few_pixels(const std::vector<PlanarPolygon>& planes) {
+  constexpr double kMostPixels = 8e9;
+  double pixels = 0.0;
+  for (const PlanarPolygon& plane : planes) {
+    const Box2 box = box_of(plane.parts);
+    if (box.empty()) continue;
+    pixels += ((box.high - box.low) / kPixelM + Vector2d::Constant(6.0)).prod();
+  }
+  if (pixels <= kMostPixels) return;
+  throw Error(fmt::format("the boxes round its surfaces have {:.3g} m2 in all", pixels * kPixelM * kPixelM),
+              "model", "check the unit of the file, or leave out what lies around the building");
+}
 
 }  // namespace
 
@@ -81,6 +100,7 @@ std::vector<std::int64_t> ModelSpace::cells_near(const Mask& mask, double reach_
 
 ModelSpace::ModelSpace(const Features& features, double reach_m) {
   const std::size_t count = features.planes.size();
+  require_few_pixels(features.planes);
   masks_.resize(count);
   std::vector<std::vector<std::int64_t>> near(count);
   parallel_for(count, 16, [&](std::size_t begin, std::size_t end) {

@@ -107,9 +107,9 @@ std::string name_of(const BimElement& element) {
 BimModel built(RawModel raw, Monitor& monitor) {
   BimModel model = std::move(raw.head);
   const Box3 box = box_of(raw.elements);
+  const auto why = [&] { return model.warnings.empty() ? "" : ": " + model.warnings.front(); };
   if (box.empty()) {
-    const std::string why = model.warnings.empty() ? "" : ": " + model.warnings.front();
-    throw Error("the model has no surface" + why, model.name,
+    throw Error("the model has no surface" + why(), model.name,
                 "export it with its geometry (IFC with shape representations, OBJ or PLY with faces)");
   }
   question_size(box, model);
@@ -135,7 +135,7 @@ BimModel built(RawModel raw, Monitor& monitor) {
         model.spaces.back().faces = std::move(outcome.faces);
       });
   if (model.faces.empty())
-    throw Error("the model's faces have no area", model.name, "check how it was exported");
+    throw Error("the model's faces have no area" + why(), model.name, "check how it was exported");
   model.openings = opening_boxes(raw);
   model.check();
   return model;

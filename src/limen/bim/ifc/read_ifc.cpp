@@ -32,6 +32,9 @@ constexpr double kLongestRestarting_s = 40.0;
 /// More warnings of one sort than this are counted, not listed.
 constexpr std::size_t kMostListed = 10;
 constexpr std::size_t kLargestUnpacked = std::size_t{2000} * 1000 * 1000;
+/// IFC text becomes five to twenty times as small; what becomes far smaller is made to fill the memory.
+constexpr std::size_t kMostExpansion = 100;
+constexpr std::size_t kAnyMember = 1000 * 1000;  // bytes that a member may have in any case
 constexpr const char* kWayRound = "export the model as IFC4 or IFC2X3, or as a mesh (OBJ, PLY)";
 
 void require_schema(const StepFile& file, const std::string& name) {
@@ -245,6 +248,11 @@ std::vector<ZipMember> ifc_members(std::string_view bytes) {
   return members;
 }
 
+std::string unpacked_model(std::string_view bytes, const ZipMember& member, const std::string& name) {
+  return unpacked(bytes, member, name,
+                  std::min(kLargestUnpacked, std::max(kAnyMember, kMostExpansion * member.packed)));
+}
+
 }  // namespace
 
 bool looks_like_step(std::string_view bytes) {
@@ -280,7 +288,7 @@ RawModel read_ifczip(std::string_view bytes, const std::string& name, Monitor& m
     throw Error(fmt::format("the archive holds {} IFC files", members.size()), name,
                 "give an archive with one, or unpack it and give the file");
   }
-  const std::string text = unpacked(bytes, members.front(), name, kLargestUnpacked);
+  const std::string text = unpacked_model(bytes, members.front(), name);
   return read_ifc(text, name, monitor);
 }
 
@@ -289,7 +297,7 @@ std::optional<MapConversion> map_of_ifc(std::string_view bytes, const std::strin
   const std::vector<ZipMember> members =
       looks_like_ifczip(bytes) ? ifc_members(bytes) : std::vector<ZipMember>{};
   if (members.size() != 1) return {};
-  const std::string text = unpacked(bytes, members.front(), name, kLargestUnpacked);
+  const std::string text = unpacked_model(bytes, members.front(), name);
   return map_of_ifc(text, name);
 }
 

@@ -251,7 +251,7 @@ int run(const DeviationCommand& command, const Session& session) {
     session.say(fmt::format("{} issues written to {}\n", write_issues(command, report, scan, model),
                             command.issues.file));
   session.answer(json);
-  return kExitOk;
+  return status_of_matched(report.deviation.matched, session);
 }
 
 void add_pose_options(CommandLine& command, DeviationCommand& options) {

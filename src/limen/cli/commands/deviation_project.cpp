@@ -312,6 +312,14 @@ bool names_project(const std::string& path) {
   return fs::path(path).filename() == "project.json";
 }
 
+int status_of_matched(std::size_t matched, const Session& session) {
+  if (matched > 0) return kExitOk;
+  session.warn(
+      "no point lies on a face of the model, so nothing was measured: look whether the pose is that of these "
+      "files, and at the units of both");
+  return kExitNoMatch;
+}
+
 int run_project_deviation(const ProjectDeviation& command, const Session& session) {
   command.measuring.check();
   command.issues.options.check();
@@ -347,7 +355,7 @@ int run_project_deviation(const ProjectDeviation& command, const Session& sessio
                {folder.path() / "deviation.json", json}});
   session.say(summary(all.report, command));
   session.answer(json);
-  return kExitOk;
+  return status_of_matched(all.report.deviation.matched, session);
 }
 
 }  // namespace limen

@@ -29,4 +29,7 @@ bool names_project(const std::string& path);
 /// Measures every scan that stands registered in a project's frame against its models, one scan at a time.
 int run_project_deviation(const ProjectDeviation& command, const Session& session);
 
+/// The exit status by the number of points on faces: where there are none, a warning and that of no match.
+int status_of_matched(std::size_t matched, const Session& session);
+
 }  // namespace limen

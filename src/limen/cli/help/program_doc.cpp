@@ -145,12 +145,13 @@ ProgramDoc describe_program(const CLI::App& app) {
 }
 
 std::vector<StatusDoc> status_docs() {
-  return {{kExitOk, "Done; of register: registered."},
-          {kExitInternal, "A fault of limen: please report it."},
-          {kExitBadInput, "A file, a value or an option was wrong; one line on stderr tells which."},
-          {kExitUndecided, "Of register: ambiguous, or under-constrained."},
-          {kExitNoMatch, "Of register: nothing in common was found."},
-          {kExitInterrupted, "Interrupted; nothing was written."}};
+  return {
+      {kExitOk, "Done; of register: registered."},
+      {kExitInternal, "A fault of limen: please report it."},
+      {kExitBadInput, "A file, a value or an option was wrong; one line on stderr tells which."},
+      {kExitUndecided, "Of register: ambiguous, or under-constrained."},
+      {kExitNoMatch, "Of register: nothing in common was found; of deviation: no point lies on the model."},
+      {kExitInterrupted, "Interrupted; nothing was written."}};
 }
 
 std::string OptionDoc::text() const {

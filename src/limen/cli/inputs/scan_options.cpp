@@ -177,6 +177,8 @@ InputScan read_input_scan(const std::string& path, const ReadOptions& options, c
   ScanFile file = read_scan_file(path, options, *session.monitor);
   if (told) {
     for (const std::string& note : file.notes) session.note(note);
+  } else if (const std::string note = unusable_note(file); !note.empty()) {
+    session.note(fmt::format("{}: {}", path, note));
   }
   if (!options.metres_per_unit && file.metres_per_unit != 1.0)
     session.note(fmt::format("{}: the file says that 1 unit of its numbers is {:.7g} m ({})", path,

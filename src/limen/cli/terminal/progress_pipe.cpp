@@ -44,6 +44,10 @@ void PipeMonitor::advance(double done, double total) {
   tell(descriptor_, fmt::format("{}\t{:.4f}\n", stage_, std::clamp(done / total, 0.0, 1.0)));
 }
 
+void PipeMonitor::note(std::string_view text) {
+  tell(STDERR_FILENO, fmt::format("limen: {}\n", text));
+}
+
 std::unique_ptr<Monitor> pipe_monitor() {
   const char* told = std::getenv(kProgressVariable);
   const std::string_view text = told == nullptr ? std::string_view() : std::string_view(told);

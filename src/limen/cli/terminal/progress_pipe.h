@@ -22,6 +22,7 @@ class PipeMonitor : public Monitor {
   explicit PipeMonitor(int descriptor);
   void begin_stage(std::string_view name) override;
   void advance(double done, double total) override;
+  void note(std::string_view text) override;
 
  private:
   std::mutex mutex_;

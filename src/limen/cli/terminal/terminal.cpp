@@ -72,6 +72,16 @@ void print_quietly(std::string_view text) {
   std::fflush(stderr);
 }
 
+std::string line_of_note(std::string_view text) {
+  return fmt::format("limen: {}\n", text);
+}
+
+/// Shows no progress.
+class NotingMonitor : public Monitor {
+ public:
+  void note(std::string_view text) override { print_quietly(line_of_note(text)); }
+};
+
 [[noreturn]] void cannot_print(int error_number) {
   if (error_number == EPIPE) throw ReaderGone{};
   throw Error("cannot be written", "standard output", "free some room, or read all of it");
@@ -101,6 +111,10 @@ void TerminalMonitor::print(std::string_view text) {
   const std::scoped_lock lock(mutex_);
   take_away();
   print_quietly(text);
+}
+
+void TerminalMonitor::note(std::string_view text) {
+  print(line_of_note(text));
 }
 
 void TerminalMonitor::begin_stage(std::string_view name) {
@@ -151,8 +165,9 @@ void TerminalMonitor::draw() {
 
 std::unique_ptr<Monitor> make_monitor(bool quiet) {
   if (std::unique_ptr<Monitor> pipe = pipe_monitor()) return pipe;
+  if (quiet) return std::make_unique<Monitor>();
   const bool able = isatty(STDERR_FILENO) != 0 && variable("TERM") != "dumb";
-  if (quiet || !able) return std::make_unique<Monitor>();
+  if (!able) return std::make_unique<NotingMonitor>();
   return std::make_unique<TerminalMonitor>(LineStyle{80, speaks_utf8()});
 }
 

@@ -25,6 +25,7 @@ class TerminalMonitor : public Monitor {
   void begin_stage(std::string_view name) override;
   void advance(double done, double total) override;
   void set_unit(WorkUnit unit) override;
+  void note(std::string_view text) override;
   /// Takes the line away, before something else is printed, until the next stage begins.
   void wipe();
   /// Prints lines on stderr above the progress line.
@@ -48,7 +49,8 @@ class TerminalMonitor : public Monitor {
 };
 
 /// One that tells another program where that asked for it (see progress_pipe.h), else a TerminalMonitor where
-/// stderr is a terminal that can move its cursor and `quiet` is false, else one that shows nothing.
+/// stderr is a terminal that can move its cursor and `quiet` is false, else one that shows no progress. All
+/// print notes on stderr unless `quiet`.
 std::unique_ptr<Monitor> make_monitor(bool quiet);
 
 /// While it lives, the first SIGINT, SIGTERM or SIGHUP cancels `monitor`; a second one ends the process at

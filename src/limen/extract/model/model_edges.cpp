@@ -8,6 +8,7 @@
 #include <unordered_map>
 
 #include "limen/base/error.h"
+#include "limen/base/progress.h"
 #include "limen/geometry/cell_key.h"
 #include "limen/geometry/polygon_clip.h"
 
@@ -74,9 +75,9 @@ class LineMaker {
     double to = own.direction.dot(side.b - own.point);
     if (from > to) std::swap(from, to);
     own.stretches.push_back({from, to, side.normal});
-    const int steps = 1 + static_cast<int>(side.length() / (0.5 * kCellM));
-    for (int k = 0; k <= steps; ++k) {
-      const Vector3d x = side.a + (side.b - side.a) * (static_cast<double>(k) / steps);
+    const auto steps = 1 + static_cast<std::int64_t>(side.length() / (0.5 * kCellM));
+    for (std::int64_t k = 0; k <= steps; ++k) {
+      const Vector3d x = side.a + (side.b - side.a) * (static_cast<double>(k) / static_cast<double>(steps));
       std::vector<std::size_t>& cell = cells_[cell_key(cell_of(x, kCellM))];
       if (cell.empty() || cell.back() != line) cell.push_back(line);
     }
@@ -160,9 +161,15 @@ std::vector<Segment> sharp_edges(const std::vector<PlanarPolygon>& surface, cons
   if (!(options.min_length_m > 0)) throw_bad_option("min_length_m", options.min_length_m, "more than 0");
   if (!(options.same_line_m > 0)) throw_bad_option("same_line_m", options.same_line_m, "more than 0");
   LineMaker maker(options.same_line_m);
-  for (const Side& side : sides_of(surface)) maker.add(side);
+  for (const Side& side : sides_of(surface)) {
+    CancelScope::check();
+    maker.add(side);
+  }
   std::vector<Segment> segments;
-  for (const EdgeLine& line : maker.lines()) add_segments(line, options, segments);
+  for (const EdgeLine& line : maker.lines()) {
+    CancelScope::check();
+    add_segments(line, options, segments);
+  }
   std::stable_sort(segments.begin(), segments.end(),
                    [](const Segment& a, const Segment& b) { return a.length() > b.length(); });
   return segments;

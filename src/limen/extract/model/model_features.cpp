@@ -2,10 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limen/extract/model/model_features.h"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
+#include <string>
+
+#include <fmt/format.h>
 
 #include "limen/base/error.h"
 #include "limen/base/parallel.h"
+#include "limen/base/progress.h"
 #include "limen/geometry/polygon_clip.h"
 
 namespace limen {
@@ -15,6 +21,7 @@ constexpr int kSubtiles = 4;            // per tile edge: those inside give area
 constexpr float kExact = 1e6F;          // points that a sample of a model is worth
 constexpr double kDrawnSigmaM = 0.005;  // by how much an opening is built otherwise than drawn
 constexpr double kInWallM = 0.01;
+constexpr double kMostModelTiles = 3.2e7;  // of 0.25 m on the largest surface that is believed, 2e6 m2
 
 /// One line of a polygon that is asked from left to right: which places on it lie inside.
 class LineAcross {
@@ -25,6 +32,12 @@ class LineAcross {
   [[nodiscard]] bool contains(double x) {
     while (passed_ < crossings_.size() && crossings_[passed_] <= x) ++passed_;
     return (crossings_.size() - passed_) % 2 == 1;
+  }
+
+  /// The first place inside that is no less than `x`; infinite where there is none.
+  [[nodiscard]] double next_inside(double x) {
+    if (contains(x)) return x;
+    return passed_ < crossings_.size() ? crossings_[passed_] : std::numeric_limits<double>::infinity();
   }
 
  private:
@@ -38,10 +51,15 @@ std::vector<SurfaceSample> samples_of(const PlanarPolygon& polygon, std::int32_t
   std::vector<SurfaceSample> samples;
   const auto first = [&](double x) { return std::floor(x / tile_m); };
   for (double row = first(box.low.y()); row * tile_m < box.high.y(); ++row) {
+    CancelScope::check();
     std::vector<LineAcross> lines;
     const auto height = [&](int below) { return row * tile_m + (below + 0.5) * step; };
     for (int below = 0; below < kSubtiles; ++below) lines.emplace_back(polygon.parts.front(), height(below));
     for (double column = first(box.low.x()); column * tile_m < box.high.x(); ++column) {
+      double next = std::numeric_limits<double>::infinity();
+      for (LineAcross& line : lines) next = std::min(next, line.next_inside(column * tile_m));
+      if (std::isinf(next)) break;
+      column = std::max(column, first(next));
       Vector2d sum = Vector2d::Zero();
       int inside = 0;
       for (int k = 0; k < kSubtiles * kSubtiles; ++k) {
@@ -58,6 +76,16 @@ std::vector<SurfaceSample> samples_of(const PlanarPolygon& polygon, std::int32_t
     }
   }
   return samples;
+}
+
+/// Throws Error where tiles over the planes and along their outlines would be too many.
+void require_few_tiles(double tile_m, const Features& features, const std::string& name) {
+  double tiles = 0.0;
+  for (const PlanarPolygon& plane : features.planes)
+    tiles += plane.area_m2 / (tile_m * tile_m) + outline_length(plane.parts.front()) / tile_m;
+  if (tiles <= 2.0 * kMostModelTiles) return;
+  throw Error(fmt::format("tiles of {} m are too many for its surface", tile_m), name,
+              "take larger tiles, or check the unit of the file");
 }
 
 void add_samples(double tile_m, Features& features) {
@@ -135,6 +163,7 @@ ModelFeatures model_features(const BimModel& model, const ModelFeatureOptions& o
     made.features.planes.push_back(std::move(surface.polygons[i]));
     made.elements.push_back(surface.elements[i]);
   }
+  require_few_tiles(options.tile_m, made.features, model.name);
   add_samples(options.tile_m, made.features);
   add_openings(model, made.features);
   return made;

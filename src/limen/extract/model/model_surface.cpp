@@ -18,6 +18,7 @@
 #include "limen/geometry/cell_key.h"
 #include "limen/geometry/cell_lists.h"
 #include "limen/geometry/polygon_clip.h"
+#include "limen/model/plausible_size.h"
 
 namespace limen {
 namespace {
@@ -295,6 +296,7 @@ bool BuiltMatter::operator()(const BimElement& element) const {
 
 ModelSurface visible_surface(const BimModel& model, const ModelSurfaceOptions& options) {
   options.check();
+  require_plausible_size(model);
   const std::vector<Rest> rests = uncovered(model, options);
   std::vector<const Rest*> order;
   for (const Rest& rest : rests) order.push_back(&rest);

@@ -39,6 +39,7 @@ struct ModelSurface {
   std::vector<PlanarPolygon> polygons;  ///< largest first
   std::vector<std::int32_t> elements;   ///< of each polygon: the element that gives most of it
 };
+/// Throws Error where the model cannot be a building in metres (require_plausible_size()).
 ModelSurface visible_surface(const BimModel& model, const ModelSurfaceOptions& options = {});
 
 }  // namespace limen

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "limen/base/error.h"
+#include "limen/base/progress.h"
 #include "limen/extract/model/cross_section.h"
 #include "limen/extract/model/model_edges.h"
 #include "limen/extract/model/model_features.h"
@@ -184,6 +185,45 @@ TEST(ModelSpace, KnowsItsSurfacesAndNothingElse) {
   EXPECT_EQ(space.look(query).kind, SightKind::unseen);  // under a wall
   query.at = {2.5, 2.0, 1.5};
   EXPECT_EQ(space.look(query).kind, SightKind::unseen);  // in the air: things may stand there
+}
+
+TEST(VisibleSurface, RefusesAModelInMillimetres) {
+  BimModel model;
+  add_box(model, BimKind::wall, {0, 0, 0}, {8000, 200, 3000});
+  EXPECT_THROW((void)visible_surface(model), Error);
+  EXPECT_THROW((void)model_features(model), Error);
+}
+
+TEST(ModelFeatures, AreBoundedByTheSurfaceTheyStandFor) {
+  BimModel model;
+  add_box(model, BimKind::slab, {0, 0, 0}, {100, 100, 0.2});
+  ModelFeatureOptions options;
+  options.tile_m = 0.001;  // 2e10 tiles
+  EXPECT_THROW((void)model_features(model, options), Error);
+  // A thin strip across a large box has few tiles, and its row is not walked from end to end of the box.
+  BimModel diagonal;
+  diagonal.elements.push_back({BimKind::wall, "IfcWall", "", "", "", 0});
+  add_face(diagonal, {{0, 0, 0}, {1000, 1000, 0}, {1000, 1000.1, 0}, {0, 0.1, 0}}, 0);
+  const ModelFeatures made = model_features(diagonal);
+  double area = 0.0;
+  for (const SurfaceSample& sample : made.features.samples) area += static_cast<double>(sample.area_m2);
+  EXPECT_NEAR(area, 100.0, 5.0);
+}
+
+TEST(ModelFeatures, CanBeStopped) {
+  const ModelSurface surface = visible_surface(row_of_rooms({5.0}));
+  Monitor monitor;
+  const CancelScope scope(monitor);
+  monitor.cancel();
+  EXPECT_THROW((void)sharp_edges(surface.polygons), Error);
+}
+
+TEST(ModelSpace, RefusesBoxesThatNoMemoryHolds) {
+  Features features;
+  PlanarPolygon strip;
+  strip.parts = {{{{0, 0}, {1e6, 1e6}, {1e6, 1e6 + 1}}, {}}};
+  features.planes = {strip};
+  EXPECT_THROW((void)ModelSpace(features), Error);
 }
 
 }  // namespace

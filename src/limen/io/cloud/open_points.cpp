@@ -83,6 +83,21 @@ std::unique_ptr<PointFile> open_as(PointFormat format, std::string_view bytes, c
   return open_xyz(bytes, name);
 }
 
+/// Throws Error where a file says that it has more points than any format gets into its bytes. LAZ is not
+/// asked: its chunks say how many points each holds, and a chunk is refused while it is unpacked.
+void require_room(PointFormat format, const PointFile& file, std::string_view bytes,
+                  const std::string& name) {
+  constexpr std::uint64_t kMostPerByte = 132;                       // LZF in a PCD: three bytes become 264
+  constexpr std::uint64_t kMostConstant = std::uint64_t{1} << 20U;  // of an E57 that writes nothing per point
+  if (format == PointFormat::las) return;
+  const std::uint64_t most = std::max(kMostConstant, kMostPerByte * bytes.size());
+  for (const CloudFacts& cloud : file.clouds()) {
+    if (cloud.points <= most) continue;
+    throw Error(fmt::format("the file promises {} points, and has {} bytes", cloud.points, bytes.size()),
+                name, "get the whole file, or correct the count");
+  }
+}
+
 }  // namespace
 
 PointFormat point_format_of(std::string_view bytes, const std::filesystem::path& path) {
@@ -105,6 +120,7 @@ OpenPoints::OpenPoints(const std::filesystem::path& path)
       bytes_(std::make_unique<MappedFile>(path)),
       format_(point_format_of(bytes_->bytes(), path)),
       file_(open_as(format_, bytes_->bytes(), path.string())) {
+  require_room(format_, *file_, bytes_->bytes(), path.string());
   if (format_ == PointFormat::las)
     georeference_ = las_coordinate_systems(parse_las_header(bytes_->bytes(), path.string()));
   if (format_ == PointFormat::e57) georeference_ = e57_coordinate_systems(bytes_->bytes(), path.string());

@@ -45,7 +45,8 @@ ScanFile with_cloud(ScanFile file, const OpenPoints& input, std::size_t cloud, c
   std::optional<RecordTable> piece = stream->next(kStreamRows);
   if (!piece) return file;
   ScanBuilder builder(facts.table, options);
-  builder.reserve(facts.points);
+  // A count is believed as far as a point takes a byte; what packs tighter grows in steps.
+  builder.reserve(std::min<std::uint64_t>(facts.points, input.bytes().size()));
   for (; piece; piece = stream->next(kStreamRows)) {
     builder.add(*piece);
     reading.passed(piece->rows);
@@ -179,6 +180,7 @@ ScanFile read_thinned(const OpenPoints& input, const ReadOptions& options, Monit
         fmt::format("{}: to stay within the memory, thinned from {} points to {}, about {:.3f} m apart",
                     facts.table.name, thinned.read, thinned.table.rows, thinned.spacing_m));
     file.dropped += thinned.unusable;
+    file.unusable += thinned.unusable;
     file = with_scan(std::move(file), without_angles(thinned.table), without_order(facts.table), options);
     file.scans.back().topology = {};
   }

@@ -52,6 +52,14 @@ ScanFile followed(ScanFile file, const Trajectory& trajectory) {
 
 }  // namespace
 
+std::string unusable_note(const ScanFile& file) {
+  if (file.unusable == 0) return {};
+  std::size_t all = file.dropped;
+  for (const Scan& scan : file.scans) all += scan.size();
+  return fmt::format("{} of {} points have no finite coordinates below 100 000 km and are left out",
+                     file.unusable, all);
+}
+
 void ReadOptions::check() const {
   if (metres_per_unit && !(*metres_per_unit > 0 && *metres_per_unit < 1e6))
     throw_bad_option("metres_per_unit", *metres_per_unit, "within (0, 1e6)");
@@ -72,6 +80,7 @@ ScanFile read_scan_file(const std::filesystem::path& path, const ReadOptions& op
     return large ? read_thinned(input, options, monitor) : read_at_once(input, options, monitor);
   });
   monitor.throw_if_cancelled();
+  if (std::string note = unusable_note(read); !note.empty()) read.notes.push_back(std::move(note));
   if (options.trajectory && !options.origin) return followed(std::move(read), *options.trajectory);
   return read;
 }

@@ -15,6 +15,10 @@ namespace limen {
 ScanFile read_scan_file(const std::filesystem::path& path, const ReadOptions& options = {},
                         Monitor& monitor = silent_monitor());
 
+/// How many points of a file that was read are no points: its user may have exported it wrong. Empty where
+/// all are. It is among the notes of read_scan_file().
+std::string unusable_note(const ScanFile& file);
+
 /// Reads scan `index` of a file, in the order of read_scan_file(), without the others where the format
 /// allows. Throws Error where there is none.
 Scan read_one_scan(const std::filesystem::path& path, std::size_t index, const ReadOptions& options = {},

@@ -136,6 +136,9 @@ PcdHeader parse_pcd_header(std::string_view bytes, const std::string& name) {
     if (line.tokens.empty() || line.tokens[0].front() == '#') continue;
     if (!read_line(line, header)) continue;
     if (header.fields.empty()) line.fail("the header has no line FIELDS");
+    std::size_t values = 0;
+    for (const PcdField& field : header.fields) values += field.count;
+    if (values > kMostCount) line.fail("a point has absurdly many values");
     return header;
   }
   throw Error("the header has no line DATA", fmt::format("{}, line {}", name, header.lines), kPcdRemedy);

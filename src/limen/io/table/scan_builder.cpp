@@ -318,6 +318,11 @@ std::string settle_centre(Scan& scan, const TableFacts& facts, const ReadOptions
 
 void check_extent(const Scan& scan) {
   const Extent extent = extent_of(scan.points);
+  if (scan.size() > 1 && extent.diagonal() == 0.0) {
+    throw Error(
+        fmt::format("all {} points lie in one place, {}", scan.size(), told(extent.low + scan.local_origin)),
+        scan.name, "check how the file was exported");
+  }
   if (extent.diagonal() <= kLargestExtentM) return;
   throw Error(fmt::format("absurd extent: the points lie between {} and {}",
                           told(extent.low + scan.local_origin), told(extent.high + scan.local_origin)),
@@ -432,13 +437,10 @@ ScanFile ScanBuilder::finish(ScanFile file) {
   }
   check_extent(scan);
   scan.level = parts.options.level;
-  if (unusable > facts.missing) {
-    file.notes.push_back(fmt::format("{} points without finite coordinates below 100 000 km are left out",
-                                     unusable - facts.missing));
-  }
   std::string note = settle_centre(scan, facts, parts.options);
   if (!note.empty()) file.notes.push_back(std::move(note));
   file.dropped += unusable;
+  file.unusable += unusable - std::min(unusable, facts.missing);
   file.scans.push_back(std::move(scan));
   return file;
 }

@@ -84,5 +84,16 @@ TEST(ScanBuilder, WithoutAnythingUsableThereIsNoScan) {
   EXPECT_THROW(ScanBuilder(facts(), {}).finish({}), Error);
 }
 
+TEST(ScanBuilder, PointsThatAllLieInOnePlaceAreNoScan) {
+  std::vector<double> all = numbers(100);
+  for (std::size_t row = 0; row < 100; ++row) {
+    for (std::size_t k = 0; k < 3; ++k) all[kNames.size() * row + k] = 2.0;
+  }
+  EXPECT_THROW(with_scan({}, table_of(all, 0, 100), facts(), {}), Error);
+  EXPECT_NO_THROW(with_scan({}, table_of(all, 0, 1), facts(), {}));
+  all[0] = 2.5;
+  EXPECT_NO_THROW(with_scan({}, table_of(all, 0, 100), facts(), {}));
+}
+
 }  // namespace
 }  // namespace limen

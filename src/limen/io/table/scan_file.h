@@ -39,8 +39,9 @@ struct ScanFile {
   std::string format;               ///< in a user's words: "PLY, binary, little-endian"
   std::vector<std::string> fields;  ///< names of the values per point, as the file has them
   std::vector<Scan> scans;
-  double metres_per_unit = 1.0;    ///< of the file's numbers, already applied: the scans are in metres
-  std::size_t dropped = 0;         ///< points left out: not finite, or missing returns
+  double metres_per_unit = 1.0;  ///< of the file's numbers, already applied: the scans are in metres
+  std::size_t dropped = 0;       ///< points left out: not finite, or missing returns
+  std::size_t unusable = 0;  ///< of those the ones that the file did not call missing: not finite, or absurd
   std::vector<std::string> notes;  ///< sentences about what was assumed or left out
 };
 

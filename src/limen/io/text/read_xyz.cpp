@@ -25,6 +25,8 @@ using Names = std::vector<std::string>;
 
 /// Lines before the first row of numbers are no more than this.
 constexpr std::size_t kMostHeaderLines = 1000;
+/// More values than any scanner writes of a point; a whole cloud on one line has more.
+constexpr std::size_t kMostTextColumns = 1000;
 /// Rows that are looked at to tell colours from normals.
 constexpr std::size_t kSample = 1000;
 
@@ -156,8 +158,11 @@ void require_rows(const TextHeader& header, const std::string& name) {
   if (has_decimal_commas(header.row)) {
     throw Error("the numbers have decimal commas", where, "write them with decimal points");
   }
-  if (leading_numbers(header.row) < 3) {
-    throw Error("a row of points needs three numbers", where, "give points as x y z");
+  const std::size_t columns = leading_numbers(header.row);
+  if (columns < 3) throw Error("a row of points needs three numbers", where, "give points as x y z");
+  if (columns > kMostTextColumns) {
+    throw Error(fmt::format("a row of {} numbers is no point: {} are the most", columns, kMostTextColumns),
+                where, "write each point on a line of its own");
   }
 }
 

@@ -90,5 +90,15 @@ TEST(ReadXyz, NamesTheLineOfABadRow) {
   }
 }
 
+TEST(ReadXyz, ARowOfAbsurdlyManyNumbersIsRefused) {
+  const auto row = [](int columns) {
+    std::string text;
+    for (int k = 0; k < columns; ++k) text += "1 ";
+    return text + "\n2 3 4" + text + "\n";
+  };
+  EXPECT_NO_THROW(read_xyz(row(1000), "t.xyz"));
+  EXPECT_THROW(read_xyz(row(1001), "t.xyz"), Error);
+}
+
 }  // namespace
 }  // namespace limen

@@ -13,6 +13,7 @@
 #include "limen/base/error.h"
 #include "limen/base/text.h"
 #include "limen/files/bounded_json.h"
+#include "limen/files/readable.h"
 #include "limen/files/text_numbers.h"
 
 namespace limen {
@@ -116,8 +117,8 @@ Decision decision_from(const std::vector<std::string>& words) {
 }
 
 std::vector<Decision> read_decisions(const std::filesystem::path& path) {
+  require_readable(path, "look whether the name is right");
   std::ifstream stream(path);
-  if (!stream) throw Error("cannot be read", path.string(), "look whether the name is right");
   const Json json = json_or_nothing<Json>(stream);
   if (!json.is_object() || !json.contains("decisions") || !json["decisions"].is_array())
     throw Error("is no file of decisions", path.string(), R"(write {"decisions": [{"accept": ["A", "B"]}]})");

@@ -60,6 +60,10 @@ class ByteReader {
       std::string text(bytes_.substr(at_, size));
       at_ += size;
       return text;
+    } else if constexpr (std::is_same_v<Value, bool>) {
+      const auto value = get<std::uint8_t>();
+      if (value > 1) fail();
+      return value == 1;
     } else if constexpr (std::is_arithmetic_v<Value> || std::is_enum_v<Value>) {
       need(sizeof(Value));
       Value value;
@@ -87,6 +91,21 @@ class ByteReader {
     std::vector<Value> values(get_count(std::is_same_v<Value, std::string> ? 8 : sizeof(Value)));
     for (Value& value : values) value = get<Value>();
     return values;
+  }
+  /// One of the values of an enumeration from 0 to `last`.
+  template <typename Value>
+  void get_enum(Value& value, Value last) {
+    value = get<Value>();
+    require(static_cast<std::int64_t>(value) >= 0 && value <= last);
+  }
+  /// A place in a list of `size`, or -1 where `or_none`.
+  void get_index(std::int32_t& index, std::size_t size, bool or_none = false) {
+    index = get<std::int32_t>();
+    require(index < 0 ? or_none && index == -1 : static_cast<std::size_t>(index) < size);
+  }
+  /// Throws Error where what was read cannot be.
+  void require(bool holds) const {
+    if (!holds) fail();
   }
   [[nodiscard]] bool at_end() const { return at_ == bytes_.size(); }
 

@@ -85,12 +85,12 @@ void put_opening(ByteWriter& writer, const Opening& opening) {
   writer.put_all(opening.outline);
 }
 
-Opening get_opening(ByteReader& reader) {
+Opening get_opening(ByteReader& reader, std::size_t planes) {
   Opening opening;
   for (Vector3d& corner : opening.corners) reader.get(corner);
-  reader.get(opening.facade);
+  reader.get_index(opening.facade, planes, true);
   opening.evidence = reader.get<std::uint64_t>();
-  reader.get(opening.view);
+  reader.get_enum(opening.view, OpeningView::hole);
   for (double& sigma : opening.edge_sigma_m) reader.get(sigma);
   reader.get(opening.reveal_depth_m);
   reader.get(opening.reveal_sigma_m);
@@ -107,11 +107,11 @@ void put_sample(ByteWriter& writer, const SurfaceSample& sample) {
   writer.put(sample.count);
 }
 
-SurfaceSample get_sample(ByteReader& reader) {
+SurfaceSample get_sample(ByteReader& reader, std::size_t planes) {
   SurfaceSample sample;
   reader.get(sample.mean);
   reader.get(sample.normal);
-  reader.get(sample.plane);
+  reader.get_index(sample.plane, planes, true);
   reader.get(sample.area_m2);
   reader.get(sample.count);
   return sample;
@@ -147,14 +147,14 @@ Features get_features(ByteReader& reader) {
   features.planes.resize(reader.get_count(kLeastPlane));
   for (PlanarPolygon& plane : features.planes) plane = get_planar(reader);
   features.openings.resize(reader.get_count(kLeastOpening));
-  for (Opening& opening : features.openings) opening = get_opening(reader);
+  for (Opening& opening : features.openings) opening = get_opening(reader, features.planes.size());
   features.segments.resize(reader.get_count(48));
   for (Segment& segment : features.segments) {
     reader.get(segment.a);
     reader.get(segment.b);
   }
   features.samples.resize(reader.get_count(kLeastSample));
-  for (SurfaceSample& sample : features.samples) sample = get_sample(reader);
+  for (SurfaceSample& sample : features.samples) sample = get_sample(reader, features.planes.size());
   reader.get(features.inlier_threshold_m);
   reader.get(features.noise_m);
   reader.get(features.drift_m);

@@ -9,6 +9,7 @@
 
 #include "limen/base/atomic_file.h"
 #include "limen/base/error.h"
+#include "limen/files/file_hash.h"
 #include "limen/project/store/byte_stream.h"
 
 namespace limen {
@@ -16,11 +17,14 @@ namespace {
 
 constexpr std::string_view kMagic = "limen\x1a";
 constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 33U;
+constexpr std::size_t kHashDigits = 64;
 
-std::string head_of(std::string_view kind, std::uint32_t version) {
-  ByteWriter head;
-  head.put(version);
-  return std::string(kMagic) + std::string(kind) + head.bytes();
+/// All that stands before the hash and the packed bytes.
+std::string bytes_of(const EntryHead& head) {
+  ByteWriter writer;
+  writer.put(head.version);
+  writer.put(std::string(head.key));
+  return std::string(kMagic) + std::string(head.kind) + writer.bytes();
 }
 
 std::string deflated(std::string_view bytes) {
@@ -34,37 +38,52 @@ std::string deflated(std::string_view bytes) {
   return packed;
 }
 
+[[noreturn]] void refuse(const std::string& what, const std::filesystem::path& path) {
+  throw Error(what, path.string(), "remove it: it is made again by the next run");
+}
+
+/// The packed part again, `size` bytes long.
+std::string inflated(std::string_view packed, std::uint64_t size, const std::filesystem::path& path) {
+  // Deflate packs no tighter than a thousandth.
+  if (size > kMostBytes || size / 1100 > packed.size()) refuse("the file is damaged", path);
+  std::string bytes(size, '\0');
+  auto unpacked = static_cast<uLongf>(size);
+  const int status =
+      uncompress(reinterpret_cast<Bytef*>(bytes.data()), &unpacked,
+                 reinterpret_cast<const Bytef*>(packed.data()), static_cast<uLong>(packed.size()));
+  if (status != Z_OK || unpacked != size) refuse("the file is damaged", path);
+  return bytes;
+}
+
 }  // namespace
 
-void write_packed(const std::filesystem::path& path, std::string_view kind, std::uint32_t version,
-                  std::string_view bytes) {
+void write_packed(const std::filesystem::path& path, const EntryHead& head, std::string_view bytes) {
+  const std::string before = bytes_of(head);
   ByteWriter size;
   size.put_count(bytes.size());
+  const std::string packed = size.bytes() + deflated(bytes);
   AtomicFile file(path);
-  file.write(head_of(kind, version));
-  file.write(size.bytes());
-  file.write(deflated(bytes));
+  file.write(before);
+  file.write(sha256_of(before + packed));
+  file.write(packed);
   file.commit();
 }
 
-std::optional<std::string> read_packed(const std::filesystem::path& path, std::string_view kind,
-                                       std::uint32_t version) {
+std::optional<std::string> read_packed(const std::filesystem::path& path, const EntryHead& head) {
   std::ifstream stream(path, std::ios::binary);
   if (!stream) return {};
   const std::string whole{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-  const std::string head = head_of(kind, version);
-  if (whole.size() < head.size() + 8 || whole.compare(0, head.size(), head) != 0) return {};
-  const auto size =
-      ByteReader(std::string_view(whole).substr(head.size(), 8), path.string()).get<std::uint64_t>();
-  // Deflate packs no tighter than a thousandth.
-  if (size > kMostBytes || size / 1100 > whole.size()) return {};
-  std::string bytes(size, '\0');
-  auto unpacked = static_cast<uLongf>(size);
-  const int status = uncompress(reinterpret_cast<Bytef*>(bytes.data()), &unpacked,
-                                reinterpret_cast<const Bytef*>(whole.data() + head.size() + 8),
-                                static_cast<uLong>(whole.size() - head.size() - 8));
-  if (status != Z_OK || unpacked != size) return {};
-  return bytes;
+  const std::string before = bytes_of(head);
+  const std::size_t named = kMagic.size() + head.kind.size();
+  if (whole.compare(0, named, before, 0, named) != 0) refuse("the file is of another kind", path);
+  if (whole.compare(named, sizeof head.version, before, named, sizeof head.version) != 0) return {};
+  if (whole.size() < before.size() + kHashDigits + sizeof(std::uint64_t)) refuse("the file is damaged", path);
+  if (whole.compare(0, before.size(), before) != 0) refuse("the file belongs to another key", path);
+  const std::string_view packed = std::string_view(whole).substr(before.size() + kHashDigits);
+  if (whole.compare(before.size(), kHashDigits, sha256_of(before + std::string(packed))) != 0)
+    refuse("the file is damaged", path);
+  const auto size = ByteReader(packed, path.string()).get<std::uint64_t>();
+  return inflated(packed.substr(sizeof(std::uint64_t)), size, path);
 }
 
 }  // namespace limen

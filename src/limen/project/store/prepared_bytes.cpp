@@ -78,7 +78,7 @@ void put_place(ByteWriter& writer, const ScannerPlace& place) {
 
 ScannerPlace get_place(ByteReader& reader) {
   ScannerPlace place;
-  reader.get(place.source);
+  reader.get_enum(place.source, PlaceSource::per_point);
   reader.get(place.centre);
   reader.get(place.confirmed);
   const auto sigma = reader.get<double>();
@@ -166,26 +166,26 @@ void put_matches(ByteWriter& writer, const RegistrationResult& result) {
   }
 }
 
-void get_matches(ByteReader& reader, RegistrationResult& result) {
+void get_matches(ByteReader& reader, const PairCounts& counts, RegistrationResult& result) {
   result.matches.resize(reader.get_count(32));
   for (PlaneMatch& match : result.matches) {
-    reader.get(match.source);
-    reader.get(match.target);
+    reader.get_index(match.source, counts.source.planes);
+    reader.get_index(match.target, counts.target.planes);
     reader.get(match.distance_m);
     reader.get(match.angle_rad);
     reader.get(match.overlap_m2);
   }
   result.openings.resize(reader.get_count(24));
   for (MatchedOpenings& match : result.openings) {
-    reader.get(match.source);
-    reader.get(match.target);
+    reader.get_index(match.source, counts.source.openings);
+    reader.get_index(match.target, counts.target.openings);
     reader.get(match.shift_across_m);
     reader.get(match.shift_up_m);
   }
   result.thickness.resize(reader.get_count(28));
   for (MeasuredThickness& wall : result.thickness) {
-    reader.get(wall.source_plane);
-    reader.get(wall.target_plane);
+    reader.get_index(wall.source_plane, counts.source.planes);
+    reader.get_index(wall.target_plane, counts.target.planes);
     reader.get(wall.openings);
     reader.get(wall.value_m);
     reader.get(wall.sigma_m);
@@ -248,8 +248,10 @@ std::string bytes_of(const PreparedScan& prepared) {
   return writer.bytes();
 }
 
-PreparedScan prepared_from(std::string_view bytes, const std::string& where) {
-  ByteReader reader(bytes, where);
+namespace {
+
+/// All but its view of space, which comes last.
+PreparedScan without_space(ByteReader& reader) {
   PreparedScan prepared;
   prepared.extracted.features = get_features(reader);
   reader.get(prepared.upright_from_scan);
@@ -261,6 +263,19 @@ PreparedScan prepared_from(std::string_view bytes, const std::string& where) {
   reader.get(prepared.reach.max());
   prepared.place = get_place(reader);
   prepared.details = get_details(reader);
+  return prepared;
+}
+
+}  // namespace
+
+void require_prepared(std::string_view bytes, const std::string& where) {
+  ByteReader reader(bytes, where);
+  static_cast<void>(without_space(reader));
+}
+
+PreparedScan prepared_from(std::string_view bytes, const std::string& where) {
+  ByteReader reader(bytes, where);
+  PreparedScan prepared = without_space(reader);
   if (prepared.model) prepared.runs = SampleRuns(prepared.extracted.features.samples);
   prepared.space = get_space(reader, prepared.extracted.features);
   return prepared;
@@ -296,10 +311,10 @@ std::string bytes_of(const RegistrationResult& result) {
   return writer.bytes();
 }
 
-RegistrationResult result_from(std::string_view bytes, const std::string& where) {
+RegistrationResult result_from(std::string_view bytes, const std::string& where, const PairCounts& counts) {
   ByteReader reader(bytes, where);
   RegistrationResult result;
-  reader.get(result.outcome);
+  reader.get_enum(result.outcome, Outcome::no_match);
   reader.get(result.reason);
   result.best = get_pose(reader);
   result.sigma = get_sigma(reader);
@@ -311,7 +326,7 @@ RegistrationResult result_from(std::string_view bytes, const std::string& where)
   }
   result.alternatives.resize(reader.get_count(kLeastPose));
   for (Hypothesis& pose : result.alternatives) pose = get_pose(reader);
-  get_matches(reader, result);
+  get_matches(reader, counts, result);
   result.judged_poses = reader.get<std::uint64_t>();
   result.rivals = reader.get<std::uint64_t>();
   const bool others = reader.get<bool>();

@@ -56,14 +56,16 @@ void put_track(ByteWriter& writer, const PassTrack& track) {
     put_moments(writer, strip.moments);
   }
 }
-PassTrack get_track(ByteReader& reader) {
+PassTrack get_track(ByteReader& reader, std::size_t planes) {
   PassTrack track;
   track.way.times_s = reader.get_all<double>();
   track.way.distances_m = reader.get_all<double>();
   track.way.places = reader.get_all<Vector3d>();
+  reader.require(track.way.distances_m.size() == track.way.times_s.size() &&
+                 track.way.places.size() == track.way.times_s.size());
   track.strips.resize(reader.get_count(140));
   for (PassStrip& strip : track.strips) {
-    reader.get(strip.plane);
+    reader.get_index(strip.plane, planes);
     reader.get(strip.place);
     reader.get(strip.anchor);
     get_moments(reader, strip.moments);
@@ -157,7 +159,7 @@ ScanDigest digest_from(std::string_view bytes, const std::string& where) {
     get_moments(reader, plane.moments);
   }
   digest.openings = reader.get_all<Vector2d>();
-  digest.track = get_track(reader);
+  digest.track = get_track(reader, digest.planes.size());
   return digest;
 }
 

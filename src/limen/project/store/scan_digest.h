@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "limen/geometry/plane.h"
+#include "limen/project/store/prepared_bytes.h"
 #include "limen/register/prepare/prepare_scan.h"
 
 namespace limen {
@@ -38,6 +39,8 @@ struct ScanDigest {
   std::vector<PlaneDigest> planes;
   std::vector<Vector2d> openings;  ///< width and height of each
   PassTrack track;                 ///< about the local origin, scan's axes
+
+  [[nodiscard]] FeatureCounts counts() const { return {planes.size(), openings.size()}; }
 };
 
 ScanDigest digest_of(const PreparedScan& prepared);

@@ -57,6 +57,8 @@ Scan picture_from(std::string_view bytes, const std::string& where, std::size_t 
   }
   picture.colours = reader.get_all<std::uint8_t>();
   picture.intensities = reader.get_all<float>();
+  reader.require(picture.colours.empty() || picture.colours.size() == 3 * picture.size());
+  reader.require(picture.intensities.empty() || picture.intensities.size() == picture.size());
   const std::size_t count = std::min(most, picture.size());
   picture.points.resize(count);
   picture.points.shrink_to_fit();

@@ -7,9 +7,12 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "limen/base/progress.h"
 #include "limen/model/result.h"
+#include "limen/project/store/prepared_bytes.h"
 #include "limen/project/store/scan_digest.h"
 #include "limen/register/prepare/prepare_scan.h"
 
@@ -28,12 +31,14 @@ struct FileKey {
 };
 
 /// Results on disk, each in a file of its own that appears whole or not at all: what is there need not be
-/// made again. Keys hold the hash of the input, the options and the version; what is damaged counts as
+/// made again. Keys hold the hash of the input, the options and the version. An entry that is damaged, that
+/// is the entry of another key, or that points to what is not there is removed, with a note, and counts as
 /// missing.
 class Store {
  public:
-  /// Makes the folders. `options` is a text of everything that features and pairs depend on.
-  Store(const std::filesystem::path& folder, const std::string& options);
+  /// Makes the folders. `options` is a text of everything that features and pairs depend on. `monitor`, which
+  /// must live as long, takes the notes.
+  Store(const std::filesystem::path& folder, const std::string& options, Monitor& monitor = silent_monitor());
 
   /// Of the options and the version: the last part of all keys.
   [[nodiscard]] const std::string& options_key() const { return options_; }
@@ -56,18 +61,36 @@ class Store {
   [[nodiscard]] std::optional<Scan> load_picture(const std::string& key, std::size_t most) const;
 
   /// Whole, as has_features().
-  [[nodiscard]] bool has_pair(const std::string& source, const std::string& target) const;
+  [[nodiscard]] bool has_pair(const std::string& source, const std::string& target,
+                              const PairCounts& counts) const;
   [[nodiscard]] std::optional<RegistrationResult> load_pair(const std::string& source,
-                                                            const std::string& target) const;
+                                                            const std::string& target,
+                                                            const PairCounts& counts) const;
   void save_pair(const std::string& source, const std::string& target,
                  const RegistrationResult& result) const;
 
  private:
-  [[nodiscard]] std::filesystem::path file_path(const FileKey& file) const;
-  [[nodiscard]] std::filesystem::path pair_path(const std::string& source, const std::string& target) const;
+  /// The kinds of entries, each in a folder of its own.
+  struct Room {
+    const char* folder;
+    const char* kind;
+  };
+  static constexpr Room kFiles{"files", "FILE"};
+  static constexpr Room kFeatures{"features", "SCAN"};
+  static constexpr Room kDigests{"digests", "DIGE"};
+  static constexpr Room kPictures{"pictures", "PICT"};
+  static constexpr Room kPairs{"pairs", "PAIR"};
+
+  [[nodiscard]] std::string file_key(const FileKey& file) const;
+  void save(const Room& room, const std::string& key, const std::string& bytes) const;
+  /// What decode(bytes, where) makes of an entry; a bad one is removed, with a note.
+  template <typename Decode>
+  [[nodiscard]] auto loaded(const Room& room, const std::string& key, const Decode& decode) const
+      -> std::optional<decltype(decode(std::string_view(), std::string()))>;
 
   std::filesystem::path folder_;
   std::string options_;  ///< 16 hexadecimal digits
+  Monitor& monitor_;
 };
 
 }  // namespace limen

@@ -221,6 +221,8 @@ ScanFrame find_scan_frame(const Scan& scan, Gravity gravity, Monitor& monitor) {
   if (scan.mobile()) found.place.source = PlaceSource::per_point;
   if (scan.size() < kLeastPoints) return found;
   Scan sample = subset(scan, steady_sample(scan, kFramePoints));
+  // Points that lie about as far from their middle are in the sample all together, or not at all.
+  if (sample.size() < kLeastPoints) return found;
   const Scan few = every_third(sample);
   const std::vector<FramePlane> first = frame_planes(few.points);
   monitor.throw_if_cancelled();
