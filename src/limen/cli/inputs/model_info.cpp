@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "limen/io/cloud/read_scan.h"
 #include "limen/model/plausible_size.h"
 
 namespace limen {
@@ -159,6 +160,8 @@ Json json_of_model(const std::string& path, const BimModel& model) {
   json["openings"] = json_of_openings(model);
   json["rooms"] = json_of_rooms(model);
   json["warnings"] = model.warnings;
+  if (const std::string remark = offset_remark(model.offset_applied); !remark.empty())
+    json["warnings"].push_back(remark);
   if (const std::string hint = axes_hint(model); !hint.empty()) json["warnings"].push_back(hint);
   return json;
 }

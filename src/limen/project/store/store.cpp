@@ -42,13 +42,15 @@ Store::Store(const std::filesystem::path& folder, const std::string& options)
 }
 
 std::string Store::feature_key(const FileKey& file, int index) const {
-  return fmt::format("{}-{}-{}", file.sha256.substr(0, 32), file.model ? "model" : std::to_string(index),
+  const int scan = file.scan < 0 ? index : file.scan;
+  return fmt::format("{}-{}-{}", file.sha256.substr(0, 32), file.model ? "model" : std::to_string(scan),
                      options_);
 }
 
 std::filesystem::path Store::file_path(const FileKey& file) const {
   return folder_ / "files" /
-         fmt::format("{}-{}{}", file.sha256.substr(0, 32), file.model ? "model-" : "", options_);
+         fmt::format("{}-{}{}{}", file.sha256.substr(0, 32), file.model ? "model-" : "",
+                     file.scan < 0 ? "" : fmt::format("scan{}-", file.scan), options_);
 }
 
 std::optional<FileRecord> Store::load_file(const FileKey& file) const {

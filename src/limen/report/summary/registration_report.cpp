@@ -67,6 +67,7 @@ InputSummary summarise(const std::string& path, const BimModel& model) {
   summary.low = model.local_origin + extent.low;
   summary.high = model.local_origin + extent.high;
   summary.middle = 0.5 * (summary.low + summary.high);
+  summary.offset_applied = model.offset_applied;
   summary.inner_low = summary.low;
   summary.inner_high = summary.high;
   return summary;
@@ -79,6 +80,20 @@ Matrix4d file_matrix(const RegistrationReport& report, const Rigid3& target_from
   Matrix4d matrix = to_matrix(target_from_source);
   if (source_unit != target_unit) matrix.topLeftCorner<3, 3>() *= source_unit / target_unit;
   matrix.topRightCorner<3, 1>() /= target_unit;
+  return matrix;
+}
+
+bool has_offset(const RegistrationReport& report) {
+  return !report.source.offset_applied.isZero(0.0) || !report.target.offset_applied.isZero(0.0);
+}
+
+Matrix4d raw_matrix(const RegistrationReport& report, const Rigid3& target_from_source) {
+  // With units u and offsets o of both files: u_t raw_t + o_t = R (u_s raw_s + o_s) + t. The large numbers
+  // meet here, in one place: a double has them to 1e-9 m.
+  Matrix4d matrix = file_matrix(report, target_from_source);
+  matrix.topRightCorner<3, 1>() =
+      (target_from_source * report.source.offset_applied - report.target.offset_applied) /
+      report.target.metres_per_unit;
   return matrix;
 }
 
