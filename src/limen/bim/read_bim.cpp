@@ -42,7 +42,6 @@ void set_unit(RawModel& raw, double metres_per_unit, const std::string& name) {
   if (raw.head.schema != "OBJ" && raw.head.schema != "PLY")
     throw Error("an IFC file tells its own unit", name, "leave the unit out");
   raw.head.metres_per_unit = metres_per_unit;
-  raw.head.offset_applied *= metres_per_unit;
   if (metres_per_unit == 1.0) return;
   for (RawElement& element : raw.elements) {
     for (Solid& solid : element.shapes) move(solid, metres_per_unit, Vector3d::Zero());

@@ -83,10 +83,9 @@ struct BimModel {
   std::vector<BimFace> faces;  ///< element by element
   std::vector<BimOpening> openings;
   std::vector<BimSpace> spaces;
-  double metres_per_unit = 1.0;                ///< of the file, already applied
-  Vector3d offset_applied = Vector3d::Zero();  ///< that a comment of a PLY file names, already added; metres
-  bool georeferenced = false;                  ///< world coordinates are those of a map projection
-  std::vector<std::string> warnings;           ///< what could not be read or seems wrong, one sentence each
+  double metres_per_unit = 1.0;       ///< of the file, already applied
+  bool georeferenced = false;         ///< world coordinates are those of a map projection
+  std::vector<std::string> warnings;  ///< what could not be read or seems wrong, one sentence each
 
   /// Throws Error(Fault::internal) where indices or frames are not what is said above.
   void check() const;

@@ -191,7 +191,6 @@ RawModel read_mesh_ply(std::string_view bytes, const std::string& name) {
   RawModel model;
   model.head.name = name;
   model.head.schema = "PLY";
-  model.head.offset_applied = header.offset;
   if (too_short > 0)
     model.head.warnings.push_back(
         fmt::format("{} faces with fewer than three corners are left out", too_short));

@@ -24,6 +24,7 @@ InputSide read_model_side(const SideOptions& options, const Session& session) {
   side.input.model = read_model_input(options.path, session, options.reading.metres_per_unit);
   require_plausible_size(*side.input.model, options.units_option);
   side.summary = summarise(options.path, *side.input.model);
+  side.summary.offset_applied = offset_of_model(options.path, *side.input.model);
   if (options.reading.metres_per_unit) side.summary.metres_per_unit = *options.reading.metres_per_unit;
   side.summary.sha256 = sha256_of_file(options.path);
   return side;

@@ -14,8 +14,10 @@
 #include "limen/base/error.h"
 #include "limen/base/length_unit.h"
 #include "limen/bim/read_bim.h"
+#include "limen/files/mapped_file.h"
 #include "limen/files/scan_in_file.h"
 #include "limen/io/cloud/join_scans.h"
+#include "limen/io/ply/ply_header.h"
 #include "limen/io/trajectory/read_trajectory.h"
 #include "limen/model/plausible_size.h"
 
@@ -214,13 +216,19 @@ FeatureScan read_feature_scan(const FeatureChoice& choice, const Session& sessio
   return read;
 }
 
+Vector3d offset_of_model(const std::string& path, const BimModel& model) {
+  if (model.schema != "PLY") return Vector3d::Zero();
+  const MappedFile file(path);
+  return model.metres_per_unit * parse_ply_header(file.bytes(), path).offset;
+}
+
 BimModel read_model_input(const std::string& path, const Session& session,
                           std::optional<double> metres_per_unit) {
   session.monitor->begin_stage("reading");
   BimModel model = read_bim(path, *session.monitor, metres_per_unit);
   for (const std::string& warning : model.warnings) session.note(fmt::format("{}: {}", path, warning));
-  if (const std::string remark = offset_remark(model.offset_applied); !remark.empty())
-    session.note(fmt::format("{}: {}", path, remark));
+  const Vector3d offset = offset_of_model(path, model);
+  if (!offset.isZero(0.0)) session.note(fmt::format("{}: {}", path, offset_remark(offset)));
   if (const std::string hint = axes_hint(model); !hint.empty())
     session.note(fmt::format("{}: {}", path, hint));
   return model;

@@ -91,6 +91,9 @@ FeatureScan read_feature_scan(const FeatureChoice& choice, const Session& sessio
 BimModel read_model_input(const std::string& path, const Session& session,
                           std::optional<double> metres_per_unit = {});
 
+/// The offset that a mesh in a PLY file names in a comment, and that is in the model's coordinates; metres.
+Vector3d offset_of_model(const std::string& path, const BimModel& model);
+
 /// Adds --alternative N: which pose of a result is meant, 0 being its answer.
 void add_alternative_option(CommandLine& command, int& alternative);
 

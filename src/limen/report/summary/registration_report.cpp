@@ -67,7 +67,6 @@ InputSummary summarise(const std::string& path, const BimModel& model) {
   summary.low = model.local_origin + extent.low;
   summary.high = model.local_origin + extent.high;
   summary.middle = 0.5 * (summary.low + summary.high);
-  summary.offset_applied = model.offset_applied;
   summary.inner_low = summary.low;
   summary.inner_high = summary.high;
   return summary;
