@@ -19,13 +19,23 @@ constexpr double kSmallestScanM = 0.1;
 constexpr double kLongestScanM = 1e5;   // a day of a mobile scanner
 constexpr double kThickestScanM = 1e3;  // the least of its three sides; of a city less
 constexpr double kSmallestModelM = 0.5;
-constexpr double kMostModelM2 = 2e6;      // ten times the surface of a large hospital
-constexpr double kMostOutlineM = 1e7;     // all that surface in plates of 0.8 m: 5 m of outline for each m2
-constexpr std::size_t kLookedAt = 10000;  // points, for three numbers that tell metres from millimetres
-constexpr std::size_t kLeftOut = 100;     // one point in so many, at either end of an axis
-constexpr const char* kUnits =
-    "limen takes the numbers of a file that names no unit as metres: tell the unit (--units, --source-units, "
-    "--target-units: mm, cm, ft, in, us-ft), or export it again in metres";
+constexpr double kMostModelM2 = 2e6;   // ten times the surface of a large hospital
+constexpr double kMostOutlineM = 1e7;  // all that surface in plates of 0.8 m: 5 m of outline for each m2
+constexpr std::size_t kLookedAt =
+    10000;                               // points, for three numbers that distinguish metres from millimetres
+constexpr std::size_t kLeftOut = 100;    // one point in so many, at either end of an axis
+constexpr double kWidestDegrees = 0.05;  // five kilometres
+constexpr double kDegreesPerMetre = 0.05;  // at most, of width by height: a place in degrees has 1e-5
+constexpr std::size_t kPointsOfAPlane = 200;
+constexpr std::size_t kPlanesOfAPose = 3;
+
+std::string remedy_for_units(const std::string& units_option) {
+  const std::string name = units_option.empty()
+                               ? "have its unit named"
+                               : "name the unit with " + units_option + " (mm, cm, ft, in, us-ft)";
+  return "limen takes the numbers of a file that names no unit as metres: " + name +
+         ", or export it again in metres";
+}
 
 /// What the numbers are likely to be where the truth is a building of some metres to some hundred metres.
 std::string guess(double side_m) {
@@ -71,6 +81,14 @@ Vector3d sides_of(const Scan& scan) {
   return {side_of(scan.points, 0), side_of(scan.points, 1), side_of(scan.points, 2)};
 }
 
+/// Longitudes and latitudes beside heights in metres: less than a metre wide by the numbers, and metres high.
+bool seem_degrees(const Scan& scan, const Vector3d& sides) {
+  const double widest = std::max(sides.x(), sides.y());
+  if (!(widest < kWidestDegrees && widest < kDegreesPerMetre * sides.z())) return false;
+  const Vector3d place = scan.local_origin + scan.points[scan.points.size() / 2];
+  return std::abs(place.x()) <= 180.0 && std::abs(place.y()) <= 180.0;
+}
+
 bool plausible(const Vector3d& sides) {
   const double longest = sides.maxCoeff();
   return longest >= kSmallestScanM && longest <= kLongestScanM && sides.minCoeff() <= kThickestScanM;
@@ -80,15 +98,19 @@ constexpr double kSmallSideM = 1.0;  // longest side of a scan that is asked abo
 constexpr double kThickM = 80.0;     // least side of one
 constexpr double kStoreysM[] = {1.5, 40.0};
 constexpr double kTypicalStoreyM = 3.0;
+constexpr double kLongestBuildingM = 2000.0;
+
+bool is_height_and_length(double least_m, double longest_m) {
+  return least_m >= kStoreysM[0] && least_m <= kStoreysM[1] && longest_m <= kLongestBuildingM;
+}
 
 /// The unit in which the least side would be nearest to a storey; empty where none brings it near.
 std::string unit_for(double least_m, double longest_m) {
   std::string best;
   double nearest = 1e300;
   for (const auto& [name, factor] : {std::pair{"mm", 0.001}, {"cm", 0.01}, {"in", 0.0254}, {"km", 1000.0}}) {
-    const double height = factor * least_m;
-    if (height < kStoreysM[0] || height > kStoreysM[1] || factor * longest_m > 2000.0) continue;
-    const double apart = std::abs(std::log(height / kTypicalStoreyM));
+    if (!is_height_and_length(factor * least_m, factor * longest_m)) continue;
+    const double apart = std::abs(std::log(factor * least_m / kTypicalStoreyM));
     if (apart >= nearest) continue;
     nearest = apart;
     best = name;
@@ -98,7 +120,11 @@ std::string unit_for(double least_m, double longest_m) {
 
 }  // namespace
 
-std::string size_hint(const Scan& scan) {
+bool is_size_of_building(const Vector3d& sides_m) {
+  return is_height_and_length(sides_m.minCoeff(), sides_m.maxCoeff());
+}
+
+std::string size_hint(const Scan& scan, const std::string& units_option) {
   if (scan.points.empty()) return {};
   const Vector3d sides = sides_of(scan);
   const double longest = sides.maxCoeff();
@@ -107,9 +133,31 @@ std::string size_hint(const Scan& scan) {
   const std::string unit = odd ? unit_for(least, longest) : "";
   if (unit.empty()) return {};
   return fmt::format(
-      "measures {} x {} x {}; are its numbers {}? Then give --units {} (of register --source-units "
-      "or --target-units)",
-      told(sides.x()), told(sides.y()), told(sides.z()), unit, unit);
+      "measures {} x {} x {}; are its numbers {}? Then {}", told(sides.x()), told(sides.y()), told(sides.z()),
+      unit,
+      units_option.empty() ? "export it again in metres" : fmt::format("give {} {}", units_option, unit));
+}
+
+std::string few_points_hint(const Scan& scan) {
+  constexpr std::size_t kEnough = kPointsOfAPlane * kPlanesOfAPose;
+  if (scan.points.empty() || scan.points.size() >= kEnough) return {};
+  return fmt::format(
+      "holds {} points, too few to find anything by: a pose needs {} planes of about {} points",
+      scan.points.size(), kPlanesOfAPose, kPointsOfAPlane);
+}
+
+std::string degrees_hint(const Scan& scan) {
+  if (scan.points.empty()) return {};
+  const Vector3d sides = sides_of(scan);
+  if (!seem_degrees(scan, sides)) return {};
+  return fmt::format("x and y seem to be degrees of longitude and latitude: they span {:.2g} x {:.2g}, z {}",
+                     sides.x(), sides.y(), told(sides.z()));
+}
+
+std::string up_hint(const Vector3d& up_in_scan) {
+  constexpr double kAlong = 0.9;
+  if (up_in_scan.y() < kAlong * up_in_scan.norm() || up_in_scan.isZero(0.0)) return {};
+  return "its y axis seems to point up: an export with z up needs no guess";
 }
 
 std::string axes_hint(const BimModel& model) {
@@ -134,20 +182,22 @@ std::string axes_hint(const BimModel& model) {
 }
 
 bool has_plausible_size(const Scan& scan) {
-  return scan.points.empty() || plausible(sides_of(scan));
+  return scan.points.empty() || (plausible(sides_of(scan)) && degrees_hint(scan).empty());
 }
 
-void require_plausible_size(const Scan& scan) {
+void require_plausible_size(const Scan& scan, const std::string& units_option) {
   if (scan.points.empty()) return;
+  if (std::string degrees = degrees_hint(scan); !degrees.empty())
+    throw Error(std::move(degrees), scan.name, "bring it to a map in metres first, as UTM");
   const Vector3d sides = sides_of(scan);
   const double longest = sides.maxCoeff();
   if (plausible(sides)) return;
   throw Error(fmt::format("the points measure {} x {} x {}, which no scan of a building does: {}",
                           told(sides.x()), told(sides.y()), told(sides.z()), guess(longest)),
-              scan.name, kUnits);
+              scan.name, remedy_for_units(units_option));
 }
 
-void require_plausible_size(const BimModel& model) {
+void require_plausible_size(const BimModel& model, const std::string& units_option) {
   if (model.faces.empty()) return;
   const double side = longest_side_of(model);
   double area_m2 = 0.0;
@@ -161,7 +211,7 @@ void require_plausible_size(const BimModel& model) {
                           "of outlines, which no building does (1 unit of the file = {:.6g} m): {}",
                           told(side), area_m2, outline_m, model.metres_per_unit, guess(side)),
               model.name,
-              is_mesh(model) ? kUnits
+              is_mesh(model) ? remedy_for_units(units_option)
                              : "check the unit of the file and export it again in metres, or leave out what "
                                "lies around the building");
 }

@@ -34,9 +34,9 @@ BimModel square(double side) {
 }
 
 template <typename Thing>
-std::string refusal_of(const Thing& thing) {
+std::string refusal_of(const Thing& thing, const std::string& units_option = {}) {
   try {
-    require_plausible_size(thing);
+    require_plausible_size(thing, units_option);
   } catch (const Error& error) {
     EXPECT_EQ(error.fault(), Fault::input);
     return error.what();
@@ -56,12 +56,41 @@ TEST(PlausibleSize, RoomsStreetsAndSurveysPass) {
 TEST(PlausibleSize, OddSizesAreAskedAbout) {
   EXPECT_EQ(size_hint(box_of_points({40.0, 30.0, 9.0})), "");
   EXPECT_EQ(size_hint(box_of_points({8000.0, 3000.0, 150.0})), "") << "a street in the hills";
-  EXPECT_NE(size_hint(box_of_points({315.0, 240.0, 118.0})).find("--units in"), std::string::npos);
-  EXPECT_NE(size_hint(box_of_points({800.0, 600.0, 290.0})).find("--units cm"), std::string::npos);
-  EXPECT_NE(size_hint(box_of_points({8000.0, 6000.0, 2900.0})).find("--units mm"), std::string::npos);
+  EXPECT_NE(size_hint(box_of_points({315.0, 240.0, 118.0})).find("numbers in?"), std::string::npos);
+  EXPECT_NE(size_hint(box_of_points({800.0, 600.0, 290.0})).find("numbers cm?"), std::string::npos);
+  EXPECT_NE(size_hint(box_of_points({8000.0, 6000.0, 2900.0})).find("numbers mm?"), std::string::npos);
   EXPECT_TRUE(has_plausible_size(box_of_points({315.0, 240.0, 118.0})));
   EXPECT_FALSE(has_plausible_size(box_of_points({8000.0, 6000.0, 2900.0})));
   EXPECT_EQ(size_hint(Scan{}), "");
+}
+
+TEST(PlausibleSize, AdviceNamesTheOptionOfTheCommandOrNone) {
+  const Scan inches = box_of_points({315.0, 240.0, 118.0});
+  EXPECT_NE(size_hint(inches, "--source-units").find("give --source-units in"), std::string::npos);
+  EXPECT_EQ(size_hint(inches).find("--"), std::string::npos);
+  EXPECT_EQ(refusal_of(box_of_points({4000.0, 3000.0, 2500.0})).find("--"), std::string::npos);
+}
+
+TEST(PlausibleSize, DegreesAreNoMetres) {
+  Scan degrees = box_of_points({0.0004, 0.0003, 9.0});
+  for (Vector3d& point : degrees.points) point += Vector3d(7.75, 48.58, 140.0);
+  EXPECT_NE(degrees_hint(degrees).find("longitude"), std::string::npos);
+  EXPECT_NE(refusal_of(degrees).find("degrees"), std::string::npos);
+  EXPECT_FALSE(has_plausible_size(degrees));
+  EXPECT_EQ(degrees_hint(box_of_points({4.0, 3.0, 2.5})), "");
+  EXPECT_EQ(degrees_hint(box_of_points({0.3, 0.3, 3.0})), "") << "a pillar";
+}
+
+TEST(PlausibleSize, APoseNeedsPoints) {
+  Scan few = box_of_points({4.0, 3.0, 2.5});
+  EXPECT_EQ(few_points_hint(few), "");
+  few.points.resize(10);
+  EXPECT_NE(few_points_hint(few).find("holds 10 points"), std::string::npos);
+}
+
+TEST(PlausibleSize, YUpIsSaidOfScansToo) {
+  EXPECT_NE(up_hint({0.05, 0.99, -0.05}).find("y axis"), std::string::npos);
+  EXPECT_EQ(up_hint({0.0, 0.05, 0.99}), "");
 }
 
 /// The six sides of a hall of 20 x 3 x 12 m, height along y or z.
@@ -124,9 +153,9 @@ TEST(PlausibleSize, OfAModelTheOutlinesOfItsFacesCount) {
 TEST(PlausibleSize, OnlyAMeshIsAskedForItsUnit) {
   BimModel model = square(10000.0);
   model.schema = "OBJ";
-  EXPECT_NE(refusal_of(model).find("--units"), std::string::npos);
+  EXPECT_NE(refusal_of(model, "--units").find("--units"), std::string::npos);
   model.schema = "IFC4";
-  EXPECT_EQ(refusal_of(model).find("--units"), std::string::npos);
+  EXPECT_EQ(refusal_of(model, "--units").find("--units"), std::string::npos);
 }
 
 }  // namespace

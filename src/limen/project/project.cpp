@@ -9,6 +9,8 @@
 
 #include "limen/base/error.h"
 #include "limen/base/stage_part.h"
+#include "limen/io/cloud/point_sample.h"
+#include "limen/model/plausible_size.h"
 #include "limen/project/control/control_file.h"
 #include "limen/project/hear_scans.h"
 #include "limen/project/own_drift.h"
@@ -17,6 +19,7 @@
 #include "limen/project/project_state.h"
 #include "limen/project/retrieve/choose_pairs.h"
 #include "limen/project/scan_names.h"
+#include "limen/project/store/scan_picture.h"
 #include "limen/project/store_jobs.h"
 #include "limen/project/waves.h"
 #include "limen/project/work.h"
@@ -38,7 +41,7 @@ class Run {
         decisions_(kept_decisions(folder_, inputs.decisions)) {}
 
   ProjectResult run() {
-    result_.notes = files_.notes;
+    for (const std::string& text : files_.notes) note(text);
     count_files();
     if (engine_) prepare_elsewhere();
     prepare_files();
@@ -46,6 +49,8 @@ class Run {
       const ProjectScan& first = result_.scans.front();
       throw Error("no scan could be read; the first: " + first.reason, first.file, "look at the files");
     }
+    note_lone_scan();
+    note_copies();
     order_nodes();
     learn_own_drift(nodes_);
     words_ = words_by_nodes(decisions_, nodes_, result_.scans);
@@ -56,8 +61,11 @@ class Run {
     monitor_.begin_stage("adjustment");
     result_.pairs_tried = tried.size();
     ScanCache heard(store_, kHeardInMemory, names_of_keys(nodes_, result_.scans));
+    const std::size_t noted = result_.notes.size();
     assemble(nodes_, tried, inputs_, words_, risk(), hearing_of_scans(nodes_, options_.registering, heard),
              result_);
+    for (std::size_t k = noted; options_.on_note && k < result_.notes.size(); ++k)
+      options_.on_note(result_.notes[k]);
     if (options_.rigid_passes) {
       for (ProjectScan& scan : result_.scans) scan.rigid = scan.mobile ? "as you asked" : "";
     }
@@ -69,6 +77,43 @@ class Run {
   }
 
  private:
+  void note(std::string text) {
+    if (options_.on_note) options_.on_note(text);
+    result_.notes.push_back(std::move(text));
+  }
+
+  /// Control points alone can place one scan; else there is nothing to be done.
+  void note_lone_scan() {
+    if (nodes_.size() == 1 && inputs_.control.empty())
+      note(fmt::format("{} is alone: nothing can be joined to it; give more scans, or a model",
+                       scan_name(result_.scans[nodes_.front().scan])));
+  }
+
+  /// Files of equal bytes are taken as one; a copy in another format is a scan of its own, which says nothing
+  /// new: the user has to decide.
+  void note_copies() {
+    for (std::size_t b = 0; b < nodes_.size(); ++b) {
+      for (std::size_t a = 0; a < b; ++a) {
+        if (points_of(a) == points_of(b) && share_points(a, b))
+          note(fmt::format("{} and {} seem to hold the same {} points: leave one of them out",
+                           scan_name(result_.scans[nodes_[a].scan]), scan_name(result_.scans[nodes_[b].scan]),
+                           points_of(a)));
+      }
+    }
+  }
+
+  /// By the pictures of both, which are made alike of the same points.
+  [[nodiscard]] bool share_points(std::size_t a, std::size_t b) const {
+    if (nodes_[a].digest.model || nodes_[b].digest.model) return false;
+    const std::optional<Scan> one = store_.load_picture(nodes_[a].key, kMostPictured);
+    const std::optional<Scan> other = store_.load_picture(nodes_[b].key, kMostPictured);
+    return one && other && PointSample(*one).share_in(*other) > kShareOfCopies;
+  }
+
+  [[nodiscard]] std::size_t points_of(std::size_t node) const {
+    return result_.scans[nodes_[node].scan].points;
+  }
+
   void count_files() {
     status_.scans = files_.files.size();
     for (const ProjectFile& file : files_.files) {
@@ -144,6 +189,7 @@ class Run {
   }
 
   void add_unreadable(const ProjectFile& file, const std::string& fault) {
+    if (options_.on_note) options_.on_note(file.path + ": " + fault);
     ProjectScan scan;
     scan.file = file.path;
     scan.sha256 = file.sha256;
@@ -166,7 +212,7 @@ class Run {
 
   void add_file(std::size_t number, const FileRecord& record) {
     const ProjectFile& file = files_.files[number];
-    for (const std::string& note : record.notes) result_.notes.push_back(file.path + ": " + note);
+    for (const std::string& text : record.notes) note(file.path + ": " + text);
     const std::size_t first = nodes_.size();
     for (std::size_t k = 0; k < record.points.size(); ++k) {
       ProjectNode node;
@@ -177,6 +223,9 @@ class Run {
       if (!digest)
         throw Error("its features cannot be read back from the store", file.path, "look at the disk");
       node.digest = *digest;
+      if (const std::string hint = up_hint(digest->upright_from_scan.row(2).transpose());
+          digest->upright && !digest->model && !hint.empty())
+        note(file.path + ": " + hint);
       if (options_.rigid_passes) node.digest.track.way = {};
       ProjectScan scan;
       scan.file = file.path;
@@ -229,8 +278,8 @@ class Run {
     for (const TriedPair& pair : tried) {
       if (pair.fault.empty()) continue;
       const auto name = [&](std::size_t node) { return scan_name(result_.scans[nodes_[node].scan]); };
-      result_.notes.push_back(fmt::format("{} and {} could not be compared ({}); run again to try once more",
-                                          name(pair.source), name(pair.target), pair.fault));
+      note(fmt::format("{} and {} could not be compared ({}); run again to try once more", name(pair.source),
+                       name(pair.target), pair.fault));
     }
     return tried;
   }
@@ -282,6 +331,7 @@ class Run {
   }
 
   static constexpr double kOnePlaceM = 0.05;
+  static constexpr double kShareOfCopies = 0.8;  ///< rounding may choose another point for a picture
   static constexpr std::size_t kHeardInMemory = 32;
 
   const ProjectInputs& inputs_;

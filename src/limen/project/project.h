@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,8 @@ struct ProjectOptions {
   /// Along which scans may have been measured: each with times takes the one that covers it, before what its
   /// file says.
   ToldTrajectories trajectories = {};
+  /// Gets each note as soon as it is known; all of them are in ProjectResult::notes too.
+  std::function<void(const std::string& note)> on_note = {};
 
   void check() const;
 };

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <map>
 #include <set>
+#include <tuple>
 #include <utility>
 
 #include <fmt/format.h>
@@ -18,6 +19,7 @@
 #include "limen/bim/read_bim.h"
 #include "limen/files/file_hash.h"
 #include "limen/files/readable.h"
+#include "limen/files/scan_in_file.h"
 
 namespace limen {
 namespace {
@@ -35,15 +37,44 @@ std::string number_at(const std::string& text, std::size_t& at) {
 }
 
 void take_hash(ProjectFile& file) {
-  file.fault = why_unreadable(file.path);
+  const ScanInFile named = scan_in_file(file.path);
+  file.fault = why_unreadable(named.file);
   if (!file.fault.empty()) return;
   try {
-    file.sha256 = sha256_of_file(file.path);
+    if (named.index) file.scan = static_cast<int>(*named.index);
+    file.sha256 = sha256_of_file(named.file);
     file.model = file.model || is_bim_file(file.path);
   } catch (const Error& error) {
     if (error.fault() == Fault::cancelled) throw;
     file.fault = error.problem();
   }
+}
+
+/// Files of equal bytes are copies. One scan of a file that is there as a whole is there already.
+void mark_copies(ProjectFiles& list) {
+  std::map<std::tuple<std::string, bool, int>, std::string> first;
+  for (const ProjectFile& file : list.files)
+    if (!file.sha256.empty() && file.scan < 0)
+      first.emplace(std::tuple(file.sha256, file.model, -1), file.path);
+  std::vector<ProjectFile> kept;
+  for (ProjectFile& file : list.files) {
+    const auto whole = file.scan < 0 ? first.end() : first.find({file.sha256, file.model, -1});
+    if (whole != first.end()) {
+      list.notes.push_back(
+          fmt::format("{} is in {}, which is given as a whole; it counts once", file.path, whole->second));
+      continue;
+    }
+    if (!file.sha256.empty()) {
+      const auto known = first.emplace(std::tuple(file.sha256, file.model, file.scan), file.path).first;
+      if (known->second != file.path) {
+        file.copy_of = known->second;
+        list.notes.push_back(
+            fmt::format("{} holds the same bytes as {}: it counts as its copy", file.path, file.copy_of));
+      }
+    }
+    kept.push_back(std::move(file));
+  }
+  list.files = std::move(kept);
 }
 
 }  // namespace
@@ -89,7 +120,7 @@ ProjectFiles list_files(const ProjectInputs& inputs, Monitor& monitor) {
     std::error_code ignored;
     const std::filesystem::path real = std::filesystem::weakly_canonical(path, ignored);
     if (known.insert(real).second) {
-      list.files.push_back({path, model, {}, {}, {}});
+      list.files.push_back({path, model, {}, {}, {}, -1});
     } else {
       list.notes.push_back(fmt::format("{} was given more than once; it counts once", path));
     }
@@ -107,12 +138,7 @@ ProjectFiles list_files(const ProjectInputs& inputs, Monitor& monitor) {
     take_hash(list.files[k]);
     monitor.advance(static_cast<double>(k + 1), static_cast<double>(list.files.size()));
   }
-  std::map<std::pair<std::string, bool>, std::string> first;
-  for (ProjectFile& file : list.files) {
-    if (file.sha256.empty()) continue;
-    const auto [known_file, fresh] = first.emplace(std::pair(file.sha256, file.model), file.path);
-    if (!fresh) file.copy_of = known_file->second;
-  }
+  mark_copies(list);
   return list;
 }
 

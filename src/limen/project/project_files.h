@@ -18,9 +18,10 @@ struct ProjectFile {
   std::string sha256;   ///< empty where it cannot be read
   std::string copy_of;  ///< the first file with the same bytes, taken as the same; empty: none
   std::string fault;    ///< why it cannot be read, in words; empty: it can
+  int scan = -1;        ///< the one scan of it that the path names (files/scan_in_file.h); -1: all
 
   /// As the store knows it.
-  [[nodiscard]] FileKey key() const { return {sha256, model}; }
+  [[nodiscard]] FileKey key() const { return {sha256, model, scan}; }
 };
 
 struct ProjectFiles {

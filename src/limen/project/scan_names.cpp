@@ -3,29 +3,12 @@
 #include "limen/project/scan_names.h"
 
 #include <filesystem>
-#include <optional>
-#include <string_view>
-#include <utility>
 
 #include <fmt/format.h>
 
-#include "limen/files/text_numbers.h"
+#include "limen/files/scan_in_file.h"
 
 namespace limen {
-namespace {
-
-/// A scan's name in two parts: the file, and which of its scans.
-std::pair<std::string, std::optional<int>> parts_of(const std::string& name) {
-  const std::size_t mark = name.rfind('#');
-  if (mark == std::string::npos) return {name, {}};
-  const std::optional<std::size_t> index = parse_count(std::string_view(name).substr(mark + 1));
-  if (!index) return {name, {}};
-  std::string file = name.substr(0, mark);
-  while (!file.empty() && file.back() == ' ') file.pop_back();
-  return {file, static_cast<int>(*index)};
-}
-
-}  // namespace
 
 std::string scan_name(const NumberedScan& scan) {
   return scan.several || scan.index > 0 ? fmt::format("{} #{}", scan.file, scan.index)
@@ -38,13 +21,16 @@ std::string scan_name(const ProjectScan& scan) {
 
 std::vector<std::size_t> scans_called(const std::string& name, std::size_t count,
                                       const std::function<NumberedScan(std::size_t)>& scan) {
-  const auto [file, index] = parts_of(name);
+  const auto [file, index] = split_scan_name(name);
   std::vector<std::size_t> found;
   for (const bool whole : {true, false}) {
     for (std::size_t k = 0; k < count; ++k) {
       const NumberedScan other = scan(k);
-      if (index && other.index != *index) continue;
-      const bool fits = whole ? other.file == file : std::filesystem::path(other.file).filename() == file;
+      // A file's name may be that of a scan in it, as it was given to the project.
+      const bool own = other.file == name;
+      if (!own && index && static_cast<std::size_t>(other.index) != *index) continue;
+      const bool fits =
+          whole ? own || other.file == file : std::filesystem::path(other.file).filename() == file;
       if (fits) found.push_back(k);
     }
     if (!found.empty()) break;

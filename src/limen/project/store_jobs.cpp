@@ -10,7 +10,9 @@
 #include "limen/base/stage_part.h"
 #include "limen/bim/read_bim.h"
 #include "limen/files/file_hash.h"
+#include "limen/files/scan_in_file.h"
 #include "limen/io/cloud/read_scan.h"
+#include "limen/model/plausible_size.h"
 #include "limen/project/store/kept_notes.h"
 #include "limen/project/store/scan_picture.h"
 #include "limen/register/prepare/prepare_model.h"
@@ -32,8 +34,23 @@ void into_store(const Save& save) {
 /// Throws Error where the file is not any more what its hash was taken of: what was read of it would be kept
 /// under the wrong key, and used in all later runs.
 void require_unchanged(const ProjectFile& file) {
-  if (sha256_of_file(file.path) != file.sha256)
+  if (sha256_of_file(file_of_scan(file.path)) != file.sha256)
     throw Error("was changed while it was read", file.path, "run the project again once it is written");
+}
+
+/// What a user should look at before the scans are worked with.
+std::vector<std::string> doubts_about(const Scan& scan) {
+  std::vector<std::string> doubts;
+  for (std::string hint : {size_hint(scan), degrees_hint(scan), few_points_hint(scan)}) {
+    if (!hint.empty()) doubts.push_back(std::move(hint));
+  }
+  return doubts;
+}
+
+/// One scan of many may be a few points; where none can be a scan, the file is refused.
+void require_a_plausible_scan(const std::vector<Scan>& scans) {
+  if (!scans.empty() && std::none_of(scans.begin(), scans.end(), has_plausible_size))
+    require_plausible_size(scans.front());
 }
 
 FileRecord make_scan_features(const ProjectFile& file, const ProjectOptions& options, const Store& store,
@@ -45,16 +62,21 @@ FileRecord make_scan_features(const ProjectFile& file, const ProjectOptions& opt
     read = read_scan_file(file.path, options.reading, reading);
   }
   require_unchanged(file);
+  require_a_plausible_scan(read.scans);
   const bool timed =
       std::any_of(read.scans.begin(), read.scans.end(), [](const Scan& it) { return !it.times_s.empty(); });
   const Trajectories trajectories = timed ? read_trajectories(options.trajectories) : Trajectories{};
   FileRecord record;
   record.notes = read.notes;
+  for (std::string remark : {unit_remark(read.metres_per_unit), offset_remark(read.offset_applied)})
+    if (!remark.empty()) record.notes.push_back(std::move(remark));
   const auto all = static_cast<double>(read.scans.size());
   for (std::size_t k = 0; k < read.scans.size(); ++k) {
     const auto at = [&](std::size_t i) { return kReading + (1.0 - kReading) * static_cast<double>(i) / all; };
     StagePart preparing(monitor, at(k), at(k + 1));
     Scan scan = along_trajectory(std::move(read.scans[k]), trajectories, record.notes);
+    for (const std::string& doubt : doubts_about(scan))
+      record.notes.push_back(read.scans.size() > 1 ? fmt::format("scan {}: {}", k, doubt) : doubt);
     record.points.push_back(scan.size());
     const std::string key = store.feature_key(file.key(), static_cast<int>(k));
     if (!store.has_picture(key)) into_store([&] { store.save_picture(key, picture_of(scan)); });

@@ -13,6 +13,7 @@
 #include "limen/base/atomic_file.h"
 #include "limen/base/version.h"
 #include "limen/files/bounded_json.h"
+#include "limen/files/scan_in_file.h"
 
 namespace limen {
 namespace {
@@ -29,7 +30,8 @@ struct Unavailable {
 
 /// A file in the order: by its bytes, and by what it is taken as.
 std::string name_in_order(const ProjectFile& file) {
-  return file.sha256 + (file.model ? "-model" : "");
+  return file.sha256 + (file.model ? "-model" : "") +
+         (file.scan < 0 ? "" : fmt::format("-scan{}", file.scan));
 }
 
 std::string key_of_file(const ProjectFile& file, const Store& store) {
@@ -109,7 +111,8 @@ class Worker {
     const Order& files = order_.at("files");
     if (!files.contains(name)) throw Unavailable{"the file is not part of the project's last run"};
     const Order& told = files.at(name);
-    ProjectFile file{told.at("path"), told.at("model"), name.substr(0, name.find('-')), {}, {}};
+    ProjectFile file{told.at("path"), told.at("model"), name.substr(0, name.find('-')), {}, {},
+                     told.at("scan")};
     require_whole(file.path, told.at("bytes"));
     try {
       make_features(file, options_, *store_, monitor);
@@ -150,7 +153,7 @@ class Worker {
 
   static void require_whole(const std::string& path, std::uintmax_t bytes) {
     std::error_code error;
-    const std::uintmax_t size = fs::file_size(path, error);
+    const std::uintmax_t size = fs::file_size(file_of_scan(path), error);
     if (error || size != bytes) throw Unavailable{path + " is not to be seen there as it is for limen"};
   }
 
@@ -179,8 +182,10 @@ void write_work_order(const fs::path& folder, const std::vector<ProjectFile>& fi
   for (const ProjectFile& file : files) {
     if (file.sha256.empty() || !file.copy_of.empty()) continue;
     std::error_code ignored;
-    order["files"][name_in_order(file)] = {
-        {"path", file.path}, {"model", file.model}, {"bytes", fs::file_size(file.path, ignored)}};
+    order["files"][name_in_order(file)] = {{"path", file.path},
+                                           {"model", file.model},
+                                           {"scan", file.scan},
+                                           {"bytes", fs::file_size(file_of_scan(file.path), ignored)}};
   }
   const fs::path path = order_path(folder, store.options_key());
   std::error_code ignored;

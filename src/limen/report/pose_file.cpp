@@ -14,6 +14,7 @@
 #include "limen/base/error.h"
 #include "limen/files/bounded_json.h"
 #include "limen/files/readable.h"
+#include "limen/files/scan_in_file.h"
 #include "limen/report/json/json_values.h"
 
 namespace limen {
@@ -200,11 +201,13 @@ std::optional<Rigid3> world_from(const Json& scan, const fs::path& path) {
 
 /// The pose of a scan, or of the model: that is where the world is.
 Rigid3 world_from_input(const Json& truth, const std::string& scan_path, const fs::path& path) {
-  const fs::path wanted(scan_path);
+  const ScanInFile named = split_scan_name(scan_path);
+  const fs::path wanted(named.file);
   const Json model = truth.value("model", Json());
   if (model.is_object() && text_at(model, "file") == wanted.filename()) return {};
   for (const Json& scan : truth["scans"]) {
     if (!scan.is_object() || !called(scan).is_of(wanted)) continue;
+    if (named.index && static_cast<std::size_t>(called(scan).index) != *named.index) continue;
     if (const std::optional<Rigid3> pose = world_from(scan, path)) return *pose;
   }
   throw Error(fmt::format("holds no pose of the scan {}", wanted.filename().string()), path.string(),

@@ -16,7 +16,6 @@
 #include "limen/cli/inputs/issue_file.h"
 #include "limen/cli/inputs/register_inputs.h"
 #include "limen/cli/inputs/scan_options.h"
-#include "limen/model/plausible_size.h"
 #include "limen/report/deviation/deviation_report.h"
 #include "limen/report/pose_file.h"
 
@@ -218,18 +217,16 @@ int run(const DeviationCommand& command, const Session& session) {
   session.monitor->begin_stage("reading");
   ReadOptions reading = with_choice(read_options(command.origin, "--origin", "up"), command.reading);
   if (!reading.metres_per_unit) reading.metres_per_unit = registered_unit(command, pose_file);
-  const InputSide scan_side = read_side({command.scan, command.with, reading}, session);
+  const InputSide scan_side = read_side({command.scan, command.with, reading, "--units"}, session);
   ReadOptions model_reading;
   model_reading.metres_per_unit = metres_per_unit_of(command.model_units);
-  const InputSide model_side = read_side({command.model, {}, model_reading}, session);
+  const InputSide model_side = read_side({command.model, {}, model_reading, "--model-units"}, session);
   if (scan_side.input.model)
     throw Error("is a building model", command.scan, "give the scan first, then the model");
   if (!model_side.input.model)
     throw Error("is no building model", command.model, "give an IFC, OBJ or PLY model");
   const BimModel& model = *model_side.input.model;
   const Scan scan = joined(scan_side.input);
-  require_plausible_size(scan);
-  require_plausible_size(model);
   if (!scan.centre_known())
     session.note("it is not known from where the scan was taken: give --origin, else nothing can be missed");
   report.scan = scan_side.summary;

@@ -12,10 +12,12 @@
 
 #include <fmt/format.h>
 
+#include "limen/base/error.h"
 #include "limen/base/length_unit.h"
 #include "limen/base/random.h"
 #include "limen/bim/read_bim.h"
 #include "limen/cli/inputs/frame_system.h"
+#include "limen/cli/inputs/info_table.h"
 #include "limen/cli/inputs/model_info.h"
 #include "limen/cli/inputs/scan_options.h"
 #include "limen/io/cloud/read_scan.h"
@@ -90,14 +92,14 @@ Json json_of_centre(const ScannerPlace& place) {
 }
 
 /// World.
-ScannerPlace place_of(const Scan& scan) {
-  ScannerPlace place = find_scan_frame(scan, Gravity::automatic).place;
+ScannerPlace place_of(const Scan& scan, const ScanFrame& frame) {
+  ScannerPlace place = frame.place;
   place.centre += scan.local_origin;
   if (place.refuted) *place.refuted += scan.local_origin;
   return place;
 }
 
-Json json_of_scan(const Scan& scan) {
+Json json_of_scan(const Scan& scan, const ScanFrame& frame) {
   const Extent extent = extent_of(scan.points);
   Json json;
   json["name"] = scan.name;
@@ -105,7 +107,7 @@ Json json_of_scan(const Scan& scan) {
   json["low"] = json_of(Vector3d(scan.local_origin + extent.low));
   json["high"] = json_of(Vector3d(scan.local_origin + extent.high));
   json["local_origin"] = json_of(scan.local_origin);
-  const ScannerPlace place = place_of(scan);
+  const ScannerPlace place = place_of(scan, frame);
   json["optical_centre"] = json_of_centre(place);
   json["scanner"] = json_of(place);
   json["scan_lines"] = scan.topology.known() ? Json(line_count(scan.topology)) : Json();
@@ -127,12 +129,21 @@ Json json_of_file(const std::string& path, const ScanFile& file) {
   json["metres_per_unit"] = file.metres_per_unit;
   if (const CoordinateSystem system = system_of_file(path); system.known())
     json["crs"] = {{"name", system.name}, {"code", system.code}, {"told", system.told}};
+  if (!file.offset_applied.isZero(0.0)) json["offset_applied"] = json_of(file.offset_applied);
   json["notes"] = file.notes;
-  for (const Scan& scan : file.scans) {
-    if (const std::string hint = size_hint(scan); !hint.empty()) json["notes"].push_back(hint);
-  }
   json["scans"] = Json::array();
-  for (const Scan& scan : file.scans) json["scans"].push_back(json_of_scan(scan));
+  const auto note = [&json](const std::string& hint) {
+    if (!hint.empty()) json["notes"].push_back(hint);
+  };
+  note(offset_remark(file.offset_applied));
+  for (const Scan& scan : file.scans) {
+    const ScanFrame frame = find_scan_frame(scan, Gravity::automatic);
+    note(size_hint(scan, "--units"));
+    note(degrees_hint(scan));
+    note(few_points_hint(scan));
+    if (frame.upright) note(up_hint(frame.frame_from_scan.row(2).transpose()));
+    json["scans"].push_back(json_of_scan(scan, frame));
+  }
   return json;
 }
 
@@ -197,23 +208,40 @@ std::string text_of(const Json& file) {
 }
 
 struct InfoCommand {
-  std::string path;
+  std::vector<std::string> paths;
   ReadingChoice reading;
 };
 
-int run(const InfoCommand& command, const Session& session) {
-  const std::string& path = command.path;
-  session.monitor->begin_stage("reading");
-  if (is_bim_file(path)) {
-    const Json model =
-        json_of_model(path, read_bim(path, *session.monitor, metres_per_unit_of(command.reading.units)));
-    session.say(text_of_model(model));
-    session.answer(to_text(model));
-    return kExitOk;
+Json json_of_path(const std::string& path, const ReadingChoice& reading, const Session& session) {
+  if (is_bim_file(path))
+    return json_of_model(path, read_bim(path, *session.monitor, metres_per_unit_of(reading.units)));
+  return json_of_file(path, read_scan_file(path, with_choice({}, reading), *session.monitor));
+}
+
+/// A line for each; what cannot be read does not stop the others.
+int run_on_many(const InfoCommand& command, const Session& session) {
+  Json files = Json::array();
+  bool all_read = true;
+  for (const std::string& path : command.paths) {
+    try {
+      files.push_back(json_of_path(path, command.reading, session));
+    } catch (const Error& error) {
+      if (error.fault() != Fault::input) throw;
+      all_read = false;
+      session.warn(error.what());
+      files.push_back({{"file", path}, {"error", error.what()}});
+    }
   }
-  const Json json =
-      json_of_file(path, read_scan_file(path, with_choice({}, command.reading), *session.monitor));
-  session.say(text_of(json));
+  session.say(info_table(files));
+  session.answer(to_text(files));
+  return all_read ? kExitOk : kExitBadInput;
+}
+
+int run(const InfoCommand& command, const Session& session) {
+  session.monitor->begin_stage("reading");
+  if (command.paths.size() > 1) return run_on_many(command, session);
+  const Json json = json_of_path(command.paths.front(), command.reading, session);
+  session.say(json.contains("scans") ? text_of(json) : text_of_model(json));
   session.answer(to_text(json));
   return kExitOk;
 }
@@ -224,7 +252,11 @@ void add_info_command(CommandLine& app, Session& session) {
   auto options = std::make_shared<InfoCommand>();
   CommandLine* command = add_command(app, session, "info", "Tell what a scan or a model file holds",
                                      [options, &session] { return run(*options, session); });
-  command->add_option("FILE", options->path, "A scan or a model of any format limen reads")->required();
+  command
+      ->add_option("FILE", options->paths,
+                   "A scan or a model of any format limen reads, or \"FILE #N\" for one scan of a file; of "
+                   "several files a table")
+      ->required();
   add_units_option(*command, options->reading.units);
   add_memory_option(*command, options->reading.memory);
   add_trajectory_options(*command, options->reading);

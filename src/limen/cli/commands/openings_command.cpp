@@ -45,7 +45,8 @@ std::string summary(const std::vector<Opening>& openings, const std::string& out
 }
 
 int run_model(const OpeningsCommand& command, const Session& session) {
-  const BimModel model = read_model_input(command.scan, session, metres_per_unit_of(command.reading.units));
+  const BimModel model =
+      read_model_input(command.scan, session, metres_per_unit_of(command.reading.units), "--units");
   session.monitor->begin_stage("openings");
   AtomicFile file(command.output);
   const Features features = model_features(model).features;

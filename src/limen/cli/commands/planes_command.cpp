@@ -73,7 +73,8 @@ std::string summary(const Features& features, const PlanesOptions& options) {
 }
 
 int run_model(const PlanesOptions& options, const Session& session) {
-  const BimModel model = read_model_input(options.scan, session, metres_per_unit_of(options.reading.units));
+  const BimModel model =
+      read_model_input(options.scan, session, metres_per_unit_of(options.reading.units), "--units");
   session.monitor->begin_stage("planes");
   AtomicFile file(options.output);
   const Features features = model_features(model).features;

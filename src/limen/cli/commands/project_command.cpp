@@ -25,6 +25,7 @@
 #include "limen/cli/inputs/scan_list.h"
 #include "limen/cli/inputs/scan_options.h"
 #include "limen/files/mapped_file.h"
+#include "limen/files/scan_in_file.h"
 #include "limen/project/project.h"
 #include "limen/project/scan_names.h"
 #include "limen/project/words.h"
@@ -77,7 +78,8 @@ ProjectOptions project_options(const ProjectCommandOptions& options, const Sessi
   project.rigid_passes = options.rigid_passes;
   project.engine = options.dask;
   project.engine.kind = options.engine == "dask" ? EngineKind::dask : EngineKind::local;
-  project.engine.on_note = [&session](const std::string& text) { session.note(text); };
+  project.on_note = [&session](const std::string& text) { session.note(text); };
+  project.engine.on_note = project.on_note;
   return project;
 }
 
@@ -213,7 +215,7 @@ void require_files(const ProjectCommandOptions& options) {
   for (const std::string& scan : options.scans) {
     if (std::filesystem::is_directory(scan, ignored))
       throw Error("is a folder, not a scan", scan, "name the scans in it: " + scan + "/*");
-    any = any || std::filesystem::exists(scan, ignored);
+    any = any || std::filesystem::exists(file_of_scan(scan), ignored);
   }
   if (!any) static_cast<void>(MappedFile(options.scans.front()));  // says why
 }
@@ -306,12 +308,12 @@ int run(ProjectCommandOptions options, const Session& session) {
   const std::string json = project_json(result, reported(options, session), system);
   session.monitor->throw_if_cancelled();
   write_file(folder.path() / "report.html",
-             project_page(result, pictures_in(folder.path(), options, trajectories, session, result)));
+             project_page(result, pictures_in(folder.path(), options, trajectories, session, result),
+                          system.system.known() || result.frame_kind == "control"));
   std::filesystem::remove(folder.path() / "report.pdf");  // an earlier run's
   // Last: where it is, the folder is complete.
   write_file(folder.path() / "project.json", json);
   if (options.pdf) write_pdf(browser, folder.path(), session);
-  for (const std::string& note : result.notes) session.note(note);
   for (const std::string& note : of_system) session.note(note);
   session.say(summary(result, options.folder));
   session.answer(json);

@@ -16,6 +16,7 @@
 #include "limen/cli/inputs/pdf_option.h"
 #include "limen/cli/inputs/register_inputs.h"
 #include "limen/cli/inputs/register_segment_files.h"
+#include "limen/cli/inputs/same_points.h"
 #include "limen/cli/inputs/scan_options.h"
 #include "limen/cli/inputs/start_option.h"
 #include "limen/register/register.h"
@@ -161,9 +162,11 @@ Registered register_files(const RegisterCommandOptions& options, const Session& 
   registering.picture = !options.no_report;
   ToldSide source;
   ToldSide target;
+  SamePointsWatch watch(options.source, options.target);
   const auto reader = [&](const SideOptions& side, ToldSide& told) {
-    return [&session, &told, side, drawn = registering.picture] {
+    return [&session, &told, &watch, side, is_source = &told == &source, drawn = registering.picture] {
       InputSide read = read_side(side, session);
+      if (const std::string note = watch.note_on(read.input, is_source); !note.empty()) session.note(note);
       told.summary = std::move(read.summary);
       if (drawn) told.scene = scene_side(read.input);
       return std::move(read.input);
@@ -171,9 +174,11 @@ Registered register_files(const RegisterCommandOptions& options, const Session& 
   };
   Registered registered;
   RegistrationReport& report = registered.report;
-  report.result = register_inputs(reader({options.source, options.source_with, source_options}, source),
-                                  reader({options.target, options.target_with, target_options}, target),
-                                  registering, *session.monitor);
+  report.result =
+      register_inputs(reader({options.source, options.source_with, source_options, "--source-units"}, source),
+                      reader({options.target, options.target_with, target_options, "--target-units"}, target),
+                      registering, *session.monitor);
+  if (!watch.note().empty()) report.notes.push_back(watch.note());
   report.source = std::move(source.summary);
   report.target = std::move(target.summary);
   note_place(report.source, report.result.source_place, session);

@@ -89,7 +89,8 @@ std::string summary(const FoundSegments& found, const std::string& output) {
 }
 
 int run_model(const SegmentsCommand& command, const Session& session) {
-  const BimModel model = read_model_input(command.scan, session, metres_per_unit_of(command.reading.units));
+  const BimModel model =
+      read_model_input(command.scan, session, metres_per_unit_of(command.reading.units), "--units");
   AtomicFile file(command.output);
   const FoundSegments found = segments_of(model, command, session);
   const std::string json = segments_json(found.segments, model.local_origin, summarise(command.scan, model));

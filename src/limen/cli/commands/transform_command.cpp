@@ -13,6 +13,7 @@
 #include "limen/cli/inputs/frame_system.h"
 #include "limen/cli/inputs/scan_options.h"
 #include "limen/files/file_hash.h"
+#include "limen/files/scan_in_file.h"
 #include "limen/io/cloud/transform_cloud.h"
 #include "limen/report/json/json_values.h"
 #include "limen/report/pose_file.h"
@@ -48,7 +49,7 @@ void check_cloud(const TransformOptions& options, const PoseFile& pose) {
   const std::string& wanted = options.invert ? pose.target_sha256 : pose.source_sha256;
   const std::string& other = options.invert ? pose.source_sha256 : pose.target_sha256;
   if (options.force || wanted.empty()) return;
-  const std::string hash = sha256_of_file(options.cloud);
+  const std::string hash = sha256_of_file(file_of_scan(options.cloud));
   if (hash.empty() || hash == wanted) return;
   if (hash == other) {
     throw Error(fmt::format("is the {} of {}, which stays where it is", options.invert ? "source" : "target",

@@ -22,6 +22,7 @@
 #include "limen/cli/inputs/registered_file.h"
 #include "limen/cli/inputs/scan_options.h"
 #include "limen/files/readable.h"
+#include "limen/files/scan_in_file.h"
 #include "limen/io/cloud/cloud_writers.h"
 #include "limen/io/cloud/transform_cloud.h"
 #include "limen/report/json/json_values.h"
@@ -89,14 +90,17 @@ std::vector<Move> moves_of(const std::vector<ProjectEntry>& entries, const Sessi
 void name_outputs(std::vector<Move>& moves, const fs::path& folder, const std::string& ending) {
   std::set<fs::path> taken;
   for (Move& move : moves) {
-    const fs::path from(move.entry.file);
+    const ScanInFile named = scan_in_file(move.entry.file);
+    const fs::path from(named.file);
     std::string end = ending.empty() ? from.extension().string() : "." + ending;
-    // A file of several stations becomes E57.
-    if (ending.empty() && move.several) end = ".e57";
+    // A file of several stations becomes E57, and so does one of them where its format is not written.
+    const bool one_of_several = named.index && !is_cloud_ending("cloud" + end);
+    if (ending.empty() && (move.several || one_of_several)) end = ".e57";
     // What is bent is written point by point.
     if (move.entry.bend && !is_cloud_ending("cloud" + end)) end = ".ply";
-    const std::string stem =
-        from.stem().string() + (move.several ? fmt::format("_{}", move.entry.index) : std::string());
+    const std::string stem = from.stem().string() + (named.index    ? fmt::format("_{}", *named.index)
+                                                     : move.several ? fmt::format("_{}", move.entry.index)
+                                                                    : std::string());
     move.output = folder / (stem + end);
     for (int k = 2; !taken.insert(move.output).second; ++k)
       move.output = folder / fmt::format("{}_{}{}", stem, k, end);

@@ -9,6 +9,8 @@
 
 #include <fmt/format.h>
 
+#include "limen/cli/inputs/scan_options.h"
+#include "limen/io/cloud/read_scan.h"
 #include "limen/model/plausible_size.h"
 
 namespace limen {
@@ -159,6 +161,8 @@ Json json_of_model(const std::string& path, const BimModel& model) {
   json["openings"] = json_of_openings(model);
   json["rooms"] = json_of_rooms(model);
   json["warnings"] = model.warnings;
+  if (const std::string remark = offset_remark(offset_of_model(path, model)); !remark.empty())
+    json["warnings"].push_back(remark);
   if (const std::string hint = axes_hint(model); !hint.empty()) json["warnings"].push_back(hint);
   return json;
 }

@@ -10,6 +10,8 @@
 #include "limen/bim/read_bim.h"
 #include "limen/cli/inputs/scan_options.h"
 #include "limen/files/file_hash.h"
+#include "limen/files/scan_in_file.h"
+#include "limen/model/plausible_size.h"
 #include "limen/report/pose_file.h"
 
 namespace limen {
@@ -19,8 +21,10 @@ InputSide read_model_side(const SideOptions& options, const Session& session) {
   if (!options.with.empty())
     throw Error("is a building model", options.path, "further scans can only stand by a scan");
   InputSide side;
-  side.input.model = read_model_input(options.path, session, options.reading.metres_per_unit);
+  side.input.model =
+      read_model_input(options.path, session, options.reading.metres_per_unit, options.units_option);
   side.summary = summarise(options.path, *side.input.model);
+  side.summary.offset_applied = offset_of_model(options.path, *side.input.model);
   if (options.reading.metres_per_unit) side.summary.metres_per_unit = *options.reading.metres_per_unit;
   side.summary.sha256 = sha256_of_file(options.path);
   return side;
@@ -39,18 +43,22 @@ InputSide read_side(const SideOptions& options, const Session& session) {
   InputSide side;
   InputScan read;
   std::string hash;
-  run_both([&] { read = read_input_scan(options.path, options.reading, session); },
-           [&] { hash = sha256_of_file(options.path); });
+  run_both([&] { read = read_input_scan(options.path, options.reading, session, options.units_option); },
+           [&] { hash = sha256_of_file(file_of_scan(options.path)); });
   side.input.scans.push_back({std::move(read.scan), {}});
+  require_plausible_size(side.input.scans.front().scan, options.units_option);
   side.summary = summarise(options.path, side.input.scans.front().scan);
   side.summary.metres_per_unit = read.metres_per_unit;
+  side.summary.offset_applied = read.offset_applied;
   side.summary.sha256 = std::move(hash);
   // The trajectory is that of the side's own scan.
   ReadOptions reading = options.reading;
   reading.trajectory.reset();
   for (std::size_t k = 0; k + 1 < options.with.size(); k += 2) {
     const Rigid3 pose = pose_in_group(options.with[k + 1]);
-    side.input.scans.push_back({read_input(options.with[k], reading, session), pose});
+    side.input.scans.push_back(
+        {read_input_scan(options.with[k], reading, session, options.units_option).scan, pose});
+    require_plausible_size(side.input.scans.back().scan, options.units_option);
     side.summary.with.push_back(options.with[k]);
     side.summary.points += side.input.scans.back().scan.size();
   }

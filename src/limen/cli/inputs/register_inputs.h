@@ -17,6 +17,7 @@ struct SideOptions {
   std::string path;
   std::vector<std::string> with;  ///< further scans of this side, each with the file of its pose
   ReadOptions reading;            ///< of scans
+  std::string units_option;       ///< by which the command names the unit of this side
 };
 
 /// One side as it was read, and what the report says of it.

@@ -7,12 +7,14 @@
 #include "limen/base/error.h"
 #include "limen/files/file_hash.h"
 #include "limen/files/readable.h"
+#include "limen/files/scan_in_file.h"
 
 namespace limen {
 
 void require_registered_file(const ProjectEntry& entry, const std::string& project, bool force) {
-  require_readable(entry.file, fmt::format("run limen where {} found it, or bring it back", project));
-  if (force || entry.sha256.empty() || sha256_of_file(entry.file) == entry.sha256) return;
+  require_readable(file_of_scan(entry.file),
+                   fmt::format("run limen where {} found it, or bring it back", project));
+  if (force || entry.sha256.empty() || sha256_of_file(file_of_scan(entry.file)) == entry.sha256) return;
   throw Error(fmt::format("is not the file that {} is about: its SHA-256 is another one", project),
               entry.file, "give the file that was registered, or --force where it lies in the same frame");
 }

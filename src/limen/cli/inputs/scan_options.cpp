@@ -14,7 +14,10 @@
 #include "limen/base/error.h"
 #include "limen/base/length_unit.h"
 #include "limen/bim/read_bim.h"
+#include "limen/files/mapped_file.h"
+#include "limen/files/scan_in_file.h"
 #include "limen/io/cloud/join_scans.h"
+#include "limen/io/ply/ply_header.h"
 #include "limen/io/trajectory/read_trajectory.h"
 #include "limen/model/plausible_size.h"
 
@@ -90,6 +93,7 @@ void add_alternative_option(CommandLine& command, int& alternative) {
 }
 
 void add_trajectory_options(CommandLine& command, ReadingChoice& choice, const std::string& side) {
+  choice.side = side;
   const std::string name = "--" + side + "trajectory";
   command
       .add_option(name, choice.trajectory,
@@ -139,7 +143,9 @@ TrajectoryOptions trajectory_options(const ReadingChoice& choice) {
   }
   reading.utm_zone = choice.utm_zone;
   reading.time_offset_s = choice.time_offset_s;
-  if (!choice.lever_arm.empty()) reading.lever_arm_m = parse_point(choice.lever_arm, "--lever-arm");
+  reading.option_side = choice.side;
+  if (!choice.lever_arm.empty())
+    reading.lever_arm_m = parse_point(choice.lever_arm, "--" + choice.side + "lever-arm");
   return reading;
 }
 
@@ -172,18 +178,21 @@ ReadOptions read_options(const std::string& origin, const std::string& option, c
   return options;
 }
 
-InputScan read_input_scan(const std::string& path, const ReadOptions& options, const Session& session) {
+InputScan read_input_scan(const std::string& path, const ReadOptions& options, const Session& session,
+                          const std::string& units_option) {
   const bool told = options.memory_bytes > 0 || options.trajectory;
+  const auto note = [&](const std::string& remark) {
+    if (!remark.empty()) session.note(fmt::format("{}: {}", path, remark));
+  };
   ScanFile file = read_scan_file(path, options, *session.monitor);
   if (told) {
-    for (const std::string& note : file.notes) session.note(note);
-  } else if (const std::string note = unusable_note(file); !note.empty()) {
-    session.note(fmt::format("{}: {}", path, note));
+    for (const std::string& remark : file.notes) session.note(remark);
+  } else {
+    note(unusable_note(file));
   }
-  if (!options.metres_per_unit && file.metres_per_unit != 1.0)
-    session.note(fmt::format("{}: the file says that 1 unit of its numbers is {:.7g} m ({})", path,
-                             file.metres_per_unit, unit_name(file.metres_per_unit)));
-  InputScan input{Scan{}, file.metres_per_unit};
+  if (!options.metres_per_unit) note(unit_remark(file.metres_per_unit));
+  note(offset_remark(file.offset_applied));
+  InputScan input{Scan{}, file.metres_per_unit, file.offset_applied};
   if (file.scans.size() == 1) {
     input.scan = std::move(file.scans.front());
   } else {
@@ -191,29 +200,38 @@ InputScan read_input_scan(const std::string& path, const ReadOptions& options, c
     input.scan.name = path;
   }
   // What is beyond belief is refused by who works with it, in one line.
-  const std::string hint = has_plausible_size(input.scan) ? size_hint(input.scan) : "";
-  if (!hint.empty()) session.note(fmt::format("{}: {}", path, hint));
+  if (has_plausible_size(input.scan)) note(size_hint(input.scan, units_option));
+  note(few_points_hint(input.scan));
   return input;
-}
-
-Scan read_input(const std::string& path, const ReadOptions& options, const Session& session) {
-  return read_input_scan(path, options, session).scan;
 }
 
 FeatureScan read_feature_scan(const FeatureChoice& choice, const Session& session) {
   const ReadOptions reading =
       with_choice(read_options(choice.origin, "--origin", choice.gravity), choice.reading);
   session.monitor->begin_stage("reading");
-  FeatureScan read{read_input(choice.scan, reading, session), {}};
+  InputScan input = read_input_scan(choice.scan, reading, session, "--units");
+  FeatureScan read{std::move(input.scan), {}};
   read.input = summarise(choice.scan, read.scan);
+  read.input.offset_applied = input.offset_applied;
+  if (const std::string hint = degrees_hint(read.scan); !hint.empty())
+    session.note(fmt::format("{}: {}", choice.scan, hint));
   return read;
 }
 
+Vector3d offset_of_model(const std::string& path, const BimModel& model) {
+  if (model.schema != "PLY") return Vector3d::Zero();
+  const MappedFile file(path);
+  return model.metres_per_unit * parse_ply_header(file.bytes(), path).offset;
+}
+
 BimModel read_model_input(const std::string& path, const Session& session,
-                          std::optional<double> metres_per_unit) {
+                          std::optional<double> metres_per_unit, const std::string& units_option) {
   session.monitor->begin_stage("reading");
   BimModel model = read_bim(path, *session.monitor, metres_per_unit);
+  require_plausible_size(model, units_option);
   for (const std::string& warning : model.warnings) session.note(fmt::format("{}: {}", path, warning));
+  const Vector3d offset = offset_of_model(path, model);
+  if (!offset.isZero(0.0)) session.note(fmt::format("{}: {}", path, offset_remark(offset)));
   if (const std::string hint = axes_hint(model); !hint.empty())
     session.note(fmt::format("{}: {}", path, hint));
   return model;
@@ -259,7 +277,7 @@ int deliver(AtomicFile& file, const std::string& json, const std::string& summar
 
 void refuse_same_file(const std::string& output, const std::string& input) {
   std::error_code missing;
-  if (std::filesystem::equivalent(output, input, missing)) {
+  if (std::filesystem::equivalent(output, file_of_scan(input), missing)) {
     throw Error("would be written over the input", output, "give the result another name");
   }
 }

@@ -35,6 +35,7 @@ struct ReadingChoice {
   std::string utm_zone = "auto";
   std::string lever_arm;  ///< "x,y,z" or empty
   double time_offset_s = 0.0;
+  std::string side;  ///< what stands before the names of these options: "source-", or nothing
 };
 
 /// "500M", "2.5G" or a number of bytes; 0 for an empty text. Throws Error for anything else.
@@ -67,16 +68,17 @@ void add_feature_options(CommandLine& command, FeatureChoice& choice);
 /// "auto", "up" or "unknown".
 ReadOptions read_options(const std::string& origin, const std::string& option, const std::string& gravity);
 
-/// Reads the one scan of a file, and notes where it was thinned or cut, what unit its numbers have where they
-/// are not metres, and where it is as large as no building.
-Scan read_input(const std::string& path, const ReadOptions& options, const Session& session);
-
-/// The same with what it was in the file.
+/// The one scan of a file, with what it was there.
 struct InputScan {
   Scan scan;
-  double metres_per_unit = 1.0;  ///< of the file's numbers
+  double metres_per_unit = 1.0;                ///< of the file's numbers
+  Vector3d offset_applied = Vector3d::Zero();  ///< that the file names in a comment; metres
 };
-InputScan read_input_scan(const std::string& path, const ReadOptions& options, const Session& session);
+/// Reads it, and notes where it was thinned or cut, what unit its numbers have where they are not metres,
+/// which offset was added, where it is as large as no building, and where it has too few points.
+/// `units_option`: of the command, by which the unit of this file is named.
+InputScan read_input_scan(const std::string& path, const ReadOptions& options, const Session& session,
+                          const std::string& units_option);
 
 /// The one scan of a command that takes features, and what is told of it. `choice.scan` is no model.
 struct FeatureScan {
@@ -85,9 +87,13 @@ struct FeatureScan {
 };
 FeatureScan read_feature_scan(const FeatureChoice& choice, const Session& session);
 
-/// Reads a building model and notes its warnings; `metres_per_unit`: of a mesh, where the user says so.
+/// Reads a building model and notes its warnings; `metres_per_unit`: of a mesh, where the user says so, and
+/// `units_option`: by which (empty: there is none). Throws Error where it cannot be a building in metres.
 BimModel read_model_input(const std::string& path, const Session& session,
-                          std::optional<double> metres_per_unit = {});
+                          std::optional<double> metres_per_unit = {}, const std::string& units_option = {});
+
+/// The offset that a mesh in a PLY file names in a comment, and that is in the model's coordinates; metres.
+Vector3d offset_of_model(const std::string& path, const BimModel& model);
 
 /// Adds --alternative N: which pose of a result is meant, 0 being its answer.
 void add_alternative_option(CommandLine& command, int& alternative);

@@ -17,6 +17,7 @@
 #include "limen/bim/read_bim.h"
 #include "limen/cli/inputs/scan_options.h"
 #include "limen/files/file_hash.h"
+#include "limen/files/scan_in_file.h"
 #include "limen/io/cloud/join_clouds.h"
 #include "limen/io/cloud/thin_cloud.h"
 #include "limen/io/cloud/write_clouds.h"
@@ -38,9 +39,9 @@ bool is_json_name(const std::string& path) {
 /// written from one of them.
 std::string found_beside(const std::string& file, const std::string& named_by) {
   std::error_code ignored;
-  if (fs::exists(file, ignored)) return file;
+  if (fs::exists(file_of_scan(file), ignored)) return file;
   for (fs::path folder = fs::absolute(named_by).parent_path();; folder = folder.parent_path()) {
-    if (fs::exists(folder / file, ignored)) return (folder / file).string();
+    if (fs::exists(file_of_scan((folder / file).string()), ignored)) return (folder / file).string();
     if (folder == folder.parent_path()) return file;
   }
 }
@@ -71,7 +72,7 @@ std::vector<ViewInput> scans_of_project(const std::string& path, const Session& 
 
 void check_bytes(const ViewInput& input) {
   if (input.sha256.empty()) return;
-  const std::string hash = sha256_of_file(input.path);
+  const std::string hash = sha256_of_file(file_of_scan(input.path));
   if (hash.empty() || hash == input.sha256) return;
   throw Error(fmt::format("is not the file that {} is about: its SHA-256 is another", input.told_by),
               input.path, "give the registered file, or name the clouds themselves instead of the result");
@@ -197,7 +198,7 @@ ViewScene read_view(const std::vector<ViewInput>& inputs, std::size_t most_point
   for (std::size_t k = 0; k < inputs.size(); ++k) {
     check_bytes(inputs[k]);
     if (is_bim_file(inputs[k].path)) {
-      models.emplace(k, read_model_input(inputs[k].path, session, metres_per_unit));
+      models.emplace(k, read_model_input(inputs[k].path, session, metres_per_unit, "--units"));
     } else {
       clouds.push_back(open_cloud(inputs[k], k, session));
     }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -98,6 +99,33 @@ void require_room(PointFormat format, const PointFile& file, std::string_view by
   }
 }
 
+/// One cloud of a file as a file of its own.
+class OneCloud : public PointFile {
+ public:
+  OneCloud(std::unique_ptr<PointFile> file, std::size_t cloud)
+      : file_(std::move(file)), cloud_(cloud), clouds_{file_->clouds()[cloud]} {}
+
+  [[nodiscard]] std::string format() const override { return file_->format(); }
+  [[nodiscard]] const std::vector<CloudFacts>& clouds() const override { return clouds_; }
+  [[nodiscard]] std::unique_ptr<PointStream> read(std::size_t /*index*/) const override {
+    return file_->read(cloud_);
+  }
+
+ private:
+  std::unique_ptr<PointFile> file_;
+  std::size_t cloud_;
+  std::vector<CloudFacts> clouds_;
+};
+
+/// The clouds with points of a file, of which empty ones are no scans; a file of one cloud has one scan.
+std::vector<std::size_t> scans_of(const PointFile& file) {
+  std::vector<std::size_t> scans;
+  for (std::size_t k = 0; k < file.clouds().size(); ++k) {
+    if (file.clouds()[k].points > 0 || file.clouds().size() == 1) scans.push_back(k);
+  }
+  return scans;
+}
+
 }  // namespace
 
 PointFormat point_format_of(std::string_view bytes, const std::filesystem::path& path) {
@@ -115,12 +143,28 @@ PointFormat point_format_of(std::string_view bytes, const std::filesystem::path&
   unknown_format(bytes, path.string());
 }
 
-OpenPoints::OpenPoints(const std::filesystem::path& path)
+OpenPoints::OpenPoints(const std::filesystem::path& path) : OpenPoints(path, scan_in_file(path.string())) {}
+
+OpenPoints::OpenPoints(const std::filesystem::path& path, std::size_t scan)
+    : OpenPoints(path, ScanInFile{path.string(), scan}) {}
+
+OpenPoints::OpenPoints(const std::filesystem::path& path, const ScanInFile& named)
     : path_(path),
-      bytes_(std::make_unique<MappedFile>(path)),
-      format_(point_format_of(bytes_->bytes(), path)),
+      bytes_(std::make_unique<MappedFile>(named.file)),
+      format_(point_format_of(bytes_->bytes(), named.file)),
       file_(open_as(format_, bytes_->bytes(), path.string())) {
   require_room(format_, *file_, bytes_->bytes(), path.string());
+  if (named.index) {
+    const std::vector<std::size_t> scans = scans_of(*file_);
+    if (*named.index >= scans.size())
+      throw Error(fmt::format("has no scan {}", *named.index), named.file,
+                  scans.empty() ? "give a file with points"
+                                : fmt::format("its scans are #0 to #{}", scans.size() - 1));
+    if (file_->clouds().size() > 1) {
+      chosen_ = named.index;
+      file_ = std::make_unique<OneCloud>(std::move(file_), scans[*named.index]);
+    }
+  }
   if (format_ == PointFormat::las)
     georeference_ = las_coordinate_systems(parse_las_header(bytes_->bytes(), path.string()));
   if (format_ == PointFormat::e57) georeference_ = e57_coordinate_systems(bytes_->bytes(), path.string());

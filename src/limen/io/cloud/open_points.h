@@ -4,11 +4,13 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "limen/files/mapped_file.h"
+#include "limen/files/scan_in_file.h"
 #include "limen/io/table/point_file.h"
 
 namespace limen {
@@ -20,12 +22,17 @@ enum class PointFormat { ply, pcd, ptx, text, e57, las };
 /// be. Throws Error where it is none of them.
 PointFormat point_format_of(std::string_view bytes, const std::filesystem::path& path);
 
-/// A point file with the bytes it is read from.
+/// A point file with the bytes it is read from, or one scan of such a file: then the other clouds of the file
+/// are not seen.
 class OpenPoints {
  public:
-  /// Throws Error where the file cannot be opened or its head not be read.
+  /// `path`: a file, or "FILE #N" for one of its scans (files/scan_in_file.h). Throws Error where the file
+  /// cannot be opened or its head not be read, and where it has no such scan.
   explicit OpenPoints(const std::filesystem::path& path);
+  /// Scan number `scan` of the file, counted among those with points.
+  OpenPoints(const std::filesystem::path& path, std::size_t scan);
 
+  /// As it was given.
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
   [[nodiscard]] std::string name() const { return path_.string(); }
   [[nodiscard]] std::string_view bytes() const { return bytes_->bytes(); }
@@ -33,13 +40,18 @@ class OpenPoints {
   [[nodiscard]] const PointFile& file() const { return *file_; }
   /// Texts of the coordinate system, where the file has some.
   [[nodiscard]] const std::vector<std::string>& georeference() const { return georeference_; }
+  /// The one scan of several that was named; empty: all that the file holds.
+  [[nodiscard]] const std::optional<std::size_t>& chosen() const { return chosen_; }
   /// Points of all clouds, as the file says.
   [[nodiscard]] std::uint64_t points() const;
   /// Gives the memory of bytes that were read back; they may be read again.
   void forget() const { bytes_->forget(); }
 
  private:
+  OpenPoints(const std::filesystem::path& path, const ScanInFile& named);
+
   std::filesystem::path path_;
+  std::optional<std::size_t> chosen_;
   std::unique_ptr<MappedFile> bytes_;
   PointFormat format_;
   std::unique_ptr<PointFile> file_;

@@ -150,25 +150,6 @@ std::uint64_t scan_bytes(const OpenPoints& input) {
   return bytes;
 }
 
-ScanFile read_one_cloud(const OpenPoints& input, std::size_t cloud, const ReadOptions& options,
-                        Monitor& monitor) {
-  const CloudFacts& facts = input.file().clouds()[cloud];
-  ScanFile file = begun(input);
-  Reading reading(input, monitor);
-  if (options.memory_bytes > 0 && facts.points * bytes_per_point(facts) > options.memory_bytes) {
-    ThinOptions thinning;
-    thinning.most_points = std::max<std::uint64_t>(1, options.memory_bytes / bytes_per_point(facts) / 2);
-    thinning.memory_bytes = std::max<std::uint64_t>(1, options.memory_bytes / 2);
-    const ThinnedCloud thinned = thinned_cloud(input, cloud, thinning, reading);
-    file = with_scan(std::move(file), without_angles(thinned.table), without_order(facts.table), options);
-    file.scans.back().topology = {};
-    return file;
-  }
-  file = with_cloud(std::move(file), input, cloud, options, reading);
-  require_scans(file, input);
-  return file;
-}
-
 ScanFile read_thinned(const OpenPoints& input, const ReadOptions& options, Monitor& monitor) {
   ScanFile file = begun(input);
   Reading reading(input, monitor);

@@ -15,11 +15,6 @@ namespace limen {
 ScanFile read_clouds(const OpenPoints& input, const ReadOptions& options,
                      Monitor& monitor = silent_monitor());
 
-/// One cloud of a file, read as read_clouds() does, or thinned where it would take more than
-/// `options.memory_bytes`.
-ScanFile read_one_cloud(const OpenPoints& input, std::size_t cloud, const ReadOptions& options,
-                        Monitor& monitor = silent_monitor());
-
 /// Bytes that the scans of a file take in memory, about.
 std::uint64_t scan_bytes(const OpenPoints& input);
 

@@ -8,6 +8,7 @@
 
 #include "limen/base/error.h"
 #include "limen/base/guarded_mapping.h"
+#include "limen/base/length_unit.h"
 #include "limen/io/cloud/join_scans.h"
 #include "limen/io/cloud/open_points.h"
 #include "limen/io/cloud/read_cloud.h"
@@ -21,6 +22,7 @@ namespace {
 
 /// Formats that are small enough to be read from memory at once, by their own readers.
 ScanFile read_at_once(const OpenPoints& input, const ReadOptions& options, Monitor& monitor) {
+  if (input.chosen()) return read_clouds(input, options, monitor);
   switch (input.format()) {
     case PointFormat::pcd:
       return read_pcd(input.bytes(), input.name(), options);
@@ -50,6 +52,23 @@ ScanFile followed(ScanFile file, const Trajectory& trajectory) {
   return file;
 }
 
+/// Reads what `open` opens.
+template <typename Open>
+ScanFile read_opened(const Open& open, const ReadOptions& options, Monitor& monitor) {
+  options.check();
+  monitor.throw_if_cancelled();
+  const CancelScope scope(monitor);
+  const OpenPoints input = open();
+  ScanFile read = with_whole_inputs([&] {
+    const bool large = options.memory_bytes > 0 && scan_bytes(input) > options.memory_bytes;
+    return large ? read_thinned(input, options, monitor) : read_at_once(input, options, monitor);
+  });
+  monitor.throw_if_cancelled();
+  if (std::string note = unusable_note(read); !note.empty()) read.notes.push_back(std::move(note));
+  if (options.trajectory && !options.origin) return followed(std::move(read), *options.trajectory);
+  return read;
+}
+
 }  // namespace
 
 std::string unusable_note(const ScanFile& file) {
@@ -71,44 +90,15 @@ void ReadOptions::check() const {
 }
 
 ScanFile read_scan_file(const std::filesystem::path& path, const ReadOptions& options, Monitor& monitor) {
-  options.check();
-  monitor.throw_if_cancelled();
-  const CancelScope scope(monitor);
-  const OpenPoints input(path);
-  ScanFile read = with_whole_inputs([&] {
-    const bool large = options.memory_bytes > 0 && scan_bytes(input) > options.memory_bytes;
-    return large ? read_thinned(input, options, monitor) : read_at_once(input, options, monitor);
-  });
-  monitor.throw_if_cancelled();
-  if (std::string note = unusable_note(read); !note.empty()) read.notes.push_back(std::move(note));
-  if (options.trajectory && !options.origin) return followed(std::move(read), *options.trajectory);
-  return read;
+  return read_opened([&] { return OpenPoints(path); }, options, monitor);
 }
 
 Scan read_one_scan(const std::filesystem::path& path, std::size_t index, const ReadOptions& options,
                    Monitor& monitor) {
-  options.check();
-  const CancelScope scope(monitor);
-  const OpenPoints input(path);
-  const auto missing = [&]() -> Error {
-    return Error(fmt::format("has no scan {}", index), path.string(), "give the file that was registered");
-  };
-  const bool apart = input.format() == PointFormat::e57 || input.format() == PointFormat::las;
-  if (!apart) {
-    ScanFile file = read_scan_file(path, options, monitor);
-    if (index >= file.scans.size()) throw missing();
-    return std::move(file.scans[index]);
-  }
-  const std::vector<CloudFacts>& clouds = input.file().clouds();
-  std::size_t with_points = 0;
-  for (std::size_t k = 0; k < clouds.size(); ++k) {
-    if (clouds[k].points == 0 || with_points++ != index) continue;
-    ScanFile file = with_whole_inputs([&] { return read_one_cloud(input, k, options, monitor); });
-    monitor.throw_if_cancelled();
-    if (options.trajectory && !options.origin) file = followed(std::move(file), *options.trajectory);
-    return std::move(file.scans.front());
-  }
-  throw missing();
+  // One that is named by its number is the only one of its name.
+  const bool named = index == 0 && scan_in_file(path.string()).index;
+  const auto open = [&] { return named ? OpenPoints(path) : OpenPoints(path, index); };
+  return std::move(read_opened(open, options, monitor).scans.front());
 }
 
 std::vector<Scan> read_scans(const std::filesystem::path& path, const ReadOptions& options,
@@ -122,6 +112,19 @@ Scan read_scan(const std::filesystem::path& path, const ReadOptions& options, Mo
   Scan joined = join_scans(scans);
   joined.name = path.string();
   return joined;
+}
+
+std::string unit_remark(double metres_per_unit) {
+  if (metres_per_unit == 1.0) return {};
+  return fmt::format("the file says that 1 unit of its numbers is {:.7g} m ({})", metres_per_unit,
+                     unit_name(metres_per_unit));
+}
+
+std::string offset_remark(const Vector3d& offset_applied) {
+  if (offset_applied.isZero(0.0)) return {};
+  return fmt::format(
+      "the offset {:.10g} {:.10g} {:.10g} m that a comment of the file names is added to its points",
+      offset_applied.x(), offset_applied.y(), offset_applied.z());
 }
 
 }  // namespace limen

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "limen/base/progress.h"
@@ -10,8 +11,9 @@
 #include "limen/model/scan.h"
 
 namespace limen {
-/// Reads a file with all that is known about it; the format is recognised by content, then by extension.
-/// Throws Error that names file, place and remedy for anything that cannot be read.
+/// Reads a file, or "FILE #N" for one scan of it, with all that is known about it; the format is recognised
+/// by content, then by extension. Throws Error that names file, place and remedy for anything that cannot be
+/// read.
 ScanFile read_scan_file(const std::filesystem::path& path, const ReadOptions& options = {},
                         Monitor& monitor = silent_monitor());
 
@@ -32,5 +34,11 @@ std::vector<Scan> read_scans(const std::filesystem::path& path, const ReadOption
 /// centres.
 Scan read_scan(const std::filesystem::path& path, const ReadOptions& options = {},
                Monitor& monitor = silent_monitor());
+
+/// A sentence where a file says that its numbers are no metres; empty where they are.
+std::string unit_remark(double metres_per_unit);
+
+/// A sentence where an offset that a file names was added to its numbers; empty where none was.
+std::string offset_remark(const Vector3d& offset_applied);
 
 }  // namespace limen

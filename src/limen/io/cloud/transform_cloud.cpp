@@ -127,7 +127,8 @@ TransformedCloud transform_cloud(const std::filesystem::path& input, const Rigid
   monitor.begin_stage("transform");
   const OpenPoints open(input);
   return with_whole_inputs([&] {
-    if (has_ending_of(open.format(), output))
+    // One of several scans is written anew: the file holds the others too.
+    if (!open.chosen() && has_ending_of(open.format(), output))
       return move_and_tell(open, target_from_source, output, options, monitor, system);
     require_known_ending(output, open);
     return write_joined(placed_clouds(open, target_from_source, options.origin, monitor), false, output,

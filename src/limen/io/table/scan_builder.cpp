@@ -312,8 +312,7 @@ std::string settle_centre(Scan& scan, const TableFacts& facts, const ReadOptions
     scan.centre_source = PlaceSource::assumed;
     return "the scanner is taken to stand at 0 0 0";
   }
-  return "the optical centre is not known: 0 0 0 cannot be the scanner (give it with --origin if you know "
-         "it)";
+  return "the optical centre is not known: the file does not say it, and 0 0 0 cannot be the scanner";
 }
 
 void check_extent(const Scan& scan) {
@@ -422,6 +421,7 @@ ScanFile ScanBuilder::finish(ScanFile file) {
   Parts& parts = *parts_;
   const TableFacts& facts = parts.facts;
   file.metres_per_unit = unit_of(facts);
+  file.offset_applied = facts.offset;
   if (parts.rows == 0) throw Error("there are no points", facts.name, "check how the file was exported");
   if (!parts.has_origin) {
     throw Error("no usable points: every one has a coordinate that is not a number or absurdly large",

@@ -40,7 +40,9 @@ struct ScanFile {
   std::vector<std::string> fields;  ///< names of the values per point, as the file has them
   std::vector<Scan> scans;
   double metres_per_unit = 1.0;  ///< of the file's numbers, already applied: the scans are in metres
-  std::size_t dropped = 0;       ///< points left out: not finite, or missing returns
+  /// That a comment of the file names, already added to the scans; metres. Other programs may not add it.
+  Vector3d offset_applied = Vector3d::Zero();
+  std::size_t dropped = 0;   ///< points left out: not finite, or missing returns
   std::size_t unusable = 0;  ///< of those the ones that the file did not call missing: not finite, or absurd
   std::vector<std::string> notes;  ///< sentences about what was assumed or left out
 };

@@ -170,10 +170,12 @@ TrajectoryText text_of(std::string_view bytes, const TrajectoryOptions& options,
   if (text.rows.empty()) throw Error("there are no rows of numbers", name, "check how it was exported");
   const bool whole = text.has({"time", "x", "y", "z"}) || text.has({"time", "latitude", "longitude", "z"});
   if (whole) return text;
-  throw Error(
-      text.names.empty() ? "the columns of the trajectory have no names"
-                         : "the columns of the trajectory lack the time or the place",
-      name, "name them in their order, as --trajectory-columns time,x,y,z or time,latitude,longitude,height");
+  throw Error(text.names.empty() ? "the columns of the trajectory have no names"
+                                 : "the columns of the trajectory lack the time or the place",
+              name,
+              fmt::format("name them in their order, as --{}trajectory-columns time,x,y,z or "
+                          "time,latitude,longitude,height",
+                          options.option_side));
 }
 
 std::vector<Entry> read_text(std::string_view bytes, const TrajectoryOptions& options,
@@ -208,10 +210,15 @@ std::vector<Entry> read_text(std::string_view bytes, const TrajectoryOptions& op
   return entries;
 }
 
+std::string zone_option(const TrajectoryOptions& options) {
+  return fmt::format("--{}utm-zone", options.option_side);
+}
+
 /// Brings geographic places, and headings from true north, into one Cartesian frame.
 class Projection {
  public:
-  Projection(const std::string& utm_zone, const Geodetic& first) : first_(first) {
+  Projection(const TrajectoryOptions& options, const Geodetic& first) : first_(first) {
+    const std::string& utm_zone = options.utm_zone;
     if (utm_zone == "local") {
       local_ = true;
     } else if (utm_zone == "auto") {
@@ -219,7 +226,7 @@ class Projection {
     } else if (const std::optional<UtmZone> zone = parse_utm_zone(utm_zone)) {
       zone_ = *zone;
     } else {
-      map_.emplace(utm_zone, "--utm-zone");
+      map_.emplace(utm_zone, zone_option(options));
     }
   }
   [[nodiscard]] Entry operator()(Entry entry) const {
@@ -263,14 +270,14 @@ void TrajectoryOptions::check() const {
   }
   if (utm_zone == "auto" || utm_zone == "local" || parse_utm_zone(utm_zone)) return;
   if (utm_zone.find_first_of(":[{") != std::string::npos) {
-    static_cast<void>(coordinate_system(utm_zone, "--utm-zone"));
+    static_cast<void>(coordinate_system(utm_zone, zone_option(*this)));
     return;
   }
   throw Error(
       fmt::format("the UTM zone is \"{}\", but must be as 32N or 19S, auto, local, or a coordinate system as "
                   "EPSG:2154",
                   utm_zone),
-      "--utm-zone", "name the zone or the system of the points");
+      zone_option(*this), "name the zone or the system of the points");
 }
 
 Trajectory read_trajectory(const std::filesystem::path& path, const TrajectoryOptions& options) {
@@ -282,11 +289,12 @@ Trajectory read_trajectory(const std::filesystem::path& path, const TrajectoryOp
                                          : read_text(file.bytes(), options, name);
   });
   if (!options.lever_arm_m.isZero() && !entries.empty() && !entries.front().attitude) {
-    throw Error("the trajectory has no attitude, so a lever arm cannot be turned", name,
-                "give roll, pitch and heading too, or leave --lever-arm out");
+    throw Error(
+        "the trajectory has no attitude, so a lever arm cannot be turned", name,
+        fmt::format("give roll, pitch and heading too, or leave --{}lever-arm out", options.option_side));
   }
   if (!entries.empty() && entries.front().geodetic) {
-    const Projection projection(options.utm_zone, *entries.front().geodetic);
+    const Projection projection(options, *entries.front().geodetic);
     for (Entry& entry : entries) entry = projection(entry);
   }
   std::vector<double> times_s;
@@ -296,7 +304,7 @@ Trajectory read_trajectory(const std::filesystem::path& path, const TrajectoryOp
     positions.push_back(entry.x);
     if (entry.attitude) positions.back() += world_from_body(*entry.attitude) * options.lever_arm_m;
   }
-  return Trajectory(times_s, positions, name, options.max_gap_s);
+  return Trajectory(times_s, positions, name, options.max_gap_s, options.option_side);
 }
 
 }  // namespace limen

@@ -47,10 +47,10 @@ std::optional<double> helpful_offset(const TimeRange& scan, const TimeRange& tra
 
 [[noreturn]] void no_overlap(const Scan& scan, const TimeRange& range, const Trajectory& trajectory) {
   const TimeRange there{trajectory.first_s(), trajectory.last_s()};
-  std::string remedy =
+  std::string remedy = fmt::format(
       "times may be seconds of the GPS week in one and adjusted standard GPS time (GPS seconds less 1e9) in "
-      "the "
-      "other: give what to add to those of the trajectory with --trajectory-time-offset-s";
+      "the other: give what to add to those of the trajectory with --{}trajectory-time-offset-s",
+      trajectory.option_side());
   if (const auto offset = helpful_offset(range, there))
     remedy += fmt::format("; with {:.0f} they would overlap", *offset);
   throw Error(fmt::format("the times of the points, {:.3f} to {:.3f} s, and of the trajectory {}, {:.3f} to "
@@ -70,14 +70,16 @@ void require_near(const Scan& scan, const Trajectory& trajectory) {
   if (*middle <= kFarthestM) return;
   throw Error(
       fmt::format("the trajectory {} passes {:.0f} km from the points", trajectory.name(), *middle / 1e3),
-      scan.name, "bring both into one frame, or name the UTM zone of the points with --utm-zone");
+      scan.name,
+      fmt::format("bring both into one frame, or name the UTM zone of the points with --{}utm-zone",
+                  trajectory.option_side()));
 }
 
 }  // namespace
 
 Trajectory::Trajectory(const std::vector<double>& times_s, const std::vector<Vector3d>& positions,
-                       std::string name, double max_gap_s)
-    : name_(std::move(name)), max_gap_s_(max_gap_s) {
+                       std::string name, double max_gap_s, std::string option_side)
+    : name_(std::move(name)), max_gap_s_(max_gap_s), option_side_(std::move(option_side)) {
   std::vector<std::size_t> order(times_s.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   for (const std::size_t i : order) {

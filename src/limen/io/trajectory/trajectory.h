@@ -18,12 +18,13 @@ class Trajectory {
  public:
   /// Times in seconds, positions in metres, as many. They are sorted by time; of equal times at one place one
   /// stays. Between two that are further apart than `max_gap_s` nothing is known. Throws Error where there
-  /// are fewer than two, a number is not finite, or one time has places more than 1 cm apart. `name` is for
-  /// messages.
+  /// are fewer than two, a number is not finite, or one time has places more than 1 cm apart. `name` and
+  /// `option_side` (TrajectoryOptions::option_side) are for messages.
   Trajectory(const std::vector<double>& times_s, const std::vector<Vector3d>& positions, std::string name,
-             double max_gap_s = 1.0);
+             double max_gap_s = 1.0, std::string option_side = {});
 
   [[nodiscard]] const std::string& name() const { return name_; }
+  [[nodiscard]] const std::string& option_side() const { return option_side_; }
   [[nodiscard]] std::size_t size() const { return times_s_.size(); }
   [[nodiscard]] double time_s(std::size_t i) const { return times_s_[i]; }
   [[nodiscard]] const Vector3d& place(std::size_t i) const { return positions_[i]; }
@@ -37,6 +38,7 @@ class Trajectory {
   std::vector<Vector3d> positions_;
   std::string name_;
   double max_gap_s_;
+  std::string option_side_;
 };
 
 /// A scan with its optical centres.

@@ -59,12 +59,14 @@ auto Store::loaded(const Room& room, const std::string& key, const Decode& decod
 }
 
 std::string Store::feature_key(const FileKey& file, int index) const {
-  return fmt::format("{}-{}-{}", file.sha256.substr(0, 32), file.model ? "model" : std::to_string(index),
+  const int scan = file.scan < 0 ? index : file.scan;
+  return fmt::format("{}-{}-{}", file.sha256.substr(0, 32), file.model ? "model" : std::to_string(scan),
                      options_);
 }
 
 std::string Store::file_key(const FileKey& file) const {
-  return fmt::format("{}-{}{}", file.sha256.substr(0, 32), file.model ? "model-" : "", options_);
+  return fmt::format("{}-{}{}{}", file.sha256.substr(0, 32), file.model ? "model-" : "",
+                     file.scan < 0 ? "" : fmt::format("scan{}-", file.scan), options_);
 }
 
 std::optional<FileRecord> Store::load_file(const FileKey& file) const {

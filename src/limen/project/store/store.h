@@ -28,6 +28,7 @@ struct FileRecord {
 struct FileKey {
   std::string sha256;
   bool model = false;
+  int scan = -1;  ///< the only one of its scans that is meant; -1: all
 };
 
 /// Results on disk, each in a file of its own that appears whole or not at all: what is there need not be

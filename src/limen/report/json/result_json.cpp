@@ -168,6 +168,7 @@ Json input_json(const InputSummary& input) {
   json["high"] = json_of(input.high);
   json["middle"] = json_of(input.middle);
   json["metres_per_unit"] = input.metres_per_unit;
+  if (!input.offset_applied.isZero(0.0)) json["offset_applied"] = json_of(input.offset_applied);
   json["inner_low"] = json_of(input.inner_low);
   json["inner_high"] = json_of(input.inner_high);
   if (input.kind != "scan") return json;
@@ -193,14 +194,15 @@ Json stages_json(const std::vector<StageTime>& stages) {
   return object;
 }
 
-/// Those of an earlier run, transform_1.txt and so on.
-void remove_alternatives(const std::filesystem::path& folder) {
+/// Those of an earlier run, transform_1.txt, transform_raw.txt and so on.
+void remove_variants(const std::filesystem::path& folder) {
   static constexpr std::string_view kStart = "transform_";
   std::vector<std::filesystem::path> old;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     const std::string name = entry.path().filename().string();
     const bool ours = name.starts_with(kStart) && name.ends_with(".txt");
     const std::string number = ours ? name.substr(kStart.size(), name.size() - kStart.size() - 4) : "";
+    if (number == "raw") old.push_back(entry.path());
     if (!number.empty() && number.find_first_not_of("0123456789") == std::string::npos)
       old.push_back(entry.path());
   }
@@ -240,6 +242,7 @@ std::string result_json(const RegistrationReport& report) {
   json["matched_openings"] = openings_json(result.openings);
   json["wall_thickness"] = thickness_json(result.thickness);
   json["inputs"] = {{"source", input_json(report.source)}, {"target", input_json(report.target)}};
+  json["notes"] = report.notes;
   json["options"] = options_json(report.options);
   if (!found) json["likely_causes"] = causes_json(report);
   json["next_steps"] = next_steps(report);
@@ -270,7 +273,7 @@ std::string alternative_file(std::size_t number) {
 void write_numbers(const std::filesystem::path& folder, const RegistrationReport& report) {
   const RegistrationResult& result = report.result;
   const std::string json = result_json(report);
-  remove_alternatives(folder);
+  remove_variants(folder);
   if (result.outcome == Outcome::no_match) {
     write_file(folder / "result.json", json);
     std::filesystem::remove(folder / "transform.txt");
@@ -279,6 +282,9 @@ void write_numbers(const std::filesystem::path& folder, const RegistrationReport
   // Held until they are written: write_files() takes views.
   std::vector<std::pair<std::filesystem::path, std::string>> texts = {
       {folder / "transform.txt", matrix_text(file_matrix(report, result.best.target_from_source))}};
+  if (has_offset(report))
+    texts.emplace_back(folder / "transform_raw.txt",
+                       matrix_text(raw_matrix(report, result.best.target_from_source)));
   for (std::size_t k = 0; k < result.alternatives.size(); ++k) {
     if (result.alternatives[k].tie)
       texts.emplace_back(folder / alternative_file(k + 1),

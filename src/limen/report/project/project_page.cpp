@@ -249,8 +249,8 @@ std::string lead(const ProjectResult& result) {
 
 }  // namespace
 
-std::string project_page(const ProjectResult& result, std::vector<ProjectPicture> pictures) {
-  const std::string drawings = project_plan(result);
+std::string project_page(const ProjectResult& result, std::vector<ProjectPicture> pictures, bool on_map) {
+  const std::string drawings = project_plan(result, on_map);
   std::string plans;
   if (!drawings.empty())
     plans =

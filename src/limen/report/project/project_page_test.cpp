@@ -146,6 +146,8 @@ TEST(ProjectPage, ShowsScansWhereTheyStandAlongTheBuildingsWalls) {
   pictures[0].points.points = {{0, 0, 0}, {1, 0, 0}, {0, 2, 0}};
   pictures[0].points.local_origin = {100.0, 0.0, 0.0};
   const std::string page = project_page(result, pictures);
+  EXPECT_EQ(page.find("<g class=\"north\""), std::string::npos) << "a scanner's own frame has no north";
+  EXPECT_NE(project_page(result, {}, true).find("<g class=\"north\""), std::string::npos);
   const nlohmann::json scene = scene_of(page);
   EXPECT_NEAR(scene["axes"][0][0].get<double>(), std::cos(radians(20.0)), 1e-9);
   EXPECT_NEAR(scene["axes"][0][1].get<double>(), std::sin(radians(20.0)), 1e-9);

@@ -184,7 +184,7 @@ std::string bar_of(const Sheet& sheet) {
       y, metres * sheet.scale(), y - 6.0, metres);
 }
 
-/// Where the frame's y axis points: north where the frame is a grid.
+/// Where the frame's y axis points, which is north on a map.
 std::string north_of(const Sheet& sheet) {
   const Vector3d way = sheet.axes() * Vector3d::UnitY();
   const double turn = degrees(std::atan2(way.x(), way.y()));
@@ -196,7 +196,8 @@ std::string north_of(const Sheet& sheet) {
 
 /// One drawing of `spots`, all of which stand in `places`.
 std::string drawing(const ProjectResult& result, const Matrix3d& axes, const std::vector<PlanSpot>& spots,
-                    const std::map<std::size_t, Vector3d>& places, Facing facing, const std::string& name) {
+                    const std::map<std::size_t, Vector3d>& places, Facing facing, const std::string& name,
+                    bool on_map) {
   const Sheet sheet(result, axes, spots, facing);
   std::string text = fmt::format(
       "<figure class=\"keep\"><figcaption>{0}</figcaption><svg class=\"plan\" viewBox=\"0 0 {1:.0f} "
@@ -207,13 +208,13 @@ std::string drawing(const ProjectResult& result, const Matrix3d& axes, const std
   text += links_of(result, spots, places, sheet);
   for (const PlanSpot& spot : spots) text += station_of(result.scans[spot.scan], spot, sheet);
   text += points_of(result, spots, sheet) + bar_of(sheet);
-  if (sheet.is_plan()) text += north_of(sheet);
+  if (on_map && sheet.is_plan()) text += north_of(sheet);
   return text + "</svg></figure>\n";
 }
 
 }  // namespace
 
-std::string project_plan(const ProjectResult& result) {
+std::string project_plan(const ProjectResult& result, bool on_map) {
   const Matrix3d axes = project_axes(result);
   const std::vector<std::vector<PlanSpot>> floors = project_floors(result, axes);
   std::vector<PlanSpot> all;
@@ -227,11 +228,11 @@ std::string project_plan(const ProjectResult& result) {
     const std::string name = floors.size() == 1 ? "Plan"
                                                 : fmt::format("Plan of floor {}, stations at {:.1f} m", k + 1,
                                                               floors[k].front().at.z());
-    text += drawing(result, axes, floors[k], places, kPlan, name);
+    text += drawing(result, axes, floors[k], places, kPlan, name, on_map);
   }
   if (all.empty()) return text;
-  return text + drawing(result, axes, all, places, kFront, "Section from the front") +
-         drawing(result, axes, all, places, kSide, "Section from the side");
+  return text + drawing(result, axes, all, places, kFront, "Section from the front", on_map) +
+         drawing(result, axes, all, places, kSide, "Section from the side", on_map);
 }
 
 }  // namespace limen

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "limen/base/text.h"
+#include "limen/model/plausible_size.h"
 #include "limen/report/summary/words.h"
 
 namespace limen {
@@ -217,8 +218,11 @@ std::optional<UnitGuess> likely_unit(const InputSummary& source, const InputSumm
   const bool source_larger = from[0] > to[0];
   const double thickness = apart(from[0], to[0]);  // of storeys, mostly: they hardly differ
   const double length = source_larger ? from[2] / to[2] : to[2] / from[2];
-  // A model's unit is told by its file.
-  if ((source_larger ? source : target).kind == "model") return std::nullopt;
+  const InputSummary& larger = source_larger ? source : target;
+  // A model's unit is told by its file; and who stated a unit is not asked for another.
+  if (larger.kind == "model" || larger.metres_per_unit != 1.0) return std::nullopt;
+  // A building may well be three times as high and as long as a room of another, both in metres.
+  if (is_size_of_building(inner_size(larger))) return std::nullopt;
   struct Unit {
     const char* name;
     double per_metre;
@@ -227,6 +231,7 @@ std::optional<UnitGuess> likely_unit(const InputSummary& source, const InputSumm
   for (const Unit& unit : {Unit{"mm", 1000.0, 2.0}, Unit{"cm", 100.0, 1.6}, Unit{"in", 39.3701, 1.2},
                            Unit{"ft", 3.28084, 1.15}}) {
     if (apart(thickness, unit.per_metre) > unit.slack || apart(length, unit.per_metre) > 2.5) continue;
+    if (!is_size_of_building(inner_size(larger) / unit.per_metre)) continue;
     return UnitGuess{source_larger, unit.name, apart(thickness, unit.per_metre)};
   }
   return std::nullopt;

@@ -74,21 +74,25 @@ TEST(Advice, CausesTellWhatWasMeasuredTheLikeliestFirst) {
   causes = likely_causes(report);
   EXPECT_EQ(causes.front().name, "place of the scanner");
   EXPECT_NE(causes.front().remedy.find("--target-origin"), std::string::npos);
-  report.source = scan_of("a.ply", Vector3d(9, 7, 3.1) * 3.28084);
+  report.source = scan_of("a.ply", Vector3d(9, 7, 3.1) * 39.37);
   causes = likely_causes(report);
   EXPECT_EQ(causes.front().name, "units");
-  EXPECT_EQ(causes.front().remedy, "give --source-units ft");
+  EXPECT_EQ(causes.front().remedy, "give --source-units in");
   report.options = {{"gravity", std::string("up")}};
   causes = likely_causes(report);
   EXPECT_TRUE(std::any_of(causes.begin(), causes.end(), [](const auto& it) { return it.name == "axes"; }));
 }
 
-TEST(Advice, UnitsAreGuessedFromStoreysThatHardlyDiffer) {
+TEST(Advice, UnitsAreGuessedWhereMetresMakeNoBuilding) {
   const InputSummary room = scan_of("a.ply", {8, 6, 3});
   EXPECT_FALSE(likely_unit(room, scan_of("b.ply", {40, 30, 12}))) << "a street is no room in feet";
-  const auto perhaps = likely_unit(room, scan_of("b.ply", {20, 20, 9}));
-  ASSERT_TRUE(perhaps);
-  EXPECT_GT(perhaps->apart, 1.05) << "nor is a stairwell, though one may ask";
+  EXPECT_FALSE(likely_unit(room, scan_of("b.ply", {20, 20, 9}))) << "nor is a stairwell";
+  EXPECT_FALSE(likely_unit(room, scan_of("b.ply", Vector3d(8, 6, 3) * 3.28084)))
+      << "nor a house of 10 m, however well its height fits";
+  const auto feet =
+      likely_unit(scan_of("b.ply", Vector3d(60, 40, 14) * 3.28084), scan_of("a.ply", {60, 40, 14}));
+  ASSERT_TRUE(feet) << "46 m in each direction is higher than a church";
+  EXPECT_EQ(feet->unit, "ft");
   const auto mm = likely_unit(room, scan_of("b.ply", {9000, 6500, 2900}));
   ASSERT_TRUE(mm);
   EXPECT_EQ(mm->unit, "mm");
@@ -97,6 +101,37 @@ TEST(Advice, UnitsAreGuessedFromStoreysThatHardlyDiffer) {
   ASSERT_TRUE(inches);
   EXPECT_EQ(inches->unit, "in");
   EXPECT_TRUE(inches->source);
+  InputSummary stated = scan_of("b.ply", {9000, 6500, 2900});
+  stated.metres_per_unit = 0.3048;
+  EXPECT_FALSE(likely_unit(room, stated)) << "the file states its unit";
+}
+
+TEST(Advice, TwoMetricFilesAreNotAdvisedAUnit) {
+  RegistrationReport report = pair_of(Outcome::no_match);
+  report.source = scan_of("room.ply", {8, 6, 3});
+  report.target = scan_of("house.ply", {26, 20, 9.8});
+  for (const LikelyCause& cause : likely_causes(report))
+    EXPECT_EQ(cause.remedy.find(" ft"), std::string::npos) << cause.remedy;
+  EXPECT_NE(likely_causes(report).front().name, "units");
+}
+
+TEST(RawMatrix, MovesTheNumbersAsTheyStandInTheFiles) {
+  RegistrationReport report = pair_of(Outcome::registered);
+  report.source.offset_applied = {1051200.0, 6841900.0, 12.5};
+  report.target.offset_applied = {1051100.0, 6840000.0, 0.0};
+  report.target.metres_per_unit = 0.001;
+  const Matrix3d turn = rotation_exp(Vector3d(0.3, -1.1, 2.2));
+  const Vector3d world = report.target.offset_applied + Vector3d(12, -7, 3);
+  const Vector3d raw(4.125, -20.5, 1.75);
+  const Vector3d in_source = report.source.offset_applied + raw;
+  const Rigid3 pose{turn, world - turn * in_source};
+  EXPECT_TRUE(has_offset(report));
+  const Matrix4d matrix = raw_matrix(report, pose);
+  const Vector3d moved = (matrix * raw.homogeneous()).head<3>();
+  EXPECT_LT((moved - Vector3d(12000, -7000, 3000)).norm(), 1e-4) << "millimetres, so a ten-thousandth of one";
+  report.source.offset_applied = report.target.offset_applied = Vector3d::Zero();
+  EXPECT_FALSE(has_offset(report));
+  EXPECT_EQ(raw_matrix(report, pose), file_matrix(report, pose));
 }
 
 TEST(SummaryText, ListsWhatThereIsToChoose) {

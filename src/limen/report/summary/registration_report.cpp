@@ -82,4 +82,18 @@ Matrix4d file_matrix(const RegistrationReport& report, const Rigid3& target_from
   return matrix;
 }
 
+bool has_offset(const RegistrationReport& report) {
+  return !report.source.offset_applied.isZero(0.0) || !report.target.offset_applied.isZero(0.0);
+}
+
+Matrix4d raw_matrix(const RegistrationReport& report, const Rigid3& target_from_source) {
+  // With units u and offsets o of both files: u_t raw_t + o_t = R (u_s raw_s + o_s) + t. The large numbers
+  // meet here, in one place: a double has them to 1e-9 m.
+  Matrix4d matrix = file_matrix(report, target_from_source);
+  matrix.topRightCorner<3, 1>() =
+      (target_from_source * report.source.offset_applied - report.target.offset_applied) /
+      report.target.metres_per_unit;
+  return matrix;
+}
+
 }  // namespace limen

@@ -27,12 +27,13 @@ struct InputSummary {
   Vector3d low = Vector3d::Zero();     ///< extent of the points, metres, world
   Vector3d high = Vector3d::Zero();    ///< extent of the points, metres, world
   Vector3d middle = Vector3d::Zero();  ///< of the central 90 % along each axis: where errors are measured
-  Vector3d inner_low = Vector3d::Zero();   ///< of the central 98 % along each axis: a few echoes from the
-  Vector3d inner_high = Vector3d::Zero();  ///< house across the street are left out
-  bool centre_known = false;               ///< it is known from where the points were seen
-  bool mobile = false;                     ///< the scanner moved
-  double metres_per_unit = 1.0;            ///< of the numbers in the file; everything here is metres
-  ScannerPlace place;                      ///< of a scan: where the scanner stood, and how that is known
+  Vector3d inner_low = Vector3d::Zero();       ///< of the central 98 % along each axis: a few echoes from the
+  Vector3d inner_high = Vector3d::Zero();      ///< house across the street are left out
+  bool centre_known = false;                   ///< it is known from where the points were seen
+  bool mobile = false;                         ///< the scanner moved
+  double metres_per_unit = 1.0;                ///< of the numbers in the file; everything here is metres
+  Vector3d offset_applied = Vector3d::Zero();  ///< that the file names in a comment, already added; metres
+  ScannerPlace place;                          ///< of a scan: where the scanner stood, and how that is known
 };
 InputSummary summarise(const std::string& path, const Scan& scan);
 InputSummary summarise(const std::string& path, const BimModel& model);
@@ -48,10 +49,18 @@ struct RegistrationReport {
   InputSummary target;
   OptionList options;
   std::uint64_t seed = 0;
+  std::vector<std::string> notes;  ///< what was noticed about the inputs, sentences
 };
 
 /// A pose of the report between the numbers as they stand in the files, whatever their units: what
 /// transform.txt holds. It scales where the units differ.
 Matrix4d file_matrix(const RegistrationReport& report, const Rigid3& target_from_source);
+
+/// Whether an offset that a file names in a comment was added to the numbers of either side.
+bool has_offset(const RegistrationReport& report);
+
+/// The same pose between the numbers as a program reads them that adds no such offset: what transform_raw.txt
+/// holds.
+Matrix4d raw_matrix(const RegistrationReport& report, const Rigid3& target_from_source);
 
 }  // namespace limen

@@ -128,6 +128,10 @@ std::string next_lines(const RegistrationReport& report, const std::string& fold
     text += line("",
                  "in CloudCompare apply transform.txt to the global coordinates (Apply Transformation, "
                  "\"apply to global\"), for these are large");
+  if (report.result.outcome != Outcome::no_match && has_offset(report))
+    text += line("",
+                 "a program that does not add the offset in the comment of a file takes transform_raw.txt "
+                 "instead");
   return text;
 }
 
