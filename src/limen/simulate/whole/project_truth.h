@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "limen/geometry/rigid.h"
+#include "limen/simulate/truth/truth.h"
 
 namespace limen {
 
@@ -38,13 +39,6 @@ struct SimulatedScan {
   double surface_m2 = 0.0;              ///< of the building and its surroundings, seen by it
   Rigid3 local_from_scan;               ///< scan frame to world less ProjectTruth::local_origin
   Vector3d scanner = Vector3d::Zero();  ///< of a station, in its own frame; not always told in the file
-};
-
-/// Surface that two scans both saw.
-struct SharedSurface {
-  std::size_t a = 0;  ///< a < b
-  std::size_t b = 0;
-  double m2 = 0.0;
 };
 
 /// The exact truth of a project. Coordinates are about local_origin: x_in_world = local_origin + x.
