@@ -78,8 +78,9 @@ std::vector<std::size_t> walls_of(std::size_t faces,
     return i;
   };
   for (const auto& [a, b] : back_to_back) {
-    const auto [low, high] = std::minmax(root(a), root(b));
-    wall[high] = low;
+    const std::size_t one = root(a);
+    const std::size_t other = root(b);
+    wall[std::max(one, other)] = std::min(one, other);
   }
   for (std::size_t i = 0; i < faces; ++i) wall[i] = root(i);
   return wall;

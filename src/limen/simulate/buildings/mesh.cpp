@@ -124,7 +124,8 @@ std::vector<double> cuts_of(const std::vector<PanelRect>& holes, double width) {
 class PlaneIndex {
  public:
   explicit PlaneIndex(double distance_m)
-      : distance_(distance_m), cosine_(std::cos(radians(0.01 * (distance_m / 1e-3)))) {}
+      : distance_(distance_m),
+        cosine_(std::min(std::cos(radians(0.01 * (distance_m / 1e-3))), 1.0 - 1e-15)) {}
 
   int find_or_add(const Plane& plane, std::vector<TruePlane>& planes) {
     const auto cell = static_cast<long>(std::floor(plane.offset / distance_));

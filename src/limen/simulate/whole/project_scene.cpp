@@ -40,6 +40,7 @@ class ProjectSimulation {
         scanner_(building_, heading_of(options.seed), kLocalOrigin) {
     truth_.building = options.name;
     truth_.seed = options.seed;
+    truth_.as_built = options.as_built;
     truth_.local_origin = kLocalOrigin;
     truth_.rooms = building_.rooms;
   }

@@ -45,6 +45,7 @@ struct SimulatedScan {
 struct ProjectTruth {
   std::string building;
   std::uint64_t seed = 0;
+  bool as_built = false;  ///< off the drawing, as real buildings are
   Vector3d local_origin = Vector3d::Zero();
   std::vector<ProjectRoom> rooms;
   std::vector<SimulatedScan> scans;
