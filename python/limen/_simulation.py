@@ -45,12 +45,15 @@ def simulate(
     points_outdoor: Optional[int] = None,
     facades: Optional[int] = None,
     any_rotation: Optional[bool] = None,
+    as_built: Optional[bool] = None,
     curtain_share: Optional[float] = None,
     noise_m: Optional[float] = None,
     drift_m: Optional[float] = None,
     progress: ProgressOption = None,
 ) -> Simulation:
-    """Scan a built-in building, one of scene_names(). What is not given is as the scene has it."""
+    """Scan a built-in building, one of scene_names(). What is not given is as the scene has it.
+
+    `as_built`: walls, slabs and openings are off by millimetres to a centimetre; else all is exactly as drawn."""
     given = {
         "seed": seed,
         "stations": stations,
@@ -58,6 +61,7 @@ def simulate(
         "points_outdoor": points_outdoor,
         "facades": facades,
         "any_rotation": any_rotation,
+        "as_built": as_built,
         "curtain_share": curtain_share,
         "noise_m": noise_m,
         "drift_m": drift_m,

@@ -24,6 +24,7 @@ SceneOptions options_from(const std::string& name, const py::dict& given) {
     if (option == "points_outdoor") options.points_outdoor = value.cast<std::size_t>();
     if (option == "stations") options.stations = value.cast<std::size_t>();
     if (option == "facades") options.facades = value.cast<std::size_t>();
+    if (option == "as_built") options.as_built = value.cast<bool>();
     if (option == "any_rotation") options.any_rotation = value.cast<bool>();
     if (option == "curtain_share") options.curtain_share = value.cast<double>();
     if (option == "drift_m") options.drift_m = value.cast<double>();

@@ -113,7 +113,7 @@ Recipe build_townhouse(const SceneOptions& options, RandomStream& random) {
   facade.gable_share = 1.0;
   facade.extra_door_share = 0.6;
   facade.storeys = storey_looks(plan.storeys, random);
-  Recipe recipe;
+  Recipe recipe = begun(options);
   add_building(recipe.world, house, facade, random);
   furnish_all(recipe.world, 0, 0.8, random);
   add_neighbour(recipe.world, {0.0, 0.0}, 0.0, facade, random);
@@ -157,7 +157,7 @@ Recipe build_villa(const SceneOptions& options, RandomStream& random) {
   const double lower = facade.sill_m - random.uniform(0.15, 0.3);
   facade.storeys = {{.height = 1.0 + 0.8 * lower / facade.window_height_m, .sill_m = -lower},
                     {.width = random.uniform(0.75, 1.0)}};
-  Recipe recipe;
+  Recipe recipe = begun(options);
   add_building(recipe.world, house, facade, random);
   furnish_all(recipe.world, 0, 0.8, random);
   add_ground(recipe.world);

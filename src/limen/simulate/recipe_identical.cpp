@@ -54,8 +54,10 @@ void furnish_alike(World& world, std::size_t model, RandomStream& random) {
     if (room == model) continue;
     const Room& to = building.plan.rooms[room];
     const Vector2d shift = to.outline[0] - from.outline[0];
+    const MeshMark begin = world.mesh.mark();
     world.mesh.add_shifted(surfaces, {triangles, last_triangle},
                            {shift.x(), shift.y(), to.floor_m - from.floor_m});
+    remember_furniture(world, 0, room, begin);
     for (std::size_t i = taken; i < building.occupied[model].size(); ++i) {
       Footprint copy = building.occupied[model][i];
       for (Vector2d& corner : copy.area) corner += shift;
@@ -75,7 +77,7 @@ Recipe identical_recipe(const SceneOptions& options, RandomStream& random) {
   facade.interior_doors = false;
   facade.ornament_share = 0.0;
   facade.curtain_share = 0.0;  // whatever was asked: curtains would tell rooms apart
-  Recipe recipe;
+  Recipe recipe = begun(options);
   add_building(recipe.world, row_of_rooms(rooms, random), facade, random);
   // Neither the first room nor the last: there is one more on either side.
   const auto model = static_cast<std::size_t>(between(1, rooms - 2, random));

@@ -14,6 +14,12 @@ bool has_normal(const std::vector<Vector2d>& normals, const Vector3d& normal) {
 
 }  // namespace
 
+Recipe begun(const SceneOptions& options) {
+  Recipe recipe;
+  if (options.as_built) recipe.world.as_built_seed = mix64(options.seed ^ 0xa5b01dULL);
+  return recipe;
+}
+
 std::vector<double> bays(int count, double low, double high, RandomStream& random) {
   std::vector<double> widths;
   widths.reserve(static_cast<std::size_t>(count));

@@ -12,6 +12,9 @@
 
 namespace limen {
 
+/// A recipe without a building, as drawn or as built.
+Recipe begun(const SceneOptions& options);
+
 /// `count` bay widths between two bounds.
 std::vector<double> bays(int count, double low, double high, RandomStream& random);
 

@@ -22,7 +22,7 @@ Recipe room_recipe(const SceneOptions& options, RandomStream& random) {
   plan.outer_wall_m = random.uniform(0.25, 0.5);
   plan.inner_wall_m = random.uniform(0.1, 0.24);
   plan.storey_height_m = random.uniform(2.85, 3.4);
-  Recipe recipe;
+  Recipe recipe = begun(options);
   FacadeOptions facade = random_facade(options, 0.15, random);
   facade.open_door_share = 0.9;
   add_building(recipe.world, make_floor_plan(plan, random), facade, random);
@@ -59,7 +59,7 @@ Recipe symmetric_recipe(const SceneOptions& options, RandomStream& random) {
   // Half of the boxes have the same window in every wall, with nothing outside.
   facade.blank_share = options.seed / 2 % 2 == 0 ? 1.0 : 0.0;
   facade.gable_share = 1.0 - facade.blank_share;
-  Recipe recipe;
+  Recipe recipe = begun(options);
   add_building(recipe.world, make_floor_plan(plan, random), facade, random);
   recipe.station_rooms = {0, 0};
   return recipe;
@@ -76,7 +76,7 @@ Recipe flat_recipe(const SceneOptions& options, RandomStream& random) {
   plan.storey_height_m = random.uniform(2.8, 3.2);
   plan.bays_per_room = 1 + static_cast<int>(random.below(2));
   plan.ground_floor_m = random.uniform(0.3, 1.0);
-  Recipe recipe;
+  Recipe recipe = begun(options);
   FacadeOptions facade = random_facade(options, 0.2, random);
   facade.open_door_share = 1.0;
   facade.extra_door_share = 0.6;
@@ -107,7 +107,7 @@ Recipe museum_recipe(const SceneOptions& options, RandomStream& random) {
   plan.bays_per_room = between(2, 3, random);
   plan.stairwell = true;
   plan.use = RoomUse::exhibition;
-  Recipe recipe;
+  Recipe recipe = begun(options);
   FacadeOptions facade = random_facade(options, 0.05, random);
   facade.window_width_m = random.uniform(1.2, 1.8);
   facade.window_height_m = random.uniform(1.7, 2.2);
@@ -146,7 +146,7 @@ Recipe regular_recipe(const SceneOptions& options, RandomStream& random) {
   plan.bays_per_room = 2;
   plan.regular = true;
   plan.use = RoomUse::office;
-  Recipe recipe;
+  Recipe recipe = begun(options);
   FacadeOptions facade = random_facade(options, 0.1, random);
   facade.variation = 0.0;
   facade.blank_share = 0.0;
@@ -219,7 +219,9 @@ Recipe make_recipe(const SceneOptions& options) {
       Recipe made = recipe.make(options, random);
       set_station_count(made, options.stations, random);
       if (options.points_outdoor == 0 && made.points_outdoor == 0) made.path.reset();
+      if (options.outdoor == Outdoor::tripod) made.path.reset();
       made.national_grid = made.path.has_value();
+      settle_furniture(made.world);
       return made;
     }
     known += known.empty() ? recipe.name : std::string(", ") + recipe.name;

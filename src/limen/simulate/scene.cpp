@@ -9,6 +9,7 @@
 #include "limen/base/error.h"
 #include "limen/simulate/recipes.h"
 #include "limen/simulate/scanner/drift.h"
+#include "limen/simulate/scanner/shared_surface.h"
 #include "limen/simulate/scanner/station_scan.h"
 #include "limen/simulate/stations.h"
 
@@ -23,7 +24,8 @@ class Simulation {
         monitor_(monitor),
         recipe_(make_recipe(options)),
         caster_(recipe_.world.mesh),
-        merged_(merge_planes(recipe_.world.mesh)),
+        merged_(merge_planes(recipe_.world.mesh, merge_distance(recipe_.world))),
+        counter_(merged_),
         random_(options.seed, 1000) {
     world_from_scene_.rotation = any_heading(random_);
     if (recipe_.national_grid) origin_ = Vector3d(1050000.0, 6840000.0, 150.0);
@@ -37,20 +39,32 @@ class Simulation {
       add_station(stations[i], i);
     }
     monitor_.throw_if_cancelled();
-    if (recipe_.path) add_mobile();
+    if (o_.outdoor == Outdoor::tripod) {
+      add_station(place_in_street(recipe_, caster_, stations.front(), random_), stations.size());
+    } else if (recipe_.path) {
+      add_mobile();
+    }
+    if (counts_shared()) case_.truth.shared = counter_.shared();
     case_.truth = of_seen_planes(std::move(case_.truth));
     return std::move(case_);
   }
 
  private:
+  /// Of cases as drawn the truth is what it always was.
+  [[nodiscard]] bool counts_shared() const { return o_.as_built || o_.outdoor == Outdoor::tripod; }
+
   void begin_truth() {
     Truth& truth = case_.truth;
     truth.scene = o_.name;
     truth.seed = o_.seed;
     truth.local_origin = origin_;
     truth.local_from_scene = world_from_scene_;
+    truth.as_built = o_.as_built;
     truth.planes = merged_.planes;
-    for (TruePlane& plane : truth.planes) plane.plane = transformed(world_from_scene_, plane.plane);
+    for (TruePlane& plane : truth.planes) {
+      plane.plane = transformed(world_from_scene_, plane.plane);
+      plane.bulge = transformed(world_from_scene_, plane.bulge);
+    }
     truth.openings = recipe_.world.openings;
     for (TrueOpening& opening : truth.openings) {
       for (Vector3d& corner : opening.outer) corner = world_from_scene_ * corner;
@@ -68,15 +82,18 @@ class Simulation {
     const Rigid3 scene_from_scan = inverse(world_from_scene_) * local_from_scan;
     // The head stands upright whatever frame the points are given in.
     const Rigid3 head{any_heading(random_), scene_from_scan.translation};
-    const std::size_t points = o_.points_indoor > 0 ? o_.points_indoor : recipe_.points_indoor;
+    const bool street = station.room == kStreet;
+    const std::size_t wanted = street ? o_.points_outdoor : o_.points_indoor;
+    const std::size_t points = wanted > 0 ? wanted : recipe_.points_indoor;
     const std::uint64_t seed = mix64(o_.seed * 1000 + number);
     const auto pattern = [&](std::size_t pulses) { return station_pattern(head, pulses); };
     const Sweep result = sweep_of(pattern, points, seed);
-    Scan scan = station_scan((number < 10 ? "indoor_0" : "indoor_") + std::to_string(number), result,
-                             inverse(scene_from_scan));
+    const std::string name =
+        street ? "outdoor" : (number < 10 ? "indoor_0" : "indoor_") + std::to_string(number);
+    Scan scan = station_scan(name, result, inverse(scene_from_scan));
     scan.level = !o_.any_rotation;
     ScanTruth truth{.name = scan.name,
-                    .room = static_cast<int>(station.room),
+                    .room = street ? -1 : static_cast<int>(station.room),
                     .local_from_scan = local_from_scan,
                     .plane_of_point = {}};
     record(std::move(scan), std::move(truth), result);
@@ -127,6 +144,7 @@ class Simulation {
           echo.surface < 0 ? -1 : merged_.plane_of_surface[static_cast<std::size_t>(echo.surface)]);
     for (std::size_t i = 0; i < result.sights.size(); ++i)
       case_.truth.openings[i].sights.push_back(result.sights[i]);
+    if (counts_shared()) counter_.add(result);
     case_.scans.push_back(std::move(scan));
     case_.truth.scans.push_back(std::move(truth));
   }
@@ -136,6 +154,7 @@ class Simulation {
   Recipe recipe_;
   RayCaster caster_;
   MergedPlanes merged_;
+  SharedSurfaceCounter counter_;
   RandomStream random_;
   Rigid3 world_from_scene_;
   Vector3d origin_ = Vector3d::Zero();

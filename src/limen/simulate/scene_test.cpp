@@ -102,10 +102,35 @@ TEST_P(EveryScene, ScansHoldTogetherAndCountsAgree) {
   }
 }
 
+TEST_P(EveryScene, ExactPointsOfABuildingAsBuiltLieOnItsPlanesAndBulges) {
+  SceneOptions options = exact(GetParam(), 2);
+  options.as_built = true;
+  const SimulatedCase made = simulate(options);
+  double steepest = 0.0;
+  for (std::size_t scan = 0; scan < made.scans.size(); ++scan) {
+    const ScanTruth& truth = made.truth.scans[scan];
+    std::size_t off = 0;
+    for (std::size_t i = 0; i < made.scans[scan].size(); ++i) {
+      if (truth.plane_of_point[i] < 0) continue;
+      const TruePlane& plane = made.truth.planes[static_cast<std::size_t>(truth.plane_of_point[i])];
+      const Vector3d x = truth.local_from_scan * made.scans[scan].points[i];
+      const double distance = plane.plane.signed_distance(x);
+      steepest = std::max(steepest, std::abs(plane.bulge.at(x)));
+      // Rays along a wall do not follow its bulge.
+      if (std::min(std::abs(distance - plane.bulge.at(x)), std::abs(distance)) > 1e-6) ++off;
+    }
+    EXPECT_EQ(off, 0U) << "scan " << scan;
+  }
+  EXPECT_GT(steepest, 2e-4);
+  EXPECT_LT(steepest, 6e-3);
+}
+
 /// Rays that end on the back of a face have slipped through a crack or started inside a wall.
 TEST_P(EveryScene, IsClosedAndStationsStandInTheOpen) {
-  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
-    const Recipe recipe = make_recipe(small(GetParam(), seed));
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+    SceneOptions options = small(GetParam(), (seed + 1) / 2);
+    options.as_built = seed % 2 == 0;
+    const Recipe recipe = make_recipe(options);
     const RayCaster caster(recipe.world.mesh);
     RandomStream random(seed, 99);
     int behind = 0;
@@ -293,6 +318,28 @@ TEST(Scene, OffersWhatWasAskedFor) {
   options.curtain_share = 1.0;
   for (const TrueOpening& opening : simulate(options).truth.openings)
     EXPECT_TRUE(opening.curtained || opening.kind == "door");
+}
+
+TEST(Scene, AStreetCanBeScannedFromATripod) {
+  for (const std::string name : {"museum", "townhouse", "room"}) {
+    SceneOptions options = small(name, 3);
+    options.outdoor = Outdoor::tripod;
+    options.stations = 1;
+    options.points_outdoor = 20000;
+    const SimulatedCase made = simulate(options);
+    ASSERT_EQ(made.scans.size(), 2U) << name;
+    EXPECT_FALSE(made.scans.back().mobile());
+    EXPECT_EQ(made.truth.scans.back().room, -1);
+    ASSERT_EQ(made.truth.shared.size(), 1U) << name << ": both see the window and something through it";
+    EXPECT_GT(made.truth.shared[0].m2, 0.1) << name;
+    EXPECT_GT(
+        (made.truth.scans[0].local_from_scan.translation - made.truth.scans[1].local_from_scan.translation)
+            .norm(),
+        3.0);
+  }
+  SceneOptions options = small("symmetric_room", 1);
+  options.outdoor = Outdoor::tripod;
+  EXPECT_THROW(simulate(options), Error) << "there is no street";
 }
 
 TEST(Scene, RefusesWhatItCannotMake) {

@@ -65,6 +65,28 @@ class Surveyor {
     return {};
   }
 
+  /// Of places before the windows of a station's room the one that sees most of them.
+  [[nodiscard]] std::optional<Station> before_windows(const Station& inside) {
+    std::vector<const TrueOpening*> windows;
+    for (const TrueOpening& window : world_.openings)
+      if (window.exterior && window.glazed && window.rooms[0] == static_cast<int>(inside.room))
+        windows.push_back(&window);
+    std::optional<Station> best;
+    int most = -1;
+    for (int attempt = 0; attempt < 400 && !windows.empty(); ++attempt) {
+      const TrueOpening& window = *windows[random_.below(static_cast<std::uint32_t>(windows.size()))];
+      const Vector3d along = (window.outer[1] - window.outer[0]).normalized();
+      const Vector3d at = 0.5 * (window.outer[0] + window.outer[1]) + random_.uniform(-5.0, 5.0) * along +
+                          random_.uniform(3.0, 9.0) * window.normal;
+      const auto place = tripod_on_ground(caster_, at.head<2>(), random_.uniform(1.5, 1.8));
+      const int seen = place ? windows_seen({*place, inside.room}) : -1;
+      if (seen <= most) continue;
+      most = seen;
+      best = Station{*place, kStreet};
+    }
+    return best;
+  }
+
  private:
   [[nodiscard]] bool small(std::size_t room) const {
     return signed_area(building_.plan.rooms[room].outline) < 7.0;
@@ -113,10 +135,11 @@ class Surveyor {
   /// Stands on the floor with nothing within `radius`.
   [[nodiscard]] bool clear(const Station& station, double radius) const {
     const Vector3d& p = station.position;
-    const Room& room = building_.plan.rooms[station.room];
     if (!is_free(building_, station.room, {p.x(), p.y()}, radius)) return false;
     const RayHit down = caster_.cast(p, -Vector3d::UnitZ());
-    if (!down.found() || std::abs(p.z() - down.range_m - room.floor_m) > 0.01) return false;
+    if (!down.found() ||
+        std::abs(p.z() - down.range_m - building_.floor_height(station.room, p.head<2>())) > 0.01)
+      return false;
     for (const double tilt : {-0.8, -0.3, 0.0, 0.4}) {
       for (int i = 0; i < 24; ++i) {
         const double azimuth = 2.0 * std::numbers::pi * i / 24;
@@ -172,6 +195,33 @@ std::vector<Station> place_stations(const Recipe& recipe, const RayCaster& caste
     stations.push_back(*station);
   }
   return stations;
+}
+
+std::optional<Vector3d> tripod_on_ground(const RayCaster& caster, const Vector2d& at, double height_m) {
+  constexpr double kHigh = 60.0;
+  // Seen from the sky there is nothing above it but the ground.
+  const RayHit down = caster.cast({at.x(), at.y(), kHigh}, -Vector3d::UnitZ());
+  if (!down.found() || down.inside) return std::nullopt;
+  const Element below = caster.mesh().surfaces()[static_cast<std::size_t>(down.surface)].element;
+  if (below != Element::ground && below != Element::pavement) return std::nullopt;
+  const Vector3d place(at.x(), at.y(), kHigh - down.range_m + height_m);
+  for (const double tilt : {-0.8, -0.3, 0.0, 0.4}) {
+    for (int i = 0; i < 24; ++i) {
+      const double azimuth = 2.0 * std::numbers::pi * i / 24;
+      const RayHit hit = caster.cast(
+          place, {std::cos(tilt) * std::cos(azimuth), std::cos(tilt) * std::sin(azimuth), std::sin(tilt)});
+      if (hit.found() && hit.range_m * std::cos(tilt) < 0.5) return std::nullopt;
+    }
+  }
+  return place;
+}
+
+Station place_in_street(const Recipe& recipe, const RayCaster& caster, const Station& inside,
+                        RandomStream& random) {
+  const std::optional<Station> place = Surveyor(recipe, caster, random).before_windows(inside);
+  if (place) return *place;
+  throw Error("there is no place for a tripod before the windows of the room", "limen simulate",
+              "choose another --seed, or a scene with a street");
 }
 
 }  // namespace limen

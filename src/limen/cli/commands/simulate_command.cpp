@@ -33,10 +33,15 @@ struct SimulateOptions {
   std::string room = "any";  ///< the remaining ones are of models
   std::string units = "m";
   bool as_built = false;
+  bool as_drawn = false;
   bool project = false;  ///< a whole building
   int passes = -1;
   std::string drift = "waves";
   bool styles = false;
+  std::string outdoor = "mobile";
+  std::string places = "usual";
+  std::size_t tripods = 0;
+  double open_doors = -1.0;
 };
 
 std::string summary(const SimulatedCase& simulated, const std::string& folder) {
@@ -124,10 +129,12 @@ void check_options(const SimulateOptions& options, bool model) {
     refuse(scene.facades > 0, "--facades", "scenes");
     refuse(scene.curtain_share >= 0.0, "--curtain-share", "scenes");
     refuse(scene.drift_m > 0.0, "--drift-m", "scenes");
+    refuse(scene.outdoor == Outdoor::tripod, "--outdoor", "scenes");
     refuse(options.units != "m" && scene.name != kOffice, "--units", kOffice);
     return;
   }
   refuse(options.as_built, "--as-built", "models");
+  refuse(scene.drift_m > 0.0 && scene.outdoor == Outdoor::tripod, "--drift-m", "mobile scans");
   refuse(options.room != "any", "--room", "models");
   refuse(options.units != "m", "--units", kOffice);
   if (scene.name.find_first_of("./") != std::string::npos)
@@ -147,6 +154,9 @@ int run_project(const SimulateOptions& options, const Session& session) {
   refuse(options.as_built, "--as-built");
   refuse(options.room != "any", "--room");
   refuse(options.units != "m", "--units");
+  if (options.outdoor != "mobile")
+    throw Error("--outdoor is for single cases only", "limen simulate --project",
+                "give --tripods N for stations in the street, and --passes 0 for no vehicle");
   ProjectSceneOptions project;
   project.name = scene.name;
   project.seed = session.common.seed;
@@ -157,6 +167,13 @@ int run_project(const SimulateOptions& options, const Session& session) {
   project.any_rotation = scene.any_rotation;
   if (scene.drift_m >= 0.0) project.drift_m = scene.drift_m;
   project.drift = options.drift == "walk" ? DriftKind::walk : DriftKind::waves;
+  project.as_built = !options.as_drawn;
+  project.tripods = options.tripods;
+  if (options.places == "rooms") project.places = StationPlaces::rooms;
+  if (options.places == "doorways") project.places = StationPlaces::doorways;
+  // Who sets up in doorways has opened the doors.
+  if (project.places == StationPlaces::doorways) project.open_door_share = 1.0;
+  if (options.open_doors >= 0.0) project.open_door_share = options.open_doors;
   project.scanner = scene.scanner;
   project.styles = options.styles;
   return run_simulate_project(project, options.output, session);
@@ -166,9 +183,16 @@ int run(SimulateOptions& options, const Session& session) {
   if (options.project) return run_project(options, session);
   options.scene.seed = session.common.seed;
   options.scene.drift_m = std::max(0.0, options.scene.drift_m);
-  if (options.styles) throw Error("--styles is for whole buildings only", "limen simulate", "add --project");
-  if (options.passes >= 0)
-    throw Error("--passes is for whole buildings only", "limen simulate", "add --project");
+  const auto only_project = [](bool given, const std::string& option) {
+    if (given) throw Error(option + " is for whole buildings only", "limen simulate", "add --project");
+  };
+  only_project(options.styles, "--styles");
+  only_project(options.passes >= 0, "--passes");
+  only_project(options.tripods > 0, "--tripods");
+  only_project(options.places != "usual", "--places");
+  only_project(options.open_doors >= 0.0, "--open-doors");
+  options.scene.as_built = !options.as_drawn;
+  if (options.outdoor == "static") options.scene.outdoor = Outdoor::tripod;
   const bool model = means_model(options.scene.name);
   check_options(options, model);
   // Made before the long work: a place that cannot be written to is told at once.
@@ -228,6 +252,10 @@ void add_simulate_command(CommandLine& app, Session& session) {
                     "Range noise, one standard deviation (default 0.003)");
   command->add_flag("--as-built", options->as_built,
                     "Of a model: some elements moved by 1 to 5 cm, some missing, furniture added");
+  command->add_flag(
+      "--as-drawn", options->as_drawn,
+      "The building exactly as drawn; else its walls, slabs and openings are off by millimetres to a "
+      "centimetre and lean");
   command
       ->add_option("--room", options->room,
                    "Of a model: scan a room that is unique in it, or repeated, or each in turn")
@@ -240,6 +268,22 @@ void add_simulate_command(CommandLine& app, Session& session) {
                                 fmt::join(whole_building_names(), ", ")));
   command->add_option("--passes", options->passes, "With --project: street passes, each along two facades")
       ->type_name("N");
+  command
+      ->add_option("--outdoor", options->outdoor,
+                   "Scan the street from a vehicle, or from a tripod before the first room's windows")
+      ->one_of({"mobile", "static"});
+  command
+      ->add_option("--places", options->places,
+                   "With --project: one station a room, or as usual and one in every open doorway")
+      ->one_of({"usual", "rooms", "doorways"});
+  command
+      ->add_option("--tripods", options->tripods,
+                   "With --project: stations in the street, all round (default 0)")
+      ->type_name("N");
+  command
+      ->add_option("--open-doors", options->open_doors,
+                   "With --project: share of the inner doors that stand open (default 0.9, in doorways 1)")
+      ->type_name("SHARE");
   command->add_option("--drift", options->drift, "With --project: how the paths of passes err")
       ->one_of({"waves", "walk"});
   command->add_flag("--styles", options->styles,

@@ -53,6 +53,7 @@ std::string project_truth_json(const ProjectTruth& truth) {
   Json json;
   json["building"] = truth.building;
   json["seed"] = truth.seed;
+  if (truth.as_built) json["as_built"] = true;
   json["units"] = "m";
   json["local_origin"] = json_of(truth.local_origin);
   json["scans"] = Json::array();

@@ -8,8 +8,8 @@
 
 namespace limen {
 
-/// The truth of a simulated project as JSON text, all digits of every double: building, seed, `local_origin`,
-/// and
+/// The truth of a simulated project as JSON text, all digits of every double: building, seed, `as_built`
+/// (where it is), `local_origin`, and
 /// - `scans`: name, file, kind (station, mobile), points, `room` (index or null), `scanner` of a station in
 /// its
 ///   own frame, drift_m, `drift` of a pass (rows of a time in seconds and the error x y z then, metres),

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limen/report/json/truth_json.h"
 
+#include <algorithm>
 #include <bit>
 
 #include "limen/report/json/json_values.h"
@@ -35,6 +36,12 @@ Json scans_json(const Truth& truth) {
   return scans;
 }
 
+double shared_m2(const Truth& truth, std::size_t a, std::size_t b) {
+  for (const SharedSurface& pair : truth.shared)
+    if (pair.a == std::min(a, b) && pair.b == std::max(a, b)) return pair.m2;
+  return 0.0;
+}
+
 Json pairs_json(const Truth& truth) {
   Json pairs = Json::array();
   for (std::size_t source = 0; source < truth.scans.size(); ++source) {
@@ -44,10 +51,20 @@ Json pairs_json(const Truth& truth) {
       json["source"] = file_of(truth.scans[source].name);
       json["target"] = file_of(truth.scans[target].name);
       json["target_from_source"] = json_of(to_matrix(true_target_from_source(truth, source, target)));
+      if (!truth.shared.empty()) json["shared_m2"] = shared_m2(truth, source, target);
       pairs.push_back(std::move(json));
     }
   }
   return pairs;
+}
+
+Json bulge_json(const Bulge& bulge, const Vector3d& local_origin) {
+  Json json;
+  json["height_m"] = bulge.height_m;
+  json["origin"] = json_of(Vector3d(bulge.origin + local_origin));
+  json["u"] = json_of(bulge.u);
+  json["v"] = json_of(bulge.v);
+  return json;
 }
 
 Json planes_json(const Truth& truth) {
@@ -62,6 +79,7 @@ Json planes_json(const Truth& truth) {
     json["local_offset"] = plane.plane.offset;
     json["area_m2"] = plane.area_m2;
     json["inliers"] = plane.inliers;
+    if (plane.bulge.height_m != 0.0) json["bulge"] = bulge_json(plane.bulge, truth.local_origin);
     planes.push_back(std::move(json));
   }
   return planes;
@@ -162,6 +180,7 @@ std::string truth_json(const Truth& truth) {
   json["scene"] = truth.scene;
   json["seed"] = truth.seed;
   json["units"] = "m";
+  if (truth.as_built) json["as_built"] = true;
   json["local_origin"] = json_of(truth.local_origin);
   if (truth.model) json["model"] = model_json(truth);
   json["scans"] = scans_json(truth);
@@ -183,9 +202,9 @@ std::string task_json(const SimulatedCase& simulated) {
     json["target"] = simulated.truth.model->file;
     return to_text(json);
   }
-  // A mobile scan is the one that is already where it belongs.
   if (simulated.scans.size() > 1) {
-    const bool outdoor = simulated.scans.back().mobile();
+    // The street's scan comes last: a mobile one, or a station in no room.
+    const bool outdoor = simulated.truth.scans.back().room < 0;
     json["source"] = file_of(simulated.scans.front().name);
     json["target"] = file_of((outdoor ? simulated.scans.back() : simulated.scans[1]).name);
   }

@@ -10,9 +10,12 @@ namespace limen {
 
 /// The truth of a simulated case as JSON text, all digits of every double: scene, seed, `local_origin`, and
 /// - `scans`: file, kind, points, `world_from_scan` (four rows of four);
-/// - `pairs`: `target_from_source` for every ordered pair of scans;
+/// - `pairs`: `target_from_source` for every ordered pair of scans, and, where it was counted, the surface
+/// that
+///   both saw, `shared_m2`;
 /// - `planes`: id, normal (to the visible side), `offset` in the world and `local_offset` about local_origin
-///   (exact), class, area, `inliers` per scan;
+///   (exact), class, area, `inliers` per scan, and of a wall as built its `bulge`: at x it is off the
+///   plane by height_m sin(pi a) sin(pi b), a = u . (x - origin) and b = v . (x - origin) kept within [0, 1];
 /// - `openings`: kind, rooms, wall normal and thickness, width, height, corners `outer` and `inner` in the
 ///   world (lower left, lower right, upper right, upper left, seen from outside), `head` (rectangular,
 ///   segmental, semicircle, round) and, where it is not rectangular, the clear opening as it is built,

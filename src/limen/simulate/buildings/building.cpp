@@ -42,6 +42,7 @@ class Builder {
     for (const Building& other : world.buildings)
       building_.room_offset += static_cast<int>(other.plan.rooms.size());
     pairs_ = wall_pairs(plan, faces_, 0.8);
+    if (world.as_built_seed) build_off_the_drawing(mix64(*world.as_built_seed + world.buildings.size()));
   }
 
   std::size_t run() {
@@ -51,7 +52,9 @@ class Builder {
       add_planned_doors();
     else if (o_.interior_doors)
       add_doors();
-    add_shell(world_.mesh, {plan_, faces_, holes_, spandrels_}, o_.ornament_share, random_);
+    ShellPlan shell{plan_, faces_, holes_, spandrels_, std::nullopt};
+    if (as_built_) shell.built.emplace(ShellAsBuilt{*as_built_, built_holes_});
+    add_shell(world_.mesh, shell, o_.ornament_share, random_);
     for (std::size_t room = 0; room < plan_.rooms.size(); ++room)
       if (stairs_rise(plan_, room)) building_.occupied[room].push_back({stairs_area(plan_.rooms[room]), 0.0});
     world_.buildings.push_back(std::move(building_));
@@ -63,6 +66,16 @@ class Builder {
     double width = 1.0, height = 1.0, sill = 0.0, shift = 0.0;
     bool blank = false;
   };
+
+  void build_off_the_drawing(std::uint64_t seed) {
+    std::vector<std::array<std::size_t, 2>> walls;
+    for (const WallPair& pair : wall_pairs(plan_, faces_, 0.2))
+      if (faces_[pair.outer].room >= 0) walls.push_back({pair.inner, pair.outer});
+    as_built_.emplace(plan_, faces_, walls, seed);
+    built_holes_.resize(faces_.size());
+    for (std::size_t room = 0; room < plan_.rooms.size(); ++room)
+      building_.built.push_back({as_built_->room(room).low, as_built_->in_room(room)});
+  }
 
   /// Windows above one another share a bay's style, as they do on real façades.
   void choose_bay_variations() {
@@ -215,18 +228,12 @@ class Builder {
   }
 
   void add_door(const WallPair& pair) {
-    OpeningShape shape;
-    shape.kind = random_.uniform() < o_.open_door_share ? OpeningKind::open_door : OpeningKind::closed_door;
-    shape.width_m = o_.door_width_m;
-    const WallFace& inner = faces_[pair.inner];
-    const WallFace& outer = faces_[pair.outer];
-    shape.height_m = std::min(o_.door_height_m, std::min(inner.high_m, outer.high_m) - inner.low_m - 0.1);
-    shape.leaf_angle_rad = radians(random_.uniform(80.0, 115.0));
-    shape.hinge_left = random_.uniform() < 0.5;
+    OpeningShape shape = door_leaf(pair, o_.door_width_m);
+    random_.uniform();  // once drew the side of the hinge: the numbers after it stay what they were
     const double left = random_.uniform(pair.begin_m + 0.2, pair.end_m - 0.2 - shape.width_m);
     // The leaf lies against the nearer end of the wall.
     shape.hinge_left = left - pair.begin_m < pair.end_m - left - shape.width_m;
-    place(shape, pair, {left, inner.low_m});
+    place(shape, pair, {left, faces_[pair.inner].low_m});
   }
 
   /// Cuts the opening into both faces, adds its parts and its truth. `at`: lower left on the outer face.
@@ -239,9 +246,29 @@ class Builder {
     shape.outer.origin = frame.to_space({at.x(), at.y() - outer.low_m});
     cut(pair.outer, shape.outer_corners(), shape);
     cut(pair.inner, shape.inner_corners(), shape);
-    add_opening_parts(world_.mesh, shape, random_);
-    record(shape, pair);
+    if (as_built_) {
+      const BuiltOpening built = as_built_->opening(shape, pair.inner, pair.outer);
+      built_holes_[pair.outer].push_back(built.outer_outline(shape));
+      built_holes_[pair.inner].push_back(built.inner_outline(shape));
+      add_opening_parts(world_.mesh, shape, &built, random_);
+      record(shape, pair);
+      correct(world_.openings.back(), shape, built);
+    } else {
+      add_opening_parts(world_.mesh, shape, nullptr, random_);
+      record(shape, pair);
+    }
     keep_clear(shape, pair);
+  }
+
+  static void correct(TrueOpening& opening, const OpeningShape& shape, const BuiltOpening& built) {
+    opening.outer = built.outer_corners(shape);
+    opening.inner = built.inner_corners(shape);
+    opening.outer_outline = built.outer_outline(shape);
+    opening.inner_outline = built.inner_outline(shape);
+    opening.normal = built.outer.normal;
+    const Vector3d middle =
+        0.25 * (opening.inner[0] + opening.inner[1] + opening.inner[2] + opening.inner[3]);
+    opening.thickness_m = -built.outer.signed_distance(middle);
   }
 
   void cut(std::size_t face, const std::array<Vector3d, 4>& corners, const OpeningShape& shape) {
@@ -312,6 +339,8 @@ class Builder {
   std::vector<WallPair> pairs_;
   std::vector<BayStyle> bays_;
   int entrance_axis_ = -1;
+  std::optional<AsBuilt> as_built_;
+  std::vector<std::vector<std::vector<Vector3d>>> built_holes_;  ///< per face, in space
   Building building_;
 };
 
@@ -333,6 +362,24 @@ std::vector<WallPair> wall_pairs(const FloorPlan& plan, const std::vector<WallFa
     }
   }
   return pairs;
+}
+
+double Building::floor_height(std::size_t room, const Vector2d& at) const {
+  if (built.empty()) return plan.rooms[room].floor_m;
+  const Plane& floor = built[room].floor;
+  return (floor.offset - floor.normal.head<2>().dot(at)) / floor.normal.z();
+}
+
+void remember_furniture(World& world, std::size_t building, std::size_t room, const MeshMark& begin) {
+  if (world.as_built_seed) world.buildings[building].furniture.push_back({room, begin, world.mesh.mark()});
+}
+
+void settle_furniture(World& world) {
+  for (Building& building : world.buildings) {
+    for (const FurnitureRange& range : building.furniture)
+      world.mesh.map(range.begin, range.end, building.built[range.room].carry);
+    building.furniture.clear();
+  }
 }
 
 Ring rectangle_ring(const Vector2d& centre, const Vector2d& along, const Vector2d& size) {

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -63,20 +65,55 @@ struct WallPair {
 std::vector<WallPair> wall_pairs(const FloorPlan& plan, const std::vector<WallFace>& faces,
                                  double shortest_m);
 
+struct World;
+
+/// What of a mesh stands in a room.
+struct FurnitureRange {
+  std::size_t room = 0;
+  MeshMark begin;
+  MeshMark end;
+};
+
+/// A room that is not quite as drawn.
+struct BuiltRoom {
+  Plane floor;
+  AffineMap carry;  ///< of what stands in it
+};
+
 /// A building that was put into a mesh, and what is needed to furnish and to scan it.
 struct Building {
   FloorPlan plan;
   std::vector<std::vector<Footprint>> occupied;  ///< per room: door swings, window niches, furniture
   std::vector<Vector2d> street_normals;          ///< outward normals of the façades a street follows
   int room_offset = 0;                           ///< added to room numbers in TrueOpening::rooms
+  std::vector<BuiltRoom> built = {};             ///< per room, where the building is not as drawn; else empty
+  std::vector<FurnitureRange> furniture = {};
+
+  /// Of the floor as built.
+  [[nodiscard]] double floor_height(std::size_t room, const Vector2d& at) const;
 };
+
+/// Remembers what was added since `begin` as standing in a room.
+void remember_furniture(World& world, std::size_t building, std::size_t room, const MeshMark& begin);
 
 /// Everything that is built: triangles and the openings among them, in the scene's frame.
 struct World {
   Mesh mesh;
   std::vector<TrueOpening> openings;
   std::vector<Building> buildings;
+  /// Buildings that are added are off their drawing by millimetres to a centimetre, which this seed draws;
+  /// none: they are as drawn.
+  std::optional<std::uint64_t> as_built_seed = std::nullopt;
 };
+
+/// Within this distance faces share a true plane: those of a drawing are coplanar, those of a building are
+/// not.
+inline double merge_distance(const World& world) {
+  return world.as_built_seed ? 1e-9 : 1e-3;
+}
+
+/// Puts all furniture where the rooms, as built, have it. To be called once, when the world is complete.
+void settle_furniture(World& world);
 
 /// Adds walls, slabs, windows, doors, roof and ornaments of a plan to the world. Returns its index.
 std::size_t add_building(World& world, const FloorPlan& plan, const FacadeOptions& options,

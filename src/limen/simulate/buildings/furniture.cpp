@@ -346,7 +346,9 @@ class FurnitureDecorator {
 
 void furnish(World& world, std::size_t building, std::size_t room, double fullness, RandomStream& random) {
   if (fullness <= 0.0) return;
+  const MeshMark begin = world.mesh.mark();
   FurnitureDecorator(world, building, room, random).run(fullness);
+  remember_furniture(world, building, room, begin);
 }
 
 bool is_free(const Building& building, std::size_t room, const Vector2d& p, double radius_m) {

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "limen/base/angles.h"
+#include "limen/geometry/polygon.h"
 
 namespace limen {
 namespace {
@@ -37,6 +38,76 @@ std::vector<std::pair<double, double>> free_intervals(const std::vector<PanelRec
   return free;
 }
 
+/// Coordinates in a flat panel with four corners: (0, 0), (1, 0), (1, 1), (0, 1) at its corners, even along
+/// each line of the other coordinate.
+class QuadPanel {
+ public:
+  explicit QuadPanel(const std::array<Vector3d, 4>& corners, const Vector3d& normal)
+      : corners_(corners),
+        s_(corners[1] - corners[0]),
+        t_(corners[3] - corners[0]),
+        st_(corners[2] - corners[1] - t_),
+        u_(s_.normalized()),
+        v_(normal.cross(u_)) {}
+
+  [[nodiscard]] Vector3d at(const Vector2d& p) const {
+    // The corners themselves are met to the last bit: neighbouring panels have them in common.
+    if (p.x() == 1.0 && p.y() == 1.0) return corners_[2];
+    if (p.x() == 1.0 && p.y() == 0.0) return corners_[1];
+    if (p.x() == 0.0 && p.y() == 1.0) return corners_[3];
+    return corners_[0] + p.x() * s_ + p.y() * t_ + p.x() * p.y() * st_;
+  }
+
+  /// Newton's iteration: the panel is nearly a rectangle.
+  [[nodiscard]] Vector2d coordinates_of(const Vector3d& x) const {
+    Vector2d p(s_.dot(x - corners_[0]) / s_.squaredNorm(), t_.dot(x - corners_[0]) / t_.squaredNorm());
+    for (int step = 0; step < 8; ++step) {
+      const Vector3d off = x - at(p);
+      const Vector3d by_s = s_ + p.y() * st_;
+      const Vector3d by_t = t_ + p.x() * st_;
+      const double a = u_.dot(by_s);
+      const double b = u_.dot(by_t);
+      const double c = v_.dot(by_s);
+      const double d = v_.dot(by_t);
+      const Vector2d r(u_.dot(off), v_.dot(off));
+      p += Vector2d(d * r.x() - b * r.y(), a * r.y() - c * r.x()) / (a * d - b * c);
+    }
+    return p;
+  }
+
+  [[nodiscard]] Vector2d size() const { return {s_.norm(), t_.norm()}; }
+
+ private:
+  std::array<Vector3d, 4> corners_;
+  Vector3d s_, t_, st_, u_, v_;
+};
+
+/// The corner of a rectangle that lies farthest along `normal`: lower left, lower right, upper right, upper
+/// left.
+std::size_t farthest_corner(const Vector2d& normal) {
+  if (normal.y() < 0.0) return normal.x() < 0.0 ? 0 : 1;
+  return normal.x() < 0.0 ? 3 : 2;
+}
+
+/// What lies between a convex ring and a rectangle round it: triangles of the ring's points and the
+/// rectangle's corners, which are numbered after the ring's. Both run counter-clockwise.
+std::vector<std::array<std::size_t, 3>> rim_triangles(const Ring& ring) {
+  const std::size_t n = ring.size();
+  std::vector<std::array<std::size_t, 3>> triangles;
+  const auto corner_of = [&](std::size_t i) {
+    const Vector2d edge = ring[(i + 1) % n] - ring[i % n];
+    return farthest_corner({edge.y(), -edge.x()});
+  };
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::size_t corner = corner_of(i);
+    const std::size_t next = (i + 1) % n;
+    triangles.push_back({i, n + corner, next});
+    for (std::size_t k = corner; k != corner_of(i + 1); k = (k + 1) % 4)
+      triangles.push_back({next, n + k, n + (k + 1) % 4});
+  }
+  return triangles;
+}
+
 /// Where strips of a panel begin and end.
 std::vector<double> cuts_of(const std::vector<PanelRect>& holes, double width) {
   std::vector<double> cuts = {0.0, width};
@@ -49,14 +120,15 @@ std::vector<double> cuts_of(const std::vector<PanelRect>& holes, double width) {
   return cuts;
 }
 
-constexpr double kMergeDistance = 1e-3;
-const double kMergeCosine = std::cos(radians(0.01));
-
 /// Planes in cells of their offset, so that only a few are compared.
 class PlaneIndex {
  public:
+  explicit PlaneIndex(double distance_m)
+      : distance_(distance_m),
+        cosine_(std::min(std::cos(radians(0.01 * (distance_m / 1e-3))), 1.0 - 1e-15)) {}
+
   int find_or_add(const Plane& plane, std::vector<TruePlane>& planes) {
-    const auto cell = static_cast<long>(std::floor(plane.offset / kMergeDistance));
+    const auto cell = static_cast<long>(std::floor(plane.offset / distance_));
     for (long near = cell - 1; near <= cell + 1; ++near) {
       const auto found = cells_.find(near);
       if (found == cells_.end()) continue;
@@ -70,9 +142,11 @@ class PlaneIndex {
   }
 
  private:
-  static bool same(const Plane& a, const Plane& b) {
-    return a.normal.dot(b.normal) > kMergeCosine && std::abs(a.offset - b.offset) < kMergeDistance;
+  [[nodiscard]] bool same(const Plane& a, const Plane& b) const {
+    return a.normal.dot(b.normal) > cosine_ && std::abs(a.offset - b.offset) < distance_;
   }
+  double distance_;
+  double cosine_;
   std::map<long, std::vector<int>> cells_;
 };
 
@@ -128,6 +202,67 @@ int Mesh::add_panel(const PlaneFrame& frame, const Vector2d& size, const std::ve
   return id;
 }
 
+int Mesh::add_quad_panel(const std::array<Vector3d, 4>& corners, const Plane& plane,
+                         const std::vector<std::vector<Vector3d>>& holes, const Surface& like) {
+  constexpr double kRim = 0.01;
+  Surface surface = like;
+  surface.plane = plane;
+  const int id = add_surface(surface);
+  const QuadPanel panel(corners, plane.normal);
+  // Each hole lies in a rectangle of the panel's coordinates; what is between them is filled by triangles.
+  std::vector<PanelRect> cut;
+  for (const std::vector<Vector3d>& hole : holes) {
+    Ring ring;
+    for (const Vector3d& x : hole) ring.push_back(panel.coordinates_of(x));
+    std::vector<Vector3d> points = hole;
+    if (signed_area(ring) < 0.0) {
+      std::reverse(ring.begin(), ring.end());
+      std::reverse(points.begin(), points.end());
+    }
+    Vector2d low = ring[0];
+    Vector2d high = ring[0];
+    for (const Vector2d& p : ring) {
+      low = low.cwiseMin(p);
+      high = high.cwiseMax(p);
+    }
+    const Vector2d rim = Vector2d(kRim, kRim).cwiseQuotient(panel.size());
+    low = (low - rim).cwiseMax(0.0);
+    high = (high + rim).cwiseMin(1.0);
+    cut.push_back({low.x(), low.y(), high.x(), high.y()});
+    for (const Vector2d& p : {low, Vector2d(high.x(), low.y()), high, Vector2d(low.x(), high.y())})
+      points.push_back(panel.at(p));
+    for (const auto& t : rim_triangles(ring)) add_triangle(points[t[0]], points[t[1]], points[t[2]], id);
+  }
+  const std::vector<double> cuts = cuts_of(cut, 1.0);
+  for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
+    for (const auto& [lower, upper] : free_intervals(cut, 0.5 * (cuts[i] + cuts[i + 1]), 1.0)) {
+      const Vector3d a = panel.at({cuts[i], lower});
+      const Vector3d c = panel.at({cuts[i + 1], upper});
+      add_triangle(a, panel.at({cuts[i + 1], lower}), c, id);
+      add_triangle(a, c, panel.at({cuts[i], upper}), id);
+    }
+  }
+  return id;
+}
+
+void Mesh::map(const MeshMark& begin, const MeshMark& end, const AffineMap& as_built) {
+  for (std::size_t i = begin.surfaces; i < end.surfaces; ++i) {
+    Plane& plane = surfaces_[i].plane;
+    const Vector3d across = plane.normal.unitOrthogonal();
+    const Vector3d foot = as_built(plane.offset * plane.normal);
+    plane.normal =
+        (as_built.linear * across).cross(as_built.linear * plane.normal.cross(across)).normalized();
+    plane.offset = plane.normal.dot(foot);
+    surfaces_[i].area_m2 = 0.0;
+  }
+  for (std::size_t i = begin.triangles; i < end.triangles; ++i) {
+    for (const std::uint32_t corner : triangles_[i]) vertices_[corner] = as_built(vertices_[corner]);
+    const Vector3d& a = vertices_[triangles_[i][0]];
+    surfaces_[static_cast<std::size_t>(surface_of_triangle_[i])].area_m2 +=
+        0.5 * (vertices_[triangles_[i][1]] - a).cross(vertices_[triangles_[i][2]] - a).norm();
+  }
+}
+
 void Mesh::add_prism(const std::vector<Vector3d>& ring, double height, const Surface& like) {
   const Vector3d up(0.0, 0.0, height);
   std::vector<Vector3d> top;
@@ -167,9 +302,9 @@ void Mesh::add_shifted(std::size_t first_surface, const std::array<std::size_t, 
   }
 }
 
-MergedPlanes merge_planes(const Mesh& mesh) {
+MergedPlanes merge_planes(const Mesh& mesh, double distance_m) {
   MergedPlanes merged;
-  PlaneIndex index;
+  PlaneIndex index(distance_m);
   std::vector<double> largest;
   for (const Surface& surface : mesh.surfaces()) {
     if (!surface.planar || surface.element == Element::portal) {
@@ -185,6 +320,7 @@ MergedPlanes merge_planes(const Mesh& mesh) {
       largest[slot] = surface.area_m2;
       merged.planes[slot].element = surface.element;
       merged.planes[slot].plane = surface.plane;
+      merged.planes[slot].bulge = surface.bulge;
     }
   }
   return merged;

@@ -21,6 +21,7 @@ struct Surface {
   bool planar = true;         ///< false: a leaf, a trunk, a curtain's fold: each triangle has its own plane
   double reflectivity = 0.6;  ///< share of light sent back
   double area_m2 = 0.0;
+  Bulge bulge = {};  ///< of a wall as built: rays end on it, though the triangles lie in the plane
 };
 
 /// A rectangle in the coordinates of a panel, metres.
@@ -29,6 +30,20 @@ struct PanelRect {
   double v0 = 0.0;
   double u1 = 0.0;
   double v1 = 0.0;
+};
+
+/// x -> linear * x + shift: a place as drawn -> the place as built.
+struct AffineMap {
+  Matrix3d linear = Matrix3d::Identity();
+  Vector3d shift = Vector3d::Zero();
+
+  [[nodiscard]] Vector3d operator()(const Vector3d& x) const { return linear * x + shift; }
+};
+
+/// How much a mesh held at some time.
+struct MeshMark {
+  std::size_t surfaces = 0;
+  std::size_t triangles = 0;
 };
 
 /// Where and how a box stands: its corner frame's origin in the middle of the bottom face.
@@ -50,12 +65,20 @@ class Mesh {
   /// The rectangle [0, width] x [0, height] of `frame` (normal u x v) less its holes. Returns the surface.
   int add_panel(const PlaneFrame& frame, const Vector2d& size, const std::vector<PanelRect>& holes,
                 const Surface& like);
+  /// A flat panel with corners counter-clockwise as seen from the side of `plane`'s normal, less convex holes
+  /// that lie in the plane. Returns the surface.
+  int add_quad_panel(const std::array<Vector3d, 4>& corners, const Plane& plane,
+                     const std::vector<std::vector<Vector3d>>& holes, const Surface& like);
   /// A closed box of `size` = along x, along y, up, in the frame of `place`.
   void add_box(const BoxPlace& place, const Vector3d& size, const Surface& like);
   /// A straight prism over a horizontal convex ring (counter-clockwise from above), with a top.
   void add_prism(const std::vector<Vector3d>& ring, double height, const Surface& like);
   /// Copies triangles [begin, end), those of surfaces from `first_surface` on, moved by `shift`. No sheets.
   void add_shifted(std::size_t first_surface, const std::array<std::size_t, 2>& range, const Vector3d& shift);
+
+  [[nodiscard]] MeshMark mark() const { return {surfaces_.size(), triangles_.size()}; }
+  /// Moves what was added from `begin` on and before `end`: whole surfaces. The map must keep left and right.
+  void map(const MeshMark& begin, const MeshMark& end, const AffineMap& as_built);
 
   [[nodiscard]] const std::vector<Vector3d>& vertices() const { return vertices_; }
   [[nodiscard]] const std::vector<std::array<std::uint32_t, 3>>& triangles() const { return triangles_; }
@@ -75,9 +98,9 @@ struct MergedPlanes {
   std::vector<TruePlane> planes;      ///< in the mesh's frame, no inliers yet
 };
 
-/// Merges planes within 1 mm (of their offsets about the mesh's origin) and 0.01 degrees; the largest face
-/// lends its plane.
-MergedPlanes merge_planes(const Mesh& mesh);
+/// Merges planes within `distance_m` (of their offsets about the mesh's origin) and 0.01 degrees a millimetre
+/// of it; the largest face lends its plane.
+MergedPlanes merge_planes(const Mesh& mesh, double distance_m = 1e-3);
 
 /// The surface of a kind of matter, with its usual reflectivity.
 Surface surface_of(Element element, int opening = -1);

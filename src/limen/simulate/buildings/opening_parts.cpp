@@ -86,10 +86,9 @@ double top_at(const Ring& ring, double u) {
 }
 
 /// The reveal of a curved outline: its straight jambs and sill are planes, pieces of a curve are not.
-void add_curved_reveals(Mesh& mesh, const OpeningShape& s) {
+void add_curved_reveals(Mesh& mesh, const OpeningShape& s, const std::vector<Vector3d>& outer,
+                        const std::vector<Vector3d>& inner) {
   const Ring ring = s.outline();
-  const std::vector<Vector3d> outer = s.outer_outline();
-  const std::vector<Vector3d> inner = s.inner_outline();
   for (std::size_t i = 0; i < ring.size(); ++i) {
     const std::size_t next = (i + 1) % ring.size();
     const Vector2d edge = ring[next] - ring[i];
@@ -182,6 +181,44 @@ void append_arc(Ring& ring, const Vector2d& centre, const Vector2d& radii, const
   }
 }
 
+/// Where a line of the drawn opening meets a face as built.
+Vector3d on_face(const BuiltOpening& built, const Plane& face, const Vector3d& from, const Vector3d& to) {
+  const Vector3d begin = built.map(from);
+  const Vector3d way = built.map(to) - begin;
+  return begin - face.signed_distance(begin) / face.normal.dot(way) * way;
+}
+
+std::vector<Vector3d> on_face(const BuiltOpening& built, const Plane& face, const std::vector<Vector3d>& from,
+                              const std::vector<Vector3d>& to) {
+  std::vector<Vector3d> ring;
+  ring.reserve(from.size());
+  for (std::size_t i = 0; i < from.size(); ++i) ring.push_back(on_face(built, face, from[i], to[i]));
+  return ring;
+}
+
+Corners first_four(const std::vector<Vector3d>& ring) {
+  return {ring[0], ring[1], ring[2], ring[3]};
+}
+
+/// Where a splayed opening begins to widen.
+double splay_depth(const OpeningShape& s) {
+  return s.frame_depth_m + 0.06;
+}
+
+void add_all_reveals(Mesh& mesh, const OpeningShape& s, const BuiltOpening* built) {
+  if (s.head != HeadForm::rectangular)
+    return add_curved_reveals(mesh, s, built != nullptr ? built->outer_outline(s) : s.outer_outline(),
+                              built != nullptr ? built->inner_outline(s) : s.inner_outline());
+  const Corners outer = built != nullptr ? built->outer_corners(s) : s.outer_corners();
+  const Corners inner = built != nullptr ? built->inner_corners(s) : s.inner_corners();
+  if (s.splay_m <= 0.0) return add_reveals(mesh, outer, inner, s.id);
+  Corners middle = corners_at(s, splay_depth(s), 0.0);
+  if (built != nullptr)
+    for (Vector3d& corner : middle) corner = built->map(corner);
+  add_reveals(mesh, outer, middle, s.id);
+  add_reveals(mesh, middle, inner, s.id);
+}
+
 constexpr int kArcPieces = 16;  // even, so that the highest point of an arch is a corner
 
 }  // namespace
@@ -258,25 +295,37 @@ std::array<Vector3d, 4> OpeningShape::inner_corners() const {
   return corners_at(*this, thickness_m, splay_m);
 }
 
-void add_opening_parts(Mesh& mesh, const OpeningShape& s, RandomStream& random) {
-  const bool curved = s.head != HeadForm::rectangular;
-  if (curved) {
-    add_curved_reveals(mesh, s);
-  } else if (s.splay_m > 0.0) {
-    const Corners middle = corners_at(s, s.frame_depth_m + 0.06, 0.0);
-    add_reveals(mesh, s.outer_corners(), middle, s.id);
-    add_reveals(mesh, middle, s.inner_corners(), s.id);
-  } else {
-    add_reveals(mesh, s.outer_corners(), s.inner_corners(), s.id);
-  }
+std::array<Vector3d, 4> BuiltOpening::outer_corners(const OpeningShape& s) const {
+  return first_four(
+      on_face(*this, outer, ring_of(corners_at(s, 0.0, 0.0)), ring_of(corners_at(s, 0.05, 0.0))));
+}
+
+std::array<Vector3d, 4> BuiltOpening::inner_corners(const OpeningShape& s) const {
+  const double from = s.splay_m > 0.0 ? splay_depth(s) : 0.0;
+  return first_four(on_face(*this, inner, ring_of(corners_at(s, from, 0.0)), ring_of(s.inner_corners())));
+}
+
+std::vector<Vector3d> BuiltOpening::outer_outline(const OpeningShape& s) const {
+  return on_face(*this, outer, ring_at(s, s.outline(), 0.0), ring_at(s, s.outline(), s.thickness_m));
+}
+
+std::vector<Vector3d> BuiltOpening::inner_outline(const OpeningShape& s) const {
+  if (s.head == HeadForm::rectangular) return ring_of(inner_corners(s));
+  return on_face(*this, inner, ring_at(s, s.outline(), 0.0), ring_at(s, s.outline(), s.thickness_m));
+}
+
+void add_opening_parts(Mesh& mesh, const OpeningShape& s, const BuiltOpening* built, RandomStream& random) {
+  add_all_reveals(mesh, s, built);
+  const MeshMark begin = mesh.mark();
   if (s.kind == OpeningKind::window) {
-    curved ? add_curved_frame(mesh, s) : add_window_frame(mesh, s);
+    s.head != HeadForm::rectangular ? add_curved_frame(mesh, s) : add_window_frame(mesh, s);
     if (s.cover == Cover::curtain) add_curtain(mesh, s, random);
     if (s.cover == Cover::blind) add_blind(mesh, s);
-    return;
+  } else {
+    mesh.add_sheet(ring_of(corners_at(s, 0.5 * s.thickness_m, 0.0)), surface_of(Element::portal, s.id));
+    add_leaf(mesh, s);
   }
-  mesh.add_sheet(ring_of(corners_at(s, 0.5 * s.thickness_m, 0.0)), surface_of(Element::portal, s.id));
-  add_leaf(mesh, s);
+  if (built != nullptr) mesh.map(begin, mesh.mark(), built->map);
 }
 
 }  // namespace limen

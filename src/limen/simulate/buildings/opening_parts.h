@@ -58,11 +58,25 @@ struct OpeningShape {
   [[nodiscard]] Vector3d at(double u, double v, double depth_m) const;
 };
 
+/// An opening as it was built into a wall whose faces are not quite where they were drawn. Lines of the drawn
+/// opening that run through the wall end on its faces.
+struct BuiltOpening {
+  AffineMap map;  ///< of all its parts
+  Plane outer;    ///< the wall's faces
+  Plane inner;
+
+  [[nodiscard]] std::array<Vector3d, 4> outer_corners(const OpeningShape& shape) const;
+  [[nodiscard]] std::array<Vector3d, 4> inner_corners(const OpeningShape& shape) const;
+  [[nodiscard]] std::vector<Vector3d> outer_outline(const OpeningShape& shape) const;
+  [[nodiscard]] std::vector<Vector3d> inner_outline(const OpeningShape& shape) const;
+};
+
 /// Triangles, counter-clockwise, between a convex outline and the rectangle [0, width] x [0, height] it
 /// touches on all sides: what of the wall fills the corners of the rectangle. Empty for the rectangle itself.
 std::vector<std::array<Vector2d, 3>> spandrels(const Ring& outline, const Vector2d& size);
 
-/// Reveals, frame, mullions, glass or portal, curtain or blind, door leaf.
-void add_opening_parts(Mesh& mesh, const OpeningShape& shape, RandomStream& random);
+/// Reveals, frame, mullions, glass or portal, curtain or blind, door leaf. `built`: null as drawn.
+void add_opening_parts(Mesh& mesh, const OpeningShape& shape, const BuiltOpening* built,
+                       RandomStream& random);
 
 }  // namespace limen

@@ -51,6 +51,7 @@ class ShellBuilder {
   ShellBuilder(Mesh& mesh, const ShellPlan& shell) : mesh_(mesh), shell_(shell), plan_(shell.plan) {}
 
   void add_walls() {
+    if (shell_.built) return add_walls_as_built();
     for (std::size_t i = 0; i < shell_.faces.size(); ++i) {
       const WallFace& wall = shell_.faces[i];
       const PlaneFrame frame = wall.frame();
@@ -62,6 +63,7 @@ class ShellBuilder {
   }
 
   void add_slabs() {
+    if (shell_.built) return add_slabs_as_built();
     for (const Room& room : plan_.rooms) {
       add_level(room, room.floor_m, true, stairs_beyond(plan_, room, -1) != nullptr);
       add_level(room, room.ceiling_m, false, stairs_beyond(plan_, room, 1) != nullptr);
@@ -76,8 +78,14 @@ class ShellBuilder {
     for (const Room& room : plan_.rooms) {
       const Room* above = stairs_beyond(plan_, room, 1);
       if (above == nullptr) continue;
+      const MeshMark begin = mesh_.mark();
       add_flight(room, above->floor_m);
-      add_well_sides(room, above->floor_m);
+      if (!shell_.built) {
+        add_well_sides(room, above->floor_m);
+        continue;
+      }
+      mesh_.map(begin, mesh_.mark(), shell_.built->shape.in_room(index_of(room)));
+      add_well_sides_as_built(room, *above);
     }
   }
 
@@ -89,14 +97,91 @@ class ShellBuilder {
     const double overhang = random.uniform(0.15, 0.35);
     const std::vector<double> floors = floor_levels();
     for (std::size_t edge = 0; edge < plan_.envelope.size(); ++edge) {
+      const MeshMark begin = mesh_.mark();
       if (plinth && floors[0] > 0.25) add_band(edge, {plan_.base_m, floors[0] - 0.06}, 0.05);
       if (cornice) add_band(edge, {plan_.roof_m - 0.3, plan_.roof_m}, overhang);
       for (std::size_t storey = 1; courses && storey < floors.size(); ++storey)
         add_band(edge, {floors[storey] - 0.2, floors[storey] - 0.02}, course);
+      if (shell_.built)
+        mesh_.map(begin, mesh_.mark(),
+                  shell_.built->shape.at_face(shell_.built->shape.outside().faces[edge]));
     }
   }
 
  private:
+  void add_walls_as_built() {
+    const ShellAsBuilt& built = *shell_.built;
+    for (std::size_t i = 0; i < shell_.faces.size(); ++i) {
+      Surface surface = surface_of(Element::wall);
+      surface.bulge = built.shape.bulge(i);
+      mesh_.add_quad_panel(built.shape.corners(i), built.shape.wall(i), built.holes[i], surface);
+    }
+  }
+
+  [[nodiscard]] std::size_t index_of(const Room& room) const {
+    return static_cast<std::size_t>(&room - plan_.rooms.data());
+  }
+
+  void add_slabs_as_built() {
+    for (const Room& room : plan_.rooms) {
+      const BuiltSpace& space = shell_.built->shape.room(index_of(room));
+      add_level_as_built(space.low, space.low_corners, Element::floor, stairs_beyond(plan_, room, -1));
+      add_level_as_built(space.high, space.high_corners, Element::ceiling,
+                         stairs_beyond(plan_, room, 1) != nullptr ? &room : nullptr);
+    }
+    const BuiltSpace& outside = shell_.built->shape.outside();
+    const auto add = [&](const std::vector<std::size_t>& corners) {
+      std::vector<Vector3d> ring;
+      for (const std::size_t i : corners) ring.push_back(outside.high_corners[i]);
+      add_flat(ring, outside.high, Element::roof);
+    };
+    if (outside.faces.size() == 4) return add({0, 1, 2, 3});
+    add({0, 1, 4, 5});
+    add({1, 2, 3, 4});
+  }
+
+  void add_flat(const std::vector<Vector3d>& ring, const Plane& plane, Element element) {
+    Surface surface = surface_of(element);
+    surface.plane = plane;
+    const int id = mesh_.add_surface(surface);
+    for (std::size_t i = 1; i + 1 < ring.size(); ++i) mesh_.add_triangle(ring[0], ring[i], ring[i + 1], id);
+  }
+
+  /// `below`: the room whose stairs come through, or null. Floors and ceilings reach some tenths of a
+  /// millimetre under and above the walls: no ray slips through between them.
+  void add_level_as_built(const Plane& plane, const std::vector<Vector3d>& corners, Element element,
+                          const Room* below) {
+    Vector3d middle = Vector3d::Zero();
+    for (const Vector3d& corner : corners) middle += corner / static_cast<double>(corners.size());
+    std::vector<Vector3d> ring;
+    for (const Vector3d& corner : corners) ring.emplace_back(middle + 1.0001 * (corner - middle));
+    if (element == Element::ceiling) std::reverse(ring.begin(), ring.end());
+    if (below == nullptr) return add_flat(ring, plane, element);
+    mesh_.add_quad_panel({ring[0], ring[1], ring[2], ring[3]}, plane, {well_ring(*below, plane)},
+                         surface_of(element));
+  }
+
+  /// The edges of the well above a room's stairs are upright; this is where they meet a plane.
+  [[nodiscard]] std::vector<Vector3d> well_ring(const Room& room, const Plane& plane) const {
+    const RoomAxes axes(room);
+    const PanelRect well = stair_well(axes.size);
+    std::vector<Vector3d> ring;
+    for (const Vector2d& p : {axes.at(well.u0, well.v0), axes.at(well.u1, well.v0), axes.at(well.u1, well.v1),
+                              axes.at(well.u0, well.v1)})
+      ring.push_back(level(p, (plane.offset - plane.normal.head<2>().dot(p)) / plane.normal.z()));
+    return ring;
+  }
+
+  void add_well_sides_as_built(const Room& room, const Room& above) {
+    const AsBuilt& shape = shell_.built->shape;
+    const std::vector<Vector3d> low = well_ring(room, shape.room(index_of(room)).high);
+    const std::vector<Vector3d> high = well_ring(room, shape.room(index_of(above)).low);
+    for (std::size_t i = 0; i < 4; ++i) {
+      const std::size_t next = (i + 1) % 4;
+      mesh_.add_polygon({low[next], low[i], high[i], high[next]}, surface_of(Element::reveal));
+    }
+  }
+
   void add_level(const Room& room, double z, bool up, bool hole) {
     const Surface like = surface_of(up ? Element::floor : Element::ceiling);
     if (hole) return add_level_with_well(room, z, up, like);

@@ -3,8 +3,10 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <vector>
 
+#include "limen/simulate/buildings/as_built.h"
 #include "limen/simulate/buildings/floor_plan.h"
 #include "limen/simulate/buildings/mesh.h"
 
@@ -13,6 +15,12 @@ namespace limen {
 /// A triangle of wall in the coordinates of a panel, counter-clockwise.
 using PanelTriangle = std::array<Vector2d, 3>;
 
+/// What is not where it was drawn, and where the openings are in each face then.
+struct ShellAsBuilt {
+  const AsBuilt& shape;
+  const std::vector<std::vector<std::vector<Vector3d>>>& holes;
+};
+
 /// A plan with its wall faces, the holes that openings cut into them (one list per face), and what stays of
 /// the wall in the corners of holes that are not rectangular.
 struct ShellPlan {
@@ -20,6 +28,7 @@ struct ShellPlan {
   const std::vector<WallFace>& faces;
   const std::vector<std::vector<PanelRect>>& holes;
   const std::vector<std::vector<PanelTriangle>>& spandrels;
+  std::optional<ShellAsBuilt> built;  ///< none: as drawn
 };
 
 /// Adds walls, floors, ceilings, stairs, roof, and a plinth, string courses and a cornice, each with the

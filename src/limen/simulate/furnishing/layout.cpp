@@ -329,6 +329,7 @@ Layout as_placed(const Layout& layout, const World& world, std::size_t building,
 void add_layout(World& world, std::size_t building, std::size_t room, const Layout& layout) {
   DesignRoom design(world.buildings[building], room);
   const Room here = design.room();
+  const MeshMark begin = world.mesh.mark();
   for (const PlacedPiece& placed : layout) {
     const Vector3d size = size_of(placed.piece);
     const Ring area = area_of(placed, size);
@@ -346,6 +347,7 @@ void add_layout(World& world, std::size_t building, std::size_t room, const Layo
       world.buildings[building].occupied[room].push_back(in_plan);
     }
   }
+  remember_furniture(world, building, room, begin);
 }
 
 }  // namespace limen

@@ -26,6 +26,18 @@ void fill_buffers(RTCGeometry geometry, const Mesh& mesh) {
     for (const std::uint32_t corner : triangle) *indices++ = corner;
 }
 
+/// The range to a wall that bulges by millimetres, from the range to its plane: a few steps of a fixed point.
+/// Rays along the wall keep the plane's.
+double range_on_bulge(const Surface& surface, const Vector3d& origin, const Vector3d& direction,
+                      double range_m) {
+  const double slope = surface.plane.normal.dot(direction);
+  if (surface.bulge.height_m == 0.0 || std::abs(slope) < 0.05) return range_m;
+  const double distance = surface.plane.signed_distance(origin);
+  for (int step = 0; step < 6; ++step)
+    range_m = (surface.bulge.at(origin + range_m * direction) - distance) / slope;
+  return range_m;
+}
+
 }  // namespace
 
 struct RayCaster::Scene {
@@ -99,6 +111,7 @@ RayHit RayCaster::cast(const Vector3d& origin, const Vector3d& direction, double
   const double slope = plane.normal.dot(direction);
   hit.cosine = std::abs(slope);
   hit.range_m = hit.cosine > 1e-6 ? -plane.signed_distance(origin) / slope : query.ray.tfar;
+  hit.range_m = range_on_bulge(surface, origin, direction, hit.range_m);
   if (slope > 0.0 && surface.back >= 0) hit.surface = surface.back;
   hit.inside = slope > 0.0 && surface.back < 0 && surface.planar;
   return hit;

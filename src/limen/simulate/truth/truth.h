@@ -2,8 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
@@ -46,6 +49,34 @@ inline const char* to_string(Element element) {
   return names[static_cast<std::size_t>(element)];
 }
 
+/// How a wall's face leaves its plane: along the normal by height * sin(pi a) * sin(pi b) at shares a, b of
+/// the way from one border to the other.
+struct Bulge {
+  double height_m = 0.0;
+  Vector3d origin = Vector3d::Zero();
+  Vector3d u = Vector3d::Zero();  ///< a = u . (x - origin), kept within [0, 1]
+  Vector3d v = Vector3d::Zero();  ///< b
+
+  [[nodiscard]] double at(const Vector3d& x) const {
+    const auto wave = [&](const Vector3d& axis) {
+      return std::sin(std::numbers::pi * std::clamp(axis.dot(x - origin), 0.0, 1.0));
+    };
+    return height_m == 0.0 ? 0.0 : height_m * wave(u) * wave(v);
+  }
+};
+
+/// The bulge seen in another frame.
+inline Bulge transformed(const Rigid3& b_from_a, const Bulge& in_a) {
+  return {in_a.height_m, b_from_a * in_a.origin, b_from_a.rotation * in_a.u, b_from_a.rotation * in_a.v};
+}
+
+/// Surface that two scans both saw.
+struct SharedSurface {
+  std::size_t a = 0;  ///< a < b
+  std::size_t b = 0;
+  double m2 = 0.0;
+};
+
 /// A plane of the simulated world that at least one scan has a point on. Coplanar faces looking the same way
 /// are one plane.
 struct TruePlane {
@@ -53,6 +84,7 @@ struct TruePlane {
   Element element = Element::wall;   ///< of the face with the largest area
   double area_m2 = 0.0;              ///< of all its faces, openings taken out
   std::vector<std::size_t> inliers;  ///< points of each scan on it
+  Bulge bulge = {};                  ///< of a wall as built
 };
 
 /// How one scan saw one opening.
@@ -147,6 +179,8 @@ struct Truth {
   std::vector<TruePlane> planes;
   std::vector<TrueOpening> openings;
   std::vector<ScanTruth> scans;
+  bool as_built = false;                           ///< off the drawing, as real buildings are
+  std::vector<SharedSurface> shared = {};          ///< where it was counted: of pairs of scans, sorted
   std::optional<ModelTruth> model = std::nullopt;  ///< of a scanned model; its coordinates are the world's
 };
 

@@ -25,7 +25,7 @@ BuildingScanner::BuildingScanner(const WholeBuilding& building, const Rigid3& lo
                                  const Vector3d& local_origin)
     : building_(building),
       caster_(building.world.mesh),
-      merged_(merge_planes(building.world.mesh)),
+      merged_(merge_planes(building.world.mesh, merge_distance(building.world))),
       counter_(merged_),
       local_from_scene_(local_from_scene),
       local_origin_(local_origin) {}
@@ -48,7 +48,7 @@ ScannedBuilding BuildingScanner::station(const std::string& name, const StationP
       [&](const ScanPattern& fired) {
         return sweep(caster_, building_.world.openings, fired, style.scanner, seed);
       });
-  if (style.people > 0) {
+  if (style.people > 0 && place.room != kStreet) {
     const auto people =
         people_in(building_.world.buildings[0], place.room, place.position, style.people, random);
     hide_behind(result, scene_from_head.translation, people, style.scanner.noise_m, random);
@@ -60,7 +60,7 @@ ScannedBuilding BuildingScanner::station(const std::string& name, const StationP
   if (!style.origin_told) made.scan.centres.clear();
   made.scan.level = !style.any_rotation && style.tilt_rad == 0.0;
   made.truth.name = name;
-  made.truth.room = static_cast<int>(place.room);
+  made.truth.room = place.room == kStreet ? -1 : static_cast<int>(place.room);
   made.truth.scanner = style.file_origin;
   made.truth.local_from_scan = local_from_head * Rigid3{Matrix3d::Identity(), -style.file_origin};
   return counted(std::move(made), result);

@@ -9,9 +9,9 @@
 #include "limen/model/scan.h"
 #include "limen/simulate/scanner/drift.h"
 #include "limen/simulate/scanner/ray_caster.h"
+#include "limen/simulate/scanner/shared_surface.h"
 #include "limen/simulate/whole/project_truth.h"
 #include "limen/simulate/whole/scan_style.h"
-#include "limen/simulate/whole/shared_surface.h"
 #include "limen/simulate/whole/survey.h"
 
 namespace limen {

@@ -21,7 +21,9 @@ WholeBuildingOptions building_options(const ProjectSceneOptions& options) {
   building.seed = options.seed;
   building.stations = options.stations;
   building.passes = options.passes;
+  building.places = options.places;
   building.open_door_share = options.open_door_share;
+  building.as_built = options.as_built;
   if (options.styles) building.furnishing = random_furnishing_style(options.seed);
   return building;
 }
@@ -38,18 +40,22 @@ class ProjectSimulation {
         scanner_(building_, heading_of(options.seed), kLocalOrigin) {
     truth_.building = options.name;
     truth_.seed = options.seed;
+    truth_.as_built = options.as_built;
     truth_.local_origin = kLocalOrigin;
     truth_.rooms = building_.rooms;
   }
 
   ProjectTruth run() {
-    const auto total = static_cast<double>(building_.wishes.size() + building_.passes.size());
+    const auto total = static_cast<double>(building_.wishes.size() + o_.tripods + building_.passes.size());
     double done = 0.0;
     for (const StationWish& wish : building_.wishes) {
       monitor_.throw_if_cancelled();
-      if (const auto place = survey(building_, scanner_.caster(), wish, o_.seed))
-        record(scanner_.station(fmt::format("station_{:03}", truth_.scans.size() + 1), *place, style(),
-                                scan_seed()));
+      record(survey(building_, scanner_.caster(), wish, o_.seed));
+      monitor_.advance(++done, total);
+    }
+    for (std::size_t i = 0; i < o_.tripods; ++i) {
+      monitor_.throw_if_cancelled();
+      record(survey_street(building_, scanner_.caster(), i, o_.tripods, o_.seed));
       monitor_.advance(++done, total);
     }
     for (std::size_t i = 0; i < building_.passes.size(); ++i) {
@@ -85,6 +91,12 @@ class ProjectSimulation {
     return std::min<std::size_t>(1200000, static_cast<std::size_t>(6000.0 * building_.passes[pass].length()));
   }
 
+  void record(const std::optional<StationPlace>& place) {
+    if (place)
+      record(scanner_.station(fmt::format("station_{:03}", truth_.scans.size() + 1), *place, style(),
+                              scan_seed()));
+  }
+
   void record(const ScannedBuilding& made) {
     truth_.scans.push_back(made.truth);
     keep_(made.scan);
@@ -102,6 +114,7 @@ class ProjectSimulation {
 
 void ProjectSceneOptions::check() const {
   if (stations > 2000) throw_bad_option("stations", static_cast<double>(stations), "at most 2000");
+  if (tripods > 500) throw_bad_option("tripods", static_cast<double>(tripods), "at most 500");
   if (passes > 12) throw_bad_option("passes", passes, "at most 12");
   constexpr std::size_t kMost = 100000000;
   if (points_station < 1000 || points_station > kMost)

@@ -11,6 +11,7 @@
 #include "limen/simulate/scanner/drift.h"
 #include "limen/simulate/scanner/scanner.h"
 #include "limen/simulate/whole/project_truth.h"
+#include "limen/simulate/whole/whole_building.h"
 
 namespace limen {
 
@@ -19,14 +20,17 @@ struct ProjectSceneOptions {
   std::string name = "museum";  ///< one of whole_building_names()
   std::uint64_t seed = 1;
   std::size_t stations = 0;  ///< 0: the building's own number; the building grows with it, up to 2 000
-  int passes = -1;           ///< of the street; negative: the building's own number
+  StationPlaces places = StationPlaces::usual;
+  std::size_t tripods = 0;              ///< further stations in the street, all round the building
+  int passes = -1;                      ///< of the street; negative: the building's own number
   std::size_t points_station = 120000;  ///< of each, about
   std::size_t points_pass = 0;          ///< of each pass, about; 0: 6 000 a metre, at most 1.2 million
   bool any_rotation = false;            ///< stations at any rotation, else level with any heading
   double drift_m = 0.008;               ///< slow error of the passes, one standard deviation per axis
   DriftKind drift = DriftKind::waves;
   double open_door_share = 0.9;
-  bool styles = false;  ///< every station in a style at random (scan_style.h)
+  bool as_built = false;  ///< walls, slabs and openings are off the drawing as real ones are
+  bool styles = false;    ///< every station in a style at random (scan_style.h)
   ScannerOptions scanner;
 
   void check() const;

@@ -95,6 +95,44 @@ TEST_P(EveryBuilding, HoldsTogetherThroughItsDoors) {
   EXPECT_GE(largest + 2, truth.scans.size());
 }
 
+/// Stations in rooms and doorways, all doors open: no vehicle is needed to join a storey.
+TEST_P(EveryBuilding, StationsInDoorwaysJoinAllOfThem) {
+  if (GetParam() == "terrace") GTEST_SKIP() << "houses of a terrace meet in the street only";
+  ProjectSceneOptions options = small(GetParam());
+  options.as_built = true;
+  options.places = StationPlaces::doorways;
+  options.passes = 0;
+  options.points_station = 20000;
+  options.open_door_share = 1.0;
+  const ProjectTruth truth = made(options).truth;
+  EXPECT_GT(truth.scans.size(), 12U) << "eight in rooms, and those in doorways";
+  std::vector<std::size_t> group(truth.scans.size());
+  for (std::size_t i = 0; i < group.size(); ++i) group[i] = i;
+  for (const SharedSurface& pair : truth.shared) {
+    if (pair.m2 < 4.0) continue;
+    const std::size_t from = group[pair.b];
+    std::replace(group.begin(), group.end(), from, group[pair.a]);
+  }
+  for (std::size_t i = 0; i < group.size(); ++i) EXPECT_EQ(group[i], group[0]) << truth.scans[i].name;
+}
+
+TEST(ProjectScene, HasOneStationARoomAndTripodsInTheStreetWhereAsked) {
+  ProjectSceneOptions options = small("equal_bays");
+  options.as_built = true;
+  options.places = StationPlaces::rooms;
+  options.passes = 0;
+  options.tripods = 5;
+  const Made project = made(options);
+  std::map<int, int> stations;
+  for (const SimulatedScan& scan : project.truth.scans) ++stations[scan.room];
+  EXPECT_EQ(stations[-1], 5);
+  for (const auto& [room, count] : stations) EXPECT_EQ(count, room < 0 ? 5 : 1) << "room " << room;
+  double shared = 0.0;
+  for (const SharedSurface& pair : project.truth.shared)
+    if (project.truth.scans[pair.a].room < 0 && project.truth.scans[pair.b].room < 0) shared += pair.m2;
+  EXPECT_GT(shared, 50.0) << "neighbours in the street see one facade";
+}
+
 TEST_P(EveryBuilding, RoomsOfOneDesignAreBuiltAlike) {
   const WholeBuilding building =
       make_whole_building({.name = GetParam(), .seed = 2, .stations = 24, .passes = 0});

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "limen/geometry/rigid.h"
+#include "limen/simulate/truth/truth.h"
 
 namespace limen {
 
@@ -40,17 +41,11 @@ struct SimulatedScan {
   Vector3d scanner = Vector3d::Zero();  ///< of a station, in its own frame; not always told in the file
 };
 
-/// Surface that two scans both saw.
-struct SharedSurface {
-  std::size_t a = 0;  ///< a < b
-  std::size_t b = 0;
-  double m2 = 0.0;
-};
-
 /// The exact truth of a project. Coordinates are about local_origin: x_in_world = local_origin + x.
 struct ProjectTruth {
   std::string building;
   std::uint64_t seed = 0;
+  bool as_built = false;  ///< off the drawing, as real buildings are
   Vector3d local_origin = Vector3d::Zero();
   std::vector<ProjectRoom> rooms;
   std::vector<SimulatedScan> scans;

@@ -23,7 +23,8 @@ class RoomSurvey {
         room_(building_.plan.rooms[wish.room]),
         random_(random) {}
 
-  std::optional<StationPlace> run() {
+  std::optional<StationPlace> run(const World& world) {
+    if (wish_.doorway >= 0) return in_doorway(world.openings[static_cast<std::size_t>(wish_.doorway)]);
     std::optional<StationPlace> best;
     int most = -1;
     int found = 0;
@@ -43,6 +44,14 @@ class RoomSurvey {
   }
 
  private:
+  /// In the middle of the doorway, a little towards its room: the plane half way through the wall is counted.
+  std::optional<StationPlace> in_doorway(const TrueOpening& door) {
+    const Vector3d sill = 0.25 * (door.outer[0] + door.outer[1] + door.inner[0] + door.inner[1]);
+    const Vector3d place = sill - 0.04 * door.normal + Vector3d(0.0, 0.0, random_.uniform(1.4, 1.7));
+    if (nearest(place) < 0.2) return std::nullopt;
+    return StationPlace{place, wish_.room};
+  }
+
   Vector3d random_place() {
     Vector2d low = room_.outline[0];
     Vector2d high = low;
@@ -100,17 +109,28 @@ class RoomSurvey {
               : !is_free(building_, wish_.room, {p.x(), p.y()}, radius))
       return false;
     const RayHit down = caster_.cast(p, -Vector3d::UnitZ());
-    if (!down.found() || std::abs(p.z() - down.range_m - room_.floor_m) > 0.01) return false;
+    if (!down.found() ||
+        std::abs(p.z() - down.range_m - building_.floor_height(wish_.room, p.head<2>())) > 0.01)
+      return false;
+    return nearest(p) >= radius;
+  }
+
+  /// How near matter is, in plan; 0 where the place lies within it.
+  [[nodiscard]] double nearest(const Vector3d& p) const {
+    double least = 1e9;
     for (const double tilt : {-0.8, -0.3, 0.0, 0.4}) {
       for (int i = 0; i < 24; ++i) {
         const double azimuth = 2.0 * std::numbers::pi * i / 24;
         const Vector3d direction(std::cos(tilt) * std::cos(azimuth), std::cos(tilt) * std::sin(azimuth),
                                  std::sin(tilt));
-        const RayHit hit = caster_.cast(p, direction);
-        if (hit.found() && (hit.inside || hit.range_m * std::cos(tilt) < radius)) return false;
+        // A doorway's empty cross-section is no matter.
+        const RayHit hit = caster_.cast(p, direction, wish_.doorway >= 0 ? 0.15 : 0.0);
+        if (!hit.found()) continue;
+        if (hit.inside) return 0.0;
+        least = std::min(least, hit.range_m * std::cos(tilt));
       }
     }
-    return true;
+    return least;
   }
 
   const Building& building_;
@@ -124,9 +144,41 @@ class RoomSurvey {
 
 std::optional<StationPlace> survey(const WholeBuilding& building, const RayCaster& caster,
                                    const StationWish& wish, std::uint64_t seed) {
+  if (wish.doorway >= 0) {
+    RandomStream doorway(seed, 300000 + static_cast<std::uint64_t>(wish.doorway));
+    return RoomSurvey(building, caster, wish, doorway).run(building.world);
+  }
   RandomStream random(seed,
                       100000 + 64 * wish.room + static_cast<std::uint64_t>(std::lround(60.0 * wish.from)));
-  return RoomSurvey(building, caster, wish, random).run();
+  return RoomSurvey(building, caster, wish, random).run(building.world);
+}
+
+std::optional<StationPlace> survey_street(const WholeBuilding& building, const RayCaster& caster,
+                                          std::size_t number, std::size_t count, std::uint64_t seed) {
+  const Ring& envelope = building.world.buildings[0].plan.envelope;
+  const std::size_t n = envelope.size();
+  double length = 0.0;
+  for (std::size_t i = 0; i < n; ++i) length += (envelope[(i + 1) % n] - envelope[i]).norm();
+  RandomStream random(seed, 200000 + number);
+  for (int attempt = 0; attempt < 60; ++attempt) {
+    // Even shares of the way round, and about there; farther along where something stands in the way.
+    const double share = (static_cast<double>(number) + 0.5) / static_cast<double>(count);
+    double along = std::fmod(share * length + random.uniform(-0.05, 0.05) * attempt + length, length);
+    const double distance = random.uniform(4.0, 7.0);
+    for (std::size_t i = 0; i < n; ++i) {
+      const Vector2d side = envelope[(i + 1) % n] - envelope[i];
+      if (along > side.norm()) {
+        along -= side.norm();
+        continue;
+      }
+      const Vector2d way = side.normalized();
+      const Vector2d at = envelope[i] + along * way + distance * Vector2d(way.y(), -way.x());
+      if (const auto place = tripod_on_ground(caster, at, random.uniform(1.5, 1.8)))
+        return StationPlace{*place, kStreet};
+      break;
+    }
+  }
+  return std::nullopt;
 }
 
 }  // namespace limen

@@ -35,7 +35,7 @@ Vector2d sides_of(const Room& room) {
 
 /// One station in a room, more in long ones. What joins rooms comes first: a building of which a part is left
 /// out still holds together.
-std::vector<StationWish> wishes_of(const FloorPlan& plan) {
+std::vector<StationWish> wishes_of(const FloorPlan& plan, StationPlaces places) {
   constexpr double kLeastArea = 3.3;
   constexpr double kReach = 7.5;
   std::vector<StationWish> joining;
@@ -45,8 +45,9 @@ std::vector<StationWish> wishes_of(const FloorPlan& plan) {
     const bool joins = r.use == RoomUse::corridor || r.use == RoomUse::stairs;
     if (!joins && signed_area(r.outline) < kLeastArea) continue;
     const double longer = sides_of(r).maxCoeff();
-    const int count =
-        r.use == RoomUse::stairs ? 2 : std::max(1, static_cast<int>(std::ceil(longer / kReach)));
+    const int count = places == StationPlaces::rooms ? 1
+                      : r.use == RoomUse::stairs     ? 2
+                                                 : std::max(1, static_cast<int>(std::ceil(longer / kReach)));
     // Apart from one another, or they would all stand where most can be seen.
     const double inset = count > 1 ? 0.25 : 0.0;
     for (int i = 0; i < count; ++i)
@@ -54,6 +55,22 @@ std::vector<StationWish> wishes_of(const FloorPlan& plan) {
   }
   joining.insert(joining.end(), others.begin(), others.end());
   return joining;
+}
+
+/// One station in every open doorway between rooms that have stations.
+void add_doorways(WholeBuilding& building) {
+  const auto has_station = [&](int room) {
+    return std::any_of(building.wishes.begin(), building.wishes.end(),
+                       [&](const StationWish& wish) { return static_cast<int>(wish.room) == room; });
+  };
+  std::vector<StationWish> doorways;
+  for (std::size_t i = 0; i < building.world.openings.size(); ++i) {
+    const TrueOpening& door = building.world.openings[i];
+    if (door.exterior || door.curtained || door.rooms.size() != 2) continue;
+    if (!has_station(door.rooms[0]) || !has_station(door.rooms[1])) continue;
+    doorways.push_back({.room = static_cast<std::size_t>(door.rooms[0]), .doorway = static_cast<int>(i)});
+  }
+  building.wishes.insert(building.wishes.end(), doorways.begin(), doorways.end());
 }
 
 FacadeOptions look_of(RandomStream& random) {
@@ -168,12 +185,13 @@ constexpr std::array<NamedDesign, 6> kDesigns = {{{"museum", museum_design, 20},
                                                   {"terrace", terrace_design, 36}}};
 
 /// The smallest building of the kind that has room for all stations.
-Design design_for(const NamedDesign& kind, std::size_t stations, std::uint64_t seed, std::uint64_t trial) {
+Design design_for(const NamedDesign& kind, std::size_t stations, const WholeBuildingOptions& options,
+                  std::uint64_t trial) {
   for (int size = 1;; ++size) {
     // The same stream every time: a larger building is of the same make.
-    RandomStream random(seed, trial);
+    RandomStream random(options.seed, trial);
     Design design = kind.make(size, random);
-    if (wishes_of(design.plan).size() >= stations || size > 1000) return design;
+    if (wishes_of(design.plan, options.places).size() >= stations || size > 1000) return design;
   }
 }
 
@@ -265,13 +283,16 @@ WholeBuilding make_whole_building(const WholeBuildingOptions& options) {
     known += (known.empty() ? "" : ", ") + std::string(kind.name);
     if (options.name != kind.name) continue;
     const std::size_t stations = options.stations > 0 ? options.stations : kind.stations;
-    Design design = design_for(kind, stations, options.seed, trial);
+    Design design = design_for(kind, stations, options, trial);
     design.facade.open_door_share = options.open_door_share;
     WholeBuilding building;
-    building.wishes = wishes_of(design.plan);
+    building.wishes = wishes_of(design.plan, options.places);
     building.wishes.resize(std::min(stations, building.wishes.size()));
     RandomStream random(options.seed, trial + 100);
+    if (options.as_built) building.world.as_built_seed = mix64(options.seed ^ 0xa5b01dULL);
     add_building(building.world, design.plan, design.facade, random);
+    // Only the first building's openings are there by now.
+    if (options.places == StationPlaces::doorways) add_doorways(building);
     building.rooms = rooms_of(design.plan);
     const std::vector<bool> alike =
         furnish_rooms(building.world, 0, options.furnishing, mix64(options.seed + trial));
@@ -279,6 +300,7 @@ WholeBuilding make_whole_building(const WholeBuildingOptions& options) {
       building.rooms[room].furnished_alike = alike[room];
     add_wide_ground(building.world, design.plan.envelope);
     add_passes(building, design, options.passes < 0 ? design.passes : options.passes, random);
+    settle_furniture(building.world);
     return building;
   }
   throw Error("no whole building is called '" + options.name + "'", "limen simulate",

@@ -13,11 +13,19 @@
 
 namespace limen {
 
-/// Where a station is wanted: in a room, within a part of its longer side.
+/// Where the stations of a whole building stand.
+enum class StationPlaces {
+  usual,    ///< in every room, more than one in long rooms, corridors and on stairs
+  rooms,    ///< one in every room
+  doorways  ///< as usual, and one in every open doorway between two such rooms
+};
+
+/// Where a station is wanted: in a room, within a part of its longer side, or in a doorway.
 struct StationWish {
   std::size_t room = 0;
   double from = 0.0;  ///< share of the longer side
   double to = 1.0;
+  int doorway = -1;  ///< index into World::openings
 };
 
 /// A whole building with its street, furnished, and who scans it from where.
@@ -32,10 +40,13 @@ struct WholeBuilding {
 struct WholeBuildingOptions {
   std::string name = "museum";  ///< one of whole_building_names()
   std::uint64_t seed = 1;
-  std::size_t stations = 0;  ///< 0: the building's own number; the building grows with it
-  int passes = -1;           ///< of the street, each along two façades; negative: the building's own number
+  std::size_t stations =
+      0;  ///< 0: the building's own number; the building grows with it. Doorways come on top
+  StationPlaces places = StationPlaces::usual;
+  int passes = -1;  ///< of the street, each along two façades; negative: the building's own number
   double open_door_share = 0.9;
   FurnishingStyle furnishing = {};
+  bool as_built = false;  ///< walls, slabs and openings are off the drawing as real ones are
 };
 
 /// museum, equal_bays, flats, office_floor, hotel, terrace.

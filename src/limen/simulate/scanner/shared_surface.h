@@ -7,7 +7,6 @@
 
 #include "limen/simulate/buildings/mesh.h"
 #include "limen/simulate/scanner/scanner.h"
-#include "limen/simulate/whole/project_truth.h"
 
 namespace limen {
 

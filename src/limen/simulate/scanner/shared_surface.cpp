@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
-#include "limen/simulate/whole/shared_surface.h"
+#include "limen/simulate/scanner/shared_surface.h"
 
 #include <algorithm>
 #include <cmath>
