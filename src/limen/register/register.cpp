@@ -17,7 +17,6 @@
 #include "limen/register/judge/individual_matter.h"
 #include "limen/register/judge/posterior.h"
 #include "limen/register/judge/twin_odds.h"
-#include "limen/register/judge/uneven_walls.h"
 #include "limen/register/prepare/model_rooms.h"
 #include "limen/register/prepare/stage_clock.h"
 #include "limen/register/propose/propose.h"
@@ -537,9 +536,7 @@ RegistrationResult register_prepared(const PreparedPair& pair, const RegisterOpt
     const auto known = asked.find(&pose);
     if (known != asked.end()) return known->second;
     if (!ask_matter) ask_matter.emplace(from.view(), to.view());
-    IndividualMatter matter = (*ask_matter)(pose.target_from_source);
-    matter.built_nats = unevenness_nats(common_planes(pose, from.view(), to.view()));
-    return asked.emplace(&pose, std::move(matter)).first->second;
+    return asked.emplace(&pose, (*ask_matter)(pose.target_from_source)).first->second;
   };
   // Of a room in use things stand where the other scan saw free space: no contradiction, if enough of the
   // rest is where it was to tell the room from its twins.

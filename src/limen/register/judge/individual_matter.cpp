@@ -12,6 +12,7 @@
 #include "limen/base/progress.h"
 #include "limen/geometry/polygon_clip.h"
 #include "limen/register/judge/built_planes.h"
+#include "limen/register/judge/common_surfaces.h"
 #include "limen/register/judge/figures.h"
 #include "limen/register/judge/met_faces.h"
 
@@ -24,7 +25,7 @@ constexpr double kFreeM = 0.15;        // rays passed this far beyond
 constexpr double kSlopedCosine = 0.7;  // of a face that tells shifts along the floor, to the vertical
 constexpr double kSameNormal = 0.94;   // cosine: normals of small pieces are known to some degrees
 constexpr double kBesideM = 0.15;      // along the face, between the middles of two pieces of it
-constexpr double kUnevenM = 0.001;     // roughness, and the pose, at least
+constexpr double kUnevenM = 0.001;     // roughness, and the pose, at least: more where walls show more
 
 // Pieces nearer than this tell the same: the size of a chair, a box, a monitor. A moved table is few pieces.
 constexpr double kCorrelationM = 0.25;
@@ -246,7 +247,9 @@ std::vector<MetFace> met_faces(const Side& scan, const Side& judge, const Rigid3
 }
 
 /// What stands in a room is its own to the millimetre: offsets between pieces that both scans have.
-std::vector<FaceMiss> face_offsets(const Side& source, const Side& target, const Rigid3& target_from_source) {
+/// `scatter_m`: of a piece of wall, by how the two scans differ on walls that both saw.
+std::vector<FaceMiss> face_offsets(const Side& source, const Side& target, const Rigid3& target_from_source,
+                                   double scatter_m) {
   const Rigid3 source_from_target = inverse(target_from_source);
   // Nearness is mutual, about: the sparser scan asks.
   const bool source_asks = source.view.details != nullptr && target.view.details != nullptr &&
@@ -263,8 +266,9 @@ std::vector<FaceMiss> face_offsets(const Side& source, const Side& target, const
     const bool front =
         target.built.is_front(face.at, face.normal) ||
         source.built.is_front(source_from_target * face.at, source_from_target.rotation * face.normal);
+    const double uneven_m = std::max(kUnevenM, scatter_m);
     offsets.push_back(
-        {face.offset_m, shares[k], std::hypot(kUnevenM, face.sigma_m, drift), front, things[k]});
+        {face.offset_m, shares[k], std::hypot(uneven_m, face.sigma_m, drift), front, things[k]});
   }
   return offsets;
 }
@@ -324,7 +328,10 @@ IndividualMatter MatterAsker::operator()(const Rigid3& target_from_source) const
   individual.chance = chance_of(source, target, target_from_source);
   individual.apart = wall_between(source, target, target_from_source) ||
                      wall_between(target, source, inverse(target_from_source));
-  individual.faces = face_offsets(source, target, target_from_source);
+  const CommonSurfaces surfaces =
+      common_surfaces(source.view, source.built, target.view, target.built, target_from_source);
+  individual.built_nats = as_built_nats(surfaces.all);
+  individual.faces = face_offsets(source, target, target_from_source, surfaces.scatter_m);
   individual.source_built = source.built.flags();
   individual.target_built = target.built.flags();
   return individual;

@@ -46,7 +46,7 @@ struct IndividualMatter {
   /// Of each plane of either scan, whether it is the building's: a wall, a slab, a strip of one.
   std::vector<bool> source_built;
   std::vector<bool> target_built;
-  /// What walls that both scans saw askew alike say against a twin (unevenness_nats); not asked here.
+  /// What the building's surfaces, built as they are, say against a twin (as_built_nats).
   double built_nats = 0.0;
 };
 

@@ -1,0 +1,210 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/register/judge/as_built.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numbers>
+
+#include "limen/base/angles.h"
+#include "limen/register/judge/share_belief.h"
+
+namespace limen {
+namespace {
+
+constexpr double kMostAskewRad = radians(1.5);  // what is off the square by more was drawn so
+constexpr double kUprightNormal = 0.1;          // sine of a wall's lean, at most
+constexpr double kLevelNormal = 0.9;
+constexpr double kParallelNormal = 0.2;  // sine: a wall goes on along a direction
+constexpr double kStrayOffsetM = 0.03;
+constexpr double kStrayTurnRad = radians(1.5);
+constexpr double kFreeSigma = 1.0;  // of the pose, metres and radians: nothing beside what surfaces say
+constexpr int kRounds = 4;
+
+using Matrix36 = Eigen::Matrix<double, 3, 6>;
+
+/// Three numbers that depend on six unknown ones: value - rows * unknown is normal, or, for a stray one,
+/// spread wider.
+struct Seen {
+  Matrix36 rows = Matrix36::Zero();
+  Vector3d value = Vector3d::Zero();
+  std::array<Matrix3d, 2> information;
+  std::array<double, 2> log_weight = {0.0, 0.0};
+
+  void spread(const Matrix3d& variance, const Vector3d& stray_sigma, double stray) {
+    const Matrix3d wider = variance + Matrix3d(stray_sigma.cwiseAbs2().asDiagonal());
+    information = {inverse_of(variance), inverse_of(wider)};
+    log_weight = {std::log(1.0 - stray) - 0.5 * std::log(variance.determinant()),
+                  std::log(stray) - 0.5 * std::log(wider.determinant())};
+  }
+};
+
+/// log of the determinant of a symmetric positive definite matrix, by its blocks.
+double log_determinant_of(const Matrix6d& definite) {
+  const Matrix3d first = definite.topLeftCorner<3, 3>();
+  const Matrix3d across = definite.topRightCorner<3, 3>();
+  const Matrix3d rest =
+      definite.bottomRightCorner<3, 3>() - Matrix3d(across.transpose() * inverse_of(first) * across);
+  return std::log(first.determinant()) + std::log(rest.determinant());
+}
+
+/// log of the density of all, the six numbers integrated out about their likeliest values (Laplace; exact
+/// where nothing is stray).
+double log_density(const std::vector<Seen>& all) {
+  Vector6d unknown = Vector6d::Zero();
+  Matrix6d information;
+  double sum = 0.0;
+  for (int round = 0; round <= kRounds; ++round) {
+    information = Matrix6d::Identity() / (kFreeSigma * kFreeSigma);
+    Vector6d right = Vector6d::Zero();
+    sum = -0.5 * unknown.squaredNorm() / (kFreeSigma * kFreeSigma);
+    for (const Seen& one : all) {
+      const Vector3d left = one.value - one.rows * unknown;
+      const double in = one.log_weight[0] - 0.5 * left.dot(one.information[0] * left);
+      const double out = one.log_weight[1] - 0.5 * left.dot(one.information[1] * left);
+      const double mixed = std::max(in, out) + std::log1p(std::exp(-std::abs(in - out)));
+      sum += mixed;
+      const double share = std::exp(in - mixed);
+      const Matrix3d weight = share * one.information[0] + (1.0 - share) * one.information[1];
+      const Eigen::Matrix<double, 6, 3> weighted = one.rows.transpose() * weight;
+      information += weighted * one.rows;
+      right += weighted * one.value;
+    }
+    if (round < kRounds) unknown = solve_symmetric(information, right);
+  }
+  return sum - 0.5 * log_determinant_of(information);
+}
+
+double squared(double x) {
+  return x * x;
+}
+
+double off_square(const Vector3d& normal, double square_rad) {
+  return std::remainder(std::atan2(normal.y(), normal.x()) - square_rad, 0.5 * std::numbers::pi);
+}
+
+bool is_wall(const CommonSurface& surface) {
+  return surface.long_enough && std::abs(surface.mean_normal.z()) < kUprightNormal;
+}
+
+/// What the bends of a surface leave of its slope.
+double slope_of(const BuiltBend& bend, double length_m) {
+  return 2.0 * bend.offset_m / length_m;
+}
+
+}  // namespace
+
+AsBuiltBelief::AsBuiltBelief()
+    : qualities{{0.10, 0.0, 0.0},
+                {0.15, 0.001, radians(0.05)},
+                {0.15, 0.002, radians(0.1)},
+                {0.25, 0.004, radians(0.2)},
+                {0.25, 0.008, radians(0.4)},
+                {0.10, 0.012, radians(0.6)}},
+      bends{{0.2, 0.0003}, {0.3, 0.001}, {0.3, 0.002}, {0.2, 0.005}} {}
+
+AsBuiltDensity::AsBuiltDensity(std::span<const CommonSurface> surfaces, double stray)
+    : surfaces_(surfaces.begin(), surfaces.end()), stray_(stray) {
+  // The heading that most walls follow, by their lengths.
+  double most_m = 0.0;
+  for (const CommonSurface& first : surfaces_) {
+    if (!is_wall(first)) continue;
+    const double heading = std::atan2(first.mean_normal.y(), first.mean_normal.x());
+    double along_m = 0.0;
+    for (const CommonSurface& other : surfaces_)
+      if (is_wall(other) && std::abs(off_square(other.mean_normal, heading)) < kMostAskewRad)
+        along_m += other.length_m[0];
+    if (along_m <= most_m) continue;
+    most_m = along_m;
+    known_ = true;
+    axes_[0] = {std::cos(heading), std::sin(heading), 0.0};
+  }
+  axes_[2] = Vector3d::UnitZ();
+  if (known_) axes_[1] = axes_[2].cross(axes_[0]);
+}
+
+bool AsBuiltDensity::goes_on(const CommonSurface& surface, GoingOn same) const {
+  if (same == GoingOn::none) return false;
+  if (std::abs(surface.normal.z()) > kLevelNormal) return true;
+  if (same == GoingOn::slabs) return false;
+  return std::abs(surface.normal.dot(axes_[same == GoingOn::along_first ? 0 : 1])) < kParallelNormal;
+}
+
+double AsBuiltDensity::apart(const BuiltQuality& quality, const BuiltBend& bend, const bool* goes_on) const {
+  std::vector<Seen> all(surfaces_.size());
+  for (std::size_t i = 0; i < surfaces_.size(); ++i) {
+    const CommonSurface& surface = surfaces_[i];
+    Seen& seen = all[i];
+    seen.value = surface.apart;
+    seen.rows.row(0) << surface.at.cross(surface.normal).transpose(), surface.normal.transpose();
+    Vector3d variance(squared(bend.offset_m), 0.0, 0.0);
+    for (int k = 0; k < 2; ++k) {
+      const auto axis = static_cast<std::size_t>(k);
+      seen.rows.block<1, 3>(k + 1, 0) = surface.along[axis].cross(surface.normal).transpose();
+      variance[k + 1] = squared(slope_of(bend, surface.length_m[axis]));
+    }
+    if (!goes_on[i])
+      variance +=
+          2.0 * Vector3d(squared(quality.offset_m), squared(quality.turn_rad), squared(quality.turn_rad));
+    seen.spread(surface.measured + Matrix3d(variance.asDiagonal()),
+                {kStrayOffsetM, kStrayTurnRad, kStrayTurnRad}, stray_);
+  }
+  return log_density(all);
+}
+
+double AsBuiltDensity::askew(const BuiltQuality& quality, const BuiltBend& bend, const bool* goes_on) const {
+  std::vector<Seen> all;
+  for (std::size_t i = 0; i < surfaces_.size(); ++i) {
+    const CommonSurface& surface = surfaces_[i];
+    if (!surface.long_enough) continue;
+    for (const Vector3d& axis : axes_) {
+      const double cosine = surface.mean_normal.dot(axis);
+      if (std::abs(cosine) < std::cos(kMostAskewRad)) continue;
+      const Vector3d drawn = cosine < 0.0 ? Vector3d(-axis) : axis;
+      Vector3d variance = Vector3d::Ones();
+      Seen& seen = all.emplace_back();
+      for (int k = 0; k < 2; ++k) {
+        const auto which = static_cast<std::size_t>(k);
+        seen.rows.block<1, 3>(k, 0) = drawn.cross(surface.along[which]).transpose();
+        seen.value[k] = surface.along[which].dot(surface.mean_normal - drawn);
+        // Two surfaces that are askew each in its own way are less so in the mean.
+        variance[k] = squared(surface.normal_sigma_rad[which]) +
+                      0.5 * squared(slope_of(bend, surface.length_m[which])) +
+                      (goes_on[i] ? 1.0 : 0.5) * squared(quality.turn_rad);
+      }
+      seen.spread(variance.asDiagonal(), {kMostAskewRad, kMostAskewRad, 0.0}, stray_);
+    }
+  }
+  return log_density(all);
+}
+
+double AsBuiltDensity::of_one_place(const BuiltQuality& quality, const BuiltBend& bend) const {
+  const auto all = std::make_unique<bool[]>(surfaces_.size());
+  std::fill_n(all.get(), surfaces_.size(), true);
+  return apart(quality, bend, all.get()) + askew(quality, bend, all.get());
+}
+
+double AsBuiltDensity::of_twin(const BuiltQuality& quality, const BuiltBend& bend, GoingOn same) const {
+  const auto which = std::make_unique<bool[]>(surfaces_.size());
+  for (std::size_t i = 0; i < surfaces_.size(); ++i) which[i] = goes_on(surfaces_[i], same);
+  return apart(quality, bend, which.get()) + askew(quality, bend, which.get());
+}
+
+double as_built_nats(std::span<const CommonSurface> surfaces, const AsBuiltBelief& belief) {
+  const AsBuiltDensity density(surfaces, belief.stray);
+  if (!density.knows_square()) return 0.0;
+  std::vector<double> one;
+  std::vector<double> twin;
+  for (const BuiltQuality& quality : belief.qualities) {
+    for (const BuiltBend& bend : belief.bends) {
+      const double weight = std::log(quality.weight * bend.weight);
+      one.push_back(weight + density.of_one_place(quality, bend));
+      for (const GoingOn same : kGoingOn)
+        twin.push_back(weight - std::log(kGoingOn.size()) + density.of_twin(quality, bend, same));
+    }
+  }
+  return log_sum_exp(one) - log_sum_exp(twin);
+}
+
+}  // namespace limen

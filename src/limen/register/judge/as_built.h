@@ -1,0 +1,86 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "limen/geometry/linear.h"
+
+namespace limen {
+
+/// A surface of the building where two scans saw it, the source's moved into the target's upright frame.
+struct CommonSurface {
+  Vector3d at = Vector3d::Zero();  ///< middle of what both saw
+  Vector3d normal = Vector3d::UnitZ();
+  std::array<Vector3d, 2> along = {Vector3d::UnitX(), Vector3d::UnitY()};  ///< within it, across one another
+  std::array<double, 2> length_m = {1.0, 1.0};                             ///< what both saw, along these
+  /// The source's surface less the target's: across at `at`, metres, and its slopes along both, radians; and
+  /// the covariance that the scatter of the points leaves of it.
+  Vector3d apart = Vector3d::Zero();
+  Matrix3d measured = Matrix3d::Identity();
+  /// Mean of the normals of the whole planes, and what scatter leaves of it along both. Long planes only.
+  bool long_enough = false;
+  Vector3d mean_normal = Vector3d::UnitZ();
+  std::array<double, 2> normal_sigma_rad = {0.0, 0.0};
+};
+
+/// How well a building is built: one standard deviation from what was drawn.
+struct BuiltQuality {
+  double weight = 1.0;  ///< share of buildings
+  double offset_m = 0.0;
+  double turn_rad = 0.0;
+};
+
+/// By how much two measurements of one surface differ as a whole, besides scatter, one standard deviation.
+struct BuiltBend {
+  double weight = 1.0;
+  double offset_m = 0.0;
+};
+
+/// What is believed of buildings beforehand; scripts/fit_evidence estimates it.
+struct AsBuiltBelief {
+  std::vector<BuiltQuality> qualities;
+  std::vector<BuiltBend> bends;
+  double stray = 0.1;  ///< share of the surfaces that are of two things, or were moved
+
+  AsBuiltBelief();
+};
+
+/// Which surfaces of a place built alike are the very same ones going on: a row of equal bays has one floor
+/// and one façade.
+enum class GoingOn { none, slabs, along_first, along_second };
+inline constexpr std::array<GoingOn, 4> kGoingOn = {GoingOn::none, GoingOn::slabs, GoingOn::along_first,
+                                                    GoingOn::along_second};
+
+/// Logarithms of the density of what was seen, up to a term common to all.
+class AsBuiltDensity {
+ public:
+  AsBuiltDensity(std::span<const CommonSurface> surfaces, double stray);
+
+  /// Whether any wall tells what is square.
+  [[nodiscard]] bool knows_square() const { return known_; }
+  [[nodiscard]] double of_one_place(const BuiltQuality& quality, const BuiltBend& bend) const;
+  [[nodiscard]] double of_twin(const BuiltQuality& quality, const BuiltBend& bend, GoingOn same) const;
+
+ private:
+  [[nodiscard]] bool goes_on(const CommonSurface& surface, GoingOn same) const;
+  [[nodiscard]] double apart(const BuiltQuality& quality, const BuiltBend& bend, const bool* goes_on) const;
+  [[nodiscard]] double askew(const BuiltQuality& quality, const BuiltBend& bend, const bool* goes_on) const;
+
+  std::vector<CommonSurface> surfaces_;
+  double stray_;
+  bool known_ = false;
+  std::array<Vector3d, 3> axes_;  ///< of the square; the third is up
+};
+
+/// No two rooms are equal to the millimetre: walls are drawn square, plumb and alike, and built some
+/// millimetres and minutes of arc off, each in its own way. By how much what two scans saw of the building's
+/// surfaces speaks for one place, natural logarithm; negative: for a place built alike. The pose has been
+/// fitted to these very surfaces: its six freedoms are integrated out in either explanation. How well the
+/// building is built is told by its own walls, so that one that is exactly as drawn (a simulated one) says
+/// nothing.
+double as_built_nats(std::span<const CommonSurface> surfaces, const AsBuiltBelief& belief = {});
+
+}  // namespace limen

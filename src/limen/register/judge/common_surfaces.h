@@ -1,0 +1,26 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "limen/register/judge/as_built.h"
+#include "limen/register/judge/built_planes.h"
+
+namespace limen {
+
+/// Surfaces of the building that both scans saw under a pose, and how well they were measured.
+struct CommonSurfaces {
+  std::vector<CommonSurface> all;
+  /// Scatter of a quarter of a metre of surface as one scan has it, standard deviation, by how the two differ
+  /// after each surface's own offset and slopes; 0: hardly anything was seen by both.
+  double scatter_m = 0.0;
+};
+
+/// Asks where tiles of both scans lie in one plane (upright frames). Layers of one wall count once: the one
+/// most of which was seen.
+CommonSurfaces common_surfaces(const ScanView& source, const BuiltPlanes& built_source,
+                               const ScanView& target, const BuiltPlanes& built_target,
+                               const Rigid3& target_from_source);
+
+}  // namespace limen
