@@ -25,9 +25,9 @@ constexpr double kHeldM = 0.05;  // a node whose place is known less well is und
 constexpr double kHeldRad = 0.01;
 constexpr double kOneAlternativeM = 0.05;
 constexpr double kOneAlternativeRad = 0.0175;
-constexpr double kElsewhereLikelier = 1.0;      // odds above which a side is taken to be elsewhere
-constexpr double kFirmShare = 0.05;    // doubt below which a node may lend its component the frame
-constexpr double kLeastListed = 0.01;  // of an alternative place, as a share of the risk, to be listed
+constexpr double kElsewhereLikelier = 1.0;  // odds above which a side is taken to be elsewhere
+constexpr double kFirmShare = 0.05;         // doubt below which a node may lend its component the frame
+constexpr double kLeastListed = 0.01;       // of an alternative place, as a share of the risk, to be listed
 
 class Solver {
  public:
