@@ -189,7 +189,8 @@ class Run {
   }
 
   void add_unreadable(const ProjectFile& file, const std::string& fault) {
-    if (options_.on_note) options_.on_note(file.path + ": " + fault);
+    // Of one file alone it is the error that ends the run.
+    if (options_.on_note && files_.files.size() > 1) options_.on_note(file.path + ": " + fault);
     ProjectScan scan;
     scan.file = file.path;
     scan.sha256 = file.sha256;
