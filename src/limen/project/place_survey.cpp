@@ -237,8 +237,8 @@ class Confirmer {
     for (const SolvedNode& node : solved.nodes) {
       framed_.frame_from_node.push_back(node.frame_from_node);
       framed_.covariance.push_back(node.covariance);
-      framed_.member.push_back(node.component == component &&
-                               (node.state == NodeState::registered || node.state == NodeState::ambiguous));
+      framed_.member.push_back(node.component == component && node.state != NodeState::under_constrained &&
+                               node.state != NodeState::floating);
     }
   }
 

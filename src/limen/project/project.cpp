@@ -56,8 +56,8 @@ class Run {
     monitor_.begin_stage("adjustment");
     result_.pairs_tried = tried.size();
     ScanCache heard(store_, kHeardInMemory, names_of_keys(nodes_, result_.scans));
-    assemble(nodes_, tried, inputs_, words_, risk(), hearing_of_scans(nodes_, options_.registering, heard),
-             result_);
+    assemble(nodes_, tried, inputs_, words_, options_.registering.verdict,
+             hearing_of_scans(nodes_, options_.registering, heard), result_);
     if (options_.rigid_passes) {
       for (ProjectScan& scan : result_.scans) scan.rigid = scan.mobile ? "as you asked" : "";
     }

@@ -36,6 +36,8 @@ const char* to_string(NodeState state) {
   switch (state) {
     case NodeState::registered:
       return "registered";
+    case NodeState::probable:
+      return "probable";
     case NodeState::ambiguous:
       return "ambiguous";
     case NodeState::under_constrained:

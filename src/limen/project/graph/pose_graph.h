@@ -78,6 +78,7 @@ struct SolvedLink {
 
 enum class NodeState {
   registered,
+  probable,           ///< held, but stands elsewhere with a probability of up to one in twenty
   ambiguous,          ///< stands elsewhere just as well
   under_constrained,  ///< held, but some direction is free
   floating            ///< joined to nothing
@@ -128,9 +129,11 @@ struct SolvedGraph {
 /// that are more probably twins than one place are taken apart (doubt.h), and parts are grown anew without
 /// what laid them on one another. In the end every pose that was not taken is tried again: where the present
 /// place is not a thousand times as probable by what the links say, the part that it would move is ambiguous
-/// (rivals.h). So is what no link holds that is wrong with a probability of `risk` at most.
-/// `hearing`: where there is one, another place is refuted as well by what others saw there
-/// (refuted_places.h), and all that stand around a node are heard of its place (hear_around.h).
-SolvedGraph solve_graph(const PoseGraph& graph, double risk = 0.001, const PoseHearing& hearing = {});
+/// (rivals.h). So is what no link holds that is wrong with a probability of `risk` at most, or `probable`
+/// where it is firm else and wrong with `probable_risk` at most. `hearing`: where there is one, another place
+/// is refuted as well by what others saw there (refuted_places.h), and all that stand around a node are heard
+/// of its place (hear_around.h).
+SolvedGraph solve_graph(const PoseGraph& graph, double risk = 0.001, const PoseHearing& hearing = {},
+                        double probable_risk = 0.05);
 
 }  // namespace limen

@@ -39,8 +39,8 @@ constexpr double kRather = 0.5;        // probability of a twin above which it i
 
 class Solver {
  public:
-  Solver(const PoseGraph& graph, double risk, const PoseHearing& hearing)
-      : graph_(graph), risk_(risk), hearing_(hearing) {
+  Solver(const PoseGraph& graph, double risk, const PoseHearing& hearing, double probable_risk)
+      : graph_(graph), risk_(risk), probable_risk_(probable_risk), hearing_(hearing) {
     solved_.nodes.resize(static_cast<std::size_t>(graph.nodes));
     solved_.links.resize(graph.links.size());
     left_out_.resize(graph.links.size(), false);
@@ -542,7 +542,8 @@ class Solver {
       const std::vector<NodeDoubt>& doubts = is_open(node) ? loosely : firmly;
       node.doubt = doubts[i].where_few_stand_apart(apart[i]).total();
       if (node.state == NodeState::ambiguous || node.doubt <= risk_) continue;
-      node.state = NodeState::ambiguous;
+      const bool probable = node.state == NodeState::registered && node.doubt <= probable_risk_;
+      node.state = probable ? NodeState::probable : NodeState::ambiguous;
       GraphQuestion& question = asked[doubts[i].links];
       question.moved.push_back(static_cast<int>(i));
       question.current = doubts[i].links;
@@ -594,6 +595,7 @@ class Solver {
 
   const PoseGraph& graph_;
   double risk_;
+  double probable_risk_;
   const PoseHearing& hearing_;
   std::vector<bool> left_out_;     ///< links that would lay a place on its twin
   std::vector<int> reference_of_;  ///< of each component: the node that keeps its pose
@@ -609,8 +611,9 @@ class Solver {
 
 }  // namespace
 
-SolvedGraph solve_graph(const PoseGraph& graph, double risk, const PoseHearing& hearing) {
-  return Solver(graph, risk, hearing).run();
+SolvedGraph solve_graph(const PoseGraph& graph, double risk, const PoseHearing& hearing,
+                        double probable_risk) {
+  return Solver(graph, risk, hearing, probable_risk).run();
 }
 
 }  // namespace limen
