@@ -110,15 +110,18 @@ Outcome outcome_of(const Posterior& posterior, const std::vector<UnobservedFreed
 
 namespace {
 
-/// The likeliest of what else may be; `poses`: in whose words other poses are told.
-std::string what_else(const Posterior& posterior, const std::string& twin, const std::string& poses) {
+/// The likeliest of what else may be. `judged`: what made the verdict ambiguous before probabilities were
+/// known, poses where it has rivals and else chance; empty: nothing did.
+std::string what_else(const Verdict& verdict, const Posterior& posterior, const std::string& twin,
+                      const std::string& judged) {
   const double chance = posterior.by_chance();
   if (posterior.others.twin >= std::max(chance, posterior.elsewhere()) && !twin.empty()) return twin;
-  if (chance > posterior.elsewhere())
-    return fmt::format("so little surface agrees that it may be chance ({:.1f} %)", 100.0 * chance);
-  if (!poses.empty()) return poses;
-  return fmt::format("too little speaks against the other poses: one of them may be right ({:.1f} %)",
-                     100.0 * posterior.elsewhere());
+  const bool by_chance = chance > posterior.elsewhere();
+  if (!judged.empty() && by_chance == verdict.rivals.empty()) return judged;
+  return by_chance
+             ? fmt::format("so little surface agrees that it may be chance ({:.1f} %)", 100.0 * chance)
+             : fmt::format("too little speaks against the other poses: one of them may be right ({:.1f} %)",
+                           100.0 * posterior.elsewhere());
 }
 
 /// Cut, not rounded: what is below a limit does not read as if it reached it.
@@ -130,19 +133,19 @@ std::string placed_words(double probability, double risk) {
 }
 
 std::string reason_of(const Verdict& verdict, const Posterior& posterior, const OpenFreedoms& open,
-                      const std::string& twin, const VerdictOptions& options) {
+                      const std::string& twin, const std::string& judged, const VerdictOptions& options) {
   switch (verdict.outcome) {
     case Outcome::registered:
       return verdict.reason;
     case Outcome::probable:
-      return placed_words(posterior.best(), options.risk) + ": " + what_else(posterior, twin, {});
+      return placed_words(posterior.best(), options.risk) + ": " + what_else(verdict, posterior, twin, {});
     case Outcome::under_constrained:
       return (open.by_drift ? "the trajectory drifts, which leaves open the "
                             : "the common surface does not fix the ") +
              open.list.front().name;
     case Outcome::ambiguous:
       if (verdict.unsure) return verdict.reason;
-      return what_else(posterior, twin, verdict.rivals.empty() ? std::string() : verdict.reason);
+      return what_else(verdict, posterior, twin, judged);
     case Outcome::no_match:
       break;
   }
@@ -155,9 +158,10 @@ std::string reason_of(const Verdict& verdict, const Posterior& posterior, const 
 Verdict decided(Verdict verdict, const Posterior& posterior, const OpenFreedoms& open,
                 const std::string& twin, const VerdictOptions& options) {
   if (verdict.outcome == Outcome::no_match) return verdict;
+  const std::string judged = verdict.outcome == Outcome::ambiguous ? verdict.reason : std::string();
   verdict.outcome = outcome_of(posterior, open.list, options);
   if (verdict.unsure && verdict.outcome != Outcome::no_match) verdict.outcome = Outcome::ambiguous;
-  verdict.reason = reason_of(verdict, posterior, open, twin, options);
+  verdict.reason = reason_of(verdict, posterior, open, twin, judged, options);
   verdict.unobserved = verdict.outcome == Outcome::no_match ? std::vector<UnobservedFreedom>{} : open.list;
   return verdict;
 }

@@ -174,6 +174,18 @@ TEST(Decided, TheReasonTellsWhatElseMayBe) {
   EXPECT_NE(reason(odds(0.1, 0.0, 0.1, 0.8)).find("share nothing (80 %)"), std::string::npos);
 }
 
+TEST(Decided, WhatWasJudgedIsToldWhereItIsTheLikeliest) {
+  Verdict rivals = found();
+  rivals.outcome = Outcome::ambiguous;
+  rivals.rivals = {1};
+  EXPECT_EQ(decided(rivals, odds(0.7, 0.3, 0.0, 0.0), {}, "").reason, "as judged");
+  EXPECT_NE(decided(rivals, odds(0.7, 0.1, 0.0, 0.2), {}, "").reason.find("chance"), std::string::npos);
+  EXPECT_EQ(decided(rivals, odds(0.7, 0.1, 0.2, 0.0), {}, "a twin").reason, "a twin");
+  Verdict chance = rivals;
+  chance.rivals.clear();
+  EXPECT_EQ(decided(chance, odds(0.7, 0.1, 0.0, 0.2), {}, "").reason, "as judged");
+}
+
 TEST(Decided, WhatIsRefusedStaysSoAndWhatIsUnsureIsAmbiguous) {
   Verdict refused;
   EXPECT_EQ(decided(refused, odds(1.0, 0.0, 0.0, 0.0), {}, "").outcome, Outcome::no_match);
