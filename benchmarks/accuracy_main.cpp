@@ -116,7 +116,7 @@ void summarise(const std::vector<Row>& rows, const Settings& settings) {
   std::vector<double> rotations;
   std::vector<double> translations;
   std::vector<double> seconds;
-  int count[4] = {};
+  int count[5] = {};
   int wrong = 0;
   int within_two = 0;
   std::vector<double> worst;
@@ -130,8 +130,9 @@ void summarise(const std::vector<Row>& rows, const Settings& settings) {
     if (row.worst_sigma <= 2.0) ++within_two;
     if (row.translation_m > settings.wrong_m || row.rotation_deg > settings.wrong_deg) ++wrong;
   }
-  fmt::print("# {} runs: registered {}, ambiguous {}, under_constrained {}, no_match {}, WRONG {}\n",
-             rows.size(), count[0], count[1], count[2], count[3], wrong);
+  fmt::print(
+      "# {} runs: registered {}, probable {}, ambiguous {}, under_constrained {}, no_match {}, WRONG {}\n",
+      rows.size(), count[0], count[1], count[2], count[3], count[4], wrong);
   fmt::print("# registered: median {:.3f} mm {:.4f} deg, 95 % {:.3f} mm {:.4f} deg; {:.2f} s median\n",
              1000 * quantile(translations, 0.5), quantile(rotations, 0.5),
              1000 * quantile(translations, 0.95), quantile(rotations, 0.95), quantile(seconds, 0.5));

@@ -110,11 +110,13 @@ inline std::vector<Row> rows_of(const std::string& path) {
 
 /// How often each outcome came out of one kind of pair.
 struct Count {
-  int pairs = 0, right = 0, wrong = 0, ambiguous = 0, listed = 0, under_constrained = 0, no_match = 0;
+  int pairs = 0, right = 0, wrong = 0, probable = 0, ambiguous = 0, listed = 0, under_constrained = 0,
+      no_match = 0;
   void add(const Row& row) {
     ++pairs;
     right += row.registered() && row.near ? 1 : 0;
     wrong += row.wrong() ? 1 : 0;
+    probable += row.outcome == "probable" ? 1 : 0;
     ambiguous += row.outcome == "ambiguous" ? 1 : 0;
     listed += row.outcome == "ambiguous" && row.listed ? 1 : 0;
     under_constrained += row.outcome == "under_constrained" ? 1 : 0;
@@ -123,11 +125,11 @@ struct Count {
 };
 
 inline void print_counts(const char* title, const std::map<std::string, Count>& counts) {
-  fmt::print("\n{:<44} {:>5} {:>6} {:>6} {:>10} {:>7} {:>6} {:>9}\n", title, "pairs", "right", "WRONG",
-             "ambiguous", "listed", "under", "no match");
+  fmt::print("\n{:<44} {:>5} {:>6} {:>6} {:>9} {:>10} {:>7} {:>6} {:>9}\n", title, "pairs", "right", "WRONG",
+             "probable", "ambiguous", "listed", "under", "no match");
   for (const auto& [name, c] : counts)
-    fmt::print("{:<44} {:>5} {:>6} {:>6} {:>10} {:>7} {:>6} {:>9}\n", name, c.pairs, c.right, c.wrong,
-               c.ambiguous, c.listed, c.under_constrained, c.no_match);
+    fmt::print("{:<44} {:>5} {:>6} {:>6} {:>9} {:>10} {:>7} {:>6} {:>9}\n", name, c.pairs, c.right, c.wrong,
+               c.probable, c.ambiguous, c.listed, c.under_constrained, c.no_match);
 }
 
 /// Stated probabilities against the share that was right, in ten bins.

@@ -26,6 +26,7 @@ struct Summary {
   std::size_t pairs = 0;
   std::size_t right = 0;
   std::size_t wrong = 0;
+  std::size_t probable = 0;
   std::size_t ambiguous = 0;
   std::size_t ambiguous_listed = 0;  ///< with the true pose among those listed
   std::size_t under_constrained = 0;
@@ -45,6 +46,7 @@ inline Summary summary_of(const std::vector<Row>& rows) {
     ++sum.pairs;
     sum.right += row.right() ? 1U : 0U;
     sum.wrong += row.wrong() ? 1U : 0U;
+    sum.probable += row.outcome == Outcome::probable ? 1U : 0U;
     sum.ambiguous += row.outcome == Outcome::ambiguous ? 1U : 0U;
     sum.ambiguous_listed += row.outcome == Outcome::ambiguous && row.listed ? 1U : 0U;
     sum.under_constrained += row.outcome == Outcome::under_constrained ? 1U : 0U;
@@ -84,9 +86,9 @@ inline std::string median_text(const std::vector<double>& values, double unit, c
 
 inline std::string table_row(const Level& level, const std::string& method, const Summary& s) {
   return fmt::format(
-      "| {} | {} | {} of {} | {} | {} ({}) | {} | {} | {} | {} | {} | {} | {} | {} |\n", level.name, method,
-      s.right, s.pairs, s.wrong, s.ambiguous, s.ambiguous_listed, s.under_constrained, s.no_match,
-      median_text(s.translations_m, 1e-3, "mm"), median_text(s.rotations_deg, 1.0, "°"),
+      "| {} | {} | {} of {} | {} | {} | {} ({}) | {} | {} | {} | {} | {} | {} | {} | {} |\n", level.name,
+      method, s.right, s.pairs, s.wrong, s.probable, s.ambiguous, s.ambiguous_listed, s.under_constrained,
+      s.no_match, median_text(s.translations_m, 1e-3, "mm"), median_text(s.rotations_deg, 1.0, "°"),
       share_text(s.freedoms_in_two_sigma, s.freedoms), median_text(s.thickness_errors_m, 1e-3, "mm"),
       share_text(s.thicknesses_in_two_sigma, s.thickness_errors_m.size()), median_text(s.seconds, 1.0, "s"));
 }
@@ -94,11 +96,11 @@ inline std::string table_row(const Level& level, const std::string& method, cons
 /// The markdown table, level by level, methods in the order they were run.
 inline std::string table(const std::vector<Row>& rows, const std::vector<std::string>& methods) {
   std::string text =
-      "| level | method | right | wrong | ambiguous (true pose listed) | "
+      "| level | method | right | wrong | probable | ambiguous (true pose listed) | "
       "under-constrained "
       "| no match | median shift | median turn | freedoms within 2 sigma | thickness error "
       "| thickness within 2 sigma | time |\n"
-      "|---|---|---|---|---|---|---|---|---|---|---|---|---|\n";
+      "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n";
   for (const Level& level : all_levels()) {
     for (const std::string& method : methods) {
       const std::vector<Row> kept = rows_of(rows, level.name, method);

@@ -22,7 +22,7 @@ class ProjectScan:
     """One station or pass of a project."""
 
     file: str
-    state: str  #: registered, ambiguous, under_constrained or floating
+    state: str  #: registered, probable, ambiguous, under_constrained or floating
     frame_from_scan: Optional[Array] = field(repr=False)  #: 4 x 4, world to world; None where it does not stand there
     reason: str = field(repr=False, default="")
     index: int = 0  #: within the file

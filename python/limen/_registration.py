@@ -154,7 +154,7 @@ class _Kept:
 class Registration:
     """What a registration found, and how far it can be trusted."""
 
-    outcome: str  #: registered, ambiguous, under_constrained or no_match
+    outcome: str  #: registered, probable, ambiguous, under_constrained or no_match
     reason: str
     best: Optional[Hypothesis]  #: None for no_match
     sigma: Sigma
@@ -171,6 +171,11 @@ class Registration:
     def registered(self) -> bool:
         """One pose explains both sides clearly better than every different one."""
         return self.outcome == "registered"
+
+    @property
+    def placed(self) -> bool:
+        """registered, or probable: the same, but right with a probability of 0.95 or more only."""
+        return self.outcome in ("registered", "probable")
 
     @property
     def target_from_source(self) -> Optional[Array]:

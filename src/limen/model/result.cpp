@@ -10,6 +10,8 @@ const char* to_string(Outcome outcome) {
   switch (outcome) {
     case Outcome::registered:
       return "registered";
+    case Outcome::probable:
+      return "probable";
     case Outcome::ambiguous:
       return "ambiguous";
     case Outcome::under_constrained:

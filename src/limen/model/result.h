@@ -16,12 +16,13 @@
 
 namespace limen {
 
-/// The verdict of a registration. There is no fifth case: a wrong pose must never carry the first name.
+/// The verdict of a registration. A wrong pose must never carry the first name.
 enum class Outcome {
   registered,  ///< one pose explains the data clearly better than every different one, six freedoms held
+  probable,    ///< the same, but all else is together more probable than the risk: up to one in twenty
   ambiguous,   ///< several different poses explain the data about equally well: see alternatives
   under_constrained,  ///< the best pose leaves some direction free: see unobserved
-  no_match            ///< nothing in common was found
+  no_match            ///< nothing in common was found, or that nothing is shared is the likelier explanation
 };
 const char* to_string(Outcome outcome);
 

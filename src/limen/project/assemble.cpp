@@ -24,20 +24,23 @@ namespace {
 class Assembler {
  public:
   Assembler(const std::vector<ProjectNode>& nodes, const std::vector<TriedPair>& pairs, Survey survey,
-            const UserWords& words, double risk, const PoseHearing& hearing, ProjectResult& result)
+            const UserWords& words, const VerdictOptions& bounds, const PoseHearing& hearing,
+            ProjectResult& result)
       : nodes_(nodes),
         pairs_(pairs),
         words_(words),
         survey_(std::move(survey)),
-        risk_(risk),
+        risk_(bounds.risk),
+        probable_risk_(bounds.probable_risk),
         hearing_(hearing),
         result_(result) {}
 
   void run() {
     ProjectGraph made = make_graph(nodes_, pairs_, risk_, words_);
     add_survey_links(survey_, made);
-    solved_ = solve_graph(made.graph, risk_, hearing_);
-    if (confirm_by_points(survey_, solved_, made)) solved_ = solve_graph(made.graph, risk_, hearing_);
+    solved_ = solve_graph(made.graph, risk_, hearing_, probable_risk_);
+    if (confirm_by_points(survey_, solved_, made))
+      solved_ = solve_graph(made.graph, risk_, hearing_, probable_risk_);
     straighten(made);
     stand_alone();
     placed_ = place_survey(survey_, made, solved_);
@@ -76,7 +79,7 @@ class Assembler {
   /// Links measured against the part of a bent pass that saw what is common: solved once more with them.
   void straighten(const ProjectGraph& made) {
     if (const std::optional<PoseGraph> straight = straightened(nodes_, pairs_, made, solved_))
-      solved_ = solve_graph(*straight, risk_, hearing_);
+      solved_ = solve_graph(*straight, risk_, hearing_, probable_risk_);
   }
 
   /// Where control points contradict one another for good, all is solved as if there were none.
@@ -90,7 +93,7 @@ class Assembler {
       }
       words += " contradict the others, and without them too few are left to hold a frame";
       made = make_graph(nodes_, pairs_, risk_, words_);
-      solved_ = solve_graph(made.graph, risk_, hearing_);
+      solved_ = solve_graph(made.graph, risk_, hearing_, probable_risk_);
       straighten(made);
       stand_alone();
       const std::string file = std::exchange(survey_.file, {});
@@ -465,16 +468,20 @@ class Assembler {
   void settle_outcome() {
     std::size_t all = 0;
     std::size_t registered = 0;
+    std::size_t probable = 0;
     std::size_t unreadable = 0;
     for (const ProjectScan& scan : result_.scans) {
       ++all;
       registered += scan.readable && scan.state == NodeState::registered ? 1 : 0;
+      probable += scan.readable && scan.state == NodeState::probable ? 1 : 0;
       unreadable += scan.readable ? 0 : 1;
     }
     result_.outcome = registered == all        ? ProjectOutcome::registered
                       : solved_.components > 0 ? ProjectOutcome::partial
                                                : ProjectOutcome::no_match;
     result_.reason = fmt::format("{} of {} scans stand in one frame", registered, all);
+    if (probable > 0)
+      result_.reason += fmt::format(", {} more {} probable", probable, probable == 1 ? "is" : "are");
     if (unreadable > 0) result_.reason += fmt::format(", {} could not be read", unreadable);
     if (!result_.questions.empty())
       result_.reason += fmt::format("; {} question{} open", result_.questions.size(),
@@ -492,6 +499,7 @@ class Assembler {
   Survey survey_;
   PlacedSurvey placed_;
   double risk_;
+  double probable_risk_;
   const PoseHearing& hearing_;
   ProjectResult& result_;
   PoseGraph graph_;
@@ -503,9 +511,9 @@ class Assembler {
 }  // namespace
 
 void assemble(const std::vector<ProjectNode>& nodes, const std::vector<TriedPair>& pairs,
-              const ProjectInputs& inputs, const UserWords& words, double risk, const PoseHearing& hearing,
-              ProjectResult& result) {
-  Assembler(nodes, pairs, read_survey(inputs, nodes, result.scans), words, risk, hearing, result).run();
+              const ProjectInputs& inputs, const UserWords& words, const VerdictOptions& bounds,
+              const PoseHearing& hearing, ProjectResult& result) {
+  Assembler(nodes, pairs, read_survey(inputs, nodes, result.scans), words, bounds, hearing, result).run();
 }
 
 }  // namespace limen

@@ -62,8 +62,8 @@ class Run {
     result_.pairs_tried = tried.size();
     ScanCache heard(store_, kHeardInMemory, names_of_keys(nodes_, result_.scans));
     const std::size_t noted = result_.notes.size();
-    assemble(nodes_, tried, inputs_, words_, risk(), hearing_of_scans(nodes_, options_.registering, heard),
-             result_);
+    assemble(nodes_, tried, inputs_, words_, options_.registering.verdict,
+             hearing_of_scans(nodes_, options_.registering, heard), result_);
     for (std::size_t k = noted; options_.on_note && k < result_.notes.size(); ++k)
       options_.on_note(result_.notes[k]);
     if (options_.rigid_passes) {

@@ -172,12 +172,14 @@ class GraphMaker {
 
   /// The pair's verdict without what its own risk made of a twin.
   [[nodiscard]] LinkTrust trust_of(const RegistrationResult& found, double twin) const {
-    if (found.outcome == Outcome::under_constrained) {
+    const bool open = !found.unobserved.empty() && found.rivals == 0;
+    if (found.outcome == Outcome::under_constrained || (found.outcome == Outcome::ambiguous && open)) {
       // What a pair calls open may be known well enough to tell places apart: the covariance says how well.
       if (!tells_places_apart(found.sigma)) return LinkTrust::weak;
       if (others_than_best(found, twin) > risk_) return LinkTrust::open;
     }
-    if (found.outcome == Outcome::ambiguous && (found.rivals > 0 || twin <= 0.0)) return LinkTrust::open;
+    const bool sure = found.outcome == Outcome::registered || found.outcome == Outcome::under_constrained;
+    if (!sure && (found.rivals > 0 || twin <= 0.0)) return LinkTrust::open;
     return twin > risk_ ? LinkTrust::likely : LinkTrust::sure;
   }
 

@@ -146,6 +146,7 @@ RegistrationResult make_pair_result(const PairKey& pair, const RegisterOptions& 
     RegisterOptions own = options;
     // What is kept of a pair does not depend on the risk: the project weighs it.
     own.verdict.risk = VerdictOptions{}.risk;
+    own.verdict.probable_risk = VerdictOptions{}.probable_risk;
     if (pair.level) own.gravity = Gravity::up;
     // Copies, but of little: the views of space are shared.
     const PreparedPair prepared{*cache.get(pair.source), *cache.get(pair.target)};

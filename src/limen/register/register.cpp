@@ -18,6 +18,7 @@
 #include "limen/register/judge/posterior.h"
 #include "limen/register/judge/twin_odds.h"
 #include "limen/register/prepare/model_rooms.h"
+#include "limen/register/prepare/side_order.h"
 #include "limen/register/prepare/stage_clock.h"
 #include "limen/register/propose/propose.h"
 #include "limen/register/propose/select_poses.h"
@@ -35,6 +36,19 @@ constexpr std::size_t kPolished = 4;               // poses refined on every sam
 constexpr int kModelPoses = 128;                   // refined at least where a scan is sought in a model
 constexpr std::size_t kModelRefineSamples = 1500;  // of each side, for all but the best of them
 
+/// The sides of a pair in the order in which they are worked on (side_order.h), and whether that is not the
+/// order in which they were given.
+struct WorkedPair {
+  const PreparedScan& source;
+  const PreparedScan& target;
+  bool turned = false;
+};
+
+WorkedPair worked_pair(const PreparedPair& pair) {
+  if (is_work_order(pair.source, pair.target)) return {pair.source, pair.target, false};
+  return {pair.target, pair.source, true};
+}
+
 /// A pose between the upright frames, told between the scans' own.
 JudgedPose in_own_frames(const JudgedPose& upright, const PreparedScan& source, const PreparedScan& target) {
   const Matrix3d back = target.upright_from_scan.transpose();
@@ -49,6 +63,13 @@ JudgedPose in_own_frames(const JudgedPose& upright, const PreparedScan& source, 
   pose.information = both * pose.information * both.transpose();
   pose.formal_information = both * pose.formal_information * both.transpose();
   pose.geometry_m2 = both * pose.geometry_m2 * both.transpose();
+  return own;
+}
+
+/// The same between the frames of the pair as it was given.
+JudgedPose as_given(const JudgedPose& upright, const WorkedPair& pair) {
+  JudgedPose own = in_own_frames(upright, pair.source, pair.target);
+  if (pair.turned) own.refined = inverted(own.refined);
   return own;
 }
 
@@ -268,21 +289,26 @@ void balance_walls(std::vector<JudgedPose>& poses, const ScanView& source, const
   });
 }
 
-/// A belief about the start between the prepared frames, and where it is asked.
+/// A belief about the start between the prepared frames, and where it is asked: of the source that was given,
+/// whichever is worked on as the source.
 struct PreparedStart {
   StartPrior prior;
   Vector3d at = Vector3d::Zero();
   bool upright = false;
+  bool turned = false;
 
+  /// A worked pose as it is believed of, and the other way round.
+  [[nodiscard]] Rigid3 given(const Rigid3& pose) const { return turned ? inverse(pose) : pose; }
   [[nodiscard]] double log_prior(const Rigid3& pose) const {
-    return log_prior_of_start(prior, pose, at, upright, PosteriorOptions{}.search_nats);
+    return log_prior_of_start(prior, given(pose), at, upright, PosteriorOptions{}.search_nats);
   }
 };
 
-std::optional<PreparedStart> prepared_start(const PreparedScan& source, const PreparedScan& target,
-                                            const RegisterOptions& options) {
+std::optional<PreparedStart> prepared_start(const WorkedPair& pair, const RegisterOptions& options) {
   if (!options.start) return std::nullopt;
-  PreparedStart start{*options.start, source.reach.center(), source.upright && target.upright};
+  const PreparedScan& source = pair.turned ? pair.target : pair.source;
+  const PreparedScan& target = pair.turned ? pair.source : pair.target;
+  PreparedStart start{*options.start, source.reach.center(), source.upright && target.upright, pair.turned};
   const Rigid3 local = to_local(options.start->target_from_source, source.extracted.features.local_origin,
                                 target.extracted.features.local_origin);
   const Matrix3d& up = target.upright_from_scan;
@@ -295,8 +321,10 @@ std::optional<PreparedStart> prepared_start(const PreparedScan& source, const Pr
 enum class Proposal { held, sliding };
 
 /// Steps of one attempt: poses from planes, coarse looks, refinement.
-std::vector<JudgedPose> attempt(const PreparedScan& source, const PreparedScan& target, bool gravity_known,
-                                Proposal proposal, const RegisterOptions& options, StageClock& clock) {
+std::vector<JudgedPose> attempt(const WorkedPair& pair, bool gravity_known, Proposal proposal,
+                                const RegisterOptions& options, StageClock& clock) {
+  const PreparedScan& source = pair.source;
+  const PreparedScan& target = pair.target;
   clock.begin("hypotheses");
   ProposalOptions proposing{options.method, options.enumerate, options.wall_thickness_m};
   proposing.planes.gravity_known = gravity_known;
@@ -308,13 +336,13 @@ std::vector<JudgedPose> attempt(const PreparedScan& source, const PreparedScan& 
                                               ? propose_poses(from, to, proposing)
                                               : propose_sliding_poses(from, to, proposing);
   clock.end();
-  const std::optional<PreparedStart> start = prepared_start(source, target, options);
+  const std::optional<PreparedStart> start = prepared_start(pair, options);
   clock.begin("scoring");
   const bool model = source.model || target.model;
   const int refined = model ? std::max(options.refined_poses, kModelPoses) : options.refined_poses;
   candidates = select_poses(candidates, source.view(), target.view(), static_cast<std::size_t>(refined),
                             options.method != Method::polygons);
-  if (start && !model) candidates.push_back({start->prior.target_from_source, 0.0, 0});
+  if (start && !model) candidates.push_back({start->given(start->prior.target_from_source), 0.0, 0});
   clock.end();
   clock.begin("refinement");
   std::vector<JudgedPose> judged = refine_all(candidates, source.view(), target.view(), options);
@@ -342,7 +370,8 @@ std::vector<std::size_t> told_alternatives(const Verdict& verdict, const Registe
 
 /// What is known of the best pose beside how much surface agrees.
 struct ThingsSaid {
-  double twin = 0.0;  ///< probability of one
+  double twin = 0.0;       ///< probability of one
+  std::string twin_words;  ///< what a user should know of it
   /// Of the pose's value what things say, and what they say asked one by one; both 0 where they were not.
   double things_m2 = 0.0;
   double things_nats = 0.0;
@@ -392,45 +421,52 @@ void sort_by_probability(std::vector<std::size_t>& others, std::vector<double>& 
   }
 }
 
-/// The result in the scans' own frames.
+/// The walls between the scans, as the pair was given.
+std::vector<MeasuredThickness> thickness_under(const RefinedPose& upright, const WorkedPair& pair) {
+  std::vector<MeasuredThickness> walls =
+      measure_thickness(upright, pair.source.extracted.features, pair.target.extracted.features);
+  for (MeasuredThickness& wall : walls) {
+    if (pair.turned) std::swap(wall.source_plane, wall.target_plane);
+  }
+  return walls;
+}
+
+/// The result in the frames of the scans as they were given (`pair`).
 void tell(Verdict verdict, const std::vector<JudgedPose>& poses, const std::vector<TwinPlace>& twins,
           const ContrastFunction& contrast, const ThingsSaid& said, const PreparedPair& pair,
-          const RegisterOptions& options, RegistrationResult& result) {
-  const PreparedScan& from = pair.source;
-  const PreparedScan& to = pair.target;
-  std::vector<std::size_t> others =
-      verdict.ranking.empty() ? std::vector<std::size_t>{} : told_alternatives(verdict, options);
-  const bool model = from.model || to.model;
-  Posterior all;
-  if (!verdict.ranking.empty()) {
-    all = posterior_of(poses, verdict, others, twins, contrast, said, model,
-                       !model && from.mobile != to.mobile);
-    sort_by_probability(others, all.poses);
-    for (const TwinPlace& twin : twins) others.push_back(twin.pose);
-    verdict = with_posterior(std::move(verdict), all, options.verdict.risk);
-    const RefinedPose& pose = poses[verdict.ranking.front()].refined;
-    verdict =
-        with_drift(std::move(verdict), covariance_with_drift(pose, from.view(), to.view()), options.verdict);
-  }
+          const WorkedPair& worked, const RegisterOptions& options, RegistrationResult& result) {
   result.outcome = verdict.outcome;
-  result.judged_poses = poses.size();
   result.reason = verdict.reason;
-  result.unobserved = verdict.unobserved;
-  for (UnobservedFreedom& freedom : result.unobserved)
-    freedom.direction = to.upright_from_scan.transpose() * freedom.direction;
+  result.judged_poses = poses.size();
   if (verdict.ranking.empty()) return;
   const RefinedPose& upright = poses[verdict.ranking.front()].refined;
-  const JudgedPose best = in_own_frames(poses[verdict.ranking.front()], from, to);
+  const JudgedPose best = as_given(poses[verdict.ranking.front()], worked);
+  std::vector<std::size_t> others = told_alternatives(verdict, options);
+  const bool model = pair.source.model || pair.target.model;
+  Posterior all = posterior_of(poses, verdict, others, twins, contrast, said, model,
+                               !model && pair.source.mobile != pair.target.mobile);
+  sort_by_probability(others, all.poses);
+  for (std::size_t k = 0; k < others.size(); ++k) {
+    if (is_slid(upright, poses[others[k]].refined, options.verdict)) all.slid += all.poses[k + 1];
+  }
+  for (const TwinPlace& twin : twins) others.push_back(twin.pose);
+  const OpenFreedoms open =
+      open_freedoms(best.refined, covariance_with_drift(best.refined, pair.source.view(), pair.target.view()),
+                    options.verdict);
+  verdict = decided(std::move(verdict), all, open, said.twin_words, options.verdict);
+  result.outcome = verdict.outcome;
+  result.reason = verdict.reason;
+  result.unobserved = verdict.unobserved;
   result.best = to_hypothesis(best, pair);
-  result.best.probability = all.poses.front();
+  result.best.probability = all.best();
   result.others = all.others;
   result.sigma = result.best.sigma;
   result.matches = best.refined.matches;
   result.openings = matched_openings(best.refined);
-  result.thickness = measure_thickness(upright, from.extracted.features, to.extracted.features);
+  result.thickness = thickness_under(upright, worked);
   result.rivals = verdict.rivals.size();
   for (std::size_t k = 0; k < others.size(); ++k) {
-    result.alternatives.push_back(to_hypothesis(in_own_frames(poses[others[k]], from, to), pair));
+    result.alternatives.push_back(to_hypothesis(as_given(poses[others[k]], worked), pair));
     result.alternatives.back().probability = all.poses[k + 1];
     result.alternatives.back().tie =
         std::find(verdict.rivals.begin(), verdict.rivals.end(), others[k]) != verdict.rivals.end();
@@ -438,8 +474,8 @@ void tell(Verdict verdict, const std::vector<JudgedPose>& poses, const std::vect
   if (!twins.empty()) {
     const double right =
         std::accumulate(all.poses.end() - static_cast<std::ptrdiff_t>(twins.size()), all.poses.end(), 0.0);
-    result.built_alike = PlaceBuiltAlike{
-        to_hypothesis(in_own_frames(poses[twins.front().pose], from, to), pair), twins.front().said, right};
+    result.built_alike = PlaceBuiltAlike{to_hypothesis(as_given(poses[twins.front().pose], worked), pair),
+                                         twins.front().said, right};
   }
 }
 
@@ -512,12 +548,13 @@ RegistrationResult register_prepared(const PreparedPair& pair, const RegisterOpt
   if (options.as_published)
     return register_as_published(pair, {*options.as_published, options.wall_thickness_m, options.seed},
                                  monitor);
-  const PreparedScan& from = pair.source;
-  const PreparedScan& to = pair.target;
+  const WorkedPair worked = worked_pair(pair);
+  const PreparedScan& from = worked.source;
+  const PreparedScan& to = worked.target;
   RegistrationResult result;
   StageClock clock(result.stages, monitor);
   const bool level = from.upright && to.upright;
-  std::vector<JudgedPose> poses = attempt(from, to, level, Proposal::held, options, clock);
+  std::vector<JudgedPose> poses = attempt(worked, level, Proposal::held, options, clock);
   const ContrastFunction contrast = [&](std::size_t first, std::size_t second) {
     return contrast_poses(from.view(), to.view(), poses[first].refined.target_from_source,
                           poses[second].refined.target_from_source,
@@ -553,7 +590,7 @@ RegistrationResult register_prepared(const PreparedPair& pair, const RegisterOpt
     }
   }
   const auto try_again = [&](bool gravity_known, Proposal proposal) {
-    const std::vector<JudgedPose> more = attempt(from, to, gravity_known, proposal, options, clock);
+    const std::vector<JudgedPose> more = attempt(worked, gravity_known, proposal, options, clock);
     asked.clear();  // the poses move
     poses.insert(poses.end(), more.begin(), more.end());
     verdict = judge(poses, contrast, judging);
@@ -578,7 +615,7 @@ RegistrationResult register_prepared(const PreparedPair& pair, const RegisterOpt
     verdict = led_by_likeliest(std::move(verdict), poses, contrast, judging);
     if (verdict.ranking.front() != led) individual.reset();
   }
-  const std::optional<PreparedStart> start = prepared_start(from, to, options);
+  const std::optional<PreparedStart> start = prepared_start(worked, options);
   ThingsSaid said;
   if (is_to_ask_for_twins(poses, verdict) && may_be_twin(from, to)) {
     const bool refused = verdict.outcome == Outcome::no_match;
@@ -588,8 +625,9 @@ RegistrationResult register_prepared(const PreparedPair& pair, const RegisterOpt
     const TwinEvidence twin = weigh_twin(*individual, judging.twin);
     said.twin = twin.probability();
     if (start)
-      said.twin = twin_beside_start(said.twin, start->prior, best, start->at, start->log_prior(best));
-    verdict = with_twin(std::move(verdict), *individual, said.twin, judging);
+      said.twin =
+          twin_beside_start(said.twin, start->prior, start->given(best), start->at, start->log_prior(best));
+    said.twin_words = twin_words(*individual, said.twin);
     // Things that meet by chance agree as those of a room furnished otherwise do.
     said.things_nats = twin.otherwise_nats;
     said.things_m2 =
@@ -598,11 +636,11 @@ RegistrationResult register_prepared(const PreparedPair& pair, const RegisterOpt
     if (!refused) result.twin = twin;
   }
   if (start && !verdict.ranking.empty()) {
-    const StartMiss miss =
-        miss_of_start(start->prior, poses[verdict.ranking.front()].refined.target_from_source, start->at);
+    const StartMiss miss = miss_of_start(
+        start->prior, start->given(poses[verdict.ranking.front()].refined.target_from_source), start->at);
     result.start = StartAgreement{miss.shift_m, miss.turn_rad, miss.sigmas};
   }
-  tell(verdict, poses, twins, contrast, said, pair, options, result);
+  tell(verdict, poses, twins, contrast, said, pair, worked, options, result);
   return result;
 }
 

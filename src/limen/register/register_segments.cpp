@@ -237,19 +237,6 @@ class SegmentRegistration {
   std::size_t rivals_ = 0;
 };
 
-/// The pose told the other way round.
-RefinedPose inverted(const RefinedPose& pose) {
-  RefinedPose back = pose;
-  back.target_from_source = inverse(pose.target_from_source);
-  back.centre = back.target_from_source * pose.centre;
-  Matrix6d turn = Matrix6d::Zero();
-  turn.topLeftCorner<3, 3>() = back.target_from_source.rotation;
-  turn.bottomRightCorner<3, 3>() = back.target_from_source.rotation;
-  back.information = turn * pose.information * turn.transpose();
-  back.geometry_m2 = turn * pose.geometry_m2 * turn.transpose();
-  return back;
-}
-
 PoseSigma sigma_of(const RefinedPose& pose, const Vector3d& local_origin) {
   PoseSigma sigma;
   sigma.covariance = covariance_of(pose);

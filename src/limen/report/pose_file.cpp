@@ -91,8 +91,8 @@ std::optional<PoseSigma> sigma_at(const Json& object) {
 std::optional<Outcome> outcome_at(const Json& object) {
   const auto found = object.find("outcome");
   if (found == object.end() || !found->is_string()) return std::nullopt;
-  for (const Outcome outcome :
-       {Outcome::registered, Outcome::ambiguous, Outcome::under_constrained, Outcome::no_match}) {
+  for (const Outcome outcome : {Outcome::registered, Outcome::probable, Outcome::ambiguous,
+                                Outcome::under_constrained, Outcome::no_match}) {
     if (found->get<std::string>() == to_string(outcome)) return outcome;
   }
   return std::nullopt;
@@ -135,6 +135,8 @@ void take_alternatives(const Json& object, const fs::path& path, PoseFile& pose)
 PoseFile pose_from_object(const Json& object, const fs::path& path) {
   PoseFile pose;
   pose.outcome = outcome_at(object);
+  if (const auto found = object.find("probability"); found != object.end() && found->is_number())
+    pose.probability = found->get<double>();
   pose.sigma = sigma_at(object);
   take_inputs(object, pose);
   take_alternatives(object, path, pose);

@@ -15,6 +15,7 @@ namespace limen {
 struct PoseFile {
   std::optional<Rigid3> target_from_source;  ///< empty where the outcome is no_match
   std::optional<Outcome> outcome;
+  std::optional<double> probability;  ///< of the pose
   std::optional<PoseSigma> sigma;
   std::optional<Vector3d> source_middle;  ///< middle of the source's extent, metres, source world
   std::string source_path;                ///< as it was given to register; empty where unknown

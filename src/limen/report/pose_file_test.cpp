@@ -66,6 +66,16 @@ TEST_F(PoseFileTest, ReadsWhatWeWrite) {
   EXPECT_TRUE(same(*text.target_from_source, kPose));
 }
 
+TEST_F(PoseFileTest, AProbablePoseIsReadWithItsProbability) {
+  RegistrationReport report = report_of(kPose);
+  report.result.outcome = Outcome::probable;
+  report.result.best.probability = 0.986;
+  const PoseFile pose = read_pose_file(file("result.json", result_json(report)));
+  EXPECT_EQ(pose.outcome, Outcome::probable);
+  EXPECT_EQ(pose.probability, 0.986);
+  EXPECT_TRUE(pose.target_from_source);
+}
+
 TEST_F(PoseFileTest, NoMatchIsReadWithoutAPose) {
   RegistrationReport report = report_of(kPose);
   report.result.outcome = Outcome::no_match;

@@ -14,6 +14,7 @@
 #include "limen/base/error.h"
 #include "limen/cli/commands/deviation_project.h"
 #include "limen/cli/inputs/issue_file.h"
+#include "limen/cli/inputs/pose_warning.h"
 #include "limen/cli/inputs/register_inputs.h"
 #include "limen/cli/inputs/scan_options.h"
 #include "limen/report/deviation/deviation_report.h"
@@ -84,11 +85,8 @@ Rigid3 model_from_scan(const DeviationCommand& command, const PoseFile& pose, co
   if (command.result.empty()) return {};
   const Rigid3 target_from_source = chosen_pose(pose, command.alternative, command.result);
   report.result_path = command.result;
-  if (pose.outcome) {
-    report.result_outcome = to_string(*pose.outcome);
-    if (*pose.outcome != Outcome::registered && command.alternative == 0)
-      session.note(fmt::format("the pose in {} is {}: check it", command.result, report.result_outcome));
-  }
+  if (pose.outcome) report.result_outcome = to_string(*pose.outcome);
+  if (command.alternative == 0) warn_of_doubt(pose, command.result, session);
   return model_is_source(command, pose, session) ? inverse(target_from_source) : target_from_source;
 }
 

@@ -23,6 +23,7 @@
 #include "limen/report/deviation/building_report.h"
 #include "limen/report/deviation/deviation_report.h"
 #include "limen/report/project/read_project.h"
+#include "limen/report/summary/words.h"
 
 namespace limen {
 namespace {
@@ -33,7 +34,7 @@ constexpr std::uint64_t kCloudBytes = 600'000'000;  // that thinning the coloure
 constexpr std::size_t kPlacesOfPass = 200;          // of the scanner of a mobile pass
 
 bool stands(const ProjectEntry& entry) {
-  return entry.frame_from_scan && entry.state == "registered";
+  return entry.frame_from_scan && (entry.state == "registered" || entry.state == "probable");
 }
 
 /// The models that are measured against, with their places in the project's frame.
@@ -233,10 +234,12 @@ std::vector<ProjectEntry> scans_of(const std::vector<ProjectEntry>& entries, con
   for (const ProjectEntry& entry : entries) {
     if (entry.model) continue;
     std::string reason;
-    if (!entry.frame_from_scan || entry.state != "registered")
-      reason = fmt::format("its place is {}", entry.state);
+    if (!stands(entry)) reason = fmt::format("its place is {}", entry.state);
     if (!entry.copy_of.empty()) reason = fmt::format("it is a copy of {}", entry.copy_of);
     if (reason.empty()) {
+      if (entry.state == "probable")
+        session.warn(fmt::format("{}: its place is probable: right with {}, and no more", scan_name(entry),
+                                 probability_words(1.0 - entry.doubt)));
       scans.push_back(entry);
     } else {
       session.note(fmt::format("{} is left out: {}", scan_name(entry), reason));
@@ -244,7 +247,7 @@ std::vector<ProjectEntry> scans_of(const std::vector<ProjectEntry>& entries, con
     }
   }
   if (!scans.empty()) return scans;
-  throw Error("no scan stands registered in the project's frame", "project.json",
+  throw Error("no scan is registered or probable in the project's frame", "project.json",
               "look at the project's report");
 }
 

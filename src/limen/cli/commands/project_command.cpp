@@ -53,6 +53,7 @@ struct ProjectCommandOptions {
   std::string crs;
   TrajectoryChoice trajectories;
   double risk = VerdictOptions{}.risk;
+  double probable_risk = VerdictOptions{}.probable_risk;
   std::string repeats = "unknown";
   bool apart = false;
   bool rigid_passes = false;
@@ -71,6 +72,7 @@ ProjectOptions project_options(const ProjectCommandOptions& options, const Sessi
   reading.memory = options.memory;
   project.reading = with_choice(read_options("", "--origin", options.gravity), reading);
   project.registering.verdict.risk = options.risk;
+  project.registering.verdict.probable_risk = options.probable_risk;
   project.registering.verdict.check();
   project.registering.nothing_repeats = options.repeats == "none";
   project.all_pairs = options.pairs == "all";
@@ -88,6 +90,8 @@ OptionList reported(const ProjectCommandOptions& options, const Session& session
   if (options.apart) list.emplace_back("stations_apart", true);
   if (options.rigid_passes) list.emplace_back("rigid_passes", true);
   if (options.risk != VerdictOptions{}.risk) list.emplace_back("risk", options.risk);
+  if (options.probable_risk != VerdictOptions{}.probable_risk)
+    list.emplace_back("probable_risk", options.probable_risk);
   if (options.repeats != "unknown") list.emplace_back("repeats", options.repeats);
   if (!options.memory.empty()) list.emplace_back("memory", options.memory);
   if (!options.control.empty()) list.emplace_back("control", options.control);
@@ -102,12 +106,11 @@ OptionList reported(const ProjectCommandOptions& options, const Session& session
 std::string scan_line(const ProjectScan& scan) {
   std::string line =
       fmt::format("{:<17} {}", scan.readable ? to_string(scan.state) : "unreadable", scan_name(scan));
-  if (scan.readable && scan.state == NodeState::registered) {
+  const bool placed = scan.state == NodeState::registered || scan.state == NodeState::probable;
+  if (scan.readable && placed)
     line += fmt::format("  (sigma {:.1f} mm, {:.3f} deg)", 1e3 * scan.sigma.translation_m.maxCoeff(),
                         degrees(scan.sigma.rotation_rad.maxCoeff()));
-  } else {
-    line += ": " + scan.reason;
-  }
+  if (!scan.readable || scan.state != NodeState::registered) line += ": " + scan.reason;
   line += "\n";
   if (scan.correction) {
     double most = 0.0;
@@ -397,6 +400,10 @@ void add_project_command(CommandLine& app, Session& session) {
       ->add_option("--risk", options->risk,
                    "Tell a scan as registered only where it stands elsewhere with less than this probability "
                    "(default 0.001)")
+      ->type_name("P");
+  command
+      ->add_option("--probable-risk", options->probable_risk,
+                   "Tell a scan as probable where it stands elsewhere with less than this (default 0.05)")
       ->type_name("P");
   add_repeats_option(*command, options->repeats);
   add_engine_options(*command, *options);

@@ -44,6 +44,7 @@ struct RegisterCommandOptions {
   std::string repeats = "unknown";
   double wall_thickness_m = 0.0;
   double risk = VerdictOptions{}.risk;
+  double probable_risk = VerdictOptions{}.probable_risk;
   bool no_report = false;
   bool pdf = false;
   std::string title;
@@ -124,6 +125,8 @@ OptionList reported(const RegisterCommandOptions& options) {
   if (options.repeats != "unknown") list.emplace_back("repeats", options.repeats);
   if (options.wall_thickness_m > 0) list.emplace_back("wall_thickness_m", options.wall_thickness_m);
   if (options.risk != VerdictOptions{}.risk) list.emplace_back("risk", options.risk);
+  if (options.probable_risk != VerdictOptions{}.probable_risk)
+    list.emplace_back("probable_risk", options.probable_risk);
   return list;
 }
 
@@ -148,6 +151,7 @@ Registered register_files(const RegisterCommandOptions& options, const Session& 
       side_options(options, options.target_origin, "--target-origin", options.target_reading);
   VerdictOptions verdict;
   verdict.risk = options.risk;
+  verdict.probable_risk = options.probable_risk;
   verdict.check();
   const std::optional<StartPrior> believed = start_of(options.start, options.start_sigma);
   RegisterOptions registering;
@@ -234,6 +238,7 @@ int status_of(Outcome outcome) {
   switch (outcome) {
     case Outcome::registered:
       return kExitOk;
+    case Outcome::probable:
     case Outcome::ambiguous:
     case Outcome::under_constrained:
       return kExitUndecided;
@@ -309,7 +314,7 @@ void add_register_command(CommandLine& app, Session& session) {
   CommandLine* command =
       add_command(app, session, "register",
                   "Find the pose of a scan in another or in a building model; status 0: registered, "
-                  "3: ambiguous or under-constrained, 4: no match",
+                  "3: probable, ambiguous or under-constrained, 4: no match",
                   [options, &session] { return run(*options, session); });
   command->add_option("SOURCE", options->source, "The scan, model or list of segments to be moved")
       ->required();
@@ -333,6 +338,10 @@ void add_register_command(CommandLine& app, Session& session) {
           "--risk", options->risk,
           "Tell `registered` only where all else (a twin, another pose, chance) is less probable than this "
           "(default 0.001)")
+      ->type_name("P");
+  command
+      ->add_option("--probable-risk", options->probable_risk,
+                   "Tell `probable` where all else is less probable than this (default 0.05)")
       ->type_name("P");
   command
       ->add_option("--start", options->start,

@@ -11,6 +11,7 @@
 #include "limen/base/error.h"
 #include "limen/base/length_unit.h"
 #include "limen/cli/inputs/frame_system.h"
+#include "limen/cli/inputs/pose_warning.h"
 #include "limen/cli/inputs/scan_options.h"
 #include "limen/files/file_hash.h"
 #include "limen/files/scan_in_file.h"
@@ -95,8 +96,7 @@ int run(const TransformOptions& options, const Session& session) {
   const CancelScope scope(*session.monitor);
   const TransformedCloud cloud = merge_clouds({options.cloud, target_from_source}, options.merge,
                                               options.output, *session.monitor, chosen_system(options.crs));
-  if (options.alternative == 0 && pose.outcome && *pose.outcome != Outcome::registered)
-    session.note(fmt::format("the pose in {} is {}: check it", options.result, to_string(*pose.outcome)));
+  if (options.alternative == 0) warn_of_doubt(pose, options.result, session);
   for (const std::string& note : cloud.notes) session.note(note);
   session.say(fmt::format("{} points moved; written to {}\n", cloud.points, options.output));
   session.answer(as_json(options, cloud));

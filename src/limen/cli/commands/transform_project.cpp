@@ -27,6 +27,7 @@
 #include "limen/io/cloud/transform_cloud.h"
 #include "limen/report/json/json_values.h"
 #include "limen/report/project/read_project.h"
+#include "limen/report/summary/words.h"
 
 namespace limen {
 namespace {
@@ -79,7 +80,10 @@ std::vector<Move> moves_of(const std::vector<ProjectEntry>& entries, const Sessi
       session.note(fmt::format("{}: {}, not written", scan_name(entry), entry.state));
       continue;
     }
-    if (entry.state != "registered")
+    if (entry.state == "probable")
+      session.warn(fmt::format("{}: its place is probable: right with {}, and no more", scan_name(entry),
+                               probability_words(1.0 - entry.doubt)));
+    else if (entry.state != "registered")
       session.note(fmt::format("{}: its place is {}: check it", scan_name(entry), entry.state));
     moves.push_back({entry, in_file[entry.file] > 1, {}});
   }

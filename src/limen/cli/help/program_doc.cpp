@@ -149,7 +149,7 @@ std::vector<StatusDoc> status_docs() {
       {kExitOk, "Done; of register: registered."},
       {kExitInternal, "A fault of limen: please report it."},
       {kExitBadInput, "A file, a value or an option was wrong; one line on stderr tells which."},
-      {kExitUndecided, "Of register: ambiguous, or under-constrained."},
+      {kExitUndecided, "Of register: probable, ambiguous, or under-constrained."},
       {kExitNoMatch, "Of register: nothing in common was found; of deviation: no point lies on the model."},
       {kExitInterrupted, "Interrupted; nothing was written."}};
 }

@@ -18,7 +18,7 @@ enum ExitStatus : int {
   kExitOk = 0,             ///< done; of register: registered
   kExitInternal = 1,       ///< a fault of limen
   kExitBadInput = 2,       ///< a file, a value or an option the user gave
-  kExitUndecided = 3,      ///< ambiguous or under_constrained
+  kExitUndecided = 3,      ///< probable, ambiguous or under_constrained
   kExitNoMatch = 4,        ///< nothing in common was found; of deviation: no point on a face
   kExitInterrupted = 130,  ///< stopped by the user
 };

@@ -93,17 +93,76 @@ Posterior posterior(const PosteriorEvidence& evidence, const PosteriorOptions& o
   return posterior;
 }
 
-Verdict with_posterior(Verdict verdict, const Posterior& posterior, double risk) {
-  if (verdict.outcome != Outcome::registered || posterior.poses.empty()) return verdict;
-  if (posterior.poses.front() >= 1.0 - risk) return verdict;
-  const double chance = posterior.others.nothing_shared + posterior.others.unlisted_pose;
-  const double others = std::accumulate(posterior.poses.begin() + 1, posterior.poses.end(), 0.0);
-  verdict.outcome = Outcome::ambiguous;
-  verdict.reason =
-      chance > others
-          ? fmt::format("so little surface agrees that it may be chance ({:.1f} %)", 100.0 * chance)
-          : fmt::format("too little speaks against the other poses: one of them may be right ({:.1f} %)",
-                        100.0 * others);
+double Posterior::elsewhere() const {
+  return poses.empty() ? 0.0 : std::accumulate(poses.begin() + 1, poses.end(), 0.0) - slid;
+}
+
+Outcome outcome_of(const Posterior& posterior, const std::vector<UnobservedFreedom>& open,
+                   const VerdictOptions& options) {
+  const double chance = posterior.by_chance();
+  if (posterior.poses.empty() || chance > posterior.place() + posterior.elsewhere() + posterior.others.twin)
+    return Outcome::no_match;
+  const double probable = 1.0 - options.probable_risk;
+  if (!open.empty()) return posterior.place() >= probable ? Outcome::under_constrained : Outcome::ambiguous;
+  if (posterior.best() >= 1.0 - options.risk) return Outcome::registered;
+  return posterior.best() >= probable ? Outcome::probable : Outcome::ambiguous;
+}
+
+namespace {
+
+/// The likeliest of what else may be. `judged`: what made the verdict ambiguous before probabilities were
+/// known, poses where it has rivals and else chance; empty: nothing did.
+std::string what_else(const Verdict& verdict, const Posterior& posterior, const std::string& twin,
+                      const std::string& judged) {
+  const double chance = posterior.by_chance();
+  if (posterior.others.twin >= std::max(chance, posterior.elsewhere()) && !twin.empty()) return twin;
+  const bool by_chance = chance > posterior.elsewhere();
+  if (!judged.empty() && by_chance == verdict.rivals.empty()) return judged;
+  return by_chance
+             ? fmt::format("so little surface agrees that it may be chance ({:.1f} %)", 100.0 * chance)
+             : fmt::format("too little speaks against the other poses: one of them may be right ({:.1f} %)",
+                           100.0 * posterior.elsewhere());
+}
+
+/// Cut, not rounded: what is below a limit does not read as if it reached it.
+std::string placed_words(double probability, double risk) {
+  const int digits = probability < 0.99 ? 1 : 2;
+  const double scale = probability < 0.99 ? 1e3 : 1e4;
+  return fmt::format("placed, {:.{}f} % sure; the limit for registered is {:g} %",
+                     100.0 * std::floor(scale * probability + 1e-9) / scale, digits, 100.0 * (1.0 - risk));
+}
+
+std::string reason_of(const Verdict& verdict, const Posterior& posterior, const OpenFreedoms& open,
+                      const std::string& twin, const std::string& judged, const VerdictOptions& options) {
+  switch (verdict.outcome) {
+    case Outcome::registered:
+      return verdict.reason;
+    case Outcome::probable:
+      return placed_words(posterior.best(), options.risk) + ": " + what_else(verdict, posterior, twin, {});
+    case Outcome::under_constrained:
+      return (open.by_drift ? "the trajectory drifts, which leaves open the "
+                            : "the common surface does not fix the ") +
+             open.list.front().name;
+    case Outcome::ambiguous:
+      if (verdict.unsure) return verdict.reason;
+      return what_else(verdict, posterior, twin, judged);
+    case Outcome::no_match:
+      break;
+  }
+  return fmt::format("it is likelier that they share nothing ({:.0f} %) than that they share any place",
+                     100.0 * posterior.by_chance());
+}
+
+}  // namespace
+
+Verdict decided(Verdict verdict, const Posterior& posterior, const OpenFreedoms& open,
+                const std::string& twin, const VerdictOptions& options) {
+  if (verdict.outcome == Outcome::no_match) return verdict;
+  const std::string judged = verdict.outcome == Outcome::ambiguous ? verdict.reason : std::string();
+  verdict.outcome = outcome_of(posterior, open.list, options);
+  if (verdict.unsure && verdict.outcome != Outcome::no_match) verdict.outcome = Outcome::ambiguous;
+  verdict.reason = reason_of(verdict, posterior, open, twin, judged, options);
+  verdict.unobserved = verdict.outcome == Outcome::no_match ? std::vector<UnobservedFreedom>{} : open.list;
   return verdict;
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "limen/model/result.h"
@@ -32,6 +33,15 @@ struct PosteriorOptions {
 struct Posterior {
   std::vector<double> poses;
   OtherExplanations others;
+  /// Of the poses after the first those that are the first one, slid along what it leaves open: one place.
+  double slid = 0.0;
+
+  [[nodiscard]] double best() const { return poses.empty() ? 0.0 : poses.front(); }
+  [[nodiscard]] double place() const { return best() + slid; }
+  /// That another place is right which was found.
+  [[nodiscard]] double elsewhere() const;
+  /// That what agrees is chance: nothing is shared, or it is shared under a pose that was not proposed.
+  [[nodiscard]] double by_chance() const { return others.nothing_shared + others.unlisted_pose; }
 };
 
 /// What the judge knows of a pair.
@@ -64,8 +74,18 @@ double chance_of(const PosteriorEvidence& evidence, const PosteriorOptions& opti
 /// Bayes' rule over the poses found, a twin, a pose not proposed, and nothing shared.
 Posterior posterior(const PosteriorEvidence& evidence, const PosteriorOptions& options = {});
 
-/// A pose that is less probable than 1 - `risk` is not `registered`: `ambiguous`, and the reason tells what
-/// else may be. Other outcomes stay.
-Verdict with_posterior(Verdict verdict, const Posterior& posterior, double risk);
+/// The one step from probabilities to an outcome, `open` being what the best pose leaves open.
+/// - `no_match` where chance is likelier than all that is shared together;
+/// - `registered` and `probable` where the best pose is as sure as the options ask for and nothing is open;
+/// - `under_constrained` where something is open and the place is at least probable;
+/// - else `ambiguous`.
+Outcome outcome_of(const Posterior& posterior, const std::vector<UnobservedFreedom>& open,
+                   const VerdictOptions& options = {});
+
+/// A verdict that found poses, with that outcome and its reason. `twin`: what a user should know of a place
+/// built alike, where one may be meant. What `judge` refuses stays refused, and what it is not sure of is
+/// `ambiguous`.
+Verdict decided(Verdict verdict, const Posterior& posterior, const OpenFreedoms& open,
+                const std::string& twin, const VerdictOptions& options = {});
 
 }  // namespace limen

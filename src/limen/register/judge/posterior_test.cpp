@@ -113,19 +113,95 @@ TEST(Posterior, BoundsAreNamed) {
   EXPECT_THROW(posterior({}, options), Error);
 }
 
-TEST(PosteriorVerdict, WhatMayBeChanceIsNotRegistered) {
+/// Probabilities of the best pose, another one, a twin and chance.
+Posterior odds(double best, double other, double twin, double chance, double slid = 0.0) {
+  return {{best, other}, {0.9 * chance, twin, 0.1 * chance}, slid};
+}
+
+const std::vector<UnobservedFreedom> kHeld;
+const std::vector<UnobservedFreedom> kOpen = {{false, Vector3d::UnitX(), "shift along (1.00, 0.00, 0.00)"}};
+
+TEST(OutcomeOf, ABestPoseIsRegisteredAtTheRiskAndProbableAtTheOther) {
+  EXPECT_EQ(outcome_of(odds(0.9991, 0.0009, 0.0, 0.0), kHeld), Outcome::registered);
+  EXPECT_EQ(outcome_of(odds(0.9989, 0.0011, 0.0, 0.0), kHeld), Outcome::probable);
+  EXPECT_EQ(outcome_of(odds(0.951, 0.0, 0.049, 0.0), kHeld), Outcome::probable);
+  EXPECT_EQ(outcome_of(odds(0.949, 0.0, 0.051, 0.0), kHeld), Outcome::ambiguous);
+  EXPECT_EQ(outcome_of(odds(0.951, 0.0, 0.0, 0.049), kHeld), Outcome::probable);
+  VerdictOptions options;
+  options.risk = 0.01;
+  options.probable_risk = 0.2;
+  EXPECT_EQ(outcome_of(odds(0.991, 0.009, 0.0, 0.0), kHeld, options), Outcome::registered);
+  EXPECT_EQ(outcome_of(odds(0.81, 0.19, 0.0, 0.0), kHeld, options), Outcome::probable);
+}
+
+TEST(OutcomeOf, WhereSomethingIsOpenThePlaceHasToBeProbable) {
+  EXPECT_EQ(outcome_of(odds(0.9999, 0.0001, 0.0, 0.0), kOpen), Outcome::under_constrained);
+  EXPECT_EQ(outcome_of(odds(0.951, 0.049, 0.0, 0.0), kOpen), Outcome::under_constrained);
+  EXPECT_EQ(outcome_of(odds(0.85, 0.0, 0.15, 0.0), kOpen), Outcome::ambiguous);
+  // A pose further on along what is open is the same place, and no other pose where nothing is.
+  EXPECT_EQ(outcome_of(odds(0.5, 0.5, 0.0, 0.0, 0.5), kOpen), Outcome::under_constrained);
+  EXPECT_EQ(outcome_of(odds(0.5, 0.5, 0.0, 0.0), kOpen), Outcome::ambiguous);
+  EXPECT_EQ(outcome_of(odds(0.5, 0.5, 0.0, 0.0, 0.5), kHeld), Outcome::ambiguous);
+}
+
+TEST(OutcomeOf, WhereNothingSharedIsLikelierThanAllElseNothingMatches) {
+  EXPECT_EQ(outcome_of(odds(0.007, 0.0, 0.0, 0.993), kOpen), Outcome::no_match);
+  EXPECT_EQ(outcome_of(odds(0.06, 0.1, 0.0, 0.84), kHeld), Outcome::no_match);
+  EXPECT_EQ(outcome_of(odds(0.2, 0.19, 0.1, 0.51), kHeld), Outcome::no_match);
+  EXPECT_EQ(outcome_of(odds(0.2, 0.21, 0.1, 0.49), kHeld), Outcome::ambiguous);
+  // More probable than any single pose, but less than all of them and a twin.
+  EXPECT_EQ(outcome_of(odds(0.2, 0.1, 0.3, 0.4), kHeld), Outcome::ambiguous);
+  EXPECT_EQ(outcome_of({}, kHeld), Outcome::no_match);
+}
+
+Verdict found() {
   Verdict verdict;
   verdict.outcome = Outcome::registered;
-  EXPECT_EQ(with_posterior(verdict, posterior({30.0, {12.0}, 0.0}), 1e-3).outcome, Outcome::registered);
-  const Verdict little = with_posterior(verdict, posterior({7.0, {12.0}, 0.0}), 1e-3);
-  EXPECT_EQ(little.outcome, Outcome::ambiguous);
-  EXPECT_NE(little.reason.find("chance"), std::string::npos) << little.reason;
-  const Verdict two = with_posterior(verdict, posterior({30.0, {2.0}, 0.0}), 1e-3);
-  EXPECT_EQ(two.outcome, Outcome::ambiguous);
-  EXPECT_NE(two.reason.find("one of them"), std::string::npos) << two.reason;
-  EXPECT_EQ(with_posterior(verdict, posterior({7.0, {12.0}, 0.0}), 0.4).outcome, Outcome::registered);
-  verdict.outcome = Outcome::under_constrained;
-  EXPECT_EQ(with_posterior(verdict, posterior({7.0, {12.0}, 0.0}), 1e-3).outcome, Outcome::under_constrained);
+  verdict.reason = "as judged";
+  return verdict;
+}
+
+TEST(Decided, TheReasonTellsWhatElseMayBe) {
+  const auto reason = [](const Posterior& all) { return decided(found(), all, {}, "a twin").reason; };
+  EXPECT_EQ(reason(odds(0.9995, 0.0005, 0.0, 0.0)), "as judged");
+  EXPECT_EQ(reason(odds(0.98631, 0.0, 0.01369, 0.0)),
+            "placed, 98.6 % sure; the limit for registered is 99.9 %: a twin");
+  // What is below the limit does not read as if it reached it.
+  EXPECT_NE(reason(odds(0.99898, 0.00102, 0.0, 0.0)).find("99.89 %"), std::string::npos);
+  EXPECT_EQ(reason(odds(0.7, 0.0, 0.2, 0.1)), "a twin");
+  EXPECT_NE(reason(odds(0.7, 0.0, 0.1, 0.2)).find("chance (20.0 %)"), std::string::npos);
+  EXPECT_NE(reason(odds(0.7, 0.2, 0.1, 0.0)).find("one of them may be right"), std::string::npos);
+  EXPECT_NE(reason(odds(0.1, 0.0, 0.1, 0.8)).find("share nothing (80 %)"), std::string::npos);
+}
+
+TEST(Decided, WhatWasJudgedIsToldWhereItIsTheLikeliest) {
+  Verdict rivals = found();
+  rivals.outcome = Outcome::ambiguous;
+  rivals.rivals = {1};
+  EXPECT_EQ(decided(rivals, odds(0.7, 0.3, 0.0, 0.0), {}, "").reason, "as judged");
+  EXPECT_NE(decided(rivals, odds(0.7, 0.1, 0.0, 0.2), {}, "").reason.find("chance"), std::string::npos);
+  EXPECT_EQ(decided(rivals, odds(0.7, 0.1, 0.2, 0.0), {}, "a twin").reason, "a twin");
+  Verdict chance = rivals;
+  chance.rivals.clear();
+  EXPECT_EQ(decided(chance, odds(0.7, 0.1, 0.0, 0.2), {}, "").reason, "as judged");
+}
+
+TEST(Decided, WhatIsRefusedStaysSoAndWhatIsUnsureIsAmbiguous) {
+  Verdict refused;
+  EXPECT_EQ(decided(refused, odds(1.0, 0.0, 0.0, 0.0), {}, "").outcome, Outcome::no_match);
+  Verdict unsure = found();
+  unsure.unsure = true;
+  EXPECT_EQ(decided(unsure, odds(1.0, 0.0, 0.0, 0.0), {}, "").outcome, Outcome::ambiguous);
+  EXPECT_EQ(decided(unsure, odds(0.1, 0.0, 0.0, 0.9), {}, "").outcome, Outcome::no_match);
+}
+
+TEST(Decided, WhatIsOpenIsNamedUnlessNothingMatches) {
+  const Verdict open = decided(found(), odds(1.0, 0.0, 0.0, 0.0), {kOpen}, "");
+  EXPECT_EQ(open.reason, "the common surface does not fix the shift along (1.00, 0.00, 0.00)");
+  EXPECT_EQ(open.unobserved.size(), 1U);
+  EXPECT_NE(decided(found(), odds(1.0, 0.0, 0.0, 0.0), {kOpen, true}, "").reason.find("drifts"),
+            std::string::npos);
+  EXPECT_TRUE(decided(found(), odds(0.1, 0.0, 0.0, 0.9), {kOpen}, "").unobserved.empty());
 }
 
 }  // namespace

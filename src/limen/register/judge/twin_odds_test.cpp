@@ -156,16 +156,5 @@ TEST(TwinOdds, BoundsAreNamed) {
   EXPECT_THROW(probability_of_twin({}, options), Error);
 }
 
-TEST(TwinVerdict, ATwinIsNeverRegisteredAndTheReasonSaysSo) {
-  Verdict verdict;
-  verdict.outcome = Outcome::registered;
-  EXPECT_EQ(with_twin(verdict, {}, 1e-5).outcome, Outcome::registered);
-  const Verdict unsure = with_twin(verdict, {}, 0.15);
-  EXPECT_EQ(unsure.outcome, Outcome::ambiguous);
-  EXPECT_NE(unsure.reason.find("built alike"), std::string::npos) << unsure.reason;
-  verdict.outcome = Outcome::no_match;
-  EXPECT_EQ(with_twin(verdict, {}, 0.15).outcome, Outcome::no_match);
-}
-
 }  // namespace
 }  // namespace limen

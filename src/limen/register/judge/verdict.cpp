@@ -16,8 +16,6 @@
 namespace limen {
 namespace {
 
-constexpr double kLikelyTwin = 0.5;  // then even an open freedom is the lesser thing to tell
-
 bool same_pose(const RefinedPose& a, const RefinedPose& b, const VerdictOptions& options) {
   const Matrix3d turn = a.target_from_source.rotation.transpose() * b.target_from_source.rotation;
   if (rotation_angle(turn) > radians(options.same_rotation_deg)) return false;
@@ -115,6 +113,8 @@ void VerdictOptions::check() const {
     throw_bad_option("max_rival_share", max_rival_share, "within (0, 1)");
   }
   if (!(risk > 0 && risk < 0.5)) throw_bad_option("risk", risk, "within (0, 0.5)");
+  if (!(probable_risk > risk && probable_risk < 0.5))
+    throw_bad_option("probable_risk", probable_risk, fmt::format("within ({:g}, 0.5), above the risk", risk));
   twin.check();
   if (!(max_sigma_m > 0)) throw_bad_option("max_sigma_m", max_sigma_m, "more than 0");
   if (!(max_sigma_deg > 0)) throw_bad_option("max_sigma_deg", max_sigma_deg, "more than 0");
@@ -299,6 +299,7 @@ Verdict judge(const std::vector<JudgedPose>& poses, const ContrastFunction& cont
       best.score.contradicted_m2 >
           options.max_model_contradiction * best.score.agreeing_m2 + options.model_allowance_m2) {
     verdict.outcome = Outcome::ambiguous;
+    verdict.unsure = true;
     verdict.reason = fmt::format(
         "{:.1f} m2 of the model stand where the scan saw free space: another room, or built "
         "otherwise",
@@ -316,6 +317,7 @@ Verdict judge(const std::vector<JudgedPose>& poses, const ContrastFunction& cont
   }
   if (unsure_through_wall(best.score, options)) {
     verdict.outcome = Outcome::ambiguous;
+    verdict.unsure = true;
     verdict.reason = fmt::format(
         "no opening is seen from both sides, and {:.1f} m2 of one scan stand where the other saw free space",
         best.score.contradicted_m2);
@@ -383,24 +385,20 @@ Verdict led_by_likeliest(Verdict verdict, const std::vector<JudgedPose>& poses,
   return verdict;
 }
 
-Verdict with_twin(Verdict verdict, const IndividualMatter& individual, double probability,
-                  const VerdictOptions& options) {
-  const bool registered = verdict.outcome == Outcome::registered && probability > options.risk;
-  const bool open = verdict.outcome == Outcome::under_constrained && probability > kLikelyTwin;
-  if (!registered && !open) return verdict;
-  verdict.outcome = Outcome::ambiguous;
-  verdict.unobserved.clear();
-  verdict.reason = twin_words(individual, probability);
-  return verdict;
+OpenFreedoms open_freedoms(const RefinedPose& pose, const Matrix6d& with_drift,
+                           const VerdictOptions& options) {
+  OpenFreedoms open{unobserved_freedoms(pose, options.min_held_m2)};
+  if (open.list.empty())
+    open.list = loose_freedoms(covariance_of(pose), options.max_sigma_m, options.max_sigma_deg);
+  if (!open.list.empty()) return open;
+  open.list = loose_freedoms(with_drift, options.max_drifting_m, options.max_drifting_deg);
+  open.by_drift = !open.list.empty();
+  return open;
 }
 
-Verdict with_drift(Verdict verdict, const Matrix6d& covariance, const VerdictOptions& options) {
-  if (verdict.outcome != Outcome::registered) return verdict;
-  verdict.unobserved = loose_freedoms(covariance, options.max_drifting_m, options.max_drifting_deg);
-  if (verdict.unobserved.empty()) return verdict;
-  verdict.outcome = Outcome::under_constrained;
-  verdict.reason = "the trajectory drifts, which leaves open the " + verdict.unobserved.front().name;
-  return verdict;
+bool is_slid(const RefinedPose& first, const RefinedPose& second, const VerdictOptions& options) {
+  const std::vector<UnobservedFreedom> open = unobserved_freedoms(first, options.min_held_m2);
+  return !open.empty() && same_but_for(first, second, open, options);
 }
 
 }  // namespace limen

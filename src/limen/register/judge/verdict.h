@@ -27,7 +27,8 @@ struct JudgedPose {
 };
 
 struct VerdictOptions {
-  double risk = 0.001;                     ///< `registered` may be wrong with this probability at most
+  double risk = 0.001;                     ///< `registered` may be wrong with this probability at most ...
+  double probable_risk = 0.05;             ///< ... and `probable` with this
   TwinOptions twin;                        ///< of two rooms built alike
   double min_agreeing_m2 = 2.5;            ///< common planar surface that a pose must show
   double max_contradiction = 0.10;         ///< contradicted over agreeing surface
@@ -70,6 +71,8 @@ struct Verdict {
   std::vector<std::size_t> rivals;   ///< those that cannot be told from the best
   double log_odds_of_model = 0.0;    ///< in a model: of the best pose against chance, natural logarithm
   std::vector<UnobservedFreedom> unobserved;  ///< of the best pose
+  /// More is contradicted than under right poses: not sure, whatever its probability is.
+  bool unsure = false;
 };
 
 /// Decides: enough common surface, no contradiction, a clear lead over every different pose, six freedoms
@@ -84,14 +87,20 @@ Verdict judge(const std::vector<JudgedPose>& poses, const ContrastFunction& cont
 Verdict led_by_likeliest(Verdict verdict, const std::vector<JudgedPose>& poses,
                          const ContrastFunction& contrast, const VerdictOptions& options = {});
 
-/// The verdict once it is known how probable it is that the scans show two places built alike: what a twin
-/// explains as well is not registered.
-Verdict with_twin(Verdict verdict, const IndividualMatter& individual, double probability,
-                  const VerdictOptions& options = {});
+/// What a pose leaves open.
+struct OpenFreedoms {
+  std::vector<UnobservedFreedom> list;
+  bool by_drift = false;  ///< the data hold it, but a trajectory may be off by too much
+};
 
-/// The verdict once what a trajectory may be off by is counted in the best pose's `covariance` (turns, then
-/// shifts; rad, m): a freedom that is known less well than the options ask for with it is open.
-Verdict with_drift(Verdict verdict, const Matrix6d& covariance, const VerdictOptions& options = {});
+/// Freedoms that the matched surface does not hold, else those that it holds loosely, else those that are
+/// loose once what a trajectory may be off by is counted: in `with_drift`, the pose's covariance (turns, then
+/// shifts; rad, m).
+OpenFreedoms open_freedoms(const RefinedPose& pose, const Matrix6d& with_drift,
+                           const VerdictOptions& options = {});
+
+/// Whether two poses differ only along shifts that the matched surface leaves open under the first.
+bool is_slid(const RefinedPose& first, const RefinedPose& second, const VerdictOptions& options = {});
 
 /// Distinct poses, best value first: indices.
 std::vector<std::size_t> rank(const std::vector<JudgedPose>& poses, const VerdictOptions& options = {});

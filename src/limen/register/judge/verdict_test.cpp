@@ -200,16 +200,28 @@ TEST(Verdict, AShiftThatIsHardlyKnownIsNamed) {
 }
 
 TEST(Verdict, ATrajectoryThatDriftsFarLeavesAShiftOpen) {
-  const Verdict sure = judge_all({pose(30, 0, 0)});
-  ASSERT_EQ(sure.outcome, Outcome::registered);
   Matrix6d covariance = 1e-8 * Matrix6d::Identity();
   covariance.bottomRightCorner<3, 3>() += 0.03 * 0.03 * Matrix3d::Identity();
-  EXPECT_EQ(with_drift(sure, covariance).outcome, Outcome::registered);
+  EXPECT_TRUE(open_freedoms(pose(30, 0, 0).refined, covariance).list.empty());
   covariance(3, 3) = 0.06 * 0.06;
-  const Verdict open = with_drift(sure, covariance);
-  EXPECT_EQ(open.outcome, Outcome::under_constrained);
-  ASSERT_EQ(open.unobserved.size(), 1U);
-  EXPECT_NE(open.reason.find("60 mm"), std::string::npos);
+  const OpenFreedoms open = open_freedoms(pose(30, 0, 0).refined, covariance);
+  EXPECT_TRUE(open.by_drift);
+  ASSERT_EQ(open.list.size(), 1U);
+  EXPECT_NE(open.list[0].name.find("60 mm"), std::string::npos);
+  // What the surface itself leaves open comes first.
+  JudgedPose slides = pose(30, 0, 0);
+  slides.refined.geometry_m2(4, 4) = 0.0;
+  EXPECT_FALSE(open_freedoms(slides.refined, covariance).by_drift);
+}
+
+TEST(Verdict, APoseFurtherOnAlongAnOpenShiftIsTheSamePlace) {
+  JudgedPose open = pose(30, 0, 0);
+  EXPECT_FALSE(is_slid(open.refined, pose(29, 0, 2).refined));
+  open.refined.geometry_m2(3, 3) = 0.0;
+  EXPECT_TRUE(is_slid(open.refined, pose(29, 0, 2).refined));
+  JudgedPose elsewhere = pose(29, 0, 2);
+  elsewhere.refined.target_from_source.translation.y() = 2;
+  EXPECT_FALSE(is_slid(open.refined, elsewhere.refined));
 }
 
 TEST(Verdict, RivalsAlongAnOpenShiftAreTheSameAnswer) {
@@ -238,6 +250,11 @@ TEST(Verdict, OptionsNameTheirBound) {
   VerdictOptions options;
   options.max_rival_share = 1.5;
   EXPECT_THROW(judge({}, {}, options), Error);
+  for (const double probable : {0.001, 0.0005, 0.5}) {
+    options = {};
+    options.probable_risk = probable;
+    EXPECT_THROW(options.check(), Error) << probable;
+  }
 }
 
 }  // namespace

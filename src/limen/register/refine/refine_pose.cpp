@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <utility>
 
 #include "limen/base/error.h"
 #include "limen/base/progress.h"
@@ -328,6 +329,22 @@ Matrix6d damped_inverse(const Matrix6d& information) {
   return inverse_of(Matrix6d(information + 1e-6 * Matrix6d::Identity()));
 }
 
+/// An opening of the target where the source has it, `back` being the pose of the target in the source.
+OpeningMatch inverted(const OpeningMatch& match, const Rigid3& back) {
+  OpeningMatch turned = match;
+  std::swap(turned.source, turned.target);
+  // Seen from the two sides of a wall, what is right for one is left for the other.
+  const double same_way = match.opposite ? -1.0 : 1.0;
+  turned.at = back * match.at;
+  turned.across = same_way * (back.rotation * match.across);
+  turned.up = back.rotation * match.up;
+  turned.shift_across_m = -same_way * match.shift_across_m;
+  turned.shift_up_m = -match.shift_up_m;
+  turned.gap_m = -same_way * match.gap_m;
+  turned.tilt_rad = -same_way * match.tilt_rad;
+  return turned;
+}
+
 }  // namespace
 
 void RefineOptions::check() const {
@@ -343,6 +360,25 @@ Matrix6d covariance_of(const RefinedPose& pose) {
 
 Matrix6d formal_covariance_of(const RefinedPose& pose) {
   return damped_inverse(pose.formal_information);
+}
+
+RefinedPose inverted(const RefinedPose& pose) {
+  RefinedPose back = pose;
+  back.target_from_source = inverse(pose.target_from_source);
+  back.centre = back.target_from_source * pose.centre;
+  // A small turn w and shift v of the one about `centre` is -R'w and -R'v of the other about the same point:
+  // the adjoint of a pose has no mixed block there, and signs cancel.
+  Matrix6d turn = Matrix6d::Zero();
+  turn.topLeftCorner<3, 3>() = back.target_from_source.rotation;
+  turn.bottomRightCorner<3, 3>() = back.target_from_source.rotation;
+  for (Matrix6d* held : {&back.information, &back.geometry_m2, &back.formal_information})
+    *held = turn * *held * turn.transpose();
+  for (PlaneMatch& match : back.matches) {
+    std::swap(match.source, match.target);
+    match.distance_m = -match.distance_m;  // along the normal that both have
+  }
+  for (OpeningMatch& match : back.openings) match = inverted(match, back.target_from_source);
+  return back;
 }
 
 RefinedPose refine_pose(const ScanView& source, const ScanView& target, const Rigid3& start,

@@ -47,6 +47,10 @@ Matrix6d covariance_of(const RefinedPose& pose);
 /// The same of the scatter of the tiles alone: how far the planes of a pair lie apart is left out.
 Matrix6d formal_covariance_of(const RefinedPose& pose);
 
+/// The pose of the target in the source, with all that is known of it: turns and shifts of the target about
+/// `centre` are those of the source about the same point, the other way round and in the source's axes.
+RefinedPose inverted(const RefinedPose& pose);
+
 /// Robust point-to-plane adjustment over all matched surface of both scans, both ways: each tile of one scan
 /// against the plane of the other that its scanner saw there (2021, 3.4: "then refine on all matched
 /// planes"). Matched openings enter with the shifts of their edges within the wall, with the wall's two faces

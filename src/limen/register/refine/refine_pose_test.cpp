@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "limen/base/random.h"
+#include "limen/geometry/random_vectors.h"
 #include "limen/geometry/rigid.h"
 #include "limen/register/judge/score_pose.h"
 #include "limen/register/prepare/prepare_scan.h"
@@ -128,6 +129,73 @@ TEST(ScorePose, OpeningsOfPoorlyKnownPlacesMayAgreeMore) {
   const PoseScore well = score_pose(view, view, off, {});
   EXPECT_NEAR(well.opening_m2, poorly.opening_m2, 1e-9);
   EXPECT_LT(well.unsure_opening_m2, 0.3 * poorly.unsure_opening_m2);
+}
+
+/// Turn and shift about `centre` by which `moved` is off from `pose`.
+Vector6d off(const Rigid3& pose, const Rigid3& moved, const Vector3d& centre) {
+  const Rigid3 by = moved * inverse(pose);
+  Vector6d both;
+  both << rotation_log(by.rotation), by * centre - centre;
+  return both;
+}
+
+TEST(RefinePose, TurnedRoundItIsKnownAsWell) {
+  RandomStream random(31);
+  RefinedPose pose;
+  pose.target_from_source = {uniform_rotation(random), {3.0, -2.0, 1.0}};
+  pose.centre = {1.0, 4.0, -2.0};
+  Matrix6d root;
+  for (Eigen::Index k = 0; k < 36; ++k) root.data()[k] = random.normal();
+  pose.information = root * root.transpose() + Matrix6d::Identity();
+  pose.geometry_m2 = pose.information;
+  pose.formal_information = 2.0 * pose.information;
+  pose.matches = {{1, 2, 0.003, 0.01, 5.0}};
+  const RefinedPose back = inverted(pose);
+  // What small turns and shifts of the one are of the other, by differences.
+  constexpr double kStep = 1e-6;
+  Matrix6d change;
+  for (Eigen::Index k = 0; k < 6; ++k) {
+    Vector6d step = Vector6d::Zero();
+    step[k] = kStep;
+    Rigid3 about;
+    about.rotation = rotation_exp(Vector3d(step.head<3>()));
+    about.translation = pose.centre - about.rotation * pose.centre + Vector3d(step.tail<3>());
+    change.col(k) =
+        off(back.target_from_source, inverse(about * pose.target_from_source), back.centre) / kStep;
+  }
+  const Matrix6d expected = change * covariance_of(pose) * change.transpose();
+  EXPECT_LT((covariance_of(back) - expected).norm(), 1e-4 * expected.norm());
+  EXPECT_LT((formal_covariance_of(back) - 0.5 * expected).norm(), 1e-4 * expected.norm());
+  EXPECT_LT((back.centre - inverse(pose.target_from_source) * pose.centre).norm(), 1e-12);
+  EXPECT_EQ(back.matches[0].source, 2);
+  EXPECT_EQ(back.matches[0].target, 1);
+  EXPECT_EQ(back.matches[0].distance_m, -0.003);
+  EXPECT_LT((inverted(back).information - pose.information).norm(), 1e-9 * pose.information.norm());
+}
+
+/// Two rooms' openings in one wall: what has to move to the right from one side has to move to the left
+/// from the other.
+TEST(RefinePose, TurnedRoundOpeningsMoveTheOtherWay) {
+  RefinedPose pose;
+  pose.target_from_source.translation = {1.0, 2.0, 3.0};
+  OpeningMatch match;
+  match.source = 4;
+  match.target = 7;
+  match.shift_across_m = 0.02;
+  match.shift_up_m = 0.03;
+  match.gap_m = 0.3;
+  for (const bool opposite : {false, true}) {
+    match.opposite = opposite;
+    pose.openings = {match};
+    const OpeningMatch back = inverted(pose).openings[0];
+    EXPECT_EQ(back.source, 7);
+    EXPECT_EQ(back.target, 4);
+    // The same shift within the wall, of the other side: its opposite, in the axes of this one.
+    const Vector3d shift = match.shift_across_m * match.across + match.shift_up_m * match.up;
+    EXPECT_LT((back.shift_across_m * back.across + back.shift_up_m * back.up + shift).norm(), 1e-12);
+    EXPECT_EQ(back.across.dot(match.across), opposite ? -1.0 : 1.0);
+    EXPECT_EQ(back.gap_m, opposite ? match.gap_m : -match.gap_m);
+  }
 }
 
 }  // namespace

@@ -19,6 +19,7 @@ struct Sentences {
   const char* code;
   const char* summary;
   const char* registered;
+  const char* probable;
   const char* ambiguous;  ///< number of places
   const char* unsure;
   const char* open;
@@ -36,6 +37,7 @@ struct Sentences {
 
 constexpr std::array<Sentences, 3> kSentences = {{
     {"en", "Summary", "The two sides fit in one way only.",
+     "The place is found, but it is less sure than a registered one.",
      "{} places fit about equally well; which one is right is open.",
      "The best fit is not sure enough to be relied on.",
      "The place is found, but not every direction is held.", "Nothing was found that fits together.",
@@ -46,6 +48,7 @@ constexpr std::array<Sentences, 3> kSentences = {{
      "other side.",
      "Not held: {}.", "The scanner stood in {}.", "Project", "Operator", "Date"},
     {"fr", "R\u00e9sum\u00e9", "Les deux c\u00f4t\u00e9s ne s'assemblent que d'une seule fa\u00e7on.",
+     "La position est trouv\u00e9e, mais elle est moins s\u00fbre qu'il n'est demand\u00e9.",
      "{} positions conviennent \u00e0 peu pr\u00e8s aussi bien ; laquelle est la bonne reste ind\u00e9cis.",
      "Le meilleur assemblage n'est pas assez s\u00fbr pour que l'on s'y fie.",
      "La position est trouv\u00e9e, mais toutes les directions ne sont pas tenues.",
@@ -57,6 +60,7 @@ constexpr std::array<Sentences, 3> kSentences = {{
      "Les points s'\u00e9cartent de {} (moyenne quadratique) des surfaces de l'autre c\u00f4t\u00e9.",
      "Non tenu : {}.", "Le scanner se trouvait dans {}.", "Projet", "Op\u00e9rateur", "Date"},
     {"de", "Zusammenfassung", "Beide Seiten passen nur auf eine Weise zusammen.",
+     "Die Lage ist gefunden, aber weniger sicher, als verlangt wird.",
      "{} Lagen passen etwa gleich gut; welche die richtige ist, bleibt offen.",
      "Die beste Lage ist nicht sicher genug, um sich darauf zu verlassen.",
      "Die Lage ist gefunden, aber nicht jede Richtung ist gehalten.",
@@ -95,6 +99,8 @@ std::string verdict_of(const RegistrationResult& result, const Sentences& words)
   switch (result.outcome) {
     case Outcome::registered:
       return words.registered;
+    case Outcome::probable:
+      return words.probable;
     case Outcome::ambiguous:
       return result.rivals > 0 ? filled(words.ambiguous, result.rivals + 1) : words.unsure;
     case Outcome::under_constrained:

@@ -44,8 +44,8 @@ TEST(ReportCover, SaysTheSameInThreeLanguages) {
 TEST(ReportCover, EveryOutcomeHasItsSentence) {
   for (const Language language : {Language::english, Language::french, Language::german}) {
     std::vector<std::string> told;
-    for (const Outcome outcome :
-         {Outcome::registered, Outcome::ambiguous, Outcome::under_constrained, Outcome::no_match}) {
+    for (const Outcome outcome : {Outcome::registered, Outcome::probable, Outcome::ambiguous,
+                                  Outcome::under_constrained, Outcome::no_match}) {
       RegistrationReport report = found();
       report.result.outcome = outcome;
       told.push_back(cover_summary(report, language).front());

@@ -190,6 +190,7 @@ TEST(ReportPage, EveryOutcomeHasItsPage) {
   const ReportScene scene = two_rooms(3000);
   for (const auto& [outcome, words] : std::vector<std::pair<Outcome, std::string>>{
            {Outcome::registered, "Registered: the two scans fit in one way only"},
+           {Outcome::probable, "Probable: placed, but less sure than registered asks for"},
            {Outcome::ambiguous, "Not decided: 3 ways fit about equally well"},
            {Outcome::under_constrained, "Shift along (0.00, 1.00, 0.00) is not held by the data."},
            {Outcome::no_match, "No match: the two scans show nothing in common"}}) {

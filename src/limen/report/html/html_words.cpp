@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "limen/report/summary/advice.h"
 #include "limen/report/summary/precision.h"
 
 namespace limen {
@@ -85,6 +86,17 @@ VerdictWords registered_words(const RegistrationReport& report) {
   return words;
 }
 
+VerdictWords probable_words(const RegistrationReport& report) {
+  const RegistrationResult& result = report.result;
+  VerdictWords words{"Probable: placed, but less sure than registered asks for", {}, "", "✓?"};
+  words.sentences.push_back(capitalised(square_metres(result.reason)) + ".");
+  words.sentences.push_back(capitalised(surer(report)) + ".");
+  append(words, expectation(report));
+  if (!result.best.room.empty())
+    words.sentences.push_back(fmt::format("The scanner stood in {}.", result.best.room));
+  return words;
+}
+
 VerdictWords ambiguous_words(const RegistrationReport& report) {
   const RegistrationResult& result = report.result;
   VerdictWords words{"", {}, "", "?"};
@@ -130,6 +142,8 @@ VerdictWords verdict_words(const RegistrationReport& report) {
   switch (report.result.outcome) {
     case Outcome::registered:
       return registered_words(report);
+    case Outcome::probable:
+      return probable_words(report);
     case Outcome::ambiguous:
       return ambiguous_words(report);
     case Outcome::under_constrained:

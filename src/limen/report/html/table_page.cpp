@@ -25,7 +25,7 @@ td.n { text-align: right; font-variant-numeric: tabular-nums; white-space: nowra
 td.path { overflow-wrap: anywhere; }
 :focus-visible { outline: 2.5px solid var(--good); outline-offset: 2px; }
 .state { font-weight: 650; white-space: nowrap; }
-.registered, .verified { --c: var(--good); } .ambiguous, .bridge, .under_constrained { --c: var(--doubt); }
+.registered, .verified { --c: var(--good); } .probable, .ambiguous, .bridge, .under_constrained { --c: var(--doubt); }
 .rejected, .unreadable { --c: var(--bad); } .floating, .weak { --c: var(--weak); }
 .state { color: var(--c); }
 .wall { stroke: var(--soft); stroke-opacity: .35; stroke-width: 1.5; fill: none; }

@@ -8,7 +8,7 @@ namespace limen {
 
 std::string evaluation_schema() {
   using namespace schema;
-  Json outcome = words({"registered", "ambiguous", "under_constrained", "no_match"});
+  Json outcome = words({"registered", "probable", "ambiguous", "under_constrained", "no_match"});
   outcome["enum"].push_back(nullptr);
   const auto three = [](const char* description) {
     return Json{{"anyOf", {numbers(3, description), Json{{"type", "null"}}}}};

@@ -237,7 +237,7 @@ std::string result_json(const RegistrationReport& report) {
   if (const auto planes = plane_distance_rms(result.matches); found && planes)
     json["evidence"]["plane_distance_rms_m"] = *planes;
   json["unobserved"] = unobserved_json(result.unobserved);
-  json["alternatives"] = alternatives_json(result.alternatives);
+  json["alternatives"] = found ? alternatives_json(result.alternatives) : Json::array();
   json["matches"] = matches_json(result.matches);
   json["matched_openings"] = openings_json(result.openings);
   json["wall_thickness"] = thickness_json(result.thickness);

@@ -9,7 +9,7 @@ namespace schema {
 namespace {
 
 Json outcomes() {
-  return {{"enum", {"registered", "ambiguous", "under_constrained", "no_match"}}};
+  return {{"enum", {"registered", "probable", "ambiguous", "under_constrained", "no_match"}}};
 }
 
 Json sigma_schema() {

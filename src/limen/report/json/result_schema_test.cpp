@@ -45,8 +45,8 @@ RegistrationReport full_report(Outcome outcome) {
 
 TEST(ResultSchema, HoldsForEveryOutcome) {
   const Validator validator(Json::parse(result_schema()));
-  for (const Outcome outcome :
-       {Outcome::registered, Outcome::ambiguous, Outcome::under_constrained, Outcome::no_match}) {
+  for (const Outcome outcome : {Outcome::registered, Outcome::probable, Outcome::ambiguous,
+                                Outcome::under_constrained, Outcome::no_match}) {
     EXPECT_EQ(validator.fault(Json::parse(result_json(full_report(outcome)))), "") << to_string(outcome);
   }
   RegistrationReport segments = full_report(Outcome::registered);

@@ -74,6 +74,13 @@ TEST(ProjectSchema, HoldsForEverythingThatAProjectMayHave) {
     result.outcome = outcome;
     EXPECT_EQ(fault(result), "");
   }
+  for (const NodeState state : {NodeState::registered, NodeState::probable, NodeState::ambiguous,
+                                NodeState::under_constrained, NodeState::floating}) {
+    result.scans[0].state = state;
+    EXPECT_EQ(fault(result), "") << to_string(state);
+  }
+  result.links[0].pair = Outcome::probable;
+  EXPECT_EQ(fault(result), "");
   EXPECT_EQ(fault(ProjectResult{}), "$.frame.kind is another word");
   result.frame_kind = "station";
   result.frame_scan = 0;

@@ -97,6 +97,8 @@ ProjectEntry entry_of(const Json& scan) {
   entry.index = scan.at("index").get<int>();
   entry.model = scan.at("kind") == "model";
   entry.state = scan.at("state").get<std::string>();
+  if (const auto doubt = scan.find("doubt"); doubt != scan.end() && doubt->is_number())
+    entry.doubt = doubt->get<double>();
   const Json& pose = scan.at("frame_from_scan");
   if (!pose.is_null()) entry.frame_from_scan = pose_of(pose);
   if (scan.contains("correction") && entry.frame_from_scan) entry.bend = bend_of(scan["correction"]);

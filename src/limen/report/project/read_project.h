@@ -23,6 +23,7 @@ struct ProjectEntry {
   bool several = false;  ///< its file holds other scans
   bool model = false;
   std::string state;
+  double doubt = 0.0;   ///< probability that it stands elsewhere
   std::string sha256;   ///< of the file's bytes
   std::string copy_of;  ///< another file of the same bytes
   double sigma_m =

@@ -160,6 +160,12 @@ std::vector<std::string> steps_registered(const RegistrationReport& report, cons
   return steps;
 }
 
+std::vector<std::string> steps_probable(const RegistrationReport& report, const std::string& folder) {
+  std::vector<std::string> steps = {surer(report)};
+  for (std::string& step : steps_registered(report, folder)) steps.push_back(std::move(step));
+  return steps;
+}
+
 std::vector<std::string> steps_ambiguous(const RegistrationReport& report, const std::string& folder) {
   std::vector<std::string> steps;
   const bool ties = report.result.rivals > 0;
@@ -237,6 +243,24 @@ std::optional<UnitGuess> likely_unit(const InputSummary& source, const InputSumm
   return std::nullopt;
 }
 
+std::string surer(const RegistrationReport& report) {
+  const RegistrationResult& result = report.result;
+  const OtherExplanations others = result.others.value_or(OtherExplanations{});
+  const double chance = others.nothing_shared + others.unlisted_pose;
+  const double elsewhere = 1.0 - result.best.probability.value_or(1.0) - others.twin - chance;
+  if (others.twin >= std::max(chance, elsewhere)) {
+    const bool said = std::any_of(report.options.begin(), report.options.end(),
+                                  [](const auto& option) { return option.first == "repeats"; });
+    return said ? "to be surer ask who knows the building: are these two the same room, or two built alike?"
+                : "to be surer say --repeats none, if no room, flat or storey of the building repeats";
+  }
+  const char* const with =
+      in_model(report) || report.source.kind == "scan" ? ": --source-with SCAN POSE" : "";
+  return chance > elsewhere
+             ? fmt::format("to be surer add a scan that shows more of what both sides have in common{}", with)
+             : fmt::format("to be surer add a scan that sees both sides{}, or limen project with all", with);
+}
+
 std::vector<LikelyCause> likely_causes(const RegistrationReport& report) {
   if (report.result.outcome != Outcome::no_match) return {};
   std::vector<WeighedCause> causes = {overlap_cause(report), pair_cause(report)};
@@ -259,6 +283,8 @@ std::vector<std::string> next_steps(const RegistrationReport& report, const std:
   switch (report.result.outcome) {
     case Outcome::registered:
       return steps_registered(report, folder);
+    case Outcome::probable:
+      return steps_probable(report, folder);
     case Outcome::ambiguous:
       return steps_ambiguous(report, folder);
     case Outcome::under_constrained:

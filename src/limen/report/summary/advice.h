@@ -24,6 +24,10 @@ std::vector<LikelyCause> likely_causes(const RegistrationReport& report);
 /// report.html are; it stands in the commands that are named.
 std::vector<std::string> next_steps(const RegistrationReport& report, const std::string& folder = "");
 
+/// Of a pose that is placed, but not surely: the one thing that would make it surer, after what else is the
+/// likeliest.
+std::string surer(const RegistrationReport& report);
+
 /// "ft" where the numbers of one side would fit the other's if they were feet (in, mm, cm likewise).
 struct UnitGuess {
   bool source = false;  ///< of the source's numbers, else of the target's

@@ -38,8 +38,8 @@ bool any_names(const std::vector<std::string>& steps, const std::string& words) 
 }
 
 TEST(Advice, EveryOutcomeSaysWhatToDoNext) {
-  for (const Outcome outcome :
-       {Outcome::registered, Outcome::ambiguous, Outcome::under_constrained, Outcome::no_match}) {
+  for (const Outcome outcome : {Outcome::registered, Outcome::probable, Outcome::ambiguous,
+                                Outcome::under_constrained, Outcome::no_match}) {
     const std::vector<std::string> steps = next_steps(pair_of(outcome), "out");
     EXPECT_GE(steps.size(), 2U) << to_string(outcome);
     EXPECT_TRUE(any_names(steps, "out/report.html")) << to_string(outcome);
@@ -48,6 +48,23 @@ TEST(Advice, EveryOutcomeSaysWhatToDoNext) {
   RegistrationReport without = pair_of(Outcome::registered);
   without.result.picture.reset();
   EXPECT_FALSE(any_names(next_steps(without), "report.html"));
+}
+
+TEST(Advice, AProbablePoseNamesWhatWouldMakeItSurer) {
+  RegistrationReport report = pair_of(Outcome::probable);
+  const auto with = [&report](double twin, double chance, double elsewhere) {
+    report.result.others = OtherExplanations{chance, twin, 0.0};
+    report.result.best.probability = 1.0 - twin - chance - elsewhere;
+    EXPECT_EQ(next_steps(report, "out").front(), surer(report));
+    return surer(report);
+  };
+  EXPECT_NE(with(0.02, 0.0, 0.0).find("--repeats none"), std::string::npos);
+  EXPECT_NE(with(0.0, 0.0, 0.02).find("sees both sides"), std::string::npos);
+  EXPECT_NE(with(0.0, 0.02, 0.0).find("more of what both sides have in common"), std::string::npos);
+  // Once that was said it is not asked for again.
+  report.options.emplace_back("repeats", std::string("none"));
+  EXPECT_NE(with(0.02, 0.0, 0.0).find("the same room"), std::string::npos);
+  EXPECT_TRUE(any_names(next_steps(report, "out"), "limen transform out/result.json"));
 }
 
 TEST(Advice, CommandsCanBeTakenAsTheyStand) {

@@ -8,6 +8,7 @@
 
 #include "limen/base/angles.h"
 #include "limen/report/summary/advice.h"
+#include "limen/report/summary/answer_places.h"
 #include "limen/report/summary/precision.h"
 #include "limen/report/summary/words.h"
 
@@ -90,9 +91,25 @@ std::string alternative_line(std::size_t number, const Hypothesis& pose) {
   return text + (pose.room.empty() ? "" : "  " + pose.room) + "\n";
 }
 
+/// The places of an answer that is not decided.
+std::string place_lines(const RegistrationResult& result) {
+  const AnswerPlaces places = answer_places(result);
+  std::string text = line("places", "together 95 % of what is not chance; = cannot be told from number 0");
+  text += alternative_line(0, result.best);
+  const std::size_t shown = std::min(places.alternatives.size(), kShown);
+  for (std::size_t k = 0; k < shown; ++k)
+    text += alternative_line(places.alternatives[k] + 1, result.alternatives[places.alternatives[k]]);
+  if (places.look_alike)
+    text += fmt::format("{:>7} {:>18}  a look-alike place\n", "", probability_words(result.others->twin));
+  if (shown < result.alternatives.size())
+    text += fmt::format("      and {} more in result.json\n", result.alternatives.size() - shown);
+  return text;
+}
+
 /// A table where there is something to choose, else their number.
 std::string alternative_lines(const RegistrationResult& result) {
   const std::size_t count = result.alternatives.size();
+  if (result.outcome == Outcome::ambiguous && result.others) return place_lines(result);
   if (count == 0 || result.published) return {};
   const std::string others = count == 1 ? "1 other pose" : fmt::format("{} other poses", count);
   if (result.rivals == 0)

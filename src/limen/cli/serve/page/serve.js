@@ -187,7 +187,7 @@ const questionsOf = (job, project) => {
 
 const outcomeOf = (job, result) => {
   if (job.state !== 'done') return '';
-  const words = { registered: 'registered', ambiguous: 'not decided: several places fit', under_constrained: 'some direction stays free', no_match: 'nothing in common was found', partial: 'some have a place, some do not' };
+  const words = { registered: 'registered', probable: 'placed, but less sure than registered', ambiguous: 'not decided: several places fit', under_constrained: 'some direction stays free', no_match: 'nothing in common was found', partial: 'some have a place, some do not' };
   return words[result?.outcome] ?? '';
 };
 

@@ -5,7 +5,7 @@
 
 const kWhereItIs = fromAxes([1, 0, 0], [0, 1, 0], [0, 0, 1]);
 const kStateTints = {
-  registered: '--good', verified: '--good', ambiguous: '--doubt', bridge: '--doubt', under_constrained: '--doubt', rejected: '--bad', unreadable: '--bad',
+  registered: '--good', verified: '--good', probable: '--doubt', ambiguous: '--doubt', bridge: '--doubt', under_constrained: '--doubt', rejected: '--bad', unreadable: '--bad',
 };
 const kDashes = { bridge: 9, ambiguous: 5, rejected: 3 };
 const kMostSpots = 300;

@@ -1,0 +1,15 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "limen/register/prepare/prepare_scan.h"
+
+namespace limen {
+
+/// Which of two sides is worked on as the source, whichever a user calls so: the same for both orders, so
+/// that swapping the sides turns an answer round and changes nothing else. A model is the target, a scan
+/// taken along a path is where the other is not, and else the side of which more surface was seen. What tells
+/// two sides apart in the end is their samples, one by one; sides that are the same have no order.
+bool is_work_order(const PreparedScan& source, const PreparedScan& target);
+
+}  // namespace limen
