@@ -22,6 +22,9 @@ constexpr std::size_t kMostProposals = 48;  // of placements of two parts
 constexpr int kMostMoves = 200;             // of scans and parts, one after the other
 constexpr double kLeastGain = 1e-6;         // nats
 constexpr double kSameLookAlikeM = 0.3;
+constexpr int kMostReopened = 3;
+constexpr double kOtherPlaceM = 0.5;  // what misses by more means another place
+constexpr double kOtherPlaceRad = 0.087;
 
 /// The placement of two parts that the pairs between them say most for.
 struct PartJoin {
@@ -194,6 +197,57 @@ void accept(const PoseGraph& graph, const LinkMatcher& matcher, double gate, Con
   }
 }
 
+/// Poses by least squares over what agrees, about the first node of each component; `asked` are edges whose
+/// adjusted pose is asked for, and that hold nothing.
+PoseAdjustment adjusted(const PoseGraph& graph, const Configuration& configuration,
+                        const std::vector<PoseEdge>& asked, const PoseAdjustmentOptions& options) {
+  std::vector<PoseEdge> edges;
+  for (std::size_t k = 0; k < graph.links.size(); ++k) {
+    if (configuration.pose[k] < 0) continue;
+    const GraphLink& link = graph.links[k];
+    edges.push_back(
+        {link.source, link.target, link.poses[static_cast<std::size_t>(configuration.pose[k])]});
+  }
+  edges.insert(edges.end(), asked.begin(), asked.end());
+  std::vector<bool> fixed(configuration.component.size());
+  for (std::size_t n = 0; n < fixed.size(); ++n) fixed[n] = configuration.component[n] == static_cast<int>(n);
+  return adjust_poses(configuration.frame_from_node, fixed, edges, options);
+}
+
+/// Links that miss by no more than the configuration itself is open there agree too: each would have, had it come
+/// first. Whether there are any.
+bool accept_where_open(const PoseGraph& graph, Configuration& configuration) {
+  constexpr double kHoldsNothing = 1e6;  // variance
+  std::vector<PoseEdge> asked;
+  std::vector<std::pair<std::size_t, std::size_t>> poses;
+  for (std::size_t k = 0; k < graph.links.size(); ++k) {
+    const GraphLink& link = graph.links[k];
+    if (configuration.pose[k] >= 0 || !configuration.joins(link)) continue;
+    for (std::size_t p = 0; p < link.poses.size(); ++p) {
+      const Vector6d missed = misfit(link.poses[p], configuration.target_from_source(link));
+      if (missed.head<3>().norm() > kOtherPlaceRad || missed.tail<3>().norm() > kOtherPlaceM) continue;
+      poses.emplace_back(k, p);
+      asked.push_back({link.source, link.target, link.poses[p]});
+      asked.back().pose.covariance = kHoldsNothing * Matrix6d::Identity();
+    }
+  }
+  if (asked.empty()) return false;
+  const PoseAdjustment known = adjusted(graph, configuration, asked, {false, true});
+  const std::size_t first = known.edge_covariance.size() - asked.size();
+  std::map<std::size_t, double> nearest;
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    const auto& [k, p] = poses[i];
+    const LinkPose& pose = graph.links[k].poses[p];
+    const double squared = chi_square(misfit(pose, configuration.target_from_source(graph.links[k])),
+                                      pose.covariance + known.edge_covariance[first + i]);
+    const auto before = nearest.find(k);
+    if (squared > (before == nearest.end() ? kChiSquareBound : before->second)) continue;
+    nearest[k] = squared;
+    configuration.pose[k] = static_cast<int>(p);
+  }
+  return !nearest.empty();
+}
+
 /// Least squares over what agrees, and what agrees then, until nothing changes.
 void settle(const PoseGraph& graph, const LinkMatcher& matcher, Configuration& configuration) {
   std::vector<int> before;
@@ -202,20 +256,15 @@ void settle(const PoseGraph& graph, const LinkMatcher& matcher, Configuration& c
     find_components(graph, configuration);
     if (configuration.pose == before) continue;
     before = configuration.pose;
-    std::vector<PoseEdge> edges;
-    for (std::size_t k = 0; k < graph.links.size(); ++k) {
-      if (configuration.pose[k] < 0) continue;
-      const GraphLink& link = graph.links[k];
-      edges.push_back(
-          {link.source, link.target, link.poses[static_cast<std::size_t>(configuration.pose[k])]});
-    }
-    std::vector<bool> fixed(configuration.component.size());
-    for (std::size_t n = 0; n < fixed.size(); ++n)
-      fixed[n] = configuration.component[n] == static_cast<int>(n);
-    configuration.frame_from_node = adjust_poses(configuration.frame_from_node, fixed, edges).frame_from_node;
+    configuration.frame_from_node = adjusted(graph, configuration, {}, {}).frame_from_node;
   }
   accept(graph, matcher, 1.0, configuration);
   find_components(graph, configuration);
+  for (int k = 0; k < kMostReopened && accept_where_open(graph, configuration); ++k) {
+    configuration.frame_from_node = adjusted(graph, configuration, {}, {false}).frame_from_node;
+    accept(graph, matcher, 1.0, configuration);
+    find_components(graph, configuration);
+  }
 }
 
 /// Scans and parts go to where the pairs say more; whether any did.

@@ -65,7 +65,8 @@ class MoveSearch {
   /// Whether a pose means the present place, which its link knows less well than it says.
   [[nodiscard]] bool is_here(const GraphLink& link, const LinkPose& pose) const {
     const Vector6d missed = misfit(pose, present_.target_from_source(link));
-    return missed.head<3>().norm() < kNoOtherPlaceRad && missed.tail<3>().norm() < kNoOtherPlaceM;
+    return (missed.head<3>().norm() < kNoOtherPlaceRad && missed.tail<3>().norm() < kNoOtherPlaceM) ||
+           chi_square(missed, pose.covariance) <= kChiSquareBound;
   }
 
   /// Either end alone, and what hangs together with it.
@@ -90,13 +91,15 @@ class MoveSearch {
                                 : at(link.source) * inverse(target_from_source) * inverse(at(link.target));
     JoinEvidence now;
     JoinEvidence then;
+    JoinEvidence then_alone;
     for (std::size_t n = 0; n < side.size(); ++n) {
       if (!side[n]) continue;
-      for (const std::size_t k : links_of_[n]) weigh(k, move, now, then);
+      for (const std::size_t k : links_of_[n]) weigh(k, move, now, then, then_alone);
     }
     for (const GraphLink& pair : graph_.against) weigh_against(pair, move, now, then);
     move.present_nats = now.nats();
     move.moved_nats = then.nats();
+    move.moved_alone_nats = then_alone.nats();
     return move;
   }
 
@@ -112,15 +115,23 @@ class MoveSearch {
     return inverse(place(link.target)) * place(link.source);
   }
 
-  void weigh(std::size_t k, Move& move, JoinEvidence& now, JoinEvidence& then) const {
+  void weigh(std::size_t k, Move& move, JoinEvidence& now, JoinEvidence& then,
+             JoinEvidence& then_alone) const {
     const GraphLink& link = graph_.links[k];
     if (!crosses(link, move.side)) return;
     const int present = present_.pose[k];
     const int moved = matcher_.nearest(k, moved_pose(link, move), kAgreementGate);
     if (present >= 0) now.add(matcher_.evidence(k, present));
     if (moved >= 0) then.add(matcher_.evidence(k, moved));
-    if (present >= 0 && moved < 0) move.present.push_back(static_cast<int>(k));
-    if (moved >= 0 && present < 0) move.moved.push_back(static_cast<int>(k));
+    if (present >= 0 && moved >= 0) {
+      move.either.push_back(static_cast<int>(k));
+      move.either_nats += matcher_.evidence(k, moved).alone() - matcher_.evidence(k, present).alone();
+    } else if (moved >= 0) {
+      then_alone.add(matcher_.evidence(k, moved));
+    }
+    if (present == moved) return;
+    if (present >= 0) move.present.push_back(static_cast<int>(k));
+    if (moved >= 0) move.moved.push_back(static_cast<int>(k));
   }
 
   void weigh_against(const GraphLink& pair, const Move& move, JoinEvidence& now, JoinEvidence& then) const {

@@ -108,14 +108,19 @@ double PlacementOdds::log_odds_of_chance(std::vector<const PlacedPair*> across, 
 
 const SideOdds& PlacementOdds::of(const std::vector<bool>& side) {
   const auto [known, fresh] = known_.try_emplace(side);
-  if (!fresh) return known->second;
+  if (fresh) known->second = without(side, {});
+  return known->second;
+}
+
+SideOdds PlacementOdds::without(const std::vector<bool>& side, const std::vector<int>& links) const {
   CancelScope::check();
   std::vector<const PlacedPair*> across;
   for (const PlacedPair& pair : pairs_) {
-    if (side[static_cast<std::size_t>(pair.source)] != side[static_cast<std::size_t>(pair.target)])
+    const bool crosses = side[static_cast<std::size_t>(pair.source)] != side[static_cast<std::size_t>(pair.target)];
+    if (crosses && (pair.link < 0 || std::find(links.begin(), links.end(), pair.link) == links.end()))
       across.push_back(&pair);
   }
-  SideOdds& odds = known->second;
+  SideOdds odds;
   odds.chance = std::exp(log_odds_of_chance(across, side, odds));
   const LookAlike otherwise = look_alike(Kind::otherwise(), across, side);
   const LookAlike alike = look_alike(Kind::alike(), across, side);

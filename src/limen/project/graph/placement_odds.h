@@ -29,6 +29,8 @@ class PlacementOdds {
   PlacementOdds(int nodes, std::vector<PlacedPair> pairs);
 
   [[nodiscard]] const SideOdds& of(const std::vector<bool>& side);
+  /// The same, had these links not been.
+  [[nodiscard]] SideOdds without(const std::vector<bool>& side, const std::vector<int>& links) const;
   [[nodiscard]] const std::vector<PlacedPair>& pairs() const { return pairs_; }
 
   /// Sides on which each node may be elsewhere: alone, and on its side of the weakest cuts between it and its

@@ -41,10 +41,11 @@ class Solver {
     best_ = best_configuration(graph_, matcher_);
     weigh();
     while (take_apart()) weigh();
+    weigh_doubts();
+    choose_references();
     adjust();
     number_components();
-    weigh_sides();
-    weigh_moves();
+    weigh_doubts();
     judge_nodes();
     ask_questions();
     judge_links();
@@ -171,10 +172,39 @@ class Solver {
     return other;
   }
 
-  void weigh_sides() {
+  void weigh_doubts() {
+    doubts_.clear();
     for (const std::vector<bool>& side : odds_->weak_sides(reference_)) {
       const SideOdds& odds = odds_->of(side);
       doubts_.push_back({side, odds.total(), odds.links, {}});
+    }
+    weigh_moves();
+  }
+
+  /// The largest part of each component that no doubt divides lends it the frame: what is in doubt against it
+  /// must not.
+  void choose_references() {
+    std::map<std::pair<int, std::vector<bool>>, std::vector<int>> parts;  // by the doubtful sides they are on
+    for (int n = 0; n < graph_.nodes; ++n) {
+      if (reference_[static_cast<std::size_t>(n)] < 0) continue;
+      std::vector<bool> sides;
+      for (const Doubt& doubt : doubts_) {
+        if (doubt.odds > risk_) sides.push_back(doubt.side[static_cast<std::size_t>(n)]);
+      }
+      parts[{component(n), std::move(sides)}].push_back(n);
+    }
+    std::map<int, const std::vector<int>*> largest;  // of each component
+    for (const auto& [key, nodes] : parts) {
+      const std::vector<int>*& most = largest[key.first];
+      if (most == nullptr || nodes.size() > most->size() ||
+          (nodes.size() == most->size() && nodes.front() < most->front()))
+        most = &nodes;
+    }
+    for (int n = 0; n < graph_.nodes; ++n) {
+      int& reference = reference_[static_cast<std::size_t>(n)];
+      if (reference < 0 || reference == graph_.anchor) continue;
+      const std::vector<int>& nodes = *largest.at(component(n));
+      if (std::find(nodes.begin(), nodes.end(), reference) == nodes.end()) reference = nodes.front();
     }
   }
 
@@ -186,8 +216,9 @@ class Solver {
         move.side = side;
         move.frame_from_frame = inverse(move.frame_from_frame);
       }
-      const double elsewhere = odds_->of(side).total();
-      double odds = elsewhere * std::exp(move.moved_nats);
+      // What agrees with both places tells them from each other by its two poses alone.
+      double odds = odds_->without(side, move.either).total() *
+                    std::exp(move.moved_alone_nats + move.either_nats);
       if (odds <= kLeastListed * risk_) continue;
       odds *= std::exp(-nats_against_move(best_, side, move.frame_from_frame, hearing_));
       if (odds <= kLeastListed * risk_) continue;

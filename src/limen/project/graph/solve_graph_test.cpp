@@ -225,13 +225,13 @@ TEST(SolveGraph, APoseWithinWhatIsKnownOfItsLinkIsNoOtherPlace) {
   RandomStream random(9, 1);
   made.graph.nodes = 4;
   const LinkPose best = measured_pose(random_pose(random, 5.0), 10.0, random);
-  for (const double loose : {1.0, 200.0}) {
+  for (const double loose : {1.0, 2000.0}) {
     GraphLink link;
     link.source = 3;
     link.target = 1;
     link.trust = LinkTrust::open;
     link.poses = {best, best};
-    link.poses[1].target_from_source.translation += Vector3d(0.07, 0.0, 0.0);
+    link.poses[1].target_from_source.translation += Vector3d(0.3, 0.0, 0.0);
     for (LinkPose& pose : link.poses) pose.covariance *= loose;
     PoseGraph graph = made.graph;
     graph.links.push_back(link);
@@ -269,7 +269,7 @@ TEST(SolveGraph, ALinkThatMissesByAFewDeviationsIsNoOtherPlace) {
   add(3, 0, kSigma, 0.0, 1e-9);
   add(3, 2, 0.0, 0.0, 0.05);
   const PoseGraph without = graph;
-  for (const double off_m : {0.08, 0.12}) {
+  for (const double off_m : {0.08, 0.25}) {
     graph = without;
     add(2, 1, kSigma, off_m, 1e-9);
     const SolvedGraph solved = solve_graph(graph);
@@ -303,7 +303,7 @@ TEST(SolveGraph, WhatNoSingleLinkForbidsAllForbidTogether) {
     GraphLink& open = graph.links.back();
     open.trust = LinkTrust::open;
     LinkPose slipped = open.poses.front();
-    slipped.target_from_source.translation += Vector3d(0.15, 0.0, 0.0);
+    slipped.target_from_source.translation += Vector3d(0.25, 0.0, 0.0);
     slipped.covariance /= 25.0;
     open.poses.push_back(slipped);
     EXPECT_EQ(solve_graph(graph).questions.empty(), stations > 1) << stations;
@@ -420,7 +420,8 @@ TEST(SolveGraph, ARoomBetweenTwoStoreysIsAskedByItself) {
               (found.translation - right.translation).norm() < 0.05)
       << to_string(solved.nodes.back().state) << ", doubt " << solved.nodes.back().doubt;
   for (int n = 0; n < kCorridor; ++n)
-    EXPECT_EQ(solved.nodes[static_cast<std::size_t>(n)].state, NodeState::registered) << n;
+    EXPECT_EQ(solved.nodes[static_cast<std::size_t>(n)].state, NodeState::registered)
+        << n << ", doubt " << solved.nodes[static_cast<std::size_t>(n)].doubt;
 }
 
 /// What is asked of a building is asked of it beside another one as well, that no link joins to it, and of
