@@ -22,6 +22,7 @@ constexpr std::size_t kMostProposals = 48;  // of placements of two parts
 constexpr int kMostMoves = 200;             // of scans and parts, one after the other
 constexpr double kLeastGain = 1e-6;         // nats
 constexpr double kSameLookAlikeM = 0.3;
+constexpr double kLeastOdds = 1e-300;
 constexpr int kMostReopened = 3;
 constexpr double kOtherPlaceM = 0.5;  // what misses by more means another place
 constexpr double kOtherPlaceRad = 0.087;
@@ -301,6 +302,25 @@ Rigid3 Configuration::target_from_source(const GraphLink& link) const {
 
 bool Configuration::joins(const GraphLink& link) const {
   return component[static_cast<std::size_t>(link.source)] == component[static_cast<std::size_t>(link.target)];
+}
+
+void JoinEvidence::add(const PairEvidence& evidence) {
+  chance_ += evidence.chance_nats + evidence.coincidence_nats;
+  first_ = std::max(first_, evidence.coincidence_nats);
+  otherwise_ += evidence.against_twin(&TwinEvidence::otherwise_nats);
+  alike_ += evidence.against_twin(&TwinEvidence::alike_nats);
+  if (evidence.looks_for_twins) {
+    prior_otherwise_ = std::max(prior_otherwise_, evidence.twins.otherwise);
+    prior_alike_ = std::max(prior_alike_, evidence.twins.alike);
+  }
+  any_ = true;
+}
+
+double JoinEvidence::nats() const {
+  if (!any_) return against_;
+  const double none = 1.0 - prior_otherwise_ - prior_alike_;
+  return against_ - std::log(std::exp(first_ - chance_) + prior_otherwise_ / none * std::exp(-otherwise_) +
+                             prior_alike_ / none * std::exp(-alike_) + kLeastOdds);
 }
 
 LinkMatcher::LinkMatcher(const PoseGraph& graph) : graph_(graph) {

@@ -39,24 +39,26 @@ class LinkMatcher {
   std::vector<std::vector<PairEvidence>> evidence_;
 };
 
-/// What all pairs between two sets of nodes say together of one placement of the two against each other.
+/// What all pairs between two sets of nodes say together of one placement of the two against each other. That the
+/// two show look-alike places is believed once, whatever number of pairs would be explained by it.
 class JoinEvidence {
  public:
-  void add(const PairEvidence& evidence) {
-    in_loop_ += evidence.in_loop();
-    least_loss_ = count_ == 0 ? evidence.in_loop() - evidence.alone()
-                              : std::min(least_loss_, evidence.in_loop() - evidence.alone());
-    ++count_;
-  }
-  void add_against(double nats) { in_loop_ += std::min(0.0, nats); }
-  /// The first pair that joins the two closes no loop.
-  [[nodiscard]] double nats() const { return in_loop_ - least_loss_; }
-  [[nodiscard]] int count() const { return count_; }
+  void add(const PairEvidence& evidence);
+  /// Of a pair that more probably shows two look-alike places.
+  void add_against(double nats) { against_ += std::min(0.0, nats); }
+
+  /// Against every other explanation; 0: no pair agrees.
+  [[nodiscard]] double nats() const;
 
  private:
-  double in_loop_ = 0.0;
-  double least_loss_ = 0.0;
-  int count_ = 0;
+  bool any_ = false;
+  double against_ = 0.0;
+  double chance_ = 0.0;
+  double first_ = 0.0;  ///< the first pair that joins the two closes no loop
+  double otherwise_ = 0.0;
+  double alike_ = 0.0;
+  double prior_otherwise_ = 0.0;
+  double prior_alike_ = 0.0;
 };
 
 /// The configuration that the pairs agree on best. Parts are joined step by step, each time the two parts

@@ -19,6 +19,11 @@ double against(double chance_nats, double odds_of_twin) {
 
 }  // namespace
 
+double PairEvidence::against_twin(double TwinEvidence::*nats) const {
+  if (!looks_for_twins) return chance_nats;
+  return std::clamp(twins.*nats + twins.built_nats, -kMostPairNats, kMostPairNats);
+}
+
 double PairEvidence::alone() const {
   return std::max(-kMostPairNats, against(chance_nats, odds_of_twin()));
 }

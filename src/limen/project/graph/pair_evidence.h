@@ -17,6 +17,8 @@ struct PairEvidence {
   bool looks_for_twins =
       false;  ///< `twins` was measured; else a look-alike place is one of the pair's own poses
 
+  /// Against a look-alike place of one kind (`&TwinEvidence::otherwise_nats` or `alike_nats`).
+  [[nodiscard]] double against_twin(double TwinEvidence::*nats) const;
   [[nodiscard]] double odds_of_twin() const { return looks_for_twins ? twins.odds() : 0.0; }
   /// Against every other explanation, where nothing else joins the two nodes.
   [[nodiscard]] double alone() const;

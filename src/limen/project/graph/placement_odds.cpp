@@ -24,11 +24,7 @@ struct PlacementOdds::Kind {
   double TwinEvidence::*prior;
   double TwinEvidence::*nats;
 
-  [[nodiscard]] double against(const PlacedPair& pair) const {
-    const PairEvidence& evidence = pair.evidence;
-    if (!evidence.looks_for_twins) return evidence.chance_nats;
-    return std::clamp(evidence.twins.*nats + evidence.twins.built_nats, -kMostPairNats, kMostPairNats);
-  }
+  [[nodiscard]] double against(const PlacedPair& pair) const { return pair.evidence.against_twin(nats); }
   static const Kind& otherwise() {
     static const Kind kind{&TwinEvidence::otherwise, &TwinEvidence::otherwise_nats};
     return kind;
