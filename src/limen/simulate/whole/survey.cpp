@@ -115,6 +115,11 @@ class RoomSurvey {
     return nearest(p) >= radius;
   }
 
+  [[nodiscard]] bool is_portal(const RayHit& hit) const {
+    return hit.found() &&
+           caster_.mesh().surfaces()[static_cast<std::size_t>(hit.surface)].element == Element::portal;
+  }
+
   /// How near matter is, in plan; 0 where the place lies within it.
   [[nodiscard]] double nearest(const Vector3d& p) const {
     double least = 1e9;
@@ -123,8 +128,10 @@ class RoomSurvey {
         const double azimuth = 2.0 * std::numbers::pi * i / 24;
         const Vector3d direction(std::cos(tilt) * std::cos(azimuth), std::cos(tilt) * std::sin(azimuth),
                                  std::sin(tilt));
-        // A doorway's empty cross-section is no matter.
-        const RayHit hit = caster_.cast(p, direction, wish_.doorway >= 0 ? 0.15 : 0.0);
+        RayHit hit = caster_.cast(p, direction);
+        // Who stands in a doorway has its empty cross-section beside him: it is no matter.
+        for (int step = 0; wish_.doorway >= 0 && step < 4 && is_portal(hit); ++step)
+          hit = caster_.cast(p, direction, hit.range_m + 1e-3);
         if (!hit.found()) continue;
         if (hit.inside) return 0.0;
         least = std::min(least, hit.range_m * std::cos(tilt));
