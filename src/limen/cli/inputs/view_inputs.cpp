@@ -19,6 +19,7 @@
 #include "limen/files/file_hash.h"
 #include "limen/files/scan_in_file.h"
 #include "limen/io/cloud/join_clouds.h"
+#include "limen/io/cloud/read_scan.h"
 #include "limen/io/cloud/thin_cloud.h"
 #include "limen/io/cloud/write_clouds.h"
 #include "limen/io/table/scan_builder.h"
@@ -144,7 +145,11 @@ Scan read_share(const CloudToView& cloud, std::uint64_t share, std::optional<dou
   facts.metres_per_unit = cloud.file->file().clouds()[cloud.clouds.front().cloud].table.metres_per_unit;
   ReadOptions options;
   options.metres_per_unit = metres_per_unit;
-  return with_scan({}, thinned.table, facts, options).scans.front();
+  ScanFile file = with_scan({}, thinned.table, facts, options);
+  file.unusable += thinned.unusable;
+  if (const std::string note = unusable_note(file); !note.empty())
+    session.note(fmt::format("{}: {}", cloud.file->name(), note));
+  return std::move(file.scans.front());
 }
 
 ViewSide side_of_cloud(const ViewInput& input, const CloudToView& cloud, Scan scan, const Vector3d& origin) {

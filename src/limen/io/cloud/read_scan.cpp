@@ -73,10 +73,10 @@ ScanFile read_opened(const Open& open, const ReadOptions& options, Monitor& moni
 
 std::string unusable_note(const ScanFile& file) {
   if (file.unusable == 0) return {};
-  std::size_t all = file.dropped;
-  for (const Scan& scan : file.scans) all += scan.size();
-  return fmt::format("{} of {} points have no finite coordinates below 100 000 km and are left out",
-                     file.unusable, all);
+  std::size_t kept = 0;
+  for (const Scan& scan : file.scans) kept += scan.size();
+  return fmt::format("{} points have no finite coordinates below 100 000 km and are left out; {} are kept",
+                     file.unusable, kept);
 }
 
 void ReadOptions::check() const {

@@ -317,7 +317,8 @@ std::string settle_centre(Scan& scan, const TableFacts& facts, const ReadOptions
 
 void check_extent(const Scan& scan) {
   const Extent extent = extent_of(scan.points);
-  if (scan.size() > 1 && extent.diagonal() == 0.0) {
+  constexpr std::size_t kManyPoints = 100;  // fewer may be an example
+  if (scan.size() >= kManyPoints && extent.diagonal() == 0.0) {
     throw Error(
         fmt::format("all {} points lie in one place, {}", scan.size(), told(extent.low + scan.local_origin)),
         scan.name, "check how the file was exported");
