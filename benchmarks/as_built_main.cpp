@@ -27,9 +27,6 @@
 #include "limen/register/judge/twin_odds.h"
 #include "limen/register/register.h"
 #include "limen/simulate/whole/pair_set.h"
-#ifdef OLD_WALLS
-#include "/tmp/h7/uneven_walls.h"
-#endif
 
 namespace {
 
@@ -193,14 +190,7 @@ class Rows {
     const IndividualMatter matter = individual_matter(source, target, pose);
     TwinEvidence said = weigh_twin(matter);
     const double after = said.probability();
-#ifdef OLD_WALLS
-    RefineOptions still;
-    still.rounds = 0;
-    said.built_nats =
-        unevenness_nats(common_planes(refine_pose(source, target, pose, still), source, target));
-#else
     said.built_nats = 0.0;
-#endif
     std::string list;
     for (const CommonSurface& one : surfaces.all)
       list += fmt::format("{}[{:.2f},{:.3f},{:.3f},{:.2f},{:.3f},{:.3f},{:.2f}]", list.empty() ? "" : ",",
@@ -210,10 +200,10 @@ class Rows {
     file_
         << fmt::format(
                R"({{"set": "{}", "pair": "{}", "kind": "{}", "agreeing": {:.1f}, "contradicted": {:.1f}, )"
-               R"("nats": {:.2f}, "walls_before": {:.2f}, "before": {:.3g}, "after": {:.3g}, "otherwise": {:.2f}, "alike": {:.2f}, )"
+               R"("nats": {:.2f}, "without": {:.3g}, "with": {:.3g}, "otherwise": {:.2f}, "alike": {:.2f}, )"
                R"("scatter_mm": {:.2f}, "noise_mm": {:.2f}, "seconds": {:.4f}, "surfaces": [{}]{}}})",
-               set, names, kind, score.agreeing_m2, score.contradicted_m2, nats, said.built_nats,
-               said.probability(), after, said.otherwise_nats, said.alike_nats, 1e3 * surfaces.scatter_m,
+               set, names, kind, score.agreeing_m2, score.contradicted_m2, nats, said.probability(), after,
+               said.otherwise_nats, said.alike_nats, 1e3 * surfaces.scatter_m,
                1e3 * std::max(source.features->noise_m, target.features->noise_m), spent.count(), list,
                tables_of(surfaces.all))
         << "\n"
