@@ -188,7 +188,9 @@ class Rows {
     const double nats = as_built_nats(surfaces.all);
     const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
     const IndividualMatter matter = individual_matter(source, target, pose);
-    const TwinEvidence said = weigh_twin(matter);
+    TwinEvidence said = weigh_twin(matter);
+    const double after = said.probability();
+    said.built_nats = 0.0;
     std::string list;
     for (const CommonSurface& one : surfaces.all)
       list += fmt::format("{}[{:.2f},{:.3f},{:.3f},{:.2f},{:.3f},{:.3f},{:.2f}]", list.empty() ? "" : ",",
@@ -198,9 +200,9 @@ class Rows {
     file_
         << fmt::format(
                R"({{"set": "{}", "pair": "{}", "kind": "{}", "agreeing": {:.1f}, "contradicted": {:.1f}, )"
-               R"("nats": {:.2f}, "twin": {:.3g}, "otherwise": {:.2f}, "alike": {:.2f}, )"
+               R"("nats": {:.2f}, "without": {:.3g}, "with": {:.3g}, "otherwise": {:.2f}, "alike": {:.2f}, )"
                R"("scatter_mm": {:.2f}, "noise_mm": {:.2f}, "seconds": {:.4f}, "surfaces": [{}]{}}})",
-               set, names, kind, score.agreeing_m2, score.contradicted_m2, nats, said.probability(),
+               set, names, kind, score.agreeing_m2, score.contradicted_m2, nats, said.probability(), after,
                said.otherwise_nats, said.alike_nats, 1e3 * surfaces.scatter_m,
                1e3 * std::max(source.features->noise_m, target.features->noise_m), spent.count(), list,
                tables_of(surfaces.all))

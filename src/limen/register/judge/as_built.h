@@ -43,7 +43,7 @@ struct BuiltBend {
 struct AsBuiltBelief {
   std::vector<BuiltQuality> qualities;
   std::vector<BuiltBend> bends;
-  double stray = 0.1;  ///< share of the surfaces that are of two things, or were moved
+  double stray = 0.05;  ///< share of the surfaces that are of two things, or were moved
 
   AsBuiltBelief();
 };
