@@ -57,8 +57,8 @@ Matrix6d with_floor(const Matrix6d& covariance, bool model) {
   return known + Matrix6d(floor.array().square().matrix().asDiagonal());
 }
 
-/// What a pair itself calls open or loosely held hangs on little: one small face, and if that is another one the
-/// pose is off by more than its deviation. Loops have to fix such directions.
+/// What a pair itself calls open or loosely held hangs on little: one small face, and if that is another one
+/// the pose is off by more than its deviation. Loops have to fix such directions.
 void open_up(const std::vector<UnobservedFreedom>& unobserved, Matrix6d& covariance) {
   for (const UnobservedFreedom& freedom : unobserved) {
     const Eigen::Index first = freedom.rotation ? 0 : 3;

@@ -44,8 +44,7 @@ std::vector<InfoRow> rows_of(const Json& file) {
   const std::string name = file["file"];
   if (file.contains("error")) return {{name, "", "", "", "", "cannot be read"}};
   if (!file.contains("scans"))
-    return {{name, file["format"], fmt::to_string(file["elements"].get<std::size_t>()), size_of_box(file), "",
-             joined_notes(file["warnings"])}};
+    return {{name, file["format"], "", size_of_box(file), "", joined_notes(file["warnings"])}};
   std::vector<InfoRow> rows;
   const bool several = file["scans"].size() > 1;
   for (std::size_t k = 0; k < file["scans"].size(); ++k) {
