@@ -206,8 +206,7 @@ PoseAdjustment adjusted(const PoseGraph& graph, const Configuration& configurati
   for (std::size_t k = 0; k < graph.links.size(); ++k) {
     if (configuration.pose[k] < 0) continue;
     const GraphLink& link = graph.links[k];
-    edges.push_back(
-        {link.source, link.target, link.poses[static_cast<std::size_t>(configuration.pose[k])]});
+    edges.push_back({link.source, link.target, link.poses[static_cast<std::size_t>(configuration.pose[k])]});
   }
   edges.insert(edges.end(), asked.begin(), asked.end());
   std::vector<bool> fixed(configuration.component.size());
@@ -215,8 +214,8 @@ PoseAdjustment adjusted(const PoseGraph& graph, const Configuration& configurati
   return adjust_poses(configuration.frame_from_node, fixed, edges, options);
 }
 
-/// Links that miss by no more than the configuration itself is open there agree too: each would have, had it come
-/// first. Whether there are any.
+/// Links that miss by no more than the configuration itself is open there agree too: each would have, had it
+/// come first. Whether there are any.
 bool accept_where_open(const PoseGraph& graph, Configuration& configuration) {
   constexpr double kHoldsNothing = 1e6;  // variance
   std::vector<PoseEdge> asked;

@@ -39,8 +39,8 @@ class LinkMatcher {
   std::vector<std::vector<PairEvidence>> evidence_;
 };
 
-/// What all pairs between two sets of nodes say together of one placement of the two against each other. That the
-/// two show look-alike places is believed once, whatever number of pairs would be explained by it.
+/// What all pairs between two sets of nodes say together of one placement of the two against each other. That
+/// the two show look-alike places is believed once, whatever number of pairs would be explained by it.
 class JoinEvidence {
  public:
   void add(const PairEvidence& evidence);

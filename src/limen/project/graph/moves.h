@@ -14,11 +14,13 @@ struct Move {
   Rigid3 frame_from_frame;
   double present_nats = 0.0;  ///< what pairs across the cut say of the present place ...
   double moved_nats = 0.0;    ///< ... and of the other
-  std::vector<int> present;   ///< links that agree with the present place, and not by the same pose with the other
-  std::vector<int> moved;     ///< links that agree with the other place, and not by the same pose with the present
-  std::vector<int> either;    ///< links that agree with both, by one pose or by two
+  std::vector<int>
+      present;  ///< links that agree with the present place, and not by the same pose with the other
+  std::vector<int>
+      moved;  ///< links that agree with the other place, and not by the same pose with the present
+  std::vector<int> either;        ///< links that agree with both, by one pose or by two
   double moved_alone_nats = 0.0;  ///< for the other place: of links that agree with it alone ...
-  double either_nats = 0.0;       ///< ... and by how much more likely those that agree with both have it there
+  double either_nats = 0.0;  ///< ... and by how much more likely those that agree with both have it there
 
   [[nodiscard]] double gain() const { return moved_nats - present_nats; }
 };

@@ -112,7 +112,8 @@ SideOdds PlacementOdds::without(const std::vector<bool>& side, const std::vector
   CancelScope::check();
   std::vector<const PlacedPair*> across;
   for (const PlacedPair& pair : pairs_) {
-    const bool crosses = side[static_cast<std::size_t>(pair.source)] != side[static_cast<std::size_t>(pair.target)];
+    const bool crosses =
+        side[static_cast<std::size_t>(pair.source)] != side[static_cast<std::size_t>(pair.target)];
     if (crosses && (pair.link < 0 || std::find(links.begin(), links.end(), pair.link) == links.end()))
       across.push_back(&pair);
   }

@@ -217,8 +217,8 @@ class Solver {
         move.frame_from_frame = inverse(move.frame_from_frame);
       }
       // What agrees with both places tells them from each other by its two poses alone.
-      double odds = odds_->without(side, move.either).total() *
-                    std::exp(move.moved_alone_nats + move.either_nats);
+      double odds =
+          odds_->without(side, move.either).total() * std::exp(move.moved_alone_nats + move.either_nats);
       if (odds <= kLeastListed * risk_) continue;
       odds *= std::exp(-nats_against_move(best_, side, move.frame_from_frame, hearing_));
       if (odds <= kLeastListed * risk_) continue;
