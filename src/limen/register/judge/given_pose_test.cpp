@@ -46,20 +46,6 @@ TEST(GivenPose, TheRightPoseAgreesAndAnotherIsContradicted) {
   EXPECT_LT(wrong.value(), right.value());
 }
 
-TEST(GivenPose, WhatTwoConfirmCountsOnce) {
-  const TwoScans scans;
-  const GivenPose right{&scans.target, scans.truth};
-  const JointScore one = score_given_poses(scans.source, {right});
-  EXPECT_GT(one.evidence_m2, 5.0);
-  EXPECT_NEAR(score_given_poses(scans.source, {right, right}).evidence_m2, one.evidence_m2, 1e-9);
-  GivenPose off = right;
-  off.target_from_source.translation.x() += 1.1;
-  const JointScore both = score_given_poses(scans.source, {right, off});
-  EXPECT_GE(both.evidence_m2, one.evidence_m2);
-  EXPECT_GT(both.contradicted_m2, one.contradicted_m2 + 0.5);
-  EXPECT_EQ(score_given_poses(scans.source, {}).evidence_m2, 0.0);
-}
-
 TEST(GivenPose, ThingsSpeakAgainstATwinWhereTheyMeet) {
   const TwoScans scans;
   Rigid3 off = scans.truth;
