@@ -306,8 +306,8 @@ bool Configuration::joins(const GraphLink& link) const {
 void JoinEvidence::add(const PairEvidence& evidence) {
   chance_ += evidence.chance_nats + evidence.coincidence_nats;
   first_ = std::max(first_, evidence.coincidence_nats);
-  otherwise_ += evidence.against_twin(&TwinEvidence::otherwise_nats);
-  alike_ += evidence.against_twin(&TwinEvidence::alike_nats);
+  otherwise_.add(evidence);
+  alike_.add(evidence);
   if (evidence.looks_for_twins) {
     prior_otherwise_ = std::max(prior_otherwise_, evidence.twins.otherwise);
     prior_alike_ = std::max(prior_alike_, evidence.twins.alike);
@@ -318,8 +318,9 @@ void JoinEvidence::add(const PairEvidence& evidence) {
 double JoinEvidence::nats() const {
   if (!any_) return against_;
   const double none = 1.0 - prior_otherwise_ - prior_alike_;
-  return against_ - std::log(std::exp(first_ - chance_) + prior_otherwise_ / none * std::exp(-otherwise_) +
-                             prior_alike_ / none * std::exp(-alike_) + kLeastOdds);
+  return against_ -
+         std::log(std::exp(first_ - chance_) + prior_otherwise_ / none * std::exp(-otherwise_.sum()) +
+                  prior_alike_ / none * std::exp(-alike_.sum()) + kLeastOdds);
 }
 
 LinkMatcher::LinkMatcher(const PoseGraph& graph) : graph_(graph) {

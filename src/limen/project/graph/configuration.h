@@ -55,8 +55,8 @@ class JoinEvidence {
   double against_ = 0.0;
   double chance_ = 0.0;
   double first_ = 0.0;  ///< the first pair that joins the two closes no loop
-  double otherwise_ = 0.0;
-  double alike_ = 0.0;
+  LookAlikeNats otherwise_{&TwinEvidence::otherwise_nats};
+  LookAlikeNats alike_{&TwinEvidence::alike_nats};
   double prior_otherwise_ = 0.0;
   double prior_alike_ = 0.0;
 };

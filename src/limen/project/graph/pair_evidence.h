@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 
 #include "limen/project/graph/pose_graph.h"
@@ -29,6 +30,27 @@ struct PairEvidence {
 /// No pair is surer than this. Of 115 answers with a probability above 0.999 all are right
 /// (benchmarks/calibration): a single pair is trusted to one in ten thousand.
 inline constexpr double kMostPairNats = 9.2;
+
+/// What several pairs say together against one look-alike place. How alike its rooms are furnished is a
+/// property of the place: what speaks for one furnished alike is believed once, by the pair that says most.
+class LookAlikeNats {
+ public:
+  /// `nats`: of which kind, as PairEvidence::against_twin() has it.
+  explicit LookAlikeNats(double TwinEvidence::*nats) : nats_(nats) {}
+  void add(const PairEvidence& evidence, double share = 1.0) {
+    const double against = share * evidence.against_twin(nats_);
+    if (against < 0.0 && nats_ == &TwinEvidence::alike_nats)
+      least_ = std::min(least_, against);
+    else
+      sum_ += against;
+  }
+  [[nodiscard]] double sum() const { return sum_ + least_; }
+
+ private:
+  double TwinEvidence::*nats_;
+  double sum_ = 0.0;
+  double least_ = 0.0;
+};
 
 /// Of a pose of a link.
 PairEvidence evidence_of(const GraphLink& link, std::size_t pose);

@@ -75,8 +75,8 @@ PlacedPair asked_pair(int source, int target, const Rigid3& target_from_source, 
   pair.evidence.twins.otherwise_nats = pair.evidence.twins.alike_nats = std::min(0.0, nats);
   if (nats <= 0.0 || !hearing.things) return pair;
   if (const std::optional<TwinEvidence> things = hearing.things(source, target, target_from_source)) {
-    pair.evidence.twins.otherwise_nats = std::min(things->otherwise_nats, kMostAskedNats);
-    pair.evidence.twins.alike_nats = std::min(things->alike_nats, 0.0);
+    // What stands elsewhere may seem to where a placement is known to a decimetre; what agrees does agree.
+    pair.evidence.twins.otherwise_nats = std::clamp(things->otherwise_nats, 0.0, kMostAskedNats);
   }
   return pair;
 }

@@ -79,7 +79,9 @@ PlacementOdds::LookAlike PlacementOdds::look_alike(const Kind& kind,
   }
   found.prior = std::min(kMostBelieved, found.prior * rate_of_twins(side));
   const std::vector<double> fresh = views_.fresh_shares(ordered, side);
-  for (std::size_t k = 0; k < ordered.size(); ++k) found.against += fresh[k] * kind.against(*ordered[k]);
+  LookAlikeNats nats(kind.nats);
+  for (std::size_t k = 0; k < ordered.size(); ++k) nats.add(ordered[k]->evidence, fresh[k]);
+  found.against = nats.sum();
   return found;
 }
 
