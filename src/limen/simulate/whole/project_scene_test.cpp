@@ -101,8 +101,6 @@ TEST_P(EveryBuilding, StationsInDoorwaysJoinAllOfThem) {
   ProjectSceneOptions options = small(GetParam());
   options.as_built = true;
   options.places = StationPlaces::doorways;
-  // A part of a museum is its corridors, which its rooms join.
-  if (GetParam() == "museum") options.stations = 0;
   options.passes = 0;
   options.points_station = 20000;
   options.open_door_share = 1.0;

@@ -287,7 +287,9 @@ WholeBuilding make_whole_building(const WholeBuildingOptions& options) {
     design.facade.open_door_share = options.open_door_share;
     WholeBuilding building;
     building.wishes = wishes_of(design.plan, options.places);
-    building.wishes.resize(std::min(stations, building.wishes.size()));
+    // Doorways join all rooms: without some of them others would be left alone.
+    if (options.places != StationPlaces::doorways)
+      building.wishes.resize(std::min(stations, building.wishes.size()));
     RandomStream random(options.seed, trial + 100);
     if (options.as_built) building.world.as_built_seed = mix64(options.seed ^ 0xa5b01dULL);
     add_building(building.world, design.plan, design.facade, random);

@@ -40,8 +40,9 @@ struct WholeBuilding {
 struct WholeBuildingOptions {
   std::string name = "museum";  ///< one of whole_building_names()
   std::uint64_t seed = 1;
-  std::size_t stations =
-      0;  ///< 0: the building's own number; the building grows with it. Doorways come on top
+  /// 0: the building's own number; the building grows with it. With stations in doorways all its rooms have
+  /// some.
+  std::size_t stations = 0;
   StationPlaces places = StationPlaces::usual;
   int passes = -1;  ///< of the street, each along two façades; negative: the building's own number
   double open_door_share = 0.9;
