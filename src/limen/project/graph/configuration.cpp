@@ -101,8 +101,10 @@ class Growth {
     std::vector<Proposal> all;
     for (const std::size_t k : links) {
       if ((graph_.links[k].trust == LinkTrust::weak) && !weak_) continue;
-      for (std::size_t p = 0; p < graph_.links[k].poses.size(); ++p)
-        all.push_back({matcher_.evidence(k, static_cast<int>(p)).alone(), k, static_cast<int>(p)});
+      for (std::size_t p = 0; p < graph_.links[k].poses.size(); ++p) {
+        if (!matcher_.is_left_out(k, p))
+          all.push_back({matcher_.evidence(k, static_cast<int>(p)).alone(), k, static_cast<int>(p)});
+      }
     }
     std::stable_sort(all.begin(), all.end(),
                      [](const Proposal& a, const Proposal& b) { return a.nats > b.nats; });
@@ -216,7 +218,7 @@ PoseAdjustment adjusted(const PoseGraph& graph, const Configuration& configurati
 
 /// Links that miss by no more than the configuration itself is open there agree too: each would have, had it
 /// come first. Whether there are any.
-bool accept_where_open(const PoseGraph& graph, Configuration& configuration) {
+bool accept_where_open(const PoseGraph& graph, const LinkMatcher& matcher, Configuration& configuration) {
   constexpr double kHoldsNothing = 1e6;  // variance
   std::vector<PoseEdge> asked;
   std::vector<std::pair<std::size_t, std::size_t>> poses;
@@ -224,6 +226,7 @@ bool accept_where_open(const PoseGraph& graph, Configuration& configuration) {
     const GraphLink& link = graph.links[k];
     if (configuration.pose[k] >= 0 || !configuration.joins(link)) continue;
     for (std::size_t p = 0; p < link.poses.size(); ++p) {
+      if (matcher.is_left_out(k, p)) continue;
       const Vector6d missed = misfit(link.poses[p], configuration.target_from_source(link));
       if (missed.head<3>().norm() > kOtherPlaceRad || missed.tail<3>().norm() > kOtherPlaceM) continue;
       poses.emplace_back(k, p);
@@ -260,7 +263,7 @@ void settle(const PoseGraph& graph, const LinkMatcher& matcher, Configuration& c
   }
   accept(graph, matcher, 1.0, configuration);
   find_components(graph, configuration);
-  for (int k = 0; k < kMostReopened && accept_where_open(graph, configuration); ++k) {
+  for (int k = 0; k < kMostReopened && accept_where_open(graph, matcher, configuration); ++k) {
     configuration.frame_from_node = adjusted(graph, configuration, {}, {false}).frame_from_node;
     accept(graph, matcher, 1.0, configuration);
     find_components(graph, configuration);
@@ -327,6 +330,7 @@ LinkMatcher::LinkMatcher(const PoseGraph& graph) : graph_(graph) {
   for (const GraphLink& link : graph.links) {
     information_.emplace_back();
     evidence_.emplace_back();
+    left_out_.emplace_back(link.poses.size(), false);
     for (std::size_t p = 0; p < link.poses.size(); ++p) {
       information_.back().push_back(inverse_of(link.poses[p].covariance));
       evidence_.back().push_back(evidence_of(link, p));
@@ -339,6 +343,7 @@ int LinkMatcher::nearest(std::size_t link, const Rigid3& target_from_source, dou
   int found = -1;
   const std::vector<LinkPose>& poses = graph_.links[link].poses;
   for (std::size_t p = 0; p < poses.size(); ++p) {
+    if (left_out_[link][p]) continue;
     const Vector6d missed = misfit(poses[p], target_from_source);
     const double squared = missed.dot(information_[link][p] * missed);
     if (squared > least) continue;
@@ -363,13 +368,16 @@ Configuration best_configuration(const PoseGraph& graph, const LinkMatcher& matc
   best.frame_from_node.assign(static_cast<std::size_t>(graph.nodes), {});
   best.pose.assign(graph.links.size(), -1);
   for (int n = 0; n < graph.nodes; ++n) best.component.push_back(n);
-  Growth(graph, matcher, best).run();
-  settle(graph, matcher, best);
-  for (int k = 0; k < kMostMoves && apply_best_move(graph, matcher, best); ++k) {
-    Growth(graph, matcher, best).run();  // what the moved side gave up may join elsewhere
-    settle(graph, matcher, best);
-  }
+  join_parts(graph, matcher, best);
+  // What a moved side gave up may join elsewhere.
+  for (int k = 0; k < kMostMoves && apply_best_move(graph, matcher, best); ++k)
+    join_parts(graph, matcher, best);
   return best;
+}
+
+void join_parts(const PoseGraph& graph, const LinkMatcher& matcher, Configuration& configuration) {
+  Growth(graph, matcher, configuration).run();
+  settle(graph, matcher, configuration);
 }
 
 }  // namespace limen

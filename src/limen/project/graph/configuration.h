@@ -28,7 +28,9 @@ class LinkMatcher {
   /// The pose of a link that is nearest to `target_from_source`, if its squared distance in standard
   /// deviations is no more than `gate` times kChiSquareBound; -1: none.
   [[nodiscard]] int nearest(std::size_t link, const Rigid3& target_from_source, double gate) const;
-  /// The same with the evidence of the poses.
+  /// A pose that was found to lay a side where it is not: no placement agrees with it from then on.
+  void leave_out(std::size_t link, int pose) { left_out_[link][static_cast<std::size_t>(pose)] = true; }
+  [[nodiscard]] bool is_left_out(std::size_t link, std::size_t pose) const { return left_out_[link][pose]; }
   [[nodiscard]] const PairEvidence& evidence(std::size_t link, int pose) const;
   /// Of a pair that more probably shows two places built alike: whether the placement lays it so.
   [[nodiscard]] static bool is_laid_so(const GraphLink& pair, const Rigid3& target_from_source);
@@ -37,6 +39,7 @@ class LinkMatcher {
   const PoseGraph& graph_;
   std::vector<std::vector<Matrix6d>> information_;
   std::vector<std::vector<PairEvidence>> evidence_;
+  std::vector<std::vector<bool>> left_out_;
 };
 
 /// What all pairs between two sets of nodes say together of one placement of the two against each other. That
@@ -66,6 +69,9 @@ class JoinEvidence {
 /// are moved to every place that any pose of a link proposes, as long as that sum grows, and least squares
 /// settles the poses.
 Configuration best_configuration(const PoseGraph& graph, const LinkMatcher& matcher);
+
+/// Joins the parts of a configuration further, and settles it.
+void join_parts(const PoseGraph& graph, const LinkMatcher& matcher, Configuration& configuration);
 
 /// What no agreeing link joins any more becomes a component of its own.
 void find_components(const PoseGraph& graph, Configuration& configuration);

@@ -43,7 +43,7 @@ class MoveSearch {
       if (!present_.joins(link) || link.trust == LinkTrust::weak || link.trust == LinkTrust::given) continue;
       std::optional<std::set<std::vector<bool>>> sides;
       for (std::size_t p = 0; p < link.poses.size(); ++p) {
-        if (static_cast<int>(p) == present_.pose[k]) continue;
+        if (static_cast<int>(p) == present_.pose[k] || matcher_.is_left_out(k, p)) continue;
         if (matcher_.evidence(k, static_cast<int>(p)).alone() <= 0.0 || is_here(link, link.poses[p]))
           continue;
         CancelScope::check();

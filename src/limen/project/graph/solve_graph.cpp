@@ -89,7 +89,8 @@ class Solver {
     return reference;
   }
 
-  /// The side that is most probably elsewhere leaves its component; whether there was one.
+  /// The side that is most probably elsewhere leaves its component, and may join again by what did not lay it
+  /// there; whether there was one.
   bool take_apart() {
     const std::vector<bool>* worst = nullptr;
     double most = kElsewhereLikelier;
@@ -104,10 +105,17 @@ class Solver {
     for (std::size_t k = 0; k < graph_.links.size(); ++k) {
       const GraphLink& link = graph_.links[k];
       if ((*worst)[static_cast<std::size_t>(link.source)] != (*worst)[static_cast<std::size_t>(link.target)])
-        best_.pose[k] = -1;
+        give_up(k);
     }
     find_components(graph_, best_);
+    join_parts(graph_, matcher_, best_);
     return true;
+  }
+
+  void give_up(std::size_t link) {
+    if (best_.pose[link] < 0) return;
+    matcher_.leave_out(link, best_.pose[link]);
+    best_.pose[link] = -1;
   }
 
   [[nodiscard]] int component(int node) const { return best_.component[static_cast<std::size_t>(node)]; }
