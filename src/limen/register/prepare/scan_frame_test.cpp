@@ -241,7 +241,7 @@ TEST(PrepareScan, FeaturesComeBackIntoTheScansOwnFrame) {
 
 /// Of points that all lie about as far from their middle chance takes all or none.
 TEST(FindScanFrame, PointsInFewPlacesHaveNoFrame) {
-  for (int places = 1; places <= 12; ++places) {
+  for (const int places : {1, 2, 3}) {
     Scan scan;
     for (int k = 0; k < 300000; ++k) scan.points.emplace_back(0.05 * (k % places), 0.0, 0.0);
     EXPECT_NO_THROW((void)find_scan_frame(scan, Gravity::automatic)) << places;
