@@ -12,6 +12,7 @@
 
 #include "run_program.h"
 #include "support/bcf_check.h"
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 

@@ -11,6 +11,7 @@
 #include "limen/base/angles.h"
 #include "limen/geometry/linear.h"
 #include "limen/project/word_terms.h"
+#include "limen/register/judge/verdict.h"
 
 namespace limen {
 namespace {
@@ -30,8 +31,8 @@ constexpr double kStoreyM = 0.5;       // floors further apart are of different 
 constexpr double kWordWrong = 4e-4;    // probability that a user's word is wrong
 constexpr double kToldApartM = 0.05;   // deviation of the least known shift below which a pose is a place
 const double kToldApartRad = radians(0.5);
-constexpr double kOpenSigmas = 1.0;  // where a pair calls a direction open or loose ...
-constexpr double kOpenM = 0.1;       // ... and no more than this: faces taken for one another
+constexpr double kOpenM = 0.1;  // where a pair calls a direction open: faces taken for one another
+constexpr double kLooseSigmas = 3.0;
 const double kOpenRad = radians(1.0);
 constexpr double kDriftLengthM = 5.0;  // what a trajectory is off by may turn a scan of so much of it
 constexpr double kLooser = 2.0;        // an alternative's deviations against those of the best pose
@@ -57,14 +58,18 @@ Matrix6d with_floor(const Matrix6d& covariance, bool model) {
   return known + Matrix6d(floor.array().square().matrix().asDiagonal());
 }
 
-/// What a pair itself calls open or loosely held hangs on little: one small face, and if that is another one
-/// the pose is off by more than its deviation. Loops have to fix such directions.
+/// What a pair itself calls open hangs on little: one small face, and if that is another one the pose is off
+/// by far more than its deviation. What it holds loosely may be off by some deviations. Loops have to fix
+/// both.
 void open_up(const std::vector<UnobservedFreedom>& unobserved, Matrix6d& covariance) {
+  const VerdictOptions bounds;
   for (const UnobservedFreedom& freedom : unobserved) {
     const Eigen::Index first = freedom.rotation ? 0 : 3;
     const double known = std::sqrt(
         std::max(0.0, freedom.direction.dot(covariance.block<3, 3>(first, first) * freedom.direction)));
-    const double open = std::min(freedom.rotation ? kOpenRad : kOpenM, kOpenSigmas * known);
+    const double most = freedom.rotation ? kOpenRad : kOpenM;
+    const bool loose = known > (freedom.rotation ? radians(bounds.max_sigma_deg) : bounds.max_sigma_m);
+    const double open = loose ? std::min(most, kLooseSigmas * known) : most;
     covariance.block<3, 3>(first, first) += open * open * freedom.direction * freedom.direction.transpose();
   }
 }

@@ -78,6 +78,8 @@ TEST(ProjectGraph, WhatATwinExplainsBetterIsNoLink) {
 TEST(ProjectGraph, APairThatDoesNotKnowItselfIsNotSure) {
   RegistrationResult pair = told(Outcome::registered, 0.0);
   pair.best.probability = 0.7;
+  pair.others->nothing_shared = 0.2;
+  pair.others->unlisted_pose = 0.1;
   EXPECT_NEAR(links_of(pair, 0.001).front().chance, 0.3, 1e-12);
   pair.others.reset();
   EXPECT_GT(links_of(pair, 0.001).front().chance, 0.001);
