@@ -12,6 +12,7 @@ namespace {
 /// than a tolerance, among all that a building offers (metres and right angles).
 const double kCoincidence = 1e-3;
 constexpr double kLeastProbability = 1e-9;
+constexpr double kGivenWrong = 1e-6;  // of a pose that a file or a survey gives
 
 double against(double chance_nats, double odds_of_twin) {
   return -std::log(std::exp(-chance_nats) + odds_of_twin);
@@ -35,7 +36,7 @@ double PairEvidence::in_loop() const {
 PairEvidence evidence_of(const GraphLink& link, std::size_t pose) {
   PairEvidence evidence;
   if (link.trust == LinkTrust::given) {
-    evidence.chance_nats = kMostPairNats;
+    evidence.chance_nats = -std::log(std::max(link.chance, kGivenWrong));
     evidence.coincidence_nats = -std::log(kCoincidence);
     return evidence;
   }
