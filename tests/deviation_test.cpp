@@ -226,7 +226,7 @@ TEST_F(DeviationProgramTest, ModelsOfAProjectAndMistakes) {
   ASSERT_EQ(run({"deviation", "project.json", "-o", "forced", "--force"}).status, 0);
   for (Json& scan : project["scans"]) scan["state"] = "floating";
   write_whole(work() / "project.json", project.dump());
-  fails({"project.json"}, "no scan stands");
+  fails({"project.json"}, "no scan is registered");
 
   // One scan has issues too.
   write_true_result(json_of("truth/truth.json"), false);

@@ -211,7 +211,7 @@ TEST_F(MisuseTest, WordsAndNumbersThatCannotBe) {
   };
   expect_told({
       {{""}, "an empty word is not a command"},
-      {{"info", "a.ply", "b.ply"}, "b.ply"},
+      {{"planes", "a.ply", "b.ply", "-o", "planes.json"}, "b.ply"},
       {{"info", "a.ply", "--nonsense"}, "--nonsense is not an option"},
       {{"info", "a.ply", "--seed", "-1"}, "--seed"},
       {{"info", "a.ply", "--seed", "1.5"}, "--seed"},
