@@ -11,11 +11,12 @@ using Json = nlohmann::json;
 
 class RegisterBySegmentsTest : public ProgramTest {
  protected:
-  void simulate(const std::string& scene, const std::string& seed) const {
-    ASSERT_EQ(run({"simulate", scene, "--seed", seed, "--stations", "2", "--points-indoor", "80000",
-                   "--points-outdoor", "60000", "-o", ".", "--quiet"})
-                  .status,
-              0);
+  void simulate(const std::string& scene, const std::string& seed, bool as_drawn = false) const {
+    std::vector<std::string> arguments = {
+        "simulate",         scene,   "--seed", seed, "--stations", "2", "--points-indoor", "80000",
+        "--points-outdoor", "60000", "-o",     ".",  "--quiet"};
+    if (as_drawn) arguments.push_back("--as-drawn");
+    ASSERT_EQ(run(arguments).status, 0);
   }
   [[nodiscard]] ProgramRun register_by(const std::string& method, const std::string& folder) const {
     return run(
@@ -36,7 +37,7 @@ TEST_F(RegisterBySegmentsTest, TwoStationsOfOneRoom) {
 }
 
 TEST_F(RegisterBySegmentsTest, TwoStationsOfASymmetricRoomAreNotDecided) {
-  simulate("symmetric_room", "2");
+  simulate("symmetric_room", "2", true);  // as built no room is symmetric
   const ProgramRun done = register_by("segments", "result");
   EXPECT_EQ(done.status, 3) << done.out << done.err;
   const Json result = Json::parse(read_whole(work() / "result" / "result.json"));

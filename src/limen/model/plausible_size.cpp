@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include <Eigen/Geometry>
 #include <fmt/format.h>
 
 #include "limen/base/error.h"
@@ -141,6 +142,9 @@ std::string size_hint(const Scan& scan, const std::string& units_option) {
 std::string few_points_hint(const Scan& scan) {
   constexpr std::size_t kEnough = kPointsOfAPlane * kPlanesOfAPose;
   if (scan.points.empty() || scan.points.size() >= kEnough) return {};
+  Eigen::AlignedBox3d box;
+  for (const Vector3d& x : scan.points) box.extend(x);
+  if (box.sizes().maxCoeff() < kSmallestScanM) return {};  // refused for its size
   return fmt::format(
       "holds {} points, too few to find anything by: a pose needs {} planes of about {} points",
       scan.points.size(), kPlanesOfAPose, kPointsOfAPlane);
