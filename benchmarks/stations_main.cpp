@@ -264,7 +264,7 @@ void run(int stations, std::uint64_t seed, bool all_shared) {
     result.scans.push_back(scan);
   }
   const Clock solving;
-  assemble(office.nodes(), tried, {}, {}, 0.001, {}, result);
+  assemble(office.nodes(), tried, {}, {}, VerdictOptions{}, {}, result);
   const double solving_s = solving.seconds();
   int registered = 0;
   double worst = 0.0;
