@@ -39,7 +39,7 @@ double contradicted_share(const PoseHeard& heard) {
 /// How much is contradicted where a placement is right is a property of a project: of what moves there, of
 /// glass, of sensors whose rays are not what they seem. Learned as the median over what was asked, for most
 /// of it is right.
-ShareModel right_shares(std::vector<PoseHeard> asked) {
+ShareModel right_shares(const std::vector<PoseHeard>& asked) {
   std::vector<double> shares;
   for (const PoseHeard& heard : asked) {
     if (heard.agreeing_m2 + heard.contradicted_m2 >= kLeastContactM2)
