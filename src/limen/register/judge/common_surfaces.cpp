@@ -186,8 +186,8 @@ struct Candidate {
 
 class Finder {
  public:
-  Finder(const ScanView& source, const ScanView& target, const Rigid3& target_from_source)
-      : source_(source), target_(target), pose_(target_from_source) {}
+  Finder(const ScanView& source, const Rigid3& target_from_source)
+      : source_(source), pose_(target_from_source) {}
 
   /// The source's tiles over the target's; `to`, `map`: of one plane.
   [[nodiscard]] std::optional<Candidate> ask(const PlanarPolygon& from,
@@ -249,7 +249,6 @@ class Finder {
   }
 
   const ScanView& source_;
-  const ScanView& target_;
   const Rigid3& pose_;
 };
 
@@ -291,7 +290,7 @@ CommonSurfaces common_surfaces(const ScanView& source, const BuiltPlanes& built_
   const std::vector<bool> to_walls = of_walls(target, built_target);
   const auto from_tiles = tiles_by_plane(source);
   const auto to_tiles = tiles_by_plane(target);
-  const Finder finder(source, target, target_from_source);
+  const Finder finder(source, target_from_source);
   std::vector<Candidate> candidates;
   for (std::size_t j = 0; j < to_walls.size(); ++j) {
     const PlanarPolygon& to = target.features->planes[j];
