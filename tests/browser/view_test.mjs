@@ -18,7 +18,7 @@ let browser;
 
 before(async () => {
   const museum = join(folder, 'museum');
-  limen(program, 'simulate', 'museum', '-o', museum, '--points-indoor', '60000', '--points-outdoor', '200000');
+  limen(program, 'simulate', 'museum', '--as-drawn', '-o', museum, '--points-indoor', '60000', '--points-outdoor', '200000');
   limen(program, 'register', join(museum, 'indoor_00.ply'), join(museum, 'outdoor.ply'), '-o', join(folder, 'registered'));
   limen(program, 'view', join(folder, 'registered', 'result.json'), '-o', view('pair'), '--most-points', '120000');
   const office = join(folder, 'office');

@@ -5,17 +5,17 @@
 const byId = (id) => document.getElementById(id);
 
 /** Text as it is shown: characters that turn the direction of a line or end it are written as their numbers. */
-const shown = (text) => (typeof text !== 'string' ? text
+const escaped = (text) => (typeof text !== 'string' ? text
   : text.replace(/[\u061C\u200E\u200F\u2028-\u202E\u2066-\u2069]/g, (c) => `\\u${c.charCodeAt(0).toString(16).toUpperCase().padStart(4, '0')}`));
 
 /** An element with properties and children; texts stay texts, whatever they hold. */
 const make = (tag, properties = {}, ...children) => {
   const node = document.createElement(tag);
   for (const [name, value] of Object.entries(properties)) {
-    if (name.includes('-') || name === 'role' || name === 'for') node.setAttribute(name, shown(value));
-    else node[name] = name === 'textContent' ? shown(value) : value;
+    if (name.includes('-') || name === 'role' || name === 'for') node.setAttribute(name, escaped(value));
+    else node[name] = name === 'textContent' ? escaped(value) : value;
   }
-  node.append(...children.map(shown));
+  node.append(...children.map(escaped));
   return node;
 };
 
