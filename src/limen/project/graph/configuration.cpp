@@ -253,6 +253,8 @@ bool accept_where_open(const PoseGraph& graph, const LinkMatcher& matcher, Confi
 
 /// Least squares over what agrees, and what agrees then, until nothing changes.
 void settle(const PoseGraph& graph, const LinkMatcher& matcher, Configuration& configuration) {
+  // Rounding of many motions, one after the other, would grow with each.
+  for (Rigid3& pose : configuration.frame_from_node) pose.rotation = nearest_rotation(pose.rotation);
   std::vector<int> before;
   for (const double gate : {kWideGate, 4.0, 1.0, 1.0}) {
     accept(graph, matcher, gate, configuration);
@@ -369,9 +371,12 @@ Configuration best_configuration(const PoseGraph& graph, const LinkMatcher& matc
   best.pose.assign(graph.links.size(), -1);
   for (int n = 0; n < graph.nodes; ++n) best.component.push_back(n);
   join_parts(graph, matcher, best);
-  // What a moved side gave up may join elsewhere.
-  for (int k = 0; k < kMostMoves && apply_best_move(graph, matcher, best); ++k)
+  // What a moved side gave up may join elsewhere. A configuration that comes again ends the search.
+  std::set<std::vector<int>> known = {best.pose};
+  for (int k = 0; k < kMostMoves && apply_best_move(graph, matcher, best); ++k) {
     join_parts(graph, matcher, best);
+    if (!known.insert(best.pose).second) break;
+  }
   return best;
 }
 
