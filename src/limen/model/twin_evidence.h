@@ -15,8 +15,7 @@ struct TwinEvidence {
   double alike = 0.0045;        ///< ... and of one furnished alike as well
   double otherwise_nats = 0.0;  ///< against the first
   double alike_nats = 0.0;      ///< against the second
-  /// What walls that are askew alike say against either. It holds for a whole building or not at all, and so
-  /// does not multiply over pairs.
+  /// What surfaces of the building say against either, by how they were built (as_built.h).
   double built_nats = 0.0;
 
   /// Odds of a twin of either kind.

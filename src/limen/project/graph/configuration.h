@@ -31,6 +31,7 @@ class LinkMatcher {
   /// A pose that was found to lay a side where it is not: no placement agrees with it from then on.
   void leave_out(std::size_t link, int pose) { left_out_[link][static_cast<std::size_t>(pose)] = true; }
   [[nodiscard]] bool is_left_out(std::size_t link, std::size_t pose) const { return left_out_[link][pose]; }
+  /// What the pair says of one of its poses.
   [[nodiscard]] const PairEvidence& evidence(std::size_t link, int pose) const;
   /// Of a pair that more probably shows two places built alike: whether the placement lays it so.
   [[nodiscard]] static bool is_laid_so(const GraphLink& pair, const Rigid3& target_from_source);
