@@ -106,15 +106,6 @@ struct OtherExplanations {
   double unlisted_pose = 0.0;   ///< they share a place, under a pose that was not proposed
 };
 
-/// A pose whose walls fit while what stands about says: another place built alike.
-struct PlaceBuiltAlike {
-  Hypothesis pose;
-  TwinEvidence said;
-  /// Probability that this pose or another like it is right after all, and so `best` a twin's: a part of what
-  /// there is of twins that the alternatives have.
-  double probability = 0.0;
-};
-
 /// What became of a start that was given.
 struct StartAgreement {
   double shift_m = 0.0;  ///< of the middle of the source, from where the start puts it
@@ -146,8 +137,6 @@ struct RegistrationResult {
   std::size_t judged_poses = 0;              ///< poses that were refined and judged
   std::optional<OtherExplanations> others;   ///< where poses have probabilities
   std::optional<TwinEvidence> twin;          ///< of `best`, where rooms built alike may be meant
-  /// Where another pose than `best` is told because most surface agrees on a place built alike: that pose.
-  std::optional<PlaceBuiltAlike> built_alike;
   std::size_t rivals = 0;               ///< alternatives that cannot be told from `best`
   std::optional<StartAgreement> start;  ///< where one was given and a pose was found
   ScannerPlace source_place;            ///< where the scanner of each side stood, and who says so

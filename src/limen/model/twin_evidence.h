@@ -7,12 +7,12 @@
 
 namespace limen {
 
-/// What things say of whether two scans show one room, or two built alike: what is believed beforehand, and
-/// by how much one room explains better what was seen (natural logarithms). Kept apart, for what several
+/// What things say of whether two scans show one place or two that look alike: odds beforehand, and by how
+/// much one place explains better what was seen (natural logarithms). They are separate, for what several
 /// pairs say of one place multiplies, and what is believed of the place does not.
 struct TwinEvidence {
-  double otherwise = 0.1455;    ///< probability beforehand of a twin furnished otherwise ...
-  double alike = 0.0045;        ///< ... and of one furnished alike as well
+  double otherwise = 1.434;     ///< odds beforehand of a look-alike place furnished otherwise ...
+  double alike = 0.007;         ///< ... and of one furnished alike as well
   double otherwise_nats = 0.0;  ///< against the first
   double alike_nats = 0.0;      ///< against the second
   /// What surfaces of the building say against either, by how they were built (as_built.h).
@@ -20,8 +20,7 @@ struct TwinEvidence {
 
   /// Odds of a twin of either kind.
   [[nodiscard]] double odds() const {
-    return std::exp(-built_nats) * (otherwise * std::exp(-otherwise_nats) + alike * std::exp(-alike_nats)) /
-           (1.0 - otherwise - alike);
+    return std::exp(-built_nats) * (otherwise * std::exp(-otherwise_nats) + alike * std::exp(-alike_nats));
   }
   [[nodiscard]] double probability() const {
     const double against = odds();

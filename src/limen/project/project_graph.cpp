@@ -95,8 +95,7 @@ class GraphMaker {
   void add_pair(std::size_t k) {
     const RegistrationResult& found = pairs_[k].result;
     // Loops cannot settle what a twin says: rooms built alike laid on one another close their loops too.
-    const double twin = (found.others ? found.others->twin : 0.0) +
-                        (found.built_alike ? found.built_alike->probability : 0.0);
+    const double twin = found.others ? found.others->twin : 0.0;
     const auto said = words_.pairs.find({pairs_[k].source, pairs_[k].target});
     const bool spoken = said != words_.pairs.end();
     if (spoken && said->second.kind == DecisionKind::reject) return;
@@ -115,15 +114,6 @@ class GraphMaker {
     if (twin > kLikelier && !spoken) {
       graph_.against.push_back(std::move(link));
       return;
-    }
-    if (found.built_alike && !spoken) {
-      // What stands about tells that this is another place, whatever the pair's pose is.
-      GraphLink alike = link;
-      alike.evidence = found.built_alike->said;
-      alike.twin = found.built_alike->said.probability();
-      alike.trust = LinkTrust::likely;
-      alike.poses = {pose_of(link, found, found.built_alike->pose, 1.0)};
-      graph_.against.push_back(std::move(alike));
     }
     for (const Hypothesis& other : found.alternatives) {
       if (link.poses.size() >= kMostPoses) break;

@@ -322,10 +322,8 @@ void JoinEvidence::add(const PairEvidence& evidence) {
 
 double JoinEvidence::nats() const {
   if (!any_) return against_;
-  const double none = 1.0 - prior_otherwise_ - prior_alike_;
-  return against_ -
-         std::log(std::exp(first_ - chance_) + prior_otherwise_ / none * std::exp(-otherwise_.sum()) +
-                  prior_alike_ / none * std::exp(-alike_.sum()) + kLeastOdds);
+  return against_ - std::log(std::exp(first_ - chance_) + prior_otherwise_ * std::exp(-otherwise_.sum()) +
+                             prior_alike_ * std::exp(-alike_.sum()) + kLeastOdds);
 }
 
 LinkMatcher::LinkMatcher(const PoseGraph& graph) : graph_(graph) {

@@ -14,7 +14,6 @@ namespace limen {
 namespace {
 
 constexpr double kRateStrength = 4.0;   // scans: what is believed of look-alikes before any is seen
-constexpr double kMostBelieved = 0.45;  // of look-alikes, beforehand
 constexpr double kHardlyFresh = 0.05;   // share of a pair's surface that no other shows
 
 }  // namespace
@@ -40,7 +39,7 @@ PlacementOdds::PlacementOdds(int nodes, std::vector<PlacedPair> pairs)
 
 double PlacementOdds::rate_of_twins(const std::vector<bool>& side) const {
   const TwinEvidence alone;
-  const double believed = alone.otherwise + alone.alike;
+  const double believed = alone.otherwise + alone.alike;  // odds
   // Of each node by the pair that tells most; pairs across the cut are what the rate is asked for.
   std::vector<double> twin_of_node(side.size(), 0.5);
   for (const PlacedPair& pair : pairs_) {
@@ -52,14 +51,14 @@ double PlacementOdds::rate_of_twins(const std::vector<bool>& side) const {
       if (std::abs(twin - 0.5) > std::abs(twin_of_node[node] - 0.5)) twin_of_node[node] = twin;
     }
   }
-  double twins = kRateStrength * believed;
+  double twins = kRateStrength * believed / (1.0 + believed);
   double all = kRateStrength;
   for (const double twin : twin_of_node) {
     const double tells = std::abs(2.0 * twin - 1.0);
     twins += tells * twin;
     all += tells;
   }
-  return twins / all / believed;
+  return twins / (all - twins) / believed;
 }
 
 PlacementOdds::LookAlike PlacementOdds::look_alike(const Kind& kind,
@@ -77,7 +76,7 @@ PlacementOdds::LookAlike PlacementOdds::look_alike(const Kind& kind,
     found.prior = believed ? std::min(found.prior, prior) : prior;
     believed = true;
   }
-  found.prior = std::min(kMostBelieved, found.prior * rate_of_twins(side));
+  found.prior *= rate_of_twins(side);
   const std::vector<double> fresh = views_.fresh_shares(ordered, side);
   LookAlikeNats nats(kind.nats);
   for (std::size_t k = 0; k < ordered.size(); ++k) nats.add(ordered[k]->evidence, fresh[k]);
@@ -123,8 +122,7 @@ SideOdds PlacementOdds::without(const std::vector<bool>& side, const std::vector
   odds.chance = std::exp(log_odds_of_chance(across, side, odds));
   const LookAlike otherwise = look_alike(Kind::otherwise(), across, side);
   const LookAlike alike = look_alike(Kind::alike(), across, side);
-  odds.twin = (otherwise.prior * std::exp(-otherwise.against) + alike.prior * std::exp(-alike.against)) /
-              (1.0 - otherwise.prior - alike.prior);
+  odds.twin = otherwise.prior * std::exp(-otherwise.against) + alike.prior * std::exp(-alike.against);
   return odds;
 }
 

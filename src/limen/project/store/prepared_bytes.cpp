@@ -303,11 +303,6 @@ std::string bytes_of(const RegistrationResult& result) {
   for (const double probability : {others.nothing_shared, others.twin, others.unlisted_pose})
     writer.put(probability);
   put_twin(writer, result.twin);
-  put_twin(writer, result.built_alike ? std::optional(result.built_alike->said) : std::nullopt);
-  if (result.built_alike) {
-    put_pose(writer, result.built_alike->pose);
-    writer.put(result.built_alike->probability);
-  }
   return writer.bytes();
 }
 
@@ -335,11 +330,6 @@ RegistrationResult result_from(std::string_view bytes, const std::string& where,
     reader.get(*probability);
   if (others) result.others = told;
   result.twin = get_twin(reader);
-  if (const std::optional<TwinEvidence> said = get_twin(reader)) {
-    PlaceBuiltAlike alike{get_pose(reader), *said};
-    reader.get(alike.probability);
-    result.built_alike = alike;
-  }
   return result;
 }
 

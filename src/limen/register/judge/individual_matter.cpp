@@ -330,8 +330,7 @@ IndividualMatter MatterAsker::operator()(const Rigid3& target_from_source) const
                      wall_between(target, source, inverse(target_from_source));
   const CommonSurfaces surfaces =
       common_surfaces(source.view, source.built, target.view, target.built, target_from_source);
-  // Scans that were taken on the move are bent within themselves: of one hall right poses reach -14.
-  individual.built_nats = std::max(0.0, as_built_nats(surfaces.all));
+  individual.built_nats = as_built_nats(surfaces.all);
   individual.faces = face_offsets(source, target, target_from_source, surfaces.scatter_m);
   individual.source_built = source.built.flags();
   individual.target_built = target.built.flags();

@@ -5,102 +5,184 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 
 #include <fmt/format.h>
 
-#include "limen/base/error.h"
+#include "limen/register/judge/evidence_table.h"
+#include "limen/register/judge/model_odds.h"
 
 namespace limen {
-
-void PosteriorOptions::check() const {
-  if (!(nats_per_m2 > 0)) throw_bad_option("nats_per_m2", nats_per_m2, "more than 0");
-  if (!(nats_per_m2_through_wall > 0))
-    throw_bad_option("nats_per_m2_through_wall", nats_per_m2_through_wall, "more than 0");
-  if (!(search_nats >= 0)) throw_bad_option("search_nats", search_nats, "0 or more");
-  if (!(search_nats_through_wall >= 0))
-    throw_bad_option("search_nats_through_wall", search_nats_through_wall, "0 or more");
-  if (!(prior_shared > 0 && prior_shared < 1))
-    throw_bad_option("prior_shared", prior_shared, "within (0, 1)");
-  if (!(unlisted >= 0 && unlisted < 1)) throw_bad_option("unlisted", unlisted, "within [0, 1)");
-}
-
-double chance_of(const PosteriorEvidence& evidence, const PosteriorOptions& options) {
-  if (evidence.log_odds_of_model) return std::exp(-*evidence.log_odds_of_model);
-  const double nats_per_m2 = evidence.through_wall ? options.nats_per_m2_through_wall : options.nats_per_m2;
-  const double search_nats = evidence.through_wall ? options.search_nats_through_wall : options.search_nats;
-  return std::exp(search_nats - evidence.things_nats -
-                  nats_per_m2 * (evidence.best_value_m2 - evidence.things_m2));
-}
-
 namespace {
 
-constexpr double kClearLeadM2 = 4.0;  // by so much what tells two poses apart settles which one leads
-
-/// Chance against the best pose. Where what tells two poses apart speaks for another one chance is asked of
-/// that one, as far as it leads: what the best has more of does not count.
-double chance_of_leader(const PosteriorEvidence& evidence, const PosteriorOptions& options) {
-  const double of_best = chance_of(evidence, options);
-  if (evidence.log_odds_of_model) return of_best;
-  const double nats_per_m2 = evidence.through_wall ? options.nats_per_m2_through_wall : options.nats_per_m2;
-  const double search_nats = evidence.through_wall ? options.search_nats_through_wall : options.search_nats;
-  double most = of_best;
-  for (std::size_t k = 0; k < std::min(evidence.leads_m2.size(), evidence.values_m2.size()); ++k) {
-    const double lead_m2 = -evidence.leads_m2[k];
-    if (lead_m2 <= 0.0) continue;
-    const double share = std::min(1.0, lead_m2 / kClearLeadM2);
-    const double nats = (1.0 - share) * std::log(of_best) +
-                        share * (search_nats - nats_per_m2 * evidence.values_m2[k]) + nats_per_m2 * lead_m2;
-    most = std::max(most, std::exp(nats));
+const evidence_table::Surface& table_of(PairSort sort) {
+  switch (sort) {
+    case PairSort::through_wall:
+      return evidence_table::kThroughWall;
+    case PairSort::in_model:
+      return evidence_table::kInModel;
+    case PairSort::rooms:
+      break;
   }
-  return most;
+  return evidence_table::kRooms;
 }
+
+/// Of every pose in a model against chance: the share of the scan's walls that are the model's takes the place of
+/// the surface that wrong poses reach, which the other poses show.
+std::vector<double> nats_in_model(const std::vector<FoundPose>& poses) {
+  const evidence_table::Surface& table = evidence_table::kInModel;
+  std::vector<WallBalance> walls;
+  for (const FoundPose& pose : poses) walls.push_back(pose.walls);
+  std::vector<double> nats = log_odds_of_model(walls);
+  double by_chance_m2 = 0.0;
+  for (std::size_t k = 0; k < poses.size(); ++k) {
+    if (nats[k] <= 0.0) by_chance_m2 = std::max(by_chance_m2, poses[k].score.evidence_m2);
+  }
+  for (std::size_t k = 0; k < poses.size(); ++k) {
+    nats[k] += table.nats_per_m2 * (poses[k].score.evidence_m2 - by_chance_m2) +
+               nats_of_contradiction(poses[k].score.agreeing_m2, poses[k].score.contradicted_m2, table);
+  }
+  return nats;
+}
+
+/// Asks each question once, and only where the answer matters.
+class Weighing {
+ public:
+  Weighing(const std::vector<FoundPose>& poses, PairSort sort, const PairQuestions& questions)
+      : poses_(poses),
+        table_(table_of(sort)),
+        questions_(questions),
+        against_chance_(nats_against_chance(poses, sort)),
+        things_(poses.size()) {}
+
+  /// The pose that surface and beliefs speak for most.
+  [[nodiscard]] std::size_t first() const {
+    std::size_t best = 0;
+    for (std::size_t k = 1; k < poses_.size(); ++k) {
+      if (against_chance_[k] + poses_[k].log_prior > against_chance_[best] + poses_[best].log_prior) best = k;
+    }
+    return best;
+  }
+  /// Odds that a pose lays a place on a look-alike one.
+  [[nodiscard]] double look_alike(std::size_t pose) { return questions_.things ? things(pose).odds() : 0.0; }
+  /// Odds that what agrees under a pose agrees by chance.
+  [[nodiscard]] double by_chance(std::size_t pose) {
+    double nats = against_chance_[pose];
+    if (questions_.things)
+      nats += evidence_table::kThings * things(pose).otherwise_nats + evidence_table::kBuilt * things(pose).built_nats;
+    return std::exp(-nats);
+  }
+  /// Odds of each pose against the one that leads.
+  [[nodiscard]] std::vector<double> odds_against(std::size_t leader) {
+    std::vector<double> odds(poses_.size(), 1.0);
+    for (std::size_t k = 0; k < poses_.size(); ++k) {
+      if (k != leader) odds[k] = odds_of(k, leader);
+    }
+    return odds;
+  }
+
+ private:
+  static constexpr double kNegligible = 1e-7;
+
+  [[nodiscard]] const TwinEvidence& things(std::size_t pose) {
+    if (!things_[pose]) things_[pose] = questions_.things(pose);
+    return *things_[pose];
+  }
+  /// That a pose agrees though another one is right which resembles it.
+  [[nodiscard]] double resembling(double more_agrees_m2, double less_contradicted_m2) const {
+    return std::exp(-table_.contrast_per_m2 * more_agrees_m2 - table_.against_per_m2 * less_contradicted_m2);
+  }
+  [[nodiscard]] double wrong_all_the_same(std::size_t pose) {
+    return by_chance(pose) + evidence_table::kInPair * look_alike(pose);
+  }
+  [[nodiscard]] double odds_of(std::size_t pose, std::size_t leader) {
+    const PoseContrast contrast = questions_.contrast(leader, pose);
+    const double leader_wrong =
+        resembling(contrast.for_first_m2, contrast.against_second_m2) + wrong_all_the_same(leader);
+    const double resembles = resembling(contrast.for_second_m2, contrast.against_first_m2);
+    const double prior = std::exp(poses_[pose].log_prior - poses_[leader].log_prior);
+    if (prior * leader_wrong < kNegligible * resembles) return prior * leader_wrong / resembles;
+    return prior * leader_wrong / (resembles + wrong_all_the_same(pose));
+  }
+
+  const std::vector<FoundPose>& poses_;
+  const evidence_table::Surface& table_;
+  const PairQuestions& questions_;
+  std::vector<double> against_chance_;
+  std::vector<std::optional<TwinEvidence>> things_;
+};
 
 }  // namespace
 
-Posterior posterior(const PosteriorEvidence& evidence, const PosteriorOptions& options) {
-  options.check();
-  // Weights against the best pose, whose likelihood is 1; the best wrong pose is as likely as the right one
-  // where its value is what a search reaches by chance.
-  const double nats_per_m2 = evidence.through_wall ? options.nats_per_m2_through_wall : options.nats_per_m2;
-  const double chance = chance_of_leader(evidence, options);
-  Posterior posterior;
-  double total = 0.0;
-  const auto add_pose = [&](double lead_m2) {
-    const std::size_t k = posterior.poses.size();
-    const double log_prior = k < evidence.log_priors.size() ? evidence.log_priors[k] : 0.0;
-    const double weight =
-        options.prior_shared * (1.0 - options.unlisted) * std::exp(log_prior - nats_per_m2 * lead_m2);
-    posterior.poses.push_back(weight * (1.0 - evidence.twin));
-    posterior.others.twin += weight * evidence.twin;
-    total += weight;
-  };
-  add_pose(0.0);
-  for (const double lead : evidence.leads_m2) add_pose(lead);
-  posterior.others.unlisted_pose = options.prior_shared * options.unlisted * chance;
-  posterior.others.nothing_shared = (1.0 - options.prior_shared) * chance;
-  total += posterior.others.unlisted_pose + posterior.others.nothing_shared;
-  for (double& pose : posterior.poses) pose /= total;
-  posterior.others.twin /= total;
-  double elsewhere = 1.0;  // of the weights of where a place is whose twin was seen: nowhere that was seen
-  for (const double odds : evidence.odds_of_twins) elsewhere += 1.0 / (1.0 + odds);
-  const double twin = posterior.others.twin;
-  for (const double odds : evidence.odds_of_twins) {
-    posterior.poses.push_back(twin / (1.0 + odds) / elsewhere);
-    posterior.others.twin -= posterior.poses.back();
+std::vector<double> nats_against_chance(const std::vector<FoundPose>& poses, PairSort sort) {
+  if (sort == PairSort::in_model) return nats_in_model(poses);
+  const evidence_table::Surface& table = table_of(sort);
+  std::vector<double> nats;
+  for (const FoundPose& pose : poses) {
+    nats.push_back(table.nats_per_m2 * pose.score.evidence_m2 +
+                   nats_of_contradiction(pose.score.agreeing_m2, pose.score.contradicted_m2, table) -
+                   table.search_nats);
   }
-  posterior.others.unlisted_pose /= total;
-  posterior.others.nothing_shared /= total;
+  return nats;
+}
+
+Posterior weigh_poses(const std::vector<FoundPose>& poses, PairSort sort, const PairQuestions& questions) {
+  Posterior posterior;
+  if (poses.empty()) {
+    posterior.others.nothing_shared = 1.0;
+    return posterior;
+  }
+  const evidence_table::Surface& table = table_of(sort);
+  Weighing weighing(poses, sort, questions);
+  std::vector<std::size_t> numbers(poses.size());
+  std::iota(numbers.begin(), numbers.end(), std::size_t{0});
+  std::size_t leader = weighing.first();
+  std::vector<double> odds;
+  std::vector<bool> has_led(poses.size(), false);  // contrasts are not transitive: each leads once
+  for (;;) {
+    odds = weighing.odds_against(leader);
+    has_led[leader] = true;
+    std::size_t next = leader;
+    for (const std::size_t k : numbers) {
+      if (!has_led[k] && odds[k] > odds[next]) next = k;
+    }
+    if (next == leader) break;
+    leader = next;
+  }
+  const double chance = weighing.by_chance(leader) * std::exp(-poses[leader].log_prior);
+  posterior.others.twin = weighing.look_alike(leader);
+  posterior.others.nothing_shared = table.nothing_shared * chance;
+  posterior.others.unlisted_pose = table.unlisted * chance;
+  posterior.order = numbers;
+  std::stable_sort(posterior.order.begin(), posterior.order.end(), [&](std::size_t a, std::size_t b) {
+    if (a == leader || b == leader) return a == leader && b != leader;
+    return odds[a] > odds[b];
+  });
+  OtherExplanations& others = posterior.others;
+  double total = others.twin + others.nothing_shared + others.unlisted_pose;
+  for (const double one : odds) total += one;
+  for (double* other : {&others.twin, &others.nothing_shared, &others.unlisted_pose}) *other /= total;
+  for (const std::size_t k : posterior.order) posterior.probabilities.push_back(odds[k] / total);
   return posterior;
 }
 
 double Posterior::elsewhere() const {
-  return poses.empty() ? 0.0 : std::accumulate(poses.begin() + 1, poses.end(), 0.0) - slid;
+  if (probabilities.empty()) return 0.0;
+  return std::accumulate(probabilities.begin() + 1, probabilities.end(), 0.0) - slid;
+}
+
+std::size_t Posterior::rivals(double risk) const {
+  constexpr double kComparable = 0.01;
+  if (probabilities.empty()) return 0;
+  const double least = std::max(risk, kComparable * best());
+  return static_cast<std::size_t>(std::count_if(probabilities.begin() + 1, probabilities.end(),
+                                                [&](double one) { return one >= least; }));
 }
 
 Outcome outcome_of(const Posterior& posterior, const std::vector<UnobservedFreedom>& open,
                    const VerdictOptions& options) {
   const double chance = posterior.by_chance();
-  if (posterior.poses.empty() || chance > posterior.place() + posterior.elsewhere() + posterior.others.twin)
+  if (posterior.order.empty() || chance > posterior.place() + posterior.elsewhere() + posterior.others.twin)
     return Outcome::no_match;
   const double probable = 1.0 - options.probable_risk;
   if (!open.empty()) return posterior.place() >= probable ? Outcome::under_constrained : Outcome::ambiguous;
@@ -110,18 +192,15 @@ Outcome outcome_of(const Posterior& posterior, const std::vector<UnobservedFreed
 
 namespace {
 
-/// The likeliest of what else may be. `judged`: what made the verdict ambiguous before probabilities were
-/// known, poses where it has rivals and else chance; empty: nothing did.
-std::string what_else(const Verdict& verdict, const Posterior& posterior, const std::string& twin,
-                      const std::string& judged) {
+/// The likeliest of what else may be.
+std::string what_else(const Posterior& posterior, const std::string& look_alike) {
   const double chance = posterior.by_chance();
-  if (posterior.others.twin >= std::max(chance, posterior.elsewhere()) && !twin.empty()) return twin;
-  const bool by_chance = chance > posterior.elsewhere();
-  if (!judged.empty() && by_chance == verdict.rivals.empty()) return judged;
-  return by_chance
-             ? fmt::format("so little surface agrees that it may be chance ({:.1f} %)", 100.0 * chance)
-             : fmt::format("too little speaks against the other poses: one of them may be right ({:.1f} %)",
-                           100.0 * posterior.elsewhere());
+  const double elsewhere = posterior.elsewhere();
+  if (posterior.others.twin >= std::max(chance, elsewhere) && !look_alike.empty()) return look_alike;
+  if (chance > elsewhere)
+    return fmt::format("the overlap is so small that it may be chance ({:.1f} %)", 100.0 * chance);
+  return fmt::format("the overlap does not exclude the other poses: one of them may be right ({:.1f} %)",
+                     100.0 * elsewhere);
 }
 
 /// Cut, not rounded: what is below a limit does not read as if it reached it.
@@ -132,38 +211,30 @@ std::string placed_words(double probability, double risk) {
                      100.0 * std::floor(scale * probability + 1e-9) / scale, digits, 100.0 * (1.0 - risk));
 }
 
-std::string reason_of(const Verdict& verdict, const Posterior& posterior, const OpenFreedoms& open,
-                      const std::string& twin, const std::string& judged, const VerdictOptions& options) {
-  switch (verdict.outcome) {
+}  // namespace
+
+std::string reason_of(Outcome outcome, const Posterior& posterior, const PoseScore& best,
+                      const OpenFreedoms& open, const std::string& look_alike, const VerdictOptions& options) {
+  switch (outcome) {
     case Outcome::registered:
-      return verdict.reason;
+      return fmt::format("{:.1f} m2 of surface agree, {:.1f} m2 are contradicted, no different pose comes near",
+                         best.agreeing_m2, best.contradicted_m2);
     case Outcome::probable:
-      return placed_words(posterior.best(), options.risk) + ": " + what_else(verdict, posterior, twin, {});
+      return placed_words(posterior.best(), options.risk) + ": " + what_else(posterior, look_alike);
     case Outcome::under_constrained:
       return (open.by_drift ? "the trajectory drifts, which leaves open the "
                             : "the common surface does not fix the ") +
              open.list.front().name;
     case Outcome::ambiguous:
-      if (verdict.unsure) return verdict.reason;
-      return what_else(verdict, posterior, twin, judged);
+      return what_else(posterior, look_alike);
     case Outcome::no_match:
       break;
   }
-  return fmt::format("it is likelier that they share nothing ({:.0f} %) than that they share any place",
-                     100.0 * posterior.by_chance());
-}
-
-}  // namespace
-
-Verdict decided(Verdict verdict, const Posterior& posterior, const OpenFreedoms& open,
-                const std::string& twin, const VerdictOptions& options) {
-  if (verdict.outcome == Outcome::no_match) return verdict;
-  const std::string judged = verdict.outcome == Outcome::ambiguous ? verdict.reason : std::string();
-  verdict.outcome = outcome_of(posterior, open.list, options);
-  if (verdict.unsure && verdict.outcome != Outcome::no_match) verdict.outcome = Outcome::ambiguous;
-  verdict.reason = reason_of(verdict, posterior, open, twin, judged, options);
-  verdict.unobserved = verdict.outcome == Outcome::no_match ? std::vector<UnobservedFreedom>{} : open.list;
-  return verdict;
+  if (posterior.order.empty()) return "no planes of the two scans can be laid on one another";
+  return fmt::format(
+      "the best overlap is {:.1f} m2, and {:.1f} m2 of one scan lie where the other saw free space: it is "
+      "likelier that they share nothing ({:.0f} %)",
+      best.agreeing_m2, best.contradicted_m2, 100.0 * posterior.by_chance());
 }
 
 }  // namespace limen

@@ -2,120 +2,169 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limen/register/judge/posterior.h"
 
+#include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
 
-#include "limen/base/error.h"
+#include "limen/register/judge/evidence_table.h"
 
 namespace limen {
 namespace {
 
+/// A pose under which this much agrees.
+FoundPose pose(double agreeing_m2, double contradicted_m2 = 0.0) {
+  FoundPose found;
+  found.score.agreeing_m2 = found.score.planar_m2 = found.score.evidence_m2 = agreeing_m2;
+  found.score.contradicted_m2 = contradicted_m2;
+  found.score.tested_m2 = agreeing_m2 + contradicted_m2;
+  return found;
+}
+
+/// Under any two poses other surface agrees.
+PairQuestions questions_of(const std::vector<FoundPose>& poses) {
+  PairQuestions questions;
+  questions.contrast = [&poses](std::size_t a, std::size_t b) {
+    return PoseContrast{poses[a].score.evidence_m2, poses[b].score.evidence_m2, poses[a].score.contradicted_m2,
+                        poses[b].score.contradicted_m2};
+  };
+  return questions;
+}
+
+Posterior weighed(const std::vector<FoundPose>& poses, const std::vector<TwinEvidence>& things = {},
+                  PairSort sort = PairSort::rooms) {
+  PairQuestions questions = questions_of(poses);
+  if (!things.empty()) questions.things = [&](std::size_t k) { return things[k]; };
+  return weigh_poses(poses, sort, questions);
+}
+
+/// Things of a room agree under a pose, by so many nats.
+TwinEvidence things(double nats) {
+  TwinEvidence evidence;
+  evidence.otherwise_nats = nats;
+  evidence.alike_nats = std::min(0.0, nats);
+  return evidence;
+}
+
 double sum(const Posterior& all) {
-  return std::accumulate(all.poses.begin(), all.poses.end(), 0.0) + all.others.nothing_shared +
+  return std::accumulate(all.probabilities.begin(), all.probabilities.end(), 0.0) + all.others.nothing_shared +
          all.others.twin + all.others.unlisted_pose;
 }
 
-TEST(Posterior, EverythingSumsToOne) {
-  for (const double value : {0.0, 3.0, 8.0, 40.0}) {
-    EXPECT_NEAR(sum(posterior({value, {0.5, 3.0, 9.0}, 0.2})), 1.0, 1e-12) << value;
-  }
+TEST(Posterior, WithoutAPoseNothingIsShared) {
+  EXPECT_EQ(weighed({}).others.nothing_shared, 1.0);
 }
 
-TEST(Posterior, APoseSetAsideIsAPartOfTheTwin) {
-  PosteriorEvidence evidence{20.0, {3.0}, 0.02};
-  const Posterior before = posterior(evidence);
-  evidence.odds_of_twins = {4.0, 0.5};
-  const Posterior all = posterior(evidence);
-  EXPECT_NEAR(sum(all), 1.0, 1e-12);
-  ASSERT_EQ(all.poses.size(), 4U);
-  EXPECT_EQ(all.poses[0], before.poses[0]);
-  EXPECT_LT(all.poses[2], all.poses[3]);
-  EXPECT_NEAR(all.others.twin + all.poses[2] + all.poses[3], before.others.twin, 1e-12);
+RC_GTEST_PROP(Posterior, AllSumsToOneAndTheOrderOfPosesMeansNothing, ()) {
+  const auto count = *rc::gen::inRange<std::size_t>(1, 7);
+  std::vector<FoundPose> poses;
+  std::vector<TwinEvidence> said;
+  for (std::size_t k = 0; k < count; ++k) {
+    poses.push_back(pose(*rc::gen::inRange(0, 400) / 10.0 + 1e-3 * static_cast<double>(k),
+                         *rc::gen::inRange(0, 50) / 10.0));
+    said.push_back(things(*rc::gen::inRange(-60, 200) / 10.0));
+  }
+  const Posterior all = weighed(poses, said);
+  RC_ASSERT(std::abs(sum(all) - 1.0) < 1e-9);
+  RC_ASSERT(std::is_sorted(all.probabilities.begin() + 1, all.probabilities.end(), std::greater<>()));
+  std::vector<FoundPose> turned(poses.rbegin(), poses.rend());
+  const Posterior back = weighed(turned, {said.rbegin(), said.rend()});
+  RC_ASSERT(std::abs(back.best() - all.best()) < 1e-9);
+  RC_ASSERT(back.order.front() == count - 1 - all.order.front());
 }
 
 TEST(Posterior, MuchCommonSurfaceLeavesTheBestAlone) {
-  const Posterior all = posterior({30.0, {12.0}, 0.0});
-  EXPECT_GT(all.poses[0], 0.999);
-  EXPECT_LT(all.others.nothing_shared, 1e-6);
+  const Posterior all = weighed({pose(40), pose(12)});
+  EXPECT_EQ(all.order.front(), 0U);
+  EXPECT_GT(all.best(), 0.999);
+  EXPECT_LT(all.by_chance(), 1e-6);
 }
 
 TEST(Posterior, HardlyAnyCommonSurfaceMeansNothingShared) {
-  EXPECT_GT(posterior({2.0, {0.1}, 0.0}).others.nothing_shared, 0.9);
+  EXPECT_GT(weighed({pose(2)}).others.nothing_shared, 0.8);
 }
 
-TEST(Posterior, ThingsAskedOneByOneTakeThePlaceOfTheirSurface) {
-  // 7 m^2, of which things say one: 5 nats of chance are left, and 12 speak for the pose instead of 2.
-  PosteriorEvidence evidence{7.0, {}, 0.0};
-  const double before = posterior(evidence).others.nothing_shared;
-  evidence.things_m2 = 1.0;
-  evidence.things_nats = PosteriorOptions{}.nats_per_m2;
-  EXPECT_NEAR(posterior(evidence).others.nothing_shared, before, 1e-12);
-  evidence.things_nats = 12.0;
-  EXPECT_LT(posterior(evidence).others.nothing_shared, 1e-4 * before);
-  evidence.things_nats = -3.0;
-  EXPECT_GT(posterior(evidence).others.nothing_shared, before);
+TEST(Posterior, ManyPosesOfHardlyAnySurfaceDoNotTakeFromOne) {
+  std::vector<FoundPose> poses{pose(35)};
+  const double alone = weighed(poses, {things(8)}).best();
+  std::vector<TwinEvidence> said{things(8)};
+  for (int k = 0; k < 30; ++k) {
+    poses.push_back(pose(1.5, 1.0));
+    said.push_back(things(0));
+  }
+  EXPECT_NEAR(weighed(poses, said).best(), alone, 1e-3);
 }
 
-TEST(Posterior, ChanceIsAskedOfThePoseThatLeads) {
-  // 40 m^2 that a pose of 4 m^2 contradicts: neither is probable.
-  PosteriorEvidence evidence{40.0, {-20.0}, 0.0};
-  evidence.values_m2 = {4.0};
-  const Posterior all = posterior(evidence);
-  EXPECT_NEAR(sum(all), 1.0, 1e-12);
-  EXPECT_GT(all.others.nothing_shared, 0.5);
-  EXPECT_LT(all.poses[1], 0.5);
-  // One of as much value is as sure as the best would be.
-  evidence.values_m2 = {39.0};
-  EXPECT_GT(posterior(evidence).poses[1], 0.999);
-  // What does not lead changes nothing.
-  evidence.leads_m2 = {3.0};
-  evidence.values_m2 = {4.0};
-  EXPECT_EQ(posterior(evidence).poses, posterior({40.0, {3.0}, 0.0}).poses);
+TEST(Posterior, PosesThatNothingDistinguishesShare) {
+  const std::vector<FoundPose> poses{pose(30), pose(30)};
+  PairQuestions questions;
+  questions.contrast = [](std::size_t, std::size_t) { return PoseContrast{}; };
+  const Posterior all = weigh_poses(poses, PairSort::rooms, questions);
+  EXPECT_NEAR(all.probabilities[0], 0.5, 1e-6);
+  EXPECT_NEAR(all.probabilities[1], 0.5, 1e-6);
+}
+
+TEST(Posterior, ContradictedSurfaceIsBorneAsAShareOfWhatIsSeen) {
+  const double none = weighed({pose(60)}).best();
+  EXPECT_GT(weighed({pose(60, 5)}).best(), 0.9 * none);
+  EXPECT_LT(weighed({pose(8, 8)}).best(), 0.05);
+  double before = 1.0;
+  for (const double contradicted : {0.0, 1.0, 2.0, 4.0, 8.0, 16.0}) {
+    const double best = weighed({pose(12, contradicted)}).best();
+    EXPECT_LE(best, before) << contradicted;
+    before = best;
+  }
+}
+
+TEST(Posterior, ALookAlikePlaceIsExcludedByThingsAndByHowSurfacesWereBuilt) {
+  EXPECT_LT(weighed({pose(40)}, {things(0)}).best(), 0.6);
+  EXPECT_GT(weighed({pose(40)}, {things(9)}).best(), 0.99);
+  EXPECT_LT(weighed({pose(40)}, {things(-4)}).best(), 0.02);
+  TwinEvidence built;
+  built.built_nats = 9.0;
+  EXPECT_GT(weighed({pose(40)}, {built}).best(), 0.999);
+}
+
+TEST(Posterior, ThingsSeenThroughADoorOutweighTheWallsOfALookAlike) {
+  const std::vector<FoundPose> poses{pose(30), pose(9)};
+  EXPECT_EQ(weighed(poses, {things(0), things(0)}).order.front(), 0U);
+  const Posterior all = weighed(poses, {things(-9), things(9)});
+  EXPECT_EQ(all.order.front(), 1U);
+  EXPECT_GT(all.best(), 0.9);
 }
 
 TEST(Posterior, AStreetShowsMuchThatRepeats) {
-  PosteriorEvidence evidence{9.5, {}, 0.0};
-  EXPECT_LT(posterior(evidence).others.nothing_shared, 1e-3);
-  evidence.through_wall = true;
-  EXPECT_GT(posterior(evidence).others.nothing_shared, 0.4);
-  evidence.best_value_m2 = 30.0;
-  EXPECT_LT(posterior(evidence).others.nothing_shared, 1e-6);
+  EXPECT_GT(weighed({pose(12)}).best(), 0.9);
+  EXPECT_LT(weighed({pose(12)}, {}, PairSort::through_wall).best(), 0.9);
+  EXPECT_GT(weighed({pose(30)}, {}, PairSort::through_wall).best(), 0.999);
 }
 
 TEST(Posterior, WhatChanceReachesInAModelIsLearnedThere) {
-  double before = 1.0;
-  for (const double odds : {-3.0, 0.0, 3.0, 9.0}) {
-    const double nothing = posterior({30.0, {}, 0.0, odds}).others.nothing_shared;
-    EXPECT_LT(nothing, before);
-    before = nothing;
-  }
-  const OtherExplanations poor = posterior({30.0, {}, 0.0, -3.0}).others;
-  EXPECT_GT(poor.nothing_shared + poor.unlisted_pose, 0.9);
-  EXPECT_LT(before, 1e-3);
+  const auto in_model = [](double asked, double explained, double others) {
+    std::vector<FoundPose> poses{pose(30), pose(8), pose(8)};
+    poses[0].walls = {asked, explained};
+    poses[1].walls = poses[2].walls = {asked, others};
+    return weighed(poses, {}, PairSort::in_model).best();
+  };
+  EXPECT_GT(in_model(60, 57, 20), 0.999);
+  EXPECT_LT(in_model(60, 15, 14), 0.5);
 }
 
-TEST(Posterior, PosesThatCannotBeToldApartShare) {
-  const Posterior all = posterior({30.0, {0.0}, 0.0});
-  EXPECT_NEAR(all.poses[0], 0.5, 1e-6);
-  EXPECT_EQ(all.poses[0], all.poses[1]);
+TEST(Posterior, ABeliefMovesTheOddsBetweenPoses) {
+  std::vector<FoundPose> poses{pose(30), pose(30)};
+  PairQuestions questions;
+  questions.contrast = [](std::size_t, std::size_t) { return PoseContrast{}; };
+  poses[1].log_prior = 4.0;
+  const Posterior all = weigh_poses(poses, PairSort::rooms, questions);
+  EXPECT_EQ(all.order.front(), 1U);
+  EXPECT_NEAR(all.probabilities[1] / all.probabilities[0], std::exp(-4.0), 1e-6);
 }
 
-TEST(Posterior, ATwinTakesItsShare) {
-  const Posterior all = posterior({30.0, {}, 0.25});
-  EXPECT_NEAR(all.others.twin, 0.25, 1e-6);
-  EXPECT_NEAR(all.poses[0], 0.75, 1e-6);
-}
-
-TEST(Posterior, BoundsAreNamed) {
-  PosteriorOptions options;
-  options.prior_shared = 1.0;
-  EXPECT_THROW(posterior({}, options), Error);
-}
-
-/// Probabilities of the best pose, another one, a twin and chance.
+/// Probabilities of the best pose, another one, a look-alike and chance.
 Posterior odds(double best, double other, double twin, double chance, double slid = 0.0) {
-  return {{best, other}, {0.9 * chance, twin, 0.1 * chance}, slid};
+  return {{0, 1}, {best, other}, {0.9 * chance, twin, 0.1 * chance}, slid};
 }
 
 const std::vector<UnobservedFreedom> kHeld;
@@ -149,59 +198,31 @@ TEST(OutcomeOf, WhereNothingSharedIsLikelierThanAllElseNothingMatches) {
   EXPECT_EQ(outcome_of(odds(0.06, 0.1, 0.0, 0.84), kHeld), Outcome::no_match);
   EXPECT_EQ(outcome_of(odds(0.2, 0.19, 0.1, 0.51), kHeld), Outcome::no_match);
   EXPECT_EQ(outcome_of(odds(0.2, 0.21, 0.1, 0.49), kHeld), Outcome::ambiguous);
-  // More probable than any single pose, but less than all of them and a twin.
+  // More probable than any single pose, but less than all of them and a look-alike.
   EXPECT_EQ(outcome_of(odds(0.2, 0.1, 0.3, 0.4), kHeld), Outcome::ambiguous);
   EXPECT_EQ(outcome_of({}, kHeld), Outcome::no_match);
 }
 
-Verdict found() {
-  Verdict verdict;
-  verdict.outcome = Outcome::registered;
-  verdict.reason = "as judged";
-  return verdict;
-}
-
-TEST(Decided, TheReasonTellsWhatElseMayBe) {
-  const auto reason = [](const Posterior& all) { return decided(found(), all, {}, "a twin").reason; };
-  EXPECT_EQ(reason(odds(0.9995, 0.0005, 0.0, 0.0)), "as judged");
+TEST(ReasonOf, ItNamesWhatElseMayBe) {
+  const auto reason = [](const Posterior& all) {
+    return reason_of(outcome_of(all, kHeld), all, pose(7).score, {}, "a look-alike");
+  };
+  EXPECT_NE(reason(odds(0.9995, 0.0005, 0.0, 0.0)).find("7.0 m2 of surface agree"), std::string::npos);
   EXPECT_EQ(reason(odds(0.98631, 0.0, 0.01369, 0.0)),
-            "placed, 98.6 % sure; the limit for registered is 99.9 %: a twin");
+            "placed, 98.6 % sure; the limit for registered is 99.9 %: a look-alike");
   // What is below the limit does not read as if it reached it.
   EXPECT_NE(reason(odds(0.99898, 0.00102, 0.0, 0.0)).find("99.89 %"), std::string::npos);
-  EXPECT_EQ(reason(odds(0.7, 0.0, 0.2, 0.1)), "a twin");
+  EXPECT_EQ(reason(odds(0.7, 0.0, 0.2, 0.1)), "a look-alike");
   EXPECT_NE(reason(odds(0.7, 0.0, 0.1, 0.2)).find("chance (20.0 %)"), std::string::npos);
   EXPECT_NE(reason(odds(0.7, 0.2, 0.1, 0.0)).find("one of them may be right"), std::string::npos);
   EXPECT_NE(reason(odds(0.1, 0.0, 0.1, 0.8)).find("share nothing (80 %)"), std::string::npos);
 }
 
-TEST(Decided, WhatWasJudgedIsToldWhereItIsTheLikeliest) {
-  Verdict rivals = found();
-  rivals.outcome = Outcome::ambiguous;
-  rivals.rivals = {1};
-  EXPECT_EQ(decided(rivals, odds(0.7, 0.3, 0.0, 0.0), {}, "").reason, "as judged");
-  EXPECT_NE(decided(rivals, odds(0.7, 0.1, 0.0, 0.2), {}, "").reason.find("chance"), std::string::npos);
-  EXPECT_EQ(decided(rivals, odds(0.7, 0.1, 0.2, 0.0), {}, "a twin").reason, "a twin");
-  Verdict chance = rivals;
-  chance.rivals.clear();
-  EXPECT_EQ(decided(chance, odds(0.7, 0.1, 0.0, 0.2), {}, "").reason, "as judged");
-}
-
-TEST(Decided, WhatIsRefusedStaysSoAndWhatIsUnsureIsAmbiguous) {
-  Verdict refused;
-  EXPECT_EQ(decided(refused, odds(1.0, 0.0, 0.0, 0.0), {}, "").outcome, Outcome::no_match);
-  Verdict unsure = found();
-  unsure.unsure = true;
-  EXPECT_EQ(decided(unsure, odds(1.0, 0.0, 0.0, 0.0), {}, "").outcome, Outcome::ambiguous);
-  EXPECT_EQ(decided(unsure, odds(0.1, 0.0, 0.0, 0.9), {}, "").outcome, Outcome::no_match);
-}
-
-TEST(Decided, WhatIsOpenIsNamedUnlessNothingMatches) {
-  const Verdict open = decided(found(), odds(1.0, 0.0, 0.0, 0.0), {kOpen}, "");
-  EXPECT_EQ(open.reason, "the common surface does not fix the shift along (1.00, 0.00, 0.00)");
-  EXPECT_EQ(open.unobserved.size(), 1U);
-  EXPECT_NE(decided(found(), odds(1.0, 0.0, 0.0, 0.0), {kOpen, true}, "").reason.find("drifts"),
-            std::string::npos);
-  EXPECT_TRUE(decided(found(), odds(0.1, 0.0, 0.0, 0.9), {kOpen}, "").unobserved.empty());
+TEST(ReasonOf, WhatIsOpenIsNamed) {
+  const Posterior sure = odds(1.0, 0.0, 0.0, 0.0);
+  EXPECT_EQ(reason_of(Outcome::under_constrained, sure, {}, {kOpen}, {}),
+            "the common surface does not fix the shift along (1.00, 0.00, 0.00)");
+  EXPECT_NE(reason_of(Outcome::under_constrained, sure, {}, {kOpen, true}, {}).find("drifts"), std::string::npos);
 }
 
 }  // namespace

@@ -153,6 +153,10 @@ void add_lead(double lead, PoseContrast& contrast) {
   (lead > 0 ? contrast.for_first_m2 : contrast.for_second_m2) += std::abs(lead);
 }
 
+void add_contradiction(double of_second_m2, PoseContrast& contrast) {
+  (of_second_m2 > 0 ? contrast.against_second_m2 : contrast.against_first_m2) += std::abs(of_second_m2);
+}
+
 /// What is asked under either pose.
 AskedSamples asked_for_both(const ScanView& scan, const ScanView& judge, const Rigid3& first,
                             const Rigid3& second, const ScoreOptions& options) {
@@ -188,28 +192,13 @@ void add_contrast(const ScanView& scan, const ScanView& judge, const Rigid3& fir
       const float contradicted = answers.contradicted_m2[k] - contradictions[begin + k];
       add_lead(share * static_cast<double>(agreeing),
                plane >= 0 ? planes[static_cast<std::size_t>(plane)] : contrast);
-      // Matter where a ray passed is no coincidence: it counts in full.
-      add_lead(share * kContradictionWeight * static_cast<double>(contradicted), contrast);
+      add_contradiction(share * static_cast<double>(contradicted), contrast);
     }
   });
   for (const PoseContrast& plane : planes) {
     contrast.for_first_m2 += saturated(plane.for_first_m2);
     contrast.for_second_m2 += saturated(plane.for_second_m2);
   }
-}
-
-/// What `judge` says of the things of `scan`.
-double things_one_way(const ScanView& scan, const ScanView& judge, const Rigid3& judge_from_scan,
-                      const ScoreOptions& options, const std::vector<bool>& built) {
-  if (judge.space == nullptr) return 0.0;
-  AskedSamples asked = asked_samples(scan, judge, judge_from_scan, options.samples);
-  const auto is_built = [&](std::uint32_t i) {
-    const std::int32_t plane = scan.features->samples[i].plane;
-    return plane >= 0 && built[static_cast<std::size_t>(plane)];
-  };
-  asked.indices.erase(std::remove_if(asked.indices.begin(), asked.indices.end(), is_built),
-                      asked.indices.end());
-  return one_way(gathered(scan, asked), judge, judge_from_scan, options).value();
 }
 
 }  // namespace
@@ -257,16 +246,17 @@ PoseScore PoseScorer::operator()(const Rigid3& target_from_source) const {
   return both;
 }
 
+double nats_of_contradiction(double agreeing_m2, double contradicted_m2,
+                             const evidence_table::Surface& table) {
+  const double contradicted = contradicted_m2 / table.piece_m2;
+  const double agreeing = agreeing_m2 / table.piece_m2;
+  return log_beta_binomial(contradicted, agreeing, table.contradicted) -
+         log_beta_binomial(contradicted, agreeing, table.by_chance);
+}
+
 PoseScore score_pose(const ScanView& source, const ScanView& target, const Rigid3& target_from_source,
                      const ScoreOptions& options) {
   return PoseScorer(source, target, options)(target_from_source);
-}
-
-double value_of_things_m2(const ScanView& source, const ScanView& target, const Rigid3& target_from_source,
-                          const ScoreOptions& options, const std::vector<bool>& source_built,
-                          const std::vector<bool>& target_built) {
-  return 0.5 * (things_one_way(source, target, target_from_source, options, source_built) +
-                things_one_way(target, source, inverse(target_from_source), options, target_built));
 }
 
 PoseContrast contrast_poses(const ScanView& source, const ScanView& target, const Rigid3& first,

@@ -6,6 +6,7 @@
 #include <memory>
 #include <vector>
 
+#include "limen/register/judge/evidence_table.h"
 #include "limen/register/prepare/scan_view.h"
 
 namespace limen {
@@ -42,24 +43,26 @@ struct PoseScore {
   [[nodiscard]] double value() const { return evidence_m2 - kContradictionWeight * contradicted_m2; }
 };
 
-/// What tells two poses apart, m^2: surface that speaks for the one more than for the other. Surface that
-/// agrees under both poses, however much of it there is, tells nothing.
+/// What distinguishes two poses, m^2: surface that agrees better under the one than under the other, each plane
+/// counting for no more than 5 m^2, and surface that only one of them puts into seen free space. Surface that
+/// agrees under both poses, however much of it there is, does not count.
 struct PoseContrast {
   double for_first_m2 = 0.0;
   double for_second_m2 = 0.0;
+  double against_first_m2 = 0.0;
+  double against_second_m2 = 0.0;
 };
 
 PoseContrast contrast_poses(const ScanView& source, const ScanView& target, const Rigid3& first,
                             const Rigid3& second, const ScoreOptions& options);
 
+/// By how much the share of contradicted surface speaks for a pose against chance, natural logarithm. Under a
+/// right pose it is a property of a pair (doors, people, glass, things that were moved): known as a beta
+/// distribution only, and integrated out. So is the share that wrong poses contradict.
+double nats_of_contradiction(double agreeing_m2, double contradicted_m2, const evidence_table::Surface& table);
+
 PoseScore score_pose(const ScanView& source, const ScanView& target, const Rigid3& target_from_source,
                      const ScoreOptions& options);
-
-/// Of `PoseScore::value()` what things say, for the pose and against it: clutter and planes that are not the
-/// building's, whose flags are given for each plane of either scan.
-double value_of_things_m2(const ScanView& source, const ScanView& target, const Rigid3& target_from_source,
-                          const ScoreOptions& options, const std::vector<bool>& source_built,
-                          const std::vector<bool>& target_built);
 
 /// score_pose() for many poses of one pair: what does not depend on the pose is gathered once. Keeps copies
 /// of the views, not of what they point to. Any number of threads may ask it at once.

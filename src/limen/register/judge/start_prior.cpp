@@ -58,14 +58,11 @@ double log_prior_elsewhere(const StartPrior& start, const Rigid3& pose, const Ve
   return std::log(start.trust * (1.0 - near) + (1.0 - start.trust));
 }
 
-double twin_beside_start(double twin, const StartPrior& start, const Rigid3& pose, const Vector3d& at,
-                         double log_prior) {
+double odds_of_look_alike_beside_start(const StartPrior& start, const Rigid3& pose, const Vector3d& at,
+                                       double log_prior) {
   constexpr double kRoomApartM = 2.5;
-  if (twin <= 0.0 || twin >= 1.0) return twin;
-  const double gain = std::max(log_prior_elsewhere(start, pose, at, kRoomApartM) - log_prior,
-                               std::log((1.0 - start.trust) / start.trust));
-  const double odds = twin / (1.0 - twin) * std::exp(gain);
-  return odds / (1.0 + odds);
+  return std::exp(std::max(log_prior_elsewhere(start, pose, at, kRoomApartM) - log_prior,
+                           std::log((1.0 - start.trust) / start.trust)));
 }
 
 }  // namespace limen

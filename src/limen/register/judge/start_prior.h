@@ -38,11 +38,11 @@ double log_prior_of_start(const StartPrior& start, const Rigid3& pose, const Vec
 /// that the belief bears as well.
 double log_prior_elsewhere(const StartPrior& start, const Rigid3& pose, const Vector3d& at, double apart_m);
 
-/// The probability of a twin where something is believed of the pose beforehand; `log_prior`: of `pose`. A
-/// twin is another place, a room away at least. But who takes one room for another believes the wrong place
-/// as sharply as the right one: what is not trusted counts as such mistakes, so that no belief, however
-/// sharp, makes a twin less probable than by (1 - trust) / trust.
-double twin_beside_start(double twin, const StartPrior& start, const Rigid3& pose, const Vector3d& at,
-                         double log_prior);
+/// By how much a belief about the pose changes the odds of a look-alike place; `log_prior`: of `pose`. A
+/// look-alike is another place, a room away at least. But who takes one room for another believes the wrong
+/// place as sharply as the right one: what is not trusted counts as such mistakes, so that no belief, however
+/// sharp, makes a look-alike less probable than by (1 - trust) / trust.
+double odds_of_look_alike_beside_start(const StartPrior& start, const Rigid3& pose, const Vector3d& at,
+                                       double log_prior);
 
 }  // namespace limen

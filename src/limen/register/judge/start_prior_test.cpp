@@ -71,19 +71,14 @@ TEST(StartPrior, TwinsAreRuledOutByWhatIsKnownToTheMetreOnly) {
               std::log(0.05), 1e-6);
 }
 
-TEST(StartPrior, ASharpBeliefInTheWrongRoomDoesNotMakeATwinAway) {
+TEST(StartPrior, ASharpBeliefInTheWrongRoomDoesNotExcludeALookAlike) {
   const StartPrior sharp = belief(0.05, 0.3);
   const Rigid3& pose = sharp.target_from_source;
-  const auto beside = [&](double twin) {
-    return twin_beside_start(twin, sharp, pose, kAt, log_prior_of_start(sharp, pose, kAt, true, kMost));
-  };
-  EXPECT_GT(beside(0.95), 0.4);
-  EXPECT_GT(beside(0.15), 0.005);
-  EXPECT_LT(beside(0.15), 0.05);
-  EXPECT_EQ(beside(0.0), 0.0);
+  const double gain = odds_of_look_alike_beside_start(sharp, pose, kAt,
+                                                      log_prior_of_start(sharp, pose, kAt, true, kMost));
+  EXPECT_NEAR(gain, (1.0 - sharp.trust) / sharp.trust, 1e-6);
   // Nothing believed of the place: nothing changes.
-  const StartPrior wide = belief(1e4, 1e4);
-  EXPECT_NEAR(twin_beside_start(0.15, wide, pose, kAt, 0.0), 0.15, 1e-6);
+  EXPECT_NEAR(odds_of_look_alike_beside_start(belief(1e4, 1e4), pose, kAt, 0.0), 1.0, 1e-6);
 }
 
 TEST(StartPrior, OptionsAreChecked) {

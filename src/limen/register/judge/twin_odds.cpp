@@ -173,10 +173,11 @@ constexpr double kMostlyOther = 0.6;  // share agreeing below which the things a
 }  // namespace
 
 void TwinOptions::check() const {
-  check_share("prior", prior);
-  check_share("prior_apart", prior_apart);
-  check_share("alike_share", alike_share);
-  check_share("least_alike", least_alike);
+  const std::pair<const char*, double> odds[] = {
+      {"otherwise", otherwise}, {"otherwise_apart", otherwise_apart}, {"alike", alike}};
+  for (const auto& [name, value] : odds) {
+    if (!(value >= 0)) throw_bad_option(name, value, "0 or more");
+  }
   kept.check("kept");
   check_share("lived_in", lived_in);
   kept_lived_in.check("kept_lived_in");
@@ -188,7 +189,7 @@ void TwinOptions::check() const {
 
 TwinOptions where_nothing_repeats(TwinOptions options) {
   constexpr double kWordsWrong = 0.05;
-  for (double* believed : {&options.prior, &options.prior_apart, &options.least_alike})
+  for (double* believed : {&options.otherwise, &options.otherwise_apart, &options.alike})
     *believed *= kWordsWrong;
   return options;
 }
@@ -201,7 +202,6 @@ TwinEvidence weigh_twin(const IndividualMatter& individual, const TwinOptions& o
       log_likelihood(individual.matter, options.kept, options.kept_lived_in, options.lived_in);
   const double as_put =
       log_likelihood(individual.matter, options.put_alike, options.kept, options.nothing_own);
-  const double prior = individual.apart ? options.prior_apart : options.prior;
   const double same = log_likelihood(individual.faces, one_room());
   // Of a whole room sides are seen as well as fronts, and by chance one stands elsewhere; through a door few
   // things are, mostly their fronts.
@@ -210,14 +210,16 @@ TwinEvidence weigh_twin(const IndividualMatter& individual, const TwinOptions& o
   const std::vector<OffsetScene> otherwise =
       individual.apart ? with_fronts(furnished_otherwise(), 0.1) : furnished_otherwise();
   TwinEvidence evidence;
-  evidence.alike = std::max(prior * options.alike_share, options.least_alike);
-  evidence.otherwise = std::max(0.0, prior - evidence.alike);
+  evidence.alike = options.alike;
+  evidence.otherwise = individual.apart ? options.otherwise_apart : options.otherwise;
   evidence.otherwise_nats =
       stayed - log_likelihood(individual.matter, chance) + same - log_likelihood(individual.faces, otherwise);
   // Things that agree to centimetres speak against no twin furnished alike: how much of its rooms' things is
   // their own is a property of a building, and would count anew in each of its pairs.
   evidence.alike_nats = std::min(0.0, stayed - as_put) + same - log_likelihood(individual.faces, alike);
-  evidence.built_nats = individual.built_nats;
+  // Scans of some sensors are bent within themselves: they say nothing of how a building was built.
+  evidence.built_nats = log_sum_exp({std::log(1.0 - evidence_table::kBent) + individual.built_nats,
+                                     std::log(evidence_table::kBent)});
   return evidence;
 }
 

@@ -5,18 +5,16 @@
 #include <string>
 
 #include "limen/model/twin_evidence.h"
+#include "limen/register/judge/evidence_table.h"
 #include "limen/register/judge/individual_matter.h"
 #include "limen/register/judge/share_belief.h"
 
 namespace limen {
 
 struct TwinOptions {
-  double prior = 0.15;        ///< of the pairs whose walls fit, those of two rooms built alike
-  double prior_apart = 0.05;  ///< the same where a wall is between the stations: two neighbours must be alike
-  double alike_share = 0.03;  ///< of those, furnished alike as well, to a few centimetres
-  /// Twins furnished alike are believed no less beforehand, twice the risk that is usual: where nothing that
-  /// was seen speaks against them, no belief alone registers.
-  double least_alike = 0.002;
+  double otherwise = evidence_table::kOtherwise;             ///< odds beforehand of a look-alike place ...
+  double otherwise_apart = evidence_table::kOtherwiseApart;  ///< ... where a wall is between the stations
+  double alike = evidence_table::kAlike;                     ///< ... and of one furnished alike as well
   /// Share of a room's things that stayed between the two scans: mostly nearly all of them; in some pairs
   /// the room was used in between, and any share is as good as another.
   ShareBelief kept{0.9, 7.0};

@@ -36,4 +36,9 @@ bool is_work_order(const PreparedScan& source, const PreparedScan& target) {
   return !std::lexicographical_compare(others.begin(), others.end(), own.begin(), own.end(), comes_before);
 }
 
+WorkedPair worked_pair(const PreparedPair& pair) {
+  if (is_work_order(pair.source, pair.target)) return {pair.source, pair.target, false};
+  return {pair.target, pair.source, true};
+}
+
 }  // namespace limen

@@ -33,6 +33,7 @@ WholeBuilding building_of(const PairSetOptions& options, std::uint64_t day) {
   building.seed = options.seed;
   building.stations = 14;
   building.passes = 0;
+  building.as_built = options.as_built;
   if (options.styles) building.furnishing = random_furnishing_style(options.seed);
   building.furnishing.day = day;
   return make_whole_building(building);

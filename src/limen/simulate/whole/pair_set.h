@@ -34,6 +34,7 @@ struct PairSetOptions {
   std::size_t points = 100000;  ///< of a station, about
   std::size_t twins = 3;        ///< rooms like the first one
   bool styles = true;           ///< random ones for scans and furniture; else plain ones
+  bool as_built = false;        ///< walls, slabs and openings are off the drawing as real ones are
 };
 
 struct PairSetScan {

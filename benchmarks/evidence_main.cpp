@@ -1,0 +1,243 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// What two scans say of every pose that is found, of pairs whose truth is known. Rows (JSON lines, one a
+// pair) are what scripts/fit_posterior reads.
+//   bench_evidence --building flats --first-seed 1 --seeds 2 -o rows.jsonl
+//   bench_evidence LIST --set hall -o rows.jsonl        scans at hand: a line each, NAME FILE and 12 numbers,
+//                                                       the rows of the pose of the scan in the set's frame
+//   bench_evidence LIST --foreign -o rows.jsonl         pairs of different places only: names PLACE/SCAN
+#include <algorithm>
+#include <chrono>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "matter_rows.h"
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "limen/base/angles.h"
+#include "limen/io/cloud/read_scan.h"
+#include "limen/register/find_poses.h"
+#include "limen/register/judge/given_pose.h"
+#include "limen/register/judge/twin_odds.h"
+#include "limen/simulate/whole/pair_set.h"
+
+namespace {
+
+using namespace limen;               // NOLINT(google-build-using-namespace): a program, not a header
+using namespace limen::calibration;  // NOLINT(google-build-using-namespace)
+
+constexpr std::size_t kAskedPoses = 8;
+constexpr std::size_t kAskedThings = 6;
+
+struct Settings {
+  std::string list;
+  std::string set;
+  std::string building;
+  std::uint64_t first_seed = 1;
+  std::uint64_t seeds = 1;
+  std::size_t points = 100000;
+  bool as_drawn = false;
+  bool foreign = false;
+  int every = 1;
+  double near_m = 0.05;
+  double near_deg = 0.5;
+  double minutes = 60.0;
+  std::string output;
+};
+
+struct Known {
+  std::string name;
+  PreparedScan scan;
+  Rigid3 set_from_scan;
+};
+
+std::vector<Known> scans_of_list(const std::string& path) {
+  std::ifstream file(path);
+  std::vector<Known> scans;
+  for (std::string line; std::getline(file, line);) {
+    std::istringstream words(line);
+    Known known;
+    std::string cloud;
+    words >> known.name >> cloud;
+    for (int r = 0; r < 3; ++r) {
+      for (int c = 0; c < 3; ++c) words >> known.set_from_scan.rotation(r, c);
+      words >> known.set_from_scan.translation[r];
+    }
+    if (!words) throw std::runtime_error("not a line of NAME FILE and 12 numbers: " + line);
+    known.set_from_scan.rotation = nearest_rotation(known.set_from_scan.rotation);
+    known.scan = prepare_scan(read_scan(cloud), prepare_options({}));
+    scans.push_back(std::move(known));
+  }
+  return scans;
+}
+
+class Rows {
+ public:
+  explicit Rows(const Settings& settings) : s_(settings), start_(std::chrono::steady_clock::now()) {
+    file_.open(s_.output, std::ios::app);
+  }
+
+  void list(const std::vector<Known>& scans) {
+    for (std::size_t i = 0; i < scans.size(); ++i) {
+      for (std::size_t j = i + 1; j < scans.size(); ++j) {
+        const bool foreign = place_of(scans[i].name) != place_of(scans[j].name);
+        if (foreign != s_.foreign || count_++ % s_.every != 0) continue;
+        PreparedPair pair{scans[i].scan, scans[j].scan};
+        run(s_.set, scans[i].name, scans[j].name, foreign ? "foreign" : "known", pair,
+            foreign ? std::nullopt : std::optional(inverse(scans[j].set_from_scan) * scans[i].set_from_scan));
+      }
+    }
+  }
+
+  void building(std::uint64_t seed) {
+    const PairSet here = set_of(seed);
+    const PairSet there = set_of(seed + 500000);
+    const std::vector<PreparedScan> scans = prepared(here, here.scans.size());
+    const std::vector<PreparedScan> foreign = prepared(there, std::min<std::size_t>(2, there.scans.size()));
+    for (std::size_t i = 0; i < scans.size(); ++i) {
+      for (std::size_t j = i + 1; j < scans.size(); ++j) {
+        if (here.kind_of(i, j) == PairKind::unclear) continue;
+        const std::string kind =
+            std::string(to_string(here.kind_of(i, j))) + (here.furnished_alike(i, j) ? "_alike" : "");
+        const bool shared = here.kind_of(i, j) != PairKind::twin && here.kind_of(i, j) != PairKind::other_room;
+        PreparedPair pair{scans[i], scans[j]};
+        run(name_of(seed), here.scans[i].truth.name, here.scans[j].truth.name, kind, pair,
+            shared ? std::optional(here.target_from_source(i, j)) : std::nullopt);
+      }
+      for (std::size_t j = 0; j < foreign.size() && i < 4; ++j) {
+        PreparedPair pair{scans[i], foreign[j]};
+        run(name_of(seed), here.scans[i].truth.name, "other_" + there.scans[j].truth.name, "other_building",
+            pair, std::nullopt);
+      }
+    }
+  }
+
+ private:
+  static std::string place_of(const std::string& name) { return name.substr(0, name.find('/')); }
+  [[nodiscard]] std::string name_of(std::uint64_t seed) const {
+    return fmt::format("{}{}_{}", s_.building, s_.as_drawn ? "_drawn" : "", seed);
+  }
+  [[nodiscard]] bool over() const {
+    const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start_;
+    return spent.count() > 60.0 * s_.minutes;
+  }
+  [[nodiscard]] PairSet set_of(std::uint64_t seed) const {
+    PairSetOptions options;
+    options.name = s_.building;
+    options.seed = seed;
+    options.points = s_.points;
+    options.as_built = !s_.as_drawn;
+    return simulate_pair_set(options);
+  }
+  static std::vector<PreparedScan> prepared(const PairSet& set, std::size_t count) {
+    std::vector<PreparedScan> scans;
+    for (std::size_t i = 0; i < count; ++i)
+      scans.push_back(prepare_scan(set.scans[i].scan, prepare_options({})));
+    return scans;
+  }
+
+  void run(const std::string& set, const std::string& from, const std::string& to, const std::string& kind,
+           const PreparedPair& pair, const std::optional<Rigid3>& truth) {
+    if (over()) return;
+    const auto start = std::chrono::steady_clock::now();
+    const WorkedPair worked = worked_pair(pair);
+    std::vector<StageTime> stages;
+    StageClock clock(stages, silent_monitor());
+    const RegisterOptions options;
+    std::vector<FoundPose> poses = find_poses(worked, options, clock);
+    if (poses.size() > kAskedPoses) poses.resize(kAskedPoses);
+    const ScanView source = worked.source.view();
+    const ScanView target = worked.target.view();
+    std::optional<Rigid3> right;
+    if (truth) right = in_prepared_frames(*truth, pair);
+    const MatterAsker asker(source, target);
+    std::string text;
+    for (std::size_t k = 0; k < poses.size(); ++k) {
+      const Rigid3 pose = worked.turned ? inverse(poses[k].refined.target_from_source)
+                                        : poses[k].refined.target_from_source;
+      const PoseScore& score = poses[k].score;
+      text += fmt::format(
+          R"({}{{"right": {:d}, "evidence": {:.3f}, "agreeing": {:.3f}, "planar": {:.3f}, "contradicted": {:.3f}, )"
+          R"("tested": {:.3f}, "opening": {:.3f}, "held": {:d})",
+          k == 0 ? "" : ", ", right && is_near(pose, *right, pair), score.evidence_m2, score.agreeing_m2,
+          score.planar_m2, score.contradicted_m2, score.tested_m2, score.opening_m2,
+          unobserved_freedoms(poses[k].refined, 0.03).empty());
+      if (sort_of(worked) == PairSort::rooms && k < kAskedThings) {
+        const IndividualMatter seen = asker(poses[k].refined.target_from_source);
+        const TwinEvidence twin = weigh_twin(seen);
+        text += fmt::format(
+            R"(, "otherwise": {:.3f}, "alike": {:.3f}, "built": {:.3f}, "apart": {:d}, "count": {:.2f}, "share": {:.3f})",
+            twin.otherwise_nats, twin.alike_nats, seen.built_nats, seen.apart, seen.matter.count,
+            seen.matter.share);
+      }
+      text += "}";
+    }
+    std::string contrasts;
+    const ScoreOptions fine = fine_score(source, target, Method::automatic);
+    for (std::size_t a = 0; a < poses.size(); ++a) {
+      for (std::size_t b = a + 1; b < poses.size(); ++b) {
+        const PoseContrast c = contrast_poses(source, target, poses[a].refined.target_from_source,
+                                              poses[b].refined.target_from_source, fine);
+        contrasts +=
+            fmt::format("{}[{}, {}, {:.3f}, {:.3f}, {:.3f}, {:.3f}]", contrasts.empty() ? "" : ", ", a, b,
+                        c.for_first_m2, c.for_second_m2, c.against_first_m2, c.against_second_m2);
+      }
+    }
+    const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
+    const char* sort = sort_of(worked) == PairSort::rooms ? "rooms" : "through_wall";
+    file_ << fmt::format(
+                 R"({{"set": "{}", "source": "{}", "target": "{}", "kind": "{}", "sort": "{}", "noise_mm": {:.1f}, )"
+                 R"("seconds": {:.2f}, "poses": [{}], "contrasts": [{}]}})",
+                 set, from, to, kind, sort, 1e3 * std::max(source.features->noise_m, target.features->noise_m),
+                 spent.count(), text, contrasts)
+          << "\n"
+          << std::flush;
+  }
+
+  [[nodiscard]] bool is_near(const Rigid3& pose, const Rigid3& truth, const PreparedPair& pair) const {
+    const Vector3d middle = pair.source.reach.center();
+    return (pose * middle - truth * middle).norm() < s_.near_m &&
+           rotation_angle(truth.rotation.transpose() * pose.rotation) < radians(s_.near_deg);
+  }
+
+  const Settings& s_;
+  std::chrono::steady_clock::time_point start_;
+  std::ofstream file_;
+  int count_ = 0;
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Settings settings;
+  CLI::App app("What two scans say of every pose that is found, of pairs whose truth is known");
+  app.add_option("list", settings.list, "scans with their poses");
+  app.add_option("--set", settings.set, "name of the rows' set");
+  app.add_option("--building", settings.building, "simulated buildings of this kind instead");
+  app.add_option("--first-seed", settings.first_seed, "first seed");
+  app.add_option("--seeds", settings.seeds, "number of seeds");
+  app.add_option("--points", settings.points, "points of a station, about");
+  app.add_flag("--as-drawn", settings.as_drawn, "walls exactly where they were drawn");
+  app.add_flag("--foreign", settings.foreign, "only pairs of different places");
+  app.add_option("--every", settings.every, "only every so many pairs of a list");
+  app.add_option("--near-m", settings.near_m, "a pose nearer than this is the true one ...");
+  app.add_option("--near-deg", settings.near_deg, "... and its rotation nearer than this");
+  app.add_option("--minutes", settings.minutes, "stop after so long");
+  app.add_option("-o,--output", settings.output, "rows are added to this file")->required();
+  CLI11_PARSE(app, argc, argv);
+  try {
+    Rows rows(settings);
+    if (!settings.list.empty()) rows.list(scans_of_list(settings.list));
+    for (std::uint64_t seed = settings.first_seed;
+         !settings.building.empty() && seed < settings.first_seed + settings.seeds; ++seed)
+      rows.building(seed);
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "bench_evidence: {}\n", error.what());
+    return 1;
+  }
+  return 0;
+}

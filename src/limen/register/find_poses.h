@@ -1,0 +1,37 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "limen/register/judge/posterior.h"
+#include "limen/register/prepare/side_order.h"
+#include "limen/register/prepare/stage_clock.h"
+#include "limen/register/register_options.h"
+
+namespace limen {
+
+PairSort sort_of(const WorkedPair& pair);
+
+/// A belief about the start between the upright frames, and where it is asked: of the source that was given,
+/// whichever is worked on as the source.
+struct PreparedStart {
+  StartPrior prior;
+  Vector3d at = Vector3d::Zero();
+  bool upright = false;
+  bool turned = false;
+
+  /// A worked pose as it is believed of, and the other way round.
+  [[nodiscard]] Rigid3 given(const Rigid3& pose) const { return turned ? inverse(pose) : pose; }
+  [[nodiscard]] double log_prior(const Rigid3& pose) const;
+};
+
+std::optional<PreparedStart> prepared_start(const WorkedPair& pair, const RegisterOptions& options);
+
+/// Distinct poses of a pair between the upright frames, refined and scored, that of the best value first.
+/// Searched first with both scans upright and six freedoms held by three planes or openings; and only where
+/// nothing found so exceeds chance, with any tilt, and along planes that leave a shift open.
+std::vector<FoundPose> find_poses(const WorkedPair& pair, const RegisterOptions& options, StageClock& clock);
+
+}  // namespace limen

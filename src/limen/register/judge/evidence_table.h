@@ -1,0 +1,35 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "limen/register/judge/share_belief.h"
+
+/// The numbers of the judge of pairs, written by scripts/fit_posterior.
+namespace limen::evidence_table {
+
+/// What surface says, of one sort of pairs.
+struct Surface {
+  double nats_per_m2;        ///< against chance, of agreeing surface; a plane counts for 5 m^2 at most
+  double contrast_per_m2;    ///< nats, of surface that agrees better under one of two poses ...
+  double against_per_m2;     ///< ... and of surface that one of them puts into seen free space
+  double search_nats;        ///< what the best of all wrong poses reaches by chance
+  double piece_m2;           ///< agreeing or contradicted surface that makes one observation
+  ShareBelief contradicted;  ///< share of the surface seen by both that right poses contradict ...
+  ShareBelief by_chance;     ///< ... and wrong ones
+  double nothing_shared;     ///< odds beforehand that nothing is shared, against a pose that was proposed ...
+  double unlisted;           ///< ... and that a place is shared whose pose was not proposed
+};
+inline constexpr Surface kRooms{0.888, 1.087, 7.557, 8.358, 0.238, {0.0204, 0.968}, {0.269, 5.906}, 1.0, 0.1};
+inline constexpr Surface kThroughWall{0.996, 1.138, 7.616, 13.37, 0.368, {0.041, 3.45}, {0.279, 6.0}, 1.0, 0.1};
+inline constexpr Surface kInModel{1.9, 1.9, 7.6, 9.5, 0.4, {0.02, 8.0}, {0.3, 6.0}, 1.0, 0.1};
+
+/// Look-alike places: odds beforehand that a pose whose walls agree lays a place on another one ...
+inline constexpr double kOtherwise = 1.434;       ///< ... that is furnished otherwise,
+inline constexpr double kOtherwiseApart = 0.090;  ///< the same where a wall is between the stations,
+inline constexpr double kAlike = 0.0070;          ///< and one that is furnished alike.
+inline constexpr double kInPair = 0.056;   ///< share of them whose other place the same two scans show
+inline constexpr double kThings = 0.692;   ///< weight of what things say, against chance ...
+inline constexpr double kBuilt = 1.874;    ///< ... and of how surfaces were built
+inline constexpr double kBent = 0.065;     ///< share of pairs whose scans are bent within themselves
+
+}  // namespace limen::evidence_table
