@@ -36,7 +36,7 @@ class Assembler {
         result_(result) {}
 
   void run() {
-    ProjectGraph made = make_graph(nodes_, pairs_, risk_, words_);
+    ProjectGraph made = make_graph(nodes_, pairs_, words_);
     add_survey_links(survey_, made);
     solved_ = solve_graph(made.graph, risk_, hearing_, probable_risk_);
     if (confirm_by_points(survey_, solved_, made))
@@ -92,7 +92,7 @@ class Assembler {
           words += (named++ == 0 ? "" : ", ") + survey_.marks[p].name;
       }
       words += " contradict the others, and without them too few are left to hold a frame";
-      made = make_graph(nodes_, pairs_, risk_, words_);
+      made = make_graph(nodes_, pairs_, words_);
       solved_ = solve_graph(made.graph, risk_, hearing_, probable_risk_);
       straighten(made);
       stand_alone();
@@ -387,7 +387,7 @@ class Assembler {
     const int taken = solved_.links[static_cast<std::size_t>(k)].pose;
     for (std::size_t p = 0; p < link.poses.size() && p < kMostAnswers; ++p) {
       const int number = link.number_of(static_cast<int>(p));
-      if (link.trust <= LinkTrust::likely && static_cast<int>(p) != std::max(0, taken)) continue;
+      if (link.poses[p].probability < kPossible && static_cast<int>(p) != std::max(0, taken)) continue;
       told.answers.push_back({number == 0 ? DecisionKind::accept : DecisionKind::choose, scans, number});
     }
     told.answers.push_back({DecisionKind::reject, scans, 0});
@@ -491,6 +491,7 @@ class Assembler {
   const std::vector<ProjectNode>& nodes_;
   const std::vector<TriedPair>& pairs_;
   static constexpr std::size_t kMostAnswers = 3;
+  static constexpr double kPossible = 0.01;  // probability of a pose that a question offers
   static constexpr int kSurvey = -2;  ///< in place of a node: the survey's frame
 
   const UserWords& words_;

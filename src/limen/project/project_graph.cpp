@@ -76,9 +76,9 @@ void open_up(const std::vector<UnobservedFreedom>& unobserved, Matrix6d& covaria
 
 class GraphMaker {
  public:
-  GraphMaker(const std::vector<ProjectNode>& nodes, const std::vector<TriedPair>& pairs, double risk,
+  GraphMaker(const std::vector<ProjectNode>& nodes, const std::vector<TriedPair>& pairs,
              const UserWords& words)
-      : nodes_(nodes), pairs_(pairs), risk_(risk), words_(words) {}
+      : nodes_(nodes), pairs_(pairs), words_(words) {}
 
   ProjectGraph run() {
     graph_.nodes = static_cast<int>(nodes_.size());
@@ -106,15 +106,11 @@ class GraphMaker {
     GraphLink link;
     link.source = static_cast<int>(pairs_[k].source);
     link.target = static_cast<int>(pairs_[k].target);
-    link.trust = trust_of(found, twin);
+    link.trust = trust_of(found);
     link.twin = twin;
     link.evidence = found.twin;
     link.chance = found.others ? by_chance(found) : kOfUnknown;
     link.poses.push_back(pose_of(link, found, found.best, 1.0));
-    if (twin > kLikelier && !spoken) {
-      graph_.against.push_back(std::move(link));
-      return;
-    }
     for (const Hypothesis& other : found.alternatives) {
       if (link.poses.size() >= kMostPoses) break;
       if (other.score < kRivalShare * found.best.score) continue;
@@ -135,19 +131,10 @@ class GraphMaker {
           floors_apart(digest(link.source), digest(link.target), pose.target_from_source);
       return metres && std::abs(*metres) > kStoreyM;
     };
-    const bool best_falls = apart(link.poses.front());
     const auto kept = std::find_if_not(link.poses.begin(), link.poses.end(), apart);
-    if (kept == link.poses.end()) return;
-    if (!best_falls) {
-      // Numbers of poses stay what the pair calls them: those that fall are only no longer as likely.
-      const bool alone = std::all_of(link.poses.begin() + 1, link.poses.end(), apart);
-      if (alone && link.trust == LinkTrust::open) link.trust = LinkTrust::sure;
-      return;
-    }
+    if (kept == link.poses.end() || kept == link.poses.begin()) return;
     link.best = static_cast<int>(kept - link.poses.begin());
     std::iter_swap(link.poses.begin(), kept);
-    const bool alone = std::all_of(link.poses.begin() + 1, link.poses.end(), apart);
-    if (link.trust != LinkTrust::weak) link.trust = alone ? LinkTrust::sure : LinkTrust::open;
   }
 
   /// The pose that a user says is right becomes the first, as sure as a user is.
@@ -158,34 +145,19 @@ class GraphMaker {
     std::swap(link.poses.front(), link.poses[static_cast<std::size_t>(link.best)]);
     std::swap(link.poses.front(), link.poses[number]);
     link.best = word.pose;
-    if (link.trust != LinkTrust::weak) link.trust = LinkTrust::sure;
     link.twin = std::min(link.twin, kWordWrong);
     link.evidence.reset();
     link.chance = std::min(link.chance, kWordWrong);
     link.poses.front().probability = std::max(link.poses.front().probability, 1.0 - kWordWrong);
   }
 
-  /// The pair's verdict without what its own risk made of a twin.
-  [[nodiscard]] LinkTrust trust_of(const RegistrationResult& found, double twin) const {
-    const bool open = !found.unobserved.empty() && found.rivals == 0;
-    if (found.outcome == Outcome::under_constrained || (found.outcome == Outcome::ambiguous && open)) {
-      // What a pair calls open may be known well enough to tell places apart: the covariance says how well.
-      if (!tells_places_apart(found.sigma)) return LinkTrust::weak;
-      if (others_than_best(found, twin) > risk_) return LinkTrust::open;
-    }
-    const bool sure = found.outcome == Outcome::registered || found.outcome == Outcome::under_constrained;
-    if (!sure && (found.rivals > 0 || twin <= 0.0)) return LinkTrust::open;
-    return twin > risk_ ? LinkTrust::likely : LinkTrust::sure;
+  /// What a pair calls open may be known well enough to distinguish places: the covariance says how well.
+  [[nodiscard]] static LinkTrust trust_of(const RegistrationResult& found) {
+    return !found.unobserved.empty() && !tells_places_apart(found.sigma) ? LinkTrust::weak : LinkTrust::measured;
   }
 
   [[nodiscard]] static bool tells_places_apart(const PoseSigma& sigma) {
     return sigma.translation_m.maxCoeff() < kToldApartM && sigma.rotation_rad.maxCoeff() < kToldApartRad;
-  }
-
-  /// Probability that another of a pair's poses is right.
-  [[nodiscard]] static double others_than_best(const RegistrationResult& found, double twin) {
-    if (!found.others || !found.best.probability) return kOfUnknown;
-    return std::max(0.0, 1.0 - *found.best.probability - twin - by_chance(found));
   }
 
   /// Probability that none of a pair's poses is right, twins apart.
@@ -268,7 +240,6 @@ class GraphMaker {
 
   const std::vector<ProjectNode>& nodes_;
   const std::vector<TriedPair>& pairs_;
-  double risk_;
   const UserWords& words_;
   PoseGraph graph_;
   std::vector<int> pair_of_;
@@ -277,8 +248,8 @@ class GraphMaker {
 }  // namespace
 
 ProjectGraph make_graph(const std::vector<ProjectNode>& nodes, const std::vector<TriedPair>& pairs,
-                        double risk, const UserWords& words) {
-  return GraphMaker(nodes, pairs, risk, words).run();
+                        const UserWords& words) {
+  return GraphMaker(nodes, pairs, words).run();
 }
 
 }  // namespace limen

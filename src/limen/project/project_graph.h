@@ -18,11 +18,11 @@ struct ProjectGraph {
   std::vector<int> pair_of;  ///< of each link: index of its pair, -1: the file gives it
 };
 
-/// Every pair that found something, with all its poses, and what files say of their own scans. What may lie
-/// on a twin with more than `risk` is no sure link. A user's word makes a pose surer, or leaves a link out:
+/// Every pair that found something, with all its poses, and what files say of their own scans. A user's word
+/// makes a pose surer, or leaves a link out:
 /// the loops still test it.
 ProjectGraph make_graph(const std::vector<ProjectNode>& nodes, const std::vector<TriedPair>& pairs,
-                        double risk, const UserWords& words);
+                        const UserWords& words);
 
 struct PlacedSurvey;
 

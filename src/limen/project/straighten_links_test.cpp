@@ -106,7 +106,7 @@ Missed missed_by(const StrayedStreet& made, const ProjectGraph& graph, const Sol
 
 TEST(StraightenLinks, ALinkMeasuresWhereThePassStoodThen) {
   const StrayedStreet made;
-  const ProjectGraph graph = make_graph(made.nodes, made.pairs, 0.001, {});
+  const ProjectGraph graph = make_graph(made.nodes, made.pairs, {});
   SolvedGraph solved = solve_graph(graph.graph, 0.001);
   const Missed missed = missed_by(made, graph, solved);
   EXPECT_GT(missed.before_m, 0.04);
@@ -119,7 +119,7 @@ TEST(StraightenLinks, ALinkMeasuresWhereThePassStoodThen) {
 TEST(StraightenLinks, WithoutPassesThereIsNothingToStraighten) {
   StrayedStreet made;
   made.nodes.front().digest.track.way = {};
-  const ProjectGraph graph = make_graph(made.nodes, made.pairs, 0.001, {});
+  const ProjectGraph graph = make_graph(made.nodes, made.pairs, {});
   const SolvedGraph solved = solve_graph(graph.graph, 0.001);
   EXPECT_FALSE(straightened(made.nodes, made.pairs, graph, solved).has_value());
 }

@@ -49,7 +49,7 @@ struct TargetsOnly {
 
   /// As assemble() goes about it.
   PlacedSurvey place(SolvedGraph& solved, const std::vector<TriedPair>& pairs = {}) {
-    ProjectGraph made = make_graph(nodes, pairs, 0.001, {});
+    ProjectGraph made = make_graph(nodes, pairs, {});
     add_survey_links(survey, made);
     solved = solve_graph(made.graph, 0.001);
     if (confirm_by_points(survey, solved, made)) solved = solve_graph(made.graph, 0.001);
@@ -95,7 +95,7 @@ TEST(Survey, ScansThatOnlyTargetsJoinStandInOneFrame) {
 
 TEST(Survey, WhatStoodByTheSurveyAloneKeepsAFrameOfItsOwn) {
   TargetsOnly building({4, 4, 0});
-  ProjectGraph made = make_graph(building.nodes, {building.pair(1, 0, 0.0, 0.0)}, 0.001, {});
+  ProjectGraph made = make_graph(building.nodes, {building.pair(1, 0, 0.0, 0.0)}, {});
   add_survey_links(building.survey, made);
   SolvedGraph solved = solve_graph(made.graph, 0.001);
   // Both are in doubt: what they see holds no frame, and the survey's node, which was theirs, is gone.
@@ -222,7 +222,7 @@ struct SurveyedPass {
 TEST(Survey, TargetsSeenAtTheirTimesBendAPassBack) {
   const SurveyedPass street;
   Survey survey = street.survey(13);
-  ProjectGraph made = make_graph(street.nodes, {}, 0.001, {});
+  ProjectGraph made = make_graph(street.nodes, {}, {});
   add_survey_links(survey, made);
   SolvedGraph solved = solve_graph(made.graph, 0.001);
   PlacedSurvey placed = place_survey(survey, made, solved);

@@ -49,7 +49,7 @@ class Waves {
 
   [[nodiscard]] PairList next_pairs(const std::vector<std::vector<std::size_t>>& ranked,
                                     const std::vector<TriedPair>& tried, std::size_t partners) const {
-    const ProjectGraph made = make_graph(nodes_, tried, risk_, words_);
+    const ProjectGraph made = make_graph(nodes_, tried, words_);
     const SolvedGraph solved = solve_graph(made.graph, risk_);
     Done done;
     for (const TriedPair& pair : tried) done.emplace(pair.source, pair.target);

@@ -65,16 +65,14 @@ class Growth {
 
   void collect() {
     links_.clear();
-    against_.clear();
     joins_.clear();
-    for (std::size_t k = 0; k < graph_.links.size(); ++k) add(links_, k, graph_.links[k]);
-    for (std::size_t k = 0; k < graph_.against.size(); ++k) add(against_, k, graph_.against[k]);
+    for (std::size_t k = 0; k < graph_.links.size(); ++k) add(k);
     for (const auto& [parts, links] : links_) find_join(parts);
   }
 
-  void add(std::map<Parts, std::vector<std::size_t>>& lists, std::size_t k, const GraphLink& link) const {
-    const Parts parts = std::minmax(part(link.source), part(link.target));
-    if (parts.first != parts.second) lists[parts].push_back(k);
+  void add(std::size_t k) {
+    const Parts parts = std::minmax(part(graph_.links[k].source), part(graph_.links[k].target));
+    if (parts.first != parts.second) links_[parts].push_back(k);
   }
 
   /// Where the first part has the second, by a pose of a link between them.
@@ -130,13 +128,6 @@ class Growth {
         evidence.add(matcher_.evidence(k, pose));
         covered.insert({k, pose});
       }
-      if (const auto against = against_.find(parts); against != against_.end()) {
-        for (const std::size_t k : against->second) {
-          const GraphLink& pair = graph_.against[k];
-          if (LinkMatcher::is_laid_so(pair, predicted(parts.first, pair, placed)))
-            evidence.add_against(evidence_of(pair, 0).alone());
-        }
-      }
       const double nats = evidence.nats();
       if (nats > best.nats) {
         next = best.nats;
@@ -160,22 +151,19 @@ class Growth {
     }
     joins_.erase(parts);
     std::set<Parts> touched;
-    for (auto* lists : {&links_, &against_}) {
-      lists->erase(parts);
-      std::vector<std::size_t> moving;
-      for (auto it = lists->begin(); it != lists->end();) {
-        if (it->first.first == parts.second || it->first.second == parts.second) {
-          moving.insert(moving.end(), it->second.begin(), it->second.end());
-          joins_.erase(it->first);
-          it = lists->erase(it);
-        } else {
-          ++it;
-        }
+    links_.erase(parts);
+    std::vector<std::size_t> moving;
+    for (auto it = links_.begin(); it != links_.end();) {
+      if (it->first.first == parts.second || it->first.second == parts.second) {
+        moving.insert(moving.end(), it->second.begin(), it->second.end());
+        joins_.erase(it->first);
+        it = links_.erase(it);
+      } else {
+        ++it;
       }
-      std::sort(moving.begin(), moving.end());
-      for (const std::size_t k : moving)
-        add(*lists, k, lists == &links_ ? graph_.links[k] : graph_.against[k]);
     }
+    std::sort(moving.begin(), moving.end());
+    for (const std::size_t k : moving) add(k);
     for (const auto& [other, links] : links_) {
       if (other.first == parts.first || other.second == parts.first) touched.insert(other);
     }
@@ -187,7 +175,6 @@ class Growth {
   Configuration& grown_;
   bool weak_ = false;
   std::map<Parts, std::vector<std::size_t>> links_;
-  std::map<Parts, std::vector<std::size_t>> against_;
   std::map<Parts, PartJoin> joins_;
 };
 
@@ -321,8 +308,8 @@ void JoinEvidence::add(const PairEvidence& evidence) {
 }
 
 double JoinEvidence::nats() const {
-  if (!any_) return against_;
-  return against_ - std::log(std::exp(first_ - chance_) + prior_otherwise_ * std::exp(-otherwise_.sum()) +
+  if (!any_) return 0.0;
+  return -std::log(std::exp(first_ - chance_) + prior_otherwise_ * std::exp(-otherwise_.sum()) +
                              prior_alike_ * std::exp(-alike_.sum()) + kLeastOdds);
 }
 
@@ -355,12 +342,6 @@ int LinkMatcher::nearest(std::size_t link, const Rigid3& target_from_source, dou
 
 const PairEvidence& LinkMatcher::evidence(std::size_t link, int pose) const {
   return evidence_[link][static_cast<std::size_t>(pose)];
-}
-
-bool LinkMatcher::is_laid_so(const GraphLink& pair, const Rigid3& target_from_source) {
-  const LinkPose& pose = pair.poses.front();
-  const Vector3d at = inverse(pose.target_from_source) * pose.centre;
-  return (target_from_source * at - pose.centre).norm() < kSameLookAlikeM;
 }
 
 Configuration best_configuration(const PoseGraph& graph, const LinkMatcher& matcher) {

@@ -33,8 +33,6 @@ class LinkMatcher {
   [[nodiscard]] bool is_left_out(std::size_t link, std::size_t pose) const { return left_out_[link][pose]; }
   /// What the pair says of one of its poses.
   [[nodiscard]] const PairEvidence& evidence(std::size_t link, int pose) const;
-  /// Of a pair that more probably shows two places built alike: whether the placement lays it so.
-  [[nodiscard]] static bool is_laid_so(const GraphLink& pair, const Rigid3& target_from_source);
 
  private:
   const PoseGraph& graph_;
@@ -48,15 +46,12 @@ class LinkMatcher {
 class JoinEvidence {
  public:
   void add(const PairEvidence& evidence);
-  /// Of a pair that more probably shows two look-alike places.
-  void add_against(double nats) { against_ += std::min(0.0, nats); }
 
   /// Against every other explanation; 0: no pair agrees.
   [[nodiscard]] double nats() const;
 
  private:
   bool any_ = false;
-  double against_ = 0.0;
   double chance_ = 0.0;
   double first_ = 0.0;  ///< the first pair that joins the two closes no loop
   LookAlikeNats otherwise_{&TwinEvidence::otherwise_nats};

@@ -96,7 +96,6 @@ class MoveSearch {
       if (!side[n]) continue;
       for (const std::size_t k : links_of_[n]) weigh(k, move, now, then, then_alone);
     }
-    for (const GraphLink& pair : graph_.against) weigh_against(pair, move, now, then);
     move.present_nats = now.nats();
     move.moved_nats = then.nats();
     move.moved_alone_nats = then_alone.nats();
@@ -132,13 +131,6 @@ class MoveSearch {
     if (present == moved) return;
     if (present >= 0) move.present.push_back(static_cast<int>(k));
     if (moved >= 0) move.moved.push_back(static_cast<int>(k));
-  }
-
-  void weigh_against(const GraphLink& pair, const Move& move, JoinEvidence& now, JoinEvidence& then) const {
-    if (!crosses(pair, move.side)) return;
-    const double nats = evidence_of(pair, 0).alone();
-    if (LinkMatcher::is_laid_so(pair, present_.target_from_source(pair))) now.add_against(nats);
-    if (LinkMatcher::is_laid_so(pair, moved_pose(pair, move))) then.add_against(nats);
   }
 
   const PoseGraph& graph_;

@@ -8,29 +8,66 @@
 #include <utility>
 
 #include "limen/base/parallel.h"
-#include "limen/register/judge/score_pose.h"
 
 namespace limen {
 namespace {
 
 constexpr double kLeastContactM2 = 0.1;
+constexpr double kFullContactM2 = 10.0;  // less tells proportionally less
 constexpr double kMostAskedNats = 4.0;   // a placement that no search proposed is known less well
 
+/// Of the surface that one scan sees where the other has surface or saw free space, the share in free space:
+/// a beta distribution of given mean and strength.
+struct ShareModel {
+  double mean;
+  double strength;
+  [[nodiscard]] double log_density(double share) const {
+    const double a = mean * strength;
+    const double b = (1.0 - mean) * strength;
+    return std::lgamma(strength) - std::lgamma(a) - std::lgamma(b) + (a - 1.0) * std::log(share) +
+           (b - 1.0) * std::log(1.0 - share);
+  }
+};
+constexpr ShareModel kWrong{0.7, 7.0};
+constexpr double kRightStrength = 2.5;
+constexpr double kLeastRightShare = 0.1;  // doors, people and furniture move
+
+double contradicted_share(const PoseHeard& heard) {
+  return std::clamp(heard.contradicted_m2 / (heard.agreeing_m2 + heard.contradicted_m2), 0.01, 0.99);
+}
+
+/// How much is contradicted where a placement is right is a property of a project: of what moves there, of
+/// glass, of sensors whose rays are not what they seem. Learned as the median over what was asked, for most
+/// of it is right.
+ShareModel right_shares(const std::vector<PoseHeard>& asked) {
+  std::vector<double> shares;
+  for (const PoseHeard& heard : asked) {
+    if (heard.agreeing_m2 + heard.contradicted_m2 >= kLeastContactM2)
+      shares.push_back(contradicted_share(heard));
+  }
+  if (shares.empty()) return {kLeastRightShare, kRightStrength};
+  const auto middle = shares.begin() + static_cast<std::ptrdiff_t>(shares.size() / 2);
+  std::nth_element(shares.begin(), middle, shares.end());
+  return {std::clamp(*middle, kLeastRightShare, 0.5), kRightStrength};
+}
+
 /// By how much the contradicted share of two scans speaks for their placement, nats.
-double nats_of_contact(const PoseHeard& heard) {
-  if (heard.agreeing_m2 + heard.contradicted_m2 < kLeastContactM2) return 0.0;
-  return std::clamp(nats_of_contradiction(heard.agreeing_m2, heard.contradicted_m2, evidence_table::kRooms),
-                    -kMostAskedNats, kMostAskedNats);
+double nats_of_contact(const PoseHeard& heard, const ShareModel& right) {
+  const double contact_m2 = heard.agreeing_m2 + heard.contradicted_m2;
+  if (contact_m2 < kLeastContactM2) return 0.0;
+  const double share = contradicted_share(heard);
+  return std::min(1.0, contact_m2 / kFullContactM2) *
+         std::clamp(right.log_density(share) - kWrong.log_density(share), -kMostAskedNats, kMostAskedNats);
 }
 
 /// What two scans say of a placement that no link of theirs agrees with.
 PlacedPair asked_pair(int source, int target, const Rigid3& target_from_source, const PoseHeard& surface,
-                      const PoseHearing& hearing) {
+                      const ShareModel& right, const PoseHearing& hearing) {
   PlacedPair pair;
   pair.source = source;
   pair.target = target;
   pair.shared_m2 = surface.agreeing_m2;
-  const double nats = nats_of_contact(surface);
+  const double nats = nats_of_contact(surface, right);
   pair.evidence.chance_nats = nats;
   pair.evidence.looks_for_twins = true;
   // A look-alike place agrees by design: agreeing walls do not tell it from the right one, contradicted ones
@@ -72,12 +109,6 @@ std::vector<PlacedPair> placed_pairs(const PoseGraph& graph, const LinkMatcher& 
     pairs.push_back(linked_pair(graph, matcher, configuration, k, hearing));
     known.insert(std::minmax(graph.links[k].source, graph.links[k].target));
   }
-  for (const GraphLink& pair : graph.against) {
-    if (!configuration.joins(pair) || !LinkMatcher::is_laid_so(pair, configuration.target_from_source(pair)))
-      continue;
-    pairs.push_back({pair.source, pair.target, pair.poses.front().agreeing_m2, evidence_of(pair, 0), -1});
-    known.insert(std::minmax(pair.source, pair.target));
-  }
   if (!hearing) return pairs;
   std::vector<std::pair<int, int>> asked;
   for (int target = 0; target < graph.nodes; ++target) {
@@ -97,10 +128,11 @@ std::vector<PlacedPair> placed_pairs(const PoseGraph& graph, const LinkMatcher& 
     for (std::size_t k = begin; k < end; ++k)
       surfaces[k] = hearing.surface(asked[k].first, asked[k].second, pose(k));
   });
+  const ShareModel right = right_shares(surfaces);
   std::vector<PlacedPair> answers(asked.size());
   parallel_for(asked.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k)
-      answers[k] = asked_pair(asked[k].first, asked[k].second, pose(k), surfaces[k], hearing);
+      answers[k] = asked_pair(asked[k].first, asked[k].second, pose(k), surfaces[k], right, hearing);
   });
   std::copy_if(answers.begin(), answers.end(), std::back_inserter(pairs), says_something);
   return pairs;
@@ -123,7 +155,8 @@ double nats_against_move(const Configuration& configuration, const std::vector<b
       against[k] =
           -nats_of_contact(hearing.surface(static_cast<int>(moved), static_cast<int>(other),
                                            inverse(configuration.frame_from_node[other]) * frame_from_frame *
-                                               configuration.frame_from_node[moved]));
+                                               configuration.frame_from_node[moved]),
+                           {kLeastRightShare, kRightStrength});
     }
   });
   // What several scans saw there is one observation.

@@ -14,18 +14,16 @@ namespace limen {
 
 /// What is known of how a link's pose came about.
 enum class LinkTrust {
-  given,   ///< the files say so
-  sure,    ///< one pose explains the pair clearly better than every other
-  likely,  ///< the same, but another place built alike may explain it too
-  open,    ///< several poses explain the pair: the first is the best, the others are as likely
-  weak     ///< the pose leaves a direction free
+  given,     ///< the files say so
+  measured,  ///< by registering the pair: how sure it is its probabilities say
+  weak       ///< the pose leaves a direction free, so that it does not tell places apart
 };
 
 /// What a pair of nodes says of their poses; no pose is thrown away.
 struct GraphLink {
   int source = -1;
   int target = -1;
-  LinkTrust trust = LinkTrust::sure;
+  LinkTrust trust = LinkTrust::measured;
   std::vector<LinkPose> poses;  ///< at least one; best first
   double twin = 0.0;            ///< probability that the best pose lays a place on another one built alike
   /// What that probability comes from, where things were asked.
@@ -47,9 +45,6 @@ struct GraphLink {
 struct PoseGraph {
   int nodes = 0;
   std::vector<GraphLink> links;
-  /// Pairs that more probably show two places built alike: they hold nothing, and speak against what lays the
-  /// two on one another.
-  std::vector<GraphLink> against;
   int anchor = -1;  ///< a node that is the frame of the component it is part of, -1: none
 };
 
