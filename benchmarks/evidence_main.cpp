@@ -103,7 +103,8 @@ class Rows {
         if (here.kind_of(i, j) == PairKind::unclear) continue;
         const std::string kind =
             std::string(to_string(here.kind_of(i, j))) + (here.furnished_alike(i, j) ? "_alike" : "");
-        const bool shared = here.kind_of(i, j) != PairKind::twin && here.kind_of(i, j) != PairKind::other_room;
+        const bool shared =
+            here.kind_of(i, j) != PairKind::twin && here.kind_of(i, j) != PairKind::other_room;
         PreparedPair pair{scans[i], scans[j]};
         run(name_of(seed), here.scans[i].truth.name, here.scans[j].truth.name, kind, pair,
             shared ? std::optional(here.target_from_source(i, j)) : std::nullopt);
@@ -157,8 +158,8 @@ class Rows {
     const MatterAsker asker(source, target);
     std::string text;
     for (std::size_t k = 0; k < poses.size(); ++k) {
-      const Rigid3 pose = worked.turned ? inverse(poses[k].refined.target_from_source)
-                                        : poses[k].refined.target_from_source;
+      const Rigid3 pose =
+          worked.turned ? inverse(poses[k].refined.target_from_source) : poses[k].refined.target_from_source;
       const PoseScore& score = poses[k].score;
       text += fmt::format(
           R"({}{{"right": {:d}, "evidence": {:.3f}, "agreeing": {:.3f}, "planar": {:.3f}, "contradicted": {:.3f}, )"
@@ -189,13 +190,14 @@ class Rows {
     }
     const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
     const char* sort = sort_of(worked) == PairSort::rooms ? "rooms" : "through_wall";
-    file_ << fmt::format(
-                 R"({{"set": "{}", "source": "{}", "target": "{}", "kind": "{}", "sort": "{}", "noise_mm": {:.1f}, )"
-                 R"("seconds": {:.2f}, "poses": [{}], "contrasts": [{}]}})",
-                 set, from, to, kind, sort, 1e3 * std::max(source.features->noise_m, target.features->noise_m),
-                 spent.count(), text, contrasts)
-          << "\n"
-          << std::flush;
+    file_
+        << fmt::format(
+               R"({{"set": "{}", "source": "{}", "target": "{}", "kind": "{}", "sort": "{}", "noise_mm": {:.1f}, )"
+               R"("seconds": {:.2f}, "poses": [{}], "contrasts": [{}]}})",
+               set, from, to, kind, sort, 1e3 * std::max(source.features->noise_m, target.features->noise_m),
+               spent.count(), text, contrasts)
+        << "\n"
+        << std::flush;
   }
 
   [[nodiscard]] bool is_near(const Rigid3& pose, const Rigid3& truth, const PreparedPair& pair) const {

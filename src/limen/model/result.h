@@ -137,9 +137,9 @@ struct RegistrationResult {
   std::size_t judged_poses = 0;              ///< poses that were refined and judged
   std::optional<OtherExplanations> others;   ///< where poses have probabilities
   std::optional<TwinEvidence> twin;          ///< of `best`, where rooms built alike may be meant
-  std::size_t rivals = 0;               ///< alternatives that cannot be told from `best`
-  std::optional<StartAgreement> start;  ///< where one was given and a pose was found
-  ScannerPlace source_place;            ///< where the scanner of each side stood, and who says so
+  std::size_t rivals = 0;                    ///< alternatives that cannot be told from `best`
+  std::optional<StartAgreement> start;       ///< where one was given and a pose was found
+  ScannerPlace source_place;                 ///< where the scanner of each side stood, and who says so
   ScannerPlace target_place;
   std::vector<StageTime> stages;
   std::optional<PublishedScore> published;  ///< set where a published method was asked for and found a pose

@@ -492,7 +492,7 @@ class Assembler {
   const std::vector<TriedPair>& pairs_;
   static constexpr std::size_t kMostAnswers = 3;
   static constexpr double kPossible = 0.01;  // probability of a pose that a question offers
-  static constexpr int kSurvey = -2;  ///< in place of a node: the survey's frame
+  static constexpr int kSurvey = -2;         ///< in place of a node: the survey's frame
 
   const UserWords& words_;
   std::vector<bool> broken_;

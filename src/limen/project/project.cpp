@@ -305,7 +305,7 @@ class Run {
 
   /// Scans that seem to stand upright may not: those that nothing holds are tried once more, any way round.
   void try_any_turn(std::vector<TriedPair>& tried) {
-    const SolvedGraph solved = solve_graph(make_graph(nodes_, tried, risk(), words_).graph, risk());
+    const SolvedGraph solved = solve_graph(make_graph(nodes_, tried, words_).graph, risk());
     PairList again;
     std::vector<std::size_t> places;
     for (std::size_t k = 0; k < tried.size(); ++k) {

@@ -153,7 +153,8 @@ class GraphMaker {
 
   /// What a pair calls open may be known well enough to distinguish places: the covariance says how well.
   [[nodiscard]] static LinkTrust trust_of(const RegistrationResult& found) {
-    return !found.unobserved.empty() && !tells_places_apart(found.sigma) ? LinkTrust::weak : LinkTrust::measured;
+    return !found.unobserved.empty() && !tells_places_apart(found.sigma) ? LinkTrust::weak
+                                                                         : LinkTrust::measured;
   }
 
   [[nodiscard]] static bool tells_places_apart(const PoseSigma& sigma) {

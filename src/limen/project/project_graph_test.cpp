@@ -25,34 +25,27 @@ RegistrationResult told(Outcome outcome, double twin, std::size_t rivals = 0) {
   return result;
 }
 
-std::vector<GraphLink> links_of(const RegistrationResult& pair, double risk) {
+std::vector<GraphLink> links_of(const RegistrationResult& pair) {
   std::vector<ProjectNode> nodes(2);
   nodes[1].scan = 1;
-  return make_graph(nodes, {{1, 0, pair, {}}}, risk, {}).graph.links;
+  return make_graph(nodes, {{1, 0, pair, {}}}, {}).graph.links;
 }
 
-TEST(ProjectGraph, ATwinThatIsMoreProbableThanTheRiskMakesALinkNoMoreThanLikely) {
-  const auto trust = [](const RegistrationResult& pair, double risk) {
-    const std::vector<GraphLink> links = links_of(pair, risk);
-    EXPECT_EQ(links.size(), 1U);
-    return links.front().trust;
-  };
-  EXPECT_EQ(trust(told(Outcome::registered, 0.0005), 0.001), LinkTrust::sure);
-  EXPECT_EQ(trust(told(Outcome::registered, 0.0005), 0.0001), LinkTrust::likely);
-  // The pair called it ambiguous by its own risk; the project's may be larger.
-  EXPECT_EQ(trust(told(Outcome::ambiguous, 0.01), 0.001), LinkTrust::likely);
-  EXPECT_EQ(trust(told(Outcome::ambiguous, 0.01), 0.05), LinkTrust::sure);
-  EXPECT_EQ(trust(told(Outcome::ambiguous, 0.01, 1), 0.05), LinkTrust::open);
+TEST(ProjectGraph, ALinkKeepsTheProbabilitiesOfItsPair) {
+  const std::vector<GraphLink> links = links_of(told(Outcome::ambiguous, 0.6));
+  ASSERT_EQ(links.size(), 1U);
+  EXPECT_EQ(links.front().trust, LinkTrust::measured);
+  EXPECT_NEAR(links.front().twin, 0.6, 1e-12);
+  EXPECT_TRUE(links_of(told(Outcome::no_match, 0.0)).empty());
 }
 
 TEST(ProjectGraph, WhatIsKnownToCentimetresTellsOnePlaceFromAnother) {
   RegistrationResult pair = told(Outcome::under_constrained, 0.0);
   pair.sigma.translation_m = {0.003, 0.02, 0.003};
-  EXPECT_EQ(links_of(pair, 0.001).front().trust, LinkTrust::sure);
-  pair.best.probability = 0.6;  // another pose has the rest
-  EXPECT_EQ(links_of(pair, 0.001).front().trust, LinkTrust::open);
+  pair.unobserved = {{false, Vector3d::UnitY(), "shift"}};
+  EXPECT_EQ(links_of(pair).front().trust, LinkTrust::measured);
   pair.sigma.translation_m.y() = 0.2;
-  EXPECT_EQ(links_of(pair, 0.001).front().trust, LinkTrust::weak);
+  EXPECT_EQ(links_of(pair).front().trust, LinkTrust::weak);
 }
 
 TEST(ProjectGraph, AlongWhatAPairCallsOpenItsDeviationIsNotBelieved) {
@@ -61,7 +54,7 @@ TEST(ProjectGraph, AlongWhatAPairCallsOpenItsDeviationIsNotBelieved) {
   pair.sigma = pair.best.sigma;
   const Vector3d open = Vector3d(3, 4, 0).normalized();
   pair.unobserved = {{false, open, "shift"}};
-  const Matrix6d covariance = links_of(pair, 0.001).front().poses.front().covariance;
+  const Matrix6d covariance = links_of(pair).front().poses.front().covariance;
   const Matrix3d shift = covariance.bottomRightCorner<3, 3>();
   EXPECT_GT(open.dot(shift * open), 0.009);
   const Vector3d across = Vector3d::UnitZ().cross(open);
@@ -70,19 +63,14 @@ TEST(ProjectGraph, AlongWhatAPairCallsOpenItsDeviationIsNotBelieved) {
   EXPECT_LT((Matrix3d(covariance.topLeftCorner<3, 3>()).norm()), 1e-3);
 }
 
-TEST(ProjectGraph, WhatATwinExplainsBetterIsNoLink) {
-  EXPECT_TRUE(links_of(told(Outcome::ambiguous, 0.6), 0.001).empty());
-  EXPECT_TRUE(links_of(told(Outcome::no_match, 0.0), 0.001).empty());
-}
-
 TEST(ProjectGraph, APairThatDoesNotKnowItselfIsNotSure) {
   RegistrationResult pair = told(Outcome::registered, 0.0);
   pair.best.probability = 0.7;
   pair.others->nothing_shared = 0.2;
   pair.others->unlisted_pose = 0.1;
-  EXPECT_NEAR(links_of(pair, 0.001).front().chance, 0.3, 1e-12);
+  EXPECT_NEAR(links_of(pair).front().chance, 0.3, 1e-12);
   pair.others.reset();
-  EXPECT_GT(links_of(pair, 0.001).front().chance, 0.001);
+  EXPECT_GT(links_of(pair).front().chance, 0.001);
 }
 
 UserWords word(DecisionKind kind, int pose = 0) {
@@ -94,15 +82,13 @@ UserWords word(DecisionKind kind, int pose = 0) {
 std::vector<GraphLink> links_with(const RegistrationResult& pair, const UserWords& words) {
   std::vector<ProjectNode> nodes(2);
   nodes[1].scan = 1;
-  return make_graph(nodes, {{1, 0, pair, {}}}, 0.001, words).graph.links;
+  return make_graph(nodes, {{1, 0, pair, {}}}, words).graph.links;
 }
 
 TEST(ProjectGraph, AUsersWordMakesALinkSureOrLeavesItOut) {
   const RegistrationResult twin = told(Outcome::ambiguous, 0.9);
-  ASSERT_TRUE(links_of(twin, 0.001).empty());
   const std::vector<GraphLink> accepted = links_with(twin, word(DecisionKind::accept));
   ASSERT_EQ(accepted.size(), 1U);
-  EXPECT_EQ(accepted.front().trust, LinkTrust::sure);
   // No surer than a user is.
   EXPECT_GT(accepted.front().twin, 0.0);
   EXPECT_LT(accepted.front().twin + accepted.front().chance, 0.001);
@@ -116,13 +102,12 @@ TEST(ProjectGraph, TheChosenPoseComesFirstAndPosesKeepTheirNumbers) {
   pair.alternatives[0].target_from_source.translation.x() = 3.0;
   pair.alternatives[1].target_from_source.translation.x() = 5.0;
   const GraphLink link = links_with(pair, word(DecisionKind::choose, 2)).front();
-  EXPECT_EQ(link.trust, LinkTrust::sure);
   EXPECT_EQ(link.poses.front().target_from_source.translation.x(), 5.0);
   EXPECT_EQ(link.number_of(0), 2);
   EXPECT_EQ(link.number_of(1), 1);
   EXPECT_EQ(link.number_of(2), 0);
   // A number that there is none of changes nothing.
-  EXPECT_EQ(links_with(pair, word(DecisionKind::choose, 7)).front().trust, LinkTrust::open);
+  EXPECT_EQ(links_with(pair, word(DecisionKind::choose, 7)).front().number_of(0), 0);
 }
 
 /// A scanner 1.6 m above a floor of 10 m^2.
@@ -148,10 +133,9 @@ TEST(ProjectGraph, PosesOnOtherStoreysFallAwayWhereFloorsAreOfOneHeight) {
   UserWords words;
   words.floors.emplace(1, 0);
   const GraphLink link =
-      make_graph({over_a_floor(0), over_a_floor(1)}, {{1, 0, pair, {}}}, 0.001, words).graph.links.front();
+      make_graph({over_a_floor(0), over_a_floor(1)}, {{1, 0, pair, {}}}, words).graph.links.front();
   EXPECT_EQ(link.poses.front().target_from_source.translation.z(), 0.01);
   EXPECT_EQ(link.number_of(0), 1);
-  EXPECT_EQ(link.trust, LinkTrust::sure);
 }
 
 /// Two scans with a link that knows tilts to 0.1 degrees and errs by as much.

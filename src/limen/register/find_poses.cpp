@@ -37,7 +37,7 @@ RefineOptions refine_options(const ScanView& source, const ScanView& target, con
 /// Least squares may leave a good pose along a shift that hardly anything holds: then smaller steps are
 /// tried, and where they lead astray as well, the pose stays.
 FoundPose refined_if_better(const ScanView& source, const ScanView& target, const Rigid3& start,
-                             const RefineOptions& options, const PoseScorer& score_of) {
+                            const RefineOptions& options, const PoseScorer& score_of) {
   const auto found = [&](const RefineOptions& refine) {
     FoundPose pose;
     pose.refined = refine_pose(source, target, start, refine);
@@ -64,7 +64,7 @@ FoundPose refined_if_better(const ScanView& source, const ScanView& target, cons
 }
 
 std::vector<FoundPose> refine_all(const std::vector<PoseCandidate>& candidates, const ScanView& source,
-                                   const ScanView& target, const RegisterOptions& options) {
+                                  const ScanView& target, const RegisterOptions& options) {
   ScoreOptions fine = fine_score(source, target, options.method);
   RefineOptions quick = refine_options(source, target, options);
   quick.samples = kSecondLook;
@@ -167,7 +167,7 @@ enum class Proposal { held, sliding };
 
 /// Steps of one attempt: poses from planes, coarse looks, refinement.
 std::vector<FoundPose> attempt(const WorkedPair& pair, bool gravity_known, Proposal proposal,
-                                const RegisterOptions& options, StageClock& clock) {
+                               const RegisterOptions& options, StageClock& clock) {
   const PreparedScan& source = pair.source;
   const PreparedScan& target = pair.target;
   clock.begin("hypotheses");
@@ -245,7 +245,8 @@ std::vector<FoundPose> find_poses(const WorkedPair& pair, const RegisterOptions&
   const bool level = source.upright && target.upright;
   const bool sure = source.surely_upright && target.surely_upright;
   const bool planes = options.method == Method::automatic || options.method == Method::polygons;
-  std::vector<FoundPose> poses = distinct(attempt(pair, level, Proposal::held, options, clock), options.verdict);
+  std::vector<FoundPose> poses =
+      distinct(attempt(pair, level, Proposal::held, options, clock), options.verdict);
   const auto search_on = [&](bool gravity_known, Proposal proposal) {
     if (exceeds_chance(poses, sort_of(pair), options.verdict)) return;
     const std::vector<FoundPose> more = attempt(pair, gravity_known, proposal, options, clock);

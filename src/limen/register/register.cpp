@@ -189,8 +189,8 @@ class AskedPair {
 /// How many of the likeliest poses are listed besides the best: as many as are asked for, all that cannot be
 /// excluded, and all of those that together are as probable as an answer has to be.
 std::size_t count_of_alternatives(const Posterior& posterior, const RegisterOptions& options) {
-  std::size_t count = std::max(static_cast<std::size_t>(options.alternatives),
-                               posterior.rivals(options.verdict.risk));
+  std::size_t count =
+      std::max(static_cast<std::size_t>(options.alternatives), posterior.rivals(options.verdict.risk));
   double covered = posterior.best();
   std::size_t needed = 0;
   while (needed + 1 < posterior.order.size() && covered < 1.0 - options.verdict.probable_risk)

@@ -165,22 +165,6 @@ AskedRoom asked_room(const TwinCase& rooms) {
   return asked;
 }
 
-TEST(RegisterTwins, WhatThingsSayIsApartOfWhatAgrees) {
-  const AskedRoom asked = asked_room(twin_case(4, Furniture::own));
-  const ScanView from = asked.source.view();
-  const ScanView to = asked.target.view();
-  const auto things = [&](const std::vector<bool>& of_source, const std::vector<bool>& of_target) {
-    return value_of_things_m2(from, to, asked.upright, {}, of_source, of_target);
-  };
-  const PoseScore all = score_pose(from, to, asked.upright, {});
-  const std::vector<bool> none_from(from.features->planes.size(), false);
-  const std::vector<bool> none_to(to.features->planes.size(), false);
-  EXPECT_NEAR(things(none_from, none_to), all.value() - all.opening_m2, 1e-9);
-  const double own = things(asked.individual.source_built, asked.individual.target_built);
-  EXPECT_GT(own, 0.2);
-  EXPECT_LT(own, 0.5 * all.value());
-}
-
 TEST(RegisterTwins, OneLeafIsOneThing) {
   for (const std::uint64_t seed : {6U, 7U}) {
     const IndividualMatter leaf = asked_room(twin_case(seed, Furniture::leaf)).individual;

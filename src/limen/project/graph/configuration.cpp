@@ -310,7 +310,7 @@ void JoinEvidence::add(const PairEvidence& evidence) {
 double JoinEvidence::nats() const {
   if (!any_) return 0.0;
   return -std::log(std::exp(first_ - chance_) + prior_otherwise_ * std::exp(-otherwise_.sum()) +
-                             prior_alike_ * std::exp(-alike_.sum()) + kLeastOdds);
+                   prior_alike_ * std::exp(-alike_.sum()) + kLeastOdds);
 }
 
 LinkMatcher::LinkMatcher(const PoseGraph& graph) : graph_(graph) {

@@ -61,7 +61,7 @@ TEST(Configuration, APairOfLookAlikesKeepsPartsFromEachOther) {
   EXPECT_EQ(best_configuration(made.graph, LinkMatcher(made.graph)).component[1], 0);
   GraphLink look_alike = link;
   look_alike.twin = 0.999;
-  made.graph.against.push_back(look_alike);
+  made.graph.links.push_back(look_alike);
   EXPECT_EQ(best_configuration(made.graph, LinkMatcher(made.graph)).component[1], 1);
 }
 

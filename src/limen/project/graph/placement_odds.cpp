@@ -13,8 +13,8 @@
 namespace limen {
 namespace {
 
-constexpr double kRateStrength = 4.0;   // scans: what is believed of look-alikes before any is seen
-constexpr double kHardlyFresh = 0.05;   // share of a pair's surface that no other shows
+constexpr double kRateStrength = 4.0;  // scans: what is believed of look-alikes before any is seen
+constexpr double kHardlyFresh = 0.05;  // share of a pair's surface that no other shows
 
 }  // namespace
 

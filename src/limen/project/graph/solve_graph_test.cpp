@@ -85,7 +85,6 @@ TEST(SolveGraph, AnExactLinkThatComesLateIsTakenAndLooseOnesGiveWay) {
     GraphLink link;
     link.source = source;
     link.target = target;
-    link.trust = chance > 0.1 ? LinkTrust::open : LinkTrust::sure;
     link.chance = chance;
     const Rigid3 truth = inverse(world_from_node[static_cast<std::size_t>(target)]) *
                          world_from_node[static_cast<std::size_t>(source)];
@@ -125,7 +124,6 @@ TEST(SolveGraph, WhatSureLinksHoldTogetherLendsTheFrame) {
     GraphLink link;
     link.source = source;
     link.target = target;
-    link.trust = open ? LinkTrust::open : LinkTrust::sure;
     link.chance = link.twin = 1e-6;
     const Rigid3 truth = inverse(world_from_node[static_cast<std::size_t>(target)]) *
                          world_from_node[static_cast<std::size_t>(source)];
@@ -152,7 +150,6 @@ TEST(SolveGraph, AnOpenLinkIsSettledByItsLoop) {
   ASSERT_EQ(made.graph.links.size(), 3U);
   RandomStream random(8, 1);
   GraphLink& link = made.graph.links.back();
-  link.trust = LinkTrust::open;
   link.poses.insert(link.poses.begin(), measured_pose(random_pose(random, 5.0), 12.0, random));
   const SolvedGraph solved = solve_graph(made.graph);
   EXPECT_EQ(solved.links.back().pose, 1);
@@ -166,7 +163,6 @@ TEST(SolveGraph, AnOpenLinkThatNothingSettlesLeavesItsScanAmbiguous) {
   GraphLink link;
   link.source = 3;
   link.target = 1;
-  link.trust = LinkTrust::open;
   link.poses = {measured_pose(random_pose(random, 5.0), 10.0, random),
                 measured_pose(random_pose(random, 5.0), 10.0, random)};
   made.graph.links.push_back(link);
@@ -202,11 +198,9 @@ TEST(SolveGraph, ARoomGoesWhereItsWindowsSayNotOnItsTwin) {
   link(4, 3, {});
   for (const int neighbour : {2, 3, 4}) {
     GraphLink& likely = link(5, neighbour, twin_from_room);
-    likely.trust = LinkTrust::likely;
     likely.twin = 0.3;
   }
   GraphLink& open = link(5, 1, {});
-  open.trust = LinkTrust::open;
   open.chance = 1e-4;
   open.poses.push_back(measured_pose(random_pose(random, 6.0), 12.0, random));
   open.poses[0].probability = 0.998;
@@ -229,7 +223,6 @@ TEST(SolveGraph, APoseWithinWhatIsKnownOfItsLinkIsNoOtherPlace) {
     GraphLink link;
     link.source = 3;
     link.target = 1;
-    link.trust = LinkTrust::open;
     link.poses = {best, best};
     link.poses[1].target_from_source.translation += Vector3d(0.3, 0.0, 0.0);
     for (LinkPose& pose : link.poses) pose.covariance *= loose;
@@ -252,7 +245,6 @@ TEST(SolveGraph, ALinkThatMissesByAFewDeviationsIsNoOtherPlace) {
     link.source = source;
     link.target = target;
     link.chance = wrong;
-    link.trust = wrong > 0.01 ? LinkTrust::open : LinkTrust::sure;
     const Rigid3 truth = inverse(world_from_node[static_cast<std::size_t>(target)]) *
                          world_from_node[static_cast<std::size_t>(source)];
     LinkPose pose = measured_pose(truth, 20.0, random);
@@ -301,7 +293,6 @@ TEST(SolveGraph, WhatNoSingleLinkForbidsAllForbidTogether) {
     for (int k = 1; k < stations; ++k) add(k, k - 1, 1.0);
     for (int k = 0; k < stations; ++k) add(stations, k, 25.0);
     GraphLink& open = graph.links.back();
-    open.trust = LinkTrust::open;
     LinkPose slipped = open.poses.front();
     slipped.target_from_source.translation += Vector3d(0.25, 0.0, 0.0);
     slipped.covariance /= 25.0;
@@ -388,7 +379,6 @@ TwoStoreys two_storeys(bool corridor_is_source = true) {
     link.poses = {measured_pose(inverse(truth[static_cast<std::size_t>(target)]) * from, 40.0, random)};
     link.evidence = TwinEvidence{0.1455, 0.0045, otherwise_nats, alike_nats};
     link.twin = link.evidence->probability();
-    link.trust = link.twin > 0.001 ? LinkTrust::likely : LinkTrust::sure;
     graph.links.push_back(link);
   };
   for (int a = 0; a < kRooms; ++a) {
@@ -464,7 +454,6 @@ TEST(SolveGraph, ABuildingThatNothingJoinsChangesNothing) {
   GraphLink link;
   link.source = 0;
   link.target = made.graph.nodes++;
-  link.trust = LinkTrust::open;
   for (int k = 0; k < 2; ++k) link.poses.push_back(measured_pose(random_pose(random, 5.0), 10.0, random));
   made.graph.links.push_back(link);
   expect_same_beside_another(made.graph);

@@ -52,13 +52,6 @@ TEST(PreparedBytes, ARegistrationFromTheStoreGivesTheSameBits) {
   const PairCounts counts{counts_of(prepared(0.0)), counts_of(prepared(0.7))};
   EXPECT_EQ(bytes_of(again), bytes_of(fresh));
   EXPECT_EQ(bytes_of(result_from(bytes_of(fresh), "here", counts)), bytes_of(fresh));
-  RegistrationResult alike = fresh;
-  alike.built_alike = PlaceBuiltAlike{fresh.best, twin_evidence_of(0.9), 0.01};
-  const RegistrationResult kept_alike = result_from(bytes_of(alike), "here", counts);
-  EXPECT_NE(bytes_of(alike), bytes_of(fresh));
-  EXPECT_EQ(bytes_of(kept_alike), bytes_of(alike));
-  ASSERT_TRUE(kept_alike.built_alike);
-  EXPECT_EQ(kept_alike.built_alike->probability, 0.01);
 }
 
 TEST(PreparedBytes, BytesThatEndTooEarlyAreRefused) {

@@ -19,17 +19,18 @@ struct Surface {
   double nothing_shared;     ///< odds beforehand that nothing is shared, against a pose that was proposed ...
   double unlisted;           ///< ... and that a place is shared whose pose was not proposed
 };
-inline constexpr Surface kRooms{0.888, 1.087, 7.557, 8.358, 0.238, {0.0204, 0.968}, {0.269, 5.906}, 1.0, 0.1};
-inline constexpr Surface kThroughWall{0.996, 1.138, 7.616, 13.37, 0.368, {0.041, 3.45}, {0.279, 6.0}, 1.0, 0.1};
+inline constexpr Surface kRooms{0.755, 1.083, 7.78, 7.51, 0.211, {0.0206, 1.14}, {0.205, 6.15}, 1.0, 0.1};
+inline constexpr Surface kThroughWall{1.132,          1.029,         7.61, 13.90, 0.393,
+                                      {0.0455, 3.82}, {0.280, 6.06}, 1.0,  0.1};
 inline constexpr Surface kInModel{1.9, 1.9, 7.6, 9.5, 0.4, {0.02, 8.0}, {0.3, 6.0}, 1.0, 0.1};
 
 /// Look-alike places: odds beforehand that a pose whose walls agree lays a place on another one ...
-inline constexpr double kOtherwise = 1.434;       ///< ... that is furnished otherwise,
-inline constexpr double kOtherwiseApart = 0.090;  ///< the same where a wall is between the stations,
-inline constexpr double kAlike = 0.0070;          ///< and one that is furnished alike.
-inline constexpr double kInPair = 0.056;   ///< share of them whose other place the same two scans show
-inline constexpr double kThings = 0.692;   ///< weight of what things say, against chance ...
-inline constexpr double kBuilt = 1.874;    ///< ... and of how surfaces were built
-inline constexpr double kBent = 0.065;     ///< share of pairs whose scans are bent within themselves
+inline constexpr double kOtherwise = 1.335;        ///< ... that is furnished otherwise,
+inline constexpr double kOtherwiseApart = 0.1553;  ///< the same where a wall is between the stations,
+inline constexpr double kAlike = 0.007048;         ///< and one that is furnished alike.
+inline constexpr double kInPair = 0.06387;  ///< share of them whose other place the same two scans show
+inline constexpr double kThings = 0.8147;   ///< weight of what things say, against chance ...
+inline constexpr double kBuilt = 1.616;     ///< ... and of how surfaces were built
+inline constexpr double kBent = 0.08544;    ///< share of pairs whose scans are bent within themselves
 
 }  // namespace limen::evidence_table

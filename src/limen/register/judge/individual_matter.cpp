@@ -320,8 +320,6 @@ IndividualMatter MatterAsker::operator()(const Rigid3& target_from_source) const
   const Side& source = sides_->source;
   const Side& target = sides_->target;
   IndividualMatter individual;
-  individual.source_built.assign(source.view.features->planes.size(), true);
-  individual.target_built.assign(target.view.features->planes.size(), true);
   if (source.view.space == nullptr || target.view.space == nullptr) return individual;
   const std::vector<Told> told = told_of_matter(source, target, target_from_source);
   individual.matter = observations(told, shares_of_told(told));
@@ -332,8 +330,6 @@ IndividualMatter MatterAsker::operator()(const Rigid3& target_from_source) const
       common_surfaces(source.view, source.built, target.view, target.built, target_from_source);
   individual.built_nats = as_built_nats(surfaces.all);
   individual.faces = face_offsets(source, target, target_from_source, surfaces.scatter_m);
-  individual.source_built = source.built.flags();
-  individual.target_built = target.built.flags();
   return individual;
 }
 

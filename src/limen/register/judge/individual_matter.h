@@ -43,9 +43,6 @@ struct IndividualMatter {
   double chance = 0.0;
   /// A wall stands between the two stations: what they have in common is seen through an opening.
   bool apart = false;
-  /// Of each plane of either scan, whether it is the building's: a wall, a slab, a strip of one.
-  std::vector<bool> source_built;
-  std::vector<bool> target_built;
   /// What the building's surfaces, built as they are, say against a twin (as_built_nats).
   double built_nats = 0.0;
 };

@@ -27,8 +27,8 @@ const evidence_table::Surface& table_of(PairSort sort) {
   return evidence_table::kRooms;
 }
 
-/// Of every pose in a model against chance: the share of the scan's walls that are the model's takes the place of
-/// the surface that wrong poses reach, which the other poses show.
+/// Of every pose in a model against chance: the share of the scan's walls that are the model's takes the
+/// place of the surface that wrong poses reach, which the other poses show.
 std::vector<double> nats_in_model(const std::vector<FoundPose>& poses) {
   const evidence_table::Surface& table = evidence_table::kInModel;
   std::vector<WallBalance> walls;
@@ -69,7 +69,8 @@ class Weighing {
   [[nodiscard]] double by_chance(std::size_t pose) {
     double nats = against_chance_[pose];
     if (questions_.things)
-      nats += evidence_table::kThings * things(pose).otherwise_nats + evidence_table::kBuilt * things(pose).built_nats;
+      nats += evidence_table::kThings * things(pose).otherwise_nats +
+              evidence_table::kBuilt * things(pose).built_nats;
     return std::exp(-nats);
   }
   /// Odds of each pose against the one that leads.
@@ -214,11 +215,13 @@ std::string placed_words(double probability, double risk) {
 }  // namespace
 
 std::string reason_of(Outcome outcome, const Posterior& posterior, const PoseScore& best,
-                      const OpenFreedoms& open, const std::string& look_alike, const VerdictOptions& options) {
+                      const OpenFreedoms& open, const std::string& look_alike,
+                      const VerdictOptions& options) {
   switch (outcome) {
     case Outcome::registered:
-      return fmt::format("{:.1f} m2 of surface agree, {:.1f} m2 are contradicted, no different pose comes near",
-                         best.agreeing_m2, best.contradicted_m2);
+      return fmt::format(
+          "{:.1f} m2 of surface agree, {:.1f} m2 are contradicted, no different pose comes near",
+          best.agreeing_m2, best.contradicted_m2);
     case Outcome::probable:
       return placed_words(posterior.best(), options.risk) + ": " + what_else(posterior, look_alike);
     case Outcome::under_constrained:

@@ -27,8 +27,8 @@ FoundPose pose(double agreeing_m2, double contradicted_m2 = 0.0) {
 PairQuestions questions_of(const std::vector<FoundPose>& poses) {
   PairQuestions questions;
   questions.contrast = [&poses](std::size_t a, std::size_t b) {
-    return PoseContrast{poses[a].score.evidence_m2, poses[b].score.evidence_m2, poses[a].score.contradicted_m2,
-                        poses[b].score.contradicted_m2};
+    return PoseContrast{poses[a].score.evidence_m2, poses[b].score.evidence_m2,
+                        poses[a].score.contradicted_m2, poses[b].score.contradicted_m2};
   };
   return questions;
 }
@@ -49,8 +49,8 @@ TwinEvidence things(double nats) {
 }
 
 double sum(const Posterior& all) {
-  return std::accumulate(all.probabilities.begin(), all.probabilities.end(), 0.0) + all.others.nothing_shared +
-         all.others.twin + all.others.unlisted_pose;
+  return std::accumulate(all.probabilities.begin(), all.probabilities.end(), 0.0) +
+         all.others.nothing_shared + all.others.twin + all.others.unlisted_pose;
 }
 
 TEST(Posterior, WithoutAPoseNothingIsShared) {
@@ -222,7 +222,8 @@ TEST(ReasonOf, WhatIsOpenIsNamed) {
   const Posterior sure = odds(1.0, 0.0, 0.0, 0.0);
   EXPECT_EQ(reason_of(Outcome::under_constrained, sure, {}, {kOpen}, {}),
             "the common surface does not fix the shift along (1.00, 0.00, 0.00)");
-  EXPECT_NE(reason_of(Outcome::under_constrained, sure, {}, {kOpen, true}, {}).find("drifts"), std::string::npos);
+  EXPECT_NE(reason_of(Outcome::under_constrained, sure, {}, {kOpen, true}, {}).find("drifts"),
+            std::string::npos);
 }
 
 }  // namespace

@@ -43,9 +43,9 @@ struct PoseScore {
   [[nodiscard]] double value() const { return evidence_m2 - kContradictionWeight * contradicted_m2; }
 };
 
-/// What distinguishes two poses, m^2: surface that agrees better under the one than under the other, each plane
-/// counting for no more than 5 m^2, and surface that only one of them puts into seen free space. Surface that
-/// agrees under both poses, however much of it there is, does not count.
+/// What distinguishes two poses, m^2: surface that agrees better under the one than under the other, each
+/// plane counting for no more than 5 m^2, and surface that only one of them puts into seen free space.
+/// Surface that agrees under both poses, however much of it there is, does not count.
 struct PoseContrast {
   double for_first_m2 = 0.0;
   double for_second_m2 = 0.0;
@@ -59,7 +59,8 @@ PoseContrast contrast_poses(const ScanView& source, const ScanView& target, cons
 /// By how much the share of contradicted surface speaks for a pose against chance, natural logarithm. Under a
 /// right pose it is a property of a pair (doors, people, glass, things that were moved): known as a beta
 /// distribution only, and integrated out. So is the share that wrong poses contradict.
-double nats_of_contradiction(double agreeing_m2, double contradicted_m2, const evidence_table::Surface& table);
+double nats_of_contradiction(double agreeing_m2, double contradicted_m2,
+                             const evidence_table::Surface& table);
 
 PoseScore score_pose(const ScanView& source, const ScanView& target, const Rigid3& target_from_source,
                      const ScoreOptions& options);

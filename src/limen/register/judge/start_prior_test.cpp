@@ -74,8 +74,8 @@ TEST(StartPrior, TwinsAreRuledOutByWhatIsKnownToTheMetreOnly) {
 TEST(StartPrior, ASharpBeliefInTheWrongRoomDoesNotExcludeALookAlike) {
   const StartPrior sharp = belief(0.05, 0.3);
   const Rigid3& pose = sharp.target_from_source;
-  const double gain = odds_of_look_alike_beside_start(sharp, pose, kAt,
-                                                      log_prior_of_start(sharp, pose, kAt, true, kMost));
+  const double gain =
+      odds_of_look_alike_beside_start(sharp, pose, kAt, log_prior_of_start(sharp, pose, kAt, true, kMost));
   EXPECT_NEAR(gain, (1.0 - sharp.trust) / sharp.trust, 1e-6);
   // Nothing believed of the place: nothing changes.
   EXPECT_NEAR(odds_of_look_alike_beside_start(belief(1e4, 1e4), pose, kAt, 0.0), 1.0, 1e-6);

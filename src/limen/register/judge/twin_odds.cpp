@@ -218,8 +218,8 @@ TwinEvidence weigh_twin(const IndividualMatter& individual, const TwinOptions& o
   // their own is a property of a building, and would count anew in each of its pairs.
   evidence.alike_nats = std::min(0.0, stayed - as_put) + same - log_likelihood(individual.faces, alike);
   // Scans of some sensors are bent within themselves: they say nothing of how a building was built.
-  evidence.built_nats = log_sum_exp({std::log(1.0 - evidence_table::kBent) + individual.built_nats,
-                                     std::log(evidence_table::kBent)});
+  evidence.built_nats = log_sum_exp(
+      {std::log(1.0 - evidence_table::kBent) + individual.built_nats, std::log(evidence_table::kBent)});
   return evidence;
 }
 

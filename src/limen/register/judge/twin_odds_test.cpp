@@ -35,10 +35,10 @@ IndividualMatter seen(Observations matter, std::vector<FaceMiss> offsets, double
 }
 
 TEST(TwinOdds, WithoutEvidenceThePriorStands) {
-  EXPECT_NEAR(probability_of_twin({}), TwinOptions{}.prior, 1e-12);
+  EXPECT_NEAR(weigh_twin({}).odds(), TwinOptions{}.otherwise + TwinOptions{}.alike, 1e-12);
   IndividualMatter apart;
   apart.apart = true;
-  EXPECT_NEAR(probability_of_twin(apart), TwinOptions{}.prior_apart, 1e-12);
+  EXPECT_NEAR(weigh_twin(apart).odds(), TwinOptions{}.otherwise_apart + TwinOptions{}.alike, 1e-12);
   // What a project believes where it knows nothing else is what a pair believes.
   const TwinEvidence nothing = weigh_twin({});
   EXPECT_NEAR(nothing.otherwise, TwinEvidence{}.otherwise, 1e-12);
@@ -149,7 +149,7 @@ TEST(TwinOdds, WhatThingsMeetAnywayTellsLess) {
 
 TEST(TwinOdds, BoundsAreNamed) {
   TwinOptions options;
-  options.prior = 1.0;
+  options.otherwise = -1.0;
   EXPECT_THROW(probability_of_twin({}, options), Error);
   options = {};
   options.kept.mean = 1.0;

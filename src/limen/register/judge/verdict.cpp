@@ -66,9 +66,9 @@ void VerdictOptions::check() const {
     throw_bad_option("probable_risk", probable_risk, fmt::format("within ({:g}, 0.5), above the risk", risk));
   twin.check();
   const std::pair<const char*, double> bounds[] = {
-      {"max_sigma_m", max_sigma_m},           {"max_sigma_deg", max_sigma_deg},
-      {"max_drifting_m", max_drifting_m},     {"max_drifting_deg", max_drifting_deg},
-      {"min_held_m2", min_held_m2},           {"same_rotation_deg", same_rotation_deg},
+      {"max_sigma_m", max_sigma_m},       {"max_sigma_deg", max_sigma_deg},
+      {"max_drifting_m", max_drifting_m}, {"max_drifting_deg", max_drifting_deg},
+      {"min_held_m2", min_held_m2},       {"same_rotation_deg", same_rotation_deg},
       {"same_shift_m", same_shift_m}};
   for (const auto& [name, value] : bounds) {
     if (!(value > 0)) throw_bad_option(name, value, "more than 0");
