@@ -32,6 +32,8 @@ using namespace limen::calibration;  // NOLINT(google-build-using-namespace)
 
 constexpr std::size_t kAskedPoses = 8;
 constexpr std::size_t kAskedThings = 6;
+constexpr double kPlacementM = 0.1;  // as a project asks about placements
+constexpr double kElsewhereM = 1.0;
 
 struct Settings {
   std::string list;
@@ -42,6 +44,7 @@ struct Settings {
   std::size_t points = 100000;
   bool as_drawn = false;
   bool foreign = false;
+  bool placements = false;
   int every = 1;
   double near_m = 0.05;
   double near_deg = 0.5;
@@ -86,6 +89,11 @@ class Rows {
       for (std::size_t j = i + 1; j < scans.size(); ++j) {
         const bool foreign = place_of(scans[i].name) != place_of(scans[j].name);
         if (foreign != s_.foreign || count_++ % s_.every != 0) continue;
+        if (s_.placements) {
+          place(scans, i, j, j);
+          place(scans, i, j, (i + j) % scans.size());
+          continue;
+        }
         PreparedPair pair{scans[i].scan, scans[j].scan};
         run(s_.set, scans[i].name, scans[j].name, foreign ? "foreign" : "known", pair,
             foreign ? std::nullopt : std::optional(inverse(scans[j].set_from_scan) * scans[i].set_from_scan));
@@ -118,6 +126,17 @@ class Rows {
   }
 
  private:
+  /// What the scans say of scan j where scan `as` lies.
+  void place(const std::vector<Known>& scans, std::size_t i, std::size_t j, std::size_t as) {
+    const double apart_m = (scans[j].set_from_scan.translation - scans[as].set_from_scan.translation).norm();
+    if (as != j && apart_m < kElsewhereM) return;
+    const PoseScore score = score_given_pose(scans[i].scan, scans[j].scan,
+                                             inverse(scans[as].set_from_scan) * scans[i].set_from_scan,
+                                             Method::automatic, kPlacementM);
+    file_ << fmt::format(R"({{"set": "{}", "placed": "{}", "agreeing": {:.3f}, "contradicted": {:.3f}}})",
+                         s_.set, as == j ? "right" : "wrong", score.agreeing_m2, score.contradicted_m2)
+          << "\n";
+  }
   static std::string place_of(const std::string& name) { return name.substr(0, name.find('/')); }
   [[nodiscard]] std::string name_of(std::uint64_t seed) const {
     return fmt::format("{}{}_{}", s_.building, s_.as_drawn ? "_drawn" : "", seed);
@@ -225,6 +244,7 @@ int main(int argc, char** argv) {
   app.add_option("--points", settings.points, "points of a station, about");
   app.add_flag("--as-drawn", settings.as_drawn, "walls exactly where they were drawn");
   app.add_flag("--foreign", settings.foreign, "only pairs of different places");
+  app.add_flag("--placements", settings.placements, "right and wrong placements of a list's scans instead");
   app.add_option("--every", settings.every, "only every so many pairs of a list");
   app.add_option("--near-m", settings.near_m, "a pose nearer than this is the true one ...");
   app.add_option("--near-deg", settings.near_deg, "... and its rotation nearer than this");

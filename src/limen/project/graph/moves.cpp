@@ -91,14 +91,12 @@ class MoveSearch {
                                 : at(link.source) * inverse(target_from_source) * inverse(at(link.target));
     JoinEvidence now;
     JoinEvidence then;
-    JoinEvidence then_alone;
     for (std::size_t n = 0; n < side.size(); ++n) {
       if (!side[n]) continue;
-      for (const std::size_t k : links_of_[n]) weigh(k, move, now, then, then_alone);
+      for (const std::size_t k : links_of_[n]) weigh(k, move, now, then);
     }
     move.present_nats = now.nats();
     move.moved_nats = then.nats();
-    move.moved_alone_nats = then_alone.nats();
     return move;
   }
 
@@ -114,8 +112,7 @@ class MoveSearch {
     return inverse(place(link.target)) * place(link.source);
   }
 
-  void weigh(std::size_t k, Move& move, JoinEvidence& now, JoinEvidence& then,
-             JoinEvidence& then_alone) const {
+  void weigh(std::size_t k, Move& move, JoinEvidence& now, JoinEvidence& then) const {
     const GraphLink& link = graph_.links[k];
     if (!crosses(link, move.side)) return;
     const int present = present_.pose[k];
@@ -126,7 +123,9 @@ class MoveSearch {
       move.either.push_back(static_cast<int>(k));
       move.either_nats += matcher_.evidence(k, moved).alone() - matcher_.evidence(k, present).alone();
     } else if (moved >= 0) {
-      then_alone.add(matcher_.evidence(k, moved));
+      move.moved_alone.push_back({link.source, link.target,
+                                  link.poses[static_cast<std::size_t>(moved)].agreeing_m2,
+                                  matcher_.evidence(k, moved), static_cast<int>(k)});
     }
     if (present == moved) return;
     if (present >= 0) move.present.push_back(static_cast<int>(k));

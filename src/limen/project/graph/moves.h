@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "limen/project/graph/configuration.h"
+#include "limen/project/graph/shared_views.h"
 
 namespace limen {
 
@@ -18,9 +19,9 @@ struct Move {
       present;  ///< links that agree with the present place, and not by the same pose with the other
   std::vector<int>
       moved;  ///< links that agree with the other place, and not by the same pose with the present
-  std::vector<int> either;        ///< links that agree with both, by one pose or by two
-  double moved_alone_nats = 0.0;  ///< for the other place: of links that agree with it alone ...
-  double either_nats = 0.0;  ///< ... and by how much more likely those that agree with both have it there
+  std::vector<int> either;              ///< links that agree with both, by one pose or by two
+  std::vector<PlacedPair> moved_alone;  ///< of links that agree with the other place alone
+  double either_nats = 0.0;             ///< by how much more likely those that agree with both have it there
 
   [[nodiscard]] double gain() const { return moved_nats - present_nats; }
 };

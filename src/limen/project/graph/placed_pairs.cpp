@@ -8,66 +8,49 @@
 #include <utility>
 
 #include "limen/base/parallel.h"
+#include "limen/register/judge/score_pose.h"
 
 namespace limen {
 namespace {
 
 constexpr double kLeastContactM2 = 0.1;
-constexpr double kFullContactM2 = 10.0;  // less tells proportionally less
-constexpr double kMostAskedNats = 4.0;   // a placement that no search proposed is known less well
+constexpr double kMostAskedNats = 4.0;  // for a placement that no search proposed
 
-/// Of the surface that one scan sees where the other has surface or saw free space, the share in free space:
-/// a beta distribution of given mean and strength.
-struct ShareModel {
-  double mean;
-  double strength;
-  [[nodiscard]] double log_density(double share) const {
-    const double a = mean * strength;
-    const double b = (1.0 - mean) * strength;
-    return std::lgamma(strength) - std::lgamma(a) - std::lgamma(b) + (a - 1.0) * std::log(share) +
-           (b - 1.0) * std::log(1.0 - share);
-  }
-};
-constexpr ShareModel kWrong{0.7, 7.0};
-constexpr double kRightStrength = 2.5;
-constexpr double kLeastRightShare = 0.1;  // doors, people and furniture move
-
-double contradicted_share(const PoseHeard& heard) {
-  return std::clamp(heard.contradicted_m2 / (heard.agreeing_m2 + heard.contradicted_m2), 0.01, 0.99);
+double contact_m2(const PoseHeard& heard) {
+  return heard.agreeing_m2 + heard.contradicted_m2;
 }
 
-/// How much is contradicted where a placement is right is a property of a project: of what moves there, of
-/// glass, of sensors whose rays are not what they seem. Learned as the median over what was asked, for most
-/// of it is right.
-ShareModel right_shares(const std::vector<PoseHeard>& asked) {
+/// How much is contradicted where a placement is right is a property of a project as well: of what moves
+/// there, of glass, of how far apart its scans were taken. Learned as the median over what was asked, for
+/// most of it is right.
+evidence_table::Contradiction learned_contradiction(const std::vector<PoseHeard>& asked) {
+  constexpr double kMostRight = 0.5;
   std::vector<double> shares;
   for (const PoseHeard& heard : asked) {
-    if (heard.agreeing_m2 + heard.contradicted_m2 >= kLeastContactM2)
-      shares.push_back(contradicted_share(heard));
+    if (contact_m2(heard) >= kLeastContactM2) shares.push_back(heard.contradicted_m2 / contact_m2(heard));
   }
-  if (shares.empty()) return {kLeastRightShare, kRightStrength};
+  evidence_table::Contradiction learned = evidence_table::kPlaced;
+  if (shares.empty()) return learned;
   const auto middle = shares.begin() + static_cast<std::ptrdiff_t>(shares.size() / 2);
   std::nth_element(shares.begin(), middle, shares.end());
-  return {std::clamp(*middle, kLeastRightShare, 0.5), kRightStrength};
+  learned.right.mean = std::clamp(*middle, learned.right.mean, kMostRight);
+  return learned;
 }
 
 /// By how much the contradicted share of two scans speaks for their placement, nats.
-double nats_of_contact(const PoseHeard& heard, const ShareModel& right) {
-  const double contact_m2 = heard.agreeing_m2 + heard.contradicted_m2;
-  if (contact_m2 < kLeastContactM2) return 0.0;
-  const double share = contradicted_share(heard);
-  return std::min(1.0, contact_m2 / kFullContactM2) *
-         std::clamp(right.log_density(share) - kWrong.log_density(share), -kMostAskedNats, kMostAskedNats);
+double nats_of_contact(const PoseHeard& heard, const evidence_table::Contradiction& table) {
+  if (contact_m2(heard) < kLeastContactM2) return 0.0;
+  return std::min(kMostAskedNats, nats_of_contradiction(heard.agreeing_m2, heard.contradicted_m2, table));
 }
 
 /// What two scans say of a placement that no link of theirs agrees with.
 PlacedPair asked_pair(int source, int target, const Rigid3& target_from_source, const PoseHeard& surface,
-                      const ShareModel& right, const PoseHearing& hearing) {
+                      const evidence_table::Contradiction& table, const PoseHearing& hearing) {
   PlacedPair pair;
   pair.source = source;
   pair.target = target;
   pair.shared_m2 = surface.agreeing_m2;
-  const double nats = nats_of_contact(surface, right);
+  const double nats = nats_of_contact(surface, table);
   pair.evidence.chance_nats = nats;
   pair.evidence.looks_for_twins = true;
   // A look-alike place agrees by design: agreeing walls do not tell it from the right one, contradicted ones
@@ -128,11 +111,11 @@ std::vector<PlacedPair> placed_pairs(const PoseGraph& graph, const LinkMatcher& 
     for (std::size_t k = begin; k < end; ++k)
       surfaces[k] = hearing.surface(asked[k].first, asked[k].second, pose(k));
   });
-  const ShareModel right = right_shares(surfaces);
+  const evidence_table::Contradiction table = learned_contradiction(surfaces);
   std::vector<PlacedPair> answers(asked.size());
   parallel_for(asked.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k)
-      answers[k] = asked_pair(asked[k].first, asked[k].second, pose(k), surfaces[k], right, hearing);
+      answers[k] = asked_pair(asked[k].first, asked[k].second, pose(k), surfaces[k], table, hearing);
   });
   std::copy_if(answers.begin(), answers.end(), std::back_inserter(pairs), says_something);
   return pairs;
@@ -156,7 +139,7 @@ double nats_against_move(const Configuration& configuration, const std::vector<b
           -nats_of_contact(hearing.surface(static_cast<int>(moved), static_cast<int>(other),
                                            inverse(configuration.frame_from_node[other]) * frame_from_frame *
                                                configuration.frame_from_node[moved]),
-                           {kLeastRightShare, kRightStrength});
+                           evidence_table::kPlaced);
     }
   });
   // What several scans saw there is one observation.

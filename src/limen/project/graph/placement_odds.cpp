@@ -118,6 +118,17 @@ SideOdds PlacementOdds::without(const std::vector<bool>& side, const std::vector
     if (crosses && (pair.link < 0 || std::find(links.begin(), links.end(), pair.link) == links.end()))
       across.push_back(&pair);
   }
+  return of_across(across, side);
+}
+
+SideOdds PlacementOdds::of_pairs(const std::vector<PlacedPair>& pairs, const std::vector<bool>& side) const {
+  std::vector<const PlacedPair*> across;
+  for (const PlacedPair& pair : pairs) across.push_back(&pair);
+  return of_across(across, side);
+}
+
+SideOdds PlacementOdds::of_across(const std::vector<const PlacedPair*>& across,
+                                  const std::vector<bool>& side) const {
   SideOdds odds;
   odds.chance = std::exp(log_odds_of_chance(across, side, odds));
   const LookAlike otherwise = look_alike(Kind::otherwise(), across, side);

@@ -31,6 +31,8 @@ class PlacementOdds {
   [[nodiscard]] const SideOdds& of(const std::vector<bool>& side);
   /// The same, had these links not been.
   [[nodiscard]] SideOdds without(const std::vector<bool>& side, const std::vector<int>& links) const;
+  /// The same of a side that these pairs alone hold, somewhere else.
+  [[nodiscard]] SideOdds of_pairs(const std::vector<PlacedPair>& pairs, const std::vector<bool>& side) const;
   [[nodiscard]] const std::vector<PlacedPair>& pairs() const { return pairs_; }
 
   /// Sides on which each node may be elsewhere: alone, and on its side of the weakest cuts between it and its
@@ -43,6 +45,8 @@ class PlacementOdds {
     double prior = 0.0;
     double against = 0.0;  ///< nats
   };
+  [[nodiscard]] SideOdds of_across(const std::vector<const PlacedPair*>& across,
+                                   const std::vector<bool>& side) const;
   [[nodiscard]] LookAlike look_alike(const Kind& kind, const std::vector<const PlacedPair*>& across,
                                      const std::vector<bool>& side) const;
   [[nodiscard]] double log_odds_of_chance(std::vector<const PlacedPair*> across,

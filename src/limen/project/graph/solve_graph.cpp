@@ -40,7 +40,11 @@ class Solver {
   SolvedGraph run() {
     best_ = best_configuration(graph_, matcher_);
     weigh();
-    while (take_apart()) weigh();
+    std::set<std::vector<int>> known = {best_.pose};  // a configuration that comes again ends the search
+    while (take_apart() || move_likeliest()) {
+      weigh();
+      if (!known.insert(best_.pose).second) break;
+    }
     weigh_doubts();
     choose_references();
     adjust();
@@ -108,6 +112,21 @@ class Solver {
         give_up(k);
     }
     find_components(graph_, best_);
+    join_parts(graph_, matcher_, best_);
+    return true;
+  }
+
+  /// The side that is most probably at another place, which links propose, goes there; whether there was one.
+  bool move_likeliest() {
+    doubts_.clear();
+    weigh_moves();
+    const auto likeliest = std::max_element(doubts_.begin(), doubts_.end(),
+                                            [](const Doubt& a, const Doubt& b) { return a.odds < b.odds; });
+    if (likeliest == doubts_.end() || likeliest->odds <= kElsewhereLikelier) return false;
+    for (std::size_t n = 0; n < likeliest->side.size(); ++n) {
+      if (likeliest->side[n])
+        best_.frame_from_node[n] = likeliest->move->frame_from_frame * best_.frame_from_node[n];
+    }
     join_parts(graph_, matcher_, best_);
     return true;
   }
@@ -225,8 +244,8 @@ class Solver {
         move.frame_from_frame = inverse(move.frame_from_frame);
       }
       // What agrees with both places tells them from each other by its two poses alone.
-      double odds =
-          odds_->without(side, move.either).total() * std::exp(move.moved_alone_nats + move.either_nats);
+      double odds = odds_->without(side, move.either).total() /
+                    odds_->of_pairs(move.moved_alone, side).total() * std::exp(move.either_nats);
       if (odds <= kLeastListed * risk_) continue;
       odds *= std::exp(-nats_against_move(best_, side, move.frame_from_frame, hearing_));
       if (odds <= kLeastListed * risk_) continue;

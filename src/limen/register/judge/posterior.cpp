@@ -39,8 +39,9 @@ std::vector<double> nats_in_model(const std::vector<FoundPose>& poses) {
     if (nats[k] <= 0.0) by_chance_m2 = std::max(by_chance_m2, poses[k].score.evidence_m2);
   }
   for (std::size_t k = 0; k < poses.size(); ++k) {
-    nats[k] += table.nats_per_m2 * (poses[k].score.evidence_m2 - by_chance_m2) +
-               nats_of_contradiction(poses[k].score.agreeing_m2, poses[k].score.contradicted_m2, table);
+    nats[k] +=
+        table.nats_per_m2 * (poses[k].score.evidence_m2 - by_chance_m2) +
+        nats_of_contradiction(poses[k].score.agreeing_m2, poses[k].score.contradicted_m2, table.contradicted);
   }
   return nats;
 }
@@ -120,9 +121,10 @@ std::vector<double> nats_against_chance(const std::vector<FoundPose>& poses, Pai
   const evidence_table::Surface& table = table_of(sort);
   std::vector<double> nats;
   for (const FoundPose& pose : poses) {
-    nats.push_back(table.nats_per_m2 * pose.score.evidence_m2 +
-                   nats_of_contradiction(pose.score.agreeing_m2, pose.score.contradicted_m2, table) -
-                   table.search_nats);
+    nats.push_back(
+        table.nats_per_m2 * pose.score.evidence_m2 +
+        nats_of_contradiction(pose.score.agreeing_m2, pose.score.contradicted_m2, table.contradicted) -
+        table.search_nats);
   }
   return nats;
 }

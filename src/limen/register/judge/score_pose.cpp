@@ -247,11 +247,11 @@ PoseScore PoseScorer::operator()(const Rigid3& target_from_source) const {
 }
 
 double nats_of_contradiction(double agreeing_m2, double contradicted_m2,
-                             const evidence_table::Surface& table) {
+                             const evidence_table::Contradiction& table) {
   const double contradicted = contradicted_m2 / table.piece_m2;
   const double agreeing = agreeing_m2 / table.piece_m2;
-  return log_beta_binomial(contradicted, agreeing, table.contradicted) -
-         log_beta_binomial(contradicted, agreeing, table.by_chance);
+  return log_beta_binomial(contradicted, agreeing, table.right) -
+         log_beta_binomial(contradicted, agreeing, table.wrong);
 }
 
 PoseScore score_pose(const ScanView& source, const ScanView& target, const Rigid3& target_from_source,

@@ -60,7 +60,7 @@ PoseContrast contrast_poses(const ScanView& source, const ScanView& target, cons
 /// right pose it is a property of a pair (doors, people, glass, things that were moved): known as a beta
 /// distribution only, and integrated out. So is the share that wrong poses contradict.
 double nats_of_contradiction(double agreeing_m2, double contradicted_m2,
-                             const evidence_table::Surface& table);
+                             const evidence_table::Contradiction& table);
 
 PoseScore score_pose(const ScanView& source, const ScanView& target, const Rigid3& target_from_source,
                      const ScoreOptions& options);
