@@ -11,8 +11,8 @@ namespace limen {
 /// much one place explains better what was seen (natural logarithms). They are separate, for what several
 /// pairs say of one place multiplies, and what is believed of the place does not.
 struct TwinEvidence {
-  double otherwise = 1.434;     ///< odds beforehand of a look-alike place furnished otherwise ...
-  double alike = 0.007;         ///< ... and of one furnished alike as well
+  double otherwise = 1.0;       ///< odds beforehand of a look-alike place furnished otherwise ...
+  double alike = 0.0;           ///< ... and of one furnished alike as well
   double otherwise_nats = 0.0;  ///< against the first
   double alike_nats = 0.0;      ///< against the second
   /// What surfaces of the building say against either, by how they were built (as_built.h).

@@ -102,7 +102,8 @@ TEST(RegisterToModel, AnotherBuildingIsNoMatch) {
     face.area_m2 *= 1.69;
   }
   const SimulatedCase made = scan_of(row_of_rooms({4.1, 7.3}, {1.5, 0.0}), 1);
-  EXPECT_EQ(register_to_model(made.scans[0], model).outcome, Outcome::no_match);
+  const RegistrationResult result = register_to_model(made.scans[0], model);
+  EXPECT_EQ(result.outcome, Outcome::no_match) << result.reason;
 }
 
 TEST(RegisterToModel, StationsKnownToOneAnotherActTogether) {

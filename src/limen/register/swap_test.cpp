@@ -23,6 +23,7 @@ std::vector<Scan> scans_of(const std::string& scene, std::uint64_t seed, std::si
   options.points_indoor = 60000;
   options.points_outdoor = 200000;
   options.stations = stations;
+  options.as_built = true;
   return simulate(options).scans;
 }
 

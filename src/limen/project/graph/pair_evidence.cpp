@@ -48,11 +48,12 @@ PairEvidence evidence_of(const GraphLink& link, std::size_t pose) {
   evidence.looks_for_twins = link.asks_for_twins();
   if (!evidence.looks_for_twins) return evidence;
   evidence.twins = link.against_twins();
-  if (pose != static_cast<std::size_t>(link.best)) {  // measured under the pair's best pose alone
-    evidence.twins.otherwise_nats = std::min(0.0, evidence.twins.otherwise_nats);
-    evidence.twins.alike_nats = std::min(0.0, evidence.twins.alike_nats);
-    evidence.twins.built_nats = std::min(0.0, evidence.twins.built_nats);
-  }
+  // Look-alikes were asked about under the pair's best pose. Against another pose they are likelier by as
+  // much as that pose is less likely than the best.
+  const double best =
+      std::max(link.poses[static_cast<std::size_t>(link.best)].probability, kLeastProbability);
+  evidence.twins.otherwise_nats += std::log(right / best);
+  evidence.twins.alike_nats += std::log(right / best);
   return evidence;
 }
 

@@ -65,16 +65,11 @@ PlacedPair asked_pair(int source, int target, const Rigid3& target_from_source, 
 }
 
 PlacedPair linked_pair(const PoseGraph& graph, const LinkMatcher& matcher, const Configuration& configuration,
-                       std::size_t k, const PoseHearing& hearing) {
+                       std::size_t k) {
   const GraphLink& link = graph.links[k];
   const int pose = configuration.pose[k];
-  PlacedPair pair{link.source, link.target, link.poses[static_cast<std::size_t>(pose)].agreeing_m2,
-                  matcher.evidence(k, pose), static_cast<int>(k)};
-  if (pose == link.best || !link.asks_for_twins() || !hearing.things) return pair;
-  if (const std::optional<TwinEvidence> things =
-          hearing.things(link.source, link.target, configuration.target_from_source(link)))
-    pair.evidence.twins = *things;
-  return pair;
+  return {link.source, link.target, link.poses[static_cast<std::size_t>(pose)].agreeing_m2,
+          matcher.evidence(k, pose), static_cast<int>(k)};
 }
 
 bool says_something(const PlacedPair& pair) {
@@ -89,7 +84,7 @@ std::vector<PlacedPair> placed_pairs(const PoseGraph& graph, const LinkMatcher& 
   std::set<std::pair<int, int>> known;
   for (std::size_t k = 0; k < graph.links.size(); ++k) {
     if (configuration.pose[k] < 0) continue;
-    pairs.push_back(linked_pair(graph, matcher, configuration, k, hearing));
+    pairs.push_back(linked_pair(graph, matcher, configuration, k));
     known.insert(std::minmax(graph.links[k].source, graph.links[k].target));
   }
   if (!hearing) return pairs;

@@ -9,6 +9,7 @@
 
 #include "limen/base/progress.h"
 #include "limen/project/graph/weakest_cut.h"
+#include "limen/register/judge/evidence_table.h"
 
 namespace limen {
 namespace {
@@ -38,8 +39,7 @@ PlacementOdds::PlacementOdds(int nodes, std::vector<PlacedPair> pairs)
     : nodes_(nodes), pairs_(std::move(pairs)), views_(nodes, pairs_) {}
 
 double PlacementOdds::rate_of_twins(const std::vector<bool>& side) const {
-  const TwinEvidence alone;
-  const double believed = alone.otherwise + alone.alike;  // odds
+  const double believed = evidence_table::kOtherwise + evidence_table::kAlike;  // odds
   // Of each node by the pair that tells most; pairs across the cut are what the rate is asked for.
   std::vector<double> twin_of_node(side.size(), 0.5);
   for (const PlacedPair& pair : pairs_) {

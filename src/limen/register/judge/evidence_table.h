@@ -14,7 +14,7 @@ struct Contradiction {
   ShareBelief wrong;  ///< under wrong ones
 };
 /// Of poses that were not searched for, but follow from others.
-inline constexpr Contradiction kPlaced{0.498, {0.0484, 1.338}, {0.9266, 3.553}};
+inline constexpr Contradiction kPlaced{0.262, {0.0346, 1.27}, {0.943, 3.42}};
 
 /// What surface says, of one sort of pairs.
 struct Surface {
@@ -26,18 +26,18 @@ struct Surface {
   double nothing_shared;  ///< odds beforehand that nothing is shared, against a pose that was proposed ...
   double unlisted;        ///< ... and that a place is shared whose pose was not proposed
 };
-inline constexpr Surface kRooms{0.755, 1.083, 7.78, 7.51, {0.211, {0.0206, 1.14}, {0.205, 6.15}}, 1.0, 0.1};
-inline constexpr Surface kThroughWall{1.132, 1.029, 7.61, 13.90, {0.393, {0.0455, 3.82}, {0.280, 6.06}},
-                                      1.0,   0.1};
+inline constexpr Surface kRooms{0.783, 1.09, 7.76, 7.38, {0.185, {0.00681, 4.11}, {0.195, 5.07}}, 1.0, 0.1};
+inline constexpr Surface kThroughWall{1.15, 1.01, 7.59, 13.5, {0.401, {0.0234, 4.22}, {0.263, 5.58}},
+                                      1.0,  0.1};
 inline constexpr Surface kInModel{1.9, 1.9, 7.6, 9.5, {0.4, {0.02, 8.0}, {0.3, 6.0}}, 1.0, 0.1};
 
 /// Look-alike places: odds beforehand that a pose whose walls agree lays a place on another one ...
-inline constexpr double kOtherwise = 1.335;        ///< ... that is furnished otherwise,
-inline constexpr double kOtherwiseApart = 0.1553;  ///< the same where a wall is between the stations,
-inline constexpr double kAlike = 0.007048;         ///< and one that is furnished alike.
-inline constexpr double kInPair = 0.06387;  ///< share of them whose other place the same two scans show
-inline constexpr double kThings = 0.8147;   ///< weight of what things say, against chance ...
-inline constexpr double kBuilt = 1.616;     ///< ... and of how surfaces were built
-inline constexpr double kBent = 0.08544;    ///< share of pairs whose scans are bent within themselves
+inline constexpr double kOtherwise = 1.36;        ///< ... that is furnished otherwise,
+inline constexpr double kOtherwiseApart = 0.163;  ///< the same where a wall is between the stations,
+inline constexpr double kAlike = 0.00704;         ///< and one that is furnished alike.
+inline constexpr double kInPair = 0.0625;         ///< share of them whose other place the same two scans show
+inline constexpr double kThings = 0.758;          ///< weight of what things say, against chance ...
+inline constexpr double kBuilt = 1.59;            ///< ... and of how surfaces were built
+inline constexpr double kBent = 0.0852;           ///< share of pairs whose scans are bent within themselves
 
 }  // namespace limen::evidence_table

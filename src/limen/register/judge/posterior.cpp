@@ -39,9 +39,14 @@ std::vector<double> nats_in_model(const std::vector<FoundPose>& poses) {
     if (nats[k] <= 0.0) by_chance_m2 = std::max(by_chance_m2, poses[k].score.evidence_m2);
   }
   for (std::size_t k = 0; k < poses.size(); ++k) {
-    nats[k] +=
-        table.nats_per_m2 * (poses[k].score.evidence_m2 - by_chance_m2) +
-        nats_of_contradiction(poses[k].score.agreeing_m2, poses[k].score.contradicted_m2, table.contradicted);
+    const PoseScore& score = poses[k].score;
+    const double by_contradiction =
+        nats_of_contradiction(score.agreeing_m2, score.contradicted_m2, table.contradicted);
+    // That nothing is contradicted does not make walls of another building the model's.
+    if (nats[k] > 0.0)
+      nats[k] += table.nats_per_m2 * (score.evidence_m2 - by_chance_m2) + by_contradiction;
+    else
+      nats[k] += std::min(0.0, by_contradiction);
   }
   return nats;
 }
@@ -51,6 +56,7 @@ class Weighing {
  public:
   Weighing(const std::vector<FoundPose>& poses, PairSort sort, const PairQuestions& questions)
       : poses_(poses),
+        sort_(sort),
         table_(table_of(sort)),
         questions_(questions),
         against_chance_(nats_against_chance(poses, sort)),
@@ -74,11 +80,17 @@ class Weighing {
               evidence_table::kBuilt * things(pose).built_nats;
     return std::exp(-nats);
   }
+  /// Whether a pose may be right: of the many that are refined in a model those that exceed chance, and the
+  /// best.
+  [[nodiscard]] bool is_candidate(std::size_t pose) const {
+    return sort_ != PairSort::in_model || against_chance_[pose] > 0.0 || pose == first();
+  }
   /// Odds of each pose against the one that leads.
   [[nodiscard]] std::vector<double> odds_against(std::size_t leader) {
-    std::vector<double> odds(poses_.size(), 1.0);
+    std::vector<double> odds(poses_.size(), 0.0);
+    odds[leader] = 1.0;
     for (std::size_t k = 0; k < poses_.size(); ++k) {
-      if (k != leader) odds[k] = odds_of(k, leader);
+      if (k != leader && is_candidate(k)) odds[k] = odds_of(k, leader);
     }
     return odds;
   }
@@ -108,6 +120,7 @@ class Weighing {
   }
 
   const std::vector<FoundPose>& poses_;
+  PairSort sort_;
   const evidence_table::Surface& table_;
   const PairQuestions& questions_;
   std::vector<double> against_chance_;

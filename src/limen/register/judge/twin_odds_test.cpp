@@ -39,10 +39,6 @@ TEST(TwinOdds, WithoutEvidenceThePriorStands) {
   IndividualMatter apart;
   apart.apart = true;
   EXPECT_NEAR(weigh_twin(apart).odds(), TwinOptions{}.otherwise_apart + TwinOptions{}.alike, 1e-12);
-  // What a project believes where it knows nothing else is what a pair believes.
-  const TwinEvidence nothing = weigh_twin({});
-  EXPECT_NEAR(nothing.otherwise, TwinEvidence{}.otherwise, 1e-12);
-  EXPECT_NEAR(nothing.alike, TwinEvidence{}.alike, 1e-12);
 }
 
 TEST(TwinOdds, ThingsThatAgreeToTheMillimetreMakeOneRoom) {
