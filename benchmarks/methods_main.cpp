@@ -3,7 +3,7 @@
 //
 // Methods compared on simulated indoor x outdoor pairs with exact truth: one line of CSV per pair and method,
 // and a table.
-//   bench_methods --methods polygons,openings,hybrid,auto --table docs/methods.md
+//   bench_methods --methods polygons,openings,hybrid,auto --table methods.md
 //   bench_methods --only medium --kinds museum --pairs 2
 #include <chrono>
 #include <cstdio>
@@ -131,7 +131,7 @@ window in each façade counted here; seeds where it does not are passed over.
 - medium: one façade, 30 % curtains
 - hard: one façade, 60 % curtains, the street scan's trajectory drifts by 1 cm
 - any_rotation: as easy, every other room with one façade only; the station at any rotation
-- identical: rooms that repeat, nothing tells them apart
+- identical: rooms that repeat, nothing distinguishes them
 
 *Right* means `registered` within the level's bar: 2 cm and 0.2°, in hard 5 cm and 0.5°; in identical it means
 `ambiguous` with the true pose among those listed. *Wrong* means any other `registered`. Freedoms are the six of each

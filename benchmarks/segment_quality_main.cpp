@@ -5,7 +5,7 @@
 // each, and a summary.
 //   bench_segment_quality --scene room --seeds 5 --points 260000
 //
-// Words (docs/segments.md tells them at length). True edges: outlines of faces, and lines in which faces run
+// Words (docs/segments.md has the method). True edges: outlines of faces, and lines in which faces run
 // through one another; coplanar faces that look one way are one. Seen: a ray reaches a face next to the edge,
 // with echoes there, and the face meets another such face or is seen to end. Sharply seen: wide faces, and
 // where one face alone shows the edge its echoes are 2 cm apart. Recall: share of the sharply seen length, of

@@ -45,7 +45,7 @@ struct DetectedPlanes {
 };
 
 /// The detector that `automatic` stands for: grow for every scan so far. Where the scan's lines are known
-/// scan_lines is faster, but not better (docs/planes.md).
+/// scan_lines is faster, but not better (docs/polygons.md).
 PlaneDetector detector_for(const Scan& scan);
 
 /// Planes by the detector asked for. `grow.inlier_threshold_m` and `grow.min_inliers` hold for each of them.
