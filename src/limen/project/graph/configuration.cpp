@@ -21,7 +21,6 @@ constexpr double kWideGate = 16.0;          // times the bound, while errors of 
 constexpr std::size_t kMostProposals = 48;  // of placements of two parts
 constexpr int kMostMoves = 200;             // of scans and parts, one after the other
 constexpr double kLeastGain = 1e-6;         // nats
-constexpr double kSameLookAlikeM = 0.3;
 constexpr double kLeastOdds = 1e-300;
 constexpr int kMostReopened = 3;
 constexpr double kOtherPlaceM = 0.5;  // what misses by more means another place
