@@ -28,7 +28,7 @@ class Registered(unittest.TestCase):
         self.assertLess(np.abs(error[:3, :3] - np.eye(3)).max(), 0.001)
         self.assertGreater(self.result.best.matched_planes, 5)
         self.assertTrue((self.result.sigma.translation_m < 0.01).all())
-        self.assertEqual(self.result.stages[-1][0], "refinement")
+        self.assertEqual(self.result.stages[-1][0], "judgement")
 
     def test_points_are_moved(self):
         source, target = self.case.scans
