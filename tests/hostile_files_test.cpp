@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "run_program.h"
+#include "support/sanitizers.h"
 #include "support/synthetic_laz.h"
 #include "support/test_support.h"
 #include <fmt/format.h>
@@ -25,13 +26,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// While it lives this process and its children may have no more memory than so many bytes. The address
-/// sanitizer takes far more for itself: there it does nothing.
+/// While it lives this process and its children may have no more memory than so many bytes. A sanitizer
+/// takes far more for itself: there it does nothing.
 class LittleMemory {
  public:
   explicit LittleMemory(std::size_t bytes) {
     getrlimit(RLIMIT_AS, &before_);
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#if !defined(LIMEN_SANITIZES_ADDRESSES) && !defined(LIMEN_SANITIZES_THREADS)
     rlimit little = before_;
     little.rlim_cur = bytes;
     setrlimit(RLIMIT_AS, &little);

@@ -7,25 +7,13 @@
 #include <string>
 #include <thread>
 
+#include "support/sanitizers.h"
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include "limen/base/error.h"
 #include "limen/base/progress.h"
-
-#if defined(__has_feature)  // clang
-#if __has_feature(thread_sanitizer)
-#define LIMEN_SANITIZES_THREADS
-#endif
-#if __has_feature(address_sanitizer)
-#define LIMEN_SANITIZES_ADDRESSES
-#endif
-#elif defined(__SANITIZE_THREAD__)
-#define LIMEN_SANITIZES_THREADS
-#elif defined(__SANITIZE_ADDRESS__)
-#define LIMEN_SANITIZES_ADDRESSES
-#endif
 
 namespace limen {
 namespace {
