@@ -36,7 +36,7 @@ std::vector<double> nats_in_model(const std::vector<FoundPose>& poses) {
   std::vector<double> nats = log_odds_of_model(walls);
   double by_chance_m2 = 0.0;
   for (std::size_t k = 0; k < poses.size(); ++k) {
-    if (nats[k] <= 0.0) by_chance_m2 = std::max(by_chance_m2, poses[k].score.evidence_m2);
+    if (nats[k] <= 0.0) by_chance_m2 = std::max(by_chance_m2, poses[k].score.value());
   }
   for (std::size_t k = 0; k < poses.size(); ++k) {
     const PoseScore& score = poses[k].score;
@@ -44,12 +44,14 @@ std::vector<double> nats_in_model(const std::vector<FoundPose>& poses) {
         nats_of_contradiction(score.agreeing_m2, score.contradicted_m2, table.contradicted);
     // That nothing is contradicted does not make walls of another building the model's.
     if (nats[k] > 0.0)
-      nats[k] += table.nats_per_m2 * (score.evidence_m2 - by_chance_m2) + by_contradiction;
+      nats[k] += table.nats_per_m2 * (score.value() - by_chance_m2) + by_contradiction;
     else
       nats[k] += std::min(0.0, by_contradiction);
   }
   return nats;
 }
+
+constexpr double kMostNats = 500.0;  // of which there is a number
 
 /// Asks each question once, and only where the answer matters.
 class Weighing {
@@ -72,13 +74,11 @@ class Weighing {
   }
   /// Odds that a pose lays a place on a look-alike one.
   [[nodiscard]] double look_alike(std::size_t pose) { return questions_.things ? things(pose).odds() : 0.0; }
-  /// Odds that what agrees under a pose agrees by chance.
-  [[nodiscard]] double by_chance(std::size_t pose) {
-    double nats = against_chance_[pose];
-    if (questions_.things)
-      nats += evidence_table::kThings * things(pose).otherwise_nats +
-              evidence_table::kBuilt * things(pose).built_nats;
-    return std::exp(-nats);
+  /// By how much what agrees under a pose exceeds chance, nats.
+  [[nodiscard]] double against_chance(std::size_t pose) {
+    if (!questions_.things) return against_chance_[pose];
+    return against_chance_[pose] + evidence_table::kThings * things(pose).otherwise_nats +
+           evidence_table::kBuilt * things(pose).built_nats;
   }
   /// Whether a pose may be right: of the many that are refined in a model those that exceed chance, and the
   /// best.
@@ -102,21 +102,23 @@ class Weighing {
     if (!things_[pose]) things_[pose] = questions_.things(pose);
     return *things_[pose];
   }
+  // Logarithms: of large scans the odds themselves are no numbers.
+
   /// That a pose agrees though another one is right which resembles it.
-  [[nodiscard]] double resembling(double more_agrees_m2, double less_contradicted_m2) const {
-    return std::exp(-table_.contrast_per_m2 * more_agrees_m2 - table_.against_per_m2 * less_contradicted_m2);
+  [[nodiscard]] double log_resembling(double more_agrees_m2, double less_contradicted_m2) const {
+    return -table_.contrast_per_m2 * more_agrees_m2 - table_.against_per_m2 * less_contradicted_m2;
   }
-  [[nodiscard]] double wrong_all_the_same(std::size_t pose) {
-    return by_chance(pose) + evidence_table::kInPair * look_alike(pose);
+  [[nodiscard]] double log_wrong(double log_resembling, std::size_t pose) {
+    return log_sum_exp({log_resembling, -against_chance(pose),
+                        std::log(evidence_table::kInPair) + std::log(look_alike(pose))});
   }
   [[nodiscard]] double odds_of(std::size_t pose, std::size_t leader) {
     const PoseContrast contrast = questions_.contrast(leader, pose);
-    const double leader_wrong =
-        resembling(contrast.for_first_m2, contrast.against_second_m2) + wrong_all_the_same(leader);
-    const double resembles = resembling(contrast.for_second_m2, contrast.against_first_m2);
-    const double prior = std::exp(poses_[pose].log_prior - poses_[leader].log_prior);
-    if (prior * leader_wrong < kNegligible * resembles) return prior * leader_wrong / resembles;
-    return prior * leader_wrong / (resembles + wrong_all_the_same(pose));
+    const double right = poses_[pose].log_prior - poses_[leader].log_prior +
+                         log_wrong(log_resembling(contrast.for_first_m2, contrast.against_second_m2), leader);
+    const double resembles = log_resembling(contrast.for_second_m2, contrast.against_first_m2);
+    const bool negligible = right - resembles < std::log(kNegligible);
+    return std::exp(std::min(kMostNats, right - (negligible ? resembles : log_wrong(resembles, pose))));
   }
 
   const std::vector<FoundPose>& poses_;
@@ -165,7 +167,8 @@ Posterior weigh_poses(const std::vector<FoundPose>& poses, PairSort sort, const 
     if (next == leader) break;
     leader = next;
   }
-  const double chance = weighing.by_chance(leader) * std::exp(-poses[leader].log_prior);
+  const double chance =
+      std::exp(std::min(kMostNats, -weighing.against_chance(leader) - poses[leader].log_prior));
   posterior.others.twin = weighing.look_alike(leader);
   posterior.others.nothing_shared = table.nothing_shared * chance;
   posterior.others.unlisted_pose = table.unlisted * chance;
