@@ -12,16 +12,15 @@
 #include <chrono>
 #include <filesystem>
 #include <fstream>
-#include <sstream>
 #include <string>
 #include <vector>
 
+#include "known_scans.h"
 #include "matter_rows.h"
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "limen/base/angles.h"
-#include "limen/io/cloud/read_scan.h"
 #include "limen/register/judge/common_surfaces.h"
 #include "limen/register/judge/given_pose.h"
 #include "limen/register/judge/twin_odds.h"
@@ -55,32 +54,6 @@ struct Settings {
   double minutes = 60.0;
   std::string output;
 };
-
-struct Known {
-  std::string name;
-  PreparedScan scan;
-  Rigid3 set_from_scan;
-};
-
-std::vector<Known> scans_of_list(const std::string& path) {
-  std::ifstream file(path);
-  std::vector<Known> scans;
-  for (std::string line; std::getline(file, line);) {
-    std::istringstream words(line);
-    Known known;
-    std::string cloud;
-    words >> known.name >> cloud;
-    for (int r = 0; r < 3; ++r) {
-      for (int c = 0; c < 3; ++c) words >> known.set_from_scan.rotation(r, c);
-      words >> known.set_from_scan.translation[r];
-    }
-    if (!words) throw std::runtime_error("not a line of NAME FILE and 12 numbers: " + line);
-    known.set_from_scan.rotation = nearest_rotation(known.set_from_scan.rotation);
-    known.scan = prepare_scan(read_scan(cloud), prepare_options({}));
-    scans.push_back(std::move(known));
-  }
-  return scans;
-}
 
 std::vector<Known> scans_of_building(const Settings& settings, std::uint64_t seed) {
   PairSetOptions options;
@@ -167,13 +140,6 @@ class Rows {
       }
     }
     for (const auto& [kind, pose] : poses) add(set, from.name + "-" + to.name, kind, pose, pair);
-  }
-
-  static bool is_near(const Rigid3& pose, const Rigid3& truth, const PreparedPair& pair, double most_m,
-                      double most_deg) {
-    const Vector3d middle = pair.source.reach.center();
-    return (pose * middle - truth * middle).norm() < most_m &&
-           rotation_angle(truth.rotation.transpose() * pose.rotation) < radians(most_deg);
   }
 
   void add(const std::string& set, const std::string& names, const std::string& kind, const Rigid3& pose,

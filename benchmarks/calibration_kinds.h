@@ -3,7 +3,7 @@
 //
 // Which buildings a judge may be fitted to, which serve to choose between judges, and which are kept to judge
 // by. The three are apart by kind of building, not by seed alone: nothing may be fitted or chosen on the
-// third list.
+// third list. scripts/fit_posterior fits on all kinds at once and judges by sets that it leaves out.
 #pragma once
 
 #include <array>

@@ -10,16 +10,15 @@
 #include <algorithm>
 #include <chrono>
 #include <fstream>
-#include <sstream>
 #include <string>
 #include <vector>
 
+#include "known_scans.h"
 #include "matter_rows.h"
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "limen/base/angles.h"
-#include "limen/io/cloud/read_scan.h"
 #include "limen/register/find_poses.h"
 #include "limen/register/judge/given_pose.h"
 #include "limen/register/judge/twin_odds.h"
@@ -51,32 +50,6 @@ struct Settings {
   double minutes = 60.0;
   std::string output;
 };
-
-struct Known {
-  std::string name;
-  PreparedScan scan;
-  Rigid3 set_from_scan;
-};
-
-std::vector<Known> scans_of_list(const std::string& path) {
-  std::ifstream file(path);
-  std::vector<Known> scans;
-  for (std::string line; std::getline(file, line);) {
-    std::istringstream words(line);
-    Known known;
-    std::string cloud;
-    words >> known.name >> cloud;
-    for (int r = 0; r < 3; ++r) {
-      for (int c = 0; c < 3; ++c) words >> known.set_from_scan.rotation(r, c);
-      words >> known.set_from_scan.translation[r];
-    }
-    if (!words) throw std::runtime_error("not a line of NAME FILE and 12 numbers: " + line);
-    known.set_from_scan.rotation = nearest_rotation(known.set_from_scan.rotation);
-    known.scan = prepare_scan(read_scan(cloud), prepare_options({}));
-    scans.push_back(std::move(known));
-  }
-  return scans;
-}
 
 class Rows {
  public:
@@ -180,12 +153,12 @@ class Rows {
       const Rigid3 pose =
           worked.turned ? inverse(poses[k].refined.target_from_source) : poses[k].refined.target_from_source;
       const PoseScore& score = poses[k].score;
-      text += fmt::format(
-          R"({}{{"right": {:d}, "evidence": {:.3f}, "agreeing": {:.3f}, "planar": {:.3f}, "contradicted": {:.3f}, )"
-          R"("tested": {:.3f}, "opening": {:.3f}, "held": {:d})",
-          k == 0 ? "" : ", ", right && is_near(pose, *right, pair), score.evidence_m2, score.agreeing_m2,
-          score.planar_m2, score.contradicted_m2, score.tested_m2, score.opening_m2,
-          unobserved_freedoms(poses[k].refined, 0.03).empty());
+      text +=
+          fmt::format(R"({}{{"right": {:d}, "evidence": {:.3f}, "agreeing": {:.3f}, "contradicted": {:.3f}, )"
+                      R"("opening": {:.3f}, "held": {:d})",
+                      k == 0 ? "" : ", ", right && is_near(pose, *right, pair, s_.near_m, s_.near_deg),
+                      score.evidence_m2, score.agreeing_m2, score.contradicted_m2, score.opening_m2,
+                      unobserved_freedoms(poses[k].refined, 0.03).empty());
       if (sort_of(worked) == PairSort::rooms && k < kAskedThings) {
         const IndividualMatter seen = asker(poses[k].refined.target_from_source);
         const TwinEvidence twin = weigh_twin(seen);
@@ -217,12 +190,6 @@ class Rows {
                spent.count(), text, contrasts)
         << "\n"
         << std::flush;
-  }
-
-  [[nodiscard]] bool is_near(const Rigid3& pose, const Rigid3& truth, const PreparedPair& pair) const {
-    const Vector3d middle = pair.source.reach.center();
-    return (pose * middle - truth * middle).norm() < s_.near_m &&
-           rotation_angle(truth.rotation.transpose() * pose.rotation) < radians(s_.near_deg);
   }
 
   const Settings& s_;

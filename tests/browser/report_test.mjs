@@ -20,7 +20,7 @@ let browser;
 
 before(async () => {
   const museum = join(folder, 'museum');
-  limen(program, 'simulate', 'museum', '--as-drawn', '-o', museum, '--points-indoor', '60000', '--points-outdoor', '200000');
+  limen(program, 'simulate', 'museum', '-o', museum, '--points-indoor', '100000', '--points-outdoor', '400000');
   limen(program, 'register', join(museum, 'indoor_00.ply'), join(museum, 'outdoor.ply'), '-o', join(folder, 'registered'), '--pdf');
   const long = join(museum, 'station_of_the_second_floor_of_the_north_wing_beside_the_great_stairs.ply');
   copyFileSync(join(museum, 'indoor_00.ply'), long);

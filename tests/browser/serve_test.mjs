@@ -61,7 +61,7 @@ const ended = async (id) => {
 };
 
 before(async () => {
-  limen(program, 'simulate', 'museum', '--as-drawn', '-o', join(folder, 'museum'), '--points-indoor', '60000', '--points-outdoor', '200000');
+  limen(program, 'simulate', 'museum', '-o', join(folder, 'museum'), '--points-indoor', '100000', '--points-outdoor', '400000');
   limen(program, 'simulate', 'room', '-o', join(folder, 'room'), '--points-indoor', '20000');
   limen(program, 'simulate', 'office', '-o', join(folder, 'office'), '--points-indoor', '60000');
   copyFileSync(join(folder, 'office', 'scan_01.ply'), join(folder, 'room_of_office.ply'));

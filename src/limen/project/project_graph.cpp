@@ -24,7 +24,7 @@ constexpr double kGivenM = 0.005;      // of poses that a file gives
 const double kGivenRad = radians(0.05);
 constexpr double kRivalShare = 0.5;    // of the best pose's score: a pose with less is no possibility
 constexpr std::size_t kMostPoses = 9;  // of a link
-constexpr double kLikelier = 0.5;      // a twin more probable than not: the pair tells nothing
+constexpr double kMostChance = 0.5;    // probability of chance above which a pair makes no link
 constexpr double kHardly = 1e-4;       // a pose less probable than this is no possibility
 constexpr double kOfUnknown = 0.1;     // probability of being wrong where a pair tells none
 constexpr double kStoreyM = 0.5;       // floors further apart are of different storeys
@@ -102,7 +102,7 @@ class GraphMaker {
     if (found.outcome == Outcome::no_match) return;
     // Poses that are more probably none are what any two scans show: many of them would outweigh what is
     // sure.
-    if (!spoken && by_chance(found) > kLikelier) return;
+    if (!spoken && by_chance(found) > kMostChance) return;
     GraphLink link;
     link.source = static_cast<int>(pairs_[k].source);
     link.target = static_cast<int>(pairs_[k].target);

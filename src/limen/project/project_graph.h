@@ -19,8 +19,7 @@ struct ProjectGraph {
 };
 
 /// Every pair that found something, with all its poses, and what files say of their own scans. A user's word
-/// makes a pose surer, or leaves a link out:
-/// the loops still test it.
+/// makes a pose surer, or leaves a link out: the loops still test it.
 ProjectGraph make_graph(const std::vector<ProjectNode>& nodes, const std::vector<TriedPair>& pairs,
                         const UserWords& words);
 

@@ -12,6 +12,7 @@
 
 namespace limen {
 
+/// By what the two sides are: a model, or seen from a station or along a path.
 PairSort sort_of(const WorkedPair& pair);
 
 /// A belief about the start between the upright frames, and where it is asked: of the source that was given,

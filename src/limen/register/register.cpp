@@ -149,8 +149,13 @@ class AskedPair {
       questions.things = [this](std::size_t pose) { return weigh_things(pose); };
     return questions;
   }
+  /// What is known of look-alike places.
+  struct Things {
+    IndividualMatter seen;
+    TwinEvidence evidence;  ///< without a belief about the start
+  };
   /// Of a pose that was asked for.
-  [[nodiscard]] const IndividualMatter* things(std::size_t pose) const {
+  [[nodiscard]] const Things* things(std::size_t pose) const {
     const auto found = things_.find(pose);
     return found == things_.end() ? nullptr : &found->second;
   }
@@ -167,8 +172,9 @@ class AskedPair {
   }
   [[nodiscard]] TwinEvidence weigh_things(std::size_t pose) {
     if (!asker_) asker_.emplace(pair_.source.view(), pair_.target.view());
-    const IndividualMatter& seen = things_.emplace(pose, (*asker_)(pose_of(pose))).first->second;
+    IndividualMatter seen = (*asker_)(pose_of(pose));
     TwinEvidence evidence = weigh_twin(seen, options_.twins());
+    things_.insert_or_assign(pose, Things{std::move(seen), evidence});
     if (!start_) return evidence;
     const double believed = odds_of_look_alike_beside_start(start_->prior, start_->given(pose_of(pose)),
                                                             start_->at, poses_[pose].log_prior);
@@ -183,7 +189,7 @@ class AskedPair {
   ScoreOptions score_;
   std::optional<PreparedStart> start_;
   std::optional<MatterAsker> asker_;
-  std::map<std::size_t, IndividualMatter> things_;
+  std::map<std::size_t, Things> things_;
 };
 
 /// How many of the likeliest poses are listed besides the best: as many as are asked for, all that cannot be
@@ -214,11 +220,11 @@ void write_result(const std::vector<FoundPose>& poses, Posterior posterior, cons
   const OpenFreedoms open =
       open_freedoms(best.refined, covariance_with_drift(best.refined, pair.source.view(), pair.target.view()),
                     options.verdict);
-  const IndividualMatter* things = asked.things(leader);
+  const AskedPair::Things* things = asked.things(leader);
   std::string look_alike;
   if (things != nullptr) {
-    result.twin = weigh_twin(*things, options.twins());
-    look_alike = twin_words(*things, posterior.others.twin);
+    result.twin = things->evidence;
+    look_alike = twin_words(things->seen, posterior.others.twin);
   }
   result.outcome = outcome_of(posterior, open.list, options.verdict);
   result.reason = reason_of(result.outcome, posterior, best.score, open, look_alike, options.verdict);

@@ -24,7 +24,6 @@ void ModelOddsOptions::check() const {
   of_model.check("of_model");
   by_chance.check("by_chance");
   if (!(known_poses > 0)) throw_bad_option("known_poses", known_poses, "more than 0");
-  if (!(nats_per_m2 >= 0)) throw_bad_option("nats_per_m2", nats_per_m2, "0 or more");
 }
 
 std::vector<double> log_odds_of_model(const std::vector<WallBalance>& poses,

@@ -18,9 +18,6 @@ struct ModelOddsOptions {
   ShareBelief by_chance{0.35, 12.0};
   double known_poses = 4.0;  ///< what is presumed of chance counts as much as so many poses
 
-  /// Evidence per m^2 by which a pose's value exceeds what wrong poses reach (posterior.h).
-  double nats_per_m2 = 1.9;
-
   void check() const;
 };
 

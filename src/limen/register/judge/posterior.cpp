@@ -51,7 +51,7 @@ std::vector<double> nats_in_model(const std::vector<FoundPose>& poses) {
   return nats;
 }
 
-constexpr double kMostNats = 500.0;  // of which there is a number
+constexpr double kMostNats = 500.0;  // exp() of more may be infinite
 
 /// Asks each question once, and only where the answer matters.
 class Weighing {
@@ -62,16 +62,15 @@ class Weighing {
         table_(table_of(sort)),
         questions_(questions),
         against_chance_(nats_against_chance(poses, sort)),
-        things_(poses.size()) {}
-
-  /// The pose that surface and beliefs speak for most.
-  [[nodiscard]] std::size_t first() const {
-    std::size_t best = 0;
-    for (std::size_t k = 1; k < poses_.size(); ++k) {
-      if (against_chance_[k] + poses_[k].log_prior > against_chance_[best] + poses_[best].log_prior) best = k;
+        things_(poses.size()) {
+    for (std::size_t k = 1; k < poses.size(); ++k) {
+      if (against_chance_[k] + poses[k].log_prior > against_chance_[first_] + poses[first_].log_prior)
+        first_ = k;
     }
-    return best;
   }
+
+  /// The pose that surface and beliefs make likeliest.
+  [[nodiscard]] std::size_t first() const { return first_; }
   /// Odds that a pose lays a place on a look-alike one.
   [[nodiscard]] double look_alike(std::size_t pose) { return questions_.things ? things(pose).odds() : 0.0; }
   /// By how much what agrees under a pose exceeds chance, nats.
@@ -83,7 +82,7 @@ class Weighing {
   /// Whether a pose may be right: of the many that are refined in a model those that exceed chance, and the
   /// best.
   [[nodiscard]] bool is_candidate(std::size_t pose) const {
-    return sort_ != PairSort::in_model || against_chance_[pose] > 0.0 || pose == first();
+    return sort_ != PairSort::in_model || against_chance_[pose] > 0.0 || pose == first_;
   }
   /// Odds of each pose against the one that leads.
   [[nodiscard]] std::vector<double> odds_against(std::size_t leader) {
@@ -102,7 +101,7 @@ class Weighing {
     if (!things_[pose]) things_[pose] = questions_.things(pose);
     return *things_[pose];
   }
-  // Logarithms: of large scans the odds themselves are no numbers.
+  // Logarithms, for the odds of large scans may underflow.
 
   /// That a pose agrees though another one is right which resembles it.
   [[nodiscard]] double log_resembling(double more_agrees_m2, double less_contradicted_m2) const {
@@ -126,6 +125,7 @@ class Weighing {
   const evidence_table::Surface& table_;
   const PairQuestions& questions_;
   std::vector<double> against_chance_;
+  std::size_t first_ = 0;
   std::vector<std::optional<TwinEvidence>> things_;
 };
 

@@ -17,9 +17,8 @@ namespace {
 /// A pose under which this much agrees.
 FoundPose pose(double agreeing_m2, double contradicted_m2 = 0.0) {
   FoundPose found;
-  found.score.agreeing_m2 = found.score.planar_m2 = found.score.evidence_m2 = agreeing_m2;
+  found.score.agreeing_m2 = found.score.evidence_m2 = agreeing_m2;
   found.score.contradicted_m2 = contradicted_m2;
-  found.score.tested_m2 = agreeing_m2 + contradicted_m2;
   return found;
 }
 

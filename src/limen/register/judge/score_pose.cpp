@@ -76,7 +76,6 @@ struct Tally {
   double planar = 0.0;
   double clutter = 0.0;
   double contradicted = 0.0;
-  double tested = 0.0;
   double evidence_m2 = 0.0;
 
   void end_plane(double factor) {
@@ -91,7 +90,6 @@ Tally added(Tally tally, const std::int32_t* planes, std::size_t size, const Ans
             double factor) {
   for (std::size_t k = 0; k < size; ++k) {
     tally.contradicted += static_cast<double>(answers.contradicted_m2[k]);
-    tally.tested += static_cast<double>(answers.tested_m2[k]);
     if (planes[k] != tally.plane) {
       tally.end_plane(factor);
       tally.plane = planes[k];
@@ -116,10 +114,8 @@ PoseScore one_way(const Gathered& asked, const ScanView& judge, const Rigid3& ju
   tally.end_plane(factor);
   PoseScore score;
   score.evidence_m2 = tally.evidence_m2 + factor * tally.clutter;
-  score.planar_m2 = factor * tally.planar;
   score.agreeing_m2 = factor * (tally.planar + tally.clutter);
   score.contradicted_m2 = factor * tally.contradicted;
-  score.tested_m2 = factor * tally.tested;
   return score;
 }
 
@@ -233,9 +229,7 @@ PoseScore PoseScorer::operator()(const Rigid3& target_from_source) const {
   const PoseScore back = scored(target_, source_, asked_->target, inverse(target_from_source));
   PoseScore both;
   both.agreeing_m2 = 0.5 * (forth.agreeing_m2 + back.agreeing_m2);
-  both.planar_m2 = 0.5 * (forth.planar_m2 + back.planar_m2);
   both.contradicted_m2 = 0.5 * (forth.contradicted_m2 + back.contradicted_m2);
-  both.tested_m2 = 0.5 * (forth.tested_m2 + back.tested_m2);
   for (const OpeningGain& gain :
        opening_gains(asked_->openings, source_.features->openings.size(), target_from_source, options_)) {
     both.opening_m2 += gain.m2;

@@ -27,9 +27,7 @@ inline constexpr double kContradictionWeight = 4.0;
 /// standing where the other's rays passed free. An opening that both scans see counts with its area.
 struct PoseScore {
   double agreeing_m2 = 0.0;
-  double planar_m2 = 0.0;  ///< of agreeing_m2: on planes
   double contradicted_m2 = 0.0;
-  double tested_m2 = 0.0;   ///< surface that the other scan could have judged
   double opening_m2 = 0.0;  ///< of agreeing_m2: openings seen from both sides
   /// Agreeing surface, each plane counting for no more than 5 m^2, however large: that two façades lie in one
   /// plane is one coincidence, not many.

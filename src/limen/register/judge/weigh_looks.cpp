@@ -10,7 +10,6 @@ namespace {
 
 constexpr auto kSurfaceMet = static_cast<std::int32_t>(SightKind::surface);
 constexpr auto kPassed = static_cast<std::int32_t>(SightKind::free);
-constexpr auto kNotSeen = static_cast<std::int32_t>(SightKind::unseen);
 
 LIMEN_WIDE void weigh(const Looks& __restrict looks, const float* __restrict areas_m2,
                       const std::int32_t* __restrict planar, float per_surface_m, float per_clutter_m,
@@ -21,7 +20,6 @@ LIMEN_WIDE void weigh(const Looks& __restrict looks, const float* __restrict are
     const float gain = area * (1.0F - off * off);
     answers.gain_m2[k] = looks.kind[k] == kSurfaceMet ? gain : 0.0F;
     answers.contradicted_m2[k] = looks.kind[k] == kPassed ? area : 0.0F;
-    answers.tested_m2[k] = looks.kind[k] != kNotSeen ? area : 0.0F;
   }
 }
 

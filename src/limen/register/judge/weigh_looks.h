@@ -14,7 +14,6 @@ namespace limen {
 struct Answers {
   std::array<float, kLookBatch> gain_m2;  ///< agreeing surface, 1 - d^2 / t^2 of the area
   std::array<float, kLookBatch> contradicted_m2;
-  std::array<float, kLookBatch> tested_m2;
 };
 
 /// `areas_m2`, `planar`: of the `size` samples looked at, at most kLookBatch.
