@@ -241,13 +241,13 @@ class Calibration {
   /// Of poses that lay a room on itself, or on another one of its building.
   void tell_matter(const Row& row, const PreparedPair& pair, const RegistrationResult& result) {
     const bool other = row.kind == "twin" || row.kind == "other_room";
-    if (s_.matter.empty() || !(row.near || other || row.wrong()) || !result.twin) return;
+    if (s_.matter.empty() || !(row.near || other || row.wrong()) || !result.best.twin) return;
     if (!matter_.is_open()) matter_.open(s_.matter, std::ios::app);
     const std::string about = fmt::format(
         R"("building": "{}", "purpose": "{}", "seed": {}, "source": "{}", "target": "{}", "kind": "{}", )"
         R"("furnished_alike": {}, "stated": {:.6g})",
         row.building, row.purpose, row.seed, row.source, row.target, row.kind, row.furnished_alike,
-        result.twin->probability());
+        result.best.twin->probability());
     matter_ << matter_line(pair, result.best.target_from_source, about, !row.near) << "\n" << std::flush;
   }
 

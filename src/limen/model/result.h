@@ -62,6 +62,7 @@ struct Hypothesis {
   double agreeing_length_m = 0.0;         ///< length of the smaller set of segments that lies on the other
   std::optional<double> explained_share;  ///< against a model: of the walls that the scan saw
   std::string room;  ///< of a model with named rooms: where the (first) station then stands
+  std::optional<TwinEvidence> twin;  ///< whether it lays a place on a look-alike one, where that was asked
   bool tie = false;  ///< of an alternative: it cannot be told from the best
 };
 
@@ -136,7 +137,6 @@ struct RegistrationResult {
   std::vector<MeasuredThickness> thickness;  ///< of the walls between the scans, most openings first
   std::size_t judged_poses = 0;              ///< poses that were refined and judged
   std::optional<OtherExplanations> others;   ///< where poses have probabilities
-  std::optional<TwinEvidence> twin;          ///< of `best`, where rooms built alike may be meant
   std::size_t rivals = 0;                    ///< alternatives that cannot be told from `best`
   std::optional<StartAgreement> start;       ///< where one was given and a pose was found
   ScannerPlace source_place;                 ///< where the scanner of each side stood, and who says so

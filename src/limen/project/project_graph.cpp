@@ -108,19 +108,35 @@ class GraphMaker {
     link.target = static_cast<int>(pairs_[k].target);
     link.trust = trust_of(found);
     link.twin = twin;
-    link.evidence = found.twin;
     link.chance = found.others ? by_chance(found) : kOfUnknown;
     link.poses.push_back(pose_of(link, found, found.best, 1.0));
     for (const Hypothesis& other : found.alternatives) {
       if (link.poses.size() >= kMostPoses) break;
       if (other.score < kRivalShare * found.best.score) continue;
       if (other.probability && *other.probability < kHardly) continue;
-      link.poses.push_back(pose_of(link, found, other, kLooser));
+      add_alternative(pose_of(link, found, other, kLooser), link);
     }
     if (words_.floors.count({pairs_[k].source, pairs_[k].target}) > 0) keep_floor(link);
     if (spoken) heed(said->second, link);
     graph_.links.push_back(std::move(link));
     pair_of_.push_back(static_cast<int>(k));
+  }
+
+  /// Poses nearer to each other than places repeat are one place, which is known no better than they agree:
+  /// their second moment about the likelier is its covariance. What is open is no place at all.
+  static void add_alternative(const LinkPose& other, GraphLink& link) {
+    if (other.covariance.diagonal().tail<3>().maxCoeff() > square(kOtherPlaceM)) return;
+    for (LinkPose& known : link.poses) {
+      const Vector6d apart = misfit(known, other.target_from_source);
+      if (apart.head<3>().norm() > kOtherPlaceRad || apart.tail<3>().norm() > kOtherPlaceM) continue;
+      const double both = known.probability + other.probability;
+      const double share = other.probability / both;
+      known.covariance =
+          (1.0 - share) * known.covariance + share * (other.covariance + apart * apart.transpose());
+      known.probability = both;
+      return;
+    }
+    link.poses.push_back(other);
   }
 
   /// Poses that lay floors on other storeys fall away where a user says that they are of one height; if the
@@ -146,7 +162,7 @@ class GraphMaker {
     std::swap(link.poses.front(), link.poses[number]);
     link.best = word.pose;
     link.twin = std::min(link.twin, kWordWrong);
-    link.evidence.reset();
+    link.poses.front().twin.reset();
     link.chance = std::min(link.chance, kWordWrong);
     link.poses.front().probability = std::max(link.poses.front().probability, 1.0 - kWordWrong);
   }
@@ -189,6 +205,7 @@ class GraphMaker {
     kept.centre = kept.target_from_source * (inverse(best) * (found.sigma.centre - target.local_origin));
     kept.agreeing_m2 = pose.agreeing_m2;
     kept.probability = pose.probability.value_or(1.0 / (1.0 + static_cast<double>(found.rivals)));
+    kept.twin = pose.twin;
     const Drift drift = drift_of(link);
     if (!pose.sigma.covariance.isZero()) {
       kept.centre = pose.sigma.centre - target.local_origin;

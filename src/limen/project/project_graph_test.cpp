@@ -48,6 +48,31 @@ TEST(ProjectGraph, WhatIsKnownToCentimetresTellsOnePlaceFromAnother) {
   EXPECT_EQ(links_of(pair).front().trust, LinkTrust::weak);
 }
 
+/// Two poses of a pair a decimetre or two from each other mean one place; along the line between them it is
+/// known no better than they agree. A pose that is metres away stays one of its own, and an open one is none.
+TEST(ProjectGraph, PosesNearEachOtherAreOnePlaceThatIsKnownLessWell) {
+  RegistrationResult pair = told(Outcome::ambiguous, 0.0);
+  pair.best.probability = 0.6;
+  pair.best.sigma.covariance = 1e-6 * Matrix6d::Identity();
+  pair.sigma = pair.best.sigma;
+  const auto other = [&](const Vector3d& shift, double probability, double variance) {
+    Hypothesis pose = pair.best;
+    pose.target_from_source.translation += shift;
+    pose.sigma.covariance *= variance / 1e-6;
+    pose.probability = probability;
+    pair.alternatives.push_back(pose);
+  };
+  other({0.2, 0, 0}, 0.2, 1e-6);
+  other({4, 0, 0}, 0.1, 1e-6);
+  other({0, 9, 0}, 0.1, 100.0);
+  const GraphLink link = links_of(pair).front();
+  ASSERT_EQ(link.poses.size(), 2U);
+  EXPECT_NEAR(link.poses.front().probability, 0.8, 1e-12);
+  EXPECT_NEAR(link.poses.front().covariance(3, 3), 0.25 * 0.2 * 0.2, 1e-4);
+  EXPECT_LT(link.poses.front().covariance(4, 4), 1e-4);
+  EXPECT_NEAR(link.poses.back().target_from_source.translation.x(), 4.0, 1e-12);
+}
+
 TEST(ProjectGraph, AlongWhatAPairCallsOpenItsDeviationIsNotBelieved) {
   RegistrationResult pair = told(Outcome::under_constrained, 0.0);
   pair.best.sigma.covariance = 1e-6 * Matrix6d::Identity();

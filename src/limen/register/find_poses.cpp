@@ -19,6 +19,7 @@ constexpr int kSettleSteps = 16;  // either way along a shift that the planes le
 constexpr double kSettleStepM = 0.02;
 constexpr std::size_t kSettleLooks = 5;  // of those steps that get a look at everything
 constexpr double kCarefulGateM = 0.04;
+constexpr double kGateSigmas = 4.0;  // of the sensor: surfaces nearer than that may be one
 constexpr std::size_t kPolished = 4;               // poses refined on every sample
 constexpr int kModelPoses = 128;                   // refined at least where a scan is sought in a model
 constexpr std::size_t kModelRefineSamples = 1500;  // of each side, for all but the best of them
@@ -28,8 +29,10 @@ RefineOptions refine_options(const ScanView& source, const ScanView& target, con
   RefineOptions refine = options.refine;
   refine.planes = refine.planes && options.method != Method::openings;
   refine.openings = refine.openings && options.method != Method::polygons;
+  const double noise_m = std::max(source.features->noise_m, target.features->noise_m);
   refine.last_gate_m =
-      std::min(refine.first_gate_m, std::max(refine.last_gate_m, 2.5 * drift_m(source, target)));
+      std::min(refine.first_gate_m,
+               std::max({refine.last_gate_m, kGateSigmas * noise_m, 2.5 * drift_m(source, target)}));
   if (options.wall_thickness_m > 0) refine.wall_thickness_m = options.wall_thickness_m;
   return refine;
 }

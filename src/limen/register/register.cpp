@@ -222,15 +222,18 @@ void write_result(const std::vector<FoundPose>& poses, Posterior posterior, cons
                     options.verdict);
   const AskedPair::Things* things = asked.things(leader);
   std::string look_alike;
-  if (things != nullptr) {
-    result.twin = things->evidence;
-    look_alike = twin_words(things->seen, posterior.others.twin);
-  }
+  if (things != nullptr) look_alike = twin_words(things->seen, posterior.others.twin);
   result.outcome = outcome_of(posterior, open.list, options.verdict);
   result.reason = reason_of(result.outcome, posterior, best.score, open, look_alike, options.verdict);
   if (result.outcome != Outcome::no_match) result.unobserved = open.list;
-  result.best = to_hypothesis(best, pair);
-  result.best.probability = posterior.best();
+  const auto hypothesis = [&](std::size_t rank) {
+    const std::size_t k = posterior.order[rank];
+    Hypothesis told = to_hypothesis(as_given(poses[k], worked), pair);
+    told.probability = posterior.probabilities[rank];
+    if (const AskedPair::Things* asked_of = asked.things(k)) told.twin = asked_of->evidence;
+    return told;
+  };
+  result.best = hypothesis(0);
   result.others = posterior.others;
   result.sigma = result.best.sigma;
   result.matches = best.refined.matches;
@@ -239,8 +242,7 @@ void write_result(const std::vector<FoundPose>& poses, Posterior posterior, cons
   result.rivals = posterior.rivals(options.verdict.risk);
   result.start = asked.agreement_with_start(leader);
   for (std::size_t k = 1; k <= count_of_alternatives(posterior, options); ++k) {
-    result.alternatives.push_back(to_hypothesis(as_given(poses[posterior.order[k]], worked), pair));
-    result.alternatives.back().probability = posterior.probabilities[k];
+    result.alternatives.push_back(hypothesis(k));
     result.alternatives.back().tie = k <= result.rivals;
   }
 }

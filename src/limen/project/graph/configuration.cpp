@@ -23,8 +23,6 @@ constexpr int kMostMoves = 200;             // of scans and parts, one after the
 constexpr double kLeastGain = 1e-6;         // nats
 constexpr double kLeastOdds = 1e-300;
 constexpr int kMostReopened = 3;
-constexpr double kOtherPlaceM = 0.5;  // what misses by more means another place
-constexpr double kOtherPlaceRad = 0.087;
 
 /// The placement of two parts that the pairs between them say most for.
 struct PartJoin {

@@ -2,10 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
+
 #include <Eigen/Core>
 
 #include "limen/geometry/rigid.h"
 #include "limen/model/result.h"
+#include "limen/model/twin_evidence.h"
 
 namespace limen {
 
@@ -17,6 +20,7 @@ struct LinkPose {
   Vector3d centre = Vector3d::Zero();  ///< near the common surface, target frame, metres
   double agreeing_m2 = 0.0;            ///< surface that speaks for it
   double probability = 1.0;            ///< that it is the right one, by the pair alone
+  std::optional<TwinEvidence> twin = {};  ///< whether it lays a place on a look-alike one, if that was asked
 };
 
 /// The same pose the other way round.
@@ -31,6 +35,10 @@ Vector6d misfit(const LinkPose& measured, const Rigid3& predicted);
 
 /// Squared length of a misfit in standard deviations.
 double chi_square(const Vector6d& misfit, const Matrix6d& covariance);
+
+/// Places that look alike are further from each other than one of these.
+inline constexpr double kOtherPlaceM = 0.5;
+inline constexpr double kOtherPlaceRad = 0.087;
 
 /// A loop or a link with more than this (six freedoms, once in a thousand by chance) does not close.
 inline constexpr double kChiSquareBound = 22.46;

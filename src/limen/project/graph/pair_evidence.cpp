@@ -40,20 +40,19 @@ PairEvidence evidence_of(const GraphLink& link, std::size_t pose) {
     evidence.coincidence_nats = -std::log(kCoincidence);
     return evidence;
   }
-  const double right = std::max(link.poses[pose].probability, kLeastProbability);
+  // The pair is trusted no further than that; its poses exclude one another as surely as it says.
+  const auto probability = [&](std::size_t k) {
+    return std::max(link.poses[k].probability, kLeastProbability);
+  };
+  double best = 0.0;
+  for (std::size_t k = 0; k < link.poses.size(); ++k) best = std::max(best, probability(k));
   const double wrong = std::max(link.chance, kLeastProbability);
-  evidence.chance_nats = std::clamp(std::log(right / wrong), -kMostPairNats, kMostPairNats);
+  evidence.chance_nats = std::max(
+      -kMostPairNats, std::min(kMostPairNats, std::log(best / wrong)) + std::log(probability(pose) / best));
   // Of several poses one agrees by chance so much sooner.
   evidence.coincidence_nats = -std::log(kCoincidence * static_cast<double>(link.poses.size()));
   evidence.looks_for_twins = link.asks_for_twins();
-  if (!evidence.looks_for_twins) return evidence;
-  evidence.twins = link.against_twins();
-  // Look-alikes were asked about under the pair's best pose. Against another pose they are likelier by as
-  // much as that pose is less likely than the best.
-  const double best =
-      std::max(link.poses[static_cast<std::size_t>(link.best)].probability, kLeastProbability);
-  evidence.twins.otherwise_nats += std::log(right / best);
-  evidence.twins.alike_nats += std::log(right / best);
+  if (evidence.looks_for_twins) evidence.twins = link.poses[pose].twin.value_or(twin_evidence_of(link.twin));
   return evidence;
 }
 

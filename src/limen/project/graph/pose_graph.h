@@ -26,16 +26,13 @@ struct GraphLink {
   LinkTrust trust = LinkTrust::measured;
   std::vector<LinkPose> poses;  ///< at least one; best first
   double twin = 0.0;            ///< probability that the best pose lays a place on another one built alike
-  /// What that probability comes from, where things were asked.
-  std::optional<TwinEvidence> evidence;
   double chance = 0.0;  ///< probability that none of its poses is right, look-alikes aside
   /// Where the pair's best pose stands among `poses`: elsewhere than first where a user chose another, which
   /// took its place.
   int best = 0;
 
-  /// Whether its things were asked: else other places are among its poses.
-  [[nodiscard]] bool asks_for_twins() const { return evidence || twin > 0.0; }
-  [[nodiscard]] TwinEvidence against_twins() const { return evidence.value_or(twin_evidence_of(twin)); }
+  /// Whether look-alike places were asked about: else they are among its poses.
+  [[nodiscard]] bool asks_for_twins() const { return twin > 0.0 || poses.front().twin; }
 
   /// The number that the pair itself gives a pose.
   [[nodiscard]] int number_of(int pose) const { return pose == 0 ? best : pose == best ? 0 : pose; }

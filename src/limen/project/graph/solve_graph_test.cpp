@@ -377,8 +377,8 @@ TwoStoreys two_storeys(bool corridor_is_source = true) {
     link.source = source;
     link.target = target;
     link.poses = {measured_pose(inverse(truth[static_cast<std::size_t>(target)]) * from, 40.0, random)};
-    link.evidence = TwinEvidence{0.171, 0.0053, otherwise_nats, alike_nats};
-    link.twin = link.evidence->probability();
+    link.poses.front().twin = TwinEvidence{0.171, 0.0053, otherwise_nats, alike_nats};
+    link.twin = link.poses.front().twin->probability();
     graph.links.push_back(link);
   };
   for (int a = 0; a < kRooms; ++a) {

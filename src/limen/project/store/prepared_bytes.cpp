@@ -105,6 +105,23 @@ PoseSigma get_sigma(ByteReader& reader) {
   return sigma;
 }
 
+void put_twin(ByteWriter& writer, const std::optional<TwinEvidence>& said) {
+  writer.put(said.has_value());
+  const TwinEvidence twin = said.value_or(TwinEvidence{});
+  for (const double told :
+       {twin.otherwise, twin.alike, twin.otherwise_nats, twin.alike_nats, twin.built_nats})
+    writer.put(told);
+}
+
+std::optional<TwinEvidence> get_twin(ByteReader& reader) {
+  const bool asked = reader.get<bool>();
+  TwinEvidence twin;
+  for (double* value :
+       {&twin.otherwise, &twin.alike, &twin.otherwise_nats, &twin.alike_nats, &twin.built_nats})
+    reader.get(*value);
+  return asked ? std::optional(twin) : std::nullopt;
+}
+
 void put_pose(ByteWriter& writer, const Hypothesis& pose) {
   writer.put(pose.target_from_source.rotation);
   writer.put(pose.target_from_source.translation);
@@ -117,6 +134,7 @@ void put_pose(ByteWriter& writer, const Hypothesis& pose) {
   writer.put(pose.agreeing_length_m);
   writer.put(pose.explained_share.value_or(-1.0));
   writer.put(pose.room);
+  put_twin(writer, pose.twin);
 }
 
 Hypothesis get_pose(ByteReader& reader) {
@@ -134,11 +152,12 @@ Hypothesis get_pose(ByteReader& reader) {
   const auto share = reader.get<double>();
   if (share >= 0) pose.explained_share = share;
   reader.get(pose.room);
+  pose.twin = get_twin(reader);
   return pose;
 }
 
 constexpr std::size_t kLeastDetail = 56;  // bytes
-constexpr std::size_t kLeastPose = 480;   // bytes, 60 numbers
+constexpr std::size_t kLeastPose = 521;   // bytes, 65 numbers and a flag
 
 void put_matches(ByteWriter& writer, const RegistrationResult& result) {
   writer.put_count(result.matches.size());
@@ -213,23 +232,6 @@ std::vector<SurfaceDetail> get_details(ByteReader& reader) {
   return details;
 }
 
-void put_twin(ByteWriter& writer, const std::optional<TwinEvidence>& said) {
-  writer.put(said.has_value());
-  const TwinEvidence twin = said.value_or(TwinEvidence{});
-  for (const double told :
-       {twin.otherwise, twin.alike, twin.otherwise_nats, twin.alike_nats, twin.built_nats})
-    writer.put(told);
-}
-
-std::optional<TwinEvidence> get_twin(ByteReader& reader) {
-  const bool asked = reader.get<bool>();
-  TwinEvidence twin;
-  for (double* value :
-       {&twin.otherwise, &twin.alike, &twin.otherwise_nats, &twin.alike_nats, &twin.built_nats})
-    reader.get(*value);
-  return asked ? std::optional(twin) : std::nullopt;
-}
-
 }  // namespace
 
 std::string bytes_of(const PreparedScan& prepared) {
@@ -302,7 +304,6 @@ std::string bytes_of(const RegistrationResult& result) {
   const OtherExplanations others = result.others.value_or(OtherExplanations{});
   for (const double probability : {others.nothing_shared, others.twin, others.unlisted_pose})
     writer.put(probability);
-  put_twin(writer, result.twin);
   return writer.bytes();
 }
 
@@ -329,7 +330,6 @@ RegistrationResult result_from(std::string_view bytes, const std::string& where,
   for (double* probability : {&told.nothing_shared, &told.twin, &told.unlisted_pose})
     reader.get(*probability);
   if (others) result.others = told;
-  result.twin = get_twin(reader);
   return result;
 }
 
