@@ -172,9 +172,9 @@ class Rows {
     std::string contrasts;
     const ScoreOptions fine = fine_score(source, target, Method::automatic);
     for (std::size_t a = 0; a < poses.size(); ++a) {
+      const PoseContrasts contrast(source, target, poses[a].refined.target_from_source, fine);
       for (std::size_t b = a + 1; b < poses.size(); ++b) {
-        const PoseContrast c = contrast_poses(source, target, poses[a].refined.target_from_source,
-                                              poses[b].refined.target_from_source, fine);
+        const PoseContrast c = contrast(poses[b].refined.target_from_source);
         contrasts +=
             fmt::format("{}[{}, {}, {:.3f}, {:.3f}, {:.3f}, {:.3f}]", contrasts.empty() ? "" : ", ", a, b,
                         c.for_first_m2, c.for_second_m2, c.against_first_m2, c.against_second_m2);

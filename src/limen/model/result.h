@@ -61,9 +61,9 @@ struct Hypothesis {
   int matched_segments = 0;               ///< of registering sets of segments; `score` is in metres there
   double agreeing_length_m = 0.0;         ///< length of the smaller set of segments that lies on the other
   std::optional<double> explained_share;  ///< against a model: of the walls that the scan saw
-  std::string room;  ///< of a model with named rooms: where the (first) station then stands
+  std::string room;                  ///< of a model with named rooms: where the (first) station then stands
   std::optional<TwinEvidence> twin;  ///< whether it lays a place on a look-alike one, where that was asked
-  bool tie = false;  ///< of an alternative: it cannot be told from the best
+  bool tie = false;                  ///< of an alternative: it cannot be told from the best
 };
 
 /// A pair of planes that agree under the final pose.

@@ -167,8 +167,12 @@ class AskedPair {
 
  private:
   [[nodiscard]] const Rigid3& pose_of(std::size_t k) const { return poses_[k].refined.target_from_source; }
-  [[nodiscard]] PoseContrast contrast(std::size_t first, std::size_t second) const {
-    return contrast_poses(pair_.source.view(), pair_.target.view(), pose_of(first), pose_of(second), score_);
+  [[nodiscard]] PoseContrast contrast(std::size_t first, std::size_t second) {
+    if (contrasted_ != first) {
+      contrasts_.emplace(pair_.source.view(), pair_.target.view(), pose_of(first), score_);
+      contrasted_ = first;
+    }
+    return (*contrasts_)(pose_of(second));
   }
   [[nodiscard]] TwinEvidence weigh_things(std::size_t pose) {
     if (!asker_) asker_.emplace(pair_.source.view(), pair_.target.view());
@@ -188,6 +192,8 @@ class AskedPair {
   const RegisterOptions& options_;
   ScoreOptions score_;
   std::optional<PreparedStart> start_;
+  std::optional<std::size_t> contrasted_;  ///< the pose that contrasts are with
+  std::optional<PoseContrasts> contrasts_;
   std::optional<MatterAsker> asker_;
   std::map<std::size_t, Things> things_;
 };

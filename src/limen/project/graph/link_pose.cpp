@@ -10,7 +10,7 @@ namespace limen {
 
 LinkPose reversed(const LinkPose& pose) {
   const Rigid3 back = inverse(pose.target_from_source);
-  LinkPose other{back, Matrix6d::Identity(), back * pose.centre, pose.agreeing_m2, pose.probability,
+  LinkPose other{back,     Matrix6d::Identity(), back * pose.centre, pose.agreeing_m2, pose.probability,
                  pose.twin};
   other.covariance = moved_covariance(pose, back, other.centre);
   return other;

@@ -26,7 +26,7 @@ struct GraphLink {
   LinkTrust trust = LinkTrust::measured;
   std::vector<LinkPose> poses;  ///< at least one; best first
   double twin = 0.0;            ///< probability that the best pose lays a place on another one built alike
-  double chance = 0.0;  ///< probability that none of its poses is right, look-alikes aside
+  double chance = 0.0;          ///< probability that none of its poses is right, look-alikes aside
   /// Where the pair's best pose stands among `poses`: elsewhere than first where a user chose another, which
   /// took its place.
   int best = 0;

@@ -153,49 +153,83 @@ void add_contradiction(double of_second_m2, PoseContrast& contrast) {
   (of_second_m2 > 0 ? contrast.against_second_m2 : contrast.against_first_m2) += std::abs(of_second_m2);
 }
 
-/// What is asked under either pose.
-AskedSamples asked_for_both(const ScanView& scan, const ScanView& judge, const Rigid3& first,
-                            const Rigid3& second, const ScoreOptions& options) {
-  AskedSamples asked = asked_samples(scan, judge, first, options.samples);
-  if (!scan.model) return asked;
-  const AskedSamples more = asked_samples(scan, judge, second, options.samples);
-  std::vector<std::uint32_t> both;
-  std::set_union(asked.indices.begin(), asked.indices.end(), more.indices.begin(), more.indices.end(),
-                 std::back_inserter(both));
-  asked.indices = std::move(both);
-  return asked;
-}
-
-void add_contrast(const ScanView& scan, const ScanView& judge, const Rigid3& first, const Rigid3& second,
-                  const ScoreOptions& options, PoseContrast& contrast) {
-  CancelScope::check();
-  if (judge.space == nullptr) return;
-  const Gathered asked = gathered(scan, asked_for_both(scan, judge, first, second, options));
-  // Both ways are averaged, as in the score.
-  const double share = 0.5 * asked.factor;
-  std::vector<float> gains(asked.planes.size());
-  std::vector<float> contradictions(asked.planes.size());
-  ask_all(asked, judge, first, options, [&](std::size_t begin, std::size_t size, const Answers& answers) {
-    const auto at = static_cast<std::ptrdiff_t>(begin);
-    std::copy_n(answers.gain_m2.begin(), size, gains.begin() + at);
-    std::copy_n(answers.contradicted_m2.begin(), size, contradictions.begin() + at);
-  });
-  std::vector<PoseContrast> planes(scan.features->planes.size());
-  ask_all(asked, judge, second, options, [&](std::size_t begin, std::size_t size, const Answers& answers) {
-    for (std::size_t k = 0; k < size; ++k) {
-      const std::int32_t plane = asked.planes[begin + k];
-      const float agreeing = gains[begin + k] - answers.gain_m2[k];
-      const float contradicted = answers.contradicted_m2[k] - contradictions[begin + k];
-      add_lead(share * static_cast<double>(agreeing),
-               plane >= 0 ? planes[static_cast<std::size_t>(plane)] : contrast);
-      add_contradiction(share * static_cast<double>(contradicted), contrast);
-    }
-  });
-  for (const PoseContrast& plane : planes) {
-    contrast.for_first_m2 += saturated(plane.for_first_m2);
-    contrast.for_second_m2 += saturated(plane.for_second_m2);
+/// What one scan says of the other under one pose, to be set against what it says under others.
+class WayContrast {
+ public:
+  WayContrast(const ScanView& scan, const ScanView& judge, const Rigid3& judge_from_scan,
+              const ScoreOptions& options)
+      : scan_(scan), judge_(judge), first_(judge_from_scan), options_(options) {
+    // Of a model only what comes within the scan's reach is asked, which both poses decide.
+    if (judge.space != nullptr && !scan.model)
+      known_ = ask_first(asked_samples(scan, judge, first_, options.samples));
   }
-}
+
+  void add(const Rigid3& second, PoseContrast& contrast) const {
+    CancelScope::check();
+    if (judge_.space == nullptr) return;
+    if (scan_.model)
+      add(ask_first(near_either(second)), second, contrast);
+    else
+      add(known_, second, contrast);
+  }
+
+ private:
+  struct Told {
+    Gathered asked;
+    std::vector<float> gains;
+    std::vector<float> contradictions;
+  };
+
+  [[nodiscard]] AskedSamples near_either(const Rigid3& second) const {
+    AskedSamples asked = asked_samples(scan_, judge_, first_, options_.samples);
+    const AskedSamples more = asked_samples(scan_, judge_, second, options_.samples);
+    std::vector<std::uint32_t> both;
+    std::set_union(asked.indices.begin(), asked.indices.end(), more.indices.begin(), more.indices.end(),
+                   std::back_inserter(both));
+    asked.indices = std::move(both);
+    return asked;
+  }
+
+  [[nodiscard]] Told ask_first(const AskedSamples& samples) const {
+    Told told{gathered(scan_, samples), {}, {}};
+    told.gains.resize(told.asked.planes.size());
+    told.contradictions.resize(told.asked.planes.size());
+    ask_all(told.asked, judge_, first_, options_,
+            [&](std::size_t begin, std::size_t size, const Answers& answers) {
+              const auto at = static_cast<std::ptrdiff_t>(begin);
+              std::copy_n(answers.gain_m2.begin(), size, told.gains.begin() + at);
+              std::copy_n(answers.contradicted_m2.begin(), size, told.contradictions.begin() + at);
+            });
+    return told;
+  }
+
+  void add(const Told& told, const Rigid3& second, PoseContrast& contrast) const {
+    // Both ways are averaged, as in the score.
+    const double share = 0.5 * told.asked.factor;
+    std::vector<PoseContrast> planes(scan_.features->planes.size());
+    ask_all(told.asked, judge_, second, options_,
+            [&](std::size_t begin, std::size_t size, const Answers& answers) {
+              for (std::size_t k = 0; k < size; ++k) {
+                const std::int32_t plane = told.asked.planes[begin + k];
+                const float agreeing = told.gains[begin + k] - answers.gain_m2[k];
+                const float contradicted = answers.contradicted_m2[k] - told.contradictions[begin + k];
+                add_lead(share * static_cast<double>(agreeing),
+                         plane >= 0 ? planes[static_cast<std::size_t>(plane)] : contrast);
+                add_contradiction(share * static_cast<double>(contradicted), contrast);
+              }
+            });
+    for (const PoseContrast& plane : planes) {
+      contrast.for_first_m2 += saturated(plane.for_first_m2);
+      contrast.for_second_m2 += saturated(plane.for_second_m2);
+    }
+  }
+
+  ScanView scan_;
+  ScanView judge_;
+  Rigid3 first_;
+  ScoreOptions options_;
+  Told known_;
+};
 
 }  // namespace
 
@@ -253,18 +287,35 @@ PoseScore score_pose(const ScanView& source, const ScanView& target, const Rigid
   return PoseScorer(source, target, options)(target_from_source);
 }
 
-PoseContrast contrast_poses(const ScanView& source, const ScanView& target, const Rigid3& first,
-                            const Rigid3& second, const ScoreOptions& options) {
+struct PoseContrasts::Asked {
+  WayContrast forth;
+  WayContrast back;
+  OpeningMatching openings;
+  std::size_t source_openings;
+  std::vector<OpeningGain> in_first;
+};
+
+PoseContrasts::PoseContrasts(const ScanView& source, const ScanView& target, const Rigid3& first,
+                             const ScoreOptions& options)
+    : options_(options),
+      asked_(new Asked{{source, target, first, options},
+                       {target, source, inverse(first), options},
+                       {*source.features, *target.features},
+                       source.features->openings.size(),
+                       {}}) {
+  asked_->in_first = opening_gains(asked_->openings, asked_->source_openings, first, options);
+}
+
+PoseContrasts::~PoseContrasts() = default;
+
+PoseContrast PoseContrasts::operator()(const Rigid3& second) const {
   PoseContrast contrast;
-  add_contrast(source, target, first, second, options, contrast);
-  add_contrast(target, source, inverse(first), inverse(second), options, contrast);
-  const OpeningMatching openings(*source.features, *target.features);
-  const std::size_t sources = source.features->openings.size();
-  const std::vector<OpeningGain> in_first = opening_gains(openings, sources, first, options);
-  const std::vector<OpeningGain> in_second = opening_gains(openings, sources, second, options);
-  for (std::size_t i = 0; i < in_first.size(); ++i) {
-    add_lead(in_first[i].m2 - in_second[i].m2, contrast);
-  }
+  asked_->forth.add(second, contrast);
+  asked_->back.add(inverse(second), contrast);
+  const std::vector<OpeningGain> in_second =
+      opening_gains(asked_->openings, asked_->source_openings, second, options_);
+  for (std::size_t i = 0; i < in_second.size(); ++i)
+    add_lead(asked_->in_first[i].m2 - in_second[i].m2, contrast);
   return contrast;
 }
 

@@ -51,8 +51,23 @@ struct PoseContrast {
   double against_second_m2 = 0.0;
 };
 
-PoseContrast contrast_poses(const ScanView& source, const ScanView& target, const Rigid3& first,
-                            const Rigid3& second, const ScoreOptions& options);
+/// Contrasts of one pose with others: what both scans say under it is asked once. Keeps copies of the views,
+/// not of what they point to.
+class PoseContrasts {
+ public:
+  PoseContrasts(const ScanView& source, const ScanView& target, const Rigid3& first,
+                const ScoreOptions& options);
+  ~PoseContrasts();
+  PoseContrasts(const PoseContrasts&) = delete;
+  PoseContrasts& operator=(const PoseContrasts&) = delete;
+
+  [[nodiscard]] PoseContrast operator()(const Rigid3& second) const;
+
+ private:
+  struct Asked;
+  ScoreOptions options_;
+  std::unique_ptr<Asked> asked_;
+};
 
 /// By how much the share of contradicted surface speaks for a pose against chance, natural logarithm. Under a
 /// right pose it is a property of a pair (doors, people, glass, things that were moved): known as a beta
