@@ -12,6 +12,7 @@ namespace limen {
 namespace {
 
 TEST(InterruptGuard, AnInterruptCancelsTheMonitor) {
+  std::signal(SIGINT, SIG_DFL);  // a shell starts work in the background with interrupts ignored
   Monitor monitor;
   const InterruptGuard guard(monitor);
   EXPECT_NO_THROW(monitor.throw_if_cancelled());
