@@ -9,8 +9,6 @@
 namespace limen {
 namespace {
 
-constexpr const char* kDate = "2026-11-21";  ///< of the version
-
 /// Text as roff reads it: signs that mean something to it are named, no line begins with a request.
 std::string roff(const std::string& text) {
   std::string safe;
@@ -84,7 +82,7 @@ std::string command_section(const CommandDoc& command) {
 std::string man_page(const ProgramDoc& doc) {
   std::string text =
       ".\\\" SPDX-FileCopyrightText: The limen authors\n.\\\" SPDX-License-Identifier: Apache-2.0\n";
-  text += fmt::format(".TH LIMEN 1 {} \"limen {}\" \"User Commands\"\n", kDate, kVersion);
+  text += fmt::format(".TH LIMEN 1 {} \"limen {}\" \"User Commands\"\n", kVersionDate, kVersion);
   text += ".SH NAME\nlimen \\- register laser scans of one building, and scans with building models\n";
   text += ".SH SYNOPSIS\n";
   for (const CommandDoc& command : doc.commands) text += synopsis(command) + ".br\n";
