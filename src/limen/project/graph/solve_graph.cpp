@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <set>
 #include <utility>
@@ -48,6 +49,7 @@ class Solver {
     weigh_doubts();
     choose_references();
     adjust();
+    lend_by_what_is_held();
     number_components();
     weigh_doubts();
     judge_nodes();
@@ -71,6 +73,17 @@ class Solver {
     reference_ = references();
   }
 
+  /// The first node that is least probably elsewhere.
+  [[nodiscard]] int firmest_of(const std::vector<int>& nodes) {
+    const auto odds = [&](int n) {
+      std::vector<bool> alone(static_cast<std::size_t>(graph_.nodes), false);
+      alone[static_cast<std::size_t>(n)] = true;
+      return std::max(kFirmShare * risk_, odds_->of(alone).total());
+    };
+    return *std::min_element(nodes.begin(), nodes.end(),
+                             [&](int a, int b) { return std::pair(odds(a), a) < std::pair(odds(b), b); });
+  }
+
   /// Of each node the node that lends its component the frame; -1: it is alone. The first that is firmly
   /// held.
   [[nodiscard]] std::vector<int> references() {
@@ -79,14 +92,7 @@ class Solver {
     std::vector<int> reference(static_cast<std::size_t>(graph_.nodes), -1);
     for (const auto& [lowest, nodes] : members) {
       if (nodes.size() < 2) continue;
-      const auto odds = [&](int n) {
-        std::vector<bool> alone(static_cast<std::size_t>(graph_.nodes), false);
-        alone[static_cast<std::size_t>(n)] = true;
-        return std::max(kFirmShare * risk_, odds_->of(alone).total());
-      };
-      int first = *std::min_element(nodes.begin(), nodes.end(), [&](int a, int b) {
-        return std::pair(odds(a), a) < std::pair(odds(b), b);
-      });
+      int first = firmest_of(nodes);
       if (graph_.anchor >= 0 && component(graph_.anchor) == lowest) first = graph_.anchor;
       for (const int n : nodes) reference[static_cast<std::size_t>(n)] = first;
     }
@@ -166,6 +172,40 @@ class Solver {
     covariance_ = std::move(adjusted.covariance);
     edge_covariance_ = std::move(adjusted.edge_covariance);
     bridge_ = bridges_of(graph_.nodes, firm);
+  }
+
+  [[nodiscard]] bool is_held(std::size_t node) const {
+    const Vector6d variances = covariance_[node].diagonal();
+    return variances.head<3>().maxCoeff() < kHeldRad * kHeldRad &&
+           variances.tail<3>().maxCoeff() < kHeldM * kHeldM;
+  }
+
+  /// How many of the nodes that a node lends the frame are held against it.
+  [[nodiscard]] std::size_t count_held(const std::vector<int>& nodes) const {
+    return static_cast<std::size_t>(std::count_if(
+        nodes.begin(), nodes.end(), [&](int n) { return is_held(static_cast<std::size_t>(n)); }));
+  }
+
+  /// Where most of a component is held among itself, but not against its reference, it lends the frame.
+  void lend_by_what_is_held() {
+    std::map<int, std::vector<int>> members;  // of each reference
+    for (int n = 0; n < graph_.nodes; ++n) {
+      const int root = reference_[static_cast<std::size_t>(n)];
+      if (root >= 0 && root != graph_.anchor) members[root].push_back(n);
+    }
+    for (const auto& [root, nodes] : members) {
+      const std::size_t held = count_held(nodes);
+      if (2 * held >= nodes.size()) continue;
+      std::vector<int> loose;
+      std::copy_if(nodes.begin(), nodes.end(), std::back_inserter(loose),
+                   [&](int n) { return !is_held(static_cast<std::size_t>(n)); });
+      const std::vector<int> before = reference_;
+      std::replace(reference_.begin(), reference_.end(), root, firmest_of(loose));
+      adjust();
+      if (count_held(nodes) > held) continue;
+      reference_ = before;
+      adjust();
+    }
   }
 
   /// The largest component first; single nodes belong to none.
@@ -273,11 +313,8 @@ class Solver {
       }
       for (const auto& [side, odds] : moved) elsewhere = std::max(elsewhere, odds);
       node.doubt = elsewhere / (1.0 + elsewhere);
-      const Vector6d variances = node.covariance.diagonal();
-      const bool held = variances.head<3>().maxCoeff() < kHeldRad * kHeldRad &&
-                        variances.tail<3>().maxCoeff() < kHeldM * kHeldM;
       node.state = node.doubt > probable_risk_ ? NodeState::ambiguous
-                   : !held                     ? NodeState::under_constrained
+                   : !is_held(n)               ? NodeState::under_constrained
                    : node.doubt > risk_        ? NodeState::probable
                                                : NodeState::registered;
     }

@@ -145,6 +145,37 @@ TEST(SolveGraph, WhatSureLinksHoldTogetherLendsTheFrame) {
     EXPECT_EQ(solved.nodes[n].state, n < 4 ? NodeState::ambiguous : NodeState::registered) << n;
 }
 
+/// Two groups that hold together in themselves, and a link that joins them but leaves a decimetre open: the
+/// larger one lends the frame, whichever comes first.
+TEST(SolveGraph, TheLargerPartThatIsHeldLendsTheFrame) {
+  RandomStream random(17, 1);
+  PoseGraph graph;
+  graph.nodes = 7;
+  std::vector<Rigid3> world_from_node;
+  for (int n = 0; n < 7; ++n) world_from_node.push_back(random_pose(random, 5.0));
+  const auto add = [&](int source, int target) -> GraphLink& {
+    GraphLink link;
+    link.source = source;
+    link.target = target;
+    link.chance = 1e-9;
+    const Rigid3 truth = inverse(world_from_node[static_cast<std::size_t>(target)]) *
+                         world_from_node[static_cast<std::size_t>(source)];
+    link.poses = {measured_pose(truth, 20.0, random)};
+    graph.links.push_back(link);
+    return graph.links.back();
+  };
+  for (const std::vector<int>& group : {std::vector<int>{0, 1, 2}, std::vector<int>{3, 4, 5, 6}}) {
+    for (std::size_t a = 0; a < group.size(); ++a) {
+      for (std::size_t b = 0; b < a; ++b) add(group[a], group[b]);
+    }
+  }
+  add(3, 2).poses.front().covariance(3, 3) += 0.1 * 0.1;
+  const SolvedGraph solved = solve_graph(graph);
+  ASSERT_EQ(solved.components, 1);
+  for (std::size_t n = 0; n < 7; ++n)
+    EXPECT_EQ(solved.nodes[n].state, n < 3 ? NodeState::under_constrained : NodeState::registered) << n;
+}
+
 TEST(SolveGraph, AnOpenLinkIsSettledByItsLoop) {
   SyntheticGraph made = synthetic_graph(3, 1, 2, 0.0, 8);
   ASSERT_EQ(made.graph.links.size(), 3U);
