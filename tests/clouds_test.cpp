@@ -70,7 +70,7 @@ TEST_F(CloudsTest, ThinSaysWhatIsWrong) {
   EXPECT_NE(run({"thin", "floor.csv", "out.ply"}).err.find("--points"), std::string::npos);
   EXPECT_NE(run({"thin", "floor.csv", "out.pcd", "--points", "10"}).err.find("name the output .ply"),
             std::string::npos);
-  EXPECT_NE(run({"thin", "floor.csv", "floor.csv", "--points", "10"}).err.find("over the input"),
+  EXPECT_NE(run({"thin", "floor.csv", "floor.csv", "--points", "10"}).err.find("overwrite the input"),
             std::string::npos);
   EXPECT_NE(run({"thin", "floor.csv", "out.ply", "--memory", "much"}).err.find("--memory"),
             std::string::npos);

@@ -254,7 +254,7 @@ TEST_F(DeviationProgramTest, MistakesAreNamedAndLeaveNothingBehind) {
   fails({"scan.xyz", "cube.obj", "--result", "none.json"}, "no pose");
   fails({"scan.xyz", "cube.obj", "--result", "none.json", "--identity"}, "exclude");
   fails({"cube.obj", "cube.obj", "--identity"}, "building model");
-  fails({"scan.xyz", "scan.xyz", "--identity"}, "no building model");
+  fails({"scan.xyz", "scan.xyz", "--identity"}, "not a building model");
   fails({"scan.xyz", "cube.obj", "--identity", "--max-distance-m", "0"}, "max_distance_m");
   const ProgramRun done = run({"deviation", "scan.xyz", "cube.obj", "--identity", "-o", "out"});
   EXPECT_EQ(done.status, 0) << done.err;

@@ -133,10 +133,10 @@ TEST_F(HostileFiles, PointsThatAllLieInOnePlaceAreToldSo) {
       const int status = run_small(command).status;
       EXPECT_TRUE(status == 0 || status == 2) << status;
     } else {
-      expect_refused(command, "all 300000 points lie in one place");
+      expect_refused(command, "all 300000 points have the same position");
     }
   }
-  expect_refused({"project", "zeros.xyz", "-o", "project"}, "all 300000 points lie in one place");
+  expect_refused({"project", "zeros.xyz", "-o", "project"}, "all 300000 points have the same position");
 }
 
 TEST_F(HostileFiles, PointsInTwoPlacesBringNoCommandDown) {
@@ -217,13 +217,13 @@ TEST_F(HostileFiles, ALineOfAMillionNumbersIsNoPoint) {
   std::string text;
   for (int k = 0; k < 1000000; ++k) text += "1.5 ";
   write("line.xyz", text + "\n");
-  expect_refused({"info", "line.xyz"}, "a row of 1000000 numbers is no point");
+  expect_refused({"info", "line.xyz"}, "a row of 1000000 numbers is not a point");
 }
 
 TEST_F(HostileFiles, AnArchiveThatBecomesAThousandTimesAsLargeIsRefused) {
   const std::string model = "ISO-10303-21;\n" + std::string(50000000, ' ') + "END-ISO-10303-21;\n";
   write("bomb.ifczip", zipped({{"model.ifc", model}}));
-  expect_refused({"info", "bomb.ifczip"}, "would take 50 MB unpacked");
+  expect_refused({"info", "bomb.ifczip"}, "would need 50 MB unpacked");
 }
 
 TEST_F(HostileFiles, PointsThatAreNoNumbersAreCountedInOneNote) {

@@ -64,7 +64,7 @@ TEST_F(HostileTest, OneRunAtATimeInAFolder) {
   fs::create_directories(work() / "out");
   const int lock = open((work() / "out" / ".limen-lock").c_str(), O_RDWR | O_CREAT, 0666);
   ASSERT_EQ(flock(lock, LOCK_EX | LOCK_NB), 0);
-  expect_one_error({"project", "a.xyz", "b.xyz", "-o", "out"}, "another limen works in this folder");
+  expect_one_error({"project", "a.xyz", "b.xyz", "-o", "out"}, "another limen is working in this folder");
   EXPECT_FALSE(fs::exists(work() / "out" / "store"));
   close(lock);
   EXPECT_NE(run({"project", "a.xyz", "b.xyz", "-o", "out"}).status, 2);

@@ -105,8 +105,8 @@ TEST_F(MisuseTest, RandomBytesUnderAnyNameAreNoFile) {
     table.push_back({{"project", "--scans", name, "-o", "out"}, name});
     table.push_back({{"register", "a.ply", "b.ply", "--source-trajectory", name, "-o", "out"}, name});
   }
-  table.push_back({{"info", "random.las"}, "this is no LAS file"});
-  table.push_back({{"info", "random.laz"}, "this is no LAS file"});
+  table.push_back({{"info", "random.las"}, "this is not a LAS file"});
+  table.push_back({{"info", "random.laz"}, "this is not a LAS file"});
   table.push_back({{"info", "random.e57"}, "does not begin like an E57 file"});
   expect_told(table);
 }
@@ -115,7 +115,7 @@ TEST_F(MisuseTest, FilesThatEndTooEarlyAreNotTakenForWholeOnes) {
   std::vector<Misuse> table;
   const std::map<std::string, std::string> kinds = {
       {"a.las", "header promises"}, {"a.laz", "get the whole file"}, {"a.e57", "cut off"},
-      {"a.ply", "header promises"}, {"a.xyz", "numbers are wanted"}, {"m.ifc", "cut off"}};
+      {"a.ply", "header promises"}, {"a.xyz", "numbers, not"},       {"m.ifc", "cut off"}};
   for (const auto& [whole, must_say] : kinds) {
     const std::string bytes = read_whole(work() / whole);
     for (const std::size_t percent : {30U, 60U, 95U}) {
@@ -147,21 +147,21 @@ TEST_F(MisuseTest, WhatIsNoFileOrTheWrongOne) {
       {{"project", "missing.ply", "missing2.ply", "-o", "out"}, "missing.ply: there is no such file"},
       {{"project", "--scans", "missing.txt", "-o", "out"}, "missing.txt"},
       {{"project", "--scans", "names.txt", "-o", "out"}, "missing.ply"},
-      {{"project", "--scans", "a.ply", "-o", "out"}, "a.ply: is no list of names"},
+      {{"project", "--scans", "a.ply", "-o", "out"}, "a.ply: is not a list of names"},
       {{"thin", "folder", "out.ply", "--points", "9"}, "is a folder"},
       {{"transform", "folder", "a.ply", "out.ply"}, "is a folder"},
       {{"transform", "pose.txt", "folder", "out.ply"}, "is a folder"},
       {{"view", "folder"}, "is a folder"},
       {{"info", ""}, "the name of a file is empty"},
       {{"register", "a.ply", "", "-o", "out"}, "the name of a file is empty"},
-      {{"info", "https://example.org/a.las"}, "is an address"},
+      {{"info", "https://example.org/a.las"}, "is a web address"},
       {{"register", "a.ply", "file:///a.ply", "-o", "out"}, "download it"},
-      {{"view", "s3://scans/a.laz"}, "is an address"},
+      {{"view", "s3://scans/a.laz"}, "is a web address"},
       {{"info", "nan.xyz"}, "nan.xyz"},
       {{"register", "nan.xyz", "b.ply", "-o", "out"}, "nan.xyz"},
       {{"register", "m.ifc", "m.ifc", "-o", "out"}, "both sides are building models"},
       {{"deviation", "m.ifc", "a.ply", "--identity", "-o", "out"}, "give the scan first"},
-      {{"deviation", "a.ply", "b.ply", "--identity", "-o", "out"}, "is no building model"},
+      {{"deviation", "a.ply", "b.ply", "--identity", "-o", "out"}, "is not a building model"},
       {{"deviation", "a.ply", "missing.ifc", "--identity", "-o", "out"}, "missing.ifc"},
       {{"thin", "m.ifc", "out.ply", "--points", "9"}, "is not read as a scan"},
       {{"transform", "pose.txt", "m.ifc", "out.ply"}, "is not read as a scan"},
@@ -219,7 +219,7 @@ TEST_F(MisuseTest, WordsAndNumbersThatCannotBe) {
       {{"info", "a.ply", "--threads", "99999"}, "--threads"},
       {{"info", "a.ply", "--threads", "nan"}, "--threads"},
       {{"thin", "a.ply", "out.ply", "--points", "-5"}, "--points: -5"},
-      {{"thin", "a.ply", "out.ply", "--points", "0"}, "how many points"},
+      {{"thin", "a.ply", "out.ply", "--points", "0"}, "number of points to keep"},
       {{"thin", "a.ply", "out.ply", "--points", "1e99"}, "--points"},
       {{"thin", "a.ply", "out.ply", "--spacing-m", "-1"}, "--spacing-m"},
       {{"thin", "a.ply", "out.ply", "--spacing-m", "inf"}, "--spacing-m"},
@@ -259,9 +259,9 @@ TEST_F(MisuseTest, WordsAndNumbersThatCannotBe) {
       {{"project", "decide", "project"}, "accept A B"},
       {{"project", "decide", "project", "perhaps"}, "accept A B"},
       {{"project", "decide", "project", "accept", "a.ply"}, "accept A B"},
-      {{"project", "decide", "project", "accept", "a.ply", "c.ply"}, "no scan that is called c.ply"},
+      {{"project", "decide", "project", "accept", "a.ply", "c.ply"}, "no scan named c.ply"},
       {{"project", "decide", "project", "choose", "a.ply", "b.ply", "x"}, "choose"},
-      {{"project", "decide", "project", "level", "nobody"}, "no scan that is called nobody"},
+      {{"project", "decide", "project", "level", "nobody"}, "no scan named nobody"},
   });
 }
 
@@ -292,9 +292,9 @@ TEST_F(MisuseTest, PlacesThatCannotBeWrittenTo) {
       {{"transform", "pose.txt", "a.ply", "/proc/out.ply"}, "/proc/out.ply"},
       {{"view", "a.ply", "-o", "/proc/out.html"}, "/proc/out.html"},
       {{"register", "a.ply", "b.ply", "-o", "a.ply"}, "a.ply"},
-      {{"view", "a.ply", "-o", "a.ply"}, "over the input"},
-      {{"thin", "a.ply", "a.ply", "--points", "9"}, "over the input"},
-      {{"transform", "pose.txt", "a.ply", "pose.txt"}, "over the input"},
+      {{"view", "a.ply", "-o", "a.ply"}, "overwrite the input"},
+      {{"thin", "a.ply", "a.ply", "--points", "9"}, "overwrite the input"},
+      {{"transform", "pose.txt", "a.ply", "pose.txt"}, "overwrite the input"},
       {{"transform", "pose.txt", "a.ply", "folder"}, "folder"},
   });
 }

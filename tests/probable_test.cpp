@@ -20,8 +20,8 @@ class ProbableTest : public ProgramTest {
     const ProgramRun done =
         run({"register", "indoor_00.ply", "indoor_01.ply", "-o", "out", "--risk", "1e-13"});
     EXPECT_EQ(done.status, 3) << done.err;
-    EXPECT_NE(done.out.find("probable: placed, "), std::string::npos) << done.out;
-    EXPECT_NE(done.out.find("to be surer"), std::string::npos) << done.out;
+    EXPECT_NE(done.out.find("probable: probability "), std::string::npos) << done.out;
+    EXPECT_NE(done.out.find("to be more certain"), std::string::npos) << done.out;
   }
 };
 
@@ -34,14 +34,15 @@ TEST_F(ProbableTest, ThePoseIsWrittenAsForRegisteredAndTheStatusIsThree) {
   EXPECT_EQ(sure["outcome"], "registered");
   EXPECT_EQ(result["target_from_source"], sure["target_from_source"]);
   EXPECT_EQ(read_whole(work() / "out" / "transform.txt"), read_whole(work() / "sure" / "transform.txt"));
-  EXPECT_NE(read_whole(work() / "out" / "report.html").find("Probable: placed"), std::string::npos);
+  EXPECT_NE(read_whole(work() / "out" / "report.html").find("Probable: a pose was found"), std::string::npos);
 }
 
 TEST_F(ProbableTest, ItIsMovedWithOneWarningThatNamesTheProbability) {
   make_probable();
   const ProgramRun moved = run({"transform", "out/result.json", "indoor_00.ply", "moved.ply", "--quiet"});
   EXPECT_EQ(moved.status, 0) << moved.err;
-  EXPECT_NE(moved.err.find("warning: the pose in out/result.json is probable: right with more than 99.99 %"),
+  EXPECT_NE(moved.err.find("warning: the pose in out/result.json is only probable; the probability that it "
+                           "is right is more than 99.99 %"),
             std::string::npos)
       << moved.err;
   EXPECT_EQ(std::count(moved.err.begin(), moved.err.end(), '\n'), 1);

@@ -178,7 +178,7 @@ TEST_F(Project, WhatTheStoreKeepsOfAFileTellsNoOldNameAndIsOfNoOtherKind) {
     EXPECT_EQ(run({"project", scan, "-o", out, "--memory", "1M", "--quiet"}).status, 0);
     return text_of(out);
   };
-  EXPECT_NE(thinned(scans[0], "out").find("indoor_00.ply: to stay within the memory"), std::string::npos);
+  EXPECT_NE(thinned(scans[0], "out").find("indoor_00.ply: thinned from"), std::string::npos);
   std::filesystem::copy(work() / scans[0], work() / "renamed.ply");
   const std::string renamed = thinned("renamed.ply", "out");
   EXPECT_EQ(renamed, thinned("renamed.ply", "fresh"));
@@ -250,7 +250,7 @@ TEST_F(Project, PassesThatDriftAreBentBack) {
   std::vector<std::string> rigid = call(passes, "rigid");
   rigid.emplace_back("--rigid-passes");
   ASSERT_TRUE(joined(rigid));
-  EXPECT_EQ(json::parse(text_of("rigid"))["scans"][0]["rigid"], "as you asked");
+  EXPECT_EQ(json::parse(text_of("rigid"))["scans"][0]["rigid"], "treated as rigid, as you asked");
   for (const char* how : {"bent", "rigid"}) {
     const std::string from = std::string(how) + "/project.json";
     const std::string to = std::string("placed_") + how;
@@ -287,7 +287,7 @@ TEST_F(Project, ScansThatCannotBeReadAndCopiesAreToldAndStopNothing) {
   EXPECT_NE(done.out.find("more than once"), std::string::npos);
   const ProgramRun of_copy = run({"project", "decide", "out", "level", "copy.ply"});
   EXPECT_EQ(of_copy.status, 2);
-  EXPECT_NE(of_copy.err.find("name that: case/indoor_00.ply"), std::string::npos) << of_copy.err;
+  EXPECT_NE(of_copy.err.find("name the original: case/indoor_00.ply"), std::string::npos) << of_copy.err;
   EXPECT_EQ(run({"project", "status", "out"}).out,
             "stage done: 4 files: 1 ready, 1 copy, 2 unreadable; 0 of 0 pairs tried\n");
   const json status = json::parse(run({"project", "status", "out", "--json"}).out);
@@ -317,8 +317,8 @@ TEST_F(Project, AllFilesAreHeldAgainstTheProjectBeforeOneIsMoved) {
     EXPECT_FALSE(std::filesystem::exists(work() / "all.ply"));
   };
   write_whole(work() / scans[1], read_whole(work() / scans[0]));
-  refused({"placed"}, "is not the file that out/project.json is about");
-  refused({"all.ply", "--merge"}, "is not the file that out/project.json is about");
+  refused({"placed"}, "is not the file registered in out/project.json");
+  refused({"all.ply", "--merge"}, "is not the file registered in out/project.json");
   const ProgramRun forced = run({"transform", "out/project.json", "-o", "forced", "--force", "--quiet"});
   EXPECT_EQ(forced.status, 0) << forced.err;
   std::filesystem::remove(work() / scans[1]);
@@ -366,7 +366,7 @@ TEST_F(Project, DecisionsAreHeededTestedAndSurviveRuns) {
   EXPECT_EQ(run({"project", "decide", "out", "forget", "cellar.ply"}).status, 0);
   const ProgramRun unsaid = run({"project", "decide", "out", "forget", "cellar.ply"});
   EXPECT_EQ(unsaid.status, 0);
-  EXPECT_NE(unsaid.out.find("nothing was said"), std::string::npos) << unsaid.out;
+  EXPECT_NE(unsaid.out.find("no such decision was saved"), std::string::npos) << unsaid.out;
   EXPECT_EQ(run(call(scans, "out")).status, 0);
   EXPECT_EQ(text_of("out"), before);
   write_whole(work() / "words.json", R"({"decisions": [{"agree": ["a"]}]})");

@@ -187,7 +187,7 @@ TEST_F(ServeTest, WhatRunsEndsWithIt) {
 TEST_F(ServeTest, OneServerAFolder) {
   const ProgramRun second = run({"serve", "site"});
   EXPECT_EQ(second.status, 2);
-  EXPECT_NE(second.err.find("is served already"), std::string::npos) << second.err;
+  EXPECT_NE(second.err.find("is already served"), std::string::npos) << second.err;
 }
 
 TEST_F(ServeTest, KeptWorkOfSomebodyElseIsLookedAtAsNewWorkIs) {

@@ -157,7 +157,7 @@ TEST_F(ViewTest, WhatIsWrongIsTold) {
   write_whole(work() / "pose.txt", kTurned);
   write_whole(work() / "other.json", "{\"a\": 1}");
   EXPECT_NE(error_of({"missing.ply"}).find("missing.ply"), std::string::npos);
-  EXPECT_NE(error_of({"a.xyz", "-o", "a.xyz"}).find("over the input"), std::string::npos);
+  EXPECT_NE(error_of({"a.xyz", "-o", "a.xyz"}).find("overwrite the input"), std::string::npos);
   EXPECT_NE(error_of({"a.xyz", "--most-points", "5"}).find("--most-points"), std::string::npos);
   EXPECT_NE(error_of({"a.xyz", "--most-points", "9000000"}).find("--most-points"), std::string::npos);
   EXPECT_NE(error_of({"other.json"}).find("other.json"), std::string::npos);

@@ -96,7 +96,7 @@ def deviation(
     if isinstance(pose, Registration):
         pose = pose.target_from_source
         if pose is None:
-            raise ValueError("nothing in common was found: there is no pose to measure at")
+            raise ValueError("no reliable overlap was found: there is no pose to measure at")
     matrix = np.eye(4) if pose is None else as_pose(pose)
     measured = _limen.deviation(
         scan if isinstance(scan, Scan) else read_scan(scan),

@@ -50,7 +50,7 @@ def evaluate(
     """Compare the best pose of a result, or `pose` of its alternatives, with the true 4 x 4 matrix."""
     found = result.best if pose is None else pose
     if found is None:
-        raise ValueError("nothing in common was found: there is no pose to compare")
+        raise ValueError("no reliable overlap was found: there is no pose to compare")
     target_from_source, true_pose = found.target_from_source, as_pose(truth)
     middle = np.asarray(result.to_dict()["inputs"]["source"]["middle"])
     turn = _rotation_vector(target_from_source[:3, :3] @ true_pose[:3, :3].T)

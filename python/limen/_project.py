@@ -44,7 +44,7 @@ class Project:
         for scan in self.scans:
             if FilePath(scan.file).name == name and scan.index == index and scan.frame_from_scan is not None:
                 return scan.frame_from_scan
-        raise KeyError(f"{name} does not stand in the project's frame")
+        raise KeyError(f"{name} has no pose in the project's frame")
 
 
 def read_project(path: Path) -> Project:

@@ -139,7 +139,7 @@ class _Kept:
     def save(self, folder: str, with_report: bool) -> None:
         """Write result.json and transform.txt."""
         if with_report:
-            raise ValueError("the page did not go through the pickle: save(folder, report=False)")
+            raise ValueError("the report page is not kept in a pickle: use save(folder, report=False)")
         os.makedirs(folder, exist_ok=True)
         with open(os.path.join(folder, "result.json"), "w", encoding="utf-8") as file:
             file.write(self._text)
@@ -185,7 +185,7 @@ class Registration:
     def apply(self, points: npt.ArrayLike) -> Array:
         """Move world coordinates of the source, (n, 3), into the target's frame."""
         if self.best is None:
-            raise ValueError("nothing in common was found: there is no pose to apply")
+            raise ValueError("no reliable overlap was found: there is no pose to apply")
         return _limen.transform_points(np.asarray(points, dtype=np.float64), self.best.target_from_source)
 
     def save(self, folder: Path, *, report: bool = True) -> None:
@@ -248,21 +248,21 @@ class Registration:
                 rows.append(("probability", f"{100 * self.best.probability:.2f} %"))
             motion, precision = told["motion"], told["precision"]
             shift = "{:.4f} {:.4f} {:.4f} m".format(*motion["shift_m"])
-            rows.append(("shift of the middle", shift))
+            rows.append(("shift of the centre", shift))
             axis = "{:.2f} {:.2f} {:.2f}".format(*motion["axis"])
             rows.append(("turn about it", f"{np.degrees(motion['turn_rad']):.4f} deg about {axis}"))
             if precision is not None:
                 middle, far = precision["middle"], precision["far_end"]
                 rows.append(
                     (
-                        "precision (95 %)",
-                        f"{1e3 * middle['radius_m']:.1f} mm in the middle, {1e3 * far['radius_m']:.1f} mm "
+                        "accuracy (95 %)",
+                        f"{1e3 * middle['radius_m']:.1f} mm at the centre, {1e3 * far['radius_m']:.1f} mm "
                         f"at the far end {far['distance_m']:.0f} m away",
                     )
                 )
             rows.append(("residuals", f"{1e3 * self.best.rms_m:.1f} mm (root mean square)"))
             rows += [("not fixed", freedom.name) for freedom in self.unobserved]
-            surface = f"{self.best.agreeing_m2:.1f} m2, {self.best.contradicted_m2:.2f} m2 against"
+            surface = f"{self.best.agreeing_m2:.1f} m2, {self.best.contradicted_m2:.2f} m2 contradict"
             rows.append(("agreeing surface", surface))
             matched = f"{self.best.matched_planes} planes, {self.best.matched_openings} openings"
             rows.append(("matched", matched))

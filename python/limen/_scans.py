@@ -79,7 +79,7 @@ def thin(
     points: at most so many. spacing_m: one in each cube of that side.
     """
     if points <= 0 and spacing_m <= 0:
-        raise ValueError("say how many points to keep: points or spacing_m")
+        raise ValueError("give how many points to keep: points or spacing_m")
     told = _limen.thin_file(os.fspath(path), os.fspath(output), points, spacing_m, as_progress(progress))
     return int(told["points_written"])
 

@@ -92,7 +92,7 @@ class Registered(unittest.TestCase):
 
     def test_in_a_notebook(self):
         page = self.result._repr_html_()
-        for part in ("<b>registered</b>", "<svg", "shift of the middle", "far end", "matched"):
+        for part in ("<b>registered</b>", "<svg", "shift of the centre", "far end", "matched"):
             self.assertIn(part, page)
         self.assertLess(len(page), 1_000_000)
         self.assertIn("registered", repr(self.result))

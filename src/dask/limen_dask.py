@@ -136,10 +136,10 @@ class Cluster:
                 address = json.load(file)["address"]
         if not address.startswith("tls://") and not self.options.trust_network:
             fault(
-                f"the scheduler {address} is not protected by TLS: whoever reaches it, from this machine too, can run "
-                "programs as you",
+                f"the scheduler {address} is not protected by TLS: anybody who can reach it, from this machine "
+                "too, can run programs as you",
                 "--scheduler",
-                "start it with --protocol tls and give its tls:// address, or --trust-network where nobody else is",
+                "start it with --protocol tls and give its tls:// address, or --trust-network if only you can reach it",
             )
         return address
 
@@ -156,7 +156,7 @@ class Cluster:
         security = Security(**{key: value for key, value in named.items() if value})
         if self.address().startswith("tls://") and not security.tls_ca_file:
             fault(
-                "it is not known who signed the scheduler's certificate",
+                "the authority that signed the scheduler's certificate is unknown",
                 "--tls-ca",
                 "give --tls-ca, --tls-cert and --tls-key, or set distributed.comm.tls in Dask's configuration",
             )
@@ -308,8 +308,8 @@ class Driver:
         from distributed.scheduler import KilledWorker
 
         if isinstance(error, KilledWorker):
-            say(note=f"{job.name}: ended its worker again and again; given up")
-            say(id=job.number, state="failed", words="it ended its worker again and again")
+            say(note=f"{job.name}: ended its worker repeatedly; given up")
+            say(id=job.number, state="failed", words="it ended its worker repeatedly")
         else:
             self.judge(job, {"state": "crashed", "words": f"{type(error).__name__}: {error}", "host": "?"})
 
@@ -338,7 +338,7 @@ class Driver:
             fault(
                 f"{job.name} cannot be done on {host}: {words}",
                 " ".join(job.words[:1]),
-                "see to the shared folder, its room and the workers' limen, and run again: what is done is kept",
+                "check the shared folder, its free space and the workers' limen, and run again: finished work is kept",
             )
         job.not_before = now + min(10.0, 0.5 * 2.0 ** min(job.starts, 5))
         self.waiting.append(job)
@@ -365,7 +365,7 @@ def main():
         fault(
             f"--engine dask needs {PACKAGES}, which are not all installed",
             sys.executable,
-            f"install them (apt-get install {PACKAGES}), or leave --engine away",
+            f"install them (apt-get install {PACKAGES}), or leave --engine out",
         )
     Driver(options).run()
 

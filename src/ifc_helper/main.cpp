@@ -149,7 +149,7 @@ std::shared_ptr<BuildingModel> load(const std::string& text, const RecordWriter&
 
 int run(const RecordWriter& writer, const std::set<int>& skip) {
   const std::shared_ptr<BuildingModel> model = load(all_of_stdin(), writer);
-  if (!model->getUnitConverter()) return refuse(writer, "there is no project with units");
+  if (!model->getUnitConverter()) return refuse(writer, "the file has no project with units");
   Payload loaded;
   loaded.put_number(model->getUnitConverter()->getLengthInMeterFactor());
   writer.write(IfcRecord::loaded, loaded);

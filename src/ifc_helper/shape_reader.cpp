@@ -294,7 +294,7 @@ class ItemWalker {
       top.pop_back();
     }
     if (bottom.size() >= 3) return prism(bottom, top);
-    tell_("the boundary of a half space is no polygon");
+    tell_("the boundary of a half space is not a polygon");
     return {};
   }
 

@@ -46,7 +46,7 @@ describe('a registered pair', () => {
 
   test('tells the verdict first and shows something', async () => {
     assert.match(await page.locator('h1').innerText(), /^Registered: the two scans fit in one way only$/);
-    assert.match(await page.locator('.verdict').innerText(), /is known to [\d.]+ mm in its middle and to [\d.]+ [cm]*m at its far end/);
+    assert.match(await page.locator('.verdict').innerText(), /\(95 %\): [\d.]+ mm at the centre, [\d.]+ [cm]*m at the far end/);
     const seen = await pixels(page);
     assert.ok(seen.drawn > 0.03, `only ${seen.drawn} of the canvas is drawn`);
     assert.ok(seen.orange > 0.02 && seen.orange < 0.98, `${seen.orange} orange: both sides must be there`);

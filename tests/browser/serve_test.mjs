@@ -94,7 +94,7 @@ describe('a page to drop files on', () => {
     assert.equal(statSync(join(folder, 'site', 'files', 'outdoor.ply')).size, statSync(museum('outdoor.ply')).size);
     await page.setInputFiles('#choose', [museum('outdoor.ply')]);
     await page.waitForSelector('#uploads .fault');
-    assert.match(await page.locator('#uploads').innerText(), /there is a file of this name/);
+    assert.match(await page.locator('#uploads').innerText(), /a file of this name exists/);
     await page.click('#uploads button');
     heard.problems = heard.problems.filter((text) => !/409/.test(text));
   });
@@ -188,9 +188,9 @@ describe('work', () => {
     assert.ok(existsSync(join(folder, 'site', 'results', '5', 'room_of_office_placed.ply')));
   });
 
-  test('a project is made of the files that are ticked, and run again', async () => {
-    for (const name of ['room_of_office.ply', 'model.ifc', 'outdoor.ply', 'indoor_00.ply']) await page.setChecked(`input[aria-label="Take ${name}"]`, ['indoor_00.ply', 'outdoor.ply'].includes(name));
-    await page.setChecked('input[aria-label="Take a_<b>&.ply"]', false);
+  test('a project is made of the files that are selected, and run again', async () => {
+    for (const name of ['room_of_office.ply', 'model.ifc', 'outdoor.ply', 'indoor_00.ply']) await page.setChecked(`input[aria-label="Select ${name}"]`, ['indoor_00.ply', 'outdoor.ply'].includes(name));
+    await page.setChecked('input[aria-label="Select a_<b>&.ply"]', false);
     await page.click('button[value="project"]');
     const card = await ended(6);
     assert.match(await card.innerText(), /project\.json/);
@@ -224,7 +224,7 @@ describe('work', () => {
     await page.selectOption('#target', 'outdoor.ply');
     await page.click('#register button');
     const card = await ended(8);
-    assert.match(await card.innerText(), /failed[\s\S]*broken\.las: this is no LAS file/);
+    assert.match(await card.innerText(), /failed[\s\S]*broken\.las: this is not a LAS file/);
   });
 
   test('can be stopped', async () => {

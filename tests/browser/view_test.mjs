@@ -95,7 +95,7 @@ describe('both sides of a result', () => {
   test('a click tells where a point is, in world coordinates', async () => {
     const words = await clickSomething(page);
     assert.match(words, /At\s+10\d{5}\.\d{3}\s+68\d{5}\.\d{3}\s+-?\d+\.\d{3}/);
-    assert.match(words, /Of\s+(indoor_00|outdoor)\.ply/);
+    assert.match(words, /File\s+(indoor_00|outdoor)\.ply/);
     await page.waitForSelector('#pin-0:not([hidden])');
   });
 

@@ -143,7 +143,7 @@ void AtomicFile::overwrite(std::uint64_t offset, std::string_view bytes) {
 
 void AtomicFile::settle() {
   flush();
-  if (!beside_.empty() && fsync(descriptor_) != 0) fail("cannot be brought to the disk");
+  if (!beside_.empty() && fsync(descriptor_) != 0) fail("cannot be flushed to the disk");
 }
 
 void AtomicFile::commit() {
@@ -151,13 +151,13 @@ void AtomicFile::commit() {
   require_inputs_whole();
   if (close(std::exchange(descriptor_, -1)) != 0) fail("cannot be written");
   if (beside_.empty()) return;
-  if (std::rename(beside_.c_str(), path_.c_str()) != 0) fail("cannot be put in place");
+  if (std::rename(beside_.c_str(), path_.c_str()) != 0) fail("cannot be renamed to its final name");
   beside_.clear();
 }
 
 void AtomicFile::fail(const char* doing) const {
   throw Error(fmt::format("{}: {}", doing, reason_of(errno)), path_.string(),
-              "name a place that exists, has room and may be written to");
+              "give a path in an existing folder with free space and write permission");
 }
 
 void AtomicFile::flush() {
@@ -206,8 +206,9 @@ OutputFolder::OutputFolder(fs::path path) : path_(std::move(path)) {
   std::error_code ignored;
   if (!fs::is_directory(path_, ignored)) {
     remove_empty();
-    throw Error(fmt::format("the output folder cannot be made: {}", error ? error.message() : "not a folder"),
-                path_.string(), "name a folder that exists or can be made");
+    throw Error(
+        fmt::format("the output folder cannot be created: {}", error ? error.message() : "not a folder"),
+        path_.string(), "give a folder that exists or can be created");
   }
   try {
     prove_writable();
@@ -227,7 +228,7 @@ void OutputFolder::prove_writable() const {
   const int descriptor = open(probe.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   if (descriptor < 0) {
     throw Error(fmt::format("the output folder cannot be written to: {}", reason_of(errno)), path_.string(),
-                "name a folder you may write to");
+                "give a folder with write permission");
   }
   close(descriptor);
   unlink(probe.c_str());

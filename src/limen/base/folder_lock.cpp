@@ -30,7 +30,8 @@ int opened(const std::filesystem::path& file) {
   // One that a killed process of somebody else left.
   if (descriptor < 0 && errno == EACCES) descriptor = open(file.c_str(), O_RDONLY | kFlags);
   if (descriptor < 0)
-    throw Error("cannot be written: " + reason_of(errno), file.string(), "give a folder you may write to");
+    throw Error("cannot be written: " + reason_of(errno), file.string(),
+                "give a folder with write permission");
   return descriptor;
 }
 

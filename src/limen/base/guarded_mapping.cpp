@@ -136,7 +136,7 @@ void require_inputs_whole() {
   for (const GuardedMapping* mapping : live_mappings()) {
     if (mapping->whole()) continue;
     throw Error("the file became shorter while it was read, or its disk failed", mapping->name(),
-                "wait until whatever writes it is done, and try again");
+                "wait until the program that writes it has finished, and try again");
   }
 }
 

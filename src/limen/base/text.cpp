@@ -3,6 +3,7 @@
 #include "limen/base/text.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <system_error>
@@ -139,6 +140,20 @@ std::string one_line(std::string text) {
     if (c == '\n' || c == '\r' || c == '\0') c = ' ';
   }
   return text;
+}
+
+std::string percent_words(double probability) {
+  if (!(probability >= 0.0 && probability <= 1.0)) return "—";
+  if (probability > 0.9999) return "more than 99.99 %";
+  if (probability < 0.0001) return "less than 0.01 %";
+  const int digits = probability >= 0.99   ? 2
+                     : probability >= 0.9  ? 1
+                     : probability >= 0.1  ? 0
+                     : probability >= 0.01 ? 1
+                                           : 2;
+  if (probability < 0.9) return fmt::format("{:.{}f} %", 100.0 * probability, digits);
+  const double scale = digits == 2 ? 1e4 : 1e3;
+  return fmt::format("{:.{}f} %", 100.0 * std::floor(scale * probability + 1e-9) / scale, digits);
 }
 
 std::string shell_word(const std::string& text) {

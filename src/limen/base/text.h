@@ -36,6 +36,10 @@ bool is_utf8(std::string_view text);
 /// With spaces for ends of lines and zero bytes.
 std::string one_line(std::string text);
 
+/// A probability for a reader: "97.3 %", "12 %", "0.03 %". Near 1 it is cut, not rounded: what is not certain
+/// does not read as if it were.
+std::string percent_words(double probability);
+
 /// Text as a shell takes it for one word.
 std::string shell_word(const std::string& text);
 

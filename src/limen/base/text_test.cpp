@@ -3,6 +3,7 @@
 #include "limen/base/text.h"
 
 #include <cerrno>
+#include <limits>
 
 #include <gtest/gtest.h>
 
@@ -76,6 +77,17 @@ TEST(Text, WordsForAShellAreReadBack) {
   for (const std::string& word : words) line += (line.empty() ? "" : " ") + shell_word(word);
   EXPECT_EQ(shell_words(line), words);
   EXPECT_TRUE(shell_words("  ").empty());
+}
+
+TEST(Text, ProbabilitiesAreShortAndNeverRoundedToCertainty) {
+  EXPECT_EQ(percent_words(0.0), "less than 0.01 %");
+  EXPECT_EQ(percent_words(0.0003), "0.03 %");
+  EXPECT_EQ(percent_words(0.034), "3.4 %");
+  EXPECT_EQ(percent_words(0.44), "44 %");
+  EXPECT_EQ(percent_words(0.9689), "96.8 %");
+  EXPECT_EQ(percent_words(0.99987), "99.98 %");
+  EXPECT_EQ(percent_words(1.0), "more than 99.99 %");
+  EXPECT_EQ(percent_words(std::numeric_limits<double>::quiet_NaN()), "—");
 }
 
 TEST(Text, ReasonIsTold) {

@@ -40,7 +40,7 @@ constexpr std::array<Format, 4> kFormats{{
 /// Scales a mesh. Throws Error for a file that tells its unit.
 void set_unit(RawModel& raw, double metres_per_unit, const std::string& name) {
   if (raw.head.schema != "OBJ" && raw.head.schema != "PLY")
-    throw Error("an IFC file tells its own unit", name, "leave the unit out");
+    throw Error("an IFC file states its own length unit", name, "leave the option for the unit out");
   raw.head.metres_per_unit = metres_per_unit;
   if (metres_per_unit == 1.0) return;
   for (RawElement& element : raw.elements) {
@@ -78,7 +78,7 @@ BimModel read_bim(const std::filesystem::path& path, Monitor& monitor,
   const MappedFile file(path);
   const Format* format = format_of(file.bytes());
   if (format == nullptr) {
-    throw Error("this is no model that can be read", name,
+    throw Error("this is not a model that limen can read", name,
                 "give an IFC file (IFC2X3 or IFC4, .ifc or .ifczip), or a mesh as OBJ or PLY with faces");
   }
   RawModel raw = with_whole_inputs([&] { return format->read(file.bytes(), name, monitor); });

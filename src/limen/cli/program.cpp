@@ -103,7 +103,7 @@ std::string usage_error(const CLI::App& app, const CLI::ParseError& error) {
         option.empty()
             ? error.what()
             : unknown_word(option, fmt::format("an option of limen {}", name), option_names(command));
-    return fmt::format("{} (limen {} --help tells the usage)", problem, name);
+    return fmt::format("{} (see limen {} --help)", problem, name);
   }
   const std::vector<std::string> unknown = app.remaining();
   const bool about_commands = dynamic_cast<const CLI::RequiredError*>(&error) != nullptr;
@@ -113,13 +113,13 @@ std::string usage_error(const CLI::App& app, const CLI::ParseError& error) {
     problem = unknown_word(unknown.front(), option ? "an option of limen" : "a command",
                            option ? option_names(app) : command_names(app));
   }
-  return fmt::format("{} (limen --help tells the usage)", problem);
+  return fmt::format("{} (see limen --help)", problem);
 }
 
 /// Names that JSON cannot tell are refused before the work, not at its end. Throws Error.
 void require_utf8(const std::vector<std::string>& words) {
   for (const std::string& word : words) {
-    if (!is_utf8(word)) throw Error("is not UTF-8, and JSON could not tell of it", word, "rename it");
+    if (!is_utf8(word)) throw Error("is not UTF-8 and cannot be written to JSON", word, "rename it");
   }
 }
 
@@ -200,7 +200,8 @@ int run_action(const std::vector<std::string>& words, Session& session) {
   } catch (const std::bad_alloc&) {
     return fail_as(session, "out of memory (give fewer points or a larger machine)", kExitInternal);
   } catch (const std::exception& error) {
-    return fail_as(session, fmt::format("{} (this is a fault of limen: please report it)", error.what()),
+    return fail_as(session,
+                   fmt::format("{} (this is an internal error of limen: please report it)", error.what()),
                    kExitInternal);
   }
 }
@@ -219,8 +220,8 @@ int run_program(int argc, char** argv) {
       "building model a scan was taken. It needs no targets and no starting pose.",
       "limen");
   app.formatter(make_help_formatter());
-  app.set_help_flag("-h,--help", "Tell the usage and exit");
-  app.set_version_flag("-V,--version", fmt::format("limen {}", kVersion), "Tell the version and exit");
+  app.set_help_flag("-h,--help", "Show this help and exit");
+  app.set_version_flag("-V,--version", fmt::format("limen {}", kVersion), "Show the version and exit");
   app.require_subcommand(1);
   CommandLine line(app);
   add_common_options(line, session);
@@ -228,8 +229,7 @@ int run_program(int argc, char** argv) {
   if (argc > 2 && std::string_view(argv[1]) == "help") {
     const std::vector<std::string> known = command_names(app);
     if (std::find(known.begin(), known.end(), argv[2]) == known.end())
-      return fail(unknown_word(argv[2], "a command", known) + " (limen --help tells the usage)",
-                  kExitBadInput);
+      return fail(unknown_word(argv[2], "a command", known) + " (see limen --help)", kExitBadInput);
   }
   try {
     app.parse(static_cast<int>(words.size()), words.data());

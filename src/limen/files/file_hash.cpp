@@ -17,7 +17,7 @@ namespace limen {
 namespace {
 
 constexpr std::size_t kPiece = std::size_t{1} << 20;
-constexpr const char* kRemedy = "look at the file and the disk";
+constexpr const char* kRemedy = "check the file and the disk";
 
 std::string hexadecimal(const unsigned char* bytes, unsigned int count) {
   static constexpr char kDigits[] = "0123456789abcdef";
@@ -39,7 +39,7 @@ std::string sha256_of_file(const std::filesystem::path& path) {
   if (!file) throw Error(errno == 0 ? "cannot be read" : reason_of(errno), path.string(), kRemedy);
   const std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> context(EVP_MD_CTX_new(), &EVP_MD_CTX_free);
   if (!context || EVP_DigestInit_ex(context.get(), EVP_sha256(), nullptr) != 1)
-    throw Error("no SHA-256 to be had", "libcrypto", "look at its configuration", Fault::internal);
+    throw Error("SHA-256 is not available", "libcrypto", "check its configuration", Fault::internal);
   std::vector<char> piece(kPiece);
   while (file) {
     file.read(piece.data(), static_cast<std::streamsize>(piece.size()));
@@ -56,7 +56,7 @@ std::string sha256_of(std::string_view bytes) {
   std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
   unsigned int size = 0;
   if (EVP_Digest(bytes.data(), bytes.size(), digest.data(), &size, EVP_sha256(), nullptr) != 1)
-    throw Error("no SHA-256 to be had", "libcrypto", "look at its configuration", Fault::internal);
+    throw Error("SHA-256 is not available", "libcrypto", "check its configuration", Fault::internal);
   return hexadecimal(digest.data(), size);
 }
 

@@ -15,7 +15,7 @@ namespace limen {
 Error missing_file(const std::string& name) {
   if (name.empty()) return {"the name of a file is empty", "", "name a file"};
   if (name.find("://") != std::string::npos)
-    return {"is an address, and limen reads files only", name, "download it, and name the file"};
+    return {"is a web address, but limen reads files only", name, "download it, and name the file"};
   return {"there is no such file", name, "check the path"};
 }
 

@@ -23,7 +23,7 @@ std::size_t filled(const std::vector<std::string>& cells) {
 const char* remedy_for(char mark) {
   return mark == ','
              ? "write decimal points; for decimal commas put semicolons between the columns, in all lines"
-             : "name all columns in the first line, or take out what is too much";
+             : "name all columns in the first line, or remove what is too much";
 }
 
 }  // namespace

@@ -152,7 +152,7 @@ void read_piece(const Piece& piece, const TextRows& wanted, const std::string& n
     double* out = result.numbers.data() + (at - wanted.skip) * wanted.columns;
     if (read_row(line, wanted.columns, out) == wanted.columns) return;
     bad_row(line, wanted.first_line_number + piece.lines_before + number, name,
-            fmt::format("{} numbers are wanted in each line, not", wanted.columns).c_str());
+            fmt::format("each line must have {} numbers, not", wanted.columns).c_str());
   });
 }
 

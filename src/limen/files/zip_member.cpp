@@ -100,7 +100,7 @@ std::vector<ZipMember> zip_members(std::string_view bytes) {
 std::string unpacked(std::string_view bytes, const ZipMember& member, const std::string& name,
                      std::size_t most_bytes) {
   if (member.size > most_bytes) {
-    damaged(fmt::format("the member would take {} MB unpacked, more than the {} MB that are allowed",
+    damaged(fmt::format("the member would need {} MB unpacked, more than the {} MB that are allowed",
                         member.size / 1000000, most_bytes / 1000000),
             member, name);
   }

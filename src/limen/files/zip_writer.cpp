@@ -29,7 +29,7 @@ void put_number(std::string& bytes, std::size_t value, std::size_t size) {
 std::string deflated(const ZipFile& file) {
   z_stream stream{};
   if (deflateInit2(&stream, Z_DEFAULT_COMPRESSION, Z_DEFLATED, -MAX_WBITS, 8, Z_DEFAULT_STRATEGY) != Z_OK)
-    throw Error("cannot be packed", file.name, "look at zlib", Fault::internal);
+    throw Error("cannot be packed", file.name, "check zlib", Fault::internal);
   std::string packed(deflateBound(&stream, static_cast<uLong>(file.bytes.size())), '\0');
   stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(file.bytes.data()));
   stream.avail_in = static_cast<uInt>(file.bytes.size());
@@ -38,7 +38,7 @@ std::string deflated(const ZipFile& file) {
   const int status = deflate(&stream, Z_FINISH);
   packed.resize(stream.total_out);
   deflateEnd(&stream);
-  if (status != Z_STREAM_END) throw Error("cannot be packed", file.name, "look at zlib", Fault::internal);
+  if (status != Z_STREAM_END) throw Error("cannot be packed", file.name, "check zlib", Fault::internal);
   return packed;
 }
 

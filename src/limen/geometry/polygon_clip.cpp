@@ -176,7 +176,7 @@ void require_few_crossings(const std::vector<Polygon>& a, const std::vector<Poly
     if (crossings > kMostCrossings) {
       throw Error(fmt::format("outlines of {} sides cross one another more than {} times", sides.size(),
                               kMostCrossings),
-                  "polygon operation", "mend the outlines");
+                  "polygon operation", "correct the outlines");
     }
     open.push_back(&side);
   }

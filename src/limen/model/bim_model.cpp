@@ -11,7 +11,7 @@ namespace limen {
 namespace {
 
 [[noreturn]] void throw_internal(const BimModel& model, const std::string& what) {
-  throw Error(what, model.name, "this is a fault of limen: please report it", Fault::internal);
+  throw Error(what, model.name, "this is an internal error of limen: please report it", Fault::internal);
 }
 
 void check_faces(const BimModel& model, const std::vector<BimFace>& faces, bool of_elements) {

@@ -34,8 +34,7 @@ std::string remedy_for_units(const std::string& units_option) {
   const std::string name = units_option.empty()
                                ? "have its unit named"
                                : "name the unit with " + units_option + " (mm, cm, ft, in, us-ft)";
-  return "limen takes the numbers of a file that names no unit as metres: " + name +
-         ", or export it again in metres";
+  return "limen assumes metres for a file that states no unit: " + name + ", or export it again in metres";
 }
 
 /// What the numbers are likely to be where the truth is a building of some metres to some hundred metres.
@@ -145,9 +144,8 @@ std::string few_points_hint(const Scan& scan) {
   Eigen::AlignedBox3d box;
   for (const Vector3d& x : scan.points) box.extend(x);
   if (box.sizes().maxCoeff() < kSmallestScanM) return {};  // refused for its size
-  return fmt::format(
-      "holds {} points, too few to find anything by: a pose needs {} planes of about {} points",
-      scan.points.size(), kPlanesOfAPose, kPointsOfAPlane);
+  return fmt::format("holds {} points, too few for a registration: a pose needs {} planes of about {} points",
+                     scan.points.size(), kPlanesOfAPose, kPointsOfAPlane);
 }
 
 std::string degrees_hint(const Scan& scan) {
@@ -161,7 +159,7 @@ std::string degrees_hint(const Scan& scan) {
 std::string up_hint(const Vector3d& up_in_scan) {
   constexpr double kAlong = 0.9;
   if (up_in_scan.y() < kAlong * up_in_scan.norm() || up_in_scan.isZero(0.0)) return {};
-  return "its y axis seems to point up: an export with z up needs no guess";
+  return "its y axis seems to point up: export it with z up to be certain";
 }
 
 std::string axes_hint(const BimModel& model) {
@@ -196,9 +194,10 @@ void require_plausible_size(const Scan& scan, const std::string& units_option) {
   const Vector3d sides = sides_of(scan);
   const double longest = sides.maxCoeff();
   if (plausible(sides)) return;
-  throw Error(fmt::format("the points measure {} x {} x {}, which no scan of a building does: {}",
-                          told(sides.x()), told(sides.y()), told(sides.z()), guess(longest)),
-              scan.name, remedy_for_units(units_option));
+  throw Error(
+      fmt::format("the points measure {} x {} x {}, which is implausible for a scan of a building: {}",
+                  told(sides.x()), told(sides.y()), told(sides.z()), guess(longest)),
+      scan.name, remedy_for_units(units_option));
 }
 
 void require_plausible_size(const BimModel& model, const std::string& units_option) {
@@ -211,13 +210,14 @@ void require_plausible_size(const BimModel& model, const std::string& units_opti
     outline_m += outline_length(face.outline);
   }
   if (side >= kSmallestModelM && area_m2 <= kMostModelM2 && outline_m <= kMostOutlineM) return;
-  throw Error(fmt::format("the model measures {} from end to end and has {:.3g} m2 of surface with {:.3g} m "
-                          "of outlines, which no building does (1 unit of the file = {:.6g} m): {}",
-                          told(side), area_m2, outline_m, model.metres_per_unit, guess(side)),
-              model.name,
-              is_mesh(model) ? remedy_for_units(units_option)
-                             : "check the unit of the file and export it again in metres, or leave out what "
-                               "lies around the building");
+  throw Error(
+      fmt::format("the model measures {} from end to end and has {:.3g} m2 of surface with {:.3g} m of "
+                  "outlines, which is implausible for a building (1 unit of the file = {:.6g} m): {}",
+                  told(side), area_m2, outline_m, model.metres_per_unit, guess(side)),
+      model.name,
+      is_mesh(model) ? remedy_for_units(units_option)
+                     : "check the unit of the file and export it again in metres, or leave out what "
+                       "lies around the building");
 }
 
 }  // namespace limen

@@ -11,7 +11,8 @@ namespace {
 constexpr double kFarM = 1000.0;
 
 void require(bool holds, const char* what, const std::string& where) {
-  if (!holds) throw Error(what, where, "this is a fault of limen: please report it", Fault::internal);
+  if (!holds)
+    throw Error(what, where, "this is an internal error of limen: please report it", Fault::internal);
 }
 
 template <typename Value>
@@ -27,7 +28,7 @@ std::vector<Value> pick(const std::vector<Value>& values, const std::vector<std:
 
 void Scan::check() const {
   const std::size_t n = points.size();
-  require(centres.size() <= 1 || centres.size() == n, "as many optical centres as points are needed", name);
+  require(centres.size() <= 1 || centres.size() == n, "as many scanner positions as points are needed", name);
   require(topology.line.size() == topology.index.size(), "scan lines and indices differ in number", name);
   require(topology.line.empty() || topology.line.size() == n, "the topology does not cover the points", name);
   require(times_s.empty() || times_s.size() == n, "the times do not cover the points", name);

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "limen/base/angles.h"
+#include "limen/base/text.h"
 #include "limen/project/judge_decisions.h"
 #include "limen/project/project_graph.h"
 #include "limen/project/project_state.h"
@@ -86,12 +87,12 @@ class Assembler {
   void adjust(ProjectGraph& made) {
     JointFinding finding = adjust_planes(nodes_, pairs_, made, words_, solved_, placed_);
     if (finding.contradicted) {
-      std::string words = "the frame is not that of the control points: ";
+      std::string words = "the control points do not define the frame: ";
       for (std::size_t p = 0, named = 0; p < placed_.points.size(); ++p) {
         if (placed_.settled.verdicts[p].known_left_out)
           words += (named++ == 0 ? "" : ", ") + survey_.marks[p].name;
       }
-      words += " contradict the others, and without them too few are left to hold a frame";
+      words += " contradict the others, and without them too few are left";
       made = make_graph(nodes_, pairs_, words_);
       solved_ = solve_graph(made.graph, risk_, hearing_, probable_risk_);
       straighten(made);
@@ -126,8 +127,8 @@ class Assembler {
       names += (k == 0 ? "" : ", ") + name_of(finding.torn[k]);
     if (finding.torn.size() > 3) names += fmt::format(" and {} more", finding.torn.size() - 3);
     result_.notes.push_back(
-        fmt::format("the joint adjustment of planes was left out: it would have moved {} by up to {:.0f} mm, "
-                    "more than the links allow; the poses are those of the links alone",
+        fmt::format("the joint adjustment of planes was not applied: it would have moved {} by up to {:.0f} "
+                    "mm, more than the links allow; the poses come from the links alone",
                     names, 1e3 * finding.most_moved_m));
   }
 
@@ -181,7 +182,7 @@ class Assembler {
     scan.doubt = node.doubt;
     if (scan.mobile) scan.rigid = why_rigid(nodes_[n].digest);
     if (node.component < 0) {
-      scan.reason = "has nothing in common with any other scan that could be told for sure";
+      scan.reason = "no reliable overlap with any other scan";
       return;
     }
     const int frame = frame_node_[static_cast<std::size_t>(node.component)];
@@ -196,9 +197,11 @@ class Assembler {
     // Only the first component has the project's frame.
     if (node.component > 0 && scan.state != NodeState::floating) {
       scan.state = NodeState::floating;
-      scan.reason = fmt::format(
-          "stands {} with the other scans of component {}, but nothing joins them to the project's frame",
-          is_placed(node.state) ? "firmly" : "in doubt", node.component);
+      scan.reason = fmt::format("{} within group {}; no link between this group and the main group",
+                                node.state == NodeState::registered ? "registered"
+                                : node.state == NodeState::probable ? "probable"
+                                                                    : "uncertain",
+                                node.component);
       return;
     }
     scan.reason = reason_of(n);
@@ -281,27 +284,28 @@ class Assembler {
     switch (solved_.nodes[n].state) {
       case NodeState::registered:
         if (verified > 0)
-          return fmt::format("held by {} link{} checked by loops", verified, verified == 1 ? "" : "s");
+          return fmt::format("registered by {} link{} checked by loops", verified, verified == 1 ? "" : "s");
         if (bridges == 0 && placed_.controlled[n])
-          return known_targets_of(static_cast<int>(n)) > 3 ? "held by its own targets"
-                                                           : "held by three targets of its own: that one of "
-                                                             "them is off across their plane would not "
-                                                             "show";
-        if (bridges == 0) return "is alone";
-        return fmt::format("held by {} link{} that no loop checks", bridges, bridges == 1 ? "" : "s");
+          return known_targets_of(static_cast<int>(n)) > 3
+                     ? "registered by its own targets"
+                     : "registered by three targets of its own: an error of one of them perpendicular to "
+                       "their plane would not be detected";
+        if (bridges == 0) return "the only scan";
+        return fmt::format("registered by {} link{} that no loop checks", bridges, bridges == 1 ? "" : "s");
       case NodeState::probable:
-        return fmt::format("placed, {:.1f} % sure; the limit for registered is {:.3g} %",
-                           100.0 * (1.0 - solved_.nodes[n].doubt), 100.0 * (1.0 - risk_));
+        return fmt::format("probability {} ({:.3g} % is needed for registered)",
+                           percent_words(1.0 - solved_.nodes[n].doubt), 100.0 * (1.0 - risk_));
       case NodeState::ambiguous:
         if (solved_.nodes[n].alternatives.empty())
-          return fmt::format("may stand elsewhere ({:.2g} %): see questions", 100.0 * solved_.nodes[n].doubt);
-        return "stands in another place just as well: see alternatives and questions";
+          return fmt::format("another place is possible ({}): see questions",
+                             percent_words(solved_.nodes[n].doubt));
+        return "another place fits as well: see alternatives and questions";
       case NodeState::under_constrained:
-        return "its links leave a direction free, or hold it loosely";
+        return "its links leave a direction undetermined or poorly determined";
       case NodeState::floating:
         break;
     }
-    return "is joined to nothing";
+    return "not connected to any other scan";
   }
 
   void tell_link(std::size_t k) {
@@ -340,7 +344,7 @@ class Assembler {
       }
     } else {
       told.pair = Outcome::registered;
-      told.reason = "given by the file";
+      told.reason = "given in the file";
     }
     result_.links.push_back(std::move(told));
   }
@@ -430,21 +434,23 @@ class Assembler {
       }
     }
     if (question.doubt > 0.0) {
+      const std::string by = question.current.empty()       ? "few observations"
+                             : question.current.size() == 1 ? "the link " + words_of(question.current)
+                                                            : "the links " + words_of(question.current);
       told.text = fmt::format(
-          "{} {} held by {} alone, which may be wrong ({:.2g} %): one more scan that sees both sides, or "
-          "your word, would settle it",
-          scans, question.moved.size() == 1 ? "is" : "are",
-          question.current.empty() ? "nothing" : words_of(question.current), 100.0 * question.doubt);
+          "{} {} placed only by {}, which may be wrong ({}). Add a scan that sees both sides, or accept or "
+          "reject a link",
+          scans, question.moved.size() == 1 ? "is" : "are", by, percent_words(question.doubt));
     } else if (question.rival.empty() && question.current.empty()) {
       told.text = fmt::format(
-          "{} could stand in two places that the scans cannot tell apart: one more scan that "
-          "sees both it and a neighbour would settle it",
+          "{} fits equally well in two places. Add a scan that overlaps both it and one of its neighbours",
           scans);
     } else {
       told.text = fmt::format(
-          "where does {} stand? For its place: {}. For another: {}. Which of these links is right?", scans,
-          question.current.empty() ? "nothing" : words_of(question.current),
-          question.rival.empty() ? "nothing" : words_of(question.rival));
+          "Where is {}? Its present place follows from: {}. Another place follows from: {}. Which of these "
+          "links is right?",
+          scans, question.current.empty() ? "no link" : words_of(question.current),
+          question.rival.empty() ? "no link" : words_of(question.rival));
     }
     result_.questions.push_back(std::move(told));
   }
@@ -459,7 +465,7 @@ class Assembler {
         copy = scan;
         copy.file = file;
         copy.copy_of = of;
-        copy.reason = "holds the same bytes as " + of + ", and stands where that stands";
+        copy.reason = "identical to " + of + ", with the same pose";
         break;
       }
     }
@@ -479,7 +485,7 @@ class Assembler {
     result_.outcome = registered == all        ? ProjectOutcome::registered
                       : solved_.components > 0 ? ProjectOutcome::partial
                                                : ProjectOutcome::no_match;
-    result_.reason = fmt::format("{} of {} scans stand in one frame", registered, all);
+    result_.reason = fmt::format("{} of {} scans are registered in one frame", registered, all);
     if (probable > 0)
       result_.reason += fmt::format(", {} more {} probable", probable, probable == 1 ? "is" : "are");
     if (unreadable > 0) result_.reason += fmt::format(", {} could not be read", unreadable);

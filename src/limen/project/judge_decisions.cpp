@@ -43,7 +43,7 @@ class DecisionJudge {
     }
     if (kind == DecisionKind::level || kind == DecisionKind::same_floor) {
       told.state = broken ? DecisionState::contradicted : DecisionState::kept;
-      if (broken) told.reason = "links and planes contradict it: what it says was not forced on them";
+      if (broken) told.reason = "links and planes contradict it, so it was not applied";
       return;
     }
     if (kind == DecisionKind::reject) return judge_rejection(nodes, told);
@@ -55,7 +55,7 @@ class DecisionJudge {
       const bool taken = all_.solved.links[k].pose == 0;
       told.state = taken ? DecisionState::kept : DecisionState::contradicted;
       if (!taken)
-        told.reason = fmt::format("the other links put the two {:.0f} mm and {:.2f} deg from it",
+        told.reason = fmt::format("the other links disagree with it by {:.0f} mm and {:.2f} deg",
                                   1e3 * all_.solved.links[k].loop_error_m,
                                   degrees(all_.solved.links[k].loop_error_rad));
       return;
@@ -82,7 +82,7 @@ class DecisionJudge {
       if ((missed * middle - middle).norm() > kSamePlaceM || rotation_angle(missed.rotation) > kJudgedTurnRad)
         return;
       told.state = DecisionState::contradicted;
-      told.reason = "the other links put the two just so all the same";
+      told.reason = "the other links still lead to this relative pose";
       return;
     }
   }

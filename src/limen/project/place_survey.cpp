@@ -127,16 +127,15 @@ class SurveyPlacer {
 
   void refuse(int component, const ControlDatum& datum) {
     const std::string which =
-        solved_.components > 1 ? fmt::format("component {} keeps", component) : "the scans keep";
+        solved_.components > 1 ? fmt::format("group {} keeps", component) : "the scans keep";
     if (datum.fit.state == PointFitState::too_few) {
       refused_ += fmt::format(
-          "; {} a frame of their own: {} control point{} seen there, which does not fix "
-          "its six freedoms",
-          which, datum.points.size(), datum.points.size() == 1 ? " is" : "s are");
+          "; {} a frame of their own: {} control point{} seen there, too few to determine a frame", which,
+          datum.points.size(), datum.points.size() == 1 ? " is" : "s are");
     } else {
       refused_ += fmt::format(
-          "; {} a frame of their own: {} contradict one another, and which is wrong "
-          "cannot be told, or their deviations are larger than given",
+          "; {} a frame of their own: {} contradict one another, and it cannot be decided which is wrong, or "
+          "their standard deviations are larger than given",
           which, names_of(survey_, suspects_of(datum)));
     }
   }
@@ -202,8 +201,8 @@ class SurveyPlacer {
       placed_.words = fmt::format("{} control points are seen by {} scan{}", points, nodes.size(),
                                   nodes.size() == 1 ? "" : "s");
     } else {
-      placed_.words = "the frame is not that of the control points";
-      if (refused_.empty()) placed_.words += ": no scan that stands firmly sees any";
+      placed_.words = "the control points do not define the frame";
+      if (refused_.empty()) placed_.words += ": no registered scan sees any of them";
     }
     placed_.words += refused_;
   }
@@ -336,7 +335,7 @@ void add_survey_links(Survey& survey, ProjectGraph& made) {
     const ControlDatum datum = control_datum(points, only(n, nodes));
     if (datum.fit.state == PointFitState::too_few) continue;
     if (!datum.fit.suspects.empty())
-      survey.notes.push_back(fmt::format("of the targets of {} these contradict one another: {}",
+      survey.notes.push_back(fmt::format("targets of {} that contradict one another: {}",
                                          survey.node_names[static_cast<std::size_t>(n)],
                                          names_of(survey, suspects_of(datum))));
     if (datum.fit.state != PointFitState::fixed) continue;

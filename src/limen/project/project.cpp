@@ -47,7 +47,7 @@ class Run {
     prepare_files();
     if (nodes_.empty()) {
       const ProjectScan& first = result_.scans.front();
-      throw Error("no scan could be read; the first: " + first.reason, first.file, "look at the files");
+      throw Error("no scan could be read; the first: " + first.reason, first.file, "check the files");
     }
     note_lone_scan();
     note_copies();
@@ -67,7 +67,8 @@ class Run {
     for (std::size_t k = noted; options_.on_note && k < result_.notes.size(); ++k)
       options_.on_note(result_.notes[k]);
     if (options_.rigid_passes) {
-      for (ProjectScan& scan : result_.scans) scan.rigid = scan.mobile ? "as you asked" : "";
+      for (ProjectScan& scan : result_.scans)
+        scan.rigid = scan.mobile ? "treated as rigid, as you asked" : "";
     }
     status_.stage = "done";
     // Some were tried twice: as scans that stand upright, and any way round.
@@ -85,8 +86,9 @@ class Run {
   /// Control points alone can place one scan; else there is nothing to be done.
   void note_lone_scan() {
     if (nodes_.size() == 1 && inputs_.control.empty())
-      note(fmt::format("{} is alone: nothing can be joined to it; give more scans, or a model",
-                       scan_name(result_.scans[nodes_.front().scan])));
+      note(fmt::format(
+          "{} is the only scan, so there is nothing to register it to; give more scans, or a model",
+          scan_name(result_.scans[nodes_.front().scan])));
   }
 
   /// Files of equal bytes are taken as one; a copy in another format is a scan of its own, which says nothing
@@ -222,7 +224,7 @@ class Run {
       node.key = store_.feature_key(file.key(), static_cast<int>(k));
       const std::optional<ScanDigest> digest = store_.load_digest(node.key);
       if (!digest)
-        throw Error("its features cannot be read back from the store", file.path, "look at the disk");
+        throw Error("its features cannot be read back from the store", file.path, "check the disk");
       node.digest = *digest;
       if (const std::string hint = up_hint(digest->upright_from_scan.row(2).transpose());
           digest->upright && !digest->model && !hint.empty())

@@ -61,7 +61,7 @@ void mark_copies(ProjectFiles& list) {
     const auto whole = file.scan < 0 ? first.end() : first.find({file.sha256, file.model, -1});
     if (whole != first.end()) {
       list.notes.push_back(
-          fmt::format("{} is in {}, which is given as a whole; it counts once", file.path, whole->second));
+          fmt::format("{} is one scan of {}, which is given too; it counts once", file.path, whole->second));
       continue;
     }
     if (!file.sha256.empty()) {
@@ -69,7 +69,7 @@ void mark_copies(ProjectFiles& list) {
       if (known->second != file.path) {
         file.copy_of = known->second;
         list.notes.push_back(
-            fmt::format("{} holds the same bytes as {}: it counts as its copy", file.path, file.copy_of));
+            fmt::format("{} is identical to {} and treated as its copy", file.path, file.copy_of));
       }
     }
     kept.push_back(std::move(file));

@@ -154,7 +154,7 @@ RegistrationResult make_pair_result(const PairKey& pair, const RegisterOptions& 
     into_store([&] { store.save_pair(pair.source, pair.target_name(), result); });
     kept = store.load_pair(pair.source, pair.target_name(), pair.counts);
   }
-  if (!kept) throw StoreFault("the result of a pair cannot be read back", pair.source, "look at the disk");
+  if (!kept) throw StoreFault("the result of a pair cannot be read back", pair.source, "check the disk");
   return std::move(*kept);
 }
 

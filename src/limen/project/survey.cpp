@@ -60,8 +60,8 @@ class SurveyReader {
       survey_.marks.push_back(std::move(mark));
     }
     note("no scan sees", unseen);
-    note("the targets are told of scans that are not part of the project:", strangers_);
-    note("the times of these targets lie before or after all points of their scan, and they do not count:",
+    note("targets are given for scans that are not part of the project:", strangers_);
+    note("these targets are ignored, because their times are before or after all points of their scan:",
          late_);
     about_origin();
     for (const ProjectNode& node : nodes_) survey_.node_names.push_back(scan_name(scans_[node.scan]));
@@ -182,17 +182,16 @@ std::string reason_of(const ProjectPoint& point, const PointVerdict& verdict, bo
     case PointState::used:
       return {};
     case PointState::compared:
-      return point.given ? "never enters the adjustment" : "a target without coordinates";
+      return point.given ? "only compared, not used in the adjustment" : "a target without coordinates";
     case PointState::left_out:
-      return fmt::format(
-          "{}: off by {:.1f} mm, chi squared {:.0f} of 3 numbers",
-          verdict.suspected ? "it, or another that contradicts it, is wrong" : "contradicts all else",
-          1e3 * point.test.residual.norm(), verdict.squared);
+      return fmt::format("{}: off by {:.1f} mm, chi-squared {:.0f} with 3 degrees of freedom",
+                         verdict.suspected ? "it, or another that contradicts it, is wrong"
+                                           : "contradicts all other observations",
+                         1e3 * point.test.residual.norm(), verdict.squared);
     case PointState::not_placed:
       break;
   }
-  return placed ? "no scan that stands in the frame for sure sees it"
-                : "the frame is not that of the control points";
+  return placed ? "no registered scan sees it" : "the control points do not define the frame";
 }
 
 ProjectPoint told_point(const SurveyMark& mark, const PlacedSurvey& placed, std::size_t p,

@@ -14,8 +14,8 @@ Vector3d sigma_in(const Matrix3d& told_from_solved, const Matrix3d& covariance) 
 }  // namespace
 
 std::string why_rigid(const ScanDigest& digest) {
-  if (digest.track.way.known()) return "its drift was not solved for";
-  return "its points have no times, or its way is short: it stays rigid";
+  if (digest.track.way.known()) return "its drift was not estimated";
+  return "its points have no times, or its path is short: it is treated as rigid";
 }
 
 PassCorrection told_correction(const BentPass& pass, const PassWay& way, const Rigid3& told_from_solved,

@@ -85,7 +85,7 @@ Order read_order(const fs::path& folder, const std::string& options_key) {
   std::ifstream stream(path);
   const Order order = json_or_nothing<Order>(stream);
   if (!stream || !order.is_object())
-    throw Unavailable{"the project's folder is not to be seen there: no " + path.string()};
+    throw Unavailable{"the project's folder is not visible on the worker: no " + path.string()};
   if (order.value("limen", "") != kVersion)
     throw Unavailable{fmt::format("the project is run by limen {}, the worker has {}",
                                   order.value("limen", "?"), kVersion)};
@@ -154,7 +154,7 @@ class Worker {
   static void require_whole(const std::string& path, std::uintmax_t bytes) {
     std::error_code error;
     const std::uintmax_t size = fs::file_size(file_of_scan(path), error);
-    if (error || size != bytes) throw Unavailable{path + " is not to be seen there as it is for limen"};
+    if (error || size != bytes) throw Unavailable{path + " is not the same on the worker as for limen"};
   }
 
   fs::path folder_;

@@ -202,15 +202,15 @@ class SegmentRegistration {
     if (rivals > 0 && share < options_.min_share) {
       result.unobserved.clear();
       result.reason = fmt::format(
-          "at best {:.0f} % of the smaller set lies on the other, and {} different poses reach as much: "
-          "that is chance",
+          "at best {:.0f} % of the smaller set coincides with the other, and {} different poses reach as "
+          "much: this is chance",
           100.0 * share, rivals);
       return;
     }
     if (rivals > 0) {
       result.outcome = Outcome::ambiguous;
-      result.reason = fmt::format("{} different pose{} lay{} the segments on one another nearly as well",
-                                  rivals, rivals == 1 ? "" : "s", rivals == 1 ? "s" : "");
+      result.reason = fmt::format("{} other pose{} fit{} the segments nearly as well", rivals,
+                                  rivals == 1 ? "" : "s", rivals == 1 ? "s" : "");
       return;
     }
     if (result.unobserved.empty()) {
@@ -224,7 +224,7 @@ class SegmentRegistration {
     }
     result.outcome = Outcome::registered;
     result.reason =
-        fmt::format("{} segments, {:.1f} m, lie on one another{}, no different pose comes near",
+        fmt::format("{} segments, {:.1f} m, coincide{}, and no other pose fits nearly as well",
                     best.matched_segments, best.matched_m, best.in_one_plane ? " in one plane" : "");
   }
 

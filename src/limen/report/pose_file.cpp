@@ -35,7 +35,7 @@ std::string read_text(const fs::path& path) {
     throw Error("is far too large for a pose", path.string(), kRemedy);
   std::ifstream stream(path, std::ios::binary);
   std::string text((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
-  if (!stream) throw Error("cannot be read", path.string(), "look at its permissions");
+  if (!stream) throw Error("cannot be read", path.string(), "check its permissions");
   if (text.find_first_not_of(" \t\r\n") == std::string::npos) throw Error("is empty", path.string(), kRemedy);
   return text;
 }
@@ -247,7 +247,7 @@ Rigid3 chosen_pose(const PoseFile& file, int choice, const fs::path& path) {
                 path.string(), "look at its alternatives and choose one of them by its number");
   }
   if (file.target_from_source) return *file.target_from_source;
-  throw Error("holds no pose: nothing in common was found", path.string(),
+  throw Error("holds no pose: no reliable overlap was found", path.string(),
               "give the result of a registration that found one");
 }
 

@@ -155,7 +155,7 @@ std::string read_all(int descriptor, const Patience& patience, Monitor& monitor,
     monitor.throw_if_cancelled();
     pollfd wanted{descriptor, POLLIN, 0};
     const int ready = poll(&wanted, 1, kTick_ms);
-    if (ready < 0 && errno != EINTR) return "could not be heard";
+    if (ready < 0 && errno != EINTR) return "could not be read from";
     if (ready <= 0) {
       if (std::chrono::duration<double>(Clock::now() - heard).count() > patience.silence_s)
         return fmt::format("was stopped after {:.0f} s without progress", patience.silence_s);
@@ -167,14 +167,14 @@ std::string read_all(int descriptor, const Patience& patience, Monitor& monitor,
     heard = Clock::now();
     output.append(piece, 0, static_cast<std::size_t>(got));
     if (static_cast<double>(output.size()) > patience.output_bytes)
-      return fmt::format("was stopped since it wrote more than {:.0f} MB", 1e-6 * patience.output_bytes);
+      return fmt::format("was stopped because it wrote more than {:.0f} MB", 1e-6 * patience.output_bytes);
   }
 }
 
 std::string how_ended(int status) {
   if (WIFSIGNALED(status)) {
     const int signal = WTERMSIG(status);
-    return fmt::format("died of signal {} ({})", signal, strsignal(signal));
+    return fmt::format("was ended by signal {} ({})", signal, strsignal(signal));
   }
   return fmt::format("ended with status {}", WIFEXITED(status) ? WEXITSTATUS(status) : status);
 }
@@ -244,7 +244,7 @@ fs::path find_ifc_helper() {
     }
   }
   if (runs(LIMEN_INSTALLED_IFC_HELPER)) return LIMEN_INSTALLED_IFC_HELPER;
-  throw Error("limen_ifc, the program that reads IFC shapes, is not there", "the folder of limen",
+  throw Error("limen_ifc, the program that reads IFC shapes, was not found", "the folder of limen",
               "install it with limen (LIMEN_BUILD_IFC), name it in LIMEN_IFC_HELPER, or export the model as "
               "OBJ or PLY");
 }

@@ -158,7 +158,7 @@ class StructureReader {
         return;
       }
     }
-    warn("the file names no length unit: lengths are taken as metres");
+    warn("the file states no length unit: metres are assumed");
   }
 
   /// Metres per unit of the map's coordinates: the target's own, else the project's.
@@ -198,12 +198,11 @@ class StructureReader {
     const double between_metres = scale * metres_of_map_unit / structure_.metres_per_unit;
     if (plausible(between_metres)) return between_metres;
     if (plausible(scale)) {
-      warn(fmt::format(
-          "the map conversion's scale {:g} leaves out the change of units: it is taken between metres",
-          scale));
+      warn(fmt::format("the map conversion's scale {:g} ignores the units: it is applied between metres",
+                       scale));
       return scale;
     }
-    warn(fmt::format("the map conversion's scale {:g} is none of a map: it is not applied", scale));
+    warn(fmt::format("the map conversion's scale {:g} is not plausible for a map: it is ignored", scale));
     return 1.0;
   }
 

@@ -46,7 +46,8 @@ void require_schema(const StepFile& file, const std::string& name) {
                 name, kWayRound);
   const bool known = schema.compare(0, 5, "IFC2X") == 0 ||
                      (schema.compare(0, 4, "IFC4") == 0 && schema.compare(0, 5, "IFC4X") != 0);
-  if (!known) throw Error(fmt::format("the schema {} is not read", schema.substr(0, 60)), name, kWayRound);
+  if (!known)
+    throw Error(fmt::format("the schema {} is not supported", schema.substr(0, 60)), name, kWayRound);
 }
 
 /// Lists of warnings of one sort, shortened.
@@ -83,13 +84,13 @@ class ShapeSource {
       refuse(shapes, run);
       const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
       if (shapes.begun == 0 || skip.size() >= kMostRestarts || taken.count() > kLongestRestarting_s) {
-        warnings.push_back(fmt::format("limen_ifc {} after {} shapes: what follows in the file is missing",
+        warnings.push_back(fmt::format("limen_ifc {} after {} shapes: the rest of the file is missing",
                                        run.ended_how, shapes.products.size()));
         return shapes;
       }
       skip.push_back(shapes.begun);
       warnings.push_back(
-          fmt::format("#{} is left out: limen_ifc {} when it made its shape", shapes.begun, run.ended_how));
+          fmt::format("#{} is left out: limen_ifc {} while it built its shape", shapes.begun, run.ended_how));
     }
   }
 
@@ -219,10 +220,9 @@ class Assembly {
     WarningList messages;
     for (const auto& [id, text] : shapes_.messages)
       messages.add(fmt::format("#{}: {}", id, text.substr(0, 200)));
-    messages.append_to(warnings, "remarks of limen_ifc");
+    messages.append_to(warnings, "messages of limen_ifc");
     if (file_.damaged() > 0)
-      warnings.push_back(
-          fmt::format("{} statements of the file are damaged and passed over", file_.damaged()));
+      warnings.push_back(fmt::format("{} statements of the file are damaged and skipped", file_.damaged()));
     model_.head.metres_per_unit = structure_.metres_per_unit;
     model_.head.georeferenced = structure_.map.has_value();
   }

@@ -90,7 +90,7 @@ class RecordWalker {
   }
 
   [[noreturn]] void fail() const {
-    throw Error("the line does not hold what the header promises", fmt::format("{}, line {}", name_, line_),
+    throw Error("the line does not match the header", fmt::format("{}, line {}", name_, line_),
                 "the PLY file is damaged: export it again");
   }
 
@@ -139,7 +139,7 @@ std::vector<std::uint32_t> ring_of(const std::vector<double>& corners, const Ply
   std::vector<std::uint32_t> ring;
   for (const double corner : corners) {
     if (!(corner >= 0.0 && corner < count)) {
-      throw Error(fmt::format("a face names vertex {}, there are {}", corner, count), name,
+      throw Error(fmt::format("a face refers to vertex {}, but there are only {}", corner, count), name,
                   "the PLY file is damaged: export it again");
     }
     ring.push_back(static_cast<std::uint32_t>(corner));

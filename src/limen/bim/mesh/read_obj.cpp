@@ -100,9 +100,9 @@ class ObjReader {
     const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
     const auto count = static_cast<std::int64_t>(vertices_.size());
     if (error != std::errc{} || end != digits.data() + digits.size())
-      fail(fmt::format("\"{}\" is no index of a vertex", word.substr(0, 40)));
+      fail(fmt::format("\"{}\" is not a vertex number", word.substr(0, 40)));
     if (value < -count || value > count || value == 0)
-      fail(fmt::format("a face names vertex {}, there are {} before it", value, count));
+      fail(fmt::format("a face refers to vertex {}, but only {} come before it", value, count));
     return static_cast<std::uint32_t>(value > 0 ? value - 1 : count + value);
   }
 

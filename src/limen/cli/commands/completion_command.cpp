@@ -33,7 +33,7 @@ int deliver_text(const std::string& text, const Session& session) {
 void add_completion_command(CommandLine& app, Session& session) {
   auto shell = std::make_shared<std::string>();
   CommandLine* completion =
-      add_command(app, session, "completion", "Print the script that lets a shell complete limen's commands",
+      add_command(app, session, "completion", "Print the script by which a shell completes limen's commands",
                   [shell, &app, &session] {
                     return deliver_text(completion_of(*shell, describe_program(app.parser())), session);
                   });

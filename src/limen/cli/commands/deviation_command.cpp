@@ -73,8 +73,8 @@ bool model_is_source(const DeviationCommand& command, const PoseFile& pose, cons
   if (same_name(pose.source_path, command.scan) || same_name(pose.target_path, command.model)) return false;
   if (same_name(pose.source_path, command.model) || same_name(pose.target_path, command.scan)) return true;
   session.note(
-      fmt::format("{} does not name these files: its pose is taken to move the scan to the model (--inverse: "
-                  "the other way)",
+      fmt::format("{} does not name these files: its pose is assumed to move the scan to the model (use "
+                  "--inverse if it moves the model to the scan)",
                   command.result));
   return false;
 }
@@ -97,9 +97,8 @@ void check_inputs(const DeviationCommand& command, const PoseFile& pose, const D
     const std::string& hash = input->sha256;
     if (hash.empty() || hash == pose.source_sha256 || hash == pose.target_sha256) continue;
     throw Error(
-        fmt::format("is not a file that {} is about: its SHA-256 is neither the source's nor the target's",
-                    command.result),
-        input->path, "give the registered file, or --force where it lies in the same frame");
+        fmt::format("is neither of the two files registered in {}: its SHA-256 is different", command.result),
+        input->path, "give the registered file, or add --force if this file is in the same frame");
   }
 }
 
@@ -117,8 +116,8 @@ void check(const DeviationCommand& command) {
 std::string line_of(const ElementDeviation& it, const BimElement& element) {
   const std::string name = element.name.empty() ? element.type : element.name;
   if (it.presence == Presence::not_found) {
-    return fmt::format("{:<12} {:<32.32} not found: rays passed through {:.2f} m2\n", to_string(element.kind),
-                       name, it.passed_m2);
+    return fmt::format("{:<12} {:<32.32} not found: the scanner saw through {:.2f} m2 of it\n",
+                       to_string(element.kind), name, it.passed_m2);
   }
   return fmt::format("{:<12} {:<32.32} {:7.1f} {:7.1f}  {:<6} {:7.1f} {:3.0f} %\n", to_string(element.kind),
                      name, 1e3 * it.median_m, 1e3 * it.p95_m, it.loa > 0 ? fmt::format("LOA{}", it.loa) : "-",
@@ -152,7 +151,7 @@ std::string summary(const DeviationReport& report, const BimModel& model, const 
   for (const ElementDeviation& it : deviation.elements) ++count[static_cast<std::size_t>(it.presence)];
   std::string text = fmt::format("{} points, {} on faces of the model, {} far from all of them\n",
                                  deviation.distance_m.size(), deviation.matched, deviation.far);
-  text += fmt::format("{} elements found, {} not found, {} not judged; {} pieces not in the model\n",
+  text += fmt::format("{} elements found, {} not found, {} not judged; {} objects not in the model\n",
                       count[0], count[1], count[2], deviation.unmodelled.size());
   text += element_lines(report, model);
   return text + fmt::format("written to {}\n", folder);
@@ -185,7 +184,7 @@ int run_on_project(const DeviationCommand& command, const Session& session) {
   const bool pose_given = !command.result.empty() || command.identity || command.inverse ||
                           command.alternative != 0 || !command.origin.empty() || !command.with.empty();
   if (pose_given)
-    throw Error("a project tells the poses of its scans itself", command.scan,
+    throw Error("the poses of the scans are taken from the project", command.scan,
                 "leave out --result, --identity, --inverse, --alternative, --origin and --with");
   ProjectDeviation project;
   project.project = command.scan;
@@ -222,11 +221,12 @@ int run(const DeviationCommand& command, const Session& session) {
   if (scan_side.input.model)
     throw Error("is a building model", command.scan, "give the scan first, then the model");
   if (!model_side.input.model)
-    throw Error("is no building model", command.model, "give an IFC, OBJ or PLY model");
+    throw Error("is not a building model", command.model, "give an IFC, OBJ or PLY model");
   const BimModel& model = *model_side.input.model;
   const Scan scan = joined(scan_side.input);
   if (!scan.centre_known())
-    session.note("it is not known from where the scan was taken: give --origin, else nothing can be missed");
+    session.note(
+        "the scanner position is unknown, so missing elements cannot be found: give it with --origin");
   report.scan = scan_side.summary;
   report.model = model_side.summary;
   check_inputs(command, pose_file, report);
@@ -250,13 +250,14 @@ int run(const DeviationCommand& command, const Session& session) {
 }
 
 void add_pose_options(CommandLine& command, DeviationCommand& options) {
-  command.add_option("--result", options.result, "result.json of limen register, or a text of 4 x 4 numbers")
+  command
+      .add_option("--result", options.result,
+                  "result.json of limen register, or a text file with a 4 x 4 matrix")
       ->type_name("FILE");
   command.add_flag("--identity", options.identity, "Scan and model are in one frame already");
   add_alternative_option(command, options.alternative);
-  command.add_flag(
-      "--force", options.force,
-      "Measure although a file is not the one that was registered: a copy in the same frame, say");
+  command.add_flag("--force", options.force,
+                   "Accept files that are not the registered ones, for example copies in the same frame");
   command.add_flag("--inverse", options.inverse, "The pose in --result moves the model to the scan");
   command
       .add_option("--with", options.with,
@@ -264,7 +265,7 @@ void add_pose_options(CommandLine& command, DeviationCommand& options) {
       ->type_size(2)
       ->type_name("SCAN POSE");
   command
-      .add_option("--origin", options.origin, "From where SCAN was taken, in the coordinates of its points")
+      .add_option("--origin", options.origin, "Scanner position of SCAN, in the coordinates of its points")
       ->type_name("x,y,z");
   add_units_option(command, options.reading.units);
   add_units_option(command, options.model_units, "model-");
@@ -276,8 +277,9 @@ void add_pose_options(CommandLine& command, DeviationCommand& options) {
 
 void add_deviation_command(CommandLine& app, Session& session) {
   auto options = std::make_shared<DeviationCommand>();
-  CommandLine* command = add_command(app, session, "deviation", "Measure a registered scan against its model",
-                                     [options, &session] { return run(*options, session); });
+  CommandLine* command =
+      add_command(app, session, "deviation", "Measure how a registered scan deviates from its model",
+                  [options, &session] { return run(*options, session); });
   command
       ->add_option(
           "SCAN", options->scan,
@@ -285,30 +287,31 @@ void add_deviation_command(CommandLine& app, Session& session) {
       ->required();
   command->add_option(
       "MODEL", options->model,
-      "The building model: IFC, OBJ, or PLY with faces; of a project: its own where none is given");
+      "The building model: IFC, OBJ, or PLY with faces; for a project by default its own models");
   command
       ->add_option(
           "--model", options->models,
-          "Of a project: measure against this model; may be given several times, for files of one building")
+          "For a project: measure against this model; may be given several times, for files of one building")
       ->type_name("MODEL")
       ->type_size(1)
       ->take_all();
   command
       ->add_option(
           "-o,--output", options->folder,
-          "Folder for deviation.json, deviation.csv and deviation.ply; of a project also report.html")
+          "Folder for deviation.json, deviation.csv and deviation.ply; for a project also report.html")
       ->required()
       ->type_name("DIR");
   add_pose_options(*command, *options);
   add_length_option(*command, "--max-distance-m", options->measuring.max_distance_m,
-                    "Matter farther from every face is not the model's (default 0.10)");
+                    "Points farther than this from every face do not belong to the model (default 0.10)");
   add_length_option(*command, "--tile-m", options->measuring.tile_m,
-                    "Edge of the tiles by which coverage is counted (default 0.05)");
+                    "Size of the tiles by which coverage is counted (default 0.05)");
   add_length_option(*command, "--colour-limit-m", options->colour_limit_m,
-                    "Deviation of full colour in deviation.ply (default 0.05)");
+                    "Deviation that is shown in full colour in deviation.ply (default 0.05)");
   command
-      ->add_option("--cloud-points", options->cloud_points,
-                   "Of a project: points of deviation.ply at most, spread evenly (default 3000000)")
+      ->add_option(
+          "--cloud-points", options->cloud_points,
+          "For a project: maximum number of points in deviation.ply, spread evenly (default 3000000)")
       ->in_range(1000, 1000000000);
   add_issue_options(*command, options->issues);
 }

@@ -60,16 +60,15 @@ class ModelChoice {
         require_registered_file(entry, command_.project, command_.force);
         models.push_back({entry.file, 0, *entry.frame_from_scan, "project"});
       } else {
-        session_.note(
-            fmt::format("{}: {}, not measured against; name it with --model where it lies in one frame with "
-                        "another model",
-                        entry.file, entry.state));
+        session_.note(fmt::format(
+            "{}: {}, so it is not used; give it with --model if it is in one frame with another model",
+            entry.file, entry.state));
       }
     }
     if (!models.empty()) return models;
     throw Error(
-        "no model stands in the project's frame", command_.project,
-        "run limen project with --model, or give --model here where the model lies in the project's frame");
+        "no model is registered in the project's frame", command_.project,
+        "run limen project with --model, or give --model here if the model is in the project's frame");
   }
 
   [[nodiscard]] std::vector<BuildingModel> as_named() const {
@@ -86,12 +85,12 @@ class ModelChoice {
       const ProjectEntry* other = any_placed();
       if (other != nullptr) {
         session_.note(
-            fmt::format("{} has no place of its own in the project: it is taken to lie in one frame with {}",
+            fmt::format("{} has no pose of its own in the project: it is assumed to be in one frame with {}",
                         path, other->file));
         models.push_back({path, 0, *other->frame_from_scan, "with the first"});
       } else {
         session_.note(fmt::format(
-            "{} is taken to lie in the project's frame: no model of the project has a place", path));
+            "{} is assumed to be in the project's frame: no model of the project has a pose", path));
         models.push_back({path, 0, {}, "in the frame"});
       }
     }
@@ -127,7 +126,7 @@ class ModelChoice {
 Scan placed_scan(Scan scan, const ProjectEntry& entry, const Rigid3& model_from_frame,
                  const Vector3d& model_origin) {
   if (entry.bend && scan.times_s.size() != scan.size())
-    throw Error("its points have no times, by which its drift could be undone", entry.file,
+    throw Error("its points have no times, so its drift cannot be corrected", entry.file,
                 "give the file that was registered");
   const Vector3d origin = scan.local_origin;
   const auto place = [&](const Vector3d& x, std::size_t i) -> Vector3d {
@@ -234,12 +233,12 @@ std::vector<ProjectEntry> scans_of(const std::vector<ProjectEntry>& entries, con
   for (const ProjectEntry& entry : entries) {
     if (entry.model) continue;
     std::string reason;
-    if (!stands(entry)) reason = fmt::format("its place is {}", entry.state);
+    if (!stands(entry)) reason = fmt::format("its state is {}", entry.state);
     if (!entry.copy_of.empty()) reason = fmt::format("it is a copy of {}", entry.copy_of);
     if (reason.empty()) {
       if (entry.state == "probable")
-        session.warn(fmt::format("{}: its place is probable: right with {}, and no more", scan_name(entry),
-                                 probability_words(1.0 - entry.doubt)));
+        session.warn(fmt::format("{}: its pose is only probable; the probability that it is right is {}",
+                                 scan_name(entry), probability_words(1.0 - entry.doubt)));
       scans.push_back(entry);
     } else {
       session.note(fmt::format("{} is left out: {}", scan_name(entry), reason));
@@ -248,7 +247,7 @@ std::vector<ProjectEntry> scans_of(const std::vector<ProjectEntry>& entries, con
   }
   if (!scans.empty()) return scans;
   throw Error("no scan is registered or probable in the project's frame", "project.json",
-              "look at the project's report");
+              "see the project's report");
 }
 
 void remember_scanners(const Scan& scan, Gathering& all) {
@@ -274,8 +273,9 @@ void measure_scans(const std::vector<ProjectEntry>& scans, const ProjectDeviatio
       scan = with_trajectory(scan, *trajectory).scan;
     settle_place(scan, session);
     if (!scan.centre_known())
-      session.note(fmt::format("{}: it is not known from where it was taken, so nothing can be missed by it",
-                               scan_name(entry)));
+      session.note(
+          fmt::format("{}: its scanner position is unknown, so it cannot show that elements are missing",
+                      scan_name(entry)));
     scan = placed_scan(std::move(scan), entry, all.model_from_frame, origin);
     session.monitor->begin_stage("distances");
     const LaidScan laid = measurement.add(scan, {}, entry.sigma_m, *session.monitor);
@@ -301,7 +301,7 @@ std::string summary(const BuildingReport& report, const ProjectDeviation& comman
                   deviation.points, report.scans.size(), deviation.matched, report.models.size(),
                   report.models.size() == 1 ? "" : "s", deviation.far);
   text += fmt::format(
-      "{} elements found, {} of them moved by more than {:.0f} mm; {} not found, {} not judged; {} pieces "
+      "{} elements found, {} of them moved by more than {:.0f} mm; {} not found, {} not judged; {} objects "
       "not in the model\n",
       count[0], moved, 1e3 * command.issues.options.moved_m, count[1], count[2], deviation.unmodelled.size());
   if (!command.issues.file.empty())
@@ -318,8 +318,8 @@ bool names_project(const std::string& path) {
 int status_of_matched(std::size_t matched, const Session& session) {
   if (matched > 0) return kExitOk;
   session.warn(
-      "no point lies on a face of the model, so nothing was measured: look whether the pose is that of these "
-      "files, and at the units of both");
+      "no point lies on a face of the model, so nothing was measured: check that the pose belongs to these "
+      "files, and check their units");
   return kExitNoMatch;
 }
 

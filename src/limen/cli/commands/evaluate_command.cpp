@@ -48,7 +48,7 @@ std::string as_text(const PoseFile& result, const std::optional<PoseError>& erro
   if (!error) return text + "no pose to compare\n";
   text += fmt::format("rotation error     {:.6f} deg\n", degrees(error->rotation_rad));
   text += fmt::format("translation error  {:.6f} m, at the {} ({:.3f}, {:.3f}, {:.3f})\n",
-                      error->translation_m, result.source_middle ? "middle of the source" : "source's origin",
+                      error->translation_m, result.source_middle ? "centre of the source" : "source's origin",
                       error->measured_at.x(), error->measured_at.y(), error->measured_at.z());
   if (error->largest_sigmas) {
     text +=
@@ -98,7 +98,7 @@ std::string project_json(const ProjectErrors& errors, const EvaluateOptions& opt
 
 std::string project_text(const ProjectErrors& errors, const EvaluateOptions& options) {
   std::string text = fmt::format("registered         {} of {} scans\n", errors.each.size(), errors.scans);
-  if (errors.each.size() < 2) return text + "no places to compare\n";
+  if (errors.each.size() < 2) return text + "no poses to compare\n";
   const std::vector<PlaceError> far = beyond(errors, options);
   text += fmt::format("within             {} of them, {:g} m and {:g} deg\n", errors.each.size() - far.size(),
                       options.within_m, options.within_deg);
@@ -136,19 +136,21 @@ int run(const EvaluateOptions& options, const Session& session) {
 void add_evaluate_command(CommandLine& app, Session& session) {
   auto options = std::make_shared<EvaluateOptions>();
   CommandLine* command =
-      add_command(app, session, "evaluate", "Compare a pose, or the places of a project, with the true ones",
+      add_command(app, session, "evaluate", "Compare a pose, or the poses of a project, with the true ones",
                   [options, &session] { return run(*options, session); });
-  command->add_option("RESULT", options->result, "result.json, a text of 4 x 4 numbers, or project.json")
+  command
+      ->add_option("RESULT", options->result, "result.json, a text file with a 4 x 4 matrix, or project.json")
       ->required();
   command
-      ->add_option(
-          "TRUTH", options->truth,
-          "The true pose: a text of 4 x 4 numbers, a JSON object with transform, or the truth.json of "
-          "limen simulate; of a project its truth/project.json")
+      ->add_option("TRUTH", options->truth,
+                   "The true pose: a text file with a 4 x 4 matrix, a JSON object with transform, or the "
+                   "truth.json of limen simulate; for a project its truth/project.json")
       ->required();
   add_length_option(*command, "--within-m", options->within_m,
-                    "Of a project: which scans are told one by one, those farther off (default 0.02)");
-  command->add_option("--within-deg", options->within_deg, "The same of their turns (default 0.1)")
+                    "For a project: list each scan whose position is off by more than this (default 0.02)");
+  command
+      ->add_option("--within-deg", options->within_deg,
+                   "For a project: list each scan whose rotation is off by more than this (default 0.1)")
       ->type_name("DEG");
 }
 

@@ -157,14 +157,15 @@ std::string joined(const Json& words) {
 std::string who_says(const Json& scanner) {
   const std::string source = scanner["source"];
   if (source == "unknown" || source == "per point") return "";
-  const char* const borne_out = scanner["confirmed"].get<bool>() ? ", as the points bear out" : "";
+  const char* const borne_out = scanner["confirmed"].get<bool>() ? ", confirmed by the points" : "";
   if (source == "assumed") return fmt::format(" (assumed{})", borne_out);
-  if (source == "file") return fmt::format(" (told by the file{})", borne_out);
-  if (source == "user") return " (told by the user)";
+  if (source == "file") return fmt::format(" (from the file{})", borne_out);
+  if (source == "user") return " (given by the user)";
   const std::string text =
       fmt::format(" (estimated from the points, sigma {:.0f} mm", 1e3 * scanner["sigma_m"].get<double>());
   if (!scanner.contains("refuted")) return text + ")";
-  return text + fmt::format("; it cannot have been {})", point_text(scanner["refuted"]));
+  return text +
+         fmt::format("; the points contradict the stated position {})", point_text(scanner["refuted"]));
 }
 
 std::string scan_text(const Json& scan) {
@@ -176,7 +177,7 @@ std::string scan_text(const Json& scan) {
   text += fmt::format("size            {:.3f} x {:.3f} x {:.3f} m\n", side(0), side(1), side(2));
   text += fmt::format("density         about {:.0f} points per m2\n", scan["points_per_m2"].get<double>());
   const Json& centre = scan["optical_centre"];
-  text += fmt::format("optical centre  {}{}\n",
+  text += fmt::format("scanner at      {}{}\n",
                       centre.is_array() ? point_text(centre) : centre.get<std::string>(),
                       who_says(scan["scanner"]));
   text +=
@@ -250,12 +251,12 @@ int run(const InfoCommand& command, const Session& session) {
 
 void add_info_command(CommandLine& app, Session& session) {
   auto options = std::make_shared<InfoCommand>();
-  CommandLine* command = add_command(app, session, "info", "Tell what a scan or a model file holds",
+  CommandLine* command = add_command(app, session, "info", "Show what a scan or a model file contains",
                                      [options, &session] { return run(*options, session); });
   command
       ->add_option("FILE", options->paths,
-                   "A scan or a model of any format limen reads, or \"FILE #N\" for one scan of a file; of "
-                   "several files a table")
+                   "A scan or a model of any format limen reads, or \"FILE #N\" for one scan of a file; "
+                   "several files give a table")
       ->required();
   add_units_option(*command, options->reading.units);
   add_memory_option(*command, options->reading.memory);

@@ -29,7 +29,8 @@ struct OpeningsCommand : FeatureChoice {
 std::string summary(const std::vector<Opening>& openings, const std::string& output) {
   std::string text = fmt::format("{} openings\n", openings.size());
   if (!openings.empty())
-    text += "   width m   height m      rays   view      sides known to, mm (lower, right, upper, left)\n";
+    text +=
+        "   width m   height m      rays   view      sigma of the sides, mm (lower, right, upper, left)\n";
   constexpr std::size_t kShown = 20;
   for (std::size_t i = 0; i < std::min(kShown, openings.size()); ++i) {
     const Opening& it = openings[i];
@@ -68,8 +69,8 @@ int run(const OpeningsCommand& command, const Session& session) {
   preparing.openings = command.openings;
   const Features features = features_of(std::move(read.scan), preparing, read.input, session);
   if (read.input.place.source == PlaceSource::unknown) {
-    throw Error("it is not known from where the scan was taken, and its points do not show it", command.scan,
-                "give the place of the scanner with --origin x,y,z");
+    throw Error("the scanner position is unknown and cannot be estimated from the points", command.scan,
+                "give the scanner position with --origin x,y,z");
   }
   const std::string json = openings_json(features, read.input);
   return deliver(file, json, summary(features.openings, command.output), session);

@@ -120,11 +120,12 @@ void add_planes_command(CommandLine& app, Session& session) {
       ->one_of(names);
   command
       ->add_option("--threshold-m,--inlier-threshold-m", options->threshold,
-                   "Farthest a point may lie from its plane: metres, or a rule: auto (default), noise, "
+                   "Largest distance of a point from its plane: metres, or a rule: auto (default), noise, "
                    "a_contrario; 0 is auto")
       ->type_name("METRES|RULE");
   command
-      ->add_option("--min-inliers", options->extract.grow.min_inliers, "Points a plane needs (default 200)")
+      ->add_option("--min-inliers", options->extract.grow.min_inliers,
+                   "Smallest number of points of a plane (default 200)")
       ->type_name("N");
   add_length_option(*command, "--alpha-m", options->extract.polygons.alpha_m,
                     "Radius of the outlines' alpha shape; 0: from the spacing of the points (default)");

@@ -115,7 +115,7 @@ std::string scan_line(const ProjectScan& scan) {
   if (scan.correction) {
     double most = 0.0;
     for (const PassKnot& knot : scan.correction->knots) most = std::max(most, knot.moved_m.norm());
-    line += fmt::format("{:<17} bent back along {:.0f} m, by {:.1f} mm at most\n", "",
+    line += fmt::format("{:<17} drift corrected along {:.0f} m, by {:.1f} mm at most\n", "",
                         scan.correction->knots.back().distance_m, 1e3 * most);
   } else if (scan.component >= 0 && !scan.rigid.empty()) {
     line += fmt::format("{:<17} {}\n", "", scan.rigid);
@@ -132,7 +132,7 @@ std::string point_lines(const ProjectResult& result) {
     if (!point.given) continue;
     text += fmt::format("{:<7} {:<12} {:<10}", to_string(point.role), point.name, to_string(point.state));
     if (point.found)
-      text += fmt::format(" misses by {:6.1f} {:6.1f} {:6.1f} mm (sigma {:.1f} {:.1f} {:.1f})",
+      text += fmt::format(" residual {:6.1f} {:6.1f} {:6.1f} mm (sigma {:.1f} {:.1f} {:.1f})",
                           1e3 * point.test.residual.x(), 1e3 * point.test.residual.y(),
                           1e3 * point.test.residual.z(), 1e3 * point.test.sigma.x(),
                           1e3 * point.test.sigma.y(), 1e3 * point.test.sigma.z());
@@ -154,7 +154,8 @@ std::string summary(const ProjectResult& result, const std::string& folder) {
   std::size_t counts[5] = {};
   for (const ProjectLink& link : result.links) ++counts[static_cast<std::size_t>(link.solved.state)];
   text += fmt::format(
-      "links       {} verified, {} bridges, {} ambiguous, {} rejected, {} weak, of {} pairs tried\n",
+      "links       {} verified, {} unchecked (bridge), {} ambiguous, {} rejected, {} weak, of {} pairs "
+      "tried\n",
       counts[0], counts[1], counts[2], counts[3], counts[4], result.pairs_tried);
   return text + fmt::format("written to {}\n", folder);
 }
@@ -203,9 +204,9 @@ int take_decision(const std::vector<std::string>& words, const Session& session)
   const std::vector<Decision> all = decide(words[1], decision);
   const bool forgets = decision.kind == DecisionKind::forget;
   const char* told =
-      !forgets ? "{}: kept with {} in all; run the project again, and it will be heeded and tested\n"
-      : all.size() == before ? "{}: nothing was said of just that; {} in all are kept as they were\n"
-                             : "{}: forgotten; {} in all are kept; run the project again\n";
+      !forgets               ? "{}: saved; decisions in all: {}; run the project again to apply and test it\n"
+      : all.size() == before ? "{}: no such decision was saved; decisions in all: {}, unchanged\n"
+                             : "{}: forgotten; decisions left: {}; run the project again\n";
   session.say(fmt::format(fmt::runtime(told), words_of(decision), all.size()));
   session.answer(decisions_text(all));
   return kExitOk;
@@ -291,9 +292,9 @@ int run(ProjectCommandOptions options, const Session& session) {
     return work(options.scans, session);
   if (options.folder.empty() && !options.scans.empty() &&
       (options.scans.front() == "status" || options.scans.front() == "decide"))
-    throw Error(fmt::format("project {} is not told enough", options.scans.front()), "",
-                "say project status DIR, or project decide DIR accept A B");
-  if (options.folder.empty()) throw Error("there is no folder to write to", "--output", "give one: -o DIR");
+    throw Error(fmt::format("project {} is incomplete", options.scans.front()), "",
+                "write limen project status DIR, or limen project decide DIR accept A B");
+  if (options.folder.empty()) throw Error("no output folder is given", "--output", "give one: -o DIR");
   if (!options.list.empty()) {
     for (std::string& name : names_in_list(options.list)) options.scans.push_back(std::move(name));
   }
@@ -301,8 +302,8 @@ int run(ProjectCommandOptions options, const Session& session) {
   const std::filesystem::path browser = browser_for_pdf(options.pdf);
   const CoordinateSystem chosen = chosen_system(options.crs);
   const OutputFolder folder(options.folder);
-  const FolderLock lock(folder.path(), "another limen works in this folder",
-                        "wait until it has ended, or give another folder");
+  const FolderLock lock(folder.path(), "another limen is working in this folder",
+                        "wait until it has finished, or give another folder");
   const ToldTrajectories trajectories = told_trajectories(options.trajectories, chosen);
   const ProjectResult result = run_in(folder.path(), options, trajectories, session);
   std::vector<std::string> of_system;
@@ -331,19 +332,19 @@ void add_engine_options(CommandLine& command, ProjectCommandOptions& options) {
   };
   command
       .add_option("--engine", options.engine,
-                  "Where features and pairs are made: local (default) or dask; never changes a result")
+                  "Where features and pairs are computed: local (default) or dask; the result is the same")
       ->one_of({"local", "dask"})
       ->group(group);
   add("--scheduler", dask.scheduler, "ADDRESS",
       "Dask's scheduler, tls://HOST:PORT; without one, workers on this machine are started");
   add("--scheduler-file", dask.scheduler_file, "FILE",
-      "The same by the file that dask-scheduler --scheduler-file writes");
-  add("--tls-ca", dask.tls_ca, "PEM", "Who signed the scheduler's certificate");
-  add("--tls-cert", dask.tls_cert, "PEM", "The certificate to show to the scheduler");
-  add("--tls-key", dask.tls_key, "PEM", "Its key");
+      "Dask's scheduler, given by the file that dask-scheduler --scheduler-file writes");
+  add("--tls-ca", dask.tls_ca, "PEM", "Certificate of the authority that signed the scheduler's certificate");
+  add("--tls-cert", dask.tls_cert, "PEM", "Client certificate to show to the scheduler");
+  add("--tls-key", dask.tls_key, "PEM", "Private key of the client certificate");
   command
       .add_flag("--trust-network", dask.trust_network,
-                "Reach a scheduler without TLS: whoever reaches it can run programs as you")
+                "Connect to the scheduler without TLS: anybody who can reach it can run programs as you")
       ->group(group);
 }
 
@@ -351,13 +352,12 @@ void add_engine_options(CommandLine& command, ProjectCommandOptions& options) {
 
 void add_project_command(CommandLine& app, Session& session) {
   auto options = std::make_shared<ProjectCommandOptions>();
-  CommandLine* command =
-      add_command(app, session, "project",
-                  "Put any number of scans, and building models, into one frame; `project status DIR` tells "
-                  "how far one is, `project decide DIR accept A B` takes an answer; status 0: all "
-                  "registered, 3: some, 4: none",
-                  [options, &session] { return run(*options, session); });
-  command->add_option("SCAN", options->scans, "The scans, in any order and any frames; models too");
+  CommandLine* command = add_command(app, session, "project",
+                                     "Register any number of scans, and building models, in one frame; "
+                                     "`project status DIR` shows the progress, `project decide DIR accept A "
+                                     "B` saves a decision; exit status 0: all registered, 3: some, 4: none",
+                                     [options, &session] { return run(*options, session); });
+  command->add_option("SCAN", options->scans, "Scans, and models, in any order and any frames");
   command->add_option("--model", options->models, "A building model; may be given several times")
       ->type_name("MODEL")
       ->type_size(1)
@@ -366,44 +366,45 @@ void add_project_command(CommandLine& app, Session& session) {
       ->type_name("FILE");
   command
       ->add_option("-o,--output", options->folder,
-                   "Folder for project.json, report.html and what is kept for later runs")
+                   "Folder for project.json, report.html and data that later runs use again")
       ->type_name("DIR");
   command
       ->add_option("--pairs", options->pairs,
-                   "Which pairs are tried: auto (default, those that may share something) or all")
+                   "Which pairs are tried: auto (default, those that may overlap) or all")
       ->one_of({"auto", "all"});
   command->add_flag("--stations-apart", options->apart,
-                    "The scans of one file are not known to one another, whatever the file says");
+                    "Ignore the poses that a file states for the scans in it");
   command->add_flag("--rigid-passes", options->rigid_passes,
-                    "Mobile scans do not drift along their way: none is bent");
+                    "Treat every mobile scan as rigid: no drift is corrected");
   command
-      ->add_option(
-          "--control", options->control,
-          "Points whose coordinates are known: name,x,y,z,sigma (or sigma_x,sigma_y,sigma_z); the frame "
-          "becomes theirs. A point called as a scan is where its scanner stood")
+      ->add_option("--control", options->control,
+                   "Control points: name,x,y,z,sigma (or sigma_x,sigma_y,sigma_z); the project takes their "
+                   "frame. A point named like a scan is the scanner position of that scan")
       ->type_name("CSV");
   command
-      ->add_option(
-          "--targets", options->targets,
-          "Where the scans see them: name,scan,x,y,z,sigma; x,y,z as in the scan's own file; of a mobile "
-          "scan also time, in the seconds of its points")
+      ->add_option("--targets", options->targets,
+                   "Targets measured in the scans: name,scan,x,y,z,sigma; x,y,z as in the scan's own file; "
+                   "for a mobile scan also time, in the seconds of its points")
       ->type_name("CSV");
   command
       ->add_option("--check", options->check,
-                   "Points like those of --control that never enter: what they miss is told")
+                   "Check points, with the columns of --control: they are only compared, and their residuals "
+                   "are reported")
       ->type_name("CSV");
   command
-      ->add_option("--decide", options->decisions,
-                   "Your answers: accept, reject or choose a pose of a link, level, same-floor; kept in DIR")
+      ->add_option(
+          "--decide", options->decisions,
+          "Your decisions: accept, reject or choose a pose of a link, level, same-floor; saved in DIR")
       ->type_name("JSON");
   command
       ->add_option("--risk", options->risk,
-                   "Tell a scan as registered only where it stands elsewhere with less than this probability "
+                   "Report a scan as registered only if the probability that its pose is wrong is below this "
                    "(default 0.001)")
       ->type_name("P");
   command
-      ->add_option("--probable-risk", options->probable_risk,
-                   "Tell a scan as probable where it stands elsewhere with less than this (default 0.05)")
+      ->add_option(
+          "--probable-risk", options->probable_risk,
+          "Report a scan as probable if the probability that its pose is wrong is below this (default 0.05)")
       ->type_name("P");
   add_repeats_option(*command, options->repeats);
   add_engine_options(*command, *options);

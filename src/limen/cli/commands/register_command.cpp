@@ -215,7 +215,7 @@ void write_page(const std::filesystem::path& folder, const Registered& registere
   } catch (const Error& error) {
     if (error.fault() != Fault::input) throw;
     session.warn(fmt::format(
-        "there is no report: {}; result.json{} written and whole", error.what(),
+        "the report could not be written: {}; result.json{} complete", error.what(),
         registered.report.result.outcome == Outcome::no_match ? " is" : " and transform.txt are"));
   }
 }
@@ -273,11 +273,10 @@ int run(const RegisterCommandOptions& options, const Session& session) {
 void add_with_option(CommandLine& command, const char* name, std::vector<std::string>& with,
                      const char* side) {
   command
-      .add_option(
-          name, with,
-          fmt::format("Another scan that is known in {0}'s frame, and the file of its pose there (4 x 4 "
-                      "numbers, or a result.json); may be given several times",
-                      side))
+      .add_option(name, with,
+                  fmt::format("Another scan whose pose in {0}'s frame is known, and the file of that pose (4 "
+                              "x 4 matrix, or a result.json); may be given several times",
+                              side))
       ->type_size(2)
       ->type_name("SCAN POSE")
       ->take_all();
@@ -290,10 +289,10 @@ void add_cover_options(CommandLine& command, RegisterCommandOptions& options) {
   add("--title", options.title, "Title of the report");
   add("--project", options.project, "Project that the report names");
   add("--operator", options.operator_name, "Who made the registration, for the report");
-  add("--date", options.date, "Date on the report, as it is to be read");
+  add("--date", options.date, "Date on the report, printed as given");
   command
       .add_option("--language", options.language,
-                  "Language of a summary in words on the report: en (default), fr, de")
+                  "Language of the summary on the report: en (default), fr, de")
       ->one_of({"en", "fr", "de"});
 }
 
@@ -302,9 +301,11 @@ void add_origin_options(CommandLine& command, RegisterCommandOptions& options) {
     command.add_option(name, text, description)->type_name("x,y,z");
   };
   add("--source-origin", options.source_origin,
-      "From where SOURCE was taken, in the coordinates of its points, metres");
-  add("--target-origin", options.target_origin, "The same for TARGET");
-  add("--origin", options.origin, "The same for both, where they were taken from one place of their frames");
+      "Scanner position of SOURCE, in the coordinates of its points, metres");
+  add("--target-origin", options.target_origin,
+      "Scanner position of TARGET, in the coordinates of its points, metres");
+  add("--origin", options.origin,
+      "Scanner position of SOURCE and of TARGET, if its coordinates are the same in both, metres");
 }
 
 }  // namespace
@@ -313,8 +314,8 @@ void add_register_command(CommandLine& app, Session& session) {
   auto options = std::make_shared<RegisterCommandOptions>();
   CommandLine* command =
       add_command(app, session, "register",
-                  "Find the pose of a scan in another or in a building model; status 0: registered, "
-                  "3: probable, ambiguous or under-constrained, 4: no match",
+                  "Find the pose of a scan in another scan or in a building model; exit status 0: "
+                  "registered, 3: probable, ambiguous or under-constrained, 4: no match",
                   [options, &session] { return run(*options, session); });
   command->add_option("SOURCE", options->source, "The scan, model or list of segments to be moved")
       ->required();
@@ -329,28 +330,29 @@ void add_register_command(CommandLine& app, Session& session) {
       ->one_of({"auto", "polygons", "openings", "hybrid", "segments"});
   command
       ->add_option("--as-published", options->as_published,
-                   "Run a paper's own method instead, for comparison: one pose and no verdict, status 3")
+                   "Use the method of a published paper instead, for comparison: one pose and no verdict, "
+                   "exit status 3")
       ->one_of(published_names());
-  add_length_option(*command, "--wall-thickness-m,--wall-thickness", options->wall_thickness_m,
-                    "Thickness of the outer walls where it is known; else it is measured, or named as open");
+  add_length_option(
+      *command, "--wall-thickness-m,--wall-thickness", options->wall_thickness_m,
+      "Thickness of the outer walls, if it is known; else it is measured, or reported as not determined");
   command
-      ->add_option(
-          "--risk", options->risk,
-          "Tell `registered` only where all else (a twin, another pose, chance) is less probable than this "
-          "(default 0.001)")
+      ->add_option("--risk", options->risk,
+                   "Report `registered` only if the probability that the pose is wrong (a look-alike place, "
+                   "another pose, chance) is below this (default 0.001)")
       ->type_name("P");
   command
       ->add_option("--probable-risk", options->probable_risk,
-                   "Tell `probable` where all else is less probable than this (default 0.05)")
+                   "Report `probable` if the probability that the pose is wrong is below this (default 0.05)")
       ->type_name("P");
   command
       ->add_option("--start", options->start,
-                   "What is believed of the pose beforehand: identity (both on one grid), or the file of a "
-                   "pose. Evidence like any other: it may be refuted, and never makes a pose")
+                   "Approximate pose: identity (both files are in one frame), or the file of a pose. It is "
+                   "weighed against the scans, which may refute it")
       ->type_name("POSE");
   command
       ->add_option("--start-sigma", options->start_sigma,
-                   "How well the start is known, one standard deviation of place and turn (default 2m,5deg)")
+                   "Standard deviation of --start: position and rotation (default 2m,5deg)")
       ->type_name("LENGTH,ANGLE");
   add_repeats_option(*command, options->repeats);
   add_with_option(*command, "--source-with", options->source_with, "SOURCE");

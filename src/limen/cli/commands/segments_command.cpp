@@ -49,15 +49,14 @@ FoundSegments segments_of(Scan&& scan, const SegmentsCommand& command, InputSumm
   found.segments = std::move(features.segments);
   found.local_origin = features.local_origin;
   if (input.place.source == PlaceSource::estimated) found.centre = "estimated";
-  if (input.place.source == PlaceSource::unknown)
-    found.centre = "unknown: of borders, only those of holes are taken";
+  if (input.place.source == PlaceSource::unknown) found.centre = "unknown, so only borders of holes are used";
   return found;
 }
 
 /// The edges of a model: exactly as drawn, or (2023, IV-A) those that points spread over it show.
 FoundSegments segments_of(const BimModel& model, const SegmentsCommand& command, const Session& session) {
   FoundSegments found;
-  found.centre = "of no meaning to a model";
+  found.centre = "not needed for a model";
   session.monitor->begin_stage("segments");
   if (command.sampled_m > 0) {
     ModelSamplingOptions sampling;
@@ -75,7 +74,7 @@ FoundSegments segments_of(const BimModel& model, const SegmentsCommand& command,
 std::string summary(const FoundSegments& found, const std::string& output) {
   double total_m = 0.0;
   for (const Segment& segment : found.segments) total_m += segment.length();
-  std::string text = fmt::format("{} segments, {:.1f} m in all; the scanner's place is {}\n",
+  std::string text = fmt::format("{} segments, {:.1f} m in all; the scanner position is {}\n",
                                  found.segments.size(), total_m, found.centre);
   if (!found.segments.empty()) text += "  length m   direction\n";
   constexpr std::size_t kShown = 10;
@@ -123,13 +122,12 @@ void add_segments_command(CommandLine& app, Session& session) {
   add_length_option(*command, "--join-gap-m", o.join_gap_m,
                     "Pieces of one line are joined across gaps up to this (default 0.15)");
   add_length_option(*command, "--max-border-sigma-m", o.max_border_sigma_m,
-                    "Borders of surfaces whose place is known less well are left out (default 0.006)");
-  add_length_option(
-      *command, "--sampled-m", options->sampled_m,
-      "Of a model: take the edges that points this far apart on its surface show, instead of the "
-      "exact ones");
+                    "Borders of surfaces with a larger standard deviation are left out (default 0.006)");
+  add_length_option(*command, "--sampled-m", options->sampled_m,
+                    "For a model: find edges in points sampled at this spacing, instead of the exact edges");
   command
-      ->add_option("--min-angle-deg", o.min_angle_deg, "Between two surfaces that make an edge (default 12)")
+      ->add_option("--min-angle-deg", o.min_angle_deg,
+                   "Smallest angle between two surfaces that form an edge (default 12)")
       ->type_name("DEGREES");
 }
 

@@ -38,8 +38,8 @@ int run(const ServeCommand& command, const Session& session) {
   const std::uint64_t most_upload = upload_bound(command.most_upload);
   const OutputFolder folder(command.folder);
   // Two would give their work the same numbers.
-  const FolderLock lock(folder.path(), "is served already",
-                        "open that page, end that server, or give another folder");
+  const FolderLock lock(folder.path(), "is already served",
+                        "open the page of that server, end that server, or give another folder");
   const LoopbackSocket socket(command.port);
   const Gate gate{new_token(), socket.port()};
   ServeSite site(std::filesystem::canonical(folder.path()), gate, most_upload);
@@ -51,7 +51,7 @@ int run(const ServeCommand& command, const Session& session) {
   if (session.common.quiet && !session.common.json) session.warn("open " + address);
   flush_out();
   serve_site(socket, site, [&] { return session.monitor->cancelled(); });
-  session.say("ended; what was done lies in " + command.folder + "\n");
+  session.say("ended; the results are in " + command.folder + "\n");
   return kExitOk;
 }
 
@@ -61,15 +61,17 @@ void add_serve_command(CommandLine& app, Session& session) {
   auto options = std::make_shared<ServeCommand>();
   CommandLine* command = add_command(
       app, session, "serve",
-      "Serve a page on this machine alone: drop files on it, register them, watch, choose, look at results",
+      "Serve a web page for this machine only: upload files, register them and look at the results",
       [options, &session] { return run(*options, session); });
   command
-      ->add_option("DIR", options->folder, "Folder for the files and the results; made where it is missing")
+      ->add_option("DIR", options->folder, "Folder for the files and the results; created if it is missing")
       ->required();
-  command->add_option("--port", options->port, "Port of 127.0.0.1 (default 0: any that is free)")
+  command->add_option("--port", options->port, "Port of 127.0.0.1 (default 0: any free port)")
       ->in_range(0, 65535)
       ->type_name("N");
-  command->add_option("--most-upload", options->most_upload, "The largest file that is taken (default 20G)")
+  command
+      ->add_option("--most-upload", options->most_upload,
+                   "The largest file that can be uploaded (default 20G)")
       ->type_name("SIZE");
 }
 

@@ -226,7 +226,8 @@ void add_count_option(CommandLine& command, const std::string& name, std::size_t
 void add_simulate_command(CommandLine& app, Session& session) {
   auto options = std::make_shared<SimulateOptions>();
   CommandLine* command =
-      add_command(app, session, "simulate", "Scan a made-up building or a model; the truth is known exactly",
+      add_command(app, session, "simulate",
+                  "Simulate scans of a made-up building or of a model; the true poses are known exactly",
                   [options, &session] { return run(*options, session); });
   SceneOptions& scene = options->scene;
   scene.drift_m = -1.0;  // what is not given is not the same for scenes and whole buildings
@@ -238,12 +239,16 @@ void add_simulate_command(CommandLine& app, Session& session) {
   command->add_option("-o,--output", options->output, "The folder for scans, task.json and truth/truth.json")
       ->required()
       ->type_name("DIR");
-  add_count_option(*command, "--points-indoor", scene.points_indoor, "Points of each station, about");
-  add_count_option(*command, "--points-outdoor", scene.points_outdoor, "Points of the mobile scan, about");
+  add_count_option(*command, "--points-indoor", scene.points_indoor,
+                   "Approximate number of points of each station");
+  add_count_option(*command, "--points-outdoor", scene.points_outdoor,
+                   "Approximate number of points of the mobile scan");
   add_count_option(*command, "--stations", scene.stations, "Number of stations");
-  add_count_option(*command, "--facades", scene.facades,
-                   "Facades the first station's room has open windows in (museum, townhouse, villa)");
-  command->add_flag("--any-rotation", scene.any_rotation, "Give stations any rotation, not only any heading");
+  add_count_option(
+      *command, "--facades", scene.facades,
+      "Number of facades in which the first station's room has open windows (museum, townhouse, villa)");
+  command->add_flag("--any-rotation", scene.any_rotation,
+                    "Rotate the stations at random about all axes, not only about the vertical");
   command
       ->add_option("--curtain-share", scene.curtain_share,
                    "Share of the windows with a drawn curtain or blind")
@@ -251,20 +256,19 @@ void add_simulate_command(CommandLine& app, Session& session) {
   add_length_option(*command, "--noise-m", scene.scanner.noise_m,
                     "Range noise, one standard deviation (default 0.003)");
   command->add_flag("--as-built", options->as_built,
-                    "Of a model: some elements moved by 1 to 5 cm, some missing, furniture added");
-  command->add_flag(
-      "--as-drawn", options->as_drawn,
-      "The building exactly as drawn; else its walls, slabs and openings are off by millimetres to a "
-      "centimetre and lean");
+                    "For a model: some elements moved by 1 to 5 cm, some missing, furniture added");
+  command->add_flag("--as-drawn", options->as_drawn,
+                    "The building exactly as drawn; by default its walls lean, and walls, slabs and openings "
+                    "are off by millimetres to a centimetre");
   command
       ->add_option("--room", options->room,
-                   "Of a model: scan a room that is unique in it, or repeated, or each in turn")
+                   "For a model: scan a room that is unique in it, or repeated, or each in turn")
       ->one_of({"any", "unique", "repeated", "each"});
   command->add_option("--units", options->units, "Unit of office's model.ifc")->one_of({"m", "mm"});
   add_length_option(*command, "--drift-m", scene.drift_m,
-                    "Slow error of the mobile scan's path (default 0, with --project 0.008)");
+                    "Drift of the mobile scan's trajectory (default 0, with --project 0.008)");
   command->add_flag("--project", options->project,
-                    fmt::format("Scan a whole building, one file a station and pass: {}",
+                    fmt::format("Scan a whole building, one file for each station and each pass: {}",
                                 fmt::join(whole_building_names(), ", ")));
   command->add_option("--passes", options->passes, "With --project: street passes, each along two facades")
       ->type_name("N");
@@ -274,20 +278,21 @@ void add_simulate_command(CommandLine& app, Session& session) {
       ->one_of({"mobile", "static"});
   command
       ->add_option("--places", options->places,
-                   "With --project: one station a room, or as usual and one in every open doorway")
+                   "With --project: one station per room, or as usual and one more in every open doorway")
       ->one_of({"usual", "rooms", "doorways"});
   command
       ->add_option("--tripods", options->tripods,
-                   "With --project: stations in the street, all round (default 0)")
+                   "With --project: number of stations outside, around the building (default 0)")
       ->type_name("N");
   command
-      ->add_option("--open-doors", options->open_doors,
-                   "With --project: share of the inner doors that stand open (default 0.9, in doorways 1)")
+      ->add_option(
+          "--open-doors", options->open_doors,
+          "With --project: share of the inner doors that are open (default 0.9; 1 with --places doorways)")
       ->type_name("SHARE");
-  command->add_option("--drift", options->drift, "With --project: how the paths of passes err")
+  command->add_option("--drift", options->drift, "With --project: kind of trajectory error of the passes")
       ->one_of({"waves", "walk"});
   command->add_flag("--styles", options->styles,
-                    "With --project: noise, density, view, tilt, origin, glass and people at random");
+                    "With --project: random noise, density, field of view, tilt, origin, glass and people");
 }
 
 }  // namespace limen

@@ -40,7 +40,7 @@ std::string as_json(const ThinCommand& command, const WrittenClouds& written, co
 int run(ThinCommand command, const Session& session) {
   command.thinning.memory_bytes = parse_memory(command.memory);
   if (command.thinning.most_points == 0 && command.thinning.spacing_m == 0.0 && command.memory.empty())
-    throw Error("it is not said how many points to keep", "limen thin",
+    throw Error("the number of points to keep is not given", "limen thin",
                 "give --points, --spacing-m or --memory");
   command.thinning.check();
   refuse_same_file(command.output, command.cloud);
@@ -56,7 +56,7 @@ int run(ThinCommand command, const Session& session) {
   });
   for (const std::string& note : written.notes) session.note(note);
   std::string text = fmt::format("{} of {} points kept", written.written, written.read);
-  if (written.spacing_m > 0.0) text += fmt::format(", about {:.4f} m apart", written.spacing_m);
+  if (written.spacing_m > 0.0) text += fmt::format(", spacing about {:.4f} m", written.spacing_m);
   session.say(text + fmt::format("; written to {}\n", command.output));
   session.answer(as_json(command, written, input));
   return kExitOk;
@@ -66,14 +66,14 @@ int run(ThinCommand command, const Session& session) {
 
 void add_thin_command(CommandLine& app, Session& session) {
   auto options = std::make_shared<ThinCommand>();
-  CommandLine* command = add_command(app, session, "thin", "Keep an even part of a cloud of any size",
+  CommandLine* command = add_command(app, session, "thin", "Thin a point cloud of any size evenly",
                                      [options, &session] { return run(*options, session); });
   command->add_option("CLOUD", options->cloud, "A cloud of any format limen reads")->required();
   command->add_option("OUT", options->output, "The file to write: .ply, .las, .laz, .e57 or .xyz")
       ->required();
   command
       ->add_option("--points", options->thinning.most_points,
-                   "Keep so many points, or a little less; the spacing follows")
+                   "Keep this many points, or a few less; the spacing is chosen to fit")
       ->type_name("N");
   add_length_option(*command, "--spacing-m", options->thinning.spacing_m,
                     "Keep one point per cube of this side");

@@ -53,15 +53,14 @@ void check_cloud(const TransformOptions& options, const PoseFile& pose) {
   const std::string hash = sha256_of_file(file_of_scan(options.cloud));
   if (hash.empty() || hash == wanted) return;
   if (hash == other) {
-    throw Error(fmt::format("is the {} of {}, which stays where it is", options.invert ? "source" : "target",
+    throw Error(fmt::format("is the {} of {}, which is not moved", options.invert ? "source" : "target",
                             options.result),
                 options.cloud,
-                options.invert ? "leave --invert out, or give --force" : "give --invert, or --force");
+                options.invert ? "leave --invert out, or add --force" : "add --invert, or --force");
   }
   throw Error(
-      fmt::format("is not a file that {} is about: its SHA-256 is neither the source's nor the target's",
-                  options.result),
-      options.cloud, "give the registered file, or --force where it lies in the same frame");
+      fmt::format("is neither of the two files registered in {}: its SHA-256 is different", options.result),
+      options.cloud, "give the registered file, or add --force if this file is in the same frame");
 }
 
 /// A pose in metres for clouds whose numbers are in a unit of their own. Throws Error where the two differ: a
@@ -69,9 +68,12 @@ void check_cloud(const TransformOptions& options, const PoseFile& pose) {
 Rigid3 in_unit_of_clouds(Rigid3 pose, const PoseFile& file, const std::string& path) {
   const double unit = file.source_metres_per_unit;
   if (unit != file.target_metres_per_unit) {
-    throw Error(fmt::format("is about a source in {} and a target in {}, and a cloud is moved, not scaled",
-                            unit_name(unit), unit_name(file.target_metres_per_unit)),
-                path, "bring both to one unit, or take transform.txt, which scales, to a program that can");
+    throw Error(
+        fmt::format("has its source in {} and its target in {}, but a cloud is moved only, not scaled",
+                    unit_name(unit), unit_name(file.target_metres_per_unit)),
+        path,
+        "convert both files to one unit, or apply transform.txt, which includes the scale, in another "
+        "program");
   }
   pose.translation /= unit;
   return pose;
@@ -87,7 +89,7 @@ Rigid3 read_pose(const TransformOptions& options, const PoseFile& pose) {
 int run(const TransformOptions& options, const Session& session) {
   if (is_project(options.result))
     throw Error("is a project, which is transformed with -o OUT and takes no cloud", options.result,
-                fmt::format("say limen transform {} -o OUT, which moves all of its scans", options.result));
+                fmt::format("use limen transform {} -o OUT, which moves all of its scans", options.result));
   refuse_same_file(options.output, options.cloud);
   refuse_same_file(options.output, options.result);
   const PoseFile pose = read_pose_file(options.result);
@@ -108,9 +110,11 @@ int run(const TransformOptions& options, const Session& session) {
 void add_transform_command(CommandLine& app, Session& session) {
   auto options = std::make_shared<TransformOptions>();
   CommandLine* command =
-      add_command(app, session, "transform", "Move a cloud by a found pose, and merge it with others",
+      add_command(app, session, "transform",
+                  "Move a cloud by the pose of a registration, and merge it with others if asked",
                   [options, &session] { return run(*options, session); });
-  command->add_option("RESULT", options->result, "result.json, or a text of 4 x 4 numbers")->required();
+  command->add_option("RESULT", options->result, "result.json, or a text file with a 4 x 4 matrix")
+      ->required();
   command->add_option("CLOUD", options->cloud, "The cloud to move, of any format limen reads")->required();
   command
       ->add_option(
@@ -120,16 +124,15 @@ void add_transform_command(CommandLine& app, Session& session) {
   command
       ->add_option(
           "--merge", options->merge,
-          "A cloud that lies in the target's frame already, written to OUT too; may be given several times")
+          "A cloud that is already in the target's frame, written to OUT too; may be given several times")
       ->type_name("FILE")
       ->type_size(1)
       ->take_all();
   command->add_flag("--invert", options->invert, "Move from the target's frame to the source's instead");
   add_alternative_option(*command, options->alternative);
   add_crs_option(*command, options->crs);
-  command->add_flag(
-      "--force", options->force,
-      "Move CLOUD although it is not the file that was registered: a copy in the same frame, say");
+  command->add_flag("--force", options->force,
+                    "Accept a CLOUD that is not the registered file, for example a copy in the same frame");
 }
 
 }  // namespace limen

@@ -59,14 +59,14 @@ void check_words(const ProjectMoveOptions& options) {
        {std::pair(options.invert, "--invert"), std::pair(options.alternative != 0, "--alternative")}) {
     if (given)
       throw Error(fmt::format("{} does not apply to a project", name), options.project,
-                  "leave it out: every scan has one place in the frame");
+                  "leave it out: every scan has one pose in the frame");
   }
   const std::string ending = lower_case(fs::path(options.output).extension().string());
   const bool cloud = !ending.empty() && (is_cloud_ending(options.output) || ending == ".pcd" ||
                                          ending == ".ptx" || ending == ".pts");
   if (cloud && !options.merge)
-    throw Error("is called like a file, but without --merge each scan goes into a file of its own",
-                options.output, "add --merge for one file of all, or give a folder's name");
+    throw Error("looks like a file name, but without --merge each scan is written to a file of its own",
+                options.output, "add --merge to write one file, or give the name of a folder");
 }
 
 /// The scans with a place, by file; others are named.
@@ -81,10 +81,10 @@ std::vector<Move> moves_of(const std::vector<ProjectEntry>& entries, const Sessi
       continue;
     }
     if (entry.state == "probable")
-      session.warn(fmt::format("{}: its place is probable: right with {}, and no more", scan_name(entry),
-                               probability_words(1.0 - entry.doubt)));
+      session.warn(fmt::format("{}: its pose is only probable; the probability that it is right is {}",
+                               scan_name(entry), probability_words(1.0 - entry.doubt)));
     else if (entry.state != "registered")
-      session.note(fmt::format("{}: its place is {}: check it", scan_name(entry), entry.state));
+      session.note(fmt::format("{}: its state is {}: check its pose", scan_name(entry), entry.state));
     moves.push_back({entry, in_file[entry.file] > 1, {}});
   }
   return moves;
@@ -126,7 +126,7 @@ void check_inputs(const std::vector<Move>& moves, const ToldTrajectories& trajec
     session.monitor->advance(static_cast<double>(k + 1), static_cast<double>(moves.size()));
   }
   if (!bent || options.merge) return;
-  for (const std::string& file : trajectories.files) require_readable(file, "bring the trajectory back");
+  for (const std::string& file : trajectories.files) require_readable(file, "restore the trajectory");
 }
 
 /// None of what is written replaces a scan of the project.
@@ -187,11 +187,13 @@ int run(const ProjectMoveOptions& options, const Session& session) {
   const CoordinateSystem told = read_project_system(options.project);
   const CoordinateSystem chosen = chosen_system(options.crs);
   if (!same_system(told, chosen))
-    session.note(fmt::format("the project says that its frame is {}; --crs says {}, and that is told",
-                             words_of(told), words_of(chosen)));
+    session.note(
+        fmt::format("the project states the coordinate system {}, but --crs gives {}, which is written",
+                    words_of(told), words_of(chosen)));
   const CoordinateSystem& system = chosen.known() ? chosen : told;
   if (moves.empty())
-    throw Error("no scan has a place in the frame", options.project, "give a project that joined some");
+    throw Error("no scan has a pose in the project's frame", options.project,
+                "give a project with registered scans");
   const std::size_t points = options.merge ? write_merged(moves, options, system, session)
                                            : write_each(moves, options, system, session);
   const Json json = {
@@ -221,16 +223,15 @@ void add_transform_project_command(CommandLine& app, Session& session) {
   command->add_option("-o,--output", options->output, "A folder, or with --merge a file")
       ->required()
       ->type_name("OUT");
-  command->add_option("--as", options->ending, "Format of what is written; else each scan's own")
+  command->add_option("--as", options->ending, "Format of the output (default: each scan's own)")
       ->one_of({"e57", "las", "laz", "ply"});
   command->add_flag("--merge", options->merge, "All scans in one file");
-  command->add_flag(
-      "--force", options->force,
-      "Move files although they are not those that were registered: copies in the same frame, say");
+  command->add_flag("--force", options->force,
+                    "Accept files that are not the registered ones, for example copies in the same frame");
   add_crs_option(*command, options->crs);
   // Words of a pair's transform, to be told that they do not apply.
-  command->add_flag("--invert", options->invert, "Of a pair alone")->group("");
-  command->add_option("--alternative", options->alternative, "Of a pair alone")->group("");
+  command->add_flag("--invert", options->invert, "Only for the result of a pair")->group("");
+  command->add_option("--alternative", options->alternative, "Only for the result of a pair")->group("");
 }
 
 }  // namespace limen

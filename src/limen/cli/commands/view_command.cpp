@@ -77,7 +77,7 @@ int run(const ViewCommand& command, const Session& session) {
 void add_view_command(CommandLine& app, Session& session) {
   auto options = std::make_shared<ViewCommand>();
   CommandLine* command =
-      add_command(app, session, "view", "Make a page to look at scans and models, to cut and to measure",
+      add_command(app, session, "view", "Write a web page to view, section and measure scans and models",
                   [options, &session] { return run(*options, session); });
   command
       ->add_option(
@@ -89,7 +89,7 @@ void add_view_command(CommandLine& app, Session& session) {
       ->type_name("FILE");
   command
       ->add_option("--most-points", options->most_points,
-                   "Points of all files together (default 1000000); scans are thinned evenly")
+                   "Number of points of all files together (default 1000000); scans are thinned evenly")
       ->in_range(kFewestViewed, kMostViewed)
       ->type_name("N");
   command->add_option("--title", options->title, "Heading of the page (default: the names of the files)")

@@ -90,13 +90,13 @@ std::string man_page(const ProgramDoc& doc) {
   text += ".SH DESCRIPTION\n" + paragraph(doc.program.description);
   text += ".SH COMMANDS\n";
   for (const CommandDoc& command : doc.commands) text += command_section(command);
-  text += ".SH COMMON OPTIONS\nThese stand with every command.\n";
+  text += ".SH COMMON OPTIONS\nThese apply to every command.\n";
   for (const OptionDoc& option : doc.program.options) text += option_item(option);
   text += ".SH EXIT STATUS\n";
   for (const StatusDoc& it : status_docs())
     text += fmt::format(".TP\n{}\n", it.status) + paragraph(it.meaning);
   text += ".SH ENVIRONMENT\n.TP\nLC_ALL, LC_CTYPE, LANG\n";
-  text += paragraph("Whether the progress line may use signs beyond ASCII.");
+  text += paragraph("Whether the progress line may use characters beyond ASCII.");
   text += ".TP\nTERM\n" + paragraph("With the value dumb no progress line is shown.");
   text += ".SH EXAMPLES\n" + examples(doc.program).substr(4);
   return text;

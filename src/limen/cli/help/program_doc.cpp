@@ -67,7 +67,7 @@ const std::vector<ExampleDoc>& examples_of(const std::string& command) {
         {"Only the number of points, for a script", "limen info room.ply --json | jq '.scans[0].points'"}}},
       {"planes", {{"Planes and their outlines", "limen planes room.ply -o planes.json"}}},
       {"openings",
-       {{"Windows and doors of a scan whose file does not say where the scanner stood",
+       {{"Windows and doors of a scan whose file does not state the scanner position",
          "limen openings room.xyz --origin 1.2,-0.4,1.6 -o openings.json"}}},
       {"segments",
        {{"Edges of a scan", "limen segments room.ply -o edges.json"},
@@ -75,12 +75,12 @@ const std::vector<ExampleDoc>& examples_of(const std::string& command) {
       {"register",
        {{"Two scans", "limen register room.ply street.ply -o result"},
         {"A scan in a building model", "limen register room.ply house.ifc -o result"},
-        {"Two stations of one floor, known to one another, with the street",
+        {"Two stations of one floor with known relative pose, and the street",
          "limen register a.ply street.ply --source-with b.ply a_from_b.txt -o result"}}},
       {"project",
        {{"All stations of a building, whatever their order",
          "limen project scans/*.e57 street.las -o building"},
-        {"How far it is", "limen project status building"},
+        {"How far a project has come", "limen project status building"},
         {"All scans in the common frame", "limen transform building/project.json -o placed"}}},
       {"transform",
        {{"Move a cloud into the target's frame",
@@ -92,13 +92,13 @@ const std::vector<ExampleDoc>& examples_of(const std::string& command) {
         {"One point per centimetre", "limen thin room.e57 room.ply --spacing-m 0.01"}}},
       {"view",
        {{"A building with all its scans, for a browser", "limen view building/project.json -o building.html"},
-        {"A scan and a model that lie in one frame", "limen view room.ply house.ifc"}}},
+        {"A scan and a model in one frame", "limen view room.ply house.ifc"}}},
       {"serve", {{"A page to drop scans on and to register them", "limen serve building"}}},
       {"evaluate",
        {{"Compare with the truth of a simulated case",
          "limen evaluate result/result.json museum/truth/truth.json"}}},
       {"deviation",
-       {{"What was built otherwise than drawn",
+       {{"Where the building deviates from its model",
          "limen deviation room.ply house.ifc --result result/result.json -o deviation"}}},
       {"simulate",
        {{"A museum from inside and from the street, twice as dense as usual",
@@ -106,8 +106,8 @@ const std::vector<ExampleDoc>& examples_of(const std::string& command) {
         {"A room of a model, with elements moved and missing",
          "limen simulate house.ifc --as-built -o site"}}},
       {"schema",
-       {{"What a program may rely on in result.json", "limen schema result > result.schema.json"},
-        {"... and in the project.json of a building", "limen schema project > project.schema.json"}}},
+       {{"The JSON Schema of result.json", "limen schema result > result.schema.json"},
+        {"The JSON Schema of a building's project.json", "limen schema project > project.schema.json"}}},
       {"completion",
        {{"For this shell session", "source <(limen completion bash)"},
         {"For every fish session", "limen completion fish > ~/.config/fish/completions/limen.fish"}}},
@@ -145,13 +145,13 @@ ProgramDoc describe_program(const CLI::App& app) {
 }
 
 std::vector<StatusDoc> status_docs() {
-  return {
-      {kExitOk, "Done; of register: registered."},
-      {kExitInternal, "A fault of limen: please report it."},
-      {kExitBadInput, "A file, a value or an option was wrong; one line on stderr tells which."},
-      {kExitUndecided, "Of register: probable, ambiguous, or under-constrained."},
-      {kExitNoMatch, "Of register: nothing in common was found; of deviation: no point lies on the model."},
-      {kExitInterrupted, "Interrupted; nothing was written."}};
+  return {{kExitOk, "Done; for register: registered."},
+          {kExitInternal, "An internal error of limen: please report it."},
+          {kExitBadInput, "A file, a value or an option was wrong; one line on stderr says which."},
+          {kExitUndecided, "For register: probable, ambiguous, or under-constrained."},
+          {kExitNoMatch,
+           "For register: no reliable overlap was found; for deviation: no point lies on the model."},
+          {kExitInterrupted, "Interrupted; nothing was written."}};
 }
 
 std::string OptionDoc::text() const {

@@ -99,7 +99,7 @@ std::string help_text(const CommandDoc& command, const std::vector<CommandDoc>& 
     for (const StatusDoc& it : status_docs()) text += entry(fmt::to_string(it.status), it.meaning);
   }
   text += examples_text(command);
-  if (command.name.empty()) text += "\nlimen COMMAND --help tells all about a command.\n";
+  if (command.name.empty()) text += "\nlimen COMMAND --help explains a command in full.\n";
   return text;
 }
 

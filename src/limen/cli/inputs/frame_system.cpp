@@ -62,13 +62,12 @@ FrameSystem frame_system(const ProjectResult& result, const CoordinateSystem& ch
   }
   for (const auto& [file, system] : by_file) {
     if (!frame.system.known() || same_system(system, frame.system)) continue;
-    notes.push_back(
-        file == of_frame
-            ? fmt::format(
-                  "{} has the frame's coordinates and says that they are {}; --crs says {}, and that is told",
-                  file, words_of(system), words_of(frame.system))
-            : fmt::format("{} says that it is in {}; the frame is told to be {}", file, words_of(system),
-                          words_of(frame.system)));
+    notes.push_back(file == of_frame
+                        ? fmt::format("{} defines the frame and states the coordinate system {}, but --crs "
+                                      "gives {}, which is written",
+                                      file, words_of(system), words_of(frame.system))
+                        : fmt::format("{} states the coordinate system {}, but the project's frame is {}",
+                                      file, words_of(system), words_of(frame.system)));
   }
   return frame;
 }

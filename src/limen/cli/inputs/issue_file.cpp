@@ -14,14 +14,15 @@ namespace limen {
 
 void add_issue_options(CommandLine& command, IssueChoice& choice) {
   command
-      .add_option(
-          "--bcf", choice.file,
-          "Write issues for building modellers: BCF 2.1 with what is missing, moved, or not in the model")
+      .add_option("--bcf", choice.file,
+                  "Write issues for building modellers, in BCF 2.1: elements missing or moved, and objects "
+                  "not in the model")
       ->type_name("FILE");
-  add_length_option(command, "--moved-m", choice.options.moved_m,
-                    "An element that stands elsewhere by more is told as moved (default 0.015, LOA30)");
+  add_length_option(
+      command, "--moved-m", choice.options.moved_m,
+      "An element that is displaced by more than this is reported as moved (default 0.015, LOA30)");
   add_length_option(command, "--matter-m", choice.options.matter_m,
-                    "Matter not in the model is an issue from this length on (default 0.5)");
+                    "Objects that are not in the model are reported from this length on (default 0.5)");
 }
 
 IssueModel issue_model(const std::string& path, const BimModel& model, const Rigid3& world_from_elements) {

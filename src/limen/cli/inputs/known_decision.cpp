@@ -27,17 +27,17 @@ class KnownScans {
     const std::vector<std::size_t> found = among(name, false);
     if (found.size() == 1) return found.front();
     if (found.size() > 1)
-      throw Error(fmt::format("has several scans that are called {}", name), folder_.string(),
+      throw Error(fmt::format("has several scans named {}", name), folder_.string(),
                   "name one of them: " + listed(found));
     const std::vector<std::size_t> copies = among(name, true);
     if (copies.empty()) {
       const std::vector<std::size_t> all = places_of(false);
-      throw Error(fmt::format("has no scan that is called {}", name), folder_.string(),
+      throw Error(fmt::format("has no scan named {}", name), folder_.string(),
                   fmt::format("name two of its {}: {}", all.size(), listed(all)));
     }
     const ProjectEntry& copy = scans_[copies.front()];
-    throw Error(fmt::format("{} is a copy of {}, and stands where that stands", name, copy.copy_of),
-                folder_.string(), "name that: " + original_of(copy));
+    throw Error(fmt::format("{} is a copy of {} and has the same pose", name, copy.copy_of), folder_.string(),
+                "name the original: " + original_of(copy));
   }
 
   void require_pose(const Decision& choice) const {
@@ -53,7 +53,7 @@ class KnownScans {
     for (const int number : numbers) told += fmt::format("{}{}", told.empty() ? "" : ", ", number);
     throw Error(
         fmt::format("the link of {} and {} has no pose {}", choice.scans[0], choice.scans[1], choice.pose),
-        folder_.string(), "choose one that project.json tells: " + told);
+        folder_.string(), "choose one of those in project.json: " + told);
   }
 
  private:
@@ -100,8 +100,8 @@ void require_known(const Decision& decision, const std::filesystem::path& folder
   std::set<std::size_t> scans;
   for (const std::string& name : decision.scans) scans.insert(known.called(name));
   if (scans.size() < decision.scans.size())
-    throw Error(fmt::format("{} and {} are one scan", decision.scans[0], decision.scans[1]), folder.string(),
-                "name two");
+    throw Error(fmt::format("{} and {} are the same scan", decision.scans[0], decision.scans[1]),
+                folder.string(), "name two different scans");
   if (decision.kind == DecisionKind::choose) known.require_pose(decision);
 }
 

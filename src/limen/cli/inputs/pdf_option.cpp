@@ -10,9 +10,9 @@
 namespace limen {
 
 void add_pdf_option(CommandLine& command, bool& pdf) {
-  command.add_flag(
-      "--pdf", pdf,
-      "Print the report to report.pdf too, by the Chromium of this machine (LIMEN_CHROMIUM names one)");
+  command.add_flag("--pdf", pdf,
+                   "Print the report to report.pdf too, with the Chromium of this machine or the one that "
+                   "LIMEN_CHROMIUM names");
 }
 
 std::filesystem::path browser_for_pdf(bool pdf) {
@@ -28,7 +28,7 @@ void write_pdf(const std::filesystem::path& browser, const std::filesystem::path
   } catch (const Error& error) {
     if (error.fault() != Fault::input) throw;
     session.warn(
-        fmt::format("there is no report.pdf: {}; all other files are written and whole", error.what()));
+        fmt::format("report.pdf could not be written: {}; all other files are complete", error.what()));
   }
 }
 

@@ -11,8 +11,8 @@ namespace limen {
 void warn_of_doubt(const PoseFile& file, const std::string& path, const Session& session) {
   if (!file.outcome || *file.outcome == Outcome::registered) return;
   if (*file.outcome == Outcome::probable && file.probability)
-    return session.warn(fmt::format("the pose in {} is probable: right with {}, and no more", path,
-                                    probability_words(*file.probability)));
+    return session.warn(fmt::format("the pose in {} is only probable; the probability that it is right is {}",
+                                    path, probability_words(*file.probability)));
   session.note(fmt::format("the pose in {} is {}: check it", path, to_string(*file.outcome)));
 }
 

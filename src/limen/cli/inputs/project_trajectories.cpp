@@ -89,15 +89,14 @@ std::optional<std::vector<SbetRecord>> own_records(const ProjectEntry& pass, con
 void add_trajectories_option(CommandLine& command, TrajectoryChoice& choice) {
   command
       .add_option("--trajectory", choice.files,
-                  "From where moving scanners measured: SBET, or text with times and places; may be given "
-                  "several times: "
-                  "each scan with times takes the one that covers it")
+                  "Trajectory of a mobile scanner: SBET, or text with times and positions; may be given "
+                  "several times: each scan with times uses the one that covers it")
       ->type_name("FILE")
       ->type_size(1)
       ->take_all();
   command
       .add_option("--trajectory-columns", choice.reading.columns,
-                  "Columns of the texts, as time,x,y,z; else their header lines tell them")
+                  "Columns of the text files, as time,x,y,z (default: as named in their header lines)")
       ->type_name("NAMES");
   command
       .add_option("--utm-zone", choice.reading.utm_zone,
@@ -107,11 +106,12 @@ void add_trajectories_option(CommandLine& command, TrajectoryChoice& choice) {
       ->type_name("ZONE");
   command
       .add_option("--trajectory-time-offset-s", choice.reading.time_offset_s,
-                  "Added to the times of the trajectories")
+                  "Seconds that are added to the times of the trajectories")
       ->type_name("S");
   command
       .add_option("--lever-arm", choice.reading.lever_arm,
-                  "From the trajectories' point to the scanner: forward, right, down, metres")
+                  "Lever arm from the reference point of the trajectories to the scanner: forward, right, "
+                  "down, metres")
       ->type_name("x,y,z");
 }
 
@@ -132,8 +132,7 @@ std::vector<std::string> write_pass_trajectory(const ProjectEntry& pass, const T
           ? places_along(pass, *all[*file])
           : corrected_places(
                 {pass.file, static_cast<std::size_t>(pass.index), *pass.frame_from_scan, pass.bend}, monitor);
-  if (places.size() < 2)
-    return {"its points do not tell where they were seen from: no corrected trajectory is written"};
+  if (places.size() < 2) return {"its scanner positions are unknown: no corrected trajectory is written"};
   write_file(beside(output, ".csv"), text_of_places(places));
   if (!system.known()) return {};
   if (proj_library() == nullptr)
@@ -145,7 +144,7 @@ std::vector<std::string> write_pass_trajectory(const ProjectEntry& pass, const T
   if (!records) {
     records = records_of_places(places, target);
     notes.emplace_back(
-        "the attitude along its way is not known: the SBET has headings of the way, roll and pitch 0");
+        "its attitude is unknown: the SBET gets the heading of the path, and roll and pitch 0");
   }
   write_file(beside(output, ".sbet"), sbet_bytes(*records));
   return notes;

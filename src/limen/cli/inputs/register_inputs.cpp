@@ -19,7 +19,7 @@ namespace {
 
 InputSide read_model_side(const SideOptions& options, const Session& session) {
   if (!options.with.empty())
-    throw Error("is a building model", options.path, "further scans can only stand by a scan");
+    throw Error("is a building model", options.path, "further scans can only be added to a scan");
   InputSide side;
   side.input.model =
       read_model_input(options.path, session, options.reading.metres_per_unit, options.units_option);

@@ -42,7 +42,7 @@ bool are_segment_files(const std::string& source, const std::string& target) {
   const bool second = is_segment_file(target);
   if (first != second) {
     const std::string& other = first ? target : source;
-    if (!std::filesystem::exists(other)) throw Error("does not exist", other, "look at the path");
+    if (!std::filesystem::exists(other)) throw Error("does not exist", other, "check the path");
     throw Error("holds no segments that limen can read, the other file does", other,
                 "give two scans, or two files of segments");
   }

@@ -12,11 +12,12 @@
 namespace limen {
 
 void require_registered_file(const ProjectEntry& entry, const std::string& project, bool force) {
-  require_readable(file_of_scan(entry.file),
-                   fmt::format("run limen where {} found it, or bring it back", project));
+  require_readable(
+      file_of_scan(entry.file),
+      fmt::format("run limen in the folder from which {} found it, or restore the file", project));
   if (force || entry.sha256.empty() || sha256_of_file(file_of_scan(entry.file)) == entry.sha256) return;
-  throw Error(fmt::format("is not the file that {} is about: its SHA-256 is another one", project),
-              entry.file, "give the file that was registered, or --force where it lies in the same frame");
+  throw Error(fmt::format("is not the file registered in {}: its SHA-256 is different", project), entry.file,
+              "give the registered file, or add --force if this file is in the same frame");
 }
 
 }  // namespace limen

@@ -29,7 +29,7 @@ TEST(RegisteredFile, OtherBytesAndNoFileAreRefused) {
   entry.sha256 = sha256_of("one");
   EXPECT_EQ(file_problem(entry, false), "");
   static_cast<void>(folder.write("a.ply", "two"));
-  EXPECT_NE(file_problem(entry, false).find("is not the file that project.json is about"), std::string::npos);
+  EXPECT_NE(file_problem(entry, false).find("is not the file registered in project.json"), std::string::npos);
   EXPECT_EQ(file_problem(entry, true), "");
   entry.file = (folder / "b.ply").string();
   EXPECT_EQ(file_problem(entry, false), "there is no such file");

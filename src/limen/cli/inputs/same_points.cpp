@@ -31,7 +31,8 @@ std::string SamePointsWatch::note_on(const RegisterInput& side, bool is_source) 
   if (is_source) sample_ = PointSample(scan);
   if (!same || !note_.empty()) return {};
   note_ = fmt::format(
-      "SOURCE and TARGET hold the same {} points: a scan is laid on itself, which says nothing of another",
+      "SOURCE and TARGET hold the same {} points: a scan is registered to itself, which is no test for other "
+      "scans",
       scan.size());
   return note_;
 }

@@ -29,7 +29,7 @@ std::vector<std::string> names_in_list(const std::string& path) {
   for (std::string line; std::getline(stream, line); first = false) {
     const std::string_view text = trimmed(first ? without_byte_order_mark(line) : line);
     if (!is_utf8(text) || std::any_of(text.begin(), text.end(), is_control))
-      throw Error("is no list of names: it holds bytes that are no text", path, kListRemedy);
+      throw Error("is not a list of names: it contains bytes that are not text", path, kListRemedy);
     if (text.empty() || text.front() == '#') continue;
     const std::filesystem::path name(text);
     names.push_back((name.is_absolute() ? name : std::filesystem::path(path).parent_path() / name).string());

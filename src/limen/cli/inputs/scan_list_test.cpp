@@ -33,9 +33,9 @@ TEST(ScanList, WhatIsNoListIsTold) {
   const TemporaryFolder folder;
   EXPECT_EQ(list_problem(folder / "."), "is a folder, not a list");
   EXPECT_EQ(list_problem(folder / "missing.txt"), "there is no such file");
-  EXPECT_NE(list_problem(folder.write("a.ply", "ply\n\x01\x02\n")).find("no list of names"),
+  EXPECT_NE(list_problem(folder.write("a.ply", "ply\n\x01\x02\n")).find("not a list of names"),
             std::string::npos);
-  EXPECT_NE(list_problem(folder.write("latin.txt", "caf\xe9.ply\tb\n")).find("no list of names"),
+  EXPECT_NE(list_problem(folder.write("latin.txt", "caf\xe9.ply\tb\n")).find("not a list of names"),
             std::string::npos)
       << "JSON cannot tell of it";
 }

@@ -47,7 +47,7 @@ void add_gravity_option(CommandLine& command, std::string& gravity, bool with_au
   const std::vector<std::string> known = with_auto ? std::vector<std::string>{"auto", "up", "unknown"}
                                                    : std::vector<std::string>{"up", "unknown"};
   std::string description = "up: the z axis of the files points up; unknown: it may point anywhere";
-  if (with_auto) description += "; auto: up where floors and walls say so";
+  if (with_auto) description += "; auto: up if floors and walls confirm it";
   command.add_option("--gravity", gravity, fmt::format("{} (default {})", description, gravity))
       ->one_of(known);
 }
@@ -55,8 +55,8 @@ void add_gravity_option(CommandLine& command, std::string& gravity, bool with_au
 void add_repeats_option(CommandLine& command, std::string& repeats) {
   command
       .add_option("--repeats", repeats,
-                  "none: no room, flat or storey of the building was built like another, as you know it. "
-                  "Evidence like any other: twenty times less is then asked against a twin (default unknown)")
+                  "none: you know that no room, flat or storey of the building looks like another. A "
+                  "look-alike place is then taken to be twenty times less probable (default unknown)")
       ->one_of({"unknown", "none"});
 }
 
@@ -80,14 +80,14 @@ std::uint64_t parse_memory(const std::string& text) {
 void add_memory_option(CommandLine& command, std::string& memory) {
   command
       .add_option("--memory", memory,
-                  "Memory for a scan, as 500M or 2.5G: one that needs more is thinned while it is read")
+                  "Memory for one scan, as 500M or 2.5G: a larger scan is thinned while it is read")
       ->type_name("SIZE");
 }
 
 void add_alternative_option(CommandLine& command, int& alternative) {
   command
       .add_option("--alternative", alternative,
-                  "Take this one of the result's alternatives, by its number from 1, instead of its answer")
+                  "Use this alternative of the result, numbered from 1, instead of its best pose")
       ->type_name("N")
       ->in_range(0, 1000000);
 }
@@ -97,11 +97,11 @@ void add_trajectory_options(CommandLine& command, ReadingChoice& choice, const s
   const std::string name = "--" + side + "trajectory";
   command
       .add_option(name, choice.trajectory,
-                  "From where a moving scanner measured: SBET, or text with times and places")
+                  "Trajectory of a mobile scanner: SBET, or text with times and positions")
       ->type_name("FILE");
   command
       .add_option(name + "-columns", choice.columns,
-                  "Columns of the text, as time,x,y,z; else its header line tells them")
+                  "Columns of the text file, as time,x,y,z (default: as named in its header line)")
       ->type_name("NAMES");
   command
       .add_option("--" + side + "utm-zone", choice.utm_zone,
@@ -109,11 +109,14 @@ void add_trajectory_options(CommandLine& command, ReadingChoice& choice, const s
                   "the first; local: "
                   "east, north, up")
       ->type_name("ZONE");
-  command.add_option(name + "-time-offset-s", choice.time_offset_s, "Added to the times of the trajectory")
+  command
+      .add_option(name + "-time-offset-s", choice.time_offset_s,
+                  "Seconds that are added to the times of the trajectory")
       ->type_name("S");
   command
-      .add_option("--" + side + "lever-arm", choice.lever_arm,
-                  "From the trajectory's point to the scanner: forward, right, down, metres")
+      .add_option(
+          "--" + side + "lever-arm", choice.lever_arm,
+          "Lever arm from the reference point of the trajectory to the scanner: forward, right, down, metres")
       ->type_name("x,y,z");
 }
 
@@ -121,10 +124,9 @@ void add_units_option(CommandLine& command, std::string& units, const std::strin
   std::vector<std::string> names;
   for (const LengthUnit& unit : length_units()) names.emplace_back(unit.name);
   command
-      .add_option(
-          "--" + side + "units", units,
-          "Unit of the file's numbers: m, mm, cm, ft, in, us-ft, km (default: what the file says, else "
-          "m); options stay in metres")
+      .add_option("--" + side + "units", units,
+                  "Unit of the file's numbers: m, mm, cm, ft, in, us-ft, km (default: as stated in the file, "
+                  "else m); options are always in metres")
       ->one_of(names);
 }
 
@@ -161,9 +163,7 @@ ReadOptions with_choice(ReadOptions options, const ReadingChoice& choice) {
 void add_feature_options(CommandLine& command, FeatureChoice& choice) {
   command.add_option("SCAN", choice.scan, "A scan of any format limen reads")->required();
   command.add_option("-o,--output", choice.output, "The JSON file to write")->required()->type_name("FILE");
-  command
-      .add_option("--origin", choice.origin,
-                  "From where the scan was taken, in the coordinates of its points, metres")
+  command.add_option("--origin", choice.origin, "Scanner position, in the coordinates of the points, metres")
       ->type_name("x,y,z");
   add_gravity_option(command, choice.gravity, true);
   add_units_option(command, choice.reading.units);
@@ -250,12 +250,13 @@ void note_place(InputSummary& summary, const ScannerPlace& place, const Session&
   const std::string where = fmt::format("{:.3f} {:.3f} {:.3f}", said.x(), said.y(), said.z());
   if (place.source == PlaceSource::told_by_user) {
     session.note(
-        fmt::format("{}: the points do not look as if they were seen from {}, which was told; it is kept",
+        fmt::format("{}: the points do not fit the given scanner position {}; it is used nevertheless",
                     summary.path, where));
     return;
   }
   session.note(
-      fmt::format("{}: the scanner did not stand at {}; by the points it stood at {:.3f} {:.3f} {:.3f}",
+      fmt::format("{}: the points contradict the stated scanner position {}; the position estimated from the "
+                  "points is used: {:.3f} {:.3f} {:.3f}",
                   summary.path, where, place.centre.x(), place.centre.y(), place.centre.z()));
 }
 
@@ -278,7 +279,7 @@ int deliver(AtomicFile& file, const std::string& json, const std::string& summar
 void refuse_same_file(const std::string& output, const std::string& input) {
   std::error_code missing;
   if (std::filesystem::equivalent(output, file_of_scan(input), missing)) {
-    throw Error("would be written over the input", output, "give the result another name");
+    throw Error("would overwrite the input", output, "give the result another name");
   }
 }
 

@@ -32,7 +32,7 @@ double measure(std::string_view text, const std::array<Unit, N>& units, const st
     for (const Unit& known : units)
       if (known.name == unit) return value * known.value;
   }
-  throw Error("the deviations of the start cannot be read", "--start-sigma " + all, kAsked);
+  throw Error("the standard deviations of the start cannot be read", "--start-sigma " + all, kAsked);
 }
 
 }  // namespace
@@ -51,7 +51,7 @@ std::optional<StartPrior> start_of(const std::string& pose, const std::string& s
   if (sigma.empty()) return start;
   const std::size_t comma = sigma.find(',');
   if (comma == std::string::npos)
-    throw Error("the deviations of the start cannot be read", "--start-sigma " + sigma, kAsked);
+    throw Error("the standard deviations of the start cannot be read", "--start-sigma " + sigma, kAsked);
   const std::string_view text = sigma;
   start.sigma_m = measure(text.substr(0, comma), kLengths, sigma);
   start.sigma_rad = measure(text.substr(comma + 1), kAngles, sigma);

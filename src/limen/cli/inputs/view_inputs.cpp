@@ -50,7 +50,7 @@ std::string found_beside(const std::string& file, const std::string& named_by) {
 std::vector<ViewInput> sides_of_result(const std::string& path, int alternative) {
   const PoseFile pose = read_pose_file(path);
   if (pose.source_path.empty() || pose.target_path.empty())
-    throw Error("does not say which files it is about", path,
+    throw Error("does not name the files that were registered", path,
                 "give the result.json that limen register wrote");
   ViewInput source{found_beside(pose.source_path, path), -1, chosen_pose(pose, alternative, path),
                    pose.source_sha256, path};
@@ -75,7 +75,7 @@ void check_bytes(const ViewInput& input) {
   if (input.sha256.empty()) return;
   const std::string hash = sha256_of_file(file_of_scan(input.path));
   if (hash.empty() || hash == input.sha256) return;
-  throw Error(fmt::format("is not the file that {} is about: its SHA-256 is another", input.told_by),
+  throw Error(fmt::format("is not the file registered in {}: its SHA-256 is different", input.told_by),
               input.path, "give the registered file, or name the clouds themselves instead of the result");
 }
 
@@ -184,7 +184,7 @@ std::vector<ViewInput> view_inputs(const std::vector<std::string>& files, int al
                                    const Session& session) {
   std::vector<ViewInput> inputs;
   if (alternative > 0 && std::none_of(files.begin(), files.end(), is_json_name))
-    throw Error("--alternative chooses among the poses of a result, and none is given", "",
+    throw Error("--alternative chooses among the poses of a result.json, but none is given", "",
                 "name the result.json, or leave the option out");
   for (const std::string& file : files) {
     std::vector<ViewInput> more{{file, -1, Rigid3{}, "", ""}};
@@ -192,7 +192,7 @@ std::vector<ViewInput> view_inputs(const std::vector<std::string>& files, int al
       more = is_project(file) ? scans_of_project(file, session) : sides_of_result(file, alternative);
     inputs.insert(inputs.end(), more.begin(), more.end());
   }
-  if (inputs.empty()) throw Error("nothing has a place in it", files.front(), "give scans or models");
+  if (inputs.empty()) throw Error("no scan has a pose in it", files.front(), "give scans or models");
   return inputs;
 }
 

@@ -32,7 +32,7 @@ constexpr int kNotStarted = 127;
 constexpr int kAboveOurs = 10;
 
 [[noreturn]] void cannot_run(const char* what) {
-  throw Error(fmt::format("{}: {}", what, reason_of(errno)), "limen serve", "look at the machine's limits",
+  throw Error(fmt::format("{}: {}", what, reason_of(errno)), "limen serve", "check the machine's limits",
               Fault::internal);
 }
 
@@ -43,11 +43,11 @@ struct Pipe {
 
   Pipe() {
     std::array<int, 2> ends{};
-    if (pipe2(ends.data(), O_CLOEXEC | O_NONBLOCK) != 0) cannot_run("no pipe can be made");
+    if (pipe2(ends.data(), O_CLOEXEC | O_NONBLOCK) != 0) cannot_run("no pipe can be created");
     read = ends[0];
     write = fcntl(ends[1], F_DUPFD_CLOEXEC, kAboveOurs);
     close(ends[1]);
-    if (write < 0) cannot_run("no pipe can be made");
+    if (write < 0) cannot_run("no pipe can be created");
   }
 };
 
@@ -120,7 +120,7 @@ Child::Child(const std::vector<std::string>& arguments, const std::filesystem::p
   if (id_ < 0) {
     close_end(output_);
     close_end(progress_);
-    cannot_run("no process can be made");
+    cannot_run("no process can be created");
   }
   setpgid(id_, id_);
 }

@@ -88,7 +88,7 @@ void Connection::read_more(Clock::time_point now) {
   } catch (const Error& error) {
     fail(HttpFault(507, error.what()));
   } catch (const std::exception&) {
-    fail(HttpFault(500, "this is a fault of limen: please report it"));
+    fail(HttpFault(500, "this is an internal error of limen: please report it"));
   }
 }
 

@@ -17,24 +17,24 @@ void Gate::check(const HttpRequest& request) const {
   const std::string here = fmt::format("127.0.0.1:{}", port);
   const std::string here_by_name = fmt::format("localhost:{}", port);
   const std::string host = request.field("host");
-  if (host != here && host != here_by_name)
-    throw HttpFault(403, "this is not the machine that was asked for");
+  if (host != here && host != here_by_name) throw HttpFault(403, "the request is meant for another machine");
   const std::string origin = request.field("origin");
   if (!origin.empty() && origin != "http://" + host)
-    throw HttpFault(403, "pages of other origins may ask nothing here");
+    throw HttpFault(403, "requests from pages of other origins are refused");
   const std::string site = request.field("sec-fetch-site");
   // An address that was typed or pasted comes from no site. A link on a page of somebody else brings nobody
   // in.
   if (site == "cross-site" || (site == "same-site" && request.method != "GET"))
-    throw HttpFault(403, "pages of other sites may ask nothing here");
+    throw HttpFault(403, "requests from pages of other sites are refused");
   if (!same_secret(request.segments.front(), token))
-    throw HttpFault(404, "there is nothing here: the address has no token, or not that of this run");
+    throw HttpFault(
+        404, "there is nothing here: the token in the address is missing, or belongs to an earlier run");
 }
 
 std::string new_token() {
   std::array<unsigned char, 16> bytes{};
   if (getrandom(bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size()))
-    throw Error("the system gives no random bytes: " + reason_of(errno), "limen serve", "look at the system",
+    throw Error("the system gives no random bytes: " + reason_of(errno), "limen serve", "check the system",
                 Fault::internal);
   std::string token;
   for (const unsigned char byte : bytes) token += fmt::format("{:02x}", byte);

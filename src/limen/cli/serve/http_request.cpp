@@ -76,10 +76,10 @@ void take_first_line(std::string_view line, HttpRequest& request) {
   const std::size_t first = line.find(' ');
   const std::size_t last = line.rfind(' ');
   if (first == std::string_view::npos || first == last)
-    throw HttpFault(400, "the first line is no method, address and version");
+    throw HttpFault(400, "the first line is not method, address and version");
   request.method = line.substr(0, first);
   const std::string_view version = line.substr(last + 1);
-  if (version != "HTTP/1.1" && version != "HTTP/1.0") throw HttpFault(505, "only HTTP/1.1 is spoken here");
+  if (version != "HTTP/1.1" && version != "HTTP/1.0") throw HttpFault(505, "only HTTP/1.1 is supported");
   constexpr std::array<std::string_view, 5> kMethods{"GET", "HEAD", "POST", "PUT", "DELETE"};
   if (std::find(kMethods.begin(), kMethods.end(), request.method) == kMethods.end())
     throw HttpFault(is_token(request.method) ? 405 : 400, "the method is not known");
@@ -98,14 +98,15 @@ void take_field(std::string_view line, HttpRequest& request) {
 
 void take_length(HttpRequest& request) {
   if (!request.field("transfer-encoding").empty())
-    throw HttpFault(501, "bodies are taken whole, with their length, not in chunks");
+    throw HttpFault(501, "a body must come with its length, not in chunks");
   const auto told = [](const auto& field) { return field.first == "content-length"; };
   request.has_content = std::any_of(request.fields.begin(), request.fields.end(), told);
   if (!request.has_content) return;
   const std::string text = request.field("content-length");
   const char* const end = text.data() + text.size();
   const auto read = std::from_chars(text.data(), end, request.content_bytes);
-  if (read.ec != std::errc() || read.ptr != end) throw HttpFault(400, "the length of the body is no number");
+  if (read.ec != std::errc() || read.ptr != end)
+    throw HttpFault(400, "the length of the body is not a number");
 }
 
 }  // namespace
@@ -115,7 +116,7 @@ std::string HttpRequest::field(std::string_view name) const {
   const auto found = std::find_if(fields.begin(), fields.end(), called);
   if (found == fields.end()) return {};
   if (std::find_if(found + 1, fields.end(), called) != fields.end())
-    throw HttpFault(400, "a field stands there twice");
+    throw HttpFault(400, "a field occurs twice");
   return found->second;
 }
 

@@ -32,14 +32,14 @@ struct Asked {
   [[nodiscard]] std::string text(const char* key) const {
     const auto found = json.find(key);
     if (found == json.end() || found->is_null()) return {};
-    if (!found->is_string()) throw HttpFault(400, fmt::format("{} is no text", key));
+    if (!found->is_string()) throw HttpFault(400, fmt::format("{} is not text", key));
     return found->get<std::string>();
   }
 
   [[nodiscard]] int number(const char* key) const {
     const auto found = json.find(key);
     if (found == json.end() || found->is_null()) return 0;
-    if (!found->is_number_integer()) throw HttpFault(400, fmt::format("{} is no number", key));
+    if (!found->is_number_integer()) throw HttpFault(400, fmt::format("{} is not a number", key));
     const auto value = found->get<std::int64_t>();
     if (value < 0 || value > 1'000'000'000) throw HttpFault(400, fmt::format("{} is out of bounds", key));
     return static_cast<int>(value);
@@ -56,8 +56,7 @@ struct Asked {
   [[nodiscard]] std::string file(const std::string& name) const {
     std::error_code gone;
     if (!is_safe_name(name) || !fs::is_regular_file(fs::symlink_status(folder / "files" / name, gone)))
-      throw HttpFault(400,
-                      name.empty() ? "choose a file" : "there is no such file: drop it on the page first");
+      throw HttpFault(400, name.empty() ? "choose a file" : "there is no such file: upload it first");
     return "files/" + name;
   }
 
@@ -69,7 +68,7 @@ struct Asked {
       throw HttpFault(400, "choose some files");
     std::vector<std::string> paths;
     for (const Json& name : *found) {
-      if (!name.is_string()) throw HttpFault(400, "the name of a file is no text");
+      if (!name.is_string()) throw HttpFault(400, "the name of a file is not text");
       paths.push_back(file(name.get<std::string>()));
     }
     return paths;
@@ -79,7 +78,7 @@ struct Asked {
   [[nodiscard]] const PageJob& of(const char* kind) const {
     const PageJob& job = board.job(number("of"));
     if (job.kind != kind || job.state != "done")
-      throw HttpFault(409, fmt::format("that is no {} that has ended well", kind));
+      throw HttpFault(409, fmt::format("there is no such {} job that ended without an error", kind));
     return job;
   }
 
@@ -112,7 +111,7 @@ std::string joined_names(const std::vector<std::string>& paths) {
 void add_units(const Asked& asked, const char* key, const char* option, std::vector<std::string>& words) {
   const std::string unit = asked.text(key);
   if (unit.empty()) return;
-  if (!length_unit(unit)) throw HttpFault(400, "that is no unit of length");
+  if (!length_unit(unit)) throw HttpFault(400, "that is not a unit of length");
   words.insert(words.end(), {option, unit});
 }
 
@@ -213,7 +212,7 @@ PageJob deciding(const Asked& asked) {
   if (!offered) throw HttpFault(400, "none of the project's questions has this answer");
   const std::vector<std::string> words = shell_words(answer);
   if (std::any_of(words.begin(), words.end(), [](const std::string& word) { return word.starts_with('-'); }))
-    throw HttpFault(400, "that is no answer");
+    throw HttpFault(400, "that is not an answer");
   job.words = {"project", "decide", asked.results(of.id)};
   job.words.insert(job.words.end(), words.begin(), words.end());
   job.title = answer;
@@ -223,7 +222,7 @@ PageJob deciding(const Asked& asked) {
 }  // namespace
 
 PageJob job_from_request(const Json& json, const fs::path& folder, const JobBoard& board, int id) {
-  if (!json.is_object()) throw HttpFault(400, "the work is not told as JSON");
+  if (!json.is_object()) throw HttpFault(400, "the job is not given as JSON");
   const Asked asked{json, folder, board, id};
   const std::string kind = asked.text("kind");
   constexpr std::pair<const char*, PageJob (*)(const Asked&)> kKinds[] = {{"register", registering},
@@ -238,7 +237,7 @@ PageJob job_from_request(const Json& json, const fs::path& folder, const JobBoar
     job.asked = json;
     return job;
   }
-  throw HttpFault(400, "this kind of work is not known");
+  throw HttpFault(400, "this kind of job is not known");
 }
 
 }  // namespace limen

@@ -128,7 +128,7 @@ void JobBoard::find_kept() {
 PageJob& JobBoard::find(int id) {
   const auto found =
       std::find_if(jobs_.begin(), jobs_.end(), [&](const PageJob& job) { return job.id == id; });
-  if (found == jobs_.end()) throw HttpFault(404, "there is no such work");
+  if (found == jobs_.end()) throw HttpFault(404, "there is no such job");
   return *found;
 }
 
@@ -145,14 +145,15 @@ bool JobBoard::uses(const std::string& word) const {
 void JobBoard::add(PageJob job) {
   const auto waiting =
       std::count_if(jobs_.begin(), jobs_.end(), [](const PageJob& it) { return it.state == "queued"; });
-  if (static_cast<std::size_t>(waiting) >= kMostWaiting) throw HttpFault(429, "too much work waits already");
+  if (static_cast<std::size_t>(waiting) >= kMostWaiting)
+    throw HttpFault(429, "too many jobs are waiting already");
   job.id = next_id_++;
   jobs_.push_back(std::move(job));
 }
 
 void JobBoard::again(int id, std::vector<std::string> words) {
   PageJob& job = find(id);
-  if (!has_ended(job)) throw HttpFault(409, "this work has not ended yet");
+  if (!has_ended(job)) throw HttpFault(409, "this job has not ended yet");
   job.words = std::move(words);
   job.state = "queued";
   job.status = -1;

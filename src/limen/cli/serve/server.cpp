@@ -88,7 +88,7 @@ void serve_site(const LoopbackSocket& socket, ServeSite& site, const std::functi
     std::vector<pollfd> all = all_of(socket, connections, site.jobs().ears());
     if (poll(all.data(), all.size(), kServeTick_ms) < 0 && errno != EINTR)
       throw Error("cannot wait for connections: " + reason_of(errno), "limen serve",
-                  "look at the machine's limits", Fault::internal);
+                  "check the machine's limits", Fault::internal);
     const auto now = Connection::Clock::now();
     for (std::size_t k = 0; k < connections.size(); ++k) move_on(*connections[k], all[k + 1].revents, now);
     std::erase_if(connections, [](const auto& connection) { return connection->done(); });

@@ -138,22 +138,23 @@ std::unique_ptr<HttpUpload> ServeSite::begin(const HttpRequest& request) {
   gate_.check(request);
   const std::vector<std::string>& path = request.segments;
   if (request.method != "PUT") {
-    if (request.content_bytes > kMostBody) throw HttpFault(413, "that is too much for what is asked");
+    if (request.content_bytes > kMostBody) throw HttpFault(413, "the request is too large");
     return nullptr;
   }
   if (path.size() != 3 || path[1] != "files") throw HttpFault(405, "files are put to files/NAME");
   if (!is_safe_name(path[2]))
-    throw HttpFault(400, "a file cannot be called so: choose a name without / and blanks");
-  if (!request.has_content) throw HttpFault(411, "the length of the file is not told");
+    throw HttpFault(400, "this file name is not allowed: choose a name without / and spaces");
+  if (!request.has_content) throw HttpFault(411, "the length of the file is missing");
   if (request.content_bytes > most_upload_bytes_)
-    throw HttpFault(413, fmt::format("the file is too large: at most {} bytes are taken (--most-upload)",
-                                     most_upload_bytes_));
+    throw HttpFault(413,
+                    fmt::format("the file is too large: at most {} bytes can be uploaded (--most-upload)",
+                                most_upload_bytes_));
   std::error_code unknown;
   if (fs::exists(folder_ / "files" / path[2], unknown))
-    throw HttpFault(409, "there is a file of this name: remove it, or give this one another name");
+    throw HttpFault(409, "a file of this name exists: remove it, or give this one another name");
   const fs::space_info space = fs::space(folder_ / "files", unknown);
   if (!unknown && space.available < request.content_bytes)
-    throw HttpFault(507, "the disk has no room for it");
+    throw HttpFault(507, "the disk has not enough free space for it");
   try {
     return std::make_unique<FileUpload>(folder_ / "files" / path[2], path[2]);
   } catch (const Error& error) {
@@ -213,7 +214,7 @@ HttpReply ServeSite::uploaded_file(const HttpRequest& request) {
   }
   close(reply.file);
   if (request.method != "DELETE") throw HttpFault(405, "files are put, got or deleted");
-  if (jobs_.uses("files/" + name)) throw HttpFault(409, "work that has not ended needs this file");
+  if (jobs_.uses("files/" + name)) throw HttpFault(409, "a job that has not ended needs this file");
   std::error_code fault;
   if (!fs::remove(folder_ / "files" / name, fault)) throw HttpFault(500, "the file cannot be removed");
   return json_reply({{"removed", name}});

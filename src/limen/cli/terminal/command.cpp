@@ -62,16 +62,16 @@ void Session::wipe_progress() const {
 void add_common_options(CommandLine& app, Session& session) {
   const std::string group = kCommonGroup;
   CommonOptions& common = session.common;
-  app.add_flag("-q,--quiet", common.quiet, "Neither progress nor summary; errors are still told")
+  app.add_flag("-q,--quiet", common.quiet, "No progress and no summary; errors are still shown")
       ->group(group);
   app.add_flag("--json", common.json, "The result as JSON on stdout, everything else on stderr")
       ->group(group);
   app.add_option("--threads", common.threads,
-                 "Threads to use; they never change a result (default 0: all of the machine)")
+                 "Number of threads; it never changes a result (default 0: all of the machine)")
       ->in_range(0, 4096)
       ->type_name("N")
       ->group(group);
-  app.add_option("--seed", common.seed, "Seed of every random choice (default 1)")
+  app.add_option("--seed", common.seed, "Seed of the random numbers (default 1)")
       ->type_name("N")
       ->group(group);
 }

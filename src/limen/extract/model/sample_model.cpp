@@ -88,7 +88,8 @@ Scan sample_model(const BimModel& model, const ModelSamplingOptions& options) {
     darts += per_m2 * (box.high - box.low).prod();
   }
   if (darts > static_cast<double>(options.most)) {
-    throw Error(fmt::format("points {} m apart are too many for its surface", options.spacing_m), model.name,
+    throw Error(fmt::format("points at a spacing of {} m are too many for its surface", options.spacing_m),
+                model.name,
                 fmt::format("give a spacing of {:.2f} m or more",
                             options.spacing_m * std::sqrt(darts / static_cast<double>(options.most))));
   }

@@ -358,8 +358,8 @@ std::vector<Opening> find_openings(const Scan& scan, const ExtractedFeatures& ex
   options.check();
   if (scan.size() == 0) return {};
   if (!scan.centre_known() && !options.centre) {
-    throw Error("the optical centre is not known", scan.name,
-                "give the place of the scanner, or a file that has it");
+    throw Error("the scanner position is unknown", scan.name,
+                "give the scanner position, or a file that contains it");
   }
   const std::vector<OpeningWall> walls = opening_walls(scan, extracted, up, options);
   const std::vector<WallEvidence> evidence = opening_evidence(scan, extracted, walls, options, monitor);

@@ -152,8 +152,8 @@ std::vector<Crossing> find_interior_points(const Scan& scan, const std::vector<P
   options.check();
   if (scan.size() == 0) return {};
   if (!scan.centre_known()) {
-    throw Error("the optical centre is not known", scan.name,
-                "give the place of the scanner, or a file that has it");
+    throw Error("the scanner position is unknown", scan.name,
+                "give the scanner position, or a file that contains it");
   }
   const std::vector<OutlineTarget> targets = make_targets(polygons, walls, options);
   using Crossings = std::vector<Crossing>;

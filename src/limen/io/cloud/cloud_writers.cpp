@@ -33,7 +33,7 @@ std::unique_ptr<CloudWriter> make_cloud_writer(const std::filesystem::path& path
   if (is_text(ending)) return make_text_writer(path, plan);
   // What has no ending is no ordinary file: a pipe.
   if (ending == ".ply" || ending.empty()) return make_ply_writer(path, plan);
-  throw Error(fmt::format("the ending \"{}\" is not written", ending), path.string(),
+  throw Error(fmt::format("limen cannot write files with the ending \"{}\"", ending), path.string(),
               "name the output .ply, .las, .laz, .e57, .xyz or .csv");
 }
 

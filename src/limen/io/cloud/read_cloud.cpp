@@ -158,7 +158,7 @@ ScanFile read_thinned(const OpenPoints& input, const ReadOptions& options, Monit
     if (facts.points == 0) continue;
     const ThinnedCloud thinned = thinned_cloud(input, k, share_of(input, k, options.memory_bytes), reading);
     file.notes.push_back(
-        fmt::format("{}: to stay within the memory, thinned from {} points to {}, about {:.3f} m apart",
+        fmt::format("{}: thinned from {} points to {} to stay within the memory, spacing about {:.3f} m",
                     facts.table.name, thinned.read, thinned.table.rows, thinned.spacing_m));
     file.dropped += thinned.unusable;
     file.unusable += thinned.unusable;

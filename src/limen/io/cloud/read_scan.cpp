@@ -123,7 +123,7 @@ std::string unit_remark(double metres_per_unit) {
 std::string offset_remark(const Vector3d& offset_applied) {
   if (offset_applied.isZero(0.0)) return {};
   return fmt::format(
-      "the offset {:.10g} {:.10g} {:.10g} m that a comment of the file names is added to its points",
+      "the offset {:.10g} {:.10g} {:.10g} m given in a comment of the file is added to its points",
       offset_applied.x(), offset_applied.y(), offset_applied.z());
 }
 

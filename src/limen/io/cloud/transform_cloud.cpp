@@ -77,7 +77,7 @@ TransformedCloud move_and_tell(const OpenPoints& input, const Rigid3& pose,
   TransformedCloud cloud = move_in_format(input, pose, output, options, monitor, system);
   const bool told = input.format() == PointFormat::las || input.format() == PointFormat::e57;
   if (system.known() && !told)
-    cloud.notes.push_back(fmt::format("{} has no place for the coordinate system: it is not told in the file",
+    cloud.notes.push_back(fmt::format("{} cannot store a coordinate system: it is not written to the file",
                                       input.file().format()));
   return cloud;
 }
@@ -105,7 +105,7 @@ TransformedCloud write_apart(const std::vector<PlacedCloud>& clouds, const std::
 void require_known_ending(const std::filesystem::path& output, const OpenPoints& input) {
   if (is_cloud_ending(output)) return;
   const std::string ending = lower_case(output.extension().string());
-  throw Error(fmt::format("{} is not written as \"{}\"", input.file().format(), ending), output.string(),
+  throw Error(fmt::format("{} cannot be written as \"{}\"", input.file().format(), ending), output.string(),
               "name the output .ply, .las, .laz, .e57, .xyz or .csv, or give it the ending of the input");
 }
 
@@ -141,7 +141,8 @@ TransformedCloud merge_clouds(const CloudToMove& moved, const std::vector<std::s
                               const CoordinateSystem& system) {
   if (others.empty())
     return transform_cloud(moved.path, moved.target_from_source, output, {}, monitor, system);
-  if (others.size() > 255) throw Error("more than 256 clouds cannot be told apart", "--merge", "merge fewer");
+  if (others.size() > 255)
+    throw Error("more than 256 clouds cannot be merged into this format", "--merge", "merge fewer");
   monitor.begin_stage("merging");
   std::deque<OpenPoints> files;
   std::vector<PlacedCloud> clouds;
@@ -163,7 +164,7 @@ TransformedCloud move_stations(const std::vector<StationToMove>& stations,
   if (stations.empty()) throw Error("there is no scan to move", output.string(), "give at least one");
   const bool apart = lower_case(output.extension().string()) == ".e57";
   if (stations.size() > 256 && !apart)
-    throw Error("more than 256 clouds cannot be told apart", output.string(),
+    throw Error("more than 256 clouds cannot be merged into this format", output.string(),
                 "write an .e57, which keeps each as a scan of its own, or a file for each");
   monitor.begin_stage("merging");
   std::deque<OpenPoints> files;

@@ -110,8 +110,9 @@ void require_metres(const CoordinateSystem& system, const std::string& where) {
   const bool plane =
       has_word(system.wkt, {"PROJCS", "PROJCRS", "PROJECTEDCRS", "LOCAL_CS", "ENGCRS", "ENGINEERINGCRS"});
   if (!plane)
-    throw Error(fmt::format("{} is no system of a map, with eastings and northings", words_of(system)), where,
-                "name a projected system, as EPSG:2154 or EPSG:25832");
+    throw Error(
+        fmt::format("{} is not a projected coordinate system with eastings and northings", words_of(system)),
+        where, "name a projected system, as EPSG:2154 or EPSG:25832");
   const std::optional<double> unit = wkt_metres_per_unit(system.wkt);
   if (unit && std::abs(*unit - 1.0) > 1e-9)
     throw Error(fmt::format("{} has units of {:g} m, and limen writes metres", words_of(system), *unit),
@@ -138,10 +139,10 @@ CoordinateSystem coordinate_system(const std::string& text, const std::string& w
                 "write EPSG:NUMBER, well-known text (WKT) or PROJJSON");
   CoordinateSystem system = told_system(plain);
   if (proj_library() != nullptr && system.wkt.empty())
-    throw Error(fmt::format("\"{:.60}\" is no coordinate system that PROJ knows", plain), where,
+    throw Error(fmt::format("\"{:.60}\" is not a coordinate system that PROJ knows", plain), where,
                 "check the number or the text");
   if (system.wkt.empty())
-    throw Error(fmt::format("what {:.60} means is in the database of PROJ, which is not there", plain), where,
+    throw Error(fmt::format("{:.60} needs the database of PROJ, which was not found", plain), where,
                 "install PROJ (Debian: libproj25), or give the system as well-known text (WKT)");
   require_metres(system, where);
   return system;

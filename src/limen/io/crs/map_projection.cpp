@@ -41,8 +41,8 @@ struct MapProjection::Parts {
 MapProjection::MapProjection(const std::string& system, const std::string& where) {
   const ProjLibrary* proj = proj_library();
   if (proj == nullptr)
-    throw Error("places in latitude and longitude need PROJ to come into this system, and it is not there",
-                where, "install PROJ (Debian: libproj25), or name a UTM zone, as 32N");
+    throw Error("converting latitude and longitude to this system needs PROJ, which was not found", where,
+                "install PROJ (Debian: libproj25), or name a UTM zone, as 32N");
   const CoordinateSystem known = coordinate_system(system, where);
   parts_ = std::make_unique<Parts>(known.told);
   parts_->name = words_of(known);
@@ -54,7 +54,7 @@ MapProjection::MapProjection(const std::string& system, const std::string& where
                        : nullptr);
   if (plain) parts_->transformation = owned(proj->normalize_for_visualization(context, plain.get()));
   if (!parts_->transformation)
-    throw Error(fmt::format("PROJ finds no way from latitudes and longitudes to {}", parts_->name), where,
+    throw Error(fmt::format("PROJ cannot convert latitude and longitude to {}", parts_->name), where,
                 "name another system");
 }
 
@@ -65,16 +65,17 @@ MapProjection& MapProjection::operator=(MapProjection&&) noexcept = default;
 Vector3d MapProjection::to_map(double latitude_rad, double longitude_rad, double height_m) const {
   const Vector3d x = parts_->moved({degrees(longitude_rad), degrees(latitude_rad), height_m}, kForward);
   if (x.allFinite()) return x;
-  throw Error(fmt::format("latitude {:.5f}, longitude {:.5f} degrees has no place in {}",
-                          degrees(latitude_rad), degrees(longitude_rad), parts_->name),
-              "", "name the system of the place");
+  throw Error(fmt::format("latitude {:.5f}, longitude {:.5f} degrees is outside {}", degrees(latitude_rad),
+                          degrees(longitude_rad), parts_->name),
+              "", "give the coordinate system of this area");
 }
 
 Vector3d MapProjection::from_map(const Vector3d& x) const {
   const Vector3d place = parts_->moved(x, kInverse);
   if (!place.allFinite())
-    throw Error(fmt::format("({:.1f}, {:.1f}, {:.1f}) is no place in {}", x.x(), x.y(), x.z(), parts_->name),
-                "", "name the system of the coordinates");
+    throw Error(
+        fmt::format("({:.1f}, {:.1f}, {:.1f}) is not a position in {}", x.x(), x.y(), x.z(), parts_->name),
+        "", "give the coordinate system of these coordinates");
   return {radians(place.y()), radians(place.x()), place.z()};
 }
 

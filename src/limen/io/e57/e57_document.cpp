@@ -46,7 +46,7 @@ double number_in(std::string_view text, double fallback, const ElementPlace& pla
   if (text.empty()) return fallback;
   const std::optional<double> number = parse_number(text);
   if (number && std::isfinite(*number)) return *number;
-  throw Error(fmt::format("\"{}\" is no number", text.substr(0, 40)), place.text, kExportAgain);
+  throw Error(fmt::format("\"{}\" is not a number", text.substr(0, 40)), place.text, kExportAgain);
 }
 
 std::int64_t integer_in(std::string_view text, std::int64_t fallback, const ElementPlace& place) {
@@ -56,8 +56,7 @@ std::int64_t integer_in(std::string_view text, std::int64_t fallback, const Elem
   std::int64_t number = 0;
   const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), number);
   if (error == std::errc{} && stop == text.data() + text.size()) return number;
-  throw Error(fmt::format("\"{}\" is no whole number of 64 bits", text.substr(0, 40)), place.text,
-              kExportAgain);
+  throw Error(fmt::format("\"{}\" is not a 64-bit integer", text.substr(0, 40)), place.text, kExportAgain);
 }
 
 double number_of(const pugi::xml_node& parent, const char* child, double fallback,
@@ -94,7 +93,7 @@ Pose pose_of(const pugi::xml_node& node, const ElementPlace& place) {
     const Eigen::Quaterniond q(number_of(rotation, "w", 0.0, place), axis.x(), axis.y(), axis.z());
     result.quaternion_length = q.norm();
     if (!(result.quaternion_length > 1e-9 && result.quaternion_length < 1e9)) {
-      throw Error("the pose's quaternion is zero or absurd: it is no rotation", place.text, kExportAgain);
+      throw Error("the pose's quaternion is zero or absurd: it is not a rotation", place.text, kExportAgain);
     }
     pose.rotation = q.normalized().toRotationMatrix();
   }
@@ -120,7 +119,8 @@ E57Column column_of(const pugi::xml_node& node, const std::string& name, const E
   if (type == "Float") {
     const std::string_view precision = node.attribute("precision").value();
     if (precision != "" && precision != "single" && precision != "double") {
-      throw Error(fmt::format("\"{}\" is no precision", precision.substr(0, 40)), place.text, kExportAgain);
+      throw Error(fmt::format("\"{}\" is not a precision", precision.substr(0, 40)), place.text,
+                  kExportAgain);
     }
     column.storage = precision == "single" ? E57Storage::float32 : E57Storage::float64;
     column.bits = precision == "single" ? 32 : 64;

@@ -63,7 +63,7 @@ void check_head(const E57Head& head, std::uint64_t size, const std::string& name
         name, kE57CopyAgain);
   }
   if (head.file_bytes == 0 || head.file_bytes % head.page_bytes != 0) {
-    throw Error(fmt::format("the file's length of {} bytes is no multiple of its page size of {}",
+    throw Error(fmt::format("the file's length of {} bytes is not a multiple of its page size of {}",
                             head.file_bytes, head.page_bytes),
                 name + ", byte 16", kE57CopyAgain);
   }
@@ -121,9 +121,9 @@ void E57Pages::check(std::uint64_t begin, std::uint64_t end) const {
       const std::string_view whole = raw(page, page + 1);
       std::uint32_t stored = number_at<std::uint32_t>(whole, payload());
       if (__builtin_bswap32(stored) == crc32c(whole.substr(0, payload()))) continue;
-      throw Error(fmt::format("damaged: the check sum of page {} of {} is wrong", page, page_count()),
+      throw Error(fmt::format("damaged: the checksum of page {} of {} is wrong", page, page_count()),
                   fmt::format("{}, byte {}", name_, page * head_.page_bytes),
-                  "copy the file again from where it is sound, or export it again");
+                  "copy the file again from an intact source, or export it again");
     }
   });
 }

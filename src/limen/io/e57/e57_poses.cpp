@@ -268,11 +268,11 @@ MovedE57 replace_e57_poses(std::string_view bytes, const std::string& name, cons
   if (document.scans.empty()) throw Error("the file holds no scans", name, "name a file with scans");
   if (!document.coordinates.empty() && wkt.empty()) {
     result.notes.emplace_back(
-        "the file names a coordinate system, which is kept: see to it that it is the target's");
+        "the file states a coordinate system, which is kept: check that it is the target's");
   }
   if (pages.surplus() > 0) {
     result.notes.push_back(
-        fmt::format("{} bytes after the end that the file gives are left out", pages.surplus()));
+        fmt::format("{} bytes after the stated end of the file are left out", pages.surplus()));
   }
   std::string moved = edited(xml, pose_edits(xml, document, target_from_source, name));
   if (!wkt.empty()) moved = with_coordinate_system(moved, wkt);

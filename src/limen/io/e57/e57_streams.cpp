@@ -51,7 +51,7 @@ E57Streams::E57Streams(const E57Pages& pages, const E57Scan& scan, std::string n
     fail("the section of the points is cut off", begin);
   std::array<char, kE57SectionHeaderBytes> header{};
   read(begin, header.size(), header.data());
-  if (header[0] != 1) fail("where the points should be is no section of packed points", begin);
+  if (header[0] != 1) fail("there is no section of packed points where the points should be", begin);
   const auto length = number_at<std::uint64_t>(&header[8]);
   if (length < kE57SectionHeaderBytes || length > pages.logical_size() - begin) {
     fail(fmt::format("the section of the points would have {} bytes, which do not fit into the file", length),
@@ -133,7 +133,7 @@ bool E57Streams::walk_packet() {
   read(at_, header.size(), header.data());
   const std::uint64_t length = std::uint64_t{number_at<std::uint16_t>(&header[2])} + 1;
   if (length < 4 || length % 4 != 0 || length > end_ - at_) {
-    fail(fmt::format("a packet would have {} bytes, which cannot be", length), at_);
+    fail(fmt::format("a packet would have {} bytes, which is impossible", length), at_);
   }
   constexpr char kIndex = 0;
   constexpr char kData = 1;
@@ -157,7 +157,7 @@ std::size_t E57Streams::advance(std::size_t most) {
   if (ready < wanted && !more) {
     fail(fmt::format("the points end after {} of {}", row_ + ready, scan_->points), std::min(at_, end_));
   }
-  if (ready == 0 && wanted != 0) fail("the values of one point lie absurdly far from each other", at_);
+  if (ready == 0 && wanted != 0) fail("the values of one point are stored absurdly far from each other", at_);
   rows_ = static_cast<std::size_t>(std::min(ready, wanted));
   const std::uint64_t end_page = at_ == 0 ? 0 : pages_->page_of(at_ - 1) + 1;
   if (end_page > checked_) {

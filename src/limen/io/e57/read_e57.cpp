@@ -152,10 +152,10 @@ std::unique_ptr<PointFile> open_e57(std::string_view bytes, const std::string& n
   }
   std::vector<std::string>& notes = source->clouds.front().notes;
   if (!source->document.images.empty())
-    notes.push_back(fmt::format("images are passed over: {}", source->document.images.size()));
+    notes.push_back(fmt::format("images are skipped: {}", source->document.images.size()));
   if (source->pages.surplus() > 0)
     notes.push_back(
-        fmt::format("{} bytes after the end that the file gives are passed over", source->pages.surplus()));
+        fmt::format("{} bytes after the stated end of the file are skipped", source->pages.surplus()));
   return std::make_unique<E57File>(std::move(source));
 }
 

@@ -204,7 +204,7 @@ LasLayout las_layout(const LasHeader& header) {
     const std::size_t bytes = value.elements * size_of(value.type);
     if (bytes > header.point_bytes - place) {
       layout.notes.push_back(
-          fmt::format("{} extra values per point are described, {} of them are there", count, k));
+          fmt::format("{} extra values per point are described, but only {} are present", count, k));
       break;
     }
     add_extra(columns, value, place, unnamed);
@@ -215,8 +215,9 @@ LasLayout las_layout(const LasHeader& header) {
   rest.elements = header.point_bytes - place;
   add_extra(columns, rest, place, unnamed);
   if (unnamed > kMostUnnamed) {
-    layout.notes.push_back(
-        fmt::format("of {} bytes per point that nothing describes not all are taken as values", unnamed));
+    layout.notes.push_back(fmt::format(
+        "{} bytes per point are not described by the header, and not all of them are read as values",
+        unnamed));
   }
   layout.fields = std::move(columns.all());
   return layout;

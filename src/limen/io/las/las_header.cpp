@@ -64,10 +64,10 @@ void parse_records(const HeaderSource& source, std::uint32_t promised, LasHeader
   for (std::uint32_t k = 0; k < promised; ++k) {
     std::optional<LasRecord> record = record_at(source.bytes, at, header.points_begin - at, false);
     if (!record) {
-      header.notes.push_back(fmt::format(
-          "the header promises {} variable length records, {} of them fit before the points; the rest is "
-          "passed over",
-          promised, k));
+      header.notes.push_back(
+          fmt::format("the header promises {} variable length records, but only {} fit before the points; "
+                      "the rest is skipped",
+                      promised, k));
       return;
     }
     at = record->end;
@@ -88,8 +88,8 @@ void parse_long_records(const HeaderSource& source, LasHeader& header) {
     std::optional<LasRecord> record = record_at(source.bytes, at, room, true);
     if (!record) {
       header.notes.push_back(
-          fmt::format("the header promises {} extended records behind the points, {} of them are there; the "
-                      "rest is passed over",
+          fmt::format("the header promises {} extended records after the points, but only {} are present; "
+                      "the rest is skipped",
                       promised, k));
       if (k == 0) header.long_records = 0;
       return;
@@ -101,7 +101,7 @@ void parse_long_records(const HeaderSource& source, LasHeader& header) {
 
 void check_version(const HeaderSource& source, LasHeader& header) {
   if (!looks_like_las(source.bytes))
-    source.damaged("this is no LAS file, whatever its name says: it does not begin with LASF");
+    source.damaged("this is not a LAS file, in spite of its name: it does not begin with LASF");
   if (source.bytes.size() < kHeaderBytesOf[0])
     source.damaged(fmt::format("the file ends within its header, after {} bytes", source.bytes.size()));
   const int major = static_cast<unsigned char>(source.bytes[las_at::kMinorVersion - 1]);
@@ -114,12 +114,12 @@ void check_version(const HeaderSource& source, LasHeader& header) {
   header.size = las_number<std::uint16_t>(source.bytes, las_at::kHeaderSize);
   if (header.size < least) {
     source.damaged(
-        fmt::format("a header of {} bytes cannot be: LAS 1.{} has {}", header.size, header.minor, least));
+        fmt::format("a header of {} bytes is impossible: LAS 1.{} has {}", header.size, header.minor, least));
   }
   header.points_begin = las_number<std::uint32_t>(source.bytes, las_at::kPointsBegin);
   if (header.points_begin < header.size || header.points_begin > source.bytes.size()) {
     source.damaged(
-        fmt::format("the points are said to begin at byte {}, the header has {} bytes and the file {}",
+        fmt::format("the points should begin at byte {}, but the header has {} bytes and the file {}",
                     header.points_begin, header.size, source.bytes.size()));
   }
 }
@@ -135,8 +135,8 @@ void parse_point_format(const HeaderSource& source, LasHeader& header) {
   header.point_bytes = las_number<std::uint16_t>(source.bytes, las_at::kPointLength);
   const std::size_t least = las_point_bytes(header.point_format);
   if (header.point_bytes < least) {
-    source.damaged(fmt::format("points of {} bytes cannot be: point format {} has {}", header.point_bytes,
-                               header.point_format, least));
+    source.damaged(fmt::format("points of {} bytes are impossible: point format {} has {}",
+                               header.point_bytes, header.point_format, least));
   }
 }
 
@@ -146,7 +146,7 @@ void parse_count(const HeaderSource& source, LasHeader& header) {
   const auto count = las_number<std::uint64_t>(source.bytes, las_at::kCount);
   if (count != 0 && header.points != 0 && count != header.points) {
     header.notes.push_back(
-        fmt::format("two counts of points disagree, {} and {}: the first is taken", count, header.points));
+        fmt::format("two counts of points disagree, {} and {}: the first is used", count, header.points));
   }
   if (count != 0) header.points = count;
 }
@@ -159,7 +159,7 @@ void parse_grid(const HeaderSource& source, LasHeader& header) {
   for (int k = 0; k < 3; ++k) {
     if (!std::isfinite(header.scale[k]) || header.scale[k] == 0.0 || !std::isfinite(header.offset[k])) {
       source.damaged(
-          fmt::format("a scale of {} and an offset of {} cannot be", header.scale[k], header.offset[k]));
+          fmt::format("a scale of {} with an offset of {} is impossible", header.scale[k], header.offset[k]));
     }
   }
 }

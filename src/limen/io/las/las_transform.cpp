@@ -336,8 +336,8 @@ std::vector<std::string> notes_of(const Motion& motion, const LasGrid& grid) {
   if (!motion.system.wkt.empty()) {
     if (system_record(motion).empty())
       notes.push_back(
-          fmt::format("LAS 1.{} names coordinate systems by their EPSG number, and this one has none: it is "
-                      "not told in the file",
+          fmt::format("LAS 1.{} states a coordinate system by its EPSG number, and this one has none: it is "
+                      "not written to the file",
                       header.minor));
   } else if (placed && !(angle < kSmallAngle && shift < kSmallShiftM)) {
     notes.emplace_back(
@@ -350,10 +350,9 @@ std::vector<std::string> notes_of(const Motion& motion, const LasGrid& grid) {
     notes.emplace_back("the index of the cloud optimised file (COPC) is left out");
   const double old_step = header.scale.cwiseAbs().minCoeff();
   if (grid.scale.cwiseAbs().minCoeff() > old_step) {
-    notes.push_back(
-        fmt::format("coordinates are stored in steps of {} instead of {}: the points reach too far "
-                    "for finer ones",
-                    grid.scale.x(), old_step));
+    notes.push_back(fmt::format(
+        "coordinates are stored in steps of {} instead of {}: the points extend too far for finer steps",
+        grid.scale.x(), old_step));
   }
   return notes;
 }

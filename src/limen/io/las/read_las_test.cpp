@@ -159,7 +159,8 @@ TEST(ReadLas, ExtraBytesBeyondTheRecordAreTold) {
   parts.records.push_back(record("LASF_Spec", 4, extra("too much", 10, 0)));
   const std::string bytes = file(parts);
   const auto opened = open_las(bytes, "test");
-  EXPECT_EQ(opened->clouds()[0].notes.at(0), "1 extra values per point are described, 0 of them are there");
+  EXPECT_EQ(opened->clouds()[0].notes.at(0),
+            "1 extra values per point are described, but only 0 are present");
 }
 
 TEST(ReadLas, ManyUndescribedBytesAreToldNotGiven) {
@@ -170,7 +171,7 @@ TEST(ReadLas, ManyUndescribedBytesAreToldNotGiven) {
   const auto opened = open_las(bytes, "test");
   EXPECT_LT(opened->clouds()[0].fields.size(), 100U);
   EXPECT_EQ(opened->clouds()[0].notes.at(0),
-            "of 60000 bytes per point that nothing describes not all are taken as values");
+            "60000 bytes per point are not described by the header, and not all of them are read as values");
 }
 
 TEST(ReadLas, TimesAreTold) {
@@ -200,14 +201,14 @@ TEST(ReadLas, PromisesThatCannotBeKept) {
   };
   EXPECT_EQ(changed(24, std::uint8_t{2}), "LAS version 2.2 is not known");
   EXPECT_EQ(changed(25, std::uint8_t{5}), "LAS version 1.5 is not known");
-  EXPECT_EQ(changed(94, std::uint16_t{100}), "a header of 100 bytes cannot be: LAS 1.2 has 227");
-  EXPECT_EQ(changed(96, std::uint32_t{100}).substr(0, 40), "the points are said to begin at byte 100");
-  EXPECT_EQ(changed(96, std::uint32_t{0x7FFFFFFF}).substr(0, 32), "the points are said to begin at ");
+  EXPECT_EQ(changed(94, std::uint16_t{100}), "a header of 100 bytes is impossible: LAS 1.2 has 227");
+  EXPECT_EQ(changed(96, std::uint32_t{100}).substr(0, 37), "the points should begin at byte 100, ");
+  EXPECT_EQ(changed(96, std::uint32_t{0x7FFFFFFF}).substr(0, 27), "the points should begin at ");
   EXPECT_EQ(changed(104, std::uint8_t{11}), "point format 11 is not known");
-  EXPECT_EQ(changed(105, std::uint16_t{27}), "points of 27 bytes cannot be: point format 1 has 28");
-  EXPECT_EQ(changed(131, 0.0), "a scale of 0 and an offset of 500000 cannot be");
+  EXPECT_EQ(changed(105, std::uint16_t{27}), "points of 27 bytes are impossible: point format 1 has 28");
+  EXPECT_EQ(changed(131, 0.0), "a scale of 0 with an offset of 500000 is impossible");
   EXPECT_EQ(changed(155, std::numeric_limits<double>::quiet_NaN()),
-            "a scale of 0.001 and an offset of nan cannot be");
+            "a scale of 0.001 with an offset of nan is impossible");
   EXPECT_EQ(changed(104, std::uint8_t{0x81}), "the points are compressed, but no LASzip record says how");
   EXPECT_EQ(changed(179, std::numeric_limits<double>::quiet_NaN()), "no error");  // a box is not needed
 }
@@ -216,8 +217,9 @@ TEST(ReadLas, RecordsThatDoNotFitArePassedOver) {
   std::string bytes = file(some(2, 1));
   put(bytes, 100, std::uint32_t{3000000000U});
   const auto opened = open_las(bytes, "test");
-  EXPECT_NE(opened->clouds()[0].notes.at(0).find("promises 3000000000 variable length records, 0 of them"),
-            std::string::npos);
+  EXPECT_NE(
+      opened->clouds()[0].notes.at(0).find("promises 3000000000 variable length records, but only 0 fit"),
+      std::string::npos);
   EXPECT_EQ(column(bytes, "x").size(), 50U);
 }
 

@@ -132,7 +132,7 @@ bool read_line(const PlyLine& line, PlyHeader& header) {
   } else if (word == "element") {
     header.elements.push_back(element_of(line));
   } else if (word == "property") {
-    if (header.elements.empty()) line.fail("a property stands before the first element");
+    if (header.elements.empty()) line.fail("a property comes before the first element");
     if (header.elements.back().properties.size() >= kMostProperties) line.fail("too many properties");
     header.elements.back().properties.push_back(property_of(line));
   } else if (word == "comment" || word == "obj_info") {

@@ -66,7 +66,7 @@ std::size_t side_of(double number, const std::string& where) {
   if (number >= 0.0 && number <= static_cast<double>(kMostSide) && number == std::floor(number)) {
     return static_cast<std::size_t>(number);
   }
-  throw Error(fmt::format("{} is no number of columns or rows", number), where, "export the file again");
+  throw Error(fmt::format("{} is not a number of columns or rows", number), where, "export the file again");
 }
 
 /// The matrix of a PTX header is written for row vectors: it is the transpose of what we use.

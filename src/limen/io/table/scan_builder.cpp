@@ -291,7 +291,7 @@ std::string settle_centre(Scan& scan, const TableFacts& facts, const ReadOptions
     return {};
   }
   if (!scan.centres.empty() || options.trajectory) return {};
-  if (facts.centre_unknown) return "the file says that its optical centre is not known";
+  if (facts.centre_unknown) return "the file states that the scanner position is unknown";
   if (facts.centre) {
     scan.centres = {facts.offset + *facts.centre - scan.local_origin};
     return {};
@@ -302,7 +302,7 @@ std::string settle_centre(Scan& scan, const TableFacts& facts, const ReadOptions
       scan.centres = {candidate};
       // PCD writes 0 0 0 where nobody said anything.
       if (facts.possible_centre->isZero()) scan.centre_source = PlaceSource::assumed;
-      return "the scanner is taken to stand at the view point of the file, " +
+      return "the view point of the file is taken as the scanner position, " +
              told(candidate + scan.local_origin);
     }
   }
@@ -310,18 +310,18 @@ std::string settle_centre(Scan& scan, const TableFacts& facts, const ReadOptions
   if (zero_is_near && can_be_scanner(scan.points, Vector3d::Zero())) {
     scan.centres = {Vector3d::Zero()};
     scan.centre_source = PlaceSource::assumed;
-    return "the scanner is taken to stand at 0 0 0";
+    return "0 0 0 is taken as the scanner position";
   }
-  return "the optical centre is not known: the file does not say it, and 0 0 0 cannot be the scanner";
+  return "the scanner position is unknown: the file does not state it, and 0 0 0 is not plausible";
 }
 
 void check_extent(const Scan& scan) {
   const Extent extent = extent_of(scan.points);
   constexpr std::size_t kManyPoints = 100;  // fewer may be an example
   if (scan.size() >= kManyPoints && extent.diagonal() == 0.0) {
-    throw Error(
-        fmt::format("all {} points lie in one place, {}", scan.size(), told(extent.low + scan.local_origin)),
-        scan.name, "check how the file was exported");
+    throw Error(fmt::format("all {} points have the same position, {}", scan.size(),
+                            told(extent.low + scan.local_origin)),
+                scan.name, "check how the file was exported");
   }
   if (extent.diagonal() <= kLargestExtentM) return;
   throw Error(fmt::format("absurd extent: the points lie between {} and {}",
@@ -433,7 +433,7 @@ ScanFile ScanBuilder::finish(ScanFile file) {
   settle_centres(parts.scan.centres);
   auto [scan, unusable] = without_unusable(std::move(parts.scan));
   if (scan.points.empty()) {
-    throw Error("no usable points: none has finite coordinates and a finite optical centre", facts.name,
+    throw Error("no usable points: none has finite coordinates and a finite scanner position", facts.name,
                 "check how the file was exported");
   }
   check_extent(scan);

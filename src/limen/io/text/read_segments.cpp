@@ -37,7 +37,7 @@ std::string place(const std::string& name, std::size_t line) {
 std::vector<double> numbers_of(const std::vector<std::string_view>& tokens, std::size_t first,
                                std::size_t count, const std::string& where) {
   if (tokens.size() < first + count) {
-    throw Error(fmt::format("{} numbers are wanted, the line has {}", count,
+    throw Error(fmt::format("the line must have {} numbers, but has {}", count,
                             tokens.size() - std::min(first, tokens.size())),
                 where, "complete or remove the line");
   }

@@ -88,7 +88,7 @@ TEST(ReadSegments, FaultsAreNamedWithTheirLine) {
   const std::string start = "p 0 0 1 2 0\nO 0 0\nL 0 0 0 1 1 1 V\n";
   EXPECT_EQ(error(start + "\nL 0 0 0 1 x 1 V\n"), "\"x\" is not a number | " + file + ", line 5");
   EXPECT_EQ(error(start + "L 0 0 nan 1 0 1 V\n"), "\"nan\" is not a number | " + file + ", line 4");
-  EXPECT_EQ(error(start + "L 0 0 0\n"), "6 numbers are wanted, the line has 3 | " + file + ", line 4");
+  EXPECT_EQ(error(start + "L 0 0 0\n"), "the line must have 6 numbers, but has 3 | " + file + ", line 4");
   EXPECT_EQ(error(start + "Q 0 0 0\n"), "\"Q\" is not p, O or L | " + file + ", line 4");
   EXPECT_EQ(error("p 0 0 1 2 0\nO 0 0\n"), "holds no segment | " + file);
   EXPECT_EQ(error("{\n\"segments\": [\n{\"a\": [1,2,}]}"), "is not JSON | " + file + ", line 3");
@@ -102,7 +102,7 @@ TEST(ReadSegments, FaultsAreNamedWithTheirLine) {
   EXPECT_EQ(error(R"({"segments": 7})"), "segments is not a list | " + file);
   EXPECT_EQ(error("1 0 0 0 1 0 0 1 4 34 1 2 3 4\n1 0 0 0 1 0 0 1 4 34 1 2 3 4\n1 0 0 0 1 0 0 1 4 34 1 2 3 "
                   "4\n2 0 0 0 0 1 0\n"),
-            "12 numbers are wanted, the line has 6 | " + file + ", line 4");
+            "the line must have 12 numbers, but has 6 | " + file + ", line 4");
 }
 
 }  // namespace

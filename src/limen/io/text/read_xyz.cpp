@@ -161,8 +161,9 @@ void require_rows(const TextHeader& header, const std::string& name) {
   const std::size_t columns = leading_numbers(header.row);
   if (columns < 3) throw Error("a row of points needs three numbers", where, "give points as x y z");
   if (columns > kMostTextColumns) {
-    throw Error(fmt::format("a row of {} numbers is no point: {} are the most", columns, kMostTextColumns),
-                where, "write each point on a line of its own");
+    throw Error(
+        fmt::format("a row of {} numbers is not a point: at most {} are possible", columns, kMostTextColumns),
+        where, "write each point on a line of its own");
   }
 }
 

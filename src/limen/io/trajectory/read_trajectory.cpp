@@ -62,8 +62,8 @@ Entry sbet_entry(std::string_view bytes, std::size_t i, const std::string& name)
   const bool good = std::isfinite(number(0)) && std::abs(number(1)) <= M_PI / 2 &&
                     std::abs(number(2)) <= 2 * M_PI && std::abs(number(3)) < 1e5;
   if (!good) {
-    throw Error(fmt::format("record {} of the SBET is no place: time {:g} s, latitude {:g}, longitude {:g} "
-                            "rad, height {:g} m",
+    throw Error(fmt::format("record {} of the SBET is not a position: time {:g} s, latitude {:g}, longitude "
+                            "{:g} rad, height {:g} m",
                             i + 1, number(0), number(1), number(2), number(3)),
                 fmt::format("{}, byte {}", name, i * kSbetBytes),
                 "check the file, or export it again as SBET");
@@ -78,7 +78,7 @@ Entry sbet_entry(std::string_view bytes, std::size_t i, const std::string& name)
 std::vector<Entry> read_sbet(std::string_view bytes, const std::string& name) {
   if (bytes.size() % kSbetBytes != 0) {
     throw Error(
-        fmt::format("{} bytes are no whole number of SBET records of {} bytes", bytes.size(), kSbetBytes),
+        fmt::format("{} bytes are not a whole number of SBET records of {} bytes", bytes.size(), kSbetBytes),
         name, "get the whole file; a text needs an ending like .csv");
   }
   std::vector<Entry> entries;
@@ -171,7 +171,7 @@ TrajectoryText text_of(std::string_view bytes, const TrajectoryOptions& options,
   const bool whole = text.has({"time", "x", "y", "z"}) || text.has({"time", "latitude", "longitude", "z"});
   if (whole) return text;
   throw Error(text.names.empty() ? "the columns of the trajectory have no names"
-                                 : "the columns of the trajectory lack the time or the place",
+                                 : "the columns of the trajectory lack the time or the position",
               name,
               fmt::format("name them in their order, as --{}trajectory-columns time,x,y,z or "
                           "time,latitude,longitude,height",

@@ -69,9 +69,9 @@ void require_near(const Scan& scan, const Trajectory& trajectory) {
   std::nth_element(distances.begin(), middle, distances.end());
   if (*middle <= kFarthestM) return;
   throw Error(
-      fmt::format("the trajectory {} passes {:.0f} km from the points", trajectory.name(), *middle / 1e3),
+      fmt::format("the trajectory {} is {:.0f} km away from the points", trajectory.name(), *middle / 1e3),
       scan.name,
-      fmt::format("bring both into one frame, or name the UTM zone of the points with --{}utm-zone",
+      fmt::format("bring both into one frame, or give the UTM zone of the points with --{}utm-zone",
                   trajectory.option_side()));
 }
 
@@ -84,7 +84,7 @@ Trajectory::Trajectory(const std::vector<double>& times_s, const std::vector<Vec
   std::iota(order.begin(), order.end(), std::size_t{0});
   for (const std::size_t i : order) {
     if (std::isfinite(times_s[i]) && positions[i].allFinite()) continue;
-    throw Error(fmt::format("entry {} of the trajectory is not a finite time and place", i + 1), name_,
+    throw Error(fmt::format("entry {} of the trajectory is not a finite time and position", i + 1), name_,
                 "remove it");
   }
   std::stable_sort(order.begin(), order.end(),
@@ -92,14 +92,14 @@ Trajectory::Trajectory(const std::vector<double>& times_s, const std::vector<Vec
   for (const std::size_t i : order) {
     if (!times_s_.empty() && times_s_.back() == times_s[i]) {
       if ((positions_.back() - positions[i]).norm() <= kSamePlaceM) continue;
-      throw Error(fmt::format("the trajectory is at two places at the time {:.6f} s", times_s[i]), name_,
+      throw Error(fmt::format("the trajectory has two positions at the time {:.6f} s", times_s[i]), name_,
                   "export the trajectory of one sensor, with all digits of its times");
     }
     times_s_.push_back(times_s[i]);
     positions_.push_back(positions[i]);
   }
   if (times_s_.size() < 2)
-    throw Error("a trajectory needs places at two times or more", name_, "check how it was exported");
+    throw Error("a trajectory needs positions at two times or more", name_, "check how it was exported");
 }
 
 std::optional<Vector3d> Trajectory::position(double time_s) const {
@@ -140,7 +140,7 @@ const Trajectory* covering_trajectory(const Scan& scan,
 
 FollowedScan with_trajectory(const Scan& scan, const Trajectory& trajectory) {
   if (scan.times_s.empty()) {
-    throw Error("the points have no times, so a trajectory tells nothing of them", scan.name,
+    throw Error("the points have no times, so a trajectory cannot be used", scan.name,
                 "export the scan with its GPS times, or leave the trajectory out");
   }
   FollowedScan followed{scan, 0};

@@ -195,7 +195,7 @@ TEST(WithTrajectory, TellsHowTimesCouldMeet) {
 
 TEST(WithTrajectory, RefusesAnotherFrame) {
   const Trajectory trajectory({0.0, 10.0}, {{5e5, 5.4e6, 0}, {5e5, 5.4e6, 0}}, "drive", 100.0);
-  EXPECT_NE(message_of([&] { with_trajectory(timed_scan(1.0), trajectory); }).find("km from the points"),
+  EXPECT_NE(message_of([&] { with_trajectory(timed_scan(1.0), trajectory); }).find("km away from the points"),
             std::string::npos);
 }
 

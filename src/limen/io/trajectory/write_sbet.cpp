@@ -47,7 +47,7 @@ std::vector<SbetRecord> read_sbet_records(const std::filesystem::path& path) {
   const MappedFile file(path);
   constexpr std::size_t kBytes = sizeof(SbetRecord);
   if (file.bytes().size() % kBytes != 0)
-    throw Error(fmt::format("{} bytes are no whole number of SBET records", file.bytes().size()),
+    throw Error(fmt::format("{} bytes are not a whole number of SBET records", file.bytes().size()),
                 path.string(), "give the SBET");
   std::vector<SbetRecord> records(file.bytes().size() / kBytes);
   for (std::size_t i = 0; i < records.size(); ++i)

@@ -48,7 +48,8 @@ class Row {
     if (mark_ == ';') std::replace(cell.begin(), cell.end(), ',', '.');
     const std::optional<double> value = parse_number(cell);
     if (!value || !std::isfinite(*value))
-      throw Error(fmt::format("\"{}\" in the column {} is no number", cell, column), where_, kControlRemedy);
+      throw Error(fmt::format("\"{}\" in the column {} is not a number", cell, column), where_,
+                  kControlRemedy);
     return *value;
   }
 
@@ -62,8 +63,8 @@ class Row {
   [[nodiscard]] double sigma(const std::string& column) const {
     const double value = number(column);
     if (value <= 0.0)
-      throw Error(fmt::format("the deviation {} in the column {} is not above 0", value, column), where_,
-                  "give one standard deviation in metres; nothing is known exactly");
+      throw Error(fmt::format("the standard deviation {} in the column {} is not above 0", value, column),
+                  where_, "give one standard deviation in metres, above 0");
     return value;
   }
 
@@ -91,7 +92,7 @@ class Row {
     constexpr double kLeastShare = 1e-12;
     if (variances[0] <= kLeastShare * std::abs(variances[2]))
       throw Error("the covariance is not positive definite", where_,
-                  "look at its six numbers, or give sigma_x,sigma_y,sigma_z");
+                  "check its six numbers, or give sigma_x,sigma_y,sigma_z");
     return full;
   }
 
@@ -136,7 +137,8 @@ std::vector<SeenTarget> read_seen_targets(const std::filesystem::path& path) {
         {row.text("name"), row.text("scan"), row.place(), row.covariance(), row.number_if_any("time")});
     if (!known.emplace(targets.back().name, targets.back().scan, targets.back().time_s).second)
       throw Error(fmt::format("the scan {} sees {} twice", targets.back().scan, targets.back().name),
-                  row.where(), "take one of them out, or tell in a column time when a mobile scan saw each");
+                  row.where(),
+                  "take one of them out, or add a column time with the time at which a mobile scan saw each");
   });
   return targets;
 }

@@ -24,7 +24,7 @@ using Json = nlohmann::ordered_json;
 constexpr DecisionKind kKinds[] = {DecisionKind::accept, DecisionKind::reject,     DecisionKind::choose,
                                    DecisionKind::level,  DecisionKind::same_floor, DecisionKind::forget};
 constexpr const char* kDecisionsRemedy =
-    "say accept A B, reject A B, choose A B N, level A, same-floor A B or forget A B";
+    "write accept A B, reject A B, choose A B N, level A, same-floor A B or forget A B";
 
 std::optional<DecisionKind> kind_called(const std::string& name) {
   for (const DecisionKind kind : kKinds) {
@@ -63,11 +63,11 @@ Decision from_json(const Json& json, const std::string& where) {
     Decision decision{*kind, value.get<std::vector<std::string>>(), json.value("pose", 0)};
     const bool numbered = *kind != DecisionKind::choose || json.contains("pose");
     if (!counts_fit(decision) || decision.pose < 0 || !numbered)
-      throw Error(fmt::format("\"{}\" does not name what it needs", name), where,
-                  "two scans, for level one; choose needs \"pose\" too");
+      throw Error(fmt::format("\"{}\" has the wrong number of scans, or no pose", name), where,
+                  "name two scans, for level one; choose needs \"pose\" too");
     return in_order(std::move(decision));
   }
-  throw Error("a decision says none of accept, reject, choose, level, same-floor, forget", where,
+  throw Error("a decision is none of accept, reject, choose, level, same-floor, forget", where,
               R"(write {"decisions": [{"accept": ["A", "B"]}]})");
 }
 
@@ -100,37 +100,38 @@ std::string words_of(const Decision& decision) {
 
 Decision decision_from(const std::vector<std::string>& words) {
   const std::optional<DecisionKind> kind = words.empty() ? std::nullopt : kind_called(words.front());
-  if (!kind) throw Error("there is nothing to decide", "project decide", kDecisionsRemedy);
+  if (!kind) throw Error("no decision is given", "project decide", kDecisionsRemedy);
   Decision decision{*kind, {words.begin() + 1, words.end()}, 0};
   if (*kind == DecisionKind::choose && !decision.scans.empty()) {
     const std::optional<std::size_t> number = parse_count(decision.scans.back());
     if (!number || *number > 1000)
-      throw Error(fmt::format("\"{}\" is no number of a pose", decision.scans.back()), "project decide",
+      throw Error(fmt::format("\"{}\" is not the number of a pose", decision.scans.back()), "project decide",
                   kDecisionsRemedy);
     decision.pose = static_cast<int>(*number);
     decision.scans.pop_back();
   }
   if (!counts_fit(decision))
-    throw Error(fmt::format("\"{}\" does not name the scans it needs", words.front()), "project decide",
+    throw Error(fmt::format("\"{}\" has the wrong number of scans", words.front()), "project decide",
                 kDecisionsRemedy);
   return in_order(std::move(decision));
 }
 
 std::vector<Decision> read_decisions(const std::filesystem::path& path) {
-  require_readable(path, "look whether the name is right");
+  require_readable(path, "check the name");
   std::ifstream stream(path);
   const Json json = json_or_nothing<Json>(stream);
   if (!json.is_object() || !json.contains("decisions") || !json["decisions"].is_array())
-    throw Error("is no file of decisions", path.string(), R"(write {"decisions": [{"accept": ["A", "B"]}]})");
+    throw Error("is not a file of decisions", path.string(),
+                R"(write {"decisions": [{"accept": ["A", "B"]}]})");
   std::vector<Decision> decisions;
   int number = 0;
   for (const Json& entry : json["decisions"]) {
     const std::string where = fmt::format("{}, decision {}", path.string(), ++number);
     try {
-      if (!entry.is_object()) throw Error("is no decision", where, R"(write {"accept": ["A", "B"]})");
+      if (!entry.is_object()) throw Error("is not a decision", where, R"(write {"accept": ["A", "B"]})");
       decisions.push_back(from_json(entry, where));
     } catch (const Json::exception&) {
-      throw Error("a decision does not name scans, or its pose is no number", where,
+      throw Error("a decision does not name scans, or its pose is not a number", where,
                   R"(write {"choose": ["A", "B"], "pose": 2})");
     }
   }

@@ -39,8 +39,8 @@ fs::path find_dask_driver() {
                                 folder / "share" / "limen" / "limen_dask.py"}) {
     if (fs::is_regular_file(place)) return place;
   }
-  throw Error("limen_dask.py, which gives jobs to Dask, is not there", "share/limen beside limen",
-              "install it with limen, name it in LIMEN_DASK_DRIVER, or leave --engine away");
+  throw Error("limen_dask.py, which gives jobs to Dask, was not found", "share/limen beside limen",
+              "install it with limen, name it in LIMEN_DASK_DRIVER, or leave --engine out");
 }
 
 std::vector<std::string> command_of(const EngineOptions& options) {
@@ -100,7 +100,7 @@ class DaskEngine : public JobEngine {
         if (!helper_.ended()) continue;
         throw Error("the Python program that gives jobs to Dask has ended", log_,
                     "install python3, python3-distributed and python3-cryptography, look into this file, or "
-                    "leave --engine away");
+                    "leave --engine out");
       }
       Line line = json_or_nothing<Line>(*text);
       if (!line.is_object()) continue;
@@ -137,7 +137,7 @@ void EngineOptions::check() const {
     throw Error("TLS needs three files", "--tls-ca, --tls-cert, --tls-key", "give all of them or none");
   const bool told = any || !scheduler.empty() || !scheduler_file.empty() || trust_network;
   if (told && kind == EngineKind::local)
-    throw Error("a scheduler is of use to the engine dask alone", "--engine", "add --engine dask");
+    throw Error("a scheduler is used by the engine dask only", "--engine", "add --engine dask");
 }
 
 std::unique_ptr<JobEngine> make_engine(const EngineOptions& options, const std::string& log,

@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "limen/base/text.h"
 #include "limen/register/judge/evidence_table.h"
 #include "limen/register/judge/model_odds.h"
 
@@ -217,16 +218,16 @@ std::string what_else(const Posterior& posterior, const std::string& look_alike)
   const double elsewhere = posterior.elsewhere();
   if (posterior.others.twin >= std::max(chance, elsewhere) && !look_alike.empty()) return look_alike;
   if (chance > elsewhere)
-    return fmt::format("the overlap is so small that it may be chance ({:.1f} %)", 100.0 * chance);
-  return fmt::format("the overlap does not exclude the other poses: one of them may be right ({:.1f} %)",
-                     100.0 * elsewhere);
+    return fmt::format("the overlap is so small that it may be chance ({})", percent_words(chance));
+  return fmt::format("the overlap does not exclude the other poses: one of them may be right ({})",
+                     percent_words(elsewhere));
 }
 
 /// Cut, not rounded: what is below a limit does not read as if it reached it.
 std::string placed_words(double probability, double risk) {
   const int digits = probability < 0.99 ? 1 : 2;
   const double scale = probability < 0.99 ? 1e3 : 1e4;
-  return fmt::format("placed, {:.{}f} % sure; the limit for registered is {:g} %",
+  return fmt::format("probability {:.{}f} % ({:g} % is needed for registered)",
                      100.0 * std::floor(scale * probability + 1e-9) / scale, digits, 100.0 * (1.0 - risk));
 }
 
@@ -238,12 +239,12 @@ std::string reason_of(Outcome outcome, const Posterior& posterior, const PoseSco
   switch (outcome) {
     case Outcome::registered:
       return fmt::format(
-          "{:.1f} m2 of surface agree, {:.1f} m2 are contradicted, no different pose comes near",
+          "{:.1f} m2 of surface agree, {:.1f} m2 contradict, and no other pose fits nearly as well",
           best.agreeing_m2, best.contradicted_m2);
     case Outcome::probable:
       return placed_words(posterior.best(), options.risk) + ": " + what_else(posterior, look_alike);
     case Outcome::under_constrained:
-      return (open.by_drift ? "the trajectory drifts, which leaves open the "
+      return (open.by_drift ? "the trajectory drifts, so the scans do not fix the "
                             : "the common surface does not fix the ") +
              open.list.front().name;
     case Outcome::ambiguous:
@@ -251,11 +252,11 @@ std::string reason_of(Outcome outcome, const Posterior& posterior, const PoseSco
     case Outcome::no_match:
       break;
   }
-  if (posterior.order.empty()) return "no planes of the two scans can be laid on one another";
+  if (posterior.order.empty()) return "no planes of the two scans match";
   return fmt::format(
-      "the best overlap is {:.1f} m2, and {:.1f} m2 of one scan lie where the other saw free space: it is "
-      "likelier that they share nothing ({:.0f} %)",
-      best.agreeing_m2, best.contradicted_m2, 100.0 * posterior.by_chance());
+      "best overlap {:.1f} m2, but it puts {:.1f} m2 of surface where the other scanner saw empty space: "
+      "probably the scans do not overlap ({})",
+      best.agreeing_m2, best.contradicted_m2, percent_words(posterior.by_chance()));
 }
 
 }  // namespace limen

@@ -208,13 +208,13 @@ TEST(ReasonOf, ItNamesWhatElseMayBe) {
   };
   EXPECT_NE(reason(odds(0.9995, 0.0005, 0.0, 0.0)).find("7.0 m2 of surface agree"), std::string::npos);
   EXPECT_EQ(reason(odds(0.98631, 0.0, 0.01369, 0.0)),
-            "placed, 98.6 % sure; the limit for registered is 99.9 %: a look-alike");
+            "probability 98.6 % (99.9 % is needed for registered): a look-alike");
   // What is below the limit does not read as if it reached it.
   EXPECT_NE(reason(odds(0.99898, 0.00102, 0.0, 0.0)).find("99.89 %"), std::string::npos);
   EXPECT_EQ(reason(odds(0.7, 0.0, 0.2, 0.1)), "a look-alike");
-  EXPECT_NE(reason(odds(0.7, 0.0, 0.1, 0.2)).find("chance (20.0 %)"), std::string::npos);
+  EXPECT_NE(reason(odds(0.7, 0.0, 0.1, 0.2)).find("chance (20 %)"), std::string::npos);
   EXPECT_NE(reason(odds(0.7, 0.2, 0.1, 0.0)).find("one of them may be right"), std::string::npos);
-  EXPECT_NE(reason(odds(0.1, 0.0, 0.1, 0.8)).find("share nothing (80 %)"), std::string::npos);
+  EXPECT_NE(reason(odds(0.1, 0.0, 0.1, 0.8)).find("do not overlap (80 %)"), std::string::npos);
 }
 
 TEST(ReasonOf, WhatIsOpenIsNamed) {

@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 #include "limen/base/error.h"
+#include "limen/base/text.h"
 
 namespace limen {
 namespace {
@@ -230,19 +231,17 @@ double probability_of_twin(const IndividualMatter& individual, const TwinOptions
 std::string twin_words(const IndividualMatter& individual, double probability) {
   const Observations& matter = individual.matter;
   if (matter.count < kFew)
-    return fmt::format(
-        "another room built alike would fit as well ({:.1f} %): hardly anything but walls was seen "
-        "by both scans",
-        100.0 * probability);
+    return fmt::format("a look-alike room cannot be excluded ({}): both scans see hardly anything but walls",
+                       percent_words(probability));
   if (matter.share < kMostlyOther)
     return fmt::format(
-        "another room built alike fits better ({:.1f} %): the walls agree, but only {:.0f} % of what "
-        "stands in the room does",
-        100.0 * probability, 100.0 * matter.share);
+        "a look-alike room fits better ({}): the walls agree, but only {:.0f} % of the objects in the room "
+        "do",
+        percent_words(probability), 100.0 * matter.share);
   return fmt::format(
-      "another room built and furnished alike would fit as well ({:.1f} %): {:.0f} % of what stands "
-      "in the room agrees, too little of it to the millimetre",
-      100.0 * probability, 100.0 * matter.share);
+      "a room built and furnished alike cannot be excluded ({}): {:.0f} % of the objects in the room agree, "
+      "but too few to the millimetre",
+      percent_words(probability), 100.0 * matter.share);
 }
 
 }  // namespace limen

@@ -101,12 +101,12 @@ std::vector<UnobservedFreedom> loose_freedoms(const Matrix6d& covariance, double
     const Vector3d about = positive(turns.vectors.col(k));
     if (sigma_m > max_sigma_m) {
       loose.push_back({false, along,
-                       fmt::format("shift along {}, known to {:.0f} mm only", direction_name(along),
+                       fmt::format("shift along {} (sigma {:.0f} mm)", direction_name(along),
                                    1e3 * std::min(sigma_m, 10.0))});
     }
     if (sigma_deg > max_sigma_deg) {
       loose.push_back({true, about,
-                       fmt::format("turn about {}, known to {:.2f} deg only", direction_name(about),
+                       fmt::format("turn about {} (sigma {:.2f} deg)", direction_name(about),
                                    std::min(sigma_deg, 180.0))});
     }
   }

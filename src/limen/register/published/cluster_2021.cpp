@@ -231,7 +231,7 @@ PublishedAnswer register_cluster_2021(const PublishedInput& input, const Cluster
   const std::vector<Triple> ordered = triples(of);
   // Selection of the best hypothesis: equations 9 and 10.
   const Best best = best_of(ordered, axes, of, options.agreement);
-  if (!(best.agreement_m2 > 0.0)) return {std::nullopt, "no hypothesis lays a polygon on another"};
+  if (!(best.agreement_m2 > 0.0)) return {std::nullopt, "no candidate pose brings two polygons together"};
   PublishedPose pose;
   pose.target_from_source = {rotation, best.shift};
   pose.criterion = best.agreement_m2;

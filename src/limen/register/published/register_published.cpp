@@ -98,8 +98,8 @@ Hypothesis measured(const PublishedPose& pose, const PreparedPair& pair, Registr
 
 std::string reason_of(const RegistrationResult& result) {
   return fmt::format(
-      "the published method {} gives one pose and asks of no other; by limen's own measure {:.1f} m2 of "
-      "surface agree in it and {:.1f} m2 are contradicted",
+      "the published method {} gives one pose and considers no other; by limen's own measure {:.1f} m2 of "
+      "surface agree and {:.1f} m2 contradict",
       result.published->method, result.best.agreeing_m2, result.best.contradicted_m2);
 }
 

@@ -122,7 +122,7 @@ PublishedAnswer register_segments_2023(const PublishedInput& input, const Segmen
   // IV-C: random double pairs.
   const auto drawing = [&](RandomStream& random) { return draw(of, options, random); };
   const std::optional<BestTrial> best = best_trial(options.trials, input.seed, drawing, cost);
-  if (!best) return {std::nullopt, "no two pairs of segments lie to each other alike in both sets"};
+  if (!best) return {std::nullopt, "no two pairs of segments have the same relative position in both sets"};
   RandomStream again(input.seed, best->trial);
   PublishedPose pose;
   pose.target_from_source = *draw(of, options, again);

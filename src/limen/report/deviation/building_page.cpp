@@ -158,7 +158,7 @@ std::string elements_table(const BuildingReport& report) {
       "tabindex=\"0\"><table><tr><th>state</th><th>name</th>"
       "<th>type</th><th>storey</th><th>GUID</th><th>scans</th><th>off by, mm</th><th>x y z, "
       "mm</th><th>median, "
-      "mm</th><th>95&nbsp;%, mm</th><th>class</th><th>passed, m&sup2;</th><th>covered</th></tr>\n";
+      "mm</th><th>95&nbsp;%, mm</th><th>class</th><th>seen through, m&sup2;</th><th>covered</th></tr>\n";
   std::size_t shown = 0;
   std::size_t unjudged = 0;
   for (const std::size_t k : worst_first(report.deviation.elements)) {
@@ -191,9 +191,8 @@ std::string matter_table(const BuildingReport& report) {
         piece.points, size.x(), size.y(), size.z(), middle.x(), middle.y(), middle.z());
   }
   if (rows.empty()) return {};
-  return "<h2>Matter that the model lacks</h2>\n<div class=\"scroll\" "
-         "tabindex=\"0\"><table><tr><th>points</th><th>size, "
-         "m</th><th>place, m</th></tr>\n" +
+  return "<h2>Objects that are not in the model</h2>\n<div class=\"scroll\" "
+         "tabindex=\"0\"><table><tr><th>points</th><th>size, m</th><th>position, m</th></tr>\n" +
          rows + "</table></div>\n";
 }
 
@@ -207,7 +206,7 @@ std::string name_of(const BuildingReport& report, const std::string& path, int i
 std::string shares_table(const BuildingReport& report) {
   std::string text =
       "<h2>Scans</h2>\n<div class=\"scroll\" tabindex=\"0\"><table><tr><th>file</th><th>points</th><th>on "
-      "faces</th><th>pose known to, mm</th><th>common shift, mm</th><th></th></tr>\n";
+      "faces</th><th>sigma of the pose, mm</th><th>common shift, mm</th><th></th></tr>\n";
   for (std::size_t k = 0; k < report.scans.size(); ++k) {
     const BuildingScan& scan = report.scans[k];
     const ScanShare& share = report.deviation.scans[k];
@@ -219,8 +218,9 @@ std::string shares_table(const BuildingReport& report) {
         100.0 * static_cast<double>(share.matched) /
             static_cast<double>(std::max<std::size_t>(1, share.points)),
         1e3 * scan.pose_sigma_m, common.x() + 0.0, common.y() + 0.0, common.z() + 0.0,
-        scan.bent ? "bent back. " : "",
-        share.oriented ? "" : "It is not known from where it was taken: nothing can be missed by it.");
+        scan.bent ? "Drift corrected. " : "",
+        share.oriented ? ""
+                       : "Its scanner position is unknown, so it cannot show that elements are missing.");
   }
   for (const BuildingLeftOut& it : report.left_out)
     text += fmt::format(
@@ -233,8 +233,8 @@ std::string models_list(const BuildingReport& report) {
   std::string text = "<h2>Models</h2>\n<ul>\n";
   for (const BuildingModel& model : report.models) {
     const char* words = model.place == "project"          ? "placed by the project"
-                        : model.place == "with the first" ? "taken to lie in one frame with the first"
-                                                          : "taken to lie in the project's frame";
+                        : model.place == "with the first" ? "assumed to be in one frame with the first"
+                                                          : "assumed to be in the project's frame";
     text += fmt::format("<li>{}: {} elements, {}</li>\n", escaped(model.path), model.elements, words);
   }
   return text + "</ul>\n";
@@ -265,7 +265,7 @@ std::string building_page(const BuildingReport& report) {
   text += "<h2>Plan</h2>\n" + BuildingPlan(report).svg() +
           "<p class=\"soft\">From above: <span class=\"state found\">found</span>, <span class=\"state "
           "moved\">moved</span>, <span class=\"state not_found\">not found</span>, <span class=\"state "
-          "not_judged\">not judged</span>; filled boxes: matter that the model lacks; dots: origins of "
+          "not_judged\">not judged</span>; filled boxes: objects that are not in the model; dots: origins of "
           "scans.</p>\n";
   text += elements_table(report) + matter_table(report) + shares_table(report) + models_list(report);
   return text + "</main></body></html>\n";

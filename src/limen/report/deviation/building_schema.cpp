@@ -11,7 +11,7 @@ Json building_element_schema() {
   Json element = deviation_element_schema();
   element["properties"]["model"] = whole("of models, from 0");
   element["properties"]["seen_by"] = whole("scans with enough points on it");
-  element["properties"]["moved"] = flag("it stands elsewhere by more than moved_m, beyond doubt");
+  element["properties"]["moved"] = flag("it is displaced by more than moved_m, beyond doubt");
   for (const char* name : {"model", "seen_by", "moved"}) element["required"].push_back(name);
   return element;
 }
@@ -24,11 +24,11 @@ Json building_summary_schema() {
        {"points_far_from_all_faces", whole("")},
        {"elements", counts},
        {"elements_in_several_models", whole("the later ones are left out")},
-       {"moved", whole("elements that stand elsewhere")},
+       {"moved", whole("elements that are displaced")},
        {"found_by_loa", counts},
        {"common_shift", ref("shift")},
        {"unmodelled_pieces", whole("")},
-       {"issues", whole("told in the BCF file; 0 where none was asked for")},
+       {"issues", whole("in the BCF file; 0 if none was asked for")},
        {"cloud_points", whole("in deviation.ply")}},
       {"points", "points_on_faces", "points_far_from_all_faces", "elements", "elements_in_several_models",
        "moved", "found_by_loa", "common_shift", "unmodelled_pieces", "issues", "cloud_points"});
@@ -46,12 +46,12 @@ Json building_scan_schema() {
   return object({{"path", text("as it was given")},
                  {"index", whole("of the scan within its file, from 0")},
                  {"model_from_scan", rows(4, "into the coordinates of the first model, metres")},
-                 {"pose_sigma_m", number("how well its place is known")},
-                 {"bent", flag("each point was moved by the correction of its time")},
+                 {"pose_sigma_m", number("standard deviation of its position")},
+                 {"bent", flag("each point was moved by the drift correction at its time")},
                  {"points", whole("")},
                  {"points_on_faces", whole("")},
                  {"points_far_from_all_faces", whole("")},
-                 {"seen_from_known", flag("it is known from where it was taken")},
+                 {"seen_from_known", flag("the scanner position is known")},
                  {"common_shift", ref("shift")}},
                 {"path", "index", "model_from_scan", "pose_sigma_m", "bent", "points", "points_on_faces",
                  "points_far_from_all_faces", "seen_from_known", "common_shift"});
@@ -73,7 +73,8 @@ std::string project_deviation_schema() {
               {"options", {{"type", "object"}}},
               {"summary", building_summary_schema()},
               {"elements", list_of(ref("element"), "of all models, the worst first")},
-              {"unmodelled", list_of(ref("unmodelled"), "matter that the models lack, the largest first")},
+              {"unmodelled",
+               list_of(ref("unmodelled"), "objects that are not in the models, the largest first")},
               {"version", text("of limen")}},
              {"project", "models", "scans", "left_out", "options", "summary", "elements", "unmodelled",
               "version"}),

@@ -71,9 +71,9 @@ std::string storey_words(const BimElement& element) {
 
 /// Millimetres along the axes, only where something was seen.
 std::string shift_words(const ElementShift& shift) {
-  std::string text = fmt::format("It stands ({:.0f}, {:.0f}, {:.0f}) mm beside its place in the model",
-                                 1e3 * shift.shift_m.x() + 0.0, 1e3 * shift.shift_m.y() + 0.0,
-                                 1e3 * shift.shift_m.z() + 0.0);
+  std::string text = fmt::format(
+      "It is displaced by ({:.0f}, {:.0f}, {:.0f}) mm from its position in the model",
+      1e3 * shift.shift_m.x() + 0.0, 1e3 * shift.shift_m.y() + 0.0, 1e3 * shift.shift_m.z() + 0.0);
   text += fmt::format(", one standard deviation ({:.1f}, {:.1f}, {:.1f}) mm", 1e3 * shift.sigma_m.x(),
                       1e3 * shift.sigma_m.y(), 1e3 * shift.sigma_m.z());
   if (!shift.open.empty()) text += fmt::format("; {} of 3 directions were not seen", shift.open.size());
@@ -93,8 +93,8 @@ BcfTopic element_topic(const BimElement& element, const ElementDeviation& it) {
     topic.colour = "D02020";
     topic.title = fmt::format("Missing: {}", name);
     topic.description = fmt::format(
-        "{} {} of the model is not there: rays went through {:.2f} m2 of its surface to what lies behind, "
-        "and points lie on {:.2f} m2.{}",
+        "{} {} of the model was not found: the scanner saw through {:.2f} m2 of its surface, and points lie "
+        "on {:.2f} m2.{}",
         element.type, name, it.passed_m2, it.covered_m2, storey);
   } else {
     topic.label = "moved";
@@ -118,8 +118,8 @@ BcfTopic matter_topic(const UnmodelledMatter& piece, const BimModel& model, cons
   topic.priority = "low";
   topic.title = fmt::format("Not in the model: {:.1f} x {:.1f} x {:.1f} m", size.x(), size.y(), size.z());
   topic.description = fmt::format(
-      "{} points of something {:.2f} x {:.2f} x {:.2f} m large about ({:.2f}, {:.2f}, {:.2f}) lie on no "
-      "element of the model.",
+      "{} points of an object of {:.2f} x {:.2f} x {:.2f} m at ({:.2f}, {:.2f}, {:.2f}) lie on no element of "
+      "the model.",
       piece.points, size.x(), size.y(), size.z(), middle.x(), middle.y(), middle.z());
   topic.key =
       fmt::format("limen deviation\nmatter\n{:.2f} {:.2f} {:.2f}", middle.x(), middle.y(), middle.z());

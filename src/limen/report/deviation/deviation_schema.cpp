@@ -22,7 +22,7 @@ Json deviation_element_schema() {
                  {"points", whole("on its faces")},
                  {"area_m2", number("of its faces")},
                  {"covered_m2", number("with points")},
-                 {"passed_m2", number("through which the scanner looked")},
+                 {"passed_m2", number("through which the scanner saw")},
                  {"covered_share", number("of what could be seen")},
                  {"median_m", number("of the distances of its points, outwards positive")},
                  {"mean_m", number("")},
@@ -35,11 +35,12 @@ Json deviation_element_schema() {
 }
 
 Json element_shift_schema() {
-  return object({{"shift_m", numbers(3, "of the element, model frame")},
-                 {"sigma_m", numbers_or_null(3, "one standard deviation; null: open")},
-                 {"held", whole("directions that the points hold, 0 to 3")},
-                 {"open", list_of(numbers(3, "of unit length"), "directions that the points leave open")}},
-                {"shift_m", "sigma_m", "held", "open"});
+  return object(
+      {{"shift_m", numbers(3, "of the element, model frame")},
+       {"sigma_m", numbers_or_null(3, "one standard deviation; null: open")},
+       {"held", whole("number of directions that the points determine, 0 to 3")},
+       {"open", list_of(numbers(3, "of unit length"), "directions that the points leave undetermined")}},
+      {"shift_m", "sigma_m", "held", "open"});
 }
 
 Json unmodelled_matter_schema() {
@@ -59,7 +60,7 @@ Json summary_schema() {
   return object({{"points", whole("")},
                  {"points_on_faces", whole("")},
                  {"points_far_from_all_faces", whole("")},
-                 {"seen_from_known", flag("it is known from where the scan was taken")},
+                 {"seen_from_known", flag("the scanner position is known")},
                  {"elements", counts},
                  {"found_by_loa", counts},
                  {"common_shift", ref("shift")},
@@ -88,7 +89,7 @@ Json fields_of_deviation() {
           {"options", {{"type", "object"}}},
           {"summary", summary_schema()},
           {"elements", list_of(ref("element"), "in the order of the model")},
-          {"unmodelled", list_of(ref("unmodelled"), "matter that the model lacks, the largest first")},
+          {"unmodelled", list_of(ref("unmodelled"), "objects that are not in the model, the largest first")},
           {"version", text("of limen")}};
 }
 

@@ -26,17 +26,16 @@ TEST(ReportCover, SaysTheSameInThreeLanguages) {
   EXPECT_EQ(english[1], "The probability that this is the right place is more than 99.99 %.");
   EXPECT_EQ(
       english[2],
-      "room.ply is known to 0.3 mm in its middle and to 0.6 mm at its far end, 20 m from there (95 %).");
+      "Accuracy of room.ply (95 %): 0.3 mm at the centre, 0.6 mm at the far end, 20 m from the centre.");
   const std::vector<std::string> french = cover_summary(found(), Language::french);
   EXPECT_EQ(french[1], "La probabilité que ce soit la bonne position est de plus de 99,99 %.");
   EXPECT_EQ(french[2],
-            "room.ply est connu à 0,3 mm près en son milieu et à 0,6 mm près à son extrémité, à 20 m de là "
-            "(95 %).");
+            "Exactitude de room.ply (95 %) : 0,3 mm au centre, 0,6 mm à l'extrémité, à 20 m du centre.");
   const std::vector<std::string> german = cover_summary(found(), Language::german);
   EXPECT_EQ(german[1], "Die Wahrscheinlichkeit, dass dies die richtige Lage ist, beträgt mehr als 99,99 %.");
-  EXPECT_EQ(
-      german[2],
-      "room.ply ist in der Mitte auf 0,3 mm und am fernen Ende, 20 m davon, auf 0,6 mm bekannt (95 %).");
+  EXPECT_EQ(german[2],
+            "Genauigkeit von room.ply (95 %): 0,3 mm in der Mitte und, 20 m davon entfernt, 0,6 mm am fernen "
+            "Ende.");
   EXPECT_EQ(german.size(), english.size());
   EXPECT_EQ(french.size(), english.size());
 }

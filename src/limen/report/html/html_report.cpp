@@ -58,15 +58,15 @@ std::string boxed(const char* id, const std::string& content) {
 
 std::string tables(const RegistrationReport& report) {
   std::string text = section("Likely causes, the likeliest first", causes_table(report), "", true);
-  text += section("How well each freedom is held", boxed("sigma-of-pose", sigma_table(report)),
-                  "The shift is that of the source's middle, the turn is about it; both along the target's "
-                  "axes, of the pose that is shown.",
-                  true);
+  text += section(
+      "Uncertainty of the pose", boxed("sigma-of-pose", sigma_table(report)),
+      "Shift of the source's centre and turn about it, along the target's axes, for the pose that is shown.",
+      true);
   text += section("Key numbers", boxed("key-of-pose", key_table(report)), "", true);
   text += section("What to do next", steps(report));
   text += section("Poses", alternatives_table(report),
-                  "The best first; each is another place, not a finer version of the best. =: it cannot be "
-                  "told from the best.");
+                  "The best first; each is a different place, not a refinement of the best. =: it cannot be "
+                  "distinguished from the best.");
   if (report.result.outcome != Outcome::no_match) text += agreement(report);  // of the best pose
   text += section("Inputs", inputs_table(report));
   text += section("Time", stages_table(report));

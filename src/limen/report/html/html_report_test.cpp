@@ -190,10 +190,10 @@ TEST(ReportPage, EveryOutcomeHasItsPage) {
   const ReportScene scene = two_rooms(3000);
   for (const auto& [outcome, words] : std::vector<std::pair<Outcome, std::string>>{
            {Outcome::registered, "Registered: the two scans fit in one way only"},
-           {Outcome::probable, "Probable: placed, but less sure than registered asks for"},
+           {Outcome::probable, "Probable: a pose was found, but it is less certain than registered requires"},
            {Outcome::ambiguous, "Not decided: 3 ways fit about equally well"},
-           {Outcome::under_constrained, "Shift along (0.00, 1.00, 0.00) is not held by the data."},
-           {Outcome::no_match, "No match: the two scans show nothing in common"}}) {
+           {Outcome::under_constrained, "Shift along (0.00, 1.00, 0.00) is not determined by the data."},
+           {Outcome::no_match, "No match: the two scans have no reliable overlap"}}) {
     RegistrationReport report = report_of(outcome);
     if (outcome == Outcome::ambiguous) {
       report.result.rivals = 2;
@@ -229,7 +229,8 @@ TEST(ReportPage, OpenFreedomsAreNamedInTheTable) {
   EXPECT_FALSE(is_open(report.result, false, 0));
   EXPECT_FALSE(is_open(report.result, true, 1));
   const std::string page = report_pages(report, two_rooms(100)).page;
-  EXPECT_EQ(count_of(page, "◇ not held by the data"), 2U) << "in the table, and with the pose that shows it";
+  EXPECT_EQ(count_of(page, "◇ not determined by the data"), 2U)
+      << "in the table, and with the pose that shows it";
 }
 
 TEST(ReportPage, NoNameBreaksIt) {
@@ -283,10 +284,10 @@ TEST(ReportWords, PromiseNothingOfWhatIsOpen) {
     });
   };
   report.result.unobserved = {{false, Vector3d::UnitX(), "shift along x"}};
-  EXPECT_TRUE(told("Shift along x is not held by the data."));
-  EXPECT_TRUE(told("(95 %, across what is open)"));
+  EXPECT_TRUE(told("Shift along x is not determined by the data."));
+  EXPECT_TRUE(told("from the centre, perpendicular to the undetermined direction."));
   report.result.unobserved.push_back({true, Vector3d(1, 1, 1).normalized(), "turn"});
-  EXPECT_TRUE(told("Turn is not held by the data."));
+  EXPECT_TRUE(told("Turn is not determined by the data."));
   EXPECT_FALSE(told("95 %")) << "where a turn is open no place is known";
 }
 
@@ -298,7 +299,7 @@ TEST(ReportWords, HeadlineHoldsAtTheFarEnd) {
   EXPECT_EQ(sentences[0], "This is the right place with a probability of 99.87 %.");
   EXPECT_EQ(
       sentences[1],
-      "room.ply is known to 0.6 mm in its middle and to 0.9 mm at its far end, 30 m from there (95 %).");
+      "Accuracy of room.ply (95 %): 0.6 mm at the centre, 0.9 mm at the far end, 30 m from the centre.");
   EXPECT_EQ(sentences[2],
             "Residuals: 2.0 mm of the points, 0.8 mm between matched planes (root mean square).");
 }
@@ -307,7 +308,7 @@ TEST(ReportWords, AFreedomBesideAnAmbiguityIsTold) {
   RegistrationReport report = report_of(Outcome::ambiguous);
   report.result.rivals = 1;
   report.result.unobserved = {{false, Vector3d::UnitX(), "shift along x"}};
-  EXPECT_EQ(verdict_words(report).sentences.back(), "Shift along x is not held by the data.");
+  EXPECT_EQ(verdict_words(report).sentences.back(), "Shift along x is not determined by the data.");
 }
 
 TEST(ReportWords, LengthsAndAngles) {

@@ -57,7 +57,7 @@ std::string evidence_rows(const Hypothesis& pose) {
     return rows + row("Residual (root mean square)", length_words(pose.rms_m));
   }
   rows += row("Overlap: surface that agrees", area_words(pose.agreeing_m2));
-  rows += row("Overlap: surface contradicted", area_words(pose.contradicted_m2));
+  rows += row("Overlap: surface that contradicts", area_words(pose.contradicted_m2));
   rows += row("Residual (root mean square)", length_words(pose.rms_m));
   rows += row("Planes matched", fmt::format("{}", pose.matched_planes));
   rows += row("Openings matched", fmt::format("{}", pose.matched_openings));
@@ -97,10 +97,10 @@ std::string precision_row(const std::string& name, const PlacePrecision& place) 
 /// Formal and empirical apart.
 std::string precision_table(const std::optional<PosePrecision>& precision) {
   if (!precision) return {};
-  const std::string far = fmt::format("Far end, {:.0f} m from there", precision->far_distance_m);
+  const std::string far = fmt::format("Far end, {:.0f} m from the centre", precision->far_distance_m);
   return table(
-      {"Place", "Known to (95 %)", "By the points' scatter alone"},
-      precision_row("Middle of the source", precision->middle) + precision_row(far, precision->far_end),
+      {"Place", "Accuracy (95 %)", "From the noise of the points alone"},
+      precision_row("Centre of the source", precision->middle) + precision_row(far, precision->far_end),
       "precision");
 }
 
@@ -115,7 +115,7 @@ std::string input_row(const char* side, const InputSummary& input) {
   for (const std::string& with : input.with)
     path += "<br>with " + escaped(with.substr(with.find_last_of('/') + 1));
   std::string kind = input.kind == "scan" ? (input.mobile ? "mobile scan" : "static scan") : input.kind;
-  if (input.kind == "scan" && !input.centre_known) kind = "scan, station unknown";
+  if (input.kind == "scan" && !input.centre_known) kind = "scan, scanner position unknown";
   return "<tr>" + cell(side, "th", " scope=\"row\"") + cell(path) + cell(kind) + cell(size_of(input)) +
          cell(fmt::format("{:.1f} × {:.1f} × {:.1f} m", extent.x(), extent.y(), extent.z())) +
          cell(hash_of(input.sha256)) + "</tr>\n";
@@ -135,7 +135,7 @@ std::string key_table(const RegistrationReport& report, std::size_t pose) {
   rows += evidence_rows(shown);
   if (pose == 0) rows += best_rows(result);
   if (!result.alternatives.empty())
-    rows += row("Other poses looked at", fmt::format("{}", result.alternatives.size()));
+    rows += row("Other poses tested", fmt::format("{}", result.alternatives.size()));
   return facts(rows, "key");
 }
 
@@ -148,8 +148,8 @@ std::string sigma_table(const RegistrationReport& report, std::size_t pose) {
   const Vector3d shift_sigma = shift_sigma_of(report, shown);
   const auto deviation = [&](bool rotation, int axis, double sigma, const std::string& words) {
     const bool open = pose == 0 ? is_open(result, rotation, axis) : sigma > kOpenSigma;
-    if (open) return std::string("◇ not held by the data");
-    return result.published ? std::string("not told by the method") : "± " + words;
+    if (open) return std::string("◇ not determined by the data");
+    return result.published ? std::string("not given by the method") : "± " + words;
   };
   std::string rows;
   static constexpr const char* kAxes[] = {"x", "y", "z"};
@@ -164,7 +164,7 @@ std::string sigma_table(const RegistrationReport& report, std::size_t pose) {
             cell(fmt::format("{:.4f}°", degrees(turn[axis]) + 0.0)) +
             cell(deviation(true, axis, sigma, angle_words(sigma))) + "</tr>\n";
   }
-  return table({"Freedom", "Value", "Standard deviation"}, rows, "sigma") +
+  return table({"Degree of freedom", "Value", "Standard deviation"}, rows, "sigma") +
          precision_table(precision_of(report, shown));
 }
 
@@ -241,7 +241,7 @@ std::string openings_table(const RegistrationReport& report) {
     rows += "<tr>" + cell(fmt::format("{} – {}", match.source, match.target), "th", " scope=\"row\"") +
             cell(length_words(match.shift_across_m)) + cell(length_words(match.shift_up_m)) + "</tr>\n";
   }
-  return table({"Openings, source – target", "Apart, across", "Apart, upwards"}, rows, "openings");
+  return table({"Openings, source – target", "Offset, across", "Offset, upwards"}, rows, "openings");
 }
 
 std::string thickness_table(const RegistrationReport& report) {
@@ -250,7 +250,7 @@ std::string thickness_table(const RegistrationReport& report) {
     const bool known = wall.sigma_m <= 0.1;
     rows += "<tr>" +
             cell(fmt::format("{} – {}", wall.source_plane, wall.target_plane), "th", " scope=\"row\"") +
-            cell(known ? fmt::format("{:.3f} m", wall.value_m) : "◇ not held by the data") +
+            cell(known ? fmt::format("{:.3f} m", wall.value_m) : "◇ not determined by the data") +
             cell(known ? "± " + length_words(wall.sigma_m) : "") + cell(fmt::format("{}", wall.openings)) +
             "</tr>\n";
   }
@@ -260,7 +260,7 @@ std::string thickness_table(const RegistrationReport& report) {
 }
 
 std::string inputs_table(const RegistrationReport& report) {
-  return table({"Side", "File", "Kind", "Holds", "Extent", "SHA-256"},
+  return table({"Side", "File", "Kind", "Content", "Extent", "SHA-256"},
                input_row("Source", report.source) + input_row("Target", report.target), "inputs");
 }
 

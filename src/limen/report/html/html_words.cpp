@@ -43,10 +43,11 @@ std::vector<std::string> expectation(const RegistrationReport& report) {
   if (precision) {
     const InputSummary& side =
         report.source.kind == "model" && report.target.kind != "model" ? report.target : report.source;
-    sentences.push_back(fmt::format(
-        "{} is known to {} in its middle and to {} at its far end, {:.0f} m from there (95 %{}).",
-        file_name(side), length_words(precision->middle.radius_m), length_words(precision->far_end.radius_m),
-        precision->far_distance_m, precision->across_open ? ", across what is open" : ""));
+    sentences.push_back(
+        fmt::format("Accuracy of {} (95 %): {} at the centre, {} at the far end, {:.0f} m from the centre{}.",
+                    file_name(side), length_words(precision->middle.radius_m),
+                    length_words(precision->far_end.radius_m), precision->far_distance_m,
+                    precision->across_open ? ", perpendicular to the undetermined direction" : ""));
   }
   if (result.best.rms_m > 0) {
     std::string words = fmt::format("Residuals: {} of the {}", length_words(result.best.rms_m),
@@ -55,7 +56,7 @@ std::vector<std::string> expectation(const RegistrationReport& report) {
       words += fmt::format(", {} between matched planes", length_words(*planes));
     words += " (root mean square)";
     if (precision && precision->middle.formal_radius_m && precision->far_end.formal_radius_m)
-      words += fmt::format("; the points' scatter alone would give {} and {}",
+      words += fmt::format("; from the noise of the points alone the accuracy would be {} and {}",
                            length_words(*precision->middle.formal_radius_m),
                            length_words(*precision->far_end.formal_radius_m));
     sentences.push_back(words + ".");
@@ -70,7 +71,7 @@ void append(VerdictWords& words, const std::vector<std::string>& sentences) {
 /// What the data leaves open, beside a verdict that is about something else.
 void append_open(VerdictWords& words, const RegistrationResult& result) {
   for (const UnobservedFreedom& freedom : result.unobserved)
-    words.sentences.push_back(capitalised(freedom.name) + " is not held by the data.");
+    words.sentences.push_back(capitalised(freedom.name) + " is not determined by the data.");
 }
 
 VerdictWords registered_words(const RegistrationReport& report) {
@@ -88,7 +89,8 @@ VerdictWords registered_words(const RegistrationReport& report) {
 
 VerdictWords probable_words(const RegistrationReport& report) {
   const RegistrationResult& result = report.result;
-  VerdictWords words{"Probable: placed, but less sure than registered asks for", {}, "", "✓?"};
+  VerdictWords words{
+      "Probable: a pose was found, but it is less certain than registered requires", {}, "", "✓?"};
   words.sentences.push_back(capitalised(square_metres(result.reason)) + ".");
   words.sentences.push_back(capitalised(surer(report)) + ".");
   append(words, expectation(report));
@@ -101,12 +103,12 @@ VerdictWords ambiguous_words(const RegistrationReport& report) {
   const RegistrationResult& result = report.result;
   VerdictWords words{"", {}, "", "?"};
   if (result.rivals == 0) {
-    words.headline = "Not decided: the best fit is not sure enough";
+    words.headline = "Not decided: the best fit is not certain enough";
     words.sentences.push_back(capitalised(square_metres(result.reason)) + ".");
   } else {
     words.headline = fmt::format("Not decided: {} fit about equally well", places(report, result.rivals + 1));
     words.sentences.push_back(
-        "Look through them below; a further scan, or a place known by other means, decides.");
+        "Compare them below; a further scan, or a position known by other means, can decide.");
     words.reason = square_metres(result.reason);
   }
   append_open(words, result);
@@ -126,11 +128,11 @@ VerdictWords published_words(const RegistrationResult& result) {
 
 VerdictWords open_words(const RegistrationReport& report) {
   const RegistrationResult& result = report.result;
-  VerdictWords words{"Not fully held: the data leaves a direction open", {}, "", "↔"};
+  VerdictWords words{"Under-constrained: the data leave one direction undetermined", {}, "", "↔"};
   append_open(words, result);
   if (result.unobserved.size() > 1)
     words.headline =
-        fmt::format("Not fully held: the data leaves {} directions open", result.unobserved.size());
+        fmt::format("Under-constrained: the data leave {} directions undetermined", result.unobserved.size());
   append(words, expectation(report));
   return words;
 }
@@ -151,9 +153,9 @@ VerdictWords verdict_words(const RegistrationReport& report) {
     case Outcome::no_match:
       break;
   }
-  return {"No match: " + both_sides(report) + " show nothing in common that fits together",
+  return {"No match: " + both_sides(report) + " have no reliable overlap",
           {capitalised(square_metres(report.result.reason)) + ".",
-           "Below they stand side by side, each upright as far as is known."},
+           "They are shown side by side below, each upright as far as is known."},
           "",
           "✕"};
 }

@@ -150,7 +150,7 @@ void run_browser(const std::vector<std::string>& words, Monitor& monitor) {
   }
   if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return;
   throw Error(WIFEXITED(status) ? fmt::format("ended with status {}", WEXITSTATUS(status))
-                                : fmt::format("died of signal {}", WTERMSIG(status)),
+                                : fmt::format("was ended by signal {}", WTERMSIG(status)),
               words.front(), kPrintRemedy);
 }
 

@@ -11,7 +11,7 @@ namespace {
 Json found_in_schema() {
   return object({{"path", text("as it was given")},
                  {"points", whole("of a scan; 0 of a model")},
-                 {"centre_known", flag("it is known from where the scan was taken")},
+                 {"centre_known", flag("the scanner position is known")},
                  {"scanner", ref("scanner")}},
                 {"path", "points", "centre_known"});
 }
@@ -48,14 +48,14 @@ Json opening_schema() {
                  {"reveal_depth_m", number("how deep its frame lies in the wall; 0: not seen")},
                  {"reveal_sigma_m", number("one standard deviation")},
                  {"reveal_complete", flag("the wall is as thick as the reveal is deep")},
-                 {"outline", ring_schema("of an opening that is no rectangle; else empty")}},
+                 {"outline", ring_schema("of an opening that is not a rectangle; else empty")}},
                 {"corners", "facade", "evidence", "view", "edge_sigma_m", "reveal_depth_m", "reveal_sigma_m",
                  "reveal_complete", "outline"});
 }
 
 Json planes_fields() {
   return {{"input", ref("input")},
-          {"inlier_threshold_m", number("farthest a point may lie from its plane")},
+          {"inlier_threshold_m", number("largest distance of a point from its plane")},
           {"noise_m", number("of the points about smooth faces, one standard deviation")},
           {"planes", list_of(ref("plane"), "their numbers count from 0")}};
 }

@@ -23,8 +23,8 @@ Json sigma_schema() {
 
 Json evidence_schema() {
   return object({{"score", number("higher is better")},
-                 {"agreeing_m2", number("surface of each scan met by the other")},
-                 {"contradicted_m2", number("surface where the other scan saw free space")},
+                 {"agreeing_m2", number("surface of each scan that agrees with the other")},
+                 {"contradicted_m2", number("surface where the other scanner saw empty space")},
                  {"rms_m", number("of points about the planes of the other side")},
                  {"plane_distance_rms_m", number("between matched planes, weighted by overlap")},
                  {"matched_planes", whole("pairs of planes")},
@@ -32,7 +32,7 @@ Json evidence_schema() {
                  {"matched_segments", whole("of lists of segments")},
                  {"agreeing_length_m", number("of lists of segments")},
                  {"explained_share", number("against a model: of the walls that the scan saw")},
-                 {"room", text("of the model, where the first station stands")}},
+                 {"room", text("of the model, in which the first station is")}},
                 {"score", "agreeing_m2", "contradicted_m2", "rms_m", "matched_planes", "matched_openings"});
 }
 
@@ -40,14 +40,14 @@ Json alternative_schema() {
   return object({{"target_from_source", ref("pose")},
                  {"probability", {{"type", {"number", "null"}}}},
                  {"sigma", ref("sigma")},
-                 {"tie", {{"type", "boolean"}, {"description", "it cannot be told from the best"}}},
+                 {"tie", {{"type", "boolean"}, {"description", "it cannot be distinguished from the best"}}},
                  {"evidence", ref("evidence")}},
                 {"target_from_source", "probability", "sigma", "tie", "evidence"});
 }
 
 Json place_schema() {
   return object({{"at", numbers(3, "target coordinates")},
-                 {"radius_m", number("within which the place lies with the stated confidence")},
+                 {"radius_m", number("within which the true position is with the stated confidence")},
                  {"formal_radius_m", number("the same from the scatter of the points alone")},
                  {"distance_m", number("of the far end from the middle")}},
                 {"at", "radius_m"});

@@ -76,9 +76,9 @@ Json object(Json properties, std::initializer_list<const char*> required) {
 Json scanner_schema() {
   return object({{"source", words({"unknown", "assumed", "file", "user", "estimated", "per point"})},
                  {"place", numbers(3, "of a static scan, metres")},
-                 {"confirmed", flag("the density of the points on planes bears it out")},
+                 {"confirmed", flag("the density of the points on planes confirms it")},
                  {"sigma_m", number("one standard deviation per axis, the largest")},
-                 {"refuted", numbers(3, "a place that was said and that the data refute")}},
+                 {"refuted", numbers(3, "a stated position that the data refute")}},
                 {"source"});
 }
 

@@ -39,7 +39,7 @@ int names_shared(const TrueScan& scan, const ProjectEntry& entry) {
 }
 
 [[noreturn]] void throw_several(const std::string& problem, const std::filesystem::path& path) {
-  throw Error(problem, path.string(), "name the scans in the truth with the folders that tell them apart");
+  throw Error(problem, path.string(), "name the scans in the truth with the folders that distinguish them");
 }
 
 /// The truth of a scan: that whose path ends with the most names of its own. Of several scans of the project
@@ -72,7 +72,7 @@ const TrueScan& truth_of(const ProjectEntry& entry, const std::vector<ProjectEnt
   }
   if (best != nullptr && !lent) return *best;
   throw Error("holds no pose of the scan " + called(entry), path.string(),
-              "give the truth of the scans that were put together");
+              "give the truth of the scans of this project");
 }
 
 /// The middle of where the scanners stood; nothing where no scanner's place is told.

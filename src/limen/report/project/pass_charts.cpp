@@ -113,7 +113,7 @@ std::string pass_charts(const ProjectResult& result) {
     const bool is_bent = scan.correction && !scan.correction->knots.empty();
     if (!is_bent && scan.rigid.empty()) continue;
     const std::string words =
-        is_bent ? fmt::format("bent back along {:.0f} m, by {:.1f} mm in the mean square",
+        is_bent ? fmt::format("drift corrected along {:.0f} m, by {:.1f} mm (root mean square)",
                               scan.correction->knots.back().distance_m, rms_mm(*scan.correction))
                 : scan.rigid;
     text += fmt::format("<div><p>{}: {}</p>\n{}</div>\n", escaped(shown_name(scan)), escaped(words),
@@ -127,9 +127,9 @@ std::string pass_charts(const ProjectResult& result) {
   std::string head = "<section class=\"card wide keep drift\"><h2>Drift of the passes</h2>\n";
   if (bent)
     head += fmt::format(
-        "<p class=\"soft\">By how many millimetres the scanner's place was moved along its way, beyond the "
-        "pose "
-        "of the whole pass, in the frame's{}; the bands are two standard deviations.</p>\n",
+        "<p class=\"soft\">Correction of the scanner position in millimetres against the distance travelled, "
+        "in addition to the pose of the whole pass, along the frame's{}; the bands are two standard "
+        "deviations.</p>\n",
         key);
   return head + "<div class=\"charts\">" + text + "</div></section>\n";
 }

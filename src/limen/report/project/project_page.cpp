@@ -51,7 +51,7 @@ std::string questions(const ProjectResult& result) {
   }
   return text +
          "<p class=\"soft\" id=\"paste\" hidden>Paste this line into a terminal, then run the project again "
-         "(what is done is kept): <code></code></p>\n";
+         "(finished work is kept): <code></code></p>\n";
 }
 
 /// A card with a table; `head`: the cells of its first row, those of numbers begin with '#'.
@@ -103,8 +103,10 @@ std::string scans_table(const ProjectResult& result) {
     }
     text += fmt::format("<td>{}</td></tr>\n", escaped(scan.reason));
   }
-  return table("Scans", "scans", {"#no.", "file", "state", "#component", "#sigma, mm", "#sigma, deg", "why"},
-               text);
+  return table(
+      "Scans", "scans", {"#no.", "file", "state", "#group", "#sigma, mm", "#sigma, deg", "why"}, text,
+      "registered: certain within the limit; probable: less certain; ambiguous: another place fits as "
+      "well; under_constrained: a direction is undetermined; floating: not connected to the main group.");
 }
 
 std::string links_table(const ProjectResult& result) {
@@ -125,9 +127,13 @@ std::string links_table(const ProjectResult& result) {
         degrees(link.solved.loop_error_rad), link.solved.redundancy, link.alternatives.size());
   }
   return table("Links", "links",
-               {"#no.", "scans", "state", "the pair alone", "#agreeing, m&sup2;", "#misses by, mm", "#deg",
-                "#redundancy", "#other poses"},
-               text, "Click a number to see that link alone, before and after, with what agrees.");
+               {"#no.", "scans", "state", "result of the pair alone", "#agreeing, m&sup2;", "#residual, mm",
+                "#deg", "#redundancy", "#other poses"},
+               text,
+               "Click a number to see that link alone, before and after, with the surfaces that agree. "
+               "verified: checked by a loop; bridge: single unchecked link; ambiguous: another pose fits as "
+               "well; rejected: contradicted, or probably two look-alike places; weak: too little overlap, "
+               "or a direction undetermined.");
 }
 
 std::string loops_table(const ProjectResult& result) {
@@ -141,7 +147,7 @@ std::string loops_table(const ProjectResult& result) {
         "{:.1f}</td></tr>\n",
         links, loop.closes ? "yes" : "no", 1e3 * loop.error_m, degrees(loop.error_rad), loop.chi_square);
   }
-  return table("Loops", "", {"links", "closes", "#misses by, mm", "#deg", "#chi squared of 6"}, text);
+  return table("Loops", "", {"links", "closes", "#misclosure, mm", "#deg", "#chi-squared (6 d.o.f.)"}, text);
 }
 
 std::string millimetres(const Vector3d& metres) {
@@ -180,14 +186,14 @@ std::string points_table(const ProjectResult& result) {
     if (point.given) rows += point_row(point);
   }
   if (rows.empty()) return {};
-  return table(
-      "Control and check points", "",
-      {"point", "role", "state", "seen by", "#x, mm", "#y", "#z", "#sigma x, mm", "#y", "#z", "#w",
-       "#found with 80&nbsp;%, mm", "why"},
-      rows,
-      escaped(result.control_words) +
-          ". Given less found, with one standard deviation; w: the largest of the three tests; found with "
-          "80&nbsp;%: the smallest blunder along any axis that would be found.");
+  return table("Control and check points", "",
+               {"point", "role", "state", "seen by", "#x, mm", "#y", "#z", "#sigma x, mm", "#y", "#z", "#w",
+                "#detectable with 80&nbsp;%, mm", "why"},
+               rows,
+               escaped(result.control_words) +
+                   ". x, y, z: given minus measured, with one standard deviation; w: the largest of the "
+                   "three normalised residuals; detectable with 80&nbsp;%: the smallest gross error along "
+                   "any axis that would be detected.");
 }
 
 std::string notes(const ProjectResult& result) {
@@ -200,7 +206,7 @@ std::string notes(const ProjectResult& result) {
 std::string frame_words(const ProjectResult& result) {
   if (result.frame_kind == "control")
     return fmt::format("The frame is that of the control points in {}.", escaped(result.control_file));
-  if (result.frame_scan < 0) return "Nothing was joined.";
+  if (result.frame_scan < 0) return "No scan was registered to another.";
   const ProjectScan& scan = result.scans[static_cast<std::size_t>(result.frame_scan)];
   return fmt::format("The frame is that of {}.", escaped(shown_name(scan)));
 }
@@ -208,13 +214,13 @@ std::string frame_words(const ProjectResult& result) {
 std::string heading(ProjectOutcome outcome) {
   switch (outcome) {
     case ProjectOutcome::registered:
-      return "Registered: all scans stand in one frame";
+      return "Registered: all scans are in one frame";
     case ProjectOutcome::partial:
-      return "Partial: some scans stand in one frame";
+      return "Partial: some scans are registered in one frame";
     case ProjectOutcome::no_match:
       break;
   }
-  return "No match: no scan was joined to another";
+  return "No match: no scan was registered to another";
 }
 
 const char* symbol(ProjectOutcome outcome) {
@@ -240,8 +246,8 @@ std::string lead(const ProjectResult& result) {
   std::string text = fmt::format("<p>{}.</p>\n", escaped(result.reason));
   if (sigmas.size() > 1)
     text += fmt::format(
-        "<p>They are known to {:.1f} mm in the median and to {:.1f} mm at worst (one standard "
-        "deviation).</p>\n",
+        "<p>Uncertainty (1 sigma) of the registered scans: {:.1f} mm in the median, {:.1f} mm at "
+        "worst.</p>\n",
         1e3 * sigmas[sigmas.size() / 2], 1e3 * sigmas.back());
   return text + fmt::format("<p class=\"reason\">{} {} pairs were tried.</p>", frame_words(result),
                             result.pairs_tried);
@@ -253,11 +259,10 @@ std::string project_page(const ProjectResult& result, std::vector<ProjectPicture
   const std::string drawings = project_plan(result, on_map);
   std::string plans;
   if (!drawings.empty())
-    plans =
-        "<div class=\"plans\">" + drawings +
-        "</div>\n<p class=\"note\">Verified links are full, bridges dashed, ambiguous and rejected ones "
-        "dotted. "
-        "Ellipses are one standard deviation, 100 times as large. Triangles: control and check points.</p>\n";
+    plans = "<div class=\"plans\">" + drawings +
+            "</div>\n<p class=\"note\">Lines: links; solid: verified by a loop; dashed: single unchecked "
+            "link (bridge); dotted: ambiguous or rejected. Ellipses: one standard deviation, enlarged 100 "
+            "times. Triangles: control and check points.</p>\n";
   plans += pass_charts(result);
   const PageParts parts = {
       {"title", "limen: project"},

@@ -36,11 +36,11 @@ ProjectResult some_result() {
   point.given = Vector3d(652345.6781, 6862123.4562, 35.25);
   point.found = Vector3d(1, 1, 1);
   point.test.residual = {0.05, 0, 0};
-  point.reason = "contradicts all else";
+  point.reason = "contradicts all other observations";
   point.sights.push_back({1, true, 0.001});
   result.points.push_back(point);
   ProjectQuestion question;
-  question.text = "where does it stand?";
+  question.text = "where is it?";
   question.answers = {{DecisionKind::choose, {"hall.ply", "o'clock.ply"}, 2}};
   result.questions.push_back(question);
   result.decisions.push_back({{DecisionKind::level, {"hall.ply"}, 0}, DecisionState::contradicted, "leans"});
@@ -60,7 +60,7 @@ TEST(ProjectPage, AnswersAreLinesForAShellAndPointsStandInTableAndPlan) {
   EXPECT_TRUE(holds("contradicted"));
   EXPECT_TRUE(holds("P&lt;1&gt;"));
   EXPECT_FALSE(holds("P<1>"));
-  EXPECT_TRUE(holds("control point P&lt;1&gt;: left_out, misses by 50.0 mm"));
+  EXPECT_TRUE(holds("control point P&lt;1&gt;: left_out, residual 50.0 mm"));
   EXPECT_TRUE(holds("The frame is that of the control points in control.csv."));
 }
 
@@ -177,7 +177,7 @@ TEST(ProjectPage, ShowsScansWhereTheyStandAlongTheBuildingsWalls) {
 
 TEST(ProjectPage, DrawsHowPassesDriftedAndTellsWhyOthersStayRigid) {
   const std::string page = project_page(drifted_result());
-  EXPECT_NE(page.find("bent back along 15 m"), std::string::npos);
+  EXPECT_NE(page.find("drift corrected along 15 m"), std::string::npos);
   EXPECT_NE(page.find("<polyline points=\"56.0,"), std::string::npos);
   EXPECT_NE(page.find("its points have no times"), std::string::npos);
   EXPECT_EQ(project_page(some_result()).find("Drift of the passes"), std::string::npos);

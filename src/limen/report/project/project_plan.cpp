@@ -162,9 +162,8 @@ std::string points_of(const ProjectResult& result, const std::vector<PlanSpot>& 
                         : point.state == PointState::left_out ? "rejected"
                                                               : "bridge";
     text += fmt::format(
-        "<g class=\"node {}\"><title>{} point {}: {}, misses by {:.1f} mm</title><path d=\"M{:.1f} {:.1f}l7 "
-        "12h-14z\"/>"
-        "</g>\n",
+        "<g class=\"node {}\"><title>{} point {}: {}, residual {:.1f} mm</title><path d=\"M{:.1f} {:.1f}l7 "
+        "12h-14z\"/></g>\n",
         state, to_string(point.role), escaped(point.name), to_string(point.state),
         1e3 * point.test.residual.norm(), sheet.x(at), sheet.y(at) - 8.0);
   }

@@ -15,7 +15,7 @@ Json correction_schema() {
        {"place", numbers(3, "of the scanner, corrected; frame")},
        {"turn_rad", numbers(3, "about the pivot, frame axes")},
        {"shift_m", numbers(3, "of the pivot")},
-       {"moved_m", numbers(3, "by what both move the place")},
+       {"moved_m", numbers(3, "by what both move the position")},
        {"turn_sigma_rad", numbers(3, "one standard deviation")},
        {"moved_sigma_m", numbers(3, "one standard deviation")}},
       {"time_s", "distance_m", "place", "turn_rad", "shift_m", "moved_m", "turn_sigma_rad", "moved_sigma_m"});
@@ -42,9 +42,9 @@ Json project_scan_schema() {
        {"component_from_scan", ref("pose")},
        {"sigma", nullable("sigma")},
        {"correction", correction_schema()},
-       {"rigid", text("of a mobile pass: why it was not bent")},
-       {"alternatives", list_of(ref("pose"), "other places that explain as much")},
-       {"doubt", number_or_null("probability that it stands elsewhere than told")},
+       {"rigid", text("of a mobile pass: why its drift was not corrected")},
+       {"alternatives", list_of(ref("pose"), "other poses that fit as well")},
+       {"doubt", number_or_null("probability that its pose is wrong")},
        {"reason", text("one sentence")}},
       {"file", "index", "kind", "sha256", "readable", "state", "component", "frame_from_scan", "sigma",
        "doubt", "reason"});
@@ -53,7 +53,7 @@ Json project_scan_schema() {
 Json link_schema() {
   const Json other = object({{"number", whole("among the poses of the pair")},
                              {"pose", ref("pose")},
-                             {"agreeing_m2", number("surface of each scan met by the other")}},
+                             {"agreeing_m2", number("surface of each scan that agrees with the other")}},
                             {"number", "pose", "agreeing_m2"});
   return object(
       {{"source", whole("of scans, from 0")},
@@ -63,12 +63,12 @@ Json link_schema() {
        {"pose", ref("pose")},
        {"pose_number", whole("among the poses of the pair, 0 the best")},
        {"sigma", ref("sigma")},
-       {"agreeing_m2", number("surface of each scan met by the other")},
-       {"twin", number("probability that a place built alike was taken for it")},
+       {"agreeing_m2", number("surface of each scan that agrees with the other")},
+       {"twin", number("probability that a look-alike place was taken for it")},
        {"chance", number("probability that it is wrong otherwise")},
        {"redundancy", number_or_null("share of its six numbers that others check, 0 to 6")},
-       {"loop_error_m", number_or_null("shift between it and the whole")},
-       {"loop_error_rad", number_or_null("turn between it and the whole")},
+       {"loop_error_m", number_or_null("shift between it and the adjusted poses")},
+       {"loop_error_rad", number_or_null("turn between it and the adjusted poses")},
        {"alternatives", list_of(other, "other poses of the pair")},
        {"reason", text("one sentence")}},
       {"source", "target", "state", "pair", "pose", "pose_number", "sigma", "agreeing_m2", "twin", "chance",
@@ -76,24 +76,25 @@ Json link_schema() {
 }
 
 Json point_schema() {
-  const Json sight = object({{"scan", whole("of scans, from 0")},
-                             {"used", flag("it enters the solution")},
-                             {"missed_m", number_or_null("from where the others put the point")}},
-                            {"scan", "used", "missed_m"});
+  const Json sight =
+      object({{"scan", whole("of scans, from 0")},
+              {"used", flag("it enters the solution")},
+              {"missed_m", number_or_null("distance from the position by the other observations")}},
+             {"scan", "used", "missed_m"});
   return object({{"name", text("as in the files")},
                  {"role", words({"control", "check", "tie"})},
                  {"state", words({"used", "left_out", "compared", "not_placed"})},
-                 {"scanner", flag("the point is where a scanner stood")},
+                 {"scanner", flag("the point is a scanner position")},
                  {"given", numbers(3, "by the surveyor")},
                  {"given_sigma_m", numbers_or_null(3, "one standard deviation")},
                  {"found", {{"anyOf", {numbers(3, "by the scans"), Json{{"type", "null"}}}}}},
                  {"found_sigma_m", numbers_or_null(3, "one standard deviation")},
-                 {"missed_m", numbers_or_null(3, "given less found")},
+                 {"missed_m", numbers_or_null(3, "given minus found")},
                  {"missed_sigma_m", numbers_or_null(3, "one standard deviation")},
-                 {"w", numbers_or_null(3, "missed in its deviations")},
+                 {"w", numbers_or_null(3, "missed, in standard deviations")},
                  {"chi_square", number_or_null("of the three")},
                  {"redundancy", number_or_null("share of its three numbers that others check, 0 to 3")},
-                 {"detectable_m", numbers_or_null(3, "the smallest blunder that would be found")},
+                 {"detectable_m", numbers_or_null(3, "the smallest gross error that would be detected")},
                  {"seen_by", list_of(sight, "the scans that saw it")},
                  {"reason", text("one sentence")}},
                 {"name", "role", "state", "found", "seen_by", "reason"});
@@ -126,7 +127,7 @@ Json project_definitions() {
 Json project_fields() {
   const Json crs = object({{"name", text("of the coordinate system, as far as it is known")},
                            {"code", text("EPSG:NUMBER, as far as it is known")},
-                           {"wkt", text("well-known text, else as it was told")},
+                           {"wkt", text("well-known text, else as it was given")},
                            {"said_by", words({"user", "file"})}},
                           {"name", "code", "wkt", "said_by"});
   const Json frame =
@@ -136,14 +137,14 @@ Json project_fields() {
               {"sigma_against",
                {{"type", {"integer", "null"}},
                 {"description",
-                 "the scan, from 0, that is held fixed: sigma of every other is against it; null: none is, "
-                 "sigma is against the control points"}}},
+                 "the scan, from 0, that is held fixed: sigma of every other scan is relative to it; null: "
+                 "no scan is fixed, sigma is relative to the control points"}}},
               {"crs", crs}},
              {"kind", "scan", "file"});
   const Json trajectories =
       object({{"files", list_of({{"type", "string"}}, "as they were given")},
               {"columns", list_of({{"type", "string"}}, "of a text, where they were given")},
-              {"utm_zone", text("or the system of places in latitude and longitude")},
+              {"utm_zone", text("or the coordinate system of positions in latitude and longitude")},
               {"time_offset_s", number("added to their times")},
               {"lever_arm_m", numbers(3, "forward, right, down")}},
              {"files", "columns", "utm_zone", "time_offset_s", "lever_arm_m"});
@@ -154,11 +155,11 @@ Json project_fields() {
           {"reason", text("one sentence")},
           {"frame", frame},
           {"trajectories", trajectories},
-          {"components", whole("groups of scans that nothing joins")},
+          {"components", whole("number of groups of scans with no link between them")},
           {"scans", list_of(ref("scan"), "scans and models, in the order of the call")},
-          {"links", list_of(ref("link"), "pairs with something in common")},
+          {"links", list_of(ref("link"), "pairs that overlap")},
           {"loops", list_of(ref("loop"), "rounds of links")},
-          {"questions", list_of(ref("question"), "what only somebody who knows the building can tell")},
+          {"questions", list_of(ref("question"), "questions to somebody who knows the building")},
           {"decisions", list_of(ref("decision"), "answers that were given")},
           {"control", control},
           {"points", list_of(ref("point"), "control, check and tie points")},

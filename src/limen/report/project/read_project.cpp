@@ -66,7 +66,7 @@ std::shared_ptr<const SplineMotion> bend_of(const Json& correction) {
   const bool ascending =
       std::adjacent_find(times.begin(), times.end(), std::greater_equal<>()) == times.end();
   if (times.size() < 2 || !ascending)
-    throw Error("the correction of a pass is not told as it should be", "project.json",
+    throw Error("the correction of a pass is damaged", "project.json",
                 "give the project.json that limen project wrote");
   return std::make_shared<const SplineMotion>(times, values, numbers_of(correction.at("pivot")));
 }
@@ -143,8 +143,7 @@ ToldTrajectories read_project_trajectories(const std::filesystem::path& path) {
     told.reading.lever_arm_m = numbers_of(all.at("lever_arm_m"));
     return told;
   } catch (const Json::exception&) {
-    throw Error("the trajectories of the project are not told as they should be", path.string(),
-                kProjectRemedy);
+    throw Error("the trajectories of the project are damaged", path.string(), kProjectRemedy);
   }
 }
 
@@ -164,7 +163,7 @@ std::vector<ProjectPoses> read_project_poses(const std::filesystem::path& path) 
     }
     return all;
   } catch (const Json::exception&) {
-    throw Error("a link of the project is not told as it should be", path.string(), kProjectRemedy);
+    throw Error("a link of the project is damaged", path.string(), kProjectRemedy);
   }
 }
 
@@ -184,7 +183,7 @@ std::vector<ProjectEntry> read_project(const std::filesystem::path& path) {
     for (ProjectEntry& entry : entries) entry.several = in_file[entry.file] > 1;
     return entries;
   } catch (const Json::exception&) {
-    throw Error("a scan of the project is not told as it should be", path.string(), kProjectRemedy);
+    throw Error("a scan of the project is damaged", path.string(), kProjectRemedy);
   }
 }
 

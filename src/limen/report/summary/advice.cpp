@@ -46,14 +46,13 @@ WeighedCause overlap_cause(const RegistrationReport& report) {
   } else if (best.explained_share) {
     cause.measured = fmt::format("at best {:.0f} % of the walls that the scan saw are in the model",
                                  100.0 * *best.explained_share);
-    cause.remedy = "look whether the model is of this building and holds this storey";
+    cause.remedy = "check that the model is of this building and contains this storey";
   } else if (best.agreeing_m2 > 0.0) {
     cause.measured = fmt::format(
-        "where they fit best {:.1f} m2 of surface agree and {:.1f} m2 of one stand where the "
-        "other saw free space",
+        "best overlap {:.1f} m2, but it puts {:.1f} m2 of surface where the other scanner saw empty space",
         best.agreeing_m2, best.contradicted_m2);
   } else {
-    cause.measured = "no plane of one can be laid on a plane of the other";
+    cause.measured = "no plane of one matches a plane of the other";
   }
   return told;
 }
@@ -64,13 +63,13 @@ WeighedCause units_cause(const RegistrationReport& report) {
   WeighedCause told{0.5, {"units", "", ""}};
   told.cause.measured = fmt::format("the source measures {}, the target {} (all but a few points)",
                                     size_words(source), size_words(target));
-  told.cause.remedy = "where the numbers of a file are not metres give --source-units or --target-units";
+  told.cause.remedy = "if the coordinates of a file are not in metres, give --source-units or --target-units";
   if (const auto guess = likely_unit(report.source, report.target)) {
     const char* const side = guess->source ? "source" : "target";
     const bool sure = guess->apart < kSureApart;
     told.weight = sure ? 3.0 : 1.7;
-    told.cause.measured += fmt::format("; were the {}'s numbers {}, both would be {} high", side, guess->unit,
-                                       sure ? "equally" : "about equally");
+    told.cause.measured += fmt::format("; if the coordinates of the {} were in {}, both would be {} high",
+                                       side, guess->unit, sure ? "equally" : "about equally");
     told.cause.remedy = fmt::format("{}give --{}-units {}", sure ? "" : "if they are, ", side, guess->unit);
   }
   return told;
@@ -79,21 +78,22 @@ WeighedCause units_cause(const RegistrationReport& report) {
 std::optional<WeighedCause> place_cause(const InputSummary& side, const char* name) {
   if (side.kind != "scan" || side.mobile) return std::nullopt;
   WeighedCause told{0.0, {"place of the scanner", "", ""}};
-  told.cause.remedy = fmt::format("where it is known give --{}-origin x,y,z", name);
+  told.cause.remedy = fmt::format("if it is known, give --{}-origin x,y,z", name);
   const PlaceSource source = side.place.source;
   if (side.place.refuted) {
     const Vector3d& said = *side.place.refuted;
     told.weight = 2.5;
-    told.cause.measured = fmt::format("the {} was not seen from {:.2f} {:.2f} {:.2f}, as was said", name,
-                                      said.x(), said.y(), said.z());
+    told.cause.measured =
+        fmt::format("the points of the {} contradict the stated scanner position {:.2f} {:.2f} {:.2f}", name,
+                    said.x(), said.y(), said.z());
   } else if (source == PlaceSource::unknown) {
     told.weight = 1.5;
-    told.cause.measured =
-        fmt::format("nobody tells from where the {} was taken, and its points do not show it", name);
+    told.cause.measured = fmt::format(
+        "the scanner position of the {} is unknown and cannot be estimated from its points", name);
   } else if (source == PlaceSource::assumed && !side.place.confirmed) {
     told.weight = 1.0;
-    told.cause.measured =
-        fmt::format("that the {} was taken from 0,0,0 is assumed, its points do not bear it out", name);
+    told.cause.measured = fmt::format(
+        "the scanner position of the {} is assumed to be 0,0,0, which its points do not confirm", name);
   } else {
     return std::nullopt;
   }
@@ -105,8 +105,8 @@ std::optional<WeighedCause> axes_cause(const RegistrationReport& report) {
     const std::string* text = std::get_if<std::string>(&value);
     if (name != "gravity" || text == nullptr || *text != "up") continue;
     return WeighedCause{1.8,
-                        {"axes", "both z axes were said to point up (--gravity up)",
-                         "leave --gravity out: limen then finds by itself where up is"}};
+                        {"axes", "--gravity up states that both z axes point up",
+                         "leave --gravity out: limen then finds the vertical itself"}};
   }
   return std::nullopt;
 }
@@ -114,12 +114,12 @@ std::optional<WeighedCause> axes_cause(const RegistrationReport& report) {
 WeighedCause pair_cause(const RegistrationReport& report) {
   if (in_model(report))
     return {1.2,
-            {"another pair", "one scan alone was sought in the model",
-             "register it with its neighbours first and give them with --source-with, or take limen project "
+            {"another pair", "a single scan was compared with the model",
+             "register it with its neighbours first and give them with --source-with, or use limen project "
              "with --model"}};
   return {
       1.2,
-      {"another pair", "these two were registered alone",
+      {"another pair", "only these two scans were given",
        "give scans that lie between them with --source-with and --target-with, or all with limen project"}};
 }
 
@@ -143,8 +143,8 @@ bool has_report(const RegistrationReport& report) {
 std::vector<std::string> steps_registered(const RegistrationReport& report, const std::string& folder) {
   std::vector<std::string> steps;
   if (has_report(report))
-    steps.push_back(fmt::format("look at {}: both sides in space, residuals, sections",
-                                in_folder(folder, "report.html")));
+    steps.push_back(
+        fmt::format("look at {}: 3-D view, residuals, sections", in_folder(folder, "report.html")));
   if (report.source.kind == "segments") return steps;
   steps.push_back(fmt::format("move the cloud: {}", transform_command(report, folder, false)));
   if (in_model(report)) {
@@ -152,8 +152,7 @@ std::vector<std::string> steps_registered(const RegistrationReport& report, cons
     const InputSummary& scan = source_is_model ? report.target : report.source;
     const InputSummary& model = source_is_model ? report.source : report.target;
     steps.push_back(
-        fmt::format("see what was built otherwise: limen deviation {} {} --result {}{} -o "
-                    "deviation",
+        fmt::format("measure deviations from the model: limen deviation {} {} --result {}{} -o deviation",
                     shell_word(scan.path), shell_word(model.path), in_folder(folder, "result.json"),
                     source_is_model ? " --inverse" : ""));
   }
@@ -174,23 +173,23 @@ std::vector<std::string> steps_ambiguous(const RegistrationReport& report, const
                                 in_folder(folder, "report.html")));
   if (report.source.kind == "segments") return steps;
   if (ties)
-    steps.push_back(fmt::format("where you know which is right take it by its number: {}",
+    steps.push_back(fmt::format("if you know which pose is right, choose it by its number: {}",
                                 transform_command(report, folder, true)));
-  steps.push_back(
-      in_model(report)
-          ? "let a further scan decide, one of a place that the model has once: --source-with SCAN POSE"
-          : "let a further scan decide, one that shows what the places do not have alike: --source-with SCAN "
-            "POSE, or limen project with all scans");
+  steps.push_back(in_model(report)
+                      ? "add a scan of a place that is unique in the model: --source-with SCAN POSE"
+                      : "add a scan that shows where the places differ: --source-with SCAN POSE, or limen "
+                        "project with all scans");
   return steps;
 }
 
 std::vector<std::string> steps_open(const RegistrationReport& report, const std::string& folder) {
   std::vector<std::string> steps;
   if (has_report(report))
-    steps.push_back(fmt::format("see in {} what is open", in_folder(folder, "report.html")));
+    steps.push_back(
+        fmt::format("see in {} which direction is undetermined", in_folder(folder, "report.html")));
   std::string what =
-      "add a scan that shows a wall, a floor or a window across what is open: --source-with "
-      "SCAN POSE, or limen project with all scans";
+      "add a scan that shows a wall, a floor or a window perpendicular to the undetermined direction: "
+      "--source-with SCAN POSE, or limen project with all scans";
   for (const UnobservedFreedom& freedom : report.result.unobserved) {
     if (freedom.rotation)
       what = "add a scan that shows surfaces of other directions: --source-with SCAN POSE";
@@ -198,7 +197,7 @@ std::vector<std::string> steps_open(const RegistrationReport& report, const std:
   steps.push_back(what);
   if (report.source.mobile != report.target.mobile && report.result.thickness.empty() &&
       !report.result.openings.empty())
-    steps.push_back("where the thickness of the outer wall is known give --wall-thickness-m");
+    steps.push_back("if the thickness of the outer wall is known, give --wall-thickness-m");
   return steps;
 }
 
@@ -208,7 +207,7 @@ std::vector<std::string> steps_none(const RegistrationReport& report, const std:
     steps.push_back(fmt::format("look at both side by side in {}", in_folder(folder, "report.html")));
   const std::vector<LikelyCause> causes = likely_causes(report);
   if (!causes.empty()) steps.push_back(causes.front().remedy);
-  if (report.source.kind == "scan") steps.push_back("see what limen takes the files for: limen info FILE");
+  if (report.source.kind == "scan") steps.push_back("check how limen reads the files: limen info FILE");
   return steps;
 }
 
@@ -251,14 +250,19 @@ std::string surer(const RegistrationReport& report) {
   if (others.twin >= std::max(chance, elsewhere)) {
     const bool said = std::any_of(report.options.begin(), report.options.end(),
                                   [](const auto& option) { return option.first == "repeats"; });
-    return said ? "to be surer ask who knows the building: are these two the same room, or two built alike?"
-                : "to be surer say --repeats none, if no room, flat or storey of the building repeats";
+    return said ? "to be more certain, ask somebody who knows the building: are these the same room, or two "
+                  "look-alike rooms?"
+                : "to be more certain, add --repeats none, if no room, flat or storey of the building looks "
+                  "like another";
   }
   const char* const with =
       in_model(report) || report.source.kind == "scan" ? ": --source-with SCAN POSE" : "";
   return chance > elsewhere
-             ? fmt::format("to be surer add a scan that shows more of what both sides have in common{}", with)
-             : fmt::format("to be surer add a scan that sees both sides{}, or limen project with all", with);
+             ? fmt::format("to be more certain, add a scan that shows more of the overlap{}", with)
+             : fmt::format(
+                   "to be more certain, add a scan that sees both sides{}, or use limen project with all "
+                   "scans",
+                   with);
 }
 
 std::vector<LikelyCause> likely_causes(const RegistrationReport& report) {

@@ -60,7 +60,7 @@ TEST(Advice, AProbablePoseNamesWhatWouldMakeItSurer) {
   };
   EXPECT_NE(with(0.02, 0.0, 0.0).find("--repeats none"), std::string::npos);
   EXPECT_NE(with(0.0, 0.0, 0.02).find("sees both sides"), std::string::npos);
-  EXPECT_NE(with(0.0, 0.02, 0.0).find("more of what both sides have in common"), std::string::npos);
+  EXPECT_NE(with(0.0, 0.02, 0.0).find("more of the overlap"), std::string::npos);
   // Once that was said it is not asked for again.
   report.options.emplace_back("repeats", std::string("none"));
   EXPECT_NE(with(0.02, 0.0, 0.0).find("the same room"), std::string::npos);
@@ -160,20 +160,21 @@ TEST(SummaryText, ListsWhatThereIsToChoose) {
   report.result.alternatives[1].room = "Room B";
   report.result.alternatives[1].probability = 0.39;
   const std::string text = summary_text(report, "out");
-  EXPECT_NE(text.find("others      3 other poses; = cannot be told from the best"), std::string::npos)
+  EXPECT_NE(text.find("others      3 other poses; = cannot be distinguished from the best"),
+            std::string::npos)
       << text;
   EXPECT_NE(text.find("    2 =             39.0 %"), std::string::npos) << text;
   EXPECT_NE(text.find("Room B"), std::string::npos) << text;
   report.result.alternatives.resize(1);
   report.result.rivals = 0;
-  EXPECT_NE(summary_text(report, "out").find("1 other pose looked at"), std::string::npos);
+  EXPECT_NE(summary_text(report, "out").find("1 other pose tested"), std::string::npos);
 }
 
 TEST(SummaryText, TellsTheShiftOfTheMiddleAndTheHintForLargeCoordinates) {
   RegistrationReport report = pair_of(Outcome::registered);
   report.result.best.target_from_source.translation = Vector3d(0.003, 0, 0);
   EXPECT_NE(
-      summary_text(report, "out").find("shift       0.0030 0.0000 0.0000 m, of the middle of a.ply (3.0 mm)"),
+      summary_text(report, "out").find("shift       0.0030 0.0000 0.0000 m, of the centre of a.ply (3.0 mm)"),
       std::string::npos);
   EXPECT_EQ(summary_text(report, "out").find("CloudCompare"), std::string::npos);
   report.source.middle += Vector3d(1050000, 6840000, 0);

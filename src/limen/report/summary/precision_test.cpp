@@ -118,6 +118,7 @@ TEST(ReportWords, ProbabilitiesAreNeverACertainty) {
   EXPECT_EQ(probability_words(0.99987), "99.98 %");
   EXPECT_EQ(probability_words(0.9899), "98.9 %");
   EXPECT_EQ(probability_words(0.5), "50.0 %");
+  EXPECT_EQ(probability_words(0.0003), "0.03 %");
   EXPECT_EQ(probability_words(0.0), "less than 0.01 %");
 }
 

@@ -24,10 +24,10 @@ std::string line(const char* name, const std::string& value) {
 std::string motion_lines(const RegistrationReport& report) {
   const PoseMotion motion = motion_of(report, report.result.best);
   const Vector3d& shift = motion.shift_m;
-  std::string text = line("shift", fmt::format("{:.4f} {:.4f} {:.4f} m, of the middle of {} ({})",
+  std::string text = line("shift", fmt::format("{:.4f} {:.4f} {:.4f} m, of the centre of {} ({})",
                                                shift.x() + 0.0, shift.y() + 0.0, shift.z() + 0.0,
                                                file_name(report.source), length_words(shift.norm())));
-  return text + line("turn", fmt::format("{:.4f} deg about {}, through that middle", degrees(motion.turn_rad),
+  return text + line("turn", fmt::format("{:.4f} deg about {}, through that centre", degrees(motion.turn_rad),
                                          axis_words(motion.axis)));
 }
 
@@ -35,16 +35,16 @@ std::string precision_lines(const RegistrationReport& report) {
   const RegistrationResult& result = report.result;
   std::string text;
   if (const auto precision = precision_of(report, result.best)) {
-    text +=
-        line("precision",
-             fmt::format("{} in the middle, {} at the far end {:.0f} m away (95 %{})",
-                         length_words(precision->middle.radius_m), length_words(precision->far_end.radius_m),
-                         precision->far_distance_m, precision->across_open ? ", across what is open" : ""));
+    text += line("accuracy",
+                 fmt::format("{} at the centre, {} at the far end {:.0f} m away (95 %{})",
+                             length_words(precision->middle.radius_m),
+                             length_words(precision->far_end.radius_m), precision->far_distance_m,
+                             precision->across_open ? ", perpendicular to the undetermined direction" : ""));
     if (precision->middle.formal_radius_m)
-      text += line("", fmt::format("from the points' scatter alone {} and {}; the rest is how far planes "
-                                   "disagree",
-                                   length_words(*precision->middle.formal_radius_m),
-                                   length_words(precision->far_end.formal_radius_m.value_or(0.0))));
+      text += line(
+          "", fmt::format("{} and {} from the noise of the points alone; the rest is how far planes disagree",
+                          length_words(*precision->middle.formal_radius_m),
+                          length_words(precision->far_end.formal_radius_m.value_or(0.0))));
   }
   for (const UnobservedFreedom& freedom : result.unobserved) text += line("not fixed", freedom.name);
   if (result.best.rms_m > 0) {
@@ -73,7 +73,7 @@ std::string pose_lines(const RegistrationReport& report) {
   text += motion_lines(report) + precision_lines(report) + start_line(result);
   for (const MeasuredThickness& wall : result.thickness) {
     if (wall.sigma_m > 0.1) continue;
-    text += line("wall", fmt::format("{:.3f} m thick, sigma {:.1f} mm, by {} opening{}", wall.value_m,
+    text += line("wall", fmt::format("{:.3f} m thick, sigma {:.1f} mm, from {} opening{}", wall.value_m,
                                      1e3 * wall.sigma_m, wall.openings, wall.openings == 1 ? "" : "s"));
   }
   if (!result.best.room.empty()) text += line("room", result.best.room);
@@ -86,7 +86,7 @@ std::string alternative_line(std::size_t number, const Hypothesis& pose) {
   if (pose.matched_segments > 0) {
     text += fmt::format("{:>4} segments, {:.1f} m", pose.matched_segments, pose.agreeing_length_m);
   } else {
-    text += fmt::format("{:>7.1f} m2 agree, {:>5.1f} m2 against", pose.agreeing_m2, pose.contradicted_m2);
+    text += fmt::format("{:>7.1f} m2 agree, {:>5.1f} m2 contradict", pose.agreeing_m2, pose.contradicted_m2);
   }
   return text + (pose.room.empty() ? "" : "  " + pose.room) + "\n";
 }
@@ -94,7 +94,8 @@ std::string alternative_line(std::size_t number, const Hypothesis& pose) {
 /// The places of an answer that is not decided.
 std::string place_lines(const RegistrationResult& result) {
   const AnswerPlaces places = answer_places(result);
-  std::string text = line("places", "together 95 % of what is not chance; = cannot be told from number 0");
+  std::string text = line(
+      "places", "together 95 % of the probability, chance left out; = cannot be distinguished from number 0");
   text += alternative_line(0, result.best);
   const std::size_t shown = std::min(places.alternatives.size(), kShown);
   for (std::size_t k = 0; k < shown; ++k)
@@ -113,9 +114,9 @@ std::string alternative_lines(const RegistrationResult& result) {
   if (count == 0 || result.published) return {};
   const std::string others = count == 1 ? "1 other pose" : fmt::format("{} other poses", count);
   if (result.rivals == 0)
-    return line("others",
-                fmt::format("{} looked at, {} near", others, count == 1 ? "it does not come" : "none comes"));
-  std::string text = line("others", others + "; = cannot be told from the best (number 0)");
+    return line("others", fmt::format("{} tested, {} nearly as well", others,
+                                      count == 1 ? "it does not fit" : "none fits"));
+  std::string text = line("others", others + "; = cannot be distinguished from the best (number 0)");
   text += alternative_line(0, result.best);
   std::size_t shown = 0;
   for (std::size_t k = 0; k < count && shown < kShown; ++k) {
@@ -144,11 +145,10 @@ std::string next_lines(const RegistrationReport& report, const std::string& fold
   if (report.result.outcome != Outcome::no_match && on_large_coordinates(report))
     text += line("",
                  "in CloudCompare apply transform.txt to the global coordinates (Apply Transformation, "
-                 "\"apply to global\"), for these are large");
+                 "\"apply to global\"), because they are large");
   if (report.result.outcome != Outcome::no_match && has_offset(report))
-    text += line("",
-                 "a program that does not add the offset in the comment of a file takes transform_raw.txt "
-                 "instead");
+    text += line(
+        "", "in a program that ignores the offset in the comment of a file, use transform_raw.txt instead");
   return text;
 }
 

@@ -37,6 +37,7 @@ std::string probability_words(double probability) {
   if (probability < 0.0001) return "less than 0.01 %";
   // Cut, not rounded: 99.97 % is not 100.0 %.
   const bool fine = probability >= 0.99;
+  if (probability < 0.01) return fmt::format("{:.2f} %", 100.0 * probability);
   const double scale = fine ? 1e4 : 1e3;
   return fmt::format("{:.{}f} %", std::floor(scale * probability + 1e-9) / scale * 100.0, fine ? 2 : 1);
 }

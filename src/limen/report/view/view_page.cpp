@@ -94,8 +94,8 @@ std::string view_page(const ViewScene& scene) {
                            {"script", std::string(view_script())}};
   std::string page = filled_in(view_pattern(), parts);
   if (page.size() > kMostPageBytes) {
-    throw Error(fmt::format("the page would have {} MB, {} MB are the most", page.size() / 1000000,
-                            kMostPageBytes / 1000000),
+    throw Error(fmt::format("the page would have {} MB, but at most {} MB are possible",
+                            page.size() / 1000000, kMostPageBytes / 1000000),
                 "view", "show fewer points (--most-points) or fewer models");
   }
   return page;

@@ -44,7 +44,7 @@ class BimSimulation {
     open_doors(model_, o_.open_door_share, door_random, doors);
     BimMesh planned = build_mesh(model_, matter, doors);
     if (planned.mesh.triangles().empty())
-      throw Error("the model has no surface to be scanned", model_.name, "look at it with limen info");
+      throw Error("the model has no surface to be scanned", model_.name, "check it with limen info");
     RandomStream place_random(o_.seed, kPlaces);
     stations_ = place_bim_stations(rooms_, RayCaster(planned.mesh), o_.stations, o_.room, place_random);
     told_.as_built = o_.as_built.on;

@@ -47,7 +47,7 @@ const ticked = new Set();
 
 const upload = (file) => {
   const name = file.name.replace(/\s+/g, '_');
-  const bar = make('progress', { max: 1, value: 0, 'aria-label': `${name} on its way` });
+  const bar = make('progress', { max: 1, value: 0, 'aria-label': `Upload of ${name}` });
   const told = make('span', { textContent: sizeOf(file.size) });
   const item = make('li', {}, make('span', { textContent: name }), told, bar);
   byId('uploads').append(item);
@@ -65,13 +65,13 @@ const upload = (file) => {
       resolve(!fault);
     };
     if (state.most_upload_bytes > 0 && file.size > state.most_upload_bytes) {
-      end(`larger than ${sizeOf(state.most_upload_bytes)}, which is the most that is taken`);
+      end(`larger than ${sizeOf(state.most_upload_bytes)}, which is the upload limit`);
       return;
     }
     const request = new XMLHttpRequest();
     request.open('PUT', `files/${encodeURIComponent(name)}`);
     request.upload.onprogress = (event) => { bar.value = event.total > 0 ? event.loaded / event.total : 0; };
-    request.onerror = () => end('the connection broke off');
+    request.onerror = () => end('the connection was lost');
     request.onload = () => {
       let told_ = {};
       try { told_ = JSON.parse(request.responseText); } catch { /* no words, then */ }
@@ -98,12 +98,12 @@ const removeFile = async (name) => {
 
 const showTicked = () => {
   const names = state.files.map((file) => file.name).filter((name) => ticked.has(name));
-  byId('ticked').textContent = names.length ? `${names.length} ticked: ${names.join(', ')}` : 'Tick files above.';
+  byId('ticked').textContent = names.length ? `${names.length} selected: ${names.join(', ')}` : 'Select files above.';
   for (const button of byId('many').querySelectorAll('button')) button.disabled = names.length === 0;
 };
 
 const fileRow = ({ name, bytes }) => {
-  const box = make('input', { type: 'checkbox', checked: ticked.has(name), 'aria-label': `Take ${name}` });
+  const box = make('input', { type: 'checkbox', checked: ticked.has(name), 'aria-label': `Select ${name}` });
   box.onchange = () => {
     if (box.checked) ticked.add(name); else ticked.delete(name);
     showTicked();
@@ -136,13 +136,13 @@ const showFiles = () => {
 
 // Work
 
-const kinds = { register: 'Register', project: 'One frame', view: 'Look', place: 'Move', decide: 'Answer' };
+const kinds = { register: 'Register', project: 'Project', view: 'View', place: 'Move', decide: 'Answer' };
 const results = new Map();  // what a job's result says, once it was read
 
 const start = async (work) => {
   try {
     await post('jobs', work);
-    say('Started: see the work.');
+    say('Started: see the jobs.');
   } catch (error) { say(error.message, true); }
   await refresh();
 };
@@ -159,9 +159,9 @@ const alternativesOf = (job, result) => {
   const rooms = list.some((other) => other.room);
   const rows = list.slice(0, 50).map((other, k) => make('tr', {}, make('td', { textContent: k + 1 }),
     make('td', { textContent: percent(other.probability) }), ...(rooms ? [make('td', { className: 'name', textContent: other.room ?? '' })] : []),
-    make('td', {}, button('Look', { kind: 'view', of: job.id, alternative: k + 1 }, `Look at alternative ${k + 1}`), ' ',
+    make('td', {}, button('View', { kind: 'view', of: job.id, alternative: k + 1 }, `View alternative ${k + 1}`), ' ',
       button('Choose', { kind: 'place', of: job.id, alternative: k + 1 }, `Choose alternative ${k + 1}: move the scan there`))));
-  const head = make('tr', {}, ...['Number', 'Probability', rooms ? 'Room' : '', 'Do'].filter((word) => word).map((textContent) => make('th', { scope: 'col', textContent })));
+  const head = make('tr', {}, ...['Number', 'Probability', rooms ? 'Room' : '', 'Action'].filter((word) => word).map((textContent) => make('th', { scope: 'col', textContent })));
   return [make('details', { open: result.outcome === 'ambiguous' }, make('summary', { textContent: `Other places (${list.length})` }),
     make('div', { className: 'scroll', tabIndex: 0, role: 'region', 'aria-label': `Other places of ${job.title}` }, make('table', {}, make('thead', {}, head), make('tbody', {}, ...rows))))];
 };
@@ -180,14 +180,14 @@ const questionsOf = (job, project) => {
       };
       return choose;
     }))));
-  if (parts.length > 0) parts.unshift(make('p', {}, make('strong', { textContent: 'What only somebody who knows the building can tell' })));
+  if (parts.length > 0) parts.unshift(make('p', {}, make('strong', { textContent: 'Questions to somebody who knows the building' })));
   parts.push(make('p', {}, button(list.length ? 'Run again with the answers' : 'Run again', { kind: 'again', of: job.id }, `Run ${job.title} again`)));
   return parts;
 };
 
 const outcomeOf = (job, result) => {
   if (job.state !== 'done') return '';
-  const words = { registered: 'registered', probable: 'placed, but less sure than registered', ambiguous: 'not decided: several places fit', under_constrained: 'some direction stays free', no_match: 'nothing in common was found', partial: 'some have a place, some do not' };
+  const words = { registered: 'registered', probable: 'pose found, but less certain than registered', ambiguous: 'not decided: several places fit', under_constrained: 'some direction is undetermined', no_match: 'no reliable overlap was found', partial: 'some scans are registered, some are not' };
   return words[result?.outcome] ?? '';
 };
 
@@ -199,7 +199,7 @@ const jobCard = (job) => {
   const told = make('p', {}, make('span', { className: 'state', textContent: outcomeOf(job, result) || job.state }), ' ', make('span', { className: 'soft time' }));
   const parts = [title, told];
   if (job.state === 'running' || job.state === 'queued') {
-    parts.push(make('progress', { max: 1, 'aria-label': `${job.title}: how far` }));
+    parts.push(make('progress', { max: 1, 'aria-label': `${job.title}: progress` }));
     parts.push(make('p', {}, make('button', { type: 'button', textContent: 'Stop', 'aria-label': `Stop ${job.title}`, onclick: async () => {
       try { await post(`jobs/${job.id}/stop`); } catch (error) { say(error.message, true); }
       await refresh();
@@ -214,7 +214,7 @@ const jobCard = (job) => {
   if (result && job.kind === 'project') parts.push(...questionsOf(job, result));
   if (job.said) {
     const failed = job.state === 'failed';
-    parts.push(failed ? make('pre', { className: 'fault', tabIndex: 0, textContent: job.said }) : make('details', {}, make('summary', { textContent: 'What it said' }), make('pre', { tabIndex: 0, textContent: job.said })));
+    parts.push(failed ? make('pre', { className: 'fault', tabIndex: 0, textContent: job.said }) : make('details', {}, make('summary', { textContent: 'Messages' }), make('pre', { tabIndex: 0, textContent: job.said })));
   }
   return make('article', { className: `job ${classOf(job, result)}`, id: `job-${job.id}` }, ...parts);
 };

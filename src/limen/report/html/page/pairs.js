@@ -36,23 +36,23 @@ const makePair = (scene, number) => {
 };
 
 const kLinkWords = {
-  verified: 'at least one loop that it is part of closes', bridge: 'accepted, but in no loop: nothing checks it', ambiguous: 'another pose, here or elsewhere, explains as much',
-  rejected: 'contradicts the loops, or more probably lays two places built alike on one another', weak: 'leaves a direction free, or agrees with too little to count',
+  verified: 'checked by at least one loop that closes', bridge: 'single unchecked link: accepted, but in no loop', ambiguous: 'another pose fits as well, of this link or elsewhere',
+  rejected: 'contradicts the loops, or probably matches two look-alike places', weak: 'leaves a direction undetermined, or overlaps too little to count',
 };
 
 const describePair = ({ link, source, target }) => {
   const facts = [
-    ['Source', source.name], ['Target', target.name], ['State', `${link.state}: ${kLinkWords[link.state] ?? ''}`], ['The pair alone', link.pair],
+    ['Source', source.name], ['Target', target.name], ['State', `${link.state}: ${kLinkWords[link.state] ?? ''}`], ['Result of the pair alone', link.pair],
     ['Agrees', `${link.agreeing.toFixed(1)} m²`],
   ];
-  if (link.state === 'verified') facts.push(['Misses by', `${millimetres(link.misses_m)}, ${link.misses_deg.toFixed(3)}°`]);
+  if (link.state === 'verified') facts.push(['Residual', `${millimetres(link.misses_m)}, ${link.misses_deg.toFixed(3)}°`]);
   const list = made('dl', {}, ...facts.flatMap(([name, value]) => [made('dt', {}, name), made('dd', {}, value)]));
   const parts = [list, ...(link.reason ? [made('p', { class: 'soft' }, link.reason)] : [])];
   const table = (title, heads, rows) => made('table', {}, made('caption', {}, title),
     made('thead', {}, made('tr', {}, ...heads.map((head) => made('th', { scope: 'col' }, head)))),
     made('tbody', {}, ...rows.map((row) => made('tr', {}, ...row.map((cell) => made('td', {}, cell))))));
   if (link.matches.length) {
-    parts.push(table(`Planes that agree${link.planes > link.matches.length ? `, the largest ${link.matches.length} of ${link.planes}` : ''}`, ['Planes', 'Apart', 'Angle', 'Overlap'],
+    parts.push(table(`Planes that agree${link.planes > link.matches.length ? `, the largest ${link.matches.length} of ${link.planes}` : ''}`, ['Planes', 'Distance', 'Angle', 'Overlap'],
       link.matches.map(([s, t, off, angle, area]) => [`${s} – ${t}`, millimetres(off), `${angle.toFixed(2)}°`, `${area.toFixed(1)} m²`])));
   }
   if (link.openings.length) {

@@ -97,7 +97,7 @@ const showLegend = (scene, state, residual) => {
     legend.append(made('span', {}, 'Residual 0', made('span', { class: 'ramp', style: `background:${rampCss()}` }),
       `${1000 * scene.residual_range} mm and more; grey: not matched`));
   } else if (state.colouring === 'residual') {
-    legend.append('Residuals are told for the best pose, after registration');
+    legend.append('Residuals are shown for the best pose only, after registration');
   } else {
     for (const name of ['source', 'target']) {
       legend.append(made('span', { class: `chip ${name}` }, made('span', { class: 'mark' }), name === 'source' ? 'Source' : 'Target'));
@@ -108,7 +108,7 @@ const showLegend = (scene, state, residual) => {
 const numbersOf = (pose) => {
   const words = [];
   if (pose.segments) words.push(`${pose.segments} segments, ${pose.length.toFixed(1)} m in common`);
-  else words.push(`${pose.agreeing.toFixed(1)} m² agree`, `${pose.contradicted.toFixed(1)} m² contradicted`);
+  else words.push(`${pose.agreeing.toFixed(1)} m² agree`, `${pose.contradicted.toFixed(1)} m² contradict`);
   if (pose.rms > 0) words.push(`residual ${millimetres(pose.rms)}`);
   if (pose.probability) words.push(pose.probability);
   if (pose.room) words.push(pose.room);
@@ -151,6 +151,6 @@ const copyMatrix = async () => {
     said.textContent = 'Copied';
   } catch {
     getSelection().selectAllChildren(element('matrix'));
-    said.textContent = document.execCommand('copy') ? 'Copied' : 'Marked: copy it with Ctrl+C';
+    said.textContent = document.execCommand('copy') ? 'Copied' : 'Selected: copy it with Ctrl+C';
   }
 };

@@ -101,13 +101,13 @@ const describe = (scene, found, { targetFromView, residual }) => {
   const local = apply(targetFromView, found.at);
   const world = add(local, scene.target.origin);
   lines.push(['In target', world.map((c) => c.toFixed(3)).join('  ')]);
-  lines.push(['Is', point >= 0 ? `point${Math.max(...side.step) > 0.001 ? `, drawn to ±${millimetres(Math.max(...side.step) / 2)}` : ''}` : 'surface']);
+  lines.push(['Type', point >= 0 ? `point${Math.max(...side.step) > 0.001 ? `, drawn to ±${millimetres(Math.max(...side.step) / 2)}` : ''}` : 'surface']);
   if (plane >= 0) {
     const { area, rms } = side.planes[plane];
-    lines.push(['Plane', `${plane}, ${area.toFixed(1)} m²${rms > 0 ? `, flat to ${millimetres(rms)}` : ''}`]);
+    lines.push(['Plane', `${plane}, ${area.toFixed(1)} m²${rms > 0 ? `, residuals ${millimetres(rms)}` : ''}`]);
     const partner = scene.partner.get(side.side + plane);
     if (partner && residual) {
-      lines.push(['Matched', `${side.side === 'source' ? 'target' : 'source'} plane ${partner.other}, ${millimetres(partner.distance)} apart`]);
+      lines.push(['Matched', `${side.side === 'source' ? 'target' : 'source'} plane ${partner.other}, distance ${millimetres(partner.distance)}`]);
     }
   }
   const mark = point >= 0 ? side.marks[2 * point + 1] : 0;

@@ -44,15 +44,15 @@ const describeLength = ([a, b]) => {
   const exact = [a, b].reduce((sum, { side, point }) => sum + (point >= 0 ? Math.hypot(...side.step) / 2 : 0), 0);
   return [
     ['Distance', `${norm(way).toFixed(3)} m${exact > 0.0005 ? ` ± ${millimetres(exact)}` : ''}`],
-    ['Level', `${Math.hypot(way[0], way[1]).toFixed(3)} m`],
-    ['Height', `${signed(way[2], 3)} m`],
+    ['Horizontal', `${Math.hypot(way[0], way[1]).toFixed(3)} m`],
+    ['Vertical', `${signed(way[2], 3)} m`],
     ['Slope', `${signed(Math.atan2(way[2], Math.hypot(way[0], way[1])) * 180 / Math.PI, 2)}°`],
   ];
 };
 
 const describePlace = (scene, { side, point, plane, at }, name) => {
   const told = add(turn(inverseRigid(scene.viewFromFrame), at), scene.origin);
-  const lines = [[name, told.map((c) => c.toFixed(3)).join('  ')], ['Of', side.name]];
+  const lines = [[name, told.map((c) => c.toFixed(3)).join('  ')], ['File', side.name]];
   if (point < 0 && plane >= 0) lines.push(['Surface', `${side.planes[plane].area.toFixed(1)} m²`]);
   return lines;
 };
@@ -227,7 +227,7 @@ const runView = (gl, canvas) => {
   const overlay = () => {
     const length = roundBelow(110 * look.metresPerPx);
     element('scale-bar').style.width = `${length / look.metresPerPx}px`;
-    element('scale-text').textContent = metres(length) + (camera.parallel ? '' : ' in the middle');
+    element('scale-text').textContent = metres(length) + (camera.parallel ? '' : ' at the centre');
     for (const k of [0, 1]) put(element(`pin-${k}`), state.ends[k]?.at);
     const marked = (number) => !state.pair && state.linksShown && (!state.floor || state.floor.scans.includes(number));
     for (const { node, number, at } of spots) put(node, marked(number) ? at : null);
@@ -240,7 +240,7 @@ const runView = (gl, canvas) => {
     const { ends, measuring } = state;
     const lines = ends.flatMap((end, k) => describePlace(scene, end, measuring ? `End ${k + 1}` : 'At'));
     if (ends.length === 2) lines.unshift(...describeLength(ends));
-    const ask = measuring ? (ends.length === 1 ? 'Click the other end.' : 'Click two points to measure between them.') : 'Click a point or a surface to learn where it is.';
+    const ask = measuring ? (ends.length === 1 ? 'Click the other end.' : 'Click two points to measure between them.') : 'Click a point or a surface for its coordinates.';
     const list = made('dl', {}, ...lines.flatMap(([name, value]) => [made('dt', {}, name), made('dd', {}, value)]));
     element('picked').replaceChildren(...(lines.length ? [list] : []), ...(ends.length < 2 ? [made('p', { class: 'soft' }, ask)] : []));
     element('measure').setAttribute('aria-pressed', String(measuring));
