@@ -34,7 +34,7 @@ constexpr std::size_t kMostListed = 10;
 constexpr std::size_t kLargestUnpacked = std::size_t{2000} * 1000 * 1000;
 /// IFC text becomes five to twenty times as small; what becomes far smaller is made to fill the memory.
 constexpr std::size_t kMostExpansion = 100;
-constexpr std::size_t kAnyMember = 1000 * 1000;  // bytes that a member may have in any case
+constexpr std::size_t kAnyMember = 1'000'000;  // bytes that a member may have in any case
 constexpr const char* kWayRound = "export the model as IFC4 or IFC2X3, or as a mesh (OBJ, PLY)";
 
 void require_schema(const StepFile& file, const std::string& name) {
