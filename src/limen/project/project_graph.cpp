@@ -132,7 +132,8 @@ class GraphMaker {
       const double both = known.probability + other.probability;
       const double share = other.probability / both;
       known.covariance =
-          (1.0 - share) * known.covariance + share * (other.covariance + apart * apart.transpose());
+          (1.0 - share) * known.covariance +
+          share * (moved_covariance(other, Rigid3{}, known.centre) + apart * apart.transpose());
       known.probability = both;
       return;
     }

@@ -230,8 +230,6 @@ void write_result(const std::vector<FoundPose>& poses, Posterior posterior, cons
   std::string look_alike;
   if (things != nullptr) look_alike = twin_words(things->seen, posterior.others.twin);
   result.outcome = outcome_of(posterior, open.list, options.verdict);
-  if (result.outcome == Outcome::ambiguous && !look_alike.empty() && !options.nothing_repeats)
-    look_alike += ". If the building has no look-alike rooms, add --repeats none";
   result.reason = reason_of(result.outcome, posterior, best.score, open, look_alike, options.verdict);
   if (result.outcome != Outcome::no_match) result.unobserved = open.list;
   const auto hypothesis = [&](std::size_t rank) {

@@ -10,8 +10,9 @@ namespace limen {
 
 LinkPose reversed(const LinkPose& pose) {
   const Rigid3 back = inverse(pose.target_from_source);
-  LinkPose other{back,     Matrix6d::Identity(), back * pose.centre, pose.agreeing_m2, pose.probability,
-                 pose.twin};
+  LinkPose other = pose;
+  other.target_from_source = back;
+  other.centre = back * pose.centre;
   other.covariance = moved_covariance(pose, back, other.centre);
   return other;
 }

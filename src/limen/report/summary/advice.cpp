@@ -159,6 +159,29 @@ std::vector<std::string> steps_registered(const RegistrationReport& report, cons
   return steps;
 }
 
+double chance_of(const RegistrationResult& result) {
+  const OtherExplanations others = result.others.value_or(OtherExplanations{});
+  return others.nothing_shared + others.unlisted_pose;
+}
+
+double elsewhere_of(const RegistrationResult& result) {
+  const double look_alike = result.others ? result.others->twin : 0.0;
+  return 1.0 - result.best.probability.value_or(1.0) - look_alike - chance_of(result);
+}
+
+/// What excludes a look-alike place, where nothing else is as likely besides the best pose.
+std::optional<std::string> step_of_look_alike(const RegistrationReport& report) {
+  const RegistrationResult& result = report.result;
+  const double look_alike = result.others ? result.others->twin : 0.0;
+  if (look_alike < std::max(chance_of(result), elsewhere_of(result))) return std::nullopt;
+  const bool said = std::any_of(report.options.begin(), report.options.end(),
+                                [](const auto& option) { return option.first == "repeats"; });
+  return said ? "to be more certain, ask somebody who knows the building: are these the same room, or two "
+                "look-alike rooms?"
+              : "to be more certain, add --repeats none, if no room, flat or storey of the building looks "
+                "like another";
+}
+
 std::vector<std::string> steps_probable(const RegistrationReport& report, const std::string& folder) {
   std::vector<std::string> steps = {surer(report)};
   for (std::string& step : steps_registered(report, folder)) steps.push_back(std::move(step));
@@ -175,6 +198,9 @@ std::vector<std::string> steps_ambiguous(const RegistrationReport& report, const
   if (ties)
     steps.push_back(fmt::format("if you know which pose is right, choose it by its number: {}",
                                 transform_command(report, folder, true)));
+  if (report.result.others && report.result.others->twin > 0.0) {
+    if (std::optional<std::string> step = step_of_look_alike(report)) steps.push_back(*std::move(step));
+  }
   steps.push_back(in_model(report)
                       ? "add a scan of a place that is unique in the model: --source-with SCAN POSE"
                       : "add a scan that shows where the places differ: --source-with SCAN POSE, or limen "
@@ -243,21 +269,11 @@ std::optional<UnitGuess> likely_unit(const InputSummary& source, const InputSumm
 }
 
 std::string surer(const RegistrationReport& report) {
-  const RegistrationResult& result = report.result;
-  const OtherExplanations others = result.others.value_or(OtherExplanations{});
-  const double chance = others.nothing_shared + others.unlisted_pose;
-  const double elsewhere = 1.0 - result.best.probability.value_or(1.0) - others.twin - chance;
-  if (others.twin >= std::max(chance, elsewhere)) {
-    const bool said = std::any_of(report.options.begin(), report.options.end(),
-                                  [](const auto& option) { return option.first == "repeats"; });
-    return said ? "to be more certain, ask somebody who knows the building: are these the same room, or two "
-                  "look-alike rooms?"
-                : "to be more certain, add --repeats none, if no room, flat or storey of the building looks "
-                  "like another";
-  }
+  if (std::optional<std::string> step = step_of_look_alike(report)) return *std::move(step);
+  const double chance = chance_of(report.result);
   const char* const with =
       in_model(report) || report.source.kind == "scan" ? ": --source-with SCAN POSE" : "";
-  return chance > elsewhere
+  return chance > elsewhere_of(report.result)
              ? fmt::format("to be more certain, add a scan that shows more of the overlap{}", with)
              : fmt::format(
                    "to be more certain, add a scan that sees both sides{}, or use limen project with all "
