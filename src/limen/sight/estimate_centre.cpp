@@ -17,6 +17,8 @@ namespace {
 constexpr std::size_t kMinTiles = 150;
 constexpr std::size_t kMaxUps = 6;
 constexpr double kMaxMisfit = 0.08;
+/// Mean |log density - median|. Of clouds thinned to 5 cm 0.1 to 0.22, of scans 0.43 to 0.88.
+constexpr double kThinnedSpread = 0.33;
 constexpr double kNearestM = 0.1;
 constexpr double kLeastHeightM = 0.01;
 constexpr double kLeastCosine = 0.05;  // of the elevation
@@ -217,6 +219,16 @@ std::optional<EstimatedCentre> estimate_centre(const Features& features) {
   const EstimatedCentre best = refined_over(tiles, search(tiles, ups.front()), ups);
   if (best.misfit >= kMaxMisfit) return std::nullopt;
   return best;
+}
+
+bool evenly_thinned(const Features& features) {
+  std::vector<double> densities;
+  for (const Tile& tile : full_tiles(features)) densities.push_back(tile.log_density);
+  if (densities.size() < kMinTiles) return false;
+  const double middle = median(densities);
+  double sum = 0.0;
+  for (const double density : densities) sum += std::abs(density - middle);
+  return sum < kThinnedSpread * static_cast<double>(densities.size());
 }
 
 std::optional<TestedCentre> test_centre(const Features& features, const Vector3d& claim) {

@@ -29,6 +29,10 @@ struct TestedCentre {
   EstimatedCentre nearby;     ///< where the fit comes to rest that starts there
 };
 
+/// Whether the points are spread evenly over the surfaces, as a cloud that was thinned to a spacing is: then
+/// neither the density on planes nor the spread over directions shows where the scanner was.
+bool evenly_thinned(const Features& features);
+
 /// Empty where there are too few tiles to tell.
 std::optional<TestedCentre> test_centre(const Features& features, const Vector3d& claim);
 

