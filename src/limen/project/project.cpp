@@ -14,6 +14,7 @@
 #include "limen/project/control/control_file.h"
 #include "limen/project/hear_scans.h"
 #include "limen/project/own_drift.h"
+#include "limen/project/places/stated_place.h"
 #include "limen/project/project_files.h"
 #include "limen/project/project_graph.h"
 #include "limen/project/project_state.h"
@@ -51,6 +52,7 @@ class Run {
     }
     note_lone_scan();
     note_copies();
+    take_stated();
     order_nodes();
     learn_own_drift(nodes_);
     words_ = words_by_nodes(decisions_, nodes_, result_.scans);
@@ -64,6 +66,7 @@ class Run {
     const std::size_t noted = result_.notes.size();
     assemble(nodes_, tried, inputs_, words_, options_.registering.verdict,
              hearing_of_scans(nodes_, options_.registering, heard), result_);
+    compare_with_stated(nodes_, result_);
     for (std::size_t k = noted; options_.on_note && k < result_.notes.size(); ++k)
       options_.on_note(result_.notes[k]);
     if (options_.rigid_passes) {
@@ -259,6 +262,14 @@ class Run {
     for (std::size_t i = first; i < nodes_.size(); ++i) nodes_[i].grouped = true;
   }
 
+  void take_stated() {
+    std::vector<std::string> notes;
+    const std::vector<StatedPose> poses =
+        inputs_.poses.empty() ? std::vector<StatedPose>{} : read_stated_poses(inputs_.poses);
+    take_stated_places(poses, options_.file_sigma_m, result_.scans, nodes_, notes);
+    for (std::string& text : notes) note(std::move(text));
+  }
+
   /// The first is the one whose world becomes the frame, if it can be.
   void order_nodes() {
     const auto rank = [](const ProjectNode& node) {
@@ -327,6 +338,7 @@ class Run {
     for (std::size_t source = 0; source < nodes_.size(); ++source) {
       for (std::size_t target = 0; target < source; ++target) {
         if (nodes_[source].digest.model && nodes_[target].digest.model) continue;
+        if (!options_.all_pairs && !can_meet(nodes_[source], nodes_[target])) continue;
         pairs.emplace_back(source, target);
       }
     }
@@ -357,6 +369,7 @@ void ProjectOptions::check() const {
   registering.check();
   reading.check();
   engine.check();
+  if (file_sigma_m && !(*file_sigma_m > 0.0)) throw_bad_option("file_sigma_m", *file_sigma_m, "more than 0");
   if (pairs_per_scan < 1) throw_bad_option("pairs_per_scan", pairs_per_scan, "1 or more");
 }
 
@@ -382,6 +395,7 @@ ProjectResult run_project(const ProjectInputs& inputs, const std::filesystem::pa
   }
   if (!inputs.decisions.empty()) static_cast<void>(read_decisions(inputs.decisions));
   if (!inputs.targets.empty()) static_cast<void>(read_seen_targets(inputs.targets));
+  if (!inputs.poses.empty()) static_cast<void>(read_stated_poses(inputs.poses));
   const CancelScope scope(monitor);
   return Run(inputs, folder, options, monitor).run();
 }

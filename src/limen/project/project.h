@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,8 +24,10 @@ struct ProjectOptions {
   bool all_pairs = false;       ///< every pair is tried, however many there are
   int pairs_per_scan = 12;      ///< else: as many per scan at most, on average
   bool stations_apart = false;  ///< scans of one file are not known to one another
-  bool rigid_passes = false;    ///< mobile passes do not drift: none is bent
-  EngineOptions engine = {};    ///< where features and pairs are made; never changes a result
+  /// Scans of one file are where it has them with this deviation, and not to millimetres.
+  std::optional<double> file_sigma_m = {};
+  bool rigid_passes = false;  ///< mobile passes do not drift: none is bent
+  EngineOptions engine = {};  ///< where features and pairs are made; never changes a result
   /// Along which scans may have been measured: each with times takes the one that covers it, before what its
   /// file says.
   ToldTrajectories trajectories = {};
@@ -41,6 +44,7 @@ struct ProjectInputs {
   std::string control;  ///< file of points whose coordinates enter as observations; empty: none
   std::string check;    ///< file of points that are compared with the result and never enter
   std::string targets;  ///< file of where the scans saw them; a point called as a scan is its scanner's place
+  std::string poses;    ///< file of where scans are said to have been (places/stated_poses.h)
   std::string decisions;  ///< file of what the user says (decide/decisions.h); added to what was said before
 };
 

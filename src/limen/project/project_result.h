@@ -52,6 +52,14 @@ struct PassCorrection {
 };
 
 /// One scan (a station, a mobile pass) or one building model.
+/// Where a user says that a scan was taken, and what the scans say to that.
+struct StatedPosition {
+  Vector3d x = Vector3d::Zero();  ///< as it is stated, metres
+  Matrix3d covariance = Matrix3d::Identity();
+  std::optional<double> missed_m;  ///< by all scans, where enough are placed to compare
+  bool contradicted = false;       ///< off by more than chance is once in a thousand
+};
+
 struct ProjectScan {
   std::string file;      ///< as the user wrote it
   int index = 0;         ///< of the scan within its file, from 0
@@ -73,6 +81,7 @@ struct ProjectScan {
   std::vector<Vector3d> stations;            ///< where the scanner stood, world of the component's frame
   std::optional<PassCorrection> correction;  ///< of a mobile pass that was bent
   std::string rigid;                         ///< why a mobile pass was not; empty: it was, or is none
+  std::optional<StatedPosition> stated;      ///< if one is
   std::vector<PlanPatch> patches;            ///< its larger planes, upright or level, the same frame
 };
 

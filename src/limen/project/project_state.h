@@ -21,6 +21,15 @@ struct OwnDrift {
   double turn_rate_rad2_per_m = 0.0;  ///< of the random walk of turns along the way
 };
 
+/// Where a scan is said to have been (places/stated_poses.h).
+struct StatedPlace {
+  Vector3d at = Vector3d::Zero();  ///< the point that is meant, about the local origin, scan's axes
+  Vector3d x = Vector3d::Zero();   ///< where it is, metres
+  Matrix3d covariance = Matrix3d::Identity();  ///< m^2
+  std::optional<Matrix3d> frame_from_scan;     ///< rotation, if it is known
+  double sigma_rad = 0.0;                      ///< of the rotation
+};
+
 /// One scan or model of a run, with its digest.
 struct ProjectNode {
   std::size_t scan = 0;  ///< index into ProjectResult::scans
@@ -29,6 +38,7 @@ struct ProjectNode {
   ScanDigest digest;
   bool grouped = false;           ///< its file holds several scans that are known to one another
   std::optional<OwnDrift> drift;  ///< of a pass that can be bent
+  std::optional<StatedPlace> stated;
 
   /// By how much points of a mobile scan stray for its trajectory, one standard deviation per axis; metres.
   [[nodiscard]] double strays_m() const { return drift ? drift->strays_m : digest.drift_m; }

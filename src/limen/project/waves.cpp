@@ -3,11 +3,14 @@
 #include "limen/project/waves.h"
 
 #include <algorithm>
+#include <limits>
+#include <optional>
 #include <set>
 #include <tuple>
 #include <utility>
 
 #include "limen/base/parallel.h"
+#include "limen/project/places/stated_place.h"
 #include "limen/project/project_graph.h"
 #include "limen/project/retrieve/predict_overlap.h"
 
@@ -15,9 +18,11 @@ namespace limen {
 namespace {
 
 constexpr std::size_t kFirstPartners = 4;
+constexpr std::size_t kFirstStated = 3;  // where all places are stated
 constexpr std::size_t kMorePartners = 3;
 constexpr int kMostWaves = 4;
 constexpr double kLeastOverlapM2 = 3.0;  // less holds no pair
+constexpr int kMostStatedPairs = 4;      // of a scan, where all places are stated
 constexpr int kEnoughLinks = 4;          // verified ones: a scan that has them needs no more
 
 class Waves {
@@ -29,9 +34,12 @@ class Waves {
   std::vector<TriedPair> run() {
     std::vector<ScanDigest> digests;
     for (const ProjectNode& node : nodes_) digests.push_back(node.digest);
-    const std::vector<std::vector<std::size_t>> ranked = ranked_partners(digests);
-    std::vector<TriedPair> tried = try_all_(best_pairs(ranked, kFirstPartners));
-    const auto most = static_cast<std::size_t>(pairs_per_scan_) * nodes_.size();
+    const std::vector<std::vector<std::size_t>> ranked = with_stated_places(ranked_partners(digests));
+    const bool all_stated = std::all_of(nodes_.begin(), nodes_.end(),
+                                        [](const ProjectNode& node) { return node.stated.has_value(); });
+    std::vector<TriedPair> tried = try_all_(best_pairs(ranked, all_stated ? kFirstStated : kFirstPartners));
+    const int per_scan = all_stated ? std::min(kMostStatedPairs, pairs_per_scan_) : pairs_per_scan_;
+    const auto most = static_cast<std::size_t>(per_scan) * nodes_.size();
     for (int wave = 1; wave <= kMostWaves; ++wave) {
       // What nothing holds is worth more with every wave.
       PairList next = next_pairs(ranked, tried, kFirstPartners << static_cast<unsigned>(wave));
@@ -45,6 +53,25 @@ class Waves {
   }
 
  private:
+  using Ranked = std::vector<std::vector<std::size_t>>;
+
+  /// Of a scan whose place is stated those come first that are stated near it, and those that cannot meet it
+  /// not at all.
+  [[nodiscard]] Ranked with_stated_places(Ranked ranked) const {
+    for (std::size_t i = 0; i < nodes_.size(); ++i) {
+      const std::optional<StatedPlace>& own = nodes_[i].stated;
+      if (!own) continue;
+      std::erase_if(ranked[i], [&](std::size_t j) { return !can_meet(nodes_[i], nodes_[j]); });
+      const auto apart = [&](std::size_t j) {
+        return nodes_[j].stated ? (nodes_[j].stated->x - own->x).norm()
+                                : std::numeric_limits<double>::infinity();
+      };
+      std::stable_sort(ranked[i].begin(), ranked[i].end(),
+                       [&](std::size_t a, std::size_t b) { return apart(a) < apart(b); });
+    }
+    return ranked;
+  }
+
   using Done = std::set<std::pair<std::size_t, std::size_t>>;
 
   [[nodiscard]] PairList next_pairs(const std::vector<std::vector<std::size_t>>& ranked,

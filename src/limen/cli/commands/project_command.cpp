@@ -24,6 +24,7 @@
 #include "limen/cli/inputs/project_trajectories.h"
 #include "limen/cli/inputs/scan_list.h"
 #include "limen/cli/inputs/scan_options.h"
+#include "limen/cli/inputs/start_option.h"
 #include "limen/files/mapped_file.h"
 #include "limen/files/scan_in_file.h"
 #include "limen/project/project.h"
@@ -50,6 +51,8 @@ struct ProjectCommandOptions {
   std::string check;
   std::string targets;
   std::string decisions;
+  std::string poses;
+  std::string file_sigma;
   std::string crs;
   TrajectoryChoice trajectories;
   double risk = VerdictOptions{}.risk;
@@ -78,6 +81,7 @@ ProjectOptions project_options(const ProjectCommandOptions& options, const Sessi
   project.all_pairs = options.pairs == "all";
   project.stations_apart = options.apart;
   project.rigid_passes = options.rigid_passes;
+  if (!options.file_sigma.empty()) project.file_sigma_m = length_of(options.file_sigma, "--trust-file-poses");
   project.engine = options.dask;
   project.engine.kind = options.engine == "dask" ? EngineKind::dask : EngineKind::local;
   project.on_note = [&session](const std::string& text) { session.note(text); };
@@ -98,6 +102,8 @@ OptionList reported(const ProjectCommandOptions& options, const Session& session
   if (!options.check.empty()) list.emplace_back("check", options.check);
   if (!options.targets.empty()) list.emplace_back("targets", options.targets);
   if (!options.decisions.empty()) list.emplace_back("decide", options.decisions);
+  if (!options.poses.empty()) list.emplace_back("poses", options.poses);
+  if (!options.file_sigma.empty()) list.emplace_back("trust_file_poses", options.file_sigma);
   if (!options.crs.empty()) list.emplace_back("crs", options.crs);
   list.emplace_back("seed", static_cast<std::int64_t>(session.common.seed));
   return list;
@@ -244,7 +250,8 @@ int work(const std::vector<std::string>& words, const Session& session) {
 }
 
 ProjectInputs inputs_of(const ProjectCommandOptions& options) {
-  return {options.scans, options.models, options.control, options.check, options.targets, options.decisions};
+  return {options.scans,   options.models, options.control,  options.check,
+          options.targets, options.poses,  options.decisions};
 }
 
 /// Where nothing was kept that a later run could use, a folder is left as it was found.
@@ -374,6 +381,17 @@ void add_project_command(CommandLine& app, Session& session) {
       ->one_of({"auto", "all"});
   command->add_flag("--stations-apart", options->apart,
                     "Ignore the poses that a file states for the scans in it");
+  command
+      ->add_option("--poses", options->poses,
+                   "Approximate scanner positions, from satellites, a tablet or another program: "
+                   "file,x,y,z[,sigma,heading or qw,qx,qy,qz,sigma_deg]; fewer pairs are tried, and wrong "
+                   "positions are reported")
+      ->type_name("CSV");
+  command
+      ->add_option("--trust-file-poses", options->file_sigma,
+                   "Uncertainty (1 sigma) of the poses that a file states for the scans in it, such as 0.5m; "
+                   "without it they are exact to millimetres")
+      ->type_name("SIGMA");
   command->add_flag("--rigid-passes", options->rigid_passes,
                     "Treat every mobile scan as rigid: no drift is corrected");
   command

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limen/cli/inputs/start_option.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <string_view>
@@ -22,9 +23,9 @@ struct Unit {
 constexpr std::array<Unit, 4> kLengths = {{{"mm", 1e-3}, {"cm", 1e-2}, {"km", 1e3}, {"m", 1.0}}};
 const std::array<Unit, 2> kAngles = {{{"deg", radians(1.0)}, {"rad", 1.0}}};
 
-/// "2m": the number times what its unit is worth.
+/// "2m": the number times what its unit is worth; nothing where it is none.
 template <std::size_t N>
-double measure(std::string_view text, const std::array<Unit, N>& units, const std::string& all) {
+std::optional<double> measure(std::string_view text, const std::array<Unit, N>& units) {
   double value = 0.0;
   const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), value);
   const std::string_view unit = text.substr(static_cast<std::size_t>(end - text.data()));
@@ -32,10 +33,18 @@ double measure(std::string_view text, const std::array<Unit, N>& units, const st
     for (const Unit& known : units)
       if (known.name == unit) return value * known.value;
   }
-  throw Error("the standard deviations of the start cannot be read", "--start-sigma " + all, kAsked);
+  return std::nullopt;
 }
 
 }  // namespace
+
+double length_of(const std::string& text, const std::string& option) {
+  const std::optional<double> length = measure(text, kLengths);
+  if (!length)
+    throw Error("\"" + text + "\" is not a length above 0", option,
+                "give a length with its unit, as in " + option + " 0.5m");
+  return *length;
+}
 
 std::optional<StartPrior> start_of(const std::string& pose, const std::string& sigma) {
   if (pose.empty()) {
@@ -49,12 +58,14 @@ std::optional<StartPrior> start_of(const std::string& pose, const std::string& s
     start.target_from_source = chosen_pose(file, 0, pose);
   }
   if (sigma.empty()) return start;
-  const std::size_t comma = sigma.find(',');
-  if (comma == std::string::npos)
-    throw Error("the standard deviations of the start cannot be read", "--start-sigma " + sigma, kAsked);
+  const std::size_t comma = std::min(sigma.find(','), sigma.size());
   const std::string_view text = sigma;
-  start.sigma_m = measure(text.substr(0, comma), kLengths, sigma);
-  start.sigma_rad = measure(text.substr(comma + 1), kAngles, sigma);
+  const std::optional<double> place = measure(text.substr(0, comma), kLengths);
+  const std::optional<double> turn = measure(text.substr(std::min(comma + 1, text.size())), kAngles);
+  if (!place || !turn)
+    throw Error("the standard deviations of the start cannot be read", "--start-sigma " + sigma, kAsked);
+  start.sigma_m = *place;
+  start.sigma_rad = *turn;
   return start;
 }
 

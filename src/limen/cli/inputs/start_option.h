@@ -14,4 +14,7 @@ namespace limen {
 /// `pose` is empty. Throws Error that names the option.
 std::optional<StartPrior> start_of(const std::string& pose, const std::string& sigma);
 
+/// "0.5m": a length with its unit (mm, cm, m, km), in metres. Throws Error that names the option.
+double length_of(const std::string& text, const std::string& option);
+
 }  // namespace limen

@@ -12,11 +12,13 @@
 
 #include <fmt/format.h>
 
+#include "limen/base/angles.h"
 #include "limen/base/error.h"
 #include "limen/base/text.h"
 #include "limen/files/table_cells.h"
 #include "limen/files/text_numbers.h"
 #include "limen/geometry/linear.h"
+#include "limen/project/places/stated_poses.h"
 
 namespace limen {
 namespace {
@@ -24,20 +26,26 @@ namespace {
 constexpr const char* kControlRemedy =
     "the first line names the columns: name,x,y,z and sigma, or sigma_x,sigma_y,sigma_z, or cov_xx,cov_xy,"
     "cov_xz,cov_yy,cov_yz,cov_zz; metres";
+constexpr const char* kPosesRemedy =
+    "the first line names the columns: file,x,y,z, and if known sigma (metres), heading (degrees clockwise "
+    "from "
+    "the y axis) or qw,qx,qy,qz, and sigma_deg";
+constexpr double kPoseSigmaM = 1.0;
+constexpr double kPoseSigmaDeg = 5.0;
 
 /// One row of a table, with what an error has to name.
 class Row {
  public:
   Row(const std::map<std::string, std::size_t>& columns, std::vector<std::string> cells, char mark,
-      std::string where)
-      : columns_(columns), cells_(std::move(cells)), mark_(mark), where_(std::move(where)) {}
+      std::string where, const char* remedy)
+      : columns_(columns), cells_(std::move(cells)), mark_(mark), where_(std::move(where)), remedy_(remedy) {}
 
   [[nodiscard]] const std::string& where() const { return where_; }
   [[nodiscard]] bool has(const std::string& column) const { return columns_.count(column) > 0; }
 
   [[nodiscard]] const std::string& text(const std::string& column) const {
     const auto found = columns_.find(column);
-    if (found == columns_.end()) throw Error("there is no column " + column, where_, kControlRemedy);
+    if (found == columns_.end()) throw Error("there is no column " + column, where_, remedy_);
     if (found->second >= cells_.size() || cells_[found->second].empty())
       throw Error("there is nothing in the column " + column, where_, "fill it, or take the line out");
     return cells_[found->second];
@@ -48,8 +56,7 @@ class Row {
     if (mark_ == ';') std::replace(cell.begin(), cell.end(), ',', '.');
     const std::optional<double> value = parse_number(cell);
     if (!value || !std::isfinite(*value))
-      throw Error(fmt::format("\"{}\" in the column {} is not a number", cell, column), where_,
-                  kControlRemedy);
+      throw Error(fmt::format("\"{}\" in the column {} is not a number", cell, column), where_, remedy_);
     return *value;
   }
 
@@ -100,20 +107,38 @@ class Row {
   std::vector<std::string> cells_;
   char mark_;
   std::string where_;
+  const char* remedy_;
 };
 
-/// Calls `visit` with each row of the table.
+/// Calls `visit` with each row of the table, which has to have a column `key`.
 template <typename Visit>
-void read_table(const std::filesystem::path& path, const Visit& visit) {
+void read_table(const std::filesystem::path& path, const std::string& key, const char* remedy,
+                const Visit& visit) {
   const TextTable table = read_text_table(path);
-  if (table.columns.line == 0) throw Error("holds no line", path.string(), kControlRemedy);
+  if (table.columns.line == 0) throw Error("holds no line", path.string(), remedy);
   const auto where = [&](const TableRow& row) { return fmt::format("{}, line {}", path.string(), row.line); };
   std::map<std::string, std::size_t> columns;
   for (std::size_t k = 0; k < table.columns.cells.size(); ++k)
     columns.emplace(lower_case(table.columns.cells[k]), k);
-  if (columns.count("name") == 0)
-    throw Error("no column is called name", where(table.columns), kControlRemedy);
-  for (const TableRow& row : table.rows) visit(Row(columns, row.cells, table.mark, where(row)));
+  if (columns.count(key) == 0) throw Error("no column is called " + key, where(table.columns), remedy);
+  for (const TableRow& row : table.rows) visit(Row(columns, row.cells, table.mark, where(row), remedy));
+}
+
+/// The scan's rotation into the frame, if the row gives one.
+std::optional<Matrix3d> rotation_in(const Row& row) {
+  if (row.has("heading") && row.has("qw"))
+    throw Error("there is a heading and a quaternion", row.where(), "take one of them out");
+  if (row.has("qw")) {
+    const Eigen::Quaterniond turn(row.number("qw"), row.number("qx"), row.number("qy"), row.number("qz"));
+    constexpr double kUnit = 0.01;
+    if (std::abs(turn.norm() - 1.0) > kUnit)
+      throw Error(fmt::format("the quaternion has the length {:.3g}, not 1", turn.norm()), row.where(),
+                  "check the order of its columns: qw, qx, qy, qz");
+    return turn.normalized().toRotationMatrix();
+  }
+  const std::optional<double> heading = row.number_if_any("heading");
+  if (!heading) return std::nullopt;
+  return Eigen::AngleAxisd(-radians(*heading), Vector3d::UnitZ()).toRotationMatrix();
 }
 
 }  // namespace
@@ -121,7 +146,7 @@ void read_table(const std::filesystem::path& path, const Visit& visit) {
 std::vector<SurveyedPoint> read_surveyed_points(const std::filesystem::path& path) {
   std::vector<SurveyedPoint> points;
   std::set<std::string> known;
-  read_table(path, [&](const Row& row) {
+  read_table(path, "name", kControlRemedy, [&](const Row& row) {
     points.push_back({row.text("name"), row.place(), row.covariance()});
     if (!known.insert(points.back().name).second)
       throw Error("the point " + points.back().name + " is given twice", row.where(), "take one of them out");
@@ -132,7 +157,7 @@ std::vector<SurveyedPoint> read_surveyed_points(const std::filesystem::path& pat
 std::vector<SeenTarget> read_seen_targets(const std::filesystem::path& path) {
   std::vector<SeenTarget> targets;
   std::set<std::tuple<std::string, std::string, std::optional<double>>> known;
-  read_table(path, [&](const Row& row) {
+  read_table(path, "name", kControlRemedy, [&](const Row& row) {
     targets.push_back(
         {row.text("name"), row.text("scan"), row.place(), row.covariance(), row.number_if_any("time")});
     if (!known.emplace(targets.back().name, targets.back().scan, targets.back().time_s).second)
@@ -141,6 +166,25 @@ std::vector<SeenTarget> read_seen_targets(const std::filesystem::path& path) {
                   "take one of them out, or add a column time with the time at which a mobile scan saw each");
   });
   return targets;
+}
+
+std::vector<StatedPose> read_stated_poses(const std::filesystem::path& path) {
+  std::vector<StatedPose> poses;
+  std::set<std::string> known;
+  read_table(path, "file", kPosesRemedy, [&](const Row& row) {
+    StatedPose pose;
+    pose.scan = row.text("file");
+    pose.x = row.place();
+    pose.covariance = kPoseSigmaM * kPoseSigmaM * Matrix3d::Identity();
+    if (row.has("sigma") || row.has("sigma_x") || row.has("cov_xx")) pose.covariance = row.covariance();
+    pose.frame_from_scan = rotation_in(row);
+    pose.of_origin = row.has("qw");
+    pose.sigma_rad = radians(row.has("sigma_deg") ? row.sigma("sigma_deg") : kPoseSigmaDeg);
+    if (!known.insert(pose.scan).second)
+      throw Error(pose.scan + " is given twice", row.where(), "take one of them out");
+    poses.push_back(std::move(pose));
+  });
+  return poses;
 }
 
 }  // namespace limen

@@ -139,13 +139,14 @@ TEST(StoreJobs, OfAFileThatWasReplacedAfterItsHashNothingIsKept) {
       "scan.ply",
       testing_io::simple_ply<float>(testing_io::room_points(20000, 1), testing_io::Writing::little));
   const Store store(folder / "store", "options");
+  const ProjectOptions options;
   ProjectFile file{path.string(), false, std::string(64, 'a'), {}, {}};
-  EXPECT_THROW((void)make_features(file, {}, store, silent_monitor()), Error);
+  EXPECT_THROW((void)make_features(file, options, store, silent_monitor()), Error);
   EXPECT_FALSE(store.load_file(file.key()));
   EXPECT_FALSE(store.has_features(store.feature_key(file.key(), 0)));
   EXPECT_FALSE(store.has_picture(store.feature_key(file.key(), 0)));
   file.sha256 = sha256_of_file(path);
-  EXPECT_NO_THROW((void)make_features(file, {}, store, silent_monitor()));
+  EXPECT_NO_THROW((void)make_features(file, options, store, silent_monitor()));
   EXPECT_TRUE(store.has_features(store.feature_key(file.key(), 0)));
 }
 

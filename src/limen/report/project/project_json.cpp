@@ -50,6 +50,12 @@ Json scan_json(const ProjectScan& scan) {
   json["sigma"] = scan.frame_from_scan ? pose_sigma_json(scan.sigma) : Json();
   // As the pose: only in the project's frame.
   if (scan.correction && in_frame) json["correction"] = correction_json(*scan.correction);
+  if (scan.stated) {
+    json["stated_position"] = {{"x", json_of(scan.stated->x)},
+                               {"sigma_m", json_of(Vector3d(scan.stated->covariance.diagonal().cwiseSqrt()))},
+                               {"missed_m", scan.stated->missed_m ? Json(*scan.stated->missed_m) : Json()},
+                               {"contradicted", scan.stated->contradicted}};
+  }
   if (!scan.rigid.empty()) json["rigid"] = scan.rigid;
   if (!scan.alternatives.empty()) {
     json["alternatives"] = Json::array();

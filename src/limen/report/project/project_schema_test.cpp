@@ -28,7 +28,9 @@ ProjectResult result_with_everything() {
   placed.copy_of = "other.ply";
   placed.correction = PassCorrection{};
   placed.correction->knots = {PassKnot{}, PassKnot{}};
+  placed.stated = StatedPosition{{1, 2, 3}, Matrix3d::Identity(), 0.4, false};
   ProjectScan elsewhere = placed;
+  elsewhere.stated->missed_m.reset();
   elsewhere.component = 1;
   elsewhere.rigid = "as you asked";
   ProjectScan model;
