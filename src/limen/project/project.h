@@ -44,7 +44,7 @@ struct ProjectInputs {
   std::string control;  ///< file of points whose coordinates enter as observations; empty: none
   std::string check;    ///< file of points that are compared with the result and never enter
   std::string targets;  ///< file of where the scans saw them; a point called as a scan is its scanner's place
-  std::string poses;    ///< file of where scans are said to have been (places/stated_poses.h)
+  std::string poses;    ///< file of where scans are said to have been (control/stated_poses.h)
   std::string decisions;  ///< file of what the user says (decide/decisions.h); added to what was said before
 };
 

@@ -10,7 +10,7 @@
 
 #include "limen/base/angles.h"
 #include "limen/geometry/linear.h"
-#include "limen/project/places/stated_place.h"
+#include "limen/project/stated_place.h"
 #include "limen/project/word_terms.h"
 #include "limen/register/judge/verdict.h"
 

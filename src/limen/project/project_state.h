@@ -21,7 +21,7 @@ struct OwnDrift {
   double turn_rate_rad2_per_m = 0.0;  ///< of the random walk of turns along the way
 };
 
-/// Where a scan is said to have been (places/stated_poses.h).
+/// Where a scan is said to have been (control/stated_poses.h).
 struct StatedPlace {
   Vector3d at = Vector3d::Zero();  ///< the point that is meant, about the local origin, scan's axes
   Vector3d x = Vector3d::Zero();   ///< where it is, metres

@@ -10,9 +10,9 @@
 #include <utility>
 
 #include "limen/base/parallel.h"
-#include "limen/project/places/stated_place.h"
 #include "limen/project/project_graph.h"
 #include "limen/project/retrieve/predict_overlap.h"
+#include "limen/project/stated_place.h"
 
 namespace limen {
 namespace {

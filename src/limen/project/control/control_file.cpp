@@ -18,7 +18,7 @@
 #include "limen/files/table_cells.h"
 #include "limen/files/text_numbers.h"
 #include "limen/geometry/linear.h"
-#include "limen/project/places/stated_poses.h"
+#include "limen/project/control/stated_poses.h"
 
 namespace limen {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
-#include "limen/project/places/stated_place.h"
+#include "limen/project/stated_place.h"
 
 #include <cmath>
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "limen/project/places/stated_poses.h"
+#include "limen/project/control/stated_poses.h"
 #include "limen/project/project_state.h"
 
 namespace limen {

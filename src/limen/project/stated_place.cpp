@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
-#include "limen/project/places/stated_place.h"
+#include "limen/project/stated_place.h"
 
 #include <algorithm>
 #include <cmath>
@@ -20,15 +20,11 @@ constexpr double kSearched_m3 = 40.0 * 40.0 * 10.0;
 constexpr double kTrust = 0.95;         // share of stated places that mean what they say
 constexpr double kMostPriorNats = 6.9;  // a place singles a pose out of a thousand others
 constexpr double kMostSigmas = 4.0;     // by which stated places may be off where scans meet
-constexpr int kLeastRedundancy = 6;     // of the fit that all places are compared by: four places
+constexpr int kLeastFitRedundancy = 6;  // of the fit that all places are compared by: four places
 const double kFileSigmaRad = radians(5.0);
 
-double square(double x) {
-  return x * x;
-}
-
 double log_normal(double miss_m, double variance, double freedoms) {
-  return -0.5 * (square(miss_m) / variance + freedoms * std::log(2.0 * std::numbers::pi * variance));
+  return -0.5 * (miss_m * miss_m / variance + freedoms * std::log(2.0 * std::numbers::pi * variance));
 }
 
 /// Of the scanner positions: how the source's lies against the target's, in target axes, and as it is stated.
@@ -44,11 +40,12 @@ double log_density(const Against& two, const ScanDigest& target, bool upright) {
   const double far = std::max(two.stated.norm(), std::sqrt(two.variance));
   if (two.target.frame_from_scan) {
     const Vector3d miss = *two.target.frame_from_scan * two.found - two.stated;
-    return log_normal(miss.norm(), two.variance + square(far * two.target.sigma_rad), 3.0);
+    return log_normal(miss.norm(), two.variance + far * far * two.target.sigma_rad * two.target.sigma_rad,
+                      3.0);
   }
   if (!upright) {
     const double miss = two.found.norm() - two.stated.norm();
-    return log_normal(miss, two.variance, 1.0) - std::log(4.0 * std::numbers::pi * square(far));
+    return log_normal(miss, two.variance, 1.0) - std::log(4.0 * std::numbers::pi * far * far);
   }
   // Any heading: a ring about the vertical.
   const Vector3d up = target.upright_from_scan.row(2).transpose();
@@ -63,7 +60,7 @@ double log_density(const Against& two, const ScanDigest& target, bool upright) {
 double log_turn(const StatedPlace& source, const StatedPlace& target, const Rigid3& pose) {
   if (!source.frame_from_scan || !target.frame_from_scan) return 0.0;
   const Matrix3d stated = target.frame_from_scan->transpose() * *source.frame_from_scan;
-  const double variance = square(source.sigma_rad) + square(target.sigma_rad);
+  const double variance = source.sigma_rad * source.sigma_rad + target.sigma_rad * target.sigma_rad;
   return std::log(2.0 * std::numbers::pi) +
          log_normal(rotation_angle(stated.transpose() * pose.rotation), variance, 1.0);
 }
@@ -93,7 +90,7 @@ void take_stated_places(const std::vector<StatedPose>& poses, std::optional<doub
       node.grouped = false;
       StatedPose pose;
       pose.x = node.digest.local_origin + place_in(node.digest);
-      pose.covariance *= square(*file_sigma_m);
+      pose.covariance *= *file_sigma_m * *file_sigma_m;
       pose.frame_from_scan = Matrix3d::Identity();
       pose.sigma_rad = kFileSigmaRad;
       node.stated = place_of(pose, node.digest);
@@ -152,7 +149,7 @@ void compare_with_stated(const std::vector<ProjectNode>& nodes, ProjectResult& r
   const Vector3d shift = pairs.front().x_in_source;
   for (PointPair& pair : pairs) pair.x_in_source -= shift;
   const PointFit fit = fit_points(pairs);
-  if (fit.state == PointFitState::contradictory || fit.redundancy < kLeastRedundancy) return;
+  if (fit.state == PointFitState::contradictory || fit.redundancy < kLeastFitRedundancy) return;
   for (std::size_t k = 0; k < pairs.size(); ++k) {
     const double missed = (fit.pose.target_from_source * pairs[k].x_in_source - pairs[k].x_in_target).norm();
     const double sigma = std::sqrt(pairs[k].source_covariance.trace() / 3.0);
