@@ -34,6 +34,8 @@ class OnTerminal {
     words.push_back(nullptr);
     process_ = forkpty(&terminal_, nullptr, nullptr, &size);
     if (process_ == 0) {
+      // As a terminal starts it: the tests may run where these are ignored.
+      for (const int number : {SIGHUP, SIGINT, SIGTERM}) std::signal(number, SIG_DFL);
       setenv("TERM", setting.term.c_str(), 1);
       setenv("LC_ALL", setting.locale.c_str(), 1);
       if (chdir(setting.folder.c_str()) == 0) execv(LIMEN_PROGRAM, words.data());

@@ -188,6 +188,7 @@ struct ProjectResult {
   std::size_t pairs_tried = 0;
   double variance_factor = 0.0;  ///< of the joint adjustment of planes; 0: there was none
   int components = 0;
+  std::optional<double> tolerance_m;  ///< that stations are to keep with 95 %, if a user asks
 };
 
 }  // namespace limen

@@ -18,6 +18,7 @@
 #include "limen/base/atomic_file.h"
 #include "limen/base/error.h"
 #include "limen/base/folder_lock.h"
+#include "limen/cli/inputs/cover_option.h"
 #include "limen/cli/inputs/frame_system.h"
 #include "limen/cli/inputs/known_decision.h"
 #include "limen/cli/inputs/pdf_option.h"
@@ -35,6 +36,7 @@
 #include "limen/report/project/project_json.h"
 #include "limen/report/project/project_page.h"
 #include "limen/report/project/read_project.h"
+#include "limen/report/project/station_accuracy.h"
 
 namespace limen {
 namespace {
@@ -53,6 +55,8 @@ struct ProjectCommandOptions {
   std::string decisions;
   std::string poses;
   std::string file_sigma;
+  std::string tolerance;
+  ReportCover cover;
   std::string crs;
   TrajectoryChoice trajectories;
   double risk = VerdictOptions{}.risk;
@@ -104,18 +108,31 @@ OptionList reported(const ProjectCommandOptions& options, const Session& session
   if (!options.decisions.empty()) list.emplace_back("decide", options.decisions);
   if (!options.poses.empty()) list.emplace_back("poses", options.poses);
   if (!options.file_sigma.empty()) list.emplace_back("trust_file_poses", options.file_sigma);
+  if (!options.tolerance.empty()) list.emplace_back("tolerance", options.tolerance);
   if (!options.crs.empty()) list.emplace_back("crs", options.crs);
   list.emplace_back("seed", static_cast<std::int64_t>(session.common.seed));
   return list;
 }
 
-std::string scan_line(const ProjectScan& scan) {
+std::string accuracy_text(const ProjectResult& result, std::size_t number) {
+  const std::optional<StationAccuracy> it = accuracy_of(result, number);
+  if (!it) return {};
+  if (it->held_fixed) return "  (held fixed)";
+  const PoseSigma& sigma = result.scans[number].sigma;
+  std::string text = fmt::format("  (sigma {:.1f} mm, {:.3f} deg", 1e3 * sigma.translation_m.maxCoeff(),
+                                 degrees(sigma.rotation_rad.maxCoeff()));
+  if (it->within_tolerance)
+    text +=
+        fmt::format("; {:.1f} mm with 95 %: {}", 1e3 * it->radius_m, *it->within_tolerance ? "pass" : "fail");
+  return text + ")";
+}
+
+std::string scan_line(const ProjectResult& result, std::size_t number) {
+  const ProjectScan& scan = result.scans[number];
   std::string line =
       fmt::format("{:<17} {}", scan.readable ? to_string(scan.state) : "unreadable", scan_name(scan));
   const bool placed = scan.state == NodeState::registered || scan.state == NodeState::probable;
-  if (scan.readable && placed)
-    line += fmt::format("  (sigma {:.1f} mm, {:.3f} deg)", 1e3 * scan.sigma.translation_m.maxCoeff(),
-                        degrees(scan.sigma.rotation_rad.maxCoeff()));
+  if (scan.readable && placed) line += accuracy_text(result, number);
   if (!scan.readable || scan.state != NodeState::registered) line += ": " + scan.reason;
   line += "\n";
   if (scan.correction) {
@@ -151,7 +168,7 @@ std::string point_lines(const ProjectResult& result) {
 
 std::string summary(const ProjectResult& result, const std::string& folder) {
   std::string text = fmt::format("{}: {}\n", to_string(result.outcome), result.reason);
-  for (const ProjectScan& scan : result.scans) text += scan_line(scan);
+  for (std::size_t k = 0; k < result.scans.size(); ++k) text += scan_line(result, k);
   text += point_lines(result);
   for (const ProjectDecision& told : result.decisions)
     text += fmt::format("decision    {}: {}{}{}\n", words_of(told.decision), to_string(told.state),
@@ -308,11 +325,14 @@ int run(ProjectCommandOptions options, const Session& session) {
   require_files(options);
   const std::filesystem::path browser = browser_for_pdf(options.pdf);
   const CoordinateSystem chosen = chosen_system(options.crs);
+  const std::optional<double> tolerance_m =
+      options.tolerance.empty() ? std::nullopt : std::optional(length_of(options.tolerance, "--tolerance"));
   const OutputFolder folder(options.folder);
   const FolderLock lock(folder.path(), "another limen is working in this folder",
                         "wait until it has finished, or give another folder");
   const ToldTrajectories trajectories = told_trajectories(options.trajectories, chosen);
-  const ProjectResult result = run_in(folder.path(), options, trajectories, session);
+  ProjectResult result = run_in(folder.path(), options, trajectories, session);
+  result.tolerance_m = tolerance_m;
   std::vector<std::string> of_system;
   FrameSystem system = frame_system(result, chosen, of_system);
   system.trajectories = trajectories;
@@ -320,8 +340,10 @@ int run(ProjectCommandOptions options, const Session& session) {
   session.monitor->throw_if_cancelled();
   write_file(folder.path() / "report.html",
              project_page(result, pictures_in(folder.path(), options, trajectories, session, result),
-                          system.system.known() || result.frame_kind == "control"));
+                          system.system.known() || result.frame_kind == "control", options.cover));
   std::filesystem::remove(folder.path() / "report.pdf");  // an earlier run's
+  write_file(folder.path() / "stations.csv", stations_csv(result));
+  write_file(folder.path() / "links.csv", links_csv(result));
   // Last: where it is, the folder is complete.
   write_file(folder.path() / "project.json", json);
   if (options.pdf) write_pdf(browser, folder.path(), session);
@@ -392,6 +414,10 @@ void add_project_command(CommandLine& app, Session& session) {
                    "Uncertainty (1 sigma) of the poses that a file states for the scans in it, such as 0.5m; "
                    "without it they are exact to millimetres")
       ->type_name("SIGMA");
+  command
+      ->add_option("--tolerance", options->tolerance,
+                   "Report of each station whether its position is known to this with 95 %, such as 6mm")
+      ->type_name("LENGTH");
   command->add_flag("--rigid-passes", options->rigid_passes,
                     "Treat every mobile scan as rigid: no drift is corrected");
   command
@@ -427,6 +453,7 @@ void add_project_command(CommandLine& app, Session& session) {
   add_repeats_option(*command, options->repeats);
   add_engine_options(*command, *options);
   add_pdf_option(*command, options->pdf);
+  add_cover_options(*command, options->cover);
   add_crs_option(*command, options->crs);
   add_trajectories_option(*command, options->trajectories);
   add_gravity_option(*command, options->gravity, true);

@@ -13,6 +13,7 @@
 
 #include "limen/base/atomic_file.h"
 #include "limen/base/error.h"
+#include "limen/cli/inputs/cover_option.h"
 #include "limen/cli/inputs/pdf_option.h"
 #include "limen/cli/inputs/register_inputs.h"
 #include "limen/cli/inputs/register_segment_files.h"
@@ -47,10 +48,7 @@ struct RegisterCommandOptions {
   double probable_risk = VerdictOptions{}.probable_risk;
   bool no_report = false;
   bool pdf = false;
-  std::string title;
-  std::string project;
-  std::string operator_name;
-  std::string date;
+  ReportCover cover;
   std::string language = "en";
   std::string memory;
   ReadingChoice source_reading;
@@ -228,10 +226,11 @@ std::filesystem::path browser_of(const RegisterCommandOptions& options) {
 }
 
 ReportCover cover_of(const RegisterCommandOptions& options) {
-  const Language language = options.language == "fr"   ? Language::french
-                            : options.language == "de" ? Language::german
-                                                       : Language::english;
-  return {options.title, options.project, options.operator_name, options.date, language};
+  ReportCover cover = options.cover;
+  cover.language = options.language == "fr"   ? Language::french
+                   : options.language == "de" ? Language::german
+                                              : Language::english;
+  return cover;
 }
 
 int status_of(Outcome outcome) {
@@ -282,14 +281,8 @@ void add_with_option(CommandLine& command, const char* name, std::vector<std::st
       ->take_all();
 }
 
-void add_cover_options(CommandLine& command, RegisterCommandOptions& options) {
-  const auto add = [&command](const char* name, std::string& text, const char* description) {
-    command.add_option(name, text, description)->type_name("WORDS");
-  };
-  add("--title", options.title, "Title of the report");
-  add("--project", options.project, "Project that the report names");
-  add("--operator", options.operator_name, "Who made the registration, for the report");
-  add("--date", options.date, "Date on the report, printed as given");
+void add_report_options(CommandLine& command, RegisterCommandOptions& options) {
+  add_cover_options(command, options.cover);
   command
       .add_option("--language", options.language,
                   "Language of the summary on the report: en (default), fr, de")
@@ -360,7 +353,7 @@ void add_register_command(CommandLine& app, Session& session) {
   add_pdf_option(*command, options->pdf);
   command->add_flag("--no-report", options->no_report,
                     "Write neither report.html nor the sections, only result.json and transform.txt");
-  add_cover_options(*command, *options);
+  add_report_options(*command, *options);
   add_gravity_option(*command, options->gravity, true);
   add_origin_options(*command, *options);
   add_units_option(*command, options->source_reading.units, "source-");

@@ -149,13 +149,28 @@ std::vector<std::string> cover_summary(const RegistrationReport& report, Languag
   return text;
 }
 
-std::string cover_html(const RegistrationReport& report, const ReportCover& cover) {
+std::string cover_facts(const ReportCover& cover) {
   const Sentences& words = sentences_of(cover.language);
   std::string text;
   if (!cover.title.empty()) text += fmt::format("<p class=\"cover-title\">{}</p>\n", escaped(cover.title));
   const std::string facts = fact(words.project, cover.project) +
                             fact(words.operator_name, cover.operator_name) + fact(words.date, cover.date);
   if (!facts.empty()) text += fmt::format("<dl class=\"cover\" lang=\"{}\">{}</dl>\n", words.code, facts);
+  return text;
+}
+
+std::string signature_html(const ReportCover& cover) {
+  if (cover.operator_name.empty()) return {};
+  const Sentences& words = sentences_of(cover.language);
+  return fmt::format(
+      "<dl class=\"signature\"><div><dt>{}</dt><dd>{}</dd></div><div><dt>{}</dt><dd>{}</dd></div>"
+      "<div><dt>Signature</dt><dd></dd></div></dl>\n",
+      words.operator_name, escaped(cover.operator_name), words.date, escaped(cover.date));
+}
+
+std::string cover_html(const RegistrationReport& report, const ReportCover& cover) {
+  const Sentences& words = sentences_of(cover.language);
+  const std::string text = cover_facts(cover);
   if (cover.language == Language::english) return text;
   std::string sentences;
   for (const std::string& sentence : cover_summary(report, cover.language))

@@ -25,6 +25,12 @@ struct ReportCover {
 /// residuals, what is open. Plain text, not escaped.
 std::vector<std::string> cover_summary(const RegistrationReport& report, Language language);
 
+/// Title, project, operator and date; ready HTML, empty where none is given.
+std::string cover_facts(const ReportCover& cover);
+
+/// Where the operator signs; ready HTML, empty where no operator is given.
+std::string signature_html(const ReportCover& cover);
+
 /// The head of the page: title, project, operator, date, and the summary where one is asked for in another
 /// language than the page's. Ready HTML, may be empty.
 std::string cover_html(const RegistrationReport& report, const ReportCover& cover);

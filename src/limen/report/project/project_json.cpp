@@ -4,6 +4,7 @@
 
 #include "limen/base/version.h"
 #include "limen/report/json/json_values.h"
+#include "limen/report/project/station_accuracy.h"
 
 namespace limen {
 namespace {
@@ -31,7 +32,7 @@ Json correction_json(const PassCorrection& correction) {
           {"walk_rad2_per_m", correction.turn_rate_rad2_per_m}};
 }
 
-Json scan_json(const ProjectScan& scan) {
+Json scan_json(const ProjectScan& scan, const std::optional<StationAccuracy>& accuracy) {
   Json json = {{"file", scan.file}, {"index", scan.index}, {"kind", scan.model ? "model" : "scan"}};
   if (!scan.model) {
     json["mobile"] = scan.mobile;
@@ -48,6 +49,11 @@ Json scan_json(const ProjectScan& scan) {
   if (scan.frame_from_scan && !in_frame)
     json["component_from_scan"] = json_of(to_matrix(*scan.frame_from_scan));
   json["sigma"] = scan.frame_from_scan ? pose_sigma_json(scan.sigma) : Json();
+  if (accuracy && !accuracy->held_fixed) {
+    json["radius_95_m"] = accuracy->radius_m;
+    json["loa"] = accuracy->loa > 0 ? Json(accuracy->loa) : Json();
+    if (accuracy->within_tolerance) json["within_tolerance"] = *accuracy->within_tolerance;
+  }
   // As the pose: only in the project's frame.
   if (scan.correction && in_frame) json["correction"] = correction_json(*scan.correction);
   if (scan.stated) {
@@ -172,7 +178,9 @@ std::string project_json(const ProjectResult& result, const OptionList& options,
                             {"time_offset_s", told.reading.time_offset_s},
                             {"lever_arm_m", json_of(told.reading.lever_arm_m)}};
   json["components"] = result.components;
-  json["scans"] = list_json(result.scans, scan_json);
+  json["scans"] = Json::array();
+  for (std::size_t k = 0; k < result.scans.size(); ++k)
+    json["scans"].push_back(scan_json(result.scans[k], accuracy_of(result, k)));
   json["links"] = list_json(result.links, link_json);
   json["loops"] = list_json(result.loops, loop_json);
   json["questions"] = list_json(result.questions, question_json);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -19,6 +20,7 @@
 #include "limen/report/project/project_axes.h"
 #include "limen/report/project/project_plan.h"
 #include "limen/report/project/project_scene.h"
+#include "limen/report/project/station_accuracy.h"
 
 namespace limen {
 namespace {
@@ -85,6 +87,21 @@ std::string decisions_table(const ProjectResult& result) {
   return table("Your decisions", "", {"decision", "state", "why"}, text);
 }
 
+/// Deviations along the axes and of the heading, and what holds with 95 %.
+std::string accuracy_cells(const std::optional<StationAccuracy>& it, bool tolerance) {
+  const std::string last = tolerance ? "<td></td>" : "";
+  if (!it) return "<td></td><td></td><td></td><td></td><td></td><td></td>" + last;
+  if (it->held_fixed) return "<td colspan=\"6\">held fixed</td>" + last;
+  std::string text;
+  for (const double sigma : it->sigma_m) text += fmt::format("<td class=\"n\">{:.1f}</td>", 1e3 * sigma);
+  text += fmt::format("<td class=\"n\">{:.3f}</td><td class=\"n\">{:.1f}</td><td>{}</td>",
+                      degrees(it->heading_sigma_rad), 1e3 * it->radius_m,
+                      it->loa > 0 ? fmt::format("LOA{}", it->loa) : "");
+  if (!tolerance) return text;
+  return text + (it->within_tolerance.value_or(false) ? "<td class=\"state verified\">pass</td>"
+                                                      : "<td class=\"state rejected\">fail</td>");
+}
+
 std::string scans_table(const ProjectResult& result) {
   std::string text;
   for (std::size_t k = 0; k < result.scans.size(); ++k) {
@@ -94,19 +111,25 @@ std::string scans_table(const ProjectResult& result) {
     text += state_cell(scan.readable ? to_string(scan.state) : "unreadable");
     text +=
         fmt::format("<td class=\"n\">{}</td>", scan.component >= 0 ? fmt::format("{}", scan.component) : "");
-    if (scan.frame_from_scan) {
-      text +=
-          fmt::format("<td class=\"n\">{:.1f}</td><td class=\"n\">{:.3f}</td>",
-                      1e3 * scan.sigma.translation_m.maxCoeff(), degrees(scan.sigma.rotation_rad.maxCoeff()));
-    } else {
-      text += "<td></td><td></td>";
-    }
+    text += accuracy_cells(accuracy_of(result, k), result.tolerance_m.has_value());
     text += fmt::format("<td>{}</td></tr>\n", escaped(scan.reason));
   }
+  std::vector<std::string> head = {"#no.", "file", "state",         "#group",    "#sigma x, mm",
+                                   "#y",   "#z",   "#heading, deg", "#95 %, mm", "class"};
+  if (result.tolerance_m) head.emplace_back(fmt::format("{:g} mm", 1e3 * *result.tolerance_m));
+  head.emplace_back("why");
   return table(
-      "Scans", "scans", {"#no.", "file", "state", "#group", "#sigma, mm", "#sigma, deg", "why"}, text,
-      "registered: certain within the limit; probable: less certain; ambiguous: another place fits as "
+      "Scans", "scans", head, text,
+      "95 %: radius that holds the position with this probability; class: the Level of Accuracy of the USIBD "
+      "by that radius. registered: certain within the limit; probable: less certain; ambiguous: another "
+      "place fits as "
       "well; under_constrained: a direction is undetermined; floating: not connected to the main group.");
+}
+
+std::string residual_cells(const ProjectLink& link) {
+  if (!is_checked(link)) return "<td colspan=\"2\">unchecked</td>";
+  return fmt::format("<td class=\"n\">{:.1f}</td><td class=\"n\">{:.3f}</td>", 1e3 * link.solved.loop_error_m,
+                     degrees(link.solved.loop_error_rad));
 }
 
 std::string links_table(const ProjectResult& result) {
@@ -121,14 +144,14 @@ std::string links_table(const ProjectResult& result) {
         k, link.source, link.target);
     text += state_cell(to_string(link.solved.state));
     text += fmt::format(
-        "<td>{}</td><td class=\"n\">{:.1f}</td><td class=\"n\">{:.1f}</td><td class=\"n\">{:.3f}</td>"
-        "<td class=\"n\">{:.1f} of 6</td><td class=\"n\">{}</td></tr>\n",
-        link.given ? "given" : to_string(link.pair), link.agreeing_m2, 1e3 * link.solved.loop_error_m,
-        degrees(link.solved.loop_error_rad), link.solved.redundancy, link.alternatives.size());
+        "<td>{}</td><td class=\"n\">{:.1f}</td>{}<td class=\"n\">{:.1f} of 6</td><td class=\"n\">{}</td>"
+        "<td class=\"n\">{}</td></tr>\n",
+        link.given ? "given" : to_string(link.pair), link.agreeing_m2, residual_cells(link),
+        link.solved.redundancy, loops_through(result, k), link.alternatives.size());
   }
   return table("Links", "links",
                {"#no.", "scans", "state", "result of the pair alone", "#agreeing, m&sup2;", "#residual, mm",
-                "#deg", "#redundancy", "#other poses"},
+                "#deg", "#redundancy", "#loops", "#other poses"},
                text,
                "Click a number to see that link alone, before and after, with the surfaces that agree. "
                "verified: checked by a loop; bridge: single unchecked link; ambiguous: another pose fits as "
@@ -196,10 +219,26 @@ std::string points_table(const ProjectResult& result) {
                    "any axis that would be detected.");
 }
 
+/// What is noted of many files alike is told once.
 std::string notes(const ProjectResult& result) {
   if (result.notes.empty()) return {};
+  constexpr std::size_t kMany = 4;
+  const auto words = [](const std::string& note) {
+    const std::size_t end = note.find(": ");
+    return end == std::string::npos ? note : note.substr(end + 2);
+  };
+  std::map<std::string, std::size_t> count;
+  for (const std::string& note : result.notes) ++count[words(note)];
   std::string text = "<section class=\"card wide keep\"><h2>Notes</h2>\n<ul>\n";
-  for (const std::string& note : result.notes) text += fmt::format("<li>{}</li>\n", escaped(note));
+  for (const std::string& note : result.notes) {
+    std::size_t& alike = count[words(note)];
+    if (alike < kMany) {
+      text += alike > 0 ? fmt::format("<li>{}</li>\n", escaped(note)) : "";
+      continue;
+    }
+    text += fmt::format("<li>{} files: {}</li>\n", alike, escaped(words(note)));
+    alike = 0;
+  }
   return text + "</ul></section>\n";
 }
 
@@ -235,27 +274,40 @@ const char* symbol(ProjectOutcome outcome) {
   return "&#8800;";
 }
 
+/// How well the stations are known, and which is known least.
+std::string accuracy_words(const ProjectResult& result) {
+  std::vector<std::pair<double, std::size_t>> radii;
+  std::size_t within = 0;
+  for (std::size_t k = 0; k < result.scans.size(); ++k) {
+    const std::optional<StationAccuracy> it = accuracy_of(result, k);
+    if (!it || it->held_fixed || result.scans[k].component != 0 || !is_placed(result.scans[k].state))
+      continue;
+    radii.emplace_back(it->radius_m, k);
+    within += it->within_tolerance.value_or(false) ? 1 : 0;
+  }
+  if (radii.empty()) return {};
+  std::sort(radii.begin(), radii.end());
+  std::string text = fmt::format(
+      "<p>Accuracy of the placed scans (95 %): {:.1f} mm in the median, {:.1f} mm at worst (<a "
+      "href=\"#scan{}\">{}</a>).</p>\n",
+      1e3 * radii[radii.size() / 2].first, 1e3 * radii.back().first, radii.back().second,
+      escaped(shown_name(result.scans[radii.back().second])));
+  if (result.tolerance_m)
+    text += fmt::format("<p>Tolerance {:g} mm (95 %): {} of {} placed scans pass.</p>\n",
+                        1e3 * *result.tolerance_m, within, radii.size());
+  return text;
+}
+
 /// What came of it, how well it is known, and whose frame it is.
 std::string lead(const ProjectResult& result) {
-  std::vector<double> sigmas;
-  for (const ProjectScan& scan : result.scans) {
-    if (!scan.model && scan.state == NodeState::registered && scan.component == 0)
-      sigmas.push_back(scan.sigma.translation_m.maxCoeff());
-  }
-  std::sort(sigmas.begin(), sigmas.end());
-  std::string text = fmt::format("<p>{}.</p>\n", escaped(result.reason));
-  if (sigmas.size() > 1)
-    text += fmt::format(
-        "<p>Uncertainty (1 sigma) of the registered scans: {:.1f} mm in the median, {:.1f} mm at "
-        "worst.</p>\n",
-        1e3 * sigmas[sigmas.size() / 2], 1e3 * sigmas.back());
-  return text + fmt::format("<p class=\"reason\">{} {} pairs were tried.</p>", frame_words(result),
-                            result.pairs_tried);
+  return fmt::format("<p>{}.</p>\n{}<p class=\"reason\">{} {} pairs were tried.</p>", escaped(result.reason),
+                     accuracy_words(result), frame_words(result), result.pairs_tried);
 }
 
 }  // namespace
 
-std::string project_page(const ProjectResult& result, std::vector<ProjectPicture> pictures, bool on_map) {
+std::string project_page(const ProjectResult& result, std::vector<ProjectPicture> pictures, bool on_map,
+                         const ReportCover& cover) {
   const std::string drawings = project_plan(result, on_map);
   std::string plans;
   if (!drawings.empty())
@@ -265,7 +317,9 @@ std::string project_page(const ProjectResult& result, std::vector<ProjectPicture
             "times. Triangles: control and check points.</p>\n";
   plans += pass_charts(result);
   const PageParts parts = {
-      {"title", "limen: project"},
+      {"title", cover.title.empty() ? "limen: project" : escaped(cover.title)},
+      {"cover", cover_facts(cover)},
+      {"signature", signature_html(cover)},
       {"style", std::string(report_style()) + std::string(view_style()) + std::string(project_style())},
       {"version", kVersion},
       {"outcome", to_string(result.outcome)},

@@ -1,0 +1,39 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+
+#include "limen/project/project_result.h"
+
+namespace limen {
+
+/// How well the place of a scan is known in its frame, as an office hands it in.
+struct StationAccuracy {
+  bool held_fixed = false;               ///< all others are told against this one
+  Vector3d sigma_m = Vector3d::Zero();   ///< along the frame's axes
+  double heading_sigma_rad = 0.0;        ///< about the vertical
+  double radius_m = 0.0;                 ///< holds the place in 95 % of cases
+  int loa = 0;                           ///< class of the USIBD by that radius, 50 to 10; 0: none
+  std::optional<bool> within_tolerance;  ///< where one was asked for
+};
+
+/// Nothing of a scan that is in no frame, and of models. `scan`: index into the result's.
+std::optional<StationAccuracy> accuracy_of(const ProjectResult& result, std::size_t scan);
+
+/// Whether a loop checks the link: a single unchecked one has no residual.
+inline bool is_checked(const ProjectLink& link) {
+  return link.solved.state != LinkState::bridge;
+}
+
+/// How many loops of the result a link is part of.
+std::size_t loops_through(const ProjectResult& result, std::size_t link);
+
+/// A line for each scan, as stations.csv has it, in metres and degrees.
+std::string stations_csv(const ProjectResult& result);
+/// A line for each link, as links.csv has it.
+std::string links_csv(const ProjectResult& result);
+
+}  // namespace limen

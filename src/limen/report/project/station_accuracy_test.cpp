@@ -1,0 +1,74 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/report/project/station_accuracy.h"
+
+#include <gtest/gtest.h>
+
+#include "limen/base/angles.h"
+
+namespace limen {
+namespace {
+
+ProjectScan scan_known_to(double sigma_m, const std::string& file) {
+  ProjectScan scan;
+  scan.file = file;
+  scan.component = 0;
+  scan.state = NodeState::registered;
+  scan.frame_from_scan = Rigid3{};
+  scan.sigma.covariance = Matrix6d::Identity() * sigma_m * sigma_m;
+  scan.sigma.covariance(2, 2) = radians(0.01) * radians(0.01);
+  scan.sigma.translation_m = Vector3d::Constant(sigma_m);
+  return scan;
+}
+
+ProjectResult three_scans() {
+  ProjectResult result;
+  result.scans = {scan_known_to(0.0, "a.ply"), scan_known_to(0.001, "b.ply"), scan_known_to(0.004, "=c.ply")};
+  result.sigma_scan = 0;
+  result.tolerance_m = 0.006;
+  ProjectLink loop;
+  loop.source = 1;
+  loop.target = 0;
+  loop.solved.state = LinkState::verified;
+  loop.solved.loop_error_m = 0.002;
+  ProjectLink single = loop;
+  single.source = 2;
+  single.solved.state = LinkState::bridge;
+  result.links = {loop, single};
+  result.loops.push_back({{0}, 0.0, 0.0, 0.0, true});
+  return result;
+}
+
+TEST(StationAccuracy, IsTheRadiusOf95PercentWithItsClass) {
+  const ProjectResult result = three_scans();
+  const std::optional<StationAccuracy> good = accuracy_of(result, 1);
+  ASSERT_TRUE(good.has_value());
+  // Of three equal deviations: 2.795.
+  EXPECT_NEAR(good->radius_m, 0.0028, 0.0001);
+  EXPECT_NEAR(degrees(good->heading_sigma_rad), 0.01, 1e-9);
+  EXPECT_EQ(good->loa, 40);
+  EXPECT_EQ(good->within_tolerance, std::optional(true));
+  EXPECT_EQ(accuracy_of(result, 2)->loa, 30);
+  EXPECT_EQ(accuracy_of(result, 2)->within_tolerance, std::optional(false));
+}
+
+TEST(StationAccuracy, TheReferenceIsHeldFixedAndWhatIsInNoFrameHasNone) {
+  ProjectResult result = three_scans();
+  EXPECT_TRUE(accuracy_of(result, 0)->held_fixed);
+  result.scans[1].frame_from_scan.reset();
+  EXPECT_FALSE(accuracy_of(result, 1).has_value());
+}
+
+TEST(StationAccuracy, TablesHaveALineForEachAndNoResidualOfAnUncheckedLink) {
+  const ProjectResult result = three_scans();
+  const std::string stations = stations_csv(result);
+  EXPECT_NE(stations.find("a.ply,registered,0,,,,yes,"), std::string::npos) << stations;
+  EXPECT_NE(stations.find(",LOA40,yes,"), std::string::npos) << stations;
+  EXPECT_EQ(stations.find("\n=c.ply"), std::string::npos) << "a spreadsheet would take it for a formula";
+  const std::string links = links_csv(result);
+  EXPECT_NE(links.find("b.ply,a.ply,verified,0.00,0.00200,0.00000,0.00,1,"), std::string::npos) << links;
+  EXPECT_NE(links.find(",bridge,0.00,,,0.00,0,"), std::string::npos) << links;
+}
+
+}  // namespace
+}  // namespace limen
