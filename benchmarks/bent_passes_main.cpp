@@ -118,7 +118,7 @@ class Site {
     }
     const JointProblem made = problem(bent);
     const JointSolution solution = adjust_jointly(made);
-    return missed(solution, bent.told(solution));
+    return missed(solution, bent.stated(solution));
   }
 
  private:
@@ -276,7 +276,7 @@ class Site {
     return squares / static_cast<double>(pass.error.size());
   }
 
-  [[nodiscard]] Missed missed(const JointSolution& solution, const std::vector<BentPass>& told) const {
+  [[nodiscard]] Missed missed(const JointSolution& solution, const std::vector<BentPass>& stated) const {
     Missed missed;
     double points = 0.0;
     double spline = 0.0;
@@ -285,9 +285,9 @@ class Site {
       const Pass& pass = passes_[k];
       const Rigid3& whole = solution.frame_from_node[static_cast<std::size_t>(node_of_pass(k))];
       std::vector<Vector6d> values;
-      if (!told.empty()) {
-        for (const BentKnot& knot : told[k].knots) values.push_back(knot.value);
-        count_knots(pass, told[k], missed);
+      if (!stated.empty()) {
+        for (const BentKnot& knot : stated[k].knots) values.push_back(knot.value);
+        count_knots(pass, stated[k], missed);
       }
       const double passes = static_cast<double>(passes_.size());
       spline += spline_leaves(pass, pass.way.knots()) / passes;
@@ -318,21 +318,21 @@ class Site {
   }
 
   /// Numbers of the corrections, about their means, within two of their deviations.
-  static void count_knots(const Pass& pass, const BentPass& told, Missed& missed) {
+  static void count_knots(const Pass& pass, const BentPass& stated, Missed& missed) {
     const auto moved = [&](std::size_t k) {
-      return Vector3d(told.knots[k].value.tail<3>() +
-                      told.knots[k].value.head<3>().cross(pass.way.places[k]));
+      return Vector3d(stated.knots[k].value.tail<3>() +
+                      stated.knots[k].value.head<3>().cross(pass.way.places[k]));
     };
     Vector3d mean = Vector3d::Zero();
-    const auto count = static_cast<double>(told.knots.size());
-    for (std::size_t k = 0; k < told.knots.size(); ++k)
+    const auto count = static_cast<double>(stated.knots.size());
+    for (std::size_t k = 0; k < stated.knots.size(); ++k)
       mean += (moved(k) + pass.error_at(static_cast<double>(k))) / count;
-    for (std::size_t k = 0; k < told.knots.size(); ++k) {
+    for (std::size_t k = 0; k < stated.knots.size(); ++k) {
       const Vector3d off = moved(k) + pass.error_at(static_cast<double>(k)) - mean;
       for (Eigen::Index axis = 0; axis < 3; ++axis) {
         ++missed.numbers;
         missed.within +=
-            std::abs(off[axis]) < 2.0 * std::sqrt(told.knots[k].covariance(3 + axis, 3 + axis)) ? 1 : 0;
+            std::abs(off[axis]) < 2.0 * std::sqrt(stated.knots[k].covariance(3 + axis, 3 + axis)) ? 1 : 0;
       }
     }
   }

@@ -203,15 +203,15 @@ class Calibration {
     ++made_;
     if (file_.is_open()) file_ << text_of(row) << "\n" << std::flush;
     if (row.wrong()) fmt::print("WRONG {}\n", text_of(row));
-    if (row.wrong() || told_wrongly(row) || (s_.lost && is_lost(row))) {
+    if (row.wrong() || stated_wrongly(row) || (s_.lost && is_lost(row))) {
       keep(row, from, i);
       keep(row, to, j);
     }
     rows_.push_back(row);
   }
 
-  /// Whether a wrong pose is told to be nearly sure, whatever the outcome.
-  static bool told_wrongly(const Row& row) {
+  /// Whether a wrong pose is asked to be nearly sure, whatever the outcome.
+  static bool stated_wrongly(const Row& row) {
     constexpr double kSurely = 0.99;
     return !row.statements.empty() && row.statements.front().probability > kSurely &&
            !row.statements.front().right;

@@ -20,7 +20,7 @@
 //   at least half of the points of that true plane that are not shared. Such a detected plane is the only
 //   one, and it has one owner, so the pairs are one to one.
 // - precision: share of the detected planes that are pure, their owner of any size. Detected planes most of
-//   whose points have no true plane lie on objects that are not planar: they are told apart, as `other`.
+//   whose points have no true plane lie on objects that are not planar: they are distinguished, as `other`.
 // - pieces: pure detected planes, of at least 5 % of their owner's points, beyond the owner's first, where
 //   the owner counts (over-segmentation).
 // - fused: counting true planes that have more than half of their points in a detected plane that another

@@ -12,7 +12,7 @@
 #include "limen/extract/planes/plane_labels.h"
 #include "limen/simulate/scene.h"
 
-// Which true plane each detected plane stands for. The words are defined in plane_quality_main.cpp.
+// Which true plane each detected plane represents. The words are defined in plane_quality_main.cpp.
 
 namespace limen {
 

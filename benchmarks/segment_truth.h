@@ -29,7 +29,7 @@ struct EdgeTruthOptions {
   int min_echoes = 4;           ///< in that strip
   int min_border_echoes = 25;   ///< the same where one face alone shows the edge: 2 cm apart
   int min_face_echoes = 200;    ///< of a face, in all
-  double min_width_m = 0.06;    ///< of a face next to the edge; narrower ones are told apart
+  double min_width_m = 0.06;    ///< of a face next to the edge; narrower ones are distinguished
   double min_angle_deg = 15.0;  ///< between two faces that make a crease
   double min_relief_m = 0.02;   ///< between parallel faces that make a step
   double gap_m = 0.1;           ///< unseen stretches up to this do not cut an edge
@@ -61,7 +61,7 @@ struct SeenSample {
 
 struct EdgeTruth {
   std::vector<Segment> edges;    ///< all, seen or not, of faces with echoes
-  std::vector<SeenSample> seen;  ///< of edges that must be found; each stands for step_m of edge
+  std::vector<SeenSample> seen;  ///< of edges that must be found; each represents step_m of edge
 };
 
 /// Finds the edges of a scan's world, in the coordinates of its points.

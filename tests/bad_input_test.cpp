@@ -263,9 +263,9 @@ TEST_F(BadUnitTest, ARoomInMillimetresIsRefusedInOneLineThatSaysWhatToDo) {
             std::to_string(k / 400 * 290) + "\n";
   write_whole(work() / "mm.xyz", text);
   expect_one_error(run({"register", "mm.xyz", "mm.xyz", "-o", "out"}), 2, "--source-units");
-  const ProgramRun told = run({"info", "mm.xyz"});
-  EXPECT_EQ(told.status, 0) << told.err;
-  EXPECT_NE(told.out.find("--units mm"), std::string::npos) << told.out;
+  const ProgramRun stated = run({"info", "mm.xyz"});
+  EXPECT_EQ(stated.status, 0) << stated.err;
+  EXPECT_NE(stated.out.find("--units mm"), std::string::npos) << stated.out;
   const ProgramRun metres = run({"info", "mm.xyz", "--units", "mm"});
   EXPECT_NE(metres.out.find("size            7.600 x 5.700 x 2.610 m"), std::string::npos) << metres.out;
 }

@@ -161,7 +161,7 @@ TEST_F(CliTest, QuietSaysNothing) {
   EXPECT_EQ(done.out + done.err, "");
 }
 
-TEST_F(CliTest, AResultThatCannotBeToldIsAnError) {
+TEST_F(CliTest, AResultThatCannotBeStatedIsAnError) {
   if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "this machine has no /dev/full";
   write_whole(work() / "pose.txt", kIdentity);
   const std::string command = std::string(LIMEN_PROGRAM) + " evaluate " + (work() / "pose.txt").string() +

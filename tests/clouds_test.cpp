@@ -40,12 +40,12 @@ TEST_F(CloudsTest, ThinKeepsAboutAsManyAsAskedForInEveryFormat) {
   for (const std::string ending : {"ply", "las", "laz", "e57"}) {
     const ProgramRun done = run({"thin", "floor.csv", "out." + ending, "--points", "5000", "--json"});
     ASSERT_EQ(done.status, 0) << done.err;
-    const Json told = Json::parse(done.out);
-    EXPECT_EQ(told["points_read"], 40000);
-    const auto kept = told["points_written"].get<int>();
+    const Json stated = Json::parse(done.out);
+    EXPECT_EQ(stated["points_read"], 40000);
+    const auto kept = stated["points_written"].get<int>();
     EXPECT_LE(kept, 5000);
     EXPECT_GE(kept, 3500);
-    EXPECT_NEAR(told["spacing_m"].get<double>(), 20.0 / std::sqrt(kept), 0.1);
+    EXPECT_NEAR(stated["spacing_m"].get<double>(), 20.0 / std::sqrt(kept), 0.1);
     const Json file = info("out." + ending);
     EXPECT_EQ(file["scans"][0]["points"], kept) << ending;
     EXPECT_NE(file["fields"].dump().find("\"label\""), std::string::npos) << ending;
@@ -84,8 +84,8 @@ TEST_F(CloudsTest, AScanLargerThanItsMemoryIsThinnedAndTellsSo) {
   const ProgramRun small = run({"planes", "floor.csv", "-o", "small.json", "--memory", "1M"});
   EXPECT_EQ(small.status, 0) << small.err;
   EXPECT_NE(small.err.find("thinned from 90000 points to"), std::string::npos) << small.err;
-  const ProgramRun told = run({"info", "floor.csv", "--memory", "1M", "--json"});
-  EXPECT_LT(Json::parse(told.out)["scans"][0]["points"].get<int>(), 20000);
+  const ProgramRun stated = run({"info", "floor.csv", "--memory", "1M", "--json"});
+  EXPECT_LT(Json::parse(stated.out)["scans"][0]["points"].get<int>(), 20000);
 }
 
 TEST_F(CloudsTest, TransformThereAndBackInEachFormat) {

@@ -34,10 +34,10 @@ class DeviationProgramTest : public ProgramTest {
             truth["scans"][0]["world_from_scan"][static_cast<std::size_t>(i)][static_cast<std::size_t>(j)]
                 .get<double>();
     }
-    const Matrix4d told = to_matrix(inverted ? inverse(from_matrix(matrix)) : from_matrix(matrix));
+    const Matrix4d stated = to_matrix(inverted ? inverse(from_matrix(matrix)) : from_matrix(matrix));
     Json result;
     for (int i = 0; i < 4; ++i) {
-      result["target_from_source"].push_back({told(i, 0), told(i, 1), told(i, 2), told(i, 3)});
+      result["target_from_source"].push_back({stated(i, 0), stated(i, 1), stated(i, 2), stated(i, 3)});
     }
     result["inputs"]["source"]["path"] = inverted ? "model.ifc" : "elsewhere/scan_01.ply";
     result["inputs"]["target"]["path"] = inverted ? "scan_01.ply" : "model.ifc";
@@ -167,7 +167,7 @@ TEST_F(DeviationProgramTest, AWholeProjectAgainstItsModel) {
   EXPECT_NE(page.find("<h2>Elements"), std::string::npos);
   EXPECT_LT(page.find("\"Content-Security-Policy\" content=\"default-src 'none'"), page.find("</head>"));
 
-  // Other threads, the same bytes; a scan in doubt is left out and told.
+  // Other threads, the same bytes; a scan in doubt is left out and stated.
   ASSERT_EQ(run({"deviation", "project.json", "-o", "again", "--threads", "1", "--bcf", "again.bcf",
                  "--moved-m", "0.005"})
                 .status,
@@ -209,12 +209,12 @@ TEST_F(DeviationProgramTest, ModelsOfAProjectAndMistakes) {
   ASSERT_EQ(run({"deviation", "project.json", "-o", "one"}).status, 0);
   EXPECT_EQ(json_of("one/deviation.json")["summary"]["points_on_faces"], two["summary"]["points_on_faces"]);
 
-  const auto fails = [this](std::vector<std::string> arguments, const std::string& told) {
+  const auto fails = [this](std::vector<std::string> arguments, const std::string& stated) {
     arguments.insert(arguments.begin(), "deviation");
     arguments.insert(arguments.end(), {"-o", "none"});
     const ProgramRun failed = run(arguments);
     EXPECT_EQ(failed.status, 2);
-    EXPECT_NE(failed.err.find(told), std::string::npos) << failed.err;
+    EXPECT_NE(failed.err.find(stated), std::string::npos) << failed.err;
     EXPECT_FALSE(std::filesystem::exists(work() / "none"));
   };
   fails({"project.json", "--identity"}, "--identity");

@@ -120,7 +120,7 @@ TEST_F(HostileFiles, SliversAsLongAsACountryAreRefused) {
   }
 }
 
-TEST_F(HostileFiles, PointsThatAllLieInOnePlaceAreToldSo) {
+TEST_F(HostileFiles, PointsThatAllLieInOnePlaceAreStatedSo) {
   std::string text;
   for (int k = 0; k < 300000; ++k) text += "0 0 0\n";
   write("zeros.xyz", text);

@@ -92,9 +92,9 @@ TEST_F(HostileTest, NamesThatTurnALineRoundAreEscaped) {
   write_corner(name);
   const ProgramRun missing = run({"info", std::string("no") + kTurned + ".ply"});
   EXPECT_NE(missing.err.find("no\\u202E.ply"), std::string::npos) << missing.err;
-  const ProgramRun told = run({"info", name});
-  EXPECT_EQ(told.status, 0) << told.err;
-  EXPECT_EQ(told.out.find(kTurned), std::string::npos);
+  const ProgramRun stated = run({"info", name});
+  EXPECT_EQ(stated.status, 0) << stated.err;
+  EXPECT_EQ(stated.out.find(kTurned), std::string::npos);
   ASSERT_EQ(run({"view", name, "-o", "view.html"}).status, 0);
   const std::string page = read_whole(work() / "view.html");
   EXPECT_EQ(page.find(kTurned), std::string::npos);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
-// A table of misuses: each is told in one line that says what, where and what to do, with status 2, and
+// A table of misuses: each is stated in one line that says what, where and what to do, with status 2, and
 // leaves everything as it was. bad_input_test.cpp has the damages of single formats.
 #include <algorithm>
 #include <cstdint>
@@ -52,7 +52,7 @@ class MisuseTest : public ProgramTest {
     return all;
   }
 
-  void expect_told(const std::vector<Misuse>& table) const {
+  void expect_stated(const std::vector<Misuse>& table) const {
     const auto before = everything();
     for (const Misuse& misuse : table) {
       std::string line = "limen";
@@ -108,7 +108,7 @@ TEST_F(MisuseTest, RandomBytesUnderAnyNameAreNoFile) {
   table.push_back({{"info", "random.las"}, "this is not a LAS file"});
   table.push_back({{"info", "random.laz"}, "this is not a LAS file"});
   table.push_back({{"info", "random.e57"}, "does not begin like an E57 file"});
-  expect_told(table);
+  expect_stated(table);
 }
 
 TEST_F(MisuseTest, FilesThatEndTooEarlyAreNotTakenForWholeOnes) {
@@ -135,7 +135,7 @@ TEST_F(MisuseTest, FilesThatEndTooEarlyAreNotTakenForWholeOnes) {
     table.push_back({{"info", empty}, "the file is empty"});
     table.push_back({{"register", "a.ply", empty, "-o", "out"}, "the file is empty"});
   }
-  expect_told(table);
+  expect_stated(table);
 }
 
 TEST_F(MisuseTest, WhatIsNoFileOrTheWrongOne) {
@@ -200,7 +200,7 @@ TEST_F(MisuseTest, WhatIsNoFileOrTheWrongOne) {
     table.push_back({{"transform", json, "-o", "out"}, json});
     table.push_back({{"info", json}, json});
   }
-  expect_told(table);
+  expect_stated(table);
 }
 
 TEST_F(MisuseTest, WordsAndNumbersThatCannotBe) {
@@ -209,7 +209,7 @@ TEST_F(MisuseTest, WordsAndNumbersThatCannotBe) {
     words.insert(words.end(), more.begin(), more.end());
     return words;
   };
-  expect_told({
+  expect_stated({
       {{""}, "an empty word is not a command"},
       {{"planes", "a.ply", "b.ply", "-o", "planes.json"}, "b.ply"},
       {{"info", "a.ply", "--nonsense"}, "--nonsense is not an option"},
@@ -269,7 +269,7 @@ TEST_F(MisuseTest, NamesThatJsonCannotTellAreRefusedBeforeTheWork) {
   const std::string latin = "caf\xe9.ply";
   fs::copy_file(work() / "b.ply", work() / latin);
   const std::string must_say = "caf?.ply: is not UTF-8";
-  expect_told({
+  expect_stated({
       {{"register", "a.ply", latin, "-o", "out"}, must_say},
       {{"project", "a.ply", latin, "-o", "out"}, must_say},
       {{"project", "a.ply", "--model", latin, "-o", "out"}, must_say},
@@ -280,7 +280,7 @@ TEST_F(MisuseTest, NamesThatJsonCannotTellAreRefusedBeforeTheWork) {
 }
 
 TEST_F(MisuseTest, PlacesThatCannotBeWrittenTo) {
-  expect_told({
+  expect_stated({
       {{"planes", "a.ply", "-o", ""}, "no name"},
       {{"register", "a.ply", "b.ply", "-o", ""}, "no name"},
       {{"planes", "a.ply", "-o", "missing/out.json"}, "missing/out.json"},

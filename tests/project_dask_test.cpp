@@ -139,15 +139,15 @@ TEST_F(ProjectDask, WorkersThatAreKilledAreMadeGood) {
   EXPECT_EQ(text_of("dask"), text_of("local"));
 }
 
-TEST_F(ProjectDask, AJobThatKillsItsWorkersIsToldByNameAndTheRestFinishes) {
+TEST_F(ProjectDask, AJobThatKillsItsWorkersIsStatedByNameAndTheRestFinishes) {
   workers_run(
       "if [ \"$4\" = pair ] && mkdir first 2> /dev/null; then echo \"$5\" > victim; fi\n"
       "if [ \"$4\" = pair ] && [ \"$5 $6\" = \"$(cat victim) $6\" ] && [ -e victim ]; then\n"
       "  echo . >> starts; kill -9 $PPID; sleep 1\nfi");
   const ProgramRun done = project("dask", {"--engine", "dask"});
-  const nlohmann::json told = nlohmann::json::parse(text_of("dask"));
+  const nlohmann::json stated = nlohmann::json::parse(text_of("dask"));
   int not_compared = 0;
-  for (const nlohmann::json& note : told["notes"]) {
+  for (const nlohmann::json& note : stated["notes"]) {
     const auto text = note.get<std::string>();
     if (text.find("could not be compared (it ended its worker repeatedly)") == std::string::npos) continue;
     EXPECT_NE(text.find("case/station_00"), std::string::npos) << text;
@@ -244,7 +244,7 @@ TEST_F(ProjectDask, WhatIsMissingOrUnsafeIsOneError) {
   EXPECT_EQ(project("out", {"--scheduler", "tcp://127.0.0.1:8786"}).status, 2);
   EXPECT_EQ(project("out", {"--engine", "dask", "--tls-ca", "ca.pem"}).status, 2);
   EXPECT_EQ(run({"project", "work", "nowhere", "features"}).status, 2);
-  // A Python that sees no packages stands for one without Dask.
+  // A Python that sees no packages represents one without Dask.
   fs::create_directories(work() / "bin");
   write_whole(work() / "bin" / "python3", "#!/bin/sh\nexec /usr/bin/python3 -S \"$@\"\n");
   fs::permissions(work() / "bin" / "python3", fs::perms::owner_all);

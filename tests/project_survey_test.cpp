@@ -145,7 +145,7 @@ TEST_F(ProjectSurvey, TooFewPointsLeaveTheFrameAsItWasAndSaySo) {
   EXPECT_EQ(project["points"][0]["state"], "not_placed");
 }
 
-TEST_F(ProjectSurvey, FilesThatAreNoGoodAreToldBeforeAnythingIsDone) {
+TEST_F(ProjectSurvey, FilesThatAreNoGoodAreStatedBeforeAnythingIsDone) {
   write_whole(work() / "a.ply", "ply\n");
   const std::vector<std::pair<std::string, std::string>> faults = {
       {"", "holds no line"},

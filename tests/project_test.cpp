@@ -135,7 +135,7 @@ TEST_F(Project, StationsStandWhereTheTruthHasThemAndBytesNeverDiffer) {
     EXPECT_LT((pose - Matrix4d::Identity()).cwiseAbs().maxCoeff(), 0.01);
   }
 
-  // Scans of one file are told, and called, by their numbers from 0.
+  // Scans of one file are stated, and called, by their numbers from 0.
   EXPECT_NE(run({"info", "all.e57"}).out.find("scan 1 of 2 (all.e57 #0)"), std::string::npos);
   const ProgramRun unclear = run({"project", "decide", "reread", "level", "all.e57"});
   EXPECT_EQ(unclear.status, 2);
@@ -264,7 +264,7 @@ TEST_F(Project, PassesThatDriftAreBentBack) {
   EXPECT_LT(after, 0.5 * before);
 }
 
-TEST_F(Project, ScansThatCannotBeReadAndCopiesAreToldAndStopNothing) {
+TEST_F(Project, ScansThatCannotBeReadAndCopiesAreStatedAndStopNothing) {
   std::vector<std::string> scans = simulate();
   scans.resize(1);
   std::filesystem::copy(work() / scans.front(), work() / "copy.ply");
@@ -281,9 +281,9 @@ TEST_F(Project, ScansThatCannotBeReadAndCopiesAreToldAndStopNothing) {
   EXPECT_EQ(by_name["broken.ply"]["readable"], false);
   EXPECT_EQ(by_name["missing.ply"]["readable"], false);
   EXPECT_EQ(by_name["missing.ply"]["reason"], "there is no such file");
-  const bool copy_told =
+  const bool copy_stated =
       by_name["copy.ply"].contains("copy_of") || by_name[scans.front()].contains("copy_of");
-  EXPECT_TRUE(copy_told);
+  EXPECT_TRUE(copy_stated);
   EXPECT_NE(done.out.find("more than once"), std::string::npos);
   const ProgramRun of_copy = run({"project", "decide", "out", "level", "copy.ply"});
   EXPECT_EQ(of_copy.status, 2);
@@ -350,7 +350,7 @@ TEST_F(Project, DecisionsAreHeededTestedAndSurviveRuns) {
     EXPECT_EQ(project["links"][0]["state"], "rejected");
     EXPECT_EQ(project["links"][0]["reason"], "rejected by your decision");
   }
-  // From a file, over what was said before; names that nothing has are told.
+  // From a file, over what was said before; names that nothing has are stated.
   write_whole(
       work() / "words.json",
       R"({"decisions": [{"accept": ["indoor_00.ply", "indoor_01.ply"]}, {"level": ["cellar.ply"]}]})");
@@ -375,7 +375,7 @@ TEST_F(Project, DecisionsAreHeededTestedAndSurviveRuns) {
   EXPECT_NE(bad.err.find("words.json, decision 1"), std::string::npos) << bad.err;
 }
 
-TEST_F(Project, WhatIsMissingIsTold) {
+TEST_F(Project, WhatIsMissingIsStated) {
   const ProgramRun nowhere = run({"project", "a.ply"});
   EXPECT_EQ(nowhere.status, 2);
   EXPECT_NE(nowhere.err.find("-o DIR"), std::string::npos);

@@ -150,7 +150,7 @@ TEST(StepTime, AChainOfParts) {
   EXPECT_NO_THROW(read_strange(step_reader(), file.substr(0, file.size())));
 }
 
-/// Every element stands in one storey, the description of which is as long as all of them.
+/// Every element is in one storey, the description of which is as long as all of them.
 TEST(StepTime, ALongStoreyAskedForOften) {
   std::string text = "#1=IFCBUILDINGSTOREY('',$,'" + std::string(500000, 'x') + "',$,$,$,$,$,$,0.);\n";
   std::string all;

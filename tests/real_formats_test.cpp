@@ -159,8 +159,8 @@ class RealFormats : public ProgramTest {
                                             Vector3d(1, -5, -0.5), Vector3d(3, 3, 3)};
     for (std::size_t k = 0; k < places.size(); ++k) {
       const Vector3d x = middle + places[k];
-      const Vector3d told = x + noise();
-      control += fmt::format("P{},{:.4f},{:.4f},{:.4f},0.002\n", k, told.x(), told.y(), told.z());
+      const Vector3d stated = x + noise();
+      control += fmt::format("P{},{:.4f},{:.4f},{:.4f},0.002\n", k, stated.x(), stated.y(), stated.z());
       for (const auto& [file, pose] : poses_) {
         const Vector3d seen = inverse(pose) * x + noise();
         targets += fmt::format("P{},{},{:.4f},{:.4f},{:.4f},0.002\n", k, file, seen.x(), seen.y(), seen.z());
@@ -171,9 +171,9 @@ class RealFormats : public ProgramTest {
   }
 
   [[nodiscard]] RealJson info(const std::string& path) const {
-    const ProgramRun told = run({"info", path, "--json"});
-    EXPECT_EQ(told.status, 0) << told.err;
-    return RealJson::parse(told.out);
+    const ProgramRun stated = run({"info", path, "--json"});
+    EXPECT_EQ(stated.status, 0) << stated.err;
+    return RealJson::parse(stated.out);
   }
 
   std::map<std::string, Rigid3> poses_;  ///< of each file
@@ -247,7 +247,7 @@ TEST_F(RealFormats, OneProjectOneReportOneE57) {
   EXPECT_EQ(faults, "");
 }
 
-TEST_F(RealFormats, CoordinateSystemsAreKeptToldAndComparedWithWhatFilesSay) {
+TEST_F(RealFormats, CoordinateSystemsAreKeptStatedAndComparedWithWhatFilesSay) {
   write_whole(work() / "stay.txt", "1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n");
   write_whole(work() / "a.xyz", "1 2 3\n2 3 4\n3 4 6\n");
   write_whole(work() / "site.prj", kSite);
@@ -255,7 +255,7 @@ TEST_F(RealFormats, CoordinateSystemsAreKeptToldAndComparedWithWhatFilesSay) {
     ASSERT_EQ(run({"transform", "stay.txt", "a.xyz", name, "--crs", "site.prj"}).status, 0) << name;
     if (std::string(name) == "a.ply") continue;
     EXPECT_EQ(info(name)["crs"]["name"], "site") << name;
-    // From file to file, without being told again; and in its own format.
+    // From file to file, without being stated again; and in its own format.
     const std::string again = std::string("again_") + name;
     ASSERT_EQ(run({"transform", "stay.txt", name, again}).status, 0);
     EXPECT_EQ(info(again)["crs"]["name"], "site") << name;

@@ -89,7 +89,7 @@ TEST_F(RegisterModelTest, StationsKnownToOneAnotherGoTogether) {
   EXPECT_LT(evaluated("result/result.json")["translation_error_m"].get<double>(), 0.02);
 }
 
-TEST_F(RegisterModelTest, WhatCannotBeIsTold) {
+TEST_F(RegisterModelTest, WhatCannotBeIsStated) {
   simulate("unique", "1");
   const ProgramRun two = run({"register", "case/model.ifc", "case/model.ifc", "-o", "result"});
   EXPECT_EQ(two.status, 2);

@@ -49,9 +49,9 @@ TEST_F(SchemaTest, FilesOfAPairAndOfAProject) {
   must_run({"simulate", "room", "--points-indoor", "60000", "-o", "."});
   must_run({"register", "indoor_00.ply", "indoor_01.ply", "-o", "out"});
   EXPECT_EQ(file_fault("result", "out/result.json"), "");
-  const ProgramRun told = run({"evaluate", "out/result.json", "truth/truth.json", "--json"});
-  ASSERT_EQ(told.status, 0) << told.err;
-  EXPECT_EQ(fault("evaluation", told.out), "");
+  const ProgramRun stated = run({"evaluate", "out/result.json", "truth/truth.json", "--json"});
+  ASSERT_EQ(stated.status, 0) << stated.err;
+  EXPECT_EQ(fault("evaluation", stated.out), "");
   write_whole(work() / "control.csv", "name,x,y,z,sigma\nA,0.5,0.5,0.3,0.01\nB,4.5,0.5,2.2,0.01\n");
   write_whole(work() / "targets.csv", "name,scan,x,y,z,sigma\nA,indoor_00.ply,0.1,0.2,0.3,0.01\n");
   must_run({"project", "indoor_00.ply", "indoor_01.ply", "-o", "building", "--control", "control.csv",
@@ -71,9 +71,9 @@ TEST_F(SchemaTest, WhatIsSaidOfAProjectWithoutARegisteredScan) {
   write_whole(work() / "truth.json", R"({"scans": []})");
   const ProgramRun held = run({"evaluate", "project.json", "truth.json", "--json"});
   ASSERT_EQ(held.status, 0) << held.err;
-  const SchemaJson told = SchemaJson::parse(held.out);
-  EXPECT_TRUE(told["translation_error_median_m"].is_null());
-  EXPECT_TRUE(told["translation_error_largest_m"].is_null());
+  const SchemaJson stated = SchemaJson::parse(held.out);
+  EXPECT_TRUE(stated["translation_error_median_m"].is_null());
+  EXPECT_TRUE(stated["translation_error_largest_m"].is_null());
   EXPECT_EQ(fault("project-evaluation", held.out), "");
 }
 
@@ -90,7 +90,7 @@ TEST_F(SchemaTest, FilesAboutAModel) {
   }
 }
 
-TEST_F(SchemaTest, AnUnknownFileIsToldWithThoseThereAre) {
+TEST_F(SchemaTest, AnUnknownFileIsStatedWithThoseThereAre) {
   const ProgramRun done = run({"schema", "report"});
   EXPECT_EQ(done.status, 2);
   EXPECT_NE(done.err.find("planes"), std::string::npos) << done.err;

@@ -58,7 +58,7 @@ TEST_F(SegmentsCommandTest, TwelveEdgesInWorldCoordinates) {
   EXPECT_NEAR(total, 48.0, 1.0);
 }
 
-TEST_F(SegmentsCommandTest, BadOptionsAreTold) {
+TEST_F(SegmentsCommandTest, BadOptionsAreStated) {
   write_room("room.xyz");
   EXPECT_EQ(run({"segments", "room.xyz", "-o", "room.json", "--min-length-m", "0"}).status, 2);
   EXPECT_EQ(run({"segments", "room.xyz", "-o", "room.json", "--min-angle-deg", "95"}).status, 2);

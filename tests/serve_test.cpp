@@ -218,7 +218,7 @@ TEST_F(ServeTest, KeptWorkOfSomebodyElseIsLookedAtAsNewWorkIs) {
     const int status = status_in(server.ask("POST", "jobs", again));
     EXPECT_TRUE(status >= 400 && status < 500) << id << " " << status;
   }
-  // A place is never told from kept words either.
+  // A place is never distinguished from kept words either.
   EXPECT_GE(status_in(server.ask("POST", "jobs", R"({"kind": "decide", "of": 4, "answer": "accept a b"})")),
             400);
   EXPECT_EQ(server.end(SIGINT), 0);

@@ -95,7 +95,7 @@ TEST_F(SimulateModelTest, ModelFilesAreScannedToo) {
   EXPECT_GT(truth["scans"][0]["points"].get<int>(), 4500);
 }
 
-TEST_F(SimulateModelTest, BadModelsAndWishesAreToldAndLeaveNothing) {
+TEST_F(SimulateModelTest, BadModelsAndWishesAreStatedAndLeaveNothing) {
   write_whole(work() / "wall.obj", "v 0 0 0\nv 5 0 0\nv 5 0 3\nv 0 0 3\nf 1 2 3 4\n");
   write_whole(work() / "broken.ifc", "ISO-10303-21;\nnonsense");
   for (const std::string model : {"wall.obj", "broken.ifc", "no_such_model.ifc"}) {

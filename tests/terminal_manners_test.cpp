@@ -194,18 +194,18 @@ TEST_F(TerminalManners, WithoutUtf8TheLineIsAsciiAndNeverWiderThanTheTerminal) {
   OnTerminal limen(narrow, slow_planes());
   EXPECT_EQ(limen.finish(), 0);
   std::string line;
-  bool told = false;
+  bool stated = false;
   for (const char c : limen.shown()) {
     EXPECT_GE(c, 0) << "a sign beyond ASCII";
     if (c == '\r' || c == '\x1b') line.clear();
     line += c;
     if (line.find("planes ") == 1) {
-      told = true;
+      stated = true;
       EXPECT_LE(line.size(), 50U) << line;
     }
     if (c == '\n') break;
   }
-  EXPECT_TRUE(told) << limen.shown();
+  EXPECT_TRUE(stated) << limen.shown();
 }
 
 TEST_F(TerminalManners, NothingIsDrawnInAPipeOrWhenAskedNotTo) {

@@ -152,7 +152,7 @@ TEST_F(ViewTest, AModelBesideAScanAndTheSameBytesForAnyThreads) {
   EXPECT_EQ(scene["side-1"]["shape"], "points");
 }
 
-TEST_F(ViewTest, WhatIsWrongIsTold) {
+TEST_F(ViewTest, WhatIsWrongIsStated) {
   write_wall("a.xyz", 0.0);
   write_whole(work() / "pose.txt", kTurned);
   write_whole(work() / "other.json", "{\"a\": 1}");

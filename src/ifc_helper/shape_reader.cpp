@@ -169,7 +169,7 @@ class ItemWalker {
     return nodes;
   }
 
-  /// An item that fails is told of and left out; the others of the product stay.
+  /// An item that fails is reported and left out; the others of the product stay.
   ShapeNode guarded(const Item& item, int depth) {
     std::string problem;
     try {

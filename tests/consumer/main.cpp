@@ -27,7 +27,7 @@ constexpr std::array<std::array<double, 2>, 7> kCorners = {
 constexpr double kFloor = -1.4;
 constexpr double kCeiling = 1.6;
 
-/// What stands about in the L-shaped room: no two things alike, none parallel to a wall.
+/// What is about in the L-shaped room: no two things alike, none parallel to a wall.
 std::vector<Box> furniture() {
   return {{{3.9, -1.2, -1.03}, {0.70, 0.40, 0.37}, 0.31},  {{2.3, 0.3, -1.17}, {0.24, 0.26, 0.23}, 0.83},
           {{-0.9, 3.0, -0.72}, {0.42, 0.21, 0.68}, -0.22}, {{0.5, 2.7, -1.12}, {0.31, 0.52, 0.28}, 1.13},
@@ -67,7 +67,7 @@ double reach_of_shell(const Vector3d& at, const Vector3d& way) {
   return nearest;
 }
 
-/// A scan from `station` in the room, as a file that limen reads: in the scanner's frame, which stands in the
+/// A scan from `station` in the room, as a file that limen reads: in the scanner's frame, which is in the
 /// room as it likes.
 limen::Scan scan_of_room(const char* name, const Vector3d& station, double heading, double step_deg) {
   const std::vector<Box> things = furniture();

@@ -183,7 +183,7 @@ void http(std::string_view bytes) {
     const HttpRequest request = parse_http_head(bytes);
     for (const auto& [name, value] : request.fields) static_cast<void>(request.field(name));
   } catch (const HttpFault&) {
-    return;  // told to its sender
+    return;  // stated to its sender
   }
 }
 

@@ -18,7 +18,7 @@ using testing_las::Parts;
 /// How a file is packed.
 struct Packing {
   std::size_t chunk = 100;  ///< points
-  bool variable = false;    ///< chunks of several lengths, told in the table
+  bool variable = false;    ///< chunks of several lengths, stated in the table
   bool one_run = false;     ///< formats 0 to 5: no chunks
   bool table_at_end = false;
   int version = 3;  ///< of the layers, 3 or 4
@@ -126,7 +126,7 @@ inline std::string file(Parts parts, const Packing& packing = {}) {
   bytes[104] = static_cast<char>(bytes[104] | '\x80');
   for (const std::string& one : parts.records) bytes += one;
   if (packing.one_run) return bytes + pack_points(parts, parts.points);
-  const std::size_t table_told_at = bytes.size();
+  const std::size_t table_stated_at = bytes.size();
   bytes += testing_io::bytes_of(std::int64_t{-1});
   Encoder table;
   IntegerEncoder<32, 2> numbers;
@@ -150,7 +150,7 @@ inline std::string file(Parts parts, const Packing& packing = {}) {
   const auto table_at = static_cast<std::int64_t>(bytes.size());
   bytes += testing_io::bytes_of(std::uint32_t{0}) + testing_io::bytes_of(chunks) + table.finish();
   if (packing.table_at_end) return bytes + testing_io::bytes_of(table_at);
-  testing_las::put(bytes, table_told_at, table_at);
+  testing_las::put(bytes, table_stated_at, table_at);
   if (!parts.tail.empty()) {
     testing_las::put(bytes, 235, static_cast<std::uint64_t>(bytes.size()));
     testing_las::put(bytes, 243, parts.tail_records);

@@ -56,7 +56,7 @@ class SyntheticStreet {
     return node;
   }
 
-  /// What stands at `x` sees the street as far as 12 m.
+  /// What is at `x` sees the street as far as 12 m.
   ProjectNode station(double x) {
     ProjectNode node;
     see(x, -1.0, 12.0, node.digest);

@@ -7,7 +7,7 @@
 
 namespace limen {
 
-/// What the units of a stage are: a rate can be told of points and bytes, not of steps.
+/// What the units of a stage are: points and bytes have a rate, steps have none.
 enum class WorkUnit { steps, points, bytes };
 
 /// What long work tells its caller, and how the caller stops it. The default hears nothing.

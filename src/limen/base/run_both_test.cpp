@@ -44,9 +44,9 @@ TEST_P(RunBoth, EachDoesItsOwnParallelWorkToTheSameBits) {
   EXPECT_EQ(second, alone);
 }
 
-TEST_P(RunBoth, TheFirstFailureIsTold) {
+TEST_P(RunBoth, TheFirstFailureIsStated) {
   const auto fail = [](const std::string& what) { return [what] { throw std::runtime_error(what); }; };
-  const auto told = [](const std::function<void()>& first, const std::function<void()>& second) {
+  const auto stated = [](const std::function<void()>& first, const std::function<void()>& second) {
     try {
       run_both(first, second);
     } catch (const std::runtime_error& error) {
@@ -54,9 +54,9 @@ TEST_P(RunBoth, TheFirstFailureIsTold) {
     }
     return std::string("nothing");
   };
-  EXPECT_EQ(told(fail("first"), fail("second")), "first");
-  EXPECT_EQ(told([] {}, fail("second")), "second");
-  EXPECT_EQ(told([] {}, [] {}), "nothing");
+  EXPECT_EQ(stated(fail("first"), fail("second")), "first");
+  EXPECT_EQ(stated([] {}, fail("second")), "second");
+  EXPECT_EQ(stated([] {}, [] {}), "nothing");
 }
 
 TEST_P(RunBoth, BothHeedACancelledScope) {

@@ -20,8 +20,8 @@ inline std::vector<char*> exec_pointers(std::vector<std::string>& words) {
 /// The starter that takes this program through a loader of its own (scripts/bundle) and so has to be called
 /// in its place; null: there is none, the program is called itself.
 inline const char* program_starter() {
-  const char* told = std::getenv("LIMEN_PROGRAM_FILE");
-  return told != nullptr && *told == '/' ? told : nullptr;
+  const char* stated = std::getenv("LIMEN_PROGRAM_FILE");
+  return stated != nullptr && *stated == '/' ? stated : nullptr;
 }
 
 }  // namespace limen

@@ -90,7 +90,7 @@ TEST(Text, ProbabilitiesAreShortAndNeverRoundedToCertainty) {
   EXPECT_EQ(percent_words(std::numeric_limits<double>::quiet_NaN()), "—");
 }
 
-TEST(Text, ReasonIsTold) {
+TEST(Text, ReasonIsStated) {
   EXPECT_NE(reason_of(ENOENT), reason_of(EACCES));
   EXPECT_FALSE(reason_of(ENOENT).empty());
 }

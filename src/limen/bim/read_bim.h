@@ -15,7 +15,7 @@ namespace limen {
 bool is_bim_file(const std::filesystem::path& path);
 
 /// Reads a model of any format that limen knows, chosen by content. Throws Error where it cannot be read;
-/// what is damaged or left out of a model that can be read in part stands in BimModel::warnings.
+/// what is damaged or left out of a model that can be read in part is in BimModel::warnings.
 /// `metres_per_unit`: of a mesh, which says nothing of its unit; empty: 1. An IFC file tells its own, and
 /// another one is refused.
 BimModel read_bim(const std::filesystem::path& path, Monitor& monitor = silent_monitor(),

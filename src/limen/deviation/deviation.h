@@ -39,7 +39,7 @@ enum class Presence : std::uint8_t {
 };
 const char* to_string(Presence presence);
 
-/// By how much an element stands elsewhere, as far as its seen faces tell.
+/// By how much an element is elsewhere, as far as its seen faces tell.
 struct ElementShift {
   Vector3d shift_m = Vector3d::Zero();  ///< as built less as modelled, model axes; 0 along open directions
   Vector3d sigma_m = Vector3d::Zero();  ///< one standard deviation along x, y, z, of the faces' scatter
@@ -48,7 +48,7 @@ struct ElementShift {
 };
 
 /// One element against the scan. Distances are along the outward normals of its faces: positive where matter
-/// stands out of the model's surface.
+/// is out of the model's surface.
 struct ElementDeviation {
   std::int32_t element = -1;  ///< index into BimModel::elements
   Presence presence = Presence::not_judged;

@@ -15,7 +15,7 @@ constexpr double kContestedShare = 0.3;  // of a face's points that might be on 
 constexpr double kOwnShare = 0.3;        // of the gap to it: matter nearer than this is the face's own
 constexpr double kNearLimit = 0.7;       // of the largest distance: what lies there may be anything
 constexpr double kPeakShare = 0.65;      // of a face's points that stand together, else it is two things
-constexpr std::size_t kFacePoints = 30;  // fewer do not tell where a face stands
+constexpr std::size_t kFacePoints = 30;  // fewer do not tell where a face is
 
 /// The typical gap from each face to another that its points might be on; infinite where few might.
 std::vector<double> gaps_by_face(const PointFaces& laid, std::size_t faces) {

@@ -25,7 +25,7 @@ long sum_of(std::string_view bytes) {
 
 constexpr std::size_t kBytes = 1 << 20;
 
-TEST(MappedFile, AFileThatShrinksReadsAsZerosAndIsToldOf) {
+TEST(MappedFile, AFileThatShrinksReadsAsZerosAndIsStatedOf) {
   const TemporaryFolder folder;
   const auto path = folder.write("a.bin", std::string(kBytes, '\1'));
   const MappedFile file(path);
@@ -43,7 +43,7 @@ TEST(MappedFile, AFileThatShrinksReadsAsZerosAndIsToldOf) {
   }
 }
 
-TEST(MappedFile, WithinItsLastPageItIsToldOfToo) {
+TEST(MappedFile, WithinItsLastPageItIsStatedOfToo) {
   const TemporaryFolder folder;
   const auto path = folder.write("a.bin", "0123456789");
   const MappedFile file(path);

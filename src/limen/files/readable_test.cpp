@@ -17,7 +17,7 @@ namespace {
 
 using testing_io::TemporaryFolder;
 
-TEST(Readable, TheReasonIsToldOrTheSystemsOwnWords) {
+TEST(Readable, TheReasonIsStatedOrTheSystemsOwnWords) {
   const TemporaryFolder folder;
   const auto file = folder.write("a.txt", "1");
   const auto beside = [&](const char* name) { return file.parent_path() / name; };

@@ -9,7 +9,7 @@
 
 namespace limen {
 
-/// What stands between the columns of a table whose first line this is: a semicolon, a tab, else a comma.
+/// What is between the columns of a table whose first line this is: a semicolon, a tab, else a comma.
 char table_mark(std::string_view header);
 
 /// The cells of a line, without blanks around; a quoted cell may hold the mark.

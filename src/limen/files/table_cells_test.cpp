@@ -44,10 +44,10 @@ TEST(TableCells, AFieldIsQuotedAndNoFormula) {
   EXPECT_EQ(csv_field("\r=1"), "\"'\r=1\"");
 }
 
-TEST(TableCells, ALineWithMoreFieldsThanColumnsIsToldWithBoth) {
-  const std::string told = fault_of("name,x,y,z,sigma\n# 1,2,3,4,5,6\nA,1,5,2,5,3,5,0,002\n");
-  EXPECT_EQ(told.substr(0, 43), "a.csv, line 3: 9 fields, 5 columns (write d") << told;
-  EXPECT_NE(told.find("decimal commas"), std::string::npos) << told;
+TEST(TableCells, ALineWithMoreFieldsThanColumnsIsStatedWithBoth) {
+  const std::string stated = fault_of("name,x,y,z,sigma\n# 1,2,3,4,5,6\nA,1,5,2,5,3,5,0,002\n");
+  EXPECT_EQ(stated.substr(0, 43), "a.csv, line 3: 9 fields, 5 columns (write d") << stated;
+  EXPECT_NE(stated.find("decimal commas"), std::string::npos) << stated;
   EXPECT_NE(fault_of("name;x\nA;1;2\n").find("line 2: 3 fields, 2 columns"), std::string::npos);
 }
 
@@ -57,7 +57,7 @@ TEST(TableCells, EmptyCellsAtTheEndAndShortLinesAreNoFault) {
   EXPECT_EQ(fault_of(""), "");
 }
 
-TEST(TableCells, WhatIsNoFileIsTold) {
+TEST(TableCells, WhatIsNoFileIsStated) {
   const TemporaryFolder folder;
   const auto path = folder.write("a.csv", "name\n");
   try {

@@ -14,7 +14,7 @@ namespace limen {
 class CellLists {
  public:
   CellLists() = default;
-  /// `cells_of[k]`: the cells that thing k stands in, each once.
+  /// `cells_of[k]`: the cells that thing k is in, each once.
   explicit CellLists(std::vector<std::vector<std::int64_t>> cells_of);
 
   /// The things in a cell, ascending.

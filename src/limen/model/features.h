@@ -44,7 +44,7 @@ struct SurfaceSample {
   Vector3d mean = Vector3d::Zero();    ///< metres, about the scan's local origin
   Vector3d normal = Vector3d::Zero();  ///< of its plane, towards the scanner where known; zero for clutter
   std::int32_t plane = -1;             ///< index into Features::planes, or -1
-  float area_m2 = 0.0F;                ///< surface it stands for
+  float area_m2 = 0.0F;                ///< surface it represents
   float count = 0.0F;                  ///< points averaged
 };
 

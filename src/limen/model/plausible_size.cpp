@@ -43,7 +43,7 @@ std::string guess(double side_m) {
   return side_m > 2000.0 ? "are they millimetres?" : "are they centimetres?";
 }
 
-std::string told(double metres) {
+std::string stated(double metres) {
   return metres >= 1e4 ? fmt::format("{:.4g} km", 1e-3 * metres) : fmt::format("{:.4g} m", metres);
 }
 
@@ -133,8 +133,8 @@ std::string size_hint(const Scan& scan, const std::string& units_option) {
   const std::string unit = odd ? unit_for(least, longest) : "";
   if (unit.empty()) return {};
   return fmt::format(
-      "measures {} x {} x {}; are its numbers {}? Then {}", told(sides.x()), told(sides.y()), told(sides.z()),
-      unit,
+      "measures {} x {} x {}; are its numbers {}? Then {}", stated(sides.x()), stated(sides.y()),
+      stated(sides.z()), unit,
       units_option.empty() ? "export it again in metres" : fmt::format("give {} {}", units_option, unit));
 }
 
@@ -153,7 +153,7 @@ std::string degrees_hint(const Scan& scan) {
   const Vector3d sides = sides_of(scan);
   if (!seem_degrees(scan, sides)) return {};
   return fmt::format("x and y seem to be degrees of longitude and latitude: they span {:.2g} x {:.2g}, z {}",
-                     sides.x(), sides.y(), told(sides.z()));
+                     sides.x(), sides.y(), stated(sides.z()));
 }
 
 std::string up_hint(const Vector3d& up_in_scan) {
@@ -196,7 +196,7 @@ void require_plausible_size(const Scan& scan, const std::string& units_option) {
   if (plausible(sides)) return;
   throw Error(
       fmt::format("the points measure {} x {} x {}, which is implausible for a scan of a building: {}",
-                  told(sides.x()), told(sides.y()), told(sides.z()), guess(longest)),
+                  stated(sides.x()), stated(sides.y()), stated(sides.z()), guess(longest)),
       scan.name, remedy_for_units(units_option));
 }
 
@@ -213,7 +213,7 @@ void require_plausible_size(const BimModel& model, const std::string& units_opti
   throw Error(
       fmt::format("the model measures {} from end to end and has {:.3g} m2 of surface with {:.3g} m of "
                   "outlines, which is implausible for a building (1 unit of the file = {:.6g} m): {}",
-                  told(side), area_m2, outline_m, model.metres_per_unit, guess(side)),
+                  stated(side), area_m2, outline_m, model.metres_per_unit, guess(side)),
       model.name,
       is_mesh(model) ? remedy_for_units(units_option)
                      : "check the unit of the file and export it again in metres, or leave out what "

@@ -42,7 +42,7 @@ struct PoseSigma {
   /// trajectory's error is in it.
   Matrix6d covariance = Matrix6d::Zero();
   /// The same from the scatter of the points alone, as if no plane stood elsewhere for one scan than for the
-  /// other: what `covariance` has beyond it is how far matched planes disagree. Zero where it is not told.
+  /// other: what `covariance` has beyond it is how far matched planes disagree. Zero where it is not stated.
   Matrix6d formal_covariance = Matrix6d::Zero();
 };
 
@@ -61,9 +61,9 @@ struct Hypothesis {
   int matched_segments = 0;               ///< of registering sets of segments; `score` is in metres there
   double agreeing_length_m = 0.0;         ///< length of the smaller set of segments that lies on the other
   std::optional<double> explained_share;  ///< against a model: of the walls that the scan saw
-  std::string room;                  ///< of a model with named rooms: where the (first) station then stands
+  std::string room;                       ///< of a model with named rooms: where the (first) station then is
   std::optional<TwinEvidence> twin;  ///< whether it lays a place on a look-alike one, where that was asked
-  bool tie = false;                  ///< of an alternative: it cannot be told from the best
+  bool tie = false;                  ///< of an alternative: it cannot be distinguished from the best
 };
 
 /// A pair of planes that agree under the final pose.
@@ -129,7 +129,7 @@ struct RegistrationResult {
   Outcome outcome = Outcome::no_match;
   std::string reason;  ///< one sentence for a user: why this verdict
   Hypothesis best;     ///< meaningless for no_match
-  PoseSigma sigma;     ///< of `best`; not told by a published method
+  PoseSigma sigma;     ///< of `best`; not stated by a published method
   std::vector<UnobservedFreedom> unobserved;
   std::vector<Hypothesis> alternatives;  ///< different poses, best first, without `best`
   std::vector<PlaneMatch> matches;
@@ -137,7 +137,7 @@ struct RegistrationResult {
   std::vector<MeasuredThickness> thickness;  ///< of the walls between the scans, most openings first
   std::size_t judged_poses = 0;              ///< poses that were refined and judged
   std::optional<OtherExplanations> others;   ///< where poses have probabilities
-  std::size_t rivals = 0;                    ///< alternatives that cannot be told from `best`
+  std::size_t rivals = 0;                    ///< alternatives that cannot be distinguished from `best`
   std::optional<StartAgreement> start;       ///< where one was given and a pose was found
   ScannerPlace source_place;                 ///< where the scanner of each side stood, and who says so
   ScannerPlace target_place;

@@ -32,7 +32,7 @@ struct Scan {
   /// mobile.
   std::vector<Vector3d> centres;
   /// Who says so, of a static station; a claim that is tested before it is believed.
-  PlaceSource centre_source = PlaceSource::told_by_file;
+  PlaceSource centre_source = PlaceSource::stated_by_file;
   ScanTopology topology;
   std::vector<double> times_s;        ///< per point or empty (GPS time, seconds)
   std::vector<float> intensities;     ///< per point or empty, in the file's unit

@@ -10,9 +10,9 @@ const char* to_string(PlaceSource source) {
       return "unknown";
     case PlaceSource::assumed:
       return "assumed";
-    case PlaceSource::told_by_file:
+    case PlaceSource::stated_by_file:
       return "file";
-    case PlaceSource::told_by_user:
+    case PlaceSource::stated_by_user:
       return "user";
     case PlaceSource::estimated:
       return "estimated";

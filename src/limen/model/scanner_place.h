@@ -11,12 +11,12 @@ namespace limen {
 
 /// Who says where a static scanner stood.
 enum class PlaceSource : std::uint8_t {
-  unknown,       ///< nobody, and the data do not show it
-  assumed,       ///< 0,0,0 of the points, as many files have it, which the data do not refute
-  told_by_file,  ///< the file
-  told_by_user,  ///< the user
-  estimated,     ///< the data: density of the points on planes
-  per_point      ///< the file or a trajectory, for every point: a mobile scan
+  unknown,         ///< nobody, and the data do not show it
+  assumed,         ///< 0,0,0 of the points, as many files have it, which the data do not refute
+  stated_by_file,  ///< the file
+  stated_by_user,  ///< the user
+  estimated,       ///< the data: density of the points on planes
+  per_point        ///< the file or a trajectory, for every point: a mobile scan
 };
 /// "unknown", "assumed", "file", "user", "estimated", "per point".
 const char* to_string(PlaceSource source);
@@ -28,7 +28,7 @@ struct ScannerPlace {
   bool confirmed = false;              ///< the density of the points on planes bears it out
   std::optional<double> sigma_m;  ///< one standard deviation per axis, the largest, where it was estimated
   /// A place that was said and that the data refute: replaced where it was only assumed or the file's word,
-  /// kept where the user told it.
+  /// kept where the user stated it.
   std::optional<Vector3d> refuted;
 };
 

@@ -95,7 +95,7 @@ JointFinding adjust_once(const std::vector<ProjectNode>& nodes, JointProblem pro
     passes.settle_frames(problem, components_of(solved), survey.settled.solution);
     problem.points = links.points;
     keep_points(links.points, survey.points);
-    finding.passes = passes.told(survey.settled.solution);
+    finding.passes = passes.stated(survey.settled.solution);
     take(survey.settled.solution, solved);
     problem.frame_from_node = survey.settled.solution.frame_from_node;
   }
@@ -113,10 +113,10 @@ JointFinding adjust_once(const std::vector<ProjectNode>& nodes, JointProblem pro
   find_torn(nodes, solved, settled.solution, finding);
   if (!finding.torn.empty() || !settled.firm) return finding;
   take(settled.solution, solved);
-  finding.passes = passes.told(settled.solution);
+  finding.passes = passes.stated(settled.solution);
   finding.variance_factor = settled.solution.variance_factor;
   if (!surveyed) return finding;
-  // What the links alone left out stays told.
+  // What the links alone left out stays stated.
   for (std::size_t p = 0; p < settled.verdicts.size(); ++p) {
     const PointVerdict& before = survey.settled.verdicts[p];
     if (before.known_left_out && !problem.points[p].is_known()) settled.verdicts[p] = before;

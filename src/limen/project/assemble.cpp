@@ -16,8 +16,8 @@
 #include "limen/project/project_graph.h"
 #include "limen/project/project_state.h"
 #include "limen/project/scan_names.h"
+#include "limen/project/stated_passes.h"
 #include "limen/project/survey.h"
-#include "limen/project/told_passes.h"
 
 namespace limen {
 namespace {
@@ -25,7 +25,7 @@ namespace {
 class Assembler {
  public:
   Assembler(const std::vector<ProjectNode>& nodes, const std::vector<TriedPair>& pairs, Survey survey,
-            const UserWords& words, const VerdictOptions& bounds, const PoseHearing& hearing,
+            const UserWords& words, const VerdictOptions& bounds, const PoseQuery& query,
             ProjectResult& result)
       : nodes_(nodes),
         pairs_(pairs),
@@ -33,15 +33,15 @@ class Assembler {
         survey_(std::move(survey)),
         risk_(bounds.risk),
         probable_risk_(bounds.probable_risk),
-        hearing_(hearing),
+        query_(query),
         result_(result) {}
 
   void run() {
     ProjectGraph made = make_graph(nodes_, pairs_, words_);
     add_survey_links(survey_, made);
-    solved_ = solve_graph(made.graph, risk_, hearing_, probable_risk_);
+    solved_ = solve_graph(made.graph, risk_, query_, probable_risk_);
     if (confirm_by_points(survey_, solved_, made))
-      solved_ = solve_graph(made.graph, risk_, hearing_, probable_risk_);
+      solved_ = solve_graph(made.graph, risk_, query_, probable_risk_);
     straighten(made);
     stand_alone();
     placed_ = place_survey(survey_, made, solved_);
@@ -80,7 +80,7 @@ class Assembler {
   /// Links measured against the part of a bent pass that saw what is common: solved once more with them.
   void straighten(const ProjectGraph& made) {
     if (const std::optional<PoseGraph> straight = straightened(nodes_, pairs_, made, solved_))
-      solved_ = solve_graph(*straight, risk_, hearing_, probable_risk_);
+      solved_ = solve_graph(*straight, risk_, query_, probable_risk_);
   }
 
   /// Where control points contradict one another for good, all is solved as if there were none.
@@ -94,7 +94,7 @@ class Assembler {
       }
       words += " contradict the others, and without them too few are left";
       made = make_graph(nodes_, pairs_, words_);
-      solved_ = solve_graph(made.graph, risk_, hearing_, probable_risk_);
+      solved_ = solve_graph(made.graph, risk_, query_, probable_risk_);
       straighten(made);
       stand_alone();
       const std::string file = std::exchange(survey_.file, {});
@@ -110,7 +110,7 @@ class Assembler {
   }
 
   void tell_survey() {
-    result_.points = told_points(survey_, placed_, nodes_);
+    result_.points = stated_points(survey_, placed_, nodes_);
     result_.control_file = survey_.file;
     result_.control_words = placed_.words;
     for (const std::string& note : survey_.notes) result_.notes.push_back(note);
@@ -132,7 +132,7 @@ class Assembler {
                     names, 1e3 * finding.most_moved_m));
   }
 
-  /// The first node of each component that stands firmly lends it its world.
+  /// The first node of each component that is firmly lends it its world.
   void settle_frame() {
     frame_node_.assign(static_cast<std::size_t>(std::max(1, solved_.components)), -1);
     for (const bool firm : {true, false}) {
@@ -166,10 +166,10 @@ class Assembler {
 
   [[nodiscard]] Rigid3 world_pose(const Rigid3& solved, int node, int frame) const {
     const Vector3d& origin = frame == kSurvey ? survey_.origin : digest(frame).local_origin;
-    return to_world(told_from_solved(frame) * solved, digest(node).local_origin, origin);
+    return to_world(stated_from_solved(frame) * solved, digest(node).local_origin, origin);
   }
-  /// From the frame that the graph was solved in to that which is told.
-  [[nodiscard]] Rigid3 told_from_solved(int frame) const {
+  /// From the frame that the graph was solved in to that which is stated.
+  [[nodiscard]] Rigid3 stated_from_solved(int frame) const {
     if (frame == kSurvey) return {};
     return inverse(solved_.nodes[static_cast<std::size_t>(frame)].frame_from_node);
   }
@@ -210,7 +210,7 @@ class Assembler {
   void tell_sigma(const SolvedNode& node, int n, int frame, ProjectScan& scan) const {
     const ScanDigest& own = digest(n);
     const Vector3d at = own.stations.empty() ? own.middle : own.stations.front();
-    const Rigid3 frame_from_solved = told_from_solved(frame);
+    const Rigid3 frame_from_solved = stated_from_solved(frame);
     const LinkPose pose{node.frame_from_node, node.covariance, node.frame_from_node.translation, 0.0};
     const Matrix6d moved =
         moved_covariance(pose, frame_from_solved, frame_from_solved * node.frame_from_node * at);
@@ -226,7 +226,7 @@ class Assembler {
         std::find_if(bent_.begin(), bent_.end(), [&](const BentPass& pass) { return pass.node == n; });
     if (found == bent_.end()) return;
     const Vector3d& origin = frame == kSurvey ? survey_.origin : digest(frame).local_origin;
-    scan.correction = told_correction(*found, digest(n).track.way, told_from_solved(frame), origin);
+    scan.correction = stated_correction(*found, digest(n).track.way, stated_from_solved(frame), origin);
     scan.rigid.clear();
   }
 
@@ -312,41 +312,41 @@ class Assembler {
     const GraphLink& link = graph_.links[k];
     const ScanDigest& source = digest(link.source);
     const ScanDigest& target = digest(link.target);
-    ProjectLink told;
-    told.source = static_cast<int>(nodes_[static_cast<std::size_t>(link.source)].scan);
-    told.target = static_cast<int>(nodes_[static_cast<std::size_t>(link.target)].scan);
-    told.solved = solved_.links[k];
-    const auto taken = static_cast<std::size_t>(std::max(0, told.solved.pose));
+    ProjectLink stated;
+    stated.source = static_cast<int>(nodes_[static_cast<std::size_t>(link.source)].scan);
+    stated.target = static_cast<int>(nodes_[static_cast<std::size_t>(link.target)].scan);
+    stated.solved = solved_.links[k];
+    const auto taken = static_cast<std::size_t>(std::max(0, stated.solved.pose));
     const auto world = [&](const LinkPose& pose) {
       return to_world(pose.target_from_source, source.local_origin, target.local_origin);
     };
-    told.target_from_source = world(link.poses[taken]);
-    told.agreeing_m2 = link.poses[taken].agreeing_m2;
+    stated.target_from_source = world(link.poses[taken]);
+    stated.agreeing_m2 = link.poses[taken].agreeing_m2;
     const Vector6d sigma = link.poses[taken].covariance.diagonal().cwiseSqrt();
-    told.sigma = {sigma.head<3>(), sigma.tail<3>(), link.poses[taken].centre + target.local_origin};
+    stated.sigma = {sigma.head<3>(), sigma.tail<3>(), link.poses[taken].centre + target.local_origin};
     for (std::size_t p = 0; p < link.poses.size(); ++p) {
       if (p != taken)
-        told.alternatives.push_back(
+        stated.alternatives.push_back(
             {link.number_of(static_cast<int>(p)), world(link.poses[p]), link.poses[p].agreeing_m2});
     }
-    told.number = link.number_of(static_cast<int>(taken));
-    told.given = link.trust == LinkTrust::given;
-    told.twin = link.twin;
-    told.chance = link.chance;
+    stated.number = link.number_of(static_cast<int>(taken));
+    stated.given = link.trust == LinkTrust::given;
+    stated.twin = link.twin;
+    stated.chance = link.chance;
     if (pair_of_[k] >= 0) {
       const RegistrationResult& pair = pairs_[static_cast<std::size_t>(pair_of_[k])].result;
-      told.pair = pair.outcome;
-      told.reason = pair.reason;
+      stated.pair = pair.outcome;
+      stated.reason = pair.reason;
       // They are those of the pair's own best pose; of another one nothing is known.
-      if (told.number == 0) {
-        told.matches = pair.matches;
-        told.openings = pair.openings;
+      if (stated.number == 0) {
+        stated.matches = pair.matches;
+        stated.openings = pair.openings;
       }
     } else {
-      told.pair = Outcome::registered;
-      told.reason = "given in the file";
+      stated.pair = Outcome::registered;
+      stated.reason = "given in the file";
     }
-    result_.links.push_back(std::move(told));
+    result_.links.push_back(std::move(stated));
   }
 
   /// Pairs whose scans are more probably two places built alike: no links, but worth knowing of.
@@ -355,21 +355,21 @@ class Assembler {
       const RegistrationResult& pair = pairs_[k].result;
       const bool linked = std::find(pair_of_.begin(), pair_of_.end(), static_cast<int>(k)) != pair_of_.end();
       if (linked || pair.outcome == Outcome::no_match) continue;
-      ProjectLink told;
-      told.source = static_cast<int>(nodes_[pairs_[k].source].scan);
-      told.target = static_cast<int>(nodes_[pairs_[k].target].scan);
-      told.solved.state = LinkState::rejected;
-      told.target_from_source = pair.best.target_from_source;
-      told.agreeing_m2 = pair.best.agreeing_m2;
-      told.sigma = pair.sigma;
-      told.twin = pair.others ? pair.others->twin : 0.0;
-      told.pair = pair.outcome;
-      told.matches = pair.matches;
-      told.openings = pair.openings;
+      ProjectLink stated;
+      stated.source = static_cast<int>(nodes_[pairs_[k].source].scan);
+      stated.target = static_cast<int>(nodes_[pairs_[k].target].scan);
+      stated.solved.state = LinkState::rejected;
+      stated.target_from_source = pair.best.target_from_source;
+      stated.agreeing_m2 = pair.best.agreeing_m2;
+      stated.sigma = pair.sigma;
+      stated.twin = pair.others ? pair.others->twin : 0.0;
+      stated.pair = pair.outcome;
+      stated.matches = pair.matches;
+      stated.openings = pair.openings;
       const auto said = words_.pairs.find({pairs_[k].source, pairs_[k].target});
       const bool rejected = said != words_.pairs.end() && said->second.kind == DecisionKind::reject;
-      told.reason = rejected ? "rejected by your decision" : pair.reason;
-      result_.links.push_back(std::move(told));
+      stated.reason = rejected ? "rejected by your decision" : pair.reason;
+      result_.links.push_back(std::move(stated));
     }
   }
 
@@ -384,7 +384,7 @@ class Assembler {
   }
 
   /// To accept a link, another of its poses if there are any, or to reject it.
-  void add_answers(int k, ProjectQuestion& told) const {
+  void add_answers(int k, ProjectQuestion& stated) const {
     const GraphLink& link = graph_.links[static_cast<std::size_t>(k)];
     if (pair_of_[static_cast<std::size_t>(k)] < 0) return;
     const std::vector<std::string> scans = {name_of(link.source), name_of(link.target)};
@@ -392,9 +392,9 @@ class Assembler {
     for (std::size_t p = 0; p < link.poses.size() && p < kMostAnswers; ++p) {
       const int number = link.number_of(static_cast<int>(p));
       if (link.poses[p].probability < kPossible && static_cast<int>(p) != std::max(0, taken)) continue;
-      told.answers.push_back({number == 0 ? DecisionKind::accept : DecisionKind::choose, scans, number});
+      stated.answers.push_back({number == 0 ? DecisionKind::accept : DecisionKind::choose, scans, number});
     }
-    told.answers.push_back({DecisionKind::reject, scans, 0});
+    stated.answers.push_back({DecisionKind::reject, scans, 0});
   }
 
   /// Accepted links between these nodes and the others, those that know of several places.
@@ -410,7 +410,7 @@ class Assembler {
   }
 
   void tell_question(const GraphQuestion& question) {
-    ProjectQuestion told;
+    ProjectQuestion stated;
     // Of one part there may be doubts about many places; its scans list them all.
     for (const GraphQuestion& other : solved_.questions) {
       if (&other == &question) break;
@@ -419,40 +419,40 @@ class Assembler {
     }
     std::string scans;
     for (std::size_t k = 0; k < question.moved.size(); ++k) {
-      told.scans.push_back(static_cast<int>(nodes_[static_cast<std::size_t>(question.moved[k])].scan));
+      stated.scans.push_back(static_cast<int>(nodes_[static_cast<std::size_t>(question.moved[k])].scan));
       if (k < 3) scans += (k == 0 ? "" : ", ") + name_of(question.moved[k]);
     }
     if (question.moved.size() > 3) scans += fmt::format(" and {} more", question.moved.size() - 3);
-    told.current = question.current;
-    told.rival = question.rival;
+    stated.current = question.current;
+    stated.rival = question.rival;
     for (const std::vector<int>* links : {&question.current, &question.rival}) {
-      for (std::size_t k = 0; k < links->size() && k < kMostAnswers; ++k) add_answers((*links)[k], told);
+      for (std::size_t k = 0; k < links->size() && k < kMostAnswers; ++k) add_answers((*links)[k], stated);
     }
     if (question.current.empty() && question.rival.empty()) {
       for (const int link : links_across(question.moved)) {
-        if (told.answers.size() < kMostAnswers) add_answers(link, told);
+        if (stated.answers.size() < kMostAnswers) add_answers(link, stated);
       }
     }
     if (question.doubt > 0.0) {
       const std::string by = question.current.empty()       ? "few observations"
                              : question.current.size() == 1 ? "the link " + words_of(question.current)
                                                             : "the links " + words_of(question.current);
-      told.text = fmt::format(
+      stated.text = fmt::format(
           "{} {} placed only by {}, which may be wrong ({}). Add a scan that sees both sides, or accept or "
           "reject a link",
           scans, question.moved.size() == 1 ? "is" : "are", by, percent_words(question.doubt));
     } else if (question.rival.empty() && question.current.empty()) {
-      told.text = fmt::format(
+      stated.text = fmt::format(
           "{} fits equally well in two places. Add a scan that overlaps both it and one of its neighbours",
           scans);
     } else {
-      told.text = fmt::format(
+      stated.text = fmt::format(
           "Where is {}? Its present place follows from: {}. Another place follows from: {}. Which of these "
           "links is right?",
           scans, question.current.empty() ? "no link" : words_of(question.current),
           question.rival.empty() ? "no link" : words_of(question.rival));
     }
-    result_.questions.push_back(std::move(told));
+    result_.questions.push_back(std::move(stated));
   }
 
   void fill_copies() {
@@ -507,7 +507,7 @@ class Assembler {
   PlacedSurvey placed_;
   double risk_;
   double probable_risk_;
-  const PoseHearing& hearing_;
+  const PoseQuery& query_;
   ProjectResult& result_;
   PoseGraph graph_;
   SolvedGraph solved_;
@@ -519,8 +519,8 @@ class Assembler {
 
 void assemble(const std::vector<ProjectNode>& nodes, const std::vector<TriedPair>& pairs,
               const ProjectInputs& inputs, const UserWords& words, const VerdictOptions& bounds,
-              const PoseHearing& hearing, ProjectResult& result) {
-  Assembler(nodes, pairs, read_survey(inputs, nodes, result.scans), words, bounds, hearing, result).run();
+              const PoseQuery& query, ProjectResult& result) {
+  Assembler(nodes, pairs, read_survey(inputs, nodes, result.scans), words, bounds, query, result).run();
 }
 
 }  // namespace limen

@@ -22,10 +22,10 @@ class DecisionJudge {
   [[nodiscard]] std::vector<ProjectDecision> run() const {
     std::vector<ProjectDecision> list;
     for (std::size_t d = 0; d < all_.words.decisions.size(); ++d) {
-      ProjectDecision told;
-      told.decision = all_.words.decisions[d];
-      judge(all_.words.nodes[d], d < all_.broken.size() && all_.broken[d], told);
-      list.push_back(told);
+      ProjectDecision stated;
+      stated.decision = all_.words.decisions[d];
+      judge(all_.words.nodes[d], d < all_.broken.size() && all_.broken[d], stated);
+      list.push_back(stated);
     }
     return list;
   }
@@ -35,43 +35,43 @@ class DecisionJudge {
     return all_.nodes[static_cast<std::size_t>(node)].digest;
   }
 
-  void judge(const std::vector<int>& nodes, bool broken, ProjectDecision& told) const {
-    const DecisionKind kind = told.decision.kind;
+  void judge(const std::vector<int>& nodes, bool broken, ProjectDecision& stated) const {
+    const DecisionKind kind = stated.decision.kind;
     if (nodes.empty()) {
-      told.reason = "the project has no such scan, or several of that name";
+      stated.reason = "the project has no such scan, or several of that name";
       return;
     }
     if (kind == DecisionKind::level || kind == DecisionKind::same_floor) {
-      told.state = broken ? DecisionState::contradicted : DecisionState::kept;
-      if (broken) told.reason = "links and planes contradict it, so it was not applied";
+      stated.state = broken ? DecisionState::contradicted : DecisionState::kept;
+      if (broken) stated.reason = "links and planes contradict it, so it was not applied";
       return;
     }
-    if (kind == DecisionKind::reject) return judge_rejection(nodes, told);
+    if (kind == DecisionKind::reject) return judge_rejection(nodes, stated);
     for (std::size_t k = 0; k < all_.graph.links.size(); ++k) {
       const GraphLink& link = all_.graph.links[k];
       if (all_.pair_of[k] < 0 || std::minmax(link.source, link.target) != std::minmax(nodes[0], nodes[1]))
         continue;
-      if (link.best != told.decision.pose) break;
+      if (link.best != stated.decision.pose) break;
       const bool taken = all_.solved.links[k].pose == 0;
-      told.state = taken ? DecisionState::kept : DecisionState::contradicted;
+      stated.state = taken ? DecisionState::kept : DecisionState::contradicted;
       if (!taken)
-        told.reason = fmt::format("the other links disagree with it by {:.0f} mm and {:.2f} deg",
-                                  1e3 * all_.solved.links[k].loop_error_m,
-                                  degrees(all_.solved.links[k].loop_error_rad));
+        stated.reason = fmt::format("the other links disagree with it by {:.0f} mm and {:.2f} deg",
+                                    1e3 * all_.solved.links[k].loop_error_m,
+                                    degrees(all_.solved.links[k].loop_error_rad));
       return;
     }
-    told.reason = "the pair has no such pose";
+    stated.reason = "the pair has no such pose";
   }
 
   /// Whether the two stand as the rejected link has it all the same.
-  void judge_rejection(const std::vector<int>& nodes, ProjectDecision& told) const {
-    told.reason = "the pair has no link";
+  void judge_rejection(const std::vector<int>& nodes, ProjectDecision& stated) const {
+    stated.reason = "the pair has no link";
     for (const TriedPair& pair : all_.pairs) {
       const std::pair own(static_cast<int>(pair.target), static_cast<int>(pair.source));
       if (own != std::pair(std::min(nodes[0], nodes[1]), std::max(nodes[0], nodes[1]))) continue;
       if (pair.result.outcome == Outcome::no_match) return;
-      told.state = DecisionState::kept;
-      told.reason = {};
+      stated.state = DecisionState::kept;
+      stated.reason = {};
       const SolvedNode& source = all_.solved.nodes[pair.source];
       const SolvedNode& target = all_.solved.nodes[pair.target];
       if (source.component < 0 || source.component != target.component) return;
@@ -81,8 +81,8 @@ class DecisionJudge {
       const Vector3d middle = digest(own.second).middle;
       if ((missed * middle - middle).norm() > kSamePlaceM || rotation_angle(missed.rotation) > kJudgedTurnRad)
         return;
-      told.state = DecisionState::contradicted;
-      told.reason = "the other links still lead to this relative pose";
+      stated.state = DecisionState::contradicted;
+      stated.reason = "the other links still lead to this relative pose";
       return;
     }
   }

@@ -12,20 +12,20 @@
 
 namespace limen {
 
-Trajectories read_trajectories(const ToldTrajectories& told) {
+Trajectories read_trajectories(const StatedTrajectories& stated) {
   Trajectories all;
-  for (const std::string& file : told.files)
-    all.push_back(std::make_shared<const Trajectory>(read_trajectory(file, told.reading)));
+  for (const std::string& file : stated.files)
+    all.push_back(std::make_shared<const Trajectory>(read_trajectory(file, stated.reading)));
   return all;
 }
 
-std::string key_of(const ToldTrajectories& told) {
-  if (told.files.empty()) return {};
+std::string key_of(const StatedTrajectories& stated) {
+  if (stated.files.empty()) return {};
   std::string key;
-  for (const std::string& file : told.files) key += sha256_of_file(file) + " ";
-  for (const std::string& column : told.reading.columns) key += column + ",";
-  const Vector3d& arm = told.reading.lever_arm_m;
-  return key + fmt::format("{} {} {} {} {}", told.reading.utm_zone, told.reading.time_offset_s, arm.x(),
+  for (const std::string& file : stated.files) key += sha256_of_file(file) + " ";
+  for (const std::string& column : stated.reading.columns) key += column + ",";
+  const Vector3d& arm = stated.reading.lever_arm_m;
+  return key + fmt::format("{} {} {} {} {}", stated.reading.utm_zone, stated.reading.time_offset_s, arm.x(),
                            arm.y(), arm.z());
 }
 

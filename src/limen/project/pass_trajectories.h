@@ -11,16 +11,16 @@
 namespace limen {
 
 /// Trajectories along which passes were measured, and how their files are to be read.
-struct ToldTrajectories {
+struct StatedTrajectories {
   std::vector<std::string> files;
   TrajectoryOptions reading;
 };
 
 using Trajectories = std::vector<std::shared_ptr<const Trajectory>>;
-Trajectories read_trajectories(const ToldTrajectories& told);
+Trajectories read_trajectories(const StatedTrajectories& stated);
 
 /// What tells trajectories and how they were read from all others; empty where there are none.
-std::string key_of(const ToldTrajectories& told);
+std::string key_of(const StatedTrajectories& stated);
 
 /// The scan with the places of its scanner along the trajectory that covers it, as it was where none does;
 /// `notes` tells which it was, by its mark (store/kept_notes.h): number 1 is the first of the trajectories.

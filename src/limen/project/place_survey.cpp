@@ -17,7 +17,7 @@
 namespace limen {
 namespace {
 
-// A scan whose targets fit their coordinates stands elsewhere about as seldom as any link is wrong.
+// A scan whose targets fit their coordinates is elsewhere about as seldom as any link is wrong.
 constexpr double kTargetsWrong = 1e-6;
 constexpr double kTargetsM2 =
     1000.0;  // what targets say of a scan no other scan says: they are witnesses of their own
@@ -241,7 +241,7 @@ class Confirmer {
     }
   }
 
-  /// Where the scan stands in the survey's frame by the points of all others; empty where they do not tell,
+  /// Where the scan is in the survey's frame by the points of all others; empty where they do not tell,
   /// or it sees its own elsewhere, or none.
   [[nodiscard]] std::optional<LinkPose> place(int node) const {
     if (!sees_known(node)) return {};
@@ -259,14 +259,14 @@ class Confirmer {
                         moved_covariance(datum.fit.pose, Rigid3{}, placed.centre);
     for (const MarkedPoint& point : points_) {
       for (const PointSight& sight : point.sights) {
-        if (sight.node == node && point.is_known() && !foretold(point, sight, placed)) return {};
+        if (sight.node == node && point.is_known() && !predicted(point, sight, placed)) return {};
       }
     }
     return placed;
   }
 
  private:
-  static constexpr double kSharpM = 0.15;  // twins stand further apart than what is foretold as well as this
+  static constexpr double kSharpM = 0.15;  // twins stand further apart than what is predicted as well as this
 
   [[nodiscard]] bool sees_known(int node) const {
     return std::any_of(points_.begin(), points_.end(), [&](const MarkedPoint& point) {
@@ -275,8 +275,8 @@ class Confirmer {
     });
   }
 
-  [[nodiscard]] static bool foretold(const MarkedPoint& point, const PointSight& sight,
-                                     const LinkPose& placed) {
+  [[nodiscard]] static bool predicted(const MarkedPoint& point, const PointSight& sight,
+                                      const LinkPose& placed) {
     const Vector3d at = placed.target_from_source * sight.x_in_node;
     const Matrix3d& turn = placed.target_from_source.rotation;
     const Matrix3d covariance = moved_covariance(placed, Rigid3{}, at).bottomRightCorner<3, 3>() +

@@ -12,11 +12,11 @@
 #include "limen/io/cloud/point_sample.h"
 #include "limen/model/plausible_size.h"
 #include "limen/project/control/control_file.h"
-#include "limen/project/hear_scans.h"
 #include "limen/project/own_drift.h"
 #include "limen/project/project_files.h"
 #include "limen/project/project_graph.h"
 #include "limen/project/project_state.h"
+#include "limen/project/query_scans.h"
 #include "limen/project/retrieve/choose_pairs.h"
 #include "limen/project/scan_names.h"
 #include "limen/project/stated_place.h"
@@ -62,10 +62,10 @@ class Run {
     engine_.reset();
     monitor_.begin_stage("adjustment");
     result_.pairs_tried = tried.size();
-    ScanCache heard(store_, kHeardInMemory, names_of_keys(nodes_, result_.scans));
+    ScanCache queried(store_, kQueriedInMemory, names_of_keys(nodes_, result_.scans));
     const std::size_t noted = result_.notes.size();
     assemble(nodes_, tried, inputs_, words_, options_.registering.verdict,
-             hearing_of_scans(nodes_, options_.registering, heard), result_);
+             query_of_scans(nodes_, options_.registering, queried), result_);
     compare_with_stated(nodes_, result_);
     for (std::size_t k = noted; options_.on_note && k < result_.notes.size(); ++k)
       options_.on_note(result_.notes[k]);
@@ -154,7 +154,7 @@ class Run {
         throw;
       } catch (const Error& error) {
         if (error.fault() != Fault::input) throw;
-        add_unreadable(file, told_fault(file, error.what()));
+        add_unreadable(file, stated_fault(file, error.what()));
         ++status_.unreadable;
       }
       write_status(folder_, status_);
@@ -182,13 +182,13 @@ class Run {
     const std::vector<JobResult> results = engine_->run(jobs, on_done, monitor_);
     for (std::size_t k = 0; k < results.size(); ++k) {
       if (results[k].state == JobState::done) continue;
-      files[k]->fault = told_fault(*files[k], results[k].words);
+      files[k]->fault = stated_fault(*files[k], results[k].words);
       ++status_.unreadable;
     }
     status_.ready = 0;
   }
 
-  static std::string told_fault(const ProjectFile& file, const std::string& words) {
+  static std::string stated_fault(const ProjectFile& file, const std::string& words) {
     return "cannot be read: " +
            (lists_files(file.path) ? "it names other files; give it as --scans " + file.path : words);
   }
@@ -205,7 +205,7 @@ class Run {
     result_.scans.push_back(std::move(scan));
   }
 
-  /// Copies stand where the file stands that they are copies of; their places are filled in later.
+  /// Copies stand where the file is that they are copies of; their places are filled in later.
   void add_copies(const ProjectFile& file) {
     for (std::size_t k = 0, count = result_.scans.size(); k < count; ++k) {
       if (result_.scans[k].file != file.copy_of) continue;
@@ -347,7 +347,7 @@ class Run {
 
   static constexpr double kOnePlaceM = 0.05;
   static constexpr double kShareOfCopies = 0.8;  ///< rounding may choose another point for a picture
-  static constexpr std::size_t kHeardInMemory = 32;
+  static constexpr std::size_t kQueriedInMemory = 32;
 
   const ProjectInputs& inputs_;
   std::filesystem::path folder_;
@@ -389,7 +389,7 @@ ProjectResult run_project(const ProjectInputs& inputs, const std::filesystem::pa
                           const ProjectOptions& options, Monitor& monitor) {
   options.check();
   if (inputs.scans.empty()) throw Error("there is no scan", "project", "give at least one");
-  // A fault in a small file is told before hours of work.
+  // A fault in a small file is stated before hours of work.
   for (const std::string& file : {inputs.control, inputs.check}) {
     if (!file.empty()) static_cast<void>(read_surveyed_points(file));
   }

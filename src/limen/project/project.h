@@ -30,7 +30,7 @@ struct ProjectOptions {
   EngineOptions engine = {};  ///< where features and pairs are made; never changes a result
   /// Along which scans may have been measured: each with times takes the one that covers it, before what its
   /// file says.
-  ToldTrajectories trajectories = {};
+  StatedTrajectories trajectories = {};
   /// Gets each note as soon as it is known; all of them are in ProjectResult::notes too.
   std::function<void(const std::string& note)> on_note = {};
 
@@ -49,7 +49,7 @@ struct ProjectInputs {
 };
 
 /// Puts any number of scans, and building models, into one frame. Features of scans and results of pairs are
-/// kept under `folder`/store, and only what is missing is made. A file that cannot be read is told in its
+/// kept under `folder`/store, and only what is missing is made. A file that cannot be read is stated in its
 /// scan's reason. The result depends on the names and bytes of the files and the options alone.
 /// Throws Error where there is no scan, or the store cannot be written.
 ProjectResult run_project(const ProjectInputs& inputs, const std::filesystem::path& folder,

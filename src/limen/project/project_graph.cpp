@@ -31,8 +31,8 @@ constexpr double kOfUnknown = 0.1;     // probability of being wrong where a pai
 const double kMostSaidOfTwins = std::log(19.0);  // of what is stated of places 1 of 20 is wrong
 constexpr double kStoreyM = 0.5;                 // floors further apart are of different storeys
 constexpr double kWordWrong = 4e-4;              // probability that a user's word is wrong
-constexpr double kToldApartM = 0.05;  // deviation of the least known shift below which a pose is a place
-const double kToldApartRad = radians(0.5);
+constexpr double kPlaceSigmaM = 0.05;  // deviation of the least known shift below which a pose is a place
+const double kPlaceSigmaRad = radians(0.5);
 constexpr double kOpenM = 0.1;  // where a pair calls a direction open: faces taken for one another
 constexpr double kLooseSigmas = 3.0;
 const double kOpenRad = radians(1.0);
@@ -182,7 +182,7 @@ class GraphMaker {
     put_first(static_cast<int>(kept - link.poses.begin()), link);
   }
 
-  /// `pose`: where it stands among the link's poses. What was put first before goes back.
+  /// `pose`: where it is among the link's poses. What was put first before goes back.
   static void put_first(int pose, GraphLink& link) {
     const int number = link.number_of(pose);
     std::swap(link.poses.front(), link.poses[static_cast<std::size_t>(link.best)]);
@@ -208,7 +208,7 @@ class GraphMaker {
   }
 
   [[nodiscard]] static bool tells_places_apart(const PoseSigma& sigma) {
-    return sigma.translation_m.maxCoeff() < kToldApartM && sigma.rotation_rad.maxCoeff() < kToldApartRad;
+    return sigma.translation_m.maxCoeff() < kPlaceSigmaM && sigma.rotation_rad.maxCoeff() < kPlaceSigmaRad;
   }
 
   /// Probability that none of a pair's poses is right, twins apart.

@@ -12,8 +12,8 @@
 namespace limen {
 namespace {
 
-/// What a pair told whose twin has this probability.
-RegistrationResult told(Outcome outcome, double twin, std::size_t rivals = 0) {
+/// What a pair stated whose twin has this probability.
+RegistrationResult stated(Outcome outcome, double twin, std::size_t rivals = 0) {
   RegistrationResult result;
   result.outcome = outcome;
   result.best.probability = 1.0 - twin;
@@ -32,15 +32,15 @@ std::vector<GraphLink> links_of(const RegistrationResult& pair) {
 }
 
 TEST(ProjectGraph, ALinkKeepsTheProbabilitiesOfItsPair) {
-  const std::vector<GraphLink> links = links_of(told(Outcome::ambiguous, 0.6));
+  const std::vector<GraphLink> links = links_of(stated(Outcome::ambiguous, 0.6));
   ASSERT_EQ(links.size(), 1U);
   EXPECT_EQ(links.front().trust, LinkTrust::measured);
   EXPECT_NEAR(links.front().twin, 0.6, 1e-12);
-  EXPECT_TRUE(links_of(told(Outcome::no_match, 0.0)).empty());
+  EXPECT_TRUE(links_of(stated(Outcome::no_match, 0.0)).empty());
 }
 
 TEST(ProjectGraph, WhatIsKnownToCentimetresTellsOnePlaceFromAnother) {
-  RegistrationResult pair = told(Outcome::under_constrained, 0.0);
+  RegistrationResult pair = stated(Outcome::under_constrained, 0.0);
   pair.sigma.translation_m = {0.003, 0.02, 0.003};
   pair.unobserved = {{false, Vector3d::UnitY(), "shift"}};
   EXPECT_EQ(links_of(pair).front().trust, LinkTrust::measured);
@@ -51,7 +51,7 @@ TEST(ProjectGraph, WhatIsKnownToCentimetresTellsOnePlaceFromAnother) {
 /// Two poses of a pair a decimetre or two from each other mean one place; along the line between them it is
 /// known no better than they agree. A pose that is metres away stays one of its own, and an open one is none.
 TEST(ProjectGraph, PosesNearEachOtherAreOnePlaceThatIsKnownLessWell) {
-  RegistrationResult pair = told(Outcome::ambiguous, 0.0);
+  RegistrationResult pair = stated(Outcome::ambiguous, 0.0);
   pair.best.probability = 0.6;
   pair.best.sigma.covariance = 1e-6 * Matrix6d::Identity();
   pair.sigma = pair.best.sigma;
@@ -74,7 +74,7 @@ TEST(ProjectGraph, PosesNearEachOtherAreOnePlaceThatIsKnownLessWell) {
 }
 
 TEST(ProjectGraph, AlongWhatAPairCallsOpenItsDeviationIsNotBelieved) {
-  RegistrationResult pair = told(Outcome::under_constrained, 0.0);
+  RegistrationResult pair = stated(Outcome::under_constrained, 0.0);
   pair.best.sigma.covariance = 1e-6 * Matrix6d::Identity();
   pair.sigma = pair.best.sigma;
   const Vector3d open = Vector3d(3, 4, 0).normalized();
@@ -89,7 +89,7 @@ TEST(ProjectGraph, AlongWhatAPairCallsOpenItsDeviationIsNotBelieved) {
 }
 
 TEST(ProjectGraph, APairThatDoesNotKnowItselfIsNotSure) {
-  RegistrationResult pair = told(Outcome::registered, 0.0);
+  RegistrationResult pair = stated(Outcome::registered, 0.0);
   pair.best.probability = 0.7;
   pair.others->nothing_shared = 0.2;
   pair.others->unlisted_pose = 0.1;
@@ -111,18 +111,18 @@ std::vector<GraphLink> links_with(const RegistrationResult& pair, const UserWord
 }
 
 TEST(ProjectGraph, AUsersWordMakesALinkSureOrLeavesItOut) {
-  const RegistrationResult twin = told(Outcome::ambiguous, 0.9);
+  const RegistrationResult twin = stated(Outcome::ambiguous, 0.9);
   const std::vector<GraphLink> accepted = links_with(twin, word(DecisionKind::accept));
   ASSERT_EQ(accepted.size(), 1U);
   // No surer than a user is.
   EXPECT_GT(accepted.front().twin, 0.0);
   EXPECT_LT(accepted.front().twin + accepted.front().chance, 0.001);
-  EXPECT_TRUE(links_with(told(Outcome::registered, 0.0), word(DecisionKind::reject)).empty());
-  EXPECT_TRUE(links_with(told(Outcome::no_match, 0.0), word(DecisionKind::accept)).empty());
+  EXPECT_TRUE(links_with(stated(Outcome::registered, 0.0), word(DecisionKind::reject)).empty());
+  EXPECT_TRUE(links_with(stated(Outcome::no_match, 0.0), word(DecisionKind::accept)).empty());
 }
 
 TEST(ProjectGraph, TheChosenPoseComesFirstAndPosesKeepTheirNumbers) {
-  RegistrationResult pair = told(Outcome::ambiguous, 0.0, 2);
+  RegistrationResult pair = stated(Outcome::ambiguous, 0.0, 2);
   pair.alternatives.push_back(pair.best);
   pair.alternatives[0].target_from_source.translation.x() = 3.0;
   pair.alternatives[1].target_from_source.translation.x() = 5.0;
@@ -152,7 +152,7 @@ ProjectNode over_a_floor(std::size_t scan) {
 }
 
 TEST(ProjectGraph, PosesOnOtherStoreysFallAwayWhereFloorsAreOfOneHeight) {
-  RegistrationResult pair = told(Outcome::ambiguous, 0.0, 1);
+  RegistrationResult pair = stated(Outcome::ambiguous, 0.0, 1);
   pair.best.target_from_source.translation.z() = 3.0;
   pair.alternatives.front().target_from_source.translation.z() = 0.01;
   UserWords words;
@@ -225,7 +225,7 @@ UserWords said(DecisionKind kind) {
   return words;
 }
 
-TEST(WordTerms, ScansThatAreToldToBeLevelBecomeSoUnlessTheDataContradictIt) {
+TEST(WordTerms, ScansThatAreStatedToBeLevelBecomeSoUnlessTheDataContradictIt) {
   std::vector<bool> broken;
   const JointSolution solution = TwoScans(0.003, 0.0).solve(said(DecisionKind::level), broken);
   const Vector3d up = solution.frame_from_node[1].rotation.col(2);

@@ -16,7 +16,7 @@ namespace limen {
 
 /// What a project found as a whole.
 enum class ProjectOutcome {
-  registered,  ///< every scan stands in one component, and none is in doubt
+  registered,  ///< every scan is in one component, and none is in doubt
   partial,     ///< some do
   no_match     ///< no scan was joined to another
 };
@@ -76,7 +76,7 @@ struct ProjectScan {
   std::optional<Rigid3> frame_from_scan;
   PoseSigma sigma;                           ///< against `ProjectResult::sigma_scan`, frame axes
   std::vector<Rigid3> alternatives;          ///< of an ambiguous scan: other places that explain as much
-  double doubt = 0.0;                        ///< probability that it stands elsewhere than told
+  double doubt = 0.0;                        ///< probability that it is elsewhere than stated
   std::string reason;                        ///< one sentence for a user
   std::vector<Vector3d> stations;            ///< where the scanner stood, world of the component's frame
   std::optional<PassCorrection> correction;  ///< of a mobile pass that was bent
@@ -138,7 +138,7 @@ enum class PointState {
   used,       ///< its coordinates entered
   left_out,   ///< they contradict all else; or it is one of several that may be the wrong one
   compared,   ///< a check point, or a target without coordinates
-  not_placed  ///< no scan that stands in the frame sees it
+  not_placed  ///< no scan that is in the frame sees it
 };
 const char* to_string(PointState state);
 
@@ -172,8 +172,8 @@ struct ProjectResult {
   std::string reason;
   std::string frame_kind;           ///< "control", "mobile", "model", "file", "station", or "none"
   Vector3d up = Vector3d::UnitZ();  ///< of the frame
-  int frame_scan = -1;        ///< the scan whose world coordinates are the frame; -1: control's, or none
-  int sigma_scan = -1;        ///< the scan that is held fixed, against which deviations are told; -1: none is
+  int frame_scan = -1;  ///< the scan whose world coordinates are the frame; -1: control's, or none
+  int sigma_scan = -1;  ///< the scan that is held fixed, against which deviations are stated; -1: none is
   std::string control_file;   ///< empty: none was given
   std::string control_words;  ///< what came of it
   double control_factor =

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "limen/project/engine/job_engine.h"
-#include "limen/project/graph/pose_hearing.h"
+#include "limen/project/graph/pose_query.h"
 #include "limen/project/project.h"
 #include "limen/project/store/store.h"
 
@@ -81,11 +81,11 @@ std::vector<TriedPair> try_pairs(const std::vector<std::pair<std::size_t, std::s
                                  const PairWork& work, PairSearch search, ProjectStatus& status,
                                  Monitor& monitor);
 
-/// The frame, the states and the words (`bounds`: what a scan told as registered, or as probable, may be
-/// wrong with): everything of `result` but its scans' files. `hearing`: what scans say of places that no pair
+/// The frame, the states and the words (`bounds`: what a scan stated as registered, or as probable, may be
+/// wrong with): everything of `result` but its scans' files. `query`: what scans say of places that no pair
 /// proposed. Throws Error where a file of the survey is no good.
 void assemble(const std::vector<ProjectNode>& nodes, const std::vector<TriedPair>& pairs,
               const ProjectInputs& inputs, const UserWords& words, const VerdictOptions& bounds,
-              const PoseHearing& hearing, ProjectResult& result);
+              const PoseQuery& query, ProjectResult& result);
 
 }  // namespace limen

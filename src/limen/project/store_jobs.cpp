@@ -98,8 +98,8 @@ FileRecord make_model_features(const ProjectFile& file, const Store& store, Moni
   return {{0}, without_name(model.warnings, file.path)};
 }
 
-/// A record as it is told in this run.
-FileRecord told_record(FileRecord record, const ProjectFile& file, const ProjectOptions& options) {
+/// A record as it is stated in this run.
+FileRecord stated_record(FileRecord record, const ProjectFile& file, const ProjectOptions& options) {
   std::vector<std::string> names{file.path};
   names.insert(names.end(), options.trajectories.files.begin(), options.trajectories.files.end());
   record.notes = with_names(std::move(record.notes), names);
@@ -127,7 +127,7 @@ std::optional<FileRecord> kept_record(const Store& store, const ProjectFile& fil
     const std::string key = store.feature_key(file.key(), static_cast<int>(k));
     if (!store.has_features(key) || (!file.model && !store.has_picture(key))) return {};
   }
-  return told_record(std::move(*record), file, options);
+  return stated_record(std::move(*record), file, options);
 }
 
 FileRecord make_features(const ProjectFile& file, const ProjectOptions& options, const Store& store,
@@ -136,7 +136,7 @@ FileRecord make_features(const ProjectFile& file, const ProjectOptions& options,
   FileRecord record = file.model ? make_model_features(file, store, monitor)
                                  : make_scan_features(file, options, store, monitor);
   into_store([&] { store.save_file(file.key(), record); });
-  return told_record(std::move(record), file, options);
+  return stated_record(std::move(record), file, options);
 }
 
 RegistrationResult make_pair_result(const PairKey& pair, const RegisterOptions& options, const Store& store,

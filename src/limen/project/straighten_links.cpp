@@ -10,7 +10,7 @@
 namespace limen {
 namespace {
 
-constexpr double kUntoldM2 = 1e6;  // of an edge that is there to be told, and holds nothing
+constexpr double kUnreportedM2 = 1e6;  // of an edge that is there to be stated, and holds nothing
 
 /// The scans and what joins them, without the node of a survey.
 struct ScansOnly {
@@ -63,7 +63,7 @@ class Straightener {
       for (const bool source : {true, false}) hold(k, source, shared, passes, problem);
     }
     const JointSolution solution = adjust_jointly(problem);
-    if (!drift_is_plausible(passes.told(solution))) return std::nullopt;
+    if (!drift_is_plausible(passes.stated(solution))) return std::nullopt;
     for (const HeldPart& part : parts_) straighten(part, passes.unfollowed_m(part.whole), solution);
     return std::move(whole_);
   }
@@ -91,8 +91,8 @@ class Straightener {
     edge.pose.target_from_source = inverse(problem.frame_from_node[static_cast<std::size_t>(whole)]) *
                                    problem.frame_from_node[static_cast<std::size_t>(held.part)];
     edge.pose.centre = source ? inverse(pose.target_from_source) * pose.centre : pose.centre;
-    edge.pose.covariance = kUntoldM2 * Matrix6d::Identity();
-    edge.told = true;
+    edge.pose.covariance = kUnreportedM2 * Matrix6d::Identity();
+    edge.stated = true;
     problem.edges.push_back(edge);
     held.spread_m2 = spread_of(whole, places, edge.pose.centre, passes);
     parts_.push_back(held);

@@ -194,42 +194,42 @@ std::string reason_of(const ProjectPoint& point, const PointVerdict& verdict, bo
   return placed ? "no registered scan sees it" : "the control points do not define the frame";
 }
 
-ProjectPoint told_point(const SurveyMark& mark, const PlacedSurvey& placed, std::size_t p,
-                        const Survey& survey, const std::vector<ProjectNode>& nodes) {
-  ProjectPoint told;
-  told.name = mark.name;
-  told.role = mark.role;
-  told.scanner = mark.scanner;
-  told.given = mark.given;
-  if (mark.given) told.given_sigma = sigmas(mark.point.known->covariance);
+ProjectPoint stated_point(const SurveyMark& mark, const PlacedSurvey& placed, std::size_t p,
+                          const Survey& survey, const std::vector<ProjectNode>& nodes) {
+  ProjectPoint stated;
+  stated.name = mark.name;
+  stated.role = mark.role;
+  stated.scanner = mark.scanner;
+  stated.given = mark.given;
+  if (mark.given) stated.given_sigma = sigmas(mark.point.known->covariance);
   const auto scan_of = [&](const PointSight& sight) {
     return static_cast<int>(nodes[static_cast<std::size_t>(sight.node)].scan);
   };
   const bool seen = placed.placed && !placed.settled.findings.empty() && !placed.points[p].sights.empty();
   for (std::size_t k = 0; k < mark.point.sights.size(); ++k)
-    told.sights.push_back({scan_of(mark.point.sights[k]), false, 0.0});
+    stated.sights.push_back({scan_of(mark.point.sights[k]), false, 0.0});
   if (!seen) {
-    if (mark.role == PointRole::tie) told.state = PointState::compared;
-    told.reason = reason_of(told, {}, placed.placed);
-    return told;
+    if (mark.role == PointRole::tie) stated.state = PointState::compared;
+    stated.reason = reason_of(stated, {}, placed.placed);
+    return stated;
   }
   const PointFinding& finding = placed.settled.findings[p];
   const PointVerdict& verdict = placed.settled.verdicts[p];
-  told.found = finding.x + survey.origin;
-  told.found_sigma = sigmas(finding.covariance);
+  stated.found = finding.x + survey.origin;
+  stated.found_sigma = sigmas(finding.covariance);
   for (const std::size_t k : placed.sights[p]) {
-    told.sights[k].missed_m = (placed.seen_at[p][k] - finding.x).norm();
-    told.sights[k].used =
+    stated.sights[k].missed_m = (placed.seen_at[p][k] - finding.x).norm();
+    stated.sights[k].used =
         std::any_of(placed.points[p].sights.begin(), placed.points[p].sights.end(),
                     [&](const PointSight& kept) { return placed.points[p].enters && kept.number == k; });
   }
-  told.state = placed.points[p].is_known()       ? PointState::used
-               : mark.role == PointRole::control ? PointState::left_out
-                                                 : PointState::compared;
+  stated.state = placed.points[p].is_known()       ? PointState::used
+                 : mark.role == PointRole::control ? PointState::left_out
+                                                   : PointState::compared;
   if (mark.given)
-    told.test = placed.points[p].is_known() ? finding.known : test_apart(*mark.point.known, finding);
-  told.reason = reason_of(told, verdict, true);
-  return told;
+    stated.test = placed.points[p].is_known() ? finding.known : test_apart(*mark.point.known, finding);
+  stated.reason = reason_of(stated, verdict, true);
+  return stated;
 }
 
 }  // namespace
@@ -265,12 +265,12 @@ Survey read_survey(const ProjectInputs& inputs, const std::vector<ProjectNode>& 
   return SurveyReader(nodes, scans).run(inputs);
 }
 
-std::vector<ProjectPoint> told_points(const Survey& survey, const PlacedSurvey& placed,
-                                      const std::vector<ProjectNode>& nodes) {
-  std::vector<ProjectPoint> told;
+std::vector<ProjectPoint> stated_points(const Survey& survey, const PlacedSurvey& placed,
+                                        const std::vector<ProjectNode>& nodes) {
+  std::vector<ProjectPoint> stated;
   for (std::size_t p = 0; p < survey.marks.size(); ++p)
-    told.push_back(told_point(survey.marks[p], placed, p, survey, nodes));
-  return told;
+    stated.push_back(stated_point(survey.marks[p], placed, p, survey, nodes));
+  return stated;
 }
 
 }  // namespace limen

@@ -31,12 +31,12 @@ struct Survey {
 
 /// Reads the survey's files and finds the scans that they name (as the user wrote them, or by their file's
 /// name alone; " #2" for one of several in a file). Throws Error where a file is no good, or a point is both
-/// control and check point; names that are not part of the project are told in the notes.
+/// control and check point; names that are not part of the project are stated in the notes.
 Survey read_survey(const ProjectInputs& inputs, const std::vector<ProjectNode>& nodes,
                    const std::vector<ProjectScan>& scans);
 
-/// Adds the survey's frame as a node, and a link to it of every scan whose own targets tell how it stands
-/// there; contradictory ones are told in the notes. Nothing where there are no control points.
+/// Adds the survey's frame as a node, and a link to it of every scan whose own targets tell how it is
+/// there; contradictory ones are stated in the notes. Nothing where there are no control points.
 void add_survey_links(Survey& survey, ProjectGraph& made);
 
 /// Scans that are in doubt, or stand in a frame of their own, and that known points confirm: the points of
@@ -46,9 +46,9 @@ bool confirm_by_points(const Survey& survey, const SolvedGraph& solved, ProjectG
 
 /// The survey against a solved graph.
 struct PlacedSurvey {
-  bool placed = false;              ///< at least one component stands in the survey's frame
+  bool placed = false;              ///< at least one component is in the survey's frame
   std::string words;                ///< what came of it, one sentence
-  std::vector<bool> controlled;     ///< of each node: stands in the survey's frame
+  std::vector<bool> controlled;     ///< of each node: is in the survey's frame
   std::vector<MarkedPoint> points;  ///< of each mark: as it enters the adjustment
   std::vector<std::vector<std::size_t>>
       sights;                                  ///< of each point: the numbers of the mark's sights that count
@@ -62,8 +62,8 @@ struct PlacedSurvey {
 /// so.
 PlacedSurvey place_survey(const Survey& survey, ProjectGraph& made, SolvedGraph& solved);
 
-/// The points as they are told.
-std::vector<ProjectPoint> told_points(const Survey& survey, const PlacedSurvey& placed,
-                                      const std::vector<ProjectNode>& nodes);
+/// The points as they are stated.
+std::vector<ProjectPoint> stated_points(const Survey& survey, const PlacedSurvey& placed,
+                                        const std::vector<ProjectNode>& nodes);
 
 }  // namespace limen

@@ -141,9 +141,9 @@ TEST(Survey, ScansInDoubtAreHeldByTheirNeighboursTargetsOnly) {
   EXPECT_EQ(solved.nodes[1].state, NodeState::registered);
   EXPECT_EQ(solved.nodes[2].state, NodeState::ambiguous);
   EXPECT_TRUE(placed.points.back().sights.empty());
-  const std::vector<ProjectPoint> told = told_points(building.survey, placed, building.nodes);
-  EXPECT_EQ(told.back().state, PointState::not_placed);
-  EXPECT_EQ(told.front().state, PointState::used);
+  const std::vector<ProjectPoint> stated = stated_points(building.survey, placed, building.nodes);
+  EXPECT_EQ(stated.back().state, PointState::not_placed);
+  EXPECT_EQ(stated.front().state, PointState::used);
 }
 
 TEST(Survey, PointsThatOtherScansForetellConfirmAScanInDoubt) {
@@ -243,7 +243,7 @@ TEST(Survey, TargetsSeenAtTheirTimesBendAPassBack) {
   }
   // As a whole it strays by 27 mm.
   EXPECT_LT(std::sqrt(squares), 0.005);
-  for (const ProjectPoint& point : told_points(survey, placed, street.nodes)) {
+  for (const ProjectPoint& point : stated_points(survey, placed, street.nodes)) {
     EXPECT_EQ(point.state, PointState::used) << point.name << " " << point.reason;
     EXPECT_TRUE(point.sights.front().used);
     EXPECT_LT(point.sights.front().missed_m, 0.01) << point.name;
@@ -275,7 +275,7 @@ TEST(Survey, OfAPassATargetIsWhereItsTimeSaysOrWhereThePassCameNearest) {
   std::filesystem::remove_all(folder);
 }
 
-TEST(Survey, NamesOfScansArePlacesOfScannersAndStrangersAreTold) {
+TEST(Survey, NamesOfScansArePlacesOfScannersAndStrangersAreStated) {
   const std::filesystem::path folder = std::filesystem::temp_directory_path() / "limen_survey_test";
   std::filesystem::create_directories(folder);
   const auto write = [&](const char* name, const char* text) {

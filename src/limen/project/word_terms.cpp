@@ -86,7 +86,7 @@ class WordSolution {
     return controlled_[static_cast<std::size_t>(node_of(level.front()))];
   }
 
-  /// What is up in the frame: the survey's, or that of most of the scans that are told to be level.
+  /// What is up in the frame: the survey's, or that of most of the scans that are asked to be level.
   [[nodiscard]] Vector3d up_of(const std::vector<std::size_t>& level) const {
     if (surveyed(level)) return Vector3d::UnitZ();
     Vector3d up = Vector3d::Zero();

@@ -19,7 +19,7 @@ std::optional<double> floors_apart(const ScanDigest& source, const ScanDigest& t
                                    const Rigid3& target_from_source);
 
 /// Adds a user's words on level scans and floors of one height to the adjustment, but those that are
-/// `broken`. Scans that are told to be level share what is up (0.02 degrees), which is the survey's where
+/// `broken`. Scans that are asked to be level share what is up (0.02 degrees), which is the survey's where
 /// they stand in its frame, else one more unknown for each component. Floors of one height differ by 7 mm,
 /// one deviation, along what is up for one of the scans.
 void add_word_terms(const UserWords& words, const std::vector<bool>& broken,

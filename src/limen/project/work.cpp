@@ -44,15 +44,15 @@ fs::path order_path(const fs::path& folder, const std::string& options_key) {
 
 Order options_order(const ProjectOptions& options) {
   const RegisterOptions& registering = options.registering;
-  const ToldTrajectories& told = options.trajectories;
-  const Vector3d& arm = told.reading.lever_arm_m;
+  const StatedTrajectories& stated = options.trajectories;
+  const Vector3d& arm = stated.reading.lever_arm_m;
   return {
       {"method", static_cast<int>(registering.method)},   {"gravity", static_cast<int>(registering.gravity)},
       {"wall_thickness_m", registering.wall_thickness_m}, {"seed", registering.seed},
       {"nothing_repeats", registering.nothing_repeats},   {"level", options.reading.level},
-      {"memory_bytes", options.reading.memory_bytes},     {"trajectories", told.files},
-      {"trajectory_columns", told.reading.columns},       {"utm_zone", told.reading.utm_zone},
-      {"time_offset_s", told.reading.time_offset_s},      {"lever_arm_m", {arm.x(), arm.y(), arm.z()}}};
+      {"memory_bytes", options.reading.memory_bytes},     {"trajectories", stated.files},
+      {"trajectory_columns", stated.reading.columns},     {"utm_zone", stated.reading.utm_zone},
+      {"time_offset_s", stated.reading.time_offset_s},    {"lever_arm_m", {arm.x(), arm.y(), arm.z()}}};
 }
 
 ProjectOptions options_from(const Order& order) {
@@ -64,13 +64,13 @@ ProjectOptions options_from(const Order& order) {
   options.registering.nothing_repeats = order.at("nothing_repeats");
   options.reading.level = order.at("level");
   options.reading.memory_bytes = order.at("memory_bytes");
-  ToldTrajectories& told = options.trajectories;
-  told.files = order.at("trajectories").get<std::vector<std::string>>();
-  told.reading.columns = order.at("trajectory_columns").get<std::vector<std::string>>();
-  told.reading.utm_zone = order.at("utm_zone");
-  told.reading.time_offset_s = order.at("time_offset_s");
+  StatedTrajectories& stated = options.trajectories;
+  stated.files = order.at("trajectories").get<std::vector<std::string>>();
+  stated.reading.columns = order.at("trajectory_columns").get<std::vector<std::string>>();
+  stated.reading.utm_zone = order.at("utm_zone");
+  stated.reading.time_offset_s = order.at("time_offset_s");
   for (std::size_t k = 0; k < 3; ++k)
-    told.reading.lever_arm_m[static_cast<Eigen::Index>(k)] = order.at("lever_arm_m").at(k);
+    stated.reading.lever_arm_m[static_cast<Eigen::Index>(k)] = order.at("lever_arm_m").at(k);
   return options;
 }
 
@@ -110,17 +110,17 @@ class Worker {
     const std::string name = key.substr(0, key.rfind('-'));
     const Order& files = order_.at("files");
     if (!files.contains(name)) throw Unavailable{"the file is not part of the project's last run"};
-    const Order& told = files.at(name);
-    ProjectFile file{told.at("path"), told.at("model"), name.substr(0, name.find('-')), {}, {},
-                     told.at("scan")};
-    require_whole(file.path, told.at("bytes"));
+    const Order& stated = files.at(name);
+    ProjectFile file{stated.at("path"), stated.at("model"), name.substr(0, name.find('-')), {}, {},
+                     stated.at("scan")};
+    require_whole(file.path, stated.at("bytes"));
     try {
       make_features(file, options_, *store_, monitor);
     } catch (const StoreFault&) {
       throw;
     } catch (const Error& error) {
       if (error.fault() != Fault::input) throw;
-      require_whole(file.path, told.at("bytes"));
+      require_whole(file.path, stated.at("bytes"));
       return {"bad_input", error.what()};
     }
     return {"done", {}};
@@ -145,8 +145,9 @@ class Worker {
   /// The file that a key of features is of.
   [[nodiscard]] std::string file_of(const std::string& key) const {
     const bool model = key.find("-model-") != std::string::npos;
-    for (const auto& [name, told] : order_.at("files").items()) {
-      if (told.at("model") == model && name.starts_with(key.substr(0, key.find('-')))) return told.at("path");
+    for (const auto& [name, stated] : order_.at("files").items()) {
+      if (stated.at("model") == model && name.starts_with(key.substr(0, key.find('-'))))
+        return stated.at("path");
     }
     return key;
   }

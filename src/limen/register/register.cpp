@@ -52,7 +52,7 @@ std::vector<MatchedOpenings> matched_openings(const RefinedPose& pose) {
   return list;
 }
 
-/// The room of the model that the first station stands in; `target_from_source`: the scans' own frames.
+/// The room of the model that the first station is in; `target_from_source`: the scans' own frames.
 std::string room_of(const Rigid3& target_from_source, const PreparedPair& pair) {
   const PreparedScan& model = pair.source.model ? pair.source : pair.target;
   const PreparedScan& scan = pair.source.model ? pair.target : pair.source;
@@ -234,10 +234,10 @@ void write_result(const std::vector<FoundPose>& poses, Posterior posterior, cons
   if (result.outcome != Outcome::no_match) result.unobserved = open.list;
   const auto hypothesis = [&](std::size_t rank) {
     const std::size_t k = posterior.order[rank];
-    Hypothesis told = to_hypothesis(as_given(poses[k], worked), pair);
-    told.probability = posterior.probabilities[rank];
-    if (const AskedPair::Things* asked_of = asked.things(k)) told.twin = asked_of->evidence;
-    return told;
+    Hypothesis stated = to_hypothesis(as_given(poses[k], worked), pair);
+    stated.probability = posterior.probabilities[rank];
+    if (const AskedPair::Things* asked_of = asked.things(k)) stated.twin = asked_of->evidence;
+    return stated;
   };
   result.best = hypothesis(0);
   result.others = posterior.others;

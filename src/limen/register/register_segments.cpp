@@ -186,9 +186,9 @@ class SegmentRegistration {
 
   [[nodiscard]] bool is_rival(const SegmentFit& best, const SegmentFit& other) const {
     if (other.evidence_m < options_.min_rival_value * best.evidence_m) return false;
-    const Contrast told = contrast(best, other);
-    return told.for_first_m - told.for_second_m < options_.min_lead_m ||
-           told.for_second_m > options_.max_rival_share * told.for_first_m;
+    const Contrast stated = contrast(best, other);
+    return stated.for_first_m - stated.for_second_m < options_.min_lead_m ||
+           stated.for_second_m > options_.max_rival_share * stated.for_first_m;
   }
 
   void judge_rivals(RegistrationResult& result) {

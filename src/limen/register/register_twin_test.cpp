@@ -59,7 +59,7 @@ Vector2d next_room(const World& world) {
   return plan.rooms[2].outline[0] - plan.rooms[1].outline[0];
 }
 
-/// Nothing but a leaf that stands open, at the same angle in both rooms.
+/// Nothing but a leaf that is open, at the same angle in both rooms.
 void add_leaves(World& world) {
   const FloorPlan& plan = world.buildings[0].plan;
   Vector2d middle = Vector2d::Zero();
@@ -121,7 +121,7 @@ TwinCase twin_case(std::uint64_t seed, Furniture furniture) {
 TEST(RegisterTwins, OneRoomScannedTwiceIsRegistered) {
   const TwinCase rooms = twin_case(4, Furniture::own);
   const RegistrationResult result = register_scans(rooms.scans[1], rooms.scans[0]);
-  // The building stands exactly as drawn, so that its walls say nothing: things alone exclude a look-alike.
+  // The building is exactly as drawn, so that its walls say nothing: things alone exclude a look-alike.
   EXPECT_TRUE(result.outcome == Outcome::registered || result.outcome == Outcome::probable) << result.reason;
   EXPECT_GT(result.best.probability.value_or(0.0), 0.99);
   const Rigid3 truth = inverse(rooms.scene_from_scan[0]) * rooms.scene_from_scan[1];
@@ -177,7 +177,7 @@ TEST(RegisterTwins, OneLeafIsOneThing) {
   }
 }
 
-TEST(RegisterTwins, BareRoomsCannotBeTold) {
+TEST(RegisterTwins, BareRoomsCannotBeStated) {
   const TwinCase rooms = twin_case(5, Furniture::none);
   for (const std::size_t source : {1U, 2U}) {
     const RegistrationResult result = register_scans(rooms.scans[source], rooms.scans[0]);

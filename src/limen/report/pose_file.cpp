@@ -186,12 +186,12 @@ std::optional<Json> object_in(const std::string& text, const fs::path& path) {
 
 /// A scan of a truth as it is called there; its pose is not read yet.
 TrueScan called(const Json& scan) {
-  TrueScan told;
-  told.file = text_at(scan, "file");
-  told.name = text_at(scan, "name");
+  TrueScan stated;
+  stated.file = text_at(scan, "file");
+  stated.name = text_at(scan, "name");
   const auto index = scan.find("index");
-  if (index != scan.end() && index->is_number_integer()) told.index = index->get<int>();
-  return told;
+  if (index != scan.end() && index->is_number_integer()) stated.index = index->get<int>();
+  return stated;
 }
 
 std::optional<Rigid3> world_from(const Json& scan, const fs::path& path) {

@@ -44,7 +44,7 @@ Rigid3 read_true_pose(const std::filesystem::path& path, const PoseFile& result)
 
 /// A scan of such a truth.
 struct TrueScan {
-  std::string file;  ///< name, perhaps with folders; empty where only `name` is told
+  std::string file;  ///< name, perhaps with folders; empty where only `name` is stated
   std::string name;  ///< of the file, less its ending
   int index = 0;     ///< within the file
   Rigid3 world_from_scan;

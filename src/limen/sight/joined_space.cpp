@@ -10,7 +10,7 @@
 namespace limen {
 namespace {
 
-/// Which of two answers stands.
+/// Which of two answers is.
 int rank_of(SightKind kind) {
   switch (kind) {
     case SightKind::surface:

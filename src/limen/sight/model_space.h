@@ -10,7 +10,7 @@
 
 namespace limen {
 
-/// A model's answer to what stands at a place: its surfaces, exactly. It does not contradict: people put
+/// A model's answer to what is at a place: its surfaces, exactly. It does not contradict: people put
 /// things into rooms that no model knows, so that where it has nothing its answer is `unseen`.
 class ModelSpace : public SpaceView {
  public:

@@ -16,7 +16,7 @@ namespace {
 constexpr double kPointsPerPixel = 2.0;
 
 /// The smallest planes of more than a pixel can tell are clutter.
-std::int16_t told_plane(std::int32_t plane) {
+std::int16_t stated_plane(std::int32_t plane) {
   return plane <= std::numeric_limits<std::int16_t>::max() ? static_cast<std::int16_t>(plane)
                                                            : std::int16_t{-1};
 }
@@ -63,8 +63,8 @@ Panorama::Panorama(const PanoramaState& state, const Features& features)
   if (!fits) throw Error("the panorama does not fit its scan", "kept features", "have them made again");
   pixels_.resize(count);
   for (std::size_t k = 0; k < count; ++k)
-    pixels_[k] = {state.near_m[k], state.far_m[k], 0.0F, told_plane(state.near_plane[k]),
-                  told_plane(state.far_plane[k])};
+    pixels_[k] = {state.near_m[k], state.far_m[k], 0.0F, stated_plane(state.near_plane[k]),
+                  stated_plane(state.far_plane[k])};
   erode();
 }
 
@@ -116,11 +116,11 @@ void Panorama::fill(const Scan& scan, const std::vector<std::int32_t>& labels) {
     PanoramaPixel& pixel = pixels_[pixel_at(ray)];
     if (pixel.near_m == 0.0F || range < pixel.near_m) {
       pixel.near_m = range;
-      pixel.near_plane = told_plane(labels[i]);
+      pixel.near_plane = stated_plane(labels[i]);
     }
     if (range > pixel.far_m) {
       pixel.far_m = range;
-      pixel.far_plane = told_plane(labels[i]);
+      pixel.far_plane = stated_plane(labels[i]);
     }
   }
 }

@@ -68,13 +68,13 @@ VoxelMap::VoxelMap(const Scan& scan, const Features& features, const VoxelMapOpt
 VoxelMap::VoxelMap(const VoxelMapState& state, const Features& features)
     : facets_(facets_of(features)), edge_(state.edge_m), low_(state.low), size_(state.size) {
   constexpr std::int32_t kMostCubes = 1 << 20;
-  double told = 1.0;
-  for (const std::int32_t size : size_) told *= size >= 0 && size <= kMostCubes ? size : 1e300;
+  double stated = 1.0;
+  for (const std::int32_t size : size_) stated *= size >= 0 && size <= kMostCubes ? size : 1e300;
   const bool fits =
-      edge_ > 0 && told <= 1e10 &&
-      (state.free_bits.empty() || state.free_bits.size() == (static_cast<std::size_t>(told) + 7) / 8);
+      edge_ > 0 && stated <= 1e10 &&
+      (state.free_bits.empty() || state.free_bits.size() == (static_cast<std::size_t>(stated) + 7) / 8);
   if (!fits) throw Error("the map of cubes does not fit its scan", "kept features", "have them made again");
-  if (told == 0.0) return;
+  if (stated == 0.0) return;
   per_m_ = 1.0 / edge_;
   make_blocks();
   enter(features);
@@ -222,7 +222,7 @@ bool VoxelMap::is_free_at(std::int64_t index) const {
 
 bool VoxelMap::passed_freely(const SightQuery& query) const {
   if (!is_free(query.at)) return false;
-  // A ray that grazes a surface frees the cube it stands in, but not the cubes on both sides of it.
+  // A ray that grazes a surface frees the cube it is in, but not the cubes on both sides of it.
   if (!query.of_clutter()) {
     return is_free(query.at + edge_ * query.normal) && is_free(query.at - edge_ * query.normal);
   }

@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Rooms in a row that repeat to the last chair, with nothing outside: shifts by a room cannot be told apart.
+// Rooms in a row that repeat to the last chair, with nothing outside: shifts by a room cannot be
+// distinguished.
 #include "limen/base/angles.h"
 #include "limen/simulate/buildings/furniture.h"
 #include "limen/simulate/recipe_parts.h"

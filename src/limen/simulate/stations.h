@@ -13,7 +13,7 @@ namespace limen {
 /// Instead of a room: outside the building.
 constexpr std::size_t kStreet = static_cast<std::size_t>(-1);
 
-/// A tripod's place: scanner centre in the scene's frame and the room it stands in, or kStreet.
+/// A tripod's place: scanner centre in the scene's frame and the room it is in, or kStreet.
 struct Station {
   Vector3d position = Vector3d::Zero();
   std::size_t room = 0;

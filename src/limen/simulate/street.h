@@ -7,7 +7,7 @@
 
 namespace limen {
 
-/// A street along some façades of a building and what stands in it.
+/// A street along some façades of a building and what is in it.
 struct StreetOptions {
   std::size_t first_edge = 0;    ///< of the envelope
   std::size_t edges = 1;         ///< how many façades the street follows

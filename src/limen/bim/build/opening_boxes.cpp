@@ -141,7 +141,7 @@ std::vector<BimOpening> opening_boxes(const RawModel& raw) {
         uncut[i] = solid_faces(raw.elements[i].shapes).faces;
       } catch (const Error& error) {
         if (error.fault() != Fault::input) throw;
-        uncut[i].clear();  // told of where its faces are made
+        uncut[i].clear();  // counted where its faces are made
       }
     }
   });

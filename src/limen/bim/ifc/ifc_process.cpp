@@ -124,7 +124,7 @@ struct Bounds {
                      setrlimit(RLIMIT_CORE, &none) == 0 && dup2(input, STDIN_FILENO) >= 0 &&
                      dup2(output, STDOUT_FILENO) >= 0 && dup2(nowhere, STDERR_FILENO) >= 0 &&
                      setrlimit(RLIMIT_AS, &memory) == 0;
-  // Whoever dies before we asked to be told of it is no parent any more.
+  // Whoever dies before we asked for its end is no parent any more.
   if (ready && getppid() == parent) execve(words[0], words, environ);
   _exit(kNotStarted);
 }
@@ -150,21 +150,21 @@ struct Patience {
 /// Reads until the child closes its end. Returns why reading was given up, or nothing.
 std::string read_all(int descriptor, const Patience& patience, Monitor& monitor, std::string& output) {
   std::string piece(std::size_t{1} << 16U, '\0');
-  Clock::time_point heard = Clock::now();
+  Clock::time_point queried = Clock::now();
   for (;;) {
     monitor.throw_if_cancelled();
     pollfd wanted{descriptor, POLLIN, 0};
     const int ready = poll(&wanted, 1, kTick_ms);
     if (ready < 0 && errno != EINTR) return "could not be read from";
     if (ready <= 0) {
-      if (std::chrono::duration<double>(Clock::now() - heard).count() > patience.silence_s)
+      if (std::chrono::duration<double>(Clock::now() - queried).count() > patience.silence_s)
         return fmt::format("was stopped after {:.0f} s without progress", patience.silence_s);
       continue;
     }
     const ssize_t got = read(descriptor, piece.data(), piece.size());
     if (got < 0 && errno == EINTR) continue;
     if (got <= 0) return {};
-    heard = Clock::now();
+    queried = Clock::now();
     output.append(piece, 0, static_cast<std::size_t>(got));
     if (static_cast<double>(output.size()) > patience.output_bytes)
       return fmt::format("was stopped because it wrote more than {:.0f} MB", 1e-6 * patience.output_bytes);

@@ -19,7 +19,7 @@ namespace {
 
 using testing_io::TemporaryFolder;
 
-/// A shell script that stands for limen_ifc.
+/// A shell script that represents limen_ifc.
 class IfcProcess : public testing::Test {
  protected:
   void TearDown() override { unsetenv("LIMEN_IFC_HELPER"); }
@@ -95,16 +95,16 @@ bool is_gone(pid_t id) {
 }
 
 TEST_F(IfcProcess, DiesWithAProcessThatIsKilled) {
-  const std::string told = in_folder("number");
-  helper_is("echo $$ > " + told + "\nexec sleep 600\n");
+  const std::string stated = in_folder("number");
+  helper_is("echo $$ > " + stated + "\nexec sleep 600\n");
   const pid_t caller = fork();
   ASSERT_GE(caller, 0);
   if (caller == 0) {
     run_ifc_helper("", {});
     _exit(0);
   }
-  ASSERT_TRUE(becomes([&] { return number_in(told) > 0; }));
-  const pid_t helper = number_in(told);
+  ASSERT_TRUE(becomes([&] { return number_in(stated) > 0; }));
+  const pid_t helper = number_in(stated);
   EXPECT_FALSE(is_gone(helper));
   kill(caller, SIGKILL);
   waitpid(caller, nullptr, 0);

@@ -217,7 +217,7 @@ class StructureReader {
     return place->second;
   }
 
-  /// The name of the storey that holds an object, over what it is part of, stands in, or fills.
+  /// The name of the storey that holds an object, over what it is part of, is in, or fills.
   std::string storey_of(std::int64_t id) {
     constexpr int kLongestWay = 20;
     for (int step = 0; step < kLongestWay; ++step) {
@@ -278,7 +278,7 @@ class StructureReader {
   std::vector<std::int64_t> projects_;
   std::vector<std::int64_t> assignments_;
   std::vector<std::int64_t> maps_;
-  std::map<std::int64_t, std::int64_t> filling_of_;    ///< opening -> what stands in it
+  std::map<std::int64_t, std::int64_t> filling_of_;    ///< opening -> what is in it
   std::map<std::int64_t, std::int64_t> opening_of_;    ///< the other way
   std::map<std::int64_t, std::int64_t> host_of_;       ///< opening -> what it is cut out of
   std::map<std::int64_t, std::int64_t> container_of_;  ///< object -> storey or space

@@ -26,7 +26,7 @@ struct MapConversion {
   }
 };
 
-/// A hole in an element and what stands in it, by the numbers of the entities.
+/// A hole in an element and what is in it, by the numbers of the entities.
 struct IfcVoid {
   std::int64_t opening = 0;
   std::int64_t host = 0;

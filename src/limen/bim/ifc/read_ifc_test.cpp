@@ -205,7 +205,7 @@ TEST_F(ReadIfc, MapConversionIsAppliedOnce) {
   EXPECT_NEAR((low_corner(model) - Vector3d(500000.0 - 23.0, 5400010.0, 109.8)).norm(), 0.0, 2e-4);
 }
 
-TEST_F(ReadIfc, MapConversionThatForgetsTheUnitsIsToldOf) {
+TEST_F(ReadIfc, MapConversionThatForgetsTheUnitsIsStatedOf) {
   WallFile file;
   file.units_per_metre = 1000.0;
   file.length_unit = "IFCSIUNIT(*,.LENGTHUNIT.,.MILLI.,.METRE.)";
@@ -371,7 +371,7 @@ TEST_F(ReadIfc, AHelperThatDiesIsAnError) {
 TEST_F(ReadIfc, AnEntityThatKillsTheHelperIsLeftOut) {
   const std::string real = find_ifc_helper().string();
   const TemporaryFolder folder;
-  // Dies once it has begun with the window, unless told to skip it.
+  // Dies once it has begun with the window, unless asked to skip it.
   const auto path = folder.write(
       "fake",
       "#!/bin/sh\ncase \"$*\" in *102*) exec " + real + " \"$@\";; esac\n" + real +

@@ -73,7 +73,7 @@ std::size_t begin_of_statement(std::string_view bytes, const StepComments& comme
   return std::min(at, bytes.size());
 }
 
-/// What stands in a STEP file beside entities.
+/// What is in a STEP file beside entities.
 bool is_keyword(const std::string& word) {
   static constexpr std::array<std::string_view, 10> kWords{
       "ISO-10303-21",    "END-ISO-10303-21", "HEADER",    "DATA",

@@ -226,7 +226,7 @@ void read_models(const std::vector<ProjectEntry>& entries, const ProjectDeviatio
   all.report.models = std::move(models);
 }
 
-/// The scans that are measured; the others are told.
+/// The scans that are measured; the others are stated.
 std::vector<ProjectEntry> scans_of(const std::vector<ProjectEntry>& entries, const Session& session,
                                    Gathering& all) {
   std::vector<ProjectEntry> scans;
@@ -305,7 +305,7 @@ std::string summary(const BuildingReport& report, const ProjectDeviation& comman
       "not in the model\n",
       count[0], moved, 1e3 * command.issues.options.moved_m, count[1], count[2], deviation.unmodelled.size());
   if (!command.issues.file.empty())
-    text += fmt::format("{} issues written to {}\n", report.issues_told, command.issues.file);
+    text += fmt::format("{} issues written to {}\n", report.issues_stated, command.issues.file);
   return text + fmt::format("written to {}\n", command.folder);
 }
 
@@ -344,7 +344,7 @@ int run_project_deviation(const ProjectDeviation& command, const Session& sessio
         deviation_issues({all.report.model, all.report.deviation.elements, all.report.deviation.unmodelled,
                           all.issue_models, all.report.model_of_element, all.scanners},
                          command.issues.options);
-    all.report.issues_told = topics.size();
+    all.report.issues_stated = topics.size();
     issues = bcf_file(topics, date_of_file(command.project));
   }
   fs::remove(folder.path() / "deviation.json");

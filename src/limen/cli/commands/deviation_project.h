@@ -26,7 +26,7 @@ struct ProjectDeviation {
 /// Whether a file is the project.json of `limen project`, by its name.
 bool names_project(const std::string& path);
 
-/// Measures every scan that stands registered in a project's frame against its models, one scan at a time.
+/// Measures every scan that is registered in a project's frame against its models, one scan at a time.
 int run_project_deviation(const ProjectDeviation& command, const Session& session);
 
 /// The exit status by the number of points on faces: where there are none, a warning and that of no match.

@@ -71,7 +71,7 @@ std::vector<PlaceError> beyond(const ProjectErrors& errors, const EvaluateOption
 }
 
 std::string project_json(const ProjectErrors& errors, const EvaluateOptions& options) {
-  const auto told = [](const std::vector<PlaceError>& list) {
+  const auto stated = [](const std::vector<PlaceError>& list) {
     Json all = Json::array();
     for (const PlaceError& error : list)
       all.push_back({{"file", error.file},
@@ -91,8 +91,8 @@ std::string project_json(const ProjectErrors& errors, const EvaluateOptions& opt
   const bool compared = errors.each.size() > 1;
   json["translation_error_median_m"] = compared ? Json(errors.shift_of(0.5)) : Json();
   json["translation_error_largest_m"] = compared ? Json(errors.shift_of(1.0)) : Json();
-  json["beyond"] = told(far);
-  json["errors"] = told(errors.each);
+  json["beyond"] = stated(far);
+  json["errors"] = stated(errors.each);
   return to_text(json);
 }
 

@@ -128,7 +128,7 @@ Json json_of_file(const std::string& path, const ScanFile& file) {
   json["left_out"] = file.dropped;
   json["metres_per_unit"] = file.metres_per_unit;
   if (const CoordinateSystem system = system_of_file(path); system.known())
-    json["crs"] = {{"name", system.name}, {"code", system.code}, {"told", system.told}};
+    json["crs"] = {{"name", system.name}, {"code", system.code}, {"told", system.stated}};
   if (!file.offset_applied.isZero(0.0)) json["offset_applied"] = json_of(file.offset_applied);
   json["notes"] = file.notes;
   json["scans"] = Json::array();

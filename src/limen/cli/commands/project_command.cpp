@@ -170,9 +170,9 @@ std::string summary(const ProjectResult& result, const std::string& folder) {
   std::string text = fmt::format("{}: {}\n", to_string(result.outcome), result.reason);
   for (std::size_t k = 0; k < result.scans.size(); ++k) text += scan_line(result, k);
   text += point_lines(result);
-  for (const ProjectDecision& told : result.decisions)
-    text += fmt::format("decision    {}: {}{}{}\n", words_of(told.decision), to_string(told.state),
-                        told.reason.empty() ? "" : ", ", told.reason);
+  for (const ProjectDecision& stated : result.decisions)
+    text += fmt::format("decision    {}: {}{}{}\n", words_of(stated.decision), to_string(stated.state),
+                        stated.reason.empty() ? "" : ", ", stated.reason);
   for (const ProjectQuestion& question : result.questions) text += "question: " + question.text + "\n";
   std::size_t counts[5] = {};
   for (const ProjectLink& link : result.links) ++counts[static_cast<std::size_t>(link.solved.state)];
@@ -226,11 +226,11 @@ int take_decision(const std::vector<std::string>& words, const Session& session)
   const std::size_t before = kept_decisions(words[1], {}).size();
   const std::vector<Decision> all = decide(words[1], decision);
   const bool forgets = decision.kind == DecisionKind::forget;
-  const char* told =
+  const char* stated =
       !forgets               ? "{}: saved; decisions in all: {}; run the project again to apply and test it\n"
       : all.size() == before ? "{}: no such decision was saved; decisions in all: {}, unchanged\n"
                              : "{}: forgotten; decisions left: {}; run the project again\n";
-  session.say(fmt::format(fmt::runtime(told), words_of(decision), all.size()));
+  session.say(fmt::format(fmt::runtime(stated), words_of(decision), all.size()));
   session.answer(decisions_text(all));
   return kExitOk;
 }
@@ -251,9 +251,9 @@ void require_files(const ProjectCommandOptions& options) {
 void die_with_worker() {
   const char* worker = std::getenv("LIMEN_WORKER_PID");
   if (worker == nullptr) return;
-  const bool told = prctl(PR_SET_PDEATHSIG, SIGKILL) == 0;
-  // Whoever died before we asked to be told of it is no parent any more.
-  if (told && std::to_string(getppid()) != worker)
+  const bool stated = prctl(PR_SET_PDEATHSIG, SIGKILL) == 0;
+  // Whoever died before we asked for its end is no parent any more.
+  if (stated && std::to_string(getppid()) != worker)
     throw Error("the worker that started this job is gone", "LIMEN_WORKER_PID", "unset it", Fault::cancelled);
 }
 
@@ -285,10 +285,11 @@ bool keeps_nothing(const std::filesystem::path& folder) {
 }
 
 ProjectResult run_in(const std::filesystem::path& folder, const ProjectCommandOptions& options,
-                     const ToldTrajectories& trajectories, const Session& session) {
+                     const StatedTrajectories& trajectories, const Session& session) {
   ProjectOptions project = project_options(options, session);
   project.trajectories = trajectories;
-  static_cast<void>(read_trajectories(trajectories));  // what is wrong with them is told before the long work
+  static_cast<void>(
+      read_trajectories(trajectories));  // what is wrong with them is stated before the long work
   try {
     return run_project(inputs_of(options), folder, project, *session.monitor);
   } catch (...) {
@@ -300,7 +301,7 @@ ProjectResult run_in(const std::filesystem::path& folder, const ProjectCommandOp
 
 std::vector<ProjectPicture> pictures_in(const std::filesystem::path& folder,
                                         const ProjectCommandOptions& options,
-                                        const ToldTrajectories& trajectories, const Session& session,
+                                        const StatedTrajectories& trajectories, const Session& session,
                                         const ProjectResult& result) {
   ProjectOptions project = project_options(options, session);
   project.trajectories = trajectories;
@@ -330,7 +331,7 @@ int run(ProjectCommandOptions options, const Session& session) {
   const OutputFolder folder(options.folder);
   const FolderLock lock(folder.path(), "another limen is working in this folder",
                         "wait until it has finished, or give another folder");
-  const ToldTrajectories trajectories = told_trajectories(options.trajectories, chosen);
+  const StatedTrajectories trajectories = stated_trajectories(options.trajectories, chosen);
   ProjectResult result = run_in(folder.path(), options, trajectories, session);
   result.tolerance_m = tolerance_m;
   std::vector<std::string> of_system;

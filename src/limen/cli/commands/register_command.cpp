@@ -62,7 +62,7 @@ struct Registered {
 };
 
 /// What is left of a side to tell of and to draw, once its scans are given up.
-struct ToldSide {
+struct StatedSide {
   InputSummary summary;
   SceneSide scene;
 };
@@ -162,15 +162,15 @@ Registered register_files(const RegisterCommandOptions& options, const Session& 
   registering.nothing_repeats = options.repeats == "none";
   registering.seed = session.common.seed;
   registering.picture = !options.no_report;
-  ToldSide source;
-  ToldSide target;
+  StatedSide source;
+  StatedSide target;
   SamePointsWatch watch(options.source, options.target);
-  const auto reader = [&](const SideOptions& side, ToldSide& told) {
-    return [&session, &told, &watch, side, is_source = &told == &source, drawn = registering.picture] {
+  const auto reader = [&](const SideOptions& side, StatedSide& stated) {
+    return [&session, &stated, &watch, side, is_source = &stated == &source, drawn = registering.picture] {
       InputSide read = read_side(side, session);
       if (const std::string note = watch.note_on(read.input, is_source); !note.empty()) session.note(note);
-      told.summary = std::move(read.summary);
-      if (drawn) told.scene = scene_side(read.input);
+      stated.summary = std::move(read.summary);
+      if (drawn) stated.scene = scene_side(read.input);
       return std::move(read.input);
     };
   };
@@ -203,8 +203,8 @@ Registered register_segment_lists(const RegisterCommandOptions& options, const S
   return registered;
 }
 
-/// The page, for which the numbers are not given up: where it has no room that is told, and the status stays
-/// that of the outcome.
+/// The page, for which the numbers are not given up: where it has no room that is stated, and the status
+/// stays that of the outcome.
 void write_page(const std::filesystem::path& folder, const Registered& registered, const ReportCover& cover,
                 const Session& session) {
   session.monitor->begin_stage("report");

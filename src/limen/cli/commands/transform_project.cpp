@@ -113,7 +113,7 @@ void name_outputs(std::vector<Move>& moves, const fs::path& folder, const std::s
 
 /// All that will be read is there, and what the project is about: else the first scans would be written
 /// before the last is missed.
-void check_inputs(const std::vector<Move>& moves, const ToldTrajectories& trajectories,
+void check_inputs(const std::vector<Move>& moves, const StatedTrajectories& trajectories,
                   const ProjectMoveOptions& options, const Session& session) {
   session.monitor->begin_stage("files");
   std::set<std::string> checked;
@@ -138,7 +138,7 @@ void check_output(const fs::path& output, const std::vector<Move>& moves) {
 
 std::size_t write_each(std::vector<Move>& moves, const ProjectMoveOptions& options,
                        const CoordinateSystem& system, const Session& session) {
-  const ToldTrajectories trajectories = read_project_trajectories(options.project);
+  const StatedTrajectories trajectories = read_project_trajectories(options.project);
   check_inputs(moves, trajectories, options, session);
   const OutputFolder folder(options.output);
   name_outputs(moves, folder.path(), options.ending);
@@ -184,13 +184,13 @@ int run(const ProjectMoveOptions& options, const Session& session) {
   const std::vector<ProjectEntry> entries = read_project(options.project);
   check_words(options);
   std::vector<Move> moves = moves_of(entries, session);
-  const CoordinateSystem told = read_project_system(options.project);
+  const CoordinateSystem stated = read_project_system(options.project);
   const CoordinateSystem chosen = chosen_system(options.crs);
-  if (!same_system(told, chosen))
+  if (!same_system(stated, chosen))
     session.note(
         fmt::format("the project states the coordinate system {}, but --crs gives {}, which is written",
-                    words_of(told), words_of(chosen)));
-  const CoordinateSystem& system = chosen.known() ? chosen : told;
+                    words_of(stated), words_of(chosen)));
+  const CoordinateSystem& system = chosen.known() ? chosen : stated;
   if (moves.empty())
     throw Error("no scan has a pose in the project's frame", options.project,
                 "give a project with registered scans");
@@ -229,7 +229,7 @@ void add_transform_project_command(CommandLine& app, Session& session) {
   command->add_flag("--force", options->force,
                     "Accept files that are not the registered ones, for example copies in the same frame");
   add_crs_option(*command, options->crs);
-  // Words of a pair's transform, to be told that they do not apply.
+  // Words of a pair's transform, to be stated that they do not apply.
   command->add_flag("--invert", options->invert, "Only for the result of a pair")->group("");
   command->add_option("--alternative", options->alternative, "Only for the result of a pair")->group("");
 }

@@ -6,7 +6,7 @@
 
 namespace limen {
 
-/// `limen transform PROJECT -o OUT`: every scan that stands in a project's frame there, each in a file of its
+/// `limen transform PROJECT -o OUT`: every scan that is in a project's frame there, each in a file of its
 /// name in a folder, or all in one file. A command of its own, hidden, since it takes other words than
 /// `transform`; asked_project_move() tells which of the two is meant.
 void add_transform_project_command(CommandLine& app, Session& session);

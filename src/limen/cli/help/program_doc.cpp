@@ -155,10 +155,10 @@ std::vector<StatusDoc> status_docs() {
 }
 
 std::string OptionDoc::text() const {
-  const bool told = std::all_of(choices.begin(), choices.end(), [this](const std::string& choice) {
+  const bool stated = std::all_of(choices.begin(), choices.end(), [this](const std::string& choice) {
     return description.find(choice) != std::string::npos;
   });
-  return told ? description : fmt::format("{}: {}", description, fmt::join(choices, ", "));
+  return stated ? description : fmt::format("{}: {}", description, fmt::join(choices, ", "));
 }
 
 std::vector<std::string> wrapped(const std::string& text, std::size_t columns) {

@@ -37,7 +37,7 @@ CoordinateSystem chosen_system(const std::string& text) {
 CoordinateSystem system_of_file(const std::string& path) {
   try {
     const OpenPoints file(path);
-    return file.georeference().empty() ? CoordinateSystem{} : told_system(file.georeference().front());
+    return file.georeference().empty() ? CoordinateSystem{} : stated_system(file.georeference().front());
   } catch (const Error& error) {
     if (error.fault() == Fault::cancelled) throw;
     return {};

@@ -24,7 +24,7 @@ CoordinateSystem chosen_system(const std::string& text);
 CoordinateSystem system_of_file(const std::string& path);
 
 /// The system of a project's frame: what the user says, else that of the file whose world coordinates the
-/// frame has. Files that say another one are told of in `notes`.
+/// frame has. Files that say another one are named in `notes`.
 FrameSystem frame_system(const ProjectResult& result, const CoordinateSystem& chosen,
                          std::vector<std::string>& notes);
 

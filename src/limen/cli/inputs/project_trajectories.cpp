@@ -67,14 +67,14 @@ bool is_sbet(const std::string& file) {
 
 /// The records of the trajectory's own file, moved; nothing where it is no SBET, or its places are of no
 /// system.
-std::optional<std::vector<SbetRecord>> own_records(const ProjectEntry& pass, const ToldTrajectories& told,
+std::optional<std::vector<SbetRecord>> own_records(const ProjectEntry& pass, const StatedTrajectories& stated,
                                                    const std::string& file, const MapProjection& target) {
-  if (!is_sbet(file) || told.reading.utm_zone == "local" || !told.reading.lever_arm_m.isZero()) return {};
+  if (!is_sbet(file) || stated.reading.utm_zone == "local" || !stated.reading.lever_arm_m.isZero()) return {};
   std::vector<SbetRecord> records = read_sbet_records(file);
-  for (SbetRecord& record : records) record[0] += told.reading.time_offset_s;
+  for (SbetRecord& record : records) record[0] += stated.reading.time_offset_s;
   std::erase_if(records, [&](const SbetRecord& record) { return !is_of_pass(pass, record[0]); });
   if (records.empty()) return {};
-  std::string zone = told.reading.utm_zone;
+  std::string zone = stated.reading.utm_zone;
   if (zone == "auto") {
     const SbetRecord first = read_sbet_records(file).front();
     const UtmZone utm = utm_zone_of({first[1], first[2], first[3]});
@@ -115,17 +115,17 @@ void add_trajectories_option(CommandLine& command, TrajectoryChoice& choice) {
       ->type_name("x,y,z");
 }
 
-ToldTrajectories told_trajectories(const TrajectoryChoice& choice, const CoordinateSystem& system) {
-  ToldTrajectories told{choice.files, trajectory_options(choice.reading)};
-  if (told.reading.utm_zone == "auto" && system.known())
-    told.reading.utm_zone = system.code.empty() ? system.told : system.code;
-  return told;
+StatedTrajectories stated_trajectories(const TrajectoryChoice& choice, const CoordinateSystem& system) {
+  StatedTrajectories stated{choice.files, trajectory_options(choice.reading)};
+  if (stated.reading.utm_zone == "auto" && system.known())
+    stated.reading.utm_zone = system.code.empty() ? system.stated : system.code;
+  return stated;
 }
 
-std::vector<std::string> write_pass_trajectory(const ProjectEntry& pass, const ToldTrajectories& told,
+std::vector<std::string> write_pass_trajectory(const ProjectEntry& pass, const StatedTrajectories& stated,
                                                const CoordinateSystem& system,
                                                const std::filesystem::path& output, Monitor& monitor) {
-  const Trajectories all = read_trajectories(told);
+  const Trajectories all = read_trajectories(stated);
   const std::optional<std::size_t> file = file_of(pass, all);
   const std::vector<TimedPlace> places =
       file
@@ -137,9 +137,9 @@ std::vector<std::string> write_pass_trajectory(const ProjectEntry& pass, const T
   if (!system.known()) return {};
   if (proj_library() == nullptr)
     return {"without PROJ (Debian: libproj25) its corrected trajectory is not written as SBET"};
-  const MapProjection target(system.wkt.empty() ? system.told : system.wkt, pass.file);
+  const MapProjection target(system.wkt.empty() ? system.stated : system.wkt, pass.file);
   std::optional<std::vector<SbetRecord>> records;
-  if (file) records = own_records(pass, told, told.files[*file], target);
+  if (file) records = own_records(pass, stated, stated.files[*file], target);
   std::vector<std::string> notes;
   if (!records) {
     records = records_of_places(places, target);

@@ -25,12 +25,12 @@ void add_trajectories_option(CommandLine& command, TrajectoryChoice& choice);
 
 /// What was chosen, as project.json tells it. `system`: of the project's frame, which latitudes and
 /// longitudes come into where no zone is named.
-ToldTrajectories told_trajectories(const TrajectoryChoice& choice, const CoordinateSystem& system);
+StatedTrajectories stated_trajectories(const TrajectoryChoice& choice, const CoordinateSystem& system);
 
 /// Writes where the scanner of a pass was, corrected, beside its cloud `output`: NAME_trajectory.csv, and
 /// NAME_trajectory.sbet where the system of the frame and PROJ are there. Sentences about what could not be
 /// written.
-std::vector<std::string> write_pass_trajectory(const ProjectEntry& pass, const ToldTrajectories& told,
+std::vector<std::string> write_pass_trajectory(const ProjectEntry& pass, const StatedTrajectories& stated,
                                                const CoordinateSystem& system,
                                                const std::filesystem::path& output, Monitor& monitor);
 

@@ -29,7 +29,7 @@ TEST(ScanList, NamesAreTakenWithoutWhatStandsAround) {
                                       (folder / "four.ply").string()}));
 }
 
-TEST(ScanList, WhatIsNoListIsTold) {
+TEST(ScanList, WhatIsNoListIsStated) {
   const TemporaryFolder folder;
   EXPECT_EQ(list_problem(folder / "."), "is a folder, not a list");
   EXPECT_EQ(list_problem(folder / "missing.txt"), "there is no such file");

@@ -180,12 +180,12 @@ ReadOptions read_options(const std::string& origin, const std::string& option, c
 
 InputScan read_input_scan(const std::string& path, const ReadOptions& options, const Session& session,
                           const std::string& units_option) {
-  const bool told = options.memory_bytes > 0 || options.trajectory;
+  const bool stated = options.memory_bytes > 0 || options.trajectory;
   const auto note = [&](const std::string& remark) {
     if (!remark.empty()) session.note(fmt::format("{}: {}", path, remark));
   };
   ScanFile file = read_scan_file(path, options, *session.monitor);
-  if (told) {
+  if (stated) {
     for (const std::string& remark : file.notes) session.note(remark);
   } else {
     note(unusable_note(file));
@@ -248,7 +248,7 @@ void note_place(InputSummary& summary, const ScannerPlace& place, const Session&
   if (!place.refuted) return;
   const Vector3d& said = *place.refuted;
   const std::string where = fmt::format("{:.3f} {:.3f} {:.3f}", said.x(), said.y(), said.z());
-  if (place.source == PlaceSource::told_by_user) {
+  if (place.source == PlaceSource::stated_by_user) {
     session.note(
         fmt::format("{}: the points do not fit the given scanner position {}; it is used nevertheless",
                     summary.path, where));

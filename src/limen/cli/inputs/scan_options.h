@@ -35,16 +35,16 @@ struct ReadingChoice {
   std::string utm_zone = "auto";
   std::string lever_arm;  ///< "x,y,z" or empty
   double time_offset_s = 0.0;
-  std::string side;  ///< what stands before the names of these options: "source-", or nothing
+  std::string side;  ///< what is before the names of these options: "source-", or nothing
 };
 
 /// "500M", "2.5G" or a number of bytes; 0 for an empty text. Throws Error for anything else.
 std::uint64_t parse_memory(const std::string& text);
 /// Adds --memory.
 void add_memory_option(CommandLine& command, std::string& memory);
-/// Adds --trajectory and what belongs to it; `side` stands before the name ("source-") or is empty.
+/// Adds --trajectory and what belongs to it; `side` is before the name ("source-") or is empty.
 void add_trajectory_options(CommandLine& command, ReadingChoice& choice, const std::string& side = "");
-/// Adds --units; `side` stands before the name ("source-") or is empty.
+/// Adds --units; `side` is before the name ("source-") or is empty.
 void add_units_option(CommandLine& command, std::string& units, const std::string& side = "");
 /// Metres per unit of a name that was given; nothing for an empty text.
 std::optional<double> metres_per_unit_of(const std::string& units);
@@ -53,7 +53,7 @@ TrajectoryOptions trajectory_options(const ReadingChoice& choice);
 /// What read_options() gave, with the choice; reads the trajectory.
 ReadOptions with_choice(ReadOptions options, const ReadingChoice& choice);
 
-/// What every command that takes features from a scan to a file is told.
+/// What every command that takes features from a scan to a file is stated.
 struct FeatureChoice {
   std::string scan;
   std::string output;
@@ -80,7 +80,7 @@ struct InputScan {
 InputScan read_input_scan(const std::string& path, const ReadOptions& options, const Session& session,
                           const std::string& units_option);
 
-/// The one scan of a command that takes features, and what is told of it. `choice.scan` is no model.
+/// The one scan of a command that takes features, and what is reported of it. `choice.scan` is no model.
 struct FeatureScan {
   Scan scan;
   InputSummary input;

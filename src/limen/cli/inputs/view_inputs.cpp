@@ -75,7 +75,7 @@ void check_bytes(const ViewInput& input) {
   if (input.sha256.empty()) return;
   const std::string hash = sha256_of_file(file_of_scan(input.path));
   if (hash.empty() || hash == input.sha256) return;
-  throw Error(fmt::format("is not the file registered in {}: its SHA-256 is different", input.told_by),
+  throw Error(fmt::format("is not the file registered in {}: its SHA-256 is different", input.stated_by),
               input.path, "give the registered file, or name the clouds themselves instead of the result");
 }
 

@@ -13,13 +13,13 @@
 
 namespace limen {
 
-/// One scan or model to look at, and where it stands.
+/// One scan or model to look at, and where it is.
 struct ViewInput {
   std::string path;
-  int scan = -1;             ///< of the file, those without points not counted; -1: all
-  Rigid3 frame_from_world;   ///< metres
-  std::string sha256;        ///< that its bytes must have; empty: any
-  std::string told_by = {};  ///< the file that says so
+  int scan = -1;               ///< of the file, those without points not counted; -1: all
+  Rigid3 frame_from_world;     ///< metres
+  std::string sha256;          ///< that its bytes must have; empty: any
+  std::string stated_by = {};  ///< the file that says so
   /// Of a mobile pass that drifted: by how much each point moves within the frame, by its time.
   std::shared_ptr<const SplineMotion> bend = {};
 };

@@ -69,12 +69,12 @@ std::vector<std::string> environment_with_progress() {
   struct sigaction usual = {};
   usual.sa_handler = SIG_DFL;
   for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGPIPE}) sigaction(signal, &usual, nullptr);
-  // What is said may wait for a reader; what is told of progress may not.
+  // What is said may wait for a reader; progress may not.
   fcntl(output, F_SETFL, fcntl(output, F_GETFL) & ~O_NONBLOCK);
   const bool ready = prctl(PR_SET_PDEATHSIG, SIGKILL) == 0 && dup2(nothing, STDIN_FILENO) >= 0 &&
                      dup2(output, STDOUT_FILENO) >= 0 && dup2(output, STDERR_FILENO) >= 0 &&
                      dup2(progress, STDERR_FILENO + 1) >= 0 && chdir(folder) == 0;
-  // Whoever dies before we asked to be told of it is no parent any more.
+  // Whoever dies before we asked for its end is no parent any more.
   if (ready && getppid() == parent) execve(program, words, environment);
   _exit(kNotStarted);
 }

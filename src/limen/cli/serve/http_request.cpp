@@ -99,8 +99,8 @@ void take_field(std::string_view line, HttpRequest& request) {
 void take_length(HttpRequest& request) {
   if (!request.field("transfer-encoding").empty())
     throw HttpFault(501, "a body must come with its length, not in chunks");
-  const auto told = [](const auto& field) { return field.first == "content-length"; };
-  request.has_content = std::any_of(request.fields.begin(), request.fields.end(), told);
+  const auto stated = [](const auto& field) { return field.first == "content-length"; };
+  request.has_content = std::any_of(request.fields.begin(), request.fields.end(), stated);
   if (!request.has_content) return;
   const std::string text = request.field("content-length");
   const char* const end = text.data() + text.size();

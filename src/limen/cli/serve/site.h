@@ -70,7 +70,7 @@ class ServeSite {
   JobBoard jobs_;
 };
 
-/// What is told of a fault.
+/// What is reported of a fault.
 HttpReply reply_to(const HttpFault& fault);
 
 }  // namespace limen

@@ -32,15 +32,15 @@ PipeMonitor::PipeMonitor(int descriptor) : descriptor_(descriptor) {
 void PipeMonitor::begin_stage(std::string_view name) {
   const std::scoped_lock lock(mutex_);
   stage_ = one_line(std::string(name));
-  told_ = {};
+  stated_ = {};
   tell(descriptor_, stage_ + "\n");
 }
 
 void PipeMonitor::advance(double done, double total) {
   const std::scoped_lock lock(mutex_);
   const auto now = std::chrono::steady_clock::now();
-  if (total <= 0.0 || now - told_ < kBetweenLines) return;
-  told_ = now;
+  if (total <= 0.0 || now - stated_ < kBetweenLines) return;
+  stated_ = now;
   tell(descriptor_, fmt::format("{}\t{:.4f}\n", stage_, std::clamp(done / total, 0.0, 1.0)));
 }
 
@@ -49,8 +49,8 @@ void PipeMonitor::note(std::string_view text) {
 }
 
 std::unique_ptr<Monitor> pipe_monitor() {
-  const char* told = std::getenv(kProgressVariable);
-  const std::string_view text = told == nullptr ? std::string_view() : std::string_view(told);
+  const char* stated = std::getenv(kProgressVariable);
+  const std::string_view text = stated == nullptr ? std::string_view() : std::string_view(stated);
   int descriptor = -1;
   const auto read = std::from_chars(text.data(), text.data() + text.size(), descriptor);
   const bool good =

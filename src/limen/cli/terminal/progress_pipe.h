@@ -11,7 +11,7 @@
 
 namespace limen {
 
-/// The variable that names a descriptor to which progress is told, for a program that shows it elsewhere.
+/// The variable that names a descriptor to which progress is stated, for a program that shows it elsewhere.
 inline constexpr const char* kProgressVariable = "LIMEN_PROGRESS_FD";
 
 /// Tells the stage and the share of it that is done as lines "STAGE", "STAGE<tab>0.25", about ten a second.
@@ -28,7 +28,7 @@ class PipeMonitor : public Monitor {
   std::mutex mutex_;
   int descriptor_;
   std::string stage_;
-  std::chrono::steady_clock::time_point told_{};
+  std::chrono::steady_clock::time_point stated_{};
 };
 
 /// One for the descriptor that the variable names; none where it names none that is open.

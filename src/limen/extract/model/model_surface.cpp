@@ -105,7 +105,7 @@ class BodyGrid {
   CellLists cells_;
 };
 
-/// Where the matter of other elements stands right before the face, in the face's coordinates.
+/// Where matter of other elements touches the face, in the face's coordinates.
 std::vector<Polygon> matter_before(const BimFace& face, const std::vector<Body>& bodies, const BodyGrid& grid,
                                    double front_m) {
   Box box = box_of(face);

@@ -13,7 +13,7 @@ namespace {
 constexpr int kColumns = 1440;
 constexpr int kRows = 720;
 constexpr double kStep_rad = 2.0 * std::numbers::pi / kColumns;
-constexpr double kPole_rad = 1.4;  // elevations beyond are not told apart by azimuth
+constexpr double kPole_rad = 1.4;  // elevations beyond are not distinguished by azimuth
 
 /// arctan(t) / t of t^2 in [0, 1]: interpolated at Chebyshev's nodes, off by 2e-9 at most.
 constexpr std::array<double, 10> kArctan = {

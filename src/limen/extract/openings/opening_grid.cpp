@@ -17,7 +17,7 @@ constexpr double kMinCell_m = 0.025;
 constexpr double kMaxCell_m = 0.06;
 constexpr double kMaxCells = 6e6;
 constexpr double kTile_m = 0.5;           // over which the distance between samples is taken
-constexpr double kReachPerSpacing = 2.5;  // how far a sample speaks for its surroundings
+constexpr double kReachPerSpacing = 2.5;  // how far a sample represents its surroundings
 constexpr double kMaxReach_m = 0.2;
 
 }  // namespace

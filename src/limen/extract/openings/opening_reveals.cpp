@@ -26,7 +26,7 @@ constexpr double kMinLayerGraze = 0.03;  // of what tells a side by one depth on
 constexpr double kLayerSlope = 0.03;     // of sides seen at one depth: deviation from straight
 constexpr double kLayerRough_m = 0.001;  // of a side's surface
 constexpr double kMinLayerDepth_m = 0.004;
-constexpr double kFrontMargin_m = 0.008;  // before what stands in the opening
+constexpr double kFrontMargin_m = 0.008;  // before what is in the opening
 constexpr double kFrontDepth_m = 0.08;    // of frames and sashes
 constexpr double kRayBeside_m = 0.003;    // rays of one row cross the face this near to each other
 constexpr double kLayerMargin_m = 0.005;  // before the front of the middle one of many points
@@ -124,7 +124,7 @@ class RevealFinder {
     return reveal;
   }
 
-  /// A scan line may meet a side at one depth only. Before what stands in the opening there is nothing but
+  /// A scan line may meet a side at one depth only. Before what is in the opening there is nothing but
   /// its sides: where points lie there in one straight side, within what the noise of their ranges allows, it
   /// is the side.
   [[nodiscard]] Reveal before_front(Side side, const std::vector<SidePoint>& all) const {
@@ -247,7 +247,7 @@ class RevealFinder {
     return static_cast<double>(off_frame.size()) >= kSideShare * rays;
   }
 
-  /// A frame stands where the side ends: behind it the opening may be wider, but the wall goes on.
+  /// A frame is where the side ends: behind it the opening may be wider, but the wall goes on.
   static bool ends_at_frame(const std::vector<SidePoint>& all, const SideLine& line, double depth_m) {
     constexpr double kFrame_m = 0.08;  // depth of a frame, and a little
     constexpr double kBar_m = 0.12;

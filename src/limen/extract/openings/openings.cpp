@@ -5,7 +5,8 @@
 // sections 2.2 (evidence by ray tracing) and 2.3 (components and their rectangles).
 //
 // Departures from the printed text:
-// - every wall that a ray meets from its seen side is told, not only the first one; the depth behind the wall
+// - every wall that a ray meets from its seen side is stated, not only the first one; the depth behind the
+// wall
 //   that makes a crossing is measured along the wall's normal (`min_depth_m`), not along the ray;
 // - evidence against an opening counts as much as evidence for it: the wall's own points. Where neither was
 //   seen (trees, cars, wide gaps between scan lines) nothing is said;
@@ -17,7 +18,7 @@
 // - crossings that end a little behind the wall (frames, blinds, closed doors) count as well as those that
 // end
 //   in the room, and directions from which a static scanner got nothing back as crossings;
-// - windows whose curtain hides the wall around them are told from the curtain.
+// - windows whose curtain hides the wall around them are distinguished from the curtain.
 #include "limen/extract/openings/openings.h"
 
 #include <algorithm>

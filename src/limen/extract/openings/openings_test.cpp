@@ -16,7 +16,7 @@ namespace limen {
 namespace {
 
 constexpr double kWall_m = 0.3;  // thickness
-constexpr double kFar_m = 4.0;   // of what stands behind the wall
+constexpr double kFar_m = 4.0;   // of what is behind the wall
 constexpr double kNoise_m = 0.002;
 constexpr double kStep_rad = 0.006;  // between rays
 
@@ -27,7 +27,7 @@ Hole wall_rectangle(double u0, double v0, double u1, double v1) {
   return [=](double u, double v) { return u > u0 && u < u1 && v > v0 && v < v1; };
 }
 
-/// What stands in the way of the ray through (u, v): its distance behind the wall's face (negative: before
+/// What is in the way of the ray through (u, v): its distance behind the wall's face (negative: before
 /// it), or NaN for nothing.
 using Thing = std::function<double(double u, double v)>;
 
@@ -245,7 +245,7 @@ TEST(Openings, AFlatShallowRecessSeenFromTheStreetIsANicheAWindowHasFrames) {
     scene.hole = wall_rectangle(-0.6, -0.6, 0.6, 0.9);
     scene.in_opening = [=](double u, double) { return framed && std::abs(u) < 0.08 ? 0.06 : 0.12; };
     Scan scan = scene.scan();
-    scan.centres.assign(scan.size(), Vector3d(scan.centres[0]));  // a vehicle that stands still
+    scan.centres.assign(scan.size(), Vector3d(scan.centres[0]));  // a vehicle that is still
     const ExtractedFeatures extracted = extract_features(scan);
     EXPECT_EQ(find_openings(scan, extracted, Vector3d::UnitZ()).size(), framed ? 1U : 0U);
   }
@@ -345,7 +345,7 @@ TEST(Openings, SameForAnyNumberOfThreads) {
   }
 }
 
-TEST(Openings, AnUnknownCentreIsAnErrorUnlessTold) {
+TEST(Openings, AnUnknownCentreIsAnErrorUnlessStated) {
   WallScene scene;
   scene.hole = wall_rectangle(0.5, -0.6, 1.7, 0.9);
   Scan scan = scene.scan();

@@ -15,7 +15,7 @@ constexpr double kTowardsMean = 0.16;  // measured on samples at random; rows ha
 constexpr int kFewestBins = 5;
 constexpr double kBend_m = 0.002;        // a line may seem to bend by this,
 constexpr double kBendSigmas = 3.5;      // or by this many standard deviations
-constexpr double kShortfallKnown = 0.2;  // of the shortfall: how far its mean is told wrong, one deviation
+constexpr double kShortfallKnown = 0.2;  // of the shortfall: how far its mean is stated wrong, one deviation
 constexpr double kNarrow = 0.5;          // of the spacing: points less deep are one row
 constexpr double kUniform = 0.57735;     // standard deviation of what is uniform in [-1, 1]
 
@@ -135,7 +135,7 @@ std::vector<BorderBin> outermost(const BinnedPoints& points, const Strip& strip)
   return bins;
 }
 
-/// Turns the strip's line onto the fitted one: the bins' places are told anew.
+/// Turns the strip's line onto the fitted one: the bins' places are stated anew.
 Strip turned_onto(const Strip& strip, const Line2& line, std::vector<BorderBin>& bins) {
   Strip turned;
   turned.along = (strip.along + line.slope * strip.inward()).normalized();
@@ -221,8 +221,8 @@ bool judge(BorderFit& fit, double core_begin, double core_end) {
   const double own = expected > 0.0 ? std::max(0.0, 1.0 - spread * spread / (expected * expected)) : 0.0;
   const double count = std::max(1.0, independent(heights));
   // Nor do the gaps further in tell the shortfall itself better than to a part of it.
-  const double told = kShortfallKnown * fit.shortfall_m;
-  fit.sigma_m = std::sqrt(spread * spread / count + expected * expected * own + told * told);
+  const double stated = kShortfallKnown * fit.shortfall_m;
+  fit.sigma_m = std::sqrt(spread * spread / count + expected * expected * own + stated * stated);
   fit.angle_sigma_rad = std::sqrt(12.0 / count) * std::max(spread, 0.3 * expected) /
                         std::max(0.01, places.back() - places.front());
   return true;

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kPointsPerPixel = 1.5;
 constexpr double kAnyJump = 1e12;    // links between scan lines are never cut
-constexpr double kTouchSlope = 1.5;  // how steeply what stands on a surface may rise as the scanner sees it
+constexpr double kTouchSlope = 1.5;  // how steeply what is on a surface may rise as the scanner sees it
 constexpr int kLooks = 3;
 constexpr double kWidestGap_m = 0.5;  // between scan lines on a surface
 constexpr double kAlikeDeg = 20.0;    // planes that differ by more face another way

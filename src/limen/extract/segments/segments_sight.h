@@ -19,9 +19,9 @@ enum class Beyond : std::uint8_t {
   unknown,   ///< nobody knows from where the points were seen
   same,      ///< the surface itself: it goes on
   hidden,    ///< something nearer to the scanner hides what is there
-  touching,  ///< something that stands on the surface at its border
+  touching,  ///< something that is on the surface at its border
   open,      ///< rays went on behind the surface: it ends here
-  silent     ///< no ray came back; not told of mobile scans
+  silent     ///< no ray came back; never of mobile scans
 };
 
 /// A place on the border of a plane, and how to look beyond it.

@@ -205,7 +205,7 @@ TEST(SegmentBorders, SpacingIsMadeUpForInRowsAndAtRandom) {
   }
 }
 
-/// Borders along u that are told for points of the band 0 < v < `width_m`, in rows of even v.
+/// Borders along u that are stated for points of the band 0 < v < `width_m`, in rows of even v.
 int borders_of_band(double width_m, double rows_m, double along_m) {
   RandomStream stream(5);
   std::vector<Vector3d> points;
@@ -215,13 +215,13 @@ int borders_of_band(double width_m, double rows_m, double along_m) {
   std::vector<std::uint32_t> all(points.size());
   for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<std::uint32_t>(i);
   const PlaneImage image(points, all, PlaneFrame{}, 4.0 * width_m);
-  int told = 0;
+  int stated = 0;
   for (const StraightRun& run : straight_runs(image, 0.5)) {
     if (std::abs(run.line.along.x()) < 0.99) continue;
     const std::optional<BorderFit> fit = fit_border(image, run, 0.0, {});
-    if (fit && fit->sigma_m < 0.006) ++told;
+    if (fit && fit->sigma_m < 0.006) ++stated;
   }
-  return told;
+  return stated;
 }
 
 TEST(SegmentBorders, ASingleRowDoesNotTellWhereItsSurfaceEnds) {

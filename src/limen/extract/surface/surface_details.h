@@ -11,7 +11,7 @@
 
 namespace limen {
 
-/// A small piece of what stands in a room. Of a flat one (the side of a chair, a monitor, a cupboard's door)
+/// A small piece of what is in a room. Of a flat one (the side of a chair, a monitor, a cupboard's door)
 /// the points fix where it is across to the noise over the root of their number: millimetres.
 struct SurfaceDetail {
   Vector3d mean = Vector3d::Zero();    ///< metres, about the scan's local origin

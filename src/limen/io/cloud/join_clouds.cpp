@@ -129,7 +129,7 @@ JoinedClouds::JoinedClouds(std::vector<PlacedCloud> clouds, bool tell_source, co
   for (const std::string& text : clouds_.front().input->georeference()) {
     // A number becomes text where PROJ knows it: more formats can tell that.
     const CoordinateSystem known =
-        text.find('[') == std::string::npos ? told_system(text) : CoordinateSystem{};
+        text.find('[') == std::string::npos ? stated_system(text) : CoordinateSystem{};
     plan_.georeference.push_back(known.wkt.empty() ? text : known.wkt);
   }
   if (!system.empty()) plan_.georeference = {system};
@@ -163,7 +163,7 @@ void JoinedClouds::add_columns(const RecordTable& table, const CloudFacts& facts
   }
 }
 
-/// One centre is told by the plan, several by columns.
+/// One centre is stated by the plan, several by columns.
 void JoinedClouds::settle_centres() {
   const auto has_column = [&] {
     return std::any_of(plan_.columns.begin(), plan_.columns.end(),

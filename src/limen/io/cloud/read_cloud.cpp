@@ -106,7 +106,7 @@ TableFacts without_order(TableFacts facts) {
   return facts;
 }
 
-/// Scan lines cannot be told from the angles of some of the points.
+/// Scan lines cannot be distinguished from the angles of some of the points.
 RecordTable without_angles(RecordTable table) {
   for (Field& field : table.fields) {
     if (field.name == "theta" || field.name == "scalar_theta") field.name = std::string(1, '_');

@@ -75,8 +75,8 @@ TransformedCloud move_and_tell(const OpenPoints& input, const Rigid3& pose,
                                const std::filesystem::path& output, const ReadOptions& options,
                                Monitor& monitor, const CoordinateSystem& system) {
   TransformedCloud cloud = move_in_format(input, pose, output, options, monitor, system);
-  const bool told = input.format() == PointFormat::las || input.format() == PointFormat::e57;
-  if (system.known() && !told)
+  const bool stated = input.format() == PointFormat::las || input.format() == PointFormat::e57;
+  if (system.known() && !stated)
     cloud.notes.push_back(fmt::format("{} cannot store a coordinate system: it is not written to the file",
                                       input.file().format()));
   return cloud;

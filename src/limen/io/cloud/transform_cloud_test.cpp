@@ -64,7 +64,7 @@ TEST(TransformCloud, MovesThePointsAndKeepsEverythingElse) {
     ASSERT_EQ(after.size(), before.size());
     for (std::size_t i = 0; i < after.size(); ++i)
       ASSERT_LT((after.local_origin + after.points[i] - pose * before.points[i]).norm(), 3e-9);
-    // The scanner stood at 0 0 0 and is told in a comment now.
+    // The scanner stood at 0 0 0 and is stated in a comment now.
     ASSERT_EQ(after.centres.size(), 1U);
     EXPECT_LT((after.local_origin + after.centres[0] - pose.translation).norm(), 1e-9);
     EXPECT_NE(slurp(folder / "out.ply").find("comment keep me\n"), std::string::npos);
@@ -188,7 +188,7 @@ TEST(TransformCloud, PtxFindsItsScansBehindEmptyLinesAsTheReaderDoes) {
   EXPECT_FALSE(std::filesystem::exists(folder / "cut_out.ptx"));
 }
 
-TEST(TransformCloud, ATextWithoutColumnsIsToldAsSuch) {
+TEST(TransformCloud, ATextWithoutColumnsIsStatedAsSuch) {
   const TemporaryFolder folder;
   const auto in = folder.write("in.pcd",
                                "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 0 0 0\nWIDTH 1\n"

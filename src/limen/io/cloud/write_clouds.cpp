@@ -63,8 +63,8 @@ std::vector<PlacedCloud> placed_clouds(const OpenPoints& input, const Rigid3& ta
     const CloudFacts& facts = input.file().clouds()[k];
     PlacedCloud cloud{&input, k, target_from_world, origin,
                       static_cast<std::uint8_t>(std::min<std::size_t>(k, 255))};
-    const bool told = facts.table.centre || facts.points <= kFewPoints;
-    if (!origin && told && facts.points > 0 && !has_origins(facts))
+    const bool stated = facts.table.centre || facts.points <= kFewPoints;
+    if (!origin && stated && facts.points > 0 && !has_origins(facts))
       cloud.centre = settled_centre(input, k, monitor);
     placed.push_back(cloud);
   }

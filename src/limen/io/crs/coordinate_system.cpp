@@ -77,7 +77,7 @@ std::optional<CoordinateSystem> by_proj(const std::string& text) {
   const ProjHandle handle(text);
   if (handle.get() == nullptr || proj->is_crs(handle.get()) == 0) return {};
   CoordinateSystem system;
-  system.told = text;
+  system.stated = text;
   system.name = text_of_proj(proj->get_name(handle.get()));
   const std::string authority = text_of_proj(proj->get_id_auth_name(handle.get(), 0));
   if (authority == "EPSG") system.code = "EPSG:" + text_of_proj(proj->get_id_code(handle.get(), 0));
@@ -91,7 +91,7 @@ std::optional<CoordinateSystem> by_proj(const std::string& text) {
 /// What the text itself says.
 CoordinateSystem by_text(const std::string& text) {
   CoordinateSystem system;
-  system.told = text;
+  system.stated = text;
   system.code = code_in(text);
   if (!is_wkt(text)) return system;
   system.wkt = text;
@@ -125,7 +125,7 @@ ProjHandle::Object on_the_ground(const ProjHandle& handle) {
 
 }  // namespace
 
-CoordinateSystem told_system(const std::string& text) {
+CoordinateSystem stated_system(const std::string& text) {
   const std::string plain(trimmed(text));
   if (std::optional<CoordinateSystem> known = by_proj(plain)) return *known;
   return by_text(plain);
@@ -137,7 +137,7 @@ CoordinateSystem coordinate_system(const std::string& text, const std::string& w
   if (!form)
     throw Error(fmt::format("\"{:.60}\" names no coordinate system", plain), where,
                 "write EPSG:NUMBER, well-known text (WKT) or PROJJSON");
-  CoordinateSystem system = told_system(plain);
+  CoordinateSystem system = stated_system(plain);
   if (proj_library() != nullptr && system.wkt.empty())
     throw Error(fmt::format("\"{:.60}\" is not a coordinate system that PROJ knows", plain), where,
                 "check the number or the text");
@@ -149,12 +149,12 @@ CoordinateSystem coordinate_system(const std::string& text, const std::string& w
 }
 
 bool same_system(const CoordinateSystem& a, const CoordinateSystem& b) {
-  if (!a.known() || !b.known() || a.told == b.told) return true;
+  if (!a.known() || !b.known() || a.stated == b.stated) return true;
   if (!a.code.empty() && a.code == b.code) return true;
   const ProjLibrary* proj = proj_library();
   if (proj != nullptr) {
-    const ProjHandle left(a.wkt.empty() ? a.told : a.wkt);
-    const ProjHandle right(b.wkt.empty() ? b.told : b.wkt);
+    const ProjHandle left(a.wkt.empty() ? a.stated : a.wkt);
+    const ProjHandle right(b.wkt.empty() ? b.stated : b.wkt);
     if (left.get() == nullptr || right.get() == nullptr) return true;
     const ProjHandle::Object left_ground = on_the_ground(left);
     const ProjHandle::Object right_ground = on_the_ground(right);
@@ -168,7 +168,7 @@ std::string words_of(const CoordinateSystem& system) {
   if (!system.name.empty())
     return system.code.empty() ? system.name : fmt::format("{} ({})", system.name, system.code);
   if (!system.code.empty()) return system.code;
-  return system.told.substr(0, 60);
+  return system.stated.substr(0, 60);
 }
 
 }  // namespace limen

@@ -28,21 +28,21 @@ constexpr const char* kProjcs =
     "\"2154\"]]";
 
 TEST(CoordinateSystem, WhatATextSaysOfItself) {
-  const CoordinateSystem lambert = told_system(kProjcs);
+  const CoordinateSystem lambert = stated_system(kProjcs);
   EXPECT_EQ(lambert.name, "RGF93 v1 / Lambert-93");
   EXPECT_EQ(lambert.code, "EPSG:2154");
   EXPECT_EQ(words_of(lambert), "RGF93 v1 / Lambert-93 (EPSG:2154)");
-  EXPECT_EQ(told_system(kLocal).name, "site");
-  EXPECT_EQ(told_system(kLocal).code, "");
-  const CoordinateSystem strange = told_system("our own grid");
+  EXPECT_EQ(stated_system(kLocal).name, "site");
+  EXPECT_EQ(stated_system(kLocal).code, "");
+  const CoordinateSystem strange = stated_system("our own grid");
   EXPECT_EQ(strange.wkt, "");
   EXPECT_EQ(words_of(strange), "our own grid");
 }
 
 TEST(CoordinateSystem, SameOnes) {
-  EXPECT_TRUE(same_system(told_system(kProjcs), told_system("EPSG:2154")));
-  EXPECT_TRUE(same_system(told_system(kProjcs), {}));
-  EXPECT_FALSE(same_system(told_system("EPSG:2154"), told_system("EPSG:25832")));
+  EXPECT_TRUE(same_system(stated_system(kProjcs), stated_system("EPSG:2154")));
+  EXPECT_TRUE(same_system(stated_system(kProjcs), {}));
+  EXPECT_FALSE(same_system(stated_system("EPSG:2154"), stated_system("EPSG:25832")));
 }
 
 TEST(CoordinateSystem, MistakesAreNamed) {
@@ -68,7 +68,7 @@ TEST(CoordinateSystem, WithProjEverySystemIsKnown) {
   EXPECT_THROW(static_cast<void>(coordinate_system("EPSG:4326", "--crs")), Error);
   EXPECT_THROW(static_cast<void>(coordinate_system("EPSG:2263", "--crs")), Error);  // US survey feet
   // Heights do not make another system on the ground.
-  EXPECT_TRUE(same_system(told_system("EPSG:2154+5720"), lambert));
+  EXPECT_TRUE(same_system(stated_system("EPSG:2154+5720"), lambert));
 }
 
 TEST(MapProjection, LambertOfTheEiffelTower) {

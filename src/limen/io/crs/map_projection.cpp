@@ -27,7 +27,7 @@ struct MapProjection::Parts {
   [[nodiscard]] Vector3d moved(const Vector3d& x, int direction) const {
     ProjCoordinate coordinate;
     for (std::size_t k = 0; k < 3; ++k) coordinate.v[k] = x[static_cast<Eigen::Index>(k)];
-    // The time of the coordinates, in years: none is told.
+    // The time of the coordinates, in years: none is stated.
     coordinate.v[3] = HUGE_VAL;
     const ProjCoordinate result = proj_library()->trans(transformation.get(), direction, coordinate);
     return {result.v[0], result.v[1], result.v[2]};
@@ -44,7 +44,7 @@ MapProjection::MapProjection(const std::string& system, const std::string& where
     throw Error("converting latitude and longitude to this system needs PROJ, which was not found", where,
                 "install PROJ (Debian: libproj25), or name a UTM zone, as 32N");
   const CoordinateSystem known = coordinate_system(system, where);
-  parts_ = std::make_unique<Parts>(known.told);
+  parts_ = std::make_unique<Parts>(known.stated);
   parts_->name = words_of(known);
   ProjContext* context = parts_->target.context();
   const ProjHandle::Object geographic = owned(proj->create(context, kGeographic));

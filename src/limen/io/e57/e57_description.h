@@ -13,7 +13,7 @@
 
 namespace limen {
 
-/// What is told of one scan of a new E57 file.
+/// What is written of one scan of a new E57 file.
 struct E57Description {
   std::string name;
   std::vector<std::string> georeference;

@@ -42,7 +42,7 @@ struct E57Scan {
   std::string name;
   std::optional<Rigid3> pose;  ///< file from scan
   double quaternion_length = 1.0;
-  double acquisition_start_s = 0.0;  ///< GPS time, 0: not told
+  double acquisition_start_s = 0.0;  ///< GPS time, 0: not stated
   std::array<std::optional<E57Limits>, 3> colour_limits;
   std::string centre_word;  ///< what limen wrote of the optical centre: "known", "unknown" or nothing
   std::uint64_t points = 0;

@@ -277,7 +277,7 @@ TEST(ReadE57, PosesOfSeveralScans) {
   EXPECT_FALSE(b->next(1).has_value());
 }
 
-TEST(ReadE57, ScansWithoutPointsAreTold) {
+TEST(ReadE57, ScansWithoutPointsAreStated) {
   ScanParts none = simple_scan(0);
   const std::string bytes = file_of({none});
   const auto file = open_e57(bytes, "test.e57");

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kStep = 1e-4;
 constexpr double kRoundOffset = 100.0;
-/// Integers are kept below this, so that a box that is told a little too small does no harm.
+/// Integers are kept below this, so that a box that is stated a little too small does no harm.
 constexpr double kMostSteps = 2.1e9;
 
 }  // namespace
@@ -28,7 +28,7 @@ LasBox moved_box(const LasBox& box, const Rigid3& target_from_source) {
   return moved;
 }
 
-std::optional<LasBox> told_box(const LasHeader& header) {
+std::optional<LasBox> stated_box(const LasHeader& header) {
   const bool sound =
       header.low.allFinite() && header.high.allFinite() && (header.low.array() <= header.high.array()).all();
   if (!sound) return {};

@@ -26,7 +26,7 @@ struct LasGrid {
 LasBox moved_box(const LasBox& box, const Rigid3& target_from_source);
 
 /// The box that the header tells, where it can be one.
-std::optional<LasBox> told_box(const LasHeader& header);
+std::optional<LasBox> stated_box(const LasHeader& header);
 
 /// A round number near a place: what stored coordinates are counted from.
 Vector3d round_offset(const Vector3d& near);

@@ -78,7 +78,7 @@ struct Reach {
   }
 };
 
-/// The box of all points in the target frame, by reading them: the header told none that holds.
+/// The box of all points in the target frame, by reading them: the header stated none that holds.
 LasBox measured_box(const Motion& motion) {
   LasBox box;
   box.low.setConstant(std::numeric_limits<double>::infinity());
@@ -193,9 +193,9 @@ std::string beginning(const Motion& motion, const LasGrid& grid) {
   }
   text += motion.bytes.substr(end, header.points_begin - end);
   // A false count is kept, but not where it would hide the record that tells of the packing.
-  const auto told = las_number<std::uint32_t>(motion.bytes, las_at::kRecordCount);
+  const auto stated = las_number<std::uint32_t>(motion.bytes, las_at::kRecordCount);
   put_las_number(text, las_at::kRecordCount,
-                 motion.items.empty() && named.empty() ? told - taken_out
+                 motion.items.empty() && named.empty() ? stated - taken_out
                  : motion.items.empty()                ? kept
                                                        : kept + 1);
   if (!named.empty() && header.minor >= kTextFromMinor)
@@ -365,11 +365,11 @@ TransformedCloud transform_las(std::string_view bytes, const std::string& name,
   const LasHeader header = parse_las_header(bytes, name);
   Motion motion{bytes, name, header, target_from_source, monitor, {}, system};
   if (is_laz_ending(output)) motion.items = laz::items_of(header.point_format, header.point_bytes);
-  const std::optional<LasBox> told = told_box(header);
+  const std::optional<LasBox> stated = stated_box(header);
   LasGrid grid = moved_grid(header, target_from_source,
-                            told ? moved_box(*told, target_from_source) : measured_box(motion));
+                            stated ? moved_box(*stated, target_from_source) : measured_box(motion));
   const bool coarser = grid.scale.maxCoeff() > header.scale.cwiseAbs().minCoeff() && !grid.unchanged;
-  if (told && coarser)
+  if (stated && coarser)
     grid = moved_grid(header, target_from_source, measured_box(motion));  // is it so large?
   std::optional<std::uint64_t> points = write_moved(motion, grid, output);
   if (!points) {  // the header's box was wrong

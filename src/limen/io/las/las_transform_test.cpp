@@ -82,10 +82,10 @@ TEST(TransformLas, ACoordinateSystemTakesThePlaceOfTheSources) {
     for (std::size_t i = 0; i < old_points.size(); ++i)
       EXPECT_LT((turned() * old_points[i] - new_points[i]).cwiseAbs().maxCoeff(), 5.1e-5);
   }
-  // Without a number old versions have no place for it, and it is told.
-  const TransformedCloud told = transform_las(file(sample(2, 3)), "test", turned(), folder / "old.las",
-                                              silent_monitor(), {system.wkt, ""});
-  ASSERT_EQ(told.notes.size(), 1U);
+  // Without a number old versions have no place for it, and it is stated.
+  const TransformedCloud stated = transform_las(file(sample(2, 3)), "test", turned(), folder / "old.las",
+                                                silent_monitor(), {system.wkt, ""});
+  ASSERT_EQ(stated.notes.size(), 1U);
   EXPECT_TRUE(las_coordinate_systems(parse_las_header(slurp(folder / "old.las"), "test")).empty());
 }
 

@@ -42,13 +42,13 @@ bool begins_with_withheld(const LasHeader& header, LasRecords& records) {
   return false;
 }
 
-const char* told_time(const LasHeader& header) {
+const char* stated_time(const LasHeader& header) {
   return (header.global_encoding & 1U) != 0
              ? "GPS times are adjusted standard times: seconds since 6 January 1980, less 1e9"
              : "GPS times are seconds of the GPS week, as the file says";
 }
 
-std::optional<Vector3d> told_centre(const LasHeader& header) {
+std::optional<Vector3d> stated_centre(const LasHeader& header) {
   const LasRecord* record = header.find(kLasCentreUser, kLasCentreNumber);
   if (record == nullptr || record->body.size() < 24) return {};
   const Vector3d centre = las_vector(record->body, 0);
@@ -62,13 +62,13 @@ class LasFile : public PointFile {
     CloudFacts facts;
     facts.table.name = name;
     facts.points = header_.points;
-    facts.table.centre = told_centre(header_);
+    facts.table.centre = stated_centre(header_);
     facts.table.metres_per_unit = las_metres_per_unit(header_);
     for (const LasField& value : layout_.fields) facts.fields.push_back(value.field.name);
     facts.notes = header_.notes;
     facts.notes.insert(facts.notes.end(), layout_.notes.begin(), layout_.notes.end());
-    if (las_gps_time_at(header_.point_format) != 0) facts.notes.emplace_back(told_time(header_));
-    // A damaged beginning is told here, before anybody makes room for the points.
+    if (las_gps_time_at(header_.point_format) != 0) facts.notes.emplace_back(stated_time(header_));
+    // A damaged beginning is stated here, before anybody makes room for the points.
     if (begins_with_withheld(header_, *open_las_records(bytes_, name_, header_)))
       facts.notes.emplace_back("points that the file marks as withheld are kept");
     clouds_.push_back(std::move(facts));

@@ -154,7 +154,7 @@ TEST(ReadLas, ExtraBytesHaveNamesTypesScales) {
   EXPECT_EQ(column(bytes, "extra_bytes_2").at(0), 19.0);
 }
 
-TEST(ReadLas, ExtraBytesBeyondTheRecordAreTold) {
+TEST(ReadLas, ExtraBytesBeyondTheRecordAreStated) {
   Parts parts = some(4, 6);
   parts.records.push_back(record("LASF_Spec", 4, extra("too much", 10, 0)));
   const std::string bytes = file(parts);
@@ -163,7 +163,7 @@ TEST(ReadLas, ExtraBytesBeyondTheRecordAreTold) {
             "1 extra values per point are described, but only 0 are present");
 }
 
-TEST(ReadLas, ManyUndescribedBytesAreToldNotGiven) {
+TEST(ReadLas, ManyUndescribedBytesAreStatedNotGiven) {
   Parts parts = some(4, 6);
   parts.extra = 60000;
   parts.points = std::string(point_bytes(parts), '\0');
@@ -174,7 +174,7 @@ TEST(ReadLas, ManyUndescribedBytesAreToldNotGiven) {
             "60000 bytes per point are not described by the header, and not all of them are read as values");
 }
 
-TEST(ReadLas, TimesAreTold) {
+TEST(ReadLas, TimesAreStated) {
   Parts parts = some(2, 1);
   std::string bytes = file(parts);
   EXPECT_NE(open_las(bytes, "test")->clouds()[0].notes.at(0).find("GPS week"), std::string::npos);

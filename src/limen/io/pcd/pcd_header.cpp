@@ -24,7 +24,7 @@ const char* const kPcdRemedy = "the PCD header is damaged: export the file again
 
 using PcdTokens = std::vector<std::string_view>;
 
-/// The tokens of one header line, where it stands, and how to complain about it.
+/// The tokens of one header line, where it is, and how to complain about it.
 struct PcdLine {
   PcdTokens tokens;
   std::size_t number;

@@ -28,7 +28,7 @@ struct PcdHeader {
   std::size_t height = 0;
   std::optional<std::size_t> points;
   std::optional<Rigid3> viewpoint;  ///< of the sensor in the file's frame
-  std::string data;                 ///< "ascii", "binary", "binary_compressed" or what stands there
+  std::string data;                 ///< "ascii", "binary", "binary_compressed" or what is there
   std::size_t lines = 0;
   std::size_t body = 0;  ///< bytes before the data
 

@@ -149,7 +149,7 @@ void append_column(const RecordTable& table, const Field* field, std::vector<Val
   append_column(table, field, column, [](double value) { return static_cast<Value>(value); });
 }
 
-/// What stands for a number that is no whole one within 32 bits.
+/// What represents a number that is no whole one within 32 bits.
 constexpr std::int32_t kNoInteger = std::numeric_limits<std::int32_t>::min();
 
 void append_integers(const RecordTable& table, const Field* field, std::vector<std::int32_t>& integers) {
@@ -279,7 +279,7 @@ std::pair<Scan, std::size_t> without_unusable(Scan scan) {
   return {subset(scan, kept), bad};
 }
 
-std::string told(const Vector3d& x) {
+std::string stated(const Vector3d& x) {
   return fmt::format("{:.3f} {:.3f} {:.3f}", x.x(), x.y(), x.z());
 }
 
@@ -287,7 +287,7 @@ std::string told(const Vector3d& x) {
 std::string settle_centre(Scan& scan, const TableFacts& facts, const ReadOptions& options) {
   if (options.origin) {
     scan.centres = {*options.origin - scan.local_origin};
-    scan.centre_source = PlaceSource::told_by_user;
+    scan.centre_source = PlaceSource::stated_by_user;
     return {};
   }
   if (!scan.centres.empty() || options.trajectory) return {};
@@ -303,7 +303,7 @@ std::string settle_centre(Scan& scan, const TableFacts& facts, const ReadOptions
       // PCD writes 0 0 0 where nobody said anything.
       if (facts.possible_centre->isZero()) scan.centre_source = PlaceSource::assumed;
       return "the view point of the file is taken as the scanner position, " +
-             told(candidate + scan.local_origin);
+             stated(candidate + scan.local_origin);
     }
   }
   const bool zero_is_near = !facts.has_offset && scan.local_origin.isZero();
@@ -320,12 +320,12 @@ void check_extent(const Scan& scan) {
   constexpr std::size_t kManyPoints = 100;  // fewer may be an example
   if (scan.size() >= kManyPoints && extent.diagonal() == 0.0) {
     throw Error(fmt::format("all {} points have the same position, {}", scan.size(),
-                            told(extent.low + scan.local_origin)),
+                            stated(extent.low + scan.local_origin)),
                 scan.name, "check how the file was exported");
   }
   if (extent.diagonal() <= kLargestExtentM) return;
   throw Error(fmt::format("absurd extent: the points lie between {} and {}",
-                          told(extent.low + scan.local_origin), told(extent.high + scan.local_origin)),
+                          stated(extent.low + scan.local_origin), stated(extent.high + scan.local_origin)),
               scan.name, "check the unit, the types and the offset of the file");
 }
 

@@ -55,7 +55,7 @@ Names column_names(std::string_view line) {
   return names;
 }
 
-/// What stands before the rows.
+/// What is before the rows.
 struct TextHeader {
   Names names;
   bool counted = false;       ///< a lone whole number: PTS

@@ -25,7 +25,7 @@ struct TrajectoryOptions {
   /// From the trajectory's point to the optical centre, in the body's frame: forward, right, down, metres.
   Vector3d lever_arm_m = Vector3d::Zero();
 
-  /// What stands between the dashes and the names of these options in messages, as "source-".
+  /// What is between the dashes and the names of these options in messages, as "source-".
   std::string option_side;
 
   void check() const;

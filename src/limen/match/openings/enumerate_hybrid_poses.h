@@ -56,7 +56,7 @@ struct HybridPose {
   OpeningPose opening;  ///< the pose it came from
 };
 
-/// Poses from openings and planes. A pose stands in the list by the better of its two places, by the distance
+/// Poses from openings and planes. A pose is in the list by the better of its two places, by the distance
 /// of its openings and by the overlap of its planes, counted for each of the two cases of sides apart; equal
 /// places go by distance. Where the user gave a thickness, that shift comes first of its opening pose's. A
 /// pose whose normal nothing holds is listed with assumed thicknesses and `free_translations` 1.

@@ -13,7 +13,7 @@
 // Departures from the printed text:
 // - nested random choice (wall pair, then a vertical and a horizontal edge of each) is replaced by all pairs
 //   of walls and all pairs of openings of like size: the set is finite, and the result always the same;
-// - directions have no signs to guess: the scanner stands on its own side of the wall in each scan, so
+// - directions have no signs to guess: the scanner is on its own side of the wall in each scan, so
 //   "right" and "up" are known. Seen from opposite sides, left and right change places; both cases are tried;
 // - the wall's normal is taken out of the distance and of the fit. The two rectangles of one window lie a
 //   wall's thickness apart, and the printed distance would pull the thickness to zero. The shift along the

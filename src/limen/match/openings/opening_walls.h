@@ -23,7 +23,7 @@ struct WallRectangle {
   [[nodiscard]] double height() const { return edge[2] - edge[0]; }
 };
 
-/// A wall with openings: as a scanner that stands before it sees it, u points right, v up, u x v towards it.
+/// A wall with openings: as a scanner that is before it sees it, u points right, v up, u x v towards it.
 struct WallWithOpenings {
   PlaneFrame frame;  ///< origin in the wall
   int facade = -1;   ///< index into Features::planes of its largest plane, or -1

@@ -57,10 +57,10 @@ TEST(AxisPairs, SupportAtAShiftIsTheSupportThere) {
       }
     }
     for (const double enough : {support + 0.01, 2.0 * support + 0.1}) {
-      const double told = there.at(in_plane, enough);
-      EXPECT_LE(told, enough);
-      EXPECT_GE(told, support - 1e-9);
-      ended_early += told != support ? 1 : 0;
+      const double stated = there.at(in_plane, enough);
+      EXPECT_LE(stated, enough);
+      EXPECT_GE(stated, support - 1e-9);
+      ended_early += stated != support ? 1 : 0;
     }
   }
   EXPECT_GT(most, 0.0);

@@ -72,7 +72,7 @@ struct CommonShift {
   double overlap_m2 = 0.0;  ///< of the pairs together, nearer ones counting more
 };
 
-/// The shifts that most overlap speaks for, at most `most`, no two nearer than the tolerance; largest first.
+/// The shifts that most overlap supports, at most `most`, no two nearer than the tolerance; largest first.
 std::vector<CommonShift> common_shifts(const std::vector<PlaneShift>& shifts, double tolerance_m, int most);
 
 }  // namespace limen

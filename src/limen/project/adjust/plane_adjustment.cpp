@@ -175,7 +175,7 @@ class JointSolver {
   void tell_factor() {
     if (system_.empty()) return;
     double sum = 0.0;
-    double count = held_by_told() - 6.0 * system_.moving();
+    double count = held_by_stated() - 6.0 * system_.moving();
     for (std::size_t k = 0; k < problem_.observations.size(); ++k) {
       const PlaneObservation& seen = problem_.observations[k];
       const std::size_t plane = static_cast<std::size_t>(seen.plane);
@@ -198,17 +198,17 @@ class JointSolver {
     for (std::size_t i = 0; i < problem_.fixed.size(); ++i) {
       CancelScope::check();
       const int node = static_cast<int>(i);
-      if (!system_.moves(node) || (i < problem_.untold.size() && problem_.untold[i])) continue;
+      if (!system_.moves(node) || (i < problem_.unreported.size() && problem_.unreported[i])) continue;
       solution_.covariance[i] = scale * system_.inverse_block(node, node);
     }
   }
 
-  /// Of all freedoms those that edges which are told hold, and planes do not: so much of their misfits the
+  /// Of all freedoms those that edges which are stated hold, and planes do not: so much of their misfits the
   /// covariances have left.
-  [[nodiscard]] double held_by_told() const {
+  [[nodiscard]] double held_by_stated() const {
     double held = 0.0;
     for (std::size_t e = 0; e < solution_.edge_covariance.size(); ++e) {
-      if (problem_.edges[e].told) held += (information_[e] * solution_.edge_covariance[e]).trace();
+      if (problem_.edges[e].stated) held += (information_[e] * solution_.edge_covariance[e]).trace();
     }
     return held;
   }
@@ -216,12 +216,12 @@ class JointSolver {
   void tell_edges() {
     if (system_.empty()) return;
     const bool any = std::any_of(problem_.edges.begin(), problem_.edges.end(),
-                                 [](const PoseEdge& edge) { return edge.told; });
+                                 [](const PoseEdge& edge) { return edge.stated; });
     if (!any) return;
     solution_.edge_covariance.assign(problem_.edges.size(), Matrix6d::Zero());
     for (std::size_t e = 0; e < problem_.edges.size(); ++e) {
       const PoseEdge& edge = problem_.edges[e];
-      if (!edge.told) continue;
+      if (!edge.stated) continue;
       CancelScope::check();
       const EdgeResidual residual = edge_residual(edge, pose(edge.source), pose(edge.target));
       Matrix6d covariance = Matrix6d::Zero();

@@ -31,7 +31,7 @@ struct JointProblem {
   /// Of each node: of which others its motion is made; empty: it has freedoms of its own, as all beyond the
   /// last of these have. Poses of a blend and of its nodes differ by small motions only.
   std::vector<NodeBlend> blends;
-  std::vector<bool> untold;  ///< nodes whose covariance nobody asks for; may be shorter than the nodes
+  std::vector<bool> unreported;  ///< nodes whose covariance nobody asks for; may be shorter than the nodes
 };
 
 struct JointSolution {
@@ -39,8 +39,8 @@ struct JointSolution {
   std::vector<Matrix6d> covariance;  ///< of a turn about the node's origin and a shift; frame axes
   std::vector<double> weights;       ///< of each observation, 0 .. 1
   double variance_factor = 1.0;      ///< of the planes: 1 where they err as they should
-  /// Of each edge that is `told`: covariance of its adjusted misfit (edge_residual) where all err by what was
-  /// taken for them, else zero. Empty where none is.
+  /// Of each edge that is `stated`: covariance of its adjusted misfit (edge_residual) where all err by what
+  /// was taken for them, else zero. Empty where none is.
   std::vector<Matrix6d> edge_covariance;
   /// Of each point: covariance of the places where its sights have it by the poses alone, three rows each.
   std::vector<Eigen::MatrixXd> sight_covariance;

@@ -19,9 +19,9 @@ struct PointPair {
 
 /// Why points do or do not tell how two frames stand.
 enum class PointFitState {
-  fixed,         ///< all six freedoms, and what is left out is told apart from the rest
+  fixed,         ///< all six freedoms, and what is left out is distinguished from the rest
   too_few,       ///< they leave a freedom open
-  contradictory  ///< they contradict one another, and which of them is wrong cannot be told
+  contradictory  ///< they contradict one another, and which of them is wrong cannot be stated
 };
 
 struct PointFit {
@@ -36,7 +36,7 @@ struct PointFit {
 
 /// A point misses by more than this, three freedoms, once in a thousand by chance.
 inline constexpr double kPointChiSquareBound = 16.27;
-/// Two explanations whose chi squares are nearer than this (odds of a thousand) are not told apart.
+/// Two explanations whose chi squares are nearer than this (odds of a thousand) are not distinguished.
 inline constexpr double kTellingApart = 13.8;
 
 /// Robust rigid fit: of all poses that three pairs give (some hundred, spread evenly, where there are more)

@@ -85,7 +85,7 @@ class Settler {
       const PointFinding& finding = settled_.findings[p];
       if (!point.enters) continue;
       if (point.is_known()) list.push_back({finding.known.squared, p, kKnown});
-      // Of a point that one scan sees, coordinates and sight cannot be told apart.
+      // Of a point that one scan sees, coordinates and sight cannot be distinguished.
       for (std::size_t s = 0; s < finding.sights.size() && point.sights.size() > 1; ++s)
         list.push_back({finding.sights[s].squared, p, static_cast<int>(s)});
     }

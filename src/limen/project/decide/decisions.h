@@ -13,7 +13,7 @@ enum class DecisionKind {
   accept,      ///< the two scans stand to one another as their link's best pose says
   reject,      ///< the link of the two is wrong
   choose,      ///< of the link's poses this one is right
-  level,       ///< the scan stands level
+  level,       ///< the scan is level
   same_floor,  ///< the floors under the two are at one height
   forget       ///< what was said of the two, or the one, is taken back
 };

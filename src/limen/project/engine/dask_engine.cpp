@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Jobs on Dask: a small Python program beside limen (limen_dask.py) takes them line by line and answers line
-// by line. It retries what may be retried; here only the rest is told.
+// by line. It retries what may be retried; here only the rest is stated.
 #include <cstdlib>
 #include <filesystem>
 #include <optional>
@@ -135,8 +135,8 @@ void EngineOptions::check() const {
   const bool all = !tls_ca.empty() && !tls_cert.empty() && !tls_key.empty();
   if (any && !all)
     throw Error("TLS needs three files", "--tls-ca, --tls-cert, --tls-key", "give all of them or none");
-  const bool told = any || !scheduler.empty() || !scheduler_file.empty() || trust_network;
-  if (told && kind == EngineKind::local)
+  const bool stated = any || !scheduler.empty() || !scheduler_file.empty() || trust_network;
+  if (stated && kind == EngineKind::local)
     throw Error("a scheduler is used by the engine dask only", "--engine", "add --engine dask");
 }
 

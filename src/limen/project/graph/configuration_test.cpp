@@ -51,7 +51,7 @@ TEST(Configuration, TheOrderOfLinksMeansNothing) {
   }
 }
 
-/// A pair that shows two look-alike places speaks against laying one on the other.
+/// A pair that shows two look-alike places contradicts laying one on the other.
 TEST(Configuration, APairOfLookAlikesKeepsPartsFromEachOther) {
   SyntheticGraph made = synthetic_graph(2, 1, 1, 0.0, 3);
   ASSERT_EQ(made.graph.links.size(), 1U);
@@ -65,7 +65,7 @@ TEST(Configuration, APairOfLookAlikesKeepsPartsFromEachOther) {
   EXPECT_EQ(best_configuration(made.graph, LinkMatcher(made.graph)).component[1], 1);
 }
 
-/// Scans of one room of a hotel laid on another room: what each link says for itself is heard as a move.
+/// Scans of one room of a hotel laid on another room: what each link says for itself is answered as a move.
 TEST(Moves, APoseThatIsNotTakenProposesAMove) {
   SyntheticGraph made = synthetic_graph(4, 1, 3, 0.0, 5);
   RandomStream random(5, 3);

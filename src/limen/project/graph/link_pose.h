@@ -18,7 +18,7 @@ struct LinkPose {
   /// Of a small motion (turn about `centre` in radians, shift in metres) after the pose; target axes, SI.
   Matrix6d covariance = Matrix6d::Identity();
   Vector3d centre = Vector3d::Zero();     ///< near the common surface, target frame, metres
-  double agreeing_m2 = 0.0;               ///< surface that speaks for it
+  double agreeing_m2 = 0.0;               ///< surface that supports it
   double probability = 1.0;               ///< that it is the right one, by the pair alone
   std::optional<TwinEvidence> twin = {};  ///< whether it lays a place on a look-alike one, if that was asked
 };

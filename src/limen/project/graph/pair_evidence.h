@@ -32,7 +32,7 @@ struct PairEvidence {
 inline constexpr double kMostPairNats = 9.2;
 
 /// What several pairs say together against one look-alike place. How alike its rooms are furnished is a
-/// property of the place: what speaks for one furnished alike is believed once, by the pair that says most.
+/// property of the place: what supports one furnished alike is believed once, by the pair that says most.
 class LookAlikeNats {
  public:
   /// `nats`: of which kind, as PairEvidence::against_twin() has it.

@@ -16,8 +16,8 @@ namespace {
 constexpr double kLeastContactM2 = 0.1;
 constexpr double kMostAskedNats = 4.0;  // for a placement that no search proposed
 
-double contact_m2(const PoseHeard& heard) {
-  return heard.agreeing_m2 + heard.contradicted_m2;
+double contact_m2(const PoseHeard& queried) {
+  return queried.agreeing_m2 + queried.contradicted_m2;
 }
 
 /// How much is contradicted where a placement is right is a property of a project as well: of what moves
@@ -26,8 +26,9 @@ double contact_m2(const PoseHeard& heard) {
 evidence_table::Contradiction learned_contradiction(const std::vector<PoseHeard>& asked) {
   constexpr double kMostRight = 0.5;
   std::vector<double> shares;
-  for (const PoseHeard& heard : asked) {
-    if (contact_m2(heard) >= kLeastContactM2) shares.push_back(heard.contradicted_m2 / contact_m2(heard));
+  for (const PoseHeard& queried : asked) {
+    if (contact_m2(queried) >= kLeastContactM2)
+      shares.push_back(queried.contradicted_m2 / contact_m2(queried));
   }
   evidence_table::Contradiction learned = evidence_table::kPlaced;
   if (shares.empty()) return learned;
@@ -37,15 +38,15 @@ evidence_table::Contradiction learned_contradiction(const std::vector<PoseHeard>
   return learned;
 }
 
-/// By how much the contradicted share of two scans speaks for their placement, nats.
-double nats_of_contact(const PoseHeard& heard, const evidence_table::Contradiction& table) {
-  if (contact_m2(heard) < kLeastContactM2) return 0.0;
-  return std::min(kMostAskedNats, nats_of_contradiction(heard.agreeing_m2, heard.contradicted_m2, table));
+/// By how much the contradicted share of two scans supports their placement, nats.
+double nats_of_contact(const PoseHeard& queried, const evidence_table::Contradiction& table) {
+  if (contact_m2(queried) < kLeastContactM2) return 0.0;
+  return std::min(kMostAskedNats, nats_of_contradiction(queried.agreeing_m2, queried.contradicted_m2, table));
 }
 
 /// What two scans say of a placement that no link of theirs agrees with.
 PlacedPair asked_pair(int source, int target, const Rigid3& target_from_source, const PoseHeard& surface,
-                      const evidence_table::Contradiction& table, const PoseHearing& hearing) {
+                      const evidence_table::Contradiction& table, const PoseQuery& query) {
   PlacedPair pair;
   pair.source = source;
   pair.target = target;
@@ -56,9 +57,9 @@ PlacedPair asked_pair(int source, int target, const Rigid3& target_from_source, 
   // A look-alike place agrees by design: agreeing walls do not tell it from the right one, contradicted ones
   // do.
   pair.evidence.twins.otherwise_nats = pair.evidence.twins.alike_nats = std::min(0.0, nats);
-  if (nats <= 0.0 || !hearing.things) return pair;
-  if (const std::optional<TwinEvidence> things = hearing.things(source, target, target_from_source)) {
-    // What stands elsewhere may seem to where a placement is known to a decimetre; what agrees does agree.
+  if (nats <= 0.0 || !query.things) return pair;
+  if (const std::optional<TwinEvidence> things = query.things(source, target, target_from_source)) {
+    // What is elsewhere may seem to where a placement is known to a decimetre; what agrees does agree.
     pair.evidence.twins.otherwise_nats = std::clamp(things->otherwise_nats, 0.0, kMostAskedNats);
   }
   return pair;
@@ -79,7 +80,7 @@ bool says_something(const PlacedPair& pair) {
 }  // namespace
 
 std::vector<PlacedPair> placed_pairs(const PoseGraph& graph, const LinkMatcher& matcher,
-                                     const Configuration& configuration, const PoseHearing& hearing) {
+                                     const Configuration& configuration, const PoseQuery& query) {
   std::vector<PlacedPair> pairs;
   std::set<std::pair<int, int>> known;
   for (std::size_t k = 0; k < graph.links.size(); ++k) {
@@ -87,7 +88,7 @@ std::vector<PlacedPair> placed_pairs(const PoseGraph& graph, const LinkMatcher& 
     pairs.push_back(linked_pair(graph, matcher, configuration, k));
     known.insert(std::minmax(graph.links[k].source, graph.links[k].target));
   }
-  if (!hearing) return pairs;
+  if (!query) return pairs;
   std::vector<std::pair<int, int>> asked;
   for (int target = 0; target < graph.nodes; ++target) {
     for (int source = target + 1; source < graph.nodes; ++source) {
@@ -104,21 +105,21 @@ std::vector<PlacedPair> placed_pairs(const PoseGraph& graph, const LinkMatcher& 
   std::vector<PoseHeard> surfaces(asked.size());
   parallel_for(asked.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k)
-      surfaces[k] = hearing.surface(asked[k].first, asked[k].second, pose(k));
+      surfaces[k] = query.surface(asked[k].first, asked[k].second, pose(k));
   });
   const evidence_table::Contradiction table = learned_contradiction(surfaces);
   std::vector<PlacedPair> answers(asked.size());
   parallel_for(asked.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k)
-      answers[k] = asked_pair(asked[k].first, asked[k].second, pose(k), surfaces[k], table, hearing);
+      answers[k] = asked_pair(asked[k].first, asked[k].second, pose(k), surfaces[k], table, query);
   });
   std::copy_if(answers.begin(), answers.end(), std::back_inserter(pairs), says_something);
   return pairs;
 }
 
 double nats_against_move(const Configuration& configuration, const std::vector<bool>& side,
-                         const Rigid3& frame_from_frame, const PoseHearing& hearing) {
-  if (!hearing) return 0.0;
+                         const Rigid3& frame_from_frame, const PoseQuery& query) {
+  if (!query) return 0.0;
   std::vector<std::pair<std::size_t, std::size_t>> asked;
   for (std::size_t moved = 0; moved < side.size(); ++moved) {
     for (std::size_t other = 0; other < side.size(); ++other) {
@@ -131,9 +132,9 @@ double nats_against_move(const Configuration& configuration, const std::vector<b
     for (std::size_t k = begin; k < end; ++k) {
       const auto& [moved, other] = asked[k];
       against[k] =
-          -nats_of_contact(hearing.surface(static_cast<int>(moved), static_cast<int>(other),
-                                           inverse(configuration.frame_from_node[other]) * frame_from_frame *
-                                               configuration.frame_from_node[moved]),
+          -nats_of_contact(query.surface(static_cast<int>(moved), static_cast<int>(other),
+                                         inverse(configuration.frame_from_node[other]) * frame_from_frame *
+                                             configuration.frame_from_node[moved]),
                            evidence_table::kPlaced);
     }
   });

@@ -14,7 +14,7 @@ struct PoseEdge {
   int source = -1;
   int target = -1;
   LinkPose pose;
-  bool told = false;  ///< adjust_jointly() tells how well it is known afterwards
+  bool stated = false;  ///< adjust_jointly() tells how well it is known afterwards
 };
 
 /// By how much an edge misses the poses of its ends, and the derivatives by small motions of them (turn about

@@ -8,7 +8,7 @@
 
 #include "limen/model/twin_evidence.h"
 #include "limen/project/graph/link_pose.h"
-#include "limen/project/graph/pose_hearing.h"
+#include "limen/project/graph/pose_query.h"
 
 namespace limen {
 
@@ -27,7 +27,7 @@ struct GraphLink {
   std::vector<LinkPose> poses;  ///< at least one; best first
   double twin = 0.0;            ///< probability that the best pose lays a place on another one built alike
   double chance = 0.0;          ///< probability that none of its poses is right, look-alikes aside
-  /// Where the pair's best pose stands among `poses`: elsewhere than first where a user chose another, which
+  /// Where the pair's best pose is among `poses`: elsewhere than first where a user chose another, which
   /// took its place.
   int best = 0;
 
@@ -83,7 +83,7 @@ struct SolvedNode {
   Rigid3 frame_from_node;                  ///< in the frame of the first node of its component
   Matrix6d covariance = Matrix6d::Zero();  ///< of a turn about the node's origin and a shift; frame axes, SI
   std::vector<Rigid3> alternatives;        ///< other poses that explain as much; frame
-  double doubt = 0.0;  ///< probability that it stands elsewhere, by the least that holds it to the frame
+  double doubt = 0.0;  ///< probability that it is elsewhere, by the least that holds it to the frame
 };
 
 /// Two ways to put one part of a component against the rest that the data cannot tell apart.
@@ -116,11 +116,11 @@ struct SolvedGraph {
 /// Puts all nodes that the links hold together into one frame per component.
 ///
 /// The configuration that the pairs agree on best (configuration.h) is asked how surely each of its sides is
-/// where it is (placement_odds.h), by the links, and with `hearing` by all pairs that it places in sight of
+/// where it is (placement_odds.h), by the links, and with `query` by all pairs that it places in sight of
 /// each other. A side that is more probably elsewhere leaves its component. The doubt of a node is the
 /// probability that a side that it is part of is elsewhere, at a place that a link proposes or at none that
 /// is known.
-SolvedGraph solve_graph(const PoseGraph& graph, double risk = 0.001, const PoseHearing& hearing = {},
+SolvedGraph solve_graph(const PoseGraph& graph, double risk = 0.001, const PoseQuery& query = {},
                         double probable_risk = 0.05);
 
 }  // namespace limen

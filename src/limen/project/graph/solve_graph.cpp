@@ -32,8 +32,8 @@ constexpr double kLeastListed = 0.01;       // of an alternative place, as a sha
 
 class Solver {
  public:
-  Solver(const PoseGraph& graph, double risk, double probable_risk, const PoseHearing& hearing)
-      : graph_(graph), risk_(risk), probable_risk_(probable_risk), hearing_(hearing), matcher_(graph) {
+  Solver(const PoseGraph& graph, double risk, double probable_risk, const PoseQuery& query)
+      : graph_(graph), risk_(risk), probable_risk_(probable_risk), query_(query), matcher_(graph) {
     solved_.nodes.resize(static_cast<std::size_t>(graph.nodes));
     solved_.links.resize(graph.links.size());
   }
@@ -69,7 +69,7 @@ class Solver {
   };
 
   void weigh() {
-    odds_.emplace(graph_.nodes, placed_pairs(graph_, matcher_, best_, hearing_));
+    odds_.emplace(graph_.nodes, placed_pairs(graph_, matcher_, best_, query_));
     reference_ = references();
   }
 
@@ -287,7 +287,7 @@ class Solver {
       double odds = odds_->without(side, move.either).total() /
                     odds_->of_pairs(move.moved_alone, side).total() * std::exp(move.either_nats);
       if (odds <= kLeastListed * risk_) continue;
-      odds *= std::exp(-nats_against_move(best_, side, move.frame_from_frame, hearing_));
+      odds *= std::exp(-nats_against_move(best_, side, move.frame_from_frame, query_));
       if (odds <= kLeastListed * risk_) continue;
       std::vector<int> present = move.present;
       doubts_.push_back({side, odds, std::move(present), std::move(move)});
@@ -393,7 +393,7 @@ class Solver {
   const PoseGraph& graph_;
   double risk_;
   double probable_risk_;
-  const PoseHearing& hearing_;
+  const PoseQuery& query_;
   LinkMatcher matcher_;
   Configuration best_;
   std::optional<PlacementOdds> odds_;
@@ -408,9 +408,8 @@ class Solver {
 
 }  // namespace
 
-SolvedGraph solve_graph(const PoseGraph& graph, double risk, const PoseHearing& hearing,
-                        double probable_risk) {
-  return Solver(graph, risk, probable_risk, hearing).run();
+SolvedGraph solve_graph(const PoseGraph& graph, double risk, const PoseQuery& query, double probable_risk) {
+  return Solver(graph, risk, probable_risk, query).run();
 }
 
 }  // namespace limen

@@ -41,14 +41,14 @@ Matrix6d walked(double shift_m2, double turn_rad2) {
 }
 
 /// Adds a node that has no freedoms of its own.
-int add_blend(JointProblem& problem, const NodeBlend& blend, const Rigid3& pose, bool untold) {
+int add_blend(JointProblem& problem, const NodeBlend& blend, const Rigid3& pose, bool unreported) {
   const std::size_t number = problem.frame_from_node.size();
   problem.frame_from_node.push_back(pose);
   problem.fixed.push_back(false);
   problem.blends.resize(number + 1);
   problem.blends[number] = blend;
-  problem.untold.resize(number + 1, false);
-  problem.untold[number] = untold;
+  problem.unreported.resize(number + 1, false);
+  problem.unreported[number] = unreported;
   return static_cast<int>(number);
 }
 
@@ -98,8 +98,8 @@ void BentPasses::add_nodes(Pass& pass, JointProblem& problem) {
   problem.fixed[own] = false;
   problem.blends.resize(problem.frame_from_node.size());
   problem.blends[own] = mean;
-  problem.untold.resize(problem.frame_from_node.size(), false);
-  for (const int node : pass.nodes) problem.untold[static_cast<std::size_t>(node)] = true;
+  problem.unreported.resize(problem.frame_from_node.size(), false);
+  for (const int node : pass.nodes) problem.unreported[static_cast<std::size_t>(node)] = true;
   pass.differences.clear();
   for (std::size_t k = 0; k < count; ++k) {
     NodeBlend difference;
@@ -120,14 +120,14 @@ void BentPasses::add_chain(Pass& pass, JointProblem& problem) {
     edge.target = pass.nodes[k + 1];
     edge.pose.centre = 0.5 * (way.places[k] + way.places[k + 1]);
     edge.pose.covariance = walked(metres * pass.shift_rate, metres * pass.turn_rate);
-    edge.told = true;
+    edge.stated = true;
     pass.chain.push_back(problem.edges.size());
     problem.edges.push_back(edge);
   }
 }
 
 int BentPasses::node_at(JointProblem& problem, int node, const std::vector<double>& places,
-                        bool untold) const {
+                        bool unreported) const {
   const Pass& pass = pass_of(node);
   std::map<int, double> weights;
   Vector6d by = Vector6d::Zero();
@@ -140,7 +140,7 @@ int BentPasses::node_at(JointProblem& problem, int node, const std::vector<doubl
     }
   }
   const Rigid3& whole = problem.frame_from_node[static_cast<std::size_t>(node)];
-  return add_blend(problem, NodeBlend(weights.begin(), weights.end()), bent(whole, by), untold);
+  return add_blend(problem, NodeBlend(weights.begin(), weights.end()), bent(whole, by), unreported);
 }
 
 Rigid3 BentPasses::pose_at(int node, const Rigid3& frame_from_node, double place) const {
@@ -224,8 +224,8 @@ double BentPasses::strays_m(double rate_m2_per_m, double length_m) {
   return std::sqrt(rate_m2_per_m * length_m / 6.0);
 }
 
-std::vector<BentPass> BentPasses::told(const JointSolution& solution) const {
-  std::vector<BentPass> told;
+std::vector<BentPass> BentPasses::stated(const JointSolution& solution) const {
+  std::vector<BentPass> stated;
   for (const Pass& pass : passes_) {
     const auto pose = [&](int node) { return solution.frame_from_node[static_cast<std::size_t>(node)]; };
     BentPass bent_pass;
@@ -249,9 +249,9 @@ std::vector<BentPass> BentPasses::told(const JointSolution& solution) const {
       knot.covariance.diagonal().tail<3>().array() += unfollowed_m2(pass);
       bent_pass.knots.push_back(knot);
     }
-    told.push_back(std::move(bent_pass));
+    stated.push_back(std::move(bent_pass));
   }
-  return told;
+  return stated;
 }
 
 }  // namespace limen

@@ -53,9 +53,10 @@ class BentPasses {
   /// Makes the pass's node a blend of nodes that are added for its control points. Where the node was fixed,
   /// the control point in the middle is instead. Call once per problem, after all scans have a node.
   void add_to(JointProblem& problem);
-  /// A node that is added to the problem for the mean of places along the way, in knots; `untold`: nobody
+  /// A node that is added to the problem for the mean of places along the way, in knots; `unreported`: nobody
   /// asks for its covariance.
-  int node_at(JointProblem& problem, int node, const std::vector<double>& places, bool untold = true) const;
+  int node_at(JointProblem& problem, int node, const std::vector<double>& places,
+              bool unreported = true) const;
   /// The pass as it is bent so far, there.
   [[nodiscard]] Rigid3 pose_at(int node, const Rigid3& frame_from_node, double place) const;
 
@@ -78,7 +79,7 @@ class BentPasses {
   /// How far a walk of that rate strays from its own mean over a length, one standard deviation.
   [[nodiscard]] static double strays_m(double rate_m2_per_m, double length_m);
   /// The passes as they were bent by a solution.
-  [[nodiscard]] std::vector<BentPass> told(const JointSolution& solution) const;
+  [[nodiscard]] std::vector<BentPass> stated(const JointSolution& solution) const;
 
  private:
   struct Pass {

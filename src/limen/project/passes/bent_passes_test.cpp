@@ -67,7 +67,7 @@ class DriftingStreet {
       const JointProblem made = problem(passes);
       if (passes.take(made, adjust_jointly(made)) < 1.05) break;
     }
-    return passes.told(adjust_jointly(problem(passes))).front();
+    return passes.stated(adjust_jointly(problem(passes))).front();
   }
 
  private:
@@ -189,7 +189,7 @@ TEST(BentPasses, AKnownCurveIsBentBack) {
   EXPECT_LT(std::sqrt(across), 0.002);
 }
 
-TEST(BentPasses, WhatIsToldOfTheirAccuracyHolds) {
+TEST(BentPasses, WhatIsStatedOfTheirAccuracyHolds) {
   int all = 0;
   int within_one = 0;
   int within_two = 0;
@@ -242,8 +242,8 @@ TEST(BentPasses, APassThatGivesTheFrameStaysWhereItWasAsAWhole) {
   // The station moved instead, and the shape is the same as if it had been fixed.
   BentPasses fixed({{1, &street.way(), 0.008}});
   const JointProblem other = street.problem(fixed);
-  const BentPass a = passes.told(solution).front();
-  const BentPass b = fixed.told(adjust_jointly(other)).front();
+  const BentPass a = passes.stated(solution).front();
+  const BentPass b = fixed.stated(adjust_jointly(other)).front();
   for (std::size_t k = 0; k < kStreetKnots; ++k) {
     EXPECT_LT((a.knots[k].value - b.knots[k].value).norm(), 2e-5) << k;
     EXPECT_NEAR(a.knots[k].covariance(3, 3), b.knots[k].covariance(3, 3), 0.01 * b.knots[k].covariance(3, 3));

@@ -33,7 +33,7 @@ double turned(double angle, double by) {
   return angle - by * std::floor(angle / by);
 }
 
-/// The direction modulo a quarter turn in which most wall stands (the mean of the fourfold angles).
+/// The direction modulo a quarter turn in which most wall is (the mean of the fourfold angles).
 double main_direction(const ScanDigest& scan) {
   double sine = 0.0;
   double cosine = 0.0;

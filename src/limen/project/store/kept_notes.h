@@ -11,7 +11,7 @@ namespace limen {
 /// Notes are kept by what a file holds, and a file may have another name in the next run: marks stand for
 /// names.
 
-/// What stands in a kept note for name number `number`.
+/// What is in a kept note for name number `number`.
 std::string name_mark(std::size_t number);
 
 /// The notes with a mark for the name of their file (number 0), with which a note may begin.

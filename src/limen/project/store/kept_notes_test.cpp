@@ -13,9 +13,9 @@ TEST(KeptNotes, TellTheNamesOfTheRunThatReadsThem) {
                                           "old/a.ptx was measured along " + name_mark(1)};
   const std::vector<std::string> kept = without_name(notes, "old/a.ptx");
   for (const std::string& note : kept) EXPECT_EQ(note.find("old"), std::string::npos) << note;
-  const std::vector<std::string> told = {"b.ptx: 3 missing returns", "b.ptx, scan 2: 4 missing returns",
-                                         "no times", "b.ptx was measured along way.csv"};
-  EXPECT_EQ(with_names(kept, {"b.ptx", "way.csv"}), told);
+  const std::vector<std::string> stated = {"b.ptx: 3 missing returns", "b.ptx, scan 2: 4 missing returns",
+                                           "no times", "b.ptx was measured along way.csv"};
+  EXPECT_EQ(with_names(kept, {"b.ptx", "way.csv"}), stated);
 }
 
 TEST(KeptNotes, AWordThatBeginsAsTheNameStays) {

@@ -19,7 +19,7 @@ constexpr std::string_view kMagic = "limen\x1a";
 constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 33U;
 constexpr std::size_t kHashDigits = 64;
 
-/// All that stands before the hash and the packed bytes.
+/// All that is before the hash and the packed bytes.
 std::string bytes_of(const EntryHead& head) {
   ByteWriter writer;
   writer.put(head.version);

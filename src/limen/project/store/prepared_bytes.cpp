@@ -108,9 +108,9 @@ PoseSigma get_sigma(ByteReader& reader) {
 void put_twin(ByteWriter& writer, const std::optional<TwinEvidence>& said) {
   writer.put(said.has_value());
   const TwinEvidence twin = said.value_or(TwinEvidence{});
-  for (const double told :
+  for (const double stated :
        {twin.otherwise, twin.alike, twin.otherwise_nats, twin.alike_nats, twin.built_nats})
-    writer.put(told);
+    writer.put(stated);
 }
 
 std::optional<TwinEvidence> get_twin(ByteReader& reader) {
@@ -326,10 +326,10 @@ RegistrationResult result_from(std::string_view bytes, const std::string& where,
   result.judged_poses = reader.get<std::uint64_t>();
   result.rivals = reader.get<std::uint64_t>();
   const bool others = reader.get<bool>();
-  OtherExplanations told;
-  for (double* probability : {&told.nothing_shared, &told.twin, &told.unlisted_pose})
+  OtherExplanations stated;
+  for (double* probability : {&stated.nothing_shared, &stated.twin, &stated.unlisted_pose})
     reader.get(*probability);
-  if (others) result.others = told;
+  if (others) result.others = stated;
   return result;
 }
 

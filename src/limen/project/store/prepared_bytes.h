@@ -25,7 +25,7 @@ struct PairCounts {
 /// All of a prepared scan or model that registration uses (not the planes of its points), as bytes and back:
 /// a registration with what comes back gives the same bits. Throws Error for a group of scans.
 std::string bytes_of(const PreparedScan& prepared);
-/// `where` stands in messages. Throws Error where the bytes are damaged, or point to what is not there.
+/// `where` is in messages. Throws Error where the bytes are damaged, or point to what is not there.
 PreparedScan prepared_from(std::string_view bytes, const std::string& where);
 /// Throws as well where prepared_from() would, but makes no view of space.
 void require_prepared(std::string_view bytes, const std::string& where);

@@ -46,7 +46,7 @@ struct ScanDigest {
 ScanDigest digest_of(const PreparedScan& prepared);
 
 std::string bytes_of(const ScanDigest& digest);
-/// Throws Error where the bytes are damaged; `where` stands in the message.
+/// Throws Error where the bytes are damaged; `where` is in the message.
 ScanDigest digest_from(std::string_view bytes, const std::string& where);
 
 }  // namespace limen

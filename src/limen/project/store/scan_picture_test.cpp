@@ -52,7 +52,7 @@ TEST(ScanPicture, IsEvenOverTheSurfaceAndComesBackInPart) {
   }
 }
 
-TEST(ScanPicture, DamagedBytesAreToldSo) {
+TEST(ScanPicture, DamagedBytesAreStatedSo) {
   const std::string bytes = picture_bytes(picture_of(uneven_wall(100), 50));
   EXPECT_THROW(picture_from(bytes.substr(0, bytes.size() / 2), "here", 10), Error);
   EXPECT_EQ(picture_from(picture_bytes(Scan{}), "here", 10).size(), 0U);

@@ -85,14 +85,14 @@ TEST(AsBuilt, ABuildingThatStandsAsDrawnSaysNothing) {
   EXPECT_GT(least_of(drawn), -0.1);
 }
 
-TEST(AsBuilt, OnePlaceIsToldTheBetterTheMoreOfItIsSeen) {
+TEST(AsBuilt, OnePlaceIsStatedTheBetterTheMoreOfItIsSeen) {
   EXPECT_GT(least_of({.surfaces = 9}), 3.0);
   EXPECT_GT(mean_of({.surfaces = 14}), mean_of({.surfaces = 9}) + 5.0);
   EXPECT_GT(mean_of({.surfaces = 20}), mean_of({.surfaces = 14}) + 5.0);
   EXPECT_GT(least_of({.surfaces = 20}), 15.0);  // no bound at some odds
 }
 
-TEST(AsBuilt, ATwinIsToldAsOne) {
+TEST(AsBuilt, ATwinIsStatedAsOne) {
   // A sensor that bends by as much would explain most of it.
   EXPECT_LT(most_of({.twin = true}), 0.0);
 }

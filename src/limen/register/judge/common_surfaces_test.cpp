@@ -35,7 +35,7 @@ void add_square(const Plane& plane, double edge_m, double noise_m, RandomStream&
   }
 }
 
-/// A floor and two walls, the first of which stands `off_m` from its place.
+/// A floor and two walls, the first of which is `off_m` from its place.
 Features room(double off_m, double noise_m, std::uint64_t seed) {
   RandomStream random(seed, 0);
   Features features;

@@ -10,7 +10,7 @@
 namespace limen {
 namespace {
 
-/// Pieces all over an upright box that stands at a place.
+/// Pieces all over an upright box that is at a place.
 std::vector<Vector3d> standing(const Vector3d& foot, const Vector3d& size) {
   constexpr double kPieceM = 0.1;
   std::vector<Vector3d> pieces;
@@ -55,7 +55,7 @@ TEST(Figures, FurnitureIsNone) {
   EXPECT_EQ(count_in(find_figures(standing({0, 0, 1.9}, {0.4, 0.4, 0.8}), at_zero)), 0);  // below a ceiling
 }
 
-TEST(Figures, TwoAreToldApartAndWhoTouchesATableIsNone) {
+TEST(Figures, TwoAreDistinguishedAndWhoTouchesATableIsNone) {
   std::vector<Vector3d> room = standing({0, 0, 0}, kPerson);
   const std::vector<Vector3d> other = standing({2, 0, 0}, kPerson);
   const std::vector<Vector3d> table = standing({2.5, 0, 0.7}, {1.5, 0.8, 0.1});

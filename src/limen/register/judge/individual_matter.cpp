@@ -67,7 +67,7 @@ std::vector<Piece> pieces_of(const ScanView& view, const BuiltPlanes& built) {
 }
 
 /// An answer of one scan to a piece of the other, in the target's frame.
-struct Told {
+struct Stated {
   Vector3d at = Vector3d::Zero();
   Vector3d normal = Vector3d::Zero();  ///< of a flat piece; else zero
   double weight = 0.0;
@@ -76,19 +76,19 @@ struct Told {
 };
 
 /// A leaf, a cupboard's front, a table top is one thing: it is there or not.
-double correlation(const Told& a, const Told& b) {
+double correlation(const Stated& a, const Stated& b) {
   const Vector3d apart = a.at - b.at;
   return std::exp(-apart.norm() / (in_one_face(apart, a.normal, b.normal) ? kFrontLengthM : kCorrelationM));
 }
 
 /// Of each figure whether it has gone, or had not come: what the other scan knows of it is that it saw
 /// through there.
-std::vector<bool> gone_figures(const std::vector<Told>& told) {
+std::vector<bool> gone_figures(const std::vector<Stated>& stated) {
   int count = 0;
-  for (const Told& one : told) count = std::max(count, one.figure + 1);
+  for (const Stated& one : stated) count = std::max(count, one.figure + 1);
   std::vector<double> agreeing(static_cast<std::size_t>(count));
   std::vector<double> total(static_cast<std::size_t>(count));
-  for (const Told& one : told) {
+  for (const Stated& one : stated) {
     if (one.figure < 0) continue;
     total[static_cast<std::size_t>(one.figure)] += one.weight;
     if (one.agrees) agreeing[static_cast<std::size_t>(one.figure)] += one.weight;
@@ -98,11 +98,11 @@ std::vector<bool> gone_figures(const std::vector<Told>& told) {
   return gone;
 }
 
-double agreeing_share(const std::vector<Told>& told) {
-  const std::vector<bool> gone = gone_figures(told);
+double agreeing_share(const std::vector<Stated>& stated) {
+  const std::vector<bool> gone = gone_figures(stated);
   double total = 0.0;
   double agreeing = 0.0;
-  for (const Told& one : told) {
+  for (const Stated& one : stated) {
     if (one.figure >= 0 && gone[static_cast<std::size_t>(one.figure)]) continue;
     total += one.weight;
     if (one.agrees) agreeing += one.weight;
@@ -111,26 +111,26 @@ double agreeing_share(const std::vector<Told>& told) {
 }
 
 /// Each answer's share of an observation; all that a figure says which has gone is one answer, and less.
-std::vector<double> shares_of_told(const std::vector<Told>& told) {
-  std::vector<double> shares = shares_of(told, 8.0 * kThingLengthM);
-  const std::vector<bool> gone = gone_figures(told);
+std::vector<double> shares_of_stated(const std::vector<Stated>& stated) {
+  std::vector<double> shares = shares_of(stated, 8.0 * kThingLengthM);
+  const std::vector<bool> gone = gone_figures(stated);
   std::vector<double> sums(gone.size());
-  for (std::size_t i = 0; i < told.size(); ++i)
-    if (told[i].figure >= 0) sums[static_cast<std::size_t>(told[i].figure)] += shares[i];
-  for (std::size_t i = 0; i < told.size(); ++i) {
-    if (told[i].figure < 0 || !gone[static_cast<std::size_t>(told[i].figure)]) continue;
-    shares[i] *= std::min(1.0, kFigureTells / sums[static_cast<std::size_t>(told[i].figure)]);
+  for (std::size_t i = 0; i < stated.size(); ++i)
+    if (stated[i].figure >= 0) sums[static_cast<std::size_t>(stated[i].figure)] += shares[i];
+  for (std::size_t i = 0; i < stated.size(); ++i) {
+    if (stated[i].figure < 0 || !gone[static_cast<std::size_t>(stated[i].figure)]) continue;
+    shares[i] *= std::min(1.0, kFigureTells / sums[static_cast<std::size_t>(stated[i].figure)]);
   }
   return shares;
 }
 
 /// `shares`: each answer's, of an observation.
-Observations observations(const std::vector<Told>& told, const std::vector<double>& shares) {
+Observations observations(const std::vector<Stated>& stated, const std::vector<double>& shares) {
   Observations seen;
   double agreeing = 0.0;
-  for (std::size_t i = 0; i < told.size(); ++i) {
+  for (std::size_t i = 0; i < stated.size(); ++i) {
     seen.count += shares[i];
-    if (told[i].agrees) agreeing += shares[i];
+    if (stated[i].agrees) agreeing += shares[i];
   }
   seen.share = seen.count > 0.0 ? agreeing / seen.count : 0.0;
   return seen;
@@ -147,10 +147,10 @@ struct Side {
 
 /// Asks `judge` about the pieces of `scan`; what it does not know is left out.
 void ask_matter(const Side& scan, const Side& judge, const Rigid3& judge_from_scan,
-                const Rigid3& target_from_scan, std::vector<Told>& told) {
+                const Rigid3& target_from_scan, std::vector<Stated>& stated) {
   if (!judge.view.knows_free) return;  // what it does not contradict it does not confirm either
   int first_figure = 0;
-  for (const Told& one : told) first_figure = std::max(first_figure, one.figure + 1);
+  for (const Stated& one : stated) first_figure = std::max(first_figure, one.figure + 1);
   for (const Piece& piece : scan.pieces) {
     SightQuery query;
     query.at = judge_from_scan * piece.detail->mean;
@@ -161,14 +161,14 @@ void ask_matter(const Side& scan, const Side& judge, const Rigid3& judge_from_sc
     const Sight sight = judge.view.space->look(query);
     const bool surface = sight.kind == SightKind::surface;
     if (!surface && sight.kind != SightKind::free) continue;
-    // Beyond an opening of both stands what both rooms' neighbours have alike: corridors, façades.
+    // Beyond an opening of both is what both rooms' neighbours have alike: corridors, façades.
     if (surface && piece.behind && place == BuiltPlanes::Place::behind) continue;
     if (surface && sight.plane >= 0 && judge.built.is_built(sight.plane)) continue;
     const SurfaceDetail& detail = *piece.detail;
     const Vector3d normal =
         detail.flat() ? Vector3d(target_from_scan.rotation * detail.normal) : Vector3d::Zero();
     const int figure = piece.figure < 0 ? -1 : first_figure + piece.figure;
-    told.push_back(
+    stated.push_back(
         {target_from_scan * detail.mean, normal, static_cast<double>(detail.area_m2), surface, figure});
   }
 }
@@ -218,7 +218,7 @@ class DetailGrid {
   std::vector<std::pair<Cell, std::uint32_t>> cells_;
 };
 
-/// Upright flat pieces of `scan` that `judge` has nearby as well: of what stands in the room, not of the
+/// Upright flat pieces of `scan` that `judge` has nearby as well: of what is in the room, not of the
 /// building, and not what both see through openings only.
 std::vector<MetFace> met_faces(const Side& scan, const Side& judge, const Rigid3& judge_from_scan,
                                const Rigid3& target_from_judge) {
@@ -246,7 +246,7 @@ std::vector<MetFace> met_faces(const Side& scan, const Side& judge, const Rigid3
   return faces;
 }
 
-/// What stands in a room is its own to the millimetre: offsets between pieces that both scans have.
+/// What is in a room is its own to the millimetre: offsets between pieces that both scans have.
 /// `scatter_m`: of a piece of wall, by how the two scans differ on walls that both saw.
 std::vector<FaceMiss> face_offsets(const Side& source, const Side& target, const Rigid3& target_from_source,
                                    double scatter_m) {
@@ -273,14 +273,15 @@ std::vector<FaceMiss> face_offsets(const Side& source, const Side& target, const
   return offsets;
 }
 
-std::vector<Told> told_of_matter(const Side& source, const Side& target, const Rigid3& target_from_source) {
-  std::vector<Told> told;
-  ask_matter(source, target, target_from_source, target_from_source, told);
-  ask_matter(target, source, inverse(target_from_source), Rigid3{}, told);
-  return told;
+std::vector<Stated> stated_of_matter(const Side& source, const Side& target,
+                                     const Rigid3& target_from_source) {
+  std::vector<Stated> stated;
+  ask_matter(source, target, target_from_source, target_from_source, stated);
+  ask_matter(target, source, inverse(target_from_source), Rigid3{}, stated);
+  return stated;
 }
 
-/// Whether a wall of `judge` stands between the two stations.
+/// Whether a wall of `judge` is between the two stations.
 bool wall_between(const Side& scan, const Side& judge, const Rigid3& judge_from_scan) {
   if (!scan.view.station || !judge.view.station) return false;
   return judge.built.between(judge_from_scan * *scan.view.station, *judge.view.station);
@@ -295,9 +296,9 @@ double chance_of(const Side& source, const Side& target, const Rigid3& target_fr
     const double length = k % 2 == 0 ? 0.7 : 1.2;
     Rigid3 displaced = target_from_source;
     displaced.translation += length * Vector3d(std::cos(angle), std::sin(angle), 0.0);
-    const std::vector<Told> told = told_of_matter(source, target, displaced);
-    if (told.empty()) continue;
-    share += agreeing_share(told);
+    const std::vector<Stated> stated = stated_of_matter(source, target, displaced);
+    if (stated.empty()) continue;
+    share += agreeing_share(stated);
     ++counted;
   }
   return counted > 0 ? share / counted : 0.0;
@@ -321,8 +322,8 @@ IndividualMatter MatterAsker::operator()(const Rigid3& target_from_source) const
   const Side& target = sides_->target;
   IndividualMatter individual;
   if (source.view.space == nullptr || target.view.space == nullptr) return individual;
-  const std::vector<Told> told = told_of_matter(source, target, target_from_source);
-  individual.matter = observations(told, shares_of_told(told));
+  const std::vector<Stated> stated = stated_of_matter(source, target, target_from_source);
+  individual.matter = observations(stated, shares_of_stated(stated));
   individual.chance = chance_of(source, target, target_from_source);
   individual.apart = wall_between(source, target, target_from_source) ||
                      wall_between(target, source, inverse(target_from_source));

@@ -23,9 +23,8 @@ struct FaceMiss {
   double share = 1.0;     ///< of one observation: faces that tell the same make one together
   /// What noise leaves between two measurements of the face; roughness and the pose come on top.
   double sigma_m = 0.0;
-  bool front =
-      false;      ///< of what stands with its back to a wall: things of one make reach equally far from it
-  int thing = 0;  ///< faces near one another are of one thing: what it is, all of them are
+  bool front = false;  ///< of what is with its back to a wall: things of one make reach equally far from it
+  int thing = 0;       ///< faces near one another are of one thing: what it is, all of them are
 };
 
 /// Pieces farther apart than this are not taken for one another.
@@ -41,7 +40,7 @@ struct IndividualMatter {
   std::vector<FaceMiss> faces;
   /// Share of `matter` that agrees when one room's things are shifted about in the other: chance.
   double chance = 0.0;
-  /// A wall stands between the two stations: what they have in common is seen through an opening.
+  /// A wall is between the two stations: what they have in common is seen through an opening.
   bool apart = false;
   /// What the building's surfaces, built as they are, say against a twin (as_built_nats).
   double built_nats = 0.0;

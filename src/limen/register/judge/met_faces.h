@@ -43,7 +43,7 @@ std::vector<MetFace> joined(const std::vector<MetFace>& pieces);
 std::vector<int> things_of(const std::vector<MetFace>& faces);
 
 /// Each piece's share of an observation, w_i / sum_j w_j rho_ij: neighbours that tell the same make one
-/// together, however many they are, and what stands alone is one of its own. Farther apart than `reach_m`
+/// together, however many they are, and what is alone is one of its own. Farther apart than `reach_m`
 /// none are correlated.
 template <typename Item>
 std::vector<double> shares_of(const std::vector<Item>& items, double reach_m) {

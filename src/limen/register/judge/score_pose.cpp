@@ -24,7 +24,7 @@ struct Gathered {
   SurfaceColumns columns;
   std::vector<std::int32_t> planes;  ///< of each sample, or -1
   std::vector<float> areas_m2;       ///< clutter's weighed
-  double factor = 1.0;               ///< surface that each stands for, as a multiple of its own
+  double factor = 1.0;               ///< surface that each represents, as a multiple of its own
 };
 
 Gathered gathered(const ScanView& scan, const AskedSamples& asked) {
@@ -174,7 +174,7 @@ class WayContrast {
   }
 
  private:
-  struct Told {
+  struct Stated {
     Gathered asked;
     std::vector<float> gains;
     std::vector<float> contradictions;
@@ -190,29 +190,29 @@ class WayContrast {
     return asked;
   }
 
-  [[nodiscard]] Told ask_first(const AskedSamples& samples) const {
-    Told told{gathered(scan_, samples), {}, {}};
-    told.gains.resize(told.asked.planes.size());
-    told.contradictions.resize(told.asked.planes.size());
-    ask_all(told.asked, judge_, first_, options_,
+  [[nodiscard]] Stated ask_first(const AskedSamples& samples) const {
+    Stated stated{gathered(scan_, samples), {}, {}};
+    stated.gains.resize(stated.asked.planes.size());
+    stated.contradictions.resize(stated.asked.planes.size());
+    ask_all(stated.asked, judge_, first_, options_,
             [&](std::size_t begin, std::size_t size, const Answers& answers) {
               const auto at = static_cast<std::ptrdiff_t>(begin);
-              std::copy_n(answers.gain_m2.begin(), size, told.gains.begin() + at);
-              std::copy_n(answers.contradicted_m2.begin(), size, told.contradictions.begin() + at);
+              std::copy_n(answers.gain_m2.begin(), size, stated.gains.begin() + at);
+              std::copy_n(answers.contradicted_m2.begin(), size, stated.contradictions.begin() + at);
             });
-    return told;
+    return stated;
   }
 
-  void add(const Told& told, const Rigid3& second, PoseContrast& contrast) const {
+  void add(const Stated& stated, const Rigid3& second, PoseContrast& contrast) const {
     // Both ways are averaged, as in the score.
-    const double share = 0.5 * told.asked.factor;
+    const double share = 0.5 * stated.asked.factor;
     std::vector<PoseContrast> planes(scan_.features->planes.size());
-    ask_all(told.asked, judge_, second, options_,
+    ask_all(stated.asked, judge_, second, options_,
             [&](std::size_t begin, std::size_t size, const Answers& answers) {
               for (std::size_t k = 0; k < size; ++k) {
-                const std::int32_t plane = told.asked.planes[begin + k];
-                const float agreeing = told.gains[begin + k] - answers.gain_m2[k];
-                const float contradicted = answers.contradicted_m2[k] - told.contradictions[begin + k];
+                const std::int32_t plane = stated.asked.planes[begin + k];
+                const float agreeing = stated.gains[begin + k] - answers.gain_m2[k];
+                const float contradicted = answers.contradicted_m2[k] - stated.contradictions[begin + k];
                 add_lead(share * static_cast<double>(agreeing),
                          plane >= 0 ? planes[static_cast<std::size_t>(plane)] : contrast);
                 add_contradiction(share * static_cast<double>(contradicted), contrast);
@@ -228,7 +228,7 @@ class WayContrast {
   ScanView judge_;
   Rigid3 first_;
   ScoreOptions options_;
-  Told known_;
+  Stated known_;
 };
 
 }  // namespace

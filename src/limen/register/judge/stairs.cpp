@@ -36,7 +36,7 @@ struct Riser {
   double pieces = 0.0;
 };
 
-/// The pieces joined to risers, or to whatever else stands upright.
+/// The pieces joined to risers, or to whatever else is upright.
 std::vector<Riser> upright_faces(const std::vector<SurfaceDetail>& details) {
   std::vector<Riser> faces;
   for (const SurfaceDetail& piece : details) {
@@ -58,7 +58,7 @@ std::vector<Riser> upright_faces(const std::vector<SurfaceDetail>& details) {
   return faces;
 }
 
-/// Who climbs sees the risers' fronts; who stands below the flight, or behind one without risers' boards,
+/// Who climbs sees the risers' fronts; who is below the flight, or behind one without risers' boards,
 /// sees their backs, and the flight leads up towards him.
 struct Step {
   bool fronts = true;

@@ -10,7 +10,7 @@
 namespace limen {
 
 /// A straight flight of stairs, seen from above or from below: steps of one run and rise. It is the
-/// building's, and stands over the same place on every storey, exactly as designed.
+/// building's, and is over the same place on every storey, exactly as designed.
 struct Flight {
   Vector3d foot = Vector3d::Zero();  ///< middle of the lowest riser that was seen; upright frame
   Vector2d up = Vector2d::UnitX();   ///< unit vector, level: where it leads up

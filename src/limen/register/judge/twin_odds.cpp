@@ -87,7 +87,7 @@ std::vector<OffsetScene> one_room() {
 }
 
 /// Not all that is the building's is known as such (a reveal at an angle, a fitting): in three twins of ten
-/// some of what is compared is that, and stands where it was designed.
+/// some of what is compared is that, and is where it was designed.
 constexpr double kDesignedScenes = 0.3;
 constexpr double kDesigned = 0.12;  // share of such things
 constexpr double kStrayFace = 0.1;  // of their faces those that are others' after all
@@ -204,7 +204,7 @@ TwinEvidence weigh_twin(const IndividualMatter& individual, const TwinOptions& o
   const double as_put =
       log_likelihood(individual.matter, options.put_alike, options.kept, options.nothing_own);
   const double same = log_likelihood(individual.faces, one_room());
-  // Of a whole room sides are seen as well as fronts, and by chance one stands elsewhere; through a door few
+  // Of a whole room sides are seen as well as fronts, and by chance one is elsewhere; through a door few
   // things are, mostly their fronts.
   const std::vector<OffsetScene> alike =
       individual.apart ? with_fronts(furnished_alike(), 0.5) : furnished_alike();

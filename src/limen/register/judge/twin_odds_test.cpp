@@ -49,7 +49,7 @@ TEST(TwinOdds, ThingsThatAgreeToTheMillimetreMakeOneRoom) {
 }
 
 TEST(TwinOdds, OfARoomInUseWhatStayedTellsTheRoom) {
-  // Of what is nearby a half was pushed by hand; the rest stands to a fraction of a millimetre.
+  // Of what is nearby a half was pushed by hand; the rest is to a fraction of a millimetre.
   std::vector<FaceMiss> in_use = faces(6, 0.0005);
   for (FaceMiss pushed : faces(5, 0.012)) {
     pushed.thing += 6;
@@ -79,14 +79,14 @@ TEST(TwinOdds, ThingsThatAgreeToCentimetresMayBeATwinFurnishedAlike) {
 }
 
 TEST(TwinOdds, WordsThatNothingRepeatsAreEvidenceAndNoMore) {
-  const TwinOptions told = where_nothing_repeats({});
+  const TwinOptions stated = where_nothing_repeats({});
   // Two bare rooms stay in doubt, and so does what lies elsewhere.
-  EXPECT_GT(probability_of_twin({}, told), kRisk);
-  EXPECT_GT(probability_of_twin(seen({20, 0.1}, faces(4, 0.02)), told), 0.2);
+  EXPECT_GT(probability_of_twin({}, stated), kRisk);
+  EXPECT_GT(probability_of_twin(seen({20, 0.1}, faces(4, 0.02)), stated), 0.2);
   // Few things that agree are enough then.
   const IndividualMatter few = seen({5, 1.0}, {});
   EXPECT_GT(probability_of_twin(few), kRisk);
-  EXPECT_LT(probability_of_twin(few, told), kRisk);
+  EXPECT_LT(probability_of_twin(few, stated), kRisk);
 }
 
 TEST(TwinOdds, ThingsThatAreOthersSpeakForATwinFurnishedAlike) {
@@ -121,7 +121,7 @@ TEST(TwinOdds, FrontsOfCupboardsTellLessThanTheirSides) {
 }
 
 TEST(TwinOdds, SidesOfOneThingAreTheBuildingsTogether) {
-  // A step of a flight, of which two sides are seen, stands to the millimetre on every storey.
+  // A step of a flight, of which two sides are seen, is to the millimetre on every storey.
   std::vector<FaceMiss> sides = faces(2, 0.0002);
   const double of_two = weigh_twin(seen({8, 0.8}, sides)).alike_nats;
   sides[1].thing = sides[0].thing;

@@ -12,7 +12,7 @@ namespace limen {
 /// Samples of one side that the other is asked about, in their order (plane by plane, clutter last).
 struct AskedSamples {
   std::vector<std::uint32_t> indices;
-  double factor = 1.0;  ///< surface that each stands for, as a multiple of its own
+  double factor = 1.0;  ///< surface that each represents, as a multiple of its own
 };
 
 /// Every n-th sample of `scan`, so that about `most` are left (0: all). Of a model only those within the

@@ -170,7 +170,7 @@ WayRanges way_of(const Scan& scan, const ScanFrame& frame) {
       });
 }
 
-/// Half of the surface that was seen lies within this range: along a way a point at range r stands for a
+/// Half of the surface that was seen lies within this range: along a way a point at range r represents a
 /// surface that grows with r.
 double middle_range_m(const RangeCounts& counts) {
   std::array<double, kRangeBins> up_to{};

@@ -30,7 +30,7 @@ Scan wall(double step_rad) {
 
 ScanFrame seen_from_origin() {
   ScanFrame frame;
-  frame.place.source = PlaceSource::told_by_file;
+  frame.place.source = PlaceSource::stated_by_file;
   return frame;
 }
 
@@ -115,7 +115,7 @@ Scan street(double step_rad) {
   return scan;
 }
 
-ScanFrame told_per_point() {
+ScanFrame stated_per_point() {
   ScanFrame frame;
   frame.place.source = PlaceSource::per_point;
   return frame;
@@ -142,7 +142,7 @@ StreetShares shares_of(const Scan& scan, const std::vector<std::uint32_t>& kept)
 
 TEST(KeptPoints, AlongAWayTheRoadBecomesAsDenseAsWhatIsFarOff) {
   const Scan scan = street(0.0015);
-  const auto kept = kept_points(scan, told_per_point(), KeepOptions{});
+  const auto kept = kept_points(scan, stated_per_point(), KeepOptions{});
   ASSERT_TRUE(kept.has_value());
   const StreetShares shares = shares_of(scan, *kept);
   EXPECT_GT(shares.facade, 0.9);
@@ -151,14 +151,14 @@ TEST(KeptPoints, AlongAWayTheRoadBecomesAsDenseAsWhatIsFarOff) {
 }
 
 TEST(KeptPoints, ASparseWayStaysAsItIs) {
-  EXPECT_EQ(kept_points(street(0.012), told_per_point(), KeepOptions{}), std::nullopt);
-  EXPECT_EQ(kept_points(street(0.0015), told_per_point(), kKeepAll), std::nullopt);
+  EXPECT_EQ(kept_points(street(0.012), stated_per_point(), KeepOptions{}), std::nullopt);
+  EXPECT_EQ(kept_points(street(0.0015), stated_per_point(), kKeepAll), std::nullopt);
 }
 
 TEST(KeptPoints, AlongAWayTheyAreNoMoreThanTheyMayBe) {
   const Scan scan = street(0.0015);
   const std::size_t most = scan.size() / 4;
-  const auto kept = kept_points(scan, told_per_point(), {0.0, most, 0.0});
+  const auto kept = kept_points(scan, stated_per_point(), {0.0, most, 0.0});
   ASSERT_TRUE(kept.has_value());
   EXPECT_NEAR(static_cast<double>(kept->size()), static_cast<double>(most), 0.03 * static_cast<double>(most));
   const StreetShares shares = shares_of(scan, *kept);

@@ -34,7 +34,7 @@ struct PreparedScan {
   Eigen::AlignedBox3d reach;               ///< around the samples, prepared frame
 
   SampleRuns runs;                     ///< of a model
-  std::vector<SurfaceDetail> details;  ///< of static stations: what stands in the room, prepared frame
+  std::vector<SurfaceDetail> details;  ///< of static stations: what is in the room, prepared frame
   PassTrack track;                     ///< of a mobile scan with times
 
   [[nodiscard]] ScanView view() const {

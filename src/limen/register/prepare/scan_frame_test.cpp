@@ -179,7 +179,7 @@ TEST(ScanFrame, UpOfAVehicleIsTheGroundsNormal) {
 
 TEST(ScannerPlace, AClaimThatThePointsBearOutStays) {
   const ScanFrame frame = find_scan_frame(station_scan(-60.0, 150000), Gravity::automatic);
-  EXPECT_EQ(frame.place.source, PlaceSource::told_by_file);
+  EXPECT_EQ(frame.place.source, PlaceSource::stated_by_file);
   EXPECT_TRUE(frame.place.confirmed);
   EXPECT_TRUE(frame.place.centre.isZero());
 }
@@ -220,12 +220,12 @@ TEST(ScannerPlace, AnEvenlyThinnedCloudRefutesNoClaim) {
   EXPECT_FALSE(frame.place.refuted.has_value());
 }
 
-TEST(ScannerPlace, WhatTheUserToldStaysAndIsCalledRefuted) {
+TEST(ScannerPlace, WhatTheUserStatedStaysAndIsCalledRefuted) {
   Scan scan = station_scan(-60.0, 150000);
   scan.centres = {Vector3d(1.5, 1.0, 0.5)};
-  scan.centre_source = PlaceSource::told_by_user;
+  scan.centre_source = PlaceSource::stated_by_user;
   const ScanFrame frame = find_scan_frame(scan, Gravity::automatic);
-  EXPECT_EQ(frame.place.source, PlaceSource::told_by_user);
+  EXPECT_EQ(frame.place.source, PlaceSource::stated_by_user);
   EXPECT_EQ(frame.place.centre, Vector3d(1.5, 1.0, 0.5));
   EXPECT_TRUE(frame.place.refuted.has_value());
 }
@@ -256,7 +256,7 @@ TEST(PrepareScan, FindsTheSameHoweverTheScanLies) {
   EXPECT_NEAR(static_cast<double>(other.extracted.features.samples.size()), samples, 0.01 * samples);
 }
 
-/// What is told is told in the scan's own coordinates.
+/// What is stated is stated in the scan's own coordinates.
 TEST(PrepareScan, FeaturesComeBackIntoTheScansOwnFrame) {
   const Rigid3 motion = some_motion(5);
   Scan scan = moved(station_scan(-60.0), motion);

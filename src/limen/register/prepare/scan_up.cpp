@@ -220,7 +220,7 @@ double share_cut_from_floor(const Scan& sample, const Vector3d& up, double cone_
 /// What the directions say in which nothing was seen. Every scanner is blind below it; some see no zenith
 /// either, and of two blind cones the wider may be either. Where the points do not bear out that rays started
 /// at the place, an empty cone may be a sky, and counts as far as it is cut out of a floor; where somebody
-/// told the place no less than what else is said of it.
+/// stated the place no less than what else is said of it.
 double cone_evidence(const Scan& sample, const std::vector<FramePlane>& planes, const Vector3d& up,
                      const EmptyCones& cones, const ScannerPlace& place) {
   const double below = cones.against_deg;
@@ -254,11 +254,11 @@ double evidence_for(const Scan& sample, const std::vector<FramePlane>& planes, c
 ScanUp find_up(const Scan& sample, const std::vector<FramePlane>& planes, Gravity gravity,
                const ScannerPlace& place) {
   std::vector<AreaAxis> axes = main_axes(planes);
-  const bool z_told = gravity != Gravity::unknown;
+  const bool z_stated = gravity != Gravity::unknown;
   const auto near_z = [](const AreaAxis& axis) {
     return std::abs(axis.direction.z()) > std::cos(radians(kZGoodDeg));
   };
-  if (z_told && std::none_of(axes.begin(), axes.end(), near_z)) axes.push_back({Vector3d::UnitZ(), 0.0});
+  if (z_stated && std::none_of(axes.begin(), axes.end(), near_z)) axes.push_back({Vector3d::UnitZ(), 0.0});
   struct Rated {
     Vector3d up;
     double evidence;

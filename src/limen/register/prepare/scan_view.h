@@ -28,7 +28,7 @@ struct ScanView {
   /// Of a model: its samples in runs, so that those within some reach are found without a look at each. Null:
   /// every sample is looked at.
   const SampleRuns* runs = nullptr;
-  /// Flat pieces of what stands in the room, of a static scan. Null: none are known.
+  /// Flat pieces of what is in the room, of a static scan. Null: none are known.
   const std::vector<SurfaceDetail>* details = nullptr;
 };
 

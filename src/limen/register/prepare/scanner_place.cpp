@@ -26,7 +26,7 @@ constexpr double kNearbyM = 0.15;      // a claim this near to where the density
 constexpr double kNearbySigma = 4.0;   // or so many of its standard deviations
 constexpr double kHolds = 0.1;         // misfit of the density below which the law holds
 constexpr double kClearlyWorse = 1.5;  // ratio of misfits at which a claim that was only assumed gives way,
-constexpr double kFarWorse = 3.0;      // and one that was told
+constexpr double kFarWorse = 3.0;      // and one that was stated
 constexpr double kMisfitNoise = 0.02;
 constexpr double kAsHidden = 0.03;  // share of the points by which two places may differ in what is hidden
 constexpr std::size_t kForSpread = 20000;  // points
@@ -79,7 +79,7 @@ ScannerPlace estimated(const EstimatedCentre& found, const Matrix3d& axes) {
 
 /// A place that the data contradict: the user's word is kept, any other gives way to `instead`.
 ScannerPlace refuted(const ScannerPlace& claim, const ScannerPlace& instead) {
-  ScannerPlace place = claim.source == PlaceSource::told_by_user ? claim : instead;
+  ScannerPlace place = claim.source == PlaceSource::stated_by_user ? claim : instead;
   place.refuted = claim.centre;
   return place;
 }

@@ -28,7 +28,7 @@ void append(std::vector<PoseCandidate>& all, const std::vector<PoseCandidate>& m
 }
 
 /// The features that poses are proposed from where a scan looks through openings: what the one sees through
-/// them against what stands around the other, for the large surfaces of either side would crowd out the few
+/// them against what is around the other, for the large surfaces of either side would crowd out the few
 /// that both share (2021, 3.1; 5 for what a room sees of the street).
 struct ThroughPair {
   Features source;

@@ -10,7 +10,7 @@
 
 namespace limen {
 
-/// A comparison of many poses: on few samples a single one that seems contradicted stands for many square
+/// A comparison of many poses: on few samples a single one that seems contradicted represents many square
 /// metres, so it must not weigh as much as later.
 struct Look {
   std::size_t samples = 0;  ///< asked of each scan, about

@@ -11,7 +11,7 @@
 //
 // Departures from the printed text:
 // - "by their offset" is announced and never defined: planes of one direction whose offsets lie within
-//   `same_offset_m` of the one of most inliers are one, which stands for them;
+//   `same_offset_m` of the one of most inliers are one, which represents them;
 // - all triples are enumerated, as printed, but compared in the order of an upper estimate of (10) - what the
 //   offsets alone allow, axis by axis, every overlap being as large as the smaller polygon - and no further
 //   than to where the estimate falls below the best value found;

@@ -28,7 +28,7 @@ constexpr double kOneColumnM = 0.15;
 struct AskedSurface {
   std::vector<std::uint32_t> indices;
   SurfaceColumns columns;
-  double factor = 1.0;  ///< surface that each stands for, as a multiple of its own
+  double factor = 1.0;  ///< surface that each represents, as a multiple of its own
 };
 
 AskedSurface asked_surface(const ScanView& scan, const ScanView& judge, const Rigid3& judge_from_scan,

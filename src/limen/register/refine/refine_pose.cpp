@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kWeakShare = 1e-4;      // of the information: less is the planes' error
 constexpr double kMaxCentreM = 20.0;     // the best known point is sought this far from the matched surface
-constexpr double kBuilderErrsM = 0.002;  // by how much a wall stands elsewhere than drawn, at least: 1 sigma
+constexpr double kBuilderErrsM = 0.002;  // by how much a wall is elsewhere than drawn, at least: 1 sigma
 constexpr int kLeastTilted = 8;          // tiles of a pair whose slopes are looked at
 constexpr double kGateSigma = 0.2;       // deviation of a tile far from the goal, as a share of the gate
 
@@ -141,7 +141,7 @@ class Refiner {
     int tiles = 0;
 
     /// What the residuals would lose, were the pair freely tilted.
-    [[nodiscard]] double told_by_slopes() const {
+    [[nodiscard]] double stated_by_slopes() const {
       const Eigen::Vector2d right = residuals.tail<2>();
       const Eigen::Matrix2d moments = common.bottomRightCorner<2, 2>();
       const Eigen::Matrix2d damped = moments + 1e-9 * (1e-12 + moments.trace()) * Eigen::Matrix2d::Identity();
@@ -176,19 +176,19 @@ class Refiner {
   /// Slopes common to all tiles of a pair: what the pairs' residuals would lose by tilting freely, beyond
   /// what scatter that is `factor` times the weights' would explain.
   static double pair_slope(const PairMap& pairs, double factor) {
-    double told = 0.0;
+    double stated = 0.0;
     double levers = 0.0;
     double slopes = 0.0;
     for (const auto& [key, pair] : pairs) {
       if (pair.tiles < kLeastTilted) continue;
-      told += pair.told_by_slopes();
+      stated += pair.stated_by_slopes();
       levers += pair.common.bottomRightCorner<2, 2>().trace();
       slopes += 2.0;
     }
     if (slopes <= 3.0) return 0.0;
     // A turn of the pose has taken three of them.
     const double freedoms = slopes / (slopes - 3.0);
-    return std::sqrt(std::max(0.0, freedoms * told - slopes * factor) / levers);
+    return std::sqrt(std::max(0.0, freedoms * stated - slopes * factor) / levers);
   }
 
   void summarise(RefinedPose& refined) const {

@@ -94,7 +94,7 @@ Features windows(int columns, int rows) {
 }
 
 /// What openings say of shifts along `axis`, 1/m^2.
-double told_along(const Vector3d& axis, int columns, int rows) {
+double stated_along(const Vector3d& axis, int columns, int rows) {
   const Features features = windows(columns, rows);
   ScanView view;
   view.features = &features;
@@ -107,13 +107,13 @@ double told_along(const Vector3d& axis, int columns, int rows) {
 
 TEST(RefinePose, WindowsAboveOneAnotherTellOneShiftAlongTheirWall) {
   const Vector3d along = Vector3d::UnitX();
-  const double one = told_along(along, 1, 1);
+  const double one = stated_along(along, 1, 1);
   EXPECT_GT(one, 0.0);
-  EXPECT_NEAR(told_along(along, 1, 3), one, 1e-6 * one);
-  EXPECT_NEAR(told_along(along, 3, 1), 3.0 * one, 1e-6 * one);
-  EXPECT_NEAR(told_along(along, 3, 3), 3.0 * one, 1e-6 * one);
+  EXPECT_NEAR(stated_along(along, 1, 3), one, 1e-6 * one);
+  EXPECT_NEAR(stated_along(along, 3, 1), 3.0 * one, 1e-6 * one);
+  EXPECT_NEAR(stated_along(along, 3, 3), 3.0 * one, 1e-6 * one);
   const Vector3d up = Vector3d::UnitZ();
-  EXPECT_NEAR(told_along(up, 1, 3), 3.0 * told_along(up, 1, 1), 1e-6 * one);
+  EXPECT_NEAR(stated_along(up, 1, 3), 3.0 * stated_along(up, 1, 1), 1e-6 * one);
 }
 
 TEST(ScorePose, OpeningsOfPoorlyKnownPlacesMayAgreeMore) {

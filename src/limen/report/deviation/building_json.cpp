@@ -45,7 +45,7 @@ Json building_summary(const BuildingReport& report) {
   json["found_by_loa"] = found_by_loa_json(deviation.elements);
   json["common_shift"] = shift_json(deviation.common);
   json["unmodelled_pieces"] = deviation.unmodelled.size();
-  json["issues"] = report.issues_told;
+  json["issues"] = report.issues_stated;
   json["cloud_points"] = report.cloud_points;
   return json;
 }

@@ -49,7 +49,7 @@ struct BuildingReport {
   std::vector<BuildingLeftOut> left_out;
   DeviationOptions measured;
   IssueOptions issues;
-  std::size_t issues_told = 0;
+  std::size_t issues_stated = 0;
   std::size_t cloud_points = 0;  ///< of the coloured cloud
 };
 
@@ -60,7 +60,7 @@ std::string building_json(const BuildingReport& report);
 /// many scans it was seen. RFC 4180, UTF-8, decimal points.
 std::string building_csv(const BuildingReport& report);
 
-/// One page: what is missing, what stands elsewhere, what the model lacks, each scan's share, and a plan.
+/// One page: what is missing, what is elsewhere, what the model lacks, each scan's share, and a plan.
 std::string building_page(const BuildingReport& report);
 
 }  // namespace limen

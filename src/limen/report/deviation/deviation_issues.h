@@ -12,7 +12,7 @@
 namespace limen {
 
 struct IssueOptions {
-  double moved_m = 0.015;  ///< an element that stands elsewhere by more is an issue: LOA30's bound; > 0
+  double moved_m = 0.015;  ///< an element that is elsewhere by more is an issue: LOA30's bound; > 0
   double matter_m = 0.5;   ///< matter not in the model whose longest side is at least this is one, > 0
 
   void check() const;
@@ -26,7 +26,7 @@ struct IssueModel {
   double scale = 1.0;      ///< of the map: distances of the file are those of the elements / scale
 };
 
-/// What a building's deviation is told of.
+/// What a building's deviation is made of.
 struct IssueInputs {
   const BimModel& model;                              ///< elements and faces
   const std::vector<ElementDeviation>& elements;      ///< measured
@@ -47,7 +47,7 @@ std::vector<std::size_t> worst_first(const std::vector<ElementDeviation>& elemen
 /// By how much an element is off: its shift, or its median distance where no direction of a shift is held.
 double off_m(const ElementDeviation& it);
 
-/// Whether it stands elsewhere by more than the bound, and beyond doubt.
+/// Whether it is elsewhere by more than the bound, and beyond doubt.
 bool has_moved(const ElementDeviation& it, double moved_m);
 
 }  // namespace limen

@@ -42,15 +42,15 @@ TEST(ReportCover, SaysTheSameInThreeLanguages) {
 
 TEST(ReportCover, EveryOutcomeHasItsSentence) {
   for (const Language language : {Language::english, Language::french, Language::german}) {
-    std::vector<std::string> told;
+    std::vector<std::string> stated;
     for (const Outcome outcome : {Outcome::registered, Outcome::probable, Outcome::ambiguous,
                                   Outcome::under_constrained, Outcome::no_match}) {
       RegistrationReport report = found();
       report.result.outcome = outcome;
-      told.push_back(cover_summary(report, language).front());
+      stated.push_back(cover_summary(report, language).front());
     }
-    std::sort(told.begin(), told.end());
-    EXPECT_EQ(std::unique(told.begin(), told.end()), told.end());
+    std::sort(stated.begin(), stated.end());
+    EXPECT_EQ(std::unique(stated.begin(), stated.end()), stated.end());
   }
 }
 

@@ -14,7 +14,7 @@ namespace limen {
 
 /// An element of a page that holds bytes as base64; nothing where there are none.
 std::string blob_element(const std::string& id, const std::vector<std::uint8_t>& bytes);
-/// The element "scene" with JSON that cannot end the element it stands in, nor open a comment there.
+/// The element "scene" with JSON that cannot end the element it is in, nor open a comment there.
 std::string json_element(Json json);
 
 using PageParts = std::map<std::string, std::string>;

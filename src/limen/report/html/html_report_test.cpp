@@ -84,7 +84,7 @@ std::size_t count_of(const std::string& text, const std::string& part) {
   return count;
 }
 
-/// Every tag is closed in its order, and nothing stands unescaped.
+/// Every tag is closed in its order, and nothing is unescaped.
 bool is_well_formed(const std::string& xml) {
   std::vector<std::string> open;
   static const std::regex tag("<(/?)([a-zA-Z]+)((?:\\s+[a-zA-Z:-]+=\"[^\"<]*\")*)\\s*(/?)>");
@@ -277,18 +277,18 @@ TEST(ReportPage, TakesSidesWithoutAnything) {
 
 TEST(ReportWords, PromiseNothingOfWhatIsOpen) {
   RegistrationReport report = report_of(Outcome::under_constrained);
-  const auto told = [&report](const std::string& words) {
+  const auto stated = [&report](const std::string& words) {
     const std::vector<std::string> sentences = verdict_words(report).sentences;
     return std::any_of(sentences.begin(), sentences.end(), [&words](const std::string& sentence) {
       return sentence.find(words) != std::string::npos;
     });
   };
   report.result.unobserved = {{false, Vector3d::UnitX(), "shift along x"}};
-  EXPECT_TRUE(told("Shift along x is not determined by the data."));
-  EXPECT_TRUE(told("from the centre, perpendicular to the undetermined direction."));
+  EXPECT_TRUE(stated("Shift along x is not determined by the data."));
+  EXPECT_TRUE(stated("from the centre, perpendicular to the undetermined direction."));
   report.result.unobserved.push_back({true, Vector3d(1, 1, 1).normalized(), "turn"});
-  EXPECT_TRUE(told("Turn is not determined by the data."));
-  EXPECT_FALSE(told("95 %")) << "where a turn is open no place is known";
+  EXPECT_TRUE(stated("Turn is not determined by the data."));
+  EXPECT_FALSE(stated("95 %")) << "where a turn is open no place is known";
 }
 
 TEST(ReportWords, HeadlineHoldsAtTheFarEnd) {
@@ -304,7 +304,7 @@ TEST(ReportWords, HeadlineHoldsAtTheFarEnd) {
             "Residuals: 2.0 mm of the points, 0.8 mm between matched planes (root mean square).");
 }
 
-TEST(ReportWords, AFreedomBesideAnAmbiguityIsTold) {
+TEST(ReportWords, AFreedomBesideAnAmbiguityIsStated) {
   RegistrationReport report = report_of(Outcome::ambiguous);
   report.result.rivals = 1;
   report.result.unobserved = {{false, Vector3d::UnitX(), "shift along x"}};

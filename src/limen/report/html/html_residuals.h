@@ -16,7 +16,7 @@ std::vector<std::uint8_t> plane_of_points(const SceneSide& side);
 /// Distance of every point of the source, under the best pose, to the target's plane that its own plane was
 /// matched with.
 struct PointResiduals {
-  double range_m = 0.01;  ///< what the largest byte stands for; distances beyond count as it
+  double range_m = 0.01;  ///< what the largest byte represents; distances beyond count as it
   std::vector<std::uint8_t>
       values;  ///< 128 + 127 * distance / range, positive before the plane; 0: not matched
 };

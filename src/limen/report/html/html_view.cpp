@@ -99,7 +99,7 @@ Vector3d place_of_cut(const ReportScene& scene, const RegistrationResult& result
   return cut;
 }
 
-/// Where nothing was found the source stands beside the target, on the right.
+/// Where nothing was found the source is beside the target, on the right.
 Rigid3 beside(const ReportScene& scene, const Matrix3d& view_from_target) {
   const ViewBox target = box_around(places_of(scene.target), {view_from_target, Vector3d::Zero()});
   const Matrix3d view_from_source = along_walls(scene.source);

@@ -16,7 +16,7 @@ namespace {
 constexpr double kBarPx = 34.0;  // below the picture: scale bar and key
 constexpr double kTitlePx = 26.0;
 
-/// Colours follow the page where the picture stands in one; by themselves they suit paper.
+/// Colours follow the page where the picture is in one; by themselves they suit paper.
 constexpr const char* kSectionStyle =
     ".ls-paper{fill:var(--paper,#fff)}.ls-text{fill:var(--ink,#1d2a35);font:500 13px system-ui,sans-serif}"
     ".ls-soft{fill:var(--soft,#5c6b77);font:12px system-ui,sans-serif}"

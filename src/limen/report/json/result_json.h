@@ -21,8 +21,8 @@ std::string matrix_text(const Matrix4d& target_from_source);
 std::string alternative_file(std::size_t number);
 
 /// Writes result.json and, but for no_match, transform.txt and a matrix file of every alternative that cannot
-/// be told from the best: all, or none where Error is thrown. Transforms of an earlier run do not outlive
-/// this one.
+/// be distinguished from the best: all, or none where Error is thrown. Transforms of an earlier run do not
+/// outlive this one.
 void write_numbers(const std::filesystem::path& folder, const RegistrationReport& report);
 
 }  // namespace limen

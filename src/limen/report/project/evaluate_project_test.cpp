@@ -74,7 +74,7 @@ TEST(EvaluateProject, OnlyRegisteredScansAreHeldAgainstTheTruth) {
   EXPECT_LT(errors.shift_of(1.0), 1e-6);
 }
 
-TEST(EvaluateProject, StationsOfOneFileAreToldApart) {
+TEST(EvaluateProject, StationsOfOneFileAreDistinguished) {
   Building building;
   for (std::size_t k = 0; k < 4; ++k) {
     building.project[k].file = "scans/all.e57";
@@ -106,7 +106,7 @@ std::string fault_of_truth(const Building& building) {
   }
 }
 
-TEST(EvaluateProject, ScansThatAreCalledAlikeAreToldApartByTheirFolders) {
+TEST(EvaluateProject, ScansThatAreCalledAlikeAreDistinguishedByTheirFolders) {
   for (const char* folder : {"scans/", "elsewhere/", "./"})
     EXPECT_LT(two_storeys(folder).errors().shift_of(1.0), 1e-6) << folder;
   Building building = two_storeys("scans/");
@@ -114,7 +114,7 @@ TEST(EvaluateProject, ScansThatAreCalledAlikeAreToldApartByTheirFolders) {
   EXPECT_LT(building.errors().shift_of(1.0), 1e-6) << "their order tells nothing";
 }
 
-TEST(EvaluateProject, ScansThatCannotBeToldApartAreNamed) {
+TEST(EvaluateProject, ScansThatCannotBeDistinguishedAreNamed) {
   const std::string truth = fault_of_truth(two_storeys(""));
   EXPECT_NE(truth.find("cannot tell"), std::string::npos) << truth;
   EXPECT_NE(truth.find("scans/first/0.ply"), std::string::npos) << truth;

@@ -104,8 +104,9 @@ Json loop_json(const GraphLoop& loop) {
           {"closes", loop.closes}};
 }
 
-Json decision_json(const ProjectDecision& told) {
-  return {{"decision", words_of(told.decision)}, {"state", to_string(told.state)}, {"reason", told.reason}};
+Json decision_json(const ProjectDecision& stated) {
+  return {
+      {"decision", words_of(stated.decision)}, {"state", to_string(stated.state)}, {"reason", stated.reason}};
 }
 
 Json question_json(const ProjectQuestion& question) {
@@ -168,15 +169,15 @@ std::string project_json(const ProjectResult& result, const OptionList& options,
   if (system.system.known())
     json["frame"]["crs"] = {{"name", system.system.name},
                             {"code", system.system.code},
-                            {"wkt", system.system.wkt.empty() ? system.system.told : system.system.wkt},
+                            {"wkt", system.system.wkt.empty() ? system.system.stated : system.system.wkt},
                             {"said_by", system.said_by}};
-  const ToldTrajectories& told = system.trajectories;
-  if (!told.files.empty())
-    json["trajectories"] = {{"files", told.files},
-                            {"columns", told.reading.columns},
-                            {"utm_zone", told.reading.utm_zone},
-                            {"time_offset_s", told.reading.time_offset_s},
-                            {"lever_arm_m", json_of(told.reading.lever_arm_m)}};
+  const StatedTrajectories& stated = system.trajectories;
+  if (!stated.files.empty())
+    json["trajectories"] = {{"files", stated.files},
+                            {"columns", stated.reading.columns},
+                            {"utm_zone", stated.reading.utm_zone},
+                            {"time_offset_s", stated.reading.time_offset_s},
+                            {"lever_arm_m", json_of(stated.reading.lever_arm_m)}};
   json["components"] = result.components;
   json["scans"] = Json::array();
   for (std::size_t k = 0; k < result.scans.size(); ++k)

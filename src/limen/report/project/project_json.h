@@ -12,11 +12,11 @@
 
 namespace limen {
 
-/// The coordinate system of a project's frame, and what else a run was told of the world.
+/// The coordinate system of a project's frame, and what else a run knows of the world.
 struct FrameSystem {
   CoordinateSystem system;  ///< as far as it is known
   std::string said_by;      ///< "user", or "file": the one whose world coordinates the frame has
-  ToldTrajectories trajectories = {};
+  StatedTrajectories trajectories = {};
 };
 
 /// The text of project.json: the same bytes for the same files and options, whatever their order, the number

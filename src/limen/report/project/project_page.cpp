@@ -76,13 +76,13 @@ std::string table(const std::string& title, const std::string& id, const std::ve
 std::string decisions_table(const ProjectResult& result) {
   if (result.decisions.empty()) return {};
   std::string text;
-  for (const ProjectDecision& told : result.decisions) {
-    const char* colour = told.state == DecisionState::kept           ? "verified"
-                         : told.state == DecisionState::contradicted ? "rejected"
-                                                                     : "weak";
-    text +=
-        fmt::format("<tr><td>{}</td><td class=\"state {}\">{}</td><td>{}</td></tr>\n",
-                    escaped(words_of(told.decision)), colour, to_string(told.state), escaped(told.reason));
+  for (const ProjectDecision& stated : result.decisions) {
+    const char* colour = stated.state == DecisionState::kept           ? "verified"
+                         : stated.state == DecisionState::contradicted ? "rejected"
+                                                                       : "weak";
+    text += fmt::format("<tr><td>{}</td><td class=\"state {}\">{}</td><td>{}</td></tr>\n",
+                        escaped(words_of(stated.decision)), colour, to_string(stated.state),
+                        escaped(stated.reason));
   }
   return table("Your decisions", "", {"decision", "state", "why"}, text);
 }
@@ -219,7 +219,7 @@ std::string points_table(const ProjectResult& result) {
                    "any axis that would be detected.");
 }
 
-/// What is noted of many files alike is told once.
+/// What is noted of many files alike is stated once.
 std::string notes(const ProjectResult& result) {
   if (result.notes.empty()) return {};
   constexpr std::size_t kMany = 4;

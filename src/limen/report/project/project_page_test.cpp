@@ -64,13 +64,13 @@ TEST(ProjectPage, AnswersAreLinesForAShellAndPointsStandInTableAndPlan) {
   EXPECT_TRUE(holds("The frame is that of the control points in control.csv."));
 }
 
-TEST(ProjectJson, PointsDecisionsAndAnswersAreTold) {
-  const nlohmann::json told = nlohmann::json::parse(project_json(some_result(), {}));
-  EXPECT_EQ(told["frame"]["file"], "control.csv");
-  EXPECT_TRUE(told["frame"]["scan"].is_null());
-  EXPECT_EQ(told["questions"][0]["answers"][0], R"(choose hall.ply 'o'\''clock.ply' 2)");
-  EXPECT_EQ(told["decisions"][0]["state"], "contradicted");
-  const nlohmann::json& point = told["points"][0];
+TEST(ProjectJson, PointsDecisionsAndAnswersAreStated) {
+  const nlohmann::json stated = nlohmann::json::parse(project_json(some_result(), {}));
+  EXPECT_EQ(stated["frame"]["file"], "control.csv");
+  EXPECT_TRUE(stated["frame"]["scan"].is_null());
+  EXPECT_EQ(stated["questions"][0]["answers"][0], R"(choose hall.ply 'o'\''clock.ply' 2)");
+  EXPECT_EQ(stated["decisions"][0]["state"], "contradicted");
+  const nlohmann::json& point = stated["points"][0];
   EXPECT_EQ(point["state"], "left_out");
   EXPECT_EQ(point["given"][1].get<double>(), 6862123.4562);
   EXPECT_EQ(point["seen_by"][0]["scan"], 1);
@@ -79,10 +79,10 @@ TEST(ProjectJson, PointsDecisionsAndAnswersAreTold) {
 }
 
 TEST(ProjectJson, WithoutSurveyAndDecisionsNothingIsSaidOfThem) {
-  const nlohmann::json told = nlohmann::json::parse(project_json(ProjectResult{}, {}));
-  EXPECT_FALSE(told.contains("points"));
-  EXPECT_FALSE(told.contains("control"));
-  EXPECT_FALSE(told.contains("decisions"));
+  const nlohmann::json stated = nlohmann::json::parse(project_json(ProjectResult{}, {}));
+  EXPECT_FALSE(stated.contains("points"));
+  EXPECT_FALSE(stated.contains("control"));
+  EXPECT_FALSE(stated.contains("decisions"));
 }
 
 /// The same with a pass that was bent, and one that was not.
@@ -155,7 +155,7 @@ TEST(ProjectPage, ShowsScansWhereTheyStandAlongTheBuildingsWalls) {
   EXPECT_EQ(scene["side-0"]["count"], 3);
   EXPECT_EQ(scene["side-1"]["shape"], "none");
   EXPECT_EQ(page.find("/a/folder"), std::string::npos);
-  // A point's place in the frame is told again by the page's own numbers.
+  // A point's place in the frame is stated again by the page's own numbers.
   const auto number = [](const nlohmann::json& value) { return value.get<double>(); };
   Vector3d in_frame = Vector3d::Zero();
   for (Eigen::Index k = 0; k < 3; ++k) {

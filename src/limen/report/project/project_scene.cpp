@@ -137,18 +137,18 @@ std::string project_scene(const ProjectResult& result, std::vector<ProjectPictur
     origins.push_back(side.origin);
     const std::string id = fmt::format("side-{}", k);
     const QuantisedPoints points = quantised_side(side);
-    Json told = side_json(shown_name(scan), side, points, most_corners);
-    told["about"] = words_of(scan, side.points.size());
-    told["state"] = scan.readable ? to_string(scan.state) : "unreadable";
-    told["component"] = scan.component;
-    told["mobile"] = scan.mobile;
+    Json stated = side_json(shown_name(scan), side, points, most_corners);
+    stated["about"] = words_of(scan, side.points.size());
+    stated["state"] = scan.readable ? to_string(scan.state) : "unreadable";
+    stated["component"] = scan.component;
+    stated["mobile"] = scan.mobile;
     if (scan.frame_from_scan) {
-      told["place"] = json_of(to_matrix(frame.page_from_local(*scan.frame_from_scan, side.origin)));
+      stated["place"] = json_of(to_matrix(frame.page_from_local(*scan.frame_from_scan, side.origin)));
       if (!scan.model)
-        told["station"] =
+        stated["station"] =
             json_of(frame.page_from_frame(scan.stations.empty() ? scan.sigma.centre : scan.stations.front()));
     }
-    json[id] = std::move(told);
+    json[id] = std::move(stated);
     json["sides"].push_back(id);
     blobs += side_blobs(id, side, points, {});
   }

@@ -125,23 +125,23 @@ CoordinateSystem read_project_system(const std::filesystem::path& path) {
   const Json& crs = json["frame"]["crs"];
   system.name = crs.value("name", "");
   system.code = crs.value("code", "");
-  system.told = crs.value("wkt", "");
-  if (system.told.find('[') != std::string::npos) system.wkt = system.told;
+  system.stated = crs.value("wkt", "");
+  if (system.stated.find('[') != std::string::npos) system.wkt = system.stated;
   return system;
 }
 
-ToldTrajectories read_project_trajectories(const std::filesystem::path& path) {
+StatedTrajectories read_project_trajectories(const std::filesystem::path& path) {
   const Json json = project_at(path);
-  ToldTrajectories told;
-  if (!json.contains("trajectories")) return told;
+  StatedTrajectories stated;
+  if (!json.contains("trajectories")) return stated;
   try {
     const Json& all = json["trajectories"];
-    told.files = all.at("files").get<std::vector<std::string>>();
-    told.reading.columns = all.at("columns").get<std::vector<std::string>>();
-    told.reading.utm_zone = all.at("utm_zone").get<std::string>();
-    told.reading.time_offset_s = all.at("time_offset_s").get<double>();
-    told.reading.lever_arm_m = numbers_of(all.at("lever_arm_m"));
-    return told;
+    stated.files = all.at("files").get<std::vector<std::string>>();
+    stated.reading.columns = all.at("columns").get<std::vector<std::string>>();
+    stated.reading.utm_zone = all.at("utm_zone").get<std::string>();
+    stated.reading.time_offset_s = all.at("time_offset_s").get<double>();
+    stated.reading.lever_arm_m = numbers_of(all.at("lever_arm_m"));
+    return stated;
   } catch (const Json::exception&) {
     throw Error("the trajectories of the project are damaged", path.string(), kProjectRemedy);
   }

@@ -23,7 +23,7 @@ struct ProjectEntry {
   bool several = false;  ///< its file holds other scans
   bool model = false;
   std::string state;
-  double doubt = 0.0;   ///< probability that it stands elsewhere
+  double doubt = 0.0;   ///< probability that it is elsewhere
   std::string sha256;   ///< of the file's bytes
   std::string copy_of;  ///< another file of the same bytes
   double sigma_m =
@@ -51,7 +51,7 @@ CoordinateSystem read_project_system(const std::filesystem::path& path);
 
 /// The trajectories that its passes were measured along; no files where it tells none. Throws Error as
 /// read_project().
-ToldTrajectories read_project_trajectories(const std::filesystem::path& path);
+StatedTrajectories read_project_trajectories(const std::filesystem::path& path);
 
 /// Of all links that tell their poses: one that is left out as a twin does not. Throws Error as
 /// read_project().

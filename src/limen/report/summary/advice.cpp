@@ -23,7 +23,7 @@ Vector3d inner_size(const InputSummary& side) {
 
 constexpr double kSureApart = 1.05;  // heights of storeys that differ by less are hardly a chance
 
-/// Evidence for a cause; the largest is told first.
+/// Evidence for a cause; the largest is stated first.
 struct WeighedCause {
   double weight = 0.0;
   LikelyCause cause;
@@ -36,8 +36,8 @@ double apart(double a, double b) {
 
 WeighedCause overlap_cause(const RegistrationReport& report) {
   const Hypothesis& best = report.result.best;
-  WeighedCause told{2.0, {"overlap", "", ""}};
-  LikelyCause& cause = told.cause;
+  WeighedCause stated{2.0, {"overlap", "", ""}};
+  LikelyCause& cause = stated.cause;
   cause.remedy =
       "take scans that share walls of three directions (a floor, two walls), or a window that both see";
   if (report.source.kind == "segments") {
@@ -54,50 +54,51 @@ WeighedCause overlap_cause(const RegistrationReport& report) {
   } else {
     cause.measured = "no plane of one matches a plane of the other";
   }
-  return told;
+  return stated;
 }
 
 WeighedCause units_cause(const RegistrationReport& report) {
   const Vector3d source = inner_size(report.source);
   const Vector3d target = inner_size(report.target);
-  WeighedCause told{0.5, {"units", "", ""}};
-  told.cause.measured = fmt::format("the source measures {}, the target {} (all but a few points)",
-                                    size_words(source), size_words(target));
-  told.cause.remedy = "if the coordinates of a file are not in metres, give --source-units or --target-units";
+  WeighedCause stated{0.5, {"units", "", ""}};
+  stated.cause.measured = fmt::format("the source measures {}, the target {} (all but a few points)",
+                                      size_words(source), size_words(target));
+  stated.cause.remedy =
+      "if the coordinates of a file are not in metres, give --source-units or --target-units";
   if (const auto guess = likely_unit(report.source, report.target)) {
     const char* const side = guess->source ? "source" : "target";
     const bool sure = guess->apart < kSureApart;
-    told.weight = sure ? 3.0 : 1.7;
-    told.cause.measured += fmt::format("; if the coordinates of the {} were in {}, both would be {} high",
-                                       side, guess->unit, sure ? "equally" : "about equally");
-    told.cause.remedy = fmt::format("{}give --{}-units {}", sure ? "" : "if they are, ", side, guess->unit);
+    stated.weight = sure ? 3.0 : 1.7;
+    stated.cause.measured += fmt::format("; if the coordinates of the {} were in {}, both would be {} high",
+                                         side, guess->unit, sure ? "equally" : "about equally");
+    stated.cause.remedy = fmt::format("{}give --{}-units {}", sure ? "" : "if they are, ", side, guess->unit);
   }
-  return told;
+  return stated;
 }
 
 std::optional<WeighedCause> place_cause(const InputSummary& side, const char* name) {
   if (side.kind != "scan" || side.mobile) return std::nullopt;
-  WeighedCause told{0.0, {"place of the scanner", "", ""}};
-  told.cause.remedy = fmt::format("if it is known, give --{}-origin x,y,z", name);
+  WeighedCause stated{0.0, {"place of the scanner", "", ""}};
+  stated.cause.remedy = fmt::format("if it is known, give --{}-origin x,y,z", name);
   const PlaceSource source = side.place.source;
   if (side.place.refuted) {
     const Vector3d& said = *side.place.refuted;
-    told.weight = 2.5;
-    told.cause.measured =
+    stated.weight = 2.5;
+    stated.cause.measured =
         fmt::format("the points of the {} contradict the scanner position {:.2f} {:.2f} {:.2f}", name,
                     said.x(), said.y(), said.z());
   } else if (source == PlaceSource::unknown) {
-    told.weight = 1.5;
-    told.cause.measured = fmt::format(
+    stated.weight = 1.5;
+    stated.cause.measured = fmt::format(
         "the scanner position of the {} is unknown and cannot be estimated from its points", name);
   } else if (source == PlaceSource::assumed && !side.place.confirmed) {
-    told.weight = 1.0;
-    told.cause.measured = fmt::format(
+    stated.weight = 1.0;
+    stated.cause.measured = fmt::format(
         "the scanner position of the {} is assumed to be 0,0,0, which its points do not confirm", name);
   } else {
     return std::nullopt;
   }
-  return told;
+  return stated;
 }
 
 std::optional<WeighedCause> axes_cause(const RegistrationReport& report) {
@@ -250,7 +251,7 @@ std::optional<UnitGuess> likely_unit(const InputSummary& source, const InputSumm
   const double thickness = apart(from[0], to[0]);  // of storeys, mostly: they hardly differ
   const double length = source_larger ? from[2] / to[2] : to[2] / from[2];
   const InputSummary& larger = source_larger ? source : target;
-  // A model's unit is told by its file; and who stated a unit is not asked for another.
+  // A model's unit is stated by its file; and who stated a unit is not asked for another.
   if (larger.kind == "model" || larger.metres_per_unit != 1.0) return std::nullopt;
   // A building may well be three times as high and as long as a room of another, both in metres.
   if (is_size_of_building(inner_size(larger))) return std::nullopt;

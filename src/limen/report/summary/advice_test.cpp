@@ -17,7 +17,7 @@ InputSummary scan_of(const std::string& path, const Vector3d& size) {
   side.high = size;
   side.inner_high = size;
   side.middle = 0.5 * size;
-  side.place.source = PlaceSource::told_by_file;
+  side.place.source = PlaceSource::stated_by_file;
   side.place.confirmed = true;
   return side;
 }

@@ -35,7 +35,7 @@ TEST(AnswerPlaces, APlaceBuiltAlikeIsOneOfThem) {
   EXPECT_FALSE(answer_places(result_of(0.6, {0.37}, 0.03, 0.0)).look_alike);
 }
 
-TEST(AnswerPlaces, AllWhereNoProbabilityIsTold) {
+TEST(AnswerPlaces, AllWhereNoProbabilityIsStated) {
   RegistrationResult result = result_of(0.5, {0.4, 0.1}, 0.0, 0.0);
   result.others.reset();
   EXPECT_EQ(answer_places(result).alternatives.size(), 2U);

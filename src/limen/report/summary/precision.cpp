@@ -43,20 +43,20 @@ PlacePrecision precision_at(const Vector3d& at, const PoseSigma& sigma,
   return place;
 }
 
-/// Places of the side whose precision is told, in the target's world.
-struct ToldPlaces {
+/// Places of the side whose precision is stated, in the target's world.
+struct StatedPlaces {
   Vector3d middle = Vector3d::Zero();
   std::vector<Vector3d> corners;
 };
 
-ToldPlaces told_places(const RegistrationReport& report, const Rigid3& target_from_source) {
+StatedPlaces stated_places(const RegistrationReport& report, const Rigid3& target_from_source) {
   const bool by_target = report.source.kind == "model" && report.target.kind != "model";
   const InputSummary& side = by_target ? report.target : report.source;
   const Rigid3 target_from_side = by_target ? Rigid3{} : target_from_source;
   const bool inner = side.inner_high != side.inner_low;
   const Vector3d& low = inner ? side.inner_low : side.low;
   const Vector3d& high = inner ? side.inner_high : side.high;
-  ToldPlaces places;
+  StatedPlaces places;
   places.middle = target_from_side * side.middle;
   for (int corner = 0; corner < 8; ++corner) {
     const Vector3d x((corner & 1) != 0 ? high.x() : low.x(), (corner & 2) != 0 ? high.y() : low.y(),
@@ -83,7 +83,7 @@ std::optional<PosePrecision> precision_of(const RegistrationReport& report, cons
   const std::vector<UnobservedFreedom>& open = result.unobserved;
   if (std::any_of(open.begin(), open.end(), [](const auto& freedom) { return freedom.rotation; }))
     return std::nullopt;
-  const ToldPlaces places = told_places(report, pose.target_from_source);
+  const StatedPlaces places = stated_places(report, pose.target_from_source);
   PosePrecision precision;
   precision.middle = precision_at(places.middle, pose.sigma, open);
   for (const Vector3d& corner : places.corners) {

@@ -71,7 +71,7 @@ TEST(Precision, FarEndIsWhereTurnsMoveMost) {
   EXPECT_FALSE(precision->across_open);
 }
 
-TEST(Precision, IsToldAcrossWhatIsOpenAndNotWhereATurnIs) {
+TEST(Precision, IsStatedAcrossWhatIsOpenAndNotWhereATurnIs) {
   RegistrationReport report = room_report();
   report.result.best.sigma.covariance(3, 3) = 1e6;
   report.result.unobserved = {{false, Vector3d::UnitX(), "shift along x"}};

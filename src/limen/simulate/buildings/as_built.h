@@ -46,7 +46,7 @@ class AsBuilt {
   /// Zero at the face's borders.
   [[nodiscard]] Bulge bulge(std::size_t face) const;
 
-  /// Carries what stands in a room along: its floor goes to the floor as built, its walls, on average, to the
+  /// Carries what is in a room along: its floor goes to the floor as built, its walls, on average, to the
   /// walls.
   [[nodiscard]] AffineMap in_room(std::size_t room) const;
   /// Carries what is fixed to a wall's face along.

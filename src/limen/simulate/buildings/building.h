@@ -49,7 +49,7 @@ struct FacadeOptions {
 struct Footprint {
   Ring area;            ///< convex, counter-clockwise
   double from_m = 0.0;  ///< only things higher than this above the floor are in the way
-  bool piece = false;   ///< a piece of furniture that stands on it, not a place kept free
+  bool piece = false;   ///< a piece of furniture that is on it, not a place kept free
 };
 
 /// The two faces of one wall: back to back, a room's and another room's or the outside's.
@@ -67,7 +67,7 @@ std::vector<WallPair> wall_pairs(const FloorPlan& plan, const std::vector<WallFa
 
 struct World;
 
-/// What of a mesh stands in a room.
+/// What of a mesh is in a room.
 struct FurnitureRange {
   std::size_t room = 0;
   MeshMark begin;
@@ -77,7 +77,7 @@ struct FurnitureRange {
 /// A room that is not quite as drawn.
 struct BuiltRoom {
   Plane floor;
-  AffineMap carry;  ///< of what stands in it
+  AffineMap carry;  ///< of what is in it
 };
 
 /// A building that was put into a mesh, and what is needed to furnish and to scan it.

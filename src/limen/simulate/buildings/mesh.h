@@ -46,7 +46,7 @@ struct MeshMark {
   std::size_t triangles = 0;
 };
 
-/// Where and how a box stands: its corner frame's origin in the middle of the bottom face.
+/// Where and how a box is: its corner frame's origin in the middle of the bottom face.
 struct BoxPlace {
   Vector3d base = Vector3d::Zero();  ///< middle of the bottom face
   double yaw_rad = 0.0;

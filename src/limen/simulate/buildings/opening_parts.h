@@ -11,7 +11,7 @@
 
 namespace limen {
 
-/// What hangs before or stands in an opening.
+/// What hangs before or is in an opening.
 enum class Cover { none, curtain, blind };
 enum class OpeningKind { window, open_door, closed_door };
 
@@ -23,7 +23,7 @@ enum class HeadForm {
   round        ///< no jambs: an ellipse that touches all four sides of the rectangle
 };
 
-/// The form's name as it stands in truth.json.
+/// The form's name as it is in truth.json.
 const char* to_string(HeadForm head);
 
 /// A passage through a wall: its clear opening on the outer face (and, splayed, on the inner one) and what is

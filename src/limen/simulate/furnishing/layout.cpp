@@ -318,7 +318,7 @@ Layout as_placed(const Layout& layout, const World& world, std::size_t building,
     const double outward = much * options.shift_m * random.normal();
     const double sideways = much * options.shift_m * random.normal();
     placed.back += sideways * placed.along;
-    // Nothing is pushed into the wall it stands at.
+    // Nothing is pushed into the wall it is at.
     if (!on_wall(placed.piece.kind)) placed.back += std::abs(outward) * left_of(placed.along);
     placed.along = along;
     result.push_back(placed);
@@ -335,7 +335,7 @@ void add_layout(World& world, std::size_t building, std::size_t room, const Layo
     const Ring area = area_of(placed, size);
     if (!placed.fixture && !design.fits(area, placed.height_m + size.z())) continue;
     if (placed.height_m + size.z() > here.ceiling_m - here.floor_m + 1e-9) continue;
-    // A piece is no mirror image of itself: in a mirrored room it stands at the mirrored place as it is.
+    // A piece is no mirror image of itself: in a mirrored room it is at the mirrored place as it is.
     const Vector2d back = design.to_plan(placed.back);
     const Vector2d along = design.direction_to_plan(placed.along) * (design.mirrored() ? -1.0 : 1.0);
     add_piece(world.mesh, placed.piece, {{back.x(), back.y(), here.floor_m + placed.height_m}, along});

@@ -14,7 +14,7 @@ namespace limen {
 struct PlacedPiece {
   Piece piece;
   Vector2d back = Vector2d::Zero();    ///< middle of its back edge
-  Vector2d along = Vector2d::UnitX();  ///< unit vector of the back edge; the piece stands to the left of it
+  Vector2d along = Vector2d::UnitX();  ///< unit vector of the back edge; the piece is to the left of it
   double height_m = 0.0;               ///< of its foot above the floor
   bool fixture = false;                ///< built in (radiator, lamp): the same in every room of the design
 };
@@ -33,7 +33,7 @@ struct LayoutOptions {
 /// Radiators below windows and lamps at the ceiling.
 Layout make_fixtures(const World& world, std::size_t building, std::size_t room, std::uint64_t seed);
 
-/// Furniture for a room of a building that leaves doors, windows and what already stands there free.
+/// Furniture for a room of a building that leaves doors, windows and what already is there free.
 Layout make_layout(const World& world, std::size_t building, std::size_t room, const LayoutOptions& options,
                    std::uint64_t seed);
 

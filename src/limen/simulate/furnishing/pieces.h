@@ -11,7 +11,7 @@
 
 namespace limen {
 
-/// What stands, lies or hangs in rooms. Boxes are only some of them.
+/// What is, lies or hangs in rooms. Boxes are only some of them.
 enum class PieceKind : std::uint8_t {
   wardrobe,
   cupboard,
@@ -51,7 +51,7 @@ struct Piece {
 /// Width along its back, depth, height, metres. The same seed gives the same sizes.
 Vector3d size_of(const Piece& piece);
 
-/// Where a piece stands: the middle of its back edge on the floor, x along the back, y away from it.
+/// Where a piece is: the middle of its back edge on the floor, x along the back, y away from it.
 struct PiecePlace {
   Vector3d back = Vector3d::Zero();
   Vector2d along = Vector2d::UnitX();

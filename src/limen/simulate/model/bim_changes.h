@@ -13,7 +13,7 @@ namespace limen {
 
 /// How a building differs from its model.
 struct AsBuiltOptions {
-  bool on = false;  ///< false: everything stands where the model has it
+  bool on = false;  ///< false: everything is where the model has it
   /// Of walls, columns, plates, doors, windows (by 1 to 5 cm) and slabs (by 0.5 to 2 cm).
   double moved_share = 0.25;
   double missing_share = 0.15;     ///< of doors, furniture and what bears no load

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kFree = 0.8;       // m about a tripod
 constexpr double kFarthestM = 8.0;  // of a wall from the station
-constexpr double kGapM = 0.03;      // between a wall and what stands before it
+constexpr double kGapM = 0.03;      // between a wall and what is before it
 constexpr int kDirections = 72;
 constexpr double kLeastAbove = 0.3;  // m of air above a piece
 

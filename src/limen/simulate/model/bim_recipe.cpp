@@ -132,18 +132,18 @@ std::vector<BimFace> element_faces(const BimRecipe& recipe, std::size_t index) {
 BimOpening box_of(const BimRecipe& recipe, std::size_t index) {
   const RecipeOpening& opening = recipe.openings[index];
   const Box2 box = box_of(std::vector<Polygon>{opening.solid.profile});
-  BimOpening told;
+  BimOpening stated;
   // The base looks into the wall: from outside its u runs to the left.
-  told.corners[0] = opening.solid.base.to_space({box.high.x(), box.low.y()});
-  told.corners[1] = opening.solid.base.to_space({box.low.x(), box.low.y()});
-  told.corners[2] = opening.solid.base.to_space({box.low.x(), box.high.y()});
-  told.corners[3] = opening.solid.base.to_space({box.high.x(), box.high.y()});
-  told.normal = -direction_of(opening.solid);
-  told.thickness_m = opening.solid.depth_m;
-  told.host = opening.host;
-  told.filling = opening.filling;
-  told.guid = recipe_guid(recipe, RecipePart::opening, index);
-  return told;
+  stated.corners[0] = opening.solid.base.to_space({box.high.x(), box.low.y()});
+  stated.corners[1] = opening.solid.base.to_space({box.low.x(), box.low.y()});
+  stated.corners[2] = opening.solid.base.to_space({box.low.x(), box.high.y()});
+  stated.corners[3] = opening.solid.base.to_space({box.high.x(), box.high.y()});
+  stated.normal = -direction_of(opening.solid);
+  stated.thickness_m = opening.solid.depth_m;
+  stated.host = opening.host;
+  stated.filling = opening.filling;
+  stated.guid = recipe_guid(recipe, RecipePart::opening, index);
+  return stated;
 }
 
 }  // namespace

@@ -29,7 +29,7 @@ struct RecipeElement {
 /// the corridor), with base.v upwards, and it runs through the whole wall.
 struct RecipeOpening {
   int host = -1;
-  int filling = -1;  ///< -1: nothing stands in it
+  int filling = -1;  ///< -1: nothing is in it
   BimPrism solid;
 };
 

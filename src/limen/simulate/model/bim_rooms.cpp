@@ -116,17 +116,17 @@ bool alike(const BimRoom& a, const BimRoom& b) {
 ModelRoom describe(const BimModel& model, const std::vector<BimRoom>& rooms, std::size_t room) {
   const BimRoom& own = rooms[room];
   const BimSpace& space = model.spaces[static_cast<std::size_t>(own.space)];
-  ModelRoom told;
-  told.space = own.space;
-  told.guid = space.guid;
-  told.name = space.name;
-  told.length_m = own.length_m;
-  told.width_m = own.width_m;
-  told.height_m = own.height_m;
-  told.area_m2 = own.area_m2;
+  ModelRoom stated;
+  stated.space = own.space;
+  stated.guid = space.guid;
+  stated.name = space.name;
+  stated.length_m = own.length_m;
+  stated.width_m = own.width_m;
+  stated.height_m = own.height_m;
+  stated.area_m2 = own.area_m2;
   for (std::size_t i = 0; i < rooms.size(); ++i)
-    if (i != room && alike(own, rooms[i])) told.like.push_back(rooms[i].space);
-  return told;
+    if (i != room && alike(own, rooms[i])) stated.like.push_back(rooms[i].space);
+  return stated;
 }
 
 }  // namespace limen

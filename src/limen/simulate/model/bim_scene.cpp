@@ -47,19 +47,19 @@ class BimSimulation {
       throw Error("the model has no surface to be scanned", model_.name, "check it with limen info");
     RandomStream place_random(o_.seed, kPlaces);
     stations_ = place_bim_stations(rooms_, RayCaster(planned.mesh), o_.stations, o_.room, place_random);
-    told_.as_built = o_.as_built.on;
-    told_.file = model_.name;
+    stated_.as_built = o_.as_built.on;
+    stated_.file = model_.name;
     if (!o_.as_built.on) {
-      told_.changes = changes_of(model_, doors, doors);
+      stated_.changes = changes_of(model_, doors, doors);
       built_ = std::move(planned);
       return;
     }
     RandomStream change_random(o_.seed, kChanges);
     const BuiltState state = as_built(model_, o_.as_built, doors, stations_, planned, change_random);
-    told_.changes = changes_of(model_, doors, state);
+    stated_.changes = changes_of(model_, doors, state);
     built_ = build_mesh(model_, matter, state);
     RandomStream clutter_random(o_.seed, kClutter);
-    told_.furniture = add_clutter(built_, stations_, o_.as_built, clutter_random);
+    stated_.furniture = add_clutter(built_, stations_, o_.as_built, clutter_random);
   }
 
   void begin_truth() {
@@ -69,16 +69,16 @@ class BimSimulation {
     truth.local_origin = model_.local_origin;
     truth.planes = merged_.planes;
     for (const BimStation& station : stations_)
-      told_.rooms.push_back(
+      stated_.rooms.push_back(
           station.room < 0 ? ModelRoom{} : describe(model_, rooms_, static_cast<std::size_t>(station.room)));
-    truth.model = told_;
+    truth.model = stated_;
   }
 
   void add_station(const RayCaster& caster, std::size_t number, RandomStream& random) {
     Rigid3 local_from_scan;
     local_from_scan.rotation = station_rotation(o_.any_rotation, random);
     local_from_scan.translation = rounded(stations_[number].position);
-    // The head stands upright whatever frame the points are given in.
+    // The head is upright whatever frame the points are given in.
     const Rigid3 head{any_heading(random), local_from_scan.translation};
     const Sweep result = sweep_of(caster, head, mix64(o_.seed * 1000 + number + 77));
     Scan scan = station_scan((number < 9 ? "scan_0" : "scan_") + std::to_string(number + 1), result,
@@ -116,7 +116,7 @@ class BimSimulation {
   std::vector<BimStation> stations_;
   BimMesh built_;
   MergedPlanes merged_;
-  ModelTruth told_;
+  ModelTruth stated_;
   SimulatedCase case_;
 };
 

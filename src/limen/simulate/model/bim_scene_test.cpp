@@ -116,16 +116,16 @@ TEST(BimRooms, KnowsTheRoomsThatAreAlike) {
   const std::vector<BimRoom> rooms = rooms_of(model);
   ASSERT_EQ(rooms.size(), model.spaces.size());
   for (std::size_t i = 0; i < rooms.size(); ++i) {
-    const ModelRoom told = describe(model, rooms, i);
-    const bool office_room = told.name.find(" Office") != std::string::npos;
+    const ModelRoom stated = describe(model, rooms, i);
+    const bool office_room = stated.name.find(" Office") != std::string::npos;
     if (office_room) {
-      EXPECT_NEAR(told.length_m, 5.14, 1e-6);
-      EXPECT_NEAR(told.width_m, 3.6, 1e-6);
-      EXPECT_NEAR(told.height_m, 3.1, 1e-6);
-      EXPECT_GE(told.like.size(), 8U) << told.name;
+      EXPECT_NEAR(stated.length_m, 5.14, 1e-6);
+      EXPECT_NEAR(stated.width_m, 3.6, 1e-6);
+      EXPECT_NEAR(stated.height_m, 3.1, 1e-6);
+      EXPECT_GE(stated.like.size(), 8U) << stated.name;
     }
-    if (told.name.find("Meeting") != std::string::npos || told.name.find("Hall") != std::string::npos) {
-      EXPECT_TRUE(told.like.empty()) << told.name;
+    if (stated.name.find("Meeting") != std::string::npos || stated.name.find("Hall") != std::string::npos) {
+      EXPECT_TRUE(stated.like.empty()) << stated.name;
     }
   }
 }
@@ -224,7 +224,7 @@ TEST(BimScene, MostOfWhatIsSeenStandsWhereItShould) {
         if (plane < 0 || element < 0) continue;
         const Vector3d& normal = simulated.truth.planes[static_cast<std::size_t>(plane)].plane.normal;
         if (std::abs(normal.dot(axis)) < 0.9) continue;
-        // Each point stands for the surface it covers.
+        // Each point represents the surface it covers.
         const Vector3d& x = simulated.scans[0].points[i];
         const double weight =
             x.squaredNorm() /

@@ -40,7 +40,7 @@ enum class Element : std::uint8_t {
   portal  ///< the empty cross-section of an opening without glass: seen by nobody, counted by the simulator
 };
 
-/// The element's name as it stands in truth.json.
+/// The element's name as it is in truth.json.
 inline const char* to_string(Element element) {
   static constexpr std::array<const char*, 20> names = {
       "wall",     "floor",    "ceiling", "roof", "reveal",    "frame",  "mullion",
@@ -122,18 +122,18 @@ struct ScanTruth {
   std::string name;  ///< Scan::name
   bool mobile = false;
   double drift_m = 0.0;    ///< error of the trajectory that was put in, one standard deviation per axis
-  int room = -1;           ///< the room a station stands in
+  int room = -1;           ///< the room a station is in
   Rigid3 local_from_scan;  ///< scan frame to world less Truth::local_origin
   std::vector<std::int32_t> plane_of_point;  ///< index into Truth::planes or -1 (not planar, mixed pixel)
   /// Of a scanned model: index into BimModel::elements or -1 (furniture, mixed pixel). Empty elsewhere.
   std::vector<std::int32_t> element_of_point = {};
 };
 
-/// How an element of a model stands in the building that was scanned.
+/// How an element of a model is in the building that was scanned.
 enum class ModelState : std::uint8_t {
   moved,    ///< built elsewhere: shift_m
   missing,  ///< never built
-  open      ///< a door that stands wide open: nothing of it is to be seen
+  open      ///< a door that is wide open: nothing of it is to be seen
 };
 inline const char* to_string(ModelState state) {
   static constexpr std::array<const char*, 3> names = {"moved", "missing", "open"};
@@ -148,7 +148,7 @@ struct ModelChange {
   Vector3d shift_m = Vector3d::Zero();  ///< as built less as planned, world axes
 };
 
-/// The room a station stands in.
+/// The room a station is in.
 struct ModelRoom {
   int space = -1;  ///< index into BimModel::spaces; -1: the model names none there
   std::string guid;

@@ -57,7 +57,7 @@ ScannedBuilding BuildingScanner::station(const std::string& name, const StationP
   made.scan = station_scan(name, result, inverse(scene_from_head));
   for (Vector3d& point : made.scan.points) point += style.file_origin;
   made.scan.centres = {style.file_origin};
-  if (!style.origin_told) made.scan.centres.clear();
+  if (!style.origin_stated) made.scan.centres.clear();
   made.scan.level = !style.any_rotation && style.tilt_rad == 0.0;
   made.truth.name = name;
   made.truth.room = place.room == kStreet ? -1 : static_cast<int>(place.room);

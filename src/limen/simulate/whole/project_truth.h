@@ -38,7 +38,7 @@ struct SimulatedScan {
   std::vector<DriftSample> drift;       ///< of a pass; it goes evenly from one to the next
   double surface_m2 = 0.0;              ///< of the building and its surroundings, seen by it
   Rigid3 local_from_scan;               ///< scan frame to world less ProjectTruth::local_origin
-  Vector3d scanner = Vector3d::Zero();  ///< of a station, in its own frame; not always told in the file
+  Vector3d scanner = Vector3d::Zero();  ///< of a station, in its own frame; not always stated in the file
 };
 
 /// The exact truth of a project. Coordinates are about local_origin: x_in_world = local_origin + x.

@@ -26,7 +26,7 @@ ScanStyle random_scan_style(const ScanStyle& plain, std::uint64_t seed) {
   if (random.uniform() < 0.3) style.tilt_rad = radians(std::min(3.0, std::abs(random.normal())));
   if (random.uniform() < 0.3) {
     style.file_origin = {random.uniform(-8.0, 8.0), random.uniform(-8.0, 8.0), random.uniform(-2.0, 2.0)};
-    style.origin_told = random.uniform() < 0.4;
+    style.origin_stated = random.uniform() < 0.4;
   }
   if (random.uniform() < 0.3) style.people = 1 + static_cast<int>(random.below(3));
   return style;

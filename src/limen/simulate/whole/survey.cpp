@@ -129,7 +129,7 @@ class RoomSurvey {
         const Vector3d direction(std::cos(tilt) * std::cos(azimuth), std::cos(tilt) * std::sin(azimuth),
                                  std::sin(tilt));
         RayHit hit = caster_.cast(p, direction);
-        // Who stands in a doorway has its empty cross-section beside him: it is no matter.
+        // Who is in a doorway has its empty cross-section beside him: it is no matter.
         for (int step = 0; wish_.doorway >= 0 && step < 4 && is_portal(hit); ++step)
           hit = caster_.cast(p, direction, hit.range_m + 1e-3);
         if (!hit.found()) continue;
@@ -168,7 +168,7 @@ std::optional<StationPlace> survey_street(const WholeBuilding& building, const R
   for (std::size_t i = 0; i < n; ++i) length += (envelope[(i + 1) % n] - envelope[i]).norm();
   RandomStream random(seed, 200000 + number);
   for (int attempt = 0; attempt < 60; ++attempt) {
-    // Even shares of the way round, and about there; farther along where something stands in the way.
+    // Even shares of the way round, and about there; farther along where something is in the way.
     const double share = (static_cast<double>(number) + 0.5) / static_cast<double>(count);
     double along = std::fmod(share * length + random.uniform(-0.05, 0.05) * attempt + length, length);
     const double distance = random.uniform(4.0, 7.0);

@@ -123,7 +123,7 @@ void check_items(const InfoSource& source, const LazInfo& info) {
   }
 }
 
-/// Where the table of chunks begins: told before the first chunk, or at the end of the file by writers that
+/// Where the table of chunks begins: stated before the first chunk, or at the end of the file by writers that
 /// could not go back.
 std::uint64_t table_place(const InfoSource& source) {
   const std::size_t begin = source.header.points_begin;

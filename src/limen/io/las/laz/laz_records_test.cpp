@@ -134,7 +134,7 @@ TEST(LazRecords, TheSameForAnyThreads) {
   EXPECT_TRUE(one == records_of(bytes, 3000));
 }
 
-TEST(LazRecords, DamageIsTold) {
+TEST(LazRecords, DamageIsStated) {
   const std::string whole = testing_laz::file(some_records(3, 1000));
   EXPECT_EQ(laz_error_of(whole.substr(0, whole.size() - 300)).substr(0, 33),
             "the table of its compressed chunk");

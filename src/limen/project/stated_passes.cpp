@@ -1,14 +1,14 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
-#include "limen/project/told_passes.h"
+#include "limen/project/stated_passes.h"
 
 namespace limen {
 namespace {
 
-/// Deviations along the axes of the frame that is told.
-Vector3d sigma_in(const Matrix3d& told_from_solved, const Matrix3d& covariance) {
-  const Matrix3d told = told_from_solved * covariance * told_from_solved.transpose();
-  return told.diagonal().cwiseMax(0.0).cwiseSqrt();
+/// Deviations along the axes of the frame that is stated.
+Vector3d sigma_in(const Matrix3d& stated_from_solved, const Matrix3d& covariance) {
+  const Matrix3d stated = stated_from_solved * covariance * stated_from_solved.transpose();
+  return stated.diagonal().cwiseMax(0.0).cwiseSqrt();
 }
 
 }  // namespace
@@ -18,17 +18,17 @@ std::string why_rigid(const ScanDigest& digest) {
   return "its points have no times, or its path is short: it is treated as rigid";
 }
 
-PassCorrection told_correction(const BentPass& pass, const PassWay& way, const Rigid3& told_from_solved,
-                               const Vector3d& origin) {
-  const Matrix3d& turn = told_from_solved.rotation;
-  const Vector3d pivot = told_from_solved * pass.frame_from_node.translation;
+PassCorrection stated_correction(const BentPass& pass, const PassWay& way, const Rigid3& stated_from_solved,
+                                 const Vector3d& origin) {
+  const Matrix3d& turn = stated_from_solved.rotation;
+  const Vector3d pivot = stated_from_solved * pass.frame_from_node.translation;
   PassCorrection correction;
   correction.pivot = pivot + origin;
   correction.shift_rate_m2_per_m = pass.shift_rate_m2_per_m;
   correction.turn_rate_rad2_per_m = pass.turn_rate_rad2_per_m;
   for (std::size_t k = 0; k < pass.knots.size(); ++k) {
     const BentKnot& bent = pass.knots[k];
-    const Vector3d given = told_from_solved * (pass.frame_from_node * way.places[k]);
+    const Vector3d given = stated_from_solved * (pass.frame_from_node * way.places[k]);
     PassKnot knot;
     knot.time_s = way.times_s[k];
     knot.distance_m = way.distances_m[k];

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
-#include "limen/project/hear_scans.h"
+#include "limen/project/query_scans.h"
 
 #include <memory>
 
@@ -56,8 +56,8 @@ class ScanHearing {
 
 }  // namespace
 
-PoseHearing hearing_of_scans(const std::vector<ProjectNode>& nodes, const RegisterOptions& options,
-                             ScanCache& cache) {
+PoseQuery query_of_scans(const std::vector<ProjectNode>& nodes, const RegisterOptions& options,
+                         ScanCache& cache) {
   const ScanHearing scans(nodes, options, cache);
   return {[scans](int source, int target, const Rigid3& pose) { return scans.surface(source, target, pose); },
           [scans](int source, int target, const Rigid3& pose) { return scans.things(source, target, pose); }};

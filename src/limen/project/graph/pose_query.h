@@ -13,13 +13,13 @@ namespace limen {
 /// What the surface of two nodes says of a pose, as a pair's pose is scored; m^2.
 struct PoseHeard {
   double agreeing_m2 = 0.0;
-  double contradicted_m2 = 0.0;  ///< stands where the other saw free space
+  double contradicted_m2 = 0.0;  ///< is where the other saw free space
   double value_m2 = 0.0;         ///< what poses are ranked by
 };
 
 /// Asks two nodes of a pose that neither proposed (`target_from_source`); of those that cannot be asked
 /// nothing is known. Any number of threads may ask at once.
-struct PoseHearing {
+struct PoseQuery {
   std::function<PoseHeard(int source, int target, const Rigid3& target_from_source)> surface = {};
   /// What things and walls say of a look-alike place.
   std::function<std::optional<TwinEvidence>(int source, int target, const Rigid3& target_from_source)>
