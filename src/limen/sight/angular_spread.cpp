@@ -56,9 +56,13 @@ double misfit(const AngularSpread& spread) {
 std::vector<Vector3d> places_around(const Vector3d& claim) {
   std::vector<Vector3d> places;
   for (double step = kNearestStepM; step <= 8.0 * kNearestStepM; step *= 2.0) {
-    for (int k = 0; k < 27; ++k) {
-      const Vector3d way(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1);
-      if (!way.isZero()) places.emplace_back(claim + step * way.normalized());
+    for (const double x : {-1.0, 0.0, 1.0}) {
+      for (const double y : {-1.0, 0.0, 1.0}) {
+        for (const double z : {-1.0, 0.0, 1.0}) {
+          const Vector3d way(x, y, z);
+          if (!way.isZero()) places.emplace_back(claim + step * way.normalized());
+        }
+      }
     }
   }
   return places;
