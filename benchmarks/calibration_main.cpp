@@ -210,7 +210,7 @@ class Calibration {
     rows_.push_back(row);
   }
 
-  /// Whether a wrong pose is asked to be nearly sure, whatever the outcome.
+  /// Whether a wrong pose is reported as nearly sure, whatever the outcome.
   static bool stated_wrongly(const Row& row) {
     constexpr double kSurely = 0.99;
     return !row.statements.empty() && row.statements.front().probability > kSurely &&

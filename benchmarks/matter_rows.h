@@ -13,7 +13,7 @@
 
 namespace limen::calibration {
 
-/// A pose between the scans' own frames, stated between the frames that they were prepared in.
+/// A pose between the scans' own frames, expressed between the frames that they were prepared in.
 inline Rigid3 in_prepared_frames(const Rigid3& pose, const PreparedPair& pair) {
   const Vector3d& of_source = pair.source.extracted.features.local_origin;
   const Vector3d& of_target = pair.target.extracted.features.local_origin;

@@ -61,7 +61,7 @@ struct SeenSample {
 
 struct EdgeTruth {
   std::vector<Segment> edges;    ///< all, seen or not, of faces with echoes
-  std::vector<SeenSample> seen;  ///< of edges that must be found; each represents step_m of edge
+  std::vector<SeenSample> seen;  ///< of edges that must be found; each is step_m of edge
 };
 
 /// Finds the edges of a scan's world, in the coordinates of its points.

@@ -4,7 +4,7 @@
 // all covariances. Features are simulated, no clouds; pairs are answered by the truth with noise.
 //
 // An office building: rooms of about 6 x 5 m on floors, three stations in each, doors between neighbours,
-// staircases. Every station is anywhere and any way round.
+// staircases. Every station has any place and any heading.
 #include <algorithm>
 #include <chrono>
 #include <cmath>

@@ -167,7 +167,7 @@ TEST_F(DeviationProgramTest, AWholeProjectAgainstItsModel) {
   EXPECT_NE(page.find("<h2>Elements"), std::string::npos);
   EXPECT_LT(page.find("\"Content-Security-Policy\" content=\"default-src 'none'"), page.find("</head>"));
 
-  // Other threads, the same bytes; a scan in doubt is left out and stated.
+  // Other threads, the same bytes; a scan in doubt is left out and noted.
   ASSERT_EQ(run({"deviation", "project.json", "-o", "again", "--threads", "1", "--bcf", "again.bcf",
                  "--moved-m", "0.005"})
                 .status,

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
-// A table of misuses: each is stated in one line that says what, where and what to do, with status 2, and
+// A table of misuses: each gives one line that says what, where and what to do, with status 2, and
 // leaves everything as it was. bad_input_test.cpp has the damages of single formats.
 #include <algorithm>
 #include <cstdint>

@@ -244,7 +244,7 @@ TEST_F(ProjectDask, WhatIsMissingOrUnsafeIsOneError) {
   EXPECT_EQ(project("out", {"--scheduler", "tcp://127.0.0.1:8786"}).status, 2);
   EXPECT_EQ(project("out", {"--engine", "dask", "--tls-ca", "ca.pem"}).status, 2);
   EXPECT_EQ(run({"project", "work", "nowhere", "features"}).status, 2);
-  // A Python that sees no packages represents one without Dask.
+  // A Python that sees no packages acts as one without Dask.
   fs::create_directories(work() / "bin");
   write_whole(work() / "bin" / "python3", "#!/bin/sh\nexec /usr/bin/python3 -S \"$@\"\n");
   fs::permissions(work() / "bin" / "python3", fs::perms::owner_all);

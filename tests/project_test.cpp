@@ -135,7 +135,7 @@ TEST_F(Project, StationsStandWhereTheTruthHasThemAndBytesNeverDiffer) {
     EXPECT_LT((pose - Matrix4d::Identity()).cwiseAbs().maxCoeff(), 0.01);
   }
 
-  // Scans of one file are stated, and called, by their numbers from 0.
+  // Scans of one file are listed, and called, by their numbers from 0.
   EXPECT_NE(run({"info", "all.e57"}).out.find("scan 1 of 2 (all.e57 #0)"), std::string::npos);
   const ProgramRun unclear = run({"project", "decide", "reread", "level", "all.e57"});
   EXPECT_EQ(unclear.status, 2);
@@ -350,7 +350,7 @@ TEST_F(Project, DecisionsAreHeededTestedAndSurviveRuns) {
     EXPECT_EQ(project["links"][0]["state"], "rejected");
     EXPECT_EQ(project["links"][0]["reason"], "rejected by your decision");
   }
-  // From a file, over what was said before; names that nothing has are stated.
+  // From a file, over what was said before; names that nothing has are reported.
   write_whole(
       work() / "words.json",
       R"({"decisions": [{"accept": ["indoor_00.ply", "indoor_01.ply"]}, {"level": ["cellar.ply"]}]})");

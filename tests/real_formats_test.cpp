@@ -255,7 +255,7 @@ TEST_F(RealFormats, CoordinateSystemsAreKeptStatedAndComparedWithWhatFilesSay) {
     ASSERT_EQ(run({"transform", "stay.txt", "a.xyz", name, "--crs", "site.prj"}).status, 0) << name;
     if (std::string(name) == "a.ply") continue;
     EXPECT_EQ(info(name)["crs"]["name"], "site") << name;
-    // From file to file, without being stated again; and in its own format.
+    // From file to file, without being given again; and in its own format.
     const std::string again = std::string("again_") + name;
     ASSERT_EQ(run({"transform", "stay.txt", name, again}).status, 0);
     EXPECT_EQ(info(again)["crs"]["name"], "site") << name;

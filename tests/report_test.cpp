@@ -90,7 +90,7 @@ TEST_F(PrintedReportTest, StandsBesideThePage) {
   EXPECT_EQ(pdf.substr(0, 16), "%PDF-1.4 file://");
   EXPECT_NE(pdf.find("/out/report.html\n"), std::string::npos);
   EXPECT_EQ(files_beside_the_report(), without + 1);  // nothing is left of the browser
-  // It never is beside other numbers.
+  // It never comes with other numbers.
   ASSERT_EQ(register_rooms().status, 0);
   EXPECT_FALSE(std::filesystem::exists(work() / "out/report.pdf"));
 }

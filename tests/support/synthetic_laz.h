@@ -18,7 +18,7 @@ using testing_las::Parts;
 /// How a file is packed.
 struct Packing {
   std::size_t chunk = 100;  ///< points
-  bool variable = false;    ///< chunks of several lengths, stated in the table
+  bool variable = false;    ///< chunks of several lengths, listed in the table
   bool one_run = false;     ///< formats 0 to 5: no chunks
   bool table_at_end = false;
   int version = 3;  ///< of the layers, 3 or 4

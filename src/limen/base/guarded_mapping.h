@@ -40,8 +40,8 @@ class GuardedMapping {
 /// counts.
 void require_inputs_whole();
 
-/// Does `work`, which reads mapped files. Where one of them became shorter meanwhile that is what is stated,
-/// not what the work made of the zeros.
+/// Does `work`, which reads mapped files. Where one of them became shorter meanwhile that is what the error
+/// says, not what the work made of the zeros.
 template <typename Work>
 auto with_whole_inputs(const Work& work) {
   try {

@@ -7,8 +7,8 @@
 namespace limen {
 
 /// One part of a stage, for work that counts its own progress from nothing to all: tells it to `whole` as the
-/// piece from `begin` to `end` of 1. Stages that begin within it are not stated. A cancelled `whole` cancels
-/// it at its next advance(); use it within a CancelScope of `whole`, which is answered at any time.
+/// piece from `begin` to `end` of 1. Stages that begin within it are not shown. A cancelled `whole` cancels
+/// it at its next advance(); use it within a CancelScope of `whole`, which can be cancelled at any time.
 class StagePart : public Monitor {
  public:
   StagePart(Monitor& whole, double begin, double end) : whole_(whole), begin_(begin), end_(end) {

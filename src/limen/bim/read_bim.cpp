@@ -17,7 +17,7 @@
 namespace limen {
 namespace {
 
-/// A format that is read, stated by its bytes.
+/// A format that is read, recognised by its bytes.
 struct Format {
   bool (*matches)(std::string_view bytes);
   RawModel (*read)(std::string_view bytes, const std::string& name, Monitor& monitor);

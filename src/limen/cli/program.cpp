@@ -91,7 +91,7 @@ std::string unknown_option(const CLI::App& command) {
   return {};
 }
 
-/// What is wrong with the command line, and where its usage is stated.
+/// What is wrong with the command line, and where its usage is shown.
 std::string usage_error(const CLI::App& app, const CLI::ParseError& error) {
   const std::vector<CLI::App*> chosen = app.get_subcommands();
   if (!chosen.empty()) {
@@ -176,7 +176,7 @@ int run_guarded(Session& session) {
 }
 
 int fail_as(const Session& session, const std::string& message, int status) {
-  // Work that was stopped may end in other ways than it should: a helper that answered the same signal, say.
+  // Work that was stopped may end in other ways than it should: a helper that received the same signal, say.
   const bool stopped = session.monitor && session.monitor->cancelled();
   session.wipe_progress();
   return stopped ? fail("interrupted", kExitInterrupted) : fail(message, status);

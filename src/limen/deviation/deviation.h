@@ -48,7 +48,7 @@ struct ElementShift {
 };
 
 /// One element against the scan. Distances are along the outward normals of its faces: positive where matter
-/// is out of the model's surface.
+/// protrudes from the model's surface.
 struct ElementDeviation {
   std::int32_t element = -1;  ///< index into BimModel::elements
   Presence presence = Presence::not_judged;

@@ -64,7 +64,7 @@ TEST(Deviation, ShiftsOfOneToFiveCentimetresAreFound) {
     EXPECT_EQ(found.elements[2].shift.held, 1);
     for (const Vector3d& open : found.elements[2].shift.open) EXPECT_NEAR(open.x(), 0.0, 1e-6);
     EXPECT_EQ(found.elements[6].shift.held, 2);
-    // The sign: matter that is out towards the room is positive.
+    // The sign: matter that protrudes towards the room is positive.
     EXPECT_NEAR(found.elements[2].median_m, shifts[2].x(), 0.001);
     EXPECT_NEAR(found.elements[5].median_m, -shifts[5].y(), 0.001);
   }

@@ -21,7 +21,7 @@ constexpr double kContestedWeight = 0.1;  // (3 mm / 10 mm)^2: it may be another
 constexpr double kRobustM = 0.008;        // faces that differ by more from the shift count less
 constexpr double kMostPoints = 2000.0;    // more points do not make a face more certain
 constexpr double kAcross = 0.5;           // cosine: a face across a direction
-constexpr double kNear = 0.95;            // cosine: a face that is across a direction itself
+constexpr double kNear = 0.95;            // cosine: a face across the direction itself
 constexpr double kSmallFace = 0.2;        // of the largest one's weight: it does not tell the direction
 constexpr double kMostNoise = 1.8;        // of a typical face's: one that scatters more is no plane
 

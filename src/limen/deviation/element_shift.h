@@ -19,11 +19,11 @@ struct FaceOffset {
   double pose_sigma_m = 0.0;  ///< of the scan that saw it, as far as it is known
 };
 
-/// Where most of the points of a face are: the peak of their distribution, so that what else is within
+/// Where most points of a face lie: the peak of their distribution, so that what else is within
 /// reach of the face, or another element's surface, does not pull.
 FaceOffset face_offset(const Vector3d& normal, const std::vector<float>& distances_m, double max_distance_m);
 
-/// Where a face is by several scans, each of which saw it: robustly, the better known poses counting
+/// The position of a face by several scans, each of which saw it: robustly, the better known poses counting
 /// more. One observation still, for how flat a face is no number of scans changes. None: no points.
 FaceOffset joined_offset(const std::vector<FaceOffset>& by_scan);
 

@@ -22,7 +22,7 @@ bool separates(char c) {
   return c == ' ' || c == '\t' || c == ',' || c == ';' || c == '\r';
 }
 
-/// What a line is, stated from its first characters.
+/// What a line is, recognised by its first characters.
 enum class LineKind { nothing, count, row };
 
 LineKind kind_of(std::string_view line) {

@@ -25,7 +25,7 @@ constexpr std::int32_t kMostGrid = 1 << 26;
 struct DelaunayFace {
   static constexpr std::int32_t kNone = -1;
   std::array<std::int32_t, 3> corners{};
-  std::array<std::int32_t, 3> across{kNone, kNone, kNone};  ///< kNone: a face too large to be stated, or none
+  std::array<std::int32_t, 3> across{kNone, kNone, kNone};  ///< kNone: a face too large for the grid, or none
 };
 
 /// The faces of the Delaunay triangulation of distinct `points` whose circumscribed circle has a radius of at

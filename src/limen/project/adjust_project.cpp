@@ -116,7 +116,7 @@ JointFinding adjust_once(const std::vector<ProjectNode>& nodes, JointProblem pro
   finding.passes = passes.stated(settled.solution);
   finding.variance_factor = settled.solution.variance_factor;
   if (!surveyed) return finding;
-  // What the links alone left out stays stated.
+  // What the links alone left out stays reported.
   for (std::size_t p = 0; p < settled.verdicts.size(); ++p) {
     const PointVerdict& before = survey.settled.verdicts[p];
     if (before.known_left_out && !problem.points[p].is_known()) settled.verdicts[p] = before;

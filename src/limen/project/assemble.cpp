@@ -132,7 +132,7 @@ class Assembler {
                     names, 1e3 * finding.most_moved_m));
   }
 
-  /// The first node of each component that is firmly lends it its world.
+  /// The first node of each component that is held firmly lends it its world.
   void settle_frame() {
     frame_node_.assign(static_cast<std::size_t>(std::max(1, solved_.components)), -1);
     for (const bool firm : {true, false}) {
@@ -168,7 +168,7 @@ class Assembler {
     const Vector3d& origin = frame == kSurvey ? survey_.origin : digest(frame).local_origin;
     return to_world(stated_from_solved(frame) * solved, digest(node).local_origin, origin);
   }
-  /// From the frame that the graph was solved in to that which is stated.
+  /// From the frame that the graph was solved in to that of the result.
   [[nodiscard]] Rigid3 stated_from_solved(int frame) const {
     if (frame == kSurvey) return {};
     return inverse(solved_.nodes[static_cast<std::size_t>(frame)].frame_from_node);

@@ -26,8 +26,8 @@ JointProblem joint_problem(const std::vector<ProjectNode>& nodes, const std::vec
 std::vector<double> common_places(const std::vector<ProjectNode>& nodes, const TriedPair& pair,
                                   const Rigid3& target_from_source, bool source, const SharedPlanes& shared);
 
-/// What is by the frame of something that is no scan gets a scan of its own as the frame, one that has no
-/// deviations: of each component without any, but those that are `controlled`, the first that is firmly,
+/// What is held by a frame that is no scan's gets a scan of its own as the frame, one that has no
+/// deviations: of each component without any, but those that are `controlled`, the first that is held firmly,
 /// or the first.
 void give_references(const std::vector<bool>& controlled, SolvedGraph& solved);
 

@@ -266,7 +266,8 @@ class Confirmer {
   }
 
  private:
-  static constexpr double kSharpM = 0.15;  // twins stand further apart than what is predicted as well as this
+  static constexpr double kSharpM =
+      0.15;  // look-alike places are further from each other than what is predicted as well as this
 
   [[nodiscard]] bool sees_known(int node) const {
     return std::any_of(points_.begin(), points_.end(), [&](const MarkedPoint& point) {

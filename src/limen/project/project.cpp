@@ -205,7 +205,7 @@ class Run {
     result_.scans.push_back(std::move(scan));
   }
 
-  /// Copies stand where the file is that they are copies of; their places are filled in later.
+  /// Copies are where the file is that they are copies of; their places are filled in later.
   void add_copies(const ProjectFile& file) {
     for (std::size_t k = 0, count = result_.scans.size(); k < count; ++k) {
       if (result_.scans[k].file != file.copy_of) continue;
@@ -264,9 +264,9 @@ class Run {
 
   void take_stated() {
     std::vector<std::string> notes;
-    const std::vector<StatedPose> poses =
-        inputs_.poses.empty() ? std::vector<StatedPose>{} : read_stated_poses(inputs_.poses);
-    take_stated_places(poses, options_.file_sigma_m, result_.scans, nodes_, notes);
+    const std::vector<SurveyedPoint> positions =
+        inputs_.poses.empty() ? std::vector<SurveyedPoint>{} : read_stated_positions(inputs_.poses);
+    take_stated_positions(positions, options_.file_sigma_m, result_.scans, nodes_, notes);
     for (std::string& text : notes) note(std::move(text));
   }
 
@@ -389,13 +389,13 @@ ProjectResult run_project(const ProjectInputs& inputs, const std::filesystem::pa
                           const ProjectOptions& options, Monitor& monitor) {
   options.check();
   if (inputs.scans.empty()) throw Error("there is no scan", "project", "give at least one");
-  // A fault in a small file is stated before hours of work.
+  // A fault in a small file is an error before hours of work.
   for (const std::string& file : {inputs.control, inputs.check}) {
     if (!file.empty()) static_cast<void>(read_surveyed_points(file));
   }
   if (!inputs.decisions.empty()) static_cast<void>(read_decisions(inputs.decisions));
   if (!inputs.targets.empty()) static_cast<void>(read_seen_targets(inputs.targets));
-  if (!inputs.poses.empty()) static_cast<void>(read_stated_poses(inputs.poses));
+  if (!inputs.poses.empty()) static_cast<void>(read_stated_positions(inputs.poses));
   const CancelScope scope(monitor);
   return Run(inputs, folder, options, monitor).run();
 }

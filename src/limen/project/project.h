@@ -44,12 +44,12 @@ struct ProjectInputs {
   std::string control;  ///< file of points whose coordinates enter as observations; empty: none
   std::string check;    ///< file of points that are compared with the result and never enter
   std::string targets;  ///< file of where the scans saw them; a point called as a scan is its scanner's place
-  std::string poses;    ///< file of where scans are said to have been (control/stated_poses.h)
+  std::string poses;    ///< file of where scans are said to have been (control/control_file.h)
   std::string decisions;  ///< file of what the user says (decide/decisions.h); added to what was said before
 };
 
 /// Puts any number of scans, and building models, into one frame. Features of scans and results of pairs are
-/// kept under `folder`/store, and only what is missing is made. A file that cannot be read is stated in its
+/// kept under `folder`/store, and only what is missing is made. A file that cannot be read is named in its
 /// scan's reason. The result depends on the names and bytes of the files and the options alone.
 /// Throws Error where there is no scan, or the store cannot be written.
 ProjectResult run_project(const ProjectInputs& inputs, const std::filesystem::path& folder,

@@ -36,7 +36,7 @@ ProjectFiles list_files(const ProjectInputs& inputs, Monitor& monitor);
 /// Whether the first line of a text that is no comment names a file, as in a list for --scans.
 bool lists_files(const std::string& path);
 
-/// Text that is compared number by number: "scan 2" is before "scan 10".
+/// Text that is compared number by number: "scan 2" comes before "scan 10".
 bool comes_before(const std::string& a, const std::string& b);
 
 }  // namespace limen

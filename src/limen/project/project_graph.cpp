@@ -10,7 +10,6 @@
 
 #include "limen/base/angles.h"
 #include "limen/geometry/linear.h"
-#include "limen/project/stated_place.h"
 #include "limen/project/word_terms.h"
 #include "limen/register/judge/verdict.h"
 
@@ -28,9 +27,8 @@ constexpr std::size_t kMostPoses = 9;  // of a link
 constexpr double kMostChance = 0.5;    // probability of chance above which a pair makes no link
 constexpr double kHardly = 1e-4;       // a pose less probable than this is no possibility
 constexpr double kOfUnknown = 0.1;     // probability of being wrong where a pair tells none
-const double kMostSaidOfTwins = std::log(19.0);  // of what is stated of places 1 of 20 is wrong
-constexpr double kStoreyM = 0.5;                 // floors further apart are of different storeys
-constexpr double kWordWrong = 4e-4;              // probability that a user's word is wrong
+constexpr double kStoreyM = 0.5;       // floors further apart are of different storeys
+constexpr double kWordWrong = 4e-4;    // probability that a user's word is wrong
 constexpr double kPlaceSigmaM = 0.05;  // deviation of the least known shift below which a pose is a place
 const double kPlaceSigmaRad = radians(0.5);
 constexpr double kOpenM = 0.1;  // where a pair calls a direction open: faces taken for one another
@@ -102,6 +100,9 @@ class GraphMaker {
     const bool spoken = said != words_.pairs.end();
     if (spoken && said->second.kind == DecisionKind::reject) return;
     if (found.outcome == Outcome::no_match) return;
+    // Poses that are more probably none are what any two scans show: many of them would outweigh what is
+    // sure.
+    if (!spoken && by_chance(found) > kMostChance) return;
     GraphLink link;
     link.source = static_cast<int>(pairs_[k].source);
     link.target = static_cast<int>(pairs_[k].target);
@@ -115,11 +116,7 @@ class GraphMaker {
       if (other.probability && *other.probability < kHardly) continue;
       add_alternative(pose_of(link, found, other, kLooser), link);
     }
-    heed_places(link);
     if (words_.floors.count({pairs_[k].source, pairs_[k].target}) > 0) keep_floor(link);
-    // Poses that are more probably none are what any two scans show: many of them would outweigh what is
-    // sure.
-    if (!spoken && link.chance > kMostChance) return;
     if (spoken) heed(said->second, link);
     graph_.links.push_back(std::move(link));
     pair_of_.push_back(static_cast<int>(k));
@@ -141,32 +138,6 @@ class GraphMaker {
       return;
     }
     link.poses.push_back(other);
-  }
-
-  /// What is stated of the places of both scans moves the odds between the pair's poses, and against chance.
-  /// Who takes one room for another states the wrong place too: of a look-alike it says no more than it is
-  /// trusted.
-  void heed_places(GraphLink& link) const {
-    const ProjectNode& source = nodes_[static_cast<std::size_t>(link.source)];
-    const ProjectNode& target = nodes_[static_cast<std::size_t>(link.target)];
-    if (!source.stated || !target.stated) return;
-    double all = link.chance;
-    for (LinkPose& pose : link.poses) {
-      const double nats = log_prior_of_places(source, target, pose.target_from_source);
-      pose.probability *= std::exp(nats);
-      all += pose.probability;
-      if (!pose.twin) continue;
-      const double said = std::clamp(nats, -kMostSaidOfTwins, kMostSaidOfTwins);
-      pose.twin->otherwise_nats += said;
-      pose.twin->alike_nats += said;
-    }
-    if (!(all > 0.0)) return;
-    link.chance /= all;
-    for (LinkPose& pose : link.poses) pose.probability /= all;
-    const auto likeliest =
-        std::max_element(link.poses.begin(), link.poses.end(),
-                         [](const LinkPose& a, const LinkPose& b) { return a.probability < b.probability; });
-    put_first(static_cast<int>(likeliest - link.poses.begin()), link);
   }
 
   /// Poses that lay floors on other storeys fall away where a user says that they are of one height; if the

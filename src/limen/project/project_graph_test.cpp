@@ -12,7 +12,7 @@
 namespace limen {
 namespace {
 
-/// What a pair stated whose twin has this probability.
+/// What a pair gives whose look-alike place has this probability.
 RegistrationResult stated(Outcome outcome, double twin, std::size_t rivals = 0) {
   RegistrationResult result;
   result.outcome = outcome;

@@ -42,7 +42,7 @@ ProjectStatus project_status(const std::filesystem::path& folder) {
     throw Error("holds no project", folder.string(), "give the folder that a project was written to");
   try {
     const nlohmann::json json = json_or_nothing<nlohmann::json>(stream);
-    // An earlier version stated neither of the last two.
+    // An earlier version wrote neither of the last two.
     return {json.at("stage"),
             json.at("scans"),
             json.at("ready"),

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "limen/project/control/control_file.h"
 #include "limen/project/engine/job_engine.h"
 #include "limen/project/graph/pose_query.h"
 #include "limen/project/project.h"
@@ -21,24 +22,15 @@ struct OwnDrift {
   double turn_rate_rad2_per_m = 0.0;  ///< of the random walk of turns along the way
 };
 
-/// Where a scan is said to have been (control/stated_poses.h).
-struct StatedPlace {
-  Vector3d at = Vector3d::Zero();  ///< the point that is meant, about the local origin, scan's axes
-  Vector3d x = Vector3d::Zero();   ///< where it is, metres
-  Matrix3d covariance = Matrix3d::Identity();  ///< m^2
-  std::optional<Matrix3d> frame_from_scan;     ///< rotation, if it is known
-  double sigma_rad = 0.0;                      ///< of the rotation
-};
-
 /// One scan or model of a run, with its digest.
 struct ProjectNode {
   std::size_t scan = 0;  ///< index into ProjectResult::scans
   std::size_t file = 0;  ///< number of its file
   std::string key;       ///< of its features
   ScanDigest digest;
-  bool grouped = false;           ///< its file holds several scans that are known to one another
-  std::optional<OwnDrift> drift;  ///< of a pass that can be bent
-  std::optional<StatedPlace> stated;
+  bool grouped = false;                 ///< its file holds several scans that are known to one another
+  std::optional<OwnDrift> drift;        ///< of a pass that can be bent
+  std::optional<SurveyedPoint> stated;  ///< where its scanner is said to have been, about
 
   /// By how much points of a mobile scan stray for its trajectory, one standard deviation per axis; metres.
   [[nodiscard]] double strays_m() const { return drift ? drift->strays_m : digest.drift_m; }
@@ -81,7 +73,7 @@ std::vector<TriedPair> try_pairs(const std::vector<std::pair<std::size_t, std::s
                                  const PairWork& work, PairSearch search, ProjectStatus& status,
                                  Monitor& monitor);
 
-/// The frame, the states and the words (`bounds`: what a scan stated as registered, or as probable, may be
+/// The frame, the states and the words (`bounds`: what a scan reported as registered, or as probable, may be
 /// wrong with): everything of `result` but its scans' files. `query`: what scans say of places that no pair
 /// proposed. Throws Error where a file of the survey is no good.
 void assemble(const std::vector<ProjectNode>& nodes, const std::vector<TriedPair>& pairs,

@@ -27,7 +27,7 @@ constexpr double kStrays = 3.0;
 constexpr double kPatchM =
     3.0;  // of a surface that counts as a plane: houses of a row stand out by a centimetre
 constexpr double kStripTiles = 8.0;
-constexpr double kStripM = 0.001;    // a strip of a wall is out by so much
+constexpr double kStripM = 0.001;    // a strip of a wall protrudes by so much
 constexpr double kHeldPlaces = 6.0;  // along a way, where a link holds it
 
 /// Of each node the number of its first plane among those of all; behind them how many there are.

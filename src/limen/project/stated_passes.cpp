@@ -5,7 +5,7 @@
 namespace limen {
 namespace {
 
-/// Deviations along the axes of the frame that is stated.
+/// Deviations along the axes of the result's frame.
 Vector3d sigma_in(const Matrix3d& stated_from_solved, const Matrix3d& covariance) {
   const Matrix3d stated = stated_from_solved * covariance * stated_from_solved.transpose();
   return stated.diagonal().cwiseMax(0.0).cwiseSqrt();

@@ -13,7 +13,7 @@ namespace limen {
 /// Why a mobile pass stays rigid, as far as it tells itself.
 std::string why_rigid(const ScanDigest& digest);
 
-/// A bent pass in the frame that is stated: `stated_from_solved` leads there from that of the solution, and
+/// A bent pass in the result's frame: `stated_from_solved` leads there from that of the solution, and
 /// `origin` is what its numbers are about.
 PassCorrection stated_correction(const BentPass& pass, const PassWay& way, const Rigid3& stated_from_solved,
                                  const Vector3d& origin);

@@ -20,7 +20,7 @@ Matrix3d turned(double degrees) {
 }
 
 /// A level scan of a room of 6 x 6 m about its scanner, which is said to be at `x`.
-ProjectNode node_at(const Vector3d& x, std::optional<double> yaw_deg = std::nullopt) {
+ProjectNode node_at(const Vector3d& x) {
   ProjectNode node;
   node.digest.upright = true;
   node.digest.stations = {Vector3d::Zero()};
@@ -31,45 +31,13 @@ ProjectNode node_at(const Vector3d& x, std::optional<double> yaw_deg = std::null
     plane.centroid = side;
     node.digest.planes.push_back(plane);
   }
-  node.stated = StatedPlace{};
-  node.stated->x = x;
-  node.stated->covariance *= 0.25;
-  if (yaw_deg) node.stated->frame_from_scan = turned(*yaw_deg);
-  node.stated->sigma_rad = radians(5.0);
+  node.stated = SurveyedPoint{"", x, 0.25 * Matrix3d::Identity()};
   return node;
-}
-
-TEST(StatedPlace, APoseAsStatedGainsAndOneElsewhereLoses) {
-  const ProjectNode target = node_at({652000, 6862000, 35}, 30.0);
-  const ProjectNode source = node_at({652004, 6862000, 35}, 120.0);
-  const Rigid3 stated{turned(90.0), turned(-30.0) * Vector3d(4, 0, 0)};
-  EXPECT_GT(log_prior_of_places(source, target, stated), 4.0);
-  EXPECT_NEAR(log_prior_of_places(source, target, {turned(90.0), Vector3d(-4, 0, 0)}), std::log(0.05), 0.1);
-  EXPECT_NEAR(log_prior_of_places(source, target, {turned(-90.0), stated.translation}), std::log(0.05), 0.1);
-}
-
-TEST(StatedPlace, WithoutHeadingsDistanceAndHeightCount) {
-  const ProjectNode target = node_at({0, 0, 0});
-  const ProjectNode source = node_at({4, 0, 3});
-  for (const double yaw : {0.0, 70.0, 200.0})
-    EXPECT_GT(log_prior_of_places(source, target, {turned(yaw), turned(yaw) * Vector3d(4, 0, 3)}), 1.0)
-        << yaw;
-  EXPECT_LT(log_prior_of_places(source, target, {turned(10.0), Vector3d(4, 0, 0)}), 0.0);
-  EXPECT_LT(log_prior_of_places(source, target, {turned(10.0), Vector3d(9, 0, 3)}), 0.0);
-}
-
-TEST(StatedPlace, TheOtherWayRoundIsTheSame) {
-  const ProjectNode target = node_at({0, 0, 0}, 10.0);
-  const ProjectNode source = node_at({2, 1, 0}, 50.0);
-  const Rigid3 pose{turned(38.0), Vector3d(2.2, 0.8, 0.1)};
-  EXPECT_NEAR(log_prior_of_places(source, target, pose), log_prior_of_places(target, source, inverse(pose)),
-              0.2);
 }
 
 TEST(StatedPlace, WhatIsNotStatedSaysNothing) {
   ProjectNode unknown = node_at({0, 0, 0});
   unknown.stated.reset();
-  EXPECT_EQ(log_prior_of_places(unknown, node_at({0, 0, 0}), {}), 0.0);
   EXPECT_TRUE(can_meet(unknown, node_at({500, 0, 0})));
   EXPECT_FALSE(can_meet(node_at({0, 0, 0}), node_at({40, 0, 0})));
   EXPECT_TRUE(can_meet(node_at({0, 0, 0}), node_at({7, 0, 0})));
@@ -99,41 +67,54 @@ TEST(StatedPlace, AWrongStatedPositionIsFoundOut) {
   EXPECT_NE(result.notes[0].find("scan2"), std::string::npos);
 }
 
-TEST(StatedPoses, AreReadWithHeadingsOrQuaternionsOrNeither) {
+TEST(StatedPositions, AreReadWithTheirDeviationsOrOneMetre) {
   const TemporaryFolder folder;
-  const auto poses = read_stated_poses(folder.write(
-      "a.csv",
-      "file;x;y;z;sigma;heading;sigma_deg\na.ply;652000,5;6862000;35;0,3;90;2\nb.ply;1;2;3;0,5;;2\n"));
-  ASSERT_EQ(poses.size(), 2U);
-  EXPECT_EQ(poses[0].x, Vector3d(652000.5, 6862000, 35));
-  EXPECT_NEAR(poses[0].covariance(1, 1), 0.09, 1e-12);
-  ASSERT_TRUE(poses[0].frame_from_scan.has_value());
-  // The scan's y axis points east.
-  EXPECT_LT((*poses[0].frame_from_scan * Vector3d::UnitY() - Vector3d::UnitX()).norm(), 1e-12);
-  EXPECT_FALSE(poses[1].frame_from_scan.has_value());
-  const auto turned_too = read_stated_poses(
-      folder.write("q.csv", "file,x,y,z,qw,qx,qy,qz\na.ply,1,2,3,0.7071068,0,0,0.7071068\n"));
-  EXPECT_TRUE(turned_too[0].of_origin);
-  EXPECT_LT((*turned_too[0].frame_from_scan * Vector3d::UnitX() - Vector3d::UnitY()).norm(), 1e-6);
+  const auto stated =
+      read_stated_positions(folder.write("a.csv", "file;x;y;z;sigma\na.ply;652000,5;6862000;35;0,3\n"));
+  ASSERT_EQ(stated.size(), 1U);
+  EXPECT_EQ(stated[0].name, "a.ply");
+  EXPECT_EQ(stated[0].x, Vector3d(652000.5, 6862000, 35));
+  EXPECT_NEAR(stated[0].covariance(1, 1), 0.09, 1e-12);
+  const auto bare = read_stated_positions(folder.write("b.csv", "file,x,y,z\nall.e57 #1,1,2,3\n"));
+  EXPECT_EQ(bare[0].name, "all.e57 #1");
+  EXPECT_EQ(bare[0].covariance, Matrix3d(Matrix3d::Identity()));
 }
 
-TEST(StatedPoses, SayWhatIsWrongWithThem) {
+TEST(StatedPositions, SayWhatIsWrongWithThem) {
   const TemporaryFolder folder;
-  const std::pair<const char*, const char*> faults[] = {
-      {"name,x,y,z\na,1,2,3\n", "no column is called file"},
-      {"file,x,y,z\na,1,2,3\na,1,2,3\n", "is given twice"},
-      {"file,x,y,z,qw,qx,qy,qz\na,1,2,3,0,0,0,9\n", "the quaternion has the length 9"},
-      {"file,x,y,z,sigma\na,1,2,3,0\n", "is not above 0"},
-      {"file,x,y\na,1,2\n", "there is no column z"}};
+  const std::pair<const char*, const char*> faults[] = {{"name,x,y,z\na,1,2,3\n", "no column is called file"},
+                                                        {"file,x,y,z\na,1,2,3\na,1,2,3\n", "is given twice"},
+                                                        {"file,x,y,z,sigma\na,1,2,3,0\n", "is not above 0"},
+                                                        {"file,x,y\na,1,2\n", "there is no column z"}};
   for (const auto& [text, words] : faults) {
     try {
-      static_cast<void>(read_stated_poses(folder.write("a.csv", text)));
+      static_cast<void>(read_stated_positions(folder.write("a.csv", text)));
       ADD_FAILURE() << text;
     } catch (const Error& error) {
       EXPECT_NE(error.problem().find(words), std::string::npos) << error.problem();
       EXPECT_EQ(error.fault(), Fault::input);
     }
   }
+}
+
+/// A file's own poses are given to millimetres; taken as approximate they are positions.
+TEST(StatedPositions, OfAFileReplaceItsExactPoses) {
+  std::vector<ProjectNode> nodes = {node_at({0, 0, 0}), node_at({0, 0, 0})};
+  for (ProjectNode& node : nodes) {
+    node.stated.reset();
+    node.grouped = true;
+    node.digest.local_origin = Vector3d(100, 200, 3);
+  }
+  std::vector<std::string> notes;
+  const std::vector<ProjectScan> scans(2);
+  take_stated_positions({}, std::nullopt, scans, nodes, notes);
+  EXPECT_TRUE(nodes[0].grouped);
+  EXPECT_FALSE(nodes[0].stated.has_value());
+  take_stated_positions({}, 0.5, scans, nodes, notes);
+  EXPECT_FALSE(nodes[1].grouped);
+  ASSERT_TRUE(nodes[1].stated.has_value());
+  EXPECT_EQ(nodes[1].stated->x, Vector3d(100, 200, 3));
+  EXPECT_NEAR(nodes[1].stated->covariance(0, 0), 0.25, 1e-12);
 }
 
 }  // namespace

@@ -98,7 +98,7 @@ FileRecord make_model_features(const ProjectFile& file, const Store& store, Moni
   return {{0}, without_name(model.warnings, file.path)};
 }
 
-/// A record as it is stated in this run.
+/// A record as it is reported in this run.
 FileRecord stated_record(FileRecord record, const ProjectFile& file, const ProjectOptions& options) {
   std::vector<std::string> names{file.path};
   names.insert(names.end(), options.trajectories.files.begin(), options.trajectories.files.end());

@@ -10,7 +10,7 @@
 namespace limen {
 namespace {
 
-constexpr double kUnreportedM2 = 1e6;  // of an edge that is there to be stated, and holds nothing
+constexpr double kUnreportedM2 = 1e6;  // of an edge that is there to be reported, and holds nothing
 
 /// The scans and what joins them, without the node of a survey.
 struct ScansOnly {

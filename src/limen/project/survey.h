@@ -31,12 +31,12 @@ struct Survey {
 
 /// Reads the survey's files and finds the scans that they name (as the user wrote them, or by their file's
 /// name alone; " #2" for one of several in a file). Throws Error where a file is no good, or a point is both
-/// control and check point; names that are not part of the project are stated in the notes.
+/// control and check point; names that are not part of the project are in the notes.
 Survey read_survey(const ProjectInputs& inputs, const std::vector<ProjectNode>& nodes,
                    const std::vector<ProjectScan>& scans);
 
-/// Adds the survey's frame as a node, and a link to it of every scan whose own targets tell how it is
-/// there; contradictory ones are stated in the notes. Nothing where there are no control points.
+/// Adds the survey's frame as a node, and a link to it of every scan whose own targets tell its pose
+/// there; contradictory ones are in the notes. Nothing where there are no control points.
 void add_survey_links(Survey& survey, ProjectGraph& made);
 
 /// Scans that are in doubt, or stand in a frame of their own, and that known points confirm: the points of
@@ -62,7 +62,7 @@ struct PlacedSurvey {
 /// so.
 PlacedSurvey place_survey(const Survey& survey, ProjectGraph& made, SolvedGraph& solved);
 
-/// The points as they are stated.
+/// The points as they are reported.
 std::vector<ProjectPoint> stated_points(const Survey& survey, const PlacedSurvey& placed,
                                         const std::vector<ProjectNode>& nodes);
 

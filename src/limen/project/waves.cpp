@@ -59,7 +59,7 @@ class Waves {
   /// not at all.
   [[nodiscard]] Ranked with_stated_places(Ranked ranked) const {
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
-      const std::optional<StatedPlace>& own = nodes_[i].stated;
+      const std::optional<SurveyedPoint>& own = nodes_[i].stated;
       if (!own) continue;
       std::erase_if(ranked[i], [&](std::size_t j) { return !can_meet(nodes_[i], nodes_[j]); });
       const auto apart = [&](std::size_t j) {

@@ -20,7 +20,7 @@ using PairTrier = std::function<std::vector<TriedPair>(const PairList&)>;
 std::vector<TriedPair> try_in_waves(const std::vector<ProjectNode>& nodes, const UserWords& words,
                                     double risk, int pairs_per_scan, const PairTrier& try_all);
 
-/// The order in which pairs are stated.
+/// The order in which pairs are reported.
 bool by_nodes(const TriedPair& a, const TriedPair& b);
 
 }  // namespace limen

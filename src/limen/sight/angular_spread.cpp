@@ -13,10 +13,11 @@
 namespace limen {
 namespace {
 
-constexpr std::size_t kLeastRough = 8;
-constexpr std::size_t kMostRough = 64;
-constexpr std::size_t kFine = 2;  // cells along the side of a rough one
-constexpr double kPointsPerRough = 13.0;
+// Rough cells show the field of view, fine ones how evenly it is filled.
+constexpr std::size_t kLeastRough = 8;    // rough cells along a face's side: 11 degrees each
+constexpr std::size_t kMostRough = 64;    // 1.4 degrees each
+constexpr std::size_t kFine = 2;          // fine cells along the side of a rough one
+constexpr double kPointsPerRough = 13.0;  // some three points in each fine cell of the field of view
 constexpr double kFilledShare = 1e-4;  // of the points: a rough cell with fewer is not in the field of view
 constexpr float kNearestRangeM = 0.05F;
 constexpr float kBehindM = 0.3F;         // points so much further than the nearest in their cell are hidden,
@@ -25,7 +26,8 @@ constexpr double kHiddenWeight = 0.5;    // nats per point: weight of what is hi
 constexpr double kClearlyHidden = 0.03;  // share of the points
 constexpr double kNearestStepM = 1.0;    // other places lie so far, and twice, four and eight times as far
 
-/// Where a direction meets the face of a cube, as a share of its side. Near to the angle: cells of like size.
+/// Where a direction meets the face of a cube, as a share of its side: 2 / pi times the angle plus a half,
+/// within 0.003, so that cells are of like size.
 double along_face(double tangent) {
   return 0.5 + 0.5 * tangent * (1.3476 - 0.3476 * std::abs(tangent));
 }

@@ -10,7 +10,7 @@
 namespace limen {
 namespace {
 
-/// Which of two answers is.
+/// Which of two answers stays.
 int rank_of(SightKind kind) {
   switch (kind) {
     case SightKind::surface:

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Dwelling houses on streets: a corner house in a terrace, and a villa that is alone.
+// Dwelling houses on streets: a corner house in a terrace, and a villa that stands alone.
 #include "limen/base/angles.h"
 #include "limen/simulate/recipe_parts.h"
 #include "limen/simulate/street.h"

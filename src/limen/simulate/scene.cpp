@@ -80,7 +80,7 @@ class Simulation {
     local_from_scan.rotation = station_rotation(o_.any_rotation, random_);
     local_from_scan.translation = rounded(world_from_scene_ * station.position);
     const Rigid3 scene_from_scan = inverse(world_from_scene_) * local_from_scan;
-    // The head is upright whatever frame the points are given in.
+    // The head stands upright whatever frame the points are given in.
     const Rigid3 head{any_heading(random_), scene_from_scan.translation};
     const bool street = station.room == kStreet;
     const std::size_t wanted = street ? o_.points_outdoor : o_.points_indoor;

@@ -9,7 +9,7 @@
 namespace limen {
 
 /// The openings of a model as boxes, about the same origin as the shapes are. An opening is left out where it
-/// passes through no face that is (stair holes in slabs), or ends inside its host (niches).
+/// passes through no standing face (stair holes in slabs), or ends inside its host (niches).
 std::vector<BimOpening> opening_boxes(const RawModel& raw);
 
 }  // namespace limen

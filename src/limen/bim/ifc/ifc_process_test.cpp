@@ -19,7 +19,7 @@ namespace {
 
 using testing_io::TemporaryFolder;
 
-/// A shell script that represents limen_ifc.
+/// A shell script in place of limen_ifc.
 class IfcProcess : public testing::Test {
  protected:
   void TearDown() override { unsetenv("LIMEN_IFC_HELPER"); }

@@ -371,7 +371,7 @@ TEST_F(ReadIfc, AHelperThatDiesIsAnError) {
 TEST_F(ReadIfc, AnEntityThatKillsTheHelperIsLeftOut) {
   const std::string real = find_ifc_helper().string();
   const TemporaryFolder folder;
-  // Dies once it has begun with the window, unless asked to skip it.
+  // Dies once it has begun with the window, unless it is to skip it.
   const auto path = folder.write(
       "fake",
       "#!/bin/sh\ncase \"$*\" in *102*) exec " + real + " \"$@\";; esac\n" + real +

@@ -31,7 +31,7 @@ struct PolygonMesh {
 Vector3d area_vector(const PolygonMesh& mesh, std::size_t polygon);
 
 /// The mesh with corners closer than about `snap_m` made one, and without what has lost its area by that or
-/// is there twice (the same corners in the same sense). Corners that are not finite take their polygon
+/// occurs twice (the same corners in the same sense). Corners that are not finite take their polygon
 /// with them.
 PolygonMesh welded(const PolygonMesh& mesh, double snap_m = 1e-5);
 

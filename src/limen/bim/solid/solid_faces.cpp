@@ -48,7 +48,7 @@ Box3 box_of(const BimFace& face) {
   return box;
 }
 
-/// Whether what the mesh bounds can be stated: edges match, or the area vectors cancel.
+/// Whether the mesh bounds a volume: edges match, or the area vectors cancel.
 bool bounds_something(const PolygonMesh& mesh) {
   if (is_closed(mesh)) return true;
   Vector3d sum = Vector3d::Zero();

@@ -67,7 +67,7 @@ bool same_name(const std::string& a, const std::string& b) {
   return std::filesystem::path(a).filename() == std::filesystem::path(b).filename();
 }
 
-/// Whether the result has the model as its source: stated by its inputs, or by the user.
+/// Whether the result has the model as its source: by its inputs, or by the user.
 bool model_is_source(const DeviationCommand& command, const PoseFile& pose, const Session& session) {
   if (command.inverse) return true;
   if (same_name(pose.source_path, command.scan) || same_name(pose.target_path, command.model)) return false;
@@ -157,7 +157,7 @@ std::string summary(const DeviationReport& report, const BimModel& model, const 
   return text + fmt::format("written to {}\n", folder);
 }
 
-/// The unit that the scan's numbers were asked to have when it was registered; nothing where they were
+/// The unit that the scan's numbers were said to have when it was registered; nothing where they were
 /// metres.
 std::optional<double> registered_unit(const DeviationCommand& command, const PoseFile& pose) {
   const bool scan_is_target = command.inverse || same_name(pose.target_path, command.scan);

@@ -226,7 +226,7 @@ void read_models(const std::vector<ProjectEntry>& entries, const ProjectDeviatio
   all.report.models = std::move(models);
 }
 
-/// The scans that are measured; the others are stated.
+/// The scans that are measured; the others are reported.
 std::vector<ProjectEntry> scans_of(const std::vector<ProjectEntry>& entries, const Session& session,
                                    Gathering& all) {
   std::vector<ProjectEntry> scans;

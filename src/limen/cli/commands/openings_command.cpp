@@ -60,7 +60,7 @@ int run(const OpeningsCommand& command, const Session& session) {
   refuse_same_file(command.output, command.scan);
   if (is_bim_file(command.scan)) return run_model(command, session);
   FeatureScan read = read_feature_scan(command, session);
-  // Opened before the long work: a place that cannot be written to is stated at once.
+  // Opened before the long work: a place that cannot be written to is an error at once.
   AtomicFile file(command.output);
   session.monitor->begin_stage("openings");
   PrepareOptions preparing;

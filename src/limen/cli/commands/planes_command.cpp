@@ -91,7 +91,7 @@ int run(PlanesOptions options, const Session& session) {
   if (is_bim_file(options.scan)) return run_model(options, session);
   FeatureScan read = read_feature_scan(options, session);
   session.monitor->begin_stage("planes");
-  // Opened before the long work: a place that cannot be written to is stated at once.
+  // Opened before the long work: a place that cannot be written to is an error at once.
   AtomicFile file(options.output);
   PrepareOptions preparing;
   preparing.extract = options.extract;

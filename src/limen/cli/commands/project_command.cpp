@@ -289,7 +289,7 @@ ProjectResult run_in(const std::filesystem::path& folder, const ProjectCommandOp
   ProjectOptions project = project_options(options, session);
   project.trajectories = trajectories;
   static_cast<void>(
-      read_trajectories(trajectories));  // what is wrong with them is stated before the long work
+      read_trajectories(trajectories));  // what is wrong with them is an error before the long work
   try {
     return run_project(inputs_of(options), folder, project, *session.monitor);
   } catch (...) {
@@ -405,15 +405,16 @@ void add_project_command(CommandLine& app, Session& session) {
   command->add_flag("--stations-apart", options->apart,
                     "Ignore the poses that a file states for the scans in it");
   command
-      ->add_option("--poses", options->poses,
-                   "Approximate scanner positions, from satellites, a tablet or another program: "
-                   "file,x,y,z[,sigma,heading or qw,qx,qy,qz,sigma_deg]; fewer pairs are tried, and wrong "
-                   "positions are reported")
+      ->add_option(
+          "--poses", options->poses,
+          "Approximate scanner positions, from satellites, a tablet or another program: "
+          "file,x,y,z[,sigma]; scans that cannot meet are not compared, and wrong positions are noted")
       ->type_name("CSV");
   command
-      ->add_option("--trust-file-poses", options->file_sigma,
-                   "Uncertainty (1 sigma) of the poses that a file states for the scans in it, such as 0.5m; "
-                   "without it they are exact to millimetres")
+      ->add_option(
+          "--trust-file-poses", options->file_sigma,
+          "Take the poses that a file states for the scans in it as approximate, with this uncertainty "
+          "(1 sigma) of the positions, such as 0.5m; without it they are exact")
       ->type_name("SIGMA");
   command
       ->add_option("--tolerance", options->tolerance,

@@ -203,7 +203,7 @@ Registered register_segment_lists(const RegisterCommandOptions& options, const S
   return registered;
 }
 
-/// The page, for which the numbers are not given up: where it has no room that is stated, and the status
+/// The page, for which the numbers are not given up: where it has no room that is reported, and the status
 /// stays that of the outcome.
 void write_page(const std::filesystem::path& folder, const Registered& registered, const ReportCover& cover,
                 const Session& session) {

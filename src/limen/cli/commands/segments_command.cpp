@@ -101,7 +101,7 @@ int run(const SegmentsCommand& command, const Session& session) {
   refuse_same_file(command.output, command.scan);
   if (is_bim_file(command.scan)) return run_model(command, session);
   FeatureScan read = read_feature_scan(command, session);
-  // Opened before the long work: a place that cannot be written to is stated at once.
+  // Opened before the long work: a place that cannot be written to is an error at once.
   AtomicFile file(command.output);
   const FoundSegments found = segments_of(std::move(read.scan), command, read.input, session);
   const std::string json = segments_json(found.segments, found.local_origin, read.input);

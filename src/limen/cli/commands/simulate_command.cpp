@@ -195,7 +195,7 @@ int run(SimulateOptions& options, const Session& session) {
   if (options.outdoor == "static") options.scene.outdoor = Outdoor::tripod;
   const bool model = means_model(options.scene.name);
   check_options(options, model);
-  // Made before the long work: a place that cannot be written to is stated at once.
+  // Made before the long work: a place that cannot be written to is an error at once.
   const OutputFolder folder(options.output);
   const OutputFolder truth_folder(folder.path() / "truth");
   CaseFiles files;

@@ -229,7 +229,7 @@ void add_transform_project_command(CommandLine& app, Session& session) {
   command->add_flag("--force", options->force,
                     "Accept files that are not the registered ones, for example copies in the same frame");
   add_crs_option(*command, options->crs);
-  // Words of a pair's transform, to be stated that they do not apply.
+  // Options of a pair's transform, which do not apply here.
   command->add_flag("--invert", options->invert, "Only for the result of a pair")->group("");
   command->add_option("--alternative", options->alternative, "Only for the result of a pair")->group("");
 }

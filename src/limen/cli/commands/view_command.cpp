@@ -55,7 +55,7 @@ int run(const ViewCommand& command, const Session& session) {
   for (const std::string& file : command.files) refuse_same_file(command.output, file);
   const std::vector<ViewInput> inputs = view_inputs(command.files, command.alternative, session);
   for (const ViewInput& input : inputs) refuse_same_file(command.output, input.path);
-  // Opened before the long work: a place that cannot be written to is stated at once.
+  // Opened before the long work: a place that cannot be written to is an error at once.
   AtomicFile file(command.output);
   const CancelScope scope(*session.monitor);
   session.monitor->begin_stage("reading");

@@ -11,7 +11,7 @@ class App;
 
 namespace limen {
 
-/// What follows an option, or represents a positional argument.
+/// What follows an option, or is a positional argument.
 enum class ValueKind { none, text, file, folder };
 
 /// One option or positional argument as its command tells it.

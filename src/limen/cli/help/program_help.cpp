@@ -19,7 +19,7 @@ constexpr std::size_t kNameColumns = 26;
 std::string head_of(const OptionDoc& option) {
   std::string text = fmt::format("{}", fmt::join(option.names, ", "));
   if (!option.positional && option.names.front().rfind("--", 0) == 0) text = "    " + text;
-  // Lists of choices are stated with the description: here they would push it off the line.
+  // Lists of choices come with the description: here they would push it off the line.
   const std::string value = option.choices.empty() || option.kind == ValueKind::file ? option.value : "NAME";
   return option.value.empty() || option.positional ? text : text + " " + value;
 }

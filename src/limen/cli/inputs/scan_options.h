@@ -53,7 +53,7 @@ TrajectoryOptions trajectory_options(const ReadingChoice& choice);
 /// What read_options() gave, with the choice; reads the trajectory.
 ReadOptions with_choice(ReadOptions options, const ReadingChoice& choice);
 
-/// What every command that takes features from a scan to a file is stated.
+/// What every command that takes features from a scan to a file is asked for.
 struct FeatureChoice {
   std::string scan;
   std::string output;

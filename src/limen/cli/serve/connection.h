@@ -29,7 +29,7 @@ class Connection {
   [[nodiscard]] bool wants_to_read() const { return !wants_to_write() && state_ != State::done; }
   [[nodiscard]] bool done() const { return state_ == State::done; }
 
-  /// Of many it is the first to go where there is no room for one more: who has not stated the token goes
+  /// Of many it is the first to go where there is no room for one more: who has not sent the token goes
   /// before who has, and who is silent longer before who is not.
   [[nodiscard]] bool goes_before(const Connection& other) const;
 

@@ -202,7 +202,7 @@ void JobBoard::keep(const PageJob& job) const {
     fs::create_directories(folder_ / "results");
     write_file(results_of(job.id).string() + ".json", to_text(kept_json(job)));
   } catch (const std::exception&) {
-    return;  // a full disk is stated by the work itself
+    return;  // a full disk is reported by the work itself
   }
 }
 

@@ -47,7 +47,7 @@ struct Session {
   void answer(std::string_view json_text) const;
   /// A remark: one line to stderr, or nowhere with --quiet.
   void note(std::string_view text) const;
-  /// One line on stderr about something that was asked for and is missing; stated also where quiet.
+  /// One line on stderr about something that was asked for and is missing; shown also where quiet.
   void warn(std::string_view text) const;
   /// Takes the progress line away, before something else is printed.
   void wipe_progress() const;

@@ -42,8 +42,8 @@ class Argument {
   CLI::Option* option_;
 };
 
-/// The program, or one command of it, while its options are being stated. Values given stay as they are where
-/// an option is not used; they and this must outlive the parsing.
+/// The program, or one command of it, while its options are being declared. Values given stay as they are
+/// where an option is not used; they and this must outlive the parsing.
 class CommandLine {
  public:
   explicit CommandLine(CLI::App& app) : app_(&app) {}
@@ -55,7 +55,7 @@ class CommandLine {
   Argument* add_option(const std::string& name, std::vector<std::string>& values,
                        const std::string& description);
   Argument* add_option(const std::string& name, int& value, const std::string& description);
-  /// Of a number below 0, which would wrap around, or one too large the user is stated.
+  /// Of a number below 0, which would wrap around, or one too large is an error.
   Argument* add_option(const std::string& name, std::size_t& value, const std::string& description);
   Argument* add_option(const std::string& name, double& value, const std::string& description);
   Argument* add_flag(const std::string& name, bool& value, const std::string& description);

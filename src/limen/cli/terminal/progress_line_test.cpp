@@ -57,7 +57,7 @@ TEST(RemainingTime, DoesNotJumpWhereTheWorkDoes) {
   RemainingTime remaining;
   double before = remaining.update(2.0, 20.0, 100.0).value();
   for (int tick = 21; tick <= 100; ++tick) {
-    // The work is still for a second and then catches up.
+    // The work pauses for a second and then catches up.
     const double done = tick < 31 ? 20.0 : tick;
     const double now = remaining.update(0.1 * tick, done, 100.0).value();
     EXPECT_LT(std::abs(now - before), 0.5) << tick;

@@ -11,7 +11,7 @@
 
 namespace limen {
 
-/// The variable that names a descriptor to which progress is stated, for a program that shows it elsewhere.
+/// The variable that names a descriptor to which progress is written, for a program that shows it elsewhere.
 inline constexpr const char* kProgressVariable = "LIMEN_PROGRESS_FD";
 
 /// Tells the stage and the share of it that is done as lines "STAGE", "STAGE<tab>0.25", about ten a second.

@@ -22,7 +22,7 @@ TEST(PipeMonitor, TellsStagesAndSharesAndWaitsForNobody) {
   ASSERT_NE(monitor, nullptr);
   monitor->begin_stage("reading\na file");
   monitor->advance(1.0, 4.0);
-  monitor->advance(2.0, 4.0);  // at once: not stated
+  monitor->advance(2.0, 4.0);  // at once: not shown
   monitor->begin_stage("planes");
   std::array<char, 200> text{};
   const ssize_t got = read(ends[0], text.data(), text.size());

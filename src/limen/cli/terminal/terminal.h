@@ -54,8 +54,8 @@ class TerminalMonitor : public Monitor {
 std::unique_ptr<Monitor> make_monitor(bool quiet);
 
 /// While it lives, the first SIGINT, SIGTERM or SIGHUP cancels `monitor`; a second one ends the process at
-/// once. Signals that were ignored (nohup) stay so. SIGPIPE is answered but does nothing: who writes is
-/// stated by its write.
+/// once. Signals that were ignored (nohup) stay so. SIGPIPE is caught but does nothing: who writes is
+/// informed by its write.
 class InterruptGuard {
  public:
   explicit InterruptGuard(Monitor& monitor);

@@ -260,7 +260,7 @@ class Tracer {
 };
 
 /// Points that count as wall but lie a little behind what is wall around them are the sides of openings: with
-/// a threshold of 2.5 cm they reach that far into the opening. Walls bulge: what is wall is stated locally.
+/// a threshold of 2.5 cm they reach that far into the opening. Walls bulge: what is wall is decided locally.
 void part_sides(const Scan& scan, const OpeningOptions& options, double noise_m, WallEvidence& evidence) {
   constexpr double kTile_m = 0.5;
   constexpr double kMinBehind_m = 0.004;

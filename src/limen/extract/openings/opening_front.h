@@ -8,9 +8,9 @@
 
 namespace limen {
 
-/// How far behind the wall's face that is in an opening which is nearest to it: a frame, a pane or a
+/// How far behind the wall's face that which stands in an opening nearest to it: a frame, a pane or a
 /// blind. Before it lie only the opening's own sides, and those reach as far as it does. None where nothing
-/// is within `kMaxFront_m`.
+/// lies within `kMaxFront_m`.
 std::optional<double> front_depth(const Scan& scan, const WallEvidence& evidence, const OpeningGrid& grid,
                                   const OpeningRectangle& rectangle);
 constexpr double kMaxFront_m = 0.4;

@@ -5,7 +5,7 @@
 // sections 2.2 (evidence by ray tracing) and 2.3 (components and their rectangles).
 //
 // Departures from the printed text:
-// - every wall that a ray meets from its seen side is stated, not only the first one; the depth behind the
+// - every wall that a ray meets from its seen side counts, not only the first one; the depth behind the
 // wall
 //   that makes a crossing is measured along the wall's normal (`min_depth_m`), not along the ray;
 // - evidence against an opening counts as much as evidence for it: the wall's own points. Where neither was

@@ -245,7 +245,7 @@ TEST(Openings, AFlatShallowRecessSeenFromTheStreetIsANicheAWindowHasFrames) {
     scene.hole = wall_rectangle(-0.6, -0.6, 0.6, 0.9);
     scene.in_opening = [=](double u, double) { return framed && std::abs(u) < 0.08 ? 0.06 : 0.12; };
     Scan scan = scene.scan();
-    scan.centres.assign(scan.size(), Vector3d(scan.centres[0]));  // a vehicle that is still
+    scan.centres.assign(scan.size(), Vector3d(scan.centres[0]));  // a vehicle that does not move
     const ExtractedFeatures extracted = extract_features(scan);
     EXPECT_EQ(find_openings(scan, extracted, Vector3d::UnitZ()).size(), framed ? 1U : 0U);
   }

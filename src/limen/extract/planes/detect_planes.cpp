@@ -119,7 +119,7 @@ DetectedPlanes detect_relief(const Scan& scan, const GrowOptions& grow, Monitor&
   return detected;
 }
 
-/// Planes of a station with what is a few millimetres before or behind them apart.
+/// Planes of a station, those a few millimetres before or behind them separate.
 DetectedPlanes detect_fine(const Scan& scan, const GrowOptions& grow, Monitor& monitor) {
   const PlaneGround ground(scan, grow);
   const GrownPlanes grown = ground.grow(grow.inlier_threshold_m, monitor);

@@ -33,7 +33,7 @@ struct DetectOptions {
   ThresholdRule threshold = ThresholdRule::automatic;
   std::uint64_t seed = 1;  ///< of the detectors that draw samples
   /// Of mobile scans, with `grow`: the relief of façades apart, as finely as the noise allows
-  /// (fine_planes.h). Without it, and by the automatic threshold, what is out by a few centimetres is one
+  /// (fine_planes.h). Without it, and by the automatic threshold, what protrudes by a few centimetres is one
   /// plane: fewer planes, each of them large, as a pose is sought with.
   bool relief = true;
 };
@@ -44,7 +44,7 @@ struct DetectedPlanes {
   PlaneDetector detector = PlaneDetector::grow;  ///< the detector used; never automatic or published
 };
 
-/// The detector that `automatic` represents: grow for every scan so far. Where the scan's lines are known
+/// The detector that `automatic` chooses: grow for every scan so far. Where the scan's lines are known
 /// scan_lines is faster, but not better (docs/polygons.md).
 PlaneDetector detector_for(const Scan& scan);
 

@@ -15,7 +15,7 @@ struct StraightOptions {
   double min_width_m = 2.5;       ///< of such a plane, its narrower side
   double noise_m = 0.005;         ///< of a point about its plane, relief and all
   double points_per_look = 50.0;  ///< how many points err alike
-  double knot_s = 1.0;            ///< a trajectory's error is stated at knots so far apart
+  double knot_s = 1.0;            ///< a trajectory's error is given at knots so far apart
   int most_knots = 100;
   double change_m = 0.003;  ///< by which it changes from knot to knot, one standard deviation
   double stray_m = 0.03;    ///< and by which it strays in all
@@ -25,7 +25,7 @@ struct StraightOptions {
   void check() const;
 };
 
-/// A trajectory's slow error, stated at knots.
+/// A trajectory's slow error, given at knots.
 struct ScanDrift {
   double begin_s = 0.0;
   double step_s = 1.0;

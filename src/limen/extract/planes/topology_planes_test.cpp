@@ -145,7 +145,7 @@ TEST(TopologyPlanes, DoNotDependOnThreadsOrTheOrderOfPoints) {
 }
 
 TEST(TopologyPlanes, TheFanOfTheBeamIsNoPlane) {
-  // A vehicle that is: every profile lies in one vertical plane, and what it meets is rubble.
+  // A vehicle that does not move: every profile lies in one vertical plane, and what it meets is rubble.
   Street street;
   RandomStream random(3);
   for (int line = 0; line < 100; ++line) {

@@ -49,7 +49,7 @@ enum class EdgeKind : std::uint8_t {
 struct DetectedEdge {
   Segment segment;  ///< about the scan's local origin
   EdgeKind kind = EdgeKind::crease;
-  /// Indices into Features::planes, the second only of a crease; -1 also represents a small plane that was
+  /// Indices into Features::planes, the second only of a crease; -1 is also a small plane that was
   /// looked for here alone.
   std::array<std::int32_t, 2> planes = {-1, -1};
   double sigma_m = 0.0;  ///< one standard deviation of its place across, as the fit tells it

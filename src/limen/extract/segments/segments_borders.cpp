@@ -15,7 +15,7 @@ constexpr double kTowardsMean = 0.16;  // measured on samples at random; rows ha
 constexpr int kFewestBins = 5;
 constexpr double kBend_m = 0.002;        // a line may seem to bend by this,
 constexpr double kBendSigmas = 3.5;      // or by this many standard deviations
-constexpr double kShortfallKnown = 0.2;  // of the shortfall: how far its mean is stated wrong, one deviation
+constexpr double kShortfallKnown = 0.2;  // of the shortfall: how far its mean may be wrong, one deviation
 constexpr double kNarrow = 0.5;          // of the spacing: points less deep are one row
 constexpr double kUniform = 0.57735;     // standard deviation of what is uniform in [-1, 1]
 
@@ -135,7 +135,7 @@ std::vector<BorderBin> outermost(const BinnedPoints& points, const Strip& strip)
   return bins;
 }
 
-/// Turns the strip's line onto the fitted one: the bins' places are stated anew.
+/// Turns the strip's line onto the fitted one: the bins' places are computed anew.
 Strip turned_onto(const Strip& strip, const Line2& line, std::vector<BorderBin>& bins) {
   Strip turned;
   turned.along = (strip.along + line.slope * strip.inward()).normalized();

@@ -44,7 +44,7 @@ Approach approach_of(const PlaneImage& image, const Strip& line);
 
 /// Fits a line to the outermost points along a run and `beyond_m` further on either side.
 ///
-/// A surface's samples end before the surface does. How far before is stated by the samples themselves: the
+/// A surface's samples end before the surface does. How far before is shown by the samples themselves: the
 /// mean distance from a place within to the next sample, sum g^2 / (2 sum g) over the gaps g between samples
 /// one behind the other, is the same for rows of even spacing as for samples at random. Empty: too few
 /// points, or a border too ragged or bent to be a line.

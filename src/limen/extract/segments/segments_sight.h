@@ -19,7 +19,7 @@ enum class Beyond : std::uint8_t {
   unknown,   ///< nobody knows from where the points were seen
   same,      ///< the surface itself: it goes on
   hidden,    ///< something nearer to the scanner hides what is there
-  touching,  ///< something that is on the surface at its border
+  touching,  ///< something that stands on the surface at its border
   open,      ///< rays went on behind the surface: it ends here
   silent     ///< no ray came back; never of mobile scans
 };

@@ -205,7 +205,7 @@ TEST(SegmentBorders, SpacingIsMadeUpForInRowsAndAtRandom) {
   }
 }
 
-/// Borders along u that are stated for points of the band 0 < v < `width_m`, in rows of even v.
+/// Borders along u that hold for points of the band 0 < v < `width_m`, in rows of even v.
 int borders_of_band(double width_m, double rows_m, double along_m) {
   RandomStream stream(5);
   std::vector<Vector3d> points;

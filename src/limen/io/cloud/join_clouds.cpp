@@ -163,7 +163,7 @@ void JoinedClouds::add_columns(const RecordTable& table, const CloudFacts& facts
   }
 }
 
-/// One centre is stated by the plan, several by columns.
+/// One centre is given by the plan, several by columns.
 void JoinedClouds::settle_centres() {
   const auto has_column = [&] {
     return std::any_of(plan_.columns.begin(), plan_.columns.end(),

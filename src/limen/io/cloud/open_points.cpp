@@ -21,7 +21,7 @@
 namespace limen {
 namespace {
 
-/// How a format is stated by its bytes, and the endings that are asked where bytes do not tell.
+/// How a format is recognised by its bytes, and the endings that are asked where bytes do not tell.
 struct KnownFormat {
   PointFormat format;
   bool (*matches)(std::string_view bytes);
@@ -38,7 +38,7 @@ constexpr std::array<KnownFormat, 6> kKnown{{
     {PointFormat::text, looks_like_xyz, ".pts .xyz .txt .csv .asc "},
 }};
 
-/// Formats that are known but not read: the user is stated the way round.
+/// Formats that are known but not read: the error names the way round.
 struct Stranger {
   std::string_view begins;
   const char* name;

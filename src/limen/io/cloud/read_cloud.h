@@ -10,7 +10,7 @@
 
 namespace limen {
 
-/// Reads every cloud of a file piece after piece, and makes a scan of each; clouds without points are stated
+/// Reads every cloud of a file piece after piece, and makes a scan of each; clouds without points are named
 /// in a note. Throws Error where none has points.
 ScanFile read_clouds(const OpenPoints& input, const ReadOptions& options,
                      Monitor& monitor = silent_monitor());

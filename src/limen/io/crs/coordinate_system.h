@@ -12,7 +12,7 @@ struct CoordinateSystem {
   std::string stated;  ///< as it was given: "EPSG:2154", WKT or PROJJSON
   std::string name;    ///< "RGF93 v1 / Lambert-93"; empty: not known
   std::string code;    ///< "EPSG:2154"; empty: not known
-  std::string wkt;     ///< well-known text, version 1 where the system can be stated in it; empty: not known
+  std::string wkt;  ///< well-known text, version 1 where the system can be expressed in it; empty: not known
 
   [[nodiscard]] bool known() const { return !stated.empty(); }
 };

@@ -229,7 +229,7 @@ unsigned e57_bits(std::int64_t minimum, std::int64_t maximum) {
 }
 
 std::string e57_escaped_name(std::string_view name) {
-  if (name == "_x_") return "_x5f_x_";  // "_x_" represents no name at all
+  if (name == "_x_") return "_x5f_x_";  // "_x_" stands for no name at all
   std::string escaped;
   for (std::size_t i = 0; i < name.size(); ++i) {
     if (is_name_byte(name[i], i == 0) && escaped_at(name, i) < 0) {

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kStep = 1e-4;
 constexpr double kRoundOffset = 100.0;
-/// Integers are kept below this, so that a box that is stated a little too small does no harm.
+/// Integers are kept below this, so that a box that is given a little too small does no harm.
 constexpr double kMostSteps = 2.1e9;
 
 }  // namespace

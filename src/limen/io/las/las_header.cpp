@@ -58,7 +58,7 @@ std::optional<LasRecord> record_at(std::string_view bytes, std::size_t at, std::
   return record;
 }
 
-/// What lies between header and points. Records that do not fit are stated, not fatal: the points are sound.
+/// What lies between header and points. Records that do not fit are noted, not fatal: the points are sound.
 void parse_records(const HeaderSource& source, std::uint32_t promised, LasHeader& header) {
   std::size_t at = header.size;
   for (std::uint32_t k = 0; k < promised; ++k) {

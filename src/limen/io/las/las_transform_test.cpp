@@ -82,7 +82,7 @@ TEST(TransformLas, ACoordinateSystemTakesThePlaceOfTheSources) {
     for (std::size_t i = 0; i < old_points.size(); ++i)
       EXPECT_LT((turned() * old_points[i] - new_points[i]).cwiseAbs().maxCoeff(), 5.1e-5);
   }
-  // Without a number old versions have no place for it, and it is stated.
+  // Without a number old versions have no place for it, and that is noted.
   const TransformedCloud stated = transform_las(file(sample(2, 3)), "test", turned(), folder / "old.las",
                                                 silent_monitor(), {system.wkt, ""});
   ASSERT_EQ(stated.notes.size(), 1U);

@@ -68,7 +68,7 @@ class LasFile : public PointFile {
     facts.notes = header_.notes;
     facts.notes.insert(facts.notes.end(), layout_.notes.begin(), layout_.notes.end());
     if (las_gps_time_at(header_.point_format) != 0) facts.notes.emplace_back(stated_time(header_));
-    // A damaged beginning is stated here, before anybody makes room for the points.
+    // A damaged beginning is an error here, before anybody makes room for the points.
     if (begins_with_withheld(header_, *open_las_records(bytes_, name_, header_)))
       facts.notes.emplace_back("points that the file marks as withheld are kept");
     clouds_.push_back(std::move(facts));

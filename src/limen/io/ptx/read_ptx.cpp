@@ -29,7 +29,7 @@ constexpr std::size_t kMostSide = 10000000;
 /// The matrices are written with six digits, or fewer.
 constexpr double kRigidTolerance = 2e-3;
 
-/// Where the reading is.
+/// How far the reading has come.
 struct Cursor {
   std::string_view rest;
   std::size_t line = 1;  ///< of the rest's beginning

@@ -149,7 +149,7 @@ void append_column(const RecordTable& table, const Field* field, std::vector<Val
   append_column(table, field, column, [](double value) { return static_cast<Value>(value); });
 }
 
-/// What represents a number that is no whole one within 32 bits.
+/// What is written for a number that is no whole one within 32 bits.
 constexpr std::int32_t kNoInteger = std::numeric_limits<std::int32_t>::min();
 
 void append_integers(const RecordTable& table, const Field* field, std::vector<std::int32_t>& integers) {

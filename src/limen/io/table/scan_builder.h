@@ -23,7 +23,7 @@ struct TableFacts {
   std::optional<Vector3d> centre;           ///< optical centre, offset not yet added
   bool centre_unknown = false;              ///< the file says that it does not know its centre
   std::optional<Vector3d> possible_centre;  ///< taken only where it can be the scanner
-  std::size_t missing = 0;                  ///< rows that the reader has stated as missing returns already
+  std::size_t missing = 0;                  ///< rows that the reader has counted as missing returns already
   std::size_t columns = 0;                  ///< points stored row by row, so many in a row; 0: not so
   std::size_t column_length = 0;            ///< points stored column by column, so many in one; 0: not so
 };

@@ -24,7 +24,7 @@ constexpr std::size_t kCornerShifts = 150;     // of every other pair of walls t
 constexpr double kFrameM = 0.07;               // a window's frame between its two reveals
 constexpr std::size_t kCandidatesPerPiece = 16;
 
-/// A shift in a wall that brings openings together, with what supports it.
+/// A shift in a wall that brings openings together, with the overlap that supports it.
 struct VotedShift {
   Vector2d shift = Vector2d::Zero();
   double vote = 0.0;  // metres of edges, less what they miss

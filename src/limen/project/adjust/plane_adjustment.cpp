@@ -203,7 +203,7 @@ class JointSolver {
     }
   }
 
-  /// Of all freedoms those that edges which are stated hold, and planes do not: so much of their misfits the
+  /// Of all freedoms those that edges to be reported hold, and planes do not: so much of their misfits the
   /// covariances have left.
   [[nodiscard]] double held_by_stated() const {
     double held = 0.0;

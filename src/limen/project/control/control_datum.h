@@ -17,7 +17,7 @@ struct FramedNodes {
   std::vector<bool> member;          ///< of each node: it counts
 };
 
-/// How their frame is to that of the known coordinates.
+/// The pose of their frame in that of the known coordinates.
 struct ControlDatum {
   PointFit fit;
   std::vector<std::size_t> points;  ///< of the fit's pairs: numbers of the marked points

@@ -12,13 +12,11 @@
 
 #include <fmt/format.h>
 
-#include "limen/base/angles.h"
 #include "limen/base/error.h"
 #include "limen/base/text.h"
 #include "limen/files/table_cells.h"
 #include "limen/files/text_numbers.h"
 #include "limen/geometry/linear.h"
-#include "limen/project/control/stated_poses.h"
 
 namespace limen {
 namespace {
@@ -26,12 +24,9 @@ namespace {
 constexpr const char* kControlRemedy =
     "the first line names the columns: name,x,y,z and sigma, or sigma_x,sigma_y,sigma_z, or cov_xx,cov_xy,"
     "cov_xz,cov_yy,cov_yz,cov_zz; metres";
-constexpr const char* kPosesRemedy =
-    "the first line names the columns: file,x,y,z, and if known sigma (metres), heading (degrees clockwise "
-    "from "
-    "the y axis) or qw,qx,qy,qz, and sigma_deg";
-constexpr double kPoseSigmaM = 1.0;
-constexpr double kPoseSigmaDeg = 5.0;
+constexpr const char* kPositionsRemedy =
+    "the first line names the columns: file,x,y,z and, if known, sigma, or sigma_x,sigma_y,sigma_z; metres";
+constexpr double kPositionSigmaM = 1.0;  // satellites near buildings, a tablet's track
 
 /// One row of a table, with what an error has to name.
 class Row {
@@ -124,34 +119,26 @@ void read_table(const std::filesystem::path& path, const std::string& key, const
   for (const TableRow& row : table.rows) visit(Row(columns, row.cells, table.mark, where(row), remedy));
 }
 
-/// The scan's rotation into the frame, if the row gives one.
-std::optional<Matrix3d> rotation_in(const Row& row) {
-  if (row.has("heading") && row.has("qw"))
-    throw Error("there is a heading and a quaternion", row.where(), "take one of them out");
-  if (row.has("qw")) {
-    const Eigen::Quaterniond turn(row.number("qw"), row.number("qx"), row.number("qy"), row.number("qz"));
-    constexpr double kUnit = 0.01;
-    if (std::abs(turn.norm() - 1.0) > kUnit)
-      throw Error(fmt::format("the quaternion has the length {:.3g}, not 1", turn.norm()), row.where(),
-                  "check the order of its columns: qw, qx, qy, qz");
-    return turn.normalized().toRotationMatrix();
-  }
-  const std::optional<double> heading = row.number_if_any("heading");
-  if (!heading) return std::nullopt;
-  return Eigen::AngleAxisd(-radians(*heading), Vector3d::UnitZ()).toRotationMatrix();
+/// Points called by their column `key`, each once. `sigma_m`: where the table has no column of deviations.
+std::vector<SurveyedPoint> read_points(const std::filesystem::path& path, const std::string& key,
+                                       const char* remedy, std::optional<double> sigma_m) {
+  std::vector<SurveyedPoint> points;
+  std::set<std::string> known;
+  read_table(path, key, remedy, [&](const Row& row) {
+    const bool stated = !sigma_m || row.has("sigma") || row.has("sigma_x") || row.has("cov_xx");
+    points.push_back({row.text(key), row.place(),
+                      stated ? row.covariance() : Matrix3d(*sigma_m * *sigma_m * Matrix3d::Identity())});
+    if (!known.insert(points.back().name).second)
+      throw Error((key == "name" ? "the point " : "") + points.back().name + " is given twice", row.where(),
+                  "take one of them out");
+  });
+  return points;
 }
 
 }  // namespace
 
 std::vector<SurveyedPoint> read_surveyed_points(const std::filesystem::path& path) {
-  std::vector<SurveyedPoint> points;
-  std::set<std::string> known;
-  read_table(path, "name", kControlRemedy, [&](const Row& row) {
-    points.push_back({row.text("name"), row.place(), row.covariance()});
-    if (!known.insert(points.back().name).second)
-      throw Error("the point " + points.back().name + " is given twice", row.where(), "take one of them out");
-  });
-  return points;
+  return read_points(path, "name", kControlRemedy, std::nullopt);
 }
 
 std::vector<SeenTarget> read_seen_targets(const std::filesystem::path& path) {
@@ -168,23 +155,8 @@ std::vector<SeenTarget> read_seen_targets(const std::filesystem::path& path) {
   return targets;
 }
 
-std::vector<StatedPose> read_stated_poses(const std::filesystem::path& path) {
-  std::vector<StatedPose> poses;
-  std::set<std::string> known;
-  read_table(path, "file", kPosesRemedy, [&](const Row& row) {
-    StatedPose pose;
-    pose.scan = row.text("file");
-    pose.x = row.place();
-    pose.covariance = kPoseSigmaM * kPoseSigmaM * Matrix3d::Identity();
-    if (row.has("sigma") || row.has("sigma_x") || row.has("cov_xx")) pose.covariance = row.covariance();
-    pose.frame_from_scan = rotation_in(row);
-    pose.of_origin = row.has("qw");
-    pose.sigma_rad = radians(row.has("sigma_deg") ? row.sigma("sigma_deg") : kPoseSigmaDeg);
-    if (!known.insert(pose.scan).second)
-      throw Error(pose.scan + " is given twice", row.where(), "take one of them out");
-    poses.push_back(std::move(pose));
-  });
-  return poses;
+std::vector<SurveyedPoint> read_stated_positions(const std::filesystem::path& path) {
+  return read_points(path, "file", kPositionsRemedy, kPositionSigmaM);
 }
 
 }  // namespace limen

@@ -31,11 +31,15 @@ struct SeenTarget {
 /// and sigma, or sigma_x, sigma_y, sigma_z (metres), or cov_xx, cov_xy, cov_xz, cov_yy, cov_yz, cov_zz
 /// (square metres). Between semicolons a comma may stand for the decimal point. Every digit is kept.
 /// Throws Error that names the file, the line and what can be done: a column is missing, a number is none, a
-/// deviation is not positive, a name is twice.
+/// deviation is not positive, a name occurs twice.
 std::vector<SurveyedPoint> read_surveyed_points(const std::filesystem::path& path);
 
 /// The same with a column `scan`, and perhaps `time` (seconds); a target may be seen by many scans, by each
 /// of them once at a time.
 std::vector<SeenTarget> read_seen_targets(const std::filesystem::path& path);
+
+/// Approximate scanner positions: a table of points with a column `file`, which names the scan, in place of
+/// `name`. Without a column of deviations these are 1 m.
+std::vector<SurveyedPoint> read_stated_positions(const std::filesystem::path& path);
 
 }  // namespace limen

@@ -21,7 +21,7 @@ struct PointPair {
 enum class PointFitState {
   fixed,         ///< all six freedoms, and what is left out is distinguished from the rest
   too_few,       ///< they leave a freedom open
-  contradictory  ///< they contradict one another, and which of them is wrong cannot be stated
+  contradictory  ///< they contradict one another, and which of them is wrong cannot be decided
 };
 
 struct PointFit {

@@ -129,7 +129,7 @@ TEST(SettlePoints, ABlunderIsFoundAndNamed) {
     }
     RecordProperty("named_of_50_with_" + std::to_string(control), named);
     RecordProperty("contradicted_of_50_with_" + std::to_string(control), contradicted);
-    // Four points nearly in one plane: which of them is off across it cannot be stated, and that is said.
+    // Four points nearly in one plane: which of them is off across it cannot be decided, and that is said.
     EXPECT_EQ(wrong, 0) << control;
     EXPECT_GE(named + contradicted, 50) << control;
     EXPECT_GE(named, control == 4 ? 35 : control == 5 ? 45 : 49) << control;

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Jobs on Dask: a small Python program beside limen (limen_dask.py) takes them line by line and answers line
-// by line. It retries what may be retried; here only the rest is stated.
+// by line. It retries what may be retried; here only the rest is reported.
 #include <cstdlib>
 #include <filesystem>
 #include <optional>

@@ -26,7 +26,7 @@ class HelperProcess {
   bool say(const std::string& line);
   /// The next line, waiting for it so long; nothing where none came. See ended().
   std::optional<std::string> hear(int milliseconds);
-  /// It closed its stdout and all of its lines were answered.
+  /// It closed its stdout and all of its lines were read.
   [[nodiscard]] bool ended() const { return ended_; }
 
  private:

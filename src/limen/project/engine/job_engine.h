@@ -28,7 +28,7 @@ struct EngineOptions {
   bool trust_network = false;       ///< a scheduler elsewhere may be reached without TLS
   std::function<void(const std::string&)> on_note = {};  ///< hears what goes wrong and is made good
 
-  /// Throws Error where both ways to the scheduler are stated, or TLS is stated in part.
+  /// Throws Error where both ways to the scheduler are given, or TLS is given in part.
   void check() const;
 };
 

@@ -65,7 +65,7 @@ TEST(Configuration, APairOfLookAlikesKeepsPartsFromEachOther) {
   EXPECT_EQ(best_configuration(made.graph, LinkMatcher(made.graph)).component[1], 1);
 }
 
-/// Scans of one room of a hotel laid on another room: what each link says for itself is answered as a move.
+/// Scans of one room of a hotel laid on another room: what each link says for itself is tried as a move.
 TEST(Moves, APoseThatIsNotTakenProposesAMove) {
   SyntheticGraph made = synthetic_graph(4, 1, 3, 0.0, 5);
   RandomStream random(5, 3);

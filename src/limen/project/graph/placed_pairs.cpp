@@ -38,7 +38,7 @@ evidence_table::Contradiction learned_contradiction(const std::vector<PoseHeard>
   return learned;
 }
 
-/// By how much the contradicted share of two scans supports their placement, nats.
+/// The evidence of the contradicted share of two scans for their placement, nats.
 double nats_of_contact(const PoseHeard& queried, const evidence_table::Contradiction& table) {
   if (contact_m2(queried) < kLeastContactM2) return 0.0;
   return std::min(kMostAskedNats, nats_of_contradiction(queried.agreeing_m2, queried.contradicted_m2, table));
@@ -59,7 +59,7 @@ PlacedPair asked_pair(int source, int target, const Rigid3& target_from_source, 
   pair.evidence.twins.otherwise_nats = pair.evidence.twins.alike_nats = std::min(0.0, nats);
   if (nats <= 0.0 || !query.things) return pair;
   if (const std::optional<TwinEvidence> things = query.things(source, target, target_from_source)) {
-    // What is elsewhere may seem to where a placement is known to a decimetre; what agrees does agree.
+    // What is elsewhere may seem to agree where a placement is known to a decimetre; what agrees does agree.
     pair.evidence.twins.otherwise_nats = std::clamp(things->otherwise_nats, 0.0, kMostAskedNats);
   }
   return pair;

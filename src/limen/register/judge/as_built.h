@@ -79,7 +79,7 @@ class AsBuiltDensity {
 /// millimetres and minutes of arc off, each in its own way. By how much what two scans saw of the building's
 /// surfaces supports one place, natural logarithm; negative: for a place built alike. The pose has been
 /// fitted to these very surfaces: its six freedoms are integrated out in either explanation. How well the
-/// building is built is stated by its own walls, so that one that is exactly as drawn (a simulated one) says
+/// building is built is shown by its own walls, so that one that is exactly as drawn (a simulated one) says
 /// nothing.
 double as_built_nats(std::span<const CommonSurface> surfaces, const AsBuiltBelief& belief = {});
 

@@ -26,10 +26,10 @@ class BuiltPlanes {
   [[nodiscard]] std::optional<double> floor_below(const Vector3d& x) const;
 
   enum class Place { off, at_wall, behind };
-  /// Where `x` is to the walls: at one (or at the ceiling, or on stairs), or behind one.
+  /// Where `x` is against the walls: at one (or at the ceiling, or on stairs), or behind one.
   [[nodiscard]] Place place(const Vector3d& x) const;
 
-  /// Whether a face at `x` may be the front of something that is with its back to a wall.
+  /// Whether a face at `x` may be the front of something with its back to a wall.
   [[nodiscard]] bool is_front(const Vector3d& x, const Vector3d& normal) const;
 
   /// Whether the way from `a` to `b` leads through a wall, or an opening of it.

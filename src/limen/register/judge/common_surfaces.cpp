@@ -128,7 +128,7 @@ Fit fit_of(const std::vector<TilePair>& pairs) {
   return fit;
 }
 
-/// Without what hangs on a wall or is off it.
+/// Without what hangs on a wall or protrudes from it.
 std::vector<TilePair> without_outliers(const std::vector<TilePair>& pairs) {
   std::vector<double> values;
   for (const TilePair& pair : pairs) values.push_back(pair.apart_m);

@@ -13,7 +13,7 @@ namespace {
 constexpr double kSigmas = 3.0;
 constexpr double kAsBuiltM = 0.05;  // by how much built matter may miss its drawing and count
 
-/// A pose between the scans' worlds, stated between the frames that they were prepared in.
+/// A pose between the scans' worlds, expressed between the frames that they were prepared in.
 Rigid3 between_prepared(const PreparedScan& source, const PreparedScan& target,
                         const Rigid3& target_from_source) {
   const Rigid3 own = to_local(target_from_source, source.extracted.features.local_origin,

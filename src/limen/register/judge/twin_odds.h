@@ -36,7 +36,7 @@ TwinOptions where_nothing_repeats(TwinOptions options);
 
 /// What things say of three explanations of two scans whose walls fit: one room; a twin furnished otherwise;
 /// a twin furnished alike. Each says with which share individual matter and faces agree; the share itself is
-/// integrated out (beta-binomial). Without observations nothing supports or against any.
+/// integrated out (beta-binomial). Without observations there is no evidence for or against any.
 TwinEvidence weigh_twin(const IndividualMatter& individual, const TwinOptions& options = {});
 
 /// The probability that the scans show two rooms built alike and not one, by Bayes' rule.

@@ -49,7 +49,7 @@ TEST(TwinOdds, ThingsThatAgreeToTheMillimetreMakeOneRoom) {
 }
 
 TEST(TwinOdds, OfARoomInUseWhatStayedTellsTheRoom) {
-  // Of what is nearby a half was pushed by hand; the rest is to a fraction of a millimetre.
+  // Of what is nearby a half was pushed by hand; the rest agrees to a fraction of a millimetre.
   std::vector<FaceMiss> in_use = faces(6, 0.0005);
   for (FaceMiss pushed : faces(5, 0.012)) {
     pushed.thing += 6;
@@ -121,7 +121,7 @@ TEST(TwinOdds, FrontsOfCupboardsTellLessThanTheirSides) {
 }
 
 TEST(TwinOdds, SidesOfOneThingAreTheBuildingsTogether) {
-  // A step of a flight, of which two sides are seen, is to the millimetre on every storey.
+  // A step of a flight, of which two sides are seen, is the same to the millimetre on every storey.
   std::vector<FaceMiss> sides = faces(2, 0.0002);
   const double of_two = weigh_twin(seen({8, 0.8}, sides)).alike_nats;
   sides[1].thing = sides[0].thing;

@@ -10,7 +10,7 @@
 
 namespace limen {
 
-/// The way of a mobile scan, stated at knots that stand evenly along it.
+/// The way of a mobile scan, given at knots that stand evenly along it.
 struct PassWay {
   std::vector<double> times_s;      ///< ascending
   std::vector<double> distances_m;  ///< travelled
@@ -31,7 +31,7 @@ struct PassStrip {
 
 /// A scan as finding the drift of passes needs it.
 struct PassTrack {
-  PassWay way;  ///< empty of a static scan, and where it has no times, is still, or is shorter than 10 m
+  PassWay way;  ///< empty of a static scan, and where it has no times, does not move, or is shorter than 10 m
   std::vector<PassStrip> strips;
 };
 

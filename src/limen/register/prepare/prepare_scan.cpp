@@ -17,7 +17,7 @@
 namespace limen {
 namespace {
 
-constexpr double kFramed = 0.1;  // shares of the work, about, by which progress is stated
+constexpr double kFramed = 0.1;  // shares of the work, about, by which progress is reported
 constexpr double kExtracted = 0.75;
 constexpr double kSpaceKnown = 0.85;
 constexpr double kFlatNoise = 1.6;  // noise, and what its estimate is off
@@ -74,7 +74,7 @@ ScannerPlace in_world(ScannerPlace place, const Vector3d& local_origin) {
   return place;
 }
 
-/// Whether the relief of façades is stated; poses are sought with few and large planes.
+/// Whether the relief of façades is found; poses are sought with few and large planes.
 bool wants_relief(const PrepareOptions& options) {
   return options.extract.detect.relief && (options.planes_only || options.segments);
 }

@@ -13,7 +13,7 @@
 namespace limen {
 
 /// Samples in runs of neighbours as they follow one another, each run within a ball: whether all, none or
-/// some of a run lie in a box is mostly stated by the ball alone.
+/// some of a run lie in a box is mostly decided by the ball alone.
 class SampleRuns {
  public:
   SampleRuns() = default;

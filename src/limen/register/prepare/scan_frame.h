@@ -19,7 +19,7 @@ struct ScanFrame {
   ScannerPlace place;                               ///< about the scan's local origin
 };
 
-/// Up is, of the main directions of the large planes, the one that most supports: a tripod scanner measures
+/// Up is, of the main directions of the large planes, the one with most evidence: a tripod scanner measures
 /// nothing straight below itself and is nearer to the floor than to the ceiling; walls and floors lie
 /// along and across it; a vehicle has the ground 1 to 5 m under its path; and, unless `gravity` is unknown, z
 /// of the file is up more often than not. Costs a look at part of the points.

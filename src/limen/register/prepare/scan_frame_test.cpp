@@ -256,7 +256,7 @@ TEST(PrepareScan, FindsTheSameHoweverTheScanLies) {
   EXPECT_NEAR(static_cast<double>(other.extracted.features.samples.size()), samples, 0.01 * samples);
 }
 
-/// What is stated is stated in the scan's own coordinates.
+/// What is reported is in the scan's own coordinates.
 TEST(PrepareScan, FeaturesComeBackIntoTheScansOwnFrame) {
   const Rigid3 motion = some_motion(5);
   Scan scan = moved(station_scan(-60.0), motion);

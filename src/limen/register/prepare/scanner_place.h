@@ -23,7 +23,7 @@ std::optional<Scan> sample_for_place(const Scan& scan);
 ScannerPlace find_scanner_place(const Scan& scan, const std::vector<FramePlane>& planes,
                                 const Matrix3d& axes);
 
-/// A place that the data stated, stated again with better planes; any other place as it is.
+/// A place that was estimated, estimated again with better planes; any other place as it is.
 ScannerPlace refined_place(const ScannerPlace& place, const Scan& scan, const std::vector<FramePlane>& planes,
                            const Matrix3d& axes);
 

@@ -17,7 +17,7 @@
 //   gives a thickness, the chosen pose is moved back by it; else the shift across the wall is not held, and
 //   said so;
 // - the planes across the façade are those of Algorithm 1's clusters that lie within 10 degrees of it;
-// - the number of trials is not stated: `trials`;
+// - the number of trials is not given: `trials`;
 // - those of match/segments/segment_distance.h (1 to 8) and match/planes/direction_clusters.h.
 
 namespace limen {

@@ -10,10 +10,10 @@
 //
 // Departures from the printed text:
 // - the openings are those that limen finds (extract/openings), whose rectangles stand upright;
-// - a direction's sign is not stated: verticals point up, and horizontals so that the scanners stand on the
+// - a direction's sign is not given: verticals point up, and horizontals so that the scanners stand on the
 // two
 //   sides of the wall, as indoor and outdoor scans do;
-// - the number of trials is not stated: `trials`;
+// - the number of trials is not given: `trials`;
 // - those of match/segments/segment_distance.h (3 to 14; the four end points are those of the whole segments,
 //   as printed) and of match/solvers/rigid_from_lines.h (15 to 19).
 // As printed, the two faces of a wall are laid on each other: the shift across it is not held, and said so.

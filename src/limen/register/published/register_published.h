@@ -18,7 +18,7 @@
 // - the start is what the coordinates of the two files say: x_target = x_source;
 // - a method gives one pose and no verdict. The outcome is never `registered`, which says that every other
 //   pose was looked at: it is `ambiguous`, or `under_constrained` where the method leaves a freedom open by
-//   construction, and the reason tells what limen's own measure says of the pose. No deviation is stated.
+//   construction, and the reason tells what limen's own measure says of the pose. No deviation is given.
 
 namespace limen {
 

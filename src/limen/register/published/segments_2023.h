@@ -17,7 +17,7 @@
 // - a double pair is tried only where both sets hold the same |d_v . d_h| within `max_angle_rad` and the two
 //   lines pass each other at the same distance within d of (7);
 // - (8) is taken both ways, and over the `max_segments` longest segments of each set;
-// - the number of trials is not stated: `trials`;
+// - the number of trials is not given: `trials`;
 // - those of match/planes/direction_clusters.h (algorithm 1), match/segments/segment_distance.h (1 to 8) and
 //   match/solvers/rigid_from_lines.h (10 to 14).
 

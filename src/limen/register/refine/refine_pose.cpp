@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kWeakShare = 1e-4;      // of the information: less is the planes' error
 constexpr double kMaxCentreM = 20.0;     // the best known point is sought this far from the matched surface
-constexpr double kBuilderErrsM = 0.002;  // by how much a wall is elsewhere than drawn, at least: 1 sigma
+constexpr double kBuilderErrsM = 0.002;  // by how much a wall differs from the drawing, at least: 1 sigma
 constexpr int kLeastTilted = 8;          // tiles of a pair whose slopes are looked at
 constexpr double kGateSigma = 0.2;       // deviation of a tile far from the goal, as a share of the gate
 

@@ -40,7 +40,7 @@ std::string deviation_columns();
 std::string deviation_row(const ElementDeviation& it, const BimElement& element);
 
 /// Red, green and blue of a deviation: blue for missing matter (negative), light grey at 0, orange for matter
-/// that is out; full colour from `limit_m` on. Stated apart with every kind of colour vision.
+/// that is out; full colour from `limit_m` on. Distinguishable with every kind of colour vision.
 struct Colour {
   unsigned char red = 0;
   unsigned char green = 0;

@@ -14,7 +14,7 @@ struct VerdictWords {
   std::string headline;                ///< "Registered: the two scans fit in one way only"
   std::vector<std::string> sentences;  ///< what to expect, what is open
   std::string reason;                  ///< in the program's own words, where no sentence tells it
-  std::string symbol;                  ///< one character: no outcome is stated by colour alone
+  std::string symbol;                  ///< one character: no outcome is shown by colour alone
 };
 VerdictWords verdict_words(const RegistrationReport& report);
 

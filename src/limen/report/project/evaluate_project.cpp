@@ -13,7 +13,7 @@
 namespace limen {
 namespace {
 
-/// A registered scan: where it is, and where it should.
+/// A registered scan: where it is, and where it should be.
 struct Placed {
   std::string file;
   Rigid3 frame_from_scan;
@@ -75,7 +75,7 @@ const TrueScan& truth_of(const ProjectEntry& entry, const std::vector<ProjectEnt
               "give the truth of the scans of this project");
 }
 
-/// The middle of where the scanners stood; nothing where no scanner's place is stated.
+/// The middle of where the scanners stood; nothing where no scanner's place is known.
 std::optional<Vector3d> middle_of(const std::vector<TrueScan>& truth) {
   Vector3d sum = Vector3d::Zero();
   int count = 0;

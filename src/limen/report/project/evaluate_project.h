@@ -11,7 +11,7 @@
 
 namespace limen {
 
-/// How far a registered scan is from where it should, against the project's reference.
+/// How far a registered scan is from where it should be, against the project's reference.
 struct PlaceError {
   std::string file;
   double shift_m = 0.0;  ///< at its scanner; of a pass, in the middle of all stations

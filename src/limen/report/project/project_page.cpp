@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -219,13 +220,15 @@ std::string points_table(const ProjectResult& result) {
                    "any axis that would be detected.");
 }
 
-/// What is noted of many files alike is stated once.
+/// What is noted of many files alike is shown once.
 std::string notes(const ProjectResult& result) {
   if (result.notes.empty()) return {};
   constexpr std::size_t kMany = 4;
-  const auto words = [](const std::string& note) {
+  std::set<std::string> files;
+  for (const ProjectScan& scan : result.scans) files.insert(scan.file);
+  const auto words = [&](const std::string& note) {
     const std::size_t end = note.find(": ");
-    return end == std::string::npos ? note : note.substr(end + 2);
+    return end != std::string::npos && files.count(note.substr(0, end)) > 0 ? note.substr(end + 2) : note;
   };
   std::map<std::string, std::size_t> count;
   for (const std::string& note : result.notes) ++count[words(note)];

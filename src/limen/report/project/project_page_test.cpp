@@ -155,7 +155,7 @@ TEST(ProjectPage, ShowsScansWhereTheyStandAlongTheBuildingsWalls) {
   EXPECT_EQ(scene["side-0"]["count"], 3);
   EXPECT_EQ(scene["side-1"]["shape"], "none");
   EXPECT_EQ(page.find("/a/folder"), std::string::npos);
-  // A point's place in the frame is stated again by the page's own numbers.
+  // A point's place in the frame is computed again from the page's own numbers.
   const auto number = [](const nlohmann::json& value) { return value.get<double>(); };
   Vector3d in_frame = Vector3d::Zero();
   for (Eigen::Index k = 0; k < 3; ++k) {

@@ -66,8 +66,7 @@ std::size_t loops_through(const ProjectResult& result, std::size_t link) {
 std::string stations_csv(const ProjectResult& result) {
   std::string text =
       "file,state,group,x_m,y_m,z_m,held_fixed,sigma_x_m,sigma_y_m,sigma_z_m,sigma_heading_deg,radius_95_m,"
-      "loa,"
-      "within_tolerance,probability_wrong,reason\r\n";
+      "loa,within_tolerance,probability_wrong,reason\r\n";
   for (std::size_t k = 0; k < result.scans.size(); ++k) {
     const ProjectScan& scan = result.scans[k];
     if (scan.model) continue;

@@ -12,7 +12,7 @@ namespace limen {
 
 /// How well the place of a scan is known in its frame, as an office hands it in.
 struct StationAccuracy {
-  bool held_fixed = false;               ///< all others are stated against this one
+  bool held_fixed = false;               ///< the sigmas of all others are against this one
   Vector3d sigma_m = Vector3d::Zero();   ///< along the frame's axes
   double heading_sigma_rad = 0.0;        ///< about the vertical
   double radius_m = 0.0;                 ///< holds the place in 95 % of cases

@@ -23,7 +23,7 @@ Vector3d inner_size(const InputSummary& side) {
 
 constexpr double kSureApart = 1.05;  // heights of storeys that differ by less are hardly a chance
 
-/// Evidence for a cause; the largest is stated first.
+/// Evidence for a cause; the largest is shown first.
 struct WeighedCause {
   double weight = 0.0;
   LikelyCause cause;
@@ -251,7 +251,7 @@ std::optional<UnitGuess> likely_unit(const InputSummary& source, const InputSumm
   const double thickness = apart(from[0], to[0]);  // of storeys, mostly: they hardly differ
   const double length = source_larger ? from[2] / to[2] : to[2] / from[2];
   const InputSummary& larger = source_larger ? source : target;
-  // A model's unit is stated by its file; and who stated a unit is not asked for another.
+  // A model's unit is in its file; and who gave a unit is not asked for another.
   if (larger.kind == "model" || larger.metres_per_unit != 1.0) return std::nullopt;
   // A building may well be three times as high and as long as a room of another, both in metres.
   if (is_size_of_building(inner_size(larger))) return std::nullopt;

@@ -21,7 +21,7 @@ struct LikelyCause {
 std::vector<LikelyCause> likely_causes(const RegistrationReport& report);
 
 /// What the user does next, sentences of plain text, for every outcome. `folder`: where result.json and
-/// report.html are; it is in the commands that are named.
+/// report.html are; it is part of the commands that are named.
 std::vector<std::string> next_steps(const RegistrationReport& report, const std::string& folder = "");
 
 /// Of a pose that is placed, but not surely: the one thing that would make it surer, after what else is the

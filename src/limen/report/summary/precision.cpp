@@ -43,7 +43,7 @@ PlacePrecision precision_at(const Vector3d& at, const PoseSigma& sigma,
   return place;
 }
 
-/// Places of the side whose precision is stated, in the target's world.
+/// Places of the side whose precision is reported, in the target's world.
 struct StatedPlaces {
   Vector3d middle = Vector3d::Zero();
   std::vector<Vector3d> corners;

@@ -30,7 +30,7 @@ struct PosePrecision {
   PlacePrecision middle;        ///< of the source (of the scan, where the source is a model)
   PlacePrecision far_end;       ///< the worst corner of the box round the central 98 % of its points
   double far_distance_m = 0.0;  ///< of the far end from the middle
-  bool across_open = false;     ///< a shift is open: what is stated holds across it
+  bool across_open = false;     ///< a shift is open: what is reported holds across it
 };
 
 /// Of a pose of the report; nothing where there is none, a turn is open, or a published method tells nothing.

@@ -165,7 +165,7 @@ Plane AsBuilt::level_plane(std::size_t index, bool high, double share) const {
   const double z = levels_of(plan_, index)[high ? 1 : 0];
   const Vector3d up = high && !outside ? Vector3d(-Vector3d::UnitZ()) : Vector3d(Vector3d::UnitZ());
   const Plane drawn{up, up.z() * z};
-  // A building is in the ground: there is no gap below its walls.
+  // A building is in the ground: no gap is below its walls.
   if (outside && !high) return drawn;
   RandomStream random(seed_, 2000000 + 2 * index + (high ? 1U : 0U));
   const double held = quality_ * share * std::min(1.0, kHeldFrom / (top - low).maxCoeff());

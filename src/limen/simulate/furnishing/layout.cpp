@@ -318,7 +318,7 @@ Layout as_placed(const Layout& layout, const World& world, std::size_t building,
     const double outward = much * options.shift_m * random.normal();
     const double sideways = much * options.shift_m * random.normal();
     placed.back += sideways * placed.along;
-    // Nothing is pushed into the wall it is at.
+    // Nothing is pushed into the wall behind it.
     if (!on_wall(placed.piece.kind)) placed.back += std::abs(outward) * left_of(placed.along);
     placed.along = along;
     result.push_back(placed);

@@ -11,7 +11,7 @@
 
 namespace limen {
 
-/// What is, lies or hangs in rooms. Boxes are only some of them.
+/// What stands, lies or hangs in rooms. Boxes are only some of them.
 enum class PieceKind : std::uint8_t {
   wardrobe,
   cupboard,

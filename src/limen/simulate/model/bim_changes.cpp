@@ -127,7 +127,7 @@ class Mover {
     return host < 0 ? own_[element] : Vector3d(own_[element] + own_[static_cast<std::size_t>(host)]);
   }
 
-  /// Takes back shifts, of what is seen most first, until most of the building is where it should.
+  /// Takes back shifts, of what is seen most first, until most of the building is where it should be.
   void keep_majority(const SeenSurface& seen) {
     for (std::size_t axis = 0; axis < 3; ++axis)
       while (moved_area(seen, axis) > o_.most_moved_share * seen.total[static_cast<Eigen::Index>(axis)])

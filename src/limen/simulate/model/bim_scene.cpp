@@ -78,7 +78,7 @@ class BimSimulation {
     Rigid3 local_from_scan;
     local_from_scan.rotation = station_rotation(o_.any_rotation, random);
     local_from_scan.translation = rounded(stations_[number].position);
-    // The head is upright whatever frame the points are given in.
+    // The head stands upright whatever frame the points are given in.
     const Rigid3 head{any_heading(random), local_from_scan.translation};
     const Sweep result = sweep_of(caster, head, mix64(o_.seed * 1000 + number + 77));
     Scan scan = station_scan((number < 9 ? "scan_0" : "scan_") + std::to_string(number + 1), result,

@@ -129,7 +129,7 @@ struct ScanTruth {
   std::vector<std::int32_t> element_of_point = {};
 };
 
-/// How an element of a model is in the building that was scanned.
+/// What became of an element of a model in the building that was scanned.
 enum class ModelState : std::uint8_t {
   moved,    ///< built elsewhere: shift_m
   missing,  ///< never built
