@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "known_scans.h"
-#include "matter_rows.h"
+#include "prepared_frames.h"
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
@@ -155,7 +155,7 @@ class Rows {
     const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
     const IndividualMatter matter = individual_matter(source, target, pose);
     TwinEvidence said = weigh_twin(matter);
-    const double after = said.probability();
+    const double after = probability_of(said);
     said.built_nats = 0.0;
     std::string list;
     for (const CommonSurface& one : surfaces.all)
@@ -168,7 +168,7 @@ class Rows {
                R"({{"set": "{}", "pair": "{}", "kind": "{}", "agreeing": {:.1f}, "contradicted": {:.1f}, )"
                R"("nats": {:.2f}, "without": {:.3g}, "with": {:.3g}, "otherwise": {:.2f}, "alike": {:.2f}, )"
                R"("scatter_mm": {:.2f}, "noise_mm": {:.2f}, "seconds": {:.4f}, "surfaces": [{}]{}}})",
-               set, names, kind, score.agreeing_m2, score.contradicted_m2, nats, said.probability(), after,
+               set, names, kind, score.agreeing_m2, score.contradicted_m2, nats, probability_of(said), after,
                said.otherwise_nats, said.alike_nats, 1e3 * surfaces.scatter_m,
                1e3 * std::max(source.features->noise_m, target.features->noise_m), spent.count(), list,
                tables_of(surfaces.all))

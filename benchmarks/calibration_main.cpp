@@ -5,7 +5,6 @@
 // have nothing in common, other buildings of the same kind; against the simulator's exact truth.
 //   bench_calibration --purpose judging --minutes 20 -o rows.csv      again: goes on where it stopped
 //   bench_calibration --purpose fitting --only twin --pairs 100 -o rows.csv
-//   bench_calibration --purpose fitting --matter matter.jsonl         what scripts/fit_judge reads
 //   bench_calibration --report rows.csv --svg reliability.svg         the tables of rows made before
 // A pose is the true one within 5 cm at the scanner and half a degree.
 #include <chrono>
@@ -16,7 +15,6 @@
 
 #include "calibration_kinds.h"
 #include "calibration_rows.h"
-#include "matter_rows.h"
 #include <CLI/CLI.hpp>
 
 #include "limen/base/angles.h"
@@ -40,7 +38,6 @@ struct Settings {
   double minutes = 10.0;
   bool plain = false;
   std::string output;
-  std::string matter;
   std::string wrong;
   bool lost = false;
   std::string report;
@@ -91,8 +88,8 @@ class Ready {
 };
 
 /// Registers two scans; `truth`: nothing where there is none (another building).
-RegistrationResult measure(Row& row, const PreparedPair& pair, const std::optional<Rigid3>& truth,
-                           const Vector3d& scanner) {
+void measure(Row& row, const PreparedPair& pair, const std::optional<Rigid3>& truth,
+             const Vector3d& scanner) {
   const auto start = std::chrono::steady_clock::now();
   RegistrationResult result = register_prepared(pair);
   row.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -111,7 +108,6 @@ RegistrationResult measure(Row& row, const PreparedPair& pair, const std::option
   row.near = best.near();
   row.listed = row.near;
   for (const Hypothesis& other : result.alternatives) row.listed = consider(other).near() || row.listed;
-  return result;
 }
 
 class Calibration {
@@ -196,8 +192,7 @@ class Calibration {
                 const std::optional<Rigid3>& truth) {
     if (row.kind == "unclear" || !wanted(s_.only, row.kind) || done_.count(key_of(row)) > 0) return;
     PreparedPair pair{from.take(i), to.take(j)};
-    const RegistrationResult result = measure(row, pair, truth, from.set().scans[i].truth.scanner);
-    tell_matter(row, pair, result);
+    measure(row, pair, truth, from.set().scans[i].truth.scanner);
     from.put_back(i, std::move(pair.source));
     to.put_back(j, std::move(pair.target));
     ++made_;
@@ -238,23 +233,9 @@ class Calibration {
     pose << "0 0 0 1\n";
   }
 
-  /// Of poses that lay a room on itself, or on another one of its building.
-  void tell_matter(const Row& row, const PreparedPair& pair, const RegistrationResult& result) {
-    const bool other = row.kind == "twin" || row.kind == "other_room";
-    if (s_.matter.empty() || !(row.near || other || row.wrong()) || !result.best.twin) return;
-    if (!matter_.is_open()) matter_.open(s_.matter, std::ios::app);
-    const std::string about = fmt::format(
-        R"("building": "{}", "purpose": "{}", "seed": {}, "source": "{}", "target": "{}", "kind": "{}", )"
-        R"("furnished_alike": {}, "stated": {:.6g})",
-        row.building, row.purpose, row.seed, row.source, row.target, row.kind, row.furnished_alike,
-        result.best.twin->probability());
-    matter_ << matter_line(pair, result.best.target_from_source, about, !row.near) << "\n" << std::flush;
-  }
-
   const Settings& s_;
   std::chrono::steady_clock::time_point start_;
   std::ofstream file_;
-  std::ofstream matter_;
   std::vector<Row> rows_;
   std::set<std::string> done_;
   int made_ = 0;
@@ -308,8 +289,6 @@ int main(int argc, char** argv) {
   app.add_flag("--plain", settings.plain, "no random styles");
   app.add_option("-o,--output", settings.output,
                  "rows are added to this file; what it has is not done again");
-  app.add_option("--matter", settings.matter,
-                 "what things say of the poses is added to this file (JSON lines)");
   app.add_option("--wrong", settings.wrong,
                  "the scans of pairs of which a wrong pose is told to be sure are written to this folder");
   app.add_flag("--lost", settings.lost, "so are those of pairs of one place whose pose was not found");

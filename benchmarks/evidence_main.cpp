@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "known_scans.h"
-#include "matter_rows.h"
+#include "prepared_frames.h"
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
@@ -84,11 +84,9 @@ class Rows {
         if (here.kind_of(i, j) == PairKind::unclear) continue;
         const std::string kind =
             std::string(to_string(here.kind_of(i, j))) + (here.furnished_alike(i, j) ? "_alike" : "");
-        const bool shared =
-            here.kind_of(i, j) != PairKind::twin && here.kind_of(i, j) != PairKind::other_room;
         PreparedPair pair{scans[i], scans[j]};
         run(name_of(seed), here.scans[i].truth.name, here.scans[j].truth.name, kind, pair,
-            shared ? std::optional(here.target_from_source(i, j)) : std::nullopt);
+            here.target_from_source(i, j));
       }
       for (std::size_t j = 0; j < foreign.size() && i < 4; ++j) {
         PreparedPair pair{scans[i], foreign[j]};
@@ -109,6 +107,14 @@ class Rows {
     file_ << fmt::format(R"({{"set": "{}", "placed": "{}", "agreeing": {:.3f}, "contradicted": {:.3f}}})",
                          s_.set, as == j ? "right" : "wrong", score.agreeing_m2, score.contradicted_m2)
           << "\n";
+  }
+  static std::string things(const IndividualMatter& seen) {
+    std::string faces;
+    for (const FaceMiss& face : seen.faces)
+      faces += fmt::format("{}[{:.2f}, {:.3f}, {:.2f}]", faces.empty() ? "" : ", ", 1e3 * face.offset_m,
+                           face.share, 1e3 * face.sigma_m);
+    return fmt::format(R"("count": {:.2f}, "share": {:.3f}, "chance": {:.3f}, "faces_mm": [{}])",
+                       seen.matter.count, seen.matter.share, seen.chance, faces);
   }
   static std::string place_of(const std::string& name) { return name.substr(0, name.find('/')); }
   [[nodiscard]] std::string name_of(std::uint64_t seed) const {
@@ -161,11 +167,8 @@ class Rows {
                       unobserved_freedoms(poses[k].refined, 0.03).empty());
       if (sort_of(worked) == PairSort::rooms && k < kAskedThings) {
         const IndividualMatter seen = asker(poses[k].refined.target_from_source);
-        const TwinEvidence twin = weigh_twin(seen);
-        text += fmt::format(
-            R"(, "otherwise": {:.3f}, "alike": {:.3f}, "built": {:.3f}, "apart": {:d}, "count": {:.2f}, "share": {:.3f})",
-            twin.otherwise_nats, twin.alike_nats, seen.built_nats, seen.apart, seen.matter.count,
-            seen.matter.share);
+        text +=
+            fmt::format(R"(, "built": {:.3f}, "apart": {:d}, {})", seen.built_nats, seen.apart, things(seen));
       }
       text += "}";
     }

@@ -295,8 +295,7 @@ bool Configuration::joins(const GraphLink& link) const {
 void JoinEvidence::add(const PairEvidence& evidence) {
   chance_ += evidence.chance_nats + evidence.coincidence_nats;
   first_ = std::max(first_, evidence.coincidence_nats);
-  otherwise_.add(evidence);
-  alike_.add(evidence);
+  look_alike_.add(evidence);
   if (evidence.looks_for_twins) {
     prior_otherwise_ = std::max(prior_otherwise_, evidence.twins.otherwise);
     prior_alike_ = std::max(prior_alike_, evidence.twins.alike);
@@ -306,8 +305,9 @@ void JoinEvidence::add(const PairEvidence& evidence) {
 
 double JoinEvidence::nats() const {
   if (!any_) return 0.0;
-  return -std::log(std::exp(first_ - chance_) + prior_otherwise_ * std::exp(-otherwise_.sum()) +
-                   prior_alike_ * std::exp(-alike_.sum()) + kLeastOdds);
+  return -std::log(std::exp(first_ - chance_) +
+                   prior_otherwise_ * std::exp(-look_alike_.against_otherwise()) +
+                   prior_alike_ * std::exp(-look_alike_.against_alike()) + kLeastOdds);
 }
 
 LinkMatcher::LinkMatcher(const PoseGraph& graph) : graph_(graph) {

@@ -54,8 +54,7 @@ class JoinEvidence {
   bool any_ = false;
   double chance_ = 0.0;
   double first_ = 0.0;  ///< the first pair that joins the two closes no loop
-  LookAlikeNats otherwise_{&TwinEvidence::otherwise_nats};
-  LookAlikeNats alike_{&TwinEvidence::alike_nats};
+  LookAlikeSum look_alike_;
   double prior_otherwise_ = 0.0;
   double prior_alike_ = 0.0;
 };

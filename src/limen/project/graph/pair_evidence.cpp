@@ -8,6 +8,15 @@
 namespace limen {
 namespace {
 
+/// Evidence that leaves a probability of `probability`, of whichever kind of twin.
+TwinEvidence twin_evidence_of(double probability) {
+  constexpr double kMostNats = 50.0;
+  TwinEvidence evidence;
+  evidence.otherwise_nats = evidence.alike_nats =
+      probability > 0.0 ? std::min(kMostNats, std::log((1.0 - probability) / probability)) : kMostNats;
+  return evidence;
+}
+
 /// A wrong pose agrees with the others of a configuration with this probability: poses that differ by less
 /// than a tolerance, among all that a building offers (metres and right angles).
 const double kCoincidence = 1e-3;
@@ -20,9 +29,22 @@ double against(double chance_nats, double odds_of_twin) {
 
 }  // namespace
 
-double PairEvidence::against_twin(double TwinEvidence::*nats) const {
-  if (!looks_for_twins) return chance_nats;
-  return std::clamp(twins.*nats + twins.built_nats, -kMostPairNats, kMostPairNats);
+double PairEvidence::odds_of_twin() const {
+  return looks_for_twins ? odds_of(twins) : 0.0;
+}
+
+void LookAlikeSum::add(const PairEvidence& evidence, double of_things, double of_surface) {
+  const auto bounded = [](double nats) { return std::clamp(nats, -kMostPairNats, kMostPairNats); };
+  if (!evidence.looks_for_twins) {
+    sum_.otherwise_nats += of_surface * evidence.chance_nats;
+    sum_.alike_nats += of_surface * evidence.chance_nats;
+    return;
+  }
+  sum_.otherwise_nats += of_things * bounded(evidence.twins.otherwise_nats);
+  sum_.alike_nats += of_things * bounded(evidence.twins.alike_nats);
+  sum_.built_nats += of_surface * bounded(evidence.twins.built_nats);
+  sum_.things += of_things * evidence.twins.things;
+  sum_.agreeing += of_things * evidence.twins.agreeing;
 }
 
 double PairEvidence::alone() const {

@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
 
 #include "limen/project/graph/pose_graph.h"
+#include "limen/register/judge/twin_odds.h"
 
 namespace limen {
 
@@ -18,9 +18,8 @@ struct PairEvidence {
   bool looks_for_twins =
       false;  ///< `twins` was measured; else a look-alike place is one of the pair's own poses
 
-  /// Against a look-alike place of one kind (`&TwinEvidence::otherwise_nats` or `alike_nats`).
-  [[nodiscard]] double against_twin(double TwinEvidence::*nats) const;
-  [[nodiscard]] double odds_of_twin() const { return looks_for_twins ? twins.odds() : 0.0; }
+  /// Odds of a look-alike place of either kind.
+  [[nodiscard]] double odds_of_twin() const;
   /// Against every other explanation, where nothing else joins the two nodes.
   [[nodiscard]] double alone() const;
   /// The same where other links join them as well.
@@ -31,25 +30,22 @@ struct PairEvidence {
 /// (benchmarks/calibration): a single pair is trusted to one in ten thousand.
 inline constexpr double kMostPairNats = 9.2;
 
-/// What several pairs say together against one look-alike place. How alike its rooms are furnished is a
-/// property of the place: what supports one furnished alike is believed once, by the pair that says most.
-class LookAlikeNats {
+/// What several pairs say together against look-alike places. How many of its things are its own and whether
+/// scans are bent are questions for all of them at once.
+class LookAlikeSum {
  public:
-  /// `nats`: of which kind, as PairEvidence::against_twin() has it.
-  explicit LookAlikeNats(double TwinEvidence::*nats) : nats_(nats) {}
-  void add(const PairEvidence& evidence, double share = 1.0) {
-    const double against = share * evidence.against_twin(nats_);
-    if (against < 0.0 && nats_ == &TwinEvidence::alike_nats)
-      least_ = std::min(least_, against);
-    else
-      sum_ += against;
+  /// Shares of what the pair shows that count for it (SharedViews): of things, and of the building's surface.
+  void add(const PairEvidence& evidence, double of_things = 1.0, double of_surface = 1.0);
+  /// `bent`: probability that the scans are bent within themselves.
+  [[nodiscard]] double against_otherwise(double bent = evidence_table::kBent) const {
+    return limen::against_otherwise(sum_, bent);
   }
-  [[nodiscard]] double sum() const { return sum_ + least_; }
+  [[nodiscard]] double against_alike(double bent = evidence_table::kBent) const {
+    return limen::against_alike(sum_, bent);
+  }
 
  private:
-  double TwinEvidence::*nats_;
-  double sum_ = 0.0;
-  double least_ = 0.0;
+  TwinEvidence sum_;
 };
 
 /// Of a pose of a link.

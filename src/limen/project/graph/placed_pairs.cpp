@@ -61,6 +61,7 @@ PlacedPair asked_pair(int source, int target, const Rigid3& target_from_source, 
   if (const std::optional<TwinEvidence> things = query.things(source, target, target_from_source)) {
     // What is elsewhere may seem to agree where a placement is known to a decimetre; what agrees does agree.
     pair.evidence.twins.otherwise_nats = std::clamp(things->otherwise_nats, 0.0, kMostAskedNats);
+    pair.evidence.twins.things = pair.evidence.twins.agreeing = things->agreeing;
   }
   return pair;
 }

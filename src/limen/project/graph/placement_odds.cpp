@@ -15,28 +15,34 @@ namespace limen {
 namespace {
 
 constexpr double kRateStrength = 4.0;  // scans: what is believed of look-alikes before any is seen
+constexpr double kLeastSurfaceM2 = 1e-3;
 constexpr double kHardlyFresh = 0.05;  // share of a pair's surface that no other shows
+
+/// That the scans are bent within themselves. One sensor took all scans of a project, so all of them show it,
+/// each by the pair that sees most of its surface.
+double probability_of_bent(int nodes, const std::vector<PlacedPair>& pairs) {
+  std::vector<std::size_t> most(static_cast<std::size_t>(nodes), pairs.size());
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    const PlacedPair& pair = pairs[k];
+    if (pair.link < 0 || !pair.evidence.looks_for_twins) continue;
+    for (const int node : {pair.source, pair.target}) {
+      std::size_t& known = most[static_cast<std::size_t>(node)];
+      if (known == pairs.size() || pair.shared_m2 > pairs[known].shared_m2) known = k;
+    }
+  }
+  double straight_nats = std::log(1.0 / evidence_table::kBent - 1.0);
+  for (const std::size_t k : std::set<std::size_t>(most.begin(), most.end()))
+    if (k < pairs.size()) straight_nats += pairs[k].evidence.twins.built_nats;
+  return std::max(evidence_table::kBent, 1.0 / (1.0 + std::exp(straight_nats)));
+}
 
 }  // namespace
 
-/// Look-alikes furnished otherwise, or alike.
-struct PlacementOdds::Kind {
-  double TwinEvidence::*prior;
-  double TwinEvidence::*nats;
-
-  [[nodiscard]] double against(const PlacedPair& pair) const { return pair.evidence.against_twin(nats); }
-  static const Kind& otherwise() {
-    static const Kind kind{&TwinEvidence::otherwise, &TwinEvidence::otherwise_nats};
-    return kind;
-  }
-  static const Kind& alike() {
-    static const Kind kind{&TwinEvidence::alike, &TwinEvidence::alike_nats};
-    return kind;
-  }
-};
-
 PlacementOdds::PlacementOdds(int nodes, std::vector<PlacedPair> pairs)
-    : nodes_(nodes), pairs_(std::move(pairs)), views_(nodes, pairs_) {}
+    : nodes_(nodes),
+      pairs_(std::move(pairs)),
+      views_(nodes, pairs_),
+      bent_(probability_of_bent(nodes, pairs_)) {}
 
 double PlacementOdds::rate_of_twins(const std::vector<bool>& side) const {
   const double believed = evidence_table::kOtherwise + evidence_table::kAlike;  // odds
@@ -46,7 +52,7 @@ double PlacementOdds::rate_of_twins(const std::vector<bool>& side) const {
     const auto source = static_cast<std::size_t>(pair.source);
     const auto target = static_cast<std::size_t>(pair.target);
     if (pair.link < 0 || !pair.evidence.looks_for_twins || side[source] != side[target]) continue;
-    const double twin = pair.evidence.twins.probability();
+    const double twin = probability_of(pair.evidence.twins);
     for (const std::size_t node : {source, target}) {
       if (std::abs(twin - 0.5) > std::abs(twin_of_node[node] - 0.5)) twin_of_node[node] = twin;
     }
@@ -61,27 +67,32 @@ double PlacementOdds::rate_of_twins(const std::vector<bool>& side) const {
   return twins / (all - twins) / believed;
 }
 
-PlacementOdds::LookAlike PlacementOdds::look_alike(const Kind& kind,
-                                                   const std::vector<const PlacedPair*>& across,
-                                                   const std::vector<bool>& side) const {
-  std::vector<const PlacedPair*> ordered = across;
-  std::stable_sort(ordered.begin(), ordered.end(), [&](const PlacedPair* a, const PlacedPair* b) {
-    return std::abs(kind.against(*a)) > std::abs(kind.against(*b));
-  });
-  LookAlike found;
+double PlacementOdds::odds_of_look_alike(const std::vector<const PlacedPair*>& across,
+                                         const std::vector<bool>& side) const {
+  std::vector<double> surface;
+  std::vector<double> things;
+  for (const PlacedPair* pair : across) {
+    const TwinEvidence& twins = pair->evidence.twins;
+    surface.push_back(std::max(kLeastSurfaceM2, pair->shared_m2));
+    things.push_back(twins.things > 0.0 ? twins.things
+                                        : std::abs(twins.otherwise_nats) + std::abs(twins.alike_nats));
+  }
+  const std::vector<double> of_surface = views_.shares(across, side, surface);
+  const std::vector<double> of_things = views_.shares(across, side, things);
+  LookAlikeSum against;
+  double otherwise = 0.0;
+  double alike = 0.0;
   bool believed = false;  // once, as little as any pair believes it
-  for (const PlacedPair* pair : ordered) {
-    if (pair->link < 0 || !pair->evidence.looks_for_twins) continue;
-    const double prior = pair->evidence.twins.*kind.prior;
-    found.prior = believed ? std::min(found.prior, prior) : prior;
+  for (std::size_t k = 0; k < across.size(); ++k) {
+    const PairEvidence& evidence = across[k]->evidence;
+    against.add(evidence, of_things[k], of_surface[k]);
+    if (across[k]->link < 0 || !evidence.looks_for_twins) continue;
+    otherwise = believed ? std::min(otherwise, evidence.twins.otherwise) : evidence.twins.otherwise;
+    alike = believed ? std::min(alike, evidence.twins.alike) : evidence.twins.alike;
     believed = true;
   }
-  found.prior *= rate_of_twins(side);
-  const std::vector<double> fresh = views_.fresh_shares(ordered, side);
-  LookAlikeNats nats(kind.nats);
-  for (std::size_t k = 0; k < ordered.size(); ++k) nats.add(ordered[k]->evidence, fresh[k]);
-  found.against = nats.sum();
-  return found;
+  return rate_of_twins(side) * (otherwise * std::exp(-against.against_otherwise(bent_)) +
+                                alike * std::exp(-against.against_alike(bent_)));
 }
 
 double PlacementOdds::log_odds_of_chance(std::vector<const PlacedPair*> across, const std::vector<bool>& side,
@@ -131,19 +142,20 @@ SideOdds PlacementOdds::of_across(const std::vector<const PlacedPair*>& across,
                                   const std::vector<bool>& side) const {
   SideOdds odds;
   odds.chance = std::exp(log_odds_of_chance(across, side, odds));
-  const LookAlike otherwise = look_alike(Kind::otherwise(), across, side);
-  const LookAlike alike = look_alike(Kind::alike(), across, side);
-  odds.twin = otherwise.prior * std::exp(-otherwise.against) + alike.prior * std::exp(-alike.against);
+  odds.twin = odds_of_look_alike(across, side);
   return odds;
 }
 
 std::vector<std::vector<bool>> PlacementOdds::weak_sides(const std::vector<int>& reference) const {
   std::set<std::vector<bool>> sides;
-  std::vector<WeakestCut> cuts(3, WeakestCut(nodes_));
+  std::vector<WeakestCut> cuts(3,
+                               WeakestCut(nodes_));  // against look-alike places of either kind, and chance
   for (const PlacedPair& pair : pairs_) {
     if (pair.link < 0) continue;
-    cuts[0].connect(pair.source, pair.target, Kind::otherwise().against(pair));
-    cuts[1].connect(pair.source, pair.target, Kind::alike().against(pair));
+    LookAlikeSum look_alike;
+    look_alike.add(pair.evidence);
+    cuts[0].connect(pair.source, pair.target, look_alike.against_otherwise());
+    cuts[1].connect(pair.source, pair.target, look_alike.against_alike());
     cuts[2].connect(pair.source, pair.target, pair.evidence.chance_nats + pair.evidence.coincidence_nats);
   }
   for (const int root : reference) {

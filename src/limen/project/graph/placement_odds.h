@@ -21,9 +21,9 @@ struct SideOdds {
 /// Odds of sides, by all pairs that a configuration places in sight of each other.
 ///
 /// Look-alike places: that there is one is believed once for a side, as often as it happens in this building
-/// (learned from the other scans); what things and walls say against it multiplies over the pairs across, as
-/// far as they show different surface. Chance: pairs err independently as far as they show different surface,
-/// and wrong poses agree with one another seldom.
+/// (learned from the other scans). What things and walls say against it adds up over the pairs across; those
+/// that show the same count once together. Whether scans are bent is learned from all pairs. Chance: pairs
+/// err independently as far as they show different surface, and wrong poses agree with one another seldom.
 class PlacementOdds {
  public:
   PlacementOdds(int nodes, std::vector<PlacedPair> pairs);
@@ -40,15 +40,10 @@ class PlacementOdds {
   [[nodiscard]] std::vector<std::vector<bool>> weak_sides(const std::vector<int>& reference) const;
 
  private:
-  struct Kind;
-  struct LookAlike {
-    double prior = 0.0;
-    double against = 0.0;  ///< nats
-  };
   [[nodiscard]] SideOdds of_across(const std::vector<const PlacedPair*>& across,
                                    const std::vector<bool>& side) const;
-  [[nodiscard]] LookAlike look_alike(const Kind& kind, const std::vector<const PlacedPair*>& across,
-                                     const std::vector<bool>& side) const;
+  [[nodiscard]] double odds_of_look_alike(const std::vector<const PlacedPair*>& across,
+                                          const std::vector<bool>& side) const;
   [[nodiscard]] double log_odds_of_chance(std::vector<const PlacedPair*> across,
                                           const std::vector<bool>& side, SideOdds& odds) const;
   [[nodiscard]] double rate_of_twins(const std::vector<bool>& side) const;
@@ -56,6 +51,7 @@ class PlacementOdds {
   int nodes_;
   std::vector<PlacedPair> pairs_;
   SharedViews views_;
+  double bent_;  ///< probability that the scans are bent within themselves
   std::map<std::vector<bool>, SideOdds> known_;
 };
 

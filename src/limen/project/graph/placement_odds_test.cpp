@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <initializer_list>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -34,7 +35,7 @@ TEST(PlacementOdds, OfOnePairAreThePairs) {
   PlacementOdds odds(2, {only});
   const SideOdds& said = odds.of(side({1}, 2));
   EXPECT_NEAR(said.chance, std::exp(-5.0), 1e-9);
-  EXPECT_NEAR(said.twin, only.evidence.twins.odds(), 0.2 * only.evidence.twins.odds());
+  EXPECT_NEAR(said.twin, odds_of(only.evidence.twins), 0.2 * odds_of(only.evidence.twins));
 }
 
 /// That there is a look-alike place is believed once for a side, what is seen against it counts for each
@@ -72,6 +73,34 @@ TEST(PlacementOdds, HowOftenPlacesRepeatIsLearned) {
   PlacementOdds many(30, pairs);
   PlacementOdds few(2, {pair(1, 0, 9.0, 0.0, 0.0, 0)});
   EXPECT_LT(many.of(side({29}, 30)).twin, 0.25 * few.of(side({1}, 2)).twin);
+}
+
+/// Pairs that show the same count once together, each by what it shows, and not the one that says most.
+TEST(PlacementOdds, TheOrderOfPairsDoesNotCount) {
+  std::vector<PlacedPair> pairs = {pair(2, 0, 5.0, 6.0, 2.0, 0), pair(2, 1, 5.0, 1.0, -1.0, 1),
+                                   pair(1, 0, 9.0, 9.0, 9.0, 2)};
+  for (PlacedPair& one : pairs) one.evidence.twins.things = 10.0;
+  const std::vector<bool> alone = side({2}, 3);
+  const double odds = PlacementOdds(3, pairs).of(alone).twin;
+  std::swap(pairs[0], pairs[1]);
+  EXPECT_NEAR(PlacementOdds(3, pairs).of(alone).twin, odds, 1e-9 * odds);
+  std::vector<PlacedPair> equal = pairs;
+  equal[0].evidence.twins = equal[1].evidence.twins;
+  EXPECT_LT(PlacementOdds(3, equal).of(alone).twin, odds);
+}
+
+/// What a bent scan says of how walls were built is no evidence; that scans are bent all of them show.
+TEST(PlacementOdds, WhetherScansAreBentIsLearnedFromAllOfThem) {
+  const auto odds = [](double built_of_others, double built) {
+    std::vector<PlacedPair> pairs;
+    for (int n = 1; n < 10; ++n) {
+      pairs.push_back(pair(n, n - 1, 9.0, 4.0, 4.0, n));
+      pairs.back().evidence.twins.built_nats = n == 9 ? built : built_of_others;
+    }
+    return PlacementOdds(10, pairs).of(side({9}, 10)).twin;
+  };
+  EXPECT_GT(odds(2.0, -2.0), 3.0 * odds(2.0, 0.0));
+  EXPECT_NEAR(odds(-2.0, -2.0), odds(-2.0, 0.0), 0.01 * odds(-2.0, 0.0));
 }
 
 /// A storey that hangs on one staircase is one side.

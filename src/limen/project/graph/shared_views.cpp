@@ -55,4 +55,26 @@ std::vector<double> SharedViews::fresh_shares(const std::vector<const PlacedPair
   return fresh;
 }
 
+std::vector<double> SharedViews::shares(const std::vector<const PlacedPair*>& pairs,
+                                        const std::vector<bool>& moved,
+                                        const std::vector<double>& weights) const {
+  std::vector<double> shares(pairs.size(), 0.0);
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    if (weights[k] <= 0.0) continue;
+    const auto [first, second] = ends_across(*pairs[k], moved);
+    const double surface_m2 = std::max(pairs[k]->shared_m2, 1e-3);
+    mark(static_cast<int>(first), surface_m2, with_first_, true);
+    mark(static_cast<int>(second), surface_m2, with_second_, true);
+    double together = 0.0;
+    for (std::size_t j = 0; j < pairs.size(); ++j) {
+      const auto [other_first, other_second] = ends_across(*pairs[j], moved);
+      together += weights[j] * with_first_[other_first] * with_second_[other_second];
+    }
+    shares[k] = weights[k] / together;
+    mark(static_cast<int>(first), surface_m2, with_first_, false);
+    mark(static_cast<int>(second), surface_m2, with_second_, false);
+  }
+  return shares;
+}
+
 }  // namespace limen

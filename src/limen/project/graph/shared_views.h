@@ -26,6 +26,11 @@ class SharedViews {
   /// surface that no pair before it has shown.
   [[nodiscard]] std::vector<double> fresh_shares(const std::vector<const PlacedPair*>& pairs,
                                                  const std::vector<bool>& moved) const;
+  /// Of each pair its weight over the weights of all that show the same: pairs of one surface count once
+  /// together, each by its weight, in whatever order they are.
+  [[nodiscard]] std::vector<double> shares(const std::vector<const PlacedPair*>& pairs,
+                                           const std::vector<bool>& moved,
+                                           const std::vector<double>& weights) const;
 
  private:
   struct Neighbour {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "limen/project/graph/pose_graph.h"
+#include "limen/register/judge/twin_odds.h"
 
 namespace limen {
 namespace {
@@ -409,7 +410,7 @@ TwoStoreys two_storeys(bool corridor_is_source = true) {
     link.target = target;
     link.poses = {measured_pose(inverse(truth[static_cast<std::size_t>(target)]) * from, 40.0, random)};
     link.poses.front().twin = TwinEvidence{0.171, 0.0053, otherwise_nats, alike_nats};
-    link.twin = link.poses.front().twin->probability();
+    link.twin = probability_of(*link.poses.front().twin);
     graph.links.push_back(link);
   };
   for (int a = 0; a < kRooms; ++a) {

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "limen/extract/surface/surface_details.h"
 #include "limen/geometry/polygon_clip.h"
 
 namespace limen {
@@ -20,10 +19,7 @@ constexpr double kSameWallM = 0.04;     // strips of a wall that furniture cuts 
 constexpr double kSameWallCosine = 0.9994;  // ... to 2 degrees
 constexpr double kLevelCosine = 0.95;
 constexpr double kAtStripM = 0.1;  // before and beside a strip
-constexpr double kBesideFloorM = 0.5;
 
-constexpr double kFrontCosine = 0.99;   // a front is parallel to its wall to 8 degrees ...
-constexpr double kDeepestM = 0.7;       // ... and no further from it than cupboards are deep
 constexpr double kUprightCosine = 0.3;  // of a wall's normal to the vertical
 
 }  // namespace
@@ -38,7 +34,6 @@ bool BuiltPlanes::Part::is_above(const Vector3d& x) const {
 
 BuiltPlanes::BuiltPlanes(const ScanView& view) : built_(view.features->planes.size(), false) {
   const std::vector<PlanarPolygon>& planes = view.features->planes;
-  if (view.details != nullptr) flights_ = find_flights(*view.details);
   for (std::size_t i = 0; i < planes.size(); ++i)
     if (of_building(planes[i])) add(i, planes[i], false);
   const std::vector<Part> large = parts_;
@@ -47,22 +42,8 @@ BuiltPlanes::BuiltPlanes(const ScanView& view) : built_(view.features->planes.si
       add(i, planes[i], true);
 }
 
-std::optional<double> BuiltPlanes::floor_below(const Vector3d& x) const {
-  std::optional<double> floor;
-  for (const Part& part : parts_) {
-    if (part.plane.normal.z() < kLevelCosine || part.plane.signed_distance(x) < 0.0) continue;
-    const Vector2d margin = Vector2d::Constant(kBesideFloorM);
-    if (!Box2{part.box.low - margin, part.box.high + margin}.contains(part.frame.to_plane(x))) continue;
-    const double height = x.z() - part.plane.signed_distance(x) / part.plane.normal.z();
-    if (!floor || height > *floor) floor = height;
-  }
-  return floor;
-}
-
 BuiltPlanes::Place BuiltPlanes::place(const Vector3d& x) const {
   Place found = Place::off;
-  if (std::any_of(flights_.begin(), flights_.end(), [&](const Flight& f) { return f.contains(x); }))
-    return Place::at_wall;
   for (const Part& part : parts_) {
     if (part.is_above(x)) return Place::at_wall;
     const double distance = part.plane.signed_distance(x);
@@ -75,17 +56,6 @@ BuiltPlanes::Place BuiltPlanes::place(const Vector3d& x) const {
     found = Place::behind;
   }
   return found;
-}
-
-bool BuiltPlanes::is_front(const Vector3d& x, const Vector3d& normal) const {
-  return std::any_of(parts_.begin(), parts_.end(), [&](const Part& part) {
-    if (std::abs(part.plane.normal.z()) > kUprightCosine) return false;
-    if (part.plane.normal.dot(normal) < kFrontCosine) return false;
-    const double distance = part.plane.signed_distance(x);
-    if (distance < 0.0 || distance > kDeepestM) return false;
-    const Vector2d margin = Vector2d::Constant(kBesideWallM);
-    return Box2{part.box.low - margin, part.box.high + margin}.contains(part.frame.to_plane(x));
-  });
 }
 
 bool BuiltPlanes::between(const Vector3d& a, const Vector3d& b) const {

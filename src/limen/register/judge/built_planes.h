@@ -2,18 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <optional>
 #include <vector>
 
 #include "limen/geometry/plane.h"
 #include "limen/geometry/polygon_clip.h"
-#include "limen/register/judge/stairs.h"
 #include "limen/register/prepare/scan_view.h"
 
 namespace limen {
 
 /// What is the building's of one scan: its large planes as boxes in the planes' own coordinates, one for each
-/// part, what is near them, and flights of stairs. Upright frame.
+/// part, what is near them. Upright frame.
 class BuiltPlanes {
  public:
   explicit BuiltPlanes(const ScanView& view);
@@ -22,15 +20,9 @@ class BuiltPlanes {
 
   [[nodiscard]] const std::vector<bool>& flags() const { return built_; }
 
-  /// How high the uppermost floor below `x` is.
-  [[nodiscard]] std::optional<double> floor_below(const Vector3d& x) const;
-
   enum class Place { off, at_wall, behind };
-  /// Where `x` is against the walls: at one (or at the ceiling, or on stairs), or behind one.
+  /// Where `x` is against the walls: at one (or at the ceiling), or behind one.
   [[nodiscard]] Place place(const Vector3d& x) const;
-
-  /// Whether a face at `x` may be the front of something with its back to a wall.
-  [[nodiscard]] bool is_front(const Vector3d& x, const Vector3d& normal) const;
 
   /// Whether the way from `a` to `b` leads through a wall, or an opening of it.
   [[nodiscard]] bool between(const Vector3d& a, const Vector3d& b) const;
@@ -52,7 +44,6 @@ class BuiltPlanes {
 
   std::vector<bool> built_;
   std::vector<Part> parts_;
-  std::vector<Flight> flights_;
 };
 
 }  // namespace limen

@@ -28,18 +28,35 @@ struct Surface {
   double nothing_shared;  ///< odds beforehand that nothing is shared, against a pose that was proposed ...
   double unlisted;        ///< ... and that a place is shared whose pose was not proposed
 };
-inline constexpr Surface kRooms{0.783, 1.09, 7.76, 7.38, {0.185, {0.00681, 4.11}, {0.195, 5.07}}, 1.0, 0.1};
+inline constexpr Surface kRooms{0.71, 1.16, 7.56, 7.53, {0.231, {0.00637, 5.66}, {0.228, 7.29}}, 1.0, 0.1};
 inline constexpr Surface kThroughWall{1.15, 1.01, 7.59, 13.5, {0.401, {0.0234, 4.22}, {0.263, 5.58}},
                                       1.0,  0.1};
 inline constexpr Surface kInModel{1.9, 1.9, 7.6, 9.5, {0.4, {0.02, 8.0}, {0.3, 6.0}}, 1.0, 0.1};
 
+/// What two scans see of the same furniture and clutter.
+struct Furniture {
+  ShareBelief stayed;       ///< share of a room's things that are where they were
+  double measured;          ///< factor by which the deviations of a pair's faces are off: median ...
+  double measured_spread;   ///< ... and deviation of its logarithm
+  double pushed;            ///< share of the others that was pushed ...
+  double pushed_m;          ///< ... by so much
+  double more_than_chance;  ///< share that agrees in another room, beyond shifted things ...
+  double chance_strength;   ///< ... and how well it is known, in observations
+  double met;               ///< share of the faces in another room that are near one another by chance ...
+  double met_m;             ///< ... to so much
+  ShareBelief alike;        ///< share of the things in a room furnished alike that have a counterpart
+  double put_m;             ///< how accurately those were put alike: median ...
+  double put_spread;        ///< ... and deviation of its logarithm
+};
+inline constexpr Furniture kFurniture{{0.787, 4.84}, 0.669,  1.02,   0.827,         0.00682, 0.0955,
+                                      38.9,          0.0802, 0.0112, {0.489, 3.09}, 0.0188,  0.355};
+
 /// Look-alike places: odds beforehand that a pose whose walls agree lays a place on another one ...
-inline constexpr double kOtherwise = 1.36;        ///< ... that is furnished otherwise,
-inline constexpr double kOtherwiseApart = 0.163;  ///< the same where a wall is between the stations,
-inline constexpr double kAlike = 0.00704;         ///< and one that is furnished alike.
-inline constexpr double kInPair = 0.0625;         ///< share of them whose other place the same two scans show
-inline constexpr double kThings = 0.758;          ///< weight of what things say, against chance ...
-inline constexpr double kBuilt = 1.59;            ///< ... and of how surfaces were built
-inline constexpr double kBent = 0.0852;           ///< share of pairs whose scans are bent within themselves
+inline constexpr double kOtherwise = 0.812;        ///< ... that is furnished otherwise,
+inline constexpr double kOtherwiseApart = 0.0605;  ///< the same where a wall is between the stations,
+inline constexpr double kAlike = 0.00508;          ///< and one that is furnished alike.
+inline constexpr double kInPair = 0.122;  ///< share of them whose other place the same two scans show
+inline constexpr double kBuilt = 2.16;    ///< weight of how surfaces were built, against chance
+inline constexpr double kBent = 0.101;    ///< share of pairs whose scans are bent within themselves
 
 }  // namespace limen::evidence_table

@@ -61,8 +61,8 @@ TEST(GivenPose, ThingsSpeakAgainstATwinWhereTheyMeet) {
   const TwoScans scans;
   Rigid3 off = scans.truth;
   off.translation.x() += 1.1;
-  EXPECT_LT(twin_of_given_pose(scans.source, scans.target, scans.truth).probability(),
-            twin_of_given_pose(scans.source, scans.target, off).probability());
+  EXPECT_LT(probability_of(twin_of_given_pose(scans.source, scans.target, scans.truth)),
+            probability_of(twin_of_given_pose(scans.source, scans.target, off)));
 }
 
 }  // namespace

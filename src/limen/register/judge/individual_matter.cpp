@@ -13,7 +13,6 @@
 #include "limen/geometry/polygon_clip.h"
 #include "limen/register/judge/built_planes.h"
 #include "limen/register/judge/common_surfaces.h"
-#include "limen/register/judge/figures.h"
 #include "limen/register/judge/met_faces.h"
 
 namespace limen {
@@ -31,18 +30,12 @@ constexpr double kUnevenM = 0.001;     // roughness, and the pose, at least: mor
 constexpr double kCorrelationM = 0.25;
 constexpr std::size_t kMostPieces = 1200;  // of each kind and scan, evenly chosen
 
-// People come and go. Where six figures of ten are people, one is gone in one room with a probability of 0.64
-// and in two rooms of 0.97: that tells a fifth of what another thing does that is gone (0.1 and 0.93).
-constexpr double kFigureGoneShare = 0.2;  // less than this of it agrees
-constexpr double kFigureTells = 0.2;      // of an observation
-
 constexpr int kDisplacements = 8;
 
 /// A piece of individual matter of one scan.
 struct Piece {
   const SurfaceDetail* detail = nullptr;
   bool behind = false;  ///< seen through an opening of this scan's walls
-  int figure = -1;      ///< that may be a person
 };
 
 std::vector<Piece> pieces_of(const ScanView& view, const BuiltPlanes& built) {
@@ -51,14 +44,8 @@ std::vector<Piece> pieces_of(const ScanView& view, const BuiltPlanes& built) {
   for (const SurfaceDetail& detail : *view.details) {
     const BuiltPlanes::Place place = built.place(detail.mean);
     if (place != BuiltPlanes::Place::at_wall)
-      pieces.push_back({&detail, place == BuiltPlanes::Place::behind, -1});
+      pieces.push_back({&detail, place == BuiltPlanes::Place::behind});
   }
-  std::vector<Vector3d> middles;
-  middles.reserve(pieces.size());
-  for (const Piece& piece : pieces) middles.push_back(piece.detail->mean);
-  const std::vector<int> figures =
-      find_figures(middles, [&](const Vector3d& x) { return built.floor_below(x); });
-  for (std::size_t i = 0; i < pieces.size(); ++i) pieces[i].figure = figures[i];
   const std::size_t stride = 1 + pieces.size() / kMostPieces;
   std::size_t kept = 0;
   for (std::size_t i = 0; i < pieces.size(); i += stride) pieces[kept++] = pieces[i];
@@ -72,7 +59,6 @@ struct Stated {
   Vector3d normal = Vector3d::Zero();  ///< of a flat piece; else zero
   double weight = 0.0;
   bool agrees = false;
-  int figure = -1;  ///< of either scan, that may be a person
 };
 
 /// A leaf, a cupboard's front, a table top is one thing: it is there or not.
@@ -81,47 +67,14 @@ double correlation(const Stated& a, const Stated& b) {
   return std::exp(-apart.norm() / (in_one_face(apart, a.normal, b.normal) ? kFrontLengthM : kCorrelationM));
 }
 
-/// Of each figure whether it has gone, or had not come: what the other scan knows of it is that it saw
-/// through there.
-std::vector<bool> gone_figures(const std::vector<Stated>& stated) {
-  int count = 0;
-  for (const Stated& one : stated) count = std::max(count, one.figure + 1);
-  std::vector<double> agreeing(static_cast<std::size_t>(count));
-  std::vector<double> total(static_cast<std::size_t>(count));
-  for (const Stated& one : stated) {
-    if (one.figure < 0) continue;
-    total[static_cast<std::size_t>(one.figure)] += one.weight;
-    if (one.agrees) agreeing[static_cast<std::size_t>(one.figure)] += one.weight;
-  }
-  std::vector<bool> gone(static_cast<std::size_t>(count));
-  for (std::size_t k = 0; k < gone.size(); ++k) gone[k] = agreeing[k] < kFigureGoneShare * total[k];
-  return gone;
-}
-
 double agreeing_share(const std::vector<Stated>& stated) {
-  const std::vector<bool> gone = gone_figures(stated);
   double total = 0.0;
   double agreeing = 0.0;
   for (const Stated& one : stated) {
-    if (one.figure >= 0 && gone[static_cast<std::size_t>(one.figure)]) continue;
     total += one.weight;
     if (one.agrees) agreeing += one.weight;
   }
   return total > 0.0 ? agreeing / total : 0.0;
-}
-
-/// Each answer's share of an observation; all that a figure says which has gone is one answer, and less.
-std::vector<double> shares_of_stated(const std::vector<Stated>& stated) {
-  std::vector<double> shares = shares_of(stated, 8.0 * kThingLengthM);
-  const std::vector<bool> gone = gone_figures(stated);
-  std::vector<double> sums(gone.size());
-  for (std::size_t i = 0; i < stated.size(); ++i)
-    if (stated[i].figure >= 0) sums[static_cast<std::size_t>(stated[i].figure)] += shares[i];
-  for (std::size_t i = 0; i < stated.size(); ++i) {
-    if (stated[i].figure < 0 || !gone[static_cast<std::size_t>(stated[i].figure)]) continue;
-    shares[i] *= std::min(1.0, kFigureTells / sums[static_cast<std::size_t>(stated[i].figure)]);
-  }
-  return shares;
 }
 
 /// `shares`: each answer's, of an observation.
@@ -149,8 +102,6 @@ struct Side {
 void ask_matter(const Side& scan, const Side& judge, const Rigid3& judge_from_scan,
                 const Rigid3& target_from_scan, std::vector<Stated>& stated) {
   if (!judge.view.knows_free) return;  // what it does not contradict it does not confirm either
-  int first_figure = 0;
-  for (const Stated& one : stated) first_figure = std::max(first_figure, one.figure + 1);
   for (const Piece& piece : scan.pieces) {
     SightQuery query;
     query.at = judge_from_scan * piece.detail->mean;
@@ -167,9 +118,7 @@ void ask_matter(const Side& scan, const Side& judge, const Rigid3& judge_from_sc
     const SurfaceDetail& detail = *piece.detail;
     const Vector3d normal =
         detail.flat() ? Vector3d(target_from_scan.rotation * detail.normal) : Vector3d::Zero();
-    const int figure = piece.figure < 0 ? -1 : first_figure + piece.figure;
-    stated.push_back(
-        {target_from_scan * detail.mean, normal, static_cast<double>(detail.area_m2), surface, figure});
+    stated.push_back({target_from_scan * detail.mean, normal, static_cast<double>(detail.area_m2), surface});
   }
 }
 
@@ -250,25 +199,19 @@ std::vector<MetFace> met_faces(const Side& scan, const Side& judge, const Rigid3
 /// `scatter_m`: of a piece of wall, by how the two scans differ on walls that both saw.
 std::vector<FaceMiss> face_offsets(const Side& source, const Side& target, const Rigid3& target_from_source,
                                    double scatter_m) {
-  const Rigid3 source_from_target = inverse(target_from_source);
   // Nearness is mutual, about: the sparser scan asks.
   const bool source_asks = source.view.details != nullptr && target.view.details != nullptr &&
                            source.view.details->size() <= target.view.details->size();
   const std::vector<MetFace> faces =
       joined(source_asks ? met_faces(source, target, target_from_source, Rigid3{})
-                         : met_faces(target, source, source_from_target, target_from_source));
+                         : met_faces(target, source, inverse(target_from_source), target_from_source));
   const std::vector<double> shares = shares_of(faces, 8.0 * kThingLengthM);
-  const std::vector<int> things = things_of(faces);
   const double drift = std::hypot(source.view.features->drift_m, target.view.features->drift_m);
   std::vector<FaceMiss> offsets;
   for (std::size_t k = 0; k < faces.size(); ++k) {
     const MetFace& face = faces[k];
-    const bool front =
-        target.built.is_front(face.at, face.normal) ||
-        source.built.is_front(source_from_target * face.at, source_from_target.rotation * face.normal);
     const double uneven_m = std::max(kUnevenM, scatter_m);
-    offsets.push_back(
-        {face.offset_m, shares[k], std::hypot(uneven_m, face.sigma_m, drift), front, things[k]});
+    offsets.push_back({face.offset_m, shares[k], std::hypot(uneven_m, face.sigma_m, drift)});
   }
   return offsets;
 }
@@ -323,7 +266,7 @@ IndividualMatter MatterAsker::operator()(const Rigid3& target_from_source) const
   IndividualMatter individual;
   if (source.view.space == nullptr || target.view.space == nullptr) return individual;
   const std::vector<Stated> stated = stated_of_matter(source, target, target_from_source);
-  individual.matter = observations(stated, shares_of_stated(stated));
+  individual.matter = observations(stated, shares_of(stated, 8.0 * kThingLengthM));
   individual.chance = chance_of(source, target, target_from_source);
   individual.apart = wall_between(source, target, target_from_source) ||
                      wall_between(target, source, inverse(target_from_source));

@@ -23,8 +23,6 @@ struct FaceMiss {
   double share = 1.0;     ///< of one observation: faces that tell the same make one together
   /// What noise leaves between two measurements of the face; roughness and the pose come on top.
   double sigma_m = 0.0;
-  bool front = false;  ///< of something with its back to a wall: things of one make reach equally far from it
-  int thing = 0;       ///< faces near one another are of one thing: what it is, all of them are
 };
 
 /// Pieces farther apart than this are not taken for one another.

@@ -12,6 +12,7 @@
 #include "limen/base/text.h"
 #include "limen/register/judge/evidence_table.h"
 #include "limen/register/judge/model_odds.h"
+#include "limen/register/judge/twin_odds.h"
 
 namespace limen {
 namespace {
@@ -73,12 +74,14 @@ class Weighing {
   /// The pose that surface and beliefs make likeliest.
   [[nodiscard]] std::size_t first() const { return first_; }
   /// Odds that a pose lays a place on a look-alike one.
-  [[nodiscard]] double look_alike(std::size_t pose) { return questions_.things ? things(pose).odds() : 0.0; }
+  [[nodiscard]] double look_alike(std::size_t pose) {
+    return questions_.things ? limen::odds_of(things(pose)) : 0.0;
+  }
   /// By how much what agrees under a pose exceeds chance, nats.
   [[nodiscard]] double against_chance(std::size_t pose) {
     if (!questions_.things) return against_chance_[pose];
-    return against_chance_[pose] + evidence_table::kThings * things(pose).otherwise_nats +
-           evidence_table::kBuilt * things(pose).built_nats;
+    return against_chance_[pose] + things(pose).otherwise_nats +
+           evidence_table::kBuilt * built_nats(things(pose));
   }
   /// Whether a pose may be right: of the many that are refined in a model those that exceed chance, and the
   /// best.

@@ -7,25 +7,14 @@
 #include "limen/model/twin_evidence.h"
 #include "limen/register/judge/evidence_table.h"
 #include "limen/register/judge/individual_matter.h"
-#include "limen/register/judge/share_belief.h"
 
 namespace limen {
 
+/// Odds beforehand that a pose whose walls agree lays a place on a look-alike place.
 struct TwinOptions {
-  double otherwise = evidence_table::kOtherwise;             ///< odds beforehand of a look-alike place ...
+  double otherwise = evidence_table::kOtherwise;             ///< that is furnished otherwise ...
   double otherwise_apart = evidence_table::kOtherwiseApart;  ///< ... where a wall is between the stations
-  double alike = evidence_table::kAlike;                     ///< ... and of one furnished alike as well
-  /// Share of a room's things that stayed between the two scans: mostly nearly all of them; in some pairs
-  /// the room was used in between, and any share is as good as another.
-  ShareBelief kept{0.9, 7.0};
-  double lived_in = 0.2;  ///< share of such pairs
-  ShareBelief kept_lived_in{0.55, 4.0};
-  /// Rooms furnished alike have the same furniture, and people's own things in and on it; in some nothing but
-  /// what is alike.
-  ShareBelief put_alike{0.62, 6.0};
-  double nothing_own = 0.5;        ///< share of such pairs: their things agree as those of one room
-  double more_than_chance = 0.05;  ///< rooms are furnished along walls and round tables: added to chance
-  double chance_strength = 20.0;   ///< how well chance is known, in observations
+  double alike = evidence_table::kAlike;                     ///< that is furnished alike as well
 
   void check() const;
 };
@@ -34,13 +23,25 @@ struct TwinOptions {
 /// are wrong in one case of twenty, as a start's may be (start_prior.h), and bare rooms stay in doubt.
 TwinOptions where_nothing_repeats(TwinOptions options);
 
-/// What things say of three explanations of two scans whose walls fit: one room; a twin furnished otherwise;
-/// a twin furnished alike. Each says with which share individual matter and faces agree; the share itself is
-/// integrated out (beta-binomial). Without observations there is no evidence for or against any.
+/// What things say of three explanations of two scans whose walls agree: one place; a look-alike place that
+/// is furnished otherwise; one that is furnished alike. docs/judge.md has the model,
+/// evidence_table::kFurniture its numbers. Without observations there is no evidence for or against any.
 TwinEvidence weigh_twin(const IndividualMatter& individual, const TwinOptions& options = {});
 
-/// The probability that the scans show two rooms built alike and not one, by Bayes' rule.
-double probability_of_twin(const IndividualMatter& individual, const TwinOptions& options = {});
+/// Nats of how surfaces were built. Scans of some sensors are bent within themselves, and theirs says
+/// nothing: `bent` is the probability of that.
+double built_nats(const TwinEvidence& evidence, double bent = evidence_table::kBent);
+/// Nats against a look-alike place that is furnished otherwise.
+double against_otherwise(const TwinEvidence& evidence, double bent = evidence_table::kBent);
+/// Nats against one that is furnished alike. How many of its things are its own is not known: it is given the
+/// better of two shares. So things that agree never exclude it, only faces that agree better than hands put
+/// them.
+double against_alike(const TwinEvidence& evidence, double bent = evidence_table::kBent);
+
+/// Odds of a look-alike place of either kind.
+double odds_of(const TwinEvidence& evidence);
+/// The probability that the scans show two look-alike places and not one, by Bayes' rule.
+double probability_of(const TwinEvidence& evidence);
 
 /// What a user should know of a pair whose twin cannot be excluded: one sentence's end.
 std::string twin_words(const IndividualMatter& individual, double probability);
