@@ -108,16 +108,16 @@ PoseSigma get_sigma(ByteReader& reader) {
 void put_twin(ByteWriter& writer, const std::optional<TwinEvidence>& said) {
   writer.put(said.has_value());
   const TwinEvidence twin = said.value_or(TwinEvidence{});
-  for (const double stated :
-       {twin.otherwise, twin.alike, twin.otherwise_nats, twin.alike_nats, twin.built_nats, twin.things, twin.agreeing})
+  for (const double stated : {twin.otherwise, twin.alike, twin.otherwise_nats, twin.alike_nats,
+                              twin.built_nats, twin.things, twin.agreeing})
     writer.put(stated);
 }
 
 std::optional<TwinEvidence> get_twin(ByteReader& reader) {
   const bool asked = reader.get<bool>();
   TwinEvidence twin;
-  for (double* value :
-       {&twin.otherwise, &twin.alike, &twin.otherwise_nats, &twin.alike_nats, &twin.built_nats, &twin.things, &twin.agreeing})
+  for (double* value : {&twin.otherwise, &twin.alike, &twin.otherwise_nats, &twin.alike_nats,
+                        &twin.built_nats, &twin.things, &twin.agreeing})
     reader.get(*value);
   return asked ? std::optional(twin) : std::nullopt;
 }
