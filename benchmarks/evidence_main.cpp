@@ -111,8 +111,8 @@ class Rows {
   static std::string things(const IndividualMatter& seen) {
     std::string faces;
     for (const FaceMiss& face : seen.faces)
-      faces += fmt::format("{}[{:.2f}, {:.3f}, {:.2f}]", faces.empty() ? "" : ", ", 1e3 * face.offset_m,
-                           face.share, 1e3 * face.sigma_m);
+      faces += fmt::format("{}[{:.2f}, {:.3f}, {:.2f}, {}]", faces.empty() ? "" : ", ", 1e3 * face.offset_m,
+                           face.share, 1e3 * face.sigma_m, face.thing);
     return fmt::format(R"("count": {:.2f}, "share": {:.3f}, "chance": {:.3f}, "faces_mm": [{}])",
                        seen.matter.count, seen.matter.share, seen.chance, faces);
   }

@@ -28,7 +28,7 @@ struct Surface {
   double nothing_shared;  ///< odds beforehand that nothing is shared, against a pose that was proposed ...
   double unlisted;        ///< ... and that a place is shared whose pose was not proposed
 };
-inline constexpr Surface kRooms{0.71, 1.16, 7.56, 7.53, {0.231, {0.00637, 5.66}, {0.228, 7.29}}, 1.0, 0.1};
+inline constexpr Surface kRooms{0.7, 1.17, 7.55, 7.47, {0.22, {0.00635, 6.68}, {0.209, 8.38}}, 1.0, 0.1};
 inline constexpr Surface kThroughWall{1.15, 1.01, 7.59, 13.5, {0.401, {0.0234, 4.22}, {0.263, 5.58}},
                                       1.0,  0.1};
 inline constexpr Surface kInModel{1.9, 1.9, 7.6, 9.5, {0.4, {0.02, 8.0}, {0.3, 6.0}}, 1.0, 0.1};
@@ -44,19 +44,20 @@ struct Furniture {
   double chance_strength;   ///< ... and how well it is known, in observations
   double met;               ///< share of the faces in another room that are near one another by chance ...
   double met_m;             ///< ... to so much
+  double built_in;          ///< share of the things in a look-alike room that are the building's after all
   ShareBelief alike;        ///< share of the things in a room furnished alike that have a counterpart
   double put_m;             ///< how accurately those were put alike: median ...
   double put_spread;        ///< ... and deviation of its logarithm
 };
-inline constexpr Furniture kFurniture{{0.787, 4.84}, 0.669,  1.02,   0.827,         0.00682, 0.0955,
-                                      38.9,          0.0802, 0.0112, {0.489, 3.09}, 0.0188,  0.355};
+inline constexpr Furniture kFurniture{{0.787, 4.84}, 0.669,  1.02,   0.827,         0.00682, 0.0955, 38.9,
+                                      0.0697,        0.0123, 0.0375, {0.492, 3.13}, 0.0196,  0.288};
 
 /// Look-alike places: odds beforehand that a pose whose walls agree lays a place on another one ...
-inline constexpr double kOtherwise = 0.812;        ///< ... that is furnished otherwise,
-inline constexpr double kOtherwiseApart = 0.0605;  ///< the same where a wall is between the stations,
-inline constexpr double kAlike = 0.00508;          ///< and one that is furnished alike.
-inline constexpr double kInPair = 0.122;  ///< share of them whose other place the same two scans show
-inline constexpr double kBuilt = 2.16;    ///< weight of how surfaces were built, against chance
-inline constexpr double kBent = 0.101;    ///< share of pairs whose scans are bent within themselves
+inline constexpr double kOtherwise = 0.755;        ///< ... that is furnished otherwise,
+inline constexpr double kOtherwiseApart = 0.0544;  ///< the same where a wall is between the stations,
+inline constexpr double kAlike = 0.00505;          ///< and one that is furnished alike.
+inline constexpr double kInPair = 0.1;   ///< share of them whose other place the same two scans show
+inline constexpr double kBuilt = 2.16;   ///< weight of how surfaces were built, against chance
+inline constexpr double kBent = 0.0964;  ///< share of pairs whose scans are bent within themselves
 
 }  // namespace limen::evidence_table

@@ -206,12 +206,13 @@ std::vector<FaceMiss> face_offsets(const Side& source, const Side& target, const
       joined(source_asks ? met_faces(source, target, target_from_source, Rigid3{})
                          : met_faces(target, source, inverse(target_from_source), target_from_source));
   const std::vector<double> shares = shares_of(faces, 8.0 * kThingLengthM);
+  const std::vector<int> things = things_of(faces);
   const double drift = std::hypot(source.view.features->drift_m, target.view.features->drift_m);
   std::vector<FaceMiss> offsets;
   for (std::size_t k = 0; k < faces.size(); ++k) {
     const MetFace& face = faces[k];
     const double uneven_m = std::max(kUnevenM, scatter_m);
-    offsets.push_back({face.offset_m, shares[k], std::hypot(uneven_m, face.sigma_m, drift)});
+    offsets.push_back({face.offset_m, shares[k], std::hypot(uneven_m, face.sigma_m, drift), things[k]});
   }
   return offsets;
 }

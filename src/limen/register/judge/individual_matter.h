@@ -23,6 +23,7 @@ struct FaceMiss {
   double share = 1.0;     ///< of one observation: faces that tell the same make one together
   /// What noise leaves between two measurements of the face; roughness and the pose come on top.
   double sigma_m = 0.0;
+  int thing = 0;  ///< faces near one another are of one thing: what it is, all of them are
 };
 
 /// Pieces farther apart than this are not taken for one another.

@@ -39,6 +39,9 @@ double correlation(const MetFace& a, const MetFace& b);
 /// they are.
 std::vector<MetFace> joined(const std::vector<MetFace>& pieces);
 
+/// Of each face the number of its thing: faces nearer than `kThingLengthM`, one by one, are of one.
+std::vector<int> things_of(const std::vector<MetFace>& faces);
+
 /// Each piece's share of an observation, w_i / sum_j w_j rho_ij: neighbours that tell the same make one
 /// together, however many they are, and what is alone is one of its own. Farther apart than `reach_m`
 /// none are correlated.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <utility>
 #include <vector>
@@ -57,52 +58,80 @@ std::array<Node, 3> scales_of(double median, double spread) {
            {median * far, std::log(1.0 / 6.0)}}};
 }
 
+/// What the faces say, the faces of a share of things taken together as the building's.
+///
+/// Not all that is the building's is known as such: a step, a fitting, a reveal at an angle. It is where it
+/// was designed, with all its faces. `densities`: of the faces where they are not.
+double log_likelihood_of_faces(const IndividualMatter& seen, const std::vector<double>& densities,
+                               double built_in) {
+  constexpr double kStray = 0.1;  // of the faces of such a thing those that are others' after all
+  struct Logs {
+    double as_put = 0.0;
+    double as_built = 0.0;
+  };
+  std::map<int, Logs> things;
+  double sum = 0.0;
+  for (std::size_t k = 0; k < densities.size(); ++k) {
+    const FaceMiss& face = seen.faces[k];
+    const double as_put = face.share * std::log(densities[k]);
+    if (built_in <= 0.0) {
+      sum += as_put;
+      continue;
+    }
+    Logs& thing = things[face.thing];
+    thing.as_put += as_put;
+    const double exact = normal_density(face.offset_m, face.sigma_m);
+    thing.as_built += face.share * std::log((1.0 - kStray) * exact + kStray * kAnywhere);
+  }
+  for (const auto& [number, thing] : things)
+    sum += log_sum_exp({std::log1p(-built_in) + thing.as_put, std::log(built_in) + thing.as_built});
+  return sum;
+}
+
 /// Two explanations in which a share of the things is where it was, or was put: one room, or one that is
 /// furnished alike.
 struct Arrangement {
-  ShareBelief in_place;
   std::array<Node, 3> scales;  ///< of the deviations of those faces: factors, or metres on top
   bool factors = true;
   double pushed = 0.0;  ///< share of the other faces that lies near its place
+  double built_in = 0.0;
 };
 
 const Arrangement& one_room() {
-  static const Arrangement room{kFurniture.stayed, scales_of(kFurniture.measured, kFurniture.measured_spread),
-                                true, kFurniture.pushed};
+  static const Arrangement room{scales_of(kFurniture.measured, kFurniture.measured_spread), true,
+                                kFurniture.pushed, 0.0};
   return room;
 }
 
-/// With as many things alike as one room has in place.
 const Arrangement& furnished_alike() {
-  static const Arrangement alike{kFurniture.stayed, scales_of(kFurniture.put_m, kFurniture.put_spread), false,
-                                 0.0};
+  static const Arrangement alike{scales_of(kFurniture.put_m, kFurniture.put_spread), false, 0.0,
+                                 kFurniture.built_in};
   return alike;
 }
 
-/// The share of things in place is one for what agrees and for faces; it and the scale are integrated out.
+/// The share of things in place, as that of one room, is one for what agrees and for faces; it and the scale
+/// are integrated out.
 double log_likelihood(const IndividualMatter& seen, const Arrangement& arrangement) {
-  struct Densities {
-    double in_place;
-    double elsewhere;
-  };
+  static const std::array<Node, 10> shares = shares_of(kFurniture.stayed);
   const double agreeing = seen.matter.agreeing();
-  const std::array<Node, 10> shares = shares_of(arrangement.in_place);
+  std::vector<double> in_place(seen.faces.size());
+  std::vector<double> elsewhere(seen.faces.size());
+  std::vector<double> densities(seen.faces.size());
   std::vector<double> logs;
   for (const Node& scale : arrangement.scales) {
-    std::vector<Densities> densities;
-    for (const FaceMiss& face : seen.faces) {
-      const double sigma = arrangement.factors ? scale.at * face.sigma_m : std::hypot(scale.at, face.sigma_m);
+    for (std::size_t k = 0; k < seen.faces.size(); ++k) {
+      const FaceMiss& face = seen.faces[k];
+      in_place[k] = normal_density(
+          face.offset_m, arrangement.factors ? scale.at * face.sigma_m : std::hypot(scale.at, face.sigma_m));
       const double pushed = normal_density(face.offset_m, std::hypot(kFurniture.pushed_m, face.sigma_m));
-      densities.push_back({normal_density(face.offset_m, sigma),
-                           arrangement.pushed * pushed + (1.0 - arrangement.pushed) * kAnywhere});
+      elsewhere[k] = arrangement.pushed * pushed + (1.0 - arrangement.pushed) * kAnywhere;
     }
     for (const Node& share : shares) {
-      double sum = scale.log_weight + share.log_weight + agreeing * std::log(share.at) +
-                   (seen.matter.count - agreeing) * std::log1p(-share.at);
       for (std::size_t k = 0; k < densities.size(); ++k)
-        sum += seen.faces[k].share *
-               std::log(share.at * densities[k].in_place + (1.0 - share.at) * densities[k].elsewhere);
-      logs.push_back(sum);
+        densities[k] = share.at * in_place[k] + (1.0 - share.at) * elsewhere[k];
+      logs.push_back(scale.log_weight + share.log_weight + agreeing * std::log(share.at) +
+                     (seen.matter.count - agreeing) * std::log1p(-share.at) +
+                     log_likelihood_of_faces(seen, densities, arrangement.built_in));
     }
   }
   return log_sum_exp(logs);
@@ -113,12 +142,13 @@ double log_likelihood_of_chance(const IndividualMatter& seen) {
   const ShareBelief chance{std::clamp(seen.chance + kFurniture.more_than_chance, 0.01, 0.7),
                            kFurniture.chance_strength};
   const double agreeing = seen.matter.agreeing();
-  double sum = log_beta_binomial(agreeing, seen.matter.count - agreeing, chance);
+  std::vector<double> densities;
   for (const FaceMiss& face : seen.faces) {
     const double met = normal_density(face.offset_m, std::hypot(kFurniture.met_m, face.sigma_m));
-    sum += face.share * std::log(kFurniture.met * met + (1.0 - kFurniture.met) * kAnywhere);
+    densities.push_back(kFurniture.met * met + (1.0 - kFurniture.met) * kAnywhere);
   }
-  return sum;
+  return log_beta_binomial(agreeing, seen.matter.count - agreeing, chance) +
+         log_likelihood_of_faces(seen, densities, kFurniture.built_in);
 }
 
 constexpr double kFew = 3.0;          // observations
