@@ -91,7 +91,7 @@ class Ready {
 void measure(Row& row, const PreparedPair& pair, const std::optional<Rigid3>& truth,
              const Vector3d& scanner) {
   const auto start = std::chrono::steady_clock::now();
-  RegistrationResult result = register_prepared(pair);
+  const RegistrationResult result = register_prepared(pair);
   row.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   row.outcome = to_string(result.outcome);
   row.agreeing_m2 = result.best.agreeing_m2;

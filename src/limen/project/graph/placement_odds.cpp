@@ -14,9 +14,9 @@
 namespace limen {
 namespace {
 
-constexpr double kRateStrength = 4.0;  // scans: what is believed of look-alikes before any is seen
-constexpr double kLeastSurfaceM2 = 1e-3;
-constexpr double kHardlyFresh = 0.05;  // share of a pair's surface that no other shows
+constexpr double kRateStrength = 4.0;     // scans: what is believed of look-alikes before any is seen
+constexpr double kLeastSurfaceM2 = 1e-3;  // of a pair that shares none: a given pose has a weight too
+constexpr double kHardlyFresh = 0.05;     // share of a pair's surface that no other shows
 
 /// That the scans are bent within themselves. One sensor took all scans of a project, so all of them show it,
 /// each by the pair that sees most of its surface.

@@ -11,7 +11,7 @@
 namespace limen {
 
 /// What is the building's of one scan: its large planes as boxes in the planes' own coordinates, one for each
-/// part, what is near them. Upright frame.
+/// part, and what is near them. Upright frame.
 class BuiltPlanes {
  public:
   explicit BuiltPlanes(const ScanView& view);

@@ -58,54 +58,60 @@ std::array<Node, 3> scales_of(double median, double spread) {
            {median * far, std::log(1.0 / 6.0)}}};
 }
 
-/// What the faces say, the faces of a share of things taken together as the building's.
-///
-/// Not all that is the building's is known as such: a step, a fitting, a reveal at an angle. It is where it
-/// was designed, with all its faces. `densities`: of the faces where they are not.
-double log_likelihood_of_faces(const IndividualMatter& seen, const std::vector<double>& densities,
-                               double built_in) {
-  constexpr double kStray = 0.1;  // of the faces of such a thing those that are others' after all
-  struct Logs {
-    double as_put = 0.0;
-    double as_built = 0.0;
-  };
-  std::map<int, Logs> things;
-  double sum = 0.0;
-  for (std::size_t k = 0; k < densities.size(); ++k) {
-    const FaceMiss& face = seen.faces[k];
-    const double as_put = face.share * std::log(densities[k]);
-    if (built_in <= 0.0) {
-      sum += as_put;
-      continue;
+constexpr double kStray = 0.1;  // share of the faces of a thing of the building that are of something else
+
+/// Log-likelihood of faces. Not all that is the building's is known as such: a step, a fitting, a reveal at
+/// an angle. In a look-alike place a share of the things is the building's, and agrees with all its faces.
+class FaceLikelihood {
+ public:
+  explicit FaceLikelihood(const IndividualMatter& seen) : seen_(seen) {
+    for (const FaceMiss& face : seen.faces) {
+      const double exact = normal_density(face.offset_m, face.sigma_m);
+      as_built_[face.thing] += face.share * std::log((1.0 - kStray) * exact + kStray * kAnywhere);
     }
-    Logs& thing = things[face.thing];
-    thing.as_put += as_put;
-    const double exact = normal_density(face.offset_m, face.sigma_m);
-    thing.as_built += face.share * std::log((1.0 - kStray) * exact + kStray * kAnywhere);
   }
-  for (const auto& [number, thing] : things)
-    sum += log_sum_exp({std::log1p(-built_in) + thing.as_put, std::log(built_in) + thing.as_built});
-  return sum;
-}
+
+  /// `densities`: of each face, where none is the building's.
+  [[nodiscard]] double of(const std::vector<double>& densities) const {
+    double sum = 0.0;
+    for (std::size_t k = 0; k < densities.size(); ++k) sum += seen_.faces[k].share * std::log(densities[k]);
+    return sum;
+  }
+
+  /// The same where a share of the things is the building's.
+  [[nodiscard]] double with_built_in(const std::vector<double>& densities) const {
+    std::map<int, double> as_put;
+    for (std::size_t k = 0; k < densities.size(); ++k)
+      as_put[seen_.faces[k].thing] += seen_.faces[k].share * std::log(densities[k]);
+    double sum = 0.0;
+    for (const auto& [thing, log] : as_put)
+      sum += log_sum_exp(
+          {std::log1p(-kFurniture.built_in) + log, std::log(kFurniture.built_in) + as_built_.at(thing)});
+    return sum;
+  }
+
+ private:
+  const IndividualMatter& seen_;
+  std::map<int, double> as_built_;  ///< of each thing, if it is the building's
+};
 
 /// Two explanations in which a share of the things is where it was, or was put: one room, or one that is
 /// furnished alike.
 struct Arrangement {
-  std::array<Node, 3> scales;  ///< of the deviations of those faces: factors, or metres on top
-  bool factors = true;
+  bool look_alike = false;
+  std::array<Node, 3>
+      scales;  ///< of the faces in place: factors of their deviations; of a look-alike, metres on top
   double pushed = 0.0;  ///< share of the other faces that lies near its place
-  double built_in = 0.0;
 };
 
 const Arrangement& one_room() {
-  static const Arrangement room{scales_of(kFurniture.measured, kFurniture.measured_spread), true,
-                                kFurniture.pushed, 0.0};
+  static const Arrangement room{false, scales_of(kFurniture.measured, kFurniture.measured_spread),
+                                kFurniture.pushed};
   return room;
 }
 
 const Arrangement& furnished_alike() {
-  static const Arrangement alike{scales_of(kFurniture.put_m, kFurniture.put_spread), false, 0.0,
-                                 kFurniture.built_in};
+  static const Arrangement alike{true, scales_of(kFurniture.put_m, kFurniture.put_spread), 0.0};
   return alike;
 }
 
@@ -114,30 +120,33 @@ const Arrangement& furnished_alike() {
 double log_likelihood(const IndividualMatter& seen, const Arrangement& arrangement) {
   static const std::array<Node, 10> shares = shares_of(kFurniture.stayed);
   const double agreeing = seen.matter.agreeing();
+  const FaceLikelihood faces(seen);
+  std::vector<double> elsewhere;
+  for (const FaceMiss& face : seen.faces) {
+    const double pushed = normal_density(face.offset_m, std::hypot(kFurniture.pushed_m, face.sigma_m));
+    elsewhere.push_back(arrangement.pushed * pushed + (1.0 - arrangement.pushed) * kAnywhere);
+  }
   std::vector<double> in_place(seen.faces.size());
-  std::vector<double> elsewhere(seen.faces.size());
   std::vector<double> densities(seen.faces.size());
   std::vector<double> logs;
   for (const Node& scale : arrangement.scales) {
     for (std::size_t k = 0; k < seen.faces.size(); ++k) {
       const FaceMiss& face = seen.faces[k];
-      in_place[k] = normal_density(
-          face.offset_m, arrangement.factors ? scale.at * face.sigma_m : std::hypot(scale.at, face.sigma_m));
-      const double pushed = normal_density(face.offset_m, std::hypot(kFurniture.pushed_m, face.sigma_m));
-      elsewhere[k] = arrangement.pushed * pushed + (1.0 - arrangement.pushed) * kAnywhere;
+      in_place[k] = normal_density(face.offset_m, arrangement.look_alike ? std::hypot(scale.at, face.sigma_m)
+                                                                         : scale.at * face.sigma_m);
     }
     for (const Node& share : shares) {
       for (std::size_t k = 0; k < densities.size(); ++k)
         densities[k] = share.at * in_place[k] + (1.0 - share.at) * elsewhere[k];
       logs.push_back(scale.log_weight + share.log_weight + agreeing * std::log(share.at) +
                      (seen.matter.count - agreeing) * std::log1p(-share.at) +
-                     log_likelihood_of_faces(seen, densities, arrangement.built_in));
+                     (arrangement.look_alike ? faces.with_built_in(densities) : faces.of(densities)));
     }
   }
   return log_sum_exp(logs);
 }
 
-/// Another room's things meet by chance.
+/// Where the things are another room's, they agree by chance.
 double log_likelihood_of_chance(const IndividualMatter& seen) {
   const ShareBelief chance{std::clamp(seen.chance + kFurniture.more_than_chance, 0.01, 0.7),
                            kFurniture.chance_strength};
@@ -148,7 +157,7 @@ double log_likelihood_of_chance(const IndividualMatter& seen) {
     densities.push_back(kFurniture.met * met + (1.0 - kFurniture.met) * kAnywhere);
   }
   return log_beta_binomial(agreeing, seen.matter.count - agreeing, chance) +
-         log_likelihood_of_faces(seen, densities, kFurniture.built_in);
+         FaceLikelihood(seen).with_built_in(densities);
 }
 
 constexpr double kFew = 3.0;          // observations
