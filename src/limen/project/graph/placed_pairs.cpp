@@ -58,9 +58,10 @@ PlacedPair asked_pair(int source, int target, const Rigid3& target_from_source, 
   // do.
   pair.evidence.twins.otherwise_nats = pair.evidence.twins.alike_nats = std::min(0.0, nats);
   if (nats <= 0.0 || !query.things) return pair;
-  if (const std::optional<TwinEvidence> things = query.things(source, target, target_from_source)) {
-    // What is elsewhere may seem to agree where a placement is known to a decimetre; what agrees does agree.
-    pair.evidence.twins.otherwise_nats = std::clamp(things->otherwise_nats, 0.0, kMostAskedNats);
+  // Where a placement is known to a decimetre, things that agree say something, and others nothing.
+  if (const std::optional<TwinEvidence> things = query.things(source, target, target_from_source);
+      things && things->otherwise_nats > 0.0) {
+    pair.evidence.twins.otherwise_nats = std::min(things->otherwise_nats, kMostAskedNats);
     pair.evidence.twins.things = pair.evidence.twins.agreeing = things->agreeing;
   }
   return pair;

@@ -14,7 +14,6 @@
 namespace limen {
 namespace {
 
-constexpr double kRateStrength = 4.0;     // scans: what is believed of look-alikes before any is seen
 constexpr double kLeastSurfaceM2 = 1e-3;  // of a pair that shares none: a given pose has a weight too
 constexpr double kHardlyFresh = 0.05;     // share of a pair's surface that no other shows
 
@@ -38,34 +37,12 @@ double probability_of_bent(int nodes, const std::vector<PlacedPair>& pairs) {
 
 }  // namespace
 
-PlacementOdds::PlacementOdds(int nodes, std::vector<PlacedPair> pairs)
+PlacementOdds::PlacementOdds(int nodes, std::vector<PlacedPair> pairs, const std::vector<UnusedLink>& unused)
     : nodes_(nodes),
       pairs_(std::move(pairs)),
       views_(nodes, pairs_),
+      rate_(nodes, pairs_, unused),
       bent_(probability_of_bent(nodes, pairs_)) {}
-
-double PlacementOdds::rate_of_twins(const std::vector<bool>& side) const {
-  const double believed = evidence_table::kOtherwise + evidence_table::kAlike;  // odds
-  // Of each node by the pair that tells most; pairs across the cut are what the rate is asked for.
-  std::vector<double> twin_of_node(side.size(), 0.5);
-  for (const PlacedPair& pair : pairs_) {
-    const auto source = static_cast<std::size_t>(pair.source);
-    const auto target = static_cast<std::size_t>(pair.target);
-    if (pair.link < 0 || !pair.evidence.looks_for_twins || side[source] != side[target]) continue;
-    const double twin = probability_of(pair.evidence.twins);
-    for (const std::size_t node : {source, target}) {
-      if (std::abs(twin - 0.5) > std::abs(twin_of_node[node] - 0.5)) twin_of_node[node] = twin;
-    }
-  }
-  double twins = kRateStrength * believed / (1.0 + believed);
-  double all = kRateStrength;
-  for (const double twin : twin_of_node) {
-    const double tells = std::abs(2.0 * twin - 1.0);
-    twins += tells * twin;
-    all += tells;
-  }
-  return twins / (all - twins) / believed;
-}
 
 double PlacementOdds::odds_of_look_alike(const std::vector<const PlacedPair*>& across,
                                          const std::vector<bool>& side) const {
@@ -91,8 +68,8 @@ double PlacementOdds::odds_of_look_alike(const std::vector<const PlacedPair*>& a
     alike = believed ? std::min(alike, evidence.twins.alike) : evidence.twins.alike;
     believed = true;
   }
-  return rate_of_twins(side) * (otherwise * std::exp(-against.against_otherwise(bent_)) +
-                                alike * std::exp(-against.against_alike(bent_)));
+  return rate_.factor(side) * (otherwise * std::exp(-against.against_otherwise(bent_)) +
+                               alike * std::exp(-against.against_alike(bent_)));
 }
 
 double PlacementOdds::log_odds_of_chance(std::vector<const PlacedPair*> across, const std::vector<bool>& side,

@@ -5,6 +5,7 @@
 #include <map>
 #include <vector>
 
+#include "limen/project/graph/look_alike_rate.h"
 #include "limen/project/graph/shared_views.h"
 
 namespace limen {
@@ -21,12 +22,12 @@ struct SideOdds {
 /// Odds of sides, by all pairs that a configuration places in sight of each other.
 ///
 /// Look-alike places: that there is one is believed once for a side, as often as it happens in this building
-/// (learned from the other scans). What things and walls say against it adds up over the pairs across; those
+/// (look_alike_rate.h). What things and walls say against it adds up over the pairs across; those
 /// that show the same count once together. Whether scans are bent is learned from all pairs. Chance: pairs
 /// err independently as far as they show different surface, and wrong poses agree with one another seldom.
 class PlacementOdds {
  public:
-  PlacementOdds(int nodes, std::vector<PlacedPair> pairs);
+  PlacementOdds(int nodes, std::vector<PlacedPair> pairs, const std::vector<UnusedLink>& unused = {});
 
   [[nodiscard]] const SideOdds& of(const std::vector<bool>& side);
   /// The same, had these links not been.
@@ -46,11 +47,11 @@ class PlacementOdds {
                                           const std::vector<bool>& side) const;
   [[nodiscard]] double log_odds_of_chance(std::vector<const PlacedPair*> across,
                                           const std::vector<bool>& side, SideOdds& odds) const;
-  [[nodiscard]] double rate_of_twins(const std::vector<bool>& side) const;
 
   int nodes_;
   std::vector<PlacedPair> pairs_;
   SharedViews views_;
+  LookAlikeRate rate_;
   double bent_;  ///< probability that the scans are bent within themselves
   std::map<std::vector<bool>, SideOdds> known_;
 };

@@ -69,7 +69,8 @@ class Solver {
   };
 
   void weigh() {
-    odds_.emplace(graph_.nodes, placed_pairs(graph_, matcher_, best_, query_));
+    odds_.emplace(graph_.nodes, placed_pairs(graph_, matcher_, best_, query_),
+                  unused_links(graph_, matcher_, best_));
     reference_ = references();
   }
 

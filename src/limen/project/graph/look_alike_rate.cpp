@@ -1,0 +1,106 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/project/graph/look_alike_rate.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+#include "limen/register/judge/evidence_table.h"
+#include "limen/register/judge/twin_odds.h"
+
+namespace limen {
+namespace {
+
+constexpr double kBelieved = evidence_table::kOtherwise + evidence_table::kAlike;  // odds
+constexpr double kMean = kBelieved / (1.0 + kBelieved);
+constexpr double kAlikePart = kMean * evidence_table::kRateStrength;  // of the beta distribution
+constexpr double kOtherPart = (1.0 - kMean) * evidence_table::kRateStrength;
+constexpr std::size_t kShares = 49;  // evenly by the logarithm of their odds
+constexpr double kFirstLogOdds = -12.0;
+constexpr double kStep = 0.5;
+constexpr double kUnclear = std::numeric_limits<double>::infinity();
+
+double share(std::size_t k) {
+  return 1.0 / (1.0 + std::exp(-(kFirstLogOdds + kStep * static_cast<double>(k))));
+}
+
+/// The tails beyond the first and the last share are theirs.
+std::vector<double> density_beforehand() {
+  std::vector<double> logs(kShares);
+  for (std::size_t k = 0; k < kShares; ++k)
+    logs[k] = kAlikePart * std::log(share(k)) + kOtherPart * std::log1p(-share(k));
+  logs.front() += std::log1p(1.0 / (kAlikePart * kStep));
+  logs.back() += std::log1p(1.0 / (kOtherPart * kStep));
+  return logs;
+}
+
+/// What is seen says of each share: one place has a likelihood `here`, a look-alike one `look_alike`.
+void add(double weight, double here, double look_alike, double chance, std::vector<double>& logs) {
+  for (std::size_t k = 0; k < kShares; ++k)
+    logs[k] += weight * std::log((1.0 - share(k)) * here + share(k) * look_alike + chance);
+}
+
+}  // namespace
+
+std::vector<UnusedLink> unused_links(const PoseGraph& graph, const LinkMatcher& matcher,
+                                     const Configuration& configuration) {
+  std::vector<UnusedLink> unused;
+  for (std::size_t k = 0; k < graph.links.size(); ++k) {
+    const GraphLink& link = graph.links[k];
+    if (configuration.pose[k] >= 0 || link.trust != LinkTrust::measured) continue;
+    const PairEvidence& evidence = matcher.evidence(k, 0);
+    if (evidence.looks_for_twins && evidence.chance_nats > 0.0)
+      unused.push_back({link.source, link.target, evidence, configuration.joins(link)});
+  }
+  return unused;
+}
+
+LookAlikeRate::LookAlikeRate(int nodes, const std::vector<PlacedPair>& pairs,
+                             const std::vector<UnusedLink>& unused)
+    : others_(density_beforehand()), links_(static_cast<std::size_t>(nodes)), agreeing_(links_.size(), 0.0) {
+  std::vector<double> all(links_.size(), 0.0);
+  for (const PlacedPair& pair : pairs) {
+    if (pair.link < 0 || !pair.evidence.looks_for_twins) continue;
+    const double look_alike = odds_of(pair.evidence.twins) / kBelieved;
+    links_[static_cast<std::size_t>(pair.source)].push_back({pair.target, look_alike});
+    links_[static_cast<std::size_t>(pair.target)].push_back({pair.source, look_alike});
+  }
+  for (std::size_t n = 0; n < links_.size(); ++n) all[n] = static_cast<double>(links_[n].size());
+  for (const UnusedLink& link : unused) {
+    all[static_cast<std::size_t>(link.source)] += 1.0;
+    all[static_cast<std::size_t>(link.target)] += 1.0;
+  }
+  for (std::size_t n = 0; n < links_.size(); ++n)
+    agreeing_[n] = static_cast<double>(links_[n].size()) / std::max(1.0, all[n]);
+  for (const UnusedLink& link : unused) {
+    const double weight =
+        1.0 / all[static_cast<std::size_t>(link.source)] + 1.0 / all[static_cast<std::size_t>(link.target)];
+    add(weight, link.contradicted ? 0.0 : 1.0, odds_of(link.evidence.twins) / kBelieved,
+        (1.0 - kMean) * std::exp(-link.evidence.chance_nats), others_);
+  }
+}
+
+double LookAlikeRate::factor(const std::vector<bool>& side) const {
+  std::vector<double> logs = others_;
+  for (std::size_t n = 0; n < links_.size(); ++n) {
+    double clearest = kUnclear;
+    for (const Link& link : links_[n]) {
+      if (side[n] == side[static_cast<std::size_t>(link.other)])
+        clearest = std::min(clearest, link.look_alike);
+    }
+    if (clearest < kUnclear) add(agreeing_[n], 1.0, clearest, 0.0, logs);
+  }
+  const double most = *std::max_element(logs.begin(), logs.end());
+  double look_alike = 0.0;
+  double all = 0.0;
+  for (std::size_t k = 0; k < kShares; ++k) {
+    const double density = std::exp(logs[k] - most);
+    look_alike += share(k) * density;
+    all += density;
+  }
+  return look_alike / (all - look_alike) / kBelieved;
+}
+
+}  // namespace limen

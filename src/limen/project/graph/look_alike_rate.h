@@ -1,0 +1,46 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "limen/project/graph/configuration.h"
+#include "limen/project/graph/shared_views.h"
+
+namespace limen {
+
+/// A link whose best pose is not part of a configuration.
+struct UnusedLink {
+  int source = -1;
+  int target = -1;
+  PairEvidence evidence;
+  bool contradicted = false;  ///< the configuration has the two scans elsewhere
+};
+
+/// Links that say something of look-alike places: not those that leave a direction free, nor those that more
+/// probably share nothing.
+std::vector<UnusedLink> unused_links(const PoseGraph& graph, const LinkMatcher& matcher,
+                                     const Configuration& configuration);
+
+/// How often, in this building, a pose whose walls agree lays a place on a look-alike one. The share has a
+/// beta distribution beforehand, for buildings differ (kRateStrength). Each scan counts once: by the clearest
+/// of its links that agree and by those that do not, as many as there are of each.
+class LookAlikeRate {
+ public:
+  LookAlikeRate(int nodes, const std::vector<PlacedPair>& pairs, const std::vector<UnusedLink>& unused);
+
+  /// The odds of a look-alike place by all links but the pairs that cross the border of `side`, as a multiple
+  /// of the odds beforehand.
+  [[nodiscard]] double factor(const std::vector<bool>& side) const;
+
+ private:
+  struct Link {
+    int other = -1;
+    double look_alike = 0.0;  ///< likelihood of a look-alike place, against that of one place
+  };
+  std::vector<double> others_;            ///< log of the density beforehand, and what unused links say
+  std::vector<std::vector<Link>> links_;  ///< of each node, those that agree ...
+  std::vector<double> agreeing_;          ///< ... and their share of all its links
+};
+
+}  // namespace limen
