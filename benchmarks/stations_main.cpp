@@ -22,9 +22,9 @@
 #include "limen/base/parallel.h"
 #include "limen/base/random.h"
 #include "limen/geometry/random_vectors.h"
-#include "limen/project/project_graph.h"
-#include "limen/project/project_state.h"
-#include "limen/project/waves.h"
+#include "limen/project/run/waves.h"
+#include "limen/project/solve/project_graph.h"
+#include "limen/project/state/project_node.h"
 
 namespace {
 

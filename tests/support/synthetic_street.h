@@ -10,7 +10,7 @@
 
 #include "limen/base/random.h"
 #include "limen/geometry/random_vectors.h"
-#include "limen/project/project_state.h"
+#include "limen/project/state/project_node.h"
 
 namespace limen {
 

@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
+#include "limen/project/assemble.h"
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -12,12 +14,15 @@
 
 #include "limen/base/angles.h"
 #include "limen/base/text.h"
-#include "limen/project/judge_decisions.h"
-#include "limen/project/project_graph.h"
-#include "limen/project/project_state.h"
-#include "limen/project/scan_names.h"
-#include "limen/project/stated_passes.h"
-#include "limen/project/survey.h"
+#include "limen/project/result/stated_passes.h"
+#include "limen/project/solve/adjust_planes.h"
+#include "limen/project/solve/judge_decisions.h"
+#include "limen/project/solve/place_survey.h"
+#include "limen/project/solve/project_graph.h"
+#include "limen/project/solve/straighten_links.h"
+#include "limen/project/solve/survey_points.h"
+#include "limen/project/state/scan_names.h"
+#include "limen/project/survey/survey.h"
 
 namespace limen {
 namespace {

@@ -3,50 +3,15 @@
 #pragma once
 
 #include <filesystem>
-#include <functional>
-#include <optional>
-#include <string>
 #include <vector>
 
 #include "limen/base/progress.h"
-#include "limen/io/table/scan_file.h"
 #include "limen/project/decide/decisions.h"
-#include "limen/project/engine/job_engine.h"
-#include "limen/project/pass_trajectories.h"
-#include "limen/project/project_result.h"
-#include "limen/register/register.h"
+#include "limen/project/inputs/project_options.h"
+#include "limen/project/result/project_result.h"
+#include "limen/project/state/project_status.h"
 
 namespace limen {
-
-struct ProjectOptions {
-  RegisterOptions registering;
-  ReadOptions reading;
-  bool all_pairs = false;       ///< every pair is tried, however many there are
-  int pairs_per_scan = 12;      ///< else: as many per scan at most, on average
-  bool stations_apart = false;  ///< scans of one file are not known to one another
-  /// Scans of one file are where it has them with this deviation, and not to millimetres.
-  std::optional<double> file_sigma_m = {};
-  bool rigid_passes = false;  ///< mobile passes do not drift: none is bent
-  EngineOptions engine = {};  ///< where features and pairs are made; never changes a result
-  /// Along which scans may have been measured: each with times takes the one that covers it, before what its
-  /// file says.
-  StatedTrajectories trajectories = {};
-  /// Gets each note as soon as it is known; all of them are in ProjectResult::notes too.
-  std::function<void(const std::string& note)> on_note = {};
-
-  void check() const;
-};
-
-/// Scans and models by their files, in any order, and what a surveyor knows (control/control_file.h).
-struct ProjectInputs {
-  std::vector<std::string> scans;
-  std::vector<std::string> models;
-  std::string control;  ///< file of points whose coordinates enter as observations; empty: none
-  std::string check;    ///< file of points that are compared with the result and never enter
-  std::string targets;  ///< file of where the scans saw them; a point called as a scan is its scanner's place
-  std::string poses;    ///< file of where scans are said to have been (control/control_file.h)
-  std::string decisions;  ///< file of what the user says (decide/decisions.h); added to what was said before
-};
 
 /// Puts any number of scans, and building models, into one frame. Features of scans and results of pairs are
 /// kept under `folder`/store, and only what is missing is made. A file that cannot be read is named in its
@@ -58,18 +23,5 @@ ProjectResult run_project(const ProjectInputs& inputs, const std::filesystem::pa
 /// Adds a decision to those that are kept in a project's folder, for the next run; returns them all. Throws
 /// Error where `folder` holds no project.
 std::vector<Decision> decide(const std::filesystem::path& folder, const Decision& decision);
-
-/// How far a project is, from its folder alone.
-struct ProjectStatus {
-  std::string stage;           ///< "features", "pairs", "done"
-  std::size_t scans = 0;       ///< files in the last run
-  std::size_t ready = 0;       ///< files whose features are kept
-  std::size_t pairs = 0;       ///< pairs chosen so far
-  std::size_t tried = 0;       ///< of them: whose result is kept
-  std::size_t copies = 0;      ///< files of the same bytes as another, which needs no features of its own
-  std::size_t unreadable = 0;  ///< files that gave no features
-};
-/// Throws Error where `folder` holds no project.
-ProjectStatus project_status(const std::filesystem::path& folder);
 
 }  // namespace limen

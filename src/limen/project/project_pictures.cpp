@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "limen/base/parallel.h"
+#include "limen/project/run/store_jobs.h"
 #include "limen/project/store/store.h"
-#include "limen/project/store_jobs.h"
 
 namespace limen {
 

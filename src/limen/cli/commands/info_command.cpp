@@ -22,7 +22,7 @@
 #include "limen/cli/inputs/scan_options.h"
 #include "limen/io/cloud/read_scan.h"
 #include "limen/model/plausible_size.h"
-#include "limen/project/scan_names.h"
+#include "limen/project/state/scan_names.h"
 #include "limen/register/prepare/scan_frame.h"
 #include "limen/report/json/json_values.h"
 

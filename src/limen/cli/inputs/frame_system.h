@@ -7,7 +7,7 @@
 
 #include "limen/cli/terminal/command.h"
 #include "limen/io/crs/coordinate_system.h"
-#include "limen/project/project_result.h"
+#include "limen/project/result/project_result.h"
 #include "limen/report/project/project_json.h"
 
 namespace limen {

@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "limen/project/scan_names.h"
+#include "limen/project/state/scan_names.h"
 
 namespace limen {
 namespace {

@@ -11,7 +11,7 @@
 #include <fmt/format.h>
 
 #include "limen/base/error.h"
-#include "limen/project/scan_names.h"
+#include "limen/project/state/scan_names.h"
 #include "limen/report/project/read_project.h"
 
 namespace limen {

@@ -9,7 +9,7 @@
 
 #include "limen/cli/inputs/scan_options.h"
 #include "limen/io/cloud/transform_cloud.h"
-#include "limen/project/pass_trajectories.h"
+#include "limen/project/inputs/pass_trajectories.h"
 #include "limen/report/project/read_project.h"
 
 namespace limen {

@@ -13,8 +13,8 @@
 #include <gtest/gtest.h>
 
 #include "limen/files/file_hash.h"
-#include "limen/project/project_files.h"
-#include "limen/project/store_jobs.h"
+#include "limen/project/inputs/project_files.h"
+#include "limen/project/run/store_jobs.h"
 
 namespace limen {
 namespace {

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "limen/base/version.h"
-#include "limen/project/scan_names.h"
+#include "limen/project/state/scan_names.h"
 #include "limen/report/deviation/building_report.h"
 #include "limen/report/deviation/deviation_report.h"
 #include "limen/report/html/html_bytes.h"

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "limen/project/project_result.h"
+#include "limen/project/result/project_result.h"
 
 namespace limen {
 

@@ -7,7 +7,7 @@
 #include <filesystem>
 
 #include "limen/geometry/linear.h"
-#include "limen/project/scan_names.h"
+#include "limen/project/state/scan_names.h"
 
 namespace limen {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "limen/project/project_result.h"
+#include "limen/project/result/project_result.h"
 
 namespace limen {
 

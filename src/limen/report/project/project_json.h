@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "limen/io/crs/coordinate_system.h"
-#include "limen/project/pass_trajectories.h"
-#include "limen/project/project_result.h"
+#include "limen/project/inputs/pass_trajectories.h"
+#include "limen/project/result/project_result.h"
 #include "limen/report/json/result_json.h"
 
 namespace limen {

@@ -10,7 +10,7 @@
 #include "limen/base/angles.h"
 #include "limen/deviation/deviation.h"
 #include "limen/files/table_cells.h"
-#include "limen/project/scan_names.h"
+#include "limen/project/state/scan_names.h"
 #include "limen/report/summary/precision.h"
 
 namespace limen {

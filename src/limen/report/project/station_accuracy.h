@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "limen/project/project_result.h"
+#include "limen/project/result/project_result.h"
 
 namespace limen {
 

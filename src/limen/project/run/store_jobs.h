@@ -1,0 +1,51 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "limen/base/error.h"
+#include "limen/project/inputs/project_files.h"
+#include "limen/project/run/scan_cache.h"
+#include "limen/project/store/store.h"
+
+namespace limen {
+
+/// The two kinds of work on a project's store, for any engine: what the store holds is not done again.
+
+/// The store cannot be written: no fault of the scan that was worked on.
+class StoreFault : public Error {
+ public:
+  using Error::Error;
+};
+
+/// Everything that features and pairs depend on beside the files.
+std::string store_options(const ProjectOptions& options);
+
+/// The record of a file of which all is kept, and whole: features, and pictures of scans. Its notes tell the
+/// names of this run.
+std::optional<FileRecord> kept_record(const Store& store, const ProjectFile& file,
+                                      const ProjectOptions& options);
+
+/// Features of all scans in the file, or of the model; what the store holds whole is not made again. Throws
+/// StoreFault, and Error where the file is no good.
+FileRecord make_features(const ProjectFile& file, const ProjectOptions& options, const Store& store,
+                         Monitor& monitor);
+
+/// A pair by the keys of its features. Two scans that stand upright may be searched as such.
+struct PairKey {
+  std::string source;
+  std::string target;
+  bool level = false;
+  PairCounts counts = {};  ///< no part of the key: what its result may point to
+
+  /// The second half of the name that the result is kept by.
+  [[nodiscard]] std::string target_name() const { return target + (level ? "-level" : ""); }
+};
+
+/// What came of the pair, as it is kept. `options`: as for every pair of the project. Throws StoreFault.
+RegistrationResult make_pair_result(const PairKey& pair, const RegisterOptions& options, const Store& store,
+                                    ScanCache& cache);
+
+}  // namespace limen

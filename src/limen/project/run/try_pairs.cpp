@@ -1,0 +1,95 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/project/run/try_pairs.h"
+
+#include <mutex>
+
+#include <fmt/format.h>
+
+#include "limen/base/error.h"
+#include "limen/base/parallel.h"
+#include "limen/project/run/scan_cache.h"
+#include "limen/project/run/store_jobs.h"
+#include "limen/project/run/work.h"
+#include "limen/project/state/scan_names.h"
+
+namespace limen {
+namespace {
+
+constexpr std::size_t kScansInMemory = 16;
+
+}  // namespace
+
+bool seem_level(const ProjectNode& source, const ProjectNode& target, const RegisterOptions& options) {
+  const auto level = [](const ScanDigest& digest) { return digest.upright && !digest.model; };
+  return options.gravity == Gravity::automatic && level(source.digest) && level(target.digest);
+}
+
+namespace {
+
+/// Those of the pairs that are not kept are made by the engine: per pair why there is no result.
+std::vector<std::string> made_elsewhere(const std::vector<std::pair<std::size_t, std::size_t>>& pairs,
+                                        const std::vector<PairKey>& keys, const PairWork& work,
+                                        ProjectStatus& status, Monitor& monitor) {
+  std::vector<std::string> faults(keys.size());
+  std::vector<Job> jobs;
+  std::vector<std::size_t> places;
+  for (std::size_t k = 0; k < keys.size(); ++k) {
+    if (work.store.has_pair(keys[k].source, keys[k].target_name(), keys[k].counts)) continue;
+    const auto name = [&](std::size_t node) { return scan_name(work.scans[work.nodes[node].scan]); };
+    jobs.push_back(pair_job(work.folder, name(pairs[k].first) + " and " + name(pairs[k].second), keys[k]));
+    places.push_back(k);
+  }
+  const std::size_t kept = keys.size() - jobs.size();
+  const std::size_t before = status.tried;
+  const auto on_done = [&](std::size_t done) {
+    status.tried = before + kept + done;
+    write_status(work.folder, status);
+    monitor.advance(static_cast<double>(kept + done), static_cast<double>(keys.size()));
+  };
+  const std::vector<JobResult> results = work.engine->run(jobs, on_done, monitor);
+  status.tried = before;
+  for (std::size_t k = 0; k < results.size(); ++k) {
+    if (results[k].state != JobState::done) faults[places[k]] = results[k].words;
+  }
+  return faults;
+}
+
+}  // namespace
+
+std::vector<TriedPair> try_pairs(const std::vector<std::pair<std::size_t, std::size_t>>& pairs,
+                                 const PairWork& work, PairSearch search, ProjectStatus& status,
+                                 Monitor& monitor) {
+  monitor.begin_stage("pairs");
+  status.stage = "pairs";
+  std::vector<TriedPair> tried(pairs.size());
+  std::vector<PairKey> keys(pairs.size());
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    const ProjectNode& source = work.nodes[pairs[k].first];
+    const ProjectNode& target = work.nodes[pairs[k].second];
+    tried[k] = {pairs[k].first, pairs[k].second, {}, {}};
+    keys[k] = {source.key,
+               target.key,
+               search == PairSearch::level && seem_level(source, target, work.options),
+               {source.digest.counts(), target.digest.counts()}};
+  }
+  std::vector<std::string> faults(pairs.size());
+  if (work.engine != nullptr) faults = made_elsewhere(pairs, keys, work, status, monitor);
+  ScanCache cache(work.store, kScansInMemory, names_of_keys(work.nodes, work.scans));
+  std::mutex mutex;
+  std::size_t done = 0;
+  parallel_for(pairs.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      tried[k].fault = faults[k];
+      if (faults[k].empty()) tried[k].result = make_pair_result(keys[k], work.options, work.store, cache);
+      const std::lock_guard<std::mutex> lock(mutex);
+      ++status.tried;
+      if (work.engine == nullptr) write_status(work.folder, status);
+      monitor.advance(static_cast<double>(++done), static_cast<double>(pairs.size()));
+    }
+  });
+  write_status(work.folder, status);
+  return tried;
+}
+
+}  // namespace limen

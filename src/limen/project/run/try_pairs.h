@@ -1,0 +1,44 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <utility>
+#include <vector>
+
+#include "limen/base/progress.h"
+#include "limen/project/engine/job_engine.h"
+#include "limen/project/result/project_result.h"
+#include "limen/project/state/project_node.h"
+#include "limen/project/state/project_status.h"
+#include "limen/project/store/store.h"
+#include "limen/register/register_options.h"
+
+namespace limen {
+
+/// How far a pair is searched.
+enum class PairSearch {
+  level,     ///< two scans that stand upright are taken to do so
+  any_turn,  ///< where nothing is found so, they may stand any way round
+};
+
+/// Whether the two ways to search differ: both scans seem to stand upright, and nobody said so.
+bool seem_level(const ProjectNode& source, const ProjectNode& target, const RegisterOptions& options);
+
+/// Where and how pairs are registered.
+struct PairWork {
+  const std::vector<ProjectNode>& nodes;
+  const std::vector<ProjectScan>& scans;
+  const Store& store;
+  const RegisterOptions& options;
+  JobEngine* engine;  ///< null: here
+  const std::filesystem::path& folder;
+};
+
+/// Registers the pairs whose result is not kept, several at a time; returns all results in the given order.
+std::vector<TriedPair> try_pairs(const std::vector<std::pair<std::size_t, std::size_t>>& pairs,
+                                 const PairWork& work, PairSearch search, ProjectStatus& status,
+                                 Monitor& monitor);
+
+}  // namespace limen

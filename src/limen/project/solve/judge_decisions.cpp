@@ -1,0 +1,111 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/project/solve/judge_decisions.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "limen/base/angles.h"
+
+namespace limen {
+namespace {
+
+constexpr double kSamePlaceM = 0.05;  // a rejected link that others put so near is not wrong
+constexpr double kJudgedTurnRad = 0.01;
+
+class DecisionJudge {
+ public:
+  explicit DecisionJudge(const WordsAndSolution& all) : all_(all) {}
+
+  [[nodiscard]] std::vector<ProjectDecision> run() const {
+    std::vector<ProjectDecision> list;
+    for (std::size_t d = 0; d < all_.words.decisions.size(); ++d) {
+      ProjectDecision stated;
+      stated.decision = all_.words.decisions[d];
+      judge(all_.words.nodes[d], d < all_.broken.size() && all_.broken[d], stated);
+      list.push_back(stated);
+    }
+    return list;
+  }
+
+ private:
+  [[nodiscard]] const ScanDigest& digest(int node) const {
+    return all_.nodes[static_cast<std::size_t>(node)].digest;
+  }
+
+  void judge(const std::vector<int>& nodes, bool broken, ProjectDecision& stated) const {
+    const DecisionKind kind = stated.decision.kind;
+    if (nodes.empty()) {
+      stated.reason = "the project has no such scan, or several of that name";
+      return;
+    }
+    if (kind == DecisionKind::level || kind == DecisionKind::same_floor) {
+      stated.state = broken ? DecisionState::contradicted : DecisionState::kept;
+      if (broken) stated.reason = "links and planes contradict it, so it was not applied";
+      return;
+    }
+    if (kind == DecisionKind::reject) return judge_rejection(nodes, stated);
+    for (std::size_t k = 0; k < all_.graph.links.size(); ++k) {
+      const GraphLink& link = all_.graph.links[k];
+      if (all_.pair_of[k] < 0 || std::minmax(link.source, link.target) != std::minmax(nodes[0], nodes[1]))
+        continue;
+      if (link.best != stated.decision.pose) break;
+      const bool taken = all_.solved.links[k].pose == 0;
+      stated.state = taken ? DecisionState::kept : DecisionState::contradicted;
+      if (!taken)
+        stated.reason = fmt::format("the other links disagree with it by {:.0f} mm and {:.2f} deg",
+                                    1e3 * all_.solved.links[k].loop_error_m,
+                                    degrees(all_.solved.links[k].loop_error_rad));
+      return;
+    }
+    stated.reason = "the pair has no such pose";
+  }
+
+  /// Whether the two stand as the rejected link has it all the same.
+  void judge_rejection(const std::vector<int>& nodes, ProjectDecision& stated) const {
+    stated.reason = "the pair has no link";
+    for (const TriedPair& pair : all_.pairs) {
+      const std::pair own(static_cast<int>(pair.target), static_cast<int>(pair.source));
+      if (own != std::pair(std::min(nodes[0], nodes[1]), std::max(nodes[0], nodes[1]))) continue;
+      if (pair.result.outcome == Outcome::no_match) return;
+      stated.state = DecisionState::kept;
+      stated.reason = {};
+      const SolvedNode& source = all_.solved.nodes[pair.source];
+      const SolvedNode& target = all_.solved.nodes[pair.target];
+      if (source.component < 0 || source.component != target.component) return;
+      const Rigid3 rejected = to_local(pair.result.best.target_from_source, digest(own.second).local_origin,
+                                       digest(own.first).local_origin);
+      const Rigid3 missed = inverse(rejected) * inverse(target.frame_from_node) * source.frame_from_node;
+      const Vector3d middle = digest(own.second).middle;
+      if ((missed * middle - middle).norm() > kSamePlaceM || rotation_angle(missed.rotation) > kJudgedTurnRad)
+        return;
+      stated.state = DecisionState::contradicted;
+      stated.reason = "the other links still lead to this relative pose";
+      return;
+    }
+  }
+
+  const WordsAndSolution& all_;
+};
+
+}  // namespace
+
+const char* to_string(DecisionState state) {
+  switch (state) {
+    case DecisionState::kept:
+      return "kept";
+    case DecisionState::contradicted:
+      return "contradicted";
+    case DecisionState::unused:
+      break;
+  }
+  return "unused";
+}
+
+std::vector<ProjectDecision> judged_decisions(const WordsAndSolution& all) {
+  return DecisionJudge(all).run();
+}
+
+}  // namespace limen

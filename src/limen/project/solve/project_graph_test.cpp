@@ -1,0 +1,253 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/project/solve/project_graph.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "limen/project/solve/shared_planes.h"
+#include "limen/project/solve/word_terms.h"
+
+namespace limen {
+namespace {
+
+/// What a pair gives whose look-alike place has this probability.
+RegistrationResult stated(Outcome outcome, double twin, std::size_t rivals = 0) {
+  RegistrationResult result;
+  result.outcome = outcome;
+  result.best.probability = 1.0 - twin;
+  result.best.score = 30.0;
+  result.best.agreeing_m2 = 30.0;
+  result.rivals = rivals;
+  result.others = OtherExplanations{0.0, twin, 0.0};
+  if (rivals > 0) result.alternatives.push_back(result.best);
+  return result;
+}
+
+std::vector<GraphLink> links_of(const RegistrationResult& pair) {
+  std::vector<ProjectNode> nodes(2);
+  nodes[1].scan = 1;
+  return make_graph(nodes, {{1, 0, pair, {}}}, {}).graph.links;
+}
+
+TEST(ProjectGraph, ALinkKeepsTheProbabilitiesOfItsPair) {
+  const std::vector<GraphLink> links = links_of(stated(Outcome::ambiguous, 0.6));
+  ASSERT_EQ(links.size(), 1U);
+  EXPECT_EQ(links.front().trust, LinkTrust::measured);
+  EXPECT_NEAR(links.front().twin, 0.6, 1e-12);
+  EXPECT_TRUE(links_of(stated(Outcome::no_match, 0.0)).empty());
+}
+
+TEST(ProjectGraph, WhatIsKnownToCentimetresTellsOnePlaceFromAnother) {
+  RegistrationResult pair = stated(Outcome::under_constrained, 0.0);
+  pair.sigma.translation_m = {0.003, 0.02, 0.003};
+  pair.unobserved = {{false, Vector3d::UnitY(), "shift"}};
+  EXPECT_EQ(links_of(pair).front().trust, LinkTrust::measured);
+  pair.sigma.translation_m.y() = 0.2;
+  EXPECT_EQ(links_of(pair).front().trust, LinkTrust::weak);
+}
+
+/// Two poses of a pair a decimetre or two from each other mean one place; along the line between them it is
+/// known no better than they agree. A pose that is metres away stays one of its own, and an open one is none.
+TEST(ProjectGraph, PosesNearEachOtherAreOnePlaceThatIsKnownLessWell) {
+  RegistrationResult pair = stated(Outcome::ambiguous, 0.0);
+  pair.best.probability = 0.6;
+  pair.best.sigma.covariance = 1e-6 * Matrix6d::Identity();
+  pair.sigma = pair.best.sigma;
+  const auto other = [&](const Vector3d& shift, double probability, double variance) {
+    Hypothesis pose = pair.best;
+    pose.target_from_source.translation += shift;
+    pose.sigma.covariance *= variance / 1e-6;
+    pose.probability = probability;
+    pair.alternatives.push_back(pose);
+  };
+  other({0.2, 0, 0}, 0.2, 1e-6);
+  other({4, 0, 0}, 0.1, 1e-6);
+  other({0, 9, 0}, 0.1, 100.0);
+  const GraphLink link = links_of(pair).front();
+  ASSERT_EQ(link.poses.size(), 2U);
+  EXPECT_NEAR(link.poses.front().probability, 0.8, 1e-12);
+  EXPECT_NEAR(link.poses.front().covariance(3, 3), 0.25 * 0.2 * 0.2, 1e-4);
+  EXPECT_LT(link.poses.front().covariance(4, 4), 1e-4);
+  EXPECT_NEAR(link.poses.back().target_from_source.translation.x(), 4.0, 1e-12);
+}
+
+TEST(ProjectGraph, AlongWhatAPairCallsOpenItsDeviationIsNotBelieved) {
+  RegistrationResult pair = stated(Outcome::under_constrained, 0.0);
+  pair.best.sigma.covariance = 1e-6 * Matrix6d::Identity();
+  pair.sigma = pair.best.sigma;
+  const Vector3d open = Vector3d(3, 4, 0).normalized();
+  pair.unobserved = {{false, open, "shift"}};
+  const Matrix6d covariance = links_of(pair).front().poses.front().covariance;
+  const Matrix3d shift = covariance.bottomRightCorner<3, 3>();
+  EXPECT_GT(open.dot(shift * open), 0.009);
+  const Vector3d across = Vector3d::UnitZ().cross(open);
+  EXPECT_LT(across.dot(shift * across), 1e-3);
+  EXPECT_LT(shift(2, 2), 1e-3);
+  EXPECT_LT((Matrix3d(covariance.topLeftCorner<3, 3>()).norm()), 1e-3);
+}
+
+TEST(ProjectGraph, APairThatDoesNotKnowItselfIsNotSure) {
+  RegistrationResult pair = stated(Outcome::registered, 0.0);
+  pair.best.probability = 0.7;
+  pair.others->nothing_shared = 0.2;
+  pair.others->unlisted_pose = 0.1;
+  EXPECT_NEAR(links_of(pair).front().chance, 0.3, 1e-12);
+  pair.others.reset();
+  EXPECT_GT(links_of(pair).front().chance, 0.001);
+}
+
+UserWords word(DecisionKind kind, int pose = 0) {
+  UserWords words;
+  words.pairs[{1, 0}] = {kind, pose};
+  return words;
+}
+
+std::vector<GraphLink> links_with(const RegistrationResult& pair, const UserWords& words) {
+  std::vector<ProjectNode> nodes(2);
+  nodes[1].scan = 1;
+  return make_graph(nodes, {{1, 0, pair, {}}}, words).graph.links;
+}
+
+TEST(ProjectGraph, AUsersWordMakesALinkSureOrLeavesItOut) {
+  const RegistrationResult twin = stated(Outcome::ambiguous, 0.9);
+  const std::vector<GraphLink> accepted = links_with(twin, word(DecisionKind::accept));
+  ASSERT_EQ(accepted.size(), 1U);
+  // No surer than a user is.
+  EXPECT_GT(accepted.front().twin, 0.0);
+  EXPECT_LT(accepted.front().twin + accepted.front().chance, 0.001);
+  EXPECT_TRUE(links_with(stated(Outcome::registered, 0.0), word(DecisionKind::reject)).empty());
+  EXPECT_TRUE(links_with(stated(Outcome::no_match, 0.0), word(DecisionKind::accept)).empty());
+}
+
+TEST(ProjectGraph, TheChosenPoseComesFirstAndPosesKeepTheirNumbers) {
+  RegistrationResult pair = stated(Outcome::ambiguous, 0.0, 2);
+  pair.alternatives.push_back(pair.best);
+  pair.alternatives[0].target_from_source.translation.x() = 3.0;
+  pair.alternatives[1].target_from_source.translation.x() = 5.0;
+  const GraphLink link = links_with(pair, word(DecisionKind::choose, 2)).front();
+  EXPECT_EQ(link.poses.front().target_from_source.translation.x(), 5.0);
+  EXPECT_EQ(link.number_of(0), 2);
+  EXPECT_EQ(link.number_of(1), 1);
+  EXPECT_EQ(link.number_of(2), 0);
+  // A number that there is none of changes nothing.
+  EXPECT_EQ(links_with(pair, word(DecisionKind::choose, 7)).front().number_of(0), 0);
+}
+
+/// A scanner 1.6 m above a floor of 10 m^2.
+ProjectNode over_a_floor(std::size_t scan) {
+  ProjectNode node;
+  node.scan = scan;
+  node.digest.upright = true;
+  node.digest.stations = {Vector3d(0, 0, 1.6)};
+  PlaneDigest floor;
+  floor.plane = {Vector3d::UnitZ(), 0.0};
+  floor.area_m2 = 10.0;
+  for (const double x : {-1.0, 0.0, 1.0}) {
+    for (const double y : {-1.0, 0.0, 1.0}) floor.moments.add({x, y, 0.0});
+  }
+  node.digest.planes.push_back(floor);
+  return node;
+}
+
+TEST(ProjectGraph, PosesOnOtherStoreysFallAwayWhereFloorsAreOfOneHeight) {
+  RegistrationResult pair = stated(Outcome::ambiguous, 0.0, 1);
+  pair.best.target_from_source.translation.z() = 3.0;
+  pair.alternatives.front().target_from_source.translation.z() = 0.01;
+  UserWords words;
+  words.floors.emplace(1, 0);
+  const GraphLink link =
+      make_graph({over_a_floor(0), over_a_floor(1)}, {{1, 0, pair, {}}}, words).graph.links.front();
+  EXPECT_EQ(link.poses.front().target_from_source.translation.z(), 0.01);
+  EXPECT_EQ(link.number_of(0), 1);
+}
+
+/// Two scans with a link that knows tilts to 0.1 degrees and errs by as much.
+struct TwoScans {
+  std::vector<ProjectNode> nodes = {over_a_floor(0), over_a_floor(1)};
+  SolvedGraph solved;
+  JointProblem problem;
+
+  TwoScans(double lean_rad, double step_m, double link_rad = 0.002) {
+    solved.nodes.resize(2);
+    solved.nodes[0].component = solved.nodes[1].component = 0;
+    Rigid3& second = solved.nodes[1].frame_from_node;
+    second.rotation = rotation_exp(Vector3d(lean_rad, 0, 0));
+    second.translation = {2, 0, step_m};
+    LinkPose pose;
+    pose.target_from_source = second;
+    Vector6d variances;
+    variances << Vector3d::Constant(link_rad * link_rad), Vector3d::Constant(0.004 * 0.004);
+    pose.covariance = variances.asDiagonal();
+    pose.centre = second.translation;
+    problem.edges.push_back({1, 0, pose});
+    for (const SolvedNode& node : solved.nodes) problem.frame_from_node.push_back(node.frame_from_node);
+    problem.fixed = {true, false};
+  }
+
+  JointSolution solve(const UserWords& words, std::vector<bool>& broken) {
+    const std::vector<bool> controlled(2, false);
+    solved.nodes[1].covariance = adjust_jointly(problem).covariance[1];
+    broken = broken_words(words, nodes, solved, controlled);
+    add_word_terms(words, broken, nodes, solved, controlled, problem);
+    return adjust_jointly(problem);
+  }
+};
+
+TEST(SharedPlanes, WhatThePairItselfSeesInTwoPlanesIsNotOneSurface) {
+  // Two floors, 2 m apart, in one plane as the scans stand; by the pair one may be a step of 2 cm.
+  const std::vector<ProjectNode> nodes = {over_a_floor(0), over_a_floor(1)};
+  for (const double step_m : {0.001, 0.02}) {
+    SolvedGraph solved;
+    solved.nodes.resize(2);
+    solved.nodes[1].frame_from_node.translation = {2, 0, 0};
+    const BentPasses none({});
+    SharedPlanes shared(nodes, solved, none);
+    Rigid3 pose;
+    pose.translation = {2, 0, step_m};
+    shared.join(1, 0, 0, 0, pose);
+    JointProblem problem;
+    shared.tell({true, true}, problem);
+    EXPECT_EQ(problem.planes, step_m < 0.01 ? 1 : 0) << step_m;
+  }
+}
+
+UserWords said(DecisionKind kind) {
+  UserWords words;
+  if (kind == DecisionKind::same_floor) {
+    words.decisions = {{kind, {"a", "b"}, 0}};
+    words.nodes = {{0, 1}};
+  } else {
+    words.decisions = {{kind, {"a"}, 0}, {kind, {"b"}, 0}};
+    words.nodes = {{0}, {1}};
+  }
+  return words;
+}
+
+TEST(WordTerms, ScansThatAreStatedToBeLevelBecomeSoUnlessTheDataContradictIt) {
+  std::vector<bool> broken;
+  const JointSolution solution = TwoScans(0.003, 0.0).solve(said(DecisionKind::level), broken);
+  const Vector3d up = solution.frame_from_node[1].rotation.col(2);
+  EXPECT_LT(up.head<2>().norm(), 0.0003);
+  EXPECT_EQ(broken, (std::vector<bool>{false, false}));
+  // A link that knows better.
+  const JointSolution leans = TwoScans(0.01, 0.0, 1e-4).solve(said(DecisionKind::level), broken);
+  EXPECT_EQ(broken, (std::vector<bool>{true, true}));
+  EXPECT_NEAR(leans.frame_from_node[1].rotation(2, 1), 0.01, 1e-5);
+}
+
+TEST(WordTerms, FloorsOfOneHeightComeTogetherUnlessTheDataContradictIt) {
+  std::vector<bool> broken;
+  const JointSolution solution = TwoScans(0.0, 0.006).solve(said(DecisionKind::same_floor), broken);
+  // Between 4 mm of the link, and its tilts at 2 m, and 7 mm of the floors.
+  const double z = solution.frame_from_node[1].translation.z();
+  EXPECT_NEAR(z, 0.006 * 49.0 / (49.0 + 16.0 + 16.0), 0.0012);
+  EXPECT_EQ(broken, std::vector<bool>{false});
+  const JointSolution step = TwoScans(0.0, 0.15).solve(said(DecisionKind::same_floor), broken);
+  EXPECT_EQ(broken, std::vector<bool>{true});
+  EXPECT_NEAR(step.frame_from_node[1].translation.z(), 0.15, 1e-6);
+}
+
+}  // namespace
+}  // namespace limen

@@ -1,0 +1,64 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/project/state/words.h"
+
+#include <algorithm>
+
+#include "limen/base/atomic_file.h"
+#include "limen/project/state/project_status.h"
+#include "limen/project/state/scan_names.h"
+
+namespace limen {
+namespace {
+
+std::filesystem::path kept_in(const std::filesystem::path& folder) {
+  return folder / "decisions.json";
+}
+
+std::vector<Decision> said_before(const std::filesystem::path& folder) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(kept_in(folder), ignored)) return {};
+  return read_decisions(kept_in(folder));
+}
+
+}  // namespace
+
+UserWords words_by_nodes(const std::vector<Decision>& decisions, const std::vector<ProjectNode>& nodes,
+                         const std::vector<ProjectScan>& scans) {
+  UserWords words;
+  words.decisions = decisions;
+  for (const Decision& decision : decisions) {
+    std::vector<int> meant;
+    for (const std::string& scan : decision.scans) {
+      const int node = node_called(scan, nodes, scans);
+      if (node >= 0) meant.push_back(node);
+    }
+    if (meant.size() != decision.scans.size() || (meant.size() == 2 && meant[0] == meant[1])) meant.clear();
+    words.nodes.push_back(meant);
+    if (meant.size() != 2) continue;
+    const auto source = static_cast<std::size_t>(std::max(meant[0], meant[1]));
+    const auto target = static_cast<std::size_t>(std::min(meant[0], meant[1]));
+    if (decision.kind == DecisionKind::same_floor)
+      words.floors.emplace(source, target);
+    else
+      words.pairs[{source, target}] = {decision.kind, decision.pose};
+  }
+  return words;
+}
+
+std::vector<Decision> kept_decisions(const std::filesystem::path& folder, const std::string& file) {
+  std::vector<Decision> decisions = said_before(folder);
+  if (file.empty()) return decisions;
+  decisions = merged(std::move(decisions), read_decisions(file));
+  write_file(kept_in(folder), decisions_text(decisions));
+  return decisions;
+}
+
+std::vector<Decision> decide(const std::filesystem::path& folder, const Decision& decision) {
+  static_cast<void>(project_status(folder));  // only a project's folder is written to
+  std::vector<Decision> decisions = merged(said_before(folder), {decision});
+  write_file(kept_in(folder), decisions_text(decisions));
+  return decisions;
+}
+
+}  // namespace limen

@@ -1,0 +1,97 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/project/survey/stated_place.h"
+
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "limen/project/control/fit_points.h"
+#include "limen/project/retrieve/predict_overlap.h"
+#include "limen/project/state/scan_names.h"
+
+namespace limen {
+namespace {
+
+constexpr double kMostSigmas = 4.0;     // by which stated positions may be off where scans meet
+constexpr int kLeastFitRedundancy = 6;  // of the fit that all are compared by: four positions
+
+Vector3d place_in(const ScanDigest& digest) {
+  return digest.stations.empty() ? digest.middle : digest.stations.front();
+}
+
+/// Variance of the difference of two stated positions, mean of its axes.
+double variance_between(const SurveyedPoint& a, const SurveyedPoint& b) {
+  return (a.covariance + b.covariance).trace() / 3.0;
+}
+
+}  // namespace
+
+void take_stated_positions(const std::vector<SurveyedPoint>& positions, std::optional<double> file_sigma_m,
+                           const std::vector<ProjectScan>& scans, std::vector<ProjectNode>& nodes,
+                           std::vector<std::string>& notes) {
+  for (ProjectNode& node : nodes) {
+    if (!file_sigma_m || !node.grouped) continue;
+    node.grouped = false;
+    node.stated = SurveyedPoint{"", node.digest.local_origin + place_in(node.digest),
+                                *file_sigma_m * *file_sigma_m * Matrix3d::Identity()};
+  }
+  for (const SurveyedPoint& position : positions) {
+    const int node = node_called(position.name, nodes, scans);
+    if (node < 0) {
+      notes.push_back(
+          fmt::format("a position is stated for {}, which is not one scan of the project", position.name));
+      continue;
+    }
+    ProjectNode& known = nodes[static_cast<std::size_t>(node)];
+    if (!known.digest.mobile && !known.digest.model) known.stated = position;
+  }
+}
+
+bool can_meet(const ProjectNode& a, const ProjectNode& b) {
+  if (!a.stated || !b.stated) return true;
+  const auto reach = [](const ProjectNode& node) {
+    const Eigen::AlignedBox3d box = box_of_planes(node.digest, Rigid3{});
+    return box.isEmpty() ? 0.0 : 0.5 * box.diagonal().norm() + (box.center() - place_in(node.digest)).norm();
+  };
+  const double sigma = std::sqrt(variance_between(*a.stated, *b.stated));
+  return (a.stated->x - b.stated->x).norm() < reach(a) + reach(b) + kMostSigmas * sigma;
+}
+
+void compare_with_stated(const std::vector<ProjectNode>& nodes, ProjectResult& result) {
+  std::vector<PointPair> pairs;
+  std::vector<ProjectScan*> scans;
+  Vector3d origin = Vector3d::Zero();
+  for (const ProjectNode& node : nodes) {
+    if (!node.stated) continue;
+    ProjectScan& scan = result.scans[node.scan];
+    scan.stated = StatedPosition{node.stated->x, node.stated->covariance, {}, false};
+    if (scan.component != 0 || !scan.frame_from_scan || !is_placed(scan.state)) continue;
+    const Vector3d found = *scan.frame_from_scan * (node.digest.local_origin + place_in(node.digest));
+    if (pairs.empty()) origin = found;
+    PointPair pair;
+    pair.x_in_source = node.stated->x;
+    pair.source_covariance = node.stated->covariance;
+    pair.x_in_target = found - origin;
+    pairs.push_back(pair);
+    scans.push_back(&scan);
+  }
+  if (pairs.empty()) return;
+  const Vector3d shift = pairs.front().x_in_source;
+  for (PointPair& pair : pairs) pair.x_in_source -= shift;
+  const PointFit fit = fit_points(pairs);
+  if (fit.state == PointFitState::contradictory || fit.redundancy < kLeastFitRedundancy) return;
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    const double missed = (fit.pose.target_from_source * pairs[k].x_in_source - pairs[k].x_in_target).norm();
+    const double sigma = std::sqrt(pairs[k].source_covariance.trace() / 3.0);
+    StatedPosition& stated = *scans[k]->stated;
+    stated.missed_m = missed;
+    stated.contradicted = !fit.taken[k];
+    if (stated.contradicted)
+      result.notes.push_back(
+          fmt::format("the scans contradict the stated position of {}: it is {:.1f} m off (sigma {:.1f} m)",
+                      scan_name(*scans[k]), missed, sigma));
+  }
+}
+
+}  // namespace limen

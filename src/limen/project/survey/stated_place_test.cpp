@@ -1,0 +1,121 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/project/survey/stated_place.h"
+
+#include <cmath>
+
+#include "support/test_support.h"
+#include <gtest/gtest.h>
+
+#include "limen/base/angles.h"
+#include "limen/base/error.h"
+
+namespace limen {
+namespace {
+
+using testing_io::TemporaryFolder;
+
+Matrix3d turned(double degrees) {
+  return Eigen::AngleAxisd(radians(degrees), Vector3d::UnitZ()).toRotationMatrix();
+}
+
+/// A level scan of a room of 6 x 6 m about its scanner, which is said to be at `x`.
+ProjectNode node_at(const Vector3d& x) {
+  ProjectNode node;
+  node.digest.upright = true;
+  node.digest.stations = {Vector3d::Zero()};
+  for (const Vector3d& side :
+       {Vector3d(3, 0, 0), Vector3d(-3, 0, 0), Vector3d(0, 3, 0), Vector3d(0, -3, 0)}) {
+    PlaneDigest plane;
+    plane.plane = {side.normalized(), -3.0};
+    plane.centroid = side;
+    node.digest.planes.push_back(plane);
+  }
+  node.stated = SurveyedPoint{"", x, 0.25 * Matrix3d::Identity()};
+  return node;
+}
+
+TEST(StatedPlace, WhatIsNotStatedSaysNothing) {
+  ProjectNode unknown = node_at({0, 0, 0});
+  unknown.stated.reset();
+  EXPECT_TRUE(can_meet(unknown, node_at({500, 0, 0})));
+  EXPECT_FALSE(can_meet(node_at({0, 0, 0}), node_at({40, 0, 0})));
+  EXPECT_TRUE(can_meet(node_at({0, 0, 0}), node_at({7, 0, 0})));
+}
+
+TEST(StatedPlace, AWrongStatedPositionIsFoundOut) {
+  std::vector<ProjectNode> nodes;
+  ProjectResult result;
+  const Rigid3 grid{turned(20.0), Vector3d(652000, 6862000, 35)};
+  for (int k = 0; k < 6; ++k) {
+    const Vector3d found(5.0 * k, k % 2 == 0 ? 0.0 : 4.0, k % 3);
+    nodes.push_back(node_at(grid * found + (k == 2 ? Vector3d(0, 9, 0) : Vector3d(0.1 * k, 0, 0))));
+    nodes.back().scan = static_cast<std::size_t>(k);
+    ProjectScan scan;
+    scan.file = "scan" + std::to_string(k);
+    scan.state = NodeState::registered;
+    scan.component = 0;
+    scan.frame_from_scan = Rigid3{Matrix3d::Identity(), found};
+    result.scans.push_back(scan);
+  }
+  compare_with_stated(nodes, result);
+  for (std::size_t k = 0; k < 6; ++k) {
+    ASSERT_TRUE(result.scans[k].stated && result.scans[k].stated->missed_m) << k;
+    EXPECT_EQ(result.scans[k].stated->contradicted, k == 2) << *result.scans[k].stated->missed_m;
+  }
+  ASSERT_EQ(result.notes.size(), 1U);
+  EXPECT_NE(result.notes[0].find("scan2"), std::string::npos);
+}
+
+TEST(StatedPositions, AreReadWithTheirDeviationsOrOneMetre) {
+  const TemporaryFolder folder;
+  const auto stated =
+      read_stated_positions(folder.write("a.csv", "file;x;y;z;sigma\na.ply;652000,5;6862000;35;0,3\n"));
+  ASSERT_EQ(stated.size(), 1U);
+  EXPECT_EQ(stated[0].name, "a.ply");
+  EXPECT_EQ(stated[0].x, Vector3d(652000.5, 6862000, 35));
+  EXPECT_NEAR(stated[0].covariance(1, 1), 0.09, 1e-12);
+  const auto bare = read_stated_positions(folder.write("b.csv", "file,x,y,z\nall.e57 #1,1,2,3\n"));
+  EXPECT_EQ(bare[0].name, "all.e57 #1");
+  EXPECT_EQ(bare[0].covariance, Matrix3d(Matrix3d::Identity()));
+}
+
+TEST(StatedPositions, SayWhatIsWrongWithThem) {
+  const TemporaryFolder folder;
+  const std::pair<const char*, const char*> faults[] = {{"name,x,y,z\na,1,2,3\n", "no column is called file"},
+                                                        {"file,x,y,z\na,1,2,3\na,1,2,3\n", "is given twice"},
+                                                        {"file,x,y,z,sigma\na,1,2,3,0\n", "is not above 0"},
+                                                        {"file,x,y\na,1,2\n", "there is no column z"}};
+  for (const auto& [text, words] : faults) {
+    try {
+      static_cast<void>(read_stated_positions(folder.write("a.csv", text)));
+      ADD_FAILURE() << text;
+    } catch (const Error& error) {
+      EXPECT_NE(error.problem().find(words), std::string::npos) << error.problem();
+      EXPECT_EQ(error.fault(), Fault::input);
+    }
+  }
+}
+
+/// A file's own poses are given to millimetres; taken as approximate they are positions.
+TEST(StatedPositions, OfAFileReplaceItsExactPoses) {
+  std::vector<ProjectNode> nodes = {node_at({0, 0, 0}), node_at({0, 0, 0})};
+  for (ProjectNode& node : nodes) {
+    node.stated.reset();
+    node.grouped = true;
+    node.digest.local_origin = Vector3d(100, 200, 3);
+  }
+  std::vector<std::string> notes;
+  const std::vector<ProjectScan> scans(2);
+  take_stated_positions({}, std::nullopt, scans, nodes, notes);
+  EXPECT_TRUE(nodes[0].grouped);
+  EXPECT_FALSE(nodes[0].stated.has_value());
+  take_stated_positions({}, 0.5, scans, nodes, notes);
+  EXPECT_FALSE(nodes[1].grouped);
+  ASSERT_TRUE(nodes[1].stated.has_value());
+  EXPECT_EQ(nodes[1].stated->x, Vector3d(100, 200, 3));
+  EXPECT_NEAR(nodes[1].stated->covariance(0, 0), 0.25, 1e-12);
+}
+
+}  // namespace
+}  // namespace limen
