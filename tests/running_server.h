@@ -25,6 +25,7 @@ class RunningServer {
  public:
   RunningServer(const std::filesystem::path& work, const std::string& folder) : said_(work / "said") {
     const std::string program = LIMEN_PROGRAM;
+    std::filesystem::remove(said_);  // an earlier server's words are not this one's
     id_ = fork();
     if (id_ == 0) {
       const int said = open(said_.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);

@@ -13,8 +13,8 @@
 namespace limen {
 namespace {
 
-constexpr double kBelieved = evidence_table::kOtherwise + evidence_table::kAlike;  // odds
-constexpr double kMean = kBelieved / (1.0 + kBelieved);
+constexpr double kBelievedOdds = evidence_table::kOtherwise + evidence_table::kAlike;  // odds
+constexpr double kMean = kBelievedOdds / (1.0 + kBelievedOdds);
 constexpr double kAlikePart = kMean * evidence_table::kRateStrength;  // of the beta distribution
 constexpr double kOtherPart = (1.0 - kMean) * evidence_table::kRateStrength;
 constexpr std::size_t kShares = 49;  // evenly by the logarithm of their odds
@@ -63,7 +63,7 @@ LookAlikeRate::LookAlikeRate(int nodes, const std::vector<PlacedPair>& pairs,
   std::vector<double> all(links_.size(), 0.0);
   for (const PlacedPair& pair : pairs) {
     if (pair.link < 0 || !pair.evidence.looks_for_twins) continue;
-    const double look_alike = odds_of(pair.evidence.twins) / kBelieved;
+    const double look_alike = odds_of(pair.evidence.twins) / kBelievedOdds;
     links_[static_cast<std::size_t>(pair.source)].push_back({pair.target, look_alike});
     links_[static_cast<std::size_t>(pair.target)].push_back({pair.source, look_alike});
   }
@@ -77,7 +77,7 @@ LookAlikeRate::LookAlikeRate(int nodes, const std::vector<PlacedPair>& pairs,
   for (const UnusedLink& link : unused) {
     const double weight =
         1.0 / all[static_cast<std::size_t>(link.source)] + 1.0 / all[static_cast<std::size_t>(link.target)];
-    add(weight, link.contradicted ? 0.0 : 1.0, odds_of(link.evidence.twins) / kBelieved,
+    add(weight, link.contradicted ? 0.0 : 1.0, odds_of(link.evidence.twins) / kBelievedOdds,
         (1.0 - kMean) * std::exp(-link.evidence.chance_nats), others_);
   }
 }
@@ -100,7 +100,7 @@ double LookAlikeRate::factor(const std::vector<bool>& side) const {
     look_alike += share(k) * density;
     all += density;
   }
-  return look_alike / (all - look_alike) / kBelieved;
+  return look_alike / (all - look_alike) / kBelievedOdds;
 }
 
 }  // namespace limen
