@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 
 #include "limen/register/judge/evidence_table.h"
 #include "limen/register/judge/twin_odds.h"
@@ -13,17 +12,21 @@
 namespace limen {
 namespace {
 
-constexpr double kBelievedOdds = evidence_table::kOtherwise + evidence_table::kAlike;  // odds
+constexpr double kBelievedOdds = evidence_table::kOtherwise + evidence_table::kAlike;
 constexpr double kMean = kBelievedOdds / (1.0 + kBelievedOdds);
 constexpr double kAlikePart = kMean * evidence_table::kRateStrength;  // of the beta distribution
 constexpr double kOtherPart = (1.0 - kMean) * evidence_table::kRateStrength;
 constexpr std::size_t kShares = 49;  // evenly by the logarithm of their odds
+constexpr std::size_t kHalf = kShares / 2;
 constexpr double kFirstLogOdds = -12.0;
 constexpr double kStep = 0.5;
-constexpr double kUnclear = std::numeric_limits<double>::infinity();
+
+double odds_at(std::size_t k) {
+  return std::exp(kFirstLogOdds + kStep * static_cast<double>(k));
+}
 
 double share(std::size_t k) {
-  return 1.0 / (1.0 + std::exp(-(kFirstLogOdds + kStep * static_cast<double>(k))));
+  return odds_at(k) / (1.0 + odds_at(k));
 }
 
 /// The tails beyond the first and the last share are theirs.
@@ -36,10 +39,21 @@ std::vector<double> density_beforehand() {
   return logs;
 }
 
-/// What is seen says of each share: one place has a likelihood `here`, a look-alike one `look_alike`.
-void add(double weight, double here, double look_alike, double chance, std::vector<double>& logs) {
-  for (std::size_t k = 0; k < kShares; ++k)
-    logs[k] += weight * std::log((1.0 - share(k)) * here + share(k) * look_alike + chance);
+/// The likelihood of each share, by what a link says of one place, of a look-alike one, and of chance. What
+/// is believed of the link beforehand, a user's word too, says nothing of the building.
+std::vector<double> logs_of(const TwinEvidence& twins, double here, double chance) {
+  std::vector<double> logs(kShares);
+  const double beforehand = twins.otherwise + twins.alike;
+  const double look_alike = odds_of(twins);
+  for (std::size_t k = 0; k < kShares; ++k) {
+    const double rate = odds_at(k) / kBelievedOdds;
+    logs[k] = std::log(here + rate * look_alike + chance) - std::log1p(rate * beforehand);
+  }
+  return logs;
+}
+
+void add(double weight, const std::vector<double>& more, std::vector<double>& logs) {
+  for (std::size_t k = 0; k < kShares; ++k) logs[k] += weight * more[k];
 }
 
 }  // namespace
@@ -63,9 +77,9 @@ LookAlikeRate::LookAlikeRate(int nodes, const std::vector<PlacedPair>& pairs,
   std::vector<double> all(links_.size(), 0.0);
   for (const PlacedPair& pair : pairs) {
     if (pair.link < 0 || !pair.evidence.looks_for_twins) continue;
-    const double look_alike = odds_of(pair.evidence.twins) / kBelievedOdds;
-    links_[static_cast<std::size_t>(pair.source)].push_back({pair.target, look_alike});
-    links_[static_cast<std::size_t>(pair.target)].push_back({pair.source, look_alike});
+    links_[static_cast<std::size_t>(pair.source)].push_back({pair.target, votes_.size()});
+    links_[static_cast<std::size_t>(pair.target)].push_back({pair.source, votes_.size()});
+    votes_.push_back(logs_of(pair.evidence.twins, 1.0, 0.0));
   }
   for (std::size_t n = 0; n < links_.size(); ++n) all[n] = static_cast<double>(links_[n].size());
   for (const UnusedLink& link : unused) {
@@ -77,20 +91,23 @@ LookAlikeRate::LookAlikeRate(int nodes, const std::vector<PlacedPair>& pairs,
   for (const UnusedLink& link : unused) {
     const double weight =
         1.0 / all[static_cast<std::size_t>(link.source)] + 1.0 / all[static_cast<std::size_t>(link.target)];
-    add(weight, link.contradicted ? 0.0 : 1.0, odds_of(link.evidence.twins) / kBelievedOdds,
-        (1.0 - kMean) * std::exp(-link.evidence.chance_nats), others_);
+    add(weight,
+        logs_of(link.evidence.twins, link.contradicted ? 0.0 : 1.0, std::exp(-link.evidence.chance_nats)),
+        others_);
   }
 }
 
 double LookAlikeRate::factor(const std::vector<bool>& side) const {
   std::vector<double> logs = others_;
   for (std::size_t n = 0; n < links_.size(); ++n) {
-    double clearest = kUnclear;
+    const std::vector<double>* clearest = nullptr;
     for (const Link& link : links_[n]) {
-      if (side[n] == side[static_cast<std::size_t>(link.other)])
-        clearest = std::min(clearest, link.look_alike);
+      const std::vector<double>& vote = votes_[link.vote];
+      if (side[n] == side[static_cast<std::size_t>(link.other)] &&
+          (clearest == nullptr || vote[kHalf] < (*clearest)[kHalf]))
+        clearest = &vote;
     }
-    if (clearest < kUnclear) add(agreeing_[n], 1.0, clearest, 0.0, logs);
+    if (clearest != nullptr) add(agreeing_[n], *clearest, logs);
   }
   const double most = *std::max_element(logs.begin(), logs.end());
   double look_alike = 0.0;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "limen/project/graph/configuration.h"
@@ -36,11 +37,12 @@ class LookAlikeRate {
  private:
   struct Link {
     int other = -1;
-    double look_alike = 0.0;  ///< likelihood of a look-alike place, against that of one place
+    std::size_t vote = 0;
   };
-  std::vector<double> others_;            ///< log of the density beforehand, and what unused links say
-  std::vector<std::vector<Link>> links_;  ///< of each node, those that agree ...
-  std::vector<double> agreeing_;          ///< ... and their share of all its links
+  std::vector<double> others_;              ///< log of the density beforehand, and what unused links say
+  std::vector<std::vector<double>> votes_;  ///< log of the likelihood of each share, by links that agree
+  std::vector<std::vector<Link>> links_;    ///< those of each node ...
+  std::vector<double> agreeing_;            ///< ... and their part of all its links
 };
 
 }  // namespace limen

@@ -41,6 +41,14 @@ TEST(LookAlikeRate, PairsThatSayNothingChangeLittle) {
   EXPECT_NEAR(factor(20, row(20, 0.0)), 1.0, 0.05);
 }
 
+/// A user's word that nothing repeats, or a wall between two stations, is no observation: bare rooms stay in
+/// doubt however many there are.
+TEST(LookAlikeRate, WhatIsBelievedOfLinksBeforehandSaysNothing) {
+  std::vector<PlacedPair> pairs = row(30, 0.0);
+  for (PlacedPair& pair : pairs) pair.evidence.twins.otherwise /= 20.0;
+  EXPECT_NEAR(factor(30, pairs), 1.0, 0.05);
+}
+
 TEST(LookAlikeRate, FallsWithTheNumberOfClearScans) {
   const double few = factor(5, row(5, 9.0));
   const double many = factor(40, row(40, 9.0));

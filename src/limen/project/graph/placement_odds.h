@@ -22,8 +22,8 @@ struct SideOdds {
 /// Odds of sides, by all pairs that a configuration places in sight of each other.
 ///
 /// Look-alike places: that there is one is believed once for a side, as often as it happens in this building
-/// (look_alike_rate.h). What things and walls say against it adds up over the pairs across; those
-/// that show the same count once together. Whether scans are bent is learned from all pairs. Chance: pairs
+/// (look_alike_rate.h). What things and walls say against it adds up over the pairs across; those that show
+/// the same count once together. Whether scans are bent is learned from all pairs. Chance: pairs
 /// err independently as far as they show different surface, and wrong poses agree with one another seldom.
 class PlacementOdds {
  public:

@@ -3,7 +3,6 @@
 #include "limen/project/solve/survey_points.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include <fmt/format.h>
 

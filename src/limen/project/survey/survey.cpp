@@ -3,7 +3,6 @@
 #include "limen/project/survey/survey.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <map>
 #include <utility>
