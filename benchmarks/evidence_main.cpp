@@ -51,6 +51,20 @@ struct Settings {
   std::string output;
 };
 
+const char* sort_name(PairSort sort) {
+  switch (sort) {
+    case PairSort::through_wall:
+      return "through_wall";
+    case PairSort::streets:
+      return "streets";
+    case PairSort::in_model:
+      return "in_model";
+    case PairSort::rooms:
+      break;
+  }
+  return "rooms";
+}
+
 class Rows {
  public:
   explicit Rows(const Settings& settings) : s_(settings), start_(std::chrono::steady_clock::now()) {
@@ -184,7 +198,7 @@ class Rows {
       }
     }
     const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
-    const char* sort = sort_of(worked) == PairSort::rooms ? "rooms" : "through_wall";
+    const char* sort = sort_name(sort_of(worked));
     file_
         << fmt::format(
                R"({{"set": "{}", "source": "{}", "target": "{}", "kind": "{}", "sort": "{}", "noise_mm": {:.1f}, )"

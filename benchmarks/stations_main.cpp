@@ -22,6 +22,7 @@
 #include "limen/base/parallel.h"
 #include "limen/base/random.h"
 #include "limen/geometry/random_vectors.h"
+#include "limen/project/assemble.h"
 #include "limen/project/run/waves.h"
 #include "limen/project/solve/project_graph.h"
 #include "limen/project/state/project_node.h"

@@ -222,7 +222,8 @@ bool exceeds_chance(const std::vector<FoundPose>& poses, PairSort sort, const Ve
 
 PairSort sort_of(const WorkedPair& pair) {
   if (pair.has_model()) return PairSort::in_model;
-  return pair.source.mobile != pair.target.mobile ? PairSort::through_wall : PairSort::rooms;
+  if (pair.source.outside != pair.target.outside) return PairSort::through_wall;
+  return pair.source.outside ? PairSort::streets : PairSort::rooms;
 }
 
 double PreparedStart::log_prior(const Rigid3& pose) const {

@@ -16,8 +16,9 @@ namespace limen {
 
 /// What a pair consists of: which numbers of the table count.
 enum class PairSort : std::uint8_t {
-  rooms,         ///< two static scans, or two taken on the move
-  through_wall,  ///< one scan was taken in a room, the other along a street
+  rooms,         ///< neither scan was taken outside, as far as is known
+  through_wall,  ///< one scan was taken inside, the other outside
+  streets,       ///< both were taken outside
   in_model       ///< one side is a building model
 };
 

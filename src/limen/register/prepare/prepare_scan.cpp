@@ -11,6 +11,7 @@
 #include "limen/base/stage_part.h"
 #include "limen/match/planes/polygon_distance.h"
 #include "limen/register/prepare/laid_scan.h"
+#include "limen/register/prepare/open_sky.h"
 #include "limen/sight/panorama.h"
 #include "limen/sight/voxel_map.h"
 
@@ -98,6 +99,7 @@ PreparedScan prepare_laid(const Scan& laid, const ScanFrame& frame, const Prepar
   prepared.upright_from_scan = frame.frame_from_scan;
   prepared.place = in_world(frame.place, laid.local_origin - frame.corner);
   prepared.mobile = laid.mobile();
+  prepared.outside = taken_outside(laid);
   ExtractOptions extract = options.extract;
   extract.detect.relief = wants_relief(options);
   extract.interior.enabled = extract.interior.enabled && (prepared.upright || prepared.mobile);

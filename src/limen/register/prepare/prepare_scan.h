@@ -26,6 +26,7 @@ struct PreparedScan {
   std::shared_ptr<const SpaceView> space;  ///< a panorama for a static station, else a map of cubes
   ScannerPlace place;                      ///< where the (first) scanner stood, world
   bool mobile = false;                     ///< seen from many places along a path
+  bool outside = false;                    ///< taken outside (open_sky.h)
   bool upright = false;                    ///< z of the prepared frame points up
   bool surely_upright = false;             ///< no other way up need be tried
   bool model = false;                      ///< a building model instead of a scan
