@@ -72,7 +72,7 @@ double open_sky_share(const Scan& scan) {
 }
 
 bool taken_outside(const Scan& scan) {
-  return scan.level && scan.centre_known() && open_sky_share(scan) > kOutside;
+  return scan.level && scan.mobile() && open_sky_share(scan) > kOutside;
 }
 
 }  // namespace limen

@@ -12,7 +12,8 @@ namespace limen {
 /// on, rooms and halls have 0 to 0.25, streets 0.40 to 0.92. 0 where too few directions are seen.
 double open_sky_share(const Scan& scan);
 
-/// Whether a scan was taken outside: z points up, its scanner positions are known, and much sky is open.
+/// Whether a mobile scan was taken outside: z points up, and much sky is open. Of a static scan it is not
+/// known: a scanner of narrow field of view that stands askew in a hall leaves as much open.
 bool taken_outside(const Scan& scan);
 
 }  // namespace limen

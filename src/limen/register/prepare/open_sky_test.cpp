@@ -57,7 +57,7 @@ TEST(OpenSkyTest, AStreetHasMuch) {
   Scan street;
   look(street, Vector3d(3, 4, 1), 90.0, false, in_street);
   EXPECT_GT(open_sky_share(street), 0.5);
-  EXPECT_TRUE(taken_outside(street));
+  EXPECT_FALSE(taken_outside(street)) << "a static scan may stand askew in a hall";
 }
 
 TEST(OpenSkyTest, AWayThroughARoomIsInside) {
@@ -73,7 +73,8 @@ TEST(OpenSkyTest, AWayThroughARoomIsInside) {
 
 TEST(OpenSkyTest, WithoutUpOrScannerNothingIsSaid) {
   Scan street;
-  look(street, Vector3d::Zero(), 90.0, false, in_street);
+  look(street, Vector3d::Zero(), 90.0, true, in_street);
+  EXPECT_TRUE(taken_outside(street));
   street.level = false;
   EXPECT_FALSE(taken_outside(street));
   street.level = true;
