@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <numbers>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "limen/base/angles.h"
@@ -20,19 +21,19 @@ constexpr std::size_t kLooks = 200'000;       // points that are looked at, abou
 constexpr double kNearM = 0.3;                // the scanner's own stand
 constexpr double kPerTurn = 36.0;             // directions
 constexpr double kWayM = 2.0;                 // of a path, in one piece
-constexpr std::size_t kSeenInDirection = 20;  // in a direction
+constexpr std::size_t kSeenInDirection = 20;  // points: with fewer a direction does not count
 constexpr std::size_t kLeastDirections = 12;
-constexpr std::size_t kHighest = 3;  // this high one counts: a stray point or two do not
-constexpr double kTopShare = 0.95;   // of the directions reach no higher than the field of view
+constexpr double kTopShare = 0.95;  // of the directions reach no higher than the field of view
 constexpr double kBelowDeg = 10.0;
 constexpr double kOutside = 0.32;  // between what was found of rooms and of streets
 
 /// What is seen in one direction from one piece of the way.
 struct Column {
   std::size_t points = 0;
-  std::array<double, kHighest> highest{};  // sines of elevations, descending
+  std::array<double, 3> highest = {-1.0, -1.0, -1.0};  // sines of elevations, descending
 
-  Column() { highest.fill(-1.0); }
+  /// The third highest: a stray point or two do not count.
+  [[nodiscard]] double top() const { return highest.back(); }
   void add(double sine) {
     ++points;
     for (double& one : highest) {
@@ -42,12 +43,12 @@ struct Column {
 };
 
 std::uint64_t direction_of(const Vector3d& centre, const Vector3d& ray) {
-  const auto bits = [](double x, double size) {
-    return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(x / size))) & 0xffffff;
+  const auto piece = [](double along) {
+    return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(along / kWayM))) & 0xffffff;
   };
   const double turn = std::atan2(ray.y(), ray.x()) / (2.0 * std::numbers::pi) + 0.5;
   const auto side = static_cast<std::uint64_t>(std::min(kPerTurn - 1.0, std::floor(kPerTurn * turn)));
-  return side << 48 | bits(centre.x(), kWayM) << 24 | bits(centre.y(), kWayM);
+  return side << 48 | piece(centre.x()) << 24 | piece(centre.y());
 }
 
 }  // namespace
@@ -62,7 +63,7 @@ double open_sky_share(const Scan& scan) {
   }
   std::vector<double> heights;  // degrees
   for (const auto& [direction, column] : columns) {
-    if (column.points >= kSeenInDirection) heights.push_back(degrees(std::asin(column.highest.back())));
+    if (column.points >= kSeenInDirection) heights.push_back(degrees(std::asin(column.top())));
   }
   if (heights.size() < kLeastDirections) return 0.0;
   std::sort(heights.begin(), heights.end());

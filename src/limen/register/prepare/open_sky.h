@@ -6,10 +6,11 @@
 
 namespace limen {
 
-/// Share of the directions round the scanner in which nothing is seen from 10 degrees below the highest
-/// elevation on: what a skyline leaves open. In a room walls and ceiling reach as high as the field of view
-/// in all directions. z of the scan points up, and its scanner positions are known. Of the scans it was tried
-/// on, rooms and halls have 0 to 0.25, streets 0.40 to 0.92. 0 where too few directions are seen.
+/// Share of the directions round the scanner in which nothing is seen higher than 10 degrees below the
+/// highest elevation of all: above roofs there is sky. In a room walls and ceiling reach as high as the field
+/// of view in all directions, as long as the scanner stands upright. z of the scan points up, and its scanner
+/// positions are known. Of the scans it was tried on, upright ones in rooms and halls have 0 to 0.25, whole
+/// passes along streets 0.40 to 0.92. 0 where too few directions are seen.
 double open_sky_share(const Scan& scan);
 
 /// Whether a mobile scan was taken outside: z points up, and much sky is open. Of a static scan it is not
