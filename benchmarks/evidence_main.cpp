@@ -37,6 +37,7 @@ constexpr double kElsewhereM = 1.0;
 struct Settings {
   std::string list;
   std::string set;
+  std::vector<std::string> sorts;
   std::string building;
   std::uint64_t first_seed = 1;
   std::uint64_t seeds = 1;
@@ -158,6 +159,8 @@ class Rows {
     if (over()) return;
     const auto start = std::chrono::steady_clock::now();
     const WorkedPair worked = worked_pair(pair);
+    const char* sort = sort_name(sort_of(worked));
+    if (!s_.sorts.empty() && std::find(s_.sorts.begin(), s_.sorts.end(), sort) == s_.sorts.end()) return;
     std::vector<StageTime> stages;
     StageClock clock(stages, silent_monitor());
     const RegisterOptions options;
@@ -198,7 +201,6 @@ class Rows {
       }
     }
     const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
-    const char* sort = sort_name(sort_of(worked));
     file_
         << fmt::format(
                R"({{"set": "{}", "source": "{}", "target": "{}", "kind": "{}", "sort": "{}", "noise_mm": {:.1f}, )"
@@ -222,6 +224,8 @@ int main(int argc, char** argv) {
   CLI::App app("What two scans say of every pose that is found, of pairs whose truth is known");
   app.add_option("list", settings.list, "scans with their poses");
   app.add_option("--set", settings.set, "name of the rows' set");
+  app.add_option("--sorts", settings.sorts, "only pairs of these sorts, for example through_wall")
+      ->delimiter(',');
   app.add_option("--building", settings.building, "simulated buildings of this kind instead");
   app.add_option("--first-seed", settings.first_seed, "first seed");
   app.add_option("--seeds", settings.seeds, "number of seeds");

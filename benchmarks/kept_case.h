@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
+#include "limen/register/frame/scan_frame.h"
 #include "limen/register/prepare/kept_points.h"
-#include "limen/register/prepare/scan_frame.h"
 #include "limen/simulate/scene.h"
 
 namespace limen {

@@ -23,7 +23,7 @@
 #include "limen/geometry/random_vectors.h"
 #include "limen/io/cloud/read_scan.h"
 #include "limen/io/table/optical_centre.h"
-#include "limen/register/prepare/scan_frame.h"
+#include "limen/register/frame/scan_frame.h"
 
 namespace {
 

@@ -185,6 +185,7 @@ class Assembler {
     scan.component = node.component;
     scan.state = node.state;
     scan.doubt = node.doubt;
+    for (const PlaneDigest& plane : nodes_[n].digest.planes) scan.surface_m2 += plane.area_m2;
     if (scan.mobile) scan.rigid = why_rigid(nodes_[n].digest);
     if (node.component < 0) {
       scan.reason = "no reliable overlap with any other scan";

@@ -222,8 +222,11 @@ bool exceeds_chance(const std::vector<FoundPose>& poses, PairSort sort, const Ve
 
 PairSort sort_of(const WorkedPair& pair) {
   if (pair.has_model()) return PairSort::in_model;
-  if (pair.source.outside != pair.target.outside) return PairSort::through_wall;
-  return pair.source.outside ? PairSort::streets : PairSort::rooms;
+  const Surroundings source = pair.source.surroundings;
+  const Surroundings target = pair.target.surroundings;
+  if (source == Surroundings::unknown || target == Surroundings::unknown) return PairSort::rooms;
+  if (source != target) return PairSort::through_wall;
+  return source == Surroundings::outside ? PairSort::streets : PairSort::rooms;
 }
 
 double PreparedStart::log_prior(const Rigid3& pose) const {

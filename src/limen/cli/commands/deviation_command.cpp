@@ -237,10 +237,12 @@ int run(const DeviationCommand& command, const Session& session) {
   session.monitor->throw_if_cancelled();
   session.monitor->begin_stage("writing");
   const std::string json = deviation_json(report, model);
-  const std::string table = deviation_csv(report, model);
+  const Sheet table = deviation_sheet(report, model);
   // The numbers first: the cloud is a thousand times larger. An earlier run's must not stand beside them.
   std::filesystem::remove(folder.path() / "deviation.ply");
-  write_files({{folder.path() / "deviation.csv", table}, {folder.path() / "deviation.json", json}});
+  write_files({{folder.path() / "deviation.csv", csv_of(table)},
+               {folder.path() / "deviation.xlsx", workbook_of({table})},
+               {folder.path() / "deviation.json", json}});
   write_deviation_ply(folder.path() / "deviation.ply", scan, report, command.colour_limit_m);
   session.say(summary(report, model, command.folder));
   if (!command.issues.file.empty())
@@ -297,9 +299,9 @@ void add_deviation_command(CommandLine& app, Session& session) {
       ->type_size(1)
       ->take_all();
   command
-      ->add_option(
-          "-o,--output", options->folder,
-          "Folder for deviation.json, deviation.csv and deviation.ply; for a project also report.html")
+      ->add_option("-o,--output", options->folder,
+                   "Folder for deviation.json, deviation.csv, deviation.xlsx and deviation.ply; for a "
+                   "project also report.html")
       ->required()
       ->type_name("DIR");
   add_pose_options(*command, *options);

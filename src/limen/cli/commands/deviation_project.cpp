@@ -19,7 +19,7 @@
 #include "limen/deviation/join_models.h"
 #include "limen/io/cloud/read_scan.h"
 #include "limen/io/cloud/thin_cloud.h"
-#include "limen/register/prepare/scan_frame.h"
+#include "limen/register/frame/scan_frame.h"
 #include "limen/report/deviation/building_report.h"
 #include "limen/report/deviation/deviation_report.h"
 #include "limen/report/project/read_project.h"
@@ -351,9 +351,10 @@ int run_project_deviation(const ProjectDeviation& command, const Session& sessio
   all.report.cloud_points = cloud.write(folder.path() / "deviation.ply", command.colour_limit_m);
   if (!issues.empty()) write_file(command.issues.file, issues);
   const std::string json = building_json(all.report);
-  const std::string table = building_csv(all.report);
+  const Sheet table = building_sheet(all.report);
   const std::string page = building_page(all.report);
-  write_files({{folder.path() / "deviation.csv", table},
+  write_files({{folder.path() / "deviation.csv", csv_of(table)},
+               {folder.path() / "deviation.xlsx", workbook_of({table})},
                {folder.path() / "report.html", page},
                {folder.path() / "deviation.json", json}});
   session.say(summary(all.report, command));

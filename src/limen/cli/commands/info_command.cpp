@@ -23,7 +23,7 @@
 #include "limen/io/cloud/read_scan.h"
 #include "limen/model/plausible_size.h"
 #include "limen/project/state/scan_names.h"
-#include "limen/register/prepare/scan_frame.h"
+#include "limen/register/frame/scan_frame.h"
 #include "limen/report/json/json_values.h"
 
 namespace limen {

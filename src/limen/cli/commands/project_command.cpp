@@ -35,6 +35,7 @@
 #include "limen/report/json/json_values.h"
 #include "limen/report/project/project_json.h"
 #include "limen/report/project/project_page.h"
+#include "limen/report/project/project_sheets.h"
 #include "limen/report/project/read_project.h"
 #include "limen/report/project/station_accuracy.h"
 
@@ -343,8 +344,11 @@ int run(ProjectCommandOptions options, const Session& session) {
              project_page(result, pictures_in(folder.path(), options, trajectories, session, result),
                           system.system.known() || result.frame_kind == "control", options.cover));
   std::filesystem::remove(folder.path() / "report.pdf");  // an earlier run's
-  write_file(folder.path() / "stations.csv", stations_csv(result));
-  write_file(folder.path() / "links.csv", links_csv(result));
+  const std::vector<Sheet> sheets = {stations_sheet(result), links_sheet(result), loops_sheet(result),
+                                     points_sheet(result)};
+  write_file(folder.path() / "stations.csv", csv_of(sheets[0]));
+  write_file(folder.path() / "links.csv", csv_of(sheets[1]));
+  write_file(folder.path() / "tables.xlsx", workbook_of(sheets));
   // Last: where it is, the folder is complete.
   write_file(folder.path() / "project.json", json);
   if (options.pdf) write_pdf(browser, folder.path(), session);

@@ -70,6 +70,7 @@ struct ProjectScan {
   bool readable = true;
   std::string copy_of;  ///< another file of the same bytes; empty: none
   std::size_t points = 0;
+  double surface_m2 = 0.0;  ///< of its planes
   NodeState state = NodeState::floating;
   int component = -1;  ///< 0: the project's; others have a frame of their own; -1: joined to nothing
   /// World of the component's frame from the scan's world; empty where it was joined to nothing.

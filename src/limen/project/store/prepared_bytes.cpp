@@ -238,8 +238,8 @@ std::string bytes_of(const PreparedScan& prepared) {
   ByteWriter writer;
   put_features(writer, prepared.extracted.features);
   writer.put(prepared.upright_from_scan);
-  for (const bool flag :
-       {prepared.mobile, prepared.outside, prepared.upright, prepared.surely_upright, prepared.model})
+  writer.put(prepared.surroundings);
+  for (const bool flag : {prepared.mobile, prepared.upright, prepared.surely_upright, prepared.model})
     writer.put(flag);
   put_rooms(writer, prepared.rooms);
   writer.put_all(prepared.stations);
@@ -258,8 +258,8 @@ PreparedScan without_space(ByteReader& reader) {
   PreparedScan prepared;
   prepared.extracted.features = get_features(reader);
   reader.get(prepared.upright_from_scan);
-  for (bool* flag :
-       {&prepared.mobile, &prepared.outside, &prepared.upright, &prepared.surely_upright, &prepared.model})
+  reader.get(prepared.surroundings);
+  for (bool* flag : {&prepared.mobile, &prepared.upright, &prepared.surely_upright, &prepared.model})
     reader.get(*flag);
   prepared.rooms = get_rooms(reader);
   prepared.stations = reader.get_all<Vector3d>();

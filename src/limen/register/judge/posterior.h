@@ -16,8 +16,8 @@ namespace limen {
 
 /// What a pair consists of: which numbers of the table count.
 enum class PairSort : std::uint8_t {
-  rooms,         ///< neither scan was taken outside, as far as is known
-  through_wall,  ///< one scan was taken inside, the other outside
+  rooms,         ///< both scans were taken inside, or of one it is not known
+  through_wall,  ///< one was taken inside, the other outside
   streets,       ///< both were taken outside
   in_model       ///< one side is a building model
 };

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "limen/model/scan.h"
-#include "limen/register/prepare/scan_frame.h"
+#include "limen/register/frame/scan_frame.h"
 
 namespace limen {
 

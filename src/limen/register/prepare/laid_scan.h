@@ -3,8 +3,8 @@
 #pragma once
 
 #include "limen/model/scan.h"
+#include "limen/register/frame/scan_frame.h"
 #include "limen/register/prepare/kept_points.h"
-#include "limen/register/prepare/scan_frame.h"
 
 namespace limen {
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <numbers>
 #include <unordered_map>
 #include <utility>
@@ -26,41 +27,111 @@ constexpr std::size_t kLeastDirections = 12;
 constexpr double kTopShare = 0.95;  // of the directions reach no higher than the field of view
 constexpr double kBelowDeg = 10.0;
 constexpr double kOutside = 0.32;  // between what was found of rooms and of streets
+// Of static scans.
+constexpr double kSteepDeg = -45.0;  // scanners of tripods see at least so far down ...
+constexpr double kLowDeg = -35.0;
+constexpr double kLeastGround = 0.95;  // ... on this share of all sides
+constexpr double kHighDeg = 60.0;
+constexpr double kOpenZenith = 0.5;  // of the sky above, in pieces of equal area ...
+constexpr double kCeiling = 0.9;     // ... and more of it under a ceiling
+constexpr std::size_t kRings = 3;
+constexpr double kOneHeightM = 0.1;
+constexpr double kMostAtOneHeight = 0.5;  // of all sides
 
-/// What is seen in one direction from one piece of the way.
+constexpr double kNothing = std::numeric_limits<double>::lowest();
+
+/// What is seen in one direction from one piece of the way: sines of elevations, or heights.
 struct Column {
   std::size_t points = 0;
-  std::array<double, 3> highest = {-1.0, -1.0, -1.0};  // sines of elevations, descending
+  std::array<double, 3> highest = {kNothing, kNothing, kNothing};  // descending
 
   /// The third highest: a stray point or two do not count.
   [[nodiscard]] double top() const { return highest.back(); }
-  void add(double sine) {
+  void add(double height) {
     ++points;
     for (double& one : highest) {
-      if (sine > one) std::swap(sine, one);
+      if (height > one) std::swap(height, one);
     }
   }
 };
+
+std::size_t side_of(const Vector3d& ray) {
+  const double turn = std::atan2(ray.y(), ray.x()) / (2.0 * std::numbers::pi) + 0.5;
+  return static_cast<std::size_t>(std::min(kPerTurn - 1.0, std::floor(kPerTurn * turn)));
+}
 
 std::uint64_t direction_of(const Vector3d& centre, const Vector3d& ray) {
   const auto piece = [](double along) {
     return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(along / kWayM))) & 0xffffff;
   };
-  const double turn = std::atan2(ray.y(), ray.x()) / (2.0 * std::numbers::pi) + 0.5;
-  const auto side = static_cast<std::uint64_t>(std::min(kPerTurn - 1.0, std::floor(kPerTurn * turn)));
-  return side << 48 | piece(centre.x()) << 24 | piece(centre.y());
+  return static_cast<std::uint64_t>(side_of(ray)) << 48 | piece(centre.x()) << 24 | piece(centre.y());
+}
+
+/// Calls `use` with the scanner position and the ray, not normalised, of a part of the points.
+template <typename Use>
+void look_round(const Scan& scan, const Use& use) {
+  const std::size_t step = std::max<std::size_t>(1, scan.size() / kLooks);
+  for (std::size_t i = 0; i < scan.size(); i += step) {
+    const Vector3d ray = scan.points[i] - scan.centre(i);
+    if (ray.norm() > kNearM) use(scan.centre(i), ray);
+  }
+}
+
+/// What a static scanner sees on each side.
+struct Dome {
+  static constexpr auto kSides = static_cast<std::size_t>(kPerTurn);
+  std::array<bool, kSides> ground{};
+  std::array<bool, kSides * kRings> zenith{};
+  std::array<Column, kSides> heights{};  // above the scanner, metres
+
+  void add(const Vector3d& ray) {
+    const std::size_t side = side_of(ray);
+    const double sine = ray.z() / ray.norm();
+    const double high = std::sin(radians(kHighDeg));
+    if (sine > std::sin(radians(kSteepDeg)) && sine < std::sin(radians(kLowDeg))) ground[side] = true;
+    if (sine > high) {
+      const auto ring = static_cast<std::size_t>((sine - high) / (1.0 - high) * static_cast<double>(kRings));
+      zenith[kRings * side + std::min(ring, kRings - 1)] = true;
+    }
+    heights[side].add(ray.z());
+  }
+};
+
+template <typename Cells>
+double share_of(const Cells& cells) {
+  return static_cast<double>(std::count(cells.begin(), cells.end(), true)) /
+         static_cast<double>(cells.size());
+}
+
+/// The largest share of sides on which what is seen ends at one height.
+double share_at_one_height(const std::array<Column, Dome::kSides>& columns) {
+  std::array<double, Dome::kSides> tops{};
+  std::transform(columns.begin(), columns.end(), tops.begin(), [](const Column& one) { return one.top(); });
+  std::sort(tops.begin(), tops.end());
+  std::ptrdiff_t most = 0;
+  for (auto low = tops.begin(); low != tops.end(); ++low)
+    most = std::max(most, std::upper_bound(low, tops.end(), *low + kOneHeightM) - low);
+  return static_cast<double>(most) / kPerTurn;
+}
+
+Surroundings of_static(const Scan& scan) {
+  Dome dome;
+  look_round(scan, [&](const Vector3d&, const Vector3d& ray) { dome.add(ray); });
+  if (share_of(dome.ground) < kLeastGround) return Surroundings::unknown;
+  const double above = share_of(dome.zenith);
+  if (above > kCeiling) return Surroundings::inside;
+  const bool open = above < kOpenZenith && open_sky_share(scan) > kOutside &&
+                    share_at_one_height(dome.heights) <= kMostAtOneHeight;
+  return open ? Surroundings::outside : Surroundings::unknown;
 }
 
 }  // namespace
 
 double open_sky_share(const Scan& scan) {
   std::unordered_map<std::uint64_t, Column> columns;
-  const std::size_t step = std::max<std::size_t>(1, scan.size() / kLooks);
-  for (std::size_t i = 0; i < scan.size(); i += step) {
-    const Vector3d ray = scan.points[i] - scan.centre(i);
-    const double range = ray.norm();
-    if (range > kNearM) columns[direction_of(scan.centre(i), ray)].add(ray.z() / range);
-  }
+  look_round(scan, [&](const Vector3d& centre, const Vector3d& ray) {
+    columns[direction_of(centre, ray)].add(ray.z() / ray.norm());
+  });
   std::vector<double> heights;  // degrees
   for (const auto& [direction, column] : columns) {
     if (column.points >= kSeenInDirection) heights.push_back(degrees(std::asin(column.top())));
@@ -72,8 +143,14 @@ double open_sky_share(const Scan& scan) {
   return static_cast<double>(open) / static_cast<double>(heights.size());
 }
 
-bool taken_outside(const Scan& scan) {
-  return scan.level && scan.mobile() && open_sky_share(scan) > kOutside;
+Surroundings surroundings_of(const Scan& scan) {
+  if (!scan.level || !scan.centre_known()) return Surroundings::unknown;
+  if (!scan.mobile()) return of_static(scan);
+  return open_sky_share(scan) > kOutside ? Surroundings::outside : Surroundings::inside;
+}
+
+Surroundings common(Surroundings a, Surroundings b) {
+  return a == b ? a : Surroundings::unknown;
 }
 
 }  // namespace limen

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
+
 #include "limen/model/scan.h"
 
 namespace limen {
@@ -13,8 +15,18 @@ namespace limen {
 /// passes along streets 0.40 to 0.92. 0 where too few directions are seen.
 double open_sky_share(const Scan& scan);
 
-/// Whether a mobile scan was taken outside: z points up, and much sky is open. Of a static scan it is not
-/// known: a scanner of narrow field of view that stands askew in a hall leaves as much open.
-bool taken_outside(const Scan& scan);
+/// Where a scan was taken, as its own points show it.
+enum class Surroundings : std::uint8_t { unknown, inside, outside };
+
+/// Outside: z points up, the scanner positions are known, and much sky is open. A mobile scan is taken inside
+/// where it is not. A static one must be of a scanner that measures all round and up to the zenith, as
+/// tripods carry: it shows the ground on all sides down to 45 degrees (of other scanners it is not known
+/// where they could see; upright ones in halls have up to 0.81 of it, ones in streets and rooms all). Of what
+/// is above 60 degrees such a scan shows nearly all inside and less than half outside; and outside, what is
+/// seen does not end at one height on most sides, as where a ceiling was cut off.
+Surroundings surroundings_of(const Scan& scan);
+
+/// Of several scans together: what all of them are.
+Surroundings common(Surroundings a, Surroundings b);
 
 }  // namespace limen

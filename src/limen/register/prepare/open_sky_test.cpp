@@ -12,14 +12,14 @@
 namespace limen {
 namespace {
 
-constexpr double kStep = 1.0;  // degrees
+constexpr double kRayStepDeg = 1.0;
 
 /// What a scanner at `centre` sees, of which rays up to `field_deg` above the horizon come back; `range`: of
 /// a ray.
 void look(Scan& scan, const Vector3d& centre, double field_deg, bool mobile,
           const std::function<double(const Vector3d&)>& range) {
-  for (double up = -60.0; up <= field_deg; up += kStep) {
-    for (double turn = 0.5; turn < 360.0; turn += kStep) {
+  for (double up = -60.0; up <= field_deg; up += kRayStepDeg) {
+    for (double turn = 0.5; turn < 360.0; turn += kRayStepDeg) {
       const Vector3d ray(std::cos(radians(up)) * std::cos(radians(turn)),
                          std::cos(radians(up)) * std::sin(radians(turn)), std::sin(radians(up)));
       const double away = range(ray);
@@ -49,7 +49,7 @@ TEST(OpenSkyTest, ARoomHasNone) {
     Scan room;
     look(room, Vector3d::Zero(), field, false, in_room);
     EXPECT_EQ(open_sky_share(room), 0.0) << field;
-    EXPECT_FALSE(taken_outside(room));
+    EXPECT_EQ(surroundings_of(room), field < 60.0 ? Surroundings::unknown : Surroundings::inside);
   }
 }
 
@@ -57,7 +57,29 @@ TEST(OpenSkyTest, AStreetHasMuch) {
   Scan street;
   look(street, Vector3d(3, 4, 1), 90.0, false, in_street);
   EXPECT_GT(open_sky_share(street), 0.5);
-  EXPECT_FALSE(taken_outside(street)) << "a static scan may stand askew in a hall";
+  EXPECT_EQ(surroundings_of(street), Surroundings::outside);
+}
+
+TEST(OpenSkyTest, OfAStaticScannerOfNarrowFieldOfViewItIsNotKnown) {
+  Scan narrow;
+  look(narrow, Vector3d::Zero(), 90.0, false, [](const Vector3d& ray) {
+    const Vector3d axis(std::sin(0.7), 0.0, std::cos(0.7));  // its own, askew
+    return std::abs(axis.dot(ray)) < 0.6 ? in_room(ray) : INFINITY;
+  });
+  EXPECT_GT(open_sky_share(narrow), 0.4);
+  EXPECT_EQ(surroundings_of(narrow), Surroundings::unknown);
+}
+
+TEST(OpenSkyTest, ARoomWhoseCeilingWasCutOffIsNotOutside) {
+  Scan room;
+  look(room, Vector3d(0.4, 0.2, 1.4), 90.0, false, [](const Vector3d& ray) {
+    const double away =
+        std::min({(ray.x() > 0 ? 2.0 : 5.0) / std::abs(ray.x()),
+                  (ray.y() > 0 ? 2.5 : 9.0) / std::abs(ray.y()), ray.z() < 0.0 ? -1.4 / ray.z() : INFINITY});
+    return away * ray.z() < 1.2 ? away : INFINITY;
+  });
+  EXPECT_GT(open_sky_share(room), 0.4);
+  EXPECT_EQ(surroundings_of(room), Surroundings::unknown);
 }
 
 TEST(OpenSkyTest, AWayThroughARoomIsInside) {
@@ -67,19 +89,19 @@ TEST(OpenSkyTest, AWayThroughARoomIsInside) {
     look(inside, Vector3d(along, 0, 0), 60.0, true, in_room);
     look(outside, Vector3d(0, along, 0), 60.0, true, in_street);
   }
-  EXPECT_FALSE(taken_outside(inside));
-  EXPECT_TRUE(taken_outside(outside));
+  EXPECT_EQ(surroundings_of(inside), Surroundings::inside);
+  EXPECT_EQ(surroundings_of(outside), Surroundings::outside);
 }
 
 TEST(OpenSkyTest, WithoutUpOrScannerNothingIsSaid) {
   Scan street;
   look(street, Vector3d::Zero(), 90.0, true, in_street);
-  EXPECT_TRUE(taken_outside(street));
+  EXPECT_EQ(surroundings_of(street), Surroundings::outside);
   street.level = false;
-  EXPECT_FALSE(taken_outside(street));
+  EXPECT_EQ(surroundings_of(street), Surroundings::unknown);
   street.level = true;
   street.centres.clear();
-  EXPECT_FALSE(taken_outside(street));
+  EXPECT_EQ(surroundings_of(street), Surroundings::unknown);
   EXPECT_EQ(open_sky_share(Scan{}), 0.0);
 }
 

@@ -138,12 +138,12 @@ PreparedScan joined(std::vector<PlacedScan> scans, const PrepareOptions& options
   group.surely_upright = parts.front().surely_upright;
   group.upright_from_scan = parts.front().upright_from_scan;
   group.place = parts.front().place;
-  group.outside = true;
+  group.surroundings = parts.front().surroundings;
   const Vector3d local_origin = parts.front().extracted.features.local_origin;
   Joiner joiner;
   for (PreparedScan& part : parts) {
     group.mobile = group.mobile || part.mobile;
-    group.outside = group.outside && part.outside;
+    group.surroundings = common(group.surroundings, part.surroundings);
     group.stations.insert(group.stations.end(), part.stations.begin(), part.stations.end());
     group.details.insert(group.details.end(), part.details.begin(), part.details.end());
     joiner.add(part);

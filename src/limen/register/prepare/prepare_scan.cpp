@@ -99,7 +99,7 @@ PreparedScan prepare_laid(const Scan& laid, const ScanFrame& frame, const Prepar
   prepared.upright_from_scan = frame.frame_from_scan;
   prepared.place = in_world(frame.place, laid.local_origin - frame.corner);
   prepared.mobile = laid.mobile();
-  prepared.outside = taken_outside(laid);
+  prepared.surroundings = surroundings_of(laid);
   ExtractOptions extract = options.extract;
   extract.detect.relief = wants_relief(options);
   extract.interior.enabled = extract.interior.enabled && (prepared.upright || prepared.mobile);

@@ -11,9 +11,10 @@
 #include "limen/extract/segments/segments.h"
 #include "limen/model/bim_model.h"
 #include "limen/model/method.h"
+#include "limen/register/frame/scan_frame.h"
 #include "limen/register/prepare/kept_points.h"
+#include "limen/register/prepare/open_sky.h"
 #include "limen/register/prepare/pass_track.h"
-#include "limen/register/prepare/scan_frame.h"
 #include "limen/register/prepare/scan_view.h"
 
 namespace limen {
@@ -26,13 +27,13 @@ struct PreparedScan {
   std::shared_ptr<const SpaceView> space;  ///< a panorama for a static station, else a map of cubes
   ScannerPlace place;                      ///< where the (first) scanner stood, world
   bool mobile = false;                     ///< seen from many places along a path
-  bool outside = false;                    ///< taken outside (open_sky.h)
-  bool upright = false;                    ///< z of the prepared frame points up
-  bool surely_upright = false;             ///< no other way up need be tried
-  bool model = false;                      ///< a building model instead of a scan
-  std::vector<BimSpace> rooms;             ///< of a model
-  std::vector<Vector3d> stations;          ///< optical centres of static stations, prepared frame
-  Eigen::AlignedBox3d reach;               ///< around the samples, prepared frame
+  Surroundings surroundings = Surroundings::unknown;
+  bool upright = false;            ///< z of the prepared frame points up
+  bool surely_upright = false;     ///< no other way up need be tried
+  bool model = false;              ///< a building model instead of a scan
+  std::vector<BimSpace> rooms;     ///< of a model
+  std::vector<Vector3d> stations;  ///< optical centres of static stations, prepared frame
+  Eigen::AlignedBox3d reach;       ///< around the samples, prepared frame
 
   SampleRuns runs;                     ///< of a model
   std::vector<SurfaceDetail> details;  ///< of static stations: what is in the room, prepared frame

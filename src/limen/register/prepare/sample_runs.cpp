@@ -9,8 +9,8 @@ namespace {
 
 constexpr std::uint32_t kLongestRun = 24;
 constexpr std::size_t kRunsTogether = 32;
-constexpr double kWidestM = 4.0;  // of a run's box: a run that leaps to another plane tells nothing
-constexpr double kSlackM = 1e-6;  // rounding never decides: what is near a face is looked at by itself
+constexpr double kWidestM = 4.0;      // of a run's box: a run that leaps to another plane tells nothing
+constexpr double kFaceSlackM = 1e-6;  // rounding never decides: what is near a face is looked at by itself
 
 /// Samples that follow one another.
 struct Span {
@@ -46,7 +46,7 @@ SampleRuns::SampleRuns(const std::vector<SurfaceSample>& samples) {
       if (larger.diagonal().norm() > kWidestM) break;
       box = larger;
     }
-    runs_.push_back({begin, end, box.center(), 0.5 * box.diagonal().norm() + kSlackM});
+    runs_.push_back({begin, end, box.center(), 0.5 * box.diagonal().norm() + kFaceSlackM});
     begin = end;
   }
   for (std::size_t begin = 0; begin < runs_.size(); begin += kRunsTogether) {
@@ -57,7 +57,7 @@ SampleRuns::SampleRuns(const std::vector<SurfaceSample>& samples) {
       box.extend(runs_[k].centre - reach).extend(runs_[k].centre + reach);
     }
     groups_.push_back({static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end), box.center(),
-                       0.5 * box.diagonal().norm() + kSlackM});
+                       0.5 * box.diagonal().norm() + kFaceSlackM});
   }
 }
 

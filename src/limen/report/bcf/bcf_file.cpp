@@ -4,13 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
 #include <fmt/format.h>
 #include <pugixml.hpp>
 
 #include "limen/base/version.h"
 #include "limen/files/file_hash.h"
+#include "limen/files/xml_text.h"
 #include "limen/files/zip_writer.h"
 
 namespace limen {
@@ -28,31 +28,6 @@ std::string guid_of(const std::string& key) {
          hex.substr(20);
 }
 
-/// Words that XML 1.0 can hold: control characters are not among them.
-std::string plain(const std::string& text) {
-  std::string good;
-  for (const char c : text) good += static_cast<unsigned char>(c) < 0x20 && c != '\n' && c != '\t' ? ' ' : c;
-  return good;
-}
-
-std::string text_of(const pugi::xml_document& document) {
-  std::ostringstream stream;
-  document.save(stream, "  ", pugi::format_indent, pugi::encoding_utf8);
-  return stream.str();
-}
-
-pugi::xml_document begun() {
-  pugi::xml_document document;
-  pugi::xml_node head = document.append_child(pugi::node_declaration);
-  head.append_attribute("version") = "1.0";
-  head.append_attribute("encoding") = "UTF-8";
-  return document;
-}
-
-void add_text(pugi::xml_node& node, const char* name, const std::string& text) {
-  node.append_child(name).append_child(pugi::node_pcdata).set_value(plain(text).c_str());
-}
-
 void add_point(pugi::xml_node node, const Vector3d& x) {
   const char* names[] = {"X", "Y", "Z"};
   for (Eigen::Index k = 0; k < 3; ++k) add_text(node, names[k], fmt::format("{}", x[k] + 0.0));
@@ -65,11 +40,11 @@ bool is_ifc_guid(const std::string& guid) {
 }
 
 std::string version_text() {
-  pugi::xml_document document = begun();
+  pugi::xml_document document = begun_xml();
   pugi::xml_node version = document.append_child("Version");
   version.append_attribute("VersionId") = "2.1";
   add_text(version, "DetailedVersion", "2.1");
-  return text_of(document);
+  return xml_text(document);
 }
 
 /// What tells the viewpoint's GUID from the topic's.
@@ -78,7 +53,7 @@ std::string view_key(const BcfTopic& topic) {
 }
 
 std::string markup_text(const BcfTopic& topic, std::size_t number, const std::string& date) {
-  pugi::xml_document document = begun();
+  pugi::xml_document document = begun_xml();
   pugi::xml_node markup = document.append_child("Markup");
   if (!topic.model.empty()) {
     pugi::xml_node file = markup.append_child("Header").append_child("File");
@@ -99,7 +74,7 @@ std::string markup_text(const BcfTopic& topic, std::size_t number, const std::st
   pugi::xml_node view = markup.append_child("Viewpoints");
   view.append_attribute("Guid") = guid_of(view_key(topic)).c_str();
   add_text(view, "Viewpoint", "viewpoint.bcfv");
-  return text_of(document);
+  return xml_text(document);
 }
 
 void add_component(pugi::xml_node parent, const std::string& guid) {
@@ -107,7 +82,7 @@ void add_component(pugi::xml_node parent, const std::string& guid) {
 }
 
 std::string view_text(const BcfTopic& topic) {
-  pugi::xml_document document = begun();
+  pugi::xml_document document = begun_xml();
   pugi::xml_node view = document.append_child("VisualizationInfo");
   view.append_attribute("Guid") = guid_of(view_key(topic)).c_str();
   pugi::xml_node components = view.append_child("Components");
@@ -132,7 +107,7 @@ std::string view_text(const BcfTopic& topic) {
       add_point(line.append_child("EndPoint"), to);
     }
   }
-  return text_of(document);
+  return xml_text(document);
 }
 
 }  // namespace

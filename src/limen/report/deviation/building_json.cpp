@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include "limen/base/version.h"
-#include "limen/files/table_cells.h"
 #include "limen/report/deviation/building_report.h"
 #include "limen/report/deviation/deviation_report.h"
 #include "limen/report/deviation/deviation_words.h"
@@ -85,16 +84,18 @@ std::string building_json(const BuildingReport& report) {
   return to_text(json);
 }
 
-std::string building_csv(const BuildingReport& report) {
-  std::string text = "model,seen_by,moved," + deviation_columns() + "\r\n";
+Sheet building_sheet(const BuildingReport& report) {
+  Sheet sheet{"Elements", {"model", "seen_by", "moved"}, {}};
+  for (const std::string& column : deviation_columns()) sheet.columns.push_back(column);
   for (const std::size_t k : worst_first(report.deviation.elements)) {
     const ElementDeviation& it = report.deviation.elements[k];
     const BuildingModel& model = report.models[static_cast<std::size_t>(report.model_of_element[k])];
-    text += fmt::format("{},{},{},", csv_field(model.path), report.deviation.seen_by[k],
-                        has_moved(it, report.issues.moved_m) ? 1 : 0);
-    text += deviation_row(it, report.model.elements[k]) + "\r\n";
+    SheetRow row = {text_cell(model.path), count_cell(static_cast<std::size_t>(report.deviation.seen_by[k])),
+                    count_cell(has_moved(it, report.issues.moved_m) ? 1 : 0)};
+    for (SheetCell& cell : deviation_row(it, report.model.elements[k])) row.push_back(std::move(cell));
+    sheet.rows.push_back(std::move(row));
   }
-  return text;
+  return sheet;
 }
 
 }  // namespace limen

@@ -9,6 +9,7 @@
 #include "limen/deviation/building_deviation.h"
 #include "limen/report/deviation/deviation_issues.h"
 #include "limen/report/json/result_json.h"
+#include "limen/report/sheet/sheet.h"
 
 namespace limen {
 
@@ -56,9 +57,8 @@ struct BuildingReport {
 /// The text of deviation.json; its schema is project_deviation_schema().
 std::string building_json(const BuildingReport& report);
 
-/// The text of deviation.csv: a row for each element, the worst first, with the model it is from and by how
-/// many scans it was seen. RFC 4180, UTF-8, decimal points.
-std::string building_csv(const BuildingReport& report);
+/// A row for each element, the worst first, with the model it is from and by how many scans it was seen.
+Sheet building_sheet(const BuildingReport& report);
 
 /// One page: what is missing, what is elsewhere, what the model lacks, each scan's share, and a plan.
 std::string building_page(const BuildingReport& report);

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include "limen/files/table_cells.h"
 #include "limen/report/deviation/deviation_report.h"
 
 namespace limen {
@@ -16,38 +15,71 @@ std::string directions(const std::vector<Vector3d>& open) {
 }
 
 /// The figures of an element that points lie on.
-std::string figures(const ElementDeviation& it) {
-  if (it.points == 0) return ",,,,,,,,,,,,";
+void add_figures(SheetRow& row, const ElementDeviation& it) {
+  if (it.points == 0) {
+    row.insert(row.end(), 13, SheetCell{});
+    return;
+  }
   const ElementShift& shift = it.shift;
-  std::string text =
-      fmt::format("{:.5f},{:.5f},{:.5f},{:.5f},", it.median_m, it.mean_m, it.sigma_m, it.p95_m);
-  text += it.loa > 0 ? fmt::format("LOA{},", it.loa) : ",";
-  for (Eigen::Index k = 0; k < 3; ++k) text += fmt::format("{:.5f},", shift.shift_m[k] + 0.0);
-  for (Eigen::Index k = 0; k < 3; ++k) text += fmt::format("{:.5f},", shift.sigma_m[k]);
-  return text + fmt::format("{},{}", shift.held, directions(shift.open));
+  for (const double metres : {it.median_m, it.mean_m, it.sigma_m, it.p95_m})
+    row.push_back(number_cell(metres, 5));
+  row.push_back(it.loa > 0 ? text_cell(fmt::format("LOA{}", it.loa)) : SheetCell{});
+  for (const double metres : shift.shift_m) row.push_back(number_cell(metres + 0.0, 5));
+  for (const double metres : shift.sigma_m) row.push_back(number_cell(metres, 5));
+  row.push_back(count_cell(static_cast<std::size_t>(shift.held)));
+  row.push_back(text_cell(directions(shift.open)));
 }
 
 }  // namespace
 
-std::string deviation_columns() {
-  return "element,kind,type,guid,name,storey,presence,points,area_m2,covered_m2,passed_m2,covered_share,"
-         "median_m,mean_m,sigma_m,p95_m,loa,shift_x_m,shift_y_m,shift_z_m,shift_sigma_x_m,shift_sigma_y_m,"
-         "shift_sigma_z_m,shift_held,shift_open";
+std::vector<std::string> deviation_columns() {
+  return {"element",
+          "kind",
+          "type",
+          "guid",
+          "name",
+          "storey",
+          "presence",
+          "points",
+          "area_m2",
+          "covered_m2",
+          "passed_m2",
+          "covered_share",
+          "median_m",
+          "mean_m",
+          "sigma_m",
+          "p95_m",
+          "loa",
+          "shift_x_m",
+          "shift_y_m",
+          "shift_z_m",
+          "shift_sigma_x_m",
+          "shift_sigma_y_m",
+          "shift_sigma_z_m",
+          "shift_held",
+          "shift_open"};
 }
 
-std::string deviation_row(const ElementDeviation& it, const BimElement& element) {
-  std::string text = fmt::format("{},{},{},{},{},{},{},{},", it.element, to_string(element.kind),
-                                 csv_field(element.type), csv_field(element.guid), csv_field(element.name),
-                                 csv_field(element.storey), to_string(it.presence), it.points);
-  return text + fmt::format("{:.4f},{:.4f},{:.4f},{:.4f},{}", it.area_m2, it.covered_m2, it.passed_m2,
-                            it.covered_share, figures(it));
+SheetRow deviation_row(const ElementDeviation& it, const BimElement& element) {
+  SheetRow row = {count_cell(static_cast<std::size_t>(it.element)),
+                  text_cell(to_string(element.kind)),
+                  text_cell(element.type),
+                  text_cell(element.guid),
+                  text_cell(element.name),
+                  text_cell(element.storey),
+                  text_cell(to_string(it.presence)),
+                  count_cell(it.points)};
+  for (const double one : {it.area_m2, it.covered_m2, it.passed_m2, it.covered_share})
+    row.push_back(number_cell(one, 4));
+  add_figures(row, it);
+  return row;
 }
 
-std::string deviation_csv(const DeviationReport& report, const BimModel& model) {
-  std::string text = deviation_columns() + "\r\n";
+Sheet deviation_sheet(const DeviationReport& report, const BimModel& model) {
+  Sheet sheet{"Elements", deviation_columns(), {}};
   for (const ElementDeviation& it : report.deviation.elements)
-    text += deviation_row(it, model.elements[static_cast<std::size_t>(it.element)]) + "\r\n";
-  return text;
+    sheet.rows.push_back(deviation_row(it, model.elements[static_cast<std::size_t>(it.element)]));
+  return sheet;
 }
 
 }  // namespace limen

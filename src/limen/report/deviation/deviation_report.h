@@ -8,9 +8,11 @@
 #include <functional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "limen/deviation/deviation.h"
 #include "limen/report/json/result_json.h"
+#include "limen/report/sheet/sheet.h"
 
 namespace limen {
 
@@ -31,13 +33,12 @@ struct DeviationReport {
 /// matter that the model does not have, world coordinates).
 std::string deviation_json(const DeviationReport& report, const BimModel& model);
 
-/// The text of deviation.csv: one row for each element, after a row of names. RFC 4180, UTF-8, decimal
-/// points.
-std::string deviation_csv(const DeviationReport& report, const BimModel& model);
+/// A row for each element, as deviation.csv and deviation.xlsx have it.
+Sheet deviation_sheet(const DeviationReport& report, const BimModel& model);
 
-/// The names of the columns of a row of the table, and the row; neither ends its line.
-std::string deviation_columns();
-std::string deviation_row(const ElementDeviation& it, const BimElement& element);
+/// The names of its columns, and the row of an element.
+std::vector<std::string> deviation_columns();
+SheetRow deviation_row(const ElementDeviation& it, const BimElement& element);
 
 /// Red, green and blue of a deviation: blue for missing matter (negative), light grey at 0, orange for matter
 /// that is out; full colour from `limit_m` on. Distinguishable with every kind of colour vision.

@@ -84,7 +84,7 @@ TEST(DeviationReport, JsonHoldsElementsSummaryAndWhatIsNotModelled) {
 }
 
 TEST(DeviationReport, CsvHasAFieldForEveryName) {
-  const std::string csv = deviation_csv(report_of_two(), model_with_names());
+  const std::string csv = csv_of(deviation_sheet(report_of_two(), model_with_names()));
   std::vector<std::vector<std::string>> rows(1);
   std::string text;
   bool quoted = false;

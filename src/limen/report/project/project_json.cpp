@@ -5,6 +5,7 @@
 #include "limen/base/version.h"
 #include "limen/report/json/json_values.h"
 #include "limen/report/project/station_accuracy.h"
+#include "limen/report/summary/precision.h"
 
 namespace limen {
 namespace {
@@ -72,7 +73,10 @@ Json scan_json(const ProjectScan& scan, const std::optional<StationAccuracy>& ac
   return json;
 }
 
-Json link_json(const ProjectLink& link) {
+Json link_json(const ProjectResult& result, std::size_t k) {
+  const ProjectLink& link = result.links[k];
+  const std::optional<double> overlap = overlap_of(result, k);
+  const std::optional<double> rms = plane_distance_rms(link.matches);
   Json json = {{"source", link.source},
                {"target", link.target},
                {"state", to_string(link.solved.state)},
@@ -81,6 +85,8 @@ Json link_json(const ProjectLink& link) {
                {"pose_number", link.number},
                {"sigma", pose_sigma_json(link.sigma)},
                {"agreeing_m2", link.agreeing_m2},
+               {"overlap", overlap ? Json(*overlap) : Json()},
+               {"plane_rms_m", rms ? Json(*rms) : Json()},
                {"twin", link.twin},
                {"chance", link.chance},
                {"redundancy", link.solved.redundancy},
@@ -182,7 +188,8 @@ std::string project_json(const ProjectResult& result, const OptionList& options,
   json["scans"] = Json::array();
   for (std::size_t k = 0; k < result.scans.size(); ++k)
     json["scans"].push_back(scan_json(result.scans[k], accuracy_of(result, k)));
-  json["links"] = list_json(result.links, link_json);
+  json["links"] = Json::array();
+  for (std::size_t k = 0; k < result.links.size(); ++k) json["links"].push_back(link_json(result, k));
   json["loops"] = list_json(result.loops, loop_json);
   json["questions"] = list_json(result.questions, question_json);
   if (!result.decisions.empty()) json["decisions"] = list_json(result.decisions, decision_json);

@@ -22,6 +22,7 @@
 #include "limen/report/project/project_plan.h"
 #include "limen/report/project/project_scene.h"
 #include "limen/report/project/station_accuracy.h"
+#include "limen/report/summary/precision.h"
 
 namespace limen {
 namespace {
@@ -88,6 +89,11 @@ std::string decisions_table(const ProjectResult& result) {
   return table("Your decisions", "", {"decision", "state", "why"}, text);
 }
 
+std::string pass_cell(const std::optional<bool>& within) {
+  if (!within) return "<td></td>";
+  return *within ? "<td class=\"state verified\">pass</td>" : "<td class=\"state rejected\">fail</td>";
+}
+
 /// Deviations along the axes and of the heading, and what holds with 95 %.
 std::string accuracy_cells(const std::optional<StationAccuracy>& it, bool tolerance) {
   const std::string last = tolerance ? "<td></td>" : "";
@@ -98,9 +104,7 @@ std::string accuracy_cells(const std::optional<StationAccuracy>& it, bool tolera
   text += fmt::format("<td class=\"n\">{:.3f}</td><td class=\"n\">{:.1f}</td><td>{}</td>",
                       degrees(it->heading_sigma_rad), 1e3 * it->radius_m,
                       it->loa > 0 ? fmt::format("LOA{}", it->loa) : "");
-  if (!tolerance) return text;
-  return text + (it->within_tolerance.value_or(false) ? "<td class=\"state verified\">pass</td>"
-                                                      : "<td class=\"state rejected\">fail</td>");
+  return tolerance ? text + pass_cell(it->within_tolerance) : text;
 }
 
 std::string scans_table(const ProjectResult& result) {
@@ -127,10 +131,23 @@ std::string scans_table(const ProjectResult& result) {
       "well; under_constrained: a direction is undetermined; floating: not connected to the main group.");
 }
 
-std::string residual_cells(const ProjectLink& link) {
-  if (!is_checked(link)) return "<td colspan=\"2\">unchecked</td>";
-  return fmt::format("<td class=\"n\">{:.1f}</td><td class=\"n\">{:.3f}</td>", 1e3 * link.solved.loop_error_m,
-                     degrees(link.solved.loop_error_rad));
+/// What no loop checks leaves no residual.
+std::string residual_cells(const ProjectResult& result, const ProjectLink& link) {
+  std::string text = is_checked(link)
+                         ? fmt::format("<td class=\"n\">{:.1f}</td><td class=\"n\">{:.3f}</td>",
+                                       1e3 * link.solved.loop_error_m, degrees(link.solved.loop_error_rad))
+                         : "<td colspan=\"2\">unchecked</td>";
+  if (result.tolerance_m) text += pass_cell(within_tolerance(result, link));
+  return text;
+}
+
+/// How much of the smaller scan agrees, and how far the planes that do lie from one another.
+std::string overlap_cells(const ProjectResult& result, std::size_t link) {
+  const std::optional<double> overlap = overlap_of(result, link);
+  const std::optional<double> rms = plane_distance_rms(result.links[link].matches);
+  return fmt::format("<td class=\"n\">{}</td><td class=\"n\">{}</td>",
+                     overlap ? fmt::format("{:.0f}", 100.0 * *overlap) : "",
+                     rms ? fmt::format("{:.1f}", 1e3 * *rms) : "");
 }
 
 std::string links_table(const ProjectResult& result) {
@@ -145,16 +162,27 @@ std::string links_table(const ProjectResult& result) {
         k, link.source, link.target);
     text += state_cell(to_string(link.solved.state));
     text += fmt::format(
-        "<td>{}</td><td class=\"n\">{:.1f}</td>{}<td class=\"n\">{:.1f} of 6</td><td class=\"n\">{}</td>"
+        "<td>{}</td><td class=\"n\">{:.1f}</td>{}{}<td class=\"n\">{:.1f} of 6</td><td class=\"n\">{}</td>"
         "<td class=\"n\">{}</td></tr>\n",
-        link.given ? "given" : to_string(link.pair), link.agreeing_m2, residual_cells(link),
-        link.solved.redundancy, loops_through(result, k), link.alternatives.size());
+        link.given ? "given" : to_string(link.pair), link.agreeing_m2, overlap_cells(result, k),
+        residual_cells(result, link), link.solved.redundancy, loops_through(result, k),
+        link.alternatives.size());
   }
-  return table("Links", "links",
-               {"#no.", "scans", "state", "result of the pair alone", "#agreeing, m&sup2;", "#residual, mm",
-                "#deg", "#redundancy", "#loops", "#other poses"},
-               text,
+  std::vector<std::string> head = {"#no.",
+                                   "scans",
+                                   "state",
+                                   "result of the pair alone",
+                                   "#agreeing, m&sup2;",
+                                   "#overlap, %",
+                                   "#planes, mm RMS",
+                                   "#residual, mm",
+                                   "#deg"};
+  if (result.tolerance_m) head.emplace_back(fmt::format("{:g} mm", 1e3 * *result.tolerance_m));
+  head.insert(head.end(), {"#redundancy", "#loops", "#other poses"});
+  return table("Links", "links", head, text,
                "Click a number to see that link alone, before and after, with the surfaces that agree. "
+               "overlap: share of the planes of the smaller scan, by area, that agree with planes of the "
+               "other; RMS: of the distances between them. "
                "verified: checked by a loop; bridge: single unchecked link; ambiguous: another pose fits as "
                "well; rejected: contradicted, or probably two look-alike places; weak: too little overlap, "
                "or a direction undetermined.");

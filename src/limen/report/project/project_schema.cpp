@@ -75,6 +75,8 @@ Json link_schema() {
        {"pose_number", whole("among the poses of the pair, 0 the best")},
        {"sigma", ref("sigma")},
        {"agreeing_m2", number("surface of each scan that agrees with the other")},
+       {"overlap", number_or_null("share of the planes of the smaller scan that agree, by area")},
+       {"plane_rms_m", number_or_null("root mean square of the distances between planes that agree")},
        {"twin", number("probability that a look-alike place was taken for it")},
        {"chance", number("probability that it is wrong otherwise")},
        {"redundancy", number_or_null("share of its six numbers that others check, 0 to 6")},
@@ -82,8 +84,9 @@ Json link_schema() {
        {"loop_error_rad", number_or_null("turn between it and the adjusted poses")},
        {"alternatives", list_of(other, "other poses of the pair")},
        {"reason", text("one sentence")}},
-      {"source", "target", "state", "pair", "pose", "pose_number", "sigma", "agreeing_m2", "twin", "chance",
-       "redundancy", "loop_error_m", "loop_error_rad", "alternatives", "reason"});
+      {"source", "target", "state", "pair", "pose", "pose_number", "sigma", "agreeing_m2", "overlap",
+       "plane_rms_m", "twin", "chance", "redundancy", "loop_error_m", "loop_error_rad", "alternatives",
+       "reason"});
 }
 
 Json point_schema() {

@@ -5,36 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include <fmt/format.h>
-
-#include "limen/base/angles.h"
 #include "limen/deviation/deviation.h"
-#include "limen/files/table_cells.h"
-#include "limen/project/state/scan_names.h"
 #include "limen/report/summary/precision.h"
 
 namespace limen {
-namespace {
-
-std::string yes_or_no(const std::optional<bool>& answer) {
-  return !answer ? "" : *answer ? "yes" : "no";
-}
-
-std::string figures(const StationAccuracy& it) {
-  if (it.held_fixed) return "yes,,,,,,,";
-  std::string text = "no,";
-  for (const double sigma : it.sigma_m) text += fmt::format("{:.5f},", sigma);
-  text += fmt::format("{:.5f},{:.5f},", degrees(it.heading_sigma_rad), it.radius_m);
-  return text + (it.loa > 0 ? fmt::format("LOA{},", it.loa) : ",") + yes_or_no(it.within_tolerance);
-}
-
-std::string place(const ProjectScan& scan) {
-  if (scan.stations.empty()) return ",,";
-  const Vector3d& x = scan.stations.front();
-  return fmt::format("{:.4f},{:.4f},{:.4f}", x.x(), x.y(), x.z());
-}
-
-}  // namespace
 
 std::optional<StationAccuracy> accuracy_of(const ProjectResult& result, std::size_t scan) {
   const ProjectScan& it = result.scans[scan];
@@ -63,42 +37,19 @@ std::size_t loops_through(const ProjectResult& result, std::size_t link) {
       }));
 }
 
-std::string stations_csv(const ProjectResult& result) {
-  std::string text =
-      "file,state,group,x_m,y_m,z_m,held_fixed,sigma_x_m,sigma_y_m,sigma_z_m,sigma_heading_deg,radius_95_m,"
-      "loa,within_tolerance,probability_wrong,reason\r\n";
-  for (std::size_t k = 0; k < result.scans.size(); ++k) {
-    const ProjectScan& scan = result.scans[k];
-    if (scan.model) continue;
-    const std::optional<StationAccuracy> accuracy = accuracy_of(result, k);
-    text +=
-        fmt::format("{},{},{},{},{},{},{}\r\n", csv_field(scan_name(scan)),
-                    scan.readable ? to_string(scan.state) : "unreadable",
-                    scan.component >= 0 ? fmt::to_string(scan.component) : "", place(scan),
-                    accuracy ? figures(*accuracy) : ",,,,,,,",
-                    scan.frame_from_scan ? fmt::format("{:.3g}", scan.doubt) : "", csv_field(scan.reason));
-  }
-  return text;
+std::optional<bool> within_tolerance(const ProjectResult& result, const ProjectLink& link) {
+  if (!result.tolerance_m || !is_checked(link)) return std::nullopt;
+  return link.solved.loop_error_m <= *result.tolerance_m;
 }
 
-std::string links_csv(const ProjectResult& result) {
-  std::string text =
-      "source,target,state,agreeing_m2,residual_m,residual_deg,redundancy,loops,probability_look_alike,"
-      "probability_other\r\n";
-  for (std::size_t k = 0; k < result.links.size(); ++k) {
-    const ProjectLink& link = result.links[k];
-    const auto name = [&](int scan) {
-      return csv_field(scan_name(result.scans[static_cast<std::size_t>(scan)]));
-    };
-    // What no loop checks leaves no residual.
-    const std::string residual = is_checked(link) ? fmt::format("{:.5f},{:.5f}", link.solved.loop_error_m,
-                                                                degrees(link.solved.loop_error_rad))
-                                                  : ",";
-    text += fmt::format("{},{},{},{:.2f},{},{:.2f},{},{:.3g},{:.3g}\r\n", name(link.source),
-                        name(link.target), to_string(link.solved.state), link.agreeing_m2, residual,
-                        link.solved.redundancy, loops_through(result, k), link.twin, link.chance);
-  }
-  return text;
+std::optional<double> overlap_of(const ProjectResult& result, std::size_t link) {
+  const ProjectLink& it = result.links[link];
+  const auto surface = [&](int scan) { return result.scans[static_cast<std::size_t>(scan)].surface_m2; };
+  const double smaller = std::min(surface(it.source), surface(it.target));
+  if (it.matches.empty() || !(smaller > 0.0)) return std::nullopt;
+  double shared = 0.0;
+  for (const PlaneMatch& match : it.matches) shared += match.overlap_m2;
+  return std::min(1.0, shared / smaller);
 }
 
 }  // namespace limen

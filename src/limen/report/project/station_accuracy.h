@@ -4,7 +4,6 @@
 
 #include <cstddef>
 #include <optional>
-#include <string>
 
 #include "limen/project/result/project_result.h"
 
@@ -31,9 +30,12 @@ inline bool is_checked(const ProjectLink& link) {
 /// How many loops of the result a link is part of.
 std::size_t loops_through(const ProjectResult& result, std::size_t link);
 
-/// A line for each scan, as stations.csv has it, in metres and degrees.
-std::string stations_csv(const ProjectResult& result);
-/// A line for each link, as links.csv has it.
-std::string links_csv(const ProjectResult& result);
+/// Whether what a link misses the solution by is within what is asked of stations; nothing where nothing is
+/// asked, and of a link that no loop checks.
+std::optional<bool> within_tolerance(const ProjectResult& result, const ProjectLink& link);
+
+/// Share of the planes of the smaller of a link's scans that agree with planes of the other one, by area, at
+/// the pair's own best pose; nothing where another pose was taken.
+std::optional<double> overlap_of(const ProjectResult& result, std::size_t link);
 
 }  // namespace limen

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "limen/base/angles.h"
+#include "limen/report/project/project_sheets.h"
 
 namespace limen {
 namespace {
@@ -59,15 +60,33 @@ TEST(StationAccuracy, TheReferenceIsHeldFixedAndWhatIsInNoFrameHasNone) {
   EXPECT_FALSE(accuracy_of(result, 1).has_value());
 }
 
-TEST(StationAccuracy, TablesHaveALineForEachAndNoResidualOfAnUncheckedLink) {
+TEST(StationAccuracy, ALinkThatNoLoopChecksNeitherPassesNorFails) {
   const ProjectResult result = three_scans();
-  const std::string stations = stations_csv(result);
+  EXPECT_EQ(within_tolerance(result, result.links[0]), std::optional(true));
+  EXPECT_FALSE(within_tolerance(result, result.links[1]).has_value());
+}
+
+TEST(StationAccuracy, OverlapIsAShareOfTheSmallerScan) {
+  ProjectResult result = three_scans();
+  EXPECT_FALSE(overlap_of(result, 0).has_value());
+  result.scans[0].surface_m2 = 40.0;
+  result.scans[1].surface_m2 = 20.0;
+  result.links[0].matches = {{0, 0, 0.003, 0.0, 3.0}, {1, 2, -0.001, 0.0, 2.0}};
+  EXPECT_NEAR(overlap_of(result, 0).value_or(0.0), 0.25, 1e-12);
+}
+
+TEST(StationAccuracy, SheetsHaveARowForEachAndNoResidualOfAnUncheckedLink) {
+  const ProjectResult result = three_scans();
+  const std::string stations = csv_of(stations_sheet(result));
   EXPECT_NE(stations.find("a.ply,registered,0,,,,yes,"), std::string::npos) << stations;
   EXPECT_NE(stations.find(",LOA40,yes,"), std::string::npos) << stations;
   EXPECT_EQ(stations.find("\n=c.ply"), std::string::npos) << "a spreadsheet would take it for a formula";
-  const std::string links = links_csv(result);
-  EXPECT_NE(links.find("b.ply,a.ply,verified,0.00,0.00200,0.00000,0.00,1,"), std::string::npos) << links;
-  EXPECT_NE(links.find(",bridge,0.00,,,0.00,0,"), std::string::npos) << links;
+  const std::string links = csv_of(links_sheet(result));
+  EXPECT_NE(links.find("b.ply,a.ply,verified,0.00,,,0.00200,0.00000,yes,0.00,1,"), std::string::npos)
+      << links;
+  EXPECT_NE(links.find(",bridge,0.00,,,,,,0.00,0,"), std::string::npos) << links;
+  EXPECT_EQ(loops_sheet(result).rows.size(), 1U);
+  EXPECT_TRUE(points_sheet(result).rows.empty());
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
-#include "limen/register/prepare/frame_planes.h"
+#include "limen/register/frame/frame_planes.h"
 
 #include <algorithm>
 #include <array>
@@ -13,7 +13,7 @@
 #include "limen/base/parallel.h"
 #include "limen/extract/cells/cell_grid.h"
 #include "limen/geometry/linear.h"
-#include "limen/register/prepare/tukey_sums.h"
+#include "limen/register/frame/tukey_sums.h"
 
 namespace limen {
 namespace {

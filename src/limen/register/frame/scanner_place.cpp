@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
-#include "limen/register/prepare/scanner_place.h"
+#include "limen/register/frame/scanner_place.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,8 +10,8 @@
 #include "limen/base/parallel.h"
 #include "limen/extract/surface/sample_surface.h"
 #include "limen/model/features.h"
-#include "limen/register/prepare/steady_sample.h"
-#include "limen/register/prepare/tukey_sums.h"
+#include "limen/register/frame/steady_sample.h"
+#include "limen/register/frame/tukey_sums.h"
 #include "limen/sight/angular_spread.h"
 #include "limen/sight/estimate_centre.h"
 

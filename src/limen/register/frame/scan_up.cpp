@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
-#include "limen/register/prepare/scan_up.h"
+#include "limen/register/frame/scan_up.h"
 
 #include <algorithm>
 #include <cmath>

@@ -7,7 +7,7 @@
 #include "limen/model/method.h"
 #include "limen/model/scan.h"
 #include "limen/model/scanner_place.h"
-#include "limen/register/prepare/frame_planes.h"
+#include "limen/register/frame/frame_planes.h"
 
 namespace limen {
 

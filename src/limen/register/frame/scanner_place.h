@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "limen/model/scan.h"
-#include "limen/register/prepare/frame_planes.h"
+#include "limen/register/frame/frame_planes.h"
 
 namespace limen {
 

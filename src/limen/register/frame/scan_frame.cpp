@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
-#include "limen/register/prepare/scan_frame.h"
+#include "limen/register/frame/scan_frame.h"
 
 #include <algorithm>
 #include <array>
@@ -14,10 +14,10 @@
 
 #include "limen/base/angles.h"
 #include "limen/base/parallel.h"
-#include "limen/register/prepare/frame_planes.h"
-#include "limen/register/prepare/scan_up.h"
-#include "limen/register/prepare/scanner_place.h"
-#include "limen/register/prepare/steady_sample.h"
+#include "limen/register/frame/frame_planes.h"
+#include "limen/register/frame/scan_up.h"
+#include "limen/register/frame/scanner_place.h"
+#include "limen/register/frame/steady_sample.h"
 
 namespace limen {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
-#include "limen/register/prepare/scan_frame.h"
+#include "limen/register/frame/scan_frame.h"
 
 #include <algorithm>
 #include <array>

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
-#include "limen/register/prepare/tukey_sums.h"
+#include "limen/register/frame/tukey_sums.h"
 
 #include <algorithm>
 #include <cmath>

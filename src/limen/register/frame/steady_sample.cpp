@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
-#include "limen/register/prepare/steady_sample.h"
+#include "limen/register/frame/steady_sample.h"
 
 #include <algorithm>
 #include <array>
