@@ -29,8 +29,8 @@ struct Surface {
   double unlisted;        ///< ... and that a place is shared whose pose was not proposed
 };
 inline constexpr Surface kRooms{0.7, 1.17, 7.55, 7.47, {0.22, {0.00635, 6.68}, {0.209, 8.38}}, 1.0, 0.1};
-inline constexpr Surface kThroughWall{1.15, 1.01, 7.59, 13.5, {0.401, {0.0234, 4.22}, {0.263, 5.58}},
-                                      1.0,  0.1};
+inline constexpr Surface kThroughWall{0.844, 1.17, 7.47, 5.74, {0.589, {0.000355, 275}, {0.0396, 30}},
+                                      1.0,   0.1};
 inline constexpr Surface kStreets{0.263, 1.2, 7.6, 13.4, {0.357, {0.0109, 7.31}, {0.35, 11.1}}, 1.0, 0.1};
 inline constexpr Surface kInModel{1.9, 1.9, 7.6, 9.5, {0.4, {0.02, 8.0}, {0.3, 6.0}}, 1.0, 0.1};
 
