@@ -125,8 +125,8 @@ TEST_F(DeviationProgramTest, AWholeProjectAgainstItsModel) {
   Json project = true_project(truth);
   ASSERT_EQ(project["scans"].size(), 4U);
   write_whole(work() / "project.json", project.dump());
-  const ProgramRun done =
-      run({"deviation", "project.json", "-o", "out", "--bcf", "issues.bcf", "--moved-m", "0.005"});
+  const ProgramRun done = run({"deviation", "project.json", "-o", "out", "--bcf", "issues.bcf", "--moved-m",
+                               "0.005", "--title", "Storey <1>", "--operator", "A. Surveyor"});
   ASSERT_EQ(done.status, 0) << done.err;
   const Json found = json_of("out/deviation.json");
   const ProgramRun schema = run({"schema", "project-deviation"});
@@ -164,16 +164,20 @@ TEST_F(DeviationProgramTest, AWholeProjectAgainstItsModel) {
   EXPECT_GE(expected, 3U);  // two are missing, one was moved
   EXPECT_EQ(of_elements, expected);
   const std::string page = read_whole(work() / "out/report.html");
+  EXPECT_NE(page.find("Storey &lt;1&gt;"), std::string::npos);
+  EXPECT_NE(page.find("<dt>Signature</dt>"), std::string::npos);
+  EXPECT_GT(std::filesystem::file_size(work() / "out/deviation.xlsx"), 1000U);
   EXPECT_NE(page.find("<h2>Elements"), std::string::npos);
   EXPECT_LT(page.find("\"Content-Security-Policy\" content=\"default-src 'none'"), page.find("</head>"));
 
   // Other threads, the same bytes; a scan in doubt is left out and noted.
   ASSERT_EQ(run({"deviation", "project.json", "-o", "again", "--threads", "1", "--bcf", "again.bcf",
-                 "--moved-m", "0.005"})
+                 "--moved-m", "0.005", "--title", "Storey <1>", "--operator", "A. Surveyor"})
                 .status,
             0);
   EXPECT_EQ(read_whole(work() / "again.bcf"), bcf);
-  for (const char* name : {"deviation.json", "deviation.csv", "deviation.ply", "report.html"})
+  for (const char* name :
+       {"deviation.json", "deviation.csv", "deviation.xlsx", "deviation.ply", "report.html"})
     EXPECT_EQ(read_whole(work() / "out" / name), read_whole(work() / "again" / name)) << name;
   project["scans"][1]["state"] = "ambiguous";
   write_whole(work() / "project.json", project.dump());

@@ -59,6 +59,18 @@ TEST_F(ReportTest, TellsOfNoMatchAndOfSegments) {
   EXPECT_FALSE(std::filesystem::exists(work() / "out/transform.txt"));
 }
 
+TEST_F(ReportTest, CarriesALogoThatIsAnImage) {
+  write_whole(work() / "words.png", "a text");
+  const ProgramRun refused = register_rooms({"--logo", "words.png"});
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_NE(refused.err.find("words.png: is no image"), std::string::npos) << refused.err;
+  EXPECT_FALSE(std::filesystem::exists(work() / "out"));
+  write_whole(work() / "logo.svg", "<svg xmlns=\"http://www.w3.org/2000/svg\"><path d=\"M0 0h9v9z\"/></svg>");
+  ASSERT_EQ(register_rooms({"--logo", "logo.svg"}).status, 0);
+  EXPECT_NE(page().find("<img class=\"logo\" alt=\"\" src=\"data:image/svg+xml;base64,PHN2"),
+            std::string::npos);
+}
+
 /// A program in place of the browser: a shell script that knows as `$pdf` where to print to.
 class PrintedReportTest : public ReportTest {
  protected:

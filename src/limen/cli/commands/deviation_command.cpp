@@ -13,6 +13,7 @@
 #include "limen/base/atomic_file.h"
 #include "limen/base/error.h"
 #include "limen/cli/commands/deviation_project.h"
+#include "limen/cli/inputs/cover_option.h"
 #include "limen/cli/inputs/issue_file.h"
 #include "limen/cli/inputs/pose_warning.h"
 #include "limen/cli/inputs/register_inputs.h"
@@ -41,6 +42,7 @@ struct DeviationCommand {
   double colour_limit_m = 0.05;
   DeviationOptions measuring;
   IssueChoice issues;
+  CoverChoice cover;
 };
 
 /// The scans of a group as one, about the first one's origin, with the optical centre of every point where
@@ -198,6 +200,7 @@ int run_on_project(const DeviationCommand& command, const Session& session) {
   project.colour_limit_m = command.colour_limit_m;
   project.measuring = command.measuring;
   project.issues = command.issues;
+  project.cover = cover_of(command.cover);
   return run_project_deviation(project, session);
 }
 
@@ -206,6 +209,9 @@ int run(const DeviationCommand& command, const Session& session) {
   if (command.model.empty()) throw Error("there is no model", "MODEL", "give an IFC, OBJ or PLY model");
   if (!command.models.empty())
     throw Error("--model is for projects", "", "give the one model after the scan");
+  if (!command.cover.empty())
+    throw Error("a report is made of projects only", "--title, --project, --operator, --date, --logo",
+                "leave them out, or give a project.json");
   command.issues.options.check();
   check(command);
   const OutputFolder folder(command.folder);
@@ -317,6 +323,7 @@ void add_deviation_command(CommandLine& app, Session& session) {
           "For a project: maximum number of points in deviation.ply, spread evenly (default 3000000)")
       ->in_range(1000, 1000000000);
   add_issue_options(*command, options->issues);
+  add_cover_options(*command, options->cover);
 }
 
 }  // namespace limen

@@ -352,7 +352,7 @@ int run_project_deviation(const ProjectDeviation& command, const Session& sessio
   if (!issues.empty()) write_file(command.issues.file, issues);
   const std::string json = building_json(all.report);
   const Sheet table = building_sheet(all.report);
-  const std::string page = building_page(all.report);
+  const std::string page = building_page(all.report, command.cover);
   write_files({{folder.path() / "deviation.csv", csv_of(table)},
                {folder.path() / "deviation.xlsx", workbook_of({table})},
                {folder.path() / "report.html", page},

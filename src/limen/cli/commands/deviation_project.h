@@ -7,6 +7,7 @@
 
 #include "limen/cli/inputs/issue_file.h"
 #include "limen/deviation/deviation.h"
+#include "limen/report/html/html_cover.h"
 
 namespace limen {
 
@@ -21,6 +22,7 @@ struct ProjectDeviation {
   double colour_limit_m = 0.05;
   DeviationOptions measuring;
   IssueChoice issues;
+  ReportCover cover;
 };
 
 /// Whether a file is the project.json of `limen project`, by its name.

@@ -57,7 +57,7 @@ struct ProjectCommandOptions {
   std::string poses;
   std::string file_sigma;
   std::string tolerance;
-  ReportCover cover;
+  CoverChoice cover;
   std::string crs;
   TrajectoryChoice trajectories;
   double risk = VerdictOptions{}.risk;
@@ -326,6 +326,7 @@ int run(ProjectCommandOptions options, const Session& session) {
   }
   require_files(options);
   const std::filesystem::path browser = browser_for_pdf(options.pdf);
+  const ReportCover cover = cover_of(options.cover);
   const CoordinateSystem chosen = chosen_system(options.crs);
   const std::optional<double> tolerance_m =
       options.tolerance.empty() ? std::nullopt : std::optional(length_of(options.tolerance, "--tolerance"));
@@ -342,7 +343,7 @@ int run(ProjectCommandOptions options, const Session& session) {
   session.monitor->throw_if_cancelled();
   write_file(folder.path() / "report.html",
              project_page(result, pictures_in(folder.path(), options, trajectories, session, result),
-                          system.system.known() || result.frame_kind == "control", options.cover));
+                          system.system.known() || result.frame_kind == "control", cover));
   std::filesystem::remove(folder.path() / "report.pdf");  // an earlier run's
   const std::vector<Sheet> sheets = {stations_sheet(result), links_sheet(result), loops_sheet(result),
                                      points_sheet(result)};

@@ -48,7 +48,7 @@ struct RegisterCommandOptions {
   double probable_risk = VerdictOptions{}.probable_risk;
   bool no_report = false;
   bool pdf = false;
-  ReportCover cover;
+  CoverChoice cover;
   std::string language = "en";
   std::string memory;
   ReadingChoice source_reading;
@@ -225,8 +225,8 @@ std::filesystem::path browser_of(const RegisterCommandOptions& options) {
   return browser_for_pdf(options.pdf);
 }
 
-ReportCover cover_of(const RegisterCommandOptions& options) {
-  ReportCover cover = options.cover;
+ReportCover cover_in_language(const RegisterCommandOptions& options) {
+  ReportCover cover = cover_of(options.cover);
   cover.language = options.language == "fr"   ? Language::french
                    : options.language == "de" ? Language::german
                                               : Language::english;
@@ -253,6 +253,7 @@ int run(const RegisterCommandOptions& options, const Session& session) {
                 "give one of them");
   }
   const std::filesystem::path browser = browser_of(options);
+  const ReportCover cover = cover_in_language(options);
   const bool segments = takes_segments(options);
   const OutputFolder folder(options.folder);
   const Registered registered =
@@ -262,7 +263,7 @@ int run(const RegisterCommandOptions& options, const Session& session) {
   session.monitor->throw_if_cancelled();
   remove_report(folder.path());  // an earlier run's page must not stand beside other numbers
   write_numbers(folder.path(), report);
-  if (!options.no_report) write_page(folder.path(), registered, cover_of(options), session);
+  if (!options.no_report) write_page(folder.path(), registered, cover, session);
   if (options.pdf) write_pdf(browser, folder.path(), session);
   session.say(summary_text(report, options.folder));
   session.answer(json);

@@ -9,7 +9,19 @@
 
 namespace limen {
 
-/// --title, --project, --operator and --date: what the one who hands a report on writes on it.
-void add_cover_options(CommandLine& command, ReportCover& cover);
+/// What the one who hands a report on writes on it.
+struct CoverChoice {
+  ReportCover cover;
+  std::string logo;  ///< a file; empty: none
+
+  [[nodiscard]] bool empty() const;
+};
+
+/// --title, --project, --operator, --date and --logo.
+void add_cover_options(CommandLine& command, CoverChoice& choice);
+
+/// The cover with its logo, which is read here. Throws Error where the file is no PNG, JPEG or SVG, or has
+/// more than 2 MB.
+ReportCover cover_of(const CoverChoice& choice);
 
 }  // namespace limen

@@ -26,7 +26,8 @@ constexpr const char* kBuildingStyle = R"(
 .found { --c: var(--good); } .moved { --c: var(--doubt); } .not_found { --c: var(--bad); } .not_judged, .loose { --c: var(--weak); }
 .face { stroke: var(--c); stroke-width: 2; } .face.not_judged { stroke-opacity: .35; stroke-width: 1; }
 .box { fill: var(--doubt); fill-opacity: .25; stroke: var(--doubt); stroke-width: 1; }
-.seen { fill: var(--ink); } .guid { white-space: nowrap; font: 12px ui-monospace, monospace; }
+.seen { fill: var(--ink); } .guid { overflow-wrap: anywhere; min-width: 12ch; font: 12px ui-monospace, monospace; }
+@media print { .guid { font-size: 8px; } }
 )";
 
 /// The class of an element in colours and words.
@@ -242,7 +243,7 @@ std::string models_list(const BuildingReport& report) {
 
 }  // namespace
 
-std::string building_page(const BuildingReport& report) {
+std::string building_page(const BuildingReport& report, const ReportCover& cover) {
   const BuildingDeviation& deviation = report.deviation;
   std::size_t counts[3] = {0, 0, 0};
   std::size_t moved = 0;
@@ -250,17 +251,18 @@ std::string building_page(const BuildingReport& report) {
     ++counts[static_cast<std::size_t>(it.presence)];
     moved += has_moved(it, report.issues.moved_m) ? 1 : 0;
   }
-  std::string text = filled_in(page_head(), {{"title", "limen: deviation"},
-                                             {"style", std::string(table_page_style()) + kBuildingStyle},
-                                             {"version", kVersion}});
+  std::string text =
+      filled_in(page_head(), {{"title", cover.title.empty() ? "limen: deviation" : escaped(cover.title)},
+                              {"style", std::string(table_page_style()) + kBuildingStyle},
+                              {"version", kVersion}});
   text += fmt::format(
-      "<body><main>\n<h1>{} missing, {} moved by more than {:.0f} mm, of {} elements that "
+      "<body><main>\n{}<h1>{} missing, {} moved by more than {:.0f} mm, of {} elements that "
       "were "
       "judged</h1>\n<p class=\"soft\">{} points of {} scans against {} elements; {} of the points lie on "
       "faces of the "
       "model, {} far from all of them. Coordinates are those of {}. limen {}.</p>\n",
-      counts[1], moved, 1e3 * report.issues.moved_m, counts[0] + counts[1], deviation.points,
-      report.scans.size(), deviation.elements.size(), deviation.matched, deviation.far,
+      cover_facts(cover), counts[1], moved, 1e3 * report.issues.moved_m, counts[0] + counts[1],
+      deviation.points, report.scans.size(), deviation.elements.size(), deviation.matched, deviation.far,
       escaped(report.models.front().path), kVersion);
   text += "<h2>Plan</h2>\n" + BuildingPlan(report).svg() +
           "<p class=\"soft\">From above: <span class=\"state found\">found</span>, <span class=\"state "
@@ -268,7 +270,7 @@ std::string building_page(const BuildingReport& report) {
           "not_judged\">not judged</span>; filled boxes: objects that are not in the model; dots: origins of "
           "scans.</p>\n";
   text += elements_table(report) + matter_table(report) + shares_table(report) + models_list(report);
-  return text + "</main></body></html>\n";
+  return text + signature_html(cover) + "</main></body></html>\n";
 }
 
 }  // namespace limen

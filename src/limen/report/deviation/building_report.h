@@ -8,6 +8,7 @@
 
 #include "limen/deviation/building_deviation.h"
 #include "limen/report/deviation/deviation_issues.h"
+#include "limen/report/html/html_cover.h"
 #include "limen/report/json/result_json.h"
 #include "limen/report/sheet/sheet.h"
 
@@ -61,6 +62,7 @@ std::string building_json(const BuildingReport& report);
 Sheet building_sheet(const BuildingReport& report);
 
 /// One page: what is missing, what is elsewhere, what the model lacks, each scan's share, and a plan.
-std::string building_page(const BuildingReport& report);
+/// `cover`: what is written above and signed below.
+std::string building_page(const BuildingReport& report, const ReportCover& cover = {});
 
 }  // namespace limen

@@ -152,6 +152,8 @@ std::vector<std::string> cover_summary(const RegistrationReport& report, Languag
 std::string cover_facts(const ReportCover& cover) {
   const Sentences& words = sentences_of(cover.language);
   std::string text;
+  if (!cover.logo.empty())
+    text += fmt::format("<img class=\"logo\" alt=\"\" src=\"{}\">\n", escaped(cover.logo));
   if (!cover.title.empty()) text += fmt::format("<p class=\"cover-title\">{}</p>\n", escaped(cover.title));
   const std::string facts = fact(words.project, cover.project) +
                             fact(words.operator_name, cover.operator_name) + fact(words.date, cover.date);

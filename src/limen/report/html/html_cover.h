@@ -17,6 +17,7 @@ struct ReportCover {
   std::string title;
   std::string project;
   std::string operator_name;
+  std::string logo;  ///< an image as a data URI
   std::string date;  ///< as it is to be read; no clock is asked, so that a page can be made again
   Language language = Language::english;
 };
@@ -25,7 +26,7 @@ struct ReportCover {
 /// residuals, what is open. Plain text, not escaped.
 std::vector<std::string> cover_summary(const RegistrationReport& report, Language language);
 
-/// Title, project, operator and date; ready HTML, empty where none is given.
+/// Logo, title, project, operator and date; ready HTML, empty where none is given.
 std::string cover_facts(const ReportCover& cover);
 
 /// Where the operator signs; ready HTML, empty where no operator is given.

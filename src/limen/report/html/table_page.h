@@ -4,7 +4,7 @@
 
 namespace limen {
 
-/// The style of pages of tables and plans without a view in space: those of a project.
+/// The style of pages of tables and plans without a view in space.
 const char* table_page_style();
 
 }  // namespace limen

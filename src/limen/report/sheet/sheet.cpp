@@ -119,6 +119,8 @@ std::string styles_text() {
          {"borderId", "0"},
          {"xfId", "0"},
          {"applyFont", "1"}});
+  add(add(root, "cellStyles", {{"count", "1"}}), "cellStyle",
+      {{"name", "Normal"}, {"xfId", "0"}, {"builtinId", "0"}});
   return xml_text(document);
 }
 
