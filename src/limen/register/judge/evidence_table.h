@@ -25,14 +25,16 @@ struct Surface {
   double against_per_m2;   ///< ... and of surface that one of them puts into seen free space
   double search_nats;      ///< what the best of all wrong poses reaches by chance
   Contradiction contradicted;
+  double twice;  ///< share of places that the same two scans see again elsewhere, built and furnished alike
   double nothing_shared;  ///< odds beforehand that nothing is shared, against a pose that was proposed ...
   double unlisted;        ///< ... and that a place is shared whose pose was not proposed
 };
-inline constexpr Surface kRooms{0.7, 1.17, 7.55, 7.47, {0.22, {0.00635, 6.68}, {0.209, 8.38}}, 1.0, 0.1};
-inline constexpr Surface kThroughWall{0.844, 1.17, 7.47, 5.74, {0.589, {0.000355, 275}, {0.0396, 30}},
-                                      1.0,   0.1};
-inline constexpr Surface kStreets{0.263, 1.2, 7.6, 13.4, {0.357, {0.0109, 7.31}, {0.35, 11.1}}, 1.0, 0.1};
-inline constexpr Surface kInModel{1.9, 1.9, 7.6, 9.5, {0.4, {0.02, 8.0}, {0.3, 6.0}}, 1.0, 0.1};
+inline constexpr Surface kRooms{0.7, 1.17, 7.55, 7.47, {0.22, {0.00635, 6.68}, {0.209, 8.38}}, 0.0, 1.0, 0.1};
+inline constexpr Surface kThroughWall{0.792,   1,   9.95, 5.47, {0.58, {0.000415, 205}, {0.0436, 25.3}},
+                                      0.00338, 1.0, 0.1};
+inline constexpr Surface kStreets{0.263, 1.2, 7.6, 13.4, {0.357, {0.0109, 7.31}, {0.35, 11.1}},
+                                  0.0,   1.0, 0.1};
+inline constexpr Surface kInModel{1.9, 1.9, 7.6, 9.5, {0.4, {0.02, 8.0}, {0.3, 6.0}}, 0.0, 1.0, 0.1};
 
 /// What two scans see of the same furniture and clutter.
 struct Furniture {

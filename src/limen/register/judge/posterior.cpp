@@ -109,9 +109,12 @@ class Weighing {
   }
   // Logarithms, for the odds of large scans may underflow.
 
-  /// That a pose agrees though another one is right which resembles it.
+  /// That a pose agrees though another one is right which resembles it, by chance or because the building
+  /// has the same place twice. That does not explain what the other one contradicts.
   [[nodiscard]] double log_resembling(double more_agrees_m2, double less_contradicted_m2) const {
-    return -table_.contrast_per_m2 * more_agrees_m2 - table_.against_per_m2 * less_contradicted_m2;
+    const double twice = questions_.repeats * table_.twice;
+    return log_sum_exp({std::log1p(-twice) - table_.contrast_per_m2 * more_agrees_m2, std::log(twice)}) -
+           table_.against_per_m2 * less_contradicted_m2;
   }
   [[nodiscard]] double log_wrong(double log_resembling, std::size_t pose) {
     return log_sum_exp({log_resembling, -against_chance(pose),

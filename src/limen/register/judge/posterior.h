@@ -34,6 +34,7 @@ struct PairQuestions {
   /// What things, and how the building was built, say of a pose. Null: not asked, for look-alike places are
   /// searched as well.
   std::function<TwinEvidence(std::size_t pose)> things;
+  double repeats = 1.0;  ///< factor of the share of places that both scans see twice
 };
 
 /// Probabilities of the poses and of everything else; all of them sum to 1.

@@ -36,6 +36,7 @@ constexpr double kOpenZenith = 0.5;  // of the sky above, in pieces of equal are
 constexpr double kCeiling = 0.9;     // ... and more of it under a ceiling
 constexpr std::size_t kRings = 3;
 constexpr double kOneHeightM = 0.1;
+constexpr double kRisesM = 1.0;           // above the lowest ground
 constexpr double kMostAtOneHeight = 0.5;  // of all sides
 
 constexpr double kNothing = std::numeric_limits<double>::lowest();
@@ -83,6 +84,7 @@ struct Dome {
   std::array<bool, kSides> ground{};
   std::array<bool, kSides * kRings> zenith{};
   std::array<Column, kSides> heights{};  // above the scanner, metres
+  double lowest = 0.0;
 
   void add(const Vector3d& ray) {
     const std::size_t side = side_of(ray);
@@ -94,6 +96,7 @@ struct Dome {
       zenith[kRings * side + std::min(ring, kRings - 1)] = true;
     }
     heights[side].add(ray.z());
+    lowest = std::min(lowest, ray.z());
   }
 };
 
@@ -103,10 +106,12 @@ double share_of(const Cells& cells) {
          static_cast<double>(cells.size());
 }
 
-/// The largest share of sides on which what is seen ends at one height.
-double share_at_one_height(const std::array<Column, Dome::kSides>& columns) {
-  std::array<double, Dome::kSides> tops{};
-  std::transform(columns.begin(), columns.end(), tops.begin(), [](const Column& one) { return one.top(); });
+/// The largest share of sides on which what rises above the ground ends at one height.
+double share_at_one_height(const Dome& dome) {
+  std::vector<double> tops;
+  for (const Column& side : dome.heights) {
+    if (side.top() > dome.lowest + kRisesM) tops.push_back(side.top());
+  }
   std::sort(tops.begin(), tops.end());
   std::ptrdiff_t most = 0;
   for (auto low = tops.begin(); low != tops.end(); ++low)
@@ -120,8 +125,8 @@ Surroundings of_static(const Scan& scan) {
   if (share_of(dome.ground) < kLeastGround) return Surroundings::unknown;
   const double above = share_of(dome.zenith);
   if (above > kCeiling) return Surroundings::inside;
-  const bool open = above < kOpenZenith && open_sky_share(scan) > kOutside &&
-                    share_at_one_height(dome.heights) <= kMostAtOneHeight;
+  const bool open =
+      above < kOpenZenith && open_sky_share(scan) > kOutside && share_at_one_height(dome) <= kMostAtOneHeight;
   return open ? Surroundings::outside : Surroundings::unknown;
 }
 
