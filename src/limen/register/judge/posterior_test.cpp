@@ -136,8 +136,20 @@ TEST(Posterior, ThingsSeenThroughADoorOutweighTheWallsOfALookAlike) {
 
 TEST(Posterior, AStreetShowsMuchThatRepeats) {
   EXPECT_GT(weighed({pose(10)}).best(), 0.9);
-  EXPECT_LT(weighed({pose(10)}, {}, PairSort::through_wall).best(), 0.8);
-  EXPECT_GT(weighed({pose(30)}, {}, PairSort::through_wall).best(), 0.999);
+  EXPECT_LT(weighed({pose(10)}, {}, PairSort::streets).best(), 0.1);
+  EXPECT_GT(weighed({pose(90)}, {}, PairSort::streets).best(), 0.999);
+}
+
+TEST(Posterior, ARoomMayBeBehindOtherWindowsToo) {
+  const auto best = [](const std::vector<FoundPose>& poses, double repeats) {
+    PairQuestions questions = questions_of(poses);
+    questions.repeats = repeats;
+    return weigh_poses(poses, PairSort::through_wall, questions).best();
+  };
+  EXPECT_GT(best({pose(30)}, 1.0), 0.999);
+  EXPECT_LT(best({pose(30), pose(14)}, 1.0), 0.95);
+  EXPECT_GT(best({pose(30), pose(14)}, 0.05), best({pose(30), pose(14)}, 1.0));
+  EXPECT_GT(best({pose(30), pose(14, 2)}, 1.0), 0.999) << "what is contradicted is not that room";
 }
 
 TEST(Posterior, WhatChanceReachesInAModelIsLearnedThere) {

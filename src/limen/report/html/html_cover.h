@@ -17,9 +17,9 @@ struct ReportCover {
   std::string title;
   std::string project;
   std::string operator_name;
-  std::string logo;  ///< an image as a data URI
   std::string date;  ///< as it is to be read; no clock is asked, so that a page can be made again
   Language language = Language::english;
+  std::string logo = {};  ///< an image as a data URI
 };
 
 /// The outcome in some sentences for a reader who did not make it: verdict, probability, precision,
