@@ -110,9 +110,11 @@ class Weighing {
   // Logarithms, for the odds of large scans may underflow.
 
   /// That a pose agrees though another one is right which resembles it, by chance or because the building
-  /// has the same place twice. That does not explain what the other one contradicts.
-  [[nodiscard]] double log_resembling(double more_agrees_m2, double less_contradicted_m2) const {
-    const double twice = questions_.repeats * table_.twice;
+  /// has the same place twice. That does not explain what the other one contradicts. `share`: of the other
+  /// one among all that may be the place seen twice.
+  [[nodiscard]] double log_resembling(double more_agrees_m2, double less_contradicted_m2,
+                                      double share) const {
+    const double twice = questions_.repeats * table_.twice * share;
     return log_sum_exp({std::log1p(-twice) - table_.contrast_per_m2 * more_agrees_m2, std::log(twice)}) -
            table_.against_per_m2 * less_contradicted_m2;
   }
@@ -120,11 +122,22 @@ class Weighing {
     return log_sum_exp({log_resembling, -against_chance(pose),
                         std::log(evidence_table::kInPair) + std::log(look_alike(pose))});
   }
+  /// Share of a pose among all but `another`, by how much each exceeds chance.
+  [[nodiscard]] double share_of(std::size_t pose, std::size_t another) const {
+    double all = 0.0;
+    for (std::size_t k = 0; k < poses_.size(); ++k) {
+      if (k != another) all += std::exp(std::min(kMostNats, against_chance_[k] - against_chance_[pose]));
+    }
+    return 1.0 / all;
+  }
   [[nodiscard]] double odds_of(std::size_t pose, std::size_t leader) {
     const PoseContrast contrast = questions_.contrast(leader, pose);
-    const double right = poses_[pose].log_prior - poses_[leader].log_prior +
-                         log_wrong(log_resembling(contrast.for_first_m2, contrast.against_second_m2), leader);
-    const double resembles = log_resembling(contrast.for_second_m2, contrast.against_first_m2);
+    const double right =
+        poses_[pose].log_prior - poses_[leader].log_prior +
+        log_wrong(log_resembling(contrast.for_first_m2, contrast.against_second_m2, share_of(pose, leader)),
+                  leader);
+    const double resembles =
+        log_resembling(contrast.for_second_m2, contrast.against_first_m2, share_of(leader, pose));
     const bool negligible = right - resembles < std::log(kNegligible);
     return std::exp(std::min(kMostNats, right - (negligible ? resembles : log_wrong(resembles, pose))));
   }
