@@ -56,6 +56,8 @@ const char* sort_name(PairSort sort) {
   switch (sort) {
     case PairSort::through_wall:
       return "through_wall";
+    case PairSort::past_wall:
+      return "past_wall";
     case PairSort::streets:
       return "streets";
     case PairSort::in_model:

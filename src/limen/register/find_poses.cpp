@@ -225,8 +225,9 @@ PairSort sort_of(const WorkedPair& pair) {
   const Surroundings source = pair.source.surroundings;
   const Surroundings target = pair.target.surroundings;
   if (source == Surroundings::unknown || target == Surroundings::unknown) return PairSort::rooms;
-  if (source != target) return PairSort::through_wall;
-  return source == Surroundings::outside ? PairSort::streets : PairSort::rooms;
+  if (source == target) return source == Surroundings::outside ? PairSort::streets : PairSort::rooms;
+  const PreparedScan& outside = source == Surroundings::outside ? pair.source : pair.target;
+  return outside.mobile ? PairSort::past_wall : PairSort::through_wall;
 }
 
 double PreparedStart::log_prior(const Rigid3& pose) const {

@@ -147,9 +147,7 @@ class AskedPair {
     questions.contrast = [this](std::size_t first, std::size_t second) { return contrast(first, second); };
     if (sort_of(pair_) == PairSort::rooms)
       questions.things = [this](std::size_t pose) { return weigh_things(pose); };
-    // A vehicle sees all windows alike, a tripod some of them better.
-    const bool passing = pair_.source.mobile || pair_.target.mobile;
-    questions.repeats = passing ? 0.0 : options_.twins().alike / evidence_table::kAlike;
+    questions.repeats = options_.twins().alike / evidence_table::kAlike;
     return questions;
   }
   /// What is known of look-alike places.

@@ -30,8 +30,10 @@ struct Surface {
   double unlisted;        ///< ... and that a place is shared whose pose was not proposed
 };
 inline constexpr Surface kRooms{0.7, 1.17, 7.55, 7.47, {0.22, {0.00635, 6.68}, {0.209, 8.38}}, 0.0, 1.0, 0.1};
-inline constexpr Surface kThroughWall{0.769,   1.08, 8.18, 5.49, {0.564, {0.000543, 162}, {0.0561, 20.8}},
-                                      0.00907, 1.0,  0.1};
+inline constexpr Surface kThroughWall{0.81,    1.28, 6.45, 6.06, {0.29, {0.000401, 133}, {0.0781, 15.7}},
+                                      0.00777, 1.0,  0.1};
+inline constexpr Surface kPastWall{0.788, 1.31, 6.96, 5.17, {0.536, {0.000385, 391}, {0.0392, 30.8}},
+                                   0,     1.0,  0.1};
 inline constexpr Surface kStreets{0.263, 1.2, 7.6, 13.4, {0.357, {0.0109, 7.31}, {0.35, 11.1}},
                                   0.0,   1.0, 0.1};
 inline constexpr Surface kInModel{1.9, 1.9, 7.6, 9.5, {0.4, {0.02, 8.0}, {0.3, 6.0}}, 0.0, 1.0, 0.1};

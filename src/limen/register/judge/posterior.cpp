@@ -21,6 +21,8 @@ const evidence_table::Surface& table_of(PairSort sort) {
   switch (sort) {
     case PairSort::through_wall:
       return evidence_table::kThroughWall;
+    case PairSort::past_wall:
+      return evidence_table::kPastWall;
     case PairSort::streets:
       return evidence_table::kStreets;
     case PairSort::in_model:

@@ -17,7 +17,8 @@ namespace limen {
 /// What a pair consists of: which numbers of the table count.
 enum class PairSort : std::uint8_t {
   rooms,         ///< both scans were taken inside, or of one it is not known
-  through_wall,  ///< one was taken inside, the other outside
+  through_wall,  ///< one was taken inside, the other from a tripod outside
+  past_wall,     ///< one was taken inside, the other by a vehicle that passed all windows
   streets,       ///< both were taken outside
   in_model       ///< one side is a building model
 };
