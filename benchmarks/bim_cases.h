@@ -54,6 +54,7 @@ struct Selection {
   std::uint64_t first_seed = 1;
   std::size_t points = 0;  ///< of each station; 0: the simulator's own
   bool furnished = false;  ///< instead of the usual cases furnished ones, as built
+  bool as_built = false;   ///< only cases as built
 };
 
 /// All combinations of 1 or 3 stations, as planned or as built, level or any rotation, for every model, with
@@ -68,7 +69,7 @@ inline std::vector<CasePlan> plan_cases(std::size_t models, const Selection& sel
       for (std::size_t k = 0; k < kCombinations; ++k)
         plans.push_back({.model = model,
                          .stations = (k & 1U) != 0 ? std::size_t{3} : std::size_t{1},
-                         .as_built = selection.furnished || (k & 2U) != 0,
+                         .as_built = selection.furnished || selection.as_built || (k & 2U) != 0,
                          .any_rotation = (k & 4U) != 0,
                          // Another room for each case, not eight times the same.
                          .seed = selection.first_seed + seed * kCombinations + k,

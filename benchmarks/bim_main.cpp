@@ -17,6 +17,9 @@
 #include <CLI/Formatter.hpp>
 #include <fmt/format.h>
 
+#include "limen/geometry/linear.h"
+#include "limen/report/summary/precision.h"
+
 namespace limen {
 namespace {
 
@@ -44,6 +47,7 @@ struct Tally {
   std::vector<double> turns_deg;
   std::vector<double> sigmas;  ///< errors of registered poses, in their own sigmas
   std::vector<double> seconds;
+  int held = 0;  ///< of registered poses, those whose station is within the stated radius (95 %)
 
   void add(const Judgement& judgement) {
     ++cases;
@@ -71,12 +75,12 @@ void print(const std::string& name, const Tally& tally) {
   fmt::print(
       "{:<28} {:>3} cases: {:>3} right ({} registered, {} rightly ambiguous), {} wrong, {} undecided with "
       "the truth listed, {} not found; median {:.2f} mm {:.4f} deg, {:.0f} % of freedoms within 2 sigma, "
-      "{:.2f} s\n",
+      "{} of the stated radii hold, {:.2f} s\n",
       name, tally.cases, tally.right, tally.registered - tally.wrong, tally.ambiguous_right, tally.wrong,
       tally.undecided_listed, tally.other, 1e3 * middle_of(tally.shifts_m), middle_of(tally.turns_deg),
       tally.sigmas.empty() ? 0.0
                            : 100.0 * static_cast<double>(held) / static_cast<double>(tally.sigmas.size()),
-      middle_of(tally.seconds));
+      tally.held, middle_of(tally.seconds));
 }
 
 /// The six errors of a pose in its own sigmas, about the point it is known best at.
@@ -91,6 +95,14 @@ std::vector<double> errors_in_sigmas(const RegistrationResult& result, const Rig
     errors.push_back(std::abs(shift[k]) / std::max(1e-12, result.sigma.translation_m[k]));
   }
   return errors;
+}
+
+/// Whether the first station's place is within the stated radius.
+bool is_held(const RegistrationResult& result, const Rigid3& truth) {
+  const Vector3d& at = result.best.target_from_source.translation;
+  Eigen::Matrix<double, 3, 6> moves;
+  moves << -skew(at - result.sigma.centre), Matrix3d::Identity();
+  return (truth.translation - at).norm() <= radius_95(moves * result.sigma.covariance * moves.transpose());
 }
 
 RegisterOptions register_options(const Options& options) {
@@ -152,6 +164,7 @@ void run(const Options& options) {
       if (judgement.outcome != Outcome::registered) continue;
       for (const double error : errors_in_sigmas(result, world_from_scan(made.truth, 0)))
         tally->sigmas.push_back(error);
+      if (is_held(result, world_from_scan(made.truth, 0))) ++tally->held;
     }
     fmt::print("{:<24} {:<46} {:<6} {:<12} {:6.1f} mm {:7.4f} deg  {:.2f} s  explained {:.2f} {}{} [{}] {}\n",
                name, plan.label(), judgement.right() ? "right" : (judgement.wrong() ? "WRONG" : "-"),
@@ -179,6 +192,7 @@ int main(int argc, char** argv) {
   app.add_option("--only", options.only, "Only cases whose label holds this");
   app.add_flag("--furnished", options.selection.furnished,
                "Rooms as built, up to 70 % of their walls hidden by furniture");
+  app.add_flag("--as-built", options.selection.as_built, "Only cases as built");
   app.add_flag("--foreign", options.foreign, "Seek the scans of each model in all others");
   CLI11_PARSE(app, argc, argv);
   try {

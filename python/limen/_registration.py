@@ -161,6 +161,7 @@ class Registration:
     unobserved: list[Unobserved]
     alternatives: list[Hypothesis]
     matches: list[PlaneMatch]
+    moved_planes: list[PlaneMatch]  # of a model: probably not built where it has them
     openings: list[OpeningMatch]
     thickness: list[Thickness]
     stages: list[tuple[str, float]]  #: name and seconds
@@ -356,6 +357,7 @@ def register(
         unobserved=[Unobserved(*it) for it in told["unobserved"]],
         alternatives=[_hypothesis(it) for it in told["alternatives"]],
         matches=[PlaneMatch(*it) for it in told["matches"]],
+        moved_planes=[PlaneMatch(*it) for it in told["moved_planes"]],
         openings=[OpeningMatch(*it) for it in told["openings"]],
         thickness=[Thickness(*it) for it in told["thickness"]],
         stages=told["stages"],

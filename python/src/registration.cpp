@@ -91,9 +91,11 @@ py::dict result_dict(const RegistrationResult& result) {
     return py::make_tuple(it.name, it.rotation, it.direction);
   });
   told["alternatives"] = list_of(result.alternatives, hypothesis_dict);
-  told["matches"] = list_of(result.matches, [](const PlaneMatch& it) {
+  const auto plane_match = [](const PlaneMatch& it) {
     return py::make_tuple(it.source, it.target, it.distance_m, it.angle_rad, it.overlap_m2);
-  });
+  };
+  told["matches"] = list_of(result.matches, plane_match);
+  told["moved_planes"] = list_of(result.moved, plane_match);
   told["openings"] = list_of(result.openings, [](const MatchedOpenings& it) {
     return py::make_tuple(it.source, it.target, it.shift_across_m, it.shift_up_m);
   });

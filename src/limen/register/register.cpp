@@ -244,6 +244,7 @@ void write_result(const std::vector<FoundPose>& poses, Posterior posterior, cons
   result.others = posterior.others;
   result.sigma = result.best.sigma;
   result.matches = best.refined.matches;
+  result.moved = best.refined.moved;
   result.openings = matched_openings(best.refined);
   result.thickness = thickness_under(upright.refined, worked);
   result.rivals = posterior.rivals(options.verdict.risk);

@@ -5,11 +5,14 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
+#include <tuple>
 #include <utility>
 
 #include "limen/base/error.h"
 #include "limen/base/progress.h"
 #include "limen/geometry/linear.h"
+#include "limen/register/refine/built_offsets.h"
 #include "limen/register/refine/pose_contacts.h"
 
 namespace limen {
@@ -19,6 +22,8 @@ constexpr double kWeakShare = 1e-4;      // of the information: less is the plan
 constexpr double kMaxCentreM = 20.0;     // the best known point is sought this far from the matched surface
 constexpr double kBuilderErrsM = 0.002;  // by how much a wall differs from the drawing, at least: 1 sigma
 constexpr int kLeastTilted = 8;          // tiles of a pair whose slopes are looked at
+constexpr double kMovedGateM = 0.06;     // as far as walls are looked for that were moved
+constexpr double kOneOffsetM = 0.006;    // parts of one plane that differ by less were moved together
 constexpr double kGateSigma = 0.2;       // deviation of a tile far from the goal, as a share of the gate
 
 class Refiner {
@@ -41,7 +46,13 @@ class Refiner {
       if (contacts.all.size() < 4) break;
       adjust(contacts.all, kGateSigma * (gate - options_.last_gate_m), refined);
     }
+    std::optional<Settled> settled;
+    if (source_.model || target_.model) settled = settle(refined);
     summarise(refined);
+    if (settled) {
+      refined.information = about(settled->information, settled->centre, refined.centre);
+      refined.moved = settled->moved;
+    }
     return refined;
   }
 
@@ -119,42 +130,31 @@ class Refiner {
     const double damping = 1e-9 * normal.trace();
     const Vector6d step = solve_symmetric(Matrix6d(normal + damping * Matrix6d::Identity()),
                                           Vector6d(held.right + openings.right));
-    const Rigid3 move{rotation_exp(step.head<3>()), Vector3d::Zero()};
-    Rigid3& pose = refined.target_from_source;
-    pose.rotation = nearest_rotation(move.rotation * pose.rotation);
-    pose.translation = move.rotation * (pose.translation - centre) + centre + step.tail<3>();
+    move_by(step, centre, refined.target_from_source);
   }
 
-  using Matrix63 = Eigen::Matrix<double, 6, 3>;
+  static void move_by(const Vector6d& step, const Vector3d& centre, Rigid3& pose) {
+    const Matrix3d turn = rotation_exp(step.head<3>());
+    pose.rotation = nearest_rotation(turn * pose.rotation);
+    pose.translation = turn * (pose.translation - centre) + centre + step.tail<3>();
+  }
 
-  /// What the tiles of one pair of planes say together. The pair may lie off, and be tilted, as a whole: by
-  /// an offset and by slopes along two axes of the plane, about the middle of its tiles.
-  struct PairSums {
-    Matrix6d information = Matrix6d::Zero();
-    Matrix63 shared = Matrix63::Zero();  // sum of weight, row and what moves with the offset and the slopes
-    Matrix3d common = Matrix3d::Zero();  // the same of these alone
-    Vector3d residuals = Vector3d::Zero();
+  /// What the tiles of one pair of planes say together.
+  struct PairSums : PlaneSums {
     Vector3d middle = Vector3d::Zero();
-    double weight = 0.0;
     double area_m2 = 0.0;
     double distance = 0.0;  // area times distance
     int tiles = 0;
 
     /// What the residuals would lose, were the pair freely tilted.
     [[nodiscard]] double stated_by_slopes() const {
-      const Eigen::Vector2d right = residuals.tail<2>();
+      const Eigen::Vector2d by_slopes = residuals.tail<2>();
       const Eigen::Matrix2d moments = common.bottomRightCorner<2, 2>();
       const Eigen::Matrix2d damped = moments + 1e-9 * (1e-12 + moments.trace()) * Eigen::Matrix2d::Identity();
-      return right.dot(damped.inverse() * right);
+      return by_slopes.dot(damped.inverse() * by_slopes);
     }
   };
   using PairMap = std::map<std::pair<int, int>, PairSums>;
-
-  /// How far the planes of pairs err as wholes, one standard deviation.
-  struct PairErrors {
-    double offset_m = 0.0;
-    double slope = 0.0;
-  };
 
   /// Deviation common to all tiles of a pair of planes: the planes' own errors, a scanner's drift. Taken from
   /// how the pairs' mean residuals scatter, not less than a tenth of the noise, or than builders err.
@@ -191,6 +191,86 @@ class Refiner {
     return std::sqrt(std::max(0.0, freedoms * stated - slopes * factor) / levers);
   }
 
+  /// What is known of a pose about a centre.
+  struct Settled {
+    Matrix6d information;
+    Vector3d centre;
+    std::vector<PlaneMatch> moved;
+  };
+
+  /// Contacts whose pairs of planes are one plane of the model, and equally far from it, get the same pair: a
+  /// wall that was moved is moved with all its parts.
+  void join_pairs(std::vector<Contact>& contacts, const Vector3d& centre) const {
+    struct Part {
+      int model;
+      double offset_m;
+      std::pair<int, int> pair;
+    };
+    std::vector<Part> parts;
+    for (const auto& [key, pair] : pairs_of(contacts, centre))
+      parts.push_back({source_.model ? key.first : key.second, pair.mean_m(), key});
+    std::sort(parts.begin(), parts.end(), [](const Part& a, const Part& b) {
+      return std::tie(a.model, a.offset_m, a.pair) < std::tie(b.model, b.offset_m, b.pair);
+    });
+    std::map<std::pair<int, int>, std::pair<int, int>> joined;
+    for (std::size_t k = 0; k < parts.size(); ++k) {
+      const bool same = k > 0 && parts[k].model == parts[k - 1].model &&
+                        parts[k].offset_m - parts[k - 1].offset_m < kOneOffsetM;
+      joined[parts[k].pair] = same ? joined.at(parts[k - 1].pair) : parts[k].pair;
+    }
+    for (Contact& contact : contacts)
+      std::tie(contact.source_plane, contact.target_plane) =
+          joined.at({contact.source_plane, contact.target_plane});
+  }
+
+  /// Moves a pose in a model to where it is likeliest, given that some walls may have been moved.
+  [[nodiscard]] std::optional<Settled> settle(RefinedPose& refined) const {
+    const Contacts found =
+        contacts_.near(refined.target_from_source, {kMovedGateM, options_.last_opening_gate_m});
+    std::vector<Contact> contacts;
+    std::vector<Contact> others;
+    for (const Contact& contact : found.all)
+      (contact.source_plane >= 0 ? contacts : others).push_back(contact);
+    if (contacts.size() < 4) return std::nullopt;
+    const Vector3d centre = middle_of(contacts);
+    join_pairs(contacts, centre);
+    const PairMap pairs = pairs_of(contacts, centre);
+    double squares = 0.0;
+    std::vector<PlaneSums> planes;
+    for (const auto& [key, pair] : pairs) {
+      planes.push_back(pair);
+      squares += pair.squares - pair.residuals[0] * pair.residuals[0] / pair.weight;
+    }
+    const double freedoms = 0.5 * static_cast<double>(contacts.size()) - static_cast<double>(pairs.size());
+    const double factor = std::max(squares / std::max(1.0, freedoms), 1e-6);
+    for (const Contact& contact : others) planes.push_back(alone(contact, centre, factor));
+    const SettledPose settled = settle_among_moved(planes, pair_slope(pairs, factor), factor);
+    move_by(settled.step, centre, refined.target_from_source);
+    Settled known{settled.information, centre, {}};
+    std::size_t k = 0;
+    for (const auto& [key, pair] : pairs) {
+      const double off_m = -pair.mean_m() + pair.shared.col(0).dot(settled.step) / pair.weight;
+      if (settled.moved[k++] > 0.5)
+        known.moved.push_back({key.first, key.second, off_m, angle_of(key, refined), pair.area_m2});
+    }
+    by_overlap(known.moved);
+    return known;
+  }
+
+  /// What one contact says by itself; `factor` of the variances is taken back later.
+  static PlaneSums alone(const Contact& contact, const Vector3d& centre, double factor) {
+    const Vector6d row = row_of(contact, centre);
+    PlaneSums sums;
+    sums.weight = factor / (contact.sigma_m * contact.sigma_m);
+    sums.information = sums.weight * row * row.transpose();
+    sums.shared.col(0) = sums.weight * row;
+    sums.common(0, 0) = sums.weight;
+    sums.right = sums.weight * contact.residual_m * row;
+    sums.residuals[0] = sums.weight * contact.residual_m;
+    sums.squares = sums.weight * contact.residual_m * contact.residual_m;
+    return sums;
+  }
+
   void summarise(RefinedPose& refined) const {
     const Contacts found =
         contacts_.near(refined.target_from_source, {options_.last_gate_m, options_.last_opening_gate_m});
@@ -207,6 +287,13 @@ class Refiner {
     move_centre(refined);
   }
 
+  /// What is known of a pose about a centre, from what is known about another one.
+  static Matrix6d about(const Matrix6d& information, const Vector3d& from, const Vector3d& to) {
+    Matrix6d move = Matrix6d::Identity();
+    move.bottomLeftCorner<3, 3>() = skew(to - from);
+    return move.transpose() * information * move;
+  }
+
   /// Moves `centre` to the point whose place is known best: there turns and shifts hardly depend on each
   /// other, so that a far-off patch of ground does not make a well-held shift look open.
   static void move_centre(RefinedPose& refined) {
@@ -219,12 +306,10 @@ class Refiner {
     Vector3d c = -solve_symmetric(square, twist);
     if (!c.allFinite()) return;
     if (c.norm() > kMaxCentreM) c *= kMaxCentreM / c.norm();
-    Matrix6d move = Matrix6d::Identity();
-    move.bottomLeftCorner<3, 3>() << 0, -c.z(), c.y(), c.z(), 0, -c.x(), -c.y(), c.x(), 0;
-    refined.information = move.transpose() * refined.information * move;
-    refined.formal_information = move.transpose() * refined.formal_information * move;
-    refined.geometry_m2 = move.transpose() * refined.geometry_m2 * move;
-    refined.centre += c;
+    const Vector3d centre = refined.centre + c;
+    for (Matrix6d* held : {&refined.information, &refined.formal_information, &refined.geometry_m2})
+      *held = about(*held, refined.centre, centre);
+    refined.centre = centre;
   }
 
   /// What openings and faces of walls hold, each on its own deviation; more where they disagree among
@@ -267,22 +352,14 @@ class Refiner {
       pair.information += weight * row * row.transpose();
       pair.shared += weight * row * whole.transpose();
       pair.common += weight * whole * whole.transpose();
+      pair.right += weight * contact.residual_m * row;
       pair.residuals += weight * contact.residual_m * whole;
+      pair.squares += weight * contact.residual_m * contact.residual_m;
       pair.area_m2 += 0.5 * contact.area_m2;
       pair.distance += 0.5 * contact.area_m2 * -contact.residual_m;
       ++pair.tiles;
     }
     return pairs;
-  }
-
-  /// What a pair says of the pose where it errs as a whole by as much: its offset and slopes, of unknown
-  /// size, integrated in closed form. `factor`: of the variances that the weights stand for.
-  static Matrix6d information_of(const PairSums& pair, const PairErrors& errors, double factor) {
-    const Vector3d sizes(errors.offset_m, errors.slope, errors.slope);
-    const Matrix63 shared = pair.shared * sizes.asDiagonal() / factor;
-    const Matrix3d common =
-        Matrix3d::Identity() + Matrix3d(sizes.asDiagonal() * pair.common * sizes.asDiagonal() / factor);
-    return pair.information / factor - shared * inverse_of(common) * shared.transpose();
   }
 
   /// What the tiles of matched planes hold.
@@ -301,21 +378,29 @@ class Refiner {
     // The residuals themselves say how good the weights were.
     const double factor =
         std::max(sum / std::max(1.0, 0.5 * static_cast<double>(contacts.size()) - 6.0), 1e-6);
-    const PairErrors errors{pair_offset_m(pairs), pair_slope(pairs, factor)};
+    const PlaneErrors errors{pair_offset_m(pairs), pair_slope(pairs, factor)};
     for (const auto& [key, pair] : pairs) {
       refined.formal_information += pair.information / factor;
       refined.information += information_of(pair, errors, factor);
     }
     for (const auto& [key, pair] : pairs) {
       if (pair.tiles < 2) continue;
-      const Vector3d turned = refined.target_from_source.rotation *
-                              source_.features->planes[static_cast<std::size_t>(key.first)].plane.normal;
-      const double cosine =
-          std::abs(turned.dot(target_.features->planes[static_cast<std::size_t>(key.second)].plane.normal));
-      refined.matches.push_back({key.first, key.second, pair.distance / pair.area_m2,
-                                 std::acos(std::min(1.0, cosine)), pair.area_m2});
+      refined.matches.push_back(
+          {key.first, key.second, pair.distance / pair.area_m2, angle_of(key, refined), pair.area_m2});
     }
-    std::stable_sort(refined.matches.begin(), refined.matches.end(),
+    by_overlap(refined.matches);
+  }
+
+  /// Between the normals of a pair.
+  [[nodiscard]] double angle_of(const std::pair<int, int>& pair, const RefinedPose& refined) const {
+    const Vector3d turned = refined.target_from_source.rotation *
+                            source_.features->planes[static_cast<std::size_t>(pair.first)].plane.normal;
+    const Vector3d& normal = target_.features->planes[static_cast<std::size_t>(pair.second)].plane.normal;
+    return std::acos(std::min(1.0, std::abs(turned.dot(normal))));
+  }
+
+  static void by_overlap(std::vector<PlaneMatch>& matches) {
+    std::stable_sort(matches.begin(), matches.end(),
                      [](const PlaneMatch& a, const PlaneMatch& b) { return a.overlap_m2 > b.overlap_m2; });
   }
 
@@ -373,9 +458,11 @@ RefinedPose inverted(const RefinedPose& pose) {
   turn.bottomRightCorner<3, 3>() = back.target_from_source.rotation;
   for (Matrix6d* held : {&back.information, &back.geometry_m2, &back.formal_information})
     *held = turn * *held * turn.transpose();
-  for (PlaneMatch& match : back.matches) {
-    std::swap(match.source, match.target);
-    match.distance_m = -match.distance_m;  // along the normal that both have
+  for (std::vector<PlaneMatch>* matches : {&back.matches, &back.moved}) {
+    for (PlaneMatch& match : *matches) {
+      std::swap(match.source, match.target);
+      match.distance_m = -match.distance_m;  // along the normal that both have
+    }
   }
   for (OpeningMatch& match : back.openings) match = inverted(match, back.target_from_source);
   return back;

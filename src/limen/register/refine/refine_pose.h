@@ -38,6 +38,7 @@ struct RefinedPose {
   int matched_tiles = 0;
   std::vector<PlaneMatch> matches;     ///< pairs of planes with at least two matched tiles
   std::vector<OpeningMatch> openings;  ///< pairs of openings, at the final pose
+  std::vector<PlaneMatch> moved;       ///< planes of a model that were probably not built where it has them
 };
 
 /// Covariance of (rotation, translation) about `pose.centre`, target axes, SI; a freedom that nothing holds

@@ -239,6 +239,7 @@ std::string result_json(const RegistrationReport& report) {
   json["unobserved"] = unobserved_json(result.unobserved);
   json["alternatives"] = found ? alternatives_json(result.alternatives) : Json::array();
   json["matches"] = matches_json(result.matches);
+  json["moved_planes"] = matches_json(result.moved);
   json["matched_openings"] = openings_json(result.openings);
   json["wall_thickness"] = thickness_json(result.thickness);
   json["inputs"] = {{"source", input_json(report.source)}, {"target", input_json(report.target)}};

@@ -26,6 +26,7 @@ RegistrationReport some_report() {
   report.result.sigma.rotation_rad = Vector3d(1e-5, 2e-5, 3e-5);
   report.result.alternatives.resize(2);
   report.result.matches = {{3, 5, -0.001, 0.002, 12.5}};
+  report.result.moved = {{4, 6, 0.03, 0.002, 8.5}};
   report.result.stages = {{"planes", 0.5}, {"matching", 0.25}, {"planes", 0.125}};
   report.source.path = "a \"quoted\" name.ply";
   report.options = {{"method", std::string("auto")}, {"max_distance_m", 0.1}, {"tries", std::int64_t{3}}};
@@ -43,6 +44,7 @@ TEST(ResultJson, HoldsTheContract) {
   EXPECT_EQ(json["seed"], 18446744073709551615ULL);
   EXPECT_EQ(json["alternatives"].size(), 2U);
   EXPECT_EQ(json["matches"][0]["target_plane"], 5);
+  EXPECT_EQ(json["moved_planes"][0]["distance_m"], 0.03);
   EXPECT_EQ(json["options"]["max_distance_m"], 0.1);
   EXPECT_EQ(json["inputs"]["source"]["path"], "a \"quoted\" name.ply");
 }

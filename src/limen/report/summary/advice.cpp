@@ -141,6 +141,15 @@ bool has_report(const RegistrationReport& report) {
   return report.result.picture != nullptr;
 }
 
+/// Planes of a model that were probably built elsewhere, where there are any.
+std::string moved_words(const std::vector<PlaneMatch>& moved) {
+  if (moved.empty()) return {};
+  double most_m = 0.0;
+  for (const PlaneMatch& plane : moved) most_m = std::max(most_m, std::abs(plane.distance_m));
+  return fmt::format("{} plane{} of the model {} up to {:.0f} mm from where it was built; ", moved.size(),
+                     moved.size() == 1 ? "" : "s", moved.size() == 1 ? "is" : "are", 1e3 * most_m);
+}
+
 std::vector<std::string> steps_registered(const RegistrationReport& report, const std::string& folder) {
   std::vector<std::string> steps;
   if (has_report(report))
@@ -153,9 +162,9 @@ std::vector<std::string> steps_registered(const RegistrationReport& report, cons
     const InputSummary& scan = source_is_model ? report.target : report.source;
     const InputSummary& model = source_is_model ? report.source : report.target;
     steps.push_back(
-        fmt::format("measure deviations from the model: limen deviation {} {} --result {}{} -o deviation",
-                    shell_word(scan.path), shell_word(model.path), in_folder(folder, "result.json"),
-                    source_is_model ? " --inverse" : ""));
+        fmt::format("{}measure deviations from the model: limen deviation {} {} --result {}{} -o deviation",
+                    moved_words(report.result.moved), shell_word(scan.path), shell_word(model.path),
+                    in_folder(folder, "result.json"), source_is_model ? " --inverse" : ""));
   }
   return steps;
 }

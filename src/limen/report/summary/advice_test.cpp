@@ -76,6 +76,8 @@ TEST(Advice, CommandsCanBeTakenAsTheyStand) {
   EXPECT_TRUE(any_names(next_steps(model, "o"), "limen transform o/result.json --invert b.ply moved.ply"));
   EXPECT_TRUE(any_names(next_steps(model, "o"),
                         "limen deviation b.ply 'my scans/a.ply' --result o/result.json --inverse"));
+  model.result.moved = {{1, 2, 0.012, 0.0, 9.0}, {1, 3, -0.031, 0.0, 4.0}};
+  EXPECT_TRUE(any_names(next_steps(model, "o"), "2 planes of the model are up to 31 mm from where"));
   RegistrationReport ties = pair_of(Outcome::ambiguous);
   ties.result.rivals = 2;
   EXPECT_TRUE(any_names(next_steps(ties, "out"), "--alternative N"));

@@ -1,0 +1,176 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/register/refine/built_offsets.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace limen {
+namespace {
+
+constexpr double kBuildersErrM =
+    0.003;                            // how far a wall is from the drawing, before planes are seen: 1 sigma
+constexpr double kLeastErrM = 0.002;  // no building is better ...
+constexpr double kMostErrM = 0.006;   // ... and what is off by more was moved
+constexpr double kBuildersStrength = 4.0;  // in planes
+constexpr double kMovedShare = 0.2;        // of planes, presumed
+constexpr double kMovedM = 0.03;           // by so much, 1 sigma
+constexpr double kClearlyOff = 3.0;        // deviations
+constexpr std::size_t kStarts = 16;        // planes that may be right against the others, the largest
+constexpr int kRounds = 60;
+constexpr double kStepDone = 1e-7;  // m and radians
+
+/// One error of a plane, integrated out.
+struct Integrated {
+  Matrix3d gain = Matrix3d::Zero();
+  double log_determinant = 0.0;
+
+  Integrated(const PlaneSums& plane, const PlaneErrors& errors, double factor) {
+    const Vector3d sizes(errors.offset_m, errors.slope, errors.slope);
+    const Matrix3d scaled =
+        Matrix3d::Identity() + Matrix3d(sizes.asDiagonal() * plane.common * sizes.asDiagonal() / factor);
+    gain = sizes.asDiagonal() * inverse_of(scaled) * sizes.asDiagonal() / (factor * factor);
+    log_determinant = std::log(std::max(1e-300, scaled.determinant()));
+  }
+};
+
+/// A local maximum of the likelihood.
+struct Mode {
+  Vector6d step = Vector6d::Zero();
+  Matrix6d information = Matrix6d::Zero();
+  std::vector<double> moved;
+  double log_likelihood = 0.0;
+};
+
+class Settling {
+ public:
+  Settling(const std::vector<PlaneSums>& planes, double slope, double factor)
+      : planes_(planes), slope_(slope), factor_(factor) {}
+
+  [[nodiscard]] Mode from(const Vector6d& start) const {
+    Mode mode;
+    mode.step = start;
+    mode.moved.assign(planes_.size(), 0.0);
+    double err_m = kBuildersErrM;
+    for (int round = 0; round < kRounds; ++round) {
+      const Vector6d before = mode.step;
+      err_m = improve(err_m, mode);
+      if ((mode.step - before).lpNorm<Eigen::Infinity>() < kStepDone) break;
+    }
+    return mode;
+  }
+
+ private:
+  /// One step of expectation and maximisation; what builders err, as these planes show it.
+  double improve(double err_m, Mode& mode) const {
+    const Vector6d x = mode.step;
+    mode.information.setZero();
+    mode.log_likelihood = 0.0;
+    Vector6d right = Vector6d::Zero();
+    double squares = kBuildersStrength * kBuildersErrM * kBuildersErrM;
+    double count = kBuildersStrength;
+    for (std::size_t k = 0; k < planes_.size(); ++k) {
+      const PlaneSums& plane = planes_[k];
+      const Integrated built(plane, {err_m, slope_}, factor_);
+      const Integrated off(plane, {kMovedM, slope_}, factor_);
+      const Vector3d residuals = plane.residuals - plane.shared.transpose() * x;
+      const auto nats = [&](const Integrated& error, double share) {
+        return std::log(share) + 0.5 * residuals.dot(error.gain * residuals) - 0.5 * error.log_determinant;
+      };
+      const double as_built = nats(built, 1.0 - kMovedShare);
+      const double as_moved = nats(off, kMovedShare);
+      const double most = std::max(as_built, as_moved);
+      const double both = most + std::log(std::exp(as_built - most) + std::exp(as_moved - most));
+      const double moved = std::exp(as_moved - both);
+      mode.moved[k] = moved;
+      const Matrix3d gain = (1.0 - moved) * built.gain + moved * off.gain;
+      mode.information += plane.information / factor_ - plane.shared * gain * plane.shared.transpose();
+      right += plane.right / factor_ - plane.shared * gain * plane.residuals;
+      mode.log_likelihood +=
+          both - 0.5 * (plane.squares - 2.0 * plane.right.dot(x) + x.dot(plane.information * x)) / factor_;
+      const double offset_m = residuals[0] / plane.weight;
+      squares += (1.0 - moved) * offset_m * offset_m;
+      count += 1.0 - moved;
+    }
+    mode.step = solve_symmetric(mode.information, right);
+    return std::clamp(std::sqrt(squares / std::max(1.0, count - 3.0)), kLeastErrM, kMostErrM);
+  }
+
+  const std::vector<PlaneSums>& planes_;
+  double slope_;
+  double factor_;
+};
+
+/// Planes that were moved under a mode, the largest first.
+std::vector<std::size_t> moved_planes(const std::vector<PlaneSums>& planes, const Mode& mode) {
+  std::vector<std::size_t> moved;
+  for (std::size_t k = 0; k < planes.size(); ++k) {
+    const double offset_m =
+        std::abs(planes[k].mean_m() - planes[k].shared.col(0).dot(mode.step) / planes[k].weight);
+    if (offset_m > kClearlyOff * kLeastErrM) moved.push_back(k);
+  }
+  std::stable_sort(moved.begin(), moved.end(),
+                   [&](std::size_t a, std::size_t b) { return planes[a].weight > planes[b].weight; });
+  moved.resize(std::min(moved.size(), kStarts));
+  return moved;
+}
+
+Matrix6d damped_inverse(const Matrix6d& matrix) {
+  return inverse_of(Matrix6d(matrix + 1e-6 * Matrix6d::Identity()));
+}
+
+}  // namespace
+
+PlaneSums& PlaneSums::operator+=(const PlaneSums& other) {
+  information += other.information;
+  shared += other.shared;
+  common += other.common;
+  right += other.right;
+  residuals += other.residuals;
+  squares += other.squares;
+  weight += other.weight;
+  return *this;
+}
+
+Matrix6d information_of(const PlaneSums& plane, const PlaneErrors& errors, double factor) {
+  return plane.information / factor -
+         plane.shared * Integrated(plane, errors, factor).gain * plane.shared.transpose();
+}
+
+SettledPose settle_among_moved(const std::vector<PlaneSums>& planes, double slope, double factor) {
+  const Settling settling(planes, slope, factor);
+  std::vector<Mode> modes{settling.from(Vector6d::Zero())};
+  for (const std::size_t k : moved_planes(planes, modes.front())) {
+    // As if this plane, of all that are off, were right: shifted along its normal.
+    Vector6d start = modes.front().step;
+    const Vector6d row = planes[k].shared.col(0) / planes[k].weight;
+    start.tail<3>() += (planes[k].mean_m() - row.dot(start)) * row.tail<3>();
+    Mode mode = settling.from(start);
+    const bool known = std::any_of(modes.begin(), modes.end(), [&](const Mode& other) {
+      return (other.step - mode.step).lpNorm<Eigen::Infinity>() < 0.1 * kLeastErrM;
+    });
+    if (!known) modes.push_back(std::move(mode));
+  }
+  std::vector<Matrix6d> covariances;
+  std::vector<double> weights;
+  for (const Mode& mode : modes) {
+    covariances.push_back(damped_inverse(mode.information));
+    weights.push_back(mode.log_likelihood +
+                      0.5 * std::log(std::max(1e-300, covariances.back().determinant())));
+  }
+  const std::size_t best =
+      static_cast<std::size_t>(std::max_element(weights.begin(), weights.end()) - weights.begin());
+  const double most = weights[best];
+  for (double& weight : weights) weight = std::exp(weight - most);
+  const double all = std::accumulate(weights.begin(), weights.end(), 0.0);
+  Matrix6d covariance = Matrix6d::Zero();
+  for (std::size_t k = 0; k < modes.size(); ++k) {
+    const Vector6d off = modes[k].step - modes[best].step;
+    covariance += weights[k] / all * (covariances[k] + off * off.transpose());
+  }
+  const Matrix6d information = modes.size() == 1 ? modes[best].information : inverse_of(covariance);
+  return {modes[best].step, information, modes[best].moved};
+}
+
+}  // namespace limen

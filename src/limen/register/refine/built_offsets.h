@@ -1,0 +1,53 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "limen/geometry/linear.h"
+
+namespace limen {
+
+using Matrix63d = Eigen::Matrix<double, 6, 3>;
+
+/// What the tiles of one pair of planes say together, as weighted sums over their rows and residuals. The
+/// pair may lie off, and be tilted, as a whole: by an offset and by slopes along two axes of the plane, about
+/// the middle of its tiles ("common" below).
+struct PlaneSums {
+  Matrix6d information = Matrix6d::Zero();
+  Matrix63d shared = Matrix63d::Zero();  ///< rows times what moves with the offset and the slopes
+  Matrix3d common = Matrix3d::Zero();    ///< the same of these alone
+  Vector6d right = Vector6d::Zero();     ///< rows times residuals
+  Vector3d residuals = Vector3d::Zero();
+  double squares = 0.0;  ///< of the residuals
+  double weight = 0.0;
+
+  [[nodiscard]] double mean_m() const { return residuals[0] / weight; }
+  PlaneSums& operator+=(const PlaneSums& other);
+};
+
+/// How far planes err as wholes, one standard deviation.
+struct PlaneErrors {
+  double offset_m = 0.0;
+  double slope = 0.0;
+};
+
+/// What a pair says of the pose where it errs as a whole by as much: its offset and slopes, of unknown size,
+/// integrated in closed form. `factor`: of the variances that the weights are made with.
+Matrix6d information_of(const PlaneSums& plane, const PlaneErrors& errors, double factor);
+
+/// A pose among planes of which some were moved, as a small turn and shift.
+struct SettledPose {
+  Vector6d step = Vector6d::Zero();
+  Matrix6d information =
+      Matrix6d::Zero();       ///< with what other such poses say, weighted by how likely they are
+  std::vector<double> moved;  ///< of each plane, the probability that it was moved
+};
+
+/// The likeliest pose in a building of which each plane either is where the model has it, to the few
+/// millimetres that builders err (learned from these planes), or was moved by centimetres. Which ones were is
+/// not known: poses that take other planes for the moved ones are sought too, and how likely they are and how
+/// far off is in the information. What one opening says of one direction is a plane without slopes.
+SettledPose settle_among_moved(const std::vector<PlaneSums>& planes, double slope, double factor);
+
+}  // namespace limen
