@@ -102,9 +102,10 @@ struct Layout {
   std::size_t page_bytes = 1024;
   std::uint64_t packet_seed = 0;  ///< not 0: streams advance unequally, index and empty packets between them
   std::size_t packet_bytes = 600;
-  bool xml_first = false;  ///< the description before the points
-  bool marked = false;     ///< a byte order mark before the description
-  std::string images = "";
+  bool xml_first = false;   ///< the description before the points
+  bool marked = false;      ///< a byte order mark before the description
+  std::string images = "";  ///< "BLOB0" in it is the offset of the first of the blobs
+  std::vector<std::string> blobs = {};
   std::string root = "";  ///< further elements of the root
 };
 
@@ -166,20 +167,26 @@ inline std::string scan_element(const ScanParts& scan, std::uint64_t offset) {
   return xml + "</prototype><codecs type=\"Vector\"></codecs></points></vectorChild>\n";
 }
 
+/// `offsets`: of the scans, then of the blobs.
 inline std::string xml_of(const std::vector<ScanParts>& scans, const std::vector<std::uint64_t>& offsets,
                           const Layout& layout) {
+  std::string images = layout.images;
+  for (std::size_t k = 0; k < layout.blobs.size(); ++k) {
+    const std::string mark = fmt::format("BLOB{}", k);
+    images.replace(images.find(mark), mark.size(), fmt::format("{:020}", offsets[scans.size() + k]));
+  }
   std::string xml = layout.marked ? "\xEF\xBB\xBF" : "";
   xml +=
       "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<!-- kept -->\n<e57Root type=\"Structure\" "
       "xmlns=\"http://www.astm.org/COMMIT/E57/2010-e57-v1.0\">\n" +
       layout.root + "<data3D type=\"Vector\">\n";
   for (std::size_t k = 0; k < scans.size(); ++k) xml += scan_element(scans[k], offsets[k]);
-  return xml + "</data3D>\n<images2D type=\"Vector\">" + layout.images + "</images2D>\n</e57Root>\n";
+  return xml + "</data3D>\n<images2D type=\"Vector\">" + images + "</images2D>\n</e57Root>\n";
 }
 
 /// The head, sections and description in one stretch, as payloads.
 inline std::string logical_file(const std::vector<ScanParts>& scans, const Layout& layout) {
-  const std::vector<std::uint64_t> zeros(scans.size(), 0);
+  const std::vector<std::uint64_t> zeros(scans.size() + layout.blobs.size(), 0);
   const std::size_t xml_bytes = xml_of(scans, zeros, layout).size();
   std::string body;
   std::uint64_t at = 48 + (layout.xml_first ? (xml_bytes + 3) / 4 * 4 : 0);
@@ -192,6 +199,13 @@ inline std::string logical_file(const std::vector<ScanParts>& scans, const Layou
     put(section, physical(at + body.size() + 32, layout.page_bytes));
     put(section, std::uint64_t{0});
     body += section + packets;
+  }
+  for (const std::string& blob : layout.blobs) {
+    offsets.push_back(physical(at + body.size(), layout.page_bytes));
+    put(body, std::uint64_t{0});
+    put(body, std::uint64_t{16} + blob.size());
+    body += blob;
+    while (body.size() % 4 != 0) body += '\0';
   }
   std::string xml = xml_of(scans, offsets, layout);
   const std::uint64_t xml_at = layout.xml_first ? 48 : 48 + body.size();

@@ -5,12 +5,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "limen/base/error.h"
 #include "limen/base/text.h"
+#include "limen/files/scan_in_file.h"
 #include "limen/io/crs/coordinate_system.h"
 #include "limen/io/table/moved_columns.h"
 
@@ -125,7 +127,10 @@ JoinedClouds::JoinedClouds(std::vector<PlacedCloud> clouds, bool tell_source, co
   }
   if (full.empty()) throw Error("there are no points", clouds_.front().input->name(), "check the input");
   clouds_ = std::move(full);
-  plan_.name = clouds_.front().input->path().stem().string();
+  const OpenPoints& first = *clouds_.front().input;
+  plan_.name = std::filesystem::path(file_of_scan(first.name())).stem().string();
+  if (clouds_.size() == 1 && (first.chosen() || first.file().clouds().size() > 1))
+    plan_.name += fmt::format("_{}", first.number_in_file(clouds_.front().cloud));
   for (const std::string& text : clouds_.front().input->georeference()) {
     // A number becomes text where PROJ knows it: more formats can tell that.
     const CoordinateSystem known =
@@ -204,7 +209,7 @@ class JoinedStream : public PointStream {
       const std::string name = lower_case(column.name);
       const auto origin = std::find(kOrigin.begin(), kOrigin.end(), name);
       if (tell_source_ && name == kSourceColumn) {
-        mover.add_constant(name, placed.source);
+        mover.add_constant(name, static_cast<double>(placed.source));
       } else if (piece.find({name}) != nullptr) {
         mover.add(name);
       } else if (origin != kOrigin.end() && centre) {

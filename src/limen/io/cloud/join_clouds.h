@@ -17,9 +17,9 @@ namespace limen {
 struct PlacedCloud {
   const OpenPoints* input = nullptr;
   std::size_t cloud = 0;
-  Rigid3 target_from_world;        ///< from the world of the file, its offset added
-  std::optional<Vector3d> centre;  ///< optical centre in the world of the file, where there is one
-  std::uint8_t source = 0;         ///< number of the file
+  Rigid3 target_from_world;             ///< from the world of the file, its offset added
+  std::optional<Vector3d> centre = {};  ///< optical centre in the world of the file, where there is one
+  std::size_t source = 0;               ///< number of the file
   std::shared_ptr<const SplineMotion> bend = {};  ///< of a pass that drifted: by time, after the motion
 };
 

@@ -117,16 +117,15 @@ class OneCloud : public PointFile {
   std::vector<CloudFacts> clouds_;
 };
 
-/// The clouds with points of a file, of which empty ones are no scans; a file of one cloud has one scan.
-std::vector<std::size_t> scans_of(const PointFile& file) {
+}  // namespace
+
+std::vector<std::size_t> scans_with_points(const PointFile& file) {
   std::vector<std::size_t> scans;
   for (std::size_t k = 0; k < file.clouds().size(); ++k) {
     if (file.clouds()[k].points > 0 || file.clouds().size() == 1) scans.push_back(k);
   }
   return scans;
 }
-
-}  // namespace
 
 PointFormat point_format_of(std::string_view bytes, const std::filesystem::path& path) {
   const std::string ending = lower_case(path.extension().string()) + " ";
@@ -155,14 +154,15 @@ OpenPoints::OpenPoints(const std::filesystem::path& path, const ScanInFile& name
       file_(open_as(format_, bytes_->bytes(), path.string())) {
   require_room(format_, *file_, bytes_->bytes(), path.string());
   if (named.index) {
-    const std::vector<std::size_t> scans = scans_of(*file_);
+    const std::vector<std::size_t> scans = scans_with_points(*file_);
     if (*named.index >= scans.size())
       throw Error(fmt::format("has no scan {}", *named.index), named.file,
                   scans.empty() ? "give a file with points"
                                 : fmt::format("its scans are #0 to #{}", scans.size() - 1));
     if (file_->clouds().size() > 1) {
       chosen_ = named.index;
-      file_ = std::make_unique<OneCloud>(std::move(file_), scans[*named.index]);
+      first_ = scans[*named.index];
+      file_ = std::make_unique<OneCloud>(std::move(file_), first_);
     }
   }
   if (format_ == PointFormat::las)

@@ -22,6 +22,9 @@ enum class PointFormat { ply, pcd, ptx, text, e57, las };
 /// be. Throws Error where it is none of them.
 PointFormat point_format_of(std::string_view bytes, const std::filesystem::path& path);
 
+/// The clouds with points of a file, of which empty ones are no scans; a file of one cloud has one scan.
+std::vector<std::size_t> scans_with_points(const PointFile& file);
+
 /// A point file with the bytes it is read from, or one scan of such a file: then the other clouds of the file
 /// are not seen.
 class OpenPoints {
@@ -42,6 +45,8 @@ class OpenPoints {
   [[nodiscard]] const std::vector<std::string>& georeference() const { return georeference_; }
   /// The one scan of several that was named; empty: all that the file holds.
   [[nodiscard]] const std::optional<std::size_t>& chosen() const { return chosen_; }
+  /// Number in the whole file of a cloud of file().
+  [[nodiscard]] std::size_t number_in_file(std::size_t cloud) const { return first_ + cloud; }
   /// Points of all clouds, as the file says.
   [[nodiscard]] std::uint64_t points() const;
   /// Gives the memory of bytes that were read back; they may be read again.
@@ -52,6 +57,7 @@ class OpenPoints {
 
   std::filesystem::path path_;
   std::optional<std::size_t> chosen_;
+  std::size_t first_ = 0;  ///< number in the file of the first cloud of file_
   std::unique_ptr<MappedFile> bytes_;
   PointFormat format_;
   std::unique_ptr<PointFile> file_;

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <deque>
 #include <iterator>
+#include <optional>
+#include <set>
 #include <utility>
 
 #include <fmt/format.h>
@@ -15,6 +17,7 @@
 #include "limen/io/cloud/cloud_writers.h"
 #include "limen/io/cloud/open_points.h"
 #include "limen/io/cloud/write_clouds.h"
+#include "limen/io/e57/e57_copy.h"
 #include "limen/io/e57/e57_poses.h"
 #include "limen/io/las/las_transform.h"
 #include "limen/io/pcd/transform_pcd.h"
@@ -82,31 +85,59 @@ TransformedCloud move_and_tell(const OpenPoints& input, const Rigid3& pose,
   return cloud;
 }
 
-TransformedCloud write_joined(std::vector<PlacedCloud> clouds, bool several_files,
-                              const std::filesystem::path& output, Monitor& monitor,
-                              const CoordinateSystem& system) {
-  const OpenPoints& first = *clouds.front().input;
-  const JoinedClouds joined(std::move(clouds), several_files, system.wkt);
-  const WrittenClouds written = write_clouds(joined, output, monitor);
-  return {written.written, first.file().format(), written.notes};
-}
-
-/// Each cloud as a scan of its own.
-TransformedCloud write_apart(const std::vector<PlacedCloud>& clouds, const std::filesystem::path& output,
-                             Monitor& monitor, const CoordinateSystem& system) {
-  std::vector<JoinedClouds> stations;
-  stations.reserve(clouds.size());
-  for (const PlacedCloud& cloud : clouds)
-    stations.emplace_back(std::vector<PlacedCloud>{cloud}, false, system.wkt);
-  const WrittenClouds written = write_stations(stations, output, monitor);
-  return {written.written, clouds.front().input->file().format(), written.notes};
-}
-
 void require_known_ending(const std::filesystem::path& output, const OpenPoints& input) {
   if (is_cloud_ending(output)) return;
   const std::string ending = lower_case(output.extension().string());
   throw Error(fmt::format("{} cannot be written as \"{}\"", input.file().format(), ending), output.string(),
               "name the output .ply, .las, .laz, .e57, .xyz or .csv, or give it the ending of the input");
+}
+
+/// All clouds of a file; those that are copied need no optical centre, and empty ones are only copied.
+std::vector<PlacedCloud> placed_for(const std::filesystem::path& output, const OpenPoints& input,
+                                    const Rigid3& pose, const std::optional<Vector3d>& origin,
+                                    Monitor& monitor) {
+  std::vector<PlacedCloud> placed;
+  if (is_copied(input, output)) {
+    for (std::size_t k = 0; k < input.file().clouds().size(); ++k) placed.push_back({&input, k, pose});
+    return placed;
+  }
+  for (const std::size_t k : scans_with_points(input.file()))
+    placed.push_back(placed_cloud(input, k, pose, origin, monitor));
+  return placed;
+}
+
+void note_lost_images(const std::vector<PlacedCloud>& clouds, const std::filesystem::path& output,
+                      std::vector<std::string>& notes) {
+  std::set<const OpenPoints*> seen;
+  for (const PlacedCloud& cloud : clouds) {
+    const OpenPoints& input = *cloud.input;
+    const bool kept = is_copied(input, output) && !cloud.bend;
+    if (kept || input.format() != PointFormat::e57 || !seen.insert(&input).second) continue;
+    const std::size_t images = E57Original(input.bytes(), input.name()).document().images.size();
+    if (images > 0)
+      notes.push_back(
+          fmt::format("{}: its {} images are left out, which only E57 keeps", input.name(), images));
+  }
+}
+
+/// One .e57 keeps clouds apart, and E57 ones as they are; all others join them. `tell_source`: as in
+/// JoinedClouds.
+TransformedCloud write_placed(const std::vector<PlacedCloud>& clouds, bool tell_source,
+                              const std::filesystem::path& output, Monitor& monitor,
+                              const CoordinateSystem& system) {
+  if (clouds.empty()) throw Error("there are no points", output.string(), "give scans with points");
+  const PlacedCloud& first = clouds.front();
+  require_known_ending(output, *first.input);
+  const bool stations = lower_case(output.extension().string()) == ".e57" &&
+                        (clouds.size() > 1 || (is_copied(*first.input, output) && !first.bend));
+  if (!stations && tell_source && clouds.back().source > 255)
+    throw Error("more than 256 clouds cannot be merged into this format", output.string(),
+                "write an .e57, which keeps each as a scan of its own, or a file for each");
+  WrittenClouds written = stations
+                              ? write_stations(clouds, output, monitor, system.wkt)
+                              : write_clouds(JoinedClouds(clouds, tell_source, system.wkt), output, monitor);
+  note_lost_images(clouds, output, written.notes);
+  return {written.written, first.input->file().format(), written.notes};
 }
 
 }  // namespace
@@ -130,8 +161,7 @@ TransformedCloud transform_cloud(const std::filesystem::path& input, const Rigid
     // One of several scans is written anew: the file holds the others too.
     if (!open.chosen() && has_ending_of(open.format(), output))
       return move_and_tell(open, target_from_source, output, options, monitor, system);
-    require_known_ending(output, open);
-    return write_joined(placed_clouds(open, target_from_source, options.origin, monitor), false, output,
+    return write_placed(placed_for(output, open, target_from_source, options.origin, monitor), false, output,
                         monitor, system);
   });
 }
@@ -141,54 +171,43 @@ TransformedCloud merge_clouds(const CloudToMove& moved, const std::vector<std::s
                               const CoordinateSystem& system) {
   if (others.empty())
     return transform_cloud(moved.path, moved.target_from_source, output, {}, monitor, system);
-  if (others.size() > 255)
-    throw Error("more than 256 clouds cannot be merged into this format", "--merge", "merge fewer");
   monitor.begin_stage("merging");
   std::deque<OpenPoints> files;
   std::vector<PlacedCloud> clouds;
   for (std::size_t k = 0; k <= others.size(); ++k) {
     const OpenPoints& file = k == 0 ? files.emplace_back(moved.path) : files.emplace_back(others[k - 1]);
     for (PlacedCloud placed :
-         placed_clouds(file, k == 0 ? moved.target_from_source : Rigid3{}, {}, monitor)) {
-      placed.source = static_cast<std::uint8_t>(k);
+         placed_for(output, file, k == 0 ? moved.target_from_source : Rigid3{}, {}, monitor)) {
+      placed.source = k;
       clouds.push_back(placed);
     }
   }
-  require_known_ending(output, files.front());
-  return with_whole_inputs([&] { return write_joined(std::move(clouds), true, output, monitor, system); });
+  return with_whole_inputs([&] { return write_placed(clouds, true, output, monitor, system); });
 }
 
 TransformedCloud move_stations(const std::vector<StationToMove>& stations,
                                const std::filesystem::path& output, Monitor& monitor,
                                const CoordinateSystem& system) {
   if (stations.empty()) throw Error("there is no scan to move", output.string(), "give at least one");
-  const bool apart = lower_case(output.extension().string()) == ".e57";
-  if (stations.size() > 256 && !apart)
-    throw Error("more than 256 clouds cannot be merged into this format", output.string(),
-                "write an .e57, which keeps each as a scan of its own, or a file for each");
   monitor.begin_stage("merging");
   std::deque<OpenPoints> files;
   std::vector<PlacedCloud> clouds;
-  for (std::size_t k = 0; k < stations.size(); ++k) {
-    const StationToMove& station = stations[k];
+  for (const StationToMove& station : stations) {
     if (files.empty() || files.back().path() != station.path) files.emplace_back(station.path);
-    const std::vector<PlacedCloud> all = placed_clouds(files.back(), station.target_from_source, {}, monitor);
-    std::size_t with_points = 0;
-    bool found = false;
-    for (PlacedCloud placed : all) {
-      if (files.back().file().clouds()[placed.cloud].points == 0 || with_points++ != station.cloud) continue;
-      placed.source = static_cast<std::uint8_t>(std::min<std::size_t>(k, 255));
-      placed.bend = station.bend;
-      clouds.push_back(placed);
-      found = true;
-    }
-    if (!found)
+    const OpenPoints& file = files.back();
+    const std::vector<std::size_t> scans = scans_with_points(file.file());
+    if (station.cloud >= scans.size())
       throw Error(fmt::format("has no scan {}", station.cloud), station.path.string(),
                   "give the file that the project was made from");
+    const std::size_t cloud = scans[station.cloud];
+    clouds.push_back(is_copied(file, output) && !station.bend
+                         ? PlacedCloud{&file, cloud, station.target_from_source}
+                         : placed_cloud(file, cloud, station.target_from_source, {}, monitor));
+    clouds.back().source = clouds.size() - 1;
+    clouds.back().bend = station.bend;
   }
-  require_known_ending(output, files.front());
-  if (apart) return write_apart(clouds, output, monitor, system);
-  return write_joined(std::move(clouds), stations.size() > 1, output, monitor, system);
+  return with_whole_inputs(
+      [&] { return write_placed(clouds, stations.size() > 1, output, monitor, system); });
 }
 
 }  // namespace limen

@@ -10,6 +10,7 @@
 #include "limen/base/text.h"
 #include "limen/io/cloud/cloud_writers.h"
 #include "limen/io/cloud/read_cloud.h"
+#include "limen/io/e57/e57_copy.h"
 #include "limen/io/e57/write_e57.h"
 #include "limen/io/table/packed_rows.h"
 
@@ -56,18 +57,21 @@ class FiniteRows {
 
 }  // namespace
 
+PlacedCloud placed_cloud(const OpenPoints& input, std::size_t cloud, const Rigid3& target_from_world,
+                         const std::optional<Vector3d>& origin, Monitor& monitor) {
+  const CloudFacts& facts = input.file().clouds()[cloud];
+  PlacedCloud placed{&input, cloud, target_from_world, origin, std::min<std::size_t>(cloud, 255)};
+  const bool stated = facts.table.centre || facts.points <= kFewPoints;
+  if (!origin && stated && facts.points > 0 && !has_origins(facts))
+    placed.centre = settled_centre(input, cloud, monitor);
+  return placed;
+}
+
 std::vector<PlacedCloud> placed_clouds(const OpenPoints& input, const Rigid3& target_from_world,
                                        const std::optional<Vector3d>& origin, Monitor& monitor) {
   std::vector<PlacedCloud> placed;
-  for (std::size_t k = 0; k < input.file().clouds().size(); ++k) {
-    const CloudFacts& facts = input.file().clouds()[k];
-    PlacedCloud cloud{&input, k, target_from_world, origin,
-                      static_cast<std::uint8_t>(std::min<std::size_t>(k, 255))};
-    const bool stated = facts.table.centre || facts.points <= kFewPoints;
-    if (!origin && stated && facts.points > 0 && !has_origins(facts))
-      cloud.centre = settled_centre(input, k, monitor);
-    placed.push_back(cloud);
-  }
+  for (std::size_t k = 0; k < input.file().clouds().size(); ++k)
+    placed.push_back(placed_cloud(input, k, target_from_world, origin, monitor));
   return placed;
 }
 
@@ -94,25 +98,41 @@ WrittenClouds write_clouds(const JoinedClouds& clouds, const std::filesystem::pa
   return result;
 }
 
-WrittenClouds write_stations(const std::vector<JoinedClouds>& stations, const std::filesystem::path& output,
-                             Monitor& monitor) {
+bool is_copied(const OpenPoints& input, const std::filesystem::path& output) {
+  return input.format() == PointFormat::e57 && lower_case(output.extension().string()) == ".e57";
+}
+
+WrittenClouds write_stations(const std::vector<PlacedCloud>& stations, const std::filesystem::path& output,
+                             Monitor& monitor, const std::string& system) {
   double total = 0.0;
-  for (const JoinedClouds& station : stations) total += static_cast<double>(station.plan().most_points);
+  for (const PlacedCloud& station : stations)
+    total += static_cast<double>(station.input->file().clouds()[station.cloud].points);
   E57StationsWriter writer(output);
   monitor.set_unit(WorkUnit::points);
   WrittenClouds result;
-  for (const JoinedClouds& station : stations) {
-    for (const std::string& note : station.notes()) {
-      if (std::find(result.notes.begin(), result.notes.end(), note) == result.notes.end())
-        result.notes.push_back(note);
+  const auto advance = [&](std::uint64_t points) {
+    result.read += points;
+    monitor.throw_if_cancelled();
+    monitor.advance(static_cast<double>(result.read), total);
+  };
+  const OpenPoints* opened = nullptr;
+  std::optional<E57Original> original;
+  for (const PlacedCloud& station : stations) {
+    const OpenPoints& input = *station.input;
+    if (is_copied(input, output) && !station.bend) {
+      if (opened != &input) original.emplace(input.bytes(), input.path().string());
+      opened = &input;
+      writer.copy(*original, input.number_in_file(station.cloud), station.target_from_world, system, monitor);
+      input.forget();
+      advance(input.file().clouds()[station.cloud].points);
+      continue;
     }
-    writer.begin_station(station.plan());
-    const std::unique_ptr<PointStream> stream = station.read();
+    const JoinedClouds cloud({station}, false, system);
+    writer.begin_station(cloud.plan());
+    const std::unique_ptr<PointStream> stream = cloud.read();
     while (const std::optional<RecordTable> piece = stream->next(kStreamRows / 4)) {
       writer.write(*piece);
-      result.read += piece->rows;
-      monitor.throw_if_cancelled();
-      monitor.advance(static_cast<double>(result.read), total);
+      advance(piece->rows);
     }
   }
   writer.finish();

@@ -22,8 +22,11 @@ struct WrittenClouds {
   std::vector<std::string> notes;
 };
 
-/// The clouds of a file, in place for an output frame, with the optical centres that are known. `origin`: the
-/// centre, where the user tells it; small files are looked into where they do not tell one.
+/// A cloud of a file, in place for an output frame, with the optical centre if that is known. `origin`: the
+/// centre, where the user tells it; small clouds are looked into where the file does not tell one.
+PlacedCloud placed_cloud(const OpenPoints& input, std::size_t cloud, const Rigid3& target_from_world,
+                         const std::optional<Vector3d>& origin = {}, Monitor& monitor = silent_monitor());
+/// All clouds of a file.
 std::vector<PlacedCloud> placed_clouds(const OpenPoints& input, const Rigid3& target_from_world,
                                        const std::optional<Vector3d>& origin = {},
                                        Monitor& monitor = silent_monitor());
@@ -33,9 +36,12 @@ std::vector<PlacedCloud> placed_clouds(const OpenPoints& input, const Rigid3& ta
 WrittenClouds write_clouds(const JoinedClouds& clouds, const std::filesystem::path& output,
                            Monitor& monitor = silent_monitor());
 
-/// Each of them as a scan of its own in one E57 file.
-WrittenClouds write_stations(const std::vector<JoinedClouds>& stations, const std::filesystem::path& output,
-                             Monitor& monitor = silent_monitor());
+/// Whether write_stations() copies the clouds of a file as they are: they are E57 too.
+bool is_copied(const OpenPoints& input, const std::filesystem::path& output);
+
+/// Each of them as a scan of its own in one E57 file. `system`: as in JoinedClouds.
+WrittenClouds write_stations(const std::vector<PlacedCloud>& stations, const std::filesystem::path& output,
+                             Monitor& monitor = silent_monitor(), const std::string& system = {});
 
 /// As write_clouds, thinned on the way.
 WrittenClouds write_thinned(const JoinedClouds& clouds, const ThinOptions& thinning,

@@ -3,8 +3,10 @@
 #include "limen/io/e57/e57_description.h"
 
 #include <algorithm>
+#include <map>
 #include <string_view>
 
+#include <Eigen/Geometry>
 #include <fmt/format.h>
 
 #include "limen/base/random.h"
@@ -13,10 +15,10 @@
 namespace limen {
 namespace {
 
+constexpr const char* kNormals = "http://www.libe57.org/E57_NOR_surface_normals.txt";
 constexpr std::string_view kHead =
     "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
-    "<e57Root type=\"Structure\" xmlns=\"http://www.astm.org/COMMIT/E57/2010-e57-v1.0\""
-    " xmlns:nor=\"http://www.libe57.org/E57_NOR_surface_normals.txt\"";
+    "<e57Root type=\"Structure\" xmlns=\"http://www.astm.org/COMMIT/E57/2010-e57-v1.0\"";
 
 /// Text as CDATA; what XML cannot hold becomes a blank.
 std::string text_element(std::string_view name, std::string text) {
@@ -39,15 +41,6 @@ std::string guid_of(std::uint64_t digest) {
   const std::uint64_t b = mix64(a);
   return fmt::format("{{{:08X}-{:04X}-{:04X}-{:04X}-{:012X}}}", a >> 32U, (a >> 16U) & 0xFFFFU, a & 0xFFFFU,
                      b >> 48U, b & 0xFFFFFFFFFFFFU);
-}
-
-std::string pose_xml(const Vector3d& shift) {
-  std::string xml = "<pose type=\"Structure\">\n<rotation type=\"Structure\">\n";
-  xml +=
-      float_element("w", 1.0) + float_element("x", 0.0) + float_element("y", 0.0) + float_element("z", 0.0);
-  xml += "</rotation>\n<translation type=\"Structure\">\n";
-  xml += float_element("x", shift.x()) + float_element("y", shift.y()) + float_element("z", shift.z());
-  return xml + "</translation>\n</pose>\n";
 }
 
 std::string bounds_xml(const std::array<E57Range, 3>& bounds) {
@@ -108,7 +101,7 @@ std::string scan_xml(const E57Description& about) {
   std::string xml = "<vectorChild type=\"Structure\">\n";
   xml += text_element("guid", guid_of(about.digest + 1)) + text_element("name", about.name);
   xml += text_element("limen:opticalCentre", about.centre_known ? "known" : "unknown");
-  xml += pose_xml(about.shift) + bounds_xml(about.bounds) + limits_xml(about);
+  xml += e57_pose_xml({Matrix3d::Identity(), about.shift}) + bounds_xml(about.bounds) + limits_xml(about);
   xml += fmt::format("<points type=\"CompressedVector\" fileOffset=\"{}\" recordCount=\"{}\">\n",
                      about.section, about.points);
   xml += "<prototype type=\"Structure\">\n";
@@ -123,29 +116,52 @@ std::string e57_number(double value) {
   return fmt::format("{:.17g}", value);
 }
 
-std::string e57_description_xml(const std::vector<E57Description>& scans) {
-  std::uint64_t digest = scans.front().digest;
+std::string e57_pose_xml(const Rigid3& pose) {
+  Eigen::Quaterniond q(pose.rotation);
+  q.normalize();
+  if (q.w() < 0.0) q.coeffs() = -q.coeffs();
+  const Vector3d& t = pose.translation;
+  return "<pose type=\"Structure\"><rotation type=\"Structure\">\n" + float_element("w", q.w()) +
+         float_element("x", q.x()) + float_element("y", q.y()) + float_element("z", q.z()) +
+         "</rotation><translation type=\"Structure\">\n" + float_element("x", t.x()) +
+         float_element("y", t.y()) + float_element("z", t.z()) + "</translation></pose>\n";
+}
+
+E57Entry e57_entry(const E57Description& about) {
+  return {scan_xml(about),
+          {},
+          {{"nor", kNormals}, {"limen", std::string(kE57LimenSpace)}},
+          about.georeference,
+          about.digest};
+}
+
+std::string e57_description_xml(const std::vector<E57Entry>& entries) {
+  std::uint64_t digest = entries.front().digest;
+  std::string scans;
+  std::string images;
   std::vector<std::string> georeference;
-  for (std::size_t k = 0; k < scans.size(); ++k) {
-    if (k > 0) digest = mix64(digest ^ scans[k].digest);
-    for (const std::string& text : scans[k].georeference) {
+  std::map<std::string, std::string> spaces;
+  for (std::size_t k = 0; k < entries.size(); ++k) {
+    const E57Entry& entry = entries[k];
+    if (k > 0) digest = mix64(digest ^ entry.digest);
+    scans += entry.scan;
+    images += entry.images;
+    for (const std::string& text : entry.georeference) {
       if (std::find(georeference.begin(), georeference.end(), text) == georeference.end())
         georeference.push_back(text);
     }
+    spaces.insert(entry.spaces.begin(), entry.spaces.end());
   }
   std::string xml(kHead);
-  xml += fmt::format(" xmlns:limen=\"{}\">\n", kE57LimenSpace);
-  xml += text_element("formatName", "ASTM E57 3D Imaging Data File");
+  for (const auto& [prefix, address] : spaces) xml += fmt::format(" xmlns:{}=\"{}\"", prefix, address);
+  xml += ">\n" + text_element("formatName", "ASTM E57 3D Imaging Data File");
   xml += text_element("guid", guid_of(digest));
   xml += "<versionMajor type=\"Integer\">1</versionMajor>\n<versionMinor type=\"Integer\">0</versionMinor>\n";
   xml += text_element("e57LibraryVersion", fmt::format("limen {}", kVersion));
-  std::string coordinates;
-  for (const std::string& text : georeference) coordinates += (coordinates.empty() ? "" : "\n") + text;
-  xml += text_element("coordinateMetadata", coordinates);
-  xml += "<data3D type=\"Vector\" allowHeterogeneousChildren=\"1\">\n";
-  for (const E57Description& scan : scans) xml += scan_xml(scan);
-  xml += "</data3D>\n";
-  return xml + "<images2D type=\"Vector\" allowHeterogeneousChildren=\"1\"></images2D>\n</e57Root>\n";
+  xml += text_element("coordinateMetadata", fmt::format("{}", fmt::join(georeference, "\n")));
+  xml += "<data3D type=\"Vector\" allowHeterogeneousChildren=\"1\">\n" + scans + "</data3D>\n";
+  return xml + "<images2D type=\"Vector\" allowHeterogeneousChildren=\"1\">" + images +
+         "</images2D>\n</e57Root>\n";
 }
 
 }  // namespace limen

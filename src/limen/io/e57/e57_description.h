@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "limen/geometry/rigid.h"
@@ -27,8 +28,24 @@ struct E57Description {
   std::vector<E57Range> ranges;  ///< of the columns
 };
 
-/// The descriptions of all scans as the file's XML; at least one.
-std::string e57_description_xml(const std::vector<E57Description>& scans);
+/// A namespace of columns and elements that the standard does not know: "nor" and its address.
+using E57Space = std::pair<std::string, std::string>;
+
+/// A scan and its images as they are named in the description of a file.
+struct E57Entry {
+  std::string scan;    ///< XML
+  std::string images;  ///< XML
+  std::vector<E57Space> spaces;
+  std::vector<std::string> georeference;
+  std::uint64_t digest = 0;  ///< of the points
+};
+E57Entry e57_entry(const E57Description& about);
+
+/// The file's XML; at least one scan.
+std::string e57_description_xml(const std::vector<E57Entry>& entries);
+
+/// A pose as an element.
+std::string e57_pose_xml(const Rigid3& pose);
 
 /// A number with the 17 digits that bring it back.
 std::string e57_number(double value);

@@ -16,8 +16,8 @@ E57PageWriter::E57PageWriter(const std::filesystem::path& path) : file_(path) {
   append(std::string(kE57HeadBytes, '\0'));
 }
 
-std::uint64_t E57PageWriter::physical() const {
-  return pages_ * (kPayload + kE57CheckSumBytes) + page_.size();
+std::uint64_t E57PageWriter::physical_of(std::uint64_t logical) {
+  return logical + logical / kPayload * kE57CheckSumBytes;
 }
 
 void E57PageWriter::append(std::string_view bytes) {

@@ -21,11 +21,14 @@ class E57PageWriter {
 
   /// Payload bytes so far, the head's among them.
   [[nodiscard]] std::uint64_t logical() const { return logical_; }
-  /// Where the next byte will lie in the file.
-  [[nodiscard]] std::uint64_t physical() const;
+  /// Where the next byte will lie in the file, or the payload byte `logical`.
+  [[nodiscard]] std::uint64_t physical() const { return physical_of(logical_); }
+  [[nodiscard]] static std::uint64_t physical_of(std::uint64_t logical);
   void append(std::string_view bytes);
   /// Fills the page that is not full with zeros, so that the next byte begins one.
   void fill_page();
+  /// Fills up to four bytes, where the next section may begin.
+  void fill_word() { append(std::string((4 - logical_ % 4) % 4, '\0')); }
   /// The page that the next byte lies in; its bytes may still be replaced when it is full.
   [[nodiscard]] std::uint64_t keep_page();
   /// Replaces bytes of a page that was kept, or of the first.

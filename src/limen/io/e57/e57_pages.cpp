@@ -82,6 +82,14 @@ std::string e57_head_bytes(const E57Head& head) {
   return bytes;
 }
 
+std::string e57_section_header(std::uint64_t section_bytes, std::uint64_t first_packet) {
+  std::string bytes{1, 0, 0, 0, 0, 0, 0, 0};
+  append(bytes, section_bytes);
+  append(bytes, first_packet);
+  append(bytes, std::uint64_t{0});
+  return bytes;
+}
+
 std::string e57_check_sum(std::string_view payload) {
   const std::uint32_t sum = crc32c(payload);
   std::string bytes;

@@ -27,6 +27,8 @@ inline constexpr const char* kE57CopyAgain = "get the whole file, or export it a
 
 /// The head as its 48 bytes.
 std::string e57_head_bytes(const E57Head& head);
+/// The header of a section of packets: its length, and where the first packet lies (physical).
+std::string e57_section_header(std::uint64_t section_bytes, std::uint64_t first_packet);
 /// A page's check sum as it is stored (the high byte first).
 std::string e57_check_sum(std::string_view payload);
 

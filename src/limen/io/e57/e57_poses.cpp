@@ -25,21 +25,6 @@ struct Edit {
   std::string text;
 };
 
-std::string number_element(const char* name, double value) {
-  return fmt::format("<{} type=\"Float\">{}</{}>", name, e57_number(value), name);
-}
-
-std::string pose_xml(const Rigid3& pose) {
-  Eigen::Quaterniond q(pose.rotation);
-  q.normalize();
-  if (q.w() < 0.0) q.coeffs() = -q.coeffs();
-  const Vector3d& t = pose.translation;
-  return "<pose type=\"Structure\"><rotation type=\"Structure\">" + number_element("w", q.w()) +
-         number_element("x", q.x()) + number_element("y", q.y()) + number_element("z", q.z()) +
-         "</rotation><translation type=\"Structure\">" + number_element("x", t.x()) +
-         number_element("y", t.y()) + number_element("z", t.z()) + "</translation></pose>";
-}
-
 /// The end of the tag, comment or text section that begins at `at` with '<', one past it.
 std::size_t end_of_tag(std::string_view xml, std::size_t at) {
   const auto past = [&](std::string_view mark) {
@@ -98,10 +83,10 @@ Edit pose_edit(const pugi::xml_node& element, const Rigid3& pose, std::string_vi
                const std::string& name) {
   if (const pugi::xml_node old = element.child("pose")) {
     const std::size_t begin = begin_of(old, xml, name);
-    return {begin, end_of_element(xml, begin), pose_xml(pose)};
+    return {begin, end_of_element(xml, begin), e57_pose_xml(pose)};
   }
   const std::size_t begin = begin_of(first_element(element), xml, name);
-  return {begin, begin, pose_xml(pose) + "\n"};
+  return {begin, begin, e57_pose_xml(pose)};
 }
 
 /// Edits of all poses, in the order of the file.

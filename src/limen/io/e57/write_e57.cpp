@@ -18,6 +18,7 @@
 #include "limen/base/parallel.h"
 #include "limen/base/random.h"
 #include "limen/base/text.h"
+#include "limen/io/e57/e57_copy.h"
 #include "limen/io/e57/e57_crc.h"
 #include "limen/io/e57/e57_description.h"
 #include "limen/io/e57/e57_encode.h"
@@ -379,12 +380,8 @@ E57Description E57Section::description() const {
 E57Description E57Section::finish() {
   for (E57Encoder& encoder : encoders_) encoder.finish();
   if (waiting_rows_ > 0) put_packet(waiting_rows_);
-  std::string section(kE57SectionHeaderBytes, '\0');
-  section[0] = 1;
-  const std::uint64_t length = file_.logical() - logical_;
-  const std::uint64_t data = physical_ + kE57SectionHeaderBytes;
-  std::memcpy(&section[8], &length, sizeof length);
-  std::memcpy(&section[16], &data, sizeof data);
+  const std::string section =
+      e57_section_header(file_.logical() - logical_, physical_ + kE57SectionHeaderBytes);
   file_.replace(page_, physical_ % kE57PageBytes, section);
   return description();
 }
@@ -406,8 +403,15 @@ void E57StationsWriter::write(const RecordTable& rows) {
 }
 
 void E57StationsWriter::end_station() {
-  if (station_) stations_.push_back(station_->finish());
+  if (station_) stations_.push_back(e57_entry(station_->finish()));
   station_.reset();
+}
+
+void E57StationsWriter::copy(const E57Original& from, std::size_t scan, const Rigid3& target_from_source,
+                             const std::string& wkt, Monitor& monitor) {
+  end_station();
+  stations_.push_back(from.copy(scan, target_from_source, *file_, monitor));
+  if (!wkt.empty()) stations_.back().georeference = {wkt};
 }
 
 void E57StationsWriter::finish() {

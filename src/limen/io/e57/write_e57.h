@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "limen/base/progress.h"
+#include "limen/geometry/rigid.h"
 #include "limen/io/table/cloud_writer.h"
 
 namespace limen {
@@ -22,7 +24,8 @@ std::unique_ptr<CloudWriter> make_e57_writer(const std::filesystem::path& path, 
 
 class E57PageWriter;
 class E57Section;
-struct E57Description;
+class E57Original;
+struct E57Entry;
 
 /// Writes several clouds to one E57 file, each as a scan of its own with its own pose and columns, in the way
 /// of make_e57_writer.
@@ -37,6 +40,10 @@ class E57StationsWriter {
   void begin_station(const CloudPlan& plan);
   /// The next rows, with the columns of the station's plan.
   void write(const RecordTable& rows);
+  /// A scan of another E57 file as it is (e57_copy.h), moved; `wkt`: the coordinate system, in the place of
+  /// its own where it is not empty.
+  void copy(const E57Original& from, std::size_t scan, const Rigid3& target_from_source,
+            const std::string& wkt = {}, Monitor& monitor = silent_monitor());
   /// The end: brings the file to its name. There must be a station.
   void finish();
 
@@ -46,7 +53,7 @@ class E57StationsWriter {
   std::string name_;
   std::unique_ptr<E57PageWriter> file_;
   std::unique_ptr<E57Section> station_;
-  std::vector<E57Description> stations_;
+  std::vector<E57Entry> stations_;
 };
 
 }  // namespace limen

@@ -1,0 +1,57 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "limen/base/progress.h"
+#include "limen/geometry/rigid.h"
+#include "limen/io/e57/e57_description.h"
+#include "limen/io/e57/e57_document.h"
+#include "limen/io/e57/e57_page_writer.h"
+#include "limen/io/e57/e57_pages.h"
+
+namespace pugi {
+class xml_document;
+class xml_node;
+}  // namespace pugi
+
+namespace limen {
+
+/// An E57 file whose scans are copied into others one by one, as they are but for their poses: points with
+/// invalid ones and grids, names, GUIDs, sensors, extensions, and the images that name the scan's GUID. An
+/// image that names no scan with points goes with the nearest one, without a place with the first. Check sums
+/// are verified; large images and points are never in memory as a whole.
+class E57Original {
+ public:
+  /// `bytes` must outlive this. Throws Error where the description is damaged.
+  E57Original(std::string_view bytes, const std::string& name);
+  E57Original(const E57Original&) = delete;
+  E57Original& operator=(const E57Original&) = delete;
+  ~E57Original();
+
+  [[nodiscard]] const E57Document& document() const { return document_; }
+  /// Appends the bytes of the scan and its images to `file`; gives what its description needs. Throws Error
+  /// for damaged bytes.
+  E57Entry copy(std::size_t scan, const Rigid3& target_from_source, E57PageWriter& file,
+                Monitor& monitor = silent_monitor()) const;
+
+ private:
+  [[nodiscard]] std::size_t owner_of(std::size_t image) const;
+  std::string copied(const pugi::xml_node& element, const Rigid3* pose, E57PageWriter& file,
+                     Monitor& monitor) const;
+
+  E57Pages pages_;
+  E57Document document_;
+  std::unique_ptr<pugi::xml_document> tree_;
+  std::vector<pugi::xml_node> scans_;
+  std::vector<pugi::xml_node> images_;
+  std::vector<E57Space> spaces_;
+  std::vector<std::size_t> owners_;  ///< scan of each image
+};
+
+}  // namespace limen
