@@ -138,6 +138,44 @@ TEST_F(MisuseTest, FilesThatEndTooEarlyAreNotTakenForWholeOnes) {
   expect_stated(table);
 }
 
+TEST_F(MisuseTest, AFormatOfOneMakersProgramsIsNamedWithItsWayOut) {
+  std::vector<Misuse> table;
+  const std::string zip = "PK\x03\x04" + std::string(500, '\x7f');
+  const auto refused = [&](const std::string& name, const std::string& maker) {
+    table.push_back({{"info", name}, "is " + maker});
+    table.push_back({{"view", name, "-o", "out.html"}, maker});
+    table.push_back({{"planes", name, "-o", "out.json"}, maker});
+    table.push_back({{"thin", name, "out.ply", "--points", "9"}, maker});
+    table.push_back({{"register", name, "b.ply", "-o", "out"}, maker});
+    table.push_back({{"register", "a.ply", name, "-o", "out"}, maker});
+    table.push_back({{"deviation", "a.ply", name, "--identity", "-o", "out"}, maker});
+    table.push_back({{"transform", "pose.txt", name, "out.ply"}, maker});
+    if (name == "nothing") return;  // where no name tells, a project goes on without the scan
+    table.push_back({{"project", "a.ply", name, "-o", "out"}, maker});
+    table.push_back({{"project", "a.ply", "--model", name, "-o", "out"}, maker});
+  };
+  for (const auto& [ending, maker] : std::map<std::string, std::string>{{"fls", "FARO"},
+                                                                        {"LSPROJ", "FARO"},
+                                                                        {"fws", "FARO"},
+                                                                        {"rcp", "Autodesk ReCap"},
+                                                                        {"rcs", "Autodesk ReCap"},
+                                                                        {"zfs", "Zoller"},
+                                                                        {"imp", "Leica"},
+                                                                        {"dp", "DotProduct"},
+                                                                        {"rvt", "an Autodesk Revit model"}}) {
+    write_whole(work() / ("scan." + ending), zip);
+    refused("scan." + ending, maker);
+  }
+  write_whole(work() / "nothing", std::string("PTG\0\xC7\xA3\x8F\x92", 8) + zip);
+  refused("nothing", "Leica Geosystems scan data (.ptg)");
+  fs::create_directory(work() / "whole.lsproj");
+  table.push_back({{"info", "whole.lsproj"}, "open it in FARO SCENE"});
+  expect_stated(table);
+  // The content decides: text is text under any name.
+  fs::copy_file(work() / "a.xyz", work() / "text.imp");
+  EXPECT_EQ(run({"info", "text.imp"}).status, 0);
+}
+
 TEST_F(MisuseTest, WhatIsNoFileOrTheWrongOne) {
   std::vector<Misuse> table = {
       {{"info", "folder"}, "is a folder"},

@@ -13,6 +13,7 @@
 #include "limen/bim/mesh/read_mesh_ply.h"
 #include "limen/bim/mesh/read_obj.h"
 #include "limen/files/mapped_file.h"
+#include "limen/files/vendor_format.h"
 
 namespace limen {
 namespace {
@@ -78,6 +79,7 @@ BimModel read_bim(const std::filesystem::path& path, Monitor& monitor,
   const MappedFile file(path);
   const Format* format = format_of(file.bytes());
   if (format == nullptr) {
+    refuse_vendor_format(file.bytes(), path);
     throw Error("this is not a model that limen can read", name,
                 "give an IFC file (IFC2X3 or IFC4, .ifc or .ifczip), or a mesh as OBJ or PLY with faces");
   }

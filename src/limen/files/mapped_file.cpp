@@ -11,6 +11,7 @@
 #include "limen/base/error.h"
 #include "limen/base/text.h"
 #include "limen/files/readable.h"
+#include "limen/files/vendor_format.h"
 
 namespace limen {
 namespace {
@@ -43,6 +44,7 @@ MappedFile::MappedFile(const std::filesystem::path& path) {
   if (fstat(file.value(), &status) != 0) {
     throw Error("cannot be examined: " + reason_of(errno), name, "check the path and its permissions");
   }
+  if (S_ISDIR(status.st_mode)) refuse_vendor_format({}, path);
   if (const std::string other = why_no_file(status.st_mode); !other.empty())
     throw Error(other, name,
                 S_ISDIR(status.st_mode) ? "name the file in it" : "write it to a file, and name that");

@@ -28,6 +28,8 @@
 #include "limen/cli/inputs/start_option.h"
 #include "limen/files/mapped_file.h"
 #include "limen/files/scan_in_file.h"
+#include "limen/files/vendor_format.h"
+#include "limen/io/cloud/open_points.h"
 #include "limen/project/project.h"
 #include "limen/project/run/work.h"
 #include "limen/project/state/scan_names.h"
@@ -236,8 +238,20 @@ int take_decision(const std::vector<std::string>& words, const Session& session)
   return kExitOk;
 }
 
+/// Throws Error for a file in the format of one maker's programs.
+void refuse_vendors(const std::vector<std::string>& names) {
+  for (const std::string& name : names) {
+    const std::string file = file_of_scan(name);
+    std::error_code ignored;
+    if (has_vendor_ending(file) && std::filesystem::exists(file, ignored))
+      static_cast<void>(point_format_of(MappedFile(file).bytes(), file));
+  }
+}
+
 /// A scan that cannot be read does not stop the others; where there is nothing else nothing is begun.
 void require_files(const ProjectCommandOptions& options) {
+  refuse_vendors(options.scans);
+  refuse_vendors(options.models);
   std::error_code ignored;
   bool any = options.scans.empty();
   for (const std::string& scan : options.scans) {

@@ -10,6 +10,7 @@
 
 #include "limen/base/error.h"
 #include "limen/base/text.h"
+#include "limen/files/vendor_format.h"
 #include "limen/io/e57/read_e57.h"
 #include "limen/io/las/las_header.h"
 #include "limen/io/las/read_las.h"
@@ -139,6 +140,7 @@ PointFormat point_format_of(std::string_view bytes, const std::filesystem::path&
     }
     if (text.matches(bytes)) return text.format;
   }
+  refuse_vendor_format(bytes, path);
   unknown_format(bytes, path.string());
 }
 
