@@ -146,6 +146,41 @@ TEST_F(NewcomerTest, AProjectNamesCopiesBeforeItsWork) {
   EXPECT_GE(project["notes"].size(), 2U);
 }
 
+TEST_F(NewcomerTest, AThinnedCopyIsNamedBeforeTheWork) {
+  ASSERT_EQ(run({"thin", "b.ply", "thin.las", "--spacing-m", "0.15"}).status, 0);
+  const ProgramRun pair = run({"register", "b.ply", "thin.las", "-o", "out", "--no-report"});
+  EXPECT_EQ(times_in(pair.err, "TARGET holds only points of SOURCE"), 1) << pair.err;
+  const ProgramRun turned = run({"register", "thin.las", "b.ply", "-o", "out", "--no-report"});
+  EXPECT_EQ(times_in(turned.err, "SOURCE holds only points of TARGET"), 1) << turned.err;
+  const ProgramRun other = run({"register", "thin.las", "a.ply", "-o", "out", "--no-report"});
+  EXPECT_EQ(times_in(other.err, "holds only points"), 0) << other.err;
+  const ProgramRun done = run({"project", "a.ply", "b.ply", "thin.las", "-o", "project"});
+  EXPECT_EQ(times_in(done.err, "thin.las holds only points of b.ply"), 1) << done.err;
+}
+
+TEST_F(NewcomerTest, AProjectNamesWhatIsNoScanInMetresAndGoesOn) {
+  write_changed("a.ply", "mm.xyz", [](const Place& x) { return Place{1e3 * x[0], 1e3 * x[1], 1e3 * x[2]}; });
+  write_changed("a.ply", "degrees.xyz", [](const Place& x) {
+    return Place{7.75 + 1.3e-5 * x[0], 48.58 + 9e-6 * x[1], x[2]};
+  });
+  write_changed("a.ply", "y_up.xyz", [](const Place& x) { return Place{x[0], x[2], -x[1]}; });
+  write_whole(work() / "ten.xyz", "0 0 0\n1 0 0\n2 0 0\n3 1 0\n4 1 0\n0 2 0\n0 3 1\n0 4 1\n1 1 2\n2 2 2\n");
+  const ProgramRun done =
+      run({"project", "a.ply", "b.ply", "mm.xyz", "degrees.xyz", "y_up.xyz", "ten.xyz", "-o", "project"});
+  EXPECT_NE(done.status, 2) << done.err;
+  for (const std::string line :
+       {"mm.xyz: cannot be read: mm.xyz: the points measure", "degrees of longitude and latitude",
+        "y_up.xyz: its y axis seems to point up", "ten.xyz: holds 10 points, too few"})
+    EXPECT_EQ(times_in(done.err, line), 1) << line << "\n" << done.err;
+  // A pair needs both sides: there it is an error, but for the axes.
+  EXPECT_EQ(run({"register", "mm.xyz", "b.ply", "-o", "out"}).status, 2);
+  EXPECT_EQ(run({"register", "b.ply", "degrees.xyz", "-o", "out"}).status, 2);
+  const ProgramRun up = run({"register", "b.ply", "y_up.xyz", "-o", "out", "--no-report"});
+  EXPECT_EQ(times_in(up.err, "TARGET: its y axis seems to point up"), 1) << up.err;
+  const ProgramRun alone = run({"project", "a.ply", "-o", "alone"});
+  EXPECT_EQ(times_in(alone.err, "is the only scan, so there is nothing to register it to"), 1) << alone.err;
+}
+
 TEST_F(NewcomerTest, AdviceNamesOptionsThatTheCommandHas) {
   // Nobody could have stood at 0,0,0 of it, and its numbers seem to be inches.
   write_changed("a.ply", "odd.xyz", [](const Place& x) {

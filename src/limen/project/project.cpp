@@ -96,15 +96,21 @@ class Run {
           scan_name(result_.scans[nodes_.front().scan])));
   }
 
-  /// Files of equal bytes are taken as one; a copy in another format is a scan of its own, which says nothing
-  /// new: the user has to decide.
+  /// Files of equal bytes are taken as one; a copy in another format, or with fewer points, is a scan of its
+  /// own, which says nothing new: the user has to decide.
   void note_copies() {
+    const auto name = [&](std::size_t k) { return scan_name(result_.scans[nodes_[k].scan]); };
     for (std::size_t b = 0; b < nodes_.size(); ++b) {
       for (std::size_t a = 0; a < b; ++a) {
+        const auto [less, more] =
+            std::minmax(a, b, [&](std::size_t i, std::size_t j) { return points_of(i) < points_of(j); });
         if (points_of(a) == points_of(b) && share_points(a, b))
-          note(fmt::format("{} and {} seem to hold the same {} points: leave one of them out",
-                           scan_name(result_.scans[nodes_[a].scan]), scan_name(result_.scans[nodes_[b].scan]),
-                           points_of(a)));
+          note(fmt::format("{} and {} seem to hold the same {} points: leave one of them out", name(a),
+                           name(b), points_of(a)));
+        else if (points_of(less) < points_of(more) && is_part_of(marks_[less], marks_[more]))
+          note(fmt::format(
+              "{} holds only points of {}, of which it seems a thinned copy or a part: leave one of them out",
+              name(less), name(more)));
       }
     }
   }
@@ -245,6 +251,7 @@ class Run {
       scan.points = record.points[k];
       result_.scans.push_back(std::move(scan));
       nodes_.push_back(std::move(node));
+      marks_.push_back(k < record.marks.size() ? record.marks[k] : std::vector<std::uint64_t>{});
     }
     settle_group(first);
   }
@@ -362,6 +369,7 @@ class Run {
   UserWords words_;
   ProjectStatus status_;
   std::vector<ProjectNode> nodes_;
+  std::vector<std::vector<std::uint64_t>> marks_;  ///< of the nodes, as they were read
   ProjectResult result_;
 };
 

@@ -3,6 +3,8 @@
 #include <utility>
 #include <vector>
 
+#include <fmt/format.h>
+
 #include "limen/base/error.h"
 #include "limen/base/parallel.h"
 #include "limen/base/run_both.h"
@@ -60,6 +62,11 @@ void require_plausible_size(const RegisterInput& input) {
   for (const PlacedScan& placed : input.scans) limen::require_plausible_size(placed.scan);
 }
 
+void note_up(const PreparedScan& side, const char* name, Monitor& monitor) {
+  const std::string hint = up_hint(side.upright_from_scan.row(2).transpose());
+  if (side.upright && !side.model && !hint.empty()) monitor.note(fmt::format("{}: {}", name, hint));
+}
+
 template <typename Source, typename Target>
 PreparedPair prepare_in_turn(Source&& source, Target&& target, const RegisterOptions& options,
                              std::vector<StageTime>& stages, Monitor& monitor) {
@@ -105,6 +112,8 @@ PreparedPair prepare_pair(Source&& source, Target&& target, const RegisterOption
 
 RegistrationResult register_and_picture(PreparedPair&& pair, const std::vector<StageTime>& stages,
                                         const RegisterOptions& options, Monitor& monitor) {
+  note_up(pair.source, "SOURCE", monitor);
+  note_up(pair.target, "TARGET", monitor);
   RegistrationResult result = register_prepared(pair, options, monitor);
   result.source_place = pair.source.place;
   result.target_place = pair.target.place;

@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "limen/io/cloud/point_sample.h"
 #include "limen/register/register.h"
@@ -13,8 +15,8 @@ namespace limen {
 /// Whether two names are of one file, or of files that are equal byte for byte.
 bool same_bytes(const std::string& a, const std::string& b);
 
-/// Notices where both sides of a registration are one scan. Sides are shown to it as they are read; a model
-/// is no scan.
+/// Notices where both sides of a registration are one scan, or one is a part or a thinned copy of the other.
+/// Sides are shown to it as they are read; a model is no scan.
 class SamePointsWatch {
  public:
   SamePointsWatch(std::string source, std::string target)
@@ -29,7 +31,8 @@ class SamePointsWatch {
  private:
   std::string source_;
   std::string target_;
-  PointSample sample_;  ///< of the source
+  PointSample sample_;                ///< of the source
+  std::vector<std::uint64_t> marks_;  ///< of the source
   std::string note_;
 };
 

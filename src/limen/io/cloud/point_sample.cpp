@@ -3,6 +3,9 @@
 #include "limen/io/cloud/point_sample.h"
 
 #include <algorithm>
+#include <cmath>
+
+#include "limen/base/random.h"
 
 namespace limen {
 namespace {
@@ -10,6 +13,16 @@ namespace {
 constexpr std::size_t kSampled = 64;
 /// Formats round to half a millimetre per axis, or less.
 constexpr double kSamePointM = 1e-3;
+/// Marks of a scan, so many that a hundredth of its points has some of them.
+constexpr std::size_t kMarks = 1024;
+constexpr double kMarkM = 1e-4;
+
+std::uint64_t number_of(const Vector3d& place) {
+  std::uint64_t number = 0;
+  for (const double x : place)
+    number = mix64(number ^ static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(x / kMarkM))));
+  return number;
+}
 
 bool stands_left_of(const Vector3d& point, double x) {
   return point.x() < x;
@@ -39,6 +52,39 @@ double PointSample::share_in(const Scan& scan) const {
     }
   }
   return 1.0 - static_cast<double>(left) / static_cast<double>(some_.size());
+}
+
+std::vector<std::uint64_t> point_marks(const Scan& scan) {
+  std::vector<std::uint64_t> marks;
+  std::uint64_t least_left_out = UINT64_MAX;
+  const auto cut = [&] {
+    std::sort(marks.begin(), marks.end());
+    marks.erase(std::unique(marks.begin(), marks.end()), marks.end());
+    if (marks.size() <= kMarks) return;
+    least_left_out = marks[kMarks];
+    marks.resize(kMarks);
+  };
+  for (const Vector3d& point : scan.points) {
+    const std::uint64_t number = number_of(scan.local_origin + point);
+    if (number < least_left_out) marks.push_back(number);
+    if (marks.size() >= 4 * kMarks) cut();
+  }
+  cut();
+  return marks;
+}
+
+bool is_part_of(const std::vector<std::uint64_t>& part, const std::vector<std::uint64_t>& whole) {
+  constexpr std::size_t kFewest = 6;
+  // Numbers beyond the last mark are not known, unless there are none.
+  const std::uint64_t last = whole.size() < kMarks ? UINT64_MAX : whole.back();
+  std::size_t asked = 0;
+  std::size_t shared = 0;
+  for (const std::uint64_t mark : part) {
+    if (mark > last) break;
+    ++asked;
+    if (std::binary_search(whole.begin(), whole.end(), mark)) ++shared;
+  }
+  return shared >= kFewest && 10 * shared > 8 * asked;
 }
 
 }  // namespace limen

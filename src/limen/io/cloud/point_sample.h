@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "limen/model/scan.h"
@@ -24,5 +25,12 @@ class PointSample {
   std::size_t points_ = 0;
   std::vector<Vector3d> some_;  ///< metres, world; by x
 };
+
+/// The least of the numbers of a scan's points, by which a part of it is known again: one that was cut or
+/// thinned and whose coordinates were not rounded to more than some micrometres. Ascending.
+std::vector<std::uint64_t> point_marks(const Scan& scan);
+
+/// Whether nearly all points of the scan with the marks `part` are points of the one with `whole` too.
+bool is_part_of(const std::vector<std::uint64_t>& part, const std::vector<std::uint64_t>& whole);
 
 }  // namespace limen

@@ -35,5 +35,23 @@ TEST(PointSample, AnotherScanOfTheSameRoomIsNoCopy) {
   EXPECT_FALSE(PointSample(Scan{}).is_of(Scan{}));
 }
 
+TEST(PointSample, APartIsKnownByItsMarks) {
+  const Scan scan = box_scan(20000, -1.0, 1.0);
+  RandomStream stream(8);
+  for (const std::uint32_t one_of : {2U, 10U, 60U}) {
+    Scan part;
+    part.local_origin = {50.0, 0.0, 7.0};
+    for (const Vector3d& point : scan.points) {
+      if (stream.below(one_of) == 0) part.points.push_back(scan.local_origin + point - part.local_origin);
+    }
+    EXPECT_TRUE(is_part_of(point_marks(part), point_marks(scan))) << one_of;
+    EXPECT_FALSE(is_part_of(point_marks(scan), point_marks(part))) << one_of;
+  }
+  Scan other = scan;
+  for (Vector3d& point : other.points) point *= 1.0 + 0.001 * stream.normal();
+  EXPECT_FALSE(is_part_of(point_marks(other), point_marks(scan)));
+  EXPECT_FALSE(is_part_of(point_marks(Scan{}), point_marks(scan)));
+}
+
 }  // namespace
 }  // namespace limen

@@ -11,6 +11,7 @@
 #include "limen/bim/read_bim.h"
 #include "limen/files/file_hash.h"
 #include "limen/files/scan_in_file.h"
+#include "limen/io/cloud/point_sample.h"
 #include "limen/io/cloud/read_scan.h"
 #include "limen/model/plausible_size.h"
 #include "limen/project/store/kept_notes.h"
@@ -78,6 +79,7 @@ FileRecord make_scan_features(const ProjectFile& file, const ProjectOptions& opt
     for (const std::string& doubt : doubts_about(scan))
       record.notes.push_back(read.scans.size() > 1 ? fmt::format("scan {}: {}", k, doubt) : doubt);
     record.points.push_back(scan.size());
+    record.marks.push_back(point_marks(scan));
     const std::string key = store.feature_key(file.key(), static_cast<int>(k));
     if (!store.has_picture(key)) into_store([&] { store.save_picture(key, picture_of(scan)); });
     if (store.has_features(key)) continue;

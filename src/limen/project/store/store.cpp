@@ -18,7 +18,7 @@ namespace limen {
 namespace {
 
 /// Of the files' contents; raise it where what is made, or how it is written, changes.
-constexpr std::uint32_t kFormat = 39;
+constexpr std::uint32_t kFormat = 40;
 
 std::string digits_of(const std::string& text) {
   std::uint64_t hash = 0x6c696d656e;
@@ -75,6 +75,8 @@ std::optional<FileRecord> Store::load_file(const FileKey& file) const {
     FileRecord record;
     for (const std::uint64_t points : reader.get_all<std::uint64_t>()) record.points.push_back(points);
     record.notes = reader.get_all<std::string>();
+    for (std::size_t k = 0; k < record.points.size(); ++k)
+      record.marks.push_back(reader.get_all<std::uint64_t>());
     return record;
   });
 }
@@ -83,6 +85,8 @@ void Store::save_file(const FileKey& file, const FileRecord& record) const {
   ByteWriter writer;
   writer.put_all(record.points);
   writer.put_all(record.notes);
+  for (std::size_t k = 0; k < record.points.size(); ++k)
+    writer.put_all(k < record.marks.size() ? record.marks[k] : std::vector<std::uint64_t>{});
   save(kFiles, file_key(file), writer.bytes());
 }
 

@@ -20,8 +20,9 @@ namespace limen {
 
 /// What is kept of a file beside the features of its scans.
 struct FileRecord {
-  std::vector<std::size_t> points;  ///< of each scan in it
-  std::vector<std::string> notes;   ///< without names of files (kept_notes.h)
+  std::vector<std::size_t> points;                     ///< of each scan in it
+  std::vector<std::string> notes;                      ///< without names of files (kept_notes.h)
+  std::vector<std::vector<std::uint64_t>> marks = {};  ///< of each scan (io/cloud/point_sample.h)
 };
 
 /// A file by its bytes, and by what it is taken as: the same bytes are read otherwise as a model.
