@@ -229,6 +229,31 @@ TEST_F(NewcomerTest, InfoTakesManyFilesAndAnswersWithATable) {
   EXPECT_NE(bad.out.find("b.ply"), std::string::npos) << "the others are shown: " << bad.out;
 }
 
+TEST_F(NewcomerTest, AFileOfSeveralScansIsSplit) {
+  write_two_in_one();
+  write_whole(work() / "shift.txt", "1 0 0 1000\n0 1 0 0\n0 0 1 0\n0 0 0 1\n");
+  const ProgramRun done = run({"transform", "shift.txt", "all.e57", "each", "--split"});
+  ASSERT_EQ(done.status, 0) << done.err;
+  const Json all = Json::parse(run({"info", "all.e57", "--json"}).out);
+  for (const std::size_t k : {0U, 1U}) {
+    const Json one = Json::parse(run({"info", "each/all_" + std::to_string(k) + ".e57", "--json"}).out);
+    ASSERT_EQ(one["scans"].size(), 1U);
+    EXPECT_EQ(one["scans"][0]["points"], all["scans"][k]["points"]);
+    EXPECT_NEAR(one["scans"][0]["low"][0].get<double>(), all["scans"][k]["low"][0].get<double>() + 1000.0,
+                1e-6);
+  }
+  ASSERT_EQ(run({"transform", "identity", "all.e57", "still", "--split"}).status, 0);
+  const Json still = Json::parse(run({"info", "still/all_1.e57", "--json"}).out);
+  EXPECT_EQ(still["scans"][0]["low"], all["scans"][1]["low"]);
+  // Each has its own pose by a project's result, without a word.
+  ASSERT_NE(run({"project", "all.e57", "-o", "again"}).status, 2);
+  const ProgramRun placed = run({"transform", "again/project.json", "-o", "placed"});
+  EXPECT_EQ(placed.status, 0) << placed.err;
+  EXPECT_TRUE(fs::exists(work() / "placed/all_1.e57"));
+  EXPECT_NE(run({"transform", "identity", "all.e57", "all2.e57", "--split"}).err.find("name of a folder"),
+            std::string::npos);
+}
+
 TEST_F(NewcomerTest, OneScanOfAFileIsNamedByItsNumberEverywhere) {
   write_two_in_one();
   const Json one = Json::parse(run({"info", "all.e57 #1", "--json"}).out);

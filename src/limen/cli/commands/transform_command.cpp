@@ -2,12 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limen/cli/commands/transform_command.h"
 
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include <fmt/format.h>
 
+#include "limen/base/atomic_file.h"
 #include "limen/base/error.h"
 #include "limen/base/length_unit.h"
 #include "limen/cli/inputs/frame_system.h"
@@ -15,6 +17,8 @@
 #include "limen/cli/inputs/scan_options.h"
 #include "limen/files/file_hash.h"
 #include "limen/files/scan_in_file.h"
+#include "limen/io/cloud/cloud_writers.h"
+#include "limen/io/cloud/open_points.h"
 #include "limen/io/cloud/transform_cloud.h"
 #include "limen/report/json/json_values.h"
 #include "limen/report/pose_file.h"
@@ -29,6 +33,7 @@ struct TransformOptions {
   std::string output;
   bool invert = false;
   bool force = false;
+  bool split = false;
   int alternative = 0;
   std::vector<std::string> merge;
   std::string crs;
@@ -86,18 +91,58 @@ Rigid3 read_pose(const TransformOptions& options, const PoseFile& pose) {
   return options.invert ? inverse(target_from_source) : target_from_source;
 }
 
+PoseFile unmoved() {
+  PoseFile pose;
+  pose.target_from_source = Rigid3{};
+  return pose;
+}
+
+/// A file for each scan with points: "all_0.e57", as project results are named, whatever the scans are
+/// called.
+TransformedCloud split_cloud(const TransformOptions& options, const Rigid3& target_from_source,
+                             const CoordinateSystem& system, const Session& session) {
+  if (!options.merge.empty())
+    throw Error("--split and --merge exclude each other", "--split", "give one of them");
+  if (has_cloud_ending(options.output))
+    throw Error("looks like a file name, but --split writes a file for each scan into a folder",
+                options.output, "give the name of a folder");
+  const std::filesystem::path input(options.cloud);
+  std::size_t scans = 0;
+  {
+    const OpenPoints opened(input);
+    scans = scans_with_points(opened.file()).size();
+  }
+  const OutputFolder folder(options.output);
+  const auto output = [&](std::size_t k) {
+    return folder.path() / fmt::format("{}_{}.e57", input.stem().string(), k);
+  };
+  for (std::size_t k = 0; k < scans; ++k) refuse_same_file(output(k).string(), options.cloud);
+  TransformedCloud all;
+  for (std::size_t k = 0; k < scans; ++k) {
+    TransformedCloud one =
+        move_stations({{input, k, target_from_source}}, output(k), *session.monitor, system);
+    all.points += one.points;
+    all.format = std::move(one.format);
+    for (const std::string& note : one.notes) all.notes.push_back(output(k).string() + ": " + note);
+  }
+  return all;
+}
+
 int run(const TransformOptions& options, const Session& session) {
   if (is_project(options.result))
     throw Error("is a project, which is transformed with -o OUT and takes no cloud", options.result,
                 fmt::format("use limen transform {} -o OUT, which moves all of its scans", options.result));
   refuse_same_file(options.output, options.cloud);
   refuse_same_file(options.output, options.result);
-  const PoseFile pose = read_pose_file(options.result);
+  const PoseFile pose = options.result == "identity" ? unmoved() : read_pose_file(options.result);
   const Rigid3 target_from_source = read_pose(options, pose);
   for (const std::string& other : options.merge) refuse_same_file(options.output, other);
   const CancelScope scope(*session.monitor);
-  const TransformedCloud cloud = merge_clouds({options.cloud, target_from_source}, options.merge,
-                                              options.output, *session.monitor, chosen_system(options.crs));
+  const CoordinateSystem system = chosen_system(options.crs);
+  const TransformedCloud cloud = options.split
+                                     ? split_cloud(options, target_from_source, system, session)
+                                     : merge_clouds({options.cloud, target_from_source}, options.merge,
+                                                    options.output, *session.monitor, system);
   if (options.alternative == 0) warn_of_doubt(pose, options.result, session);
   for (const std::string& note : cloud.notes) session.note(note);
   session.say(fmt::format("{} points moved; written to {}\n", cloud.points, options.output));
@@ -113,13 +158,16 @@ void add_transform_command(CommandLine& app, Session& session) {
       add_command(app, session, "transform",
                   "Move a cloud by the pose of a registration, and merge it with others if asked",
                   [options, &session] { return run(*options, session); });
-  command->add_option("RESULT", options->result, "result.json, or a text file with a 4 x 4 matrix")
+  command
+      ->add_option("RESULT", options->result,
+                   "result.json, a text file with a 4 x 4 matrix, or the word identity")
       ->required();
   command->add_option("CLOUD", options->cloud, "The cloud to move, of any format limen reads")->required();
   command
       ->add_option(
           "OUT", options->output,
-          "The file to write: of CLOUD's own format, which keeps all of it, or .ply, .las, .laz, .e57, .xyz")
+          "The file to write: of CLOUD's own format, which keeps all of it, or .ply, .las, .laz, .e57, .xyz; "
+          "with --split a folder")
       ->required();
   command
       ->add_option(
@@ -128,6 +176,8 @@ void add_transform_command(CommandLine& app, Session& session) {
       ->type_name("FILE")
       ->type_size(1)
       ->take_all();
+  command->add_flag("--split", options->split,
+                    "Write each scan of CLOUD to an E57 of its own, into the folder OUT");
   command->add_flag("--invert", options->invert, "Move from the target's frame to the source's instead");
   add_alternative_option(*command, options->alternative);
   add_crs_option(*command, options->crs);

@@ -16,7 +16,6 @@
 
 #include "limen/base/atomic_file.h"
 #include "limen/base/error.h"
-#include "limen/base/text.h"
 #include "limen/cli/inputs/frame_system.h"
 #include "limen/cli/inputs/project_trajectories.h"
 #include "limen/cli/inputs/registered_file.h"
@@ -61,10 +60,7 @@ void check_words(const ProjectMoveOptions& options) {
       throw Error(fmt::format("{} does not apply to a project", name), options.project,
                   "leave it out: every scan has one pose in the frame");
   }
-  const std::string ending = lower_case(fs::path(options.output).extension().string());
-  const bool cloud = !ending.empty() && (is_cloud_ending(options.output) || ending == ".pcd" ||
-                                         ending == ".ptx" || ending == ".pts");
-  if (cloud && !options.merge)
+  if (has_cloud_ending(options.output) && !options.merge)
     throw Error("looks like a file name, but without --merge each scan is written to a file of its own",
                 options.output, "add --merge to write one file, or give the name of a folder");
 }

@@ -40,6 +40,12 @@ std::string first_words(const std::string& format) {
   return format.substr(0, format.find(','));
 }
 
+/// Places that a text of UTF-8 takes, wide signs counted as one.
+std::size_t width_of(const std::string& text) {
+  return static_cast<std::size_t>(std::count_if(
+      text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
+}
+
 std::vector<InfoRow> rows_of(const Json& file) {
   const std::string name = file["file"];
   if (file.contains("error")) return {{name, "", "", "", "", "cannot be read"}};
@@ -65,15 +71,15 @@ std::string info_table(const Json& files) {
   }
   std::array<std::size_t, kInfoColumns> widths{};
   for (const InfoRow& row : rows) {
-    for (std::size_t k = 0; k < kInfoColumns; ++k) widths[k] = std::max(widths[k], row[k].size());
+    for (std::size_t k = 0; k < kInfoColumns; ++k) widths[k] = std::max(widths[k], width_of(row[k]));
   }
   constexpr std::size_t kPoints = 2;  // numbers stand under one another by their last digit
   std::string text;
   for (const InfoRow& row : rows) {
     std::string line;
     for (std::size_t k = 0; k < kInfoColumns; ++k) {
-      line += k == kPoints ? fmt::format("{:>{}}  ", row[k], widths[k])
-                           : fmt::format("{:<{}}  ", row[k], widths[k]);
+      const std::string blanks(widths[k] - width_of(row[k]), ' ');
+      line += (k == kPoints ? blanks + row[k] : row[k] + blanks) + "  ";
     }
     text += line.substr(0, line.find_last_not_of(' ') + 1) + "\n";
   }

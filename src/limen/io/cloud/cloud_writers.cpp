@@ -43,4 +43,10 @@ bool is_cloud_ending(const std::filesystem::path& path) {
          ending.empty();
 }
 
+bool has_cloud_ending(const std::filesystem::path& path) {
+  const std::string ending = ending_of(path);
+  return ending == ".pcd" || ending == ".ptx" || ending == ".pts" ||
+         (!ending.empty() && is_cloud_ending(path));
+}
+
 }  // namespace limen

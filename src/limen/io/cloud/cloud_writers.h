@@ -16,4 +16,7 @@ std::unique_ptr<CloudWriter> make_cloud_writer(const std::filesystem::path& path
 /// Whether make_cloud_writer knows the ending.
 bool is_cloud_ending(const std::filesystem::path& path);
 
+/// Whether a name ends as that of any file of points does.
+bool has_cloud_ending(const std::filesystem::path& path);
+
 }  // namespace limen
