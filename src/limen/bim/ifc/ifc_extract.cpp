@@ -3,7 +3,6 @@
 #include "limen/bim/ifc/ifc_extract.h"
 
 #include <algorithm>
-#include <charconv>
 #include <optional>
 #include <unordered_set>
 #include <vector>
@@ -12,20 +11,6 @@
 
 namespace limen {
 namespace {
-
-/// Calls work(reference) for each #12 of the arguments, texts and comments passed over.
-template <typename Work>
-void for_each_reference(std::string_view arguments, const Work& work) {
-  bool in_text = false;
-  for (std::size_t at = 0; at < arguments.size(); ++at) {
-    if (arguments[at] == '\'') in_text = !in_text;
-    if (in_text || arguments[at] != '#') continue;
-    std::int64_t id = 0;
-    const auto [end, error] =
-        std::from_chars(arguments.data() + at + 1, arguments.data() + arguments.size(), id);
-    if (error == std::errc{}) work(id);
-  }
-}
 
 bool is_type(const StepEntity* entity, std::string_view upper) {
   return entity != nullptr && entity->type.size() == upper.size() &&
@@ -38,30 +23,22 @@ bool is_ifc_type(std::string_view type) {
          (type[2] == 'C' || type[2] == 'c');
 }
 
-/// IfcProduct.Representation is the seventh argument of every product.
-bool has_shape(const StepFile& file, const StepEntity& entity) {
-  if (entity.arguments.size() < 20) return false;
-  const std::vector<std::string_view> arguments = step_arguments(entity.arguments);
-  if (arguments.size() < 7) return false;
-  const std::optional<std::int64_t> shape = step_reference(arguments[6]);
-  return shape && is_type(file.find(*shape), "IFCPRODUCTDEFINITIONSHAPE");
-}
-
 /// All that the project, its units and the products refer to, over any number of steps.
-std::unordered_set<std::int64_t> needed(const StepFile& file) {
+std::unordered_set<std::int64_t> needed(const StepFile& file, const std::optional<Ifc4x3>& newer) {
   std::unordered_set<std::int64_t> ids;
   std::vector<std::int64_t> open;
   const auto add = [&](std::int64_t id) {
     if (ids.insert(id).second) open.push_back(id);
   };
   for (const StepEntity& entity : file.entities()) {
-    if (is_type(&entity, "IFCPROJECT") || is_type(&entity, "IFCUNITASSIGNMENT") || has_shape(file, entity))
+    if (is_type(&entity, "IFCPROJECT") || is_type(&entity, "IFCUNITASSIGNMENT") ||
+        (has_ifc_shape(file, entity) && !(newer && newer->left_out(entity.id))))
       add(entity.id);
   }
   while (!open.empty()) {
     const StepEntity* entity = file.find(open.back());
     open.pop_back();
-    if (entity != nullptr) for_each_reference(entity->arguments, add);
+    if (entity != nullptr) for_each_step_reference(entity->arguments, add);
   }
   return ids;
 }
@@ -143,12 +120,20 @@ std::string project_for(const StepFile& file) {
 
 }  // namespace
 
-std::string text_of_shapes(const StepFile& file) {
+bool has_ifc_shape(const StepFile& file, const StepEntity& entity) {
+  if (entity.arguments.size() < 20) return false;
+  const std::vector<std::string_view> arguments = step_arguments(entity.arguments);
+  if (arguments.size() < 7) return false;
+  const std::optional<std::int64_t> shape = step_reference(arguments[6]);
+  return shape && is_type(file.find(*shape), "IFCPRODUCTDEFINITIONSHAPE");
+}
+
+std::string text_of_shapes(const StepFile& file, const std::optional<Ifc4x3>& newer) {
   std::string text =
       "ISO-10303-21;\nHEADER;\nFILE_DESCRIPTION((''),'2;1');\nFILE_NAME('','',(''),(''),'','','');\nFILE_"
       "SCHEMA(('";
-  text += file.schema() + "'));\nENDSEC;\nDATA;\n";
-  const std::unordered_set<std::int64_t> ids = needed(file);
+  text += (newer ? "IFC4" : file.schema()) + "'));\nENDSEC;\nDATA;\n";
+  const std::unordered_set<std::int64_t> ids = needed(file, newer);
   ArgumentWriter writer(file, text);
   for (const StepEntity& entity : file.entities()) {
     CancelScope::check();
@@ -156,10 +141,15 @@ std::string text_of_shapes(const StepFile& file) {
     text += '#';
     text += std::to_string(entity.id);
     text += '=';
-    writer.write(entity.type);
-    text += '(';
-    writer.write(entity.arguments);
-    text += ");\n";
+    if (newer) {
+      writer.write(Ifc4x3::in_ifc4(entity));
+    } else {
+      writer.write(entity.type);
+      text += '(';
+      writer.write(entity.arguments);
+      text += ')';
+    }
+    text += ";\n";
   }
   text += project_for(file);
   return text + "ENDSEC;\nEND-ISO-10303-21;\n";

@@ -31,7 +31,12 @@ constexpr std::string_view kElementTypes =
     "Fan Valve DuctSegment DuctFitting PipeSegment PipeFitting CableCarrierSegment "
     "CableCarrierFitting CableSegment AirTerminal AirTerminalBox WasteTerminal "
     "FireSuppressionTerminal StackTerminal Sensor Alarm Controller Actuator "
-    "CommunicationsAppliance AudioVisualAppliance ";
+    "CommunicationsAppliance AudioVisualAppliance "
+    // Of IFC4X3:
+    "BuiltElement Course Kerb Pavement Rail TrackElement Bearing DeepFoundation CaissonFoundation "
+    "EarthworksElement EarthworksFill ReinforcedSoil Sign Signal ImpactProtectionDevice TendonConduit "
+    "ConveyorSegment LiquidTerminal ElectricFlowTreatmentDevice MobileTelecommunicationsAppliance "
+    "DistributionBoard MooringDevice NavigationElement TransportationDevice Vehicle ";
 
 }  // namespace
 

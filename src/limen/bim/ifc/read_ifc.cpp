@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -14,6 +15,7 @@
 
 #include "limen/base/error.h"
 #include "limen/base/text.h"
+#include "limen/bim/ifc/ifc4x3.h"
 #include "limen/bim/ifc/ifc_extract.h"
 #include "limen/bim/ifc/ifc_process.h"
 #include "limen/bim/ifc/ifc_stream.h"
@@ -44,7 +46,7 @@ void require_schema(const StepFile& file, const std::string& name) {
   if (schema.compare(0, 3, "IFC") != 0)
     throw Error(fmt::format("this is a STEP file of schema {}, not a building model", schema.substr(0, 60)),
                 name, kWayRound);
-  const bool known = schema.compare(0, 5, "IFC2X") == 0 ||
+  const bool known = schema.compare(0, 5, "IFC2X") == 0 || Ifc4x3::is_schema(schema) ||
                      (schema.compare(0, 4, "IFC4") == 0 && schema.compare(0, 5, "IFC4X") != 0);
   if (!known)
     throw Error(fmt::format("the schema {} is not supported", schema.substr(0, 60)), name, kWayRound);
@@ -274,7 +276,12 @@ RawModel read_ifc(std::string_view bytes, const std::string& name, Monitor& moni
   IfcStructure structure = read_ifc_structure(file);
   monitor.throw_if_cancelled();
   std::vector<std::string> warnings;
-  IfcShapes shapes = ShapeSource(text_of_shapes(file), name, monitor).get(warnings);
+  const std::optional<Ifc4x3> newer =
+      Ifc4x3::is_schema(file.schema()) ? std::optional<Ifc4x3>(file) : std::nullopt;
+  if (newer && !newer->types_left_out().empty())
+    warnings.push_back(fmt::format("{} is read as IFC4; left out is what needs {}", file.schema(),
+                                   fmt::join(newer->types_left_out(), ", ")));
+  IfcShapes shapes = ShapeSource(text_of_shapes(file, newer), name, monitor).get(warnings);
   RawModel model = Assembly(file, std::move(structure), std::move(shapes)).assemble();
   model.head.name = name;
   model.head.schema = file.schema();

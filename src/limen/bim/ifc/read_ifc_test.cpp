@@ -280,8 +280,60 @@ TEST_F(ReadIfc, AWallWithoutItsShapeIsNamed) {
   EXPECT_GT(area_of(model, 2), 26.0);
 }
 
+TEST_F(ReadIfc, BuildingsOfIfc4x3AreReadAsIfc4) {
+  WallFile file;
+  const BimModel before = model_of(text_of(file));
+  file.schema = "IFC4X3_ADD2";
+  // A pyramid with its flag before the normals, tags behind the points, a type and a unit's name that IFC4
+  // lacks.
+  file.more =
+      "#200=IFCCARTESIANPOINTLIST3D(((0.,0.,0.),(4.,0.,0.),(0.,3.,0.),(0.,0.,2.)),$);\n"
+      "#201=IFCTRIANGULATEDFACESET(#200,.T.,((0.,0.,1.),(1.,0.,0.),(0.,1.,0.),(0.,0.,1.)),((1,3,2),(1,2,4),("
+      "2,3,4),"
+      "(3,1,4)),$);\n"
+      "#202=IFCSHAPEREPRESENTATION(#5,'Body','Tessellation',(#201));\n#203=IFCPRODUCTDEFINITIONSHAPE($,$,(#"
+      "202));\n"
+      "#204=IFCCOURSE('0000000000000000000030',$,'C',$,$,#13,#203,$,.PAVEMENT.);\n"
+      "#205=IFCDERIVEDUNITELEMENT(#7,2);\n#206=IFCDERIVEDUNIT((#205),.USERDEFINED.,'u','name');\n";
+  std::string text = text_of(file);
+  text.replace(text.find("((#7,#8))"), 9, "((#7,#8,#206))");
+  const BimModel model = model_of(text);
+  EXPECT_EQ(model.schema, "IFC4X3_ADD2");
+  ASSERT_EQ(model.elements.size(), before.elements.size() + 1);
+  EXPECT_EQ(model.warnings, before.warnings);
+  for (std::size_t k = 0; k < before.elements.size(); ++k) {
+    EXPECT_EQ(model.elements[k].type, before.elements[k].type);
+    EXPECT_NEAR(area_of(model, static_cast<std::int32_t>(k)), area_of(before, static_cast<std::int32_t>(k)),
+                1e-9);
+  }
+  EXPECT_EQ(model.openings.size(), before.openings.size());
+  EXPECT_EQ(model.spaces.size(), before.spaces.size());
+  EXPECT_EQ(model.elements.back().type, "IfcCourse");
+  EXPECT_NEAR(area_of(model, static_cast<std::int32_t>(before.elements.size())),
+              6.0 + 4.0 + 3.0 + 0.5 * Vector3d(-4, 3, 0).cross(Vector3d(-4, 0, 2)).norm(), 1e-6);
+}
+
+TEST_F(ReadIfc, WhatIfc4DoesNotKnowIsLeftOutAndNamed) {
+  WallFile file;
+  file.schema = "IFC4X3";
+  file.more =
+      "#200=IFCLINEARPLACEMENT($,#201,$);\n#201=IFCAXIS2PLACEMENTLINEAR(#2,$,$);\n"
+      "#202=IFCSLAB('0000000000000000000031',$,'far',$,$,#200,#67,$,.FLOOR.);\n"
+      "#203=IFCSECTIONEDSOLIDHORIZONTAL(#2,(),());\n"
+      "#204=IFCSHAPEREPRESENTATION(#5,'Body','AdvancedSweptSolid',(#203,#65));\n"
+      "#205=IFCPRODUCTDEFINITIONSHAPE($,$,(#204));\n"
+      "#206=IFCBEAM('0000000000000000000032',$,'half',$,$,#13,#205,$,.BEAM.);\n";
+  const BimModel model = model_of(text_of(file));
+  ASSERT_GE(model.warnings.size(), 3U);
+  EXPECT_EQ(model.warnings[0],
+            "IFC4X3 is read as IFC4; left out is what needs IFCLINEARPLACEMENT, IFCSECTIONEDSOLIDHORIZONTAL");
+  EXPECT_EQ(model.warnings[1], "#202 IfcSlab has no shape that can be read");
+  EXPECT_EQ(model.warnings[2], "#206 IfcBeam has no shape that can be read");
+  EXPECT_NEAR(area_of(model, 0), wall_area(), 2e-3);
+}
+
 TEST_F(ReadIfc, OtherSchemasAndNoGeometryAreRefused) {
-  for (const char* schema : {"IFC4X3_ADD2", "IFC4X3", "AUTOMOTIVE_DESIGN", ""}) {
+  for (const char* schema : {"IFC4X1", "IFC4X3_RC2", "IFC5", "AUTOMOTIVE_DESIGN", ""}) {
     WallFile file;
     file.schema = schema;
     try {

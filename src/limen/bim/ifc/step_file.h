@@ -2,11 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <charconv>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <unordered_map>
 #include <vector>
 
@@ -62,6 +64,20 @@ class StepFile {
 
 /// The arguments between the outermost commas, blanks trimmed.
 std::vector<std::string_view> step_arguments(std::string_view arguments);
+
+/// Calls work(id) for each #12 of the arguments, texts passed over.
+template <typename Work>
+void for_each_step_reference(std::string_view arguments, const Work& work) {
+  bool in_text = false;
+  for (std::size_t at = 0; at < arguments.size(); ++at) {
+    if (arguments[at] == '\'') in_text = !in_text;
+    if (in_text || arguments[at] != '#') continue;
+    std::int64_t id = 0;
+    const auto [end, error] =
+        std::from_chars(arguments.data() + at + 1, arguments.data() + arguments.size(), id);
+    if (error == std::errc{}) work(id);
+  }
+}
 
 /// What one argument says; nothing where it says something else.
 std::optional<std::int64_t> step_reference(std::string_view argument);  ///< #12

@@ -1,0 +1,148 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/bim/ifc/ifc4x3.h"
+
+#include <algorithm>
+#include <optional>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "limen/base/progress.h"
+#include "limen/base/text.h"
+#include "limen/bim/ifc/ifc_extract.h"
+#include "limen/bim/ifc/ifc_types.h"
+
+namespace limen {
+namespace {
+
+/// Entities of places and shapes that are the same in both, but for those that in_ifc4() rewrites; each
+/// without its IFC.
+constexpr std::string_view kSame =
+    "CARTESIANPOINT DIRECTION VECTOR AXIS1PLACEMENT AXIS2PLACEMENT2D AXIS2PLACEMENT3D LOCALPLACEMENT "
+    "CARTESIANTRANSFORMATIONOPERATOR2D CARTESIANTRANSFORMATIONOPERATOR2DNONUNIFORM "
+    "CARTESIANTRANSFORMATIONOPERATOR3D CARTESIANTRANSFORMATIONOPERATOR3DNONUNIFORM "
+    "PRODUCTDEFINITIONSHAPE SHAPEREPRESENTATION REPRESENTATIONMAP MAPPEDITEM GEOMETRICREPRESENTATIONCONTEXT "
+    "GEOMETRICREPRESENTATIONSUBCONTEXT LINE POLYLINE CIRCLE ELLIPSE TRIMMEDCURVE COMPOSITECURVE "
+    "COMPOSITECURVESEGMENT INDEXEDPOLYCURVE BSPLINECURVEWITHKNOTS RATIONALBSPLINECURVEWITHKNOTS "
+    "CARTESIANPOINTLIST2D CARTESIANPOINTLIST3D PLANE CYLINDRICALSURFACE BSPLINESURFACEWITHKNOTS "
+    "RATIONALBSPLINESURFACEWITHKNOTS SURFACEOFLINEAREXTRUSION SURFACEOFREVOLUTION ARBITRARYCLOSEDPROFILEDEF "
+    "ARBITRARYOPENPROFILEDEF ARBITRARYPROFILEDEFWITHVOIDS RECTANGLEPROFILEDEF RECTANGLEHOLLOWPROFILEDEF "
+    "ROUNDEDRECTANGLEPROFILEDEF CIRCLEPROFILEDEF CIRCLEHOLLOWPROFILEDEF ELLIPSEPROFILEDEF ISHAPEPROFILEDEF "
+    "LSHAPEPROFILEDEF TSHAPEPROFILEDEF USHAPEPROFILEDEF CSHAPEPROFILEDEF ZSHAPEPROFILEDEF "
+    "TRAPEZIUMPROFILEDEF DERIVEDPROFILEDEF COMPOSITEPROFILEDEF EXTRUDEDAREASOLID REVOLVEDAREASOLID "
+    "SWEPTDISKSOLID BOOLEANRESULT BOOLEANCLIPPINGRESULT HALFSPACESOLID POLYGONALBOUNDEDHALFSPACE "
+    "BOXEDHALFSPACE CSGSOLID BLOCK SPHERE RIGHTCIRCULARCYLINDER RIGHTCIRCULARCONE RECTANGULARPYRAMID "
+    "FACETEDBREP FACETEDBREPWITHVOIDS ADVANCEDBREP ADVANCEDBREPWITHVOIDS CLOSEDSHELL OPENSHELL "
+    "CONNECTEDFACESET FACE FACESURFACE ADVANCEDFACE FACEBOUND FACEOUTERBOUND POLYLOOP EDGELOOP ORIENTEDEDGE "
+    "EDGECURVE EDGE VERTEXPOINT FACEBASEDSURFACEMODEL SHELLBASEDSURFACEMODEL POLYGONALFACESET "
+    "TRIANGULATEDFACESET INDEXEDPOLYGONALFACE INDEXEDPOLYGONALFACEWITHVOIDS BOUNDINGBOX GEOMETRICSET "
+    "GEOMETRICCURVESET ";
+
+/// Products that are no elements, and are kept as they are.
+constexpr std::string_view kSpatial = "OPENINGELEMENT SPACE SITE BUILDING BUILDINGSTOREY ";
+
+bool is_one_of(std::string_view words, std::string_view ifc_type) {
+  static constexpr std::string_view kIfc = "IFC";
+  if (ifc_type.substr(0, kIfc.size()) != kIfc) return false;
+  const std::string word = std::string(ifc_type.substr(kIfc.size())) + " ";
+  for (std::size_t at = words.find(word); at != std::string_view::npos; at = words.find(word, at + 1)) {
+    if (at == 0 || words[at - 1] == ' ') return true;
+  }
+  return false;
+}
+
+/// Finds what cannot be read in all that an entity refers to, each entity looked at once.
+class Search {
+ public:
+  Search(const StepFile& file, std::set<std::string>& types) : file_(file), types_(types) {}
+
+  bool is_good(std::int64_t root) {
+    std::vector<std::pair<std::int64_t, bool>> open{{root, false}};
+    while (!open.empty()) {
+      const auto [id, entered] = open.back();
+      open.pop_back();
+      const StepEntity* entity = file_.find(id);
+      if (entity == nullptr) continue;  // what is not there is told of elsewhere
+      if (!entered && !good_.emplace(id, true).second) continue;
+      if (entered) {
+        for_each_step_reference(entity->arguments, [&, here = id](std::int64_t part) {
+          const auto known = good_.find(part);
+          if (known != good_.end() && !known->second) good_[here] = false;
+        });
+        continue;
+      }
+      const std::string type = upper_case(entity->type);
+      if (!is_known(type)) {
+        good_[id] = false;
+        types_.insert(type);
+        continue;
+      }
+      open.emplace_back(id, true);
+      for_each_step_reference(entity->arguments, [&](std::int64_t part) { open.emplace_back(part, false); });
+    }
+    const auto found = good_.find(root);
+    return found == good_.end() || found->second;
+  }
+
+ private:
+  bool is_known(const std::string& type) {
+    const auto [found, is_new] = known_.emplace(type, false);
+    if (is_new) found->second = is_one_of(kSame, type);
+    return found->second;
+  }
+
+  const StepFile& file_;
+  std::set<std::string>& types_;
+  std::unordered_map<std::int64_t, bool> good_;
+  std::unordered_map<std::string, bool> known_;
+};
+
+}  // namespace
+
+bool Ifc4x3::is_schema(std::string_view schema) {
+  return schema == "IFC4X3" || schema == "IFC4X3_TC1" || schema == "IFC4X3_ADD1" || schema == "IFC4X3_ADD2";
+}
+
+Ifc4x3::Ifc4x3(const StepFile& file) {
+  Search search(file, types_);
+  for (const StepEntity& entity : file.entities()) {
+    CancelScope::check();
+    if (!has_ifc_shape(file, entity)) continue;
+    const std::string type = upper_case(entity.type);
+    const std::vector<std::string_view> arguments = step_arguments(entity.arguments);
+    bool good = !element_type_named(type).empty() || is_one_of(kSpatial, type);
+    if (!good) types_.insert(type);
+    for (const std::size_t part : {5U, 6U}) {  // place and shape
+      const std::optional<std::int64_t> id = step_reference(arguments[part]);
+      good = good && (!id || search.is_good(*id));
+    }
+    if (!good) products_.insert(entity.id);
+  }
+}
+
+std::string Ifc4x3::in_ifc4(const StepEntity& entity) {
+  const std::string type = upper_case(entity.type);
+  std::vector<std::string_view> arguments = step_arguments(entity.arguments);
+  const auto written = [&](std::string_view name) {
+    return fmt::format("{}({})", name, fmt::join(arguments, ","));
+  };
+  if (!element_type_named(type).empty() && arguments.size() >= 7) {
+    arguments.resize(7);
+    arguments.insert(arguments.end(), {"$", "$"});
+    return written("IFCBUILDINGELEMENTPROXY");
+  }
+  // Newer last arguments: the points' tags, the unit's name.
+  if ((type == "IFCCARTESIANPOINTLIST2D" || type == "IFCCARTESIANPOINTLIST3D") && arguments.size() == 2)
+    arguments.pop_back();
+  if (type == "IFCDERIVEDUNIT" && arguments.size() == 4) arguments.pop_back();
+  // Closed comes before the normals now.
+  if (type == "IFCTRIANGULATEDFACESET" && arguments.size() == 5 &&
+      (arguments[1].substr(0, 1) == "." || arguments[2].substr(0, 1) == "("))
+    std::swap(arguments[1], arguments[2]);
+  return written(type);
+}
+
+}  // namespace limen
