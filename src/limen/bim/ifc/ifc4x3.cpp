@@ -44,6 +44,10 @@ constexpr std::string_view kSame =
 /// Products that are no elements, and are kept as they are.
 constexpr std::string_view kSpatial = "OPENINGELEMENT SPACE SITE BUILDING BUILDINGSTOREY ";
 
+/// Products that are not read from IFC4 either.
+constexpr std::string_view kNotDrawn =
+    "ANNOTATION GRID DISTRIBUTIONPORT VIRTUALELEMENT VOIDINGFEATURE SPATIALZONE EXTERNALSPATIALELEMENT ";
+
 bool is_one_of(std::string_view words, std::string_view ifc_type) {
   static constexpr std::string_view kIfc = "IFC";
   if (ifc_type.substr(0, kIfc.size()) != kIfc) return false;
@@ -114,7 +118,7 @@ Ifc4x3::Ifc4x3(const StepFile& file) {
     const std::string type = upper_case(entity.type);
     const std::vector<std::string_view> arguments = step_arguments(entity.arguments);
     bool good = !element_type_named(type).empty() || is_one_of(kSpatial, type);
-    if (!good) types_.insert(type);
+    if (!good && !is_one_of(kNotDrawn, type)) types_.insert(type);
     for (const std::size_t part : {5U, 6U}) {  // place and shape
       const std::optional<std::int64_t> id = step_reference(arguments[part]);
       good = good && (!id || search.is_good(*id));
