@@ -120,10 +120,9 @@ WrittenClouds write_stations(const std::vector<PlacedCloud>& stations, const std
   for (const PlacedCloud& station : stations) {
     const OpenPoints& input = *station.input;
     if (is_copied(input, output) && !station.bend) {
-      if (opened != &input) original.emplace(input.bytes(), input.path().string());
+      if (opened != &input) original.emplace(input.bytes(), input.name(), [&input] { input.forget(); });
       opened = &input;
       writer.copy(*original, input.number_in_file(station.cloud), station.target_from_world, system, monitor);
-      input.forget();
       advance(input.file().clouds()[station.cloud].points);
       continue;
     }

@@ -22,8 +22,8 @@ constexpr std::size_t kBlobHeaderBytes = 16;
 /// Copies sections of one file to another; each gives its new physical offset.
 class SectionCopy {
  public:
-  SectionCopy(const E57Pages& from, E57PageWriter& to, Monitor& monitor)
-      : from_(from), to_(to), monitor_(monitor) {}
+  SectionCopy(const E57Pages& from, E57PageWriter& to, const std::function<void()>& forget, Monitor& monitor)
+      : from_(from), to_(to), forget_(forget), monitor_(monitor) {}
 
   std::uint64_t blob(std::uint64_t physical) {
     auto [at, end] = section_at(physical, kBlobHeaderBytes, 0);
@@ -31,7 +31,7 @@ class SectionCopy {
     constexpr std::uint64_t kAtOnce = std::uint64_t{1} << 20U;
     while (at < end) {
       const std::uint64_t step = std::min(kAtOnce, end - at);
-      to_.append(bytes(at, step));
+      append(bytes(at, step));
       at += step;
     }
     to_.fill_word();
@@ -52,8 +52,7 @@ class SectionCopy {
         fail(fmt::format("a packet would have {} bytes, which is impossible", length), at);
       std::string packet = bytes(at, length);
       if (packet[0] == 0) packet = std::string{2, 0} + packet.substr(2, 2) + std::string(length - 4, '\0');
-      to_.append(packet);
-      monitor_.throw_if_cancelled();
+      append(packet);
       at += length;
     }
     to_.fill_word();
@@ -61,6 +60,14 @@ class SectionCopy {
   }
 
  private:
+  void append(const std::string& piece) {
+    constexpr std::uint64_t kRemembered = std::uint64_t{16} << 20U;
+    to_.append(piece);
+    monitor_.throw_if_cancelled();
+    if ((kept_ += piece.size()) < kRemembered) return;
+    kept_ = 0;
+    if (forget_) forget_();
+  }
   [[noreturn]] void fail(const std::string& what, std::uint64_t logical) const {
     throw Error(what, fmt::format("{}, byte {}", from_.name(), from_.physical_of(logical)), kE57CopyAgain);
   }
@@ -100,7 +107,9 @@ class SectionCopy {
 
   const E57Pages& from_;
   E57PageWriter& to_;
+  const std::function<void()>& forget_;
   Monitor& monitor_;
+  std::uint64_t kept_ = 0;  ///< bytes that were read since forget_ was called
 };
 
 std::vector<pugi::xml_node> elements_of(const pugi::xml_node& parent) {
@@ -119,8 +128,8 @@ void set_pose(pugi::xml_node element, const Rigid3& pose) {
 
 }  // namespace
 
-E57Original::E57Original(std::string_view bytes, const std::string& name)
-    : pages_(bytes, name), tree_(std::make_unique<pugi::xml_document>()) {
+E57Original::E57Original(std::string_view bytes, const std::string& name, std::function<void()> forget)
+    : pages_(bytes, name), forget_(std::move(forget)), tree_(std::make_unique<pugi::xml_document>()) {
   const std::string xml = e57_xml(pages_);
   document_ = parse_e57_document(xml, name);  // throws where the next would fail
   tree_->load_buffer(xml.data(), xml.size(), pugi::parse_default | pugi::parse_ws_pcdata_single,
@@ -162,7 +171,7 @@ std::string E57Original::copied(const pugi::xml_node& element, const Rigid3* pos
   pugi::xml_document copy;
   pugi::xml_node mine = copy.append_copy(element);
   if (pose != nullptr) set_pose(mine, *pose);
-  SectionCopy sections(pages_, file, monitor);
+  SectionCopy sections(pages_, file, forget_, monitor);
   const auto nodes = copy.select_nodes("//*[@fileOffset]");
   for (const pugi::xpath_node& found : nodes) {
     const pugi::xml_node node = found.node();

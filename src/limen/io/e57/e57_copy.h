@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -28,8 +29,9 @@ namespace limen {
 /// are verified; large images and points are never in memory as a whole.
 class E57Original {
  public:
-  /// `bytes` must outlive this. Throws Error where the description is damaged.
-  E57Original(std::string_view bytes, const std::string& name);
+  /// `bytes` must outlive this; `forget` gives the memory of those that were read back. Throws Error where
+  /// the description is damaged.
+  E57Original(std::string_view bytes, const std::string& name, std::function<void()> forget = {});
   E57Original(const E57Original&) = delete;
   E57Original& operator=(const E57Original&) = delete;
   ~E57Original();
@@ -46,6 +48,7 @@ class E57Original {
                      Monitor& monitor) const;
 
   E57Pages pages_;
+  std::function<void()> forget_;
   E57Document document_;
   std::unique_ptr<pugi::xml_document> tree_;
   std::vector<pugi::xml_node> scans_;
