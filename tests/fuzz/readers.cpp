@@ -21,6 +21,7 @@
 #include "limen/bim/read_bim.h"
 #include "limen/cli/serve/http_request.h"
 #include "limen/files/zip_member.h"
+#include "limen/io/e57/e57_copy.h"
 #include "limen/io/e57/e57_crc.h"
 #include "limen/io/e57/e57_poses.h"
 #include "limen/io/e57/read_e57.h"
@@ -123,6 +124,11 @@ void e57(std::string_view bytes) {
   may_fail([&] { read_clouds(*open_e57(bytes, kName)); });
   const std::string sound = with_check_sums(bytes);
   may_fail([&] { replace_e57_poses(sound, kName, {}, "/dev/null"); });
+  may_fail([&] {
+    E57PageWriter copy("/dev/null");
+    const E57Original original(sound, kName);
+    for (std::size_t k = 0; k < original.document().scans.size(); ++k) original.copy(k, {}, copy);
+  });
   read_clouds(*open_e57(sound, kName));
 }
 void las(std::string_view bytes) {
