@@ -124,8 +124,10 @@ class Weighing {
     return log_sum_exp({log_resembling, -against_chance(pose),
                         std::log(evidence_table::kInPair) + std::log(look_alike(pose))});
   }
-  /// Share of a pose among all but `another`, by how much each exceeds chance.
+  /// Share of a pose among all but `another`, by how much each exceeds chance; 0 where no place is seen
+  /// twice.
   [[nodiscard]] double share_of(std::size_t pose, std::size_t another) const {
+    if (table_.twice <= 0.0) return 0.0;
     double all = 0.0;
     for (std::size_t k = 0; k < poses_.size(); ++k) {
       if (k != another) all += std::exp(std::min(kMostNats, against_chance_[k] - against_chance_[pose]));
