@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "known_scans.h"
+#include "pair_set.h"
 #include "prepared_frames.h"
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -24,8 +25,8 @@
 #include "limen/register/judge/common_surfaces.h"
 #include "limen/register/judge/given_pose.h"
 #include "limen/register/judge/twin_odds.h"
+#include "limen/register/prepare/prepared_pair.h"
 #include "limen/register/register.h"
-#include "limen/simulate/whole/pair_set.h"
 
 namespace {
 

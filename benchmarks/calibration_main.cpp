@@ -15,12 +15,12 @@
 
 #include "calibration_kinds.h"
 #include "calibration_rows.h"
+#include "pair_set.h"
 #include <CLI/CLI.hpp>
 
 #include "limen/base/angles.h"
 #include "limen/io/ply/write_ply.h"
 #include "limen/register/register.h"
-#include "limen/simulate/whole/pair_set.h"
 
 namespace {
 

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "known_scans.h"
+#include "pair_set.h"
 #include "prepared_frames.h"
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -22,7 +23,6 @@
 #include "limen/register/find_poses.h"
 #include "limen/register/judge/given_pose.h"
 #include "limen/register/judge/twin_odds.h"
-#include "limen/simulate/whole/pair_set.h"
 
 namespace {
 

@@ -9,7 +9,6 @@
 
 #include <fmt/format.h>
 
-#include "limen/base/atomic_file.h"
 #include "limen/base/guarded_mapping.h"
 #include "limen/io/cloud/join_clouds.h"
 #include "limen/io/cloud/open_points.h"
@@ -83,14 +82,6 @@ std::string text_of_places(const std::vector<TimedPlace>& places) {
   for (const TimedPlace& place : places)
     text += fmt::format("{:.6f},{:.5f},{:.5f},{:.5f}\n", place.time_s, place.x.x(), place.x.y(), place.x.z());
   return text;
-}
-
-std::size_t write_corrected_trajectory(const StationToMove& pass, const std::filesystem::path& output,
-                                       Monitor& monitor) {
-  const std::vector<TimedPlace> places = corrected_places(pass, monitor);
-  if (places.size() < 2) return 0;
-  write_file(output, text_of_places(places));
-  return places.size();
 }
 
 }  // namespace limen

@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstddef>
-#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -19,11 +17,5 @@ std::vector<TimedPlace> corrected_places(const StationToMove& pass, Monitor& mon
 
 /// Text with a header line, `time,x,y,z` in seconds and metres, that read_trajectory() reads.
 std::string text_of_places(const std::vector<TimedPlace>& places);
-
-/// Writes where the scanner of a mobile pass was, moved as its points are: text with a header line,
-/// `time,x,y,z` in seconds and metres, that read_trajectory() reads; a place every 5 ms at most. Returns the
-/// number of places; where the points do not tell where they were seen from or when, nothing is written.
-std::size_t write_corrected_trajectory(const StationToMove& pass, const std::filesystem::path& output,
-                                       Monitor& monitor = silent_monitor());
 
 }  // namespace limen

@@ -89,6 +89,10 @@ double best_shift(const std::vector<Layer>& a_plus, const std::vector<Layer>& b_
   return best;
 }
 
+/// How much two scans may have in common, from their planes alone: m^2 of planes of one direction that one
+/// shift brings together, for the best of the four turns about the vertical that bring the main directions of
+/// their walls together; the shifts along the two directions and the vertical are sought one by one, by
+/// votes. A plane counts for no more than 5 m^2.
 double common_layers(const Layers& a, const Layers& b) {
   const double up = best_shift(a[4], b[4], a[5], b[5]);
   double best = 0.0;
@@ -102,10 +106,6 @@ double common_layers(const Layers& a, const Layers& b) {
 }
 
 }  // namespace
-
-double common_surface(const ScanDigest& a, const ScanDigest& b) {
-  return common_layers(layers_of(a), layers_of(b));
-}
 
 std::vector<std::vector<std::size_t>> ranked_partners(const std::vector<ScanDigest>& digests) {
   std::vector<Layers> layers;

@@ -10,12 +10,6 @@
 
 namespace limen {
 
-/// How much two scans may have in common, from their planes alone: m^2 of planes of one direction that one
-/// shift brings together, for the best of the four turns about the vertical that bring the main directions of
-/// their walls together; the shifts along the two directions and the vertical are sought one by one, by
-/// votes. A plane counts for no more than 5 m^2.
-double common_surface(const ScanDigest& a, const ScanDigest& b);
-
 /// Partners of each scan, the most promising first; ties by number.
 std::vector<std::vector<std::size_t>> ranked_partners(const std::vector<ScanDigest>& digests);
 

@@ -1,20 +1,75 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
-#include "limen/simulate/whole/pair_set.h"
+//
+// A handful of scans of one building that make pairs of every kind: one room scanned twice, on another day
+// with its furniture partly moved, rooms that a door joins, different rooms built alike (twins), rooms that
+// have nothing in common.
+#pragma once
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
-#include "limen/base/error.h"
+#include "limen/base/progress.h"
+#include "limen/model/scan.h"
 #include "limen/simulate/scanner/station_scan.h"
 #include "limen/simulate/whole/building_scanner.h"
+#include "limen/simulate/whole/project_truth.h"
+#include "limen/simulate/whole/scan_style.h"
 #include "limen/simulate/whole/survey.h"
 #include "limen/simulate/whole/whole_building.h"
 
 namespace limen {
+
+/// What two scans have to do with one another.
+enum class PairKind : std::uint8_t {
+  same_room,   ///< two places in one room
+  other_day,   ///< one room, its furniture partly moved in between
+  next_room,   ///< rooms that share at least 3 m^2 of seen surface
+  twin,        ///< different rooms built alike
+  other_room,  ///< of the same building, nothing in common
+  unclear      ///< neither: a little surface in common, or not counted (days differ)
+};
+
+struct PairSetOptions {
+  std::string name = "flats";  ///< one of whole_building_names()
+  std::uint64_t seed = 1;
+  std::size_t points = 100000;  ///< of a station, about
+  std::size_t twins = 3;        ///< rooms like the first one
+  bool styles = true;           ///< random ones for scans and furniture; else plain ones
+  bool as_built = false;        ///< walls, slabs and openings are off the drawing as real ones are
+};
+
+struct PairSetScan {
+  Scan scan;
+  SimulatedScan truth;
+  int day = 0;
+};
+
+/// Scans of one building, all poses in one world.
+struct PairSet {
+  std::string name;
+  std::uint64_t seed = 0;
+  std::vector<PairSetScan> scans;
+  std::vector<ProjectRoom> rooms;
+  std::vector<SharedSurface> shared;  ///< among the scans of day 0
+
+  [[nodiscard]] PairKind kind_of(std::size_t a, std::size_t b) const;
+  [[nodiscard]] Rigid3 target_from_source(std::size_t source, std::size_t target) const;
+  /// Twins whose furniture is of one layout, placed by hand.
+  [[nodiscard]] bool furnished_alike(std::size_t a, std::size_t b) const;
+  [[nodiscard]] bool mirrored(std::size_t a, std::size_t b) const;
+  [[nodiscard]] bool same_storey(std::size_t a, std::size_t b) const;
+
+ private:
+  [[nodiscard]] const ProjectRoom& room_of(std::size_t scan) const;
+};
+
 namespace {
 
 constexpr double kJoined = 3.0;  // m^2
@@ -111,17 +166,17 @@ class Chooser {
 
 }  // namespace
 
-const char* to_string(PairKind kind) {
+inline const char* to_string(PairKind kind) {
   static constexpr std::array<const char*, 6> names = {"same_room", "other_day",  "next_room",
                                                        "twin",      "other_room", "unclear"};
   return names[static_cast<std::size_t>(kind)];
 }
 
-const ProjectRoom& PairSet::room_of(std::size_t scan) const {
+inline const ProjectRoom& PairSet::room_of(std::size_t scan) const {
   return rooms[static_cast<std::size_t>(scans[scan].truth.room)];
 }
 
-PairKind PairSet::kind_of(std::size_t a, std::size_t b) const {
+inline PairKind PairSet::kind_of(std::size_t a, std::size_t b) const {
   const bool one_day = scans[a].day == scans[b].day;
   if (scans[a].truth.room == scans[b].truth.room) return one_day ? PairKind::same_room : PairKind::other_day;
   const bool alike = room_of(a).alike >= 0 && room_of(a).alike == room_of(b).alike;
@@ -134,23 +189,24 @@ PairKind PairSet::kind_of(std::size_t a, std::size_t b) const {
   return m2 <= kNothing ? PairKind::other_room : PairKind::unclear;
 }
 
-Rigid3 PairSet::target_from_source(std::size_t source, std::size_t target) const {
+inline Rigid3 PairSet::target_from_source(std::size_t source, std::size_t target) const {
   return inverse(scans[target].truth.local_from_scan) * scans[source].truth.local_from_scan;
 }
 
-bool PairSet::furnished_alike(std::size_t a, std::size_t b) const {
+inline bool PairSet::furnished_alike(std::size_t a, std::size_t b) const {
   return room_of(a).furnished_alike && room_of(b).furnished_alike && room_of(a).alike == room_of(b).alike;
 }
 
-bool PairSet::mirrored(std::size_t a, std::size_t b) const {
+inline bool PairSet::mirrored(std::size_t a, std::size_t b) const {
   return room_of(a).mirrored != room_of(b).mirrored;
 }
 
-bool PairSet::same_storey(std::size_t a, std::size_t b) const {
+inline bool PairSet::same_storey(std::size_t a, std::size_t b) const {
   return room_of(a).storey == room_of(b).storey;
 }
 
-PairSet simulate_pair_set(const PairSetOptions& options, Monitor& monitor) {
+/// The same options give the same scans, bit for bit, for any thread count.
+inline PairSet simulate_pair_set(const PairSetOptions& options, Monitor& monitor = silent_monitor()) {
   monitor.begin_stage("simulating");
   RandomStream random(options.seed, 3000);
   const WholeBuilding first = building_of(options, 0);
