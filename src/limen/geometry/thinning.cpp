@@ -9,80 +9,71 @@
 #include <utility>
 
 #include "limen/base/error.h"
-#include "limen/base/random.h"
+#include "limen/geometry/cell_numbers.h"
 
 namespace limen {
 namespace {
 
-/// Numbers the occupied cells of a square grid in the order of their first points: in a plain array where the
-/// grid is not much larger than the number of points, else in a table of those that are occupied.
-class CellTable {
+/// Numbers the occupied cells of a square grid in the order of their first points; where the grid is not much
+/// larger than the number of points, they are found by a plain array.
+class OccupiedCells {
  public:
-  static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+  static constexpr std::uint32_t kNone = CellNumbers::kNone;
 
-  CellTable(std::size_t points, std::int64_t columns, std::int64_t rows) {
+  OccupiedCells(std::size_t points, std::int64_t columns, std::int64_t rows) {
     const double cells = static_cast<double>(columns) * static_cast<double>(rows);
     if (cells <= kCellsPerPoint * static_cast<double>(points)) {
       columns_ = columns;
       rows_ = rows;
       plain_.assign(static_cast<std::size_t>(columns * rows), kNone);
     } else {
-      resize(std::max<std::size_t>(64, points / 4));
+      numbers_ = CellNumbers(points / 4);
     }
   }
 
-  std::uint32_t insert(std::int64_t x, std::int64_t y) {
-    if (!plain_.empty()) {
-      std::uint32_t& id = plain_[static_cast<std::size_t>(y * columns_ + x)];
-      if (id == kNone) {
-        id = static_cast<std::uint32_t>(cells_.size());
-        cells_.push_back({x, y});
-      }
-      return id;
-    }
-    if (2 * cells_.size() >= slots_.size()) resize(2 * slots_.size());
-    const std::size_t slot = slot_of(x, y);
-    if (slots_[slot] == kNone) {
-      slots_[slot] = static_cast<std::uint32_t>(cells_.size());
-      cells_.push_back({x, y});
-    }
-    return slots_[slot];
+  std::uint32_t insert(std::int32_t x, std::int32_t y) {
+    if (plain_.empty()) return numbers_.insert(x, y);
+    std::uint32_t& number = plain_[static_cast<std::size_t>(y * columns_ + x)];
+    if (number == kNone) number = numbers_.insert(x, y);
+    return number;
   }
-  [[nodiscard]] std::uint32_t find(std::int64_t x, std::int64_t y) const {
-    if (plain_.empty()) return slots_[slot_of(x, y)];
+  [[nodiscard]] std::uint32_t find(std::int32_t x, std::int32_t y) const {
+    if (plain_.empty()) return numbers_.find(x, y);
     if (x < 0 || y < 0 || x >= columns_ || y >= rows_) return kNone;
     return plain_[static_cast<std::size_t>(y * columns_ + x)];
   }
-  [[nodiscard]] std::size_t size() const { return cells_.size(); }
-  [[nodiscard]] const std::array<std::int64_t, 2>& cell(std::size_t id) const { return cells_[id]; }
+  [[nodiscard]] std::size_t size() const { return numbers_.size(); }
+  [[nodiscard]] std::array<std::int32_t, 2> cell(std::size_t id) const {
+    return {numbers_.x(id), numbers_.y(id)};
+  }
 
-  [[nodiscard]] bool occupied(std::int64_t x, std::int64_t y) const { return find(x, y) != kNone; }
+  [[nodiscard]] bool occupied(std::int32_t x, std::int32_t y) const { return find(x, y) != kNone; }
 
   /// True where an empty block of 3 x 3 cells lies around: smaller gaps hold no disc of alpha.
   [[nodiscard]] bool at_edge(std::size_t id) const {
-    const auto [x, y] = cells_[id];
+    const auto [x, y] = cell(id);
     if (surrounded(x, y)) return false;
     // Any block of 3 x 3 of the 9 x 9 cells around covers exactly one of these nine.
-    for (std::int64_t k = 0; k < 9; ++k) {
-      const std::int64_t at_x = x + 3 * (k % 3) - 3;
-      const std::int64_t at_y = y + 3 * (k / 3) - 3;
+    for (std::int32_t k = 0; k < 9; ++k) {
+      const std::int32_t at_x = x + 3 * (k % 3) - 3;
+      const std::int32_t at_y = y + 3 * (k / 3) - 3;
       if (!occupied(at_x, at_y) && in_empty_block(at_x, at_y)) return true;
     }
     return false;
   }
 
  private:
-  [[nodiscard]] bool surrounded(std::int64_t x, std::int64_t y) const {
-    for (std::int64_t k = 0; k < 9; ++k) {
+  [[nodiscard]] bool surrounded(std::int32_t x, std::int32_t y) const {
+    for (std::int32_t k = 0; k < 9; ++k) {
       if (!occupied(x + k % 3 - 1, y + k / 3 - 1)) return false;
     }
     return true;
   }
 
   /// True where one of the nine blocks of 3 x 3 cells over this one is empty.
-  [[nodiscard]] bool in_empty_block(std::int64_t x, std::int64_t y) const {
+  [[nodiscard]] bool in_empty_block(std::int32_t x, std::int32_t y) const {
     std::array<bool, 25> full;
-    for (std::int64_t k = 0; k < 25; ++k) {
+    for (std::int32_t k = 0; k < 25; ++k) {
       full[static_cast<std::size_t>(k)] = occupied(x + k % 5 - 2, y + k / 5 - 2);
     }
     for (std::size_t corner : {0U, 1U, 2U, 5U, 6U, 7U, 10U, 11U, 12U}) {
@@ -93,32 +84,12 @@ class CellTable {
     return false;
   }
 
-  [[nodiscard]] std::size_t slot_of(std::int64_t x, std::int64_t y) const {
-    const std::uint64_t key =
-        static_cast<std::uint64_t>(x) * 0x9e3779b97f4a7c15ULL + static_cast<std::uint64_t>(y);
-    std::size_t slot = static_cast<std::size_t>(mix64(key)) & (slots_.size() - 1);
-    while (slots_[slot] != kNone && (cells_[slots_[slot]][0] != x || cells_[slots_[slot]][1] != y)) {
-      slot = (slot + 1) & (slots_.size() - 1);
-    }
-    return slot;
-  }
-
-  void resize(std::size_t wanted) {
-    std::size_t size = 64;
-    while (size < wanted) size *= 2;
-    slots_.assign(size, kNone);
-    for (std::size_t id = 0; id < cells_.size(); ++id) {
-      slots_[slot_of(cells_[id][0], cells_[id][1])] = static_cast<std::uint32_t>(id);
-    }
-  }
-
   static constexpr double kCellsPerPoint = 4.0;
 
   std::int64_t columns_ = 0;
   std::int64_t rows_ = 0;
-  std::vector<std::uint32_t> plain_;  ///< per cell of the grid; empty: `slots_` is used
-  std::vector<std::uint32_t> slots_;
-  std::vector<std::array<std::int64_t, 2>> cells_;
+  std::vector<std::uint32_t> plain_;  ///< per cell of the grid; empty: the grid is too large for that
+  CellNumbers numbers_;
 };
 
 /// What stays of a cell: its point nearest to the middle, or, at the edge, its extremes in eight directions.
@@ -140,7 +111,7 @@ class Representatives {
     std::vector<double> best(first.back(), -std::numeric_limits<double>::infinity());
     for (std::uint32_t i = 0; i < points_.size(); ++i) {
       const std::uint32_t cell = cell_of_point_[i];
-      if (cell == CellTable::kNone || roles_[cell] == Role::dropped) continue;
+      if (cell == OccupiedCells::kNone || roles_[cell] == Role::dropped) continue;
       offer(i, middle(cell), kept_of(cell), &kept[first[cell]], &best[first[cell]]);
     }
     std::sort(kept.begin(), kept.end());
@@ -157,17 +128,17 @@ class Representatives {
   }
 
   void assign_cells() {
-    cell_of_point_.assign(points_.size(), CellTable::kNone);
-    std::int64_t last_x = 0;
-    std::int64_t last_y = 0;
-    std::uint32_t last = CellTable::kNone;
+    cell_of_point_.assign(points_.size(), OccupiedCells::kNone);
+    std::int32_t last_x = 0;
+    std::int32_t last_y = 0;
+    std::uint32_t last = OccupiedCells::kNone;
     for (std::size_t i = 0; i < points_.size(); ++i) {
       if (!usable(points_[i])) continue;
       // None lies below the origin.
       const Vector2d scaled = (points_[i] - origin_) / cell_m_;
-      const auto x = static_cast<std::int64_t>(scaled.x());
-      const auto y = static_cast<std::int64_t>(scaled.y());
-      if (last == CellTable::kNone || x != last_x || y != last_y)
+      const auto x = static_cast<std::int32_t>(scaled.x());
+      const auto y = static_cast<std::int32_t>(scaled.y());
+      if (last == OccupiedCells::kNone || x != last_x || y != last_y)
         last = table_.insert(last_x = x, last_y = y);
       cell_of_point_[i] = last;
     }
@@ -178,8 +149,8 @@ class Representatives {
     for (std::size_t id = 0; id < roles_.size(); ++id) {
       // A block whose middle cell is empty keeps a point of each of its other cells.
       const auto [x, y] = table_.cell(id);
-      const std::int64_t middle_x = x - (x % 3 + 3) % 3 + 1;
-      const std::int64_t middle_y = y - (y % 3 + 3) % 3 + 1;
+      const std::int32_t middle_x = x - (x % 3 + 3) % 3 + 1;
+      const std::int32_t middle_y = y - (y % 3 + 3) % 3 + 1;
       const bool stays = (x == middle_x && y == middle_y) || !table_.occupied(middle_x, middle_y);
       roles_[id] = table_.at_edge(id) ? Role::edge : stays ? Role::inside : Role::dropped;
     }
@@ -211,7 +182,7 @@ class Representatives {
   const std::vector<Vector2d>& points_;
   double cell_m_;
   Vector2d origin_;
-  CellTable table_;
+  OccupiedCells table_;
   std::vector<std::uint32_t> cell_of_point_;
   std::vector<Role> roles_;
 };
@@ -236,7 +207,7 @@ std::vector<std::uint32_t> thinned(const std::vector<Vector2d>& points, double c
   }
   if (!any) return {};
   // Cell numbers must fit their integers, whatever the extent.
-  const double cell = std::max(cell_m, (high - low).maxCoeff() / 0x1.0p40);
+  const double cell = std::max(cell_m, (high - low).maxCoeff() / 0x1.0p30);
   return Representatives(points, cell, low, high).indices();
 }
 

@@ -13,6 +13,7 @@
 
 #include "limen/base/error.h"
 #include "limen/extract/planes/height_sums.h"
+#include "limen/geometry/cell_numbers.h"
 
 namespace limen {
 namespace {
@@ -23,68 +24,6 @@ constexpr double kLeastCellNoiseM = 0.0005;
 constexpr int kInnerCells = 12;  // of a part that may be a piece of a bulging surface
 constexpr double kShared = 3.0;  // pairs of cells at a border that share a cell, about
 constexpr double kBorderPairs = 6.0;
-
-/// Cells of a plane by their places: open addressing, in the order of their first points.
-class CellTable {
- public:
-  explicit CellTable(std::size_t points) {
-    std::size_t size = 64;
-    while (size < points / 2) size *= 2;
-    slots_.assign(size, {0, -1});
-  }
-  /// The number of the cell at (x, y); a new one at its first call.
-  std::int32_t add(std::int32_t x, std::int32_t y) {
-    if (2 * keys_.size() >= slots_.size()) grow();
-    const std::uint64_t key = key_of(x, y);
-    std::size_t i = place(key);
-    while (slots_[i].cell >= 0) {
-      if (slots_[i].key == key) return slots_[i].cell;
-      i = (i + 1) & (slots_.size() - 1);
-    }
-    slots_[i] = {key, static_cast<std::int32_t>(keys_.size())};
-    keys_.push_back(key);
-    return slots_[i].cell;
-  }
-  [[nodiscard]] std::int32_t x(std::size_t cell) const {
-    return static_cast<std::int32_t>(keys_[cell] >> 32U);
-  }
-  [[nodiscard]] std::int32_t y(std::size_t cell) const {
-    return static_cast<std::int32_t>(keys_[cell] & 0xffffffffU);
-  }
-  /// The cell so many cells from another, or -1.
-  [[nodiscard]] std::int32_t beside(std::size_t cell, int dx, int dy) const {
-    const std::uint64_t key = key_of(x(cell) + dx, y(cell) + dy);
-    std::size_t i = place(key);
-    while (slots_[i].cell >= 0) {
-      if (slots_[i].key == key) return slots_[i].cell;
-      i = (i + 1) & (slots_.size() - 1);
-    }
-    return -1;
-  }
-
- private:
-  struct Slot {
-    std::uint64_t key;
-    std::int32_t cell;
-  };
-  static std::uint64_t key_of(std::int32_t x, std::int32_t y) {
-    return (static_cast<std::uint64_t>(static_cast<std::uint32_t>(x)) << 32U) | static_cast<std::uint32_t>(y);
-  }
-  [[nodiscard]] std::size_t place(std::uint64_t key) const {
-    return (key * 0x9e3779b97f4a7c15U) >> 32U & (slots_.size() - 1);
-  }
-  void grow() {
-    slots_.assign(2 * slots_.size(), {0, -1});
-    for (std::size_t c = 0; c < keys_.size(); ++c) {
-      std::size_t i = place(keys_[c]);
-      while (slots_[i].cell >= 0) i = (i + 1) & (slots_.size() - 1);
-      slots_[i] = {keys_[c], static_cast<std::int32_t>(c)};
-    }
-  }
-
-  std::vector<Slot> slots_;
-  std::vector<std::uint64_t> keys_;
-};
 
 /// What two touching parts show where they touch: mean of the second less that of the first.
 struct Border {
@@ -98,7 +37,7 @@ class StepParts {
  public:
   StepParts(const Scan& scan, const PlaneFit& fit, const std::vector<std::uint32_t>& points,
             const StepOptions& options)
-      : o_(options), points_(points), table_(points.size()) {
+      : o_(options), points_(points), table_(points.size() / 2) {
     const PlaneFrame frame = make_frame(fit.plane, fit.centroid);
     places_.reserve(points.size());
     for (const std::uint32_t i : points) {
@@ -132,18 +71,18 @@ class StepParts {
     constexpr double kLookM = 0.1;
     constexpr std::size_t kLooks = 4096;
     const std::size_t step = std::max<std::size_t>(1, places_.size() / kLooks);
-    CellTable look(kLooks);
-    std::vector<std::int32_t> of;
+    CellNumbers look(kLooks / 2);
+    std::vector<std::uint32_t> of;
     std::vector<double> counts;
     for (std::size_t k = 0; k < places_.size(); k += step) {
-      of.push_back(look.add(static_cast<std::int32_t>(std::floor(places_[k].u / kLookM)),
-                            static_cast<std::int32_t>(std::floor(places_[k].v / kLookM))));
-      counts.resize(std::max(counts.size(), static_cast<std::size_t>(of.back()) + 1));
-      counts[static_cast<std::size_t>(of.back())] += static_cast<double>(step);
+      of.push_back(look.insert(static_cast<std::int32_t>(std::floor(places_[k].u / kLookM)),
+                               static_cast<std::int32_t>(std::floor(places_[k].v / kLookM))));
+      counts.resize(std::max(counts.size(), std::size_t{of.back()} + 1));
+      counts[of.back()] += static_cast<double>(step);
     }
     std::vector<double> around;
     around.reserve(of.size());
-    for (const std::int32_t c : of) around.push_back(counts[static_cast<std::size_t>(c)]);
+    for (const std::uint32_t c : of) around.push_back(counts[c]);
     const auto middle = around.begin() + static_cast<std::ptrdiff_t>(around.size() / 2);
     std::nth_element(around.begin(), middle, around.end());
     return std::clamp(kLookM * std::sqrt(o_.points_of_cell / *middle), o_.finest_m, o_.coarsest_m);
@@ -152,8 +91,8 @@ class StepParts {
   void bin(double edge) {
     cell_of_.reserve(places_.size());
     for (const Place& p : places_) {
-      const std::int32_t c = table_.add(static_cast<std::int32_t>(std::floor(p.u / edge)),
-                                        static_cast<std::int32_t>(std::floor(p.v / edge)));
+      const std::int32_t c = table_.insert(static_cast<std::int32_t>(std::floor(p.u / edge)),
+                                           static_cast<std::int32_t>(std::floor(p.v / edge)));
       if (static_cast<std::size_t>(c) == cells_.size()) cells_.emplace_back();
       cells_[static_cast<std::size_t>(c)].add(p.u, p.v, p.h);
       cell_of_.push_back(c);
@@ -209,8 +148,8 @@ class StepParts {
     constexpr std::array<std::pair<int, int>, 4> kHalf{{{1, 0}, {0, 1}, {1, 1}, {1, -1}}};
     for (std::size_t c = 0; c < own_.size(); ++c) {
       for (const auto& [dx, dy] : kHalf) {
-        const std::int32_t other = table_.beside(c, dx, dy);
-        if (other >= 0) f(c, static_cast<std::size_t>(other));
+        const std::uint32_t other = table_.find(table_.x(c) + dx, table_.y(c) + dy);
+        if (other != CellNumbers::kNone) f(c, other);
       }
     }
   }
@@ -228,7 +167,7 @@ class StepParts {
   /// is not sought out, and there is less to join.
   void join_blocks() {
     constexpr int kLevels = 7;
-    CellTable places = table_;
+    CellNumbers places = table_;
     std::vector<Block> blocks(own_.size());
     std::vector<std::int32_t> block_of(own_.size());  // by cell: its largest even block at this level, or -1
     for (std::size_t c = 0; c < own_.size(); ++c) {
@@ -236,11 +175,11 @@ class StepParts {
       block_of[c] = static_cast<std::int32_t>(c);
     }
     for (int level = 0; level < kLevels; ++level) {
-      CellTable larger(blocks.size());
+      CellNumbers larger(blocks.size() / 2);
       std::vector<Block> parents;
       std::vector<std::int32_t> parent_of(blocks.size());
       for (std::size_t b = 0; b < blocks.size(); ++b) {
-        parent_of[b] = larger.add(places.x(b) >> 1, places.y(b) >> 1);
+        parent_of[b] = larger.insert(places.x(b) >> 1, places.y(b) >> 1);
         if (static_cast<std::size_t>(parent_of[b]) == parents.size()) {
           parents.emplace_back();
           parents.back().first = blocks[b].first;
@@ -398,7 +337,7 @@ class StepParts {
 
   StepOptions o_;
   const std::vector<std::uint32_t>& points_;
-  CellTable table_;
+  CellNumbers table_;
   std::vector<Place> places_;
   std::vector<std::int32_t> cell_of_;  ///< by point
   std::vector<HeightSums> own_;        ///< of each cell
