@@ -24,6 +24,7 @@
 
 #include "limen/base/atomic_file.h"
 #include "limen/base/error.h"
+#include "limen/base/scratch_folder.h"
 #include "limen/base/start_program.h"
 
 namespace limen {
@@ -39,29 +40,6 @@ bool is_program(const fs::path& path) {
   std::error_code ignored;
   return fs::is_regular_file(path, ignored) && access(path.c_str(), X_OK) == 0;
 }
-
-/// A folder that goes with this object: the browser's profile and what it prints.
-class PrintFolder {
- public:
-  /// Beside the page: a browser that is kept in a box of its own may not see /tmp.
-  explicit PrintFolder(const fs::path& beside) {
-    std::string name = (fs::absolute(beside).parent_path() / "limen-print-XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr)
-      throw Error(std::strerror(errno), beside.string(), "give a folder that can be written to");
-    path_ = name;
-  }
-  ~PrintFolder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  PrintFolder(const PrintFolder&) = delete;
-  PrintFolder& operator=(const PrintFolder&) = delete;
-
-  [[nodiscard]] const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-};
 
 std::string file_url(const fs::path& path) {
   std::string url = "file://";
@@ -181,7 +159,8 @@ fs::path find_chromium() {
 }
 
 void print_pdf(const fs::path& browser, const fs::path& page, const fs::path& pdf, Monitor& monitor) {
-  const PrintFolder folder(page);
+  // Beside the page: a browser that is kept in a box of its own may not see /tmp.
+  const ScratchFolder folder(fs::absolute(page).parent_path(), "limen-print");
   run_browser(words_for(browser, page, folder.path()), monitor);
   std::ifstream stream(folder.path() / "page.pdf", std::ios::binary);
   const std::string bytes{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
