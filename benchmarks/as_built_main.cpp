@@ -26,6 +26,7 @@
 #include "limen/register/judge/given_pose.h"
 #include "limen/register/judge/twin_odds.h"
 #include "limen/register/prepare/prepared_pair.h"
+#include "limen/register/refine/refine_pose.h"
 #include "limen/register/register.h"
 
 namespace {

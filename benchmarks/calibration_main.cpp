@@ -20,6 +20,7 @@
 
 #include "limen/base/angles.h"
 #include "limen/io/ply/write_ply.h"
+#include "limen/register/prepare/prepared_pair.h"
 #include "limen/register/register.h"
 
 namespace {

@@ -14,6 +14,7 @@
 
 #include "limen/base/angles.h"
 #include "limen/io/cloud/read_scan.h"
+#include "limen/register/prepare/prepared_pair.h"
 #include "limen/register/register.h"
 
 namespace limen::calibration {

@@ -16,6 +16,7 @@
 
 #include "limen/base/atomic_file.h"
 #include "limen/base/error.h"
+#include "limen/register/prepare/prepared_pair.h"
 #include "limen/register/register.h"
 
 namespace {

@@ -4,6 +4,7 @@
 // Poses between the frames that scans are prepared in.
 #pragma once
 
+#include "limen/register/prepare/prepared_pair.h"
 #include "limen/register/register.h"
 
 namespace limen::calibration {

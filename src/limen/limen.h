@@ -16,5 +16,6 @@
 #include "limen/model/features.h"
 #include "limen/model/result.h"
 #include "limen/model/scan.h"
+#include "limen/project/solve_project.h"
 #include "limen/register/register.h"
 #include "limen/report/json/result_json.h"

@@ -9,6 +9,8 @@ namespace limen {
 namespace {
 
 constexpr double kFarM = 1000.0;
+constexpr double kNearZeroM = 1e4;
+constexpr double kRoundM = 100.0;
 
 void require(bool holds, const char* what, const std::string& where) {
   if (!holds)
@@ -79,6 +81,23 @@ Extent extent_of(const std::vector<Vector3d>& points) {
       [](const Extent& a, const Extent& b) {
         return Extent{a.low.cwiseMin(b.low), a.high.cwiseMax(b.high)};
       });
+}
+
+Vector3d round_origin_near(const Vector3d& x) {
+  if ((x.array().abs() < kNearZeroM).all()) return Vector3d::Zero();
+  return (x / kRoundM).array().round() * kRoundM;
+}
+
+Scan scan_of_points(std::vector<Vector3d> points) {
+  if (points.empty()) throw Error("there are no points", "scan", "give at least one");
+  Scan scan;
+  scan.local_origin = round_origin_near(points.front());
+  for (Vector3d& x : points) {
+    x -= scan.local_origin;
+    if (!x.allFinite()) throw Error("a coordinate is not finite", "scan", "leave such points out");
+  }
+  scan.points = std::move(points);
+  return scan;
 }
 
 Vector3d origin_near(const Scan& scan) {

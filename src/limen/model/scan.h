@@ -52,11 +52,23 @@ struct Scan {
   void check() const;
 };
 
+/// A scan and its known place among others: x_in_group = group_from_scan * x, world coordinates, metres.
+struct PlacedScan {
+  Scan scan;
+  Rigid3 group_from_scan;
+};
+
 /// The points of `scan` with the given indices, all attributes kept, in the given order.
 Scan subset(const Scan& scan, const std::vector<std::uint32_t>& indices);
 
 /// The scan's points and optical centres moved about the local origin, which stays.
 Scan moved(Scan scan, const Rigid3& motion);
+
+/// A round number (100 m) near `x`, or 0,0,0 where all coordinates are below 10 km.
+Vector3d round_origin_near(const Vector3d& x);
+
+/// A scan of points alone, metres, in any frame. Throws Error where there is none, or one is not finite.
+Scan scan_of_points(std::vector<Vector3d> points);
 
 /// A round place near the points, world: the local origin where they lie within 1 km of it. Turns about a far
 /// origin would amplify the smallest angle.

@@ -9,6 +9,7 @@
 #include "limen/register/judge/evidence_table.h"
 #include "limen/register/judge/given_pose.h"
 #include "limen/register/judge/posterior.h"
+#include "limen/register/judge/start_prior.h"
 #include "limen/register/propose/propose.h"
 #include "limen/register/propose/select_poses.h"
 

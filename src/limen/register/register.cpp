@@ -13,6 +13,7 @@
 #include "limen/register/judge/given_pose.h"
 #include "limen/register/judge/individual_matter.h"
 #include "limen/register/judge/posterior.h"
+#include "limen/register/judge/start_prior.h"
 #include "limen/register/judge/twin_odds.h"
 #include "limen/register/prepare/model_rooms.h"
 #include "limen/register/published/register_published.h"
@@ -147,7 +148,7 @@ class AskedPair {
     questions.contrast = [this](std::size_t first, std::size_t second) { return contrast(first, second); };
     if (sort_of(pair_) == PairSort::rooms)
       questions.things = [this](std::size_t pose) { return weigh_things(pose); };
-    questions.repeats = options_.twins().alike / evidence_table::kAlike;
+    questions.repeats = twin_options(options_.nothing_repeats).alike / evidence_table::kAlike;
     return questions;
   }
   /// What is known of look-alike places.
@@ -178,7 +179,7 @@ class AskedPair {
   [[nodiscard]] TwinEvidence weigh_things(std::size_t pose) {
     if (!asker_) asker_.emplace(pair_.source.view(), pair_.target.view());
     IndividualMatter seen = (*asker_)(pose_of(pose));
-    TwinEvidence evidence = weigh_twin(seen, options_.twins());
+    TwinEvidence evidence = weigh_twin(seen, twin_options(options_.nothing_repeats));
     things_.insert_or_assign(pose, Things{std::move(seen), evidence});
     if (!start_) return evidence;
     const double believed = odds_of_look_alike_beside_start(start_->prior, start_->given(pose_of(pose)),
@@ -283,10 +284,6 @@ void RegisterOptions::check() const {
     throw_bad_option("wall_thickness_m", wall_thickness_m, "within [0, 5)");
   if (refined_poses < 1) throw_bad_option("refined_poses", refined_poses, "1 or more");
   if (alternatives < 0) throw_bad_option("alternatives", alternatives, "0 or more");
-}
-
-TwinOptions RegisterOptions::twins() const {
-  return nothing_repeats ? where_nothing_repeats(verdict.twin) : verdict.twin;
 }
 
 RegistrationResult register_prepared(const PreparedPair& pair, const RegisterOptions& options,

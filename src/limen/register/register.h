@@ -7,12 +7,13 @@
 #include <vector>
 
 #include "limen/base/progress.h"
+#include "limen/model/bim_model.h"
 #include "limen/model/result.h"
-#include "limen/register/prepare/prepare_group.h"
-#include "limen/register/prepare/prepared_pair.h"
 #include "limen/register/register_options.h"
 
 namespace limen {
+
+struct PreparedPair;
 
 /// The part behind the door: everything but the features, so that a scan is prepared once for many partners
 /// or methods.
@@ -44,6 +45,10 @@ RegistrationResult register_inputs(const InputReader& source, const InputReader&
 /// Poses are between the scans' world coordinates: x_target = target_from_source * x_source.
 RegistrationResult register_scans(const Scan& source, const Scan& target, const RegisterOptions& options = {},
                                   Monitor& monitor = silent_monitor());
+
+/// The same of points alone, metres, each list in a frame of its own; where they were seen from is estimated.
+RegistrationResult register_scans(std::vector<Vector3d> source, std::vector<Vector3d> target,
+                                  const RegisterOptions& options = {}, Monitor& monitor = silent_monitor());
 
 /// Finds a scan in a building model by its planes, or its line segments (2023, IV).
 RegistrationResult register_to_model(const Scan& scan, const BimModel& model,

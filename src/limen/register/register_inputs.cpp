@@ -11,7 +11,9 @@
 #include "limen/base/stage_shares.h"
 #include "limen/extract/model/sample_model.h"
 #include "limen/model/plausible_size.h"
+#include "limen/register/prepare/prepare_group.h"
 #include "limen/register/prepare/prepare_model.h"
+#include "limen/register/prepare/prepared_pair.h"
 #include "limen/register/prepare/stage_clock.h"
 #include "limen/register/published/register_published.h"
 #include "limen/register/register.h"
@@ -255,6 +257,12 @@ RegistrationResult register_inputs(const InputReader& source, const InputReader&
 RegistrationResult register_scans(const Scan& source, const Scan& target, const RegisterOptions& options,
                                   Monitor& monitor) {
   return prepare_and_register(source, target, options, monitor);
+}
+
+RegistrationResult register_scans(std::vector<Vector3d> source, std::vector<Vector3d> target,
+                                  const RegisterOptions& options, Monitor& monitor) {
+  return register_scans(scan_of_points(std::move(source)), scan_of_points(std::move(target)), options,
+                        monitor);
 }
 
 RegistrationResult register_to_model(const Scan& scan, const BimModel& model, const RegisterOptions& options,

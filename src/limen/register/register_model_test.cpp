@@ -7,6 +7,7 @@
 
 #include "limen/base/angles.h"
 #include "limen/base/error.h"
+#include "limen/register/prepare/prepare_group.h"
 #include "limen/register/register.h"
 #include "limen/simulate/model/bim_scene.h"
 

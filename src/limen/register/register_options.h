@@ -7,11 +7,8 @@
 
 #include "limen/extract/features/extract_features.h"
 #include "limen/match/planes/enumerate_poses.h"
-#include "limen/register/judge/start_prior.h"
-#include "limen/register/judge/verdict.h"
-#include "limen/register/prepare/prepare_scan.h"
-#include "limen/register/propose/propose.h"
-#include "limen/register/refine/refine_pose.h"
+#include "limen/model/method.h"
+#include "limen/register/options/pair_options.h"
 
 namespace limen {
 
@@ -36,10 +33,9 @@ struct RegisterOptions {
   bool picture = false;                  ///< keep what a report draws
 
   void check() const;
-  /// What is believed of twins, the user's words counted.
-  [[nodiscard]] TwinOptions twins() const;
 };
 
+struct PrepareOptions;
 /// How the scans of a pair are to be prepared.
 PrepareOptions prepare_options(const RegisterOptions& options);
 

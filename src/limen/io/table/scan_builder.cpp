@@ -31,8 +31,6 @@ constexpr std::size_t kScannedStrip = 1024;
 constexpr double kLargestM = 1e8;
 constexpr double kLargestExtentM = 1e6;
 /// Points nearer to 0,0,0 than this keep it as their local origin.
-constexpr double kNearZeroM = 1e4;
-constexpr double kRoundM = 100.0;
 
 using FieldTriple = std::array<const Field*, 3>;
 
@@ -330,11 +328,6 @@ void check_extent(const Scan& scan) {
 }
 
 }  // namespace
-
-Vector3d round_origin_near(const Vector3d& x) {
-  if ((x.array().abs() < kNearZeroM).all()) return Vector3d::Zero();
-  return (x / kRoundM).array().round() * kRoundM;
-}
 
 struct ScanBuilder::Parts {
   TableFacts facts;  ///< in metres

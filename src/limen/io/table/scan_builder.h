@@ -55,7 +55,4 @@ class ScanBuilder {
 ScanFile with_scan(ScanFile file, const RecordTable& table, const TableFacts& facts,
                    const ReadOptions& options);
 
-/// A round number (100 m) near `x`, or 0,0,0 where all coordinates are below 10 km.
-Vector3d round_origin_near(const Vector3d& x);
-
 }  // namespace limen

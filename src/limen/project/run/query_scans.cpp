@@ -30,7 +30,8 @@ class ScanHearing {
                                                    const Rigid3& target_from_source) const {
     if (!meet(source, target, target_from_source)) return std::nullopt;
     return twin_of_given_pose(*cache_->get(node(source).key), *cache_->get(node(target).key),
-                              world_pose(source, target, target_from_source), options_->twins());
+                              world_pose(source, target, target_from_source),
+                              twin_options(options_->nothing_repeats));
   }
 
  private:

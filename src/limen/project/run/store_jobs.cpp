@@ -17,6 +17,7 @@
 #include "limen/project/store/kept_notes.h"
 #include "limen/project/store/scan_picture.h"
 #include "limen/register/prepare/prepare_model.h"
+#include "limen/register/prepare/prepared_pair.h"
 
 namespace limen {
 namespace {

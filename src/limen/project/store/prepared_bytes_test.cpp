@@ -11,6 +11,7 @@
 
 #include "limen/base/error.h"
 #include "limen/project/store/packed_file.h"
+#include "limen/register/prepare/prepared_pair.h"
 #include "limen/register/register.h"
 
 namespace limen {

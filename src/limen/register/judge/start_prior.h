@@ -2,20 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "limen/geometry/rigid.h"
+#include "limen/register/options/pair_options.h"
 
 namespace limen {
-
-/// What a user believes of a pose beforehand: both scans on one grid, a satellite fix, a compass. It is
-/// evidence like any other, and may be wrong: it moves the odds between poses, and never makes one.
-struct StartPrior {
-  Rigid3 target_from_source;   ///< where `at` and the turn are meant; any pair of frames
-  double sigma_m = 2.0;        ///< of the place, per axis, one standard deviation
-  double sigma_rad = 0.08727;  ///< of the turn, per axis: 5 degrees
-  double trust = 0.95;         ///< share of such beliefs that mean what they say
-
-  void check() const;
-};
 
 /// How far a pose is from the one believed.
 struct StartMiss {

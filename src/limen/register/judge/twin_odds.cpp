@@ -173,8 +173,10 @@ void TwinOptions::check() const {
   }
 }
 
-TwinOptions where_nothing_repeats(TwinOptions options) {
+TwinOptions twin_options(bool nothing_repeats) {
   constexpr double kWordsWrong = 0.05;
+  TwinOptions options;
+  if (!nothing_repeats) return options;
   for (double* believed : {&options.otherwise, &options.otherwise_apart, &options.alike})
     *believed *= kWordsWrong;
   return options;

@@ -19,9 +19,9 @@ struct TwinOptions {
   void check() const;
 };
 
-/// The same where a user says that no room, flat or storey of the building was built like another: such words
-/// are wrong in one case of twenty, as a start's may be (start_prior.h), and bare rooms stay in doubt.
-TwinOptions where_nothing_repeats(TwinOptions options);
+/// Those of a registration. Where a user says that no room, flat or storey of the building was built like
+/// another, such words are wrong in one case of twenty, as a start's may be, and bare rooms stay in doubt.
+TwinOptions twin_options(bool nothing_repeats);
 
 /// What things say of three explanations of two scans whose walls agree: one place; a look-alike place that
 /// is furnished otherwise; one that is furnished alike. docs/judge.md has the model,

@@ -64,7 +64,6 @@ void VerdictOptions::check() const {
   if (!(risk > 0 && risk < 0.5)) throw_bad_option("risk", risk, "within (0, 0.5)");
   if (!(probable_risk > risk && probable_risk < 0.5))
     throw_bad_option("probable_risk", probable_risk, fmt::format("within ({:g}, 0.5), above the risk", risk));
-  twin.check();
   const std::pair<const char*, double> bounds[] = {
       {"max_sigma_m", max_sigma_m},       {"max_sigma_deg", max_sigma_deg},
       {"max_drifting_m", max_drifting_m}, {"max_drifting_deg", max_drifting_deg},

@@ -7,24 +7,9 @@
 
 #include "limen/model/result.h"
 #include "limen/register/judge/found_pose.h"
-#include "limen/register/judge/twin_odds.h"
+#include "limen/register/options/pair_options.h"
 
 namespace limen {
-
-struct VerdictOptions {
-  double risk = 0.001;             ///< `registered` may be wrong with this probability at most ...
-  double probable_risk = 0.05;     ///< ... and `probable` with this
-  TwinOptions twin;                ///< of two rooms built alike
-  double min_held_m2 = 0.03;       ///< surface (times lever^2 for turns) that must hold each freedom
-  double max_sigma_m = 0.012;      ///< a shift known less well than this counts as open
-  double max_sigma_deg = 0.1;      ///< and so does a turn
-  double max_drifting_m = 0.05;    ///< the same with what a trajectory may be off by: beyond it a place a
-  double max_drifting_deg = 0.5;   ///< wall further on, or another wall of the room, fits as well
-  double same_rotation_deg = 1.0;  ///< poses nearer than both bounds are one pose
-  double same_shift_m = 0.05;
-
-  void check() const;
-};
 
 /// What a pose leaves open.
 struct OpenFreedoms {

@@ -8,12 +8,6 @@
 
 namespace limen {
 
-/// A scan and its known place among others: x_in_group = group_from_scan * x, world coordinates, metres.
-struct PlacedScan {
-  Scan scan;
-  Rigid3 group_from_scan;
-};
-
 /// Several scans known to one another, made ready as if they were one: planes, openings and samples of all,
 /// surfaces seen from several stations once, and what all scanners know of space. The group's frame is that
 /// of the first scan if its pose is the identity. Throws Error for an empty list.
