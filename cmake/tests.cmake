@@ -15,7 +15,8 @@ set(LIMEN_TEST_HEADERS <Eigen/Core> <Eigen/Geometry> <Eigen/LU> <algorithm> <arr
 add_executable(limen_unit_tests ${LIMEN_UNIT_TESTS})
 limen_unity(limen_unit_tests ${LIMEN_UNIT_TESTS})
 target_include_directories(limen_unit_tests PRIVATE ${PROJECT_SOURCE_DIR}/tests)
-target_precompile_headers(limen_unit_tests PRIVATE ${LIMEN_TEST_HEADERS})
+target_precompile_headers(limen_unit_tests PRIVATE ${LIMEN_TEST_HEADERS}
+  <limen/base/error.h> <limen/base/progress.h> <limen/model/bim_model.h> <limen/model/result.h>)
 target_link_libraries(limen_unit_tests PRIVATE limen limen_simulate limen_cli limen_options fmt::fmt
   nlohmann_json::nlohmann_json rapidcheck GTest::gtest_main)
 if(LIMEN_BUILD_IFC)

@@ -66,13 +66,13 @@ std::vector<std::vector<const Solid*>> cutters_of(const RawModel& raw) {
 }
 
 /// What became of one element or room.
-struct Outcome {
+struct BuiltElement {
   std::vector<BimFace> faces;
   std::string warning;
 };
 
-Outcome outcome_of(const std::vector<Solid>& shapes, const std::vector<const Solid*>& cutters) {
-  Outcome outcome;
+BuiltElement outcome_of(const std::vector<Solid>& shapes, const std::vector<const Solid*>& cutters) {
+  BuiltElement outcome;
   try {
     SolidFaces made = solid_faces(shapes, cutters);
     outcome.faces = std::move(made.faces);
@@ -89,7 +89,7 @@ Outcome outcome_of(const std::vector<Solid>& shapes, const std::vector<const Sol
 /// Makes all faces, elements on all threads, and takes them in the elements' order.
 template <typename Raw, typename Cutters, typename Take>
 void make_faces(const std::vector<Raw>& raw, const Cutters& cutters, Monitor& monitor, const Take& take) {
-  std::vector<Outcome> outcomes(raw.size());
+  std::vector<BuiltElement> outcomes(raw.size());
   parallel_for(raw.size(), 1, [&](std::size_t begin, std::size_t end) {
     monitor.throw_if_cancelled();
     for (std::size_t i = begin; i < end; ++i) outcomes[i] = outcome_of(raw[i].shapes, cutters(i));
@@ -120,7 +120,7 @@ BimModel built(RawModel raw, Monitor& monitor) {
   const auto cutters = cutters_of(raw);
   make_faces(
       raw.elements, [&](std::size_t i) { return cutters[i]; }, monitor,
-      [&](std::size_t i, Outcome& outcome) {
+      [&](std::size_t i, BuiltElement& outcome) {
         for (BimFace& face : outcome.faces) {
           face.element = static_cast<std::int32_t>(i);
           model.faces.push_back(std::move(face));
@@ -130,7 +130,7 @@ BimModel built(RawModel raw, Monitor& monitor) {
       });
   make_faces(
       raw.spaces, [](std::size_t) { return std::vector<const Solid*>{}; }, monitor,
-      [&](std::size_t i, Outcome& outcome) {
+      [&](std::size_t i, BuiltElement& outcome) {
         model.spaces.push_back(std::move(raw.spaces[i].about));
         model.spaces.back().faces = std::move(outcome.faces);
       });
