@@ -70,7 +70,7 @@ TEST_F(ViewTest, ScansLieWhereTheirFilesSay) {
   EXPECT_NEAR(low_of(scene, "side-1")[0], 10.0, 1e-6);
   EXPECT_NEAR(low_of(scene, "side-1")[1], 3.0, 1e-6);
   const std::string page = read_whole(work() / "view.html");
-  EXPECT_NE(page.find("<title>Two &lt;walls&gt;</title>"), std::string::npos);
+  EXPECT_NE(page.find("<title translate=\"no\">Two &lt;walls&gt;</title>"), std::string::npos);
   EXPECT_EQ(page.find("http://"), std::string::npos);
   EXPECT_EQ(page.find("https://"), std::string::npos);
 }

@@ -59,7 +59,7 @@ class Deviation:
     _measured: Any = None
 
     def save(self, folder: Path, *, colour_limit_m: float = 0.05) -> None:
-        """Write deviation.json, deviation.csv and deviation.ply, as `limen deviation` does."""
+        """Write deviation.json, .csv, .xlsx and .ply, as `limen deviation` does."""
         self._measured.save(os.fspath(folder), colour_limit_m)
 
     def _count(self, presence: str) -> int:

@@ -65,9 +65,7 @@ py::dict values(const MeasuredDeviation& measured) {
 
 void save_deviation(const MeasuredDeviation& measured, const std::filesystem::path& path, double colour_limit_m) {
   const OutputFolder folder(path);
-  write_deviation_ply(folder.path() / "deviation.ply", *measured.scan, measured.report, colour_limit_m);
-  write_file(folder.path() / "deviation.csv", csv_of(deviation_sheet(measured.report, *measured.model)));
-  write_file(folder.path() / "deviation.json", deviation_json(measured.report, *measured.model));
+  write_deviation(folder.path(), measured.report, *measured.model, *measured.scan, colour_limit_m);
 }
 
 }  // namespace

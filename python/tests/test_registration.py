@@ -213,7 +213,7 @@ class AgainstAModel(unittest.TestCase):
             self.assertIn("wall", result._repr_html_())
             result.save(Path(folder) / "out")
             self.assertEqual(sorted(p.name for p in (Path(folder) / "out").iterdir()),
-                             ["deviation.csv", "deviation.json", "deviation.ply"])
+                             ["deviation.csv", "deviation.json", "deviation.ply", "deviation.xlsx"])
 
 
 class LongWork(unittest.TestCase):

@@ -99,6 +99,25 @@ describe('a page to drop files on', () => {
     heard.problems = heard.problems.filter((text) => !/409/.test(text));
   });
 
+  test('refuses what is neither a scan nor a model', async () => {
+    await page.setInputFiles('#choose', [{ name: 'photo.jpg', mimeType: 'image/jpeg', buffer: Buffer.from([0xff, 0xd8, 0xff, 0xe0, 0, 16, 74, 70, 73, 70, 0, 1, 1, 0]) }]);
+    await page.waitForSelector('#uploads .fault');
+    assert.match(await page.locator('#uploads').innerText(), /photo\.jpg[\s\S]*E57, LAS/);
+    assert.ok(!existsSync(join(folder, 'site', 'files', 'photo.jpg')));
+    await page.click('#uploads button');
+    heard.problems = heard.problems.filter((text) => !/415/.test(text));
+  });
+
+  test('keeps what is selected after a reload', async () => {
+    await page.setChecked('input[aria-label="Select outdoor.ply"]', true);
+    await page.setChecked('input[aria-label="Select indoor_00.ply"]', false);
+    await page.reload();
+    await page.waitForSelector('html[data-ready]');
+    assert.ok(await page.isChecked('input[aria-label="Select outdoor.ply"]'));
+    assert.ok(!await page.isChecked('input[aria-label="Select indoor_00.ply"]'));
+    assert.match(await page.locator('#ticked').innerText(), /outdoor\.ply/);
+  });
+
   test('takes a file that is dropped', async () => {
     await page.evaluate(() => {
       const data = new DataTransfer();
@@ -126,6 +145,8 @@ describe('work', () => {
     assert.match((await stagesOf(1)).join(' '), /(reading|features|scoring|refinement|hypotheses)/);
     const card = await ended(1);
     assert.match(await card.innerText(), /registered/);
+    assert.match(await card.innerText(), /Probability [\s\S]*%; accuracy \(95 %\) [\d.]+ mm at the centre/);
+    assert.doesNotMatch(await card.innerText(), /limen (transform|deviation|view|info)| --/, 'no lines for a shell');
     const printed = await page.request.get(await card.locator('a', { hasText: 'report.pdf' }).evaluate((link) => link.href));
     assert.equal(printed.headers()['content-type'], 'application/pdf');
     assert.equal((await printed.body()).subarray(0, 5).toString(), '%PDF-');
@@ -194,6 +215,7 @@ describe('work', () => {
     await page.click('button[value="project"]');
     const card = await ended(6);
     assert.match(await card.innerText(), /project\.json/);
+    assert.match(await card.innerText(), /Accuracy \(95 %\) [\d.]+ mm at worst/);
     await card.locator('button', { hasText: /^Run again/ }).click();
     await page.waitForSelector('#job-6.running, #job-6.queued');
     await ended(6);
@@ -204,14 +226,25 @@ describe('work', () => {
     const path = join(folder, 'site', 'results', '6', 'project.json');
     const project = JSON.parse(readFileSync(path));
     const answer = 'accept files/indoor_00.ply files/outdoor.ply';
-    project.questions = [{ text: 'Do the two stand so?', answers: [answer, 'accept files/indoor_00.ply -oevil'], scans: [], for_the_present_place: [], for_another_place: [] }];
+    const others = ['reject', 'forget'].map((kind) => answer.replace('accept', kind));
+    project.questions = [{ text: 'Do the two stand so?', answers: [answer, ...others, 'accept files/indoor_00.ply -oevil'], scans: [], for_the_present_place: [], for_another_place: [] }];
     writeFileSync(path, JSON.stringify(project));
     await page.reload();
     await page.waitForSelector('#job-6 .question');
-    await page.click(`#job-6 .answers button:has-text("${answer}")`);
+    const question = page.locator('#job-6 .question');
+    assert.match(await question.innerText(), /Are these two the same room\? indoor_00\.ply outdoor\.ply/);
+    assert.doesNotMatch(await question.innerText(), /accept|reject|forget/);
+    const press = (text) => page.locator('#job-6 .answers').first().getByText(text, { exact: true }).click();
+    const kept = () => JSON.parse(readFileSync(join(folder, 'site', 'results', '6', 'decisions.json'), 'utf8')).decisions;
+    await press('Yes');
     const card = await ended(7);
     assert.match(await card.innerText(), /Answer:/);
-    assert.match(readFileSync(join(folder, 'site', 'results', '6', 'decisions.json'), 'utf8'), /accept/);
+    await press('Yes');
+    await ended(8);
+    assert.deepEqual(kept(), [{ accept: ['files/indoor_00.ply', 'files/outdoor.ply'] }], 'twice is once');
+    await press('Don\u2019t know');
+    await ended(9);
+    assert.deepEqual(kept(), []);
     const refused = await page.evaluate(() => fetch('jobs', { method: 'POST', body: JSON.stringify({ kind: 'decide', of: 6, answer: 'forget x' }) }).then((response) => response.status));
     assert.equal(refused, 400);
     heard.problems = heard.problems.filter((text) => !/400/.test(text));
@@ -223,7 +256,7 @@ describe('work', () => {
     await page.selectOption('#source', 'broken.las');
     await page.selectOption('#target', 'outdoor.ply');
     await page.click('#register button');
-    const card = await ended(8);
+    const card = await ended(10);
     assert.match(await card.innerText(), /failed[\s\S]*broken\.las: this is not a LAS file/);
   });
 
@@ -232,12 +265,21 @@ describe('work', () => {
     await page.click('#register button');
     // Found and clicked at once: it is gone as soon as the work has ended.
     await page.waitForFunction(() => {
-      const stop = [...document.querySelectorAll('#job-9 button')].find((button) => button.textContent.startsWith('Stop'));
+      const stop = [...document.querySelectorAll('#job-11 button')].find((button) => button.textContent.startsWith('Stop'));
       stop?.click();
       return Boolean(stop);
     }, null, { polling: 20 });
-    await ended(9);
-    assert.match(await page.locator('#job-9').innerText(), /stopped|registered/);
+    await ended(11);
+    assert.match(await page.locator('#job-11').innerText(), /stopped|registered/);
+  });
+});
+
+describe('a project with a file that cannot be read', () => {
+  test('says which, and why', async () => {
+    for (const name of ['broken.las', 'indoor_00.ply', 'outdoor.ply', 'room_of_office.ply', 'model.ifc', 'a_<b>&.ply']) await page.setChecked(`input[aria-label="Select ${name}"]`, ['broken.las', 'indoor_00.ply', 'outdoor.ply'].includes(name));
+    await page.click('button[value="project"]');
+    const card = await ended(12);
+    assert.match(await card.locator('.fault').first().innerText(), /^broken\.las: cannot be read: /);
   });
 });
 

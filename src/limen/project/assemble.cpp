@@ -347,12 +347,39 @@ class Assembler {
       if (stated.number == 0) {
         stated.matches = pair.matches;
         stated.openings = pair.openings;
+        if (stated.solved.pose >= 0) stated.adjusted = adjusted_matches(link, pair);
       }
     } else {
       stated.pair = Outcome::registered;
       stated.reason = "given in the file";
     }
     result_.links.push_back(std::move(stated));
+  }
+
+  /// The distances of a pair's planes under the poses of the solution; none of passes that were bent.
+  [[nodiscard]] std::vector<PlaneMatch> adjusted_matches(const GraphLink& link,
+                                                         const RegistrationResult& pair) const {
+    const auto bends = [&](const BentPass& pass) {
+      return pass.node == link.source || pass.node == link.target;
+    };
+    if (std::any_of(bent_.begin(), bent_.end(), bends)) return {};
+    const ScanDigest& source = digest(link.source);
+    const ScanDigest& target = digest(link.target);
+    const auto frame_from = [&](int node) {
+      return solved_.nodes[static_cast<std::size_t>(node)].frame_from_node;
+    };
+    const Rigid3 own = to_local(pair.best.target_from_source, source.local_origin, target.local_origin);
+    const Rigid3 solved = inverse(frame_from(link.target)) * frame_from(link.source);
+    std::vector<PlaneMatch> matches = pair.matches;
+    for (PlaneMatch& match : matches) {
+      const PlaneDigest& from = source.planes[static_cast<std::size_t>(match.source)];
+      const PlaneDigest& to = target.planes[static_cast<std::size_t>(match.target)];
+      const auto middle = [](const PlaneDigest& plane) { return plane.centroid + plane.moments.mean(); };
+      // What both saw lies in the smaller one.
+      const Vector3d x = from.area_m2 < to.area_m2 ? middle(from) : Vector3d(inverse(own) * middle(to));
+      match.distance_m += to.plane.normal.dot(solved * x - own * x);
+    }
+    return matches;
   }
 
   /// Pairs whose scans are more probably two places built alike: no links, but worth knowing of.
@@ -400,7 +427,8 @@ class Assembler {
       if (link.poses[p].probability < kPossible && static_cast<int>(p) != std::max(0, taken)) continue;
       stated.answers.push_back({number == 0 ? DecisionKind::accept : DecisionKind::choose, scans, number});
     }
-    stated.answers.push_back({DecisionKind::reject, scans, 0});
+    for (const DecisionKind kind : {DecisionKind::reject, DecisionKind::forget})
+      stated.answers.push_back({kind, scans, 0});
   }
 
   /// Accepted links between these nodes and the others, those that know of several places.

@@ -210,7 +210,8 @@ int run(const DeviationCommand& command, const Session& session) {
   if (!command.models.empty())
     throw Error("--model is for projects", "", "give the one model after the scan");
   if (!command.cover.empty())
-    throw Error("a report is made of projects only", "--title, --project, --operator, --date, --logo",
+    throw Error("a report is made of projects only",
+                "--title, --project, --operator, --date, --logo, --language",
                 "leave them out, or give a project.json");
   command.issues.options.check();
   check(command);
@@ -242,19 +243,12 @@ int run(const DeviationCommand& command, const Session& session) {
   report.deviation = measure_deviation(scan, model, pose, command.measuring, *session.monitor);
   session.monitor->throw_if_cancelled();
   session.monitor->begin_stage("writing");
-  const std::string json = deviation_json(report, model);
-  const Sheet table = deviation_sheet(report, model);
-  // The numbers first: the cloud is a thousand times larger. An earlier run's must not stand beside them.
-  std::filesystem::remove(folder.path() / "deviation.ply");
-  write_files({{folder.path() / "deviation.csv", csv_of(table)},
-               {folder.path() / "deviation.xlsx", workbook_of({table})},
-               {folder.path() / "deviation.json", json}});
-  write_deviation_ply(folder.path() / "deviation.ply", scan, report, command.colour_limit_m);
+  write_deviation(folder.path(), report, model, scan, command.colour_limit_m);
   session.say(summary(report, model, command.folder));
   if (!command.issues.file.empty())
     session.say(fmt::format("{} issues written to {}\n", write_issues(command, report, scan, model),
                             command.issues.file));
-  session.answer(json);
+  session.answer(deviation_json(report, model));
   return status_of_matched(report.deviation.matched, session);
 }
 

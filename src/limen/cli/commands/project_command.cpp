@@ -38,6 +38,7 @@
 #include "limen/report/project/project_json.h"
 #include "limen/report/project/project_page.h"
 #include "limen/report/project/project_sheets.h"
+#include "limen/report/project/question_pictures.h"
 #include "limen/report/project/read_project.h"
 #include "limen/report/project/station_accuracy.h"
 
@@ -176,13 +177,19 @@ std::string summary(const ProjectResult& result, const std::string& folder) {
   for (const ProjectDecision& stated : result.decisions)
     text += fmt::format("decision    {}: {}{}{}\n", words_of(stated.decision), to_string(stated.state),
                         stated.reason.empty() ? "" : ", ", stated.reason);
-  for (const ProjectQuestion& question : result.questions) text += "question: " + question.text + "\n";
+  for (const ProjectQuestion& question : result.questions) {
+    text += "question: " + question.text + "\n";
+    for (const Decision& answer : question.answers) text += "  " + decide_line(folder, answer) + "\n";
+  }
   std::size_t counts[5] = {};
   for (const ProjectLink& link : result.links) ++counts[static_cast<std::size_t>(link.solved.state)];
   text += fmt::format(
       "links       {} verified, {} unchecked (bridge), {} ambiguous, {} rejected, {} weak, of {} pairs "
       "tried\n",
       counts[0], counts[1], counts[2], counts[3], counts[4], result.pairs_tried);
+  if (const std::optional<BundleError> bundle = bundle_error(result))
+    text += fmt::format("bundle      {:.1f} mm RMS of {} pairs of planes; the worst link {:.1f} mm\n",
+                        1e3 * bundle->rms_m, bundle->planes, 1e3 * bundle->worst_rms_m);
   return text + fmt::format("written to {}\n", folder);
 }
 
@@ -323,6 +330,15 @@ std::vector<ProjectPicture> pictures_in(const std::filesystem::path& folder,
   return project_pictures(folder, project, result, kMostProjectPoints);
 }
 
+/// question_1.svg and so on; those of an earlier run go.
+void write_question_pictures(const std::filesystem::path& folder, const std::vector<std::string>& drawn) {
+  const auto path = [&](std::size_t number) { return folder / fmt::format("question_{}.svg", number); };
+  for (std::size_t number = 1; number <= kMostPictures; ++number) std::filesystem::remove(path(number));
+  for (std::size_t k = 0; k < drawn.size(); ++k) {
+    if (!drawn[k].empty()) write_file(path(k + 1), drawn[k]);
+  }
+}
+
 int run(ProjectCommandOptions options, const Session& session) {
   if (options.folder.empty() && options.scans.size() == 2 && options.scans.front() == "status")
     return tell_status(options.scans.back(), session);
@@ -355,12 +371,14 @@ int run(ProjectCommandOptions options, const Session& session) {
   system.trajectories = trajectories;
   const std::string json = project_json(result, reported(options, session), system);
   session.monitor->throw_if_cancelled();
+  std::vector<ProjectPicture> pictures = pictures_in(folder.path(), options, trajectories, session, result);
+  write_question_pictures(folder.path(), question_pictures(result, pictures));
   write_file(folder.path() / "report.html",
-             project_page(result, pictures_in(folder.path(), options, trajectories, session, result),
+             project_page(result, std::move(pictures),
                           system.system.known() || result.frame_kind == "control", cover));
   std::filesystem::remove(folder.path() / "report.pdf");  // an earlier run's
-  const std::vector<Sheet> sheets = {stations_sheet(result), links_sheet(result), loops_sheet(result),
-                                     points_sheet(result)};
+  const std::vector<Sheet> sheets = {stations_sheet(result), links_sheet(result), bundle_sheet(result),
+                                     loops_sheet(result), points_sheet(result)};
   write_file(folder.path() / "stations.csv", csv_of(sheets[0]));
   write_file(folder.path() / "links.csv", csv_of(sheets[1]));
   write_file(folder.path() / "tables.xlsx", workbook_of(sheets));

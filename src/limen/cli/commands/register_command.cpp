@@ -49,7 +49,6 @@ struct RegisterCommandOptions {
   bool no_report = false;
   bool pdf = false;
   CoverChoice cover;
-  std::string language = "en";
   std::string memory;
   ReadingChoice source_reading;
   ReadingChoice target_reading;
@@ -225,14 +224,6 @@ std::filesystem::path browser_of(const RegisterCommandOptions& options) {
   return browser_for_pdf(options.pdf);
 }
 
-ReportCover cover_in_language(const RegisterCommandOptions& options) {
-  ReportCover cover = cover_of(options.cover);
-  cover.language = options.language == "fr"   ? Language::french
-                   : options.language == "de" ? Language::german
-                                              : Language::english;
-  return cover;
-}
-
 int status_of(Outcome outcome) {
   switch (outcome) {
     case Outcome::registered:
@@ -253,7 +244,7 @@ int run(const RegisterCommandOptions& options, const Session& session) {
                 "give one of them");
   }
   const std::filesystem::path browser = browser_of(options);
-  const ReportCover cover = cover_in_language(options);
+  const ReportCover cover = cover_of(options.cover);
   const bool segments = takes_segments(options);
   const OutputFolder folder(options.folder);
   const Registered registered =
@@ -280,14 +271,6 @@ void add_with_option(CommandLine& command, const char* name, std::vector<std::st
       ->type_size(2)
       ->type_name("SCAN POSE")
       ->take_all();
-}
-
-void add_report_options(CommandLine& command, RegisterCommandOptions& options) {
-  add_cover_options(command, options.cover);
-  command
-      .add_option("--language", options.language,
-                  "Language of the summary on the report: en (default), fr, de")
-      ->one_of({"en", "fr", "de"});
 }
 
 void add_origin_options(CommandLine& command, RegisterCommandOptions& options) {
@@ -354,7 +337,7 @@ void add_register_command(CommandLine& app, Session& session) {
   add_pdf_option(*command, options->pdf);
   command->add_flag("--no-report", options->no_report,
                     "Write neither report.html nor the sections, only result.json and transform.txt");
-  add_report_options(*command, *options);
+  add_cover_options(*command, options->cover);
   add_gravity_option(*command, options->gravity, true);
   add_origin_options(*command, *options);
   add_units_option(*command, options->source_reading.units, "source-");

@@ -36,7 +36,7 @@ std::string image_uri(const std::string& path) {
 }  // namespace
 
 bool CoverChoice::empty() const {
-  return (cover.title + cover.project + cover.operator_name + cover.date + logo).empty();
+  return (cover.title + cover.project + cover.operator_name + cover.date + logo).empty() && language == "en";
 }
 
 void add_cover_options(CommandLine& command, CoverChoice& choice) {
@@ -49,10 +49,17 @@ void add_cover_options(CommandLine& command, CoverChoice& choice) {
   add("--operator", choice.cover.operator_name, "Who made the registration, for the report");
   add("--date", choice.cover.date, "Date on the report, printed as given");
   add("--logo", choice.logo, "Logo on the report: PNG, JPEG or SVG, at most 2 MB", "FILE");
+  command
+      .add_option("--language", choice.language,
+                  "Language of the report (of limen register: of a summary on it): en (default), fr or de")
+      ->one_of({"en", "fr", "de"});
 }
 
 ReportCover cover_of(const CoverChoice& choice) {
   ReportCover cover = choice.cover;
+  cover.language = choice.language == "fr"   ? Language::french
+                   : choice.language == "de" ? Language::german
+                                             : Language::english;
   if (!choice.logo.empty()) cover.logo = image_uri(choice.logo);
   return cover;
 }

@@ -13,11 +13,12 @@ namespace limen {
 struct CoverChoice {
   ReportCover cover;
   std::string logo;  ///< a file; empty: none
+  std::string language = "en";
 
   [[nodiscard]] bool empty() const;
 };
 
-/// --title, --project, --operator, --date and --logo.
+/// --title, --project, --operator, --date, --logo and --language.
 void add_cover_options(CommandLine& command, CoverChoice& choice);
 
 /// The cover with its logo, which is read here. Throws Error where the file is no PNG, JPEG or SVG, or has

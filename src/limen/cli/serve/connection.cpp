@@ -43,6 +43,8 @@ const char* words_of(int status) {
       return "Conflict";
     case 413:
       return "Content Too Large";
+    case 415:
+      return "Unsupported Media Type";
     case 507:
       return "Insufficient Storage";
     default:

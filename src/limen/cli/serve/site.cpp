@@ -13,10 +13,13 @@
 #include "limen/base/atomic_file.h"
 #include "limen/base/error.h"
 #include "limen/base/version.h"
+#include "limen/bim/read_bim.h"
 #include "limen/cli/serve/job_request.h"
 #include "limen/cli/serve/serve_page.h"
 #include "limen/files/bounded_json.h"
+#include "limen/files/mapped_file.h"
 #include "limen/files/text_numbers.h"
+#include "limen/io/cloud/open_points.h"
 #include "limen/report/html/print_pdf.h"
 
 namespace limen {
@@ -27,7 +30,7 @@ namespace fs = std::filesystem;
 constexpr const char* kJsonType = "application/json";
 /// Our own page: nothing from elsewhere, nothing inline, in no frame.
 constexpr const char* kPagePolicy =
-    "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self'; img-src data:; "
+    "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self'; img-src 'self' data:; "
     "base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
 /// Pages of results bring a policy of their own. In a sandbox they have no origin, and can ask nothing here.
 constexpr const char* kResultPolicy =
@@ -102,15 +105,23 @@ std::optional<int> number_in(const std::string& text) {
 /// A file that appears under its name once all of it has come.
 class FileUpload : public HttpUpload {
  public:
-  FileUpload(const fs::path& path, std::string name) : file_(path), name_(std::move(name)) {}
+  FileUpload(const fs::path& path, std::string name) : file_(path), path_(path), name_(std::move(name)) {}
   void write(const std::string& bytes) override { file_.write(bytes); }
   HttpReply finish() override {
     file_.commit();
+    try {
+      if (!is_bim_file(path_)) point_format_of(MappedFile(path_.string()).bytes(), path_);
+    } catch (const Error& error) {
+      std::error_code ignored;
+      fs::remove(path_, ignored);
+      throw HttpFault(415, fmt::format("{}: {}", error.problem(), error.remedy()));
+    }
     return json_reply({{"name", name_}}, 201);
   }
 
  private:
   AtomicFile file_;
+  fs::path path_;
   std::string name_;
 };
 

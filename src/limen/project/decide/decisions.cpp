@@ -98,6 +98,10 @@ std::string words_of(const Decision& decision) {
   return text;
 }
 
+std::string decide_line(const std::string& folder, const Decision& decision) {
+  return fmt::format("limen project decide {} {}", shell_word(folder), words_of(decision));
+}
+
 Decision decision_from(const std::vector<std::string>& words) {
   const std::optional<DecisionKind> kind = words.empty() ? std::nullopt : kind_called(words.front());
   if (!kind) throw Error("no decision is given", "project decide", kDecisionsRemedy);

@@ -28,6 +28,9 @@ struct Decision {
 /// A decision in a few words, as a shell gives them to `limen project decide DIR`: 'all.e57 #0' is one.
 std::string words_of(const Decision& decision);
 
+/// The command that takes it, for a shell.
+std::string decide_line(const std::string& folder, const Decision& decision);
+
 /// From words: accept A B, reject A B, choose A B N, level A, same-floor A B, forget A [B]. Throws Error.
 Decision decision_from(const std::vector<std::string>& words);
 

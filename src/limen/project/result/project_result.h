@@ -108,6 +108,7 @@ struct ProjectLink {
   std::vector<ProjectAlternative> alternatives;
   std::string reason;
   std::vector<PlaneMatch> matches;        ///< planes that agree under the pair's own best pose
+  std::vector<PlaneMatch> adjusted;       ///< the same where the adjustment of all lays the scans
   std::vector<MatchedOpenings> openings;  ///< and openings
 };
 

@@ -12,7 +12,6 @@
 #include "limen/report/html/html_bytes.h"
 #include "limen/report/html/html_elements.h"
 #include "limen/report/html/report_page.h"
-#include "limen/report/html/table_page.h"
 
 namespace limen {
 namespace {
@@ -21,14 +20,6 @@ constexpr std::size_t kBuildingRows = 2000;  // of a table; the CSV has all
 constexpr double kPlanWidth = 1100.0;        // units of the drawing
 constexpr double kPlanHeight = 800.0;        // at most
 constexpr double kPlanUpright = 0.3;         // cosine to the vertical of normals that a plan shows
-
-constexpr const char* kBuildingStyle = R"(
-.found { --c: var(--good); } .moved { --c: var(--doubt); } .not_found { --c: var(--bad); } .not_judged, .loose { --c: var(--weak); }
-.face { stroke: var(--c); stroke-width: 2; } .face.not_judged { stroke-opacity: .35; stroke-width: 1; }
-.box { fill: var(--doubt); fill-opacity: .25; stroke: var(--doubt); stroke-width: 1; }
-.seen { fill: var(--ink); } .guid { overflow-wrap: anywhere; min-width: 12ch; font: 12px ui-monospace, monospace; }
-@media print { .guid { font-size: 8px; } }
-)";
 
 /// The class of an element in colours and words.
 const char* class_of(const ElementDeviation& it, double moved_m) {
@@ -133,8 +124,9 @@ std::string element_row(const BuildingReport& report, std::size_t k) {
   const BimElement& element = report.model.elements[k];
   const char* name = class_of(it, report.issues.moved_m);
   std::string row = fmt::format(
-      "<tr><td class=\"state {0}\">{0}</td><td>{1}</td><td>{2}</td><td>{3}</td><td "
-      "class=\"guid\">{4}</td><td "
+      "<tr><td class=\"state {0}\">{0}</td><td translate=\"no\">{1}</td><td translate=\"no\">{2}</td><td "
+      "translate=\"no\">{3}</td><td "
+      "class=\"guid\" translate=\"no\">{4}</td><td "
       "class=\"n\">{5}</td>",
       name, escaped(element.name), escaped(element.type), escaped(element.storey), escaped(element.guid),
       report.deviation.seen_by[k]);
@@ -149,8 +141,8 @@ std::string element_row(const BuildingReport& report, std::size_t k) {
   } else {
     row += "<td></td><td></td><td></td><td></td><td></td>";
   }
-  return row + fmt::format("<td class=\"n\">{:.1f}</td><td class=\"n\">{:.0f}&nbsp;%</td></tr>\n",
-                           it.passed_m2, 100.0 * it.covered_share);
+  return row + fmt::format("<td class=\"n\">{:.1f}</td><td class=\"n\">{:.0f} %</td></tr>\n", it.passed_m2,
+                           100.0 * it.covered_share);
 }
 
 std::string elements_table(const BuildingReport& report) {
@@ -159,7 +151,7 @@ std::string elements_table(const BuildingReport& report) {
       "tabindex=\"0\"><table><tr><th>state</th><th>name</th>"
       "<th>type</th><th>storey</th><th>GUID</th><th>scans</th><th>off by, mm</th><th>x y z, "
       "mm</th><th>median, "
-      "mm</th><th>95&nbsp;%, mm</th><th>class</th><th>seen through, m&sup2;</th><th>covered</th></tr>\n";
+      "mm</th><th>95 %, mm</th><th>class</th><th>seen through, m²</th><th>covered</th></tr>\n";
   std::size_t shown = 0;
   std::size_t unjudged = 0;
   for (const std::size_t k : worst_first(report.deviation.elements)) {
@@ -213,19 +205,21 @@ std::string shares_table(const BuildingReport& report) {
     const ScanShare& share = report.deviation.scans[k];
     const Vector3d common = 1e3 * share.common.shift_m;
     text += fmt::format(
-        "<tr><td class=\"path\">{}</td><td class=\"n\">{}</td><td class=\"n\">{:.0f}&nbsp;%</td><td "
+        "<tr><td class=\"path\" translate=\"no\">{}</td><td class=\"n\">{}</td><td "
+        "class=\"n\">{:.0f} %</td><td "
         "class=\"n\">{:.1f}</td><td class=\"n\">{:.1f} {:.1f} {:.1f}</td><td>{}{}</td></tr>\n",
         escaped(name_of(report, scan.path, scan.index)), share.points,
         100.0 * static_cast<double>(share.matched) /
             static_cast<double>(std::max<std::size_t>(1, share.points)),
         1e3 * scan.pose_sigma_m, common.x() + 0.0, common.y() + 0.0, common.z() + 0.0,
-        scan.bent ? "Drift corrected. " : "",
+        scan.bent ? "Drift corrected.<br>" : "",
         share.oriented ? ""
                        : "Its scanner position is unknown, so it cannot show that elements are missing.");
   }
   for (const BuildingLeftOut& it : report.left_out)
     text += fmt::format(
-        "<tr><td class=\"path\">{}</td><td></td><td></td><td></td><td></td><td>left out: {}</td></tr>\n",
+        "<tr><td class=\"path\" translate=\"no\">{}</td><td></td><td></td><td></td><td></td><td>left out: "
+        "{}</td></tr>\n",
         escaped(name_of(report, it.path, it.index)), escaped(it.reason));
   return text + "</table></div>\n";
 }
@@ -236,7 +230,8 @@ std::string models_list(const BuildingReport& report) {
     const char* words = model.place == "project"          ? "placed by the project"
                         : model.place == "with the first" ? "assumed to be in one frame with the first"
                                                           : "assumed to be in the project's frame";
-    text += fmt::format("<li>{}: {} elements, {}</li>\n", escaped(model.path), model.elements, words);
+    text += fmt::format("<li><span translate=\"no\">{}</span>: <span>{} elements, {}</span></li>\n",
+                        escaped(model.path), model.elements, words);
   }
   return text + "</ul>\n";
 }
@@ -251,10 +246,11 @@ std::string building_page(const BuildingReport& report, const ReportCover& cover
     ++counts[static_cast<std::size_t>(it.presence)];
     moved += has_moved(it, report.issues.moved_m) ? 1 : 0;
   }
-  std::string text =
-      filled_in(page_head(), {{"title", cover.title.empty() ? "limen: deviation" : escaped(cover.title)},
-                              {"style", std::string(table_page_style()) + kBuildingStyle},
-                              {"version", kVersion}});
+  std::string text = filled_in(
+      page_head(), {{"title", escaped(cover.title.empty() ? in_language("limen: deviation", cover.language)
+                                                          : cover.title)},
+                    {"style", std::string(table_style())},
+                    {"version", kVersion}});
   text += fmt::format(
       "<body><main>\n{}<h1>{} missing, {} moved by more than {:.0f} mm, of {} elements that "
       "were "
@@ -270,7 +266,7 @@ std::string building_page(const BuildingReport& report, const ReportCover& cover
           "not_judged\">not judged</span>; filled boxes: objects that are not in the model; dots: origins of "
           "scans.</p>\n";
   text += elements_table(report) + matter_table(report) + shares_table(report) + models_list(report);
-  return text + signature_html(cover) + "</main></body></html>\n";
+  return page_in_language(text + signature_html(cover) + "</main></body></html>\n", cover.language);
 }
 
 }  // namespace limen

@@ -83,4 +83,15 @@ void write_deviation_ply(const std::filesystem::path& path, const Scan& scan, co
   write_deviation_points(path, scan.size(), point, colour_limit_m);
 }
 
+void write_deviation(const std::filesystem::path& folder, const DeviationReport& report,
+                     const BimModel& model, const Scan& scan, double colour_limit_m) {
+  const Sheet table = deviation_sheet(report, model);
+  // The numbers first: the cloud is a thousand times larger. An earlier run's must not stand beside them.
+  std::filesystem::remove(folder / "deviation.ply");
+  write_files({{folder / "deviation.csv", csv_of(table)},
+               {folder / "deviation.xlsx", workbook_of({table})},
+               {folder / "deviation.json", deviation_json(report, model)}});
+  write_deviation_ply(folder / "deviation.ply", scan, report, colour_limit_m);
+}
+
 }  // namespace limen

@@ -65,4 +65,8 @@ void write_deviation_points(const std::filesystem::path& path, std::size_t count
 void write_deviation_ply(const std::filesystem::path& path, const Scan& scan, const DeviationReport& report,
                          double colour_limit_m);
 
+/// Writes deviation.json, .csv, .xlsx and, as write_deviation_ply() does, .ply into a folder.
+void write_deviation(const std::filesystem::path& folder, const DeviationReport& report,
+                     const BimModel& model, const Scan& scan, double colour_limit_m);
+
 }  // namespace limen

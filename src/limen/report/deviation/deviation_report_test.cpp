@@ -9,6 +9,7 @@
 #include <fstream>
 #include <iterator>
 #include <limits>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,7 @@
 #include <unistd.h>
 
 #include "limen/base/error.h"
+#include "limen/report/deviation/building_report.h"
 #include "limen/report/json/json_values.h"
 
 namespace limen {
@@ -81,6 +83,33 @@ TEST(DeviationReport, JsonHoldsElementsSummaryAndWhatIsNotModelled) {
   EXPECT_FALSE(json["elements"][1].contains("median_m"));
   EXPECT_EQ(json["unmodelled"][0]["centre"][0], 1000.5);
   EXPECT_EQ(json["unmodelled"][0]["size_m"][1], 2.0);
+}
+
+TEST(BuildingPage, LacksNoTextInAnyLanguage) {
+  BuildingReport report;
+  report.model = model_with_names();
+  const DeviationReport two = report_of_two();
+  report.deviation.elements = two.deviation.elements;
+  report.deviation.elements.push_back(two.deviation.elements.back());
+  report.deviation.elements.back().presence = Presence::not_judged;
+  report.model.elements.push_back(report.model.elements.back());
+  report.deviation.seen_by = {2, 0, 0};
+  report.deviation.unmodelled = two.deviation.unmodelled;
+  for (const char* place : {"project", "with the first", "in the frame"})
+    report.models.push_back({"house.ifc", 2, Rigid3{}, place});
+  report.scans.push_back({"hall.ply", 0, 0.0015, true, Rigid3{}});
+  report.deviation.scans = {{100, 90, 10, false, {}}};
+  report.left_out.push_back({"far.ply", 0, "no reliable overlap with any other scan"});
+  const std::string page = building_page(report);
+  for (const Language language : {Language::french, Language::german}) {
+    std::set<std::string> missing;
+    static_cast<void>(page_in_language(page, language, &missing));
+    EXPECT_EQ(missing, std::set<std::string>());
+  }
+  const std::string german = building_page(report, {"", "", "", "", Language::german});
+  EXPECT_NE(german.find("1 fehlen, "), std::string::npos);
+  EXPECT_NE(german.find(">14,9<"), std::string::npos) << "the decimal sign of the language";
+  EXPECT_NE(german.find(">IfcWall<"), std::string::npos);
 }
 
 TEST(DeviationReport, CsvHasAFieldForEveryName) {

@@ -5,12 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "limen/report/html/language.h"
 #include "limen/report/summary/registration_report.h"
 
 namespace limen {
-
-/// In which language the summary on the page is.
-enum class Language { english, french, german };
 
 /// What the one who hands a report on writes on it. Empty texts are left out.
 struct ReportCover {
@@ -26,10 +24,10 @@ struct ReportCover {
 /// residuals, what is open. Plain text, not escaped.
 std::vector<std::string> cover_summary(const RegistrationReport& report, Language language);
 
-/// Logo, title, project, operator and date; ready HTML, empty where none is given.
+/// Logo, title, project, operator and date, named in English; ready HTML, empty where none is given.
 std::string cover_facts(const ReportCover& cover);
 
-/// Where the operator signs; ready HTML, empty where no operator is given.
+/// Where the operator signs, in English; ready HTML, empty where no operator is given.
 std::string signature_html(const ReportCover& cover);
 
 /// The head of the page: title, project, operator, date, and the summary where one is asked for in another

@@ -28,7 +28,7 @@ std::string blob_element(const std::string& id, const std::vector<std::uint8_t>&
   return script_element("text/plain", id, base64(bytes));
 }
 
-std::string json_element(Json json) {
+std::string json_element(Json json, const std::string& id) {
   make_printable(json);
   std::string safe;
   for (const char c : json.dump(-1, ' ', false, Json::error_handler_t::replace)) {
@@ -38,7 +38,7 @@ std::string json_element(Json json) {
       safe += c;
     }
   }
-  return script_element("application/json", "scene", safe);
+  return script_element("application/json", id, safe);
 }
 
 std::string filled_in(std::string_view pattern, const PageParts& parts) {

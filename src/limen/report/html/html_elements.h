@@ -14,8 +14,8 @@ namespace limen {
 
 /// An element of a page that holds bytes as base64; nothing where there are none.
 std::string blob_element(const std::string& id, const std::vector<std::uint8_t>& bytes);
-/// The element "scene" with JSON that cannot end the element it is in, nor open a comment there.
-std::string json_element(Json json);
+/// An element with JSON that cannot end the element it is in, nor open a comment there.
+std::string json_element(Json json, const std::string& id = "scene");
 
 using PageParts = std::map<std::string, std::string>;
 /// `pattern` with every {{name}} replaced by the part of that name, in one pass: what a part holds is never

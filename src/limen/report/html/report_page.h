@@ -27,4 +27,11 @@ std::string_view project_pattern();
 std::string_view project_style();
 std::string_view project_script();
 
+/// CSS of pages of tables and plans without a view in space.
+std::string_view table_style();
+
+/// Texts in other languages: English, a tab, the other, a line each.
+std::string_view french_texts();
+std::string_view german_texts();
+
 }  // namespace limen

@@ -54,6 +54,10 @@ Json json_of(const Vector3d& vector) {
   return Json::array({vector.x(), vector.y(), vector.z()});
 }
 
+Json json_of(const std::optional<double>& number) {
+  return number ? Json(*number) : Json();
+}
+
 Json json_of(const Matrix4d& matrix) {
   Json rows = Json::array();
   for (int i = 0; i < 4; ++i) {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,8 @@ namespace limen {
 using Json = nlohmann::ordered_json;
 
 Json json_of(const Vector3d& vector);
+/// null where there is none.
+Json json_of(const std::optional<double>& number);
 /// Four rows of four numbers.
 Json json_of(const Matrix4d& matrix);
 /// Where a scanner stood and how that is known: `source` always, the rest where it means something.

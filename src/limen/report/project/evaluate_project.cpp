@@ -111,6 +111,8 @@ PlaceError error_against(const Placed& reference, const Placed& scan) {
           rotation_angle(found.rotation.transpose() * scan.world_from_scan.rotation)};
 }
 
+}  // namespace
+
 double quantile(std::vector<double> values, double share) {
   if (values.empty()) return 0.0;
   const auto at = values.begin() +
@@ -118,8 +120,6 @@ double quantile(std::vector<double> values, double share) {
   std::nth_element(values.begin(), at, values.end());
   return *at;
 }
-
-}  // namespace
 
 double ProjectErrors::shift_of(double share) const {
   std::vector<double> shifts;

@@ -34,4 +34,7 @@ struct ProjectErrors {
 ProjectErrors evaluate_project(const std::vector<ProjectEntry>& project, const std::vector<TrueScan>& truth,
                                const std::filesystem::path& truth_path);
 
+/// Of values the one below which a share of them lies; 0 of none.
+double quantile(std::vector<double> values, double share);
+
 }  // namespace limen

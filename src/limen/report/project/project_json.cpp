@@ -75,8 +75,6 @@ Json scan_json(const ProjectScan& scan, const std::optional<StationAccuracy>& ac
 
 Json link_json(const ProjectResult& result, std::size_t k) {
   const ProjectLink& link = result.links[k];
-  const std::optional<double> overlap = overlap_of(result, k);
-  const std::optional<double> rms = plane_distance_rms(link.matches);
   Json json = {{"source", link.source},
                {"target", link.target},
                {"state", to_string(link.solved.state)},
@@ -85,13 +83,15 @@ Json link_json(const ProjectResult& result, std::size_t k) {
                {"pose_number", link.number},
                {"sigma", pose_sigma_json(link.sigma)},
                {"agreeing_m2", link.agreeing_m2},
-               {"overlap", overlap ? Json(*overlap) : Json()},
-               {"plane_rms_m", rms ? Json(*rms) : Json()},
+               {"overlap", json_of(overlap_of(result, k))},
+               {"plane_rms_m", json_of(plane_distance_rms(link.matches))},
+               {"adjusted_rms_m", json_of(plane_distance_rms(link.adjusted))},
                {"twin", link.twin},
                {"chance", link.chance},
                {"redundancy", link.solved.redundancy},
-               {"loop_error_m", link.solved.loop_error_m},
-               {"loop_error_rad", link.solved.loop_error_rad}};
+               {"loop_error_m", is_checked(link) ? Json(link.solved.loop_error_m) : Json()},
+               {"loop_error_rad", is_checked(link) ? Json(link.solved.loop_error_rad) : Json()},
+               {"loops", loops_through(result, k)}};
   Json alternatives = Json::array();
   for (const ProjectAlternative& other : link.alternatives)
     alternatives.push_back({{"number", other.number},
@@ -197,6 +197,11 @@ std::string project_json(const ProjectResult& result, const OptionList& options,
     json["control"] = {{"reason", result.control_words}, {"variance_factor", result.control_factor}};
     json["points"] = list_json(result.points, point_json);
   }
+  if (const std::optional<BundleError> bundle = bundle_error(result))
+    json["bundle"] = {{"rms_m", bundle->rms_m},
+                      {"planes", bundle->planes},
+                      {"worst_link", bundle->worst},
+                      {"worst_rms_m", bundle->worst_rms_m}};
   json["pairs_tried"] = result.pairs_tried;
   json["variance_factor"] = result.variance_factor;
   json["notes"] = result.notes;

@@ -21,6 +21,7 @@
 #include "limen/report/project/project_axes.h"
 #include "limen/report/project/project_plan.h"
 #include "limen/report/project/project_scene.h"
+#include "limen/report/project/question_pictures.h"
 #include "limen/report/project/station_accuracy.h"
 #include "limen/report/summary/precision.h"
 
@@ -31,31 +32,43 @@ std::string state_cell(const char* state) {
   return fmt::format("<td class=\"state {0}\">{0}</td>", state);
 }
 
-/// The command that takes an answer, for a shell.
-std::string line_of(const Decision& answer) {
-  std::string line = fmt::format("limen project decide DIR {}", to_string(answer.kind));
-  for (const std::string& scan : answer.scans) {
-    std::string quoted;
-    for (const char c : scan) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-    line += " '" + quoted + "'";
+/// What a button says.
+std::string caption_of(const Decision& answer, bool several) {
+  switch (answer.kind) {
+    case DecisionKind::accept:
+      return several ? "Yes, at the best pose" : "Yes";
+    case DecisionKind::choose:
+      return fmt::format("Yes, at pose {}", answer.pose);
+    case DecisionKind::reject:
+      return "No";
+    default:
+      break;
   }
-  if (answer.kind == DecisionKind::choose) line += fmt::format(" {}", answer.pose);
-  return line;
+  return "Don't know";
 }
 
-std::string questions(const ProjectResult& result) {
+std::string questions(const ProjectResult& result, const std::vector<std::string>& drawn) {
   if (result.questions.empty()) return {};
   std::string text = "<h2>Open questions</h2>\n";
+  std::size_t number = 0;
   for (const ProjectQuestion& question : result.questions) {
-    text += fmt::format("<div class=\"card ask keep\"><p>{}</p>", escaped(question.text));
-    for (const Decision& answer : question.answers)
-      text += fmt::format("<button type=\"button\" class=\"answer\" data-line=\"{}\">{}</button> ",
-                          escaped(line_of(answer)), escaped(words_of(answer)));
+    text += fmt::format("<div class=\"card ask keep\"><p>{}</p>\n", escaped(question.text));
+    for (const std::vector<Decision>& answers : asked_of(question)) {
+      text += fmt::format("<p>{}</p>\n{}", escaped(asked_words(answers)),
+                          number < drawn.size() ? drawn[number] : "");
+      ++number;
+      const bool several = std::any_of(answers.begin(), answers.end(), [](const Decision& answer) {
+        return answer.kind == DecisionKind::choose;
+      });
+      for (const Decision& answer : answers)
+        text += fmt::format("<button type=\"button\" class=\"answer\" data-line=\"{}\">{}</button> ",
+                            escaped(decide_line("DIR", answer)), caption_of(answer, several));
+    }
     text += "</div>\n";
   }
   return text +
-         "<p class=\"soft\" id=\"paste\" hidden>Paste this line into a terminal, then run the project again "
-         "(finished work is kept): <code></code></p>\n";
+         "<p class=\"soft\" id=\"paste\" hidden><span>Paste this line into a terminal, then run the project "
+         "again (finished work is kept):</span> <code translate=\"no\"></code></p>\n";
 }
 
 /// A card with a table; `head`: the cells of its first row, those of numbers begin with '#'.
@@ -82,7 +95,7 @@ std::string decisions_table(const ProjectResult& result) {
     const char* colour = stated.state == DecisionState::kept           ? "verified"
                          : stated.state == DecisionState::contradicted ? "rejected"
                                                                        : "weak";
-    text += fmt::format("<tr><td>{}</td><td class=\"state {}\">{}</td><td>{}</td></tr>\n",
+    text += fmt::format("<tr><td translate=\"no\">{}</td><td class=\"state {}\">{}</td><td>{}</td></tr>\n",
                         escaped(words_of(stated.decision)), colour, to_string(stated.state),
                         escaped(stated.reason));
   }
@@ -109,10 +122,11 @@ std::string accuracy_cells(const std::optional<StationAccuracy>& it, bool tolera
 
 std::string scans_table(const ProjectResult& result) {
   std::string text;
-  for (std::size_t k = 0; k < result.scans.size(); ++k) {
+  for (const std::size_t k : worst_scans_first(result)) {
     const ProjectScan& scan = result.scans[k];
-    text += fmt::format("<tr id=\"scan{0}\"><td class=\"n\">{0}</td><td class=\"path\">{1}{2}</td>", k,
-                        escaped(shown_name(scan)), scan.model ? " <span class=\"soft\">model</span>" : "");
+    text += fmt::format(
+        "<tr id=\"scan{0}\"><td class=\"n\">{0}</td><td class=\"path\" translate=\"no\">{1}{2}</td>", k,
+        escaped(shown_name(scan)), scan.model ? " <span class=\"soft\">model</span>" : "");
     text += state_cell(scan.readable ? to_string(scan.state) : "unreadable");
     text +=
         fmt::format("<td class=\"n\">{}</td>", scan.component >= 0 ? fmt::format("{}", scan.component) : "");
@@ -125,7 +139,8 @@ std::string scans_table(const ProjectResult& result) {
   head.emplace_back("why");
   return table(
       "Scans", "scans", head, text,
-      "95 %: radius that holds the position with this probability; class: the Level of Accuracy of the USIBD "
+      "The worst first. 95 %: radius that holds the position with this probability; class: the Level of "
+      "Accuracy of the USIBD "
       "by that radius. registered: certain within the limit; probable: less certain; ambiguous: another "
       "place fits as "
       "well; under_constrained: a direction is undetermined; floating: not connected to the main group.");
@@ -144,20 +159,24 @@ std::string residual_cells(const ProjectResult& result, const ProjectLink& link)
 /// How much of the smaller scan agrees, and how far the planes that do lie from one another.
 std::string overlap_cells(const ProjectResult& result, std::size_t link) {
   const std::optional<double> overlap = overlap_of(result, link);
-  const std::optional<double> rms = plane_distance_rms(result.links[link].matches);
-  return fmt::format("<td class=\"n\">{}</td><td class=\"n\">{}</td>",
-                     overlap ? fmt::format("{:.0f}", 100.0 * *overlap) : "",
-                     rms ? fmt::format("{:.1f}", 1e3 * *rms) : "");
+  std::string text =
+      fmt::format("<td class=\"n\">{}</td>", overlap ? fmt::format("{:.0f}", 100.0 * *overlap) : "");
+  for (const std::vector<PlaneMatch>* planes : {&result.links[link].matches, &result.links[link].adjusted}) {
+    const std::optional<double> rms = plane_distance_rms(*planes);
+    text += fmt::format("<td class=\"n\">{}</td>", rms ? fmt::format("{:.1f}", 1e3 * *rms) : "");
+  }
+  return text;
 }
 
 std::string links_table(const ProjectResult& result) {
   if (result.links.empty()) return {};
   std::string text;
-  for (std::size_t k = 0; k < result.links.size(); ++k) {
+  for (const std::size_t k : worst_links_first(result)) {
     const ProjectLink& link = result.links[k];
     text += fmt::format(
         "<tr data-of-link=\"{0}\"><td class=\"n\"><button type=\"button\" class=\"link\" data-link=\"{0}\" "
-        "aria-label=\"Show link {0} alone\">{0}</button></td><td><a href=\"#scan{1}\">{1}</a> and <a "
+        "aria-label=\"Show link {0} alone\">{0}</button></td><td class=\"pair\"><a href=\"#scan{1}\">{1}</a> "
+        "and <a "
         "href=\"#scan{2}\">{2}</a></td>",
         k, link.source, link.target);
     text += state_cell(to_string(link.solved.state));
@@ -172,20 +191,24 @@ std::string links_table(const ProjectResult& result) {
                                    "scans",
                                    "state",
                                    "result of the pair alone",
-                                   "#agreeing, m&sup2;",
+                                   "#agreeing, m²",
                                    "#overlap, %",
-                                   "#planes, mm RMS",
+                                   "#planes alone, mm RMS",
+                                   "#adjusted",
                                    "#residual, mm",
                                    "#deg"};
   if (result.tolerance_m) head.emplace_back(fmt::format("{:g} mm", 1e3 * *result.tolerance_m));
   head.insert(head.end(), {"#redundancy", "#loops", "#other poses"});
-  return table("Links", "links", head, text,
-               "Click a number to see that link alone, before and after, with the surfaces that agree. "
-               "overlap: share of the planes of the smaller scan, by area, that agree with planes of the "
-               "other; RMS: of the distances between them. "
-               "verified: checked by a loop; bridge: single unchecked link; ambiguous: another pose fits as "
-               "well; rejected: contradicted, or probably two look-alike places; weak: too little overlap, "
-               "or a direction undetermined.");
+  return table(
+      "Links", "links", head, text,
+      "Click a number to see that link alone, before and after, with the surfaces that agree. "
+      "overlap: share of the planes of the smaller scan, by area, that agree with planes of the "
+      "other; planes alone: RMS of the distances between them by this link, adjusted: after the "
+      "adjustment of the whole. First what is in doubt, then unchecked links, then verified ones, the "
+      "largest residual first. "
+      "verified: checked by a loop; bridge: single unchecked link; ambiguous: another pose fits as "
+      "well; rejected: contradicted, or probably two look-alike places; weak: too little overlap, "
+      "or a direction undetermined.");
 }
 
 std::string loops_table(const ProjectResult& result) {
@@ -216,8 +239,8 @@ std::string point_row(const ProjectPoint& point) {
   for (const ProjectSight& sight : point.sights)
     seers += fmt::format("{0}<a href=\"#scan{1}\">{1}</a>", seers.empty() ? "" : ", ", sight.scan);
   std::string row =
-      fmt::format("<tr><td>{}</td><td>{}</td><td class=\"state {}\">{}</td><td>{}</td>", escaped(point.name),
-                  to_string(point.role), colour, to_string(point.state), seers);
+      fmt::format("<tr><td translate=\"no\">{}</td><td>{}</td><td class=\"state {}\">{}</td><td>{}</td>",
+                  escaped(point.name), to_string(point.role), colour, to_string(point.state), seers);
   if (point.found) {
     const double largest = point.test.w.cwiseAbs().maxCoeff();
     const double detectable = point.test.detectable.maxCoeff();
@@ -240,11 +263,11 @@ std::string points_table(const ProjectResult& result) {
   if (rows.empty()) return {};
   return table("Control and check points", "",
                {"point", "role", "state", "seen by", "#x, mm", "#y", "#z", "#sigma x, mm", "#y", "#z", "#w",
-                "#detectable with 80&nbsp;%, mm", "why"},
+                "#detectable with 80 %, mm", "why"},
                rows,
                escaped(result.control_words) +
                    ". x, y, z: given minus measured, with one standard deviation; w: the largest of the "
-                   "three normalised residuals; detectable with 80&nbsp;%: the smallest gross error along "
+                   "three normalised residuals; detectable with 80 %: the smallest gross error along "
                    "any axis that would be detected.");
 }
 
@@ -320,7 +343,7 @@ std::string accuracy_words(const ProjectResult& result) {
   std::sort(radii.begin(), radii.end());
   std::string text = fmt::format(
       "<p>Accuracy of the placed scans (95 %): {:.1f} mm in the median, {:.1f} mm at worst (<a "
-      "href=\"#scan{}\">{}</a>).</p>\n",
+      "href=\"#scan{}\" translate=\"no\">{}</a>).</p>\n",
       1e3 * radii[radii.size() / 2].first, 1e3 * radii.back().first, radii.back().second,
       escaped(shown_name(result.scans[radii.back().second])));
   if (result.tolerance_m)
@@ -329,10 +352,24 @@ std::string accuracy_words(const ProjectResult& result) {
   return text;
 }
 
+/// What other programs give of a registration as a whole.
+std::string bundle_words(const ProjectResult& result) {
+  const std::optional<BundleError> bundle = bundle_error(result);
+  if (!bundle) return {};
+  const ProjectLink& worst = result.links[bundle->worst];
+  return fmt::format(
+      "<p>Bundle error: {:.1f} mm (RMS of {} pairs of planes after the adjustment); the worst link is {} "
+      "(scans {} and {}): {:.1f} mm.</p>\n",
+      1e3 * bundle->rms_m, bundle->planes, bundle->worst, worst.source, worst.target,
+      1e3 * bundle->worst_rms_m);
+}
+
 /// What came of it, how well it is known, and whose frame it is.
 std::string lead(const ProjectResult& result) {
-  return fmt::format("<p>{}.</p>\n{}<p class=\"reason\">{} {} pairs were tried.</p>", escaped(result.reason),
-                     accuracy_words(result), frame_words(result), result.pairs_tried);
+  return fmt::format(
+      "<p><span>{}</span>.</p>\n{}<p class=\"reason\">{} <span>{} pairs were tried.</span></p>",
+      escaped(result.reason), accuracy_words(result) + bundle_words(result), frame_words(result),
+      result.pairs_tried);
 }
 
 }  // namespace
@@ -343,12 +380,12 @@ std::string project_page(const ProjectResult& result, std::vector<ProjectPicture
   std::string plans;
   if (!drawings.empty())
     plans = "<div class=\"plans\">" + drawings +
-            "</div>\n<p class=\"note\">Lines: links; solid: verified by a loop; dashed: single unchecked "
+            "</div>\n<p class=\"soft\">Lines: links; solid: verified by a loop; dashed: single unchecked "
             "link (bridge); dotted: ambiguous or rejected. Ellipses: one standard deviation, enlarged 100 "
             "times. Triangles: control and check points.</p>\n";
   plans += pass_charts(result);
   const PageParts parts = {
-      {"title", cover.title.empty() ? "limen: project" : escaped(cover.title)},
+      {"title", escaped(cover.title.empty() ? in_language("limen: project", cover.language) : cover.title)},
       {"cover", cover_facts(cover)},
       {"signature", signature_html(cover)},
       {"style", std::string(report_style()) + std::string(view_style()) + std::string(project_style())},
@@ -357,13 +394,13 @@ std::string project_page(const ProjectResult& result, std::vector<ProjectPicture
       {"symbol", symbol(result.outcome)},
       {"heading", heading(result.outcome)},
       {"lead", lead(result)},
-      {"questions", questions(result) + decisions_table(result)},
+      {"questions", questions(result, question_pictures(result, pictures)) + decisions_table(result)},
       {"plans", plans},
       {"tables", scans_table(result) + points_table(result) + links_table(result) + loops_table(result) +
                      notes(result)},
-      {"scene", project_scene(result, std::move(pictures))},
+      {"scene", project_scene(result, std::move(pictures), cover.language) + texts_element(cover.language)},
       {"script", std::string(project_script())}};
-  return filled_in(project_pattern(), parts);
+  return page_in_language(filled_in(project_pattern(), parts), cover.language);
 }
 
 }  // namespace limen

@@ -10,6 +10,7 @@
 
 #include "limen/base/angles.h"
 #include "limen/report/project/project_json.h"
+#include "limen/report/project/question_pictures.h"
 #include "limen/report/project/read_project.h"
 
 namespace limen {
@@ -43,7 +44,8 @@ ProjectResult some_result() {
   question.text = "where is it?";
   question.answers = {{DecisionKind::choose, {"hall.ply", "o'clock.ply"}, 2}};
   result.questions.push_back(question);
-  result.decisions.push_back({{DecisionKind::level, {"hall.ply"}, 0}, DecisionState::contradicted, "leans"});
+  result.decisions.push_back(
+      {{DecisionKind::level, {"hall.ply"}, 0}, DecisionState::contradicted, "the pair has no link"});
   return result;
 }
 
@@ -52,8 +54,7 @@ TEST(ProjectPage, AnswersAreLinesForAShellAndPointsStandInTableAndPlan) {
   const auto holds = [&](const char* text) { return page.find(text) != std::string::npos; };
   // The quote of the name is closed, written and opened again, as HTML has it.
   EXPECT_TRUE(
-      holds("data-line=\"limen project decide DIR choose &#39;hall.ply&#39; "
-            "&#39;o&#39;\\&#39;&#39;clock.ply&#39; 2\""))
+      holds("data-line=\"limen project decide DIR choose hall.ply &#39;o&#39;\\&#39;&#39;clock.ply&#39; 2\""))
       << page.substr(page.find("data-line"), 200);
   EXPECT_TRUE(holds("class=\"answer\""));
   EXPECT_TRUE(holds("level hall.ply"));
@@ -102,7 +103,7 @@ ProjectResult drifted_result() {
     correction.knots.push_back(knot);
   }
   result.scans[0].correction = correction;
-  result.scans[1].rigid = "its points have no times";
+  result.scans[1].rigid = "its points have no times, or its path is short: it is treated as rigid";
   return result;
 }
 
@@ -173,6 +174,98 @@ TEST(ProjectPage, ShowsScansWhereTheyStandAlongTheBuildingsWalls) {
   EXPECT_NEAR(number(scene["links"][0]["pose"][0][3]), -100.0, 1e-9);
   EXPECT_NE(page.find("Plan of floor 2, stations at 4.7 m"), std::string::npos);
   EXPECT_NE(page.find("Section from the side"), std::string::npos);
+}
+
+/// Whatever a page may say.
+ProjectResult talkative_result() {
+  ProjectResult result = drifted_result();
+  result.tolerance_m = 0.006;
+  result.reason = "1 of 3 scans are registered in one frame, 1 more is probable; 2 questions are open";
+  result.frame_scan = 0;
+  result.sigma_scan = 0;
+  for (ProjectScan& scan : result.scans) scan.reason = "the only scan";
+  for (const NodeState state : {NodeState::registered, NodeState::probable, NodeState::ambiguous,
+                                NodeState::under_constrained, NodeState::floating}) {
+    ProjectScan scan = two_floors().scans[0];
+    scan.state = state;
+    scan.file = std::string(to_string(state)) + ".ply";
+    scan.sigma.translation_m = Vector3d::Constant(0.002);
+    scan.reason = "registered by 2 links checked by loops";
+    result.scans.push_back(scan);
+  }
+  result.scans.back().readable = false;
+  for (const LinkState state :
+       {LinkState::verified, LinkState::bridge, LinkState::ambiguous, LinkState::rejected, LinkState::weak}) {
+    ProjectLink link = two_floors().links[0];
+    link.source = 2 + static_cast<int>(result.links.size());
+    link.target = 1;
+    link.solved.state = state;
+    link.adjusted = link.matches;
+    link.reason = "the overlap is so small that it may be chance (12.5 %)";
+    result.links.push_back(link);
+  }
+  result.loops.push_back({{0, 1}, 0.001, 0.0001, 2.5, true});
+  result.notes = {"hall.ply was given more than once; it counts once"};
+  ProjectQuestion question;
+  question.text =
+      "Where is hall.ply? Its present place follows from: hall.ply with b.ply. Another place follows from: "
+      "no "
+      "link. Which of these links is right?";
+  for (const DecisionKind kind : {DecisionKind::accept, DecisionKind::reject, DecisionKind::forget})
+    question.answers.push_back({kind, {"hall.ply", "b.ply"}, 0});
+  result.questions = {question};
+  return result;
+}
+
+TEST(ProjectPage, LacksNoTextInAnyLanguage) {
+  ReportCover cover{"A title of mine", "a project", "an operator", "May 3rd"};
+  const std::string page = project_page(talkative_result(), std::vector<ProjectPicture>(7), true, cover);
+  for (const Language language : {Language::french, Language::german}) {
+    std::set<std::string> missing;
+    static_cast<void>(page_in_language(page, language, &missing));
+    EXPECT_EQ(missing, std::set<std::string>());
+    cover.language = language;
+    EXPECT_EQ(project_page(talkative_result(), {}, true, cover).find("html lang=\"en\""), std::string::npos);
+  }
+}
+
+TEST(ProjectPage, InGermanItSaysTheSame) {
+  const std::string page = project_page(talkative_result(), {}, false, {"", "", "", "", Language::german});
+  const auto holds = [&](const char* text) { return page.find(text) != std::string::npos; };
+  EXPECT_TRUE(
+      holds("1 von 3 Scans sind in einem Koordinatensystem registriert, 1 weiterer ist wahrscheinlich; 2 "
+            "Fragen sind offen"));
+  EXPECT_TRUE(holds("<td class=\"state bridge\">ungeprüft</td>"));
+  EXPECT_TRUE(holds("das von hall.ply") || holds("Passpunkte in control.csv"));
+  EXPECT_TRUE(holds("\"By state\":\"Nach Zustand\"")) << "the script has its texts";
+  EXPECT_TRUE(holds("Zeigen diese beiden denselben Raum? hall.ply und b.ply"));
+  EXPECT_TRUE(holds(">Weiß nicht</button>"));
+}
+
+/// Three points at the height of windows.
+ProjectPicture some_picture() {
+  ProjectPicture picture;
+  picture.points.points = {{0, 0, 0}, {4, 0, 1}, {0, 3, 1}, {2, 3, 1}};
+  return picture;
+}
+
+TEST(ProjectPage, AQuestionShowsBothScansAndOneAnswerForEachChoice) {
+  ProjectResult result = two_floors();
+  ProjectQuestion question;
+  question.text = "Which?";
+  for (const DecisionKind kind : {DecisionKind::accept, DecisionKind::reject, DecisionKind::forget})
+    question.answers.push_back({kind, {"/a/folder/above.ply", "/a/folder/hall.ply"}, 0});
+  result.questions = {question};
+  const std::vector<std::string> drawn = question_pictures(result, {some_picture(), some_picture()});
+  ASSERT_EQ(drawn.size(), 1U);
+  EXPECT_LT(drawn[0].find("above.ply</text>"), drawn[0].find("hall.ply</text>"));
+  const std::string page = project_page(result, {some_picture(), some_picture()});
+  EXPECT_NE(page.find(drawn[0]), std::string::npos);
+  for (const char* answer : {"accept /a/folder/above.ply /a/folder/hall.ply\">Yes<",
+                             "reject /a/folder/above.ply /a/folder/hall.ply\">No<",
+                             "forget /a/folder/above.ply /a/folder/hall.ply\">Don't know<"})
+    EXPECT_NE(page.find(answer), std::string::npos) << answer;
+  EXPECT_EQ(question_pictures(result, std::vector<ProjectPicture>(2)), std::vector<std::string>({""}));
 }
 
 TEST(ProjectPage, DrawsHowPassesDriftedAndTellsWhyOthersStayRigid) {

@@ -15,6 +15,7 @@
 #include "limen/report/html/html_elements.h"
 #include "limen/report/html/html_scene.h"
 #include "limen/report/project/project_axes.h"
+#include "limen/report/project/station_accuracy.h"
 
 namespace limen {
 namespace {
@@ -87,7 +88,7 @@ Vector3d origin_of(const ProjectResult& result) {
   return Vector3d::Zero();
 }
 
-Json links_of(const ProjectResult& result, const std::vector<Vector3d>& origins) {
+Json links_of(const ProjectResult& result, const std::vector<Vector3d>& origins, Language language) {
   Json list = Json::array();
   for (const ProjectLink& link : result.links) {
     const auto s = static_cast<std::size_t>(link.source);
@@ -96,9 +97,9 @@ Json links_of(const ProjectResult& result, const std::vector<Vector3d>& origins)
                     {"target", link.target},
                     {"state", to_string(link.solved.state)},
                     {"pair", link.given ? "given" : to_string(link.pair)},
-                    {"reason", link.reason},
+                    {"reason", in_language(link.reason, language)},
                     {"agreeing", link.agreeing_m2},
-                    {"misses_m", link.solved.loop_error_m},
+                    {"misses_m", is_checked(link) ? Json(link.solved.loop_error_m) : Json()},
                     {"misses_deg", degrees(link.solved.loop_error_rad)},
                     {"planes", link.matches.size()},
                     {"matches", matches_of(link)},
@@ -122,7 +123,8 @@ Json floors_of(const ProjectResult& result, const PageFrame& frame) {
 
 }  // namespace
 
-std::string project_scene(const ProjectResult& result, std::vector<ProjectPicture> pictures) {
+std::string project_scene(const ProjectResult& result, std::vector<ProjectPicture> pictures,
+                          Language language) {
   pictures.resize(result.scans.size());
   const PageFrame frame{project_axes(result), origin_of(result)};
   Json json = {{"origin", json_of(frame.origin)}, {"sides", Json::array()}, {"axes", Json::array()}};
@@ -138,7 +140,7 @@ std::string project_scene(const ProjectResult& result, std::vector<ProjectPictur
     const std::string id = fmt::format("side-{}", k);
     const QuantisedPoints points = quantised_side(side);
     Json stated = side_json(shown_name(scan), side, points, most_corners);
-    stated["about"] = words_of(scan, side.points.size());
+    stated["about"] = in_language(words_of(scan, side.points.size()), language);
     stated["state"] = scan.readable ? to_string(scan.state) : "unreadable";
     stated["component"] = scan.component;
     stated["mobile"] = scan.mobile;
@@ -152,7 +154,7 @@ std::string project_scene(const ProjectResult& result, std::vector<ProjectPictur
     json["sides"].push_back(id);
     blobs += side_blobs(id, side, points, {});
   }
-  json["links"] = links_of(result, origins);
+  json["links"] = links_of(result, origins, language);
   json["floors"] = floors_of(result, frame);
   return json_element(std::move(json)) + blobs;
 }

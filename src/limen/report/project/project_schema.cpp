@@ -77,16 +77,18 @@ Json link_schema() {
        {"agreeing_m2", number("surface of each scan that agrees with the other")},
        {"overlap", number_or_null("share of the planes of the smaller scan that agree, by area")},
        {"plane_rms_m", number_or_null("root mean square of the distances between planes that agree")},
+       {"adjusted_rms_m", number_or_null("the same under the adjusted poses; null of bent passes")},
        {"twin", number("probability that a look-alike place was taken for it")},
        {"chance", number("probability that it is wrong otherwise")},
        {"redundancy", number_or_null("share of its six numbers that others check, 0 to 6")},
-       {"loop_error_m", number_or_null("shift between it and the adjusted poses")},
+       {"loop_error_m", number_or_null("shift between it and the adjusted poses; null: nothing checks it")},
        {"loop_error_rad", number_or_null("turn between it and the adjusted poses")},
+       {"loops", whole("that close through it")},
        {"alternatives", list_of(other, "other poses of the pair")},
        {"reason", text("one sentence")}},
       {"source", "target", "state", "pair", "pose", "pose_number", "sigma", "agreeing_m2", "overlap",
-       "plane_rms_m", "twin", "chance", "redundancy", "loop_error_m", "loop_error_rad", "alternatives",
-       "reason"});
+       "plane_rms_m", "adjusted_rms_m", "twin", "chance", "redundancy", "loop_error_m", "loop_error_rad",
+       "loops", "alternatives", "reason"});
 }
 
 Json point_schema() {
@@ -165,6 +167,12 @@ Json project_fields() {
   const Json control =
       object({{"reason", text("one sentence")}, {"variance_factor", number_or_null("of the control points")}},
              {"reason", "variance_factor"});
+  const Json bundle =
+      object({{"rms_m", number("of the distances between planes that agree, all links, adjusted poses")},
+              {"planes", whole("pairs of planes")},
+              {"worst_link", whole("of links, from 0")},
+              {"worst_rms_m", number("its own")}},
+             {"rms_m", "planes", "worst_link", "worst_rms_m"});
   return {{"outcome", words({"registered", "partial", "no_match"})},
           {"reason", text("one sentence")},
           {"frame", frame},
@@ -177,6 +185,7 @@ Json project_fields() {
           {"decisions", list_of(ref("decision"), "answers that were given")},
           {"control", control},
           {"points", list_of(ref("point"), "control, check and tie points")},
+          {"bundle", bundle},
           {"pairs_tried", whole("")},
           {"variance_factor", number_or_null("of the links")},
           {"notes", list_of({{"type", "string"}}, "for a user")},

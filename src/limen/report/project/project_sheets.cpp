@@ -66,7 +66,7 @@ Sheet stations_sheet(const ProjectResult& result) {
       {"file", "state", "group", "x_m", "y_m", "z_m", "held_fixed", "sigma_x_m", "sigma_y_m", "sigma_z_m",
        "sigma_heading_deg", "radius_95_m", "loa", "within_tolerance", "probability_wrong", "reason"},
       {}};
-  for (std::size_t k = 0; k < result.scans.size(); ++k) {
+  for (const std::size_t k : worst_scans_first(result)) {
     const ProjectScan& scan = result.scans[k];
     if (scan.model) continue;
     SheetRow row = {text_cell(scan_name(scan)),
@@ -86,19 +86,21 @@ Sheet stations_sheet(const ProjectResult& result) {
 
 Sheet links_sheet(const ProjectResult& result) {
   Sheet sheet{"Links",
-              {"source", "target", "state", "agreeing_m2", "overlap_percent", "plane_rms_m", "residual_m",
-               "residual_deg", "within_tolerance", "redundancy", "loops", "probability_look_alike",
-               "probability_other"},
+              {"link", "source", "target", "state", "agreeing_m2", "overlap_percent", "plane_rms_m",
+               "adjusted_rms_m", "residual_m", "residual_deg", "within_tolerance", "redundancy", "loops",
+               "probability_look_alike", "probability_other"},
               {}};
-  for (std::size_t k = 0; k < result.links.size(); ++k) {
+  for (const std::size_t k : worst_links_first(result)) {
     const ProjectLink& link = result.links[k];
     const std::optional<double> overlap = overlap_of(result, k);
-    SheetRow row = {name_cell(result, link.source),
+    SheetRow row = {count_cell(k),
+                    name_cell(result, link.source),
                     name_cell(result, link.target),
                     text_cell(to_string(link.solved.state)),
                     number_cell(link.agreeing_m2, 2),
                     overlap ? number_cell(100.0 * *overlap, 1) : SheetCell{},
-                    maybe(plane_distance_rms(link.matches), 5)};
+                    maybe(plane_distance_rms(link.matches), 5),
+                    maybe(plane_distance_rms(link.adjusted), 5)};
     add_residual(row, link);
     row.push_back(yes_or_no(within_tolerance(result, link)));
     row.push_back(number_cell(link.solved.redundancy, 2));
@@ -106,6 +108,17 @@ Sheet links_sheet(const ProjectResult& result) {
     row.push_back(short_number_cell(link.twin));
     row.push_back(short_number_cell(link.chance));
     sheet.rows.push_back(std::move(row));
+  }
+  return sheet;
+}
+
+Sheet bundle_sheet(const ProjectResult& result) {
+  Sheet sheet{"Bundle", {"bundle_rms_m", "planes", "worst_source", "worst_target", "worst_rms_m"}, {}};
+  if (const std::optional<BundleError> bundle = bundle_error(result)) {
+    const ProjectLink& worst = result.links[bundle->worst];
+    sheet.rows.push_back({number_cell(bundle->rms_m, 5), count_cell(bundle->planes),
+                          name_cell(result, worst.source), name_cell(result, worst.target),
+                          number_cell(bundle->worst_rms_m, 5)});
   }
   return sheet;
 }

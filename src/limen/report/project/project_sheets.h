@@ -7,10 +7,12 @@
 
 namespace limen {
 
-/// A row for each scan, in metres and degrees.
+/// A row for each scan, the worst first, in metres and degrees.
 Sheet stations_sheet(const ProjectResult& result);
-/// A row for each link.
+/// A row for each link, the worst first.
 Sheet links_sheet(const ProjectResult& result);
+/// The distances between planes of all links after the adjustment, and the worst link.
+Sheet bundle_sheet(const ProjectResult& result);
 /// A row for each loop of links.
 Sheet loops_sheet(const ProjectResult& result);
 /// A row for each surveyed point and target.

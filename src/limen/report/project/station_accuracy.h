@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <vector>
 
 #include "limen/project/result/project_result.h"
 
@@ -22,17 +23,37 @@ struct StationAccuracy {
 /// Nothing of a scan that is in no frame, and of models. `scan`: index into the result's.
 std::optional<StationAccuracy> accuracy_of(const ProjectResult& result, std::size_t scan);
 
-/// Whether a loop checks the link: a single unchecked one has no residual.
+/// Whether anything checks the link: a single unchecked one has no residual.
 inline bool is_checked(const ProjectLink& link) {
-  return link.solved.state != LinkState::bridge;
+  constexpr double kNothing = 1e-6;
+  if (link.solved.state == LinkState::bridge) return false;
+  if (link.solved.pose < 0 && link.solved.state != LinkState::verified) return link.solved.loop_error_m > 0.0;
+  return link.solved.state == LinkState::verified || link.solved.redundancy > kNothing;
 }
 
-/// How many loops of the result a link is part of.
+/// In how many loops that close a link is.
 std::size_t loops_through(const ProjectResult& result, std::size_t link);
 
 /// Whether what a link misses the solution by is within what is asked of stations; nothing where nothing is
-/// asked, and of a link that no loop checks.
+/// asked, and of a link that no loop checks or that was rejected.
 std::optional<bool> within_tolerance(const ProjectResult& result, const ProjectLink& link);
+
+/// Distances between matched planes after the adjustment of the whole.
+struct BundleError {
+  double rms_m = 0.0;      ///< over all accepted links, by overlap; passes that were bent aside
+  std::size_t planes = 0;  ///< pairs of them
+  std::size_t worst = 0;   ///< the link with the largest RMS ...
+  double worst_rms_m = 0.0;
+};
+std::optional<BundleError> bundle_error(const ProjectResult& result);
+
+/// Indices of scans: first those that are in doubt or unknown, then by the radius, the largest first; the one
+/// held fixed and models last.
+std::vector<std::size_t> worst_scans_first(const ProjectResult& result);
+
+/// Indices of links: first what is in doubt, then single unchecked, then verified ones by their residual, the
+/// largest first; last what does not count.
+std::vector<std::size_t> worst_links_first(const ProjectResult& result);
 
 /// Share of the planes of the smaller of a link's scans that agree with planes of the other one, by area, at
 /// the pair's own best pose; nothing where another pose was taken.

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limen/report/project/station_accuracy.h"
 
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include "limen/base/angles.h"
@@ -75,6 +77,47 @@ TEST(StationAccuracy, OverlapIsAShareOfTheSmallerScan) {
   EXPECT_NEAR(overlap_of(result, 0).value_or(0.0), 0.25, 1e-12);
 }
 
+TEST(StationAccuracy, TheBundleErrorIsWeightedByOverlapAndNamesTheWorstLink) {
+  ProjectResult result = three_scans();
+  EXPECT_FALSE(bundle_error(result).has_value());
+  EXPECT_TRUE(bundle_sheet(result).rows.empty());
+  result.links[0].adjusted = {{0, 0, 0.001, 0.0, 3.0}};
+  result.links[1].adjusted = {{0, 0, -0.003, 0.0, 1.0}, {1, 1, 0.003, 0.0, 1.0}};
+  const std::optional<BundleError> error = bundle_error(result);
+  ASSERT_TRUE(error.has_value());
+  EXPECT_NEAR(error->rms_m, std::sqrt((3.0 * 1e-6 + 2.0 * 9e-6) / 5.0), 1e-12);
+  EXPECT_EQ(error->planes, 3U);
+  EXPECT_EQ(error->worst, 1U);
+  EXPECT_NEAR(error->worst_rms_m, 0.003, 1e-12);
+  EXPECT_NE(csv_of(bundle_sheet(result)).find("\n0.00205,3,"), std::string::npos);
+}
+
+TEST(StationAccuracy, TheWorstComesFirst) {
+  ProjectResult result = three_scans();
+  result.scans.push_back(scan_known_to(0.001, "d.ply"));
+  result.scans.back().state = NodeState::ambiguous;
+  EXPECT_EQ(worst_scans_first(result), std::vector<std::size_t>({3, 2, 1, 0}));
+  ProjectLink better = result.links[0];
+  better.solved.loop_error_m = 0.001;
+  ProjectLink rejected = result.links[0];
+  rejected.solved.state = LinkState::rejected;
+  result.links = {rejected, better, better, result.links[0], result.links[1]};
+  EXPECT_EQ(worst_links_first(result), std::vector<std::size_t>({4, 3, 1, 2, 0}));
+}
+
+TEST(StationAccuracy, AWeakLinkThatNothingChecksHasNoResidual) {
+  ProjectLink weak;
+  weak.solved.pose = 0;
+  EXPECT_FALSE(is_checked(weak));
+  weak.solved.redundancy = 1.5;
+  EXPECT_TRUE(is_checked(weak));
+  ProjectLink rejected;
+  rejected.solved.state = LinkState::rejected;
+  EXPECT_FALSE(is_checked(rejected)) << "its ends are not joined";
+  rejected.solved.loop_error_m = 6.9;
+  EXPECT_TRUE(is_checked(rejected));
+}
+
 TEST(StationAccuracy, SheetsHaveARowForEachAndNoResidualOfAnUncheckedLink) {
   const ProjectResult result = three_scans();
   const std::string stations = csv_of(stations_sheet(result));
@@ -82,9 +125,9 @@ TEST(StationAccuracy, SheetsHaveARowForEachAndNoResidualOfAnUncheckedLink) {
   EXPECT_NE(stations.find(",LOA40,yes,"), std::string::npos) << stations;
   EXPECT_EQ(stations.find("\n=c.ply"), std::string::npos) << "a spreadsheet would take it for a formula";
   const std::string links = csv_of(links_sheet(result));
-  EXPECT_NE(links.find("b.ply,a.ply,verified,0.00,,,0.00200,0.00000,yes,0.00,1,"), std::string::npos)
+  EXPECT_NE(links.find("0,b.ply,a.ply,verified,0.00,,,,0.00200,0.00000,yes,0.00,1,"), std::string::npos)
       << links;
-  EXPECT_NE(links.find(",bridge,0.00,,,,,,0.00,0,"), std::string::npos) << links;
+  EXPECT_NE(links.find(",bridge,0.00,,,,,,,0.00,0,"), std::string::npos) << links;
   EXPECT_EQ(loops_sheet(result).rows.size(), 1U);
   EXPECT_TRUE(points_sheet(result).rows.empty());
 }

@@ -41,7 +41,8 @@ const ask = async (path, options = {}) => {
 const post = (path, json) => ask(path, { method: 'POST', headers: { 'Content-Type': 'application/json' }, body: JSON.stringify(json ?? {}) });
 
 let state = { files: [], jobs: [], most_upload_bytes: 0 };
-const ticked = new Set();
+// Kept while the tab lives: what was selected is selected after a reload.
+const ticked = new Set(JSON.parse(sessionStorage.getItem('ticked') ?? '[]'));
 
 // Files
 
@@ -97,6 +98,7 @@ const removeFile = async (name) => {
 };
 
 const showTicked = () => {
+  sessionStorage.setItem('ticked', JSON.stringify([...ticked]));
   const names = state.files.map((file) => file.name).filter((name) => ticked.has(name));
   byId('ticked').textContent = names.length ? `${names.length} selected: ${names.join(', ')}` : 'Select files above.';
   for (const button of byId('many').querySelectorAll('button')) button.disabled = names.length === 0;
@@ -166,24 +168,76 @@ const alternativesOf = (job, result) => {
     make('div', { className: 'scroll', tabIndex: 0, role: 'region', 'aria-label': `Other places of ${job.title}` }, make('table', {}, make('thead', {}, head), make('tbody', {}, ...rows))))];
 };
 
-const answered = new Set();
+/** What a button says for an answer, and the scans that it is about. */
+const captionOf = (answer, several) => {
+  const [kind] = answer.split(' ', 1);
+  const pose = kind === 'choose' ? answer.slice(answer.lastIndexOf(' ') + 1) : '';
+  return { accept: several ? 'Yes, at the best pose' : 'Yes', choose: `Yes, at pose ${pose}`, reject: 'No', forget: 'Don\u2019t know' }[kind] ?? answer;
+};
+const scansOf = (asked) => asked.replaceAll('files/', '');
+const askedOf = (answer) => answer.replace(/^choose (.*) \d+$/, '$1').replace(/^(accept|reject|forget) /, '');
+
+const answered = new Map();  // of a job and a pair of scans: the answer that was given
+const answersOf = (job, asked, answers) => {
+  const key = `${job.id} ${asked}`;
+  const several = answers.some((answer) => answer.startsWith('choose '));
+  const buttons = answers.map((answer) => {
+    const choose = button(captionOf(answer, several), null);
+    choose.setAttribute('aria-pressed', answered.get(key) === answer);
+    choose.onclick = async () => {
+      answered.set(key, answer);
+      for (const other of buttons) other.setAttribute('aria-pressed', other === choose);
+      await start({ kind: 'decide', of: job.id, answer });
+    };
+    return choose;
+  });
+  return make('p', { className: 'answers' }, ...buttons);
+};
+
 const questionsOf = (job, project) => {
   const list = project.questions ?? [];
-  const parts = list.slice(0, 50).map((question) => make('div', { className: 'question' }, make('p', { textContent: question.text }),
-    make('p', { className: 'answers' }, ...(question.answers ?? []).map((answer) => {
-      const choose = button(answer, null);
-      choose.setAttribute('aria-pressed', answered.has(`${job.id} ${answer}`));
-      choose.onclick = async () => {
-        answered.add(`${job.id} ${answer}`);
-        choose.setAttribute('aria-pressed', 'true');
-        await start({ kind: 'decide', of: job.id, answer });
-      };
-      return choose;
-    }))));
+  let number = 0;
+  const parts = list.slice(0, 50).map((question) => {
+    const card = make('div', { className: 'question' }, make('p', { textContent: question.text }));
+    for (const asked of new Set((question.answers ?? []).map(askedOf))) {
+      const picture = `question_${++number}.svg`;
+      card.append(make('p', { textContent: `Are these two the same room? ${scansOf(asked)}` }));
+      if (job.outputs.some(({ name }) => name === picture)) card.append(make('img', { src: `results/${job.id}/${picture}?${job.seconds}`, alt: `Both scans from above: ${scansOf(asked)}` }));
+      card.append(answersOf(job, asked, question.answers.filter((answer) => askedOf(answer) === asked)));
+    }
+    return card;
+  });
   if (parts.length > 0) parts.unshift(make('p', {}, make('strong', { textContent: 'Questions to somebody who knows the building' })));
   parts.push(make('p', {}, button(list.length ? 'Run again with the answers' : 'Run again', { kind: 'again', of: job.id }, `Run ${job.title} again`)));
   return parts;
 };
+
+const length = (metres) => (metres < 0.1 ? `${(1000 * metres).toFixed(metres < 0.01 ? 1 : 0)} mm` : `${metres.toFixed(2)} m`);
+
+/** Never a certainty. */
+const sure = (p) => (p > 0.9999 ? 'more than 99.99 %' : percent(p));
+
+/** How sure and how exact it is. */
+const figuresOf = (result) => {
+  const parts = [];
+  if (result.probability != null) parts.push(`Probability ${sure(result.probability)}`);
+  const { middle, far_end: far } = result.precision ?? {};
+  if (middle) parts.push(`accuracy (95 %) ${length(middle.radius_m)} at the centre, ${length(far.radius_m)} at the far end`);
+  const scans = result.scans ?? [];
+  const radii = scans.map((scan) => scan.radius_95_m).filter((radius) => radius != null);
+  if (radii.length) parts.push(`Accuracy (95 %) ${length(Math.max(...radii))} at worst`);
+  const doubts = scans.filter((scan) => scan.component === 0 && scan.doubt != null).map((scan) => scan.doubt);
+  if (doubts.length) parts.push(`each scan in its place with a probability of ${Math.max(...doubts) < 1e-4 ? '' : 'at least '}${sure(1 - Math.max(...doubts))}`);
+  if (result.bundle) parts.push(`bundle error ${length(result.bundle.rms_m)}`);
+  return parts.length ? [make('p', { className: 'figures', textContent: `${parts.join('; ')}.` })] : [];
+};
+
+/** Files of a project that could not be read, and why. */
+const unreadableOf = (result) => (result.scans ?? []).filter((scan) => scan.readable === false)
+  .map((scan) => make('p', { className: 'fault', textContent: `${scan.file.replace('files/', '')}: ${scan.reason}` }));
+
+/** What is done in a shell has its button here. */
+const isForHere = (step) => !/(^|\W)(limen|--\w|-o )/.test(step);
 
 const outcomeOf = (job, result) => {
   if (job.state !== 'done') return '';
@@ -195,7 +249,7 @@ const classOf = (job, result) => (job.state !== 'done' ? job.state : result?.out
 
 const jobCard = (job) => {
   const result = results.get(job.id)?.json;
-  const title = make('h3', {}, `${kinds[job.kind] ?? job.kind}: `, make('span', { textContent: job.title }));
+  const title = make('h3', {}, `${kinds[job.kind] ?? job.kind}: `, make('span', { textContent: job.kind === 'decide' ? `${captionOf(job.title, false)}: ${scansOf(askedOf(job.title))}` : job.title }));
   const told = make('p', {}, make('span', { className: 'state', textContent: outcomeOf(job, result) || job.state }), ' ', make('span', { className: 'soft time' }));
   const parts = [title, told];
   if (job.state === 'running' || job.state === 'queued') {
@@ -206,8 +260,10 @@ const jobCard = (job) => {
     } })));
   }
   if (result?.reason) parts.push(make('p', { textContent: result.reason }));
-  if (job.state === 'done' && result?.next_steps?.length) parts.push(make('ul', {}, ...result.next_steps.map((step) => make('li', { textContent: typeof step === 'string' ? step : step.text ?? '' }))));
-  if (job.outputs.length > 0) parts.push(make('p', { className: 'links' }, ...job.outputs.map((file) => link(job, file))));
+  if (result) parts.push(...figuresOf(result), ...unreadableOf(result));
+  const steps = (result?.next_steps ?? []).filter(isForHere);
+  if (job.state === 'done' && steps.length) parts.push(make('ul', {}, ...steps.map((textContent) => make('li', { textContent }))));
+  if (job.outputs.length > 0) parts.push(make('p', { className: 'links' }, ...job.outputs.filter(({ name }) => !/^question_\d+\.svg$/.test(name)).map((file) => link(job, file))));
   const placed = result && (result.target_from_source || (result.scans ?? []).some((scan) => scan.frame_from_scan));
   if (job.state === 'done' && placed) parts.push(make('p', {}, button('Look at it', { kind: 'view', of: job.id }, `Look at ${job.title}`), ' ', button(job.kind === 'project' ? 'Move all scans there' : 'Move the scan there', { kind: 'place', of: job.id })));
   if (result && job.kind === 'register') parts.push(...alternativesOf(job, result));

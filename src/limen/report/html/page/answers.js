@@ -6,13 +6,15 @@
 document.addEventListener('click', (event) => {
   let line = event.target.dataset?.line;
   if (!line) return;
-  // The folder is that of this page.
-  if (location.protocol === 'file:') {
-    const folder = decodeURIComponent(location.pathname).replace(/\/[^/]*$/, '') || '/';
-    line = line.replace(' DIR ', () => ` '${folder.replaceAll("'", "'\\''")}' `);
-  }
   const paste = element('paste');
   paste.hidden = false;
+  if (location.protocol === 'file:') {  // its folder is the project's
+    const folder = decodeURIComponent(location.pathname).replace(/\/[^/]*$/, '') || '/';
+    line = line.replace(' DIR ', () => ` '${folder.replaceAll("'", "'\\''")}' `);
+  } else if (origin === 'null') {  // in the sandbox of limen serve
+    paste.textContent = t`Answer on the page from which you opened this report.`;
+    return;
+  }
   paste.querySelector('code').textContent = line;
   navigator.clipboard?.writeText(line).catch(() => {});
 });

@@ -84,5 +84,15 @@ const roundBelow = (most) => {
   return power * (most >= 5 * power ? 5 : most >= 2 * power ? 2 : 1);
 };
 
-const metres = (x) => (Math.abs(x) < 1 ? `${+(100 * x).toPrecision(6)} cm` : `${+x.toPrecision(6)} m`);
-const millimetres = (x) => `${x < 0 ? '−' : ''}${(1000 * Math.abs(x)).toFixed(1)} mm`;
+/** Texts of the page's language by the English ones; null in English. */
+const kTexts = JSON.parse(document.getElementById('texts')?.textContent ?? 'null');
+/** In the page's language: t`End ${k + 1}`. Numbers get its decimal sign; names of states go through t([state]). */
+const t = (parts, ...values) => {
+  const english = parts.join('{}');
+  const shown = values.map((value) => (kTexts ? String(value).replace(/(\d)\.(?=\d)/, '$1,') : value));
+  let next = 0;
+  return (kTexts?.[english] ?? english).replace(/\{(\d*)\}/g, (_, at) => shown[at === '' ? next++ : +at]);
+};
+
+const metres = (x) => (Math.abs(x) < 1 ? t`${+(100 * x).toPrecision(6)} cm` : t`${+x.toPrecision(6)} m`);
+const millimetres = (x) => t`${x < 0 ? '−' : ''}${(1000 * Math.abs(x)).toFixed(1)} mm`;

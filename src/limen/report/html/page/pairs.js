@@ -36,27 +36,27 @@ const makePair = (scene, number) => {
 };
 
 const kLinkWords = {
-  verified: 'checked by at least one loop that closes', bridge: 'single unchecked link: accepted, but in no loop', ambiguous: 'another pose fits as well, of this link or elsewhere',
-  rejected: 'contradicts the loops, or probably matches two look-alike places', weak: 'leaves a direction undetermined, or overlaps too little to count',
+  verified: t`checked by at least one loop that closes`, bridge: t`single unchecked link: accepted, but in no loop`, ambiguous: t`another pose fits as well, of this link or elsewhere`,
+  rejected: t`contradicts the loops, or probably matches two look-alike places`, weak: t`leaves a direction undetermined, or overlaps too little to count`,
 };
 
 const describePair = ({ link, source, target }) => {
   const facts = [
-    ['Source', source.name], ['Target', target.name], ['State', `${link.state}: ${kLinkWords[link.state] ?? ''}`], ['Result of the pair alone', link.pair],
-    ['Agrees', `${link.agreeing.toFixed(1)} m²`],
+    [t`Source`, source.name], [t`Target`, target.name], [t`State`, `${t([link.state])}: ${kLinkWords[link.state] ?? ''}`], [t`Result of the pair alone`, t([link.pair])],
+    [t`Agrees`, t`${link.agreeing.toFixed(1)} m²`],
   ];
-  if (link.state === 'verified') facts.push(['Residual', `${millimetres(link.misses_m)}, ${link.misses_deg.toFixed(3)}°`]);
+  if (link.misses_m !== null) facts.push([t`Residual`, t`${millimetres(link.misses_m)}, ${link.misses_deg.toFixed(3)}°`]);
   const list = made('dl', {}, ...facts.flatMap(([name, value]) => [made('dt', {}, name), made('dd', {}, value)]));
   const parts = [list, ...(link.reason ? [made('p', { class: 'soft' }, link.reason)] : [])];
   const table = (title, heads, rows) => made('table', {}, made('caption', {}, title),
     made('thead', {}, made('tr', {}, ...heads.map((head) => made('th', { scope: 'col' }, head)))),
     made('tbody', {}, ...rows.map((row) => made('tr', {}, ...row.map((cell) => made('td', {}, cell))))));
   if (link.matches.length) {
-    parts.push(table(`Planes that agree${link.planes > link.matches.length ? `, the largest ${link.matches.length} of ${link.planes}` : ''}`, ['Planes', 'Distance', 'Angle', 'Overlap'],
-      link.matches.map(([s, t, off, angle, area]) => [`${s} – ${t}`, millimetres(off), `${angle.toFixed(2)}°`, `${area.toFixed(1)} m²`])));
+    parts.push(table(link.planes > link.matches.length ? t`Planes that agree, the largest ${link.matches.length} of ${link.planes}` : t`Planes that agree`, [t`Planes`, t`Distance`, t`Angle`, t`Overlap`],
+      link.matches.map(([from, to, off, angle, area]) => [`${from} – ${to}`, millimetres(off), t`${angle.toFixed(2)}°`, t`${area.toFixed(1)} m²`])));
   }
   if (link.openings.length) {
-    parts.push(table('Openings that agree', ['Openings', 'Across', 'Upwards'], link.openings.map(([s, t, across, up]) => [`${s} – ${t}`, millimetres(across), millimetres(up)])));
+    parts.push(table(t`Openings that agree`, [t`Openings`, t`Across`, t`Upwards`], link.openings.map(([from, to, across, up]) => [`${from} – ${to}`, millimetres(across), millimetres(up)])));
   }
   return parts;
 };
@@ -84,12 +84,12 @@ const linkLines = (scene, floor) => {
 
 /** How links of each state that there is are drawn. */
 const linkLegend = (scene) => Object.keys(kLinkWords).filter((state) => scene.links.some((link) => link.state === state))
-  .map((state) => made('span', { class: `chip ${state}` }, made('span', { class: 'mark' }), state));
+  .map((state) => made('span', { class: `chip ${state}` }, made('span', { class: 'mark' }), t([state])));
 
 const buildPairs = (scene, { choose, showFloor }) => {
   if (scene.links.length) {
-    const name = ({ source, target, state }, k) => `${k}: ${source} and ${target}, ${state}`;
-    element('pair').append(made('option', { value: '' }, 'none: all scans'), ...scene.links.map((link, k) => made('option', { value: String(k) }, name(link, k))));
+    const name = ({ source, target, state }, k) => t`${k}: ${source} and ${target}, ${t([state])}`;
+    element('pair').append(made('option', { value: '' }, t`none: all scans`), ...scene.links.map((link, k) => made('option', { value: String(k) }, name(link, k))));
     element('pair').addEventListener('change', ({ target }) => choose(target.value === '' ? null : +target.value));
     element('pairs').hidden = false;
     element('with-links').hidden = false;
@@ -102,7 +102,7 @@ const buildPairs = (scene, { choose, showFloor }) => {
     });
   }
   if (scene.floors.length > 1) {
-    element('floor').append(made('option', { value: '' }, 'all'), ...scene.floors.map(({ z }, k) => made('option', { value: String(k) }, `${k + 1}, stations at ${(z + scene.rise).toFixed(1)} m`)));
+    element('floor').append(made('option', { value: '' }, t`all`), ...scene.floors.map(({ z }, k) => made('option', { value: String(k) }, t`${k + 1}, stations at ${(z + scene.rise).toFixed(1)} m`)));
     element('floor').addEventListener('change', ({ target }) => showFloor(target.value === '' ? null : scene.floors[+target.value]));
     element('floors').hidden = false;
   }

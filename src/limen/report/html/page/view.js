@@ -6,7 +6,7 @@
 const kTurnMs = 700;
 const kTints = 8;
 const kEyeHeight = 1.4;
-const kWaysToColour = [['side', 'By file'], ['state', 'By state'], ['own', 'As measured'], ['height', 'Height']];
+const kWaysToColour = [['side', t`By file`], ['state', t`By state`], ['own', t`As measured`], ['height', t`Height`]];
 
 /**
  * All sides with their places and boxes, and the box of all: of the central part, so that strays do not count. Without
@@ -43,17 +43,17 @@ const describeLength = ([a, b]) => {
   const way = sub(b.at, a.at);
   const exact = [a, b].reduce((sum, { side, point }) => sum + (point >= 0 ? Math.hypot(...side.step) / 2 : 0), 0);
   return [
-    ['Distance', `${norm(way).toFixed(3)} m${exact > 0.0005 ? ` ± ${millimetres(exact)}` : ''}`],
-    ['Horizontal', `${Math.hypot(way[0], way[1]).toFixed(3)} m`],
-    ['Vertical', `${signed(way[2], 3)} m`],
-    ['Slope', `${signed(Math.atan2(way[2], Math.hypot(way[0], way[1])) * 180 / Math.PI, 2)}°`],
+    [t`Distance`, t`${norm(way).toFixed(3)} m` + (exact > 0.0005 ? ` ± ${millimetres(exact)}` : '')],
+    [t`Horizontal`, t`${Math.hypot(way[0], way[1]).toFixed(3)} m`],
+    [t`Vertical`, t`${signed(way[2], 3)} m`],
+    [t`Slope`, t`${signed(Math.atan2(way[2], Math.hypot(way[0], way[1])) * 180 / Math.PI, 2)}°`],
   ];
 };
 
 const describePlace = (scene, { side, point, plane, at }, name) => {
   const told = add(turn(inverseRigid(scene.viewFromFrame), at), scene.origin);
-  const lines = [[name, told.map((c) => c.toFixed(3)).join('  ')], ['File', side.name]];
-  if (point < 0 && plane >= 0) lines.push(['Surface', `${side.planes[plane].area.toFixed(1)} m²`]);
+  const lines = [[name, told.map((c) => t`${c.toFixed(3)}`).join('  ')], [t`File`, side.name]];
+  if (point < 0 && plane >= 0) lines.push([t`Surface`, t`${side.planes[plane].area.toFixed(1)} m²`]);
   return lines;
 };
 
@@ -79,7 +79,7 @@ const showColourLegend = (scene, state) => {
   legend.replaceChildren();
   if (state.colouring !== 'height') { legend.append(...linkLegend(scene)); return; }
   const [low, high] = [scene.low[2], scene.high[2]].map((z) => (z + scene.rise).toFixed(1));
-  legend.append(made('span', {}, `${low} m`, made('span', { class: 'ramp', style: `background:${rampCss()}` }), `${high} m`));
+  legend.append(made('span', {}, t`${low} m`, made('span', { class: 'ramp', style: `background:${rampCss()}` }), t`${high} m`));
 };
 
 const makeViewGpu = (gl, scene) => {
@@ -227,20 +227,20 @@ const runView = (gl, canvas) => {
   const overlay = () => {
     const length = roundBelow(110 * look.metresPerPx);
     element('scale-bar').style.width = `${length / look.metresPerPx}px`;
-    element('scale-text').textContent = metres(length) + (camera.parallel ? '' : ' at the centre');
+    element('scale-text').textContent = camera.parallel ? metres(length) : t`${metres(length)} at the centre`;
     for (const k of [0, 1]) put(element(`pin-${k}`), state.ends[k]?.at);
     const marked = (number) => !state.pair && state.linksShown && (!state.floor || state.floor.scans.includes(number));
     for (const { node, number, at } of spots) put(node, marked(number) ? at : null);
     const both = state.ends.length === 2;
     put(element('length'), both ? scaled(add(state.ends[0].at, state.ends[1].at), 0.5) : null);
-    if (both) element('length').textContent = `${norm(sub(state.ends[1].at, state.ends[0].at)).toFixed(3)} m`;
+    if (both) element('length').textContent = t`${norm(sub(state.ends[1].at, state.ends[0].at)).toFixed(3)} m`;
   };
 
   const tell = () => {
     const { ends, measuring } = state;
-    const lines = ends.flatMap((end, k) => describePlace(scene, end, measuring ? `End ${k + 1}` : 'At'));
+    const lines = ends.flatMap((end, k) => describePlace(scene, end, measuring ? t`End ${k + 1}` : t`At`));
     if (ends.length === 2) lines.unshift(...describeLength(ends));
-    const ask = measuring ? (ends.length === 1 ? 'Click the other end.' : 'Click two points to measure between them.') : 'Click a point or a surface for its coordinates.';
+    const ask = measuring ? (ends.length === 1 ? t`Click the other end.` : t`Click two points to measure between them.`) : t`Click a point or a surface for its coordinates.`;
     const list = made('dl', {}, ...lines.flatMap(([name, value]) => [made('dt', {}, name), made('dd', {}, value)]));
     element('picked').replaceChildren(...(lines.length ? [list] : []), ...(ends.length < 2 ? [made('p', { class: 'soft' }, ask)] : []));
     element('measure').setAttribute('aria-pressed', String(measuring));
