@@ -232,7 +232,7 @@ describe('work', () => {
     await page.reload();
     await page.waitForSelector('#job-6 .question');
     const question = page.locator('#job-6 .question');
-    assert.match(await question.innerText(), /Are these two the same room\? indoor_00\.ply outdoor\.ply/);
+    assert.match(await question.innerText(), /Are these two the same place, fitted together as shown\? indoor_00\.ply outdoor\.ply/);
     assert.doesNotMatch(await question.innerText(), /accept|reject|forget/);
     const press = (text) => page.locator('#job-6 .answers').first().getByText(text, { exact: true }).click();
     const kept = () => JSON.parse(readFileSync(join(folder, 'site', 'results', '6', 'decisions.json'), 'utf8')).decisions;

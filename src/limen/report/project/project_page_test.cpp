@@ -238,7 +238,7 @@ TEST(ProjectPage, InGermanItSaysTheSame) {
   EXPECT_TRUE(holds("<td class=\"state bridge\">ungeprüft</td>"));
   EXPECT_TRUE(holds("das von hall.ply") || holds("Passpunkte in control.csv"));
   EXPECT_TRUE(holds("\"By state\":\"Nach Zustand\"")) << "the script has its texts";
-  EXPECT_TRUE(holds("Zeigen diese beiden denselben Raum? hall.ply und b.ply"));
+  EXPECT_TRUE(holds("Ist dies derselbe Ort, so zusammengefügt wie gezeigt? hall.ply und b.ply"));
   EXPECT_TRUE(holds(">Weiß nicht</button>"));
 }
 

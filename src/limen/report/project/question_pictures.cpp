@@ -19,17 +19,23 @@ namespace {
 
 constexpr std::size_t kMostPoints = 5000;           // of a scan in a picture
 constexpr std::array<double, 2> kCut = {0.6, 2.0};  // metres above what is lowest
-constexpr double kSize = 480.0;                     // of a half, the drawing's units
+constexpr double kGap = 20.0;
+constexpr double kSize = 480.0;  // of a panel, the drawing's units
 
-/// The places of a scan that are at the height of windows, from above; none of a model.
-std::vector<Vector2d> seen_from_above(const ProjectPicture& picture, const Matrix3d& view_from_scan) {
+/// Places of a scan from above, and how they are drawn.
+struct FromAbove {
+  std::vector<Vector2d> places;
+  const char* colour;
+};
+
+/// The points of a scan that are at the height of windows, where `view_from_scan` lays them; none of a model.
+FromAbove from_above(const Scan& scan, const Rigid3& view_from_scan, const char* colour) {
   std::vector<Vector3d> points;
   std::vector<double> heights;
-  for (const Vector3d& point : picture.points.points) {
+  for (const Vector3d& point : scan.points) {
     points.emplace_back(view_from_scan * point);
     heights.push_back(points.back().z());
   }
-  if (points.empty()) return {};
   const double lowest = quantile(std::move(heights), 0.02);
   std::vector<Vector2d> kept;
   for (const Vector3d& point : points) {
@@ -37,59 +43,63 @@ std::vector<Vector2d> seen_from_above(const ProjectPicture& picture, const Matri
     if (height > kCut[0] && height < kCut[1]) kept.emplace_back(point.head<2>());
   }
   const std::size_t step = kept.size() / kMostPoints + 1;
-  std::vector<Vector2d> thinned;
-  for (std::size_t k = 0; k < kept.size(); k += step) thinned.push_back(kept[k]);
-  return thinned;
+  FromAbove seen{{}, colour};
+  for (std::size_t k = 0; k < kept.size(); k += step) seen.places.push_back(kept[k]);
+  return seen;
 }
 
-/// Where the central part of the places lies: its middle, and half its larger side.
-std::pair<Vector2d, double> extent_of(const std::vector<Vector2d>& places) {
+/// A square of the drawing with the central part of what was seen.
+std::string panel(int number, const std::vector<FromAbove>& seen, const std::string& name) {
   Vector2d low;
   Vector2d high;
   for (Eigen::Index axis = 0; axis < 2; ++axis) {
     std::vector<double> values;
-    for (const Vector2d& place : places) values.push_back(place[axis]);
+    for (const FromAbove& one : seen) {
+      for (const Vector2d& place : one.places) values.push_back(place[axis]);
+    }
     low[axis] = quantile(values, 0.03);
     high[axis] = quantile(std::move(values), 0.97);
   }
-  return {0.5 * (low + high), 0.5 * (high - low).maxCoeff()};
-}
-
-std::string half(const std::vector<Vector2d>& places, const Vector2d& middle, double scale, double left,
-                 const std::string& name) {
-  std::string dots;
-  for (const Vector2d& place : places) {
-    const Vector2d at = scale * (place - middle);
-    if (at.cwiseAbs().maxCoeff() < 0.5 * kSize)
-      dots += fmt::format("M{:.0f} {:.0f}h0", left + 0.5 * kSize + at.x(), 0.5 * kSize - at.y());
+  const double scale = 0.92 * kSize / std::max((high - low).maxCoeff(), 1.0);
+  const double left = number * (kSize + kGap);
+  std::string text = fmt::format(
+      "<rect x=\"{0:.0f}\" y=\"0\" width=\"{1:.0f}\" height=\"{1:.0f}\" fill=\"#fff\" stroke=\"#bbb\"/>",
+      left, kSize);
+  for (const FromAbove& one : seen) {
+    text += "<path d=\"";
+    for (const Vector2d& place : one.places) {
+      const Vector2d at = scale * (place - 0.5 * (low + high));
+      if (at.cwiseAbs().maxCoeff() < 0.5 * kSize)
+        text += fmt::format("M{:.0f} {:.0f}h0", left + 0.5 * kSize + at.x(), 0.5 * kSize - at.y());
+    }
+    text += fmt::format("\" stroke=\"{}\" stroke-width=\"2\" stroke-linecap=\"round\"/>", one.colour);
   }
-  return fmt::format(
-      "<rect x=\"{0:.0f}\" y=\"0\" width=\"{1:.0f}\" height=\"{1:.0f}\" fill=\"#fff\" stroke=\"#bbb\"/>"
-      "<path d=\"{2}\" stroke=\"#1d2a35\" stroke-width=\"1.8\" stroke-linecap=\"round\"/>"
-      "<text x=\"{3:.0f}\" y=\"{4:.0f}\" font-family=\"sans-serif\" font-size=\"15\" fill=\"#666\" "
-      "translate=\"no\">{5}</text>\n",
-      left, kSize, dots, left + 4.0, kSize + 18.0, escaped(name));
+  return text + fmt::format(
+                    "<text x=\"{:.0f}\" y=\"{:.0f}\" font-family=\"sans-serif\" font-size=\"20\" fill=\"{}\" "
+                    "translate=\"no\">{}</text>\n",
+                    left + 4.0, kSize + 22.0, seen.size() > 1 ? "#666" : seen.front().colour, escaped(name));
 }
 
 std::string picture_of(const ProjectResult& result, const ProjectLink& link,
                        const std::vector<ProjectPicture>& pictures) {
-  const auto source = static_cast<std::size_t>(link.source);
-  const auto target = static_cast<std::size_t>(link.target);
-  const std::optional<Rigid3>& placed = result.scans[target].frame_from_scan;
+  const auto s = static_cast<std::size_t>(link.source);
+  const auto t = static_cast<std::size_t>(link.target);
+  const Scan& source = pictures[s].points;
+  const Scan& target = pictures[t].points;
+  const std::optional<Rigid3>& placed = result.scans[t].frame_from_scan;
   const Matrix3d axes = project_axes(result) * (placed ? placed->rotation : Matrix3d::Identity());
-  const std::vector<Vector2d> left =
-      seen_from_above(pictures[source], axes * link.target_from_source.rotation);
-  const std::vector<Vector2d> right = seen_from_above(pictures[target], axes);
-  if (left.empty() || right.empty()) return {};
-  const auto [left_middle, left_reach] = extent_of(left);
-  const auto [right_middle, right_reach] = extent_of(right);
-  const double scale = 0.46 * kSize / std::max({left_reach, right_reach, 0.5});
+  const Rigid3 view_from_target{axes, Vector3d::Zero()};
+  const FromAbove moved = from_above(
+      source, view_from_target * to_local(link.target_from_source, source.local_origin, target.local_origin),
+      "#a85300");
+  const FromAbove still = from_above(target, view_from_target, "#1f6fb4");
+  if (moved.places.empty() || still.places.empty()) return {};
   return fmt::format(
              "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"alike\" viewBox=\"0 0 {:.0f} {:.0f}\" "
-             "role=\"img\" aria-label=\"Both scans from above\">\n",
-             2 * kSize + 20.0, kSize + 24.0) +
-         half(left, left_middle, scale, 0.0, shown_name(result.scans[source])) +
-         half(right, right_middle, scale, kSize + 20.0, shown_name(result.scans[target])) + "</svg>\n";
+             "role=\"img\" aria-label=\"Both scans from above, apart and together\">\n",
+             3 * kSize + 2 * kGap, kSize + 30.0) +
+         panel(0, {moved}, shown_name(result.scans[s])) + panel(1, {still}, shown_name(result.scans[t])) +
+         panel(2, {moved, still}, "1 + 2") + "</svg>\n";
 }
 
 const ProjectLink* link_between(const ProjectResult& result, const std::vector<std::string>& scans) {
@@ -117,7 +127,9 @@ std::vector<std::vector<Decision>> asked_of(const ProjectQuestion& question) {
 
 std::string asked_words(const std::vector<Decision>& answers) {
   const std::vector<std::string>& scans = answers.front().scans;
-  return fmt::format("Are these two the same room? {} and {}", scans.front(), scans.back());
+  const auto last = [](const std::string& path) { return path.substr(path.find_last_of('/') + 1); };
+  return fmt::format("Are these two the same place, fitted together as shown? {} and {}", last(scans.front()),
+                     last(scans.back()));
 }
 
 std::vector<std::string> question_pictures(const ProjectResult& result,

@@ -14,12 +14,12 @@ inline constexpr std::size_t kMostPictures = 40;
 /// The answers of a question that are about the same scans, in their order.
 std::vector<std::vector<Decision>> asked_of(const ProjectQuestion& question);
 
-/// "Are these two the same room? hall.ply and stairs.ply"
+/// "Are these two the same place, fitted together as shown? hall.ply and stairs.ply"
 std::string asked_words(const std::vector<Decision>& answers);
 
 /// An SVG for each of the first pairs of scans that questions ask about, in the order of the questions and of
-/// asked_of(): both from above side by side, cut at the height of windows, turned alike by their link.
-/// Empty where a scan has no picture.
+/// asked_of(): both from above side by side, cut at the height of windows, turned alike by their link, and
+/// laid together by it. Empty where a scan has no picture.
 std::vector<std::string> question_pictures(const ProjectResult& result,
                                            const std::vector<ProjectPicture>& pictures);
 

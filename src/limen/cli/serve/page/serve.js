@@ -153,7 +153,13 @@ const link = (job, { name, bytes }) => make('a', { href: `results/${job.id}/${en
 
 const button = (text, work, label) => make('button', { type: 'button', textContent: text, onclick: () => start(work), ...(label ? { 'aria-label': label } : {}) });
 
-const percent = (p) => (p == null ? '' : p < 0.001 ? '< 0.1 %' : `${(100 * p).toFixed(1)} %`);
+/** Cut, not rounded: nothing is certain. */
+const percent = (p) => {
+  if (p == null) return '';
+  if (p > 0.9999) return 'more than 99.99 %';
+  const digits = p < 0.99 ? 1 : 2;
+  return p < 0.001 ? '< 0.1 %' : `${(Math.floor(p * 100 * 10 ** digits + 1e-9) / 10 ** digits).toFixed(digits)} %`;
+};
 
 const alternativesOf = (job, result) => {
   const list = result.alternatives ?? [];
@@ -201,8 +207,8 @@ const questionsOf = (job, project) => {
     const card = make('div', { className: 'question' }, make('p', { textContent: question.text }));
     for (const asked of new Set((question.answers ?? []).map(askedOf))) {
       const picture = `question_${++number}.svg`;
-      card.append(make('p', { textContent: `Are these two the same room? ${scansOf(asked)}` }));
-      if (job.outputs.some(({ name }) => name === picture)) card.append(make('img', { src: `results/${job.id}/${picture}?${job.seconds}`, alt: `Both scans from above: ${scansOf(asked)}` }));
+      card.append(make('p', { textContent: `Are these two the same place, fitted together as shown? ${scansOf(asked)}` }));
+      if (job.outputs.some(({ name }) => name === picture)) card.append(make('img', { src: `results/${job.id}/${picture}?${job.seconds}`, alt: `Both scans from above, apart and together: ${scansOf(asked)}` }));
       card.append(answersOf(job, asked, question.answers.filter((answer) => askedOf(answer) === asked)));
     }
     return card;
@@ -214,20 +220,17 @@ const questionsOf = (job, project) => {
 
 const length = (metres) => (metres < 0.1 ? `${(1000 * metres).toFixed(metres < 0.01 ? 1 : 0)} mm` : `${metres.toFixed(2)} m`);
 
-/** Never a certainty. */
-const sure = (p) => (p > 0.9999 ? 'more than 99.99 %' : percent(p));
-
 /** How sure and how exact it is. */
 const figuresOf = (result) => {
   const parts = [];
-  if (result.probability != null) parts.push(`Probability ${sure(result.probability)}`);
+  if (result.probability != null) parts.push(`Probability ${percent(result.probability)}`);
   const { middle, far_end: far } = result.precision ?? {};
   if (middle) parts.push(`accuracy (95 %) ${length(middle.radius_m)} at the centre, ${length(far.radius_m)} at the far end`);
   const scans = result.scans ?? [];
   const radii = scans.map((scan) => scan.radius_95_m).filter((radius) => radius != null);
   if (radii.length) parts.push(`Accuracy (95 %) ${length(Math.max(...radii))} at worst`);
   const doubts = scans.filter((scan) => scan.component === 0 && scan.doubt != null).map((scan) => scan.doubt);
-  if (doubts.length) parts.push(`each scan in its place with a probability of ${Math.max(...doubts) < 1e-4 ? '' : 'at least '}${sure(1 - Math.max(...doubts))}`);
+  if (doubts.length) parts.push(`each scan in its place with a probability of ${Math.max(...doubts) < 1e-4 ? '' : 'at least '}${percent(1 - Math.max(...doubts))}`);
   if (result.bundle) parts.push(`bundle error ${length(result.bundle.rms_m)}`);
   return parts.length ? [make('p', { className: 'figures', textContent: `${parts.join('; ')}.` })] : [];
 };
