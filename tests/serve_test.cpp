@@ -100,10 +100,12 @@ TEST_F(ServeTest, NothingButItsFilesCanBeReached) {
 }
 
 TEST_F(ServeTest, UploadsHaveBoundsAndAppearWhole) {
-  const std::string bytes(300000, 'a');
-  EXPECT_EQ(status_in(server().ask("PUT", "files/a.bin", bytes)), 201);
-  EXPECT_EQ(read_whole(work() / "site" / "files" / "a.bin"), bytes);
-  EXPECT_EQ(status_in(server().ask("PUT", "files/a.bin", "other")), 409);
+  std::string bytes;
+  while (bytes.size() < 300000) bytes += "1.25 2.5 3.75\n";
+  EXPECT_EQ(status_in(server().ask("PUT", "files/a.xyz", bytes)), 201);
+  EXPECT_EQ(read_whole(work() / "site" / "files" / "a.xyz"), bytes);
+  EXPECT_EQ(status_in(server().ask("PUT", "files/a.xyz", "other")), 409);
+  EXPECT_EQ(status_in(server().ask("PUT", "files/junk.bin", std::string(3000, 'a'))), 415);
   EXPECT_EQ(status_in(server().ask("PUT", "files/large.bin", std::string(1000001, 'b'))), 413);
   EXPECT_EQ(status_in(server().ask("PUT", "files/b%20c.bin", "x")), 400);
   EXPECT_EQ(status_in(server().ask("PUT", "results/1/x", "x")), 405);
@@ -117,7 +119,7 @@ TEST_F(ServeTest, UploadsHaveBoundsAndAppearWhole) {
   ASSERT_EQ(send(descriptor, half.data(), half.size(), MSG_NOSIGNAL), static_cast<ssize_t>(half.size()));
   std::this_thread::sleep_for(std::chrono::milliseconds(200));
   close(descriptor);
-  server().state_with("a.bin");
+  server().state_with("a.xyz");
   for (int k = 0; k < 100 && std::distance(fs::directory_iterator(work() / "site" / "files"), {}) > 1; ++k)
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
   EXPECT_EQ(std::distance(fs::directory_iterator(work() / "site" / "files"), {}), 1);

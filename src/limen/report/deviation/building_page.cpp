@@ -146,22 +146,23 @@ std::string element_row(const BuildingReport& report, std::size_t k) {
 }
 
 std::string elements_table(const BuildingReport& report) {
-  std::string text =
-      "<h2>Elements, the worst first</h2>\n<div class=\"scroll\" "
-      "tabindex=\"0\"><table><tr><th>state</th><th>name</th>"
-      "<th>type</th><th>storey</th><th>GUID</th><th>scans</th><th>off by, mm</th><th>x y z, "
-      "mm</th><th>median, "
-      "mm</th><th>95 %, mm</th><th>class</th><th>seen through, m²</th><th>covered</th></tr>\n";
+  std::string rows;
   std::size_t shown = 0;
   std::size_t unjudged = 0;
   for (const std::size_t k : worst_first(report.deviation.elements)) {
     if (report.deviation.elements[k].presence == Presence::not_judged) {
       ++unjudged;
     } else if (shown++ < kBuildingRows) {
-      text += element_row(report, k);
+      rows += element_row(report, k);
     }
   }
-  text += "</table></div>\n";
+  const std::string title = "Elements, the worst first";
+  std::string text =
+      "<h2>" + title + "</h2>\n" +
+      scrolled_table(title,
+                     {"state", "name", "type", "storey", "GUID", "#scans", "#off by, mm", "#x y z, mm",
+                      "#median, mm", "#95 %, mm", "class", "#seen through, m²", "#covered"},
+                     rows);
   if (shown > kBuildingRows)
     text += fmt::format("<p class=\"soft\">{} more are in deviation.csv.</p>\n", shown - kBuildingRows);
   return text +
@@ -184,9 +185,8 @@ std::string matter_table(const BuildingReport& report) {
         piece.points, size.x(), size.y(), size.z(), middle.x(), middle.y(), middle.z());
   }
   if (rows.empty()) return {};
-  return "<h2>Objects that are not in the model</h2>\n<div class=\"scroll\" "
-         "tabindex=\"0\"><table><tr><th>points</th><th>size, m</th><th>position, m</th></tr>\n" +
-         rows + "</table></div>\n";
+  const std::string title = "Objects that are not in the model";
+  return "<h2>" + title + "</h2>\n" + scrolled_table(title, {"#points", "#size, m", "#position, m"}, rows);
 }
 
 std::string name_of(const BuildingReport& report, const std::string& path, int index) {
@@ -197,14 +197,12 @@ std::string name_of(const BuildingReport& report, const std::string& path, int i
 }
 
 std::string shares_table(const BuildingReport& report) {
-  std::string text =
-      "<h2>Scans</h2>\n<div class=\"scroll\" tabindex=\"0\"><table><tr><th>file</th><th>points</th><th>on "
-      "faces</th><th>sigma of the pose, mm</th><th>common shift, mm</th><th></th></tr>\n";
+  std::string rows;
   for (std::size_t k = 0; k < report.scans.size(); ++k) {
     const BuildingScan& scan = report.scans[k];
     const ScanShare& share = report.deviation.scans[k];
     const Vector3d common = 1e3 * share.common.shift_m;
-    text += fmt::format(
+    rows += fmt::format(
         "<tr><td class=\"path\" translate=\"no\">{}</td><td class=\"n\">{}</td><td "
         "class=\"n\">{:.0f} %</td><td "
         "class=\"n\">{:.1f}</td><td class=\"n\">{:.1f} {:.1f} {:.1f}</td><td>{}{}</td></tr>\n",
@@ -217,11 +215,14 @@ std::string shares_table(const BuildingReport& report) {
                        : "Its scanner position is unknown, so it cannot show that elements are missing.");
   }
   for (const BuildingLeftOut& it : report.left_out)
-    text += fmt::format(
+    rows += fmt::format(
         "<tr><td class=\"path\" translate=\"no\">{}</td><td></td><td></td><td></td><td></td><td>left out: "
         "{}</td></tr>\n",
         escaped(name_of(report, it.path, it.index)), escaped(it.reason));
-  return text + "</table></div>\n";
+  return "<h2>Scans</h2>\n" +
+         scrolled_table("Scans",
+                        {"file", "#points", "#on faces", "#sigma of the pose, mm", "#common shift, mm", ""},
+                        rows);
 }
 
 std::string models_list(const BuildingReport& report) {

@@ -41,6 +41,21 @@ std::string json_element(Json json, const std::string& id) {
   return script_element("application/json", id, safe);
 }
 
+std::string scrolled_table(const std::string& label, const std::vector<std::string>& head,
+                           const std::string& rows) {
+  std::string cells;
+  for (const std::string& cell : head) {
+    const bool number = cell.starts_with('#');
+    cells += fmt::format("<th scope=\"col\"{}>{}</th>", number ? " class=\"n\"" : "",
+                         number ? cell.substr(1) : cell);
+  }
+  return fmt::format(
+      "<div class=\"scroll\" tabindex=\"0\" role=\"region\" "
+      "aria-label=\"{}\"><table><thead><tr>{}</tr></thead>"
+      "<tbody>\n{}</tbody></table></div>\n",
+      label, cells, rows);
+}
+
 std::string filled_in(std::string_view pattern, const PageParts& parts) {
   std::string text;
   std::size_t at = 0;

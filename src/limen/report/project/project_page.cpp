@@ -74,18 +74,10 @@ std::string questions(const ProjectResult& result, const std::vector<std::string
 /// A card with a table; `head`: the cells of its first row, those of numbers begin with '#'.
 std::string table(const std::string& title, const std::string& id, const std::vector<std::string>& head,
                   const std::string& rows, const std::string& note = {}) {
-  std::string cells;
-  for (const std::string& cell : head) {
-    const bool number = cell.starts_with('#');
-    cells += fmt::format("<th scope=\"col\"{}>{}</th>", number ? " class=\"n\"" : "",
-                         number ? cell.substr(1) : cell);
-  }
-  return fmt::format(
-      "<section class=\"card wide keep\"{}><h2>{}</h2>\n{}<div class=\"scroll\" tabindex=\"0\" "
-      "role=\"region\" aria-label=\"{}\"><table><thead><tr>{}</tr></thead><tbody>\n{}</tbody></table></div>"
-      "</section>\n",
-      id.empty() ? "" : fmt::format(" id=\"{}\"", id), title,
-      note.empty() ? "" : fmt::format("<p class=\"soft\">{}</p>\n", note), title, cells, rows);
+  return fmt::format("<section class=\"card wide keep\"{}><h2>{}</h2>\n{}{}</section>\n",
+                     id.empty() ? "" : fmt::format(" id=\"{}\"", id), title,
+                     note.empty() ? "" : fmt::format("<p class=\"soft\">{}</p>\n", note),
+                     scrolled_table(title, head, rows));
 }
 
 std::string decisions_table(const ProjectResult& result) {
