@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "limen/base/atomic_file.h"
 #include "limen/base/error.h"
 #include "limen/base/stage_part.h"
 #include "limen/io/cloud/point_sample.h"
@@ -25,6 +26,7 @@
 #include "limen/project/state/project_node.h"
 #include "limen/project/state/scan_names.h"
 #include "limen/project/store/scan_picture.h"
+#include "limen/project/survey/found_targets.h"
 #include "limen/project/survey/stated_place.h"
 
 namespace limen {
@@ -56,6 +58,7 @@ class Run {
     note_copies();
     take_stated();
     order_nodes();
+    name_found_targets();
     learn_own_drift(nodes_);
     words_ = words_by_nodes(decisions_, nodes_, result_.scans);
     std::vector<TriedPair> tried = few() ? try_all(every_pair()) : waves();
@@ -279,6 +282,20 @@ class Run {
     for (std::string& text : notes) note(std::move(text));
   }
 
+  /// What was found in the scans is written as a user would have measured it, and read like that.
+  void name_found_targets() {
+    if (!options_.targets.any()) return;
+    std::vector<TargetsOfScan> scans;
+    for (const ProjectNode& node : nodes_) {
+      if (const auto targets = store_.load_targets(node.key, options_.targets); targets && !node.digest.model)
+        scans.push_back({scan_name(result_.scans[node.scan]), *targets});
+    }
+    const TargetTable table = table_of_targets(scans, inputs_);
+    inputs_.targets = (folder_ / "targets.csv").string();
+    write_file(inputs_.targets, table.text);
+    note(table.words);
+  }
+
   /// The first is the one whose world becomes the frame, if it can be.
   void order_nodes() {
     const auto rank = [](const ProjectNode& node) {
@@ -358,7 +375,7 @@ class Run {
   static constexpr double kShareOfCopies = 0.8;  ///< rounding may choose another point for a picture
   static constexpr std::size_t kQueriedInMemory = 32;
 
-  const ProjectInputs& inputs_;
+  ProjectInputs inputs_;
   std::filesystem::path folder_;
   const ProjectOptions& options_;
   Monitor& monitor_;
@@ -379,6 +396,7 @@ void ProjectOptions::check() const {
   registering.check();
   reading.check();
   engine.check();
+  targets.check();
   if (file_sigma_m && !(*file_sigma_m > 0.0)) throw_bad_option("file_sigma_m", *file_sigma_m, "more than 0");
   if (pairs_per_scan < 1) throw_bad_option("pairs_per_scan", pairs_per_scan, "1 or more");
 }
@@ -399,6 +417,9 @@ ProjectResult run_project(const ProjectInputs& inputs, const std::filesystem::pa
                           const ProjectOptions& options, Monitor& monitor) {
   options.check();
   if (inputs.scans.empty()) throw Error("there is no scan", "project", "give at least one");
+  if (options.targets.any() && !inputs.targets.empty())
+    throw Error("targets are given, and others are to be found", inputs.targets,
+                "give the file alone, or without it the sizes of the targets");
   // A fault in a small file is an error before hours of work.
   for (const std::string& file : {inputs.control, inputs.check}) {
     if (!file.empty()) static_cast<void>(read_surveyed_points(file));

@@ -56,6 +56,8 @@ struct ProjectCommandOptions {
   std::string control;
   std::string check;
   std::string targets;
+  std::string spheres;
+  std::string boards;
   std::string decisions;
   std::string poses;
   std::string file_sigma;
@@ -90,6 +92,10 @@ ProjectOptions project_options(const ProjectCommandOptions& options, const Sessi
   project.stations_apart = options.apart;
   project.rigid_passes = options.rigid_passes;
   if (!options.file_sigma.empty()) project.file_sigma_m = length_of(options.file_sigma, "--trust-file-poses");
+  if (!options.spheres.empty())
+    project.targets.sphere_radius_m = length_of(options.spheres, "--sphere-radius");
+  if (!options.boards.empty()) project.targets.board_side_m = length_of(options.boards, "--board-side");
+  project.targets.check();
   project.engine = options.dask;
   project.engine.kind = options.engine == "dask" ? EngineKind::dask : EngineKind::local;
   project.on_note = [&session](const std::string& text) { session.note(text); };
@@ -109,6 +115,8 @@ OptionList reported(const ProjectCommandOptions& options, const Session& session
   if (!options.control.empty()) list.emplace_back("control", options.control);
   if (!options.check.empty()) list.emplace_back("check", options.check);
   if (!options.targets.empty()) list.emplace_back("targets", options.targets);
+  if (!options.spheres.empty()) list.emplace_back("sphere_radius", options.spheres);
+  if (!options.boards.empty()) list.emplace_back("board_side", options.boards);
   if (!options.decisions.empty()) list.emplace_back("decide", options.decisions);
   if (!options.poses.empty()) list.emplace_back("poses", options.poses);
   if (!options.file_sigma.empty()) list.emplace_back("trust_file_poses", options.file_sigma);
@@ -469,6 +477,17 @@ void add_project_command(CommandLine& app, Session& session) {
                    "Targets measured in the scans: name,scan,x,y,z,sigma; x,y,z as in the scan's own file; "
                    "for a mobile scan also time, in the seconds of its points")
       ->type_name("CSV");
+  command
+      ->add_option(
+          "--sphere-radius", options->spheres,
+          "Find spheres of this radius, such as 72.5mm, in the static scans and use them as targets; "
+          "written to DIR/targets.csv, which --targets reads")
+      ->type_name("LENGTH");
+  command
+      ->add_option("--board-side", options->boards,
+                   "The same for checkerboards of two dark and two bright squares: the side of the whole "
+                   "board, such as 300mm")
+      ->type_name("LENGTH");
   command
       ->add_option("--check", options->check,
                    "Check points, with the columns of --control: they are only compared, and their residuals "

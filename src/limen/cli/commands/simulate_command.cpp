@@ -22,6 +22,7 @@
 #include "limen/simulate/model/bim_scene.h"
 #include "limen/simulate/model/write_ifc.h"
 #include "limen/simulate/scene.h"
+#include "limen/simulate/whole/site_targets.h"
 #include "limen/simulate/whole/whole_building.h"
 
 namespace limen {
@@ -41,6 +42,7 @@ struct SimulateOptions {
   std::string outdoor = "mobile";
   std::string places = "usual";
   std::size_t tripods = 0;
+  std::size_t targets = 0;
   double open_doors = -1.0;
 };
 
@@ -169,6 +171,7 @@ int run_project(const SimulateOptions& options, const Session& session) {
   project.drift = options.drift == "walk" ? DriftKind::walk : DriftKind::waves;
   project.as_built = !options.as_drawn;
   project.tripods = options.tripods;
+  project.targets = options.targets;
   if (options.places == "rooms") project.places = StationPlaces::rooms;
   if (options.places == "doorways") project.places = StationPlaces::doorways;
   // Who sets up in doorways has opened the doors.
@@ -189,6 +192,7 @@ int run(SimulateOptions& options, const Session& session) {
   only_project(options.styles, "--styles");
   only_project(options.passes >= 0, "--passes");
   only_project(options.tripods > 0, "--tripods");
+  only_project(options.targets > 0, "--targets");
   only_project(options.places != "usual", "--places");
   only_project(options.open_doors >= 0.0, "--open-doors");
   options.scene.as_built = !options.as_drawn;
@@ -283,6 +287,13 @@ void add_simulate_command(CommandLine& app, Session& session) {
   command
       ->add_option("--tripods", options->tripods,
                    "With --project: number of stations outside, around the building (default 0)")
+      ->type_name("N");
+  command
+      ->add_option("--targets", options->targets,
+                   fmt::format("With --project: number of targets in each scanned room, spheres of {} mm "
+                               "radius and checkerboards of {} mm side by turns; control.csv has their "
+                               "surveyed centres (default 0)",
+                               1e3 * kSphereRadiusM, 1e3 * kBoardSideM))
       ->type_name("N");
   command
       ->add_option(

@@ -9,6 +9,7 @@
 
 #include "limen/base/stage_part.h"
 #include "limen/bim/read_bim.h"
+#include "limen/extract/targets/find_targets.h"
 #include "limen/files/file_hash.h"
 #include "limen/files/scan_in_file.h"
 #include "limen/io/cloud/point_sample.h"
@@ -55,6 +56,13 @@ void require_a_plausible_scan(const std::vector<Scan>& scans) {
     require_plausible_size(scans.front());
 }
 
+/// In world coordinates.
+std::vector<FoundTarget> targets_in(const Scan& scan, const TargetOptions& sizes) {
+  std::vector<FoundTarget> targets = find_targets(scan, sizes);
+  for (FoundTarget& target : targets) target.centre += scan.local_origin;
+  return targets;
+}
+
 FileRecord make_scan_features(const ProjectFile& file, const ProjectOptions& options, const Store& store,
                               Monitor& monitor) {
   constexpr double kReading = 0.3;
@@ -83,6 +91,8 @@ FileRecord make_scan_features(const ProjectFile& file, const ProjectOptions& opt
     record.marks.push_back(point_marks(scan));
     const std::string key = store.feature_key(file.key(), static_cast<int>(k));
     if (!store.has_picture(key)) into_store([&] { store.save_picture(key, picture_of(scan)); });
+    if (options.targets.any() && !store.load_targets(key, options.targets))
+      into_store([&] { store.save_targets(key, options.targets, targets_in(scan, options.targets)); });
     if (store.has_features(key)) continue;
     PrepareOptions with_track = prepare_options(options.registering);
     with_track.track = true;
@@ -128,7 +138,10 @@ std::optional<FileRecord> kept_record(const Store& store, const ProjectFile& fil
   if (!record) return {};
   for (std::size_t k = 0; k < record->points.size(); ++k) {
     const std::string key = store.feature_key(file.key(), static_cast<int>(k));
-    if (!store.has_features(key) || (!file.model && !store.has_picture(key))) return {};
+    if (!store.has_features(key)) return {};
+    if (file.model) continue;
+    if (!store.has_picture(key) || (options.targets.any() && !store.load_targets(key, options.targets)))
+      return {};
   }
   return stated_record(std::move(*record), file, options);
 }

@@ -46,13 +46,20 @@ Order options_order(const ProjectOptions& options) {
   const RegisterOptions& registering = options.registering;
   const StatedTrajectories& stated = options.trajectories;
   const Vector3d& arm = stated.reading.lever_arm_m;
-  return {
-      {"method", static_cast<int>(registering.method)},   {"gravity", static_cast<int>(registering.gravity)},
-      {"wall_thickness_m", registering.wall_thickness_m}, {"seed", registering.seed},
-      {"nothing_repeats", registering.nothing_repeats},   {"level", options.reading.level},
-      {"memory_bytes", options.reading.memory_bytes},     {"trajectories", stated.files},
-      {"trajectory_columns", stated.reading.columns},     {"utm_zone", stated.reading.utm_zone},
-      {"time_offset_s", stated.reading.time_offset_s},    {"lever_arm_m", {arm.x(), arm.y(), arm.z()}}};
+  return {{"method", static_cast<int>(registering.method)},
+          {"gravity", static_cast<int>(registering.gravity)},
+          {"wall_thickness_m", registering.wall_thickness_m},
+          {"seed", registering.seed},
+          {"nothing_repeats", registering.nothing_repeats},
+          {"level", options.reading.level},
+          {"memory_bytes", options.reading.memory_bytes},
+          {"trajectories", stated.files},
+          {"trajectory_columns", stated.reading.columns},
+          {"utm_zone", stated.reading.utm_zone},
+          {"sphere_radius_m", options.targets.sphere_radius_m},
+          {"board_side_m", options.targets.board_side_m},
+          {"time_offset_s", stated.reading.time_offset_s},
+          {"lever_arm_m", {arm.x(), arm.y(), arm.z()}}};
 }
 
 ProjectOptions options_from(const Order& order) {
@@ -64,6 +71,8 @@ ProjectOptions options_from(const Order& order) {
   options.registering.nothing_repeats = order.at("nothing_repeats");
   options.reading.level = order.at("level");
   options.reading.memory_bytes = order.at("memory_bytes");
+  options.targets.sphere_radius_m = order.at("sphere_radius_m");
+  options.targets.board_side_m = order.at("board_side_m");
   StatedTrajectories& stated = options.trajectories;
   stated.files = order.at("trajectories").get<std::vector<std::string>>();
   stated.reading.columns = order.at("trajectory_columns").get<std::vector<std::string>>();

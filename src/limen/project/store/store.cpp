@@ -26,12 +26,16 @@ std::string digits_of(const std::string& text) {
   return fmt::format("{:016x}", hash);
 }
 
+std::string key_of_targets(const std::string& key, const TargetOptions& sizes) {
+  return fmt::format("{}-spheres{}-boards{}", key, sizes.sphere_radius_m, sizes.board_side_m);
+}
+
 }  // namespace
 
 Store::Store(const std::filesystem::path& folder, const std::string& options, Monitor& monitor)
     : folder_(folder), options_(digits_of(options + kVersion)), monitor_(monitor) {
   std::error_code error;
-  for (const Room& room : {kFiles, kFeatures, kDigests, kPictures, kPairs})
+  for (const Room& room : {kFiles, kFeatures, kDigests, kPictures, kTargets, kPairs})
     std::filesystem::create_directories(folder_ / room.folder, error);
   if (error) throw Error("cannot make the folder: " + error.message(), folder.string(), "give another place");
 }
@@ -124,6 +128,34 @@ std::optional<Scan> Store::load_picture(const std::string& key, std::size_t most
   return loaded(kPictures, key, [most](std::string_view bytes, const std::string& where) {
     return picture_from(bytes, where, most);
   });
+}
+
+std::optional<std::vector<FoundTarget>> Store::load_targets(const std::string& key,
+                                                            const TargetOptions& sizes) const {
+  return loaded(kTargets, key_of_targets(key, sizes), [](std::string_view bytes, const std::string& where) {
+    ByteReader reader(bytes, where);
+    std::vector<FoundTarget> targets(reader.get_count(1));
+    for (FoundTarget& target : targets) {
+      reader.get_enum(target.kind, TargetKind::board);
+      reader.get(target.centre);
+      reader.get(target.sigma_m);
+      target.points = static_cast<std::size_t>(reader.get<std::uint64_t>());
+    }
+    return targets;
+  });
+}
+
+void Store::save_targets(const std::string& key, const TargetOptions& sizes,
+                         const std::vector<FoundTarget>& targets) const {
+  ByteWriter writer;
+  writer.put_count(targets.size());
+  for (const FoundTarget& target : targets) {
+    writer.put(target.kind);
+    writer.put(target.centre);
+    writer.put(target.sigma_m);
+    writer.put_count(target.points);
+  }
+  save(kTargets, key_of_targets(key, sizes), writer.bytes());
 }
 
 bool Store::has_pair(const std::string& source, const std::string& target, const PairCounts& counts) const {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "limen/base/progress.h"
+#include "limen/extract/targets/found_target.h"
 #include "limen/model/result.h"
 #include "limen/project/store/prepared_bytes.h"
 #include "limen/project/store/scan_digest.h"
@@ -62,6 +63,12 @@ class Store {
   [[nodiscard]] bool has_picture(const std::string& key) const;
   [[nodiscard]] std::optional<Scan> load_picture(const std::string& key, std::size_t most) const;
 
+  /// The targets that `sizes` describe, world coordinates.
+  [[nodiscard]] std::optional<std::vector<FoundTarget>> load_targets(const std::string& key,
+                                                                     const TargetOptions& sizes) const;
+  void save_targets(const std::string& key, const TargetOptions& sizes,
+                    const std::vector<FoundTarget>& targets) const;
+
   /// Whole, as has_features().
   [[nodiscard]] bool has_pair(const std::string& source, const std::string& target,
                               const PairCounts& counts) const;
@@ -81,6 +88,7 @@ class Store {
   static constexpr Room kFeatures{"features", "SCAN"};
   static constexpr Room kDigests{"digests", "DIGE"};
   static constexpr Room kPictures{"pictures", "PICT"};
+  static constexpr Room kTargets{"targets", "TARG"};
   static constexpr Room kPairs{"pairs", "PAIR"};
 
   [[nodiscard]] std::string file_key(const FileKey& file) const;

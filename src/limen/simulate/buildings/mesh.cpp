@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <utility>
 
 #include "limen/base/angles.h"
@@ -282,6 +283,27 @@ void Mesh::add_box(const BoxPlace& place, const Vector3d& size, const Surface& l
                                       place.base - x + y};
   add_prism(ring, size.z(), like);
   add_polygon({ring[3], ring[2], ring[1], ring[0]}, like);
+}
+
+void Mesh::add_ball(const Ball& ball, Surface like) {
+  constexpr int kTurns = 12;
+  constexpr int kRings = 8;
+  constexpr double kRound = 1.1;  // so that no triangle cuts the ball
+  like.planar = false;
+  like.ball = ball;
+  const int id = add_surface(like);
+  const auto at = [&](int turn, int ring) -> Vector3d {
+    const double a = 2.0 * std::numbers::pi * turn / kTurns;
+    const double b = std::numbers::pi * ring / kRings;
+    return ball.centre + kRound * ball.radius_m *
+                             Vector3d(std::sin(b) * std::cos(a), std::sin(b) * std::sin(a), -std::cos(b));
+  };
+  for (int turn = 0; turn < kTurns; ++turn) {
+    for (int ring = 0; ring < kRings; ++ring) {
+      if (ring > 0) add_triangle(at(turn, ring), at(turn + 1, ring), at(turn + 1, ring + 1), id);
+      if (ring + 1 < kRings) add_triangle(at(turn, ring), at(turn + 1, ring + 1), at(turn, ring + 1), id);
+    }
+  }
 }
 
 void Mesh::add_shifted(std::size_t first_surface, const std::array<std::size_t, 2>& range,

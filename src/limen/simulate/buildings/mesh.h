@@ -11,6 +11,12 @@
 
 namespace limen {
 
+/// An exact sphere; a radius of 0: none.
+struct Ball {
+  Vector3d centre = Vector3d::Zero();
+  double radius_m = 0.0;
+};
+
 /// One face of the simulated world: all its triangles lie in `plane` (unless it is not planar) and are seen
 /// from the normal's side.
 struct Surface {
@@ -22,6 +28,7 @@ struct Surface {
   double reflectivity = 0.6;  ///< share of light sent back
   double area_m2 = 0.0;
   Bulge bulge = {};  ///< of a wall as built: rays end on it, though the triangles lie in the plane
+  Ball ball = {};    ///< which the triangles lie round: rays end on it, or pass
 };
 
 /// A rectangle in the coordinates of a panel, metres.
@@ -73,6 +80,8 @@ class Mesh {
   void add_box(const BoxPlace& place, const Vector3d& size, const Surface& like);
   /// A straight prism over a horizontal convex ring (counter-clockwise from above), with a top.
   void add_prism(const std::vector<Vector3d>& ring, double height, const Surface& like);
+  /// An exact sphere.
+  void add_ball(const Ball& ball, Surface like);
   /// Copies triangles [begin, end), those of surfaces from `first_surface` on, moved by `shift`. No sheets.
   void add_shifted(std::size_t first_surface, const std::array<std::size_t, 2>& range, const Vector3d& shift);
 

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include <embree3/rtcore.h>
 
@@ -36,6 +37,19 @@ double range_on_bulge(const Surface& surface, const Vector3d& origin, const Vect
   for (int step = 0; step < 6; ++step)
     range_m = (surface.bulge.at(origin + range_m * direction) - distance) / slope;
   return range_m;
+}
+
+/// How far off along the ray the ball is, and how steeply it is met, of the surface of `hit`; nothing where
+/// the ray passes.
+std::optional<RayHit> hit_on_ball(RayHit hit, const Ball& ball, const Vector3d& origin,
+                                  const Vector3d& direction) {
+  const double along = direction.dot(ball.centre - origin);
+  const double off = (ball.centre - origin - along * direction).squaredNorm();
+  if (off >= ball.radius_m * ball.radius_m) return std::nullopt;
+  const double half_chord = std::sqrt(ball.radius_m * ball.radius_m - off);
+  hit.range_m = along - half_chord;
+  hit.cosine = half_chord / ball.radius_m;
+  return hit.range_m > 0.0 ? std::optional(hit) : std::nullopt;
 }
 
 }  // namespace
@@ -112,6 +126,10 @@ RayHit RayCaster::cast(const Vector3d& origin, const Vector3d& direction, double
   hit.cosine = std::abs(slope);
   hit.range_m = hit.cosine > 1e-6 ? -plane.signed_distance(origin) / slope : query.ray.tfar;
   hit.range_m = range_on_bulge(surface, origin, direction, hit.range_m);
+  if (surface.ball.radius_m > 0.0) {
+    if (const std::optional<RayHit> met = hit_on_ball(hit, surface.ball, origin, direction)) return *met;
+    return cast(origin, direction, static_cast<double>(query.ray.tfar) + 1e-4);
+  }
   if (slope > 0.0 && surface.back >= 0) hit.surface = surface.back;
   hit.inside = slope > 0.0 && surface.back < 0 && surface.planar;
   return hit;

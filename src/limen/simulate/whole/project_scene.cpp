@@ -10,6 +10,7 @@
 #include "limen/base/error.h"
 #include "limen/simulate/scanner/station_scan.h"
 #include "limen/simulate/whole/building_scanner.h"
+#include "limen/simulate/whole/site_targets.h"
 #include "limen/simulate/whole/whole_building.h"
 
 namespace limen {
@@ -37,7 +38,12 @@ class ProjectSimulation {
         keep_(keep),
         monitor_(monitor),
         building_(make_whole_building(building_options(options))),
+        targets_(put_up_targets(building_, options.targets, options.seed)),
         scanner_(building_, heading_of(options.seed), kLocalOrigin) {
+    for (SiteTarget target : targets_) {
+      target.centre = heading_of(options.seed) * target.centre;
+      truth_.targets.push_back(std::move(target));
+    }
     truth_.building = options.name;
     truth_.seed = options.seed;
     truth_.as_built = options.as_built;
@@ -106,6 +112,7 @@ class ProjectSimulation {
   const std::function<void(const Scan&)>& keep_;
   Monitor& monitor_;
   WholeBuilding building_;
+  std::vector<SiteTarget> targets_;  ///< in the building's frame; before it is scanned
   BuildingScanner scanner_;
   ProjectTruth truth_;
 };
@@ -114,6 +121,7 @@ class ProjectSimulation {
 
 void ProjectSceneOptions::check() const {
   if (stations > 2000) throw_bad_option("stations", static_cast<double>(stations), "at most 2000");
+  if (targets > 50) throw_bad_option("targets", static_cast<double>(targets), "at most 50");
   if (tripods > 500) throw_bad_option("tripods", static_cast<double>(tripods), "at most 500");
   if (passes > 12) throw_bad_option("passes", passes, "at most 12");
   constexpr std::size_t kMost = 100000000;

@@ -29,8 +29,9 @@ struct ProjectSceneOptions {
   double drift_m = 0.008;               ///< slow error of the passes, one standard deviation per axis
   DriftKind drift = DriftKind::waves;
   double open_door_share = 0.9;
-  bool as_built = false;  ///< walls, slabs and openings are off the drawing as real ones are
-  bool styles = false;    ///< every station in a style at random (scan_style.h)
+  bool as_built = false;    ///< walls, slabs and openings are off the drawing as real ones are
+  std::size_t targets = 0;  ///< in each room of a station: spheres and checkerboards (site_targets.h)
+  bool styles = false;      ///< every station in a style at random (scan_style.h)
   ScannerOptions scanner;
 
   void check() const;

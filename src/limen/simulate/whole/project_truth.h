@@ -41,6 +41,12 @@ struct SimulatedScan {
   Vector3d scanner = Vector3d::Zero();  ///< of a station, in its own frame; not always stated in the file
 };
 
+/// A target that was put up in the building.
+struct SiteTarget {
+  std::string name;
+  Vector3d centre = Vector3d::Zero();  ///< world less ProjectTruth::local_origin
+};
+
 /// The exact truth of a project. Coordinates are about local_origin: x_in_world = local_origin + x.
 struct ProjectTruth {
   std::string building;
@@ -49,6 +55,7 @@ struct ProjectTruth {
   Vector3d local_origin = Vector3d::Zero();
   std::vector<ProjectRoom> rooms;
   std::vector<SimulatedScan> scans;
+  std::vector<SiteTarget> targets;
   std::vector<SharedSurface> shared;  ///< sorted; pairs that share nothing are left out
 };
 

@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "limen/extract/targets/found_target.h"
+#include "limen/project/inputs/project_options.h"
+
+namespace limen {
+
+/// The targets that were found in a scan, in its file's coordinates.
+struct TargetsOfScan {
+  std::string scan;
+  std::vector<FoundTarget> targets;
+};
+
+/// What was found, as a table for --targets, and in words.
+struct TargetTable {
+  std::string text;
+  std::string words;
+};
+
+/// Names the targets of each scan by the distances between them: as control and check points, or, where
+/// there is no such file, as in the scan that sees most targets, so that others are tied to it. Those that
+/// fit nothing are called unknown_1, unknown_2 and so on.
+TargetTable table_of_targets(const std::vector<TargetsOfScan>& scans, const ProjectInputs& inputs);
+
+}  // namespace limen

@@ -1,0 +1,26 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "limen/simulate/whole/project_truth.h"
+#include "limen/simulate/whole/whole_building.h"
+
+namespace limen {
+
+inline constexpr double kSphereRadiusM = 0.0725;
+inline constexpr double kBoardSideM = 0.3;
+
+/// A board of two dark and two bright quadrants, seen from the side of `frame`'s normal u x v.
+void add_board(Mesh& mesh, const PlaneFrame& frame, double side_m = kBoardSideM);
+/// A white sphere.
+void add_sphere(Mesh& mesh, const Vector3d& centre, double radius_m = kSphereRadiusM);
+
+/// Puts up to `count` targets in each room with a station, where there is place: spheres on poles and boards
+/// on walls by turns. Returns their centres in the building's frame.
+std::vector<SiteTarget> put_up_targets(WholeBuilding& building, std::size_t count, std::uint64_t seed);
+
+}  // namespace limen
