@@ -25,6 +25,7 @@
 #include "limen/base/angles.h"
 #include "limen/extract/targets/find_targets.h"
 #include "limen/geometry/random_vectors.h"
+#include "limen/simulate/furnishing/shapes.h"
 #include "limen/simulate/scanner/station_scan.h"
 #include "limen/simulate/whole/site_targets.h"
 
@@ -165,11 +166,8 @@ std::vector<FoundTarget> found_among_look_alikes(const Setting& setting, std::ui
   };
   for (const double share : {0.5, 0.7, 0.8, 0.88, 1.12, 1.2, 1.35, 1.6})  // lamps, balls
     add_sphere(mesh, place(), share * kSphereRadiusM);
-  for (int k = 0; k < 6; ++k) {  // heads
-    const Vector3d middle = place();
-    for (int part = 0; part < 3; ++part)
-      add_sphere(mesh, middle + 0.02 * vector_in_ball(random), (0.8 + 0.06 * part) * kSphereRadiusM);
-  }
+  for (int k = 0; k < 6; ++k)  // heads
+    ShapeBuilder(mesh, place(), Vector2d::UnitX(), 0.5).ellipsoid(Vector3d::Zero(), {0.09, 0.075, 0.115});
   for (int k = 0; k < 6; ++k) {  // domes on the ceiling and the wall
     const Vector3d spot = place();
     add_sphere(mesh, {spot.x(), spot.y(), 2.9 + random.uniform(0.03, 0.06)});

@@ -100,8 +100,8 @@ class BoardPosterior {
   [[nodiscard]] const Matrix3d& covariance() const { return covariance_; }
 
  private:
-  static constexpr int kSteps = 6;  ///< to either side
-  static constexpr std::size_t kMostPoints = 1200;
+  static constexpr int kSteps = 4;  ///< to either side
+  static constexpr std::size_t kMostPoints = 800;
 
   /// Takes the mean of the poses within `half` of the present one.
   void average(const Vector3d& half) {
@@ -204,8 +204,10 @@ class BoardCheck {
     for (const Part& part : quadrants_) {
       if (part.light.size() < kLeastInQuadrant || part.count < 0.12 * count) return false;
     }
-    return contrast() > kContrast && !corners_.goes_on() && !sides_.goes_on();
+    return contrast() > kContrast;
   }
+  /// Whether the pattern ends with the board.
+  [[nodiscard]] bool ends() const { return !corners_.goes_on() && !sides_.goes_on(); }
 
  private:
   struct Part {
@@ -320,6 +322,12 @@ std::vector<BoardPoint> in_disc(const std::vector<BoardPoint>& points, const Vec
   return within;
 }
 
+BoardCheck check_of(const PlaneView& view, const BoardPose& pose, double side_m, double noise_m) {
+  BoardCheck check(pose, side_m, noise_m);
+  for (const BoardPoint& point : view.on) check.add(point);
+  return check;
+}
+
 double largest_variance(const Eigen::Matrix2d& covariance) {
   const double mean = 0.5 * (covariance(0, 0) + covariance(1, 1));
   return mean + std::hypot(0.5 * (covariance(0, 0) - covariance(1, 1)), covariance(0, 1));
@@ -369,13 +377,12 @@ std::optional<FoundTarget> fit_board(const Vector3d& start, std::span<const LitP
     posterior.run(pose);
     pose = posterior.pose();
     covariance = posterior.covariance();
-    if (pose.centre.norm() > 0.3 * side_m) return std::nullopt;
+    if (pose.centre.norm() > 0.3 * side_m || !check_of(view, pose, side_m, fit->rms_m).ends())
+      return std::nullopt;
   }
-  BoardCheck check(pose, side_m, fit->rms_m);
-  for (const BoardPoint& point : view.on) check.add(point);
   const std::size_t count = in_disc(view.on, pose.centre, kDisc * side_m).size();
   const std::size_t open = in_disc(view.through, pose.centre, 0.9 * kDisc * side_m).size();
-  if (!check.board() || 20 * open > count) return std::nullopt;
+  if (!check_of(view, pose, side_m, fit->rms_m).board() || 20 * open > count) return std::nullopt;
   const double sigma_m = std::sqrt(std::max(largest_variance(covariance.topLeftCorner<2, 2>()),
                                             fit->rms_m * fit->rms_m / static_cast<double>(count)) +
                                    kTargetMakeM * kTargetMakeM);

@@ -114,8 +114,8 @@ class SphereFace {
         continue;
       }
       if (std::abs(ray.beyond_m) > 4.0 * rms_m_) {
-        ++(ray.beyond_m > 0.0 ? through_ : ray.beyond_m > -radius_m ? before_ : hiding_);
-        continue;
+        if (ray.beyond_m > -radius_m) ++(ray.beyond_m > 0.0 ? through_ : before_);
+        continue;  // else it is hidden there
       }
       const double turn = std::atan2(ray.way.dot(other), ray.way.dot(across)) / (2.0 * std::numbers::pi);
       const auto sector = std::min<std::size_t>(
@@ -142,7 +142,7 @@ class SphereFace {
 
   void beside(double beyond_m, double radius_m) {
     ++beside_;
-    if (std::abs(beyond_m) < 0.5 * radius_m) ++level_;
+    if (beyond_m < 0.5 * radius_m && beyond_m > -1.2 * radius_m) ++level_;
   }
 
   [[nodiscard]] bool round() const {
@@ -163,7 +163,7 @@ class SphereFace {
 
   double rms_m_;
   std::array<Part, 2 * kSectors> parts_{};
-  double on_ = 0.0, through_ = 0.0, before_ = 0.0, hiding_ = 0.0, beside_ = 0.0, level_ = 0.0;
+  double on_ = 0.0, through_ = 0.0, before_ = 0.0, beside_ = 0.0, level_ = 0.0;
 };
 
 /// Whether the points have the radius by themselves.

@@ -91,6 +91,9 @@ FileRecord make_scan_features(const ProjectFile& file, const ProjectOptions& opt
     record.marks.push_back(point_marks(scan));
     const std::string key = store.feature_key(file.key(), static_cast<int>(k));
     if (!store.has_picture(key)) into_store([&] { store.save_picture(key, picture_of(scan)); });
+    if (options.targets.any() && !scan.centre_known())
+      record.notes.push_back(
+          "no target is looked for, because the file does not say where the scanner stood");
     if (options.targets.any() && !store.load_targets(key, options.targets))
       into_store([&] { store.save_targets(key, options.targets, targets_in(scan, options.targets)); });
     if (store.has_features(key)) continue;

@@ -48,6 +48,7 @@ RegistrationResult little_result(int plane = 0) {
   return result;
 }
 
+const TargetOptions kSizes{0.05, 0.3};
 const PairCounts kCounts{{1, 0}, {1, 0}};
 
 /// One kind of entry: where it lies under kKey, and whether the store has it.
@@ -63,6 +64,8 @@ std::vector<Entry> entries() {
       {"digests/" + kKey, [](const Store& store) { return store.load_digest(kKey).has_value(); }},
       {"digests/" + kKey, [](const Store& store) { return store.has_features(kKey); }},
       {"pictures/" + kKey, [](const Store& store) { return store.has_picture(kKey); }},
+      {"targets/" + kKey + "-spheres0.05-boards0.3",
+       [](const Store& store) { return store.load_targets(kKey, kSizes).has_value(); }},
       {"pairs/" + kKey + "_" + kOther,
        [](const Store& store) { return store.has_pair(kKey, kOther, kCounts); }},
   };
@@ -74,6 +77,7 @@ void fill(const Store& store) {
   for (const auto& [key, other] : {std::pair(kKey, kOther), {kOther, kKey}}) {
     store.save_features(key, little_scan());
     store.save_picture(key, picture);
+    store.save_targets(key, kSizes, {{TargetKind::board, Vector3d(1, 2, 3), 0.001, 50}});
     store.save_pair(key, other, little_result());
   }
 }
@@ -86,7 +90,9 @@ TEST(Store, AnEntryOfAnotherKeyIsRemovedWithANote) {
     fill(store);
     const fs::path mine = folder / "store" / entry.file;
     const bool pair = entry.file.starts_with("pairs");
-    const fs::path other = mine.parent_path() / (pair ? kOther + "_" + kKey : kOther);
+    const fs::path other =
+        mine.parent_path() /
+        (pair ? kOther + "_" + kKey : kOther + mine.filename().string().substr(kKey.size()));
     ASSERT_TRUE(entry.has(store)) << entry.file;
     fs::copy_file(other, mine, fs::copy_options::overwrite_existing);
     EXPECT_FALSE(entry.has(store)) << entry.file;
