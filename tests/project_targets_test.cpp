@@ -53,8 +53,8 @@ class ProjectTargets : public ProgramTest {};
 
 TEST_F(ProjectTargets, AreFoundNamedAndPlaceTheScansInTheSurveysFrame) {
   const ProgramRun made =
-      run({"simulate", "flats", "--project", "--stations", "2", "--passes", "0", "--targets", "8",
-           "--points-indoor", "1500000", "--seed", "3", "-o", "case", "--quiet"});
+      run({"simulate", "terrace", "--project", "--stations", "2", "--passes", "0", "--targets", "8",
+           "--points-indoor", "1500000", "--seed", "2", "-o", "case", "--quiet"});
   ASSERT_EQ(made.status, 0) << made.err;
   const std::vector<std::string> inputs = {"project", "case/station_001.ply", "case/station_002.ply",
                                            "--control", "case/control.csv"};
@@ -77,9 +77,10 @@ TEST_F(ProjectTargets, AreFoundNamedAndPlaceTheScansInTheSurveysFrame) {
     kinds.insert(row[6]);
     const std::size_t scan = row[1] == "case/station_001.ply" ? 0 : 1;
     const Rigid3 pose = pose_in(truth["scans"][scan]["world_from_scan"]);
-    EXPECT_LT((pose * place_in(row, 2) - exact.at(row[0])).norm(), 0.003 + 4.0 * std::stod(row[5])) << row[0];
+    EXPECT_LT((pose * place_in(row, 2) - exact.at(row[0])).norm(), 0.0005 + 4.0 * std::stod(row[5]))
+        << row[0];
   }
-  EXPECT_GE(named, 6U) << table;
+  EXPECT_GE(named, 9U) << table;
   EXPECT_EQ(kinds.size(), 2U);
 
   const json project = json::parse(read_whole(work() / "out" / "project.json"));
