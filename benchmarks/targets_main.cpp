@@ -157,23 +157,28 @@ void add_trial(double range_m, const Setting& setting, std::uint64_t seed, Trial
 }
 
 /// Things that look like targets: none may be found.
-std::vector<FoundTarget> found_among_look_alikes(const Setting& setting, std::uint64_t seed) {
+std::vector<std::string> found_among_look_alikes(const Setting& setting, std::uint64_t seed) {
   RandomStream random(seed, 2);
   Mesh mesh = hall();
   const Surface thing = surface_of(Element::furniture);
-  const auto place = [&] {
-    return toward(random.uniform(-40, 40), random.uniform(-15, 15), random.uniform(1.5, 12));
+  std::vector<std::pair<std::string, Vector3d>> put_up;
+  const auto place = [&](const char* what) {
+    const double azimuth = random.uniform(-40, 40);
+    const double elevation = random.uniform(-15, 15);
+    put_up.emplace_back(what, toward(azimuth, elevation, random.uniform(1.5, 12)));
+    return put_up.back().second;
   };
   for (const double share : {0.5, 0.7, 0.8, 0.88, 1.12, 1.2, 1.35, 1.6})  // lamps, balls
-    add_sphere(mesh, place(), share * kSphereRadiusM);
+    add_sphere(mesh, place("ball"), share * kSphereRadiusM);
   for (int k = 0; k < 6; ++k)  // heads
-    ShapeBuilder(mesh, place(), Vector2d::UnitX(), 0.5).ellipsoid(Vector3d::Zero(), {0.09, 0.075, 0.115});
+    ShapeBuilder(mesh, place("head"), Vector2d::UnitX(), 0.5)
+        .ellipsoid(Vector3d::Zero(), {0.09, 0.075, 0.115});
   for (int k = 0; k < 6; ++k) {  // domes on the ceiling and the wall
-    const Vector3d spot = place();
+    const Vector3d spot = place("dome");
     add_sphere(mesh, {spot.x(), spot.y(), 2.9 + random.uniform(0.03, 0.06)});
   }
   for (int k = 0; k < 6; ++k) {  // pipes
-    const Vector3d spot = place();
+    const Vector3d spot = place("pipe");
     std::vector<Vector3d> ring;
     for (int side = 0; side < 40; ++side)
       ring.push_back({spot.x() + kSphereRadiusM * std::cos(side * std::numbers::pi / 20),
@@ -183,7 +188,7 @@ std::vector<FoundTarget> found_among_look_alikes(const Setting& setting, std::ui
   // A chequered floor, wall tiles, larger and smaller boards, frames of pictures, stripes.
   for (const double tile : {0.5, 1.0, 0.35, 0.8}) {
     const double step = tile * kBoardSideM;
-    const Vector3d corner = place() + Vector3d(0.5, 0, 0);
+    const Vector3d corner = place("tiles") + Vector3d(0.5, 0, 0);
     const bool lies = tile > 0.9;
     for (int a = 0; a < 6; ++a) {
       for (int b = 0; b < 6; ++b) {
@@ -197,9 +202,9 @@ std::vector<FoundTarget> found_among_look_alikes(const Setting& setting, std::ui
     }
   }
   for (const double share : {0.4, 0.6, 0.75, 1.25, 1.5, 2.0})
-    add_board(mesh, {place(), {0, -1, 0}, {0, 0, 1}}, share * kBoardSideM);
+    add_board(mesh, {place("board"), {0, -1, 0}, {0, 0, 1}}, share * kBoardSideM);
   for (int k = 0; k < 8; ++k) {
-    const Vector3d middle = place();
+    const Vector3d middle = place("picture");
     Surface paper = thing;
     paper.reflectivity = 0.06;
     const double side = random.uniform(0.2, 0.5);
@@ -213,17 +218,25 @@ std::vector<FoundTarget> found_among_look_alikes(const Setting& setting, std::ui
                      paper);
   }
   const RayCaster caster(mesh);
-  return find_targets(station_scan("hall", part_of_scan(caster, setting, 50.0, seed), {}), kSizes);
+  std::vector<std::string> words;
+  for (const FoundTarget& it :
+       find_targets(station_scan("hall", part_of_scan(caster, setting, 50.0, seed), {}), kSizes)) {
+    const auto near = std::min_element(put_up.begin(), put_up.end(), [&](const auto& a, const auto& b) {
+      return (a.second - it.centre).norm() < (b.second - it.centre).norm();
+    });
+    words.push_back(fmt::format("{} of {} points, {:.2f} m from a {}", to_string(it.kind), it.points,
+                                (near->second - it.centre).norm(), near->first));
+  }
+  return words;
 }
 
 void print_look_alikes(int trials) {
   std::size_t found = 0;
   for (int k = 0; k < trials; ++k) {
-    for (const FoundTarget& it :
-         found_among_look_alikes({2e7, k % 2 == 0 ? 0.002 : 0.004}, 900U + static_cast<unsigned>(k))) {
+    const Setting setting{2e7, k % 2 == 0 ? 0.002 : 0.004};
+    for (const std::string& words : found_among_look_alikes(setting, 900U + static_cast<unsigned>(k))) {
       ++found;
-      fmt::print("  false: seed {} {} at {:.3f} {:.3f} {:.3f}, {} points\n", 900 + k, to_string(it.kind),
-                 it.centre.x(), it.centre.y(), it.centre.z(), it.points);
+      fmt::print("  false: {}\n", words);
     }
   }
   fmt::print("halls of look-alikes: {}; targets found in them: {}\n", trials, found);

@@ -19,7 +19,7 @@ constexpr double kInnerFace = 0.55;  // halves the face
 constexpr std::size_t kSectors = 6;  // of the face and of its inner half
 constexpr std::size_t kLeastPoints = 30;
 constexpr double kLeastRangeNoiseM = 0.0005;
-constexpr double kUnevenM = 0.0015;  // a part of the face may be off by this and its noise
+constexpr double kUnevenM = 0.0007;  // deviation of a part of the face beside its noise
 constexpr double kRadiusM = 0.0015;  // the radius that the points have by themselves
 constexpr double kMostUneven = 0.1;  // root mean square of the residuals, of the radius: a wall's are 0.115
 constexpr double kMostFreeSigma = 0.045;
@@ -145,11 +145,16 @@ class SphereFace {
     if (beyond_m < 0.5 * radius_m && beyond_m > -1.2 * radius_m) ++level_;
   }
 
+  /// The means of the parts scatter as noise makes them: chi square of nine freedoms.
   [[nodiscard]] bool round() const {
-    return std::all_of(parts_.begin(), parts_.end(), [&](const Part& part) {
-      return part.count < 3.0 ||
-             std::abs(part.sum_m / part.count) < kUnevenM + 4.0 * rms_m_ / std::sqrt(part.count);
-    });
+    constexpr double kChiSquareBound = 27.9;  // exceeded once in a thousand
+    double chi_square = 0.0;
+    for (const Part& part : parts_) {
+      if (part.count == 0.0) continue;
+      const double mean = part.sum_m / part.count;
+      chi_square += mean * mean / (rms_m_ * rms_m_ / part.count + kUnevenM * kUnevenM);
+    }
+    return chi_square < kChiSquareBound;
   }
 
   [[nodiscard]] std::size_t parts_in_sight() const {
