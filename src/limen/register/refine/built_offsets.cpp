@@ -18,7 +18,7 @@ constexpr double kMovedShare = 0.2;        // of planes, presumed
 constexpr double kMovedM = 0.03;           // by so much, 1 sigma
 constexpr double kClearlyOff = 3.0;        // deviations
 constexpr std::size_t kStarts = 16;        // planes that may be right against the others, the largest
-constexpr int kRounds = 60;
+constexpr int kMostRounds = 60;
 constexpr double kStepDone = 1e-7;  // m and radians
 
 /// One error of a plane, integrated out.
@@ -53,7 +53,7 @@ class Settling {
     mode.step = start;
     mode.moved.assign(planes_.size(), 0.0);
     double err_m = kBuildersErrM;
-    for (int round = 0; round < kRounds; ++round) {
+    for (int round = 0; round < kMostRounds; ++round) {
       const Vector6d before = mode.step;
       err_m = improve(err_m, mode);
       if ((mode.step - before).lpNorm<Eigen::Infinity>() < kStepDone) break;
@@ -116,11 +116,11 @@ std::vector<std::size_t> moved_planes(const std::vector<PlaneSums>& planes, cons
   return moved;
 }
 
-Matrix6d damped_inverse(const Matrix6d& matrix) {
-  return inverse_of(Matrix6d(matrix + 1e-6 * Matrix6d::Identity()));
-}
-
 }  // namespace
+
+Matrix6d damped_inverse(const Matrix6d& information) {
+  return inverse_of(Matrix6d(information + 1e-6 * Matrix6d::Identity()));
+}
 
 PlaneSums& PlaneSums::operator+=(const PlaneSums& other) {
   information += other.information;

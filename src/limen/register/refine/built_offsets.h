@@ -36,6 +36,9 @@ struct PlaneErrors {
 /// integrated in closed form. `factor`: of the variances that the weights are made with.
 Matrix6d information_of(const PlaneSums& plane, const PlaneErrors& errors, double factor);
 
+/// A covariance; a freedom that nothing holds has a deviation of 1000 m or radians.
+Matrix6d damped_inverse(const Matrix6d& information);
+
 /// A pose among planes of which some were moved, as a small turn and shift.
 struct SettledPose {
   Vector6d step = Vector6d::Zero();

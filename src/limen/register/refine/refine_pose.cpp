@@ -410,10 +410,6 @@ class Refiner {
   ContactFinder contacts_;
 };
 
-Matrix6d damped_inverse(const Matrix6d& information) {
-  return inverse_of(Matrix6d(information + 1e-6 * Matrix6d::Identity()));
-}
-
 /// An opening of the target where the source has it, `back` being the pose of the target in the source.
 OpeningMatch inverted(const OpeningMatch& match, const Rigid3& back) {
   OpeningMatch turned = match;
