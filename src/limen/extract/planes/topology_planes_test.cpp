@@ -17,9 +17,9 @@
 namespace limen {
 namespace {
 
-enum Surface : int { ground, facade, recess, room, far_wall, foliage };
+enum StreetPart : int { ground, facade, recess, room, far_wall, foliage };
 
-struct Echo {
+struct StreetEcho {
   double range = 0.0;
   int surface = -1;
 };
@@ -27,7 +27,7 @@ struct Echo {
 /// What a beam from (x, 0, 2) upwards by `angle` in the y-z plane meets: the ground, a façade at y = 8 with a
 /// recess 10 cm deep and windows into a room 3 m deep, a bush before it, another façade on its line from x
 /// = 14.
-Echo meet(double x, double angle, RandomStream& random) {
+StreetEcho meet(double x, double angle, RandomStream& random) {
   const double dy = std::cos(angle);
   const double dz = std::sin(angle);
   if (dz < 0.0 && dy * 2.0 / -dz < 8.0) return {2.0 / -dz, ground};
@@ -53,7 +53,7 @@ Street drive(std::uint64_t seed) {
     for (int pulse = 0; pulse < 1000; ++pulse) {
       const double x = 0.06 * line;
       const double angle = -1.2 + 2.1 * pulse / 1000.0;
-      Echo echo = meet(x, angle, random);
+      StreetEcho echo = meet(x, angle, random);
       if (echo.surface < 0 || echo.range > 40.0) continue;
       echo.range += 0.003 * random.normal();
       const Vector3d centre(x, 0.0, 2.0);
