@@ -90,8 +90,8 @@ TEST(SettleAmongMoved, WhatElseIsKnownDecides) {
   std::vector<PlaneSums> planes = building({0.0, 0.03});
   PlaneSums opening;
   opening.weight = 1.0 / (0.004 * 0.004);
-  opening.information(3, 3) = opening.shared(3, 0) = opening.common(0, 0) = opening.weight;
-  opening.right[3] = opening.residuals[0] = 0.03 * opening.weight;
+  opening.information(3, 3) = opening.weight;
+  opening.right[3] = 0.03 * opening.weight;
   opening.squares = 0.03 * 0.03 * opening.weight;
   planes.push_back(opening);
   const SettledPose pose = settle_among_moved(planes, 1e-4, 1.0);

@@ -23,6 +23,7 @@ constexpr double kMaxCentreM = 20.0;     // the best known point is sought this 
 constexpr double kBuilderErrsM = 0.002;  // by how much a wall differs from the drawing, at least: 1 sigma
 constexpr int kLeastTilted = 8;          // tiles of a pair whose slopes are looked at
 constexpr double kMovedGateM = 0.06;     // as far as walls are looked for that were moved
+constexpr double kOpeningErrsM = 0.02;   // how far windows and doors are from where a model has them: 1 sigma
 constexpr double kOneOffsetM = 0.006;    // parts of one plane that differ by less were moved together
 constexpr double kGateSigma = 0.2;       // deviation of a tile far from the goal, as a share of the gate
 
@@ -47,7 +48,8 @@ class Refiner {
       adjust(contacts.all, kGateSigma * (gate - options_.last_gate_m), refined);
     }
     std::optional<Settled> settled;
-    if (source_.model || target_.model) settled = settle(refined);
+    // Few samples do not show which walls were moved.
+    if ((source_.model || target_.model) && options_.samples == 0) settled = settle(refined);
     summarise(refined);
     if (settled) {
       refined.information = about(settled->information, settled->centre, refined.centre);
@@ -257,16 +259,14 @@ class Refiner {
     return known;
   }
 
-  /// What one contact says by itself; `factor` of the variances is taken back later.
+  /// What a contact of an opening says by itself, whose place in the model is not that exact; `factor` of the
+  /// variances is taken back later.
   static PlaneSums alone(const Contact& contact, const Vector3d& centre, double factor) {
     const Vector6d row = row_of(contact, centre);
     PlaneSums sums;
-    sums.weight = factor / (contact.sigma_m * contact.sigma_m);
+    sums.weight = factor / (contact.sigma_m * contact.sigma_m + kOpeningErrsM * kOpeningErrsM);
     sums.information = sums.weight * row * row.transpose();
-    sums.shared.col(0) = sums.weight * row;
-    sums.common(0, 0) = sums.weight;
     sums.right = sums.weight * contact.residual_m * row;
-    sums.residuals[0] = sums.weight * contact.residual_m;
     sums.squares = sums.weight * contact.residual_m * contact.residual_m;
     return sums;
   }
