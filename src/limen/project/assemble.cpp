@@ -459,13 +459,9 @@ class Assembler {
     if (question.moved.size() > 3) scans += fmt::format(" and {} more", question.moved.size() - 3);
     stated.current = question.current;
     stated.rival = question.rival;
-    for (const std::vector<int>* links : {&question.current, &question.rival}) {
-      for (std::size_t k = 0; k < links->size() && k < kMostAnswers; ++k) add_answers((*links)[k], stated);
-    }
-    if (question.current.empty() && question.rival.empty()) {
-      for (const int link : links_across(question.moved)) {
-        if (stated.answers.size() < kMostAnswers) add_answers(link, stated);
-      }
+    // One pair at a time: what a person says of it decides the others, or the next question asks of them.
+    for (const std::vector<int>& links : {question.current, question.rival, links_across(question.moved)}) {
+      for (std::size_t k = 0; k < links.size() && stated.answers.empty(); ++k) add_answers(links[k], stated);
     }
     if (question.doubt > 0.0) {
       const std::string by = question.current.empty()       ? "few observations"

@@ -187,7 +187,9 @@ std::string summary(const ProjectResult& result, const std::string& folder) {
                         stated.reason.empty() ? "" : ", ", stated.reason);
   for (const ProjectQuestion& question : result.questions) {
     text += "question: " + question.text + "\n";
-    for (const Decision& answer : question.answers) text += "  " + decide_line(folder, answer) + "\n";
+    for (const Decision& answer : question.answers) {
+      if (answer.kind != DecisionKind::forget) text += "  " + decide_line(folder, answer) + "\n";
+    }
   }
   std::size_t counts[5] = {};
   for (const ProjectLink& link : result.links) ++counts[static_cast<std::size_t>(link.solved.state)];
