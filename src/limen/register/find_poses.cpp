@@ -166,6 +166,12 @@ void balance_walls(std::vector<FoundPose>& poses, const ScanView& source, const 
   });
 }
 
+std::vector<FoundPose> distinct(const std::vector<FoundPose>& poses, const VerdictOptions& options) {
+  std::vector<FoundPose> kept;
+  for (const std::size_t i : rank(poses, options)) kept.push_back(poses[i]);
+  return kept;
+}
+
 /// How an attempt proposes its poses.
 enum class Proposal { held, sliding };
 
@@ -194,7 +200,8 @@ std::vector<FoundPose> attempt(const WorkedPair& pair, bool gravity_known, Propo
   if (start && !model) candidates.push_back({start->given(start->prior.target_from_source), 0.0, 0});
   clock.end();
   clock.begin("refinement");
-  std::vector<FoundPose> found = refine_all(candidates, source.view(), target.view(), options);
+  std::vector<FoundPose> found =
+      distinct(refine_all(candidates, source.view(), target.view(), options), options.verdict);
   polish(found, source.view(), target.view(), options);
   balance_walls(found, source.view(), target.view());
   if (start) {
@@ -202,12 +209,6 @@ std::vector<FoundPose> attempt(const WorkedPair& pair, bool gravity_known, Propo
   }
   clock.end();
   return found;
-}
-
-std::vector<FoundPose> distinct(const std::vector<FoundPose>& poses, const VerdictOptions& options) {
-  std::vector<FoundPose> kept;
-  for (const std::size_t i : rank(poses, options)) kept.push_back(poses[i]);
-  return kept;
 }
 
 /// Whether a pose is found that holds all six freedoms and that chance does not explain as well.

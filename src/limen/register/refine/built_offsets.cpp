@@ -3,8 +3,10 @@
 #include "limen/register/refine/built_offsets.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 namespace limen {
 namespace {
@@ -14,8 +16,9 @@ constexpr double kBuildersErrM =
 constexpr double kLeastErrM = 0.002;  // no building is better ...
 constexpr double kMostErrM = 0.006;   // ... and what is off by more was moved
 constexpr double kBuildersStrength = 4.0;  // in planes
-constexpr double kMovedShare = 0.2;        // of planes, presumed
+constexpr double kMovedShare = 0.1;        // of planes, presumed
 constexpr double kMovedM = 0.03;           // by so much, 1 sigma
+constexpr double kOtherSlope = 0.02;       // of what is another surface; there are as many of these
 constexpr double kClearlyOff = 3.0;        // deviations
 constexpr std::size_t kStarts = 16;        // planes that may be right against the others, the largest
 constexpr int kMostRounds = 60;
@@ -72,23 +75,30 @@ class Settling {
     double count = kBuildersStrength;
     for (std::size_t k = 0; k < planes_.size(); ++k) {
       const PlaneSums& plane = planes_[k];
-      const Integrated built(plane, {err_m, slope_}, factor_);
-      const Integrated off(plane, {kMovedM, slope_}, factor_);
       const Vector3d residuals = plane.residuals - plane.shared.transpose() * x;
-      const auto nats = [&](const Integrated& error, double share) {
-        return std::log(share) + 0.5 * residuals.dot(error.gain * residuals) - 0.5 * error.log_determinant;
-      };
-      const double as_built = nats(built, 1.0 - kMovedShare);
-      const double as_moved = nats(off, kMovedShare);
-      const double most = std::max(as_built, as_moved);
-      const double both = most + std::log(std::exp(as_built - most) + std::exp(as_moved - most));
-      const double moved = std::exp(as_moved - both);
+      const std::array<std::pair<double, PlaneErrors>, 3> kinds{{{1.0 - 2.0 * kMovedShare, {err_m, slope_}},
+                                                                 {kMovedShare, {kMovedM, slope_}},
+                                                                 {kMovedShare, {kMovedM, kOtherSlope}}}};
+      std::array<Matrix3d, 3> gains;
+      std::array<double, 3> nats{};
+      for (std::size_t i = 0; i < kinds.size(); ++i) {
+        const Integrated error(plane, kinds[i].second, factor_);
+        gains[i] = error.gain;
+        nats[i] = std::log(kinds[i].first) + 0.5 * residuals.dot(error.gain * residuals) -
+                  0.5 * error.log_determinant;
+      }
+      const double most = *std::max_element(nats.begin(), nats.end());
+      double sum = 0.0;
+      for (const double one : nats) sum += std::exp(one - most);
+      const double all = most + std::log(sum);
+      Matrix3d gain = Matrix3d::Zero();
+      for (std::size_t i = 0; i < kinds.size(); ++i) gain += std::exp(nats[i] - all) * gains[i];
+      const double moved = 1.0 - std::exp(nats[0] - all);
       mode.moved[k] = moved;
-      const Matrix3d gain = (1.0 - moved) * built.gain + moved * off.gain;
       mode.information += plane.information / factor_ - plane.shared * gain * plane.shared.transpose();
       right += plane.right / factor_ - plane.shared * gain * plane.residuals;
       mode.log_likelihood +=
-          both - 0.5 * (plane.squares - 2.0 * plane.right.dot(x) + x.dot(plane.information * x)) / factor_;
+          all - 0.5 * (plane.squares - 2.0 * plane.right.dot(x) + x.dot(plane.information * x)) / factor_;
       const double offset_m = residuals[0] / plane.weight;
       squares += (1.0 - moved) * offset_m * offset_m;
       count += 1.0 - moved;

@@ -48,7 +48,8 @@ struct SettledPose {
 };
 
 /// The likeliest pose in a building of which each plane either is where the model has it, to the few
-/// millimetres that builders err (learned from these planes), or was moved by centimetres. Which ones were is
+/// millimetres that builders err (learned from these planes), or was moved by centimetres, or is another
+/// surface that lies near it. Which ones were is
 /// not known: poses that take other planes for the moved ones are sought too, and how likely they are and how
 /// far off is in the information. What else holds the
 /// pose is a plane without an offset of its own.

@@ -225,14 +225,32 @@ class Refiner {
           joined.at({contact.source_plane, contact.target_plane});
   }
 
+  /// A contact along the normal of the model's plane: of one pair the tiles of both sides then say the same
+  /// of a shift.
+  [[nodiscard]] Contact along_model(Contact contact, const Rigid3& target_from_source) const {
+    const auto normal_of = [](const ScanView& side, int plane) {
+      return side.features->planes[static_cast<std::size_t>(plane)].plane.normal;
+    };
+    const Vector3d normal =
+        source_.model ? Vector3d(target_from_source.rotation * normal_of(source_, contact.source_plane))
+                      : normal_of(target_, contact.target_plane);
+    if (normal.dot(contact.normal) < 0.0) contact.residual_m = -contact.residual_m;
+    contact.normal = normal;
+    return contact;
+  }
+
   /// Moves a pose in a model to where it is likeliest, given that some walls may have been moved.
   [[nodiscard]] std::optional<Settled> settle(RefinedPose& refined) const {
     const Contacts found =
         contacts_.near(refined.target_from_source, {kMovedGateM, options_.last_opening_gate_m});
     std::vector<Contact> contacts;
     std::vector<Contact> others;
-    for (const Contact& contact : found.all)
-      (contact.source_plane >= 0 ? contacts : others).push_back(contact);
+    for (const Contact& contact : found.all) {
+      if (contact.source_plane < 0)
+        others.push_back(contact);
+      else
+        contacts.push_back(along_model(contact, refined.target_from_source));
+    }
     if (contacts.size() < 4) return std::nullopt;
     const Vector3d centre = middle_of(contacts);
     join_pairs(contacts, centre);
