@@ -22,6 +22,8 @@ constexpr std::size_t kSettleLooks = 5;  // of those steps that get a look at ev
 constexpr double kCarefulGateM = 0.04;
 constexpr double kGateSigmas = 4.0;                // of the sensor: surfaces nearer than that may be one
 constexpr std::size_t kPolished = 4;               // poses refined on every sample
+constexpr std::size_t kMostPolished = 24;          // in a model those that agree as well as ...
+constexpr double kAlikeShare = 0.9;                // ... the best, to this share
 constexpr int kModelPoses = 128;                   // refined at least where a scan is sought in a model
 constexpr std::size_t kModelRefineSamples = 1500;  // of each side, for all but the best of them
 
@@ -141,7 +143,13 @@ bool settle_open_shifts(FoundPose& pose, const ScanView& source, const ScanView&
 void polish(std::vector<FoundPose>& poses, const ScanView& source, const ScanView& target,
             const RegisterOptions& options) {
   const std::vector<std::size_t> ranking = rank(poses, options.verdict);
-  const std::size_t count = std::min<std::size_t>(kPolished, ranking.size());
+  std::size_t count = std::min<std::size_t>(kPolished, ranking.size());
+  // A model may have many rooms alike: none of them is to gain by being looked at more closely.
+  if ((source.model || target.model) && !ranking.empty()) {
+    const double enough = kAlikeShare * poses[ranking.front()].score.value();
+    const std::size_t most = std::min<std::size_t>(kMostPolished, ranking.size());
+    while (count < most && poses[ranking[count]].score.value() >= enough) ++count;
+  }
   const PoseScorer score_of(source, target, fine_score(source, target, options.method));
   parallel_for(count, 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {

@@ -24,8 +24,9 @@ constexpr double kBuilderErrsM = 0.002;  // by how much a wall differs from the 
 constexpr int kLeastTilted = 8;          // tiles of a pair whose slopes are looked at
 constexpr double kMovedGateM = 0.06;     // as far as walls are looked for that were moved
 constexpr double kOpeningErrsM = 0.02;   // how far windows and doors are from where a model has them: 1 sigma
-constexpr double kOneOffsetM = 0.006;    // parts of one plane that differ by less were moved together
-constexpr double kGateSigma = 0.2;       // deviation of a tile far from the goal, as a share of the gate
+constexpr double kOneDirectionCosine = 0.99999;  // of planes of one wall
+constexpr double kOneOffsetM = 0.006;            // parts of one plane that differ by less were moved together
+constexpr double kGateSigma = 0.2;  // deviation of a tile far from the goal, as a share of the gate
 
 class Refiner {
  public:
@@ -200,17 +201,26 @@ class Refiner {
     std::vector<PlaneMatch> moved;
   };
 
-  /// Contacts whose pairs of planes are one plane of the model, and equally far from it, get the same pair: a
-  /// wall that was moved is moved with all its parts.
+  /// Contacts whose pairs of planes lie in one plane of the model, and equally far from it, get the same
+  /// pair: a wall that was moved is moved with all its parts.
   void join_pairs(std::vector<Contact>& contacts, const Vector3d& centre) const {
     struct Part {
-      int model;
+      std::size_t model;
       double offset_m;
       std::pair<int, int> pair;
     };
     std::vector<Part> parts;
-    for (const auto& [key, pair] : pairs_of(contacts, centre))
-      parts.push_back({source_.model ? key.first : key.second, pair.mean_m(), key});
+    std::vector<Plane> walls;
+    const std::vector<PlanarPolygon>& planes = (source_.model ? source_ : target_).features->planes;
+    for (const auto& [key, pair] : pairs_of(contacts, centre)) {
+      const Plane& plane = planes[static_cast<std::size_t>(source_.model ? key.first : key.second)].plane;
+      const auto wall = std::find_if(walls.begin(), walls.end(), [&](const Plane& known) {
+        return known.normal.dot(plane.normal) > kOneDirectionCosine &&
+               std::abs(known.offset - plane.offset) < kOneOffsetM;
+      });
+      parts.push_back({static_cast<std::size_t>(wall - walls.begin()), pair.mean_m(), key});
+      if (wall == walls.end()) walls.push_back(plane);
+    }
     std::sort(parts.begin(), parts.end(), [](const Part& a, const Part& b) {
       return std::tie(a.model, a.offset_m, a.pair) < std::tie(b.model, b.offset_m, b.pair);
     });
