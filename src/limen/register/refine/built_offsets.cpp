@@ -95,13 +95,15 @@ class Settling {
       for (std::size_t i = 0; i < kinds.size(); ++i) gain += std::exp(nats[i] - all) * gains[i];
       const double moved = 1.0 - std::exp(nats[0] - all);
       mode.moved[k] = moved;
-      mode.information += plane.information / factor_ - plane.shared * gain * plane.shared.transpose();
-      right += plane.right / factor_ - plane.shared * gain * plane.residuals;
+      mode.information +=
+          plane.counts * (plane.information / factor_ - plane.shared * gain * plane.shared.transpose());
+      right += plane.counts * (plane.right / factor_ - plane.shared * gain * plane.residuals);
       mode.log_likelihood +=
-          all - 0.5 * (plane.squares - 2.0 * plane.right.dot(x) + x.dot(plane.information * x)) / factor_;
+          plane.counts *
+          (all - 0.5 * (plane.squares - 2.0 * plane.right.dot(x) + x.dot(plane.information * x)) / factor_);
       const double offset_m = residuals[0] / plane.weight;
-      squares += (1.0 - moved) * offset_m * offset_m;
-      count += 1.0 - moved;
+      squares += plane.counts * (1.0 - moved) * offset_m * offset_m;
+      count += plane.counts * (1.0 - moved);
     }
     mode.step = solve_symmetric(mode.information, right);
     return std::clamp(std::sqrt(squares / std::max(1.0, count - 3.0)), kLeastErrM, kMostErrM);

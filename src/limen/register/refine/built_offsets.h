@@ -21,6 +21,7 @@ struct PlaneSums {
   Vector3d residuals = Vector3d::Zero();
   double squares = 0.0;  ///< of the residuals
   double weight = 0.0;
+  double counts = 1.0;  ///< as so much of a plane: small ones are often not built as accurately
 
   [[nodiscard]] double mean_m() const { return residuals[0] / weight; }
   PlaneSums& operator+=(const PlaneSums& other);

@@ -25,6 +25,7 @@ constexpr int kLeastTilted = 8;          // tiles of a pair whose slopes are loo
 constexpr double kMovedGateM = 0.06;     // as far as walls are looked for that were moved
 constexpr double kOpeningErrsM = 0.02;   // how far windows and doors are from where a model has them: 1 sigma
 constexpr double kOneDirectionCosine = 0.99999;  // of planes of one wall
+constexpr double kWholePlaneM2 = 5.0;            // one observation of how a building was built
 constexpr double kOneOffsetM = 0.006;            // parts of one plane that differ by less were moved together
 constexpr double kGateSigma = 0.2;  // deviation of a tile far from the goal, as a share of the gate
 
@@ -269,6 +270,7 @@ class Refiner {
     std::vector<PlaneSums> planes;
     for (const auto& [key, pair] : pairs) {
       planes.push_back(pair);
+      planes.back().counts = std::min(1.0, pair.area_m2 / kWholePlaneM2);
       squares += pair.squares - pair.residuals[0] * pair.residuals[0] / pair.weight;
     }
     const double freedoms = 0.5 * static_cast<double>(contacts.size()) - static_cast<double>(pairs.size());
