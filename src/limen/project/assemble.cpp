@@ -374,7 +374,9 @@ class Assembler {
     for (PlaneMatch& match : matches) {
       const PlaneDigest& from = source.planes[static_cast<std::size_t>(match.source)];
       const PlaneDigest& to = target.planes[static_cast<std::size_t>(match.target)];
-      const auto middle = [](const PlaneDigest& plane) { return plane.centroid + plane.moments.mean(); };
+      const auto middle = [](const PlaneDigest& plane) {
+        return Vector3d(plane.centroid + plane.moments.mean());
+      };
       // What both saw lies in the smaller one.
       const Vector3d x = from.area_m2 < to.area_m2 ? middle(from) : Vector3d(inverse(own) * middle(to));
       match.distance_m += to.plane.normal.dot(solved * x - own * x);
