@@ -6,21 +6,17 @@
 #include <array>
 #include <cmath>
 #include <numeric>
-#include <utility>
 
 namespace limen {
 namespace {
 
-constexpr double kBuildersErrM =
-    0.003;                            // how far a wall is from the drawing, before planes are seen: 1 sigma
-constexpr double kLeastErrM = 0.002;  // no building is better ...
-constexpr double kMostErrM = 0.006;   // ... and what is off by more was moved
-constexpr double kBuildersStrength = 4.0;  // in planes
-constexpr double kMovedShare = 0.1;        // of planes, presumed
-constexpr double kMovedM = 0.03;           // by so much, 1 sigma
-constexpr double kOtherSlope = 0.02;       // of what is another surface; there are as many of these
-constexpr double kClearlyOff = 3.0;        // deviations
-constexpr std::size_t kStarts = 16;        // planes that may be right against the others, the largest
+constexpr double kBuilderErrsM = 0.003;      // how far a wall is from the drawing, beforehand: 1 sigma
+constexpr double kMostBuilderErrsM = 0.006;  // what is off by more was moved
+constexpr double kBuildersStrength = 4.0;    // in planes
+constexpr double kMovedShare = 0.1;          // of planes, presumed
+constexpr double kMovedM = 0.03;             // by so much, 1 sigma
+constexpr double kOtherSlope = 0.02;         // of what is another surface; there are as many of these
+constexpr std::size_t kStarts = 16;          // planes that may be right against the others, the largest
 constexpr int kMostRounds = 60;
 constexpr double kStepDone = 1e-7;  // m and radians
 
@@ -48,14 +44,18 @@ struct Mode {
 
 class Settling {
  public:
-  Settling(const std::vector<PlaneSums>& planes, double slope, double factor)
-      : planes_(planes), slope_(slope), factor_(factor) {}
+  Settling(const std::vector<PlaneSums>& planes, const NormalEquations& held, double slope, double factor)
+      : planes_(planes), held_(held), slope_(slope), factor_(factor) {
+    for (const PlaneSums& plane : planes)
+      moved_.push_back(
+          {Integrated(plane, {kMovedM, slope}, factor), Integrated(plane, {kMovedM, kOtherSlope}, factor)});
+  }
 
   [[nodiscard]] Mode from(const Vector6d& start) const {
     Mode mode;
     mode.step = start;
     mode.moved.assign(planes_.size(), 0.0);
-    double err_m = kBuildersErrM;
+    double err_m = kBuilderErrsM;
     for (int round = 0; round < kMostRounds; ++round) {
       const Vector6d before = mode.step;
       err_m = improve(err_m, mode);
@@ -65,53 +65,64 @@ class Settling {
   }
 
  private:
-  /// One step of expectation and maximisation; what builders err, as these planes show it.
+  /// What a plane is, at one pose.
+  struct Answer {
+    Matrix3d gain = Matrix3d::Zero();  ///< mean of all kinds
+    double moved = 0.0;                ///< probability of the kinds but the first
+    double log_likelihood = 0.0;
+  };
+
+  [[nodiscard]] Answer answer_of(std::size_t k, const Vector3d& residuals, double err_m) const {
+    const std::array<Integrated, 3> kinds{Integrated(planes_[k], {err_m, slope_}, factor_), moved_[k][0],
+                                          moved_[k][1]};
+    std::array<double, 3> nats{std::log(1.0 - 2.0 * kMovedShare), std::log(kMovedShare),
+                               std::log(kMovedShare)};
+    for (std::size_t i = 0; i < kinds.size(); ++i)
+      nats[i] += 0.5 * residuals.dot(kinds[i].gain * residuals) - 0.5 * kinds[i].log_determinant;
+    const double most = *std::max_element(nats.begin(), nats.end());
+    double sum = 0.0;
+    for (const double one : nats) sum += std::exp(one - most);
+    Answer answer;
+    answer.log_likelihood = most + std::log(sum);
+    for (std::size_t i = 0; i < kinds.size(); ++i)
+      answer.gain += std::exp(nats[i] - answer.log_likelihood) * kinds[i].gain;
+    answer.moved = 1.0 - std::exp(nats[0] - answer.log_likelihood);
+    return answer;
+  }
+
+  /// One step of expectation and maximisation; returns what builders err, as these planes show it.
   double improve(double err_m, Mode& mode) const {
     const Vector6d x = mode.step;
-    mode.information.setZero();
-    mode.log_likelihood = 0.0;
-    Vector6d right = Vector6d::Zero();
-    double squares = kBuildersStrength * kBuildersErrM * kBuildersErrM;
+    mode.information = held_.normal;
+    mode.log_likelihood = held_.right.dot(x) - 0.5 * x.dot(held_.normal * x);
+    Vector6d right = held_.right;
+    double squares = kBuildersStrength * kBuilderErrsM * kBuilderErrsM;
     double count = kBuildersStrength;
     for (std::size_t k = 0; k < planes_.size(); ++k) {
       const PlaneSums& plane = planes_[k];
       const Vector3d residuals = plane.residuals - plane.shared.transpose() * x;
-      const std::array<std::pair<double, PlaneErrors>, 3> kinds{{{1.0 - 2.0 * kMovedShare, {err_m, slope_}},
-                                                                 {kMovedShare, {kMovedM, slope_}},
-                                                                 {kMovedShare, {kMovedM, kOtherSlope}}}};
-      std::array<Matrix3d, 3> gains;
-      std::array<double, 3> nats{};
-      for (std::size_t i = 0; i < kinds.size(); ++i) {
-        const Integrated error(plane, kinds[i].second, factor_);
-        gains[i] = error.gain;
-        nats[i] = std::log(kinds[i].first) + 0.5 * residuals.dot(error.gain * residuals) -
-                  0.5 * error.log_determinant;
-      }
-      const double most = *std::max_element(nats.begin(), nats.end());
-      double sum = 0.0;
-      for (const double one : nats) sum += std::exp(one - most);
-      const double all = most + std::log(sum);
-      Matrix3d gain = Matrix3d::Zero();
-      for (std::size_t i = 0; i < kinds.size(); ++i) gain += std::exp(nats[i] - all) * gains[i];
-      const double moved = 1.0 - std::exp(nats[0] - all);
-      mode.moved[k] = moved;
-      mode.information +=
-          plane.counts * (plane.information / factor_ - plane.shared * gain * plane.shared.transpose());
-      right += plane.counts * (plane.right / factor_ - plane.shared * gain * plane.residuals);
+      const Answer answer = answer_of(k, residuals, err_m);
+      mode.moved[k] = answer.moved;
+      mode.information += plane.counts * (plane.information / factor_ -
+                                          plane.shared * answer.gain * plane.shared.transpose());
+      right += plane.counts * (plane.right / factor_ - plane.shared * answer.gain * plane.residuals);
       mode.log_likelihood +=
           plane.counts *
-          (all - 0.5 * (plane.squares - 2.0 * plane.right.dot(x) + x.dot(plane.information * x)) / factor_);
+          (answer.log_likelihood -
+           0.5 * (plane.squares - 2.0 * plane.right.dot(x) + x.dot(plane.information * x)) / factor_);
       const double offset_m = residuals[0] / plane.weight;
-      squares += plane.counts * (1.0 - moved) * offset_m * offset_m;
-      count += plane.counts * (1.0 - moved);
+      squares += plane.counts * (1.0 - answer.moved) * offset_m * offset_m;
+      count += plane.counts * (1.0 - answer.moved);
     }
     mode.step = solve_symmetric(mode.information, right);
-    return std::clamp(std::sqrt(squares / std::max(1.0, count - 3.0)), kLeastErrM, kMostErrM);
+    return std::clamp(std::sqrt(squares / std::max(1.0, count - 3.0)), kLeastBuilderErrsM, kMostBuilderErrsM);
   }
 
   const std::vector<PlaneSums>& planes_;
+  const NormalEquations& held_;
   double slope_;
   double factor_;
+  std::vector<std::array<Integrated, 2>> moved_;  ///< of each plane: moved, another surface
 };
 
 /// Planes that were moved under a mode, the largest first.
@@ -120,7 +131,7 @@ std::vector<std::size_t> moved_planes(const std::vector<PlaneSums>& planes, cons
   for (std::size_t k = 0; k < planes.size(); ++k) {
     const double offset_m =
         std::abs(planes[k].mean_m() - planes[k].shared.col(0).dot(mode.step) / planes[k].weight);
-    if (offset_m > kClearlyOff * kLeastErrM) moved.push_back(k);
+    if (offset_m > kMostBuilderErrsM) moved.push_back(k);
   }
   std::stable_sort(moved.begin(), moved.end(),
                    [&](std::size_t a, std::size_t b) { return planes[a].weight > planes[b].weight; });
@@ -134,24 +145,14 @@ Matrix6d damped_inverse(const Matrix6d& information) {
   return inverse_of(Matrix6d(information + 1e-6 * Matrix6d::Identity()));
 }
 
-PlaneSums& PlaneSums::operator+=(const PlaneSums& other) {
-  information += other.information;
-  shared += other.shared;
-  common += other.common;
-  right += other.right;
-  residuals += other.residuals;
-  squares += other.squares;
-  weight += other.weight;
-  return *this;
-}
-
 Matrix6d information_of(const PlaneSums& plane, const PlaneErrors& errors, double factor) {
   return plane.information / factor -
          plane.shared * Integrated(plane, errors, factor).gain * plane.shared.transpose();
 }
 
-SettledPose settle_among_moved(const std::vector<PlaneSums>& planes, double slope, double factor) {
-  const Settling settling(planes, slope, factor);
+SettledPose settle_among_moved(const std::vector<PlaneSums>& planes, const NormalEquations& held,
+                               double slope, double factor) {
+  const Settling settling(planes, held, slope, factor);
   std::vector<Mode> modes{settling.from(Vector6d::Zero())};
   for (const std::size_t k : moved_planes(planes, modes.front())) {
     // As if this plane, of all that are off, were right: shifted along its normal.
@@ -160,7 +161,7 @@ SettledPose settle_among_moved(const std::vector<PlaneSums>& planes, double slop
     start.tail<3>() += (planes[k].mean_m() - row.dot(start)) * row.tail<3>();
     Mode mode = settling.from(start);
     const bool known = std::any_of(modes.begin(), modes.end(), [&](const Mode& other) {
-      return (other.step - mode.step).lpNorm<Eigen::Infinity>() < 0.1 * kLeastErrM;
+      return (other.step - mode.step).lpNorm<Eigen::Infinity>() < 0.1 * kLeastBuilderErrsM;
     });
     if (!known) modes.push_back(std::move(mode));
   }

@@ -48,7 +48,7 @@ std::vector<PlaneSums> building(const std::vector<double>& off_m) {
 }
 
 SettledPose settled(const std::vector<double>& off_m) {
-  return settle_among_moved(building(off_m), 1e-4, 1.0);
+  return settle_among_moved(building(off_m), {}, 1e-4, 1.0);
 }
 
 double sigma_x(const SettledPose& pose) {
@@ -87,14 +87,9 @@ TEST(SettleAmongMoved, OfTwoWallsNobodyKnowsWhichOneWasMoved) {
 }
 
 TEST(SettleAmongMoved, WhatElseIsKnownDecides) {
-  std::vector<PlaneSums> planes = building({0.0, 0.03});
-  PlaneSums opening;
-  opening.weight = 1.0 / (0.004 * 0.004);
-  opening.information(3, 3) = opening.weight;
-  opening.right[3] = 0.03 * opening.weight;
-  opening.squares = 0.03 * 0.03 * opening.weight;
-  planes.push_back(opening);
-  const SettledPose pose = settle_among_moved(planes, 1e-4, 1.0);
+  NormalEquations opening;
+  opening.add(Vector6d::Unit(3), 0.03, 1.0 / (0.004 * 0.004));
+  const SettledPose pose = settle_among_moved(building({0.0, 0.03}), opening, 1e-4, 1.0);
   EXPECT_NEAR(pose.step[3], 0.03, 0.002);
   EXPECT_GT(pose.moved[0], 0.9);
 }

@@ -18,12 +18,11 @@
 namespace limen {
 namespace {
 
-constexpr double kWeakShare = 1e-4;      // of the information: less is the planes' error
-constexpr double kMaxCentreM = 20.0;     // the best known point is sought this far from the matched surface
-constexpr double kBuilderErrsM = 0.002;  // by how much a wall differs from the drawing, at least: 1 sigma
-constexpr int kLeastTilted = 8;          // tiles of a pair whose slopes are looked at
-constexpr double kMovedGateM = 0.06;     // as far as walls are looked for that were moved
-constexpr double kOpeningErrsM = 0.02;   // how far windows and doors are from where a model has them: 1 sigma
+constexpr double kWeakShare = 1e-4;     // of the information: less is the planes' error
+constexpr double kMaxCentreM = 20.0;    // the best known point is sought this far from the matched surface
+constexpr int kLeastTilted = 8;         // tiles of a pair whose slopes are looked at
+constexpr double kMovedGateM = 0.06;    // as far as walls are looked for that were moved
+constexpr double kOpeningErrsM = 0.02;  // how far windows and doors are from where a model has them: 1 sigma
 constexpr double kOneDirectionCosine = 0.99999;  // of planes of one wall
 constexpr double kWholePlaneM2 = 5.0;            // one observation of how a building was built
 constexpr double kOneOffsetM = 0.006;            // parts of one plane that differ by less were moved together
@@ -82,17 +81,6 @@ class Refiner {
     const double x = residual / gate;
     return std::abs(x) >= 1.0 ? 0.0 : (1.0 - x * x) * (1.0 - x * x);
   }
-
-  /// Sums of one kind of evidence.
-  struct NormalEquations {
-    Matrix6d normal = Matrix6d::Zero();
-    Vector6d right = Vector6d::Zero();
-
-    void add(const Vector6d& row, double residual, double weight) {
-      normal += weight * row * row.transpose();
-      right += weight * residual * row;
-    }
-  };
 
   /// Planes of one direction seem to hold the others a little, by the errors of their normals: what is that
   /// weak is left out, so that the pose stays where it is there, or goes where openings want it.
@@ -173,7 +161,7 @@ class Refiner {
     const auto count = static_cast<double>(pairs.size());
     const double freedoms = count / std::max(1.0, count - 3.0);
     const double noise = std::max(source_.features->noise_m, target_.features->noise_m);
-    const double least = source_.model || target_.model ? kBuilderErrsM : 0.1 * noise;
+    const double least = source_.model || target_.model ? kLeastBuilderErrsM : 0.1 * noise;
     return std::max(std::sqrt(freedoms * squares / areas), least);
   }
 
@@ -255,15 +243,17 @@ class Refiner {
     const Contacts found =
         contacts_.near(refined.target_from_source, {kMovedGateM, options_.last_opening_gate_m});
     std::vector<Contact> contacts;
-    std::vector<Contact> others;
     for (const Contact& contact : found.all) {
-      if (contact.source_plane < 0)
-        others.push_back(contact);
-      else
-        contacts.push_back(along_model(contact, refined.target_from_source));
+      if (contact.source_plane >= 0) contacts.push_back(along_model(contact, refined.target_from_source));
     }
     if (contacts.size() < 4) return std::nullopt;
     const Vector3d centre = middle_of(contacts);
+    NormalEquations openings;
+    for (const Contact& contact : found.all) {
+      if (contact.source_plane >= 0) continue;
+      const double variance = contact.sigma_m * contact.sigma_m + kOpeningErrsM * kOpeningErrsM;
+      openings.add(row_of(contact, centre), contact.residual_m, 1.0 / variance);
+    }
     join_pairs(contacts, centre);
     const PairMap pairs = pairs_of(contacts, centre);
     double squares = 0.0;
@@ -275,8 +265,7 @@ class Refiner {
     }
     const double freedoms = 0.5 * static_cast<double>(contacts.size()) - static_cast<double>(pairs.size());
     const double factor = std::max(squares / std::max(1.0, freedoms), 1e-6);
-    for (const Contact& contact : others) planes.push_back(alone(contact, centre, factor));
-    const SettledPose settled = settle_among_moved(planes, pair_slope(pairs, factor), factor);
+    const SettledPose settled = settle_among_moved(planes, openings, pair_slope(pairs, factor), factor);
     move_by(settled.step, centre, refined.target_from_source);
     Settled known{settled.information, centre, {}};
     std::size_t k = 0;
@@ -287,18 +276,6 @@ class Refiner {
     }
     by_overlap(known.moved);
     return known;
-  }
-
-  /// What a contact of an opening says by itself, whose place in the model is not that exact; `factor` of the
-  /// variances is taken back later.
-  static PlaneSums alone(const Contact& contact, const Vector3d& centre, double factor) {
-    const Vector6d row = row_of(contact, centre);
-    PlaneSums sums;
-    sums.weight = factor / (contact.sigma_m * contact.sigma_m + kOpeningErrsM * kOpeningErrsM);
-    sums.information = sums.weight * row * row.transpose();
-    sums.right = sums.weight * contact.residual_m * row;
-    sums.squares = sums.weight * contact.residual_m * contact.residual_m;
-    return sums;
   }
 
   void summarise(RefinedPose& refined) const {
