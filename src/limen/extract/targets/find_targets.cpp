@@ -68,7 +68,7 @@ class TargetSearch {
     for (const std::optional<FoundTarget>& target : decided) {
       if (target) found.push_back(*target);
     }
-    return apart(std::move(found));
+    return without_overlaps(std::move(found));
   }
 
  protected:
@@ -82,6 +82,13 @@ class TargetSearch {
   [[nodiscard]] double size_m() const { return size_m_; }
   [[nodiscard]] const Scan& scan() const { return scan_; }
   [[nodiscard]] Vector3d point(std::uint32_t i) const { return scan_.points[i] - eye_; }
+  template <typename Made>
+  [[nodiscard]] static auto made_of(const Indices& indices, const Made& made) {
+    std::vector<decltype(made(0U))> all;
+    all.reserve(indices.size());
+    for (const std::uint32_t i : indices) all.push_back(made(i));
+    return all;
+  }
 
  private:
   static constexpr double kCone = 1.5;         ///< of the size: half the width of a candidate's cone
@@ -158,16 +165,21 @@ class TargetSearch {
     return best;
   }
 
-  /// Half the angle that a candidate's cone takes up, as a length on the unit sphere.
-  [[nodiscard]] double half_cone(const Vector3d& centre) const { return kCone * size_m_ / centre.norm(); }
+  /// What a candidate takes up of the unit sphere.
+  struct Cone {
+    Vector3d direction;
+    double half = 0.0;
+  };
 
   /// All points in the cone of each candidate.
   [[nodiscard]] std::vector<std::vector<std::uint32_t>> cones_of(
       const std::vector<TargetCandidate>& candidates) const {
+    std::vector<Cone> asked;
     std::unordered_map<std::int64_t, std::vector<std::uint32_t>> by_direction;
     for (std::size_t k = 0; k < candidates.size(); ++k) {
-      const Vector3d direction = candidates[k].centre.normalized();
-      const double half = half_cone(candidates[k].centre);
+      const Vector3d& centre = candidates[k].centre;
+      asked.push_back({centre.normalized(), kCone * size_m_ / centre.norm()});
+      const auto& [direction, half] = asked.back();
       const Vector3d low = cell_of(direction - Vector3d::Constant(half), kDirections);
       const Vector3d high = cell_of(direction + Vector3d::Constant(half), kDirections);
       for (double x = low.x(); x <= high.x(); ++x) {
@@ -188,8 +200,7 @@ class TargetSearch {
         const auto near = by_direction.find(cell_key(cell_of(direction, kDirections)));
         if (near == by_direction.end()) continue;
         for (const std::uint32_t k : near->second) {
-          const Vector3d& centre = candidates[k].centre;
-          if ((direction - centre.normalized()).norm() < half_cone(centre))
+          if ((direction - asked[k].direction).norm() < asked[k].half)
             parts[begin / kGrain].emplace_back(k, static_cast<std::uint32_t>(i));
         }
       }
@@ -201,7 +212,7 @@ class TargetSearch {
   }
 
   /// Two candidates may have led to one target; targets that overlap are none. By place.
-  [[nodiscard]] std::vector<FoundTarget> apart(std::vector<FoundTarget> found) const {
+  [[nodiscard]] std::vector<FoundTarget> without_overlaps(std::vector<FoundTarget> found) const {
     std::sort(found.begin(), found.end(), [](const FoundTarget& a, const FoundTarget& b) {
       return std::tuple(a.centre.x(), a.centre.y(), a.centre.z()) <
              std::tuple(b.centre.x(), b.centre.y(), b.centre.z());
@@ -210,9 +221,9 @@ class TargetSearch {
     for (std::size_t a = 0; a < found.size(); ++a) {
       bool alone = true;
       for (std::size_t b = 0; b < found.size(); ++b) {
-        const double apart_m = (found[a].centre - found[b].centre).norm();
-        const bool same = apart_m < 0.1 * size_m_;
-        if (a != b && apart_m < 1.8 * size_m_ && !(same && a < b)) alone = false;
+        const double distance_m = (found[a].centre - found[b].centre).norm();
+        const bool same = distance_m < 0.1 * size_m_;
+        if (a != b && distance_m < 1.8 * size_m_ && !(same && a < b)) alone = false;
       }
       if (!alone) continue;
       kept.push_back(found[a]);
@@ -249,10 +260,7 @@ class SphereSearch : public TargetSearch {
 
  private:
   [[nodiscard]] std::vector<Vector3d> points_of(const Indices& indices) const {
-    std::vector<Vector3d> points;
-    points.reserve(indices.size());
-    for (const std::uint32_t i : indices) points.push_back(point(i));
-    return points;
+    return made_of(indices, [this](std::uint32_t i) { return point(i); });
   }
 };
 
@@ -279,10 +287,7 @@ class BoardSearch : public TargetSearch {
 
  private:
   [[nodiscard]] std::vector<LitPoint> points_of(const Indices& indices) const {
-    std::vector<LitPoint> points;
-    points.reserve(indices.size());
-    for (const std::uint32_t i : indices) points.push_back({point(i), light(i)});
-    return points;
+    return made_of(indices, [this](std::uint32_t i) { return LitPoint{point(i), light(i)}; });
   }
 
   [[nodiscard]] double light(std::uint32_t i) const {
