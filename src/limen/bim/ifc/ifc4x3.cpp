@@ -69,7 +69,7 @@ class Search {
       const auto [id, entered] = open.back();
       open.pop_back();
       const StepEntity* entity = file_.find(id);
-      if (entity == nullptr) continue;  // what is not there is told of elsewhere
+      if (entity == nullptr) continue;  // missing entities are reported where files are read
       if (!entered && !good_.emplace(id, true).second) continue;
       if (entered) {
         for_each_step_reference(entity->arguments, [&, here = id](std::int64_t part) {

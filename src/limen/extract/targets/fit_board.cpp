@@ -338,7 +338,7 @@ double largest_variance(const Eigen::Matrix2d& covariance) {
 double board_likeness(const Vector3d& middle, std::span<const LitPoint> about, double side_m) {
   const std::vector<LitPoint> within = within_circle(middle, about, side_m);
   if (within.size() < 4 * kLeastInQuadrant) return 0.0;
-  // Light of two kinds is off its mean by about as much everywhere; one pass tells most places apart.
+  // Light of two kinds is off its mean by about as much everywhere; one pass leaves few places.
   const auto count = static_cast<double>(within.size());
   double mean = 0.0;
   for (const LitPoint& point : within) mean += point.light / count;

@@ -33,7 +33,7 @@ struct FoundTarget {
   std::size_t points = 0;              ///< that the centre follows from
 };
 
-/// A centre that is known worse than this is of no use: the scans' own surface tells as much.
+/// A centre that is known worse than this is of no use: the scans' own surface fixes them as well.
 inline constexpr double kMostTargetSigmaM = 0.003;
 /// What no residual shows of a target and its scanner: how round, how flat, how well mounted.
 inline constexpr double kTargetMakeM = 0.0003;

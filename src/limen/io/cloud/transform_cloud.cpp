@@ -120,8 +120,8 @@ void note_lost_images(const std::vector<PlacedCloud>& clouds, const std::filesys
   }
 }
 
-/// One .e57 keeps clouds apart, and E57 ones as they are; all others join them. `tell_source`: as in
-/// JoinedClouds.
+/// One .e57 keeps each cloud as a scan of its own, and E57 ones as they are; all others join them.
+/// `tell_source`: as in JoinedClouds.
 TransformedCloud write_placed(const std::vector<PlacedCloud>& clouds, bool tell_source,
                               const std::filesystem::path& output, Monitor& monitor,
                               const CoordinateSystem& system) {

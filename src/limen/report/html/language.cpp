@@ -88,7 +88,7 @@ std::string with_comma(std::string text) {
   return text;
 }
 
-/// What stands for the {} of a pattern.
+/// The values at the {} of a pattern.
 std::optional<std::vector<std::string>> values_in(std::string_view text, std::string_view pattern) {
   std::vector<std::string> values;
   std::size_t open = pattern.find("{}");

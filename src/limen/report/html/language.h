@@ -9,7 +9,7 @@
 namespace limen {
 
 /// In which language a report is. Texts are written in English; page/fr.tsv and page/de.tsv have those of the
-/// others, a line each: English, a tab, the other. {} stands for values, {0}, {1}, ... where they change
+/// others, a line each: English, a tab, the other. {} is a place for a value, {0}, {1}, ... where they change
 /// places.
 enum class Language { english, french, german };
 const char* code_of(Language language);

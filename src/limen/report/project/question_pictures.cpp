@@ -96,7 +96,7 @@ std::string picture_of(const ProjectResult& result, const ProjectLink& link,
   if (moved.places.empty() || still.places.empty()) return {};
   return fmt::format(
              "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"alike\" viewBox=\"0 0 {:.0f} {:.0f}\" "
-             "role=\"img\" aria-label=\"Both scans from above, apart and together\">\n",
+             "role=\"img\" aria-label=\"Both scans from above, one by one and together\">\n",
              3 * kSize + 2 * kGap, kSize + 30.0) +
          panel(0, {moved}, shown_name(result.scans[s])) + panel(1, {still}, shown_name(result.scans[t])) +
          panel(2, {moved, still}, "1 + 2") + "</svg>\n";

@@ -208,7 +208,7 @@ const questionsOf = (job, project) => {
     for (const asked of new Set((question.answers ?? []).map(askedOf))) {
       const picture = `question_${++number}.svg`;
       card.append(make('p', { textContent: `Are these two the same place, fitted together as shown? ${scansOf(asked)}` }));
-      if (job.outputs.some(({ name }) => name === picture)) card.append(make('img', { src: `results/${job.id}/${picture}?${job.seconds}`, alt: `Both scans from above, apart and together: ${scansOf(asked)}` }));
+      if (job.outputs.some(({ name }) => name === picture)) card.append(make('img', { src: `results/${job.id}/${picture}?${job.seconds}`, alt: `Both scans from above, one by one and together: ${scansOf(asked)}` }));
       card.append(answersOf(job, asked, question.answers.filter((answer) => askedOf(answer) === asked)));
     }
     return card;
