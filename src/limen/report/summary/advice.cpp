@@ -146,8 +146,9 @@ std::string moved_words(const std::vector<PlaneMatch>& moved) {
   if (moved.empty()) return {};
   double most_m = 0.0;
   for (const PlaneMatch& plane : moved) most_m = std::max(most_m, std::abs(plane.distance_m));
-  return fmt::format("{} plane{} of the model {} up to {:.0f} mm from where it was built; ", moved.size(),
-                     moved.size() == 1 ? "" : "s", moved.size() == 1 ? "is" : "are", 1e3 * most_m);
+  const bool one = moved.size() == 1;
+  return fmt::format("{} plane{} of the model {} up to {:.0f} mm from where {} built; ", moved.size(),
+                     one ? "" : "s", one ? "is" : "are", 1e3 * most_m, one ? "it was" : "they were");
 }
 
 std::vector<std::string> steps_registered(const RegistrationReport& report, const std::string& folder) {
