@@ -46,7 +46,6 @@ class Solver {
       weigh();
       if (!known.insert(best_.pose).second) break;
     }
-    weigh_doubts();
     choose_references();
     adjust();
     lend_by_what_is_held();
@@ -72,6 +71,7 @@ class Solver {
     odds_.emplace(graph_.nodes, placed_pairs(graph_, matcher_, best_, query_),
                   unused_links(graph_, matcher_, best_));
     reference_ = references();
+    cuts_.clear();
   }
 
   /// The first node that is least probably elsewhere.
@@ -189,19 +189,14 @@ class Solver {
 
   /// Where most of a component is held among itself, but not against its reference, it lends the frame.
   void lend_by_what_is_held() {
-    std::map<int, std::vector<int>> members;  // of each reference
-    for (int n = 0; n < graph_.nodes; ++n) {
-      const int root = reference_[static_cast<std::size_t>(n)];
-      if (root >= 0 && root != graph_.anchor) members[root].push_back(n);
-    }
-    for (const auto& [root, nodes] : members) {
+    for (const auto& [root, nodes] : members_of_references()) {
       const std::size_t held = count_held(nodes);
       if (2 * held >= nodes.size()) continue;
       std::vector<int> loose;
       std::copy_if(nodes.begin(), nodes.end(), std::back_inserter(loose),
                    [&](int n) { return !is_held(static_cast<std::size_t>(n)); });
       const std::vector<int> before = reference_;
-      std::replace(reference_.begin(), reference_.end(), root, firmest_of(loose));
+      std::replace(reference_.begin(), reference_.end(), root, largest_part(loose).front());
       adjust();
       if (count_held(nodes) > held) continue;
       reference_ = before;
@@ -227,22 +222,30 @@ class Solver {
     }
   }
 
-  /// The same side without the node that lends the frame.
+  /// The side of a cut that the node that lends the frame is not on.
   [[nodiscard]] std::vector<bool> seen_from_frame(const std::vector<bool>& side) const {
     const auto moved = std::find(side.begin(), side.end(), true) - side.begin();
     const int root = reference_[static_cast<std::size_t>(moved)];
-    if (root < 0 || !side[static_cast<std::size_t>(root)]) return side;
+    return root < 0 || !side[static_cast<std::size_t>(root)] ? side : other_side(side, root);
+  }
+  [[nodiscard]] std::vector<bool> other_side(const std::vector<bool>& side, int inside) const {
     std::vector<bool> other(side.size(), false);
     for (int n = 0; n < graph_.nodes; ++n) {
       const auto k = static_cast<std::size_t>(n);
-      other[k] = component(n) == component(root) && !side[k];
+      other[k] = component(n) == component(inside) && !side[k];
     }
     return other;
   }
 
+  /// A cut is the same from wherever it was found: those of all references that were tried are weighed.
   void weigh_doubts() {
+    for (std::vector<bool>& side : odds_->weak_sides(reference_)) {
+      const int first = static_cast<int>(std::find(side.begin(), side.end(), true) - side.begin());
+      cuts_.insert(first == component(first) ? other_side(side, first) : std::move(side));
+    }
     doubts_.clear();
-    for (const std::vector<bool>& side : odds_->weak_sides(reference_)) {
+    for (const std::vector<bool>& cut : cuts_) {
+      const std::vector<bool> side = seen_from_frame(cut);
       const SideOdds& odds = odds_->of(side);
       doubts_.push_back({side, odds.total(), odds.links, {}});
     }
@@ -252,28 +255,47 @@ class Solver {
   /// The largest part of each component that no doubt divides lends it the frame: what is in doubt against it
   /// must not.
   void choose_references() {
-    std::map<std::pair<int, std::vector<bool>>, std::vector<int>> parts;  // by the doubtful sides they are on
+    std::set<std::vector<int>> tried;
+    while (tried.insert(reference_).second) {
+      weigh_doubts();
+      lend_by_largest_part();
+    }
+  }
+
+  void lend_by_largest_part() {
+    for (const auto& [root, nodes] : members_of_references()) {
+      const std::vector<int> part = largest_part(nodes);
+      if (std::find(part.begin(), part.end(), root) == part.end())
+        std::replace(reference_.begin(), reference_.end(), root, part.front());
+    }
+  }
+
+  /// Of each node that lends its component the frame, but the anchor, the nodes of its component.
+  [[nodiscard]] std::map<int, std::vector<int>> members_of_references() const {
+    std::map<int, std::vector<int>> members;
     for (int n = 0; n < graph_.nodes; ++n) {
-      if (reference_[static_cast<std::size_t>(n)] < 0) continue;
+      const int root = reference_[static_cast<std::size_t>(n)];
+      if (root >= 0 && root != graph_.anchor) members[root].push_back(n);
+    }
+    return members;
+  }
+
+  /// Of some nodes of one component the most that no doubt divides.
+  [[nodiscard]] std::vector<int> largest_part(const std::vector<int>& nodes) const {
+    std::map<std::vector<bool>, std::vector<int>> parts;  // by the doubtful sides they are on
+    for (const int n : nodes) {
       std::vector<bool> sides;
       for (const Doubt& doubt : doubts_) {
         if (doubt.odds > risk_) sides.push_back(doubt.side[static_cast<std::size_t>(n)]);
       }
-      parts[{component(n), std::move(sides)}].push_back(n);
+      parts[std::move(sides)].push_back(n);
     }
-    std::map<int, const std::vector<int>*> largest;  // of each component
-    for (const auto& [key, nodes] : parts) {
-      const std::vector<int>*& most = largest[key.first];
-      if (most == nullptr || nodes.size() > most->size() ||
-          (nodes.size() == most->size() && nodes.front() < most->front()))
-        most = &nodes;
+    std::vector<int> largest;
+    for (const auto& [sides, part] : parts) {
+      if (part.size() > largest.size() || (part.size() == largest.size() && part.front() < largest.front()))
+        largest = part;
     }
-    for (int n = 0; n < graph_.nodes; ++n) {
-      int& reference = reference_[static_cast<std::size_t>(n)];
-      if (reference < 0 || reference == graph_.anchor) continue;
-      const std::vector<int>& nodes = *largest.at(component(n));
-      if (std::find(nodes.begin(), nodes.end(), reference) == nodes.end()) reference = nodes.front();
-    }
+    return largest;
   }
 
   /// Places that links propose besides: a side may be there only where it is not where it is.
@@ -399,6 +421,8 @@ class Solver {
   Configuration best_;
   std::optional<PlacementOdds> odds_;
   std::vector<int> reference_;
+  std::set<std::vector<bool>>
+      cuts_;  ///< found from any reference, as the side without the component's first node
   std::vector<Doubt> doubts_;
   std::set<int> questioned_;
   std::vector<Matrix6d> covariance_;
