@@ -272,7 +272,9 @@ std::vector<FoundPose> find_poses(const WorkedPair& pair, const RegisterOptions&
     poses = distinct(poses, options.verdict);
   };
   if (level && !sure && options.gravity != Gravity::up) search_on(false, Proposal::held);
-  if (level && planes && !pair.has_model()) search_on(true, Proposal::sliding);
+  // Through windows the openings themselves fix the shift that planes leave open.
+  const bool slides = sort_of(pair) == PairSort::rooms || sort_of(pair) == PairSort::streets;
+  if (level && planes && slides) search_on(true, Proposal::sliding);
   return poses;
 }
 

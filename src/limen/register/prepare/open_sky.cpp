@@ -26,14 +26,17 @@ constexpr std::size_t kSeenInDirection = 20;  // points: with fewer a direction 
 constexpr std::size_t kLeastDirections = 12;
 constexpr double kTopShare = 0.95;  // of the directions reach no higher than the field of view
 constexpr double kBelowDeg = 10.0;
-constexpr double kOutside = 0.32;  // between what was found of rooms and of streets
-// Of static scans.
-constexpr double kSteepDeg = -45.0;  // scanners of tripods see at least so far down ...
+// Open sky, between what was found of rooms and of streets: of static scanners, which may see less of a hall
+// than they seem to, and of those on a path.
+constexpr double kOutside = 0.32;
+constexpr double kOutsideOnPath = 0.2;
+constexpr double kSteepDeg = -45.0;  // scanners of tripods and vehicles see at least so far down ...
 constexpr double kLowDeg = -35.0;
-constexpr double kLeastGround = 0.95;  // ... on this share of all sides
+constexpr double kLeastGround = 0.95;  // ... on this share of all sides, or of the path
 constexpr double kHighDeg = 60.0;
-constexpr double kOpenZenith = 0.5;  // of the sky above, in pieces of equal area ...
+constexpr double kOpenZenith = 0.5;  // of the sky above, in pieces of equal area or along the path ...
 constexpr double kCeiling = 0.9;     // ... and more of it under a ceiling
+// Of static scans.
 constexpr std::size_t kRings = 3;
 constexpr double kOneHeightM = 0.1;
 constexpr double kRisesM = 1.0;           // above the lowest ground
@@ -61,11 +64,23 @@ std::size_t side_of(const Vector3d& ray) {
   return static_cast<std::size_t>(std::min(kPerTurn - 1.0, std::floor(kPerTurn * turn)));
 }
 
-std::uint64_t direction_of(const Vector3d& centre, const Vector3d& ray) {
+std::uint64_t piece_of(const Vector3d& centre) {
   const auto piece = [](double along) {
     return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(along / kWayM))) & 0xffffff;
   };
-  return static_cast<std::uint64_t>(side_of(ray)) << 48 | piece(centre.x()) << 24 | piece(centre.y());
+  return piece(centre.x()) << 24 | piece(centre.y());
+}
+
+std::uint64_t direction_of(const Vector3d& centre, const Vector3d& ray) {
+  return static_cast<std::uint64_t>(side_of(ray)) << 48 | piece_of(centre);
+}
+
+bool is_ground(double sine) {
+  return sine > std::sin(radians(kSteepDeg)) && sine < std::sin(radians(kLowDeg));
+}
+
+bool is_overhead(double sine) {
+  return sine > std::sin(radians(kHighDeg));
 }
 
 /// Calls `use` with the scanner position and the ray, not normalised, of a part of the points.
@@ -89,9 +104,9 @@ struct Dome {
   void add(const Vector3d& ray) {
     const std::size_t side = side_of(ray);
     const double sine = ray.z() / ray.norm();
-    const double high = std::sin(radians(kHighDeg));
-    if (sine > std::sin(radians(kSteepDeg)) && sine < std::sin(radians(kLowDeg))) ground[side] = true;
-    if (sine > high) {
+    if (is_ground(sine)) ground[side] = true;
+    if (is_overhead(sine)) {
+      const double high = std::sin(radians(kHighDeg));
       const auto ring = static_cast<std::size_t>((sine - high) / (1.0 - high) * static_cast<double>(kRings));
       zenith[kRings * side + std::min(ring, kRings - 1)] = true;
     }
@@ -130,6 +145,28 @@ Surroundings of_static(const Scan& scan) {
   return open ? Surroundings::outside : Surroundings::unknown;
 }
 
+Surroundings of_path(const Scan& scan) {
+  if (open_sky_share(scan) <= kOutsideOnPath) return Surroundings::inside;
+  struct Seen {
+    bool ground = false;
+    bool overhead = false;
+  };
+  std::unordered_map<std::uint64_t, Seen> path;
+  look_round(scan, [&](const Vector3d& centre, const Vector3d& ray) {
+    Seen& seen = path[piece_of(centre)];
+    const double sine = ray.z() / ray.norm();
+    seen.ground = seen.ground || is_ground(sine);
+    seen.overhead = seen.overhead || is_overhead(sine);
+  });
+  const auto share = [&](bool Seen::*what) {
+    const auto count =
+        std::count_if(path.begin(), path.end(), [&](const auto& piece) { return piece.second.*what; });
+    return static_cast<double>(count) / static_cast<double>(path.size());
+  };
+  const bool open = share(&Seen::ground) >= kLeastGround && share(&Seen::overhead) < kOpenZenith;
+  return open ? Surroundings::outside : Surroundings::unknown;
+}
+
 }  // namespace
 
 double open_sky_share(const Scan& scan) {
@@ -150,8 +187,7 @@ double open_sky_share(const Scan& scan) {
 
 Surroundings surroundings_of(const Scan& scan) {
   if (!scan.level || !scan.centre_known()) return Surroundings::unknown;
-  if (!scan.mobile()) return of_static(scan);
-  return open_sky_share(scan) > kOutside ? Surroundings::outside : Surroundings::inside;
+  return scan.mobile() ? of_path(scan) : of_static(scan);
 }
 
 Surroundings common(Surroundings a, Surroundings b) {

@@ -93,6 +93,19 @@ TEST(OpenSkyTest, AWayThroughARoomIsInside) {
   EXPECT_EQ(surroundings_of(outside), Surroundings::outside);
 }
 
+TEST(OpenSkyTest, OfAPathItIsNotKnownWhereTheScannerCannotSeeACeiling) {
+  Scan hall;  // of which the scanner reaches one wall
+  for (double along = 0.0; along < 12.0; along += 0.5) {
+    look(hall, Vector3d(0, along, 0), 25.0, true, [](const Vector3d& ray) {
+      const double away = std::min(ray.x() < 0.0 ? -6.0 / ray.x() : INFINITY,
+                                   (ray.z() > 0.0 ? 4.0 : 1.5) / std::abs(ray.z()));
+      return away < 8.0 && ray.z() > std::sin(radians(-25.0)) ? away : INFINITY;
+    });
+  }
+  EXPECT_GT(open_sky_share(hall), 0.2);
+  EXPECT_EQ(surroundings_of(hall), Surroundings::unknown);
+}
+
 TEST(OpenSkyTest, WithoutUpOrScannerNothingIsSaid) {
   Scan street;
   look(street, Vector3d::Zero(), 90.0, true, in_street);
