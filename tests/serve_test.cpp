@@ -127,16 +127,32 @@ TEST_F(ServeTest, UploadsHaveBoundsAndAppearWhole) {
 }
 
 TEST_F(ServeTest, WorkIsMadeOfItsOwnFilesAlone) {
-  write_whole(work() / "site" / "files" / "a.xyz", "0 0 0\n");
-  for (const std::string work_asked :
-       {"", "x", "[]", "{}", R"({"kind": 1})", R"({"kind": "simulate"})", R"({"kind": "register"})",
-        R"({"kind": "register", "source": "a.xyz", "target": "a.xyz"})",
-        R"({"kind": "register", "source": "a.xyz", "target": "../a.xyz"})",
-        R"({"kind": "register", "source": "a.xyz", "target": "--help"})",
-        R"({"kind": "project", "files": []})", R"({"kind": "project", "files": ["missing"]})",
-        R"({"kind": "project", "files": "a.xyz"})", R"({"kind": "view", "files": [7]})",
-        R"({"kind": "view", "of": 5})", R"({"kind": "again", "of": "x"})", R"({"kind": "place", "of": -1})",
-        R"({"kind": "decide", "of": 1e99})"}) {
+  for (const char* name : {"a.xyz", "b.xyz"}) write_whole(work() / "site" / "files" / name, "0 0 0\n");
+  for (
+      const std::string work_asked :
+      {"",
+       "x",
+       "[]",
+       "{}",
+       R"({"kind": 1})",
+       R"({"kind": "simulate"})",
+       R"({"kind": "register"})",
+       R"({"kind": "register", "source": "a.xyz", "target": "a.xyz"})",
+       R"({"kind": "register", "source": "a.xyz", "target": "../a.xyz"})",
+       R"({"kind": "register", "source": "a.xyz", "target": "--help"})",
+       R"({"kind": "project", "files": []})",
+       R"({"kind": "project", "files": ["missing"]})",
+       R"({"kind": "project", "files": "a.xyz"})",
+       R"({"kind": "view", "files": [7]})",
+       R"({"kind": "view", "of": 5})",
+       R"({"kind": "again", "of": "x"})",
+       R"({"kind": "place", "of": -1})",
+       R"({"kind": "decide", "of": 1e99})",
+       R"({"kind": "plan", "scan": "../a.xyz"})",
+       R"({"kind": "link", "source": "a.xyz", "target": "b.xyz"})",
+       R"({"kind": "link", "source": "a.xyz", "target": "b.xyz", "points": [["--help"]]})",
+       R"({"kind": "link", "source": "a.xyz", "target": "b.xyz", "points": [[0,0,0,0,0,0],[1,0,0,1,0,0],[2,0,0,2,0,0]]})",
+       R"({"kind": "decide", "of": 1, "link": 1})"}) {
     const int status = status_in(server().ask("POST", "jobs", work_asked));
     EXPECT_TRUE(status >= 400 && status < 500) << work_asked << " " << status;
   }

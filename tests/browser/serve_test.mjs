@@ -81,7 +81,7 @@ after(async () => {
 describe('a page to drop files on', () => {
   test('is empty at first, and everybody can use it', async () => {
     assert.match(await page.locator('#no-files').innerText(), /No file yet/);
-    assert.ok(await page.locator('#register button').isDisabled());
+    assert.ok(await page.locator('#register .main').isDisabled());
     assert.deepEqual(await accessibilityFaults(page), []);
     if (shots) await page.screenshot({ path: join(shots, 'serve-empty.png') });
   });
@@ -280,6 +280,123 @@ describe('a project with a file that cannot be read', () => {
     await page.click('button[value="project"]');
     const card = await ended(12);
     assert.match(await card.locator('.fault').first().innerText(), /^broken\.las: cannot be read: /);
+  });
+});
+
+describe('two scans linked by hand', () => {
+  const names = ['room_a.ply', 'room_b.ply'];
+  const site = () => join(folder, 'site', 'results');
+  const truth = () => JSON.parse(readFileSync(join(folder, 'room', 'truth', 'truth.json'))).scans.map((scan) => scan.world_from_scan);
+  const said = () => page.locator('#link-said').innerText();
+  const plansThere = () => page.waitForFunction(() => linking.ready() && planViews.every((plan) => plan.canvas.dataset.view));
+
+  /** Where on the two canvases three places of the room are that both sections show. */
+  const corners = () => page.evaluate(([a, b]) => {
+    const apply = (m, p) => [0, 1, 2].map((i) => m[i][0] * p[0] + m[i][1] * p[1] + m[i][2] * p[2] + m[i][3]);
+    const back = (m, p) => [0, 1, 2].map((i) => [0, 1, 2].reduce((sum, j) => sum + m[j][i] * (p[j] - m[j][3]), 0));
+    const { x, y, z, floor, count } = linking.sides[0];
+    const shown = [];
+    for (let k = 0; k < count && shown.length < 400; k += 23) {
+      if (!Plan.cut(z[k] - floor)) continue;
+      const place = [x[k], y[k], z[k]];
+      const other = planViews[1].toCanvas(back(b, apply(a, place)));
+      const at = [planViews[0].toCanvas(place), other];
+      const inside = at.every(([px, py], side) => px > 5 && py > 5 && px < planViews[side].canvas.clientWidth - 5 && py < planViews[side].canvas.clientHeight - 5);
+      if (inside && planViews[1].nearest(other)) shown.push({ place, at });
+    }
+    const far = (one, others) => Math.min(...others.map(({ place }) => Math.hypot(place[0] - one.place[0], place[1] - one.place[1])));
+    const chosen = [shown[0]];
+    while (chosen.length < 3) chosen.push(shown.reduce((best, one) => (far(one, chosen) > far(best, chosen) ? one : best)));
+    return chosen.map(({ at }) => at);
+  }, truth());
+  const click = async (side, [x, y]) => page.locator(['#plan-source', '#plan-target'][side]).click({ position: { x, y } });
+  const pointOut = async (places) => {
+    for (const at of places) for (const side of [0, 1]) await click(side, at[side]);
+    assert.match(await page.locator('#link-count').innerText(), /3 of 3/);
+    await page.click('#link-go');
+    await page.waitForSelector('#link:not([open])', { state: 'attached' });
+  };
+  const cardOf = async (text) => {
+    const card = page.locator('.job:not(.running):not(.queued)', { has: page.locator('h3', { hasText: text }) }).first();
+    await card.waitFor({ timeout: 120000 });
+    return card;
+  };
+
+  before(async () => {
+    for (const [k, name] of names.entries()) copyFileSync(join(folder, 'room', `indoor_0${k}.ply`), join(folder, name));
+    await page.setInputFiles('#choose', names.map((name) => join(folder, name)));
+    await page.waitForFunction(() => [...document.querySelectorAll('#files td.name')].some((cell) => cell.textContent === 'room_b.ply'));
+    await page.selectOption('#source', names[0]);
+    await page.selectOption('#target', names[1]);
+  });
+
+  test('what gives no pose is said in one sentence', async () => {
+    await page.click('#link-files');
+    await plansThere();
+    assert.ok(await page.locator('#link-go').isDisabled());
+    const [[first, other], [second, third]] = await corners();
+    for (const at of [first, first, second]) await click(0, at);
+    for (const at of [other, third, third]) await click(1, at);
+    await page.click('#link-go');
+    await page.waitForSelector('#link-said.fault');
+    assert.match(await said(), /^points 1 and 2 are the same place of the moving scan: show three places/);
+    await page.click('#link-clear');
+    await click(0, [12, await page.locator('#plan-source').evaluate((canvas) => canvas.clientHeight - 12)]);
+    assert.match(await said(), /No point is near enough/);
+    heard.problems = heard.problems.filter((text) => !/400/.test(text));
+  });
+
+  test('by keys alone a place is set, and a scan is moved over the other', async () => {
+    await page.focus('#plan-source');
+    const [[at]] = await corners();
+    const { width, height } = await page.locator('#plan-source').evaluate(({ clientWidth: width, clientHeight: height }) => ({ width, height }));
+    for (const [axis, keys] of [[at[0] - width / 2, ['ArrowLeft', 'ArrowRight']], [at[1] - height / 2, ['ArrowUp', 'ArrowDown']]]) {
+      for (let k = Math.round(Math.abs(axis) / 10); k > 0; --k) await page.keyboard.press(keys[axis > 0 ? 1 : 0]);
+    }
+    await page.keyboard.press('Enter');
+    assert.match(await said(), /Place 1 is set/);
+    await page.click('#link-clear');
+    await page.focus('#plan-both');
+    await page.keyboard.press('ArrowLeft');
+    await page.keyboard.press('.');
+    assert.match(await page.locator('#link-count').innerText(), /dragged/);
+    assert.ok(await page.locator('#link-go').isEnabled());
+    await page.click('#link-clear');
+  });
+
+  for (const [width, height, scheme] of [[390, 844, 'light'], [1920, 1080, 'dark'], [1280, 900, 'light']]) {
+    test(`${width} px, ${scheme}: nothing sticks out, and everybody can use it`, async () => {
+      await page.setViewportSize({ width, height });
+      await page.emulateMedia({ colorScheme: scheme, reducedMotion: 'reduce' });
+      assert.ok(await page.evaluate(() => byId('link').scrollWidth <= byId('link').clientWidth && document.documentElement.scrollWidth <= innerWidth));
+      assert.deepEqual(await accessibilityFaults(page), []);
+      if (shots) await page.screenshot({ path: join(shots, `serve-link-${width}.png`) });
+    });
+  }
+
+  test('three pairs of clicks, and the pair is registered', async () => {
+    await page.keyboard.press('0');
+    await pointOut(await corners());
+    const card = await cardOf('Link: room_a.ply into room_b.ply');
+    assert.match(await card.innerText(), /registered[\s\S]*Probability [\s\S]*%; accuracy \(95 %\)/);
+    assert.match(await card.innerText(), /report\.html/);
+  });
+
+  test('a link of a project is kept, and used in its next run', async () => {
+    for (const row of await page.locator('#files input').all()) await row.setChecked(false);
+    for (const name of names) await page.setChecked(`input[aria-label="Select ${name}"]`, true);
+    await page.click('button[value="project"]');
+    const card = await cardOf('Project: room_a.ply, room_b.ply');
+    await card.locator('button', { hasText: 'Link two scans by hand' }).click();
+    await plansThere();
+    await pointOut(await corners());
+    await cardOf('Answer: Linked by hand: room_a.ply room_b.ply');
+    const id = (await card.getAttribute('id')).replace('job-', '');
+    const { decisions } = JSON.parse(readFileSync(join(site(), id, 'decisions.json'), 'utf8'));
+    assert.deepEqual(decisions.map(({ start, points }) => [start, points.length]), [[names.map((name) => `files/${name}`), 3]]);
+    await card.locator('button', { hasText: /^Run again/ }).click();
+    await page.waitForFunction((of) => /Linked by hand: room_a\.ply room_b\.ply: kept/.test(byId(`job-${of}`).innerText), id, { timeout: 120000 });
+    assert.match(await card.innerText(), /registered/);
   });
 });
 

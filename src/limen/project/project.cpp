@@ -313,7 +313,8 @@ class Run {
 
   std::vector<TriedPair> try_all(const PairList& pairs, PairSearch search = PairSearch::level) {
     status_.pairs += pairs.size();
-    const PairWork work{nodes_, result_.scans, store_, options_.registering, engine_.get(), folder_};
+    const PairWork work{nodes_,        result_.scans, store_, options_.registering,
+                        words_.starts, engine_.get(), folder_};
     std::vector<TriedPair> tried = try_pairs(pairs, work, search, status_, monitor_);
     for (const TriedPair& pair : tried) {
       if (pair.fault.empty()) continue;
@@ -332,11 +333,15 @@ class Run {
   /// Pairs that a user names are tried in any case.
   void try_named(std::vector<TriedPair>& tried) {
     PairList named;
-    for (const auto& [pair, word] : words_.pairs) {
-      const bool known = std::any_of(tried.begin(), tried.end(), [&, wanted = pair](const TriedPair& other) {
+    const auto name = [&](const std::pair<std::size_t, std::size_t>& wanted) {
+      const bool known = std::any_of(tried.begin(), tried.end(), [&](const TriedPair& other) {
         return std::pair(other.source, other.target) == wanted;
       });
-      if (!known && word.kind != DecisionKind::reject) named.push_back(pair);
+      if (!known) named.push_back(wanted);
+    };
+    for (const auto& [pair, start] : words_.starts) name(pair);
+    for (const auto& [pair, word] : words_.pairs) {
+      if (word.kind != DecisionKind::reject && words_.starts.count(pair) == 0) name(pair);
     }
     for (TriedPair& pair : try_all(named)) tried.push_back(std::move(pair));
     std::sort(tried.begin(), tried.end(), by_nodes);

@@ -20,6 +20,7 @@ constexpr int kSettleSteps = 16;  // either way along a shift that the planes le
 constexpr double kSettleStepM = 0.02;
 constexpr std::size_t kSettleLooks = 5;  // of those steps that get a look at everything
 constexpr double kCarefulGateM = 0.04;
+constexpr double kWidestGateM = 1.0;               // about a start
 constexpr double kGateSigmas = 4.0;                // of the sensor: surfaces nearer than that may be one
 constexpr std::size_t kPolished = 4;               // poses refined on every sample
 constexpr std::size_t kMostPolished = 24;          // in a model those that agree as well as ...
@@ -205,7 +206,16 @@ std::vector<FoundPose> attempt(const WorkedPair& pair, bool gravity_known, Propo
   const int refined = model ? std::max(options.refined_poses, kModelPoses) : options.refined_poses;
   candidates = select_poses(candidates, source.view(), target.view(), static_cast<std::size_t>(refined),
                             options.method != Method::polygons);
-  if (start && !model) candidates.push_back({start->given(start->prior.target_from_source), 0.0, 0});
+  if (start && !model) {
+    // Once as it is, and once from where surface leads that is as far off as the start may be.
+    const Rigid3 given = start->given(start->prior.target_from_source);
+    RefineOptions wide = refine_options(source.view(), target.view(), options);
+    wide.samples = kSecondLook;
+    wide.last_gate_m = wide.first_gate_m;
+    wide.first_gate_m = std::clamp(start->prior.sigma_m, wide.last_gate_m, kWidestGateM);
+    const Rigid3 led = refine_pose(source.view(), target.view(), given, wide).target_from_source;
+    for (const Rigid3& pose : {given, led}) candidates.push_back({pose, 0.0, 0});
+  }
   clock.end();
   clock.begin("refinement");
   std::vector<FoundPose> found =

@@ -498,7 +498,7 @@ void add_project_command(CommandLine& app, Session& session) {
   command
       ->add_option(
           "--decide", options->decisions,
-          "Your decisions: accept, reject or choose a pose of a link, level, same-floor; saved in DIR")
+          "Your decisions: accept, reject or choose a pose of a link, start, level, same-floor; saved in DIR")
       ->type_name("JSON");
   command
       ->add_option("--risk", options->risk,

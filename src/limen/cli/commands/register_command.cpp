@@ -42,6 +42,7 @@ struct RegisterCommandOptions {
   std::vector<std::string> target_with;
   std::string start;
   std::string start_sigma;
+  std::vector<std::string> start_points;
   std::string repeats = "unknown";
   double wall_thickness_m = 0.0;
   double risk = VerdictOptions{}.risk;
@@ -119,6 +120,7 @@ OptionList reported(const RegisterCommandOptions& options) {
     list.emplace_back("target_trajectory", options.target_reading.trajectory);
   if (!options.start.empty()) list.emplace_back("start", options.start);
   if (!options.start_sigma.empty()) list.emplace_back("start_sigma", options.start_sigma);
+  if (!options.start_points.empty()) list.emplace_back("start_points", spaced(options.start_points));
   if (options.repeats != "unknown") list.emplace_back("repeats", options.repeats);
   if (options.wall_thickness_m > 0) list.emplace_back("wall_thickness_m", options.wall_thickness_m);
   if (options.risk != VerdictOptions{}.risk) list.emplace_back("risk", options.risk);
@@ -150,7 +152,8 @@ Registered register_files(const RegisterCommandOptions& options, const Session& 
   verdict.risk = options.risk;
   verdict.probable_risk = options.probable_risk;
   verdict.check();
-  const std::optional<StartPrior> believed = start_of(options.start, options.start_sigma);
+  const std::optional<StartPrior> believed =
+      start_of(options.start, options.start_sigma, options.start_points);
   RegisterOptions registering;
   registering.gravity = gravity_of(options.gravity);
   registering.method = method_of(options.method);
@@ -331,6 +334,11 @@ void add_register_command(CommandLine& app, Session& session) {
       ->add_option("--start-sigma", options->start_sigma,
                    "Standard deviation of --start: position and rotation (default 2m,5deg)")
       ->type_name("LENGTH,ANGLE");
+  command
+      ->add_option("--start-points", options->start_points,
+                   "Instead of --start: three or more places, each in SOURCE and in TARGET, in metres")
+      ->type_name("X,Y,Z=X,Y,Z")
+      ->take_all();
   add_repeats_option(*command, options->repeats);
   add_with_option(*command, "--source-with", options->source_with, "SOURCE");
   add_with_option(*command, "--target-with", options->target_with, "TARGET");

@@ -9,6 +9,7 @@
 
 #include "limen/base/angles.h"
 #include "limen/base/error.h"
+#include "limen/project/decide/start_points.h"
 #include "limen/report/pose_file.h"
 
 namespace limen {
@@ -46,7 +47,15 @@ double length_of(const std::string& text, const std::string& option) {
   return *length;
 }
 
-std::optional<StartPrior> start_of(const std::string& pose, const std::string& sigma) {
+std::optional<StartPrior> start_of(const std::string& pose, const std::string& sigma,
+                                   const std::vector<std::string>& points) {
+  if (!points.empty()) {
+    if (!pose.empty() || !sigma.empty())
+      throw Error("--start and --start-points both give a start", "--start-points", "give one of them");
+    std::vector<ShownPoint> shown;
+    for (const std::string& point : points) shown.push_back(shown_point(point));
+    return start_from_points(shown);
+  }
   if (pose.empty()) {
     if (sigma.empty()) return std::nullopt;
     throw Error("--start-sigma without --start", "--start-sigma " + sigma,

@@ -8,11 +8,13 @@
 
 #include <fmt/format.h>
 
+#include "limen/base/error.h"
 #include "limen/base/length_unit.h"
 #include "limen/base/text.h"
 #include "limen/cli/serve/gate.h"
 #include "limen/cli/serve/http_request.h"
 #include "limen/files/bounded_json.h"
+#include "limen/project/decide/start_points.h"
 
 namespace limen {
 namespace {
@@ -145,14 +147,15 @@ std::string result_of(const PageJob& job) {
 }
 
 const PageJob& registration_or_project(const Asked& asked) {
-  return asked.of(asked.board.job(asked.number("of")).kind == "project" ? "project" : "register");
+  const std::string& kind = asked.board.job(asked.number("of")).kind;
+  return asked.of(kind == "project" || kind == "link" ? kind.c_str() : "register");
 }
 
 /// "--alternative N" where one is meant.
 std::string add_alternative(const Asked& asked, const PageJob& of, std::vector<std::string>& words) {
   const int alternative = asked.number("alternative");
   if (alternative == 0) return of.title;
-  if (of.kind != "register" || alternative > kMostAlternative)
+  if (of.kind == "project" || alternative > kMostAlternative)
     throw HttpFault(400, "there is no such alternative");
   words.insert(words.end(), {"--alternative", std::to_string(alternative)});
   return fmt::format("{}, alternative {}", of.title, alternative);
@@ -198,9 +201,53 @@ Json read_json(const fs::path& path) {
   return json_or_nothing<Json>(stream);
 }
 
+/// Places that were shown in both scans, as a command line gives them.
+std::vector<std::string> shown_points(const Asked& asked) {
+  try {
+    const auto points = asked.json.value("points", std::vector<ShownPoint>());
+    static_cast<void>(start_from_points(points));
+    std::vector<std::string> words;
+    for (const ShownPoint& point : points) words.push_back(words_of(point));
+    return words;
+  } catch (const Json::exception&) {
+    throw HttpFault(400, "the points are not six numbers each");
+  } catch (const Error& error) {
+    throw HttpFault(400, fmt::format("{}: {}", error.problem(), error.remedy()));
+  }
+}
+
+PageJob planning(const Asked& asked) {
+  PageJob job;
+  const std::string scan = asked.file_at("scan");
+  job.words = {"thin", scan, asked.results() + "/plan.ply", "--points", "200000"};
+  job.title = last_name(scan);
+  return job;
+}
+
+PageJob linking(const Asked& asked) {
+  PageJob job = registering(asked);
+  for (const std::string& point : shown_points(asked))
+    job.words.insert(job.words.end(), {"--start-points", point});
+  return job;
+}
+
+/// The words of `limen project decide DIR` that keep a link.
+PageJob keeping(const Asked& asked, const PageJob& of) {
+  const PageJob& link = asked.board.job(asked.number("link"));
+  if (link.kind != "link") throw HttpFault(409, "there is no such link");
+  const Asked linked{link.asked, asked.folder, asked.board, link.id};
+  PageJob job;
+  job.words = {
+      "project", "decide", asked.results(of.id), "start", linked.file_at("source"), linked.file_at("target")};
+  for (std::string& point : shown_points(linked)) job.words.push_back(std::move(point));
+  job.title = fmt::format("start {} {}", job.words[4], job.words[5]);
+  return job;
+}
+
 PageJob deciding(const Asked& asked) {
   PageJob job;
   const PageJob& of = asked.of("project");
+  if (asked.json.contains("link")) return keeping(asked, of);
   const std::string answer = asked.text("answer");
   const Json project = read_json(asked.folder / result_of(of));
   bool offered = false;
@@ -225,11 +272,9 @@ PageJob job_from_request(const Json& json, const fs::path& folder, const JobBoar
   if (!json.is_object()) throw HttpFault(400, "the job is not given as JSON");
   const Asked asked{json, folder, board, id};
   const std::string kind = asked.text("kind");
-  constexpr std::pair<const char*, PageJob (*)(const Asked&)> kKinds[] = {{"register", registering},
-                                                                          {"project", whole_project},
-                                                                          {"view", viewing},
-                                                                          {"place", placing},
-                                                                          {"decide", deciding}};
+  constexpr std::pair<const char*, PageJob (*)(const Asked&)> kKinds[] = {
+      {"register", registering}, {"project", whole_project}, {"view", viewing}, {"place", placing},
+      {"decide", deciding},      {"plan", planning},         {"link", linking}};
   for (const auto& [name, make] : kKinds) {
     if (kind != name) continue;
     PageJob job = make(asked);

@@ -14,7 +14,10 @@ namespace limen {
 ///   project   files
 ///   view      files, or of: a job, with alternative where one of its poses is meant
 ///   place     of: a job, with alternative where one of its poses is meant
-///   decide    of: a project, answer: one of those that its questions name
+///   decide    of: a project, answer: one of those that its questions name; or link: the number of a link,
+///             which is then a start of its two scans in the project
+///   plan      scan: thinned for a plan of it
+///   link      source, target, points: [[x, y, z, x, y, z], ...], places shown in both
 /// Every file is one of files/, every answer one that was offered: no word of the page reaches the command
 /// line unseen. `id` names the folder of its results. Throws HttpFault that tells what is wrong.
 PageJob job_from_request(const Json& asked, const std::filesystem::path& folder, const JobBoard& board,

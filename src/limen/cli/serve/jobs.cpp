@@ -177,7 +177,8 @@ void JobBoard::begin(PageJob& job) {
   stopping_ = false;
   begun_ = Clock::now();
   try {
-    if (job.kind == "view" || job.kind == "place") fs::create_directories(results_of(job.id));
+    if (job.kind == "view" || job.kind == "place" || job.kind == "plan")
+      fs::create_directories(results_of(job.id));
     child_ = std::make_unique<Child>(job.words, folder_);
   } catch (const std::exception& fault) {
     job.said = fault.what();

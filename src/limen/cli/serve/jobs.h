@@ -28,7 +28,7 @@ Json served_files_json(const std::vector<ServedFile>& files);
 /// One piece of work: a run of limen, whose results lie in results/ID.
 struct PageJob {
   int id = 0;
-  std::string kind;                ///< register, project, view, place or decide
+  std::string kind;                ///< register, project, view, place, decide, plan or link
   std::string title;               ///< for a reader
   Json asked;                      ///< what the page asked for, by name: it alone is kept
   std::vector<std::string> words;  ///< of the command line, made of that; none where it was found on the disk

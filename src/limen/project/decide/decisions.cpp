@@ -22,9 +22,10 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr DecisionKind kKinds[] = {DecisionKind::accept, DecisionKind::reject,     DecisionKind::choose,
-                                   DecisionKind::level,  DecisionKind::same_floor, DecisionKind::forget};
+                                   DecisionKind::level,  DecisionKind::same_floor, DecisionKind::start,
+                                   DecisionKind::forget};
 constexpr const char* kDecisionsRemedy =
-    "write accept A B, reject A B, choose A B N, level A, same-floor A B or forget A B";
+    "write accept A B, reject A B, choose A B N, level A, same-floor A B, start A B POINTS or forget A B";
 
 std::optional<DecisionKind> kind_called(const std::string& name) {
   for (const DecisionKind kind : kKinds) {
@@ -42,7 +43,9 @@ bool counts_fit(const Decision& decision) {
 
 /// Of a pair it does not matter who is named first.
 Decision in_order(Decision decision) {
-  std::sort(decision.scans.begin(), decision.scans.end());
+  if (std::is_sorted(decision.scans.begin(), decision.scans.end())) return decision;
+  std::reverse(decision.scans.begin(), decision.scans.end());
+  for (ShownPoint& point : decision.points) std::rotate(point.begin(), point.begin() + 3, point.end());
   return decision;
 }
 
@@ -52,6 +55,8 @@ bool is_of_link(DecisionKind kind) {
 
 bool replaces(const Decision& later, const Decision& earlier) {
   if (later.scans != earlier.scans) return false;
+  if (earlier.kind == DecisionKind::start && later.kind == DecisionKind::reject) return true;
+  if (later.kind == DecisionKind::start && is_of_link(earlier.kind)) return true;
   return later.kind == DecisionKind::forget || later.kind == earlier.kind ||
          (is_of_link(later.kind) && is_of_link(earlier.kind));
 }
@@ -65,6 +70,10 @@ Decision from_json(const Json& json, const std::string& where) {
     if (!counts_fit(decision) || decision.pose < 0 || !numbered)
       throw Error(fmt::format("\"{}\" has the wrong number of scans, or no pose", name), where,
                   "name two scans, for level one; choose needs \"pose\" too");
+    if (*kind == DecisionKind::start) {
+      decision.points = json.at("points").get<std::vector<ShownPoint>>();
+      static_cast<void>(start_from_points(decision.points));
+    }
     return in_order(std::move(decision));
   }
   throw Error("a decision is none of accept, reject, choose, level, same-floor, forget", where,
@@ -85,6 +94,8 @@ const char* to_string(DecisionKind kind) {
       return "level";
     case DecisionKind::same_floor:
       return "same-floor";
+    case DecisionKind::start:
+      return "start";
     case DecisionKind::forget:
       break;
   }
@@ -95,6 +106,7 @@ std::string words_of(const Decision& decision) {
   std::string text = to_string(decision.kind);
   for (const std::string& scan : decision.scans) text += " " + shell_word(scan);
   if (decision.kind == DecisionKind::choose) text += fmt::format(" {}", decision.pose);
+  for (const ShownPoint& point : decision.points) text += " " + words_of(point);
   return text;
 }
 
@@ -114,6 +126,12 @@ Decision decision_from(const std::vector<std::string>& words) {
     decision.pose = static_cast<int>(*number);
     decision.scans.pop_back();
   }
+  if (*kind == DecisionKind::start && decision.scans.size() > 2) {
+    for (std::size_t k = 2; k < decision.scans.size(); ++k)
+      decision.points.push_back(shown_point(decision.scans[k]));
+    decision.scans.resize(2);
+  }
+  if (*kind == DecisionKind::start) static_cast<void>(start_from_points(decision.points));
   if (!counts_fit(decision))
     throw Error(fmt::format("\"{}\" has the wrong number of scans", words.front()), "project decide",
                 kDecisionsRemedy);
@@ -147,6 +165,7 @@ std::string decisions_text(const std::vector<Decision>& decisions) {
   for (std::size_t k = 0; k < decisions.size(); ++k) {
     Json json = {{to_string(decisions[k].kind), decisions[k].scans}};
     if (decisions[k].kind == DecisionKind::choose) json["pose"] = decisions[k].pose;
+    if (!decisions[k].points.empty()) json["points"] = decisions[k].points;
     text += (k == 0 ? "\n  " : ",\n  ") + json.dump();
   }
   return text + "\n]}\n";

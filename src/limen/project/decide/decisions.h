@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "limen/project/decide/start_points.h"
+
 namespace limen {
 
 /// What a user says of scans.
@@ -15,14 +17,16 @@ enum class DecisionKind {
   choose,      ///< of the link's poses this one is right
   level,       ///< the scan is level
   same_floor,  ///< the floors under the two are at one height
+  start,       ///< these points of the first are those of the second
   forget       ///< what was said of the two, or the one, is taken back
 };
 const char* to_string(DecisionKind kind);
 
 struct Decision {
   DecisionKind kind = DecisionKind::accept;
-  std::vector<std::string> scans;  ///< one (level) or two
-  int pose = 0;                    ///< of choose: its number, as project.json tells it
+  std::vector<std::string> scans;       ///< one (level) or two
+  int pose = 0;                         ///< of choose: its number, as project.json tells it
+  std::vector<ShownPoint> points = {};  ///< of start: in the first scan, and in the second
 };
 
 /// A decision in a few words, as a shell gives them to `limen project decide DIR`: 'all.e57 #0' is one.
@@ -31,16 +35,19 @@ std::string words_of(const Decision& decision);
 /// The command that takes it, for a shell.
 std::string decide_line(const std::string& folder, const Decision& decision);
 
-/// From words: accept A B, reject A B, choose A B N, level A, same-floor A B, forget A [B]. Throws Error.
+/// From words: accept A B, reject A B, choose A B N, level A, same-floor A B, start A B POINT POINT
+/// POINT ... (shown_point()), forget A [B]. Throws Error.
 Decision decision_from(const std::vector<std::string>& words);
 
-/// {"decisions": [{"accept": ["A", "B"]}, {"choose": ["A", "B"], "pose": 2}, {"level": ["A"]}, ...]}. Throws
-/// Error that names the file and what is wrong in it.
+/// {"decisions": [{"accept": ["A", "B"]}, {"choose": ["A", "B"], "pose": 2}, {"level": ["A"]},
+/// {"start": ["A", "B"], "points": [[x, y, z, x, y, z], ...]}, ...]}. Throws Error that names the file and
+/// what is wrong in it.
 std::vector<Decision> read_decisions(const std::filesystem::path& path);
 std::string decisions_text(const std::vector<Decision>& decisions);
 
-/// The later word counts: what was said of the link of the same two scans, or of the same scan's level or the
-/// same two floors, is replaced; `forget` takes back all that was said of just these scans. Sorted.
+/// The later word counts, but a start stays where a pose of its link is accepted or chosen: what was said of
+/// the link of the same two scans, or of the same scan's level or the same two floors, is replaced; `forget`
+/// takes back all that was said of just these scans. Sorted.
 std::vector<Decision> merged(std::vector<Decision> decisions, const std::vector<Decision>& later);
 
 }  // namespace limen

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "limen/base/atomic_file.h"
 #include "limen/base/error.h"
 
 namespace limen {
@@ -42,6 +43,22 @@ TEST(Decisions, TheLaterWordCountsAndForgetTakesBack) {
             (Words{"level a", "reject a b", "same-floor a b"}));
   EXPECT_EQ(say({{"same-floor", "a", "b"}, {"reject", "b", "a"}, {"level", "a"}, {"forget", "b", "a"}}),
             Words{"level a"});
+}
+
+TEST(Decisions, AStartIsOfItsScansInEitherOrderAndOutlastsTheAnswerAboutItsLink) {
+  const std::vector<std::string> start = {"start", "b", "a", "0,0,1=9,0,1", "5,0,1=14,0,1", "5,4,1=14,4,1"};
+  const Decision decision = decision_from(start);
+  EXPECT_EQ(words_of(decision), "start a b 9,0,1=0,0,1 14,0,1=5,0,1 14,4,1=5,4,1");
+  const auto with = [&](const std::vector<std::string>& later) {
+    return merged({decision}, {decision_from(later)}).size();
+  };
+  EXPECT_EQ(with({"accept", "a", "b"}), 2);
+  EXPECT_EQ(with({"reject", "a", "b"}), 1);
+  EXPECT_EQ(merged({decision_from({"reject", "a", "b"})}, {decision}).size(), 1);
+  EXPECT_THROW(static_cast<void>(decision_from({start.begin(), start.end() - 1})), Error);
+  const std::filesystem::path path = std::filesystem::path(::testing::TempDir()) / "start_decision.json";
+  write_file(path, decisions_text({decision}));
+  EXPECT_EQ(words_of(read_decisions(path).at(0)), words_of(decision));
 }
 
 }  // namespace

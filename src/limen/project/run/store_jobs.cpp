@@ -158,6 +158,16 @@ FileRecord make_features(const ProjectFile& file, const ProjectOptions& options,
   return stated_record(std::move(record), file, options);
 }
 
+std::string PairKey::target_name() const {
+  constexpr std::size_t kDigits = 16;
+  std::string name = target + (level ? "-level" : "");
+  if (!start) return name;
+  std::string numbers;
+  for (const double number : to_matrix(start->target_from_source).reshaped())
+    numbers += fmt::format("{} ", number);
+  return name + "-start" + sha256_of(numbers).substr(0, kDigits);
+}
+
 RegistrationResult make_pair_result(const PairKey& pair, const RegisterOptions& options, const Store& store,
                                     ScanCache& cache) {
   std::optional<RegistrationResult> kept = store.load_pair(pair.source, pair.target_name(), pair.counts);
@@ -167,6 +177,7 @@ RegistrationResult make_pair_result(const PairKey& pair, const RegisterOptions& 
     own.verdict.risk = VerdictOptions{}.risk;
     own.verdict.probable_risk = VerdictOptions{}.probable_risk;
     if (pair.level) own.gravity = Gravity::up;
+    own.start = pair.start;
     // Copies, but of little: the views of space are shared.
     const PreparedPair prepared{*cache.get(pair.source), *cache.get(pair.target)};
     const RegistrationResult result = register_prepared(prepared, own);

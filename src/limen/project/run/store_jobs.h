@@ -38,10 +38,11 @@ struct PairKey {
   std::string source;
   std::string target;
   bool level = false;
-  PairCounts counts = {};  ///< no part of the key: what its result may point to
+  std::optional<StartPrior> start = {};  ///< where a user showed points of both
+  PairCounts counts = {};                ///< no part of the key: what its result may point to
 
   /// The second half of the name that the result is kept by.
-  [[nodiscard]] std::string target_name() const { return target + (level ? "-level" : ""); }
+  [[nodiscard]] std::string target_name() const;
 };
 
 /// What came of the pair, as it is kept. `options`: as for every pair of the project. Throws StoreFault.

@@ -35,7 +35,8 @@ std::vector<std::string> made_elsewhere(const std::vector<std::pair<std::size_t,
   std::vector<Job> jobs;
   std::vector<std::size_t> places;
   for (std::size_t k = 0; k < keys.size(); ++k) {
-    if (work.store.has_pair(keys[k].source, keys[k].target_name(), keys[k].counts)) continue;
+    // Few pairs have points shown: they are made here, and workers need not know of them.
+    if (keys[k].start || work.store.has_pair(keys[k].source, keys[k].target_name(), keys[k].counts)) continue;
     const auto name = [&](std::size_t node) { return scan_name(work.scans[work.nodes[node].scan]); };
     jobs.push_back(pair_job(work.folder, name(pairs[k].first) + " and " + name(pairs[k].second), keys[k]));
     places.push_back(k);
@@ -68,9 +69,11 @@ std::vector<TriedPair> try_pairs(const std::vector<std::pair<std::size_t, std::s
     const ProjectNode& source = work.nodes[pairs[k].first];
     const ProjectNode& target = work.nodes[pairs[k].second];
     tried[k] = {pairs[k].first, pairs[k].second, {}, {}};
+    const auto start = work.starts.find(pairs[k]);
     keys[k] = {source.key,
                target.key,
                search == PairSearch::level && seem_level(source, target, work.options),
+               start == work.starts.end() ? std::nullopt : std::optional(start->second),
                {source.digest.counts(), target.digest.counts()}};
   }
   std::vector<std::string> faults(pairs.size());

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <map>
 #include <utility>
 #include <vector>
 
@@ -32,7 +33,8 @@ struct PairWork {
   const std::vector<ProjectScan>& scans;
   const Store& store;
   const RegisterOptions& options;
-  JobEngine* engine;  ///< null: here
+  const std::map<std::pair<std::size_t, std::size_t>, StartPrior>& starts;  ///< of pairs that have one
+  JobEngine* engine;                                                        ///< null: here
   const std::filesystem::path& folder;
 };
 

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "limen/base/angles.h"
+#include "limen/register/judge/start_prior.h"
 
 namespace limen {
 namespace {
@@ -47,6 +48,7 @@ class DecisionJudge {
       return;
     }
     if (kind == DecisionKind::reject) return judge_rejection(nodes, stated);
+    if (kind == DecisionKind::start) return judge_start(nodes, stated);
     for (std::size_t k = 0; k < all_.graph.links.size(); ++k) {
       const GraphLink& link = all_.graph.links[k];
       if (all_.pair_of[k] < 0 || std::minmax(link.source, link.target) != std::minmax(nodes[0], nodes[1]))
@@ -61,6 +63,31 @@ class DecisionJudge {
       return;
     }
     stated.reason = "the pair has no such pose";
+  }
+
+  /// Whether the two stand near where the points that were shown put them.
+  void judge_start(const std::vector<int>& nodes, ProjectDecision& stated) const {
+    const int target_node = std::min(nodes[0], nodes[1]);
+    const int source_node = std::max(nodes[0], nodes[1]);
+    const StartPrior& start =
+        all_.words.starts.at({static_cast<std::size_t>(source_node), static_cast<std::size_t>(target_node)});
+    const SolvedNode& source = all_.solved.nodes[static_cast<std::size_t>(source_node)];
+    const SolvedNode& target = all_.solved.nodes[static_cast<std::size_t>(target_node)];
+    if (source.component < 0 || source.component != target.component) {
+      stated.reason = "nothing joins the two scans, there or elsewhere";
+      return;
+    }
+    const ScanDigest& from = digest(source_node);
+    StartPrior local = start;
+    local.target_from_source =
+        to_local(start.target_from_source, from.local_origin, digest(target_node).local_origin);
+    const Rigid3 pose = inverse(target.frame_from_node) * source.frame_from_node;
+    const StartMiss miss = miss_of_start(local, pose, from.middle);
+    const bool refuted = StartAgreement{miss.shift_m, miss.turn_rad, miss.sigmas}.refuted();
+    stated.state = refuted ? DecisionState::contradicted : DecisionState::kept;
+    if (refuted)
+      stated.reason = fmt::format("the scans fit elsewhere, {:.1f} m and {:.0f} deg off", miss.shift_m,
+                                  degrees(miss.turn_rad));
   }
 
   /// Whether the two stand as the rejected link has it all the same.

@@ -21,6 +21,13 @@ std::vector<Decision> said_before(const std::filesystem::path& folder) {
   return read_decisions(kept_in(folder));
 }
 
+/// `turned`: the first scan is the target.
+StartPrior start_of(const Decision& decision, bool turned) {
+  StartPrior start = start_from_points(decision.points);
+  if (turned) start.target_from_source = inverse(start.target_from_source);
+  return start;
+}
+
 }  // namespace
 
 UserWords words_by_nodes(const std::vector<Decision>& decisions, const std::vector<ProjectNode>& nodes,
@@ -40,6 +47,8 @@ UserWords words_by_nodes(const std::vector<Decision>& decisions, const std::vect
     const auto target = static_cast<std::size_t>(std::min(meant[0], meant[1]));
     if (decision.kind == DecisionKind::same_floor)
       words.floors.emplace(source, target);
+    else if (decision.kind == DecisionKind::start)
+      words.starts[{source, target}] = start_of(decision, meant[0] < meant[1]);
     else
       words.pairs[{source, target}] = {decision.kind, decision.pose};
   }

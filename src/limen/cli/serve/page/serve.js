@@ -132,13 +132,13 @@ const showFiles = () => {
   byId('no-files').hidden = names.length > 0;
   fill(byId('source'), names, names[0]);
   fill(byId('target'), names, names[1] ?? names[0]);
-  byId('register').querySelector('button').disabled = names.length < 2;
+  for (const button of byId('register').querySelectorAll('button')) button.disabled = names.length < 2;
   showTicked();
 };
 
 // Work
 
-const kinds = { register: 'Register', project: 'Project', view: 'View', place: 'Move', decide: 'Answer' };
+const kinds = { register: 'Register', project: 'Project', view: 'View', place: 'Move', decide: 'Answer', link: 'Link' };
 const results = new Map();  // what a job's result says, once it was read
 
 const start = async (work) => {
@@ -178,10 +178,10 @@ const alternativesOf = (job, result) => {
 const captionOf = (answer, several) => {
   const [kind] = answer.split(' ', 1);
   const pose = kind === 'choose' ? answer.slice(answer.lastIndexOf(' ') + 1) : '';
-  return { accept: several ? 'Yes, at the best pose' : 'Yes', choose: `Yes, at pose ${pose}`, reject: 'No', forget: 'Don\u2019t know' }[kind] ?? answer;
+  return { accept: several ? 'Yes, at the best pose' : 'Yes', choose: `Yes, at pose ${pose}`, reject: 'No', forget: 'Don\u2019t know', start: 'Linked by hand' }[kind] ?? answer;
 };
 const scansOf = (asked) => asked.replaceAll('files/', '');
-const askedOf = (answer) => answer.replace(/^choose (.*) \d+$/, '$1').replace(/^(accept|reject|forget) /, '');
+const askedOf = (answer) => answer.replace(/^choose (.*) \d+$/, '$1').replace(/^(accept|reject|forget|start) /, '');
 
 const answered = new Map();  // of a job and a pair of scans: the answer that was given
 const answersOf = (job, asked, answers) => {
@@ -200,6 +200,17 @@ const answersOf = (job, asked, answers) => {
   return make('p', { className: 'answers' }, ...buttons);
 };
 
+/** Scans that can be linked by hand: one a file, and no model; those that nothing joined come first. */
+const linkable = (project) => {
+  const scans = (project.scans ?? []).filter((scan) => scan.readable !== false && !scan.copy_of && isScan(scan.file));
+  const alone = scans.filter(({ file }) => scans.filter((other) => other.file === file).length === 1);
+  return [...alone.filter(({ state: how }) => how === 'floating'), ...alone.filter(({ state: how }) => how !== 'floating')].map(({ file }) => file.replace('files/', ''));
+};
+
+/** What became of links that were made by hand. */
+const byHandOf = (project) => (project.decisions ?? []).filter(({ decision }) => decision.startsWith('start '))
+  .map(({ decision, state: how, reason }) => make('p', { textContent: `Linked by hand: ${scansOf(decision.replace(/^start /, '').replace(/ \S+=\S+/g, ''))}: ${how}${reason ? `, ${reason}` : ''}` }));
+
 const questionsOf = (job, project) => {
   const list = project.questions ?? [];
   let number = 0;
@@ -214,7 +225,9 @@ const questionsOf = (job, project) => {
     return card;
   });
   if (parts.length > 0) parts.unshift(make('p', {}, make('strong', { textContent: 'Questions to somebody who knows the building' })));
-  parts.push(make('p', {}, button(list.length ? 'Run again with the answers' : 'Run again', { kind: 'again', of: job.id }, `Run ${job.title} again`)));
+  const scans = linkable(project);
+  const byHand = make('button', { type: 'button', textContent: 'Link two scans by hand', 'aria-label': `Link two scans of ${job.title} by hand`, disabled: scans.length < 2, onclick: () => openLink(scans, scans[0], scans[1], job.id) });
+  parts.push(...byHandOf(project), make('p', {}, byHand, ' ', button(list.length ? 'Run again with the answers' : 'Run again', { kind: 'again', of: job.id }, `Run ${job.title} again`)));
   return parts;
 };
 
@@ -269,7 +282,7 @@ const jobCard = (job) => {
   if (job.outputs.length > 0) parts.push(make('p', { className: 'links' }, ...job.outputs.filter(({ name }) => !/^question_\d+\.svg$/.test(name)).map((file) => link(job, file))));
   const placed = result && (result.target_from_source || (result.scans ?? []).some((scan) => scan.frame_from_scan));
   if (job.state === 'done' && placed) parts.push(make('p', {}, button('Look at it', { kind: 'view', of: job.id }, `Look at ${job.title}`), ' ', button(job.kind === 'project' ? 'Move all scans there' : 'Move the scan there', { kind: 'place', of: job.id })));
-  if (result && job.kind === 'register') parts.push(...alternativesOf(job, result));
+  if (result && ['register', 'link'].includes(job.kind)) parts.push(...alternativesOf(job, result));
   if (result && job.kind === 'project') parts.push(...questionsOf(job, result));
   if (job.said) {
     const failed = job.state === 'failed';
@@ -288,7 +301,7 @@ const showProgress = (job) => {
 };
 
 const readResult = async (job) => {
-  const file = { register: 'result.json', project: 'project.json' }[job.kind];
+  const file = { register: 'result.json', link: 'result.json', project: 'project.json' }[job.kind];
   if (job.state !== 'done' || !file || !job.outputs.some(({ name }) => name === file)) return;
   const key = `${job.seconds}`;
   if (results.get(job.id)?.key === key) return;
@@ -300,9 +313,10 @@ const readResult = async (job) => {
 const shown = new Map();
 const showJobs = async () => {
   for (const job of state.jobs) await readResult(job);
-  byId('no-work').hidden = state.jobs.length > 0;
+  const jobs = state.jobs.filter(({ kind }) => kind !== 'plan');
+  byId('no-work').hidden = jobs.length > 0;
   const list = byId('jobs');
-  for (const job of state.jobs) {
+  for (const job of jobs) {
     const { seconds, stage, share, ...rest } = job;
     if (job.state === 'running') rest.said = '';
     const key = JSON.stringify([rest, results.get(job.id)?.key]);
