@@ -13,6 +13,7 @@
 
 #include "run_program.h"
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 #include <sys/wait.h>
@@ -329,6 +330,36 @@ TEST_F(Project, AllFilesAreHeldAgainstTheProjectBeforeOneIsMoved) {
   EXPECT_EQ(moved.status, 0) << moved.err;
   // None is written over another.
   EXPECT_EQ(run({"transform", "out/project.json", "-o", "case"}).status, 2);
+}
+
+TEST_F(Project, AStartByThreePlacesIsTestedLikeAnObservation) {
+  const std::vector<std::string> scans = simulate();
+  EXPECT_EQ(run(call(scans, "out")).status, 0);
+  const json found = json::parse(text_of("out"));
+  const json& link = found["links"][0];
+  const auto name = [&](const char* side) {
+    return found["scans"][link[side].get<std::size_t>()]["file"].get<std::string>();
+  };
+  const Rigid3 target_from_source = from_matrix(matrix_of(link["pose"]));
+  const auto decide = [&](const Vector3d& miss) {
+    std::vector<std::string> words{"project", "decide", "out", "start", name("source"), name("target")};
+    for (const Vector3d& x : {Vector3d(-1.5, -1, 0), Vector3d(2, 0.5, 0), Vector3d(0, 2, 0.2)}) {
+      const Vector3d y = target_from_source * x + miss;
+      words.push_back(fmt::format("{},{},{}={},{},{}", x.x(), x.y(), x.z(), y.x(), y.y(), y.z()));
+    }
+    return run(words);
+  };
+  for (const bool right : {true, false}) {
+    EXPECT_EQ(decide(right ? Vector3d(0.2, -0.1, 0.1) : Vector3d(6, 0, 0)).status, 0);
+    EXPECT_EQ(run(call(scans, "out")).status, 0);
+    const json decided = json::parse(text_of("out"))["decisions"];
+    ASSERT_EQ(decided.size(), 1U);
+    EXPECT_EQ(decided[0]["state"], right ? "kept" : "contradicted") << decided;
+  }
+  const ProgramRun line = run({"project", "decide", "out", "start", name("source"), name("target"),
+                               "0,0,0=0,0,0", "1,0,0=1,0,0", "2,0,0=2,0,0"});
+  EXPECT_EQ(line.status, 2);
+  EXPECT_NE(line.err.find("lie nearly in a line"), std::string::npos) << line.err;
 }
 
 TEST_F(Project, DecisionsAreHeededTestedAndSurviveRuns) {

@@ -62,7 +62,7 @@ const ended = async (id) => {
 
 before(async () => {
   limen(program, 'simulate', 'museum', '-o', join(folder, 'museum'), '--points-indoor', '100000', '--points-outdoor', '400000');
-  limen(program, 'simulate', 'room', '-o', join(folder, 'room'), '--points-indoor', '20000');
+  limen(program, 'simulate', 'room', '-o', join(folder, 'room'), '--points-indoor', '60000');
   limen(program, 'simulate', 'office', '-o', join(folder, 'office'), '--points-indoor', '60000');
   copyFileSync(join(folder, 'office', 'scan_01.ply'), join(folder, 'room_of_office.ply'));
   writeFileSync(join(folder, 'a <b>&.ply'), readFileSync(join(folder, 'room', 'indoor_00.ply')));
@@ -313,6 +313,7 @@ describe('two scans linked by hand', () => {
   const pointOut = async (places) => {
     for (const at of places) for (const side of [0, 1]) await click(side, at[side]);
     assert.match(await page.locator('#link-count').innerText(), /3 of 3/);
+    if (shots) await page.screenshot({ path: join(shots, 'serve-link.png') });
     await page.click('#link-go');
     await page.waitForSelector('#link:not([open])', { state: 'attached' });
   };

@@ -314,7 +314,7 @@ const linking = {
     this.dragged = false;
     this.fit();
     const missing = [0, 1].map((k) => 3 - this.places[k].length);
-    this.say(missing[0] <= 0 && missing[1] <= 0 ? 'Press Register.' : `Place ${this.places[side].length} is set. ${missing[1 - side] > missing[side] ? `Now the same place in the ${side ? 'moving' : 'fixed'} scan.` : 'Now the next place.'}`);
+    this.say(missing[0] <= 0 && missing[1] <= 0 ? 'Press Register from this start.' : `Place ${this.places[side].length} is set. ${missing[1 - side] > missing[side] ? `Now the same place in the ${side ? 'moving' : 'fixed'} scan.` : 'Now the next place.'}`);
   },
   undo() {
     const [a, b] = this.places;
