@@ -340,7 +340,7 @@ describe('two scans linked by hand', () => {
     for (const at of [other, third, third]) await click(1, at);
     await page.click('#link-go');
     await page.waitForSelector('#link-said.fault');
-    assert.match(await said(), /^points 1 and 2 are the same place of the moving scan: show three places/);
+    assert.match(await said(), /^points 1 and 2 are the same place of the moving scan: show three places in both/);
     await page.click('#link-clear');
     await click(0, [12, await page.locator('#plan-source').evaluate((canvas) => canvas.clientHeight - 12)]);
     assert.match(await said(), /No point is near enough/);

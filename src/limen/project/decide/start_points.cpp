@@ -17,11 +17,12 @@ namespace limen {
 namespace {
 
 constexpr const char* kWhere = "points";
-constexpr const char* kRemedy = "show three places that are metres apart and form a triangle, in both scans";
+constexpr const char* kRemedy =
+    "show three places in both scans, the corners of a triangle with sides of some metres";
 constexpr std::size_t kMostPoints = 20;
 constexpr double kOnePlaceM = 0.2;
 constexpr double kLeastSpreadM = 0.2;  // across the line that the points are nearest to, root mean square
-constexpr double kMissM = 0.5;         // level: two clicks on one corner are no farther apart
+constexpr double kMissM = 0.5;         // level: two clicks on one corner differ by less
 constexpr double kMissUpM = 1.5;       // a wall that is clicked from above has any height
 constexpr double kClickM = 0.5;        // what the start is believed to, one deviation
 const double kClickRad = radians(5.0);
