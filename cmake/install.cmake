@@ -24,6 +24,9 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/limenConfigVersion.cmake 
 install(FILES ${PROJECT_BINARY_DIR}/limenConfig.cmake ${PROJECT_BINARY_DIR}/limenConfigVersion.cmake
         DESTINATION ${LIMEN_PACKAGE_DIR})
 
+if(WIN32)
+  return()  # no manual page, no completions
+endif()
 # The manual page and the shells' completions are printed by the program itself, so that they cannot differ
 # from it; a part of building it, so that whatever has the program can be installed.
 set(LIMEN_PRINTED_DIR ${PROJECT_BINARY_DIR}/printed)

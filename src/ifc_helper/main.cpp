@@ -14,7 +14,6 @@
 
 #include "ifc_helper/record_writer.h"
 #include "ifc_helper/shape_reader.h"
-#include <fcntl.h>
 #include <ifcpp/IFC4/include/IfcAnnotation.h>
 #include <ifcpp/IFC4/include/IfcGrid.h>
 #include <ifcpp/IFC4/include/IfcPort.h>
@@ -25,16 +24,19 @@
 #include <ifcpp/reader/ReaderSTEP.h>
 #include <unistd.h>
 
+#include "limen/base/system.h"
+
 namespace limen::ifc {
 namespace {
 
 constexpr int kRefused = 3;
 
 std::string all_of_stdin() {
+  keep_bytes(STDIN_FILENO);
   std::string bytes;
   std::string piece(std::size_t{1} << 20U, '\0');
   for (;;) {
-    const ssize_t got = read(STDIN_FILENO, piece.data(), piece.size());
+    const std::ptrdiff_t got = read_some(STDIN_FILENO, piece.data(), piece.size());
     if (got <= 0) return bytes;
     bytes.append(piece, 0, static_cast<std::size_t>(got));
   }
@@ -42,8 +44,8 @@ std::string all_of_stdin() {
 
 /// stdout for us alone: the library's own chatter goes nowhere.
 int take_stdout() {
-  const int mine = dup(STDOUT_FILENO);
-  const int nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC);
+  const int mine = duplicate(STDOUT_FILENO);
+  const int nowhere = open_nowhere();
   if (nowhere >= 0) dup2(nowhere, STDOUT_FILENO);
   return mine;
 }

@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <cstring>
 
-#include <unistd.h>
+#include "limen/base/system.h"
 
 namespace limen::ifc {
 
@@ -38,7 +38,7 @@ void RecordWriter::write(IfcRecord record, const Payload& payload) const {
 
 void RecordWriter::write_all(std::string_view bytes) const {
   while (!bytes.empty()) {
-    const ssize_t written = ::write(descriptor_, bytes.data(), bytes.size());
+    const std::ptrdiff_t written = write_some(descriptor_, bytes);
     if (written < 0 && errno == EINTR) continue;
     if (written <= 0) std::_Exit(4);  // nobody listens any more
     bytes.remove_prefix(static_cast<std::size_t>(written));

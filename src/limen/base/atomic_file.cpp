@@ -10,14 +10,12 @@
 #include <set>
 #include <utility>
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/file.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include "limen/base/error.h"
 #include "limen/base/guarded_mapping.h"
+#include "limen/base/system.h"
 #include "limen/base/text.h"
 
 namespace limen {
@@ -52,17 +50,6 @@ bool is_hidden_name(std::string_view name) {
   return dash != std::string_view::npos && count(numbers.substr(0, dash)) && count(numbers.substr(dash + 1));
 }
 
-/// Removes the file where it is ours and nobody holds its lock.
-void remove_if_left_behind(const fs::path& path) {
-  const int descriptor = open(path.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
-  if (descriptor < 0) return;
-  struct stat status {};
-  const bool ours = fstat(descriptor, &status) == 0 && S_ISREG(status.st_mode) &&
-                    status.st_uid == geteuid() && status.st_nlink == 1;
-  if (ours && flock(descriptor, LOCK_EX | LOCK_NB) == 0) unlink(path.c_str());
-  close(descriptor);
-}
-
 /// Once for each folder: a process looks only for what others left behind.
 void remove_left_behind(const fs::path& folder) {
   static std::mutex mutex;
@@ -75,7 +62,7 @@ void remove_left_behind(const fs::path& folder) {
   }
   fs::directory_iterator entry(name, stop);
   for (; !stop && entry != fs::directory_iterator(); entry.increment(stop)) {
-    if (is_hidden_name(entry->path().filename().string())) remove_if_left_behind(entry->path());
+    if (is_hidden_name(entry->path().filename().string())) remove_unless_held(entry->path());
   }
 }
 
@@ -97,7 +84,7 @@ AtomicFile::AtomicFile(fs::path path) : path_(std::move(path)) {
     remove_left_behind(path_.parent_path());
     open_beside();
   } else {
-    descriptor_ = open(path_.c_str(), O_WRONLY | O_CLOEXEC);
+    descriptor_ = open_to_write(path_);
   }
   if (descriptor_ < 0) {
     beside_.clear();
@@ -111,11 +98,8 @@ void AtomicFile::open_beside() {
   constexpr int kTries = 10;
   for (int i = 0; i < kTries; ++i) {
     beside_ = hidden_name_beside(path_);
-    descriptor_ = open(beside_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-    if (descriptor_ < 0) return;
-    struct stat status {};
-    const bool locked = flock(descriptor_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK;
-    if (locked && fstat(descriptor_, &status) == 0 && status.st_nlink > 0) return;
+    descriptor_ = make_file(beside_);
+    if (descriptor_ < 0 || hold(descriptor_)) return;
     close_quietly();
     errno = EBUSY;
   }
@@ -133,7 +117,7 @@ void AtomicFile::write(std::string_view bytes) {
 void AtomicFile::overwrite(std::uint64_t offset, std::string_view bytes) {
   flush();
   while (!bytes.empty()) {
-    const ssize_t written = pwrite(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(offset));
+    const std::ptrdiff_t written = write_at(descriptor_, bytes, offset);
     if (written < 0 && errno != EINTR) fail("cannot be written");
     if (written <= 0) continue;
     bytes.remove_prefix(static_cast<std::size_t>(written));
@@ -143,7 +127,7 @@ void AtomicFile::overwrite(std::uint64_t offset, std::string_view bytes) {
 
 void AtomicFile::settle() {
   flush();
-  if (!beside_.empty() && fsync(descriptor_) != 0) fail("cannot be flushed to the disk");
+  if (!beside_.empty() && !flush_to_disk(descriptor_)) fail("cannot be flushed to the disk");
 }
 
 void AtomicFile::commit() {
@@ -151,7 +135,7 @@ void AtomicFile::commit() {
   require_inputs_whole();
   if (close(std::exchange(descriptor_, -1)) != 0) fail("cannot be written");
   if (beside_.empty()) return;
-  if (std::rename(beside_.c_str(), path_.c_str()) != 0) fail("cannot be renamed to its final name");
+  if (!rename_over(beside_, path_)) fail("cannot be renamed to its final name");
   beside_.clear();
 }
 
@@ -163,7 +147,7 @@ void AtomicFile::fail(const char* doing) const {
 void AtomicFile::flush() {
   std::string_view rest = buffer_;
   while (!rest.empty()) {
-    const ssize_t written = ::write(descriptor_, rest.data(), rest.size());
+    const std::ptrdiff_t written = write_some(descriptor_, rest);
     if (written < 0 && errno != EINTR) fail("cannot be written");
     if (written > 0) rest.remove_prefix(static_cast<std::size_t>(written));
   }
@@ -173,7 +157,8 @@ void AtomicFile::flush() {
 void AtomicFile::close_quietly() noexcept {
   if (descriptor_ >= 0) close(descriptor_);
   descriptor_ = -1;
-  if (!beside_.empty()) unlink(beside_.c_str());
+  std::error_code ignored;
+  if (!beside_.empty()) fs::remove(beside_, ignored);
 }
 
 void write_file(const fs::path& path, std::string_view bytes) {
@@ -225,13 +210,14 @@ OutputFolder::~OutputFolder() {
 void OutputFolder::prove_writable() const {
   remove_left_behind(path_);
   const fs::path probe = hidden_name_beside(path_ / "probe");
-  const int descriptor = open(probe.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  const int descriptor = make_file(probe);
   if (descriptor < 0) {
     throw Error(fmt::format("the output folder cannot be written to: {}", reason_of(errno)), path_.string(),
                 "give a folder with write permission");
   }
   close(descriptor);
-  unlink(probe.c_str());
+  std::error_code ignored;
+  fs::remove(probe, ignored);
 }
 
 void OutputFolder::remove_empty() noexcept {
@@ -239,9 +225,10 @@ void OutputFolder::remove_empty() noexcept {
   std::error_code stop;
   fs::path folder = fs::absolute(path_, stop).lexically_normal();
   if (!folder.has_filename()) folder = folder.parent_path();
-  // rmdir leaves what is not empty: results that were written stay.
-  for (; rmdir(folder.c_str()) == 0 || errno == ENOENT; folder = folder.parent_path()) {
-    if (folder == first_made_ || folder == folder.root_path()) break;
+  // What is not empty is left: results that were written stay.
+  for (; fs::is_directory(folder, stop) || !fs::exists(folder, stop); folder = folder.parent_path()) {
+    fs::remove(folder, stop);
+    if (stop || folder == first_made_ || folder == folder.root_path()) break;
   }
 }
 

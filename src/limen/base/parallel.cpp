@@ -10,10 +10,9 @@
 #include <mutex>
 #include <thread>
 
-#include <pthread.h>
-
 #include "limen/base/progress.h"
 #include "limen/base/run_both.h"
+#include "limen/base/system.h"
 
 namespace limen {
 namespace {
@@ -137,7 +136,7 @@ class PoolOfProcess {
  private:
   PoolOfProcess() {
     current = new Pool;
-    pthread_atfork(nullptr, nullptr, [] { current = new Pool; });
+    after_fork([] { current = new Pool; });
   }
   ~PoolOfProcess() { delete current; }
 

@@ -3,19 +3,17 @@
 #include "limen/base/scratch_folder.h"
 
 #include <cerrno>
-#include <cstdlib>
-#include <cstring>
 #include <system_error>
 
 #include "limen/base/error.h"
+#include "limen/base/system.h"
+#include "limen/base/text.h"
 
 namespace limen {
 
 ScratchFolder::ScratchFolder(const std::filesystem::path& parent, const std::string& name) {
-  std::string made = (parent / (name + "-XXXXXX")).string();
-  if (mkdtemp(made.data()) == nullptr)
-    throw Error(std::strerror(errno), parent.string(), "give a folder that can be written to");
-  path_ = made;
+  path_ = make_scratch_folder(parent / name);
+  if (path_.empty()) throw Error(reason_of(errno), parent.string(), "give a folder that can be written to");
 }
 
 ScratchFolder::~ScratchFolder() {

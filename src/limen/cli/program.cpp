@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <csignal>
 #include <cstdio>
 #include <iostream>
 #include <memory>
@@ -39,6 +38,7 @@
 #include "limen/cli/commands/view_command.h"
 #include "limen/cli/help/program_help.h"
 #include "limen/cli/terminal/command.h"
+#include "limen/cli/terminal/console.h"
 #include "limen/cli/terminal/nearest_word.h"
 #include "limen/cli/terminal/terminal.h"
 
@@ -184,7 +184,7 @@ int fail_as(const Session& session, const std::string& message, int status) {
 
 /// Runs what the command line asked for; every exception becomes one line and a status.
 int run_action(const std::vector<std::string>& words, Session& session) {
-  constexpr int kReaderGone = 128 + SIGPIPE;
+  constexpr int kReaderGone = 128 + 13;  // as SIGPIPE would end it
   try {
     require_utf8(words);
     set_thread_count(session.common.threads);
@@ -209,7 +209,7 @@ int run_action(const std::vector<std::string>& words, Session& session) {
 }  // namespace
 
 int run_program(int argc, char** argv) {
-  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is reported as a disk that is full
+  prepare_program();
   std::vector<std::string> texts = without_help_command(argc, argv);
   if (asked_project_move(argc, argv)) texts[1] = kProjectMove;
   std::vector<char*> words;
@@ -223,6 +223,7 @@ int run_program(int argc, char** argv) {
   app.set_help_flag("-h,--help", "Show this help and exit");
   app.set_version_flag("-V,--version", fmt::format("limen {}", kVersion), "Show the version and exit");
   app.require_subcommand(1);
+  app.allow_windows_style_options(false);  // a path may begin with /
   CommandLine line(app);
   add_common_options(line, session);
   add_commands(line, session);

@@ -5,13 +5,11 @@
 #include <array>
 #include <cerrno>
 #include <fstream>
-#include <memory>
 #include <vector>
-
-#include <openssl/evp.h>
 
 #include "limen/base/error.h"
 #include "limen/base/text.h"
+#include "limen/files/sha256.h"
 
 namespace limen {
 namespace {
@@ -19,12 +17,12 @@ namespace {
 constexpr std::size_t kPiece = std::size_t{1} << 20;
 constexpr const char* kRemedy = "check the file and the disk";
 
-std::string hexadecimal(const unsigned char* bytes, unsigned int count) {
+std::string hexadecimal(const std::array<unsigned char, Sha256::kBytes>& bytes) {
   static constexpr char kDigits[] = "0123456789abcdef";
   std::string text;
-  for (unsigned int i = 0; i < count; ++i) {
-    text += kDigits[bytes[i] >> 4];
-    text += kDigits[bytes[i] & 15];
+  for (const unsigned char byte : bytes) {
+    text += kDigits[byte >> 4];
+    text += kDigits[byte & 15];
   }
   return text;
 }
@@ -37,27 +35,20 @@ std::string sha256_of_file(const std::filesystem::path& path) {
   errno = 0;
   std::ifstream file(path, std::ios::binary);
   if (!file) throw Error(errno == 0 ? "cannot be read" : reason_of(errno), path.string(), kRemedy);
-  const std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> context(EVP_MD_CTX_new(), &EVP_MD_CTX_free);
-  if (!context || EVP_DigestInit_ex(context.get(), EVP_sha256(), nullptr) != 1)
-    throw Error("SHA-256 is not available", "libcrypto", "check its configuration", Fault::internal);
+  Sha256 hash;
   std::vector<char> piece(kPiece);
   while (file) {
     file.read(piece.data(), static_cast<std::streamsize>(piece.size()));
-    EVP_DigestUpdate(context.get(), piece.data(), static_cast<std::size_t>(file.gcount()));
+    hash.add(piece.data(), static_cast<std::size_t>(file.gcount()));
   }
   if (!file.eof()) throw Error("cannot be read", path.string(), kRemedy);
-  std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
-  unsigned int size = 0;
-  EVP_DigestFinal_ex(context.get(), digest.data(), &size);
-  return hexadecimal(digest.data(), size);
+  return hexadecimal(hash.digest());
 }
 
 std::string sha256_of(std::string_view bytes) {
-  std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
-  unsigned int size = 0;
-  if (EVP_Digest(bytes.data(), bytes.size(), digest.data(), &size, EVP_sha256(), nullptr) != 1)
-    throw Error("SHA-256 is not available", "libcrypto", "check its configuration", Fault::internal);
-  return hexadecimal(digest.data(), size);
+  Sha256 hash;
+  hash.add(bytes.data(), bytes.size());
+  return hexadecimal(hash.digest());
 }
 
 }  // namespace limen

@@ -6,8 +6,8 @@
 
 #include <fmt/format.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
+#include "limen/base/system.h"
 #include "limen/base/text.h"
 
 namespace limen {
@@ -25,11 +25,11 @@ std::string why_no_file(unsigned mode, const char* wanted) {
 }
 
 std::string why_unreadable(const std::filesystem::path& path, const char* wanted) {
-  struct stat status {};
-  if (stat(path.c_str(), &status) != 0)
+  const unsigned mode = mode_of(path);
+  if (mode == 0)
     return errno == ENOENT || errno == ENOTDIR ? missing_file(path.string()).problem() : reason_of(errno);
-  if (std::string other = why_no_file(status.st_mode, wanted); !other.empty()) return other;
-  return access(path.c_str(), R_OK) == 0 ? "" : reason_of(errno);
+  if (std::string other = why_no_file(mode, wanted); !other.empty()) return other;
+  return may_read(path) ? "" : reason_of(errno);
 }
 
 void require_readable(const std::filesystem::path& path, const std::string& remedy, const char* wanted) {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numbers>
 
 #include "limen/base/disjoint_sets.h"
 #include "limen/base/error.h"
@@ -141,7 +142,7 @@ class RingTracer {
     const Vector2d u = towards(a);
     const Vector2d w = towards(b);
     const double turn = -std::atan2(u.x() * w.y() - u.y() * w.x(), u.dot(w));
-    return turn > 0.0 ? turn : turn + 2.0 * M_PI;
+    return turn > 0.0 ? turn : turn + 2.0 * std::numbers::pi;
   }
 
   const GridPoints& grid_;

@@ -3,7 +3,6 @@
 #include "limen/cli/commands/project_command.h"
 
 #include <algorithm>
-#include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
@@ -11,13 +10,12 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <sys/prctl.h>
-#include <unistd.h>
 
 #include "limen/base/angles.h"
 #include "limen/base/atomic_file.h"
 #include "limen/base/error.h"
 #include "limen/base/folder_lock.h"
+#include "limen/base/system.h"
 #include "limen/cli/inputs/cover_option.h"
 #include "limen/cli/inputs/frame_system.h"
 #include "limen/cli/inputs/known_decision.h"
@@ -283,9 +281,7 @@ void require_files(const ProjectCommandOptions& options) {
 void die_with_worker() {
   const char* worker = std::getenv("LIMEN_WORKER_PID");
   if (worker == nullptr) return;
-  const bool stated = prctl(PR_SET_PDEATHSIG, SIGKILL) == 0;
-  // Whoever died before we asked for its end is no parent any more.
-  if (stated && std::to_string(getppid()) != worker)
+  if (!end_with_parent(worker))
     throw Error("the worker that started this job is gone", "LIMEN_WORKER_PID", "unset it", Fault::cancelled);
 }
 

@@ -2,19 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limen/cli/commands/serve_command.h"
 
-#include <filesystem>
 #include <memory>
 #include <string>
 
 #include <fmt/format.h>
 
-#include "limen/base/atomic_file.h"
 #include "limen/base/error.h"
-#include "limen/base/folder_lock.h"
 #include "limen/cli/inputs/scan_options.h"
-#include "limen/cli/serve/server.h"
-#include "limen/cli/terminal/terminal.h"
-#include "limen/report/json/json_values.h"
+#include "limen/cli/serve/serve.h"
 
 namespace limen {
 namespace {
@@ -35,23 +30,7 @@ std::uint64_t upload_bound(const std::string& text) {
 }
 
 int run(const ServeCommand& command, const Session& session) {
-  const std::uint64_t most_upload = upload_bound(command.most_upload);
-  const OutputFolder folder(command.folder);
-  // Two would give their work the same numbers.
-  const FolderLock lock(folder.path(), "is already served",
-                        "open the page of that server, end that server, or give another folder");
-  const LoopbackSocket socket(command.port);
-  const Gate gate{new_token(), socket.port()};
-  ServeSite site(std::filesystem::canonical(folder.path()), gate, most_upload);
-  const std::string address = fmt::format("http://127.0.0.1:{}/{}/", socket.port(), gate.token);
-  session.say(fmt::format(
-      "open {}\nin a browser on this machine; whoever knows this address can use it. Ctrl-C ends it.\n",
-      address));
-  session.answer(to_text(Json{{"address", address}, {"folder", command.folder}}));
-  if (session.common.quiet && !session.common.json) session.warn("open " + address);
-  flush_out();
-  serve_site(socket, site, [&] { return session.monitor->cancelled(); });
-  session.say("ended; the results are in " + command.folder + "\n");
+  serve(command.folder, command.port, upload_bound(command.most_upload), session);
   return kExitOk;
 }
 

@@ -2,10 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limen/cli/inputs/issue_file.h"
 
-#include <ctime>
+#include <chrono>
 
 #include <fmt/format.h>
-#include <sys/stat.h>
 
 #include "limen/bim/ifc/read_ifc.h"
 #include "limen/files/mapped_file.h"
@@ -42,12 +41,16 @@ IssueModel issue_model(const std::string& path, const BimModel& model, const Rig
 }
 
 std::string date_of_file(const std::filesystem::path& path) {
-  struct stat status = {};
-  std::tm parts = {};
-  const std::time_t time = ::stat(path.c_str(), &status) == 0 ? status.st_mtime : 0;
-  ::gmtime_r(&time, &parts);
-  return fmt::format("{:04}-{:02}-{:02}T{:02}:{:02}:{:02}Z", parts.tm_year + 1900, parts.tm_mon + 1,
-                     parts.tm_mday, parts.tm_hour, parts.tm_min, parts.tm_sec);
+  using namespace std::chrono;
+  std::error_code none;
+  const auto written = std::filesystem::last_write_time(path, none);
+  const auto time = none ? sys_seconds() : floor<seconds>(file_clock::to_sys(written));
+  const auto day = floor<days>(time);
+  const year_month_day date(day);
+  const hh_mm_ss clock(time - day);
+  return fmt::format("{:04}-{:02}-{:02}T{:02}:{:02}:{:02}Z", static_cast<int>(date.year()),
+                     static_cast<unsigned>(date.month()), static_cast<unsigned>(date.day()),
+                     clock.hours().count(), clock.minutes().count(), clock.seconds().count());
 }
 
 }  // namespace limen

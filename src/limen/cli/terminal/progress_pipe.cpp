@@ -7,10 +7,10 @@
 #include <cstdlib>
 #include <string_view>
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "limen/base/system.h"
 #include "limen/base/text.h"
 
 namespace limen {
@@ -20,13 +20,13 @@ constexpr std::chrono::milliseconds kBetweenLines{100};
 
 void tell(int descriptor, const std::string& line) {
   // What does not fit is lost: the next line says more.
-  if (write(descriptor, line.data(), line.size()) < 0) return;
+  if (write_some(descriptor, line) < 0) return;
 }
 
 }  // namespace
 
 PipeMonitor::PipeMonitor(int descriptor) : descriptor_(descriptor) {
-  fcntl(descriptor_, F_SETFD, FD_CLOEXEC);
+  keep_from_children(descriptor_);
 }
 
 void PipeMonitor::begin_stage(std::string_view name) {
@@ -55,7 +55,7 @@ std::unique_ptr<Monitor> pipe_monitor() {
   const auto read = std::from_chars(text.data(), text.data() + text.size(), descriptor);
   const bool good =
       read.ec == std::errc() && read.ptr == text.data() + text.size() && descriptor > STDERR_FILENO;
-  if (!good || fcntl(descriptor, F_GETFD) < 0) return nullptr;
+  if (!good || !keep_from_children(descriptor)) return nullptr;
   return std::make_unique<PipeMonitor>(descriptor);
 }
 

@@ -3,8 +3,6 @@
 #pragma once
 
 #include <chrono>
-#include <csignal>
-#include <iterator>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -63,10 +61,9 @@ class InterruptGuard {
   InterruptGuard(const InterruptGuard&) = delete;
   InterruptGuard& operator=(const InterruptGuard&) = delete;
 
-  static constexpr int kSignals[] = {SIGINT, SIGTERM, SIGHUP, SIGPIPE};
-
  private:
-  struct sigaction before_[std::size(kSignals)] = {};
+  struct Before;
+  std::unique_ptr<Before> before_;
 };
 
 /// Thrown where the reader of stdout is gone: the program then ends without a word, as SIGPIPE would end it.

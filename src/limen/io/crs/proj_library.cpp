@@ -4,25 +4,25 @@
 
 #include <optional>
 
-#include <dlfcn.h>
+#include "limen/base/system.h"
 
 namespace limen {
 namespace {
 
 // Versions 9, 8, 7 and 6.2 of PROJ, then whatever a developer has.
 constexpr const char* kProjFiles[] = {"libproj.so.25", "libproj.so.22", "libproj.so.19", "libproj.so.15",
-                                      "libproj.so"};
+                                      "libproj.so",    "proj_9.dll",    "proj.dll"};
 
 template <typename Function>
 bool find_function(void* library, const char* name, Function& function) {
-  function = reinterpret_cast<Function>(::dlsym(library, name));
+  function = reinterpret_cast<Function>(function_in(library, name));
   return function != nullptr;
 }
 
 std::optional<ProjLibrary> loaded_proj() {
   void* library = nullptr;
   for (const char* file : kProjFiles) {
-    library = ::dlopen(file, RTLD_NOW | RTLD_LOCAL);
+    library = load_library(file);
     if (library != nullptr) break;
   }
   if (library == nullptr) return {};

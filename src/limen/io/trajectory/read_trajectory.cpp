@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstring>
 #include <map>
+#include <numbers>
 #include <string_view>
 #include <utility>
 
@@ -59,8 +60,8 @@ double number_at(std::string_view bytes, std::size_t record, std::size_t k) {
 
 Entry sbet_entry(std::string_view bytes, std::size_t i, const std::string& name) {
   const auto number = [&](std::size_t k) { return number_at(bytes, i, k); };
-  const bool good = std::isfinite(number(0)) && std::abs(number(1)) <= M_PI / 2 &&
-                    std::abs(number(2)) <= 2 * M_PI && std::abs(number(3)) < 1e5;
+  const bool good = std::isfinite(number(0)) && std::abs(number(1)) <= std::numbers::pi / 2 &&
+                    std::abs(number(2)) <= 2 * std::numbers::pi && std::abs(number(3)) < 1e5;
   if (!good) {
     throw Error(fmt::format("record {} of the SBET is not a position: time {:g} s, latitude {:g}, longitude "
                             "{:g} rad, height {:g} m",

@@ -6,6 +6,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <numbers>
 
 #include "limen/base/angles.h"
 
@@ -63,7 +64,8 @@ GridPlace to_utm(const Geodetic& place, const UtmZone& zone) {
   static const std::array<double, 6> alpha = alphas();
   const double rectifying =
       kRadiusM / (1.0 + kN) * series(0, {1.0, 0.0, 1.0 / 4, 0.0, 1.0 / 64, 0.0, 1.0 / 256});
-  const double lambda = std::remainder(place.longitude_rad - radians(6.0 * zone.number - 183.0), 2.0 * M_PI);
+  const double lambda =
+      std::remainder(place.longitude_rad - radians(6.0 * zone.number - 183.0), 2.0 * std::numbers::pi);
   const double e = std::sqrt(kFlattening * (2.0 - kFlattening));
   const double sine = std::sin(place.latitude_rad);
   const double t = std::sinh(std::atanh(sine) - e * std::atanh(e * sine));  // tau', eqs. (7)-(9)

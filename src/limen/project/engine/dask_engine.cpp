@@ -14,6 +14,7 @@
 #include "limen/base/error.h"
 #include "limen/base/parallel.h"
 #include "limen/base/start_program.h"
+#include "limen/base/system.h"
 #include "limen/files/bounded_json.h"
 #include "limen/project/engine/helper_process.h"
 #include "limen/project/engine/job_engine.h"
@@ -24,17 +25,16 @@ namespace {
 namespace fs = std::filesystem;
 using Line = nlohmann::json;
 
-fs::path own_program() {
-  if (const char* starter = program_starter()) return starter;
-  std::error_code ignored;
-  return fs::read_symlink("/proc/self/exe", ignored);
+fs::path program_to_call() {
+  const char* starter = program_starter();
+  return starter != nullptr ? fs::path(starter) : own_program();
 }
 
 /// Installed beside the program (PREFIX/share/limen), or in the build's folder.
 fs::path find_dask_driver() {
   const char* named = std::getenv("LIMEN_DASK_DRIVER");
   if (named != nullptr && *named != '\0') return named;
-  const fs::path folder = own_program().parent_path();
+  const fs::path folder = program_to_call().parent_path();
   for (const fs::path& place : {folder.parent_path() / "share" / "limen" / "limen_dask.py",
                                 folder / "share" / "limen" / "limen_dask.py"}) {
     if (fs::is_regular_file(place)) return place;
@@ -45,7 +45,7 @@ fs::path find_dask_driver() {
 
 std::vector<std::string> command_of(const EngineOptions& options) {
   std::vector<std::string> command{"python3", find_dask_driver().string(), "--program",
-                                   own_program().string()};
+                                   program_to_call().string()};
   const auto add = [&](const char* name, const std::string& value) {
     if (value.empty()) return;
     command.emplace_back(name);

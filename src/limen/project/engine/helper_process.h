@@ -6,8 +6,6 @@
 #include <string>
 #include <vector>
 
-#include <sys/types.h>
-
 namespace limen {
 
 /// A program that hears lines on its stdin and answers with lines on its stdout. Its stdin ends with this
@@ -30,7 +28,7 @@ class HelperProcess {
   [[nodiscard]] bool ended() const { return ended_; }
 
  private:
-  pid_t id_ = -1;
+  int id_ = -1;
   int socket_ = -1;
   std::string heard_;
   bool ended_ = false;

@@ -5,18 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include <math.h>  // lgamma_r
-
 #include "limen/base/error.h"
+#include "limen/base/system.h"
 
 namespace limen {
 namespace {
-
-// std::lgamma writes the sign to a global variable, which threads must not do at once.
-double log_gamma(double x) {
-  int sign = 0;
-  return ::lgamma_r(x, &sign);
-}
 
 double log_beta(double a, double b) {
   return log_gamma(a) + log_gamma(b) - log_gamma(a + b);

@@ -3,6 +3,7 @@
 #include "limen/report/html/html_tables.h"
 
 #include <algorithm>
+#include <filesystem>
 
 #include <fmt/format.h>
 
@@ -113,7 +114,7 @@ std::string input_row(const char* side, const InputSummary& input) {
   const Vector3d extent = input.high - input.low;
   std::string path = escaped(file_name(input));
   for (const std::string& with : input.with)
-    path += "<br>with " + escaped(with.substr(with.find_last_of('/') + 1));
+    path += "<br>with " + escaped(std::filesystem::path(with).filename().string());
   std::string kind = input.kind == "scan" ? (input.mobile ? "mobile scan" : "static scan") : input.kind;
   if (input.kind == "scan" && !input.centre_known) kind = "scan, scanner position unknown";
   return "<tr>" + cell(side, "th", " scope=\"row\"") + cell(path) + cell(kind) + cell(size_of(input)) +

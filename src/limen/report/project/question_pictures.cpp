@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <filesystem>
 #include <optional>
 #include <utility>
 
@@ -127,7 +128,7 @@ std::vector<std::vector<Decision>> asked_of(const ProjectQuestion& question) {
 
 std::string asked_words(const std::vector<Decision>& answers) {
   const std::vector<std::string>& scans = answers.front().scans;
-  const auto last = [](const std::string& path) { return path.substr(path.find_last_of('/') + 1); };
+  const auto last = [](const std::string& path) { return std::filesystem::path(path).filename().string(); };
   return fmt::format("Are these two the same place, fitted together as shown? {} and {}", last(scans.front()),
                      last(scans.back()));
 }

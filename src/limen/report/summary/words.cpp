@@ -3,6 +3,7 @@
 #include "limen/report/summary/words.h"
 
 #include <cmath>
+#include <filesystem>
 
 #include <fmt/format.h>
 
@@ -52,7 +53,7 @@ std::string size_words(const Vector3d& size_m) {
 }
 
 std::string file_name(const InputSummary& input) {
-  return input.path.substr(input.path.find_last_of('/') + 1);
+  return std::filesystem::path(input.path).filename().string();
 }
 
 bool is_open(const RegistrationResult& result, bool rotation, int axis) {

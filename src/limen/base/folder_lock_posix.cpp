@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
-#include "limen/base/folder_lock.h"
-
 #include <cerrno>
 
 #include <fcntl.h>
@@ -10,6 +8,7 @@
 #include <unistd.h>
 
 #include "limen/base/error.h"
+#include "limen/base/folder_lock.h"
 #include "limen/base/text.h"
 
 namespace limen {

@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
-#include "limen/project/engine/helper_process.h"
-
 #include <array>
 #include <cerrno>
 #include <chrono>
@@ -18,6 +16,7 @@
 #include "limen/base/error.h"
 #include "limen/base/start_program.h"
 #include "limen/base/text.h"
+#include "limen/project/engine/helper_process.h"
 
 namespace limen {
 namespace {
