@@ -212,7 +212,7 @@ std::vector<FoundPose> attempt(const WorkedPair& pair, bool gravity_known, Propo
     RefineOptions wide = refine_options(source.view(), target.view(), options);
     wide.samples = kSecondLook;
     wide.last_gate_m = wide.first_gate_m;
-    wide.first_gate_m = std::clamp(start->prior.sigma_m, wide.last_gate_m, kWidestGateM);
+    wide.first_gate_m = std::max(wide.last_gate_m, std::min(start->prior.sigma_m, kWidestGateM));
     const Rigid3 led = refine_pose(source.view(), target.view(), given, wide).target_from_source;
     for (const Rigid3& pose : {given, led}) candidates.push_back({pose, 0.0, 0});
   }
