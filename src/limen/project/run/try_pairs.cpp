@@ -22,7 +22,8 @@ constexpr std::size_t kScansInMemory = 16;
 
 bool seem_level(const ProjectNode& source, const ProjectNode& target, const RegisterOptions& options) {
   const auto level = [](const ScanDigest& digest) { return digest.upright && !digest.model; };
-  return options.gravity == Gravity::automatic && level(source.digest) && level(target.digest);
+  const bool sure = source.digest.surely_upright && target.digest.surely_upright;
+  return options.gravity == Gravity::automatic && !sure && level(source.digest) && level(target.digest);
 }
 
 namespace {

@@ -24,7 +24,8 @@ enum class PairSearch {
   any_turn,  ///< where nothing is found so, they may stand any way round
 };
 
-/// Whether the two ways to search differ: both scans seem to stand upright, and nobody said so.
+/// Whether the two ways to search differ: both scans seem to stand upright, one of them not surely, and
+/// nobody said so.
 bool seem_level(const ProjectNode& source, const ProjectNode& target, const RegisterOptions& options);
 
 /// Where and how pairs are registered.

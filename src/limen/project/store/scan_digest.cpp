@@ -82,6 +82,7 @@ ScanDigest digest_of(const PreparedScan& prepared) {
   digest.local_origin = features.local_origin;
   digest.mobile = prepared.mobile;
   digest.upright = prepared.upright;
+  digest.surely_upright = prepared.surely_upright;
   digest.model = prepared.model;
   digest.upright_from_scan = prepared.upright_from_scan;
   for (const Vector3d& station : prepared.stations) digest.stations.emplace_back(back * station);
@@ -117,7 +118,8 @@ ScanDigest digest_of(const PreparedScan& prepared) {
 std::string bytes_of(const ScanDigest& digest) {
   ByteWriter writer;
   writer.put(digest.local_origin);
-  for (const bool flag : {digest.mobile, digest.upright, digest.model}) writer.put(flag);
+  for (const bool flag : {digest.mobile, digest.upright, digest.surely_upright, digest.model})
+    writer.put(flag);
   writer.put(digest.upright_from_scan);
   writer.put_all(digest.stations);
   writer.put(digest.middle);
@@ -142,7 +144,8 @@ ScanDigest digest_from(std::string_view bytes, const std::string& where) {
   ByteReader reader(bytes, where);
   ScanDigest digest;
   reader.get(digest.local_origin);
-  for (bool* flag : {&digest.mobile, &digest.upright, &digest.model}) reader.get(*flag);
+  for (bool* flag : {&digest.mobile, &digest.upright, &digest.surely_upright, &digest.model})
+    reader.get(*flag);
   reader.get(digest.upright_from_scan);
   digest.stations = reader.get_all<Vector3d>();
   reader.get(digest.middle);

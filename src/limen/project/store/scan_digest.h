@@ -30,6 +30,7 @@ struct ScanDigest {
   Vector3d local_origin = Vector3d::Zero();
   bool mobile = false;
   bool upright = false;
+  bool surely_upright = false;  ///< no other way up need be tried
   bool model = false;
   Matrix3d upright_from_scan = Matrix3d::Identity();
   std::vector<Vector3d> stations;      ///< about the local origin, scan's axes
