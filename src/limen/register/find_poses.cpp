@@ -275,16 +275,18 @@ std::vector<FoundPose> find_poses(const WorkedPair& pair, const RegisterOptions&
   const bool planes = options.method == Method::automatic || options.method == Method::polygons;
   std::vector<FoundPose> poses =
       distinct(attempt(pair, level, Proposal::held, options, clock), options.verdict);
+  const PairSort sort = sort_of(pair);
   const auto search_on = [&](bool gravity_known, Proposal proposal) {
-    if (exceeds_chance(poses, sort_of(pair), options.verdict)) return;
+    if (exceeds_chance(poses, sort, options.verdict)) return;
     const std::vector<FoundPose> more = attempt(pair, gravity_known, proposal, options, clock);
     poses.insert(poses.end(), more.begin(), more.end());
     poses = distinct(poses, options.verdict);
   };
   if (level && !sure && options.gravity != Gravity::up) search_on(false, Proposal::held);
-  // Through windows the openings themselves fix the shift that planes leave open.
-  const bool slides = sort_of(pair) == PairSort::rooms || sort_of(pair) == PairSort::streets;
-  if (level && planes && slides) search_on(true, Proposal::sliding);
+  // Through windows the openings fix the shift that planes leave open, if the method takes them.
+  const bool through = sort == PairSort::through_wall || sort == PairSort::past_wall;
+  const bool held = pair.has_model() || (through && options.method == Method::automatic);
+  if (level && planes && !held) search_on(true, Proposal::sliding);
   return poses;
 }
 

@@ -163,8 +163,7 @@ class AskedPair {
   }
   [[nodiscard]] std::optional<StartAgreement> agreement_with_start(std::size_t pose) const {
     if (!start_) return std::nullopt;
-    const StartMiss miss = miss_of_start(start_->prior, start_->given(pose_of(pose)), start_->at);
-    return StartAgreement{miss.shift_m, miss.turn_rad, miss.sigmas};
+    return miss_of_start(start_->prior, start_->given(pose_of(pose)), start_->at);
   }
 
  private:

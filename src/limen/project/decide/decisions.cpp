@@ -76,7 +76,7 @@ Decision from_json(const Json& json, const std::string& where) {
     }
     return in_order(std::move(decision));
   }
-  throw Error("a decision is none of accept, reject, choose, level, same-floor, forget", where,
+  throw Error("a decision is none of accept, reject, choose, level, same-floor, start, forget", where,
               R"(write {"decisions": [{"accept": ["A", "B"]}]})");
 }
 

@@ -421,8 +421,8 @@ class Solver {
   Configuration best_;
   std::optional<PlacementOdds> odds_;
   std::vector<int> reference_;
-  std::set<std::vector<bool>>
-      cuts_;  ///< found from any reference, as the side without the component's first node
+  /// Found from any reference, each as its side without the component's first node.
+  std::set<std::vector<bool>> cuts_;
   std::vector<Doubt> doubts_;
   std::set<int> questioned_;
   std::vector<Matrix6d> covariance_;

@@ -82,10 +82,9 @@ class DecisionJudge {
     local.target_from_source =
         to_local(start.target_from_source, from.local_origin, digest(target_node).local_origin);
     const Rigid3 pose = inverse(target.frame_from_node) * source.frame_from_node;
-    const StartMiss miss = miss_of_start(local, pose, from.middle);
-    const bool refuted = StartAgreement{miss.shift_m, miss.turn_rad, miss.sigmas}.refuted();
-    stated.state = refuted ? DecisionState::contradicted : DecisionState::kept;
-    if (refuted)
+    const StartAgreement miss = miss_of_start(local, pose, from.middle);
+    stated.state = miss.refuted() ? DecisionState::contradicted : DecisionState::kept;
+    if (miss.refuted())
       stated.reason = fmt::format("the scans fit elsewhere, {:.1f} m and {:.0f} deg off", miss.shift_m,
                                   degrees(miss.turn_rad));
   }

@@ -28,8 +28,8 @@ void StartPrior::check() const {
   if (!(trust > 0 && trust < 1)) throw_bad_option("trust", trust, "within (0, 1)");
 }
 
-StartMiss miss_of_start(const StartPrior& start, const Rigid3& pose, const Vector3d& at) {
-  StartMiss miss;
+StartAgreement miss_of_start(const StartPrior& start, const Rigid3& pose, const Vector3d& at) {
+  StartAgreement miss;
   miss.shift_m = (pose * at - start.target_from_source * at).norm();
   miss.turn_rad = rotation_angle(start.target_from_source.rotation.transpose() * pose.rotation);
   miss.sigmas = std::max(miss.shift_m / start.sigma_m, miss.turn_rad / start.sigma_rad);
@@ -38,7 +38,7 @@ StartMiss miss_of_start(const StartPrior& start, const Rigid3& pose, const Vecto
 
 double log_prior_of_start(const StartPrior& start, const Rigid3& pose, const Vector3d& at, bool upright,
                           double most) {
-  const StartMiss miss = miss_of_start(start, pose, at);
+  const StartAgreement miss = miss_of_start(start, pose, at);
   const double shifts = miss.shift_m / start.sigma_m;
   const double turns = miss.turn_rad / start.sigma_rad;
   // Over all headings 2 pi, over all turns 8 pi^2. A belief wider than the search says nothing.

@@ -2,19 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "limen/model/result.h"
 #include "limen/register/options/pair_options.h"
 
 namespace limen {
 
-/// How far a pose is from the one believed.
-struct StartMiss {
-  double shift_m = 0.0;
-  double turn_rad = 0.0;
-  double sigmas = 0.0;  ///< the larger of both, in standard deviations
-};
-
-/// `at`: a point of the source in the middle of what it saw.
-StartMiss miss_of_start(const StartPrior& start, const Rigid3& pose, const Vector3d& at);
+/// How far a pose is from the one believed. `at`: a point of the source in the middle of what it saw.
+StartAgreement miss_of_start(const StartPrior& start, const Rigid3& pose, const Vector3d& at);
 
 /// By how much a belief makes a pose more probable than it is without one: the logarithm of its density over
 /// the even one in the space that is searched (40 x 40 x 10 m, all headings where `upright`, else all turns).

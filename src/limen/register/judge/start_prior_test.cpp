@@ -32,7 +32,7 @@ Rigid3 moved(const Rigid3& pose, double by_m, double turn_deg = 0.0) {
 
 TEST(StartPrior, MissIsStatedAtThePointAsked) {
   const StartPrior start = belief(2.0, 5.0);
-  const StartMiss miss = miss_of_start(start, moved(start.target_from_source, 1.0, 10.0), kAt);
+  const StartAgreement miss = miss_of_start(start, moved(start.target_from_source, 1.0, 10.0), kAt);
   EXPECT_NEAR(miss.shift_m, 1.0, 1e-9);
   EXPECT_NEAR(degrees(miss.turn_rad), 10.0, 1e-9);
   EXPECT_NEAR(miss.sigmas, 2.0, 1e-9);
