@@ -153,12 +153,12 @@ class Rows {
     const auto start = std::chrono::steady_clock::now();
     const CommonSurfaces surfaces =
         common_surfaces(source, BuiltPlanes(source), target, BuiltPlanes(target), pose);
-    const double nats = as_built_nats(surfaces.all);
+    const double nats = built_nats(built_evidence(surfaces.all), bends_beforehand(0.0));
     const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
     const IndividualMatter matter = individual_matter(source, target, pose);
     TwinEvidence said = weigh_twin(matter);
     const double after = probability_of(said);
-    said.built_nats = 0.0;
+    said.built = {};
     std::string list;
     for (const CommonSurface& one : surfaces.all)
       list += fmt::format("{}[{:.2f},{:.3f},{:.3f},{:.2f},{:.3f},{:.3f},{:.2f}]", list.empty() ? "" : ",",

@@ -2,7 +2,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+#include <cstddef>
+
 namespace limen {
+
+/// Amounts by which scans may be bent within themselves (register/judge/as_built.h); the last is so large
+/// that walls say nothing.
+inline constexpr std::size_t kBendLevels = 7;
+
+/// What was seen of how surfaces were built, for each of these amounts: logarithms of its density.
+struct BuiltEvidence {
+  std::array<double, kBendLevels> one{};   ///< if the scans show one place ...
+  std::array<double, kBendLevels> twin{};  ///< ... and if they show two that were built alike
+};
 
 /// What two scans say of whether they show one place or two that look alike (register/judge/twin_odds.h). The
 /// odds beforehand are of a place. All else is of the scans: over several pairs it adds up.
@@ -11,7 +24,7 @@ struct TwinEvidence {
   double alike = 0.0;           ///< ... and of one that is furnished alike
   double otherwise_nats = 0.0;  ///< of things against the first (natural logarithm)
   double alike_nats = 0.0;      ///< of the faces of things against the second
-  double built_nats = 0.0;      ///< of how surfaces were built against either, if no scan is bent
+  BuiltEvidence built{};        ///< of how surfaces were built against either
   double things = 0.0;          ///< observations of things ...
   double agreeing = 0.0;        ///< ... and how many of them agree
 };

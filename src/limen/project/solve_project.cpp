@@ -21,7 +21,8 @@ ProjectResult solve_project(const std::vector<Scan>& scans, Monitor& monitor) {
     write_ply(path, scan);
     inputs.scans.push_back(path.string());
   }
-  ProjectResult result = run_project(inputs, folder.path(), {}, monitor);
+  const ProjectOptions options;
+  ProjectResult result = run_project(inputs, folder.path(), options, monitor);
   for (ProjectScan& scan : result.scans) scan.file = std::filesystem::path(scan.file).stem().string();
   return result;
 }

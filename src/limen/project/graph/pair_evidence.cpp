@@ -33,7 +33,8 @@ double PairEvidence::odds_of_twin() const {
   return looks_for_twins ? odds_of(twins) : 0.0;
 }
 
-void LookAlikeSum::add(const PairEvidence& evidence, double of_things, double of_surface) {
+void LookAlikeSum::add(const PairEvidence& evidence, double of_things, double of_surface,
+                       const BendBelief& bends) {
   const auto bounded = [](double nats) { return std::clamp(nats, -kMostPairNats, kMostPairNats); };
   if (!evidence.looks_for_twins) {
     sum_.otherwise_nats += of_surface * evidence.chance_nats;
@@ -42,7 +43,7 @@ void LookAlikeSum::add(const PairEvidence& evidence, double of_things, double of
   }
   sum_.otherwise_nats += of_things * bounded(evidence.twins.otherwise_nats);
   sum_.alike_nats += of_things * bounded(evidence.twins.alike_nats);
-  sum_.built_nats += of_surface * bounded(evidence.twins.built_nats);
+  built_nats_ += of_surface * bounded(built_nats(evidence.twins.built, bends));
   sum_.things += of_things * evidence.twins.things;
   sum_.agreeing += of_things * evidence.twins.agreeing;
 }

@@ -5,6 +5,7 @@
 #include <cstddef>
 
 #include "limen/project/graph/pose_graph.h"
+#include "limen/register/judge/as_built.h"
 #include "limen/register/judge/twin_odds.h"
 
 namespace limen {
@@ -30,22 +31,19 @@ struct PairEvidence {
 /// (benchmarks/calibration): a single pair is trusted to one in ten thousand.
 inline constexpr double kMostPairNats = 9.2;
 
-/// What several pairs say together against look-alike places. How many of its things are its own and whether
-/// scans are bent are questions for all of them at once.
+/// What several pairs say together against look-alike places. How many of its things are its own is a
+/// question for all of them at once.
 class LookAlikeSum {
  public:
   /// Shares of what the pair shows that count for it (SharedViews): of things, and of the building's surface.
-  void add(const PairEvidence& evidence, double of_things = 1.0, double of_surface = 1.0);
-  /// `bent`: probability that the scans are bent within themselves.
-  [[nodiscard]] double against_otherwise(double bent = evidence_table::kBent) const {
-    return limen::against_otherwise(sum_, bent);
-  }
-  [[nodiscard]] double against_alike(double bent = evidence_table::kBent) const {
-    return limen::against_alike(sum_, bent);
-  }
+  void add(const PairEvidence& evidence, double of_things = 1.0, double of_surface = 1.0,
+           const BendBelief& bends = bends_beforehand());
+  [[nodiscard]] double against_otherwise() const { return limen::against_otherwise(sum_) + built_nats_; }
+  [[nodiscard]] double against_alike() const { return limen::against_alike(sum_) + built_nats_; }
 
  private:
-  TwinEvidence sum_;
+  TwinEvidence sum_;  ///< of things
+  double built_nats_ = 0.0;
 };
 
 /// Of a pose of a link.

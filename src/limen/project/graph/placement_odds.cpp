@@ -9,31 +9,12 @@
 
 #include "limen/base/progress.h"
 #include "limen/project/graph/weakest_cut.h"
-#include "limen/register/judge/evidence_table.h"
 
 namespace limen {
 namespace {
 
 constexpr double kLeastSurfaceM2 = 1e-3;  // of a pair that shares none: a given pose has a weight too
 constexpr double kHardlyFresh = 0.05;     // share of a pair's surface that no other shows
-
-/// That the scans are bent within themselves. One sensor took all scans of a project, so all of them show it,
-/// each by the pair that sees most of its surface.
-double probability_of_bent(int nodes, const std::vector<PlacedPair>& pairs) {
-  std::vector<std::size_t> most(static_cast<std::size_t>(nodes), pairs.size());
-  for (std::size_t k = 0; k < pairs.size(); ++k) {
-    const PlacedPair& pair = pairs[k];
-    if (pair.link < 0 || !pair.evidence.looks_for_twins) continue;
-    for (const int node : {pair.source, pair.target}) {
-      std::size_t& known = most[static_cast<std::size_t>(node)];
-      if (known == pairs.size() || pair.shared_m2 > pairs[known].shared_m2) known = k;
-    }
-  }
-  double straight_nats = std::log(1.0 / evidence_table::kBent - 1.0);
-  for (const std::size_t k : std::set<std::size_t>(most.begin(), most.end()))
-    if (k < pairs.size()) straight_nats += pairs[k].evidence.twins.built_nats;
-  return std::max(evidence_table::kBent, 1.0 / (1.0 + std::exp(straight_nats)));
-}
 
 }  // namespace
 
@@ -42,7 +23,7 @@ PlacementOdds::PlacementOdds(int nodes, std::vector<PlacedPair> pairs, const std
       pairs_(std::move(pairs)),
       views_(nodes, pairs_),
       rate_(nodes, pairs_, unused),
-      bent_(probability_of_bent(nodes, pairs_)) {}
+      bends_(nodes, pairs_) {}
 
 double PlacementOdds::odds_of_look_alike(const std::vector<const PlacedPair*>& across,
                                          const std::vector<bool>& side) const {
@@ -56,20 +37,21 @@ double PlacementOdds::odds_of_look_alike(const std::vector<const PlacedPair*>& a
   }
   const std::vector<double> of_surface = views_.shares(across, side, surface);
   const std::vector<double> of_things = views_.shares(across, side, things);
+  const BendBelief bends = bends_.without(side);
   LookAlikeSum against;
   double otherwise = 0.0;
   double alike = 0.0;
   bool believed = false;  // once, as little as any pair believes it
   for (std::size_t k = 0; k < across.size(); ++k) {
     const PairEvidence& evidence = across[k]->evidence;
-    against.add(evidence, of_things[k], of_surface[k]);
+    against.add(evidence, of_things[k], of_surface[k], bends);
     if (across[k]->link < 0 || !evidence.looks_for_twins) continue;
     otherwise = believed ? std::min(otherwise, evidence.twins.otherwise) : evidence.twins.otherwise;
     alike = believed ? std::min(alike, evidence.twins.alike) : evidence.twins.alike;
     believed = true;
   }
-  return rate_.factor(side) * (otherwise * std::exp(-against.against_otherwise(bent_)) +
-                               alike * std::exp(-against.against_alike(bent_)));
+  return rate_.factor(side) *
+         (otherwise * std::exp(-against.against_otherwise()) + alike * std::exp(-against.against_alike()));
 }
 
 double PlacementOdds::log_odds_of_chance(std::vector<const PlacedPair*> across, const std::vector<bool>& side,

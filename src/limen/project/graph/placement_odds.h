@@ -23,7 +23,7 @@ struct SideOdds {
 ///
 /// Look-alike places: that there is one is believed once for a side, as often as it happens in this building
 /// (look_alike_rate.h). What things and walls say against it adds up over the pairs across; those that show
-/// the same count once together. Whether scans are bent is learned from all pairs. Chance: pairs
+/// the same count once together. By how much scans are bent is learned from the other pairs. Chance: pairs
 /// err independently as far as they show different surface, and wrong poses agree with one another seldom.
 class PlacementOdds {
  public:
@@ -52,7 +52,7 @@ class PlacementOdds {
   std::vector<PlacedPair> pairs_;
   SharedViews views_;
   LookAlikeRate rate_;
-  double bent_;  ///< probability that the scans are bent within themselves
+  LearnedBends bends_;
   std::map<std::vector<bool>, SideOdds> known_;
 };
 

@@ -89,18 +89,25 @@ TEST(PlacementOdds, TheOrderOfPairsDoesNotCount) {
   EXPECT_LT(PlacementOdds(3, equal).of(alone).twin, odds);
 }
 
-/// What a bent scan says of how walls were built is no evidence; that scans are bent all of them show.
-TEST(PlacementOdds, WhetherScansAreBentIsLearnedFromAllOfThem) {
-  const auto odds = [](double built_of_others, double built) {
+/// What bent scans show of how walls were built is no evidence; by how much they are bent the others show.
+TEST(PlacementOdds, ByHowMuchScansAreBentIsLearnedFromTheOthers) {
+  // Scans of an exact sensor, and of one that bends: how well the walls fit one place by amounts of bends.
+  BuiltEvidence exact;
+  exact.one = {20.0, 10.0, 5.0, 0.0, 0.0, 0.0, 4.0};
+  BuiltEvidence bending;
+  bending.one = {-40.0, -30.0, -20.0, -10.0, -1.0, 0.0, -8.0};
+  BuiltEvidence against = bending;  // by an exact sensor the last pair is of two places
+  against.twin = {-36.0, -26.0, -17.0, -8.0, -1.0, 0.0, -8.0};
+  const auto odds = [](const BuiltEvidence& others, const BuiltEvidence& last) {
     std::vector<PlacedPair> pairs;
     for (int n = 1; n < 10; ++n) {
       pairs.push_back(pair(n, n - 1, 9.0, 4.0, 4.0, n));
-      pairs.back().evidence.twins.built_nats = n == 9 ? built : built_of_others;
+      pairs.back().evidence.twins.built = n == 9 ? last : others;
     }
     return PlacementOdds(10, pairs).of(side({9}, 10)).twin;
   };
-  EXPECT_GT(odds(2.0, -2.0), 3.0 * odds(2.0, 0.0));
-  EXPECT_NEAR(odds(-2.0, -2.0), odds(-2.0, 0.0), 0.01 * odds(-2.0, 0.0));
+  EXPECT_NEAR(odds(bending, against), odds(bending, {}), 0.02 * odds(bending, {}));
+  EXPECT_LT(odds(exact, exact), 0.01 * odds(exact, {}));
 }
 
 /// A storey that hangs on one staircase is one side.

@@ -108,17 +108,21 @@ PoseSigma get_sigma(ByteReader& reader) {
 void put_twin(ByteWriter& writer, const std::optional<TwinEvidence>& said) {
   writer.put(said.has_value());
   const TwinEvidence twin = said.value_or(TwinEvidence{});
-  for (const double stated : {twin.otherwise, twin.alike, twin.otherwise_nats, twin.alike_nats,
-                              twin.built_nats, twin.things, twin.agreeing})
+  for (const double stated :
+       {twin.otherwise, twin.alike, twin.otherwise_nats, twin.alike_nats, twin.things, twin.agreeing})
     writer.put(stated);
+  for (const auto& levels : {twin.built.one, twin.built.twin})
+    for (const double log : levels) writer.put(log);
 }
 
 std::optional<TwinEvidence> get_twin(ByteReader& reader) {
   const bool asked = reader.get<bool>();
   TwinEvidence twin;
-  for (double* value : {&twin.otherwise, &twin.alike, &twin.otherwise_nats, &twin.alike_nats,
-                        &twin.built_nats, &twin.things, &twin.agreeing})
+  for (double* value :
+       {&twin.otherwise, &twin.alike, &twin.otherwise_nats, &twin.alike_nats, &twin.things, &twin.agreeing})
     reader.get(*value);
+  for (auto* levels : {&twin.built.one, &twin.built.twin})
+    for (double& log : *levels) reader.get(log);
   return asked ? std::optional(twin) : std::nullopt;
 }
 

@@ -93,19 +93,19 @@ double slope_of(const BuiltBend& bend, double length_m) {
   return 2.0 * bend.offset_m / length_m;
 }
 
-}  // namespace
+// What is believed of buildings beforehand. scripts/fit_evidence ROWS.jsonl, of four buildings: of two real
+// ones and of two of another simulator. Exactly as drawn stand simulated ones only: 0.1 is presumed.
+constexpr std::array<BuiltQuality, 6> kQualities = {{{0.100, 0.0, 0.0},
+                                                     {0.214, 0.001, radians(0.05)},
+                                                     {0.214, 0.002, radians(0.1)},
+                                                     {0.386, 0.004, radians(0.2)},
+                                                     {0.043, 0.008, radians(0.4)},
+                                                     {0.043, 0.012, radians(0.6)}}};
+constexpr std::array<BuiltBend, kBendLevels - 1> kBends = {
+    {{0.461, 0.0003}, {0.175, 0.001}, {0.046, 0.002}, {0.060, 0.004}, {0.145, 0.008}, {0.113, 0.016}}};
+constexpr double kStraySurface = 0.05;  // share of the surfaces that are of two things, or were moved
 
-// scripts/fit_evidence ROWS.jsonl, of four buildings: of two real ones and of two of another simulator.
-// Exactly as drawn stand simulated ones only: 0.1 is presumed.
-AsBuiltBelief::AsBuiltBelief()
-    : qualities{{0.100, 0.0, 0.0},
-                {0.214, 0.001, radians(0.05)},
-                {0.214, 0.002, radians(0.1)},
-                {0.386, 0.004, radians(0.2)},
-                {0.043, 0.008, radians(0.4)},
-                {0.043, 0.012, radians(0.6)}},
-      bends{{0.461, 0.0003}, {0.175, 0.001}, {0.046, 0.002}, {0.060, 0.004}, {0.145, 0.008}, {0.113, 0.016}} {
-}
+}  // namespace
 
 AsBuiltDensity::AsBuiltDensity(std::span<const CommonSurface> surfaces, double stray)
     : surfaces_(surfaces.begin(), surfaces.end()), stray_(stray) {
@@ -194,20 +194,44 @@ double AsBuiltDensity::of_twin(const BuiltQuality& quality, const BuiltBend& ben
   return apart(quality, bend, which.get()) + askew(quality, bend, which.get());
 }
 
-double as_built_nats(std::span<const CommonSurface> surfaces, const AsBuiltBelief& belief) {
-  const AsBuiltDensity density(surfaces, belief.stray);
-  if (!density.knows_square()) return 0.0;
-  std::vector<double> one;
-  std::vector<double> twin;
-  for (const BuiltQuality& quality : belief.qualities) {
-    for (const BuiltBend& bend : belief.bends) {
-      const double weight = std::log(quality.weight * bend.weight);
-      one.push_back(weight + density.of_one_place(quality, bend));
+BuiltEvidence built_evidence(std::span<const CommonSurface> surfaces) {
+  BuiltEvidence evidence;
+  const AsBuiltDensity density(surfaces, kStraySurface);
+  if (!density.knows_square()) return evidence;
+  std::array<double, kBends.size()> twins{};
+  for (std::size_t j = 0; j < kBends.size(); ++j) {
+    std::vector<double> one;
+    std::vector<double> twin;
+    for (const BuiltQuality& quality : kQualities) {
+      const double weight = std::log(quality.weight);
+      one.push_back(weight + density.of_one_place(quality, kBends[j]));
       for (const GoingOn same : kGoingOn)
-        twin.push_back(weight - std::log(kGoingOn.size()) + density.of_twin(quality, bend, same));
+        twin.push_back(weight - std::log(kGoingOn.size()) + density.of_twin(quality, kBends[j], same));
     }
+    evidence.one[j] = log_sum_exp(one);
+    evidence.twin[j] = log_sum_exp(twin);
+    twins[j] = std::log(kBends[j].weight) + evidence.twin[j];
   }
-  return log_sum_exp(one) - log_sum_exp(twin);
+  evidence.one.back() = evidence.twin.back() = log_sum_exp(twins);
+  return evidence;
+}
+
+BendBelief bends_beforehand(double bent) {
+  BendBelief belief{};
+  double sum = 0.0;
+  for (const BuiltBend& bend : kBends) sum += bend.weight;
+  for (std::size_t j = 0; j < kBends.size(); ++j) belief[j] = (1.0 - bent) * kBends[j].weight / sum;
+  belief.back() = bent;
+  return belief;
+}
+
+double built_nats(const BuiltEvidence& evidence, const BendBelief& belief) {
+  BuiltEvidence logs = evidence;
+  for (std::size_t j = 0; j < kBendLevels; ++j) {
+    logs.one[j] += std::log(belief[j]);
+    logs.twin[j] += std::log(belief[j]);
+  }
+  return log_sum_exp(logs.one) - log_sum_exp(logs.twin);
 }
 
 }  // namespace limen

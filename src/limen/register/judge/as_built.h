@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "limen/geometry/linear.h"
+#include "limen/model/twin_evidence.h"
+#include "limen/register/judge/evidence_table.h"
 
 namespace limen {
 
@@ -39,15 +41,6 @@ struct BuiltBend {
   double offset_m = 0.0;
 };
 
-/// What is believed of buildings beforehand; scripts/fit_evidence estimates it.
-struct AsBuiltBelief {
-  std::vector<BuiltQuality> qualities;
-  std::vector<BuiltBend> bends;
-  double stray = 0.05;  ///< share of the surfaces that are of two things, or were moved
-
-  AsBuiltBelief();
-};
-
 /// Which surfaces of a place built alike are the very same ones going on: a row of equal bays has one floor
 /// and one façade.
 enum class GoingOn { none, slabs, along_first, along_second };
@@ -76,11 +69,19 @@ class AsBuiltDensity {
 };
 
 /// No two rooms are equal to the millimetre: walls are drawn square, plumb and alike, and built some
-/// millimetres and minutes of arc off, each in its own way. By how much what two scans saw of the building's
-/// surfaces supports one place, natural logarithm; negative: for a place built alike. The pose has been
-/// fitted to these very surfaces: its six freedoms are integrated out in either explanation. How well the
-/// building is built is shown by its own walls, so that one that is exactly as drawn (a simulated one) says
-/// nothing.
-double as_built_nats(std::span<const CommonSurface> surfaces, const AsBuiltBelief& belief = {});
+/// millimetres and minutes of arc off, each in its own way. How well what two scans saw of the building's
+/// surfaces fits one place, and a place built alike. The pose has been fitted to these very surfaces: its six
+/// freedoms are integrated out in either explanation. How well the building is built is shown by its own
+/// walls, so that one that is exactly as drawn (a simulated one) says nothing.
+BuiltEvidence built_evidence(std::span<const CommonSurface> surfaces);
+
+/// Probabilities of the amounts by which the scans of a pair are bent; the sum is 1.
+using BendBelief = std::array<double, kBendLevels>;
+
+/// What is believed of pairs of any sensor. `bent`: probability that walls say nothing.
+BendBelief bends_beforehand(double bent = evidence_table::kBent);
+
+/// Nats for one place against one built alike.
+double built_nats(const BuiltEvidence& evidence, const BendBelief& belief = bends_beforehand());
 
 }  // namespace limen

@@ -61,6 +61,10 @@ std::vector<CommonSurface> seen(const Made& made, std::uint64_t seed) {
   return surfaces;
 }
 
+double as_built_nats(const std::vector<CommonSurface>& surfaces) {
+  return built_nats(built_evidence(surfaces), bends_beforehand(0.0));
+}
+
 double least_of(const Made& made) {
   double least = 1e9;
   for (std::uint64_t seed = 1; seed <= 10; ++seed) least = std::min(least, as_built_nats(seen(made, seed)));

@@ -62,8 +62,9 @@ inline constexpr double kOtherwise = 0.755;        ///< ... that is furnished ot
 inline constexpr double kOtherwiseApart = 0.0544;  ///< the same where a wall is between the stations,
 inline constexpr double kAlike = 0.00505;          ///< and one that is furnished alike.
 inline constexpr double kRateStrength = 0.871;     ///< how well their share in a building is known, in scans
-inline constexpr double kInPair = 0.1;   ///< share of them whose other place the same two scans show
-inline constexpr double kBuilt = 2.16;   ///< weight of how surfaces were built, against chance
-inline constexpr double kBent = 0.0964;  ///< share of pairs whose scans are bent within themselves
+inline constexpr double kInPair = 0.1;         ///< share of them whose other place the same two scans show
+inline constexpr double kBuilt = 2.16;         ///< weight of how surfaces were built, against chance
+inline constexpr double kBent = 0.0964;        ///< share of pairs whose scans are bent within themselves
+inline constexpr double kBendStrength = 0.45;  ///< how well shares of bends are known in a project, in scans
 
 }  // namespace limen::evidence_table

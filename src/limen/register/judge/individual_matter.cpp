@@ -273,7 +273,7 @@ IndividualMatter MatterAsker::operator()(const Rigid3& target_from_source) const
                      wall_between(target, source, inverse(target_from_source));
   const CommonSurfaces surfaces =
       common_surfaces(source.view, source.built, target.view, target.built, target_from_source);
-  individual.built_nats = as_built_nats(surfaces.all);
+  individual.built = built_evidence(surfaces.all);
   individual.faces = face_offsets(source, target, target_from_source, surfaces.scatter_m);
   return individual;
 }

@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "limen/model/twin_evidence.h"
 #include "limen/register/prepare/scan_view.h"
 
 namespace limen {
@@ -41,8 +42,7 @@ struct IndividualMatter {
   double chance = 0.0;
   /// A wall is between the two stations: what they have in common is seen through an opening.
   bool apart = false;
-  /// What the building's surfaces, built as they are, say against a twin (as_built_nats).
-  double built_nats = 0.0;
+  BuiltEvidence built{};
 };
 
 /// Asks each scan about the other's individual matter under poses (upright frames): pieces of surface on no

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "limen/base/text.h"
+#include "limen/register/judge/as_built.h"
 #include "limen/register/judge/evidence_table.h"
 #include "limen/register/judge/model_odds.h"
 #include "limen/register/judge/twin_odds.h"
@@ -85,7 +86,7 @@ class Weighing {
   [[nodiscard]] double against_chance(std::size_t pose) {
     if (!questions_.things) return against_chance_[pose];
     return against_chance_[pose] + things(pose).otherwise_nats +
-           evidence_table::kBuilt * built_nats(things(pose));
+           evidence_table::kBuilt * built_nats(things(pose).built);
   }
   /// Whether a pose may be right: of the many that are refined in a model those that exceed chance, and the
   /// best.

@@ -122,7 +122,7 @@ TEST(Posterior, ALookAlikePlaceIsExcludedByThingsAndByHowSurfacesWereBuilt) {
   EXPECT_GT(weighed({pose(40)}, {things(9)}).best(), 0.99);
   EXPECT_LT(weighed({pose(40)}, {things(-4)}).best(), 0.02);
   TwinEvidence built;
-  built.built_nats = 9.0;
+  built.built.one.fill(9.0);
   EXPECT_GT(weighed({pose(40)}, {built}).best(), 0.999);
 }
 

@@ -14,6 +14,7 @@
 
 #include "limen/base/error.h"
 #include "limen/base/text.h"
+#include "limen/register/judge/as_built.h"
 
 namespace limen {
 namespace {
@@ -190,25 +191,21 @@ TwinEvidence weigh_twin(const IndividualMatter& individual, const TwinOptions& o
   const double same = log_likelihood(individual, one_room());
   evidence.otherwise_nats = same - log_likelihood_of_chance(individual);
   evidence.alike_nats = same - log_likelihood(individual, furnished_alike());
-  evidence.built_nats = individual.built_nats;
+  evidence.built = individual.built;
   evidence.things = individual.matter.count;
   evidence.agreeing = individual.matter.agreeing();
   return evidence;
 }
 
-double built_nats(const TwinEvidence& evidence, double bent) {
-  return log_sum_exp({std::log1p(-bent) + evidence.built_nats, std::log(bent)});
+double against_otherwise(const TwinEvidence& evidence) {
+  return evidence.otherwise_nats + built_nats(evidence.built);
 }
 
-double against_otherwise(const TwinEvidence& evidence, double bent) {
-  return evidence.otherwise_nats + built_nats(evidence, bent);
-}
-
-double against_alike(const TwinEvidence& evidence, double bent) {
+double against_alike(const TwinEvidence& evidence) {
   const double other = evidence.things - evidence.agreeing;
   const double own = log_beta_binomial(evidence.agreeing, other, kFurniture.stayed) -
                      log_beta_binomial(evidence.agreeing, other, kFurniture.alike);
-  return evidence.alike_nats + std::min(0.0, own) + built_nats(evidence, bent);
+  return evidence.alike_nats + std::min(0.0, own) + built_nats(evidence.built);
 }
 
 double odds_of(const TwinEvidence& evidence) {

@@ -28,15 +28,12 @@ TwinOptions twin_options(bool nothing_repeats);
 /// evidence_table::kFurniture its numbers. Without observations there is no evidence for or against any.
 TwinEvidence weigh_twin(const IndividualMatter& individual, const TwinOptions& options = {});
 
-/// Nats of how surfaces were built. Scans of some sensors are bent within themselves, and theirs says
-/// nothing: `bent` is the probability of that.
-double built_nats(const TwinEvidence& evidence, double bent = evidence_table::kBent);
 /// Nats against a look-alike place that is furnished otherwise.
-double against_otherwise(const TwinEvidence& evidence, double bent = evidence_table::kBent);
+double against_otherwise(const TwinEvidence& evidence);
 /// Nats against one that is furnished alike. How many of its things are its own is not known: it is given the
 /// better of two shares. So things that agree never exclude it, only faces that agree better than hands put
 /// them.
-double against_alike(const TwinEvidence& evidence, double bent = evidence_table::kBent);
+double against_alike(const TwinEvidence& evidence);
 
 /// Odds of a look-alike place of either kind.
 double odds_of(const TwinEvidence& evidence);
