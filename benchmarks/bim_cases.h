@@ -22,7 +22,7 @@
 #include "limen/bim/read_bim.h"
 #include "limen/model/result.h"
 #include "limen/register/register.h"
-#include "limen/simulate/model/bim_office.h"
+#include "limen/simulate/model/bim_recipe.h"
 #include "limen/simulate/model/bim_scene.h"
 
 namespace limen::bim_cases {

@@ -19,7 +19,7 @@
 #include <CLI/CLI.hpp>
 
 #include "limen/base/angles.h"
-#include "limen/io/ply/write_ply.h"
+#include "limen/io/ply/ply.h"
 #include "limen/register/prepare/prepared_pair.h"
 #include "limen/register/register.h"
 

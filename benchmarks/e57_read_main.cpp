@@ -17,7 +17,7 @@
 
 #include "limen/base/parallel.h"
 #include "limen/files/mapped_file.h"
-#include "limen/io/e57/read_e57.h"
+#include "limen/io/e57/e57.h"
 
 namespace {
 

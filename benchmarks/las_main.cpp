@@ -23,8 +23,8 @@
 
 #include "limen/base/parallel.h"
 #include "limen/files/mapped_file.h"
+#include "limen/io/las/las.h"
 #include "limen/io/las/las_records.h"
-#include "limen/io/las/read_las.h"
 #include "limen/io/table/scan_builder.h"
 
 namespace {

@@ -20,7 +20,6 @@
 #include "limen/simulate/scanner/station_scan.h"
 #include "limen/simulate/whole/building_scanner.h"
 #include "limen/simulate/whole/project_truth.h"
-#include "limen/simulate/whole/scan_style.h"
 #include "limen/simulate/whole/survey.h"
 #include "limen/simulate/whole/whole_building.h"
 

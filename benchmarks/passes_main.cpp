@@ -18,7 +18,7 @@
 
 #include "limen/geometry/linear.h"
 #include "limen/geometry/spline_motion.h"
-#include "limen/io/ply/write_ply.h"
+#include "limen/io/ply/ply.h"
 #include "limen/project/project.h"
 #include "limen/simulate/whole/project_scene.h"
 

@@ -19,7 +19,7 @@
 #include <sys/wait.h>
 
 #include "limen/base/parallel.h"
-#include "limen/io/cloud/cloud_writers.h"
+#include "limen/io/cloud/write_clouds.h"
 
 namespace {
 

@@ -16,7 +16,7 @@ function(as_literals out)
 endfunction()
 
 if(PAGES STREQUAL "serve")
-  set(header limen/cli/serve/serve_page.h)
+  set(header limen/cli/serve/site.h)
 else()
   set(header limen/report/html/report_page.h)
 endif()

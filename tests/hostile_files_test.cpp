@@ -19,7 +19,7 @@
 #include <sys/resource.h>
 #include <sys/stat.h>
 
-#include "limen/files/zip_writer.h"
+#include "limen/files/zip.h"
 
 namespace limen {
 namespace {

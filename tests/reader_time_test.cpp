@@ -14,7 +14,7 @@
 
 #include "limen/base/error.h"
 #include "limen/base/progress.h"
-#include "limen/bim/ifc/ifc_extract.h"
+#include "limen/bim/ifc/ifc4x3.h"
 #include "limen/bim/ifc/ifc_structure.h"
 #include "limen/bim/ifc/step_file.h"
 

@@ -18,8 +18,8 @@
 
 #include "limen/base/random.h"
 #include "limen/geometry/random_vectors.h"
-#include "limen/io/cloud/cloud_writers.h"
 #include "limen/io/cloud/read_scan.h"
+#include "limen/io/cloud/write_clouds.h"
 #include "limen/io/crs/proj_library.h"
 #include "limen/io/trajectory/write_sbet.h"
 #include "limen/simulate/recipes.h"

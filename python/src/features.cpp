@@ -12,7 +12,6 @@
 #include "limen/extract/openings/openings.h"
 #include "limen/extract/segments/segments.h"
 #include "limen/report/json/features_json.h"
-#include "limen/report/json/segments_json.h"
 
 namespace limen::python {
 namespace {

@@ -14,7 +14,7 @@
 #include "limen/io/cloud/transform_cloud.h"
 #include "limen/io/cloud/write_clouds.h"
 #include "limen/io/table/scan_builder.h"
-#include "limen/io/ply/write_ply.h"
+#include "limen/io/ply/ply.h"
 
 namespace limen::python {
 

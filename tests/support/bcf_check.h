@@ -14,7 +14,7 @@
 
 #include <pugixml.hpp>
 
-#include "limen/files/zip_member.h"
+#include "limen/files/zip.h"
 
 namespace limen {
 

@@ -11,9 +11,9 @@
 #include "support/test_support.h"
 
 #include "limen/base/random.h"
+#include "limen/io/las/las.h"
 #include "limen/io/las/las_fields.h"
 #include "limen/io/las/las_records.h"
-#include "limen/io/las/read_las.h"
 
 /// LAS files made by hand, byte for byte as the specification has them.
 namespace limen::testing_las {

@@ -14,7 +14,6 @@
 #include <unistd.h>
 
 #include "limen/base/child_process.h"
-#include "limen/base/start_program.h"
 #include "limen/base/text.h"
 
 namespace limen {

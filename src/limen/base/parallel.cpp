@@ -11,7 +11,6 @@
 #include <thread>
 
 #include "limen/base/progress.h"
-#include "limen/base/run_both.h"
 #include "limen/base/system.h"
 
 namespace limen {

@@ -9,6 +9,11 @@
 
 namespace limen {
 
+/// Runs both, at once where there are two threads or more: `second` on a thread of its own. Parallel work
+/// within either takes the threads that the other leaves. The exception of `first` is rethrown, else that of
+/// `second`; both have ended by then. The second heeds the calling thread's CancelScope too.
+void run_both(const std::function<void()>& first, const std::function<void()>& second);
+
 /// Number of threads that parallel work uses (>= 1). The default is the machine's.
 int thread_count();
 /// Sets it for the process; 0 means the machine's. Results never depend on it.

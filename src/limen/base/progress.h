@@ -3,7 +3,12 @@
 #pragma once
 
 #include <atomic>
+#include <cstddef>
+#include <memory>
+#include <mutex>
+#include <numeric>
 #include <string_view>
+#include <vector>
 
 namespace limen {
 
@@ -59,5 +64,61 @@ class CancelScope {
 
 /// A monitor nobody listens to.
 Monitor& silent_monitor();
+
+/// One part of a stage, for work that counts its own progress from nothing to all: tells it to `whole` as the
+/// piece from `begin` to `end` of 1. Stages that begin within it are not shown. A cancelled `whole` cancels
+/// it at its next advance(); use it within a CancelScope of `whole`, which can be cancelled at any time.
+class StagePart : public Monitor {
+ public:
+  StagePart(Monitor& whole, double begin, double end) : whole_(whole), begin_(begin), end_(end) {
+    advance(0.0, 1.0);
+  }
+
+  void advance(double done, double total) override {
+    if (whole_.cancelled()) cancel();
+    if (total > 0.0) whole_.advance(begin_ + (end_ - begin_) * done / total, 1.0);
+  }
+
+ private:
+  Monitor& whole_;
+  double begin_;
+  double end_;
+};
+
+/// One stage's progress that several workers make at once: what each tells of its own share is added up.
+class StageShares {
+ public:
+  StageShares(Monitor& whole, std::size_t workers) : whole_(whole), done_(workers, 0.0) {
+    for (std::size_t k = 0; k < workers; ++k) workers_.push_back(std::make_unique<Worker>(*this, k));
+  }
+
+  /// The monitor of one worker; lives as long as this.
+  [[nodiscard]] Monitor& worker(std::size_t k) { return *workers_[k]; }
+
+ private:
+  class Worker : public Monitor {
+   public:
+    Worker(StageShares& all, std::size_t place) : all_(all), place_(place) {}
+    void advance(double done, double total) override {
+      if (all_.whole_.cancelled()) cancel();
+      if (total > 0.0) all_.advance(place_, done / total);
+    }
+
+   private:
+    StageShares& all_;
+    std::size_t place_;
+  };
+
+  void advance(std::size_t place, double share) {
+    const std::scoped_lock lock(mutex_);
+    done_[place] = share;
+    whole_.advance(std::accumulate(done_.begin(), done_.end(), 0.0), static_cast<double>(done_.size()));
+  }
+
+  Monitor& whole_;
+  std::mutex mutex_;
+  std::vector<double> done_;
+  std::vector<std::unique_ptr<Worker>> workers_;
+};
 
 }  // namespace limen

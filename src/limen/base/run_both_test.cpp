@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
-#include "limen/base/run_both.h"
-
 #include <atomic>
 #include <cstddef>
 #include <stdexcept>

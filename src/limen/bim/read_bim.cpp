@@ -10,10 +10,8 @@
 #include "limen/base/error.h"
 #include "limen/bim/build/bim_builder.h"
 #include "limen/bim/ifc/read_ifc.h"
-#include "limen/bim/mesh/read_mesh_ply.h"
-#include "limen/bim/mesh/read_obj.h"
+#include "limen/bim/mesh/read_mesh.h"
 #include "limen/files/mapped_file.h"
-#include "limen/files/vendor_format.h"
 
 namespace limen {
 namespace {

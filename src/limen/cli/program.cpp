@@ -21,29 +21,14 @@
 #include "limen/base/parallel.h"
 #include "limen/base/text.h"
 #include "limen/base/version.h"
-#include "limen/cli/commands/completion_command.h"
-#include "limen/cli/commands/deviation_command.h"
-#include "limen/cli/commands/evaluate_command.h"
-#include "limen/cli/commands/info_command.h"
-#include "limen/cli/commands/openings_command.h"
-#include "limen/cli/commands/planes_command.h"
-#include "limen/cli/commands/project_command.h"
-#include "limen/cli/commands/register_command.h"
-#include "limen/cli/commands/schema_command.h"
-#include "limen/cli/commands/segments_command.h"
-#include "limen/cli/commands/serve_command.h"
-#include "limen/cli/commands/thin_command.h"
-#include "limen/cli/commands/transform_command.h"
-#include "limen/cli/commands/transform_project.h"
-#include "limen/cli/commands/view_command.h"
+#include "limen/cli/commands/commands.h"
 #include "limen/cli/help/program_help.h"
 #include "limen/cli/terminal/command.h"
+#include "limen/cli/terminal/command_line.h"
 #include "limen/cli/terminal/console.h"
-#include "limen/cli/terminal/nearest_word.h"
 #include "limen/cli/terminal/terminal.h"
 
 #ifdef LIMEN_WITH_SIMULATOR
-#include "limen/cli/commands/simulate_command.h"
 #endif
 
 namespace limen {

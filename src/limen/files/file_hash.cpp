@@ -9,7 +9,6 @@
 
 #include "limen/base/error.h"
 #include "limen/base/text.h"
-#include "limen/files/sha256.h"
 
 namespace limen {
 namespace {

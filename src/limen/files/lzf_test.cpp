@@ -1,11 +1,10 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
-#include "limen/files/lzf.h"
-
 #include "support/test_support.h"
 #include <gtest/gtest.h>
 
 #include "limen/base/random.h"
+#include "limen/io/pcd/pcd_header.h"
 
 namespace limen {
 namespace {

@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
-#include "limen/files/readable.h"
-
 #include <cerrno>
 #include <string>
 
@@ -11,6 +9,7 @@
 
 #include "limen/base/error.h"
 #include "limen/base/text.h"
+#include "limen/files/mapped_file.h"
 
 namespace limen {
 namespace {

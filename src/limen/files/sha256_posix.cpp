@@ -3,7 +3,7 @@
 #include <openssl/evp.h>
 
 #include "limen/base/error.h"
-#include "limen/files/sha256.h"
+#include "limen/files/file_hash.h"
 
 namespace limen {
 

@@ -7,7 +7,7 @@
 // clang-format on
 
 #include "limen/base/error.h"
-#include "limen/files/sha256.h"
+#include "limen/files/file_hash.h"
 
 namespace limen {
 

@@ -8,7 +8,7 @@
 
 #include "limen/base/error.h"
 #include "limen/base/text.h"
-#include "limen/files/readable.h"
+#include "limen/files/mapped_file.h"
 
 namespace limen {
 namespace {

@@ -1,11 +1,9 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
-#include "limen/files/zip_writer.h"
-
 #include <gtest/gtest.h>
 
 #include "limen/base/error.h"
-#include "limen/files/zip_member.h"
+#include "limen/files/zip.h"
 
 namespace limen {
 namespace {

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "limen/base/scratch_folder.h"
-#include "limen/io/ply/write_ply.h"
+#include "limen/io/ply/ply.h"
 #include "limen/project/project.h"
 
 namespace limen {

@@ -3,17 +3,51 @@
 #include "limen/register/find_poses.h"
 
 #include <algorithm>
+#include <tuple>
 #include <utility>
 
 #include "limen/base/parallel.h"
 #include "limen/register/judge/evidence_table.h"
 #include "limen/register/judge/given_pose.h"
-#include "limen/register/judge/posterior.h"
 #include "limen/register/judge/start_prior.h"
 #include "limen/register/propose/propose.h"
-#include "limen/register/propose/select_poses.h"
 
 namespace limen {
+namespace {
+
+double seen_m2(const Features& features) {
+  double sum = 0.0;
+  for (const SurfaceSample& sample : features.samples) sum += static_cast<double>(sample.area_m2);
+  return sum;
+}
+
+/// What a side is ordered by before its single samples.
+auto rough_order(const PreparedScan& side) {
+  const Features& features = side.extracted.features;
+  return std::tuple(side.model, side.mobile, seen_m2(features), features.samples.size());
+}
+
+bool comes_before(const SurfaceSample& a, const SurfaceSample& b) {
+  return std::tuple(a.mean.x(), a.mean.y(), a.mean.z(), a.area_m2) <
+         std::tuple(b.mean.x(), b.mean.y(), b.mean.z(), b.area_m2);
+}
+
+}  // namespace
+
+bool is_work_order(const PreparedScan& source, const PreparedScan& target) {
+  const auto first = rough_order(source);
+  const auto second = rough_order(target);
+  if (first != second) return first < second;
+  const std::vector<SurfaceSample>& own = source.extracted.features.samples;
+  const std::vector<SurfaceSample>& others = target.extracted.features.samples;
+  return !std::lexicographical_compare(others.begin(), others.end(), own.begin(), own.end(), comes_before);
+}
+
+WorkedPair worked_pair(const PreparedPair& pair) {
+  if (is_work_order(pair.source, pair.target)) return {pair.source, pair.target, false};
+  return {pair.target, pair.source, true};
+}
+
 namespace {
 
 constexpr int kSettleSteps = 16;  // either way along a shift that the planes leave open

@@ -15,7 +15,7 @@
 #include "limen/register/judge/posterior.h"
 #include "limen/register/judge/start_prior.h"
 #include "limen/register/judge/twin_odds.h"
-#include "limen/register/prepare/model_rooms.h"
+#include "limen/register/prepare/prepare_model.h"
 #include "limen/register/published/register_published.h"
 #include "limen/register/refine/measure_thickness.h"
 

@@ -7,8 +7,7 @@
 
 #include "limen/base/error.h"
 #include "limen/base/parallel.h"
-#include "limen/base/run_both.h"
-#include "limen/base/stage_shares.h"
+#include "limen/base/progress.h"
 #include "limen/extract/model/sample_model.h"
 #include "limen/model/plausible_size.h"
 #include "limen/register/prepare/prepare_group.h"

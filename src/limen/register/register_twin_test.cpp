@@ -10,7 +10,7 @@
 #include "limen/register/judge/score_pose.h"
 #include "limen/register/prepare/prepare_scan.h"
 #include "limen/register/register.h"
-#include "limen/simulate/buildings/furniture.h"
+#include "limen/simulate/buildings/building.h"
 #include "limen/simulate/recipe_parts.h"
 #include "limen/simulate/scanner/ray_caster.h"
 #include "limen/simulate/scanner/station_scan.h"

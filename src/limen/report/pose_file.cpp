@@ -13,7 +13,7 @@
 
 #include "limen/base/error.h"
 #include "limen/files/bounded_json.h"
-#include "limen/files/readable.h"
+#include "limen/files/mapped_file.h"
 #include "limen/files/scan_in_file.h"
 #include "limen/report/json/json_values.h"
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limen/simulate/recipe_parts.h"
 
-#include "limen/simulate/buildings/furniture.h"
+#include "limen/simulate/buildings/building.h"
 
 namespace limen {
 namespace {

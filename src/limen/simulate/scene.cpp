@@ -9,7 +9,6 @@
 #include "limen/base/error.h"
 #include "limen/simulate/recipes.h"
 #include "limen/simulate/scanner/drift.h"
-#include "limen/simulate/scanner/shared_surface.h"
 #include "limen/simulate/scanner/station_scan.h"
 #include "limen/simulate/stations.h"
 

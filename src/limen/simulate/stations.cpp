@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "limen/base/error.h"
-#include "limen/simulate/buildings/furniture.h"
+#include "limen/simulate/buildings/building.h"
 
 namespace limen {
 namespace {

@@ -16,13 +16,12 @@
 #include "limen/base/error.h"
 #include "limen/base/text.h"
 #include "limen/bim/ifc/ifc4x3.h"
-#include "limen/bim/ifc/ifc_extract.h"
 #include "limen/bim/ifc/ifc_process.h"
 #include "limen/bim/ifc/ifc_stream.h"
 #include "limen/bim/ifc/ifc_structure.h"
 #include "limen/bim/ifc/ifc_types.h"
 #include "limen/bim/ifc/step_file.h"
-#include "limen/files/zip_member.h"
+#include "limen/files/zip.h"
 #include "limen/io/table/record_table.h"
 
 namespace limen {

@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
-#include "limen/bim/mesh/read_mesh_ply.h"
-
 #include <algorithm>
 #include <array>
 #include <functional>
@@ -13,6 +11,7 @@
 #include "limen/base/error.h"
 #include "limen/base/progress.h"
 #include "limen/base/text.h"
+#include "limen/bim/mesh/read_mesh.h"
 #include "limen/files/text_numbers.h"
 #include "limen/io/ply/ply_header.h"
 #include "limen/io/table/record_table.h"

@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
-#include "limen/bim/mesh/read_obj.h"
-
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -16,6 +14,7 @@
 #include "limen/base/progress.h"
 #include "limen/base/text.h"
 #include "limen/bim/ifc/ifc_types.h"
+#include "limen/bim/mesh/read_mesh.h"
 #include "limen/files/text_numbers.h"
 
 namespace limen {

@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
-#include "limen/bim/solid/flat_faces.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,6 +8,7 @@
 
 #include "limen/base/error.h"
 #include "limen/base/random.h"
+#include "limen/bim/solid/solid_faces.h"
 #include "limen/geometry/polygon_clip.h"
 
 namespace limen {

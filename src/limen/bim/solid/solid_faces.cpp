@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "limen/base/progress.h"
-#include "limen/bim/solid/solid_section.h"
+#include "limen/bim/solid/solid.h"
 #include "limen/geometry/polygon_clip.h"
 
 namespace limen {

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "limen/bim/solid/solid_section.h"
+#include "limen/bim/solid/solid.h"
 #include "limen/geometry/polygon_clip.h"
 
 namespace limen {

@@ -1,10 +1,9 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
-#include "limen/cli/commands/completion_command.h"
-
 #include <memory>
 #include <string>
 
+#include "limen/cli/commands/commands.h"
 #include "limen/cli/help/completion.h"
 #include "limen/cli/help/program_help.h"
 #include "limen/cli/terminal/terminal.h"

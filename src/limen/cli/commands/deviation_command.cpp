@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
-#include "limen/cli/commands/deviation_command.h"
-
 #include <algorithm>
 #include <filesystem>
 #include <memory>
@@ -12,11 +10,12 @@
 
 #include "limen/base/atomic_file.h"
 #include "limen/base/error.h"
+#include "limen/cli/commands/commands.h"
 #include "limen/cli/commands/deviation_project.h"
 #include "limen/cli/inputs/cover_option.h"
 #include "limen/cli/inputs/issue_file.h"
-#include "limen/cli/inputs/pose_warning.h"
 #include "limen/cli/inputs/register_inputs.h"
+#include "limen/cli/inputs/registered_file.h"
 #include "limen/cli/inputs/scan_options.h"
 #include "limen/report/deviation/deviation_report.h"
 #include "limen/report/pose_file.h"

@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
-#include "limen/cli/commands/evaluate_command.h"
-
 #include <memory>
 #include <string>
 #include <vector>
@@ -10,6 +8,7 @@
 
 #include "limen/base/angles.h"
 #include "limen/base/error.h"
+#include "limen/cli/commands/commands.h"
 #include "limen/report/evaluation.h"
 #include "limen/report/json/json_values.h"
 #include "limen/report/project/evaluate_project.h"

@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
-#include "limen/cli/commands/openings_command.h"
-
 #include <algorithm>
 #include <array>
 #include <memory>
@@ -14,6 +12,7 @@
 #include "limen/base/atomic_file.h"
 #include "limen/base/error.h"
 #include "limen/bim/read_bim.h"
+#include "limen/cli/commands/commands.h"
 #include "limen/cli/inputs/scan_options.h"
 #include "limen/extract/model/model_features.h"
 #include "limen/extract/openings/openings.h"

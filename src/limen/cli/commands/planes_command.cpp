@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
-#include "limen/cli/commands/planes_command.h"
-
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -16,6 +14,7 @@
 #include "limen/base/atomic_file.h"
 #include "limen/base/error.h"
 #include "limen/bim/read_bim.h"
+#include "limen/cli/commands/commands.h"
 #include "limen/cli/inputs/scan_options.h"
 #include "limen/extract/model/model_features.h"
 #include "limen/report/json/features_json.h"

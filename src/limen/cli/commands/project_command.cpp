@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
-#include "limen/cli/commands/project_command.h"
-
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
@@ -16,17 +14,15 @@
 #include "limen/base/error.h"
 #include "limen/base/folder_lock.h"
 #include "limen/base/system.h"
+#include "limen/cli/commands/commands.h"
 #include "limen/cli/inputs/cover_option.h"
 #include "limen/cli/inputs/frame_system.h"
 #include "limen/cli/inputs/known_decision.h"
-#include "limen/cli/inputs/pdf_option.h"
 #include "limen/cli/inputs/project_trajectories.h"
-#include "limen/cli/inputs/scan_list.h"
 #include "limen/cli/inputs/scan_options.h"
 #include "limen/cli/inputs/start_option.h"
 #include "limen/files/mapped_file.h"
 #include "limen/files/scan_in_file.h"
-#include "limen/files/vendor_format.h"
 #include "limen/io/cloud/open_points.h"
 #include "limen/project/project.h"
 #include "limen/project/run/work.h"

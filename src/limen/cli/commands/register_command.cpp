@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
-#include "limen/cli/commands/register_command.h"
-
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -13,11 +11,9 @@
 
 #include "limen/base/atomic_file.h"
 #include "limen/base/error.h"
+#include "limen/cli/commands/commands.h"
 #include "limen/cli/inputs/cover_option.h"
-#include "limen/cli/inputs/pdf_option.h"
 #include "limen/cli/inputs/register_inputs.h"
-#include "limen/cli/inputs/register_segment_files.h"
-#include "limen/cli/inputs/same_points.h"
 #include "limen/cli/inputs/scan_options.h"
 #include "limen/cli/inputs/start_option.h"
 #include "limen/register/register.h"

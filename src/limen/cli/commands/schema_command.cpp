@@ -1,17 +1,14 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
-#include "limen/cli/commands/schema_command.h"
-
 #include <map>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "limen/cli/commands/commands.h"
 #include "limen/cli/terminal/terminal.h"
 #include "limen/report/deviation/deviation_schema.h"
-#include "limen/report/json/evaluation_schema.h"
-#include "limen/report/json/features_schema.h"
-#include "limen/report/json/result_schema.h"
+#include "limen/report/json/schemas.h"
 #include "limen/report/project/project_schema.h"
 
 namespace limen {

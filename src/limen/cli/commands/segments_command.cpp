@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
-#include "limen/cli/commands/segments_command.h"
-
 #include <algorithm>
 #include <memory>
 #include <optional>
@@ -13,12 +11,13 @@
 
 #include "limen/base/atomic_file.h"
 #include "limen/bim/read_bim.h"
+#include "limen/cli/commands/commands.h"
 #include "limen/cli/inputs/scan_options.h"
 #include "limen/extract/model/model_edges.h"
 #include "limen/extract/model/model_surface.h"
 #include "limen/extract/model/sample_model.h"
 #include "limen/extract/segments/segments.h"
-#include "limen/report/json/segments_json.h"
+#include "limen/report/json/features_json.h"
 
 namespace limen {
 namespace {

@@ -1,13 +1,12 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
-#include "limen/cli/commands/serve_command.h"
-
 #include <memory>
 #include <string>
 
 #include <fmt/format.h>
 
 #include "limen/base/error.h"
+#include "limen/cli/commands/commands.h"
 #include "limen/cli/inputs/scan_options.h"
 #include "limen/cli/serve/serve.h"
 

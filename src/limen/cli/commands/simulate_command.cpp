@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
-#include "limen/cli/commands/simulate_command.h"
-
 #include <algorithm>
 #include <filesystem>
 #include <memory>
@@ -13,20 +11,93 @@
 #include "limen/base/atomic_file.h"
 #include "limen/base/error.h"
 #include "limen/bim/read_bim.h"
-#include "limen/cli/commands/case_files.h"
-#include "limen/cli/commands/simulate_project.h"
-#include "limen/io/ply/write_ply.h"
+#include "limen/cli/commands/commands.h"
+#include "limen/cli/terminal/command.h"
+#include "limen/geometry/random_vectors.h"
+#include "limen/io/ply/ply.h"
 #include "limen/report/json/result_json.h"
 #include "limen/report/json/truth_json.h"
-#include "limen/simulate/model/bim_office.h"
+#include "limen/simulate/model/bim_recipe.h"
 #include "limen/simulate/model/bim_scene.h"
-#include "limen/simulate/model/write_ifc.h"
 #include "limen/simulate/scene.h"
+#include "limen/simulate/whole/project_scene.h"
 #include "limen/simulate/whole/site_targets.h"
 #include "limen/simulate/whole/whole_building.h"
 
 namespace limen {
 namespace {
+
+/// Files of a case that is complete only with its last one: without it none is left.
+class CaseFiles {
+ public:
+  CaseFiles() = default;
+  ~CaseFiles() {
+    std::error_code ignored;
+    for (const std::filesystem::path& path : written_) std::filesystem::remove(path, ignored);
+  }
+  CaseFiles(const CaseFiles&) = delete;
+  CaseFiles& operator=(const CaseFiles&) = delete;
+
+  /// Names a file that is about to be written; one that was there before stays.
+  const std::filesystem::path& add(const std::filesystem::path& path) {
+    return std::filesystem::exists(path) ? path : written_.emplace_back(path);
+  }
+  void keep() { written_.clear(); }
+
+ private:
+  std::vector<std::filesystem::path> written_;
+};
+
+std::string summary(const ProjectTruth& truth, const std::string& folder) {
+  std::size_t points = 0;
+  std::size_t passes = 0;
+  for (const SimulatedScan& scan : truth.scans) {
+    points += scan.points;
+    passes += scan.mobile ? 1U : 0U;
+  }
+  return fmt::format(
+      "{} stations and {} passes, {} points\nwritten to {} with task.json; the truth is in "
+      "truth/project.json\n",
+      truth.scans.size() - passes, passes, points, folder);
+}
+
+/// The targets as a surveyor measures them, or exactly, in the format of limen project --control.
+std::string control_text(const ProjectTruth& truth, double sigma_m) {
+  std::string text = "name,x,y,z,sigma\n";
+  for (std::size_t k = 0; k < truth.targets.size(); ++k) {
+    RandomStream random(truth.seed, 600000 + k);
+    const Vector3d x = truth.local_origin + truth.targets[k].centre + sigma_m * normal_vector(random);
+    text += fmt::format("{},{:.5f},{:.5f},{:.5f},{}\n", truth.targets[k].name, x.x(), x.y(), x.z(),
+                        sigma_m > 0.0 ? sigma_m : 1e-5);
+  }
+  return text;
+}
+
+/// `limen simulate BUILDING --project -o DIR`: scans a whole building, one file a scan, and writes task.json
+/// and truth/project.json. `options.seed` is set.
+int run_simulate_project(const ProjectSceneOptions& options, const std::string& output,
+                         const Session& session) {
+  options.check();
+  const OutputFolder folder(output);
+  const OutputFolder truth_folder(folder.path() / "truth");
+  CaseFiles files;
+  const auto keep = [&](const Scan& scan) {
+    write_ply(files.add(folder.path() / (scan.name + ".ply")), scan);
+  };
+  const ProjectTruth truth = simulate_project(options, keep, *session.monitor);
+  const std::string task = project_task_json(truth);
+  write_file(files.add(truth_folder.path() / "project.json"), project_truth_json(truth));
+  write_file(files.add(folder.path() / "task.json"), task);
+  if (!truth.targets.empty()) {
+    constexpr double kSurveyedM = 0.001;
+    write_file(files.add(folder.path() / "control.csv"), control_text(truth, kSurveyedM));
+    write_file(files.add(truth_folder.path() / "control.csv"), control_text(truth, 0.0));
+  }
+  files.keep();
+  session.say(summary(truth, output));
+  session.answer(task);
+  return kExitOk;
+}
 
 struct SimulateOptions {
   std::string output;

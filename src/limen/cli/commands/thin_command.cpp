@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
-#include "limen/cli/commands/thin_command.h"
-
 #include <memory>
 #include <string>
 
@@ -9,10 +7,11 @@
 
 #include "limen/base/error.h"
 #include "limen/base/guarded_mapping.h"
+#include "limen/cli/commands/commands.h"
 #include "limen/cli/inputs/scan_options.h"
 #include "limen/io/cloud/open_points.h"
 #include "limen/io/cloud/write_clouds.h"
-#include "limen/io/ply/ply_writer.h"
+#include "limen/io/ply/ply.h"
 #include "limen/report/json/json_values.h"
 
 namespace limen {

@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
-#include "limen/cli/commands/transform_command.h"
-
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -12,14 +10,15 @@
 #include "limen/base/atomic_file.h"
 #include "limen/base/error.h"
 #include "limen/base/length_unit.h"
+#include "limen/cli/commands/commands.h"
 #include "limen/cli/inputs/frame_system.h"
-#include "limen/cli/inputs/pose_warning.h"
+#include "limen/cli/inputs/registered_file.h"
 #include "limen/cli/inputs/scan_options.h"
 #include "limen/files/file_hash.h"
 #include "limen/files/scan_in_file.h"
-#include "limen/io/cloud/cloud_writers.h"
 #include "limen/io/cloud/open_points.h"
 #include "limen/io/cloud/transform_cloud.h"
+#include "limen/io/cloud/write_clouds.h"
 #include "limen/report/json/json_values.h"
 #include "limen/report/pose_file.h"
 #include "limen/report/project/read_project.h"

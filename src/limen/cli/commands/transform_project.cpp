@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
-#include "limen/cli/commands/transform_project.h"
-
 #include <algorithm>
 #include <filesystem>
 #include <map>
@@ -16,14 +14,15 @@
 
 #include "limen/base/atomic_file.h"
 #include "limen/base/error.h"
+#include "limen/cli/commands/commands.h"
 #include "limen/cli/inputs/frame_system.h"
 #include "limen/cli/inputs/project_trajectories.h"
 #include "limen/cli/inputs/registered_file.h"
 #include "limen/cli/inputs/scan_options.h"
-#include "limen/files/readable.h"
+#include "limen/files/mapped_file.h"
 #include "limen/files/scan_in_file.h"
-#include "limen/io/cloud/cloud_writers.h"
 #include "limen/io/cloud/transform_cloud.h"
+#include "limen/io/cloud/write_clouds.h"
 #include "limen/report/json/json_values.h"
 #include "limen/report/project/read_project.h"
 #include "limen/report/summary/words.h"

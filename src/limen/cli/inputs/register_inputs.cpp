@@ -2,19 +2,115 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limen/cli/inputs/register_inputs.h"
 
-#include <string>
-#include <utility>
+#include <chrono>
+#include <filesystem>
+
+#include <fmt/format.h>
 
 #include "limen/base/error.h"
-#include "limen/base/run_both.h"
+#include "limen/base/parallel.h"
 #include "limen/bim/read_bim.h"
 #include "limen/cli/inputs/scan_options.h"
 #include "limen/files/file_hash.h"
 #include "limen/files/scan_in_file.h"
+#include "limen/io/text/read_segments.h"
 #include "limen/model/plausible_size.h"
+#include "limen/register/register_segments.h"
 #include "limen/report/pose_file.h"
 
 namespace limen {
+
+bool same_bytes(const std::string& a, const std::string& b) {
+  const ScanInFile first = scan_in_file(a);
+  const ScanInFile second = scan_in_file(b);
+  std::error_code ignored;
+  if (first.index != second.index || !std::filesystem::is_regular_file(first.file, ignored) ||
+      !std::filesystem::is_regular_file(second.file, ignored))
+    return false;
+  if (std::filesystem::equivalent(first.file, second.file, ignored)) return true;
+  return std::filesystem::file_size(first.file, ignored) ==
+             std::filesystem::file_size(second.file, ignored) &&
+         sha256_of_file(first.file) == sha256_of_file(second.file);
+}
+
+std::string SamePointsWatch::note_on(const RegisterInput& side, bool is_source) {
+  if (side.scans.empty()) return {};
+  const Scan& scan = side.scans.front().scan;
+  const bool same = is_source ? same_bytes(source_, target_) : sample_.is_of(scan);
+  std::vector<std::uint64_t> marks = point_marks(scan);
+  const bool fewer = !same && !is_source && is_part_of(marks, marks_);
+  const bool more = !same && !is_source && is_part_of(marks_, marks);
+  if (is_source) {
+    sample_ = PointSample(scan);
+    marks_ = std::move(marks);
+  }
+  if (!note_.empty()) return {};
+  constexpr const char* kNoTest = "a scan is registered to itself, which is no test for other scans";
+  if (same) note_ = fmt::format("SOURCE and TARGET hold the same {} points: {}", scan.size(), kNoTest);
+  if (fewer || more)
+    note_ = fmt::format("{} holds only points of {}, of which it seems a thinned copy or a part: {}",
+                        fewer ? "TARGET" : "SOURCE", fewer ? "SOURCE" : "TARGET", kNoTest);
+  return note_;
+}
+
+namespace {
+
+/// The ends of the segments stand for the points of a scan.
+InputSummary summary_of(const std::string& path, const SegmentSet& set) {
+  Scan ends;
+  ends.local_origin = set.local_origin;
+  for (const Segment& segment : set.segments) {
+    ends.points.push_back(segment.a);
+    ends.points.push_back(segment.b);
+  }
+  InputSummary summary = summarise(path, ends);
+  summary.kind = "segments";
+  summary.sha256 = sha256_of_file(path);
+  summary.elements = set.segments.size();
+  return summary;
+}
+
+PicturedSide pictured(const SegmentSet& set) {
+  PicturedSide side;
+  side.features.local_origin = set.local_origin;
+  side.features.segments = set.segments;
+  return side;
+}
+
+}  // namespace
+
+bool are_segment_files(const std::string& source, const std::string& target) {
+  const bool first = is_segment_file(source);
+  const bool second = is_segment_file(target);
+  if (first != second) {
+    const std::string& other = first ? target : source;
+    if (!std::filesystem::exists(other)) throw Error("does not exist", other, "check the path");
+    throw Error("holds no segments that limen can read, the other file does", other,
+                "give two scans, or two files of segments");
+  }
+  return first;
+}
+
+RegistrationReport register_segment_files(const std::string& source, const std::string& target,
+                                          Gravity gravity, const Session& session) {
+  const auto start = std::chrono::steady_clock::now();
+  session.monitor->begin_stage("reading");
+  const SegmentSet from = read_segments(source);
+  const SegmentSet to = read_segments(target);
+  const std::chrono::duration<double> reading = std::chrono::steady_clock::now() - start;
+  SegmentRegisterOptions options;
+  options.gravity = gravity;
+  RegistrationReport report;
+  report.result = register_segments(from, to, options, *session.monitor);
+  report.result.stages.insert(report.result.stages.begin(), {"reading", reading.count()});
+  report.result.picture =
+      std::make_shared<const RegistrationPicture>(RegistrationPicture{pictured(from), pictured(to)});
+  report.source = summary_of(source, from);
+  report.target = summary_of(target, to);
+  report.seed = session.common.seed;
+  return report;
+}
+
 namespace {
 
 InputSide read_model_side(const SideOptions& options, const Session& session) {

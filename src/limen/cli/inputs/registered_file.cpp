@@ -6,10 +6,19 @@
 
 #include "limen/base/error.h"
 #include "limen/files/file_hash.h"
-#include "limen/files/readable.h"
+#include "limen/files/mapped_file.h"
 #include "limen/files/scan_in_file.h"
+#include "limen/report/summary/words.h"
 
 namespace limen {
+
+void warn_of_doubt(const PoseFile& file, const std::string& path, const Session& session) {
+  if (!file.outcome || *file.outcome == Outcome::registered) return;
+  if (*file.outcome == Outcome::probable && file.probability)
+    return session.warn(fmt::format("the pose in {} is only probable; the probability that it is right is {}",
+                                    path, probability_words(*file.probability)));
+  session.note(fmt::format("the pose in {} is {}: check it", path, to_string(*file.outcome)));
+}
 
 void require_registered_file(const ProjectEntry& entry, const std::string& project, bool force) {
   require_readable(

@@ -4,9 +4,15 @@
 
 #include <string>
 
+#include "limen/cli/terminal/command.h"
+#include "limen/report/pose_file.h"
 #include "limen/report/project/read_project.h"
 
 namespace limen {
+
+/// Tells on standard error that the pose which a file gives as its answer is less than registered. Of a
+/// probable one that is a warning with its probability, shown also where quiet. `path` names the file.
+void warn_of_doubt(const PoseFile& file, const std::string& path, const Session& session);
 
 /// A place in a project holds for the bytes that were registered. Throws Error where the scan's file cannot
 /// be read, or, but for `force`, holds other bytes; `project` names the project.json in messages.

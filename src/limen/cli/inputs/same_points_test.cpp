@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
-#include "limen/cli/inputs/same_points.h"
-
 #include "support/test_support.h"
 #include <gtest/gtest.h>
+
+#include "limen/cli/inputs/register_inputs.h"
 
 namespace limen {
 namespace {

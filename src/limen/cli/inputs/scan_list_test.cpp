@@ -1,11 +1,10 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
-#include "limen/cli/inputs/scan_list.h"
-
 #include "support/test_support.h"
 #include <gtest/gtest.h>
 
 #include "limen/base/error.h"
+#include "limen/cli/inputs/scan_options.h"
 
 namespace limen {
 namespace {

@@ -6,22 +6,48 @@
 #include <charconv>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <memory>
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "limen/base/error.h"
 #include "limen/base/length_unit.h"
+#include "limen/base/text.h"
 #include "limen/bim/read_bim.h"
 #include "limen/files/mapped_file.h"
 #include "limen/files/scan_in_file.h"
-#include "limen/io/cloud/join_scans.h"
+#include "limen/io/cloud/read_scan.h"
 #include "limen/io/ply/ply_header.h"
-#include "limen/io/trajectory/read_trajectory.h"
 #include "limen/model/plausible_size.h"
 
 namespace limen {
+namespace {
+
+bool is_control(char c) {
+  return (static_cast<unsigned char>(c) < 0x20U && c != '\t') || c == '\x7f';
+}
+
+}  // namespace
+
+std::vector<std::string> names_in_list(const std::string& path) {
+  constexpr const char* kListRemedy = "give a text file with the name of a scan on each line";
+  require_readable(path, kListRemedy, "list");
+  std::ifstream stream(path);
+  std::vector<std::string> names;
+  bool first = true;
+  for (std::string line; std::getline(stream, line); first = false) {
+    const std::string_view text = trimmed(first ? without_byte_order_mark(line) : line);
+    if (!is_utf8(text) || std::any_of(text.begin(), text.end(), is_control))
+      throw Error("is not a list of names: it contains bytes that are not text", path, kListRemedy);
+    if (text.empty() || text.front() == '#') continue;
+    const std::filesystem::path name(text);
+    names.push_back((name.is_absolute() ? name : std::filesystem::path(path).parent_path() / name).string());
+  }
+  return names;
+}
 
 Vector3d parse_point(const std::string& text, const std::string& option) {
   Vector3d point;

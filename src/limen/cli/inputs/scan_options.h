@@ -17,6 +17,10 @@
 
 namespace limen {
 
+/// The names in a list: one a line, relative to the list's folder, without blanks around; empty lines and
+/// those that begin with # do not count, nor does a byte order mark. Throws Error where it is no list.
+std::vector<std::string> names_in_list(const std::string& path);
+
 /// "x,y,z" as three numbers. Throws Error that names `option`.
 Vector3d parse_point(const std::string& text, const std::string& option);
 

@@ -14,8 +14,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "limen/base/child_process.h"
 #include "limen/base/error.h"
-#include "limen/base/start_program.h"
 #include "limen/base/text.h"
 #include "limen/cli/terminal/progress_pipe.h"
 #include "limen/files/text_numbers.h"

@@ -15,7 +15,6 @@
 #include "limen/base/version.h"
 #include "limen/bim/read_bim.h"
 #include "limen/cli/serve/job_request.h"
-#include "limen/cli/serve/serve_page.h"
 #include "limen/files/bounded_json.h"
 #include "limen/files/mapped_file.h"
 #include "limen/files/text_numbers.h"

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -14,6 +15,11 @@
 #include "limen/cli/serve/jobs.h"
 
 namespace limen {
+
+/// The parts of the page of `limen serve`, made of serve/page at build time.
+std::string_view serve_page_html();
+std::string_view serve_page_css();
+std::string_view serve_page_js();
 
 /// What is answered: a text, or a file that is open.
 struct HttpReply {

@@ -63,8 +63,7 @@ std::string message_line(std::string_view message);
 /// Adds the subcommand `name` with its common options. The command adds its own to what is returned; its
 /// `run` is called after parsing and returns an exit status.
 ///
-/// One command is one file pair with one function `void add_<name>_command(CommandLine& app, Session&
-/// session)`; program.cpp lists them.
+/// One command is one source with one function of commands.h; program.cpp calls them.
 CommandLine* add_command(CommandLine& app, Session& session, const std::string& name,
                          const std::string& description, std::function<int()> run);
 

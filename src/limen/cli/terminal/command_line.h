@@ -7,6 +7,7 @@
 #include <deque>
 #include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace CLI {
@@ -15,6 +16,14 @@ class Option;
 }  // namespace CLI
 
 namespace limen {
+
+/// Letters to insert, drop, replace or swap with their neighbour to make one word of another (optimal string
+/// alignment).
+std::size_t edit_distance(std::string_view a, std::string_view b);
+
+/// The one of `known` that was meant by a word that is none of them: it differs by a third of its letters at
+/// most, or begins with what was written. Empty where none is near.
+std::string nearest_word(std::string_view word, const std::vector<std::string>& known);
 
 /// One option or positional argument of a command. What CLI11 does is behind it, so that its headers, which
 /// are slow to compile, are read in few places.

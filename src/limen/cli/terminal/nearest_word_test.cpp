@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
-#include "limen/cli/terminal/nearest_word.h"
-
 #include <gtest/gtest.h>
+
+#include "limen/cli/terminal/command_line.h"
 
 namespace limen {
 namespace {

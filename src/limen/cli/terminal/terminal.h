@@ -8,7 +8,6 @@
 #include <string>
 
 #include "limen/base/progress.h"
-#include "limen/base/ticker.h"
 #include "limen/cli/terminal/progress_line.h"
 
 namespace limen {

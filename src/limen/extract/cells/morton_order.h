@@ -5,12 +5,34 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <new>
+#include <utility>
 #include <vector>
 
-#include "limen/base/unset_allocator.h"
 #include "limen/geometry/rigid.h"
 
 namespace limen {
+
+/// For lists whose values are all written by their makers, on all threads: new values are not set to 0 first.
+template <typename Value>
+class UnsetAllocator : public std::allocator<Value> {
+ public:
+  // NOLINTBEGIN(readability-identifier-naming): the names of the standard's requirements of an allocator
+  template <typename Other>
+  struct rebind {
+    using other = UnsetAllocator<Other>;
+  };
+  // NOLINTEND(readability-identifier-naming)
+
+  template <typename Other>
+  void construct(Other* place) noexcept {
+    ::new (static_cast<void*>(place)) Other;
+  }
+  template <typename Other, typename... Arguments>
+  void construct(Other* place, Arguments&&... arguments) {
+    std::construct_at(place, std::forward<Arguments>(arguments)...);
+  }
+};
 
 /// Points in the order of a Morton curve over cubes: every cube of every level (a power of two of the finest)
 /// is one contiguous run. Stable, so the order does not depend on the thread count.

@@ -7,8 +7,8 @@
 #include <span>
 
 #include "limen/base/parallel.h"
+#include "limen/extract/cells/cell_grid.h"
 #include "limen/extract/cells/cell_runs.h"
-#include "limen/extract/cells/cell_shape.h"
 
 namespace limen {
 namespace {

@@ -8,9 +8,9 @@
 #include <utility>
 
 #include "limen/base/error.h"
-#include "limen/base/stage_part.h"
+#include "limen/base/progress.h"
 #include "limen/extract/planes/automatic_threshold.h"
-#include "limen/extract/surface/split_planes.h"
+#include "limen/extract/surface/make_polygons.h"
 
 namespace limen {
 namespace {

@@ -1,12 +1,11 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
-#include "limen/extract/model/cross_section.h"
-
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <unordered_map>
 
+#include "limen/extract/model/model_surface.h"
 #include "limen/geometry/polygon_clip.h"
 
 namespace limen {

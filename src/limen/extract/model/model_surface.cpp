@@ -14,7 +14,6 @@
 
 #include "limen/base/error.h"
 #include "limen/base/parallel.h"
-#include "limen/extract/model/cross_section.h"
 #include "limen/geometry/cell_key.h"
 #include "limen/geometry/cell_lists.h"
 #include "limen/geometry/polygon_clip.h"

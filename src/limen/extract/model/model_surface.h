@@ -9,6 +9,11 @@
 
 namespace limen {
 
+/// The area in which the closed surface made of `faces` meets the plane of `frame`, in its 2-D coordinates.
+/// Gaps in the surface up to `tolerance_m` are bridged; what does not close is left out.
+std::vector<Polygon> cross_section(const std::vector<const BimFace*>& faces, const PlaneFrame& frame,
+                                   double tolerance_m = 0.002);
+
 struct ModelSurfaceOptions {
   double front_m = 0.004;       ///< matter this near before a face hides it, > 0
   double same_plane_m = 0.002;  ///< faces of several elements within this are one plane, > 0

@@ -10,7 +10,6 @@
 
 #include "limen/base/error.h"
 #include "limen/base/progress.h"
-#include "limen/extract/model/cross_section.h"
 #include "limen/extract/model/model_edges.h"
 #include "limen/extract/model/model_features.h"
 #include "limen/sight/model_space.h"

@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
-#include "limen/extract/openings/nearest_cells.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "limen/base/random.h"
+#include "limen/extract/openings/opening_grid.h"
 
 namespace limen {
 namespace {

@@ -1,11 +1,10 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
-#include "limen/extract/openings/opening_curtains.h"
-
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
+#include "limen/extract/openings/opening_shape.h"
 #include "limen/geometry/linear.h"
 
 namespace limen {

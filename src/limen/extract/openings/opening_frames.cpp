@@ -6,11 +6,11 @@
 // bar. The bar's width is the distance of the two, and its likelihood the convolution of two boxes. Windows
 // whose bars are equally wide narrow it: the product of their likelihoods. Windows one above the other are
 // met by the same lines and count once.
-#include "limen/extract/openings/opening_frames.h"
-
 #include <algorithm>
 #include <cmath>
 #include <utility>
+
+#include "limen/extract/openings/opening_shape.h"
 
 namespace limen {
 namespace {

@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
-#include "limen/extract/openings/opening_frames.h"
-
 #include <cmath>
 #include <functional>
 
 #include <gtest/gtest.h>
+
+#include "limen/extract/openings/opening_shape.h"
 
 namespace limen {
 namespace {

@@ -1,12 +1,11 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
-#include "limen/extract/openings/opening_front.h"
-
 #include <algorithm>
 #include <utility>
 #include <vector>
 
-#include "limen/extract/openings/opening_separator.h"
+#include "limen/extract/openings/opening_rectangles.h"
+#include "limen/extract/openings/opening_shape.h"
 
 namespace limen {
 namespace {

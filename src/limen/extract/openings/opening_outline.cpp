@@ -1,14 +1,13 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
-#include "limen/extract/openings/opening_outline.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
 #include <utility>
 
-#include "limen/extract/openings/opening_separator.h"
+#include "limen/extract/openings/opening_rectangles.h"
+#include "limen/extract/openings/opening_shape.h"
 
 namespace limen {
 namespace {

@@ -1,14 +1,12 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
-#include "limen/extract/openings/opening_reveals.h"
-
 #include <algorithm>
 #include <cmath>
 #include <optional>
 #include <utility>
 #include <vector>
 
-#include "limen/extract/openings/opening_side_lines.h"
+#include "limen/extract/openings/opening_shape.h"
 
 namespace limen {
 namespace {

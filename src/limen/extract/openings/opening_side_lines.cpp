@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
-#include "limen/extract/openings/opening_side_lines.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <set>
 #include <utility>
+
+#include "limen/extract/openings/opening_shape.h"
 
 namespace limen {
 namespace {

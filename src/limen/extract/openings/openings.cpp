@@ -28,14 +28,10 @@
 
 #include "limen/base/error.h"
 #include "limen/base/parallel.h"
-#include "limen/extract/openings/opening_curtains.h"
 #include "limen/extract/openings/opening_evidence.h"
-#include "limen/extract/openings/opening_frames.h"
-#include "limen/extract/openings/opening_front.h"
 #include "limen/extract/openings/opening_grid.h"
-#include "limen/extract/openings/opening_outline.h"
 #include "limen/extract/openings/opening_rectangles.h"
-#include "limen/extract/openings/opening_reveals.h"
+#include "limen/extract/openings/opening_shape.h"
 
 namespace limen {
 namespace {

@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "limen/base/stage_part.h"
+#include "limen/base/progress.h"
 #include "limen/extract/planes/automatic_threshold.h"
 #include "limen/extract/planes/fine_planes.h"
 #include "limen/extract/planes/fine_station.h"

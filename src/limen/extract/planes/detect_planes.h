@@ -25,7 +25,7 @@ enum class ThresholdRule {
                 ///< scans: what the noise asks for, at least 25 mm
   noise,        ///< the detector's own: 3.3 times the noise it finds
   a_contrario,  ///< 2021, 3.1.1: among 5, 10, 15, 20, 30 and 50 mm, whatever the noise
-  published     ///< the same by equations 3 to 6 as they are printed (threshold.h)
+  published     ///< the same by equations 3 to 6 as they are printed (automatic_threshold.h)
 };
 
 struct DetectOptions {

@@ -8,7 +8,6 @@
 #include <gtest/gtest.h>
 
 #include "limen/base/random.h"
-#include "limen/extract/planes/claim_strips.h"
 #include "limen/extract/planes/join_pieces.h"
 #include "limen/extract/planes/relief_sheets.h"
 

@@ -10,7 +10,6 @@
 
 #include "limen/base/error.h"
 #include "limen/base/random.h"
-#include "limen/extract/planes/coherent_labels.h"
 #include "limen/extract/planes/detect_planes.h"
 #include "limen/extract/planes/split_at_steps.h"
 

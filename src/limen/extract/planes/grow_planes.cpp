@@ -11,12 +11,12 @@
 
 #include "limen/base/angles.h"
 #include "limen/base/error.h"
-#include "limen/base/run_both.h"
+#include "limen/base/parallel.h"
 #include "limen/extract/cells/cell_grid.h"
 #include "limen/extract/cells/point_normals.h"
 #include "limen/extract/planes/grow_regions.h"
-#include "limen/extract/planes/label_sums.h"
 #include "limen/extract/planes/merge_planes.h"
+#include "limen/extract/planes/plane_labels.h"
 #include "limen/extract/planes/settle_planes.h"
 
 namespace limen {

@@ -10,6 +10,12 @@
 
 namespace limen {
 
+/// A plane's points by parts that hang together: squares of `gap_m` that touch, also at a corner. Largest
+/// first, each ascending.
+std::vector<std::vector<std::uint32_t>> touching_parts(const Scan& scan, const PlaneFit& fit,
+                                                       const std::vector<std::uint32_t>& points,
+                                                       double gap_m);
+
 /// When pieces lie in one plane.
 struct JoinOptions {
   double noise_m = 0.003;   ///< of a point about its plane, one standard deviation
@@ -33,8 +39,7 @@ PlanePiece piece_of(const Scan& scan, std::vector<std::uint32_t> points, const V
 std::vector<std::int32_t> labels_with(std::vector<std::int32_t> labels, const std::vector<PlanePiece>& pieces,
                                       std::size_t first = 0);
 
-/// The parts of a plane's points that hang together and were seen from one side (touching_parts.h). Largest
-/// first.
+/// The parts of a plane's points that hang together and were seen from one side. Largest first.
 std::vector<PlanePiece> parts_of(const Scan& scan, const PlaneFit& fit,
                                  const std::vector<std::uint32_t>& points, double gap_m,
                                  const Vector3d& anchor);

@@ -12,7 +12,7 @@
 #include "limen/base/parallel.h"
 #include "limen/consensus/msac.h"
 #include "limen/extract/cells/morton_order.h"
-#include "limen/extract/planes/label_sums.h"
+#include "limen/extract/planes/plane_labels.h"
 
 namespace limen {
 namespace {

@@ -1,13 +1,12 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
-#include "limen/extract/planes/threshold.h"
-
 #include <cmath>
 #include <numbers>
 
 #include <gtest/gtest.h>
 
 #include "limen/base/error.h"
+#include "limen/extract/planes/automatic_threshold.h"
 
 namespace limen {
 namespace {

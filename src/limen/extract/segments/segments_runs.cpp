@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
-#include "limen/extract/segments/segments_runs.h"
-
 #include <algorithm>
 #include <cmath>
 #include <utility>
+
+#include "limen/extract/segments/segments_borders.h"
 
 namespace limen {
 namespace {

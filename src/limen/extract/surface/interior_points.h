@@ -8,7 +8,38 @@
 #include "limen/base/progress.h"
 #include "limen/extract/surface/facades.h"
 #include "limen/geometry/polygon.h"
+#include "limen/geometry/polygon_clip.h"
 #include "limen/model/scan.h"
+
+namespace limen {
+
+/// Point-in-outline tests in constant time: a raster of cells that are wholly inside, wholly outside, or cut
+/// by a ring; only in the last does the exact test run. The answers are those of `contains`.
+class OutlineRaster {
+ public:
+  /// The outer rings of `polygons` (holes are ignored), which must not overlap.
+  explicit OutlineRaster(std::vector<Polygon> polygons, double cell_m = 0.05);
+
+  [[nodiscard]] bool contains(const Vector2d& p) const;
+  [[nodiscard]] const Box2& box() const { return box_; }
+  [[nodiscard]] const std::vector<Polygon>& polygons() const { return polygons_; }
+
+ private:
+  enum class Cell : std::uint8_t { outside, inside, cut };
+
+  void cut_by(const Vector2d& a, const Vector2d& b);
+  void fill_rows();
+  [[nodiscard]] bool contains_exactly(const Vector2d& p) const;
+  [[nodiscard]] std::size_t column(double x) const;
+  [[nodiscard]] std::size_t row(double y) const;
+
+  std::vector<Polygon> polygons_;
+  Box2 box_;
+  double cell_m_;
+  std::size_t columns_ = 0;
+  std::size_t rows_ = 0;
+  std::vector<Cell> cells_;
+};
 
 // Points behind a wall, by ray tracing: Djahel, Monasse, Vallet 2021, section 3.1.2; the crossings are also
 // the evidence of openings of Djahel, Vallet, Monasse 2022, section 2.2.
@@ -21,8 +52,6 @@
 // - the printed distance is the one along the ray from the crossing to the point; at grazing incidence a wall
 //   that bulges by a few centimetres would pass it, so the depth behind the plane has a bound of its own;
 // - a wall whose outer side is known is only crossed from there.
-
-namespace limen {
 
 struct InteriorPointOptions {
   double min_beyond_m = 1.0;  ///< from the crossing to the point along the ray, >= 0 (openings: 0.1)

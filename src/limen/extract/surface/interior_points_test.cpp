@@ -10,7 +10,6 @@
 #include "limen/base/parallel.h"
 #include "limen/base/random.h"
 #include "limen/extract/surface/facades.h"
-#include "limen/extract/surface/outline_raster.h"
 #include "limen/geometry/random_vectors.h"
 
 namespace limen {

@@ -1,11 +1,10 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
-#include "limen/extract/surface/split_planes.h"
-
 #include <gtest/gtest.h>
 
 #include "limen/base/error.h"
 #include "limen/base/random.h"
+#include "limen/extract/surface/make_polygons.h"
 
 namespace limen {
 namespace {

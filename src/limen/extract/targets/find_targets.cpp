@@ -15,8 +15,7 @@
 #include "limen/base/parallel.h"
 #include "limen/base/random.h"
 #include "limen/extract/cells/cell_runs.h"
-#include "limen/extract/targets/fit_board.h"
-#include "limen/extract/targets/fit_sphere.h"
+#include "limen/extract/targets/fit_targets.h"
 #include "limen/geometry/cell_key.h"
 
 namespace limen {

@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
-#include "limen/extract/targets/fit_board.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,6 +8,7 @@
 #include <numbers>
 #include <vector>
 
+#include "limen/extract/targets/fit_targets.h"
 #include "limen/geometry/linear.h"
 #include "limen/geometry/plane.h"
 

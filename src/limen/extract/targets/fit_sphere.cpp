@@ -1,13 +1,12 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
-#include "limen/extract/targets/fit_sphere.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
 #include <vector>
 
+#include "limen/extract/targets/fit_targets.h"
 #include "limen/geometry/linear.h"
 #include "limen/geometry/plane.h"
 

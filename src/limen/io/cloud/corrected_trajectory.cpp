@@ -13,7 +13,7 @@
 #include "limen/io/cloud/join_clouds.h"
 #include "limen/io/cloud/open_points.h"
 #include "limen/io/cloud/write_clouds.h"
-#include "limen/io/table/time_column.h"
+#include "limen/io/table/record_table.h"
 
 namespace limen {
 namespace {

@@ -10,14 +10,14 @@
 
 #include "limen/base/error.h"
 #include "limen/base/text.h"
-#include "limen/files/vendor_format.h"
-#include "limen/io/e57/read_e57.h"
+#include "limen/files/mapped_file.h"
+#include "limen/io/e57/e57.h"
+#include "limen/io/las/las.h"
 #include "limen/io/las/las_header.h"
-#include "limen/io/las/read_las.h"
-#include "limen/io/pcd/read_pcd.h"
-#include "limen/io/ply/read_ply.h"
-#include "limen/io/ptx/read_ptx.h"
-#include "limen/io/text/read_xyz.h"
+#include "limen/io/pcd/pcd.h"
+#include "limen/io/ply/ply.h"
+#include "limen/io/ptx/ptx.h"
+#include "limen/io/text/text.h"
 
 namespace limen {
 namespace {

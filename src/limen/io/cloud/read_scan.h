@@ -11,6 +11,12 @@
 #include "limen/model/scan.h"
 
 namespace limen {
+
+/// One scan of several in the same world frame, about the local origin of the first, each point with its own
+/// optical centre. Centres, times, intensities, colours and topology are kept where every scan has them.
+/// `scans` is not empty.
+Scan join_scans(const std::vector<Scan>& scans);
+
 /// Reads a file, or "FILE #N" for one scan of it, with all that is known about it; the format is recognised
 /// by content, then by extension. Throws Error that names file, place and remedy for anything that cannot be
 /// read.

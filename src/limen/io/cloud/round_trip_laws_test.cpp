@@ -12,9 +12,9 @@
 #include "support/test_support.h"
 #include <fmt/format.h>
 
-#include "limen/io/cloud/cloud_writers.h"
 #include "limen/io/cloud/open_points.h"
 #include "limen/io/cloud/read_scan.h"
+#include "limen/io/cloud/write_clouds.h"
 
 namespace limen {
 namespace {
@@ -187,7 +187,7 @@ RC_GTEST_PROP(RoundTripLaws, E57, ()) {
   comes_back("any.e57", 0.0);
 }
 
-// Steps of 10 to 100 um: write_las.h.
+// Steps of 10 to 100 um: write_las.cpp.
 RC_GTEST_PROP(RoundTripLaws, Las, ()) {
   comes_back("any.las", 1e-4);
 }

@@ -14,18 +14,17 @@
 #include "limen/base/error.h"
 #include "limen/base/guarded_mapping.h"
 #include "limen/base/text.h"
-#include "limen/io/cloud/cloud_writers.h"
 #include "limen/io/cloud/open_points.h"
 #include "limen/io/cloud/write_clouds.h"
 #include "limen/io/e57/e57_copy.h"
 #include "limen/io/e57/e57_poses.h"
-#include "limen/io/las/las_transform.h"
-#include "limen/io/pcd/transform_pcd.h"
-#include "limen/io/ply/transform_ply.h"
-#include "limen/io/ptx/transform_ptx.h"
+#include "limen/io/las/las.h"
+#include "limen/io/pcd/pcd.h"
+#include "limen/io/ply/ply.h"
+#include "limen/io/ptx/ptx.h"
 #include "limen/io/table/record_table.h"
 #include "limen/io/table/scan_builder.h"
-#include "limen/io/text/transform_text.h"
+#include "limen/io/text/text.h"
 
 namespace limen {
 namespace {

@@ -10,7 +10,7 @@
 #include "limen/base/progress.h"
 #include "limen/geometry/spline_motion.h"
 #include "limen/io/crs/coordinate_system.h"
-#include "limen/io/table/transformed_cloud.h"
+#include "limen/io/table/scan_file.h"
 
 namespace limen {
 

@@ -8,7 +8,6 @@
 
 #include "limen/base/angles.h"
 #include "limen/base/error.h"
-#include "limen/io/crs/map_projection.h"
 #include "limen/io/crs/proj_library.h"
 #include "limen/io/trajectory/transverse_mercator.h"
 

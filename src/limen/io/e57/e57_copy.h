@@ -13,7 +13,6 @@
 #include "limen/geometry/rigid.h"
 #include "limen/io/e57/e57_description.h"
 #include "limen/io/e57/e57_document.h"
-#include "limen/io/e57/e57_page_writer.h"
 #include "limen/io/e57/e57_pages.h"
 
 namespace pugi {

@@ -8,8 +8,7 @@
 
 #include "limen/base/error.h"
 #include "limen/io/cloud/transform_cloud.h"
-#include "limen/io/e57/read_e57.h"
-#include "limen/io/e57/write_e57.h"
+#include "limen/io/e57/e57.h"
 
 namespace limen {
 namespace {

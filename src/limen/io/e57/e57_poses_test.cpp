@@ -9,8 +9,8 @@
 #include <gtest/gtest.h>
 
 #include "limen/base/error.h"
+#include "limen/io/e57/e57.h"
 #include "limen/io/e57/e57_document.h"
-#include "limen/io/e57/read_e57.h"
 
 namespace limen {
 namespace {

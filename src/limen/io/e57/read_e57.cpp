@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
-#include "limen/io/e57/read_e57.h"
-
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -9,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "limen/base/error.h"
+#include "limen/io/e57/e57.h"
 #include "limen/io/e57/e57_columns.h"
 #include "limen/io/e57/e57_document.h"
 #include "limen/io/e57/e57_pages.h"

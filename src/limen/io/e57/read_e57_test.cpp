@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
-#include "limen/io/e57/read_e57.h"
-
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -11,6 +9,7 @@
 
 #include "limen/base/error.h"
 #include "limen/base/parallel.h"
+#include "limen/io/e57/e57.h"
 #include "limen/io/e57/e57_document.h"
 
 namespace limen {

@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
-#include "limen/io/e57/write_e57.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -18,11 +16,11 @@
 #include "limen/base/parallel.h"
 #include "limen/base/random.h"
 #include "limen/base/text.h"
+#include "limen/io/e57/e57.h"
 #include "limen/io/e57/e57_copy.h"
 #include "limen/io/e57/e57_crc.h"
 #include "limen/io/e57/e57_description.h"
-#include "limen/io/e57/e57_encode.h"
-#include "limen/io/e57/e57_page_writer.h"
+#include "limen/io/e57/e57_pages.h"
 
 namespace limen {
 namespace {

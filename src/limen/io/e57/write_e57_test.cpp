@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
-#include "limen/io/e57/write_e57.h"
-
 #include <cmath>
 #include <limits>
 #include <map>
@@ -13,8 +11,8 @@
 #include "limen/base/error.h"
 #include "limen/base/parallel.h"
 #include "limen/base/text.h"
+#include "limen/io/e57/e57.h"
 #include "limen/io/e57/e57_document.h"
-#include "limen/io/e57/read_e57.h"
 
 namespace limen {
 namespace {

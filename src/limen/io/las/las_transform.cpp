@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
-#include "limen/io/las/las_transform.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -16,8 +14,9 @@
 #include "limen/base/atomic_file.h"
 #include "limen/base/error.h"
 #include "limen/base/parallel.h"
+#include "limen/io/las/las.h"
 #include "limen/io/las/las_fields.h"
-#include "limen/io/las/las_grid.h"
+#include "limen/io/las/las_header.h"
 #include "limen/io/las/las_records.h"
 #include "limen/io/las/las_unit.h"
 #include "limen/io/las/laz/laz_info.h"

@@ -1,11 +1,10 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
-#include "limen/io/las/read_las.h"
-
 #include <algorithm>
 #include <utility>
 #include <vector>
 
+#include "limen/io/las/las.h"
 #include "limen/io/las/las_fields.h"
 #include "limen/io/las/las_records.h"
 #include "limen/io/las/las_unit.h"

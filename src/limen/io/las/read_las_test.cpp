@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
-#include "limen/io/las/read_las.h"
-
 #include <cmath>
 #include <limits>
 
@@ -9,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "limen/base/error.h"
+#include "limen/io/las/las.h"
 
 namespace limen {
 namespace {

@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
-#include "limen/io/las/write_las.h"
-
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -12,6 +10,7 @@
 #include "limen/base/error.h"
 #include "limen/base/parallel.h"
 #include "limen/base/text.h"
+#include "limen/io/las/las.h"
 
 namespace limen {
 namespace {

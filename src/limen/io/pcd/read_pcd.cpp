@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
-#include "limen/io/pcd/read_pcd.h"
-
 #include <algorithm>
 #include <bit>
 #include <cstdint>
@@ -13,6 +11,7 @@
 #include "limen/base/angles.h"
 #include "limen/base/error.h"
 #include "limen/files/text_numbers.h"
+#include "limen/io/pcd/pcd.h"
 #include "limen/io/pcd/pcd_header.h"
 #include "limen/io/table/record_table.h"
 #include "limen/io/table/scan_builder.h"

@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
-#include "limen/io/pcd/read_pcd.h"
-
 #include <bit>
 #include <limits>
 
@@ -9,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "limen/base/error.h"
+#include "limen/io/pcd/pcd.h"
 
 namespace limen {
 namespace {

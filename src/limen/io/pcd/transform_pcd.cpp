@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
-#include "limen/io/pcd/transform_pcd.h"
-
 #include <algorithm>
 #include <array>
 #include <cstring>
@@ -13,9 +11,9 @@
 #include "limen/base/atomic_file.h"
 #include "limen/base/error.h"
 #include "limen/files/text_numbers.h"
+#include "limen/io/pcd/pcd.h"
 #include "limen/io/pcd/pcd_header.h"
-#include "limen/io/pcd/read_pcd.h"
-#include "limen/io/text/transform_text.h"
+#include "limen/io/text/text.h"
 
 namespace limen {
 namespace {

@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
-#include "limen/io/ply/read_ply.h"
-
 #include <limits>
 
 #include "support/test_support.h"
@@ -9,6 +7,7 @@
 
 #include "limen/base/error.h"
 #include "limen/base/parallel.h"
+#include "limen/io/ply/ply.h"
 
 namespace limen {
 namespace {

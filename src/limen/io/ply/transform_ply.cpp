@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
-#include "limen/io/ply/transform_ply.h"
-
 #include <algorithm>
 #include <array>
 #include <cstring>
@@ -14,8 +12,8 @@
 #include "limen/base/atomic_file.h"
 #include "limen/base/text.h"
 #include "limen/files/text_numbers.h"
+#include "limen/io/ply/ply.h"
 #include "limen/io/ply/ply_header.h"
-#include "limen/io/ply/read_ply.h"
 
 namespace limen {
 namespace {

@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
-#include "limen/io/ply/write_ply.h"
-
 #include <algorithm>
 #include <bit>
 #include <cstddef>
@@ -12,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "limen/base/atomic_file.h"
+#include "limen/io/ply/ply.h"
 
 namespace limen {
 namespace {

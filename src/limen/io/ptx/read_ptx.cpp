@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
-#include "limen/io/ptx/read_ptx.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -16,6 +14,7 @@
 #include "limen/base/error.h"
 #include "limen/base/parallel.h"
 #include "limen/files/text_numbers.h"
+#include "limen/io/ptx/ptx.h"
 #include "limen/io/table/record_table.h"
 #include "limen/io/table/scan_builder.h"
 #include "limen/io/table/table_stream.h"

@@ -1,12 +1,11 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
-#include "limen/io/ptx/read_ptx.h"
-
 #include "support/test_support.h"
 #include <gtest/gtest.h>
 
 #include "limen/base/error.h"
-#include "limen/io/cloud/join_scans.h"
+#include "limen/io/cloud/read_scan.h"
+#include "limen/io/ptx/ptx.h"
 
 namespace limen {
 namespace {

@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
-#include "limen/io/ptx/transform_ptx.h"
-
 #include <array>
 #include <cstring>
 #include <string>
@@ -12,7 +10,7 @@
 
 #include "limen/base/atomic_file.h"
 #include "limen/files/text_numbers.h"
-#include "limen/io/ptx/read_ptx.h"
+#include "limen/io/ptx/ptx.h"
 
 namespace limen {
 namespace {

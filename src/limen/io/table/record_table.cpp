@@ -157,4 +157,9 @@ double load_number(const char* bytes, Scalar type, bool swapped) {
   return number;
 }
 
+const Field* find_times(const RecordTable& table) {
+  return table.find(
+      {"gps_time", "gpstime", "time", "t", "timestamp", "scalar_gps_time", "scalar_gpstime", "scalar_time"});
+}
+
 }  // namespace limen

@@ -79,4 +79,7 @@ void load_numbers(const RecordTable& table, const Field& field, RowRange rows, d
 /// One number from its bytes; `swapped` as in RecordTable.
 double load_number(const char* bytes, Scalar type, bool swapped);
 
+/// The column with the time of each point, in whatever way it is called; nullptr: there is none.
+const Field* find_times(const RecordTable& table);
+
 }  // namespace limen

@@ -19,7 +19,7 @@
 #include "limen/base/parallel.h"
 #include "limen/io/table/optical_centre.h"
 #include "limen/io/table/profile_topology.h"
-#include "limen/io/table/time_column.h"
+#include "limen/io/table/record_table.h"
 
 namespace limen {
 namespace {

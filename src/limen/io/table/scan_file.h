@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "limen/model/scan.h"
@@ -45,6 +46,19 @@ struct ScanFile {
   std::size_t dropped = 0;   ///< points left out: not finite, or missing returns
   std::size_t unusable = 0;  ///< of those the ones that the file did not call missing: not finite, or absurd
   std::vector<std::string> notes;  ///< sentences about what was assumed or left out
+};
+
+/// A file in memory and its name for messages.
+struct NamedBytes {
+  std::string_view bytes;
+  std::string name;
+};
+
+/// What became of a point file that was moved.
+struct TransformedCloud {
+  std::size_t points = 0;
+  std::string format;              ///< of the input, in a user's words
+  std::vector<std::string> notes;  ///< sentences about what was left out or could not be moved
 };
 
 }  // namespace limen

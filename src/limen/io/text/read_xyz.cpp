@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
-#include "limen/io/text/read_xyz.h"
-
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -17,6 +15,7 @@
 #include "limen/io/table/record_table.h"
 #include "limen/io/table/scan_builder.h"
 #include "limen/io/table/table_stream.h"
+#include "limen/io/text/text.h"
 
 namespace limen {
 namespace {

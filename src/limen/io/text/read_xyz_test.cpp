@@ -1,11 +1,10 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
-#include "limen/io/text/read_xyz.h"
-
 #include "support/test_support.h"
 #include <gtest/gtest.h>
 
 #include "limen/base/error.h"
+#include "limen/io/text/text.h"
 
 namespace limen {
 namespace {

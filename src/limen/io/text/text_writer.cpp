@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
-#include "limen/io/text/text_writer.h"
-
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -15,6 +13,7 @@
 #include "limen/base/error.h"
 #include "limen/base/text.h"
 #include "limen/files/table_cells.h"
+#include "limen/io/text/text.h"
 
 namespace limen {
 namespace {

@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
-#include "limen/io/text/transform_text.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -14,7 +12,7 @@
 #include "limen/base/error.h"
 #include "limen/base/parallel.h"
 #include "limen/files/text_numbers.h"
-#include "limen/io/text/read_xyz.h"
+#include "limen/io/text/text.h"
 
 namespace limen {
 namespace {

@@ -19,7 +19,6 @@
 #include "limen/files/mapped_file.h"
 #include "limen/files/text_numbers.h"
 #include "limen/io/crs/coordinate_system.h"
-#include "limen/io/crs/map_projection.h"
 #include "limen/io/table/record_table.h"
 #include "limen/io/trajectory/transverse_mercator.h"
 

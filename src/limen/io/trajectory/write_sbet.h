@@ -9,7 +9,7 @@
 
 #include "limen/geometry/rigid.h"
 #include "limen/geometry/spline_motion.h"
-#include "limen/io/crs/map_projection.h"
+#include "limen/io/crs/coordinate_system.h"
 
 namespace limen {
 

@@ -13,7 +13,7 @@
 #include "limen/base/error.h"
 #include "limen/base/text.h"
 #include "limen/files/bounded_json.h"
-#include "limen/files/readable.h"
+#include "limen/files/mapped_file.h"
 #include "limen/files/text_numbers.h"
 
 namespace limen {

@@ -11,9 +11,9 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "limen/base/child_process.h"
 #include "limen/base/error.h"
 #include "limen/base/parallel.h"
-#include "limen/base/start_program.h"
 #include "limen/base/system.h"
 #include "limen/files/bounded_json.h"
 #include "limen/project/engine/helper_process.h"

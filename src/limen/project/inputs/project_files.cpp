@@ -18,7 +18,7 @@
 #include "limen/base/text.h"
 #include "limen/bim/read_bim.h"
 #include "limen/files/file_hash.h"
-#include "limen/files/readable.h"
+#include "limen/files/mapped_file.h"
 #include "limen/files/scan_in_file.h"
 
 namespace limen {

@@ -6,9 +6,20 @@
 #include <utility>
 #include <vector>
 
+#include <Eigen/Geometry>
+
 #include "limen/project/store/scan_digest.h"
 
 namespace limen {
+
+/// Where the planes of a scan reach to, in a frame; empty where it has none. Metres.
+Eigen::AlignedBox3d box_of_planes(const ScanDigest& scan, const Rigid3& frame_from_scan);
+
+/// How much surface two scans should have in common where one is at a known pose to the other, from their
+/// planes alone: those that face one way and lie in one another are taken for ellipses of their tiles, and
+/// share the smaller area as far as these meet. m^2; a pair of planes counts for no more than 5 m^2. Poses
+/// are between the digests' origins, scans' axes.
+double predicted_overlap(const ScanDigest& a, const ScanDigest& b, const Rigid3& b_from_a);
 
 /// Partners of each scan, the most promising first; ties by number.
 std::vector<std::vector<std::size_t>> ranked_partners(const std::vector<ScanDigest>& digests);

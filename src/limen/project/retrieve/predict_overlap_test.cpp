@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
-#include "limen/project/retrieve/predict_overlap.h"
-
 #include <gtest/gtest.h>
+
+#include "limen/project/retrieve/choose_pairs.h"
 
 namespace limen {
 namespace {

@@ -3,11 +3,10 @@
 #include "limen/project/run/store_jobs.h"
 
 #include <algorithm>
-#include <utility>
 
 #include <fmt/format.h>
 
-#include "limen/base/stage_part.h"
+#include "limen/base/progress.h"
 #include "limen/bim/read_bim.h"
 #include "limen/extract/targets/find_targets.h"
 #include "limen/files/file_hash.h"
@@ -21,6 +20,30 @@
 #include "limen/register/prepare/prepared_pair.h"
 
 namespace limen {
+
+std::shared_ptr<const PreparedScan> ScanCache::get(const std::string& key) {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    const auto found = entries_.find(key);
+    if (found != entries_.end()) {
+      found->second.used = ++clock_;
+      return found->second.scan;
+    }
+  }
+  std::optional<PreparedScan> loaded = store_.load_features(key);
+  if (!loaded)
+    throw Error("its features are gone from the store, or damaged", name_(key), "run the project again");
+  auto scan = std::make_shared<const PreparedScan>(std::move(*loaded));
+  const std::lock_guard<std::mutex> lock(mutex_);
+  entries_[key] = {scan, ++clock_};
+  while (entries_.size() > most_) {
+    entries_.erase(std::min_element(entries_.begin(), entries_.end(), [](const auto& a, const auto& b) {
+      return a.second.used < b.second.used;
+    }));
+  }
+  return scan;
+}
+
 namespace {
 
 /// Saves something; that it cannot be saved is no fault of what it was made of.

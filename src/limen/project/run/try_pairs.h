@@ -10,13 +10,19 @@
 
 #include "limen/base/progress.h"
 #include "limen/project/engine/job_engine.h"
+#include "limen/project/graph/pose_query.h"
 #include "limen/project/result/project_result.h"
+#include "limen/project/run/store_jobs.h"
 #include "limen/project/state/project_node.h"
 #include "limen/project/state/project_status.h"
 #include "limen/project/store/store.h"
-#include "limen/register/register_options.h"
+#include "limen/register/register.h"
 
 namespace limen {
+
+/// Asks pairs of static scans; of others, and where two do not meet, nothing is answered. Keeps references.
+PoseQuery query_of_scans(const std::vector<ProjectNode>& nodes, const RegisterOptions& options,
+                         ScanCache& cache);
 
 /// How far a pair is searched.
 enum class PairSearch {

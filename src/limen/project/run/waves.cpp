@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "limen/base/parallel.h"
-#include "limen/project/retrieve/predict_overlap.h"
+#include "limen/project/retrieve/choose_pairs.h"
 #include "limen/project/solve/project_graph.h"
 #include "limen/project/survey/stated_place.h"
 

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "limen/project/control/fit_points.h"
-#include "limen/project/retrieve/predict_overlap.h"
+#include "limen/project/retrieve/choose_pairs.h"
 #include "limen/project/state/scan_names.h"
 
 namespace limen {

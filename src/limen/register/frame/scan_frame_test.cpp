@@ -14,7 +14,6 @@
 #include "limen/base/angles.h"
 #include "limen/base/random.h"
 #include "limen/geometry/random_vectors.h"
-#include "limen/register/prepare/laid_scan.h"
 #include "limen/register/prepare/prepare_scan.h"
 #include "limen/simulate/scene.h"
 

@@ -10,7 +10,6 @@
 #include "limen/register/prepare/prepare_group.h"
 #include "limen/register/prepare/prepare_model.h"
 #include "limen/register/register.h"
-#include "limen/simulate/model/bim_office.h"
 #include "limen/simulate/model/bim_recipe.h"
 #include "limen/simulate/model/bim_scene.h"
 

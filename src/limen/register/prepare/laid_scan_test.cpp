@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
-#include "limen/register/prepare/laid_scan.h"
-
 #include <algorithm>
 #include <numeric>
 #include <set>
@@ -11,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "limen/base/random.h"
+#include "limen/register/prepare/prepare_scan.h"
 
 namespace limen {
 namespace {

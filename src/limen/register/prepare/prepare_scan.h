@@ -11,6 +11,7 @@
 #include "limen/extract/segments/segments.h"
 #include "limen/model/bim_model.h"
 #include "limen/model/method.h"
+#include "limen/model/scan.h"
 #include "limen/register/frame/scan_frame.h"
 #include "limen/register/prepare/kept_points.h"
 #include "limen/register/prepare/open_sky.h"
@@ -18,6 +19,20 @@
 #include "limen/register/prepare/scan_view.h"
 
 namespace limen {
+
+/// What is kept of a scan that is laid in its frame.
+struct LayOptions {
+  KeepOptions keep = kKeepAll;
+  bool lines = true;  ///< with the scan lines, where they are known
+  bool times = true;  ///< of a mobile scan
+};
+
+/// The scan in its frame, about local origin + corner, seen from the place found; its points sorted along a
+/// curve through space, so that nothing that follows depends on their order in the file. Of more points than
+/// are wanted a part is kept (kept_points.h). Times of a static scan, intensities and colours are left out.
+Scan laid_in(const Scan& scan, const ScanFrame& frame, const LayOptions& options = {});
+/// The same of a scan that is not needed any more: its memory is given back on the way.
+Scan laid_in(Scan&& scan, const ScanFrame& frame, const LayOptions& options = {});
 
 /// A scan made ready for registration: features, labels, and its view of space, all in the frame that its
 /// data fix (scan_frame.h): turned by `upright_from_scan` about `extracted.features.local_origin`.

@@ -1,10 +1,9 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
-#include "limen/register/prepare/sample_runs.h"
-
 #include <gtest/gtest.h>
 
 #include "limen/base/random.h"
+#include "limen/register/prepare/scan_view.h"
 
 namespace limen {
 namespace {

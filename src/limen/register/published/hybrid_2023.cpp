@@ -1,14 +1,25 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
-#include "limen/register/published/hybrid_2023.h"
-
 #include <cmath>
 
 #include <Eigen/LU>
 
 #include "limen/base/angles.h"
-#include "limen/register/published/best_trial.h"
-#include "limen/register/published/wall_edges.h"
+#include "limen/register/published/published_pose.h"
+
+// Monasse, Djahel, Vallet 2023, section III-B: a façade of each scan is drawn, a corner of an opening of
+// each, and two planes across the façade; the pose of smallest distance (8) is kept.
+//
+// Departures from the printed text:
+// - the façades are parallel as soon as the pose is right, and parallel planes have no line of intersection
+//   to turn about: the rotation is that of their frames (outward normal, up). The indoor normal opposes the
+//   outdoor one. This needs the vertical of both scans;
+// - as printed, the vector from A to B lays the indoor face of the wall on its outdoor face. Where the user
+//   gives a thickness, the chosen pose is moved back by it; else the shift across the wall is not held, and
+//   said so;
+// - the planes across the façade are those of Algorithm 1's clusters that lie within 10 degrees of it;
+// - the number of trials is not given: `trials`;
+// - those of match/segments/segment_distance.h (1 to 8) and match/planes/direction_clusters.h.
 
 namespace limen {
 namespace {

@@ -7,6 +7,36 @@
 
 namespace limen {
 
+std::vector<WallEdges> wall_edges(const Features& features, bool upright) {
+  WallWithOpeningsOptions options;
+  if (upright) options.up = Vector3d::UnitZ();
+  std::vector<WallEdges> walls;
+  for (const WallWithOpenings& wall : walls_with_openings(features, options)) {
+    WallEdges edges;
+    edges.normal = wall.normal();
+    edges.right = wall.frame.u;
+    for (const WallRectangle& rectangle : wall.rectangles) {
+      for (const std::size_t k : {0U, 2U}) {
+        edges.horizontal.push_back(edge_segment(wall, rectangle, k));
+        edges.corners.push_back(edges.horizontal.back().a);
+        edges.corners.push_back(edges.horizontal.back().b);
+      }
+      for (const std::size_t k : {1U, 3U}) edges.vertical.push_back(edge_segment(wall, rectangle, k));
+    }
+    walls.push_back(std::move(edges));
+  }
+  return walls;
+}
+
+std::vector<Segment> all_edges(const std::vector<WallEdges>& walls) {
+  std::vector<Segment> all;
+  for (const WallEdges& wall : walls) {
+    all.insert(all.end(), wall.horizontal.begin(), wall.horizontal.end());
+    all.insert(all.end(), wall.vertical.begin(), wall.vertical.end());
+  }
+  return all;
+}
+
 std::vector<PlanarPolygon> common_polygons(const Features& features, bool outside, std::size_t most) {
   std::vector<PlanarPolygon> common;
   std::copy_if(features.planes.begin(), features.planes.end(), std::back_inserter(common),

@@ -2,17 +2,80 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "limen/base/angles.h"
+#include "limen/base/parallel.h"
+#include "limen/base/random.h"
+#include "limen/match/openings/opening_walls.h"
+#include "limen/match/planes/direction_clusters.h"
+#include "limen/match/planes/polygon_distance.h"
+#include "limen/match/planes/threshold_matching.h"
+#include "limen/match/segments/segment_distance.h"
 #include "limen/model/features.h"
 
-// What the papers' own methods take and give. Each is one file pair of this room.
-
 namespace limen {
+
+/// What random trials came to.
+struct BestTrial {
+  std::size_t trial = 0;  ///< RandomStream(seed, trial) draws the hypothesis again
+  double cost = 0.0;
+  std::size_t judged = 0;  ///< trials whose sample gave a hypothesis
+};
+
+/// The random search of 2022, 3.2, and 2023, III-B and IV-C: `draw(RandomStream&)` gives a hypothesis or
+/// nothing, `cost(hypothesis)` is minimised over all trials; the first of equals is taken. The same for any
+/// number of threads. None where no trial gave a hypothesis.
+template <typename Draw, typename Cost>
+std::optional<BestTrial> best_trial(std::size_t trials, std::uint64_t seed, const Draw& draw,
+                                    const Cost& cost) {
+  constexpr double kNone = std::numeric_limits<double>::infinity();
+  std::vector<double> costs(trials, kNone);
+  parallel_for(trials, 64, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t trial = begin; trial < end; ++trial) {
+      RandomStream random(seed, trial);
+      if (const auto hypothesis = draw(random)) costs[trial] = cost(*hypothesis);
+    }
+  });
+  const auto lowest = std::min_element(costs.begin(), costs.end());
+  if (lowest == costs.end() || *lowest == kNone) return std::nullopt;
+  BestTrial best;
+  best.trial = static_cast<std::size_t>(lowest - costs.begin());
+  best.cost = *lowest;
+  best.judged =
+      static_cast<std::size_t>(std::count_if(costs.begin(), costs.end(), [](double c) { return c < kNone; }));
+  return best;
+}
+
+/// A wall of a scan with the edges and corners of its openings, as 2022 and 2023, III, draw from them.
+struct WallEdges {
+  Vector3d normal = Vector3d::UnitX();  ///< unit, towards the scanner
+  Vector3d right = Vector3d::UnitY();   ///< unit, as the scanner sees it; up is normal x right
+  std::vector<Segment> vertical;        ///< upwards
+  std::vector<Segment> horizontal;      ///< to the right
+  std::vector<Vector3d> corners;
+};
+
+/// The walls of a scan that have openings, all four edges of each. `upright`: z is up.
+std::vector<WallEdges> wall_edges(const Features& features, bool upright);
+
+/// All edges of all walls.
+std::vector<Segment> all_edges(const std::vector<WallEdges>& walls);
+
+/// One item of a list that is not empty.
+template <typename Item>
+const Item& drawn(const std::vector<Item>& items, RandomStream& random) {
+  return items[random.below(static_cast<std::uint32_t>(items.size()))];
+}
+
+// What the papers' own methods take and give. Each is one source of this room.
 
 /// Two scans as a published method sees them.
 struct PublishedInput {
@@ -46,5 +109,58 @@ struct PublishedAnswer {
   std::optional<PublishedPose> pose;
   std::string why_none;
 };
+
+struct Threshold2021Options {
+  ThresholdMatchingOptions matching = {.one_to_one = true};
+  std::size_t max_polygons = 24;  ///< of each scan, those of most inliers; the paper has 22 and 23
+};
+
+/// The pose that lays the matched polygons on each other. The criterion is equation 10 summed over both
+/// scans (rdist, symmetrised), m^2, higher is better; nothing is chosen by it.
+PublishedAnswer register_threshold_2021(const PublishedInput& input,
+                                        const Threshold2021Options& options = {});
+
+struct Cluster2021Options {
+  DirectionClusterOptions clusters;
+  AgreementOptions agreement;     ///< d_thr of (9) and (10)
+  double same_offset_m = 0.05;    ///< planes of one direction nearer than this are one
+  std::size_t max_polygons = 24;  ///< of each scan, those of most inliers; the paper has 22 and 23
+};
+
+/// The best hypothesis. The criterion is (10) over the polygons of associated clusters, summed over both
+/// scans (rdist, symmetrised), m^2, higher is better.
+PublishedAnswer register_cluster_2021(const PublishedInput& input, const Cluster2021Options& options = {});
+
+struct Openings2022Options {
+  SegmentDistanceOptions distance = {.whole_segments = true};
+  std::size_t trials = 40000;
+};
+
+/// The pose of smallest distance. The criterion is equation 14 over all edges of both scans, m^3, lower is
+/// better. Deterministic for a seed.
+PublishedAnswer register_openings_2022(const PublishedInput& input, const Openings2022Options& options = {});
+
+struct Hybrid2023Options {
+  DirectionClusterOptions clusters;
+  SegmentDistanceOptions distance = {.weight = SegmentWeight::relative};
+  std::size_t max_polygons = 24;  ///< of the source, those of most inliers
+  std::size_t trials = 40000;
+};
+
+/// The pose of smallest distance. The criterion is equation 8, summed over both scans, m^2, lower is better.
+/// Deterministic for a seed.
+PublishedAnswer register_hybrid_2023(const PublishedInput& input, const Hybrid2023Options& options = {});
+
+struct Segments2023Options {
+  DirectionClusterOptions clusters;
+  SegmentDistanceOptions distance = {.weight = SegmentWeight::relative};
+  double max_angle_rad = radians(5.0);  ///< by which the angle within a double pair may differ
+  std::size_t max_segments = 300;       ///< of each set, the longest
+  std::size_t trials = 200000;          ///< double pairs drawn
+};
+
+/// The pose of smallest distance. The criterion is equation 8, summed over both sets, m^2, lower is better.
+/// Deterministic for a seed.
+PublishedAnswer register_segments_2023(const PublishedInput& input, const Segments2023Options& options = {});
 
 }  // namespace limen

@@ -8,11 +8,7 @@
 #include "limen/register/judge/model_walls.h"
 #include "limen/register/judge/score_pose.h"
 #include "limen/register/prepare/stage_clock.h"
-#include "limen/register/published/cluster_2021.h"
-#include "limen/register/published/hybrid_2023.h"
-#include "limen/register/published/openings_2022.h"
-#include "limen/register/published/segments_2023.h"
-#include "limen/register/published/threshold_2021.h"
+#include "limen/register/published/published_pose.h"
 #include "limen/register/refine/refine_pose.h"
 
 namespace limen {

@@ -9,7 +9,7 @@
 #include "limen/model/result.h"
 #include "limen/register/prepare/prepared_pair.h"
 
-// The papers' own methods, each in a file pair of this room, run from two scans to one pose.
+// The papers' own methods, each in a source of this room, run from two scans to one pose.
 //
 // Departures that all of them share:
 // - planes: 2021, section 2 (scan lines where they are known, else MSAC), the threshold by equations 3 to 6

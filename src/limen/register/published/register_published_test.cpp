@@ -9,8 +9,7 @@
 #include "limen/base/angles.h"
 #include "limen/base/error.h"
 #include "limen/base/parallel.h"
-#include "limen/register/published/hybrid_2023.h"
-#include "limen/register/published/openings_2022.h"
+#include "limen/register/published/published_pose.h"
 #include "limen/register/register.h"
 #include "limen/simulate/scene.h"
 

@@ -1,13 +1,24 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
-#include "limen/register/published/segments_2023.h"
-
 #include <algorithm>
 #include <cmath>
 
 #include "limen/match/solvers/rigid_from_lines.h"
-#include "limen/register/published/best_trial.h"
-#include "limen/register/published/wall_edges.h"
+#include "limen/register/published/published_pose.h"
+
+// Monasse, Djahel, Vallet 2023, section IV: segments clustered by direction; two associated clusters are
+// drawn, one segment of each in both sets; the pose that lays the double pair on each other and has the
+// smallest distance (8) is kept.
+//
+// Departures from the printed text:
+// - (9) compares 1 - cos with an angle, and gives no sign: a cluster goes with the one of the other set that
+//   the start brings nearest, each with one (largest |d . d| first), turned to its side;
+// - a double pair is tried only where both sets hold the same |d_v . d_h| within `max_angle_rad` and the two
+//   lines pass each other at the same distance within d of (7);
+// - (8) is taken both ways, and over the `max_segments` longest segments of each set;
+// - the number of trials is not given: `trials`;
+// - those of match/planes/direction_clusters.h (algorithm 1), match/segments/segment_distance.h (1 to 8) and
+//   match/solvers/rigid_from_lines.h (10 to 14).
 
 namespace limen {
 namespace {

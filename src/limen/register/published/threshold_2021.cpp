@@ -1,12 +1,19 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
-#include "limen/register/published/threshold_2021.h"
-
 #include <fmt/format.h>
 
 #include "limen/match/planes/polygon_distance.h"
 #include "limen/match/solvers/rotation_from_directions.h"
 #include "limen/match/solvers/translation_from_planes.h"
+#include "limen/register/published/published_pose.h"
+
+// Djahel, Monasse, Vallet 2021, section 3.2.1: polygons that agree within three thresholds at the start.
+//
+// Departures from the printed text:
+// - the text gives no thresholds: those of ThresholdMatchingOptions, one partner for each polygon;
+// - nor does it say how matches become a pose: here least squares over all of them, which is 3.3 (a rotation
+//   from pairs of directions) and 3.4 (a shift from pairs of planes) for any number of pairs;
+// - those of match/planes/polygon_distance.h and of the two solvers.
 
 namespace limen {
 namespace {

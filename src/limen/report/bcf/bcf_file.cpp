@@ -11,7 +11,7 @@
 #include "limen/base/version.h"
 #include "limen/files/file_hash.h"
 #include "limen/files/xml_text.h"
-#include "limen/files/zip_writer.h"
+#include "limen/files/zip.h"
 
 namespace limen {
 namespace {

@@ -8,7 +8,7 @@
 #include "support/bcf_check.h"
 #include <gtest/gtest.h>
 
-#include "limen/files/zip_writer.h"
+#include "limen/files/zip.h"
 
 namespace limen {
 namespace {

@@ -14,7 +14,6 @@
 #include "limen/geometry/spread_evenly.h"
 #include "limen/report/html/html_bytes.h"
 #include "limen/report/html/html_residuals.h"
-#include "limen/report/html/html_words.h"
 #include "limen/report/html/section_svg.h"
 #include "limen/report/summary/words.h"
 

@@ -1,8 +1,7 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
-#include "limen/report/json/features_schema.h"
-
 #include "limen/report/json/schema_words.h"
+#include "limen/report/json/schemas.h"
 
 namespace limen {
 namespace schema {

@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
-#include "limen/report/json/result_schema.h"
-
 #include <memory>
 #include <string>
 
@@ -10,6 +8,7 @@
 
 #include "limen/report/json/json_values.h"
 #include "limen/report/json/result_json.h"
+#include "limen/report/json/schemas.h"
 
 namespace limen {
 namespace {

@@ -1,9 +1,8 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
-#include "limen/report/json/segments_json.h"
-
 #include <gtest/gtest.h>
 
+#include "limen/report/json/features_json.h"
 #include "limen/report/json/json_values.h"
 
 namespace limen {

@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
-#include "limen/report/project/pass_charts.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "limen/report/html/html_bytes.h"
+#include "limen/report/project/page_parts.h"
 #include "limen/report/project/project_axes.h"
 
 namespace limen {

@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
-#include "limen/report/project/project_plan.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -13,6 +11,7 @@
 
 #include "limen/base/angles.h"
 #include "limen/report/html/html_bytes.h"
+#include "limen/report/project/page_parts.h"
 #include "limen/report/project/project_axes.h"
 
 namespace limen {

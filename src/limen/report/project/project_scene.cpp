@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
-#include "limen/report/project/project_scene.h"
-
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -14,6 +12,7 @@
 #include "limen/report/html/html_data.h"
 #include "limen/report/html/html_elements.h"
 #include "limen/report/html/html_scene.h"
+#include "limen/report/project/page_parts.h"
 #include "limen/report/project/project_axes.h"
 #include "limen/report/project/station_accuracy.h"
 

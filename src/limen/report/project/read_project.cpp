@@ -12,7 +12,7 @@
 
 #include "limen/base/error.h"
 #include "limen/files/bounded_json.h"
-#include "limen/files/readable.h"
+#include "limen/files/mapped_file.h"
 #include "limen/project/state/scan_names.h"
 #include "limen/report/json/json_values.h"
 

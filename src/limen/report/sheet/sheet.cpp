@@ -11,7 +11,7 @@
 
 #include "limen/files/table_cells.h"
 #include "limen/files/xml_text.h"
-#include "limen/files/zip_writer.h"
+#include "limen/files/zip.h"
 
 namespace limen {
 namespace {

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 #include <pugixml.hpp>
 
-#include "limen/files/zip_member.h"
+#include "limen/files/zip.h"
 
 namespace limen {
 namespace {

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
-#include "limen/report/summary/answer_places.h"
-
 #include <gtest/gtest.h>
+
+#include "limen/report/summary/summary_text.h"
 
 namespace limen {
 namespace {

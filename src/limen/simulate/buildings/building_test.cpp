@@ -7,7 +7,6 @@
 
 #include <gtest/gtest.h>
 
-#include "limen/simulate/buildings/furniture.h"
 #include "limen/simulate/recipes.h"
 
 namespace limen {

@@ -1,13 +1,12 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
-#include "limen/simulate/buildings/furniture.h"
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <vector>
 
 #include "limen/geometry/random_vectors.h"
+#include "limen/simulate/buildings/building.h"
 
 namespace limen {
 namespace {

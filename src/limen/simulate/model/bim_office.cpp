@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
-#include "limen/simulate/model/bim_office.h"
-
 #include <cmath>
 #include <string>
 #include <vector>
+
+#include "limen/simulate/model/bim_recipe.h"
 
 namespace limen {
 namespace {

@@ -63,4 +63,16 @@ std::string recipe_guid(const BimRecipe& recipe, RecipePart part, std::size_t in
 /// must be perpendicular to the faces they pierce.
 BimModel model_of(const BimRecipe& recipe);
 
+/// The built-in model: two storeys of 24 x 13 m with a corridor, rows of equal offices on both floors, a
+/// meeting room and a hall with columns that are unique, a stairwell, windows and doors.
+BimRecipe office_recipe();
+
+/// The file's unit of length.
+enum class IfcUnit { metre, millimetre };
+
+/// The recipe as the text of an IFC4 file: project, site, building, storeys, spaces, elements as extruded
+/// solids, openings that void their hosts and are filled by windows and doors. The same recipe gives the same
+/// bytes. Coordinates are written to the micrometre.
+std::string ifc_text(const BimRecipe& recipe, IfcUnit unit = IfcUnit::metre);
+
 }  // namespace limen

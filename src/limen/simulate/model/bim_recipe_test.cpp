@@ -15,8 +15,6 @@
 
 #include "limen/base/atomic_file.h"
 #include "limen/bim/read_bim.h"
-#include "limen/simulate/model/bim_office.h"
-#include "limen/simulate/model/write_ifc.h"
 
 namespace limen {
 namespace {

@@ -11,8 +11,8 @@
 #include "limen/base/error.h"
 #include "limen/base/parallel.h"
 #include "limen/simulate/model/bim_mesh.h"
-#include "limen/simulate/model/bim_office.h"
-#include "limen/simulate/model/bim_rooms.h"
+#include "limen/simulate/model/bim_recipe.h"
+#include "limen/simulate/model/bim_stations.h"
 #include "limen/simulate/scanner/ray_caster.h"
 
 namespace limen {

@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
-#include "limen/simulate/model/write_ifc.h"
-
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -10,6 +8,7 @@
 
 #include "limen/base/text.h"
 #include "limen/geometry/polygon_clip.h"
+#include "limen/simulate/model/bim_recipe.h"
 
 namespace limen {
 namespace {

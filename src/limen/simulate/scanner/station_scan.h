@@ -3,16 +3,36 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "limen/base/random.h"
 #include "limen/model/scan.h"
+#include "limen/simulate/buildings/mesh.h"
 #include "limen/simulate/scanner/scanner.h"
 
-// What scans of made-up buildings and scans of models have in common.
-
 namespace limen {
+
+/// Counts which surface scans have in common, in cells of 0.2 m on the true planes: a cell with a point of
+/// either scan is seen by both. What lies in no plane (leaves, poles) is not counted. Memory: 12 bytes a
+/// cell.
+class SharedSurfaceCounter {
+ public:
+  explicit SharedSurfaceCounter(const MergedPlanes& planes) : planes_(planes) {}
+
+  /// Scans in their order. Returns the surface that this one saw, m^2.
+  double add(const Sweep& sweep);
+  /// Of all pairs of scans that were added, sorted.
+  [[nodiscard]] std::vector<SharedSurface> shared() const;
+
+ private:
+  const MergedPlanes& planes_;
+  std::vector<std::vector<std::uint64_t>> cells_;  ///< sorted, per scan
+};
+
+// What scans of made-up buildings and scans of models have in common.
 
 /// A rotation about the vertical by any angle.
 Matrix3d any_heading(RandomStream& random);

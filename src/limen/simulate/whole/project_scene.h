@@ -31,7 +31,7 @@ struct ProjectSceneOptions {
   double open_door_share = 0.9;
   bool as_built = false;    ///< walls, slabs and openings are off the drawing as real ones are
   std::size_t targets = 0;  ///< in each room of a station: spheres and checkerboards (site_targets.h)
-  bool styles = false;      ///< every station in a style at random (scan_style.h)
+  bool styles = false;      ///< every station in a style at random (building_scanner.h)
   ScannerOptions scanner;
 
   void check() const;

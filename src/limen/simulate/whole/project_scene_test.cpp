@@ -11,7 +11,6 @@
 #include "limen/base/error.h"
 #include "limen/base/parallel.h"
 #include "limen/simulate/whole/building_scanner.h"
-#include "limen/simulate/whole/people.h"
 #include "limen/simulate/whole/whole_building.h"
 
 namespace limen {

@@ -11,7 +11,7 @@
 #include <fmt/format.h>
 
 #include "limen/geometry/random_vectors.h"
-#include "limen/simulate/buildings/furniture.h"
+#include "limen/simulate/buildings/building.h"
 #include "limen/simulate/scanner/ray_caster.h"
 
 namespace limen {

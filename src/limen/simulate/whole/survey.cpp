@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "limen/geometry/random_vectors.h"
-#include "limen/simulate/buildings/furniture.h"
+#include "limen/simulate/buildings/building.h"
 
 namespace limen {
 namespace {

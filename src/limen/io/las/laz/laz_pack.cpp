@@ -6,8 +6,8 @@
 
 #include "limen/io/las/las_fields.h"
 #include "limen/io/las/las_header.h"
+#include "limen/io/las/laz/laz_arithmetic.h"
 #include "limen/io/las/laz/laz_colours.h"
-#include "limen/io/las/laz/laz_encoder.h"
 #include "limen/io/las/laz/laz_gps_time.h"
 #include "limen/io/las/laz/laz_point10.h"
 #include "limen/io/las/laz/laz_wave_packet.h"

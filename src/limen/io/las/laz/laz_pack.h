@@ -10,7 +10,7 @@
 
 #include "limen/io/las/laz/laz_items.h"
 
-/// How points are packed: the other direction of laz_chunk.h and laz_info.h.
+/// How points are packed: the other direction of laz_records.cpp and laz_info.h.
 namespace limen::laz {
 
 /// The parts of the records of a point format, in the newest versions that all readers know: 2 for formats 0

@@ -5,8 +5,8 @@
 #include <memory>
 
 #include "limen/io/las/las_header.h"
+#include "limen/io/las/laz/laz_arithmetic.h"
 #include "limen/io/las/laz/laz_colours.h"
-#include "limen/io/las/laz/laz_encoder.h"
 #include "limen/io/las/laz/laz_pack.h"
 #include "limen/io/las/laz/laz_point14.h"
 #include "limen/io/las/laz/laz_wave_packet.h"

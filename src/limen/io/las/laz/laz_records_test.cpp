@@ -7,7 +7,7 @@
 
 #include "limen/base/error.h"
 #include "limen/base/parallel.h"
-#include "limen/io/las/las_transform.h"
+#include "limen/io/las/las.h"
 #include "limen/io/las/laz/laz_integer.h"
 
 namespace limen {

@@ -10,10 +10,9 @@
 #include <gtest/gtest.h>
 
 #include "limen/base/parallel.h"
-#include "limen/io/las/las_transform.h"
+#include "limen/io/las/las.h"
 #include "limen/io/las/laz/laz_info.h"
 #include "limen/io/las/laz/laz_pack.h"
-#include "limen/io/las/write_las.h"
 
 namespace limen {
 namespace {
