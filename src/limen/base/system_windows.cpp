@@ -5,7 +5,6 @@
 #include <atomic>
 #include <cerrno>
 #include <cmath>
-#include <cstdlib>
 
 #include <fcntl.h>
 #include <io.h>

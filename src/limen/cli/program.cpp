@@ -6,7 +6,6 @@
 #include <cctype>
 #include <cstdio>
 #include <iostream>
-#include <memory>
 #include <new>
 #include <string>
 #include <string_view>

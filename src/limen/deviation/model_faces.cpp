@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limen/deviation/model_faces.h"
 
-#include <algorithm>
-
 namespace limen {
 namespace {
 

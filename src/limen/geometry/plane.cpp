@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limen/geometry/plane.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "limen/geometry/linear.h"

@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <utility>
 
 #include "limen/base/error.h"
 #include "limen/geometry/cell_numbers.h"

@@ -3,7 +3,6 @@
 #include "limen/register/register.h"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <utility>
 

@@ -6,7 +6,6 @@
 #include <charconv>
 #include <fstream>
 #include <iterator>
-#include <utility>
 #include <vector>
 
 #include <fmt/format.h>

@@ -3,7 +3,6 @@
 #include "limen/sight/joined_space.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <utility>
 

@@ -3,7 +3,6 @@
 //
 // Rooms in a row that repeat to the last chair, with nothing outside: shifts by a room cannot be
 // distinguished.
-#include "limen/base/angles.h"
 #include "limen/simulate/buildings/building.h"
 #include "limen/simulate/recipe_parts.h"
 #include "limen/simulate/street.h"

@@ -3,7 +3,6 @@
 #include "limen/simulate/recipes.h"
 
 #include <array>
-#include <utility>
 
 #include "limen/base/angles.h"
 #include "limen/base/error.h"

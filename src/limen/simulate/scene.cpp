@@ -3,7 +3,6 @@
 #include "limen/simulate/scene.h"
 
 #include <algorithm>
-#include <cmath>
 #include <functional>
 
 #include "limen/base/error.h"
@@ -108,20 +107,8 @@ class Simulation {
     const Sweep result = sweep_of(make, points, mix64(o_.seed * 1000 + 900));
     const Drift drift(o_.drift_m, pattern.pulse(0, 0).time_s, pattern.pulse(pattern.lines - 1, 0).time_s,
                       random_);
-    Scan scan;
-    scan.name = "outdoor";
+    Scan scan = pass_scan("outdoor", result, pattern, drift, world_from_scene_);
     scan.local_origin = origin_;
-    scan.level = true;
-    for (const Echo& echo : result.echoes) {
-      const Pulse pulse = pattern.pulse(echo.line, echo.index);
-      const Vector3d error = drift.at(pulse.time_s);
-      scan.points.push_back(world_from_scene_ * echo.point + error);
-      scan.centres.push_back(world_from_scene_ * pulse.origin + error);
-      scan.times_s.push_back(pulse.time_s);
-      scan.topology.line.push_back(static_cast<std::int32_t>(echo.line));
-      scan.topology.index.push_back(static_cast<std::int32_t>(echo.index));
-      scan.intensities.push_back(echo.intensity);
-    }
     ScanTruth truth{.name = scan.name,
                     .mobile = true,
                     .drift_m = o_.drift_m,

@@ -3,7 +3,6 @@
 #include "limen/bim/ifc/ifc_stream.h"
 
 #include <cstring>
-#include <optional>
 
 #include "limen/bim/ifc/ifc_stream_format.h"
 

@@ -252,23 +252,19 @@ int run(const DeviationCommand& command, const Session& session) {
 }
 
 void add_pose_options(CommandLine& command, DeviationCommand& options) {
-  command
-      .add_option("--result", options.result,
-                  "result.json of limen register, or a text file with a 4 x 4 matrix")
-      ->type_name("FILE");
+  command.add_option("--result FILE", options.result,
+                     "result.json of limen register, or a text file with a 4 x 4 matrix");
   command.add_flag("--identity", options.identity, "Scan and model are in one frame already");
   add_alternative_option(command, options.alternative);
   command.add_flag("--force", options.force,
                    "Accept files that are not the registered ones, for example copies in the same frame");
   command.add_flag("--inverse", options.inverse, "The pose in --result moves the model to the scan");
   command
-      .add_option("--with", options.with,
+      .add_option("--with SCAN POSE", options.with,
                   "A further scan and the file of its pose in SCAN's frame; may be given several times")
-      ->type_size(2)
-      ->type_name("SCAN POSE");
-  command
-      .add_option("--origin", options.origin, "Scanner position of SCAN, in the coordinates of its points")
-      ->type_name("x,y,z");
+      ->type_size(2);
+  command.add_option("--origin x,y,z", options.origin,
+                     "Scanner position of SCAN, in the coordinates of its points");
   add_units_option(command, options.reading.units);
   add_units_option(command, options.model_units, "model-");
   add_memory_option(command, options.reading.memory);
@@ -292,17 +288,15 @@ void add_deviation_command(CommandLine& app, Session& session) {
       "The building model: IFC, OBJ, or PLY with faces; for a project by default its own models");
   command
       ->add_option(
-          "--model", options->models,
+          "--model MODEL", options->models,
           "For a project: measure against this model; may be given several times, for files of one building")
-      ->type_name("MODEL")
       ->type_size(1)
       ->take_all();
   command
-      ->add_option("-o,--output", options->folder,
+      ->add_option("-o,--output DIR", options->folder,
                    "Folder for deviation.json, deviation.csv, deviation.xlsx and deviation.ply; for a "
                    "project also report.html")
-      ->required()
-      ->type_name("DIR");
+      ->required();
   add_pose_options(*command, *options);
   add_length_option(*command, "--max-distance-m", options->measuring.max_distance_m,
                     "Points farther than this from every face do not belong to the model (default 0.10)");

@@ -147,10 +147,8 @@ void add_evaluate_command(CommandLine& app, Session& session) {
       ->required();
   add_length_option(*command, "--within-m", options->within_m,
                     "For a project: list each scan whose position is off by more than this (default 0.02)");
-  command
-      ->add_option("--within-deg", options->within_deg,
-                   "For a project: list each scan whose rotation is off by more than this (default 0.1)")
-      ->type_name("DEG");
+  command->add_option("--within-deg DEG", options->within_deg,
+                      "For a project: list each scan whose rotation is off by more than this (default 0.1)");
 }
 
 }  // namespace limen

@@ -112,20 +112,15 @@ void add_planes_command(CommandLine& app, Session& session) {
   std::vector<std::string> names;
   for (const auto& [name, detector] : detectors()) names.push_back(name);
   command
-      ->add_option(
-          "--detector", options->detector,
-          "How planes are found (default auto, which is grow); scan_lines needs a scan whose lines are "
-          "known; msac is slow")
+      ->add_option("--detector", options->detector,
+                   "How planes are found (default auto, which is grow); scan_lines needs a scan whose lines "
+                   "are known; msac is slow")
       ->one_of(names);
-  command
-      ->add_option("--threshold-m,--inlier-threshold-m", options->threshold,
-                   "Largest distance of a point from its plane: metres, or a rule: auto (default), noise, "
-                   "a_contrario; 0 is auto")
-      ->type_name("METRES|RULE");
-  command
-      ->add_option("--min-inliers", options->extract.grow.min_inliers,
-                   "Smallest number of points of a plane (default 200)")
-      ->type_name("N");
+  command->add_option("--threshold-m,--inlier-threshold-m METRES|RULE", options->threshold,
+                      "Largest distance of a point from its plane: metres, or a rule: auto (default), noise, "
+                      "a_contrario; 0 is auto");
+  command->add_option("--min-inliers N", options->extract.grow.min_inliers,
+                      "Smallest number of points of a plane (default 200)");
   add_length_option(*command, "--alpha-m", options->extract.polygons.alpha_m,
                     "Radius of the outlines' alpha shape; 0: from the spacing of the points (default)");
 }

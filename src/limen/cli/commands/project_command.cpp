@@ -427,81 +427,53 @@ void add_project_command(CommandLine& app, Session& session) {
                                      "B` saves a decision; exit status 0: all registered, 3: some, 4: none",
                                      [options, &session] { return run(*options, session); });
   command->add_option("SCAN", options->scans, "Scans, and models, in any order and any frames");
-  command->add_option("--model", options->models, "A building model; may be given several times")
-      ->type_name("MODEL")
+  command->add_option("--model MODEL", options->models, "A building model; may be given several times")
       ->type_size(1)
       ->take_all();
-  command->add_option("--scans", options->list, "A text file with the name of a scan on each line")
-      ->type_name("FILE");
-  command
-      ->add_option("-o,--output", options->folder,
-                   "Folder for project.json, report.html and data that later runs use again")
-      ->type_name("DIR");
+  command->add_option("--scans FILE", options->list, "A text file with the name of a scan on each line");
+  command->add_option("-o,--output DIR", options->folder,
+                      "Folder for project.json, report.html and data that later runs use again");
   command
       ->add_option("--pairs", options->pairs,
                    "Which pairs are tried: auto (default, those that may overlap) or all")
       ->one_of({"auto", "all"});
   command->add_flag("--stations-apart", options->apart,
                     "Ignore the poses that a file states for the scans in it");
-  command
-      ->add_option(
-          "--poses", options->poses,
-          "Approximate scanner positions, from satellites, a tablet or another program: "
-          "file,x,y,z[,sigma]; scans that cannot meet are not compared, and wrong positions are noted")
-      ->type_name("CSV");
-  command
-      ->add_option(
-          "--trust-file-poses", options->file_sigma,
-          "Take the poses that a file states for the scans in it as approximate, with this uncertainty "
-          "(1 sigma) of the positions, such as 0.5m; without it they are exact")
-      ->type_name("SIGMA");
-  command
-      ->add_option("--tolerance", options->tolerance,
-                   "Report of each station whether its position is known to this with 95 %, such as 6mm")
-      ->type_name("LENGTH");
+  command->add_option(
+      "--poses CSV", options->poses,
+      "Approximate scanner positions, from satellites, a tablet or another program: file,x,y,z[,sigma]; "
+      "scans that cannot meet are not compared, and wrong positions are noted");
+  command->add_option("--trust-file-poses SIGMA", options->file_sigma,
+                      "Take the poses that a file states for the scans in it as approximate, with this "
+                      "uncertainty (1 sigma) of the positions, such as 0.5m; without it they are exact");
+  command->add_option("--tolerance LENGTH", options->tolerance,
+                      "Report of each station whether its position is known to this with 95 %, such as 6mm");
   command->add_flag("--rigid-passes", options->rigid_passes,
                     "Treat every mobile scan as rigid: no drift is corrected");
-  command
-      ->add_option("--control", options->control,
-                   "Control points: name,x,y,z,sigma (or sigma_x,sigma_y,sigma_z); the project takes their "
-                   "frame. A point named like a scan is the scanner position of that scan")
-      ->type_name("CSV");
-  command
-      ->add_option("--targets", options->targets,
-                   "Targets measured in the scans: name,scan,x,y,z,sigma; x,y,z as in the scan's own file; "
-                   "for a mobile scan also time, in the seconds of its points")
-      ->type_name("CSV");
-  command
-      ->add_option(
-          "--sphere-radius", options->spheres,
-          "Find spheres of this radius, such as 72.5mm, in the static scans and use them as targets; "
-          "written to DIR/targets.csv, which --targets reads")
-      ->type_name("LENGTH");
-  command
-      ->add_option("--board-side", options->boards,
-                   "The same for checkerboards of two dark and two bright squares: the side of the whole "
-                   "board, such as 300mm")
-      ->type_name("LENGTH");
-  command
-      ->add_option("--check", options->check,
-                   "Check points, with the columns of --control: they are only compared, and their residuals "
-                   "are reported")
-      ->type_name("CSV");
-  command
-      ->add_option(
-          "--decide", options->decisions,
-          "Your decisions: accept, reject or choose a pose of a link, start, level, same-floor; saved in DIR")
-      ->type_name("JSON");
-  command
-      ->add_option("--risk", options->risk,
-                   "Report a scan as registered only if the probability that its pose is wrong is below this "
-                   "(default 0.001)")
-      ->type_name("P");
-  command
-      ->add_option(
-          "--probable-risk", options->probable_risk,
-          "Report a scan as probable if the probability that its pose is wrong is below this (default 0.05)")
-      ->type_name("P");
+  command->add_option("--control CSV", options->control,
+                      "Control points: name,x,y,z,sigma (or sigma_x,sigma_y,sigma_z); the project takes "
+                      "their frame. A point named like a scan is the scanner position of that scan");
+  command->add_option("--targets CSV", options->targets,
+                      "Targets measured in the scans: name,scan,x,y,z,sigma; x,y,z as in the scan's own "
+                      "file; for a mobile scan also time, in the seconds of its points");
+  command->add_option("--sphere-radius LENGTH", options->spheres,
+                      "Find spheres of this radius, such as 72.5mm, in the static scans and use them as "
+                      "targets; written to DIR/targets.csv, which --targets reads");
+  command->add_option("--board-side LENGTH", options->boards,
+                      "The same for checkerboards of two dark and two bright squares: the side of the whole "
+                      "board, such as 300mm");
+  command->add_option("--check CSV", options->check,
+                      "Check points, with the columns of --control: they are only compared, and their "
+                      "residuals are reported");
+  command->add_option(
+      "--decide JSON", options->decisions,
+      "Your decisions: accept, reject or choose a pose of a link, start, level, same-floor; saved in DIR");
+  command->add_option("--risk P", options->risk,
+                      "Report a scan as registered only if the probability that its pose is wrong is below "
+                      "this (default 0.001)");
+  command->add_option(
+      "--probable-risk P", options->probable_risk,
+      "Report a scan as probable if the probability that its pose is wrong is below this (default 0.05)");
   add_repeats_option(*command, options->repeats);
   add_engine_options(*command, *options);
   add_pdf_option(*command, options->pdf);

@@ -297,9 +297,10 @@ void add_register_command(CommandLine& app, Session& session) {
       ->required();
   command->add_option("TARGET", options->target, "The scan, model or list of segments that stays")
       ->required();
-  command->add_option("-o,--output", options->folder, "Folder for report.html, result.json and transform.txt")
-      ->required()
-      ->type_name("DIR");
+  command
+      ->add_option("-o,--output DIR", options->folder,
+                   "Folder for report.html, result.json and transform.txt")
+      ->required();
   command
       ->add_option("--method", options->method,
                    "What to match: auto (default), polygons, openings, hybrid (both), or segments")
@@ -312,28 +313,20 @@ void add_register_command(CommandLine& app, Session& session) {
   add_length_option(
       *command, "--wall-thickness-m,--wall-thickness", options->wall_thickness_m,
       "Thickness of the outer walls, if it is known; else it is measured, or reported as not determined");
+  command->add_option("--risk P", options->risk,
+                      "Report `registered` only if the probability that the pose is wrong (a look-alike "
+                      "place, another pose, chance) is below this (default 0.001)");
+  command->add_option(
+      "--probable-risk P", options->probable_risk,
+      "Report `probable` if the probability that the pose is wrong is below this (default 0.05)");
+  command->add_option("--start POSE", options->start,
+                      "Approximate pose: identity (both files are in one frame), or the file of a pose. It "
+                      "is weighed against the scans, which may refute it");
+  command->add_option("--start-sigma LENGTH,ANGLE", options->start_sigma,
+                      "Standard deviation of --start: position and rotation (default 2m,5deg)");
   command
-      ->add_option("--risk", options->risk,
-                   "Report `registered` only if the probability that the pose is wrong (a look-alike place, "
-                   "another pose, chance) is below this (default 0.001)")
-      ->type_name("P");
-  command
-      ->add_option("--probable-risk", options->probable_risk,
-                   "Report `probable` if the probability that the pose is wrong is below this (default 0.05)")
-      ->type_name("P");
-  command
-      ->add_option("--start", options->start,
-                   "Approximate pose: identity (both files are in one frame), or the file of a pose. It is "
-                   "weighed against the scans, which may refute it")
-      ->type_name("POSE");
-  command
-      ->add_option("--start-sigma", options->start_sigma,
-                   "Standard deviation of --start: position and rotation (default 2m,5deg)")
-      ->type_name("LENGTH,ANGLE");
-  command
-      ->add_option("--start-points", options->start_points,
+      ->add_option("--start-points X,Y,Z=X,Y,Z", options->start_points,
                    "Instead of --start: three or more places, each in SOURCE and in TARGET, in metres")
-      ->type_name("X,Y,Z=X,Y,Z")
       ->take_all();
   add_repeats_option(*command, options->repeats);
   add_with_option(*command, "--source-with", options->source_with, "SOURCE");

@@ -38,10 +38,10 @@ void add_schema_command(CommandLine& app, Session& session) {
   std::vector<std::string> names;
   for (const auto& [name, maker] : schema_makers()) names.push_back(name);
   command
-      ->add_option("FILE", *file,
-                   "Which file: result (of register), project, deviation, project-deviation, planes, "
-                   "openings, segments, or "
-                   "evaluation and project-evaluation (what evaluate prints of a pair and of a project)")
+      ->add_option(
+          "FILE", *file,
+          "Which file: result (of register), project, deviation, project-deviation, planes, openings, "
+          "segments, or evaluation and project-evaluation (what evaluate prints of a pair and of a project)")
       ->required()
       ->one_of(names);
 }

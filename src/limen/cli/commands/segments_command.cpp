@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <memory>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -124,10 +123,8 @@ void add_segments_command(CommandLine& app, Session& session) {
                     "Borders of surfaces with a larger standard deviation are left out (default 0.006)");
   add_length_option(*command, "--sampled-m", options->sampled_m,
                     "For a model: find edges in points sampled at this spacing, instead of the exact edges");
-  command
-      ->add_option("--min-angle-deg", o.min_angle_deg,
-                   "Smallest angle between two surfaces that form an edge (default 12)")
-      ->type_name("DEGREES");
+  command->add_option("--min-angle-deg DEGREES", o.min_angle_deg,
+                      "Smallest angle between two surfaces that form an edge (default 12)");
 }
 
 }  // namespace limen

@@ -44,13 +44,10 @@ void add_serve_command(CommandLine& app, Session& session) {
   command
       ->add_option("DIR", options->folder, "Folder for the files and the results; created if it is missing")
       ->required();
-  command->add_option("--port", options->port, "Port of 127.0.0.1 (default 0: any free port)")
-      ->in_range(0, 65535)
-      ->type_name("N");
-  command
-      ->add_option("--most-upload", options->most_upload,
-                   "The largest file that can be uploaded (default 20G)")
-      ->type_name("SIZE");
+  command->add_option("--port N", options->port, "Port of 127.0.0.1 (default 0: any free port)")
+      ->in_range(0, 65535);
+  command->add_option("--most-upload SIZE", options->most_upload,
+                      "The largest file that can be uploaded (default 20G)");
 }
 
 }  // namespace limen

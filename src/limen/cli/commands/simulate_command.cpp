@@ -311,9 +311,9 @@ void add_simulate_command(CommandLine& app, Session& session) {
                    "A model file (IFC, OBJ, PLY), or a scene (office is a BIM model): " + known_scenes())
       ->type_name(fmt::format("FILE:{{{},{}}}", fmt::join(scene_names(), ","), kOffice))
       ->required();
-  command->add_option("-o,--output", options->output, "The folder for scans, task.json and truth/truth.json")
-      ->required()
-      ->type_name("DIR");
+  command
+      ->add_option("-o,--output DIR", options->output, "The folder for scans, task.json and truth/truth.json")
+      ->required();
   add_count_option(*command, "--points-indoor", scene.points_indoor,
                    "Approximate number of points of each station");
   add_count_option(*command, "--points-outdoor", scene.points_outdoor,
@@ -324,10 +324,8 @@ void add_simulate_command(CommandLine& app, Session& session) {
       "Number of facades in which the first station's room has open windows (museum, townhouse, villa)");
   command->add_flag("--any-rotation", scene.any_rotation,
                     "Rotate the stations at random about all axes, not only about the vertical");
-  command
-      ->add_option("--curtain-share", scene.curtain_share,
-                   "Share of the windows with a drawn curtain or blind")
-      ->type_name("SHARE");
+  command->add_option("--curtain-share SHARE", scene.curtain_share,
+                      "Share of the windows with a drawn curtain or blind");
   add_length_option(*command, "--noise-m", scene.scanner.noise_m,
                     "Range noise, one standard deviation (default 0.003)");
   command->add_flag("--as-built", options->as_built,
@@ -345,8 +343,7 @@ void add_simulate_command(CommandLine& app, Session& session) {
   command->add_flag("--project", options->project,
                     fmt::format("Scan a whole building, one file for each station and each pass: {}",
                                 fmt::join(whole_building_names(), ", ")));
-  command->add_option("--passes", options->passes, "With --project: street passes, each along two facades")
-      ->type_name("N");
+  command->add_option("--passes N", options->passes, "With --project: street passes, each along two facades");
   command
       ->add_option("--outdoor", options->outdoor,
                    "Scan the street from a vehicle, or from a tripod before the first room's windows")
@@ -355,22 +352,16 @@ void add_simulate_command(CommandLine& app, Session& session) {
       ->add_option("--places", options->places,
                    "With --project: one station per room, or as usual and one more in every open doorway")
       ->one_of({"usual", "rooms", "doorways"});
-  command
-      ->add_option("--tripods", options->tripods,
-                   "With --project: number of stations outside, around the building (default 0)")
-      ->type_name("N");
-  command
-      ->add_option("--targets", options->targets,
-                   fmt::format("With --project: number of targets in each scanned room, spheres of {} mm "
-                               "radius and checkerboards of {} mm side by turns; control.csv has their "
-                               "surveyed centres (default 0)",
-                               1e3 * kSphereRadiusM, 1e3 * kBoardSideM))
-      ->type_name("N");
-  command
-      ->add_option(
-          "--open-doors", options->open_doors,
-          "With --project: share of the inner doors that are open (default 0.9; 1 with --places doorways)")
-      ->type_name("SHARE");
+  command->add_option("--tripods N", options->tripods,
+                      "With --project: number of stations outside, around the building (default 0)");
+  command->add_option(
+      "--targets N", options->targets,
+      fmt::format("With --project: number of targets in each scanned room, spheres of {} mm radius and "
+                  "checkerboards of {} mm side by turns; control.csv has their surveyed centres (default 0)",
+                  1e3 * kSphereRadiusM, 1e3 * kBoardSideM));
+  command->add_option(
+      "--open-doors SHARE", options->open_doors,
+      "With --project: share of the inner doors that are open (default 0.9; 1 with --places doorways)");
   command->add_option("--drift", options->drift, "With --project: kind of trajectory error of the passes")
       ->one_of({"waves", "walk"});
   command->add_flag("--styles", options->styles,

@@ -11,7 +11,6 @@
 #include "limen/cli/inputs/scan_options.h"
 #include "limen/io/cloud/open_points.h"
 #include "limen/io/cloud/write_clouds.h"
-#include "limen/io/ply/ply.h"
 #include "limen/report/json/json_values.h"
 
 namespace limen {
@@ -70,10 +69,8 @@ void add_thin_command(CommandLine& app, Session& session) {
   command->add_option("CLOUD", options->cloud, "A cloud of any format limen reads")->required();
   command->add_option("OUT", options->output, "The file to write: .ply, .las, .laz, .e57 or .xyz")
       ->required();
-  command
-      ->add_option("--points", options->thinning.most_points,
-                   "Keep this many points, or a few less; the spacing is chosen to fit")
-      ->type_name("N");
+  command->add_option("--points N", options->thinning.most_points,
+                      "Keep this many points, or a few less; the spacing is chosen to fit");
   add_length_option(*command, "--spacing-m", options->thinning.spacing_m,
                     "Keep one point per cube of this side");
   add_memory_option(*command, options->memory);

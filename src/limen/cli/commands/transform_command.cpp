@@ -163,16 +163,14 @@ void add_transform_command(CommandLine& app, Session& session) {
       ->required();
   command->add_option("CLOUD", options->cloud, "The cloud to move, of any format limen reads")->required();
   command
-      ->add_option(
-          "OUT", options->output,
-          "The file to write: of CLOUD's own format, which keeps all of it, or .ply, .las, .laz, .e57, .xyz; "
-          "with --split a folder")
+      ->add_option("OUT", options->output,
+                   "The file to write: of CLOUD's own format, which keeps all of it, or .ply, .las, .laz, "
+                   ".e57, .xyz; with --split a folder")
       ->required();
   command
       ->add_option(
-          "--merge", options->merge,
+          "--merge FILE", options->merge,
           "A cloud that is already in the target's frame, written to OUT too; may be given several times")
-      ->type_name("FILE")
       ->type_size(1)
       ->take_all();
   command->add_flag("--split", options->split,

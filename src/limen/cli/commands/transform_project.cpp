@@ -215,9 +215,7 @@ void add_transform_project_command(CommandLine& app, Session& session) {
                                      [options, &session] { return run(*options, session); });
   command->group("");
   command->add_option("PROJECT", options->project, "The project.json that limen project wrote")->required();
-  command->add_option("-o,--output", options->output, "A folder, or with --merge a file")
-      ->required()
-      ->type_name("OUT");
+  command->add_option("-o,--output OUT", options->output, "A folder, or with --merge a file")->required();
   command->add_option("--as", options->ending, "Format of the output (default: each scan's own)")
       ->one_of({"e57", "las", "laz", "ply"});
   command->add_flag("--merge", options->merge, "All scans in one file");

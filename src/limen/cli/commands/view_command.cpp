@@ -317,18 +317,15 @@ void add_view_command(CommandLine& app, Session& session) {
   command
       ->add_option(
           "FILE", options->files,
-          "Scans and models in one frame, a result.json (both its sides), or a project.json (all its "
-          "scans)")
+          "Scans and models in one frame, a result.json (both its sides), or a project.json (all its scans)")
       ->required();
-  command->add_option("-o,--output", options->output, "The page to write (default view.html)")
-      ->type_name("FILE");
+  command->add_option("-o,--output FILE", options->output, "The page to write (default view.html)");
   command
-      ->add_option("--most-points", options->most_points,
+      ->add_option("--most-points N", options->most_points,
                    "Number of points of all files together (default 1000000); scans are thinned evenly")
-      ->in_range(kFewestViewed, kMostViewed)
-      ->type_name("N");
-  command->add_option("--title", options->title, "Heading of the page (default: the names of the files)")
-      ->type_name("WORDS");
+      ->in_range(kFewestViewed, kMostViewed);
+  command->add_option("--title WORDS", options->title,
+                      "Heading of the page (default: the names of the files)");
   add_alternative_option(*command, options->alternative);
   add_units_option(*command, options->units);
 }

@@ -15,12 +15,9 @@
 namespace limen {
 
 void add_crs_option(CommandLine& command, std::string& text) {
-  command
-      .add_option("--crs", text,
-                  "Coordinate system of what is written: EPSG:NUMBER, well-known text (WKT), PROJJSON, or a "
-                  "file with one "
-                  "of them")
-      ->type_name("SYSTEM");
+  command.add_option("--crs SYSTEM", text,
+                     "Coordinate system of what is written: EPSG:NUMBER, well-known text (WKT), PROJJSON, or "
+                     "a file with one of them");
 }
 
 CoordinateSystem chosen_system(const std::string& text) {

@@ -12,11 +12,9 @@
 namespace limen {
 
 void add_issue_options(CommandLine& command, IssueChoice& choice) {
-  command
-      .add_option("--bcf", choice.file,
-                  "Write issues for building modellers, in BCF 2.1: elements missing or moved, and objects "
-                  "not in the model")
-      ->type_name("FILE");
+  command.add_option("--bcf FILE", choice.file,
+                     "Write issues for building modellers, in BCF 2.1: elements missing or moved, and "
+                     "objects not in the model");
   add_length_option(
       command, "--moved-m", choice.options.moved_m,
       "An element that is displaced by more than this is reported as moved (default 0.015, LOA30)");

@@ -7,7 +7,6 @@
 
 #include <fmt/format.h>
 
-#include "limen/base/error.h"
 #include "limen/base/text.h"
 #include "limen/io/cloud/corrected_trajectory.h"
 #include "limen/io/crs/proj_library.h"
@@ -88,31 +87,21 @@ std::optional<std::vector<SbetRecord>> own_records(const ProjectEntry& pass, con
 
 void add_trajectories_option(CommandLine& command, TrajectoryChoice& choice) {
   command
-      .add_option("--trajectory", choice.files,
+      .add_option("--trajectory FILE", choice.files,
                   "Trajectory of a mobile scanner: SBET, or text with times and positions; may be given "
                   "several times: each scan with times uses the one that covers it")
-      ->type_name("FILE")
       ->type_size(1)
       ->take_all();
-  command
-      .add_option("--trajectory-columns", choice.reading.columns,
-                  "Columns of the text files, as time,x,y,z (default: as named in their header lines)")
-      ->type_name("NAMES");
-  command
-      .add_option("--utm-zone", choice.reading.utm_zone,
-                  "Zone for latitudes and longitudes, as 32N, or a system as EPSG:2154; auto (default): that "
-                  "of --crs, else "
-                  "the zone of the first; local: east, north, up")
-      ->type_name("ZONE");
-  command
-      .add_option("--trajectory-time-offset-s", choice.reading.time_offset_s,
-                  "Seconds that are added to the times of the trajectories")
-      ->type_name("S");
-  command
-      .add_option("--lever-arm", choice.reading.lever_arm,
-                  "Lever arm from the reference point of the trajectories to the scanner: forward, right, "
-                  "down, metres")
-      ->type_name("x,y,z");
+  command.add_option("--trajectory-columns NAMES", choice.reading.columns,
+                     "Columns of the text files, as time,x,y,z (default: as named in their header lines)");
+  command.add_option("--utm-zone ZONE", choice.reading.utm_zone,
+                     "Zone for latitudes and longitudes, as 32N, or a system as EPSG:2154; auto (default): "
+                     "that of --crs, else the zone of the first; local: east, north, up");
+  command.add_option("--trajectory-time-offset-s S", choice.reading.time_offset_s,
+                     "Seconds that are added to the times of the trajectories");
+  command.add_option(
+      "--lever-arm x,y,z", choice.reading.lever_arm,
+      "Lever arm from the reference point of the trajectories to the scanner: forward, right, down, metres");
 }
 
 StatedTrajectories stated_trajectories(const TrajectoryChoice& choice, const CoordinateSystem& system) {

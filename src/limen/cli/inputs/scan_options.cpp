@@ -104,46 +104,32 @@ std::uint64_t parse_memory(const std::string& text) {
 }
 
 void add_memory_option(CommandLine& command, std::string& memory) {
-  command
-      .add_option("--memory", memory,
-                  "Memory for one scan, as 500M or 2.5G: a larger scan is thinned while it is read")
-      ->type_name("SIZE");
+  command.add_option("--memory SIZE", memory,
+                     "Memory for one scan, as 500M or 2.5G: a larger scan is thinned while it is read");
 }
 
 void add_alternative_option(CommandLine& command, int& alternative) {
   command
-      .add_option("--alternative", alternative,
+      .add_option("--alternative N", alternative,
                   "Use this alternative of the result, numbered from 1, instead of its best pose")
-      ->type_name("N")
       ->in_range(0, 1000000);
 }
 
 void add_trajectory_options(CommandLine& command, ReadingChoice& choice, const std::string& side) {
   choice.side = side;
   const std::string name = "--" + side + "trajectory";
-  command
-      .add_option(name, choice.trajectory,
-                  "Trajectory of a mobile scanner: SBET, or text with times and positions")
-      ->type_name("FILE");
-  command
-      .add_option(name + "-columns", choice.columns,
-                  "Columns of the text file, as time,x,y,z (default: as named in its header line)")
-      ->type_name("NAMES");
-  command
-      .add_option("--" + side + "utm-zone", choice.utm_zone,
-                  "Zone for latitudes and longitudes, as 32N, or a system as EPSG:2154; auto (default): of "
-                  "the first; local: "
-                  "east, north, up")
-      ->type_name("ZONE");
-  command
-      .add_option(name + "-time-offset-s", choice.time_offset_s,
-                  "Seconds that are added to the times of the trajectory")
-      ->type_name("S");
-  command
-      .add_option(
-          "--" + side + "lever-arm", choice.lever_arm,
-          "Lever arm from the reference point of the trajectory to the scanner: forward, right, down, metres")
-      ->type_name("x,y,z");
+  command.add_option(name + " FILE", choice.trajectory,
+                     "Trajectory of a mobile scanner: SBET, or text with times and positions");
+  command.add_option(name + "-columns NAMES", choice.columns,
+                     "Columns of the text file, as time,x,y,z (default: as named in its header line)");
+  command.add_option("--" + side + "utm-zone ZONE", choice.utm_zone,
+                     "Zone for latitudes and longitudes, as 32N, or a system as EPSG:2154; auto (default): "
+                     "of the first; local: east, north, up");
+  command.add_option(name + "-time-offset-s S", choice.time_offset_s,
+                     "Seconds that are added to the times of the trajectory");
+  command.add_option(
+      "--" + side + "lever-arm x,y,z", choice.lever_arm,
+      "Lever arm from the reference point of the trajectory to the scanner: forward, right, down, metres");
 }
 
 void add_units_option(CommandLine& command, std::string& units, const std::string& side) {
@@ -188,9 +174,9 @@ ReadOptions with_choice(ReadOptions options, const ReadingChoice& choice) {
 
 void add_feature_options(CommandLine& command, FeatureChoice& choice) {
   command.add_option("SCAN", choice.scan, "A scan of any format limen reads")->required();
-  command.add_option("-o,--output", choice.output, "The JSON file to write")->required()->type_name("FILE");
-  command.add_option("--origin", choice.origin, "Scanner position, in the coordinates of the points, metres")
-      ->type_name("x,y,z");
+  command.add_option("-o,--output FILE", choice.output, "The JSON file to write")->required();
+  command.add_option("--origin x,y,z", choice.origin,
+                     "Scanner position, in the coordinates of the points, metres");
   add_gravity_option(command, choice.gravity, true);
   add_units_option(command, choice.reading.units);
   add_memory_option(command, choice.reading.memory);

@@ -66,14 +66,11 @@ void add_common_options(CommandLine& app, Session& session) {
       ->group(group);
   app.add_flag("--json", common.json, "The result as JSON on stdout, everything else on stderr")
       ->group(group);
-  app.add_option("--threads", common.threads,
+  app.add_option("--threads N", common.threads,
                  "Number of threads; it never changes a result (default 0: all of the machine)")
       ->in_range(0, 4096)
-      ->type_name("N")
       ->group(group);
-  app.add_option("--seed", common.seed, "Seed of the random numbers (default 1)")
-      ->type_name("N")
-      ->group(group);
+  app.add_option("--seed N", common.seed, "Seed of the random numbers (default 1)")->group(group);
 }
 
 void add_length_option(CommandLine& app, const std::string& name, double& length_m,

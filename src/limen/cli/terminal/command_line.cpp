@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <type_traits>
 #include <utility>
 
 #include <CLI/App.hpp>
@@ -104,28 +105,19 @@ Argument* Argument::check(const std::function<std::string(const std::string&)>& 
   return this;
 }
 
-Argument* CommandLine::add_option(const std::string& name, std::string& value,
-                                  const std::string& description) {
-  return keep(app_->add_option(name, value, description));
+template <typename Value>
+Argument* CommandLine::add_option(const std::string& name, Value& value, const std::string& description) {
+  const std::size_t space = name.find(' ');
+  CLI::Option* option = app_->add_option(name.substr(0, space), value, description);
+  if (space != std::string::npos) option->type_name(name.substr(space + 1));
+  Argument* argument = keep(option);
+  return std::is_same_v<Value, std::size_t> ? argument->count() : argument;
 }
-
-Argument* CommandLine::add_option(const std::string& name, std::vector<std::string>& values,
-                                  const std::string& description) {
-  return keep(app_->add_option(name, values, description));
-}
-
-Argument* CommandLine::add_option(const std::string& name, int& value, const std::string& description) {
-  return keep(app_->add_option(name, value, description));
-}
-
-Argument* CommandLine::add_option(const std::string& name, std::size_t& value,
-                                  const std::string& description) {
-  return keep(app_->add_option(name, value, description))->count();
-}
-
-Argument* CommandLine::add_option(const std::string& name, double& value, const std::string& description) {
-  return keep(app_->add_option(name, value, description));
-}
+template Argument* CommandLine::add_option(const std::string&, std::string&, const std::string&);
+template Argument* CommandLine::add_option(const std::string&, std::vector<std::string>&, const std::string&);
+template Argument* CommandLine::add_option(const std::string&, int&, const std::string&);
+template Argument* CommandLine::add_option(const std::string&, std::size_t&, const std::string&);
+template Argument* CommandLine::add_option(const std::string&, double&, const std::string&);
 
 Argument* CommandLine::add_flag(const std::string& name, bool& value, const std::string& description) {
   return keep(app_->add_flag(name, value, description));

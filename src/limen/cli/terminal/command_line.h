@@ -59,14 +59,11 @@ class CommandLine {
   CommandLine(const CommandLine&) = delete;
   CommandLine& operator=(const CommandLine&) = delete;
 
-  /// `name`: "-o,--output", or "SCAN" for a positional argument. What is returned lives as long as this.
-  Argument* add_option(const std::string& name, std::string& value, const std::string& description);
-  Argument* add_option(const std::string& name, std::vector<std::string>& values,
-                       const std::string& description);
-  Argument* add_option(const std::string& name, int& value, const std::string& description);
-  /// Of a number below 0, which would wrap around, or one too large is an error.
-  Argument* add_option(const std::string& name, std::size_t& value, const std::string& description);
-  Argument* add_option(const std::string& name, double& value, const std::string& description);
+  /// `name`: "-o,--output DIR" with the word for its value, or "SCAN" for a positional argument. `Value`: a
+  /// text, texts, int, double, or std::size_t, of which a number below 0, which would wrap around, or one too
+  /// large is an error. What is returned lives as long as this.
+  template <typename Value>
+  Argument* add_option(const std::string& name, Value& value, const std::string& description);
   Argument* add_flag(const std::string& name, bool& value, const std::string& description);
   /// `run` is called where the command was given and all of the line was understood.
   CommandLine* add_command(const std::string& name, const std::string& description,

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "limen/extract/openings/opening_shape.h"
 #include "limen/geometry/linear.h"

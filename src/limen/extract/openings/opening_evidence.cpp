@@ -3,11 +3,9 @@
 #include "limen/extract/openings/opening_evidence.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <utility>
 
-#include "limen/base/error.h"
 #include "limen/base/parallel.h"
 
 namespace limen {

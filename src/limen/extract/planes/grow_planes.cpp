@@ -3,8 +3,6 @@
 #include "limen/extract/planes/grow_planes.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <memory>
 #include <numeric>
 #include <utility>

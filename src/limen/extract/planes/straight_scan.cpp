@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <utility>
 
 #include "limen/base/error.h"
 #include "limen/extract/planes/grow_planes.h"

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "limen/base/angles.h"
+#include "limen/geometry/cell_key.h"
 
 namespace limen {
 namespace {
@@ -21,7 +22,7 @@ constexpr double kUnsure = 2.5;  // a border may be this many of its standard de
 class EdgeIndex {
  public:
   void add(const Segment& segment, std::size_t id) {
-    for_cubes(segment, [&](std::uint64_t key) {
+    for_cubes(segment, [&](std::int64_t key) {
       std::vector<std::size_t>& ids = cubes_[key];
       if (ids.empty() || ids.back() != id) ids.push_back(id);
     });
@@ -29,7 +30,7 @@ class EdgeIndex {
   /// Ascending, each once.
   [[nodiscard]] std::vector<std::size_t> near(const Segment& segment) const {
     std::vector<std::size_t> ids;
-    for_cubes(segment, [&](std::uint64_t key) {
+    for_cubes(segment, [&](std::int64_t key) {
       const auto found = cubes_.find(key);
       if (found != cubes_.end()) ids.insert(ids.end(), found->second.begin(), found->second.end());
     });
@@ -40,12 +41,6 @@ class EdgeIndex {
 
  private:
   static constexpr double kCube_m = 0.25;
-  static std::uint64_t key_of(const Vector3d& x) {
-    const auto part = [](double value) {
-      return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(value / kCube_m))) & 0x1fffffU;
-    };
-    return (part(x.x()) << 42U) | (part(x.y()) << 21U) | part(x.z());
-  }
   /// The cubes along the segment and those around them, so that a neighbour is never missed.
   template <typename Visit>
   static void for_cubes(const Segment& segment, const Visit& visit) {
@@ -54,12 +49,13 @@ class EdgeIndex {
       const Vector3d x = segment.a + (static_cast<double>(k) / steps) * (segment.b - segment.a);
       for (int corner = 0; corner < 8; ++corner) {
         constexpr double kReach_m = 0.1;
-        visit(key_of(x + kReach_m * Vector3d((corner & 1) != 0 ? 1 : -1, (corner & 2) != 0 ? 1 : -1,
-                                             (corner & 4) != 0 ? 1 : -1)));
+        visit(cell_key(cell_of(x + kReach_m * Vector3d((corner & 1) != 0 ? 1 : -1, (corner & 2) != 0 ? 1 : -1,
+                                                       (corner & 4) != 0 ? 1 : -1),
+                               kCube_m)));
       }
     }
   }
-  std::unordered_map<std::uint64_t, std::vector<std::size_t>> cubes_;
+  std::unordered_map<std::int64_t, std::vector<std::size_t>> cubes_;
 };
 
 /// Part of `edge` that `other` covers, as lengths from edge.a; empty where they are not one line.

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "limen/extract/targets/fit_targets.h"
-#include "limen/geometry/linear.h"
 #include "limen/geometry/plane.h"
 
 namespace limen {

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <numbers>
-#include <vector>
 
 #include "limen/extract/targets/fit_targets.h"
 #include "limen/geometry/linear.h"

@@ -2,12 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limen/io/cloud/transform_cloud.h"
 
-#include <algorithm>
 #include <deque>
-#include <iterator>
 #include <optional>
 #include <set>
-#include <utility>
 
 #include <fmt/format.h>
 
@@ -23,7 +20,6 @@
 #include "limen/io/ply/ply.h"
 #include "limen/io/ptx/ptx.h"
 #include "limen/io/table/record_table.h"
-#include "limen/io/table/scan_builder.h"
 #include "limen/io/text/text.h"
 
 namespace limen {

@@ -4,7 +4,6 @@
 
 #include <array>
 #include <cstddef>
-#include <cstring>
 
 #if defined(__x86_64__)
 #include <nmmintrin.h>

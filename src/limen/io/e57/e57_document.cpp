@@ -5,7 +5,6 @@
 #include <bit>
 #include <charconv>
 #include <cmath>
-#include <utility>
 
 #include <fmt/format.h>
 #include <pugixml.hpp>

@@ -3,7 +3,6 @@
 #include "limen/io/e57/e57_poses.h"
 
 #include <algorithm>
-#include <array>
 #include <utility>
 
 #include <fmt/format.h>

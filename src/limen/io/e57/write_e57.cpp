@@ -7,6 +7,7 @@
 #include <initializer_list>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -71,45 +72,18 @@ std::string file_name_of(const ColumnPlan& plan, std::vector<std::string>& taken
   return "limen:" + e57_escaped_name(plan.name);
 }
 
-template <typename Value>
-void set_bounds(E57Column& column) {
-  column.minimum = std::int64_t{std::numeric_limits<Value>::min()};
-  column.maximum = std::int64_t{std::numeric_limits<Value>::max()};
-}
-
 void set_storage(E57Column& column, Scalar type) {
   column.storage = E57Storage::integer;
-  switch (type) {
-    case Scalar::int8:
-      set_bounds<std::int8_t>(column);
-      break;
-    case Scalar::uint8:
-      set_bounds<std::uint8_t>(column);
-      break;
-    case Scalar::int16:
-      set_bounds<std::int16_t>(column);
-      break;
-    case Scalar::uint16:
-      set_bounds<std::uint16_t>(column);
-      break;
-    case Scalar::int32:
-      set_bounds<std::int32_t>(column);
-      break;
-    case Scalar::uint32:
-      set_bounds<std::uint32_t>(column);
-      break;
-    case Scalar::int64:
-      break;
-    case Scalar::uint64:
-      column.minimum = 0;  // the format knows no integers from 2^63 on
-      break;
-    case Scalar::float32:
-      column.storage = E57Storage::float32;
-      break;
-    case Scalar::float64:
-      column.storage = E57Storage::float64;
-      break;
-  }
+  with_type(type, [&](auto kind) {
+    using Value = decltype(kind);
+    if constexpr (std::is_floating_point_v<Value>) {
+      column.storage = sizeof(Value) == 4 ? E57Storage::float32 : E57Storage::float64;
+    } else {
+      column.minimum = static_cast<std::int64_t>(std::numeric_limits<Value>::min());
+      // The format knows no integers from 2^63 on.
+      if (sizeof(Value) < 8) column.maximum = static_cast<std::int64_t>(std::numeric_limits<Value>::max());
+    }
+  });
   column.bits = column.storage == E57Storage::float32 ? 32 : e57_bits(column.minimum, column.maximum);
 }
 
@@ -136,23 +110,7 @@ std::int64_t load_as(const char* from) {
 /// An integer as it lies in memory. One from 2^63 on becomes negative, which lies outside its column's
 /// bounds.
 std::int64_t load_integer(const char* from, Scalar type) {
-  switch (type) {
-    case Scalar::uint8:
-      return load_as<std::uint8_t>(from);
-    case Scalar::int16:
-      return load_as<std::int16_t>(from);
-    case Scalar::uint16:
-      return load_as<std::uint16_t>(from);
-    case Scalar::int32:
-      return load_as<std::int32_t>(from);
-    case Scalar::uint32:
-      return load_as<std::uint32_t>(from);
-    case Scalar::int64:
-    case Scalar::uint64:
-      return load_as<std::int64_t>(from);
-    default:
-      return static_cast<std::int64_t>(load_number(from, type, false));  // int8
-  }
+  return with_type(type, [&](auto kind) { return load_as<decltype(kind)>(from); });
 }
 
 /// Appends the nearest integer; false where there is none or it lies outside the column's bounds.

@@ -6,7 +6,7 @@
 #include <cstring>
 #include <limits>
 #include <optional>
-#include <utility>
+#include <type_traits>
 
 #include <fmt/format.h>
 
@@ -95,28 +95,13 @@ void store_bits(const ValueStrip& strip, const LasSlot& slot) {
 }
 
 void store_extra(const ValueStrip& strip, const LasSlot& slot) {
-  switch (slot.type) {
-    case Scalar::int8:
-      return strip.store(slot.at, clamped<std::int8_t>);
-    case Scalar::uint8:
-      return strip.store(slot.at, clamped<std::uint8_t>);
-    case Scalar::int16:
-      return strip.store(slot.at, clamped<std::int16_t>);
-    case Scalar::uint16:
-      return strip.store(slot.at, clamped<std::uint16_t>);
-    case Scalar::int32:
-      return strip.store(slot.at, clamped<std::int32_t>);
-    case Scalar::uint32:
-      return strip.store(slot.at, clamped<std::uint32_t>);
-    case Scalar::int64:
-      return strip.store(slot.at, clamped<std::int64_t>);
-    case Scalar::uint64:
-      return strip.store(slot.at, clamped<std::uint64_t>);
-    case Scalar::float32:
-      return strip.store(slot.at, [](double value) { return static_cast<float>(value); });
-    case Scalar::float64:
-      return strip.store(slot.at, [](double value) { return value; });
-  }
+  with_type(slot.type, [&](auto kind) {
+    using Value = decltype(kind);
+    if constexpr (std::is_floating_point_v<Value>)
+      strip.store(slot.at, [](double value) { return static_cast<Value>(value); });
+    else
+      strip.store(slot.at, clamped<Value>);
+  });
 }
 
 class LasWriter : public CloudWriter {

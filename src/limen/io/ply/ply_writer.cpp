@@ -8,7 +8,6 @@
 #include <string>
 #include <type_traits>
 #include <utility>
-#include <vector>
 
 #include <fmt/format.h>
 
@@ -78,28 +77,7 @@ void copy_numbers(const Field& field, RowRange rows, std::size_t bytes, const Ta
 void put_column(const RecordTable& table, const Field& field, Scalar type, RowRange rows, const Target& to) {
   if (field.plain() && field.type == type && !table.swapped)
     return copy_numbers(field, rows, size_of(type), to);
-  switch (type) {
-    case Scalar::int8:
-      return put_numbers<std::int8_t>(table, field, rows, to);
-    case Scalar::uint8:
-      return put_numbers<std::uint8_t>(table, field, rows, to);
-    case Scalar::int16:
-      return put_numbers<std::int16_t>(table, field, rows, to);
-    case Scalar::uint16:
-      return put_numbers<std::uint16_t>(table, field, rows, to);
-    case Scalar::int32:
-      return put_numbers<std::int32_t>(table, field, rows, to);
-    case Scalar::uint32:
-      return put_numbers<std::uint32_t>(table, field, rows, to);
-    case Scalar::int64:
-      return put_numbers<std::int64_t>(table, field, rows, to);
-    case Scalar::uint64:
-      return put_numbers<std::uint64_t>(table, field, rows, to);
-    case Scalar::float32:
-      return put_numbers<float>(table, field, rows, to);
-    case Scalar::float64:
-      return put_numbers<double>(table, field, rows, to);
-  }
+  with_type(type, [&](auto kind) { put_numbers<decltype(kind)>(table, field, rows, to); });
 }
 
 std::string property_word(std::string name) {

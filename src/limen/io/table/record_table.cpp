@@ -72,39 +72,10 @@ void keep_bits(const NumberStrip& strip, BitRange bits) {
   }
 }
 
-/// Calls `action` with a value of the C++ type of `type`.
-template <typename Action>
-void with_type(Scalar type, const Action& action) {
-  switch (type) {
-    case Scalar::int8:
-      return action(std::int8_t{});
-    case Scalar::uint8:
-      return action(std::uint8_t{});
-    case Scalar::int16:
-      return action(std::int16_t{});
-    case Scalar::uint16:
-      return action(std::uint16_t{});
-    case Scalar::int32:
-      return action(std::int32_t{});
-    case Scalar::uint32:
-      return action(std::uint32_t{});
-    case Scalar::int64:
-      return action(std::int64_t{});
-    case Scalar::uint64:
-      return action(std::uint64_t{});
-    case Scalar::float32:
-      return action(float{});
-    case Scalar::float64:
-      return action(double{});
-  }
-}
-
 }  // namespace
 
 std::size_t size_of(Scalar scalar) {
-  std::size_t bytes = 0;
-  with_type(scalar, [&](auto value) { bytes = sizeof value; });
-  return bytes;
+  return with_type(scalar, [](auto value) { return sizeof value; });
 }
 
 const char* name_of(Scalar scalar) {

@@ -25,6 +25,33 @@ enum class Scalar : std::uint8_t {
   float32,
   float64
 };
+/// What `action` returns for a value of the C++ type of `type`.
+template <typename Action>
+auto with_type(Scalar type, const Action& action) {
+  switch (type) {
+    case Scalar::int8:
+      return action(std::int8_t{});
+    case Scalar::uint8:
+      return action(std::uint8_t{});
+    case Scalar::int16:
+      return action(std::int16_t{});
+    case Scalar::uint16:
+      return action(std::uint16_t{});
+    case Scalar::int32:
+      return action(std::int32_t{});
+    case Scalar::uint32:
+      return action(std::uint32_t{});
+    case Scalar::int64:
+      return action(std::int64_t{});
+    case Scalar::uint64:
+      return action(std::uint64_t{});
+    case Scalar::float32:
+      return action(float{});
+    default:
+      return action(double{});
+  }
+}
+
 /// Bytes of one number.
 std::size_t size_of(Scalar scalar);
 const char* name_of(Scalar scalar);

@@ -3,13 +3,11 @@
 #include "limen/io/trajectory/read_trajectory.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstring>
 #include <map>
 #include <numbers>
 #include <string_view>
-#include <utility>
 
 #include <fmt/format.h>
 

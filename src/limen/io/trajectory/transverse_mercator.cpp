@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limen/io/trajectory/transverse_mercator.h"
 
-#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>

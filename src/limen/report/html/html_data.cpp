@@ -134,17 +134,15 @@ Json poses_json(const RegistrationReport& report, const ReportScene& scene) {
 }
 
 Json open_json(const RegistrationResult& result) {
-  Json list = Json::array();
-  for (const UnobservedFreedom& freedom : result.unobserved)
-    list.push_back({{"rotation", freedom.rotation}, {"direction", json_of(freedom.direction)}});
-  return list;
+  return list_json(result.unobserved, [&](const UnobservedFreedom& freedom) -> Json {
+    return {{"rotation", freedom.rotation}, {"direction", json_of(freedom.direction)}};
+  });
 }
 
 Json matches_json(const RegistrationResult& result) {
-  Json list = Json::array();
-  for (const PlaneMatch& match : result.matches)
-    list.push_back({match.source, match.target, match.distance_m});
-  return list;
+  return list_json(result.matches, [&](const PlaneMatch& match) -> Json {
+    return {match.source, match.target, match.distance_m};
+  });
 }
 
 }  // namespace

@@ -49,8 +49,8 @@ Json plane_json(const PlanarPolygon& polygon, const Vector3d& local_origin) {
   json["rms_m"] = polygon.rms_m;
   json["area_m2"] = polygon.area_m2;
   json["oriented"] = polygon.oriented;
-  Json parts = Json::array();
-  for (const Polygon& part : polygon.parts) parts.push_back(outline_json(part, polygon, local_origin));
+  Json parts = list_json(
+      polygon.parts, [&](const Polygon& part) -> Json { return outline_json(part, polygon, local_origin); });
   json["outline"] = parts.empty() ? Json::array() : parts.front();
   if (!parts.empty()) parts.erase(0);
   json["parts"] = std::move(parts);
@@ -59,9 +59,9 @@ Json plane_json(const PlanarPolygon& polygon, const Vector3d& local_origin) {
 
 Json opening_json(const Opening& opening, const Vector3d& local_origin) {
   Json json;
-  json["corners"] = Json::array();
-  for (const Vector3d& corner : opening.corners)
-    json["corners"].push_back(json_of(Vector3d(local_origin + corner)));
+  json["corners"] = list_json(opening.corners, [&](const Vector3d& corner) -> Json {
+    return json_of(Vector3d(local_origin + corner));
+  });
   json["facade"] = opening.facade;
   json["evidence"] = opening.evidence;
   json["view"] = to_string(opening.view);
@@ -69,9 +69,9 @@ Json opening_json(const Opening& opening, const Vector3d& local_origin) {
   json["reveal_depth_m"] = opening.reveal_depth_m;
   json["reveal_sigma_m"] = opening.reveal_sigma_m;
   json["reveal_complete"] = opening.reveal_complete;
-  json["outline"] = Json::array();
-  for (const Vector3d& point : opening.outline)
-    json["outline"].push_back(json_of(Vector3d(local_origin + point)));
+  json["outline"] = list_json(opening.outline, [&](const Vector3d& point) -> Json {
+    return json_of(Vector3d(local_origin + point));
+  });
   return json;
 }
 
@@ -81,10 +81,9 @@ Json json_of_features(const Features& features, const InputSummary& input) {
   if (input.kind == "scan") json["input"]["scanner"] = json_of(input.place);
   json["inlier_threshold_m"] = features.inlier_threshold_m;
   json["noise_m"] = features.noise_m;
-  json["planes"] = Json::array();
-  for (const PlanarPolygon& polygon : features.planes) {
-    json["planes"].push_back(plane_json(polygon, features.local_origin));
-  }
+  json["planes"] = list_json(features.planes, [&](const PlanarPolygon& polygon) -> Json {
+    return plane_json(polygon, features.local_origin);
+  });
   return json;
 }
 
@@ -98,10 +97,9 @@ std::string features_json(const Features& features, const InputSummary& input) {
 
 std::string openings_json(const Features& features, const InputSummary& input) {
   Json json = json_of_features(features, input);
-  json["openings"] = Json::array();
-  for (const Opening& opening : features.openings) {
-    json["openings"].push_back(opening_json(opening, features.local_origin));
-  }
+  json["openings"] = list_json(features.openings, [&](const Opening& opening) -> Json {
+    return opening_json(opening, features.local_origin);
+  });
   json["version"] = kVersion;
   return to_text(json);
 }

@@ -24,6 +24,14 @@ Json json_of(const Matrix4d& matrix);
 /// Where a scanner stood and how that is known: `source` always, the rest where it means something.
 Json json_of(const ScannerPlace& place);
 
+/// An array of what `make` makes of each value of a list.
+template <typename List, typename Make>
+Json list_json(const List& list, const Make& make) {
+  Json json = Json::array();
+  for (const auto& item : list) json.push_back(make(item));
+  return json;
+}
+
 /// JSON text for readers and programs: two spaces per level, arrays of plain values on one line, the shortest
 /// digits that give back every double bit for bit, a line end last. Numbers that are not finite become null.
 std::string to_text(const Json& value);

@@ -63,10 +63,9 @@ Json motion_json(const RegistrationReport& report) {
 }
 
 Json causes_json(const RegistrationReport& report) {
-  Json list = Json::array();
-  for (const LikelyCause& cause : likely_causes(report))
-    list.push_back({{"cause", cause.name}, {"measured", cause.measured}, {"remedy", cause.remedy}});
-  return list;
+  return list_json(likely_causes(report), [&](const LikelyCause& cause) -> Json {
+    return {{"cause", cause.name}, {"measured", cause.measured}, {"remedy", cause.remedy}};
+  });
 }
 
 Json probability_json(const std::optional<double>& probability) {
@@ -74,13 +73,11 @@ Json probability_json(const std::optional<double>& probability) {
 }
 
 Json unobserved_json(const std::vector<UnobservedFreedom>& freedoms) {
-  Json list = Json::array();
-  for (const UnobservedFreedom& freedom : freedoms) {
-    list.push_back({{"kind", freedom.rotation ? "rotation" : "translation"},
-                    {"direction", json_of(freedom.direction)},
-                    {"name", freedom.name}});
-  }
-  return list;
+  return list_json(freedoms, [&](const UnobservedFreedom& freedom) -> Json {
+    return {{"kind", freedom.rotation ? "rotation" : "translation"},
+            {"direction", json_of(freedom.direction)},
+            {"name", freedom.name}};
+  });
 }
 
 Json published_json(const PublishedScore& published) {
@@ -108,51 +105,43 @@ Json evidence_json(const Hypothesis& pose) {
 }
 
 Json alternatives_json(const std::vector<Hypothesis>& alternatives) {
-  Json list = Json::array();
-  for (const Hypothesis& pose : alternatives) {
-    list.push_back({{"target_from_source", pose_json(pose.target_from_source)},
-                    {"probability", probability_json(pose.probability)},
-                    {"sigma", sigma_json(pose.sigma)},
-                    {"tie", pose.tie},
-                    {"evidence", evidence_json(pose)}});
-  }
-  return list;
+  return list_json(alternatives, [&](const Hypothesis& pose) -> Json {
+    return {{"target_from_source", pose_json(pose.target_from_source)},
+            {"probability", probability_json(pose.probability)},
+            {"sigma", sigma_json(pose.sigma)},
+            {"tie", pose.tie},
+            {"evidence", evidence_json(pose)}};
+  });
 }
 
 Json matches_json(const std::vector<PlaneMatch>& matches) {
-  Json list = Json::array();
-  for (const PlaneMatch& match : matches) {
-    list.push_back({{"source_plane", match.source},
-                    {"target_plane", match.target},
-                    {"distance_m", match.distance_m},
-                    {"angle_rad", match.angle_rad},
-                    {"overlap_m2", match.overlap_m2}});
-  }
-  return list;
+  return list_json(matches, [&](const PlaneMatch& match) -> Json {
+    return {{"source_plane", match.source},
+            {"target_plane", match.target},
+            {"distance_m", match.distance_m},
+            {"angle_rad", match.angle_rad},
+            {"overlap_m2", match.overlap_m2}};
+  });
 }
 
 Json openings_json(const std::vector<MatchedOpenings>& matches) {
-  Json list = Json::array();
-  for (const MatchedOpenings& match : matches) {
-    list.push_back({{"source_opening", match.source},
-                    {"target_opening", match.target},
-                    {"shift_across_m", match.shift_across_m},
-                    {"shift_up_m", match.shift_up_m},
-                    {"by_outline", match.by_outline}});
-  }
-  return list;
+  return list_json(matches, [&](const MatchedOpenings& match) -> Json {
+    return {{"source_opening", match.source},
+            {"target_opening", match.target},
+            {"shift_across_m", match.shift_across_m},
+            {"shift_up_m", match.shift_up_m},
+            {"by_outline", match.by_outline}};
+  });
 }
 
 Json thickness_json(const std::vector<MeasuredThickness>& walls) {
-  Json list = Json::array();
-  for (const MeasuredThickness& wall : walls) {
-    list.push_back({{"source_plane", wall.source_plane},
-                    {"target_plane", wall.target_plane},
-                    {"openings", wall.openings},
-                    {"thickness_m", wall.value_m},
-                    {"sigma_m", wall.sigma_m}});
-  }
-  return list;
+  return list_json(walls, [&](const MeasuredThickness& wall) -> Json {
+    return {{"source_plane", wall.source_plane},
+            {"target_plane", wall.target_plane},
+            {"openings", wall.openings},
+            {"thickness_m", wall.value_m},
+            {"sigma_m", wall.sigma_m}};
+  });
 }
 
 Json input_json(const InputSummary& input) {

@@ -17,16 +17,16 @@ Json pose_sigma_json(const PoseSigma& sigma) {
 }
 
 Json correction_json(const PassCorrection& correction) {
-  Json knots = Json::array();
-  for (const PassKnot& knot : correction.knots)
-    knots.push_back({{"time_s", knot.time_s},
-                     {"distance_m", knot.distance_m},
-                     {"place", json_of(knot.place)},
-                     {"turn_rad", json_of(knot.turn_rad)},
-                     {"shift_m", json_of(knot.shift_m)},
-                     {"moved_m", json_of(knot.moved_m)},
-                     {"turn_sigma_rad", json_of(knot.turn_sigma_rad)},
-                     {"moved_sigma_m", json_of(knot.moved_sigma_m)}});
+  Json knots = list_json(correction.knots, [&](const PassKnot& knot) -> Json {
+    return {{"time_s", knot.time_s},
+            {"distance_m", knot.distance_m},
+            {"place", json_of(knot.place)},
+            {"turn_rad", json_of(knot.turn_rad)},
+            {"shift_m", json_of(knot.shift_m)},
+            {"moved_m", json_of(knot.moved_m)},
+            {"turn_sigma_rad", json_of(knot.turn_sigma_rad)},
+            {"moved_sigma_m", json_of(knot.moved_sigma_m)}};
+  });
   return {{"pivot", json_of(correction.pivot)},
           {"knots", std::move(knots)},
           {"walk_m2_per_m", correction.shift_rate_m2_per_m},
@@ -65,8 +65,8 @@ Json scan_json(const ProjectScan& scan, const std::optional<StationAccuracy>& ac
   }
   if (!scan.rigid.empty()) json["rigid"] = scan.rigid;
   if (!scan.alternatives.empty()) {
-    json["alternatives"] = Json::array();
-    for (const Rigid3& pose : scan.alternatives) json["alternatives"].push_back(json_of(to_matrix(pose)));
+    json["alternatives"] =
+        list_json(scan.alternatives, [&](const Rigid3& pose) -> Json { return json_of(to_matrix(pose)); });
   }
   json["doubt"] = scan.frame_from_scan ? Json(scan.doubt) : Json();
   json["reason"] = scan.reason;
@@ -92,11 +92,11 @@ Json link_json(const ProjectResult& result, std::size_t k) {
                {"loop_error_m", is_checked(link) ? Json(link.solved.loop_error_m) : Json()},
                {"loop_error_rad", is_checked(link) ? Json(link.solved.loop_error_rad) : Json()},
                {"loops", loops_through(result, k)}};
-  Json alternatives = Json::array();
-  for (const ProjectAlternative& other : link.alternatives)
-    alternatives.push_back({{"number", other.number},
-                            {"pose", json_of(to_matrix(other.target_from_source))},
-                            {"agreeing_m2", other.agreeing_m2}});
+  Json alternatives = list_json(link.alternatives, [&](const ProjectAlternative& other) -> Json {
+    return {{"number", other.number},
+            {"pose", json_of(to_matrix(other.target_from_source))},
+            {"agreeing_m2", other.agreeing_m2}};
+  });
   json["alternatives"] = std::move(alternatives);
   json["reason"] = link.reason;
   return json;
@@ -116,8 +116,8 @@ Json decision_json(const ProjectDecision& stated) {
 }
 
 Json question_json(const ProjectQuestion& question) {
-  Json answers = Json::array();
-  for (const Decision& answer : question.answers) answers.push_back(words_of(answer));
+  Json answers =
+      list_json(question.answers, [&](const Decision& answer) -> Json { return words_of(answer); });
   return {{"text", question.text},
           {"answers", answers},
           {"scans", question.scans},
@@ -144,18 +144,11 @@ Json point_json(const ProjectPoint& point) {
       json["detectable_m"] = json_of(point.test.detectable);
     }
   }
-  Json sights = Json::array();
-  for (const ProjectSight& sight : point.sights)
-    sights.push_back({{"scan", sight.scan}, {"used", sight.used}, {"missed_m", sight.missed_m}});
+  Json sights = list_json(point.sights, [&](const ProjectSight& sight) -> Json {
+    return {{"scan", sight.scan}, {"used", sight.used}, {"missed_m", sight.missed_m}};
+  });
   json["seen_by"] = std::move(sights);
   json["reason"] = point.reason;
-  return json;
-}
-
-template <typename List, typename Make>
-Json list_json(const List& list, const Make& make) {
-  Json json = Json::array();
-  for (const auto& item : list) json.push_back(make(item));
   return json;
 }
 

@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <numbers>
-#include <numeric>
 
 #include "limen/base/error.h"
 #include "limen/simulate/scanner/ray_caster.h"

@@ -109,4 +109,22 @@ Scan station_scan(std::string name, const Sweep& sweep, const Rigid3& scan_from_
   return scan;
 }
 
+Scan pass_scan(std::string name, const Sweep& sweep, const ScanPattern& pattern, const Drift& drift,
+               const Rigid3& scan_from_scene) {
+  Scan scan;
+  scan.name = std::move(name);
+  scan.level = true;
+  for (const Echo& echo : sweep.echoes) {
+    const Pulse pulse = pattern.pulse(echo.line, echo.index);
+    const Vector3d error = drift.at(pulse.time_s);
+    scan.points.push_back(scan_from_scene * echo.point + error);
+    scan.centres.push_back(scan_from_scene * pulse.origin + error);
+    scan.times_s.push_back(pulse.time_s);
+    scan.topology.line.push_back(static_cast<std::int32_t>(echo.line));
+    scan.topology.index.push_back(static_cast<std::int32_t>(echo.index));
+    scan.intensities.push_back(echo.intensity);
+  }
+  return scan;
+}
+
 }  // namespace limen

@@ -11,6 +11,7 @@
 #include "limen/base/random.h"
 #include "limen/model/scan.h"
 #include "limen/simulate/buildings/mesh.h"
+#include "limen/simulate/scanner/drift.h"
 #include "limen/simulate/scanner/scanner.h"
 
 namespace limen {
@@ -50,5 +51,9 @@ Sweep sweep_of_points(std::size_t points, const std::function<ScanPattern(std::s
 
 /// The echoes as a station keeps them: in its own frame, about its optical centre.
 Scan station_scan(std::string name, const Sweep& sweep, const Rigid3& scan_from_scene);
+
+/// The echoes of a `pattern` as a moving scanner keeps them, where its trajectory says that they are.
+Scan pass_scan(std::string name, const Sweep& sweep, const ScanPattern& pattern, const Drift& drift,
+               const Rigid3& scan_from_scene);
 
 }  // namespace limen

@@ -204,20 +204,8 @@ ScannedBuilding BuildingScanner::pass(const std::string& name, const VehiclePath
     const double time_s = begin_s + (end_s - begin_s) * k / kDriftSamples;
     made.truth.drift.push_back({time_s, drift.at(time_s)});
   }
-  Scan& scan = made.scan;
-  scan.name = name;
-  scan.local_origin = local_origin_;
-  scan.level = true;
-  for (const Echo& echo : result.echoes) {
-    const Pulse pulse = pattern.pulse(echo.line, echo.index);
-    const Vector3d error = drift.at(pulse.time_s);
-    scan.points.push_back(local_from_scene_ * echo.point + error);
-    scan.centres.push_back(local_from_scene_ * pulse.origin + error);
-    scan.times_s.push_back(pulse.time_s);
-    scan.topology.line.push_back(static_cast<std::int32_t>(echo.line));
-    scan.topology.index.push_back(static_cast<std::int32_t>(echo.index));
-    scan.intensities.push_back(echo.intensity);
-  }
+  made.scan = pass_scan(name, result, pattern, drift, local_from_scene_);
+  made.scan.local_origin = local_origin_;
   return counted(std::move(made), result);
 }
 

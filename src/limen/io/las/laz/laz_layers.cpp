@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
 #include <array>
-#include <cstring>
 #include <memory>
 #include <vector>
 
