@@ -6,6 +6,6 @@ foreach(script IN LISTS LIMEN_PYTHON_TESTS)
   get_filename_component(name ${script} NAME_WE)
   string(REPLACE "test_" "python_" name ${name})
   add_test(NAME ${name} COMMAND ${Python3_EXECUTABLE} -B ${script})
-  set_tests_properties(${name} PROPERTIES LABELS acceptance TIMEOUT 600 ENVIRONMENT
+  set_tests_properties(${name} PROPERTIES LABELS acceptance COST 50 TIMEOUT 600 ENVIRONMENT
     "PYTHONPATH=${PROJECT_BINARY_DIR}/python;LIMEN_PYTHON_BUILD_DIR=${PROJECT_BINARY_DIR}")
 endforeach()

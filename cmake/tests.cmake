@@ -84,4 +84,5 @@ endif()
 # Needs node, playwright-core and a Chromium; says so and is skipped where one is missing.
 add_test(NAME report_in_browser
          COMMAND ${PROJECT_SOURCE_DIR}/tests/browser/run $<TARGET_FILE:limen_program>)
-set_tests_properties(report_in_browser PROPERTIES LABELS acceptance SKIP_RETURN_CODE 77 TIMEOUT 600)
+# The longest of all: it begins first, with others beside it.
+set_tests_properties(report_in_browser PROPERTIES LABELS acceptance COST 200 SKIP_RETURN_CODE 77 TIMEOUT 600)

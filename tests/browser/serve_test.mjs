@@ -295,9 +295,10 @@ describe('two scans linked by hand', () => {
     const apply = (m, p) => [0, 1, 2].map((i) => m[i][0] * p[0] + m[i][1] * p[1] + m[i][2] * p[2] + m[i][3]);
     const back = (m, p) => [0, 1, 2].map((i) => [0, 1, 2].reduce((sum, j) => sum + m[j][i] * (p[j] - m[j][3]), 0));
     const { x, y, z, floor, count } = linking.sides[0];
+    const cut = Plan.section();
     const shown = [];
     for (let k = 0; k < count && shown.length < 400; k += 23) {
-      if (!Plan.cut(z[k] - floor)) continue;
+      if (!cut(z[k] - floor)) continue;
       const place = [x[k], y[k], z[k]];
       const other = planViews[1].toCanvas(back(b, apply(a, place)));
       const at = [planViews[0].toCanvas(place), other];

@@ -168,20 +168,22 @@ class Plan {
     event.preventDefault();
   }
 
-  /** Whether the section shows a point at this height over the floor. */
-  static cut(height) {
-    return byId('link-all').checked || Math.abs(height - +byId('link-height').value) < kSectionM / 2;
+  /** Whether the section shows a point at a height over the floor: asked of the page once, then of many points. */
+  static section() {
+    const [all, middle] = [byId('link-all').checked, +byId('link-height').value];
+    return (height) => all || Math.abs(height - middle) < kSectionM / 2;
   }
 
   /** The point that is shown nearest to a place on the canvas; null where none is near. */
   nearest(at) {
+    const cut = Plan.section();
+    const [x, y] = this.toPlan(at);
     let best = null;
-    let least = kReachPx;
+    let least = (kReachPx / this.view.scale) ** 2;
     for (const { points } of this.layers()) {
       for (let k = 0; k < points.count; ++k) {
-        if (!Plan.cut(points.z[k] - points.floor)) continue;
-        const [px, py] = this.toCanvas([points.x[k], points.y[k]]);
-        const far = Math.hypot(px - at[0], py - at[1]);
+        if (!cut(points.z[k] - points.floor)) continue;
+        const far = (points.x[k] - x) ** 2 + (points.y[k] - y) ** 2;
         if (far < least) [least, best] = [far, [points.x[k], points.y[k], points.z[k]]];
       }
     }
@@ -196,6 +198,7 @@ class Plan {
     const context = canvas.getContext('2d');
     const image = context.createImageData(width, height);
     const dots = new Uint32Array(image.data.buffer);
+    const cut = Plan.section();
     for (const shown of [false, true]) {
       const size = Math.round(ratio * (shown ? 2 : 1));
       for (const { points, colour, pose } of this.layers()) {
@@ -203,7 +206,7 @@ class Plan {
         const dot = (shown ? 0xff000000 : 0x38000000) | (b << 16) | (g << 8) | r;
         const { cosine, sine, x, y } = pose;
         for (let k = 0; k < points.count; ++k) {
-          if (Plan.cut(points.z[k] - points.floor) !== shown) continue;
+          if (cut(points.z[k] - points.floor) !== shown) continue;
           const px = Math.round(((cosine * points.x[k] - sine * points.y[k] + x - this.view.x) * this.view.scale) * ratio + width / 2);
           const py = Math.round(height / 2 - ((sine * points.x[k] + cosine * points.y[k] + y - this.view.y) * this.view.scale) * ratio);
           if (px < 0 || py < 0 || px + size > width || py + size > height) continue;
