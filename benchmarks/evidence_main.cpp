@@ -185,7 +185,7 @@ class Rows {
                       k == 0 ? "" : ", ", right && is_near(pose, *right, pair, s_.near_m, s_.near_deg),
                       score.evidence_m2, score.agreeing_m2, score.contradicted_m2, score.opening_m2,
                       unobserved_freedoms(poses[k].refined, 0.03).empty());
-      if (k < kAskedThings) {
+      if (sort_of(worked) == PairSort::rooms && k < kAskedThings) {
         const IndividualMatter seen = asker(poses[k].refined.target_from_source);
         text += fmt::format(R"(, "built": {:.3f}, "built_one": [{:.2f}], "apart": {:d}, {})",
                             built_nats(seen.built, bends_beforehand(0.0)), fmt::join(seen.built.one, ", "),

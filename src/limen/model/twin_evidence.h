@@ -7,8 +7,8 @@
 
 namespace limen {
 
-/// Amounts by which scans may be bent within themselves (register/judge/as_built.h); the last is so large
-/// that walls say nothing.
+/// How many amounts of bends within a scan are distinguished (kBends in register/judge/as_built.cpp, metres);
+/// by the last one a scan is bent so far that walls say nothing.
 inline constexpr std::size_t kBendLevels = 7;
 
 /// What was seen of how surfaces were built, for each of these amounts: logarithms of its density.

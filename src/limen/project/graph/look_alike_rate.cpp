@@ -56,9 +56,9 @@ void add(double weight, const std::vector<double>& more, std::vector<double>& lo
   for (std::size_t k = 0; k < kShares; ++k) logs[k] += weight * more[k];
 }
 
-constexpr int kRounds = 30;
+constexpr int kRounds = 30;  // of expectation maximisation
 
-/// Shares of which nothing but what is believed beforehand has been added up.
+/// Shares of the amounts of bends, added up: at first what is believed beforehand.
 struct Shares {
   BendBelief sum = bends_beforehand();
   double weight = evidence_table::kBendStrength;
@@ -77,6 +77,7 @@ struct Shares {
   }
 };
 
+/// Probabilities of the amounts by what one pair shows, if they have these shares.
 BendBelief shown_by(const BuiltEvidence& evidence, const BendBelief& shares) {
   BendBelief bends{};
   const double most = *std::max_element(evidence.one.begin(), evidence.one.end());

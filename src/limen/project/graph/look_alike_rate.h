@@ -53,7 +53,7 @@ class LearnedBends {
  public:
   LearnedBends(int nodes, const std::vector<PlacedPair>& pairs);
 
-  /// By all pairs but those that cross the border of `side`.
+  /// Shares of the amounts, by all pairs but those that cross the border of `side`: they are to be judged.
   [[nodiscard]] BendBelief without(const std::vector<bool>& side) const;
 
  private:
@@ -61,7 +61,7 @@ class LearnedBends {
     int source = -1;
     int target = -1;
     double weight = 0.0;
-    BendBelief bends{};  ///< what it shows, of all pairs' shares
+    BendBelief bends{};  ///< what it shows, given the shares of all pairs
   };
   std::vector<Pair> pairs_;
 };

@@ -89,25 +89,28 @@ TEST(PlacementOdds, TheOrderOfPairsDoesNotCount) {
   EXPECT_LT(PlacementOdds(3, equal).of(alone).twin, odds);
 }
 
-/// What bent scans show of how walls were built is no evidence; by how much they are bent the others show.
+/// What bent scans show of how walls were built is no evidence. By how much they are bent the other pairs
+/// show, not the one that is judged.
 TEST(PlacementOdds, ByHowMuchScansAreBentIsLearnedFromTheOthers) {
-  // Scans of an exact sensor, and of one that bends: how well the walls fit one place by amounts of bends.
-  BuiltEvidence exact;
+  BuiltEvidence exact;  // pairs of a sensor that bends by the least amount ...
   exact.one = {20.0, 10.0, 5.0, 0.0, 0.0, 0.0, 4.0};
-  BuiltEvidence bending;
+  BuiltEvidence bending;  // ... and of one that bends by the largest two
   bending.one = {-40.0, -30.0, -20.0, -10.0, -1.0, 0.0, -8.0};
-  BuiltEvidence against = bending;  // by an exact sensor the last pair is of two places
-  against.twin = {-36.0, -26.0, -17.0, -8.0, -1.0, 0.0, -8.0};
-  const auto odds = [](const BuiltEvidence& others, const BuiltEvidence& last) {
+  BuiltEvidence judged;  // walls that differ: in two places, if the sensor is exact
+  judged.one = {-4.0, -3.0, -2.0, -1.0, 0.0, 0.0, 0.0};
+  const auto odds = [](int nodes, const BuiltEvidence& others, const BuiltEvidence& last) {
     std::vector<PlacedPair> pairs;
-    for (int n = 1; n < 10; ++n) {
+    for (int n = 1; n < nodes; ++n) {
       pairs.push_back(pair(n, n - 1, 9.0, 4.0, 4.0, n));
-      pairs.back().evidence.twins.built = n == 9 ? last : others;
+      pairs.back().evidence.twins.built = n == nodes - 1 ? last : others;
     }
-    return PlacementOdds(10, pairs).of(side({9}, 10)).twin;
+    return PlacementOdds(nodes, pairs).of(side({nodes - 1}, static_cast<std::size_t>(nodes))).twin;
   };
-  EXPECT_NEAR(odds(bending, against), odds(bending, {}), 0.02 * odds(bending, {}));
-  EXPECT_LT(odds(exact, exact), 0.01 * odds(exact, {}));
+  EXPECT_GT(odds(10, exact, judged), 3.0 * odds(10, exact, {}));
+  EXPECT_NEAR(odds(10, bending, judged), odds(10, bending, {}), 0.1 * odds(10, bending, {}));
+  EXPECT_LT(odds(10, exact, exact), 0.01 * odds(10, exact, {}));
+  // Alone it is judged by what is believed of any sensor.
+  EXPECT_NEAR(odds(2, {}, judged) / odds(2, {}, {}), std::exp(-built_nats(judged)), 1e-6);
 }
 
 /// A storey that hangs on one staircase is one side.

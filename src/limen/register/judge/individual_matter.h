@@ -42,6 +42,7 @@ struct IndividualMatter {
   double chance = 0.0;
   /// A wall is between the two stations: what they have in common is seen through an opening.
   bool apart = false;
+  /// How the building's surfaces were built, as both scans saw them (as_built.h).
   BuiltEvidence built{};
 };
 
