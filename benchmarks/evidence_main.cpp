@@ -46,6 +46,7 @@ struct Settings {
   bool as_drawn = false;
   bool foreign = false;
   bool placements = false;
+  bool plant = false;
   int every = 1;
   double near_m = 0.05;
   double near_deg = 0.5;
@@ -131,8 +132,10 @@ class Rows {
     for (const FaceMiss& face : seen.faces)
       faces += fmt::format("{}[{:.2f}, {:.3f}, {:.2f}, {}]", faces.empty() ? "" : ", ", 1e3 * face.offset_m,
                            face.share, 1e3 * face.sigma_m, face.thing);
-    return fmt::format(R"("count": {:.2f}, "share": {:.3f}, "chance": {:.3f}, "faces_mm": [{}])",
-                       seen.matter.count, seen.matter.share, seen.chance, faces);
+    std::string things;
+    for (const ThingSeen& thing : seen.things)
+      things += fmt::format("{}[{:.2f}, {:.2f}]", things.empty() ? "" : ", ", thing.count, thing.agreeing);
+    return fmt::format(R"("chance": {:.3f}, "things": [{}], "faces_mm": [{}])", seen.chance, things, faces);
   }
   static std::string place_of(const std::string& name) { return name.substr(0, name.find('/')); }
   [[nodiscard]] std::string name_of(std::uint64_t seed) const {
@@ -166,7 +169,8 @@ class Rows {
     if (!s_.sorts.empty() && std::find(s_.sorts.begin(), s_.sorts.end(), sort) == s_.sorts.end()) return;
     std::vector<StageTime> stages;
     StageClock clock(stages, silent_monitor());
-    const RegisterOptions options;
+    RegisterOptions options;
+    if (s_.plant && truth) options.start = StartPrior{*truth, 0.1, 0.02};
     std::vector<FoundPose> poses = find_poses(worked, options, clock);
     if (poses.size() > kAskedPoses) poses.resize(kAskedPoses);
     const ScanView source = worked.source.view();
@@ -237,6 +241,8 @@ int main(int argc, char** argv) {
   app.add_flag("--as-drawn", settings.as_drawn, "walls exactly where they were drawn");
   app.add_flag("--foreign", settings.foreign, "only pairs of different places");
   app.add_flag("--placements", settings.placements, "right and wrong placements of a list's scans instead");
+  app.add_flag("--plant", settings.plant,
+               "the true pose is among those that are refined: what the search loses");
   app.add_option("--every", settings.every, "only every so many pairs of a list");
   app.add_option("--near-m", settings.near_m, "a pose nearer than this is the true one ...");
   app.add_option("--near-deg", settings.near_deg, "... and its rotation nearer than this");

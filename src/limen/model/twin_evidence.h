@@ -11,6 +11,13 @@ namespace limen {
 /// by the last one a scan is bent so far that walls say nothing.
 inline constexpr std::size_t kBendLevels = 7;
 
+/// How many shares of things that are the building's after all (a step, a fitting) are distinguished
+/// (twin_odds.cpp).
+inline constexpr std::size_t kBuiltInLevels = 5;
+
+/// Nats of things, for each of these shares.
+using NatsOfThings = std::array<double, kBuiltInLevels>;
+
 /// What was seen of how surfaces were built, for each of these amounts: logarithms of its density.
 struct BuiltEvidence {
   std::array<double, kBendLevels> one{};   ///< if the scans show one place ...
@@ -20,13 +27,14 @@ struct BuiltEvidence {
 /// What two scans say of whether they show one place or two that look alike (register/judge/twin_odds.h). The
 /// odds beforehand are of a place. All else is of the scans: over several pairs it adds up.
 struct TwinEvidence {
-  double otherwise = 1.0;       ///< odds beforehand of a look-alike place that is furnished otherwise ...
-  double alike = 0.0;           ///< ... and of one that is furnished alike
-  double otherwise_nats = 0.0;  ///< of things against the first (natural logarithm)
-  double alike_nats = 0.0;      ///< of the faces of things against the second
-  BuiltEvidence built{};        ///< of how surfaces were built against either
-  double things = 0.0;          ///< observations of things ...
-  double agreeing = 0.0;        ///< ... and how many of them agree
+  bool rooms = true;              ///< both scans are of rooms: else things and walls were not asked
+  double otherwise = 1.0;         ///< odds beforehand of a look-alike place that is furnished otherwise ...
+  double alike = 0.0;             ///< ... and of one that is furnished alike
+  NatsOfThings otherwise_nats{};  ///< of things against the first (natural logarithm)
+  NatsOfThings alike_nats{};      ///< against the second, if as many things match as stay in one room
+  BuiltEvidence built{};          ///< of how surfaces were built against either
+  double things = 0.0;            ///< how many were seen by both ...
+  double agreeing = 0.0;          ///< ... and how many of them agree
 };
 
 }  // namespace limen

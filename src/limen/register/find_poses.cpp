@@ -318,8 +318,7 @@ std::vector<FoundPose> find_poses(const WorkedPair& pair, const RegisterOptions&
   };
   if (level && !sure && options.gravity != Gravity::up) search_on(false, Proposal::held);
   // Through windows the openings fix the shift that planes leave open, if the method takes them.
-  const bool through = sort == PairSort::through_wall || sort == PairSort::past_wall;
-  const bool held = pair.has_model() || (through && options.method == Method::automatic);
+  const bool held = pair.has_model() || (is_through_windows(sort) && options.method == Method::automatic);
   if (level && planes && !held) search_on(true, Proposal::sliding);
   return poses;
 }

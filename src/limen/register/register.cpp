@@ -145,20 +145,25 @@ class AskedPair {
   [[nodiscard]] PairQuestions questions() {
     PairQuestions questions;
     questions.contrast = [this](std::size_t first, std::size_t second) { return contrast(first, second); };
-    if (sort_of(pair_) == PairSort::rooms)
-      questions.things = [this](std::size_t pose) { return weigh_things(pose); };
-    questions.repeats = twin_options(options_.nothing_repeats).alike / evidence_table::kAlike;
+    if (asks_things() || is_through_windows(sort_of(pair_)))
+      questions.look_alike = [this](std::size_t pose) { return beside_start(pose, weigh_look_alike(pose)); };
+    questions.repeats = repeats();
     return questions;
   }
-  /// What is known of look-alike places.
-  struct Things {
-    IndividualMatter seen;
-    TwinEvidence evidence;  ///< without a belief about the start
-  };
-  /// Of a pose that was asked for.
-  [[nodiscard]] const Things* things(std::size_t pose) const {
+  /// What is known of look-alike places, without a belief about the start: of rooms where a pose was asked
+  /// about.
+  [[nodiscard]] std::optional<TwinEvidence> look_alike(std::size_t pose) const {
+    if (is_through_windows(sort_of(pair_)))
+      return look_alike_through_windows(poses_[pose].score, sort_of(pair_), repeats());
     const auto found = things_.find(pose);
-    return found == things_.end() ? nullptr : &found->second;
+    return found == things_.end() ? std::nullopt : std::optional(found->second.evidence);
+  }
+  /// Why a look-alike place cannot be excluded, of so large a probability.
+  [[nodiscard]] std::string look_alike_words(std::size_t pose, double probability) const {
+    const auto found = things_.find(pose);
+    if (found != things_.end()) return twin_words(found->second.seen, probability);
+    if (!is_through_windows(sort_of(pair_))) return "";
+    return twin_words_through_windows(probability);
   }
   [[nodiscard]] std::optional<StartAgreement> agreement_with_start(std::size_t pose) const {
     if (!start_) return std::nullopt;
@@ -174,11 +179,24 @@ class AskedPair {
     }
     return (*contrasts_)(pose_of(second));
   }
-  [[nodiscard]] TwinEvidence weigh_things(std::size_t pose) {
+  struct Things {
+    IndividualMatter seen;
+    TwinEvidence evidence;
+  };
+
+  [[nodiscard]] bool asks_things() const { return sort_of(pair_) == PairSort::rooms; }
+  [[nodiscard]] double repeats() const {
+    return twin_options(options_.nothing_repeats).alike / evidence_table::kAlike;
+  }
+  [[nodiscard]] TwinEvidence weigh_look_alike(std::size_t pose) {
+    if (!asks_things()) return *look_alike(pose);
     if (!asker_) asker_.emplace(pair_.source.view(), pair_.target.view());
     IndividualMatter seen = (*asker_)(pose_of(pose));
     TwinEvidence evidence = weigh_twin(seen, twin_options(options_.nothing_repeats));
     things_.insert_or_assign(pose, Things{std::move(seen), evidence});
+    return evidence;
+  }
+  [[nodiscard]] TwinEvidence beside_start(std::size_t pose, TwinEvidence evidence) const {
     if (!start_) return evidence;
     const double believed = odds_of_look_alike_beside_start(start_->prior, start_->given(pose_of(pose)),
                                                             start_->at, poses_[pose].log_prior);
@@ -226,9 +244,7 @@ void write_result(const std::vector<FoundPose>& poses, Posterior posterior, cons
   const OpenFreedoms open =
       open_freedoms(best.refined, covariance_with_drift(best.refined, pair.source.view(), pair.target.view()),
                     options.verdict);
-  const AskedPair::Things* things = asked.things(leader);
-  std::string look_alike;
-  if (things != nullptr) look_alike = twin_words(things->seen, posterior.others.twin);
+  const std::string look_alike = asked.look_alike_words(leader, posterior.others.twin);
   result.outcome = outcome_of(posterior, open.list, options.verdict);
   result.reason = reason_of(result.outcome, posterior, best.score, open, look_alike, options.verdict);
   if (result.outcome != Outcome::no_match) result.unobserved = open.list;
@@ -236,7 +252,7 @@ void write_result(const std::vector<FoundPose>& poses, Posterior posterior, cons
     const std::size_t k = posterior.order[rank];
     Hypothesis stated = to_hypothesis(as_given(poses[k], worked), pair);
     stated.probability = posterior.probabilities[rank];
-    if (const AskedPair::Things* asked_of = asked.things(k)) stated.twin = asked_of->evidence;
+    stated.twin = asked.look_alike(k);
     return stated;
   };
   result.best = hypothesis(0);

@@ -97,7 +97,7 @@ std::vector<UnusedLink> unused_links(const PoseGraph& graph, const LinkMatcher& 
     const GraphLink& link = graph.links[k];
     if (configuration.pose[k] >= 0 || link.trust != LinkTrust::measured) continue;
     const PairEvidence& evidence = matcher.evidence(k, 0);
-    if (evidence.looks_for_twins && evidence.chance_nats > 0.0)
+    if (evidence.asks_things() && evidence.chance_nats > 0.0)
       unused.push_back({link.source, link.target, evidence, configuration.joins(link)});
   }
   return unused;
@@ -108,7 +108,7 @@ LookAlikeRate::LookAlikeRate(int nodes, const std::vector<PlacedPair>& pairs,
     : others_(density_beforehand()), links_(static_cast<std::size_t>(nodes)), agreeing_(links_.size(), 0.0) {
   std::vector<double> all(links_.size(), 0.0);
   for (const PlacedPair& pair : pairs) {
-    if (pair.link < 0 || !pair.evidence.looks_for_twins) continue;
+    if (pair.link < 0 || !pair.evidence.asks_things()) continue;
     links_[static_cast<std::size_t>(pair.source)].push_back({pair.target, votes_.size()});
     links_[static_cast<std::size_t>(pair.target)].push_back({pair.source, votes_.size()});
     votes_.push_back(logs_of(pair.evidence.twins, 1.0, 0.0));
@@ -156,7 +156,7 @@ LearnedBends::LearnedBends(int nodes, const std::vector<PlacedPair>& pairs) {
   std::vector<double> count(static_cast<std::size_t>(nodes), 0.0);
   std::vector<const BuiltEvidence*> seen;
   for (const PlacedPair& pair : pairs) {
-    if (pair.link < 0 || !pair.evidence.looks_for_twins) continue;
+    if (pair.link < 0 || !pair.evidence.asks_things()) continue;
     pairs_.push_back({pair.source, pair.target});
     seen.push_back(&pair.evidence.twins.built);
     count[static_cast<std::size_t>(pair.source)] += 1.0;

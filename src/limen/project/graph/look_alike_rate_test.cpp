@@ -16,7 +16,8 @@ PairEvidence evidence(double against_look_alike) {
   made.looks_for_twins = true;
   made.twins.otherwise = evidence_table::kOtherwise;
   made.twins.alike = evidence_table::kAlike;
-  made.twins.otherwise_nats = made.twins.alike_nats = against_look_alike;
+  made.twins.otherwise_nats.fill(against_look_alike);
+  made.twins.alike_nats.fill(against_look_alike);
   return made;
 }
 

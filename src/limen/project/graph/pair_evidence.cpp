@@ -12,8 +12,10 @@ namespace {
 TwinEvidence twin_evidence_of(double probability) {
   constexpr double kMostNats = 50.0;
   TwinEvidence evidence;
-  evidence.otherwise_nats = evidence.alike_nats =
+  const double nats =
       probability > 0.0 ? std::min(kMostNats, std::log((1.0 - probability) / probability)) : kMostNats;
+  evidence.otherwise_nats.fill(nats);
+  evidence.alike_nats.fill(nats);
   return evidence;
 }
 
@@ -22,6 +24,14 @@ TwinEvidence twin_evidence_of(double probability) {
 const double kCoincidence = 1e-3;
 constexpr double kLeastProbability = 1e-9;
 constexpr double kGivenWrong = 1e-6;  // of a pose that a file or a survey gives
+
+double bounded(double nats) {
+  return std::clamp(nats, -kMostPairNats, kMostPairNats);
+}
+
+void add_to(NatsOfThings& sum, double weight, const NatsOfThings& nats) {
+  for (std::size_t j = 0; j < sum.size(); ++j) sum[j] += weight * bounded(nats[j]);
+}
 
 double against(double chance_nats, double odds_of_twin) {
   return -std::log(std::exp(-chance_nats) + odds_of_twin);
@@ -35,17 +45,19 @@ double PairEvidence::odds_of_twin() const {
 
 void LookAlikeSum::add(const PairEvidence& evidence, double of_things, double of_surface,
                        const BendBelief& bends) {
-  const auto bounded = [](double nats) { return std::clamp(nats, -kMostPairNats, kMostPairNats); };
-  if (!evidence.looks_for_twins) {
-    sum_.otherwise_nats += of_surface * evidence.chance_nats;
-    sum_.alike_nats += of_surface * evidence.chance_nats;
-    return;
+  const TwinEvidence& twins = evidence.twins;
+  if (evidence.asks_things()) {
+    add_to(sum_.otherwise_nats, of_things, twins.otherwise_nats);
+    add_to(sum_.alike_nats, of_things, twins.alike_nats);
+    sum_.things += of_things * twins.things;
+    sum_.agreeing += of_things * twins.agreeing;
+  } else {
+    const double by_surface =
+        evidence.looks_for_twins ? bounded(twins.otherwise_nats.front()) : evidence.chance_nats;
+    for (NatsOfThings* sum : {&sum_.otherwise_nats, &sum_.alike_nats})
+      for (double& nats : *sum) nats += of_surface * by_surface;
   }
-  sum_.otherwise_nats += of_things * bounded(evidence.twins.otherwise_nats);
-  sum_.alike_nats += of_things * bounded(evidence.twins.alike_nats);
   built_nats_ += of_surface * bounded(built_nats(evidence.twins.built, bends));
-  sum_.things += of_things * evidence.twins.things;
-  sum_.agreeing += of_things * evidence.twins.agreeing;
 }
 
 double PairEvidence::alone() const {

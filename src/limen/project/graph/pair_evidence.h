@@ -19,6 +19,8 @@ struct PairEvidence {
   bool looks_for_twins =
       false;  ///< `twins` was measured; else a look-alike place is one of the pair's own poses
 
+  /// Whether things and walls of rooms were asked about.
+  [[nodiscard]] bool asks_things() const { return looks_for_twins && twins.rooms; }
   /// Odds of a look-alike place of either kind.
   [[nodiscard]] double odds_of_twin() const;
   /// Against every other explanation, where nothing else joins the two nodes.

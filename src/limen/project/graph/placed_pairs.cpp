@@ -56,13 +56,16 @@ PlacedPair asked_pair(int source, int target, const Rigid3& target_from_source, 
   pair.evidence.looks_for_twins = true;
   // A look-alike place agrees by design: agreeing walls do not tell it from the right one, contradicted ones
   // do.
-  pair.evidence.twins.otherwise_nats = pair.evidence.twins.alike_nats = std::min(0.0, nats);
+  TwinEvidence& twins = pair.evidence.twins;
+  twins.otherwise_nats.fill(std::min(0.0, nats));
+  twins.alike_nats = twins.otherwise_nats;
   if (nats <= 0.0 || !query.things) return pair;
   // Where a placement is known to a decimetre, things that agree say something, and others nothing.
   if (const std::optional<TwinEvidence> things = query.things(source, target, target_from_source);
-      things && things->otherwise_nats > 0.0) {
-    pair.evidence.twins.otherwise_nats = std::min(things->otherwise_nats, kMostAskedNats);
-    pair.evidence.twins.things = pair.evidence.twins.agreeing = things->agreeing;
+      things && nats_of(things->otherwise_nats) > 0.0) {
+    for (std::size_t j = 0; j < kBuiltInLevels; ++j)
+      twins.otherwise_nats[j] = std::min(things->otherwise_nats[j], kMostAskedNats);
+    twins.things = twins.agreeing = things->agreeing;
   }
   return pair;
 }
@@ -76,7 +79,7 @@ PlacedPair linked_pair(const PoseGraph& graph, const LinkMatcher& matcher, const
 }
 
 bool says_something(const PlacedPair& pair) {
-  return pair.evidence.chance_nats != 0.0 || pair.evidence.twins.otherwise_nats != 0.0;
+  return pair.evidence.chance_nats != 0.0 || nats_of(pair.evidence.twins.otherwise_nats) != 0.0;
 }
 
 }  // namespace

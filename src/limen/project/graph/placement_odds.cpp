@@ -32,8 +32,9 @@ double PlacementOdds::odds_of_look_alike(const std::vector<const PlacedPair*>& a
   for (const PlacedPair* pair : across) {
     const TwinEvidence& twins = pair->evidence.twins;
     surface.push_back(std::max(kLeastSurfaceM2, pair->shared_m2));
-    things.push_back(twins.things > 0.0 ? twins.things
-                                        : std::abs(twins.otherwise_nats) + std::abs(twins.alike_nats));
+    things.push_back(twins.things > 0.0
+                         ? twins.things
+                         : std::abs(nats_of(twins.otherwise_nats)) + std::abs(nats_of(twins.alike_nats)));
   }
   const std::vector<double> of_surface = views_.shares(across, side, surface);
   const std::vector<double> of_things = views_.shares(across, side, things);

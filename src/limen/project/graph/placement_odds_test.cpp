@@ -18,8 +18,8 @@ PlacedPair pair(int source, int target, double chance_nats, double otherwise_nat
   made.evidence.chance_nats = chance_nats;
   made.evidence.coincidence_nats = 6.9;
   made.evidence.looks_for_twins = true;
-  made.evidence.twins.otherwise_nats = otherwise_nats;
-  made.evidence.twins.alike_nats = alike_nats;
+  made.evidence.twins.otherwise_nats.fill(otherwise_nats);
+  made.evidence.twins.alike_nats.fill(alike_nats);
   return made;
 }
 
@@ -36,6 +36,23 @@ TEST(PlacementOdds, OfOnePairAreThePairs) {
   const SideOdds& said = odds.of(side({1}, 2));
   EXPECT_NEAR(said.chance, std::exp(-5.0), 1e-9);
   EXPECT_NEAR(said.twin, odds_of(only.evidence.twins), 0.2 * odds_of(only.evidence.twins));
+}
+
+/// Windows of a look-alike room agree by design: a second pair excludes chance, and such a room hardly.
+TEST(PlacementOdds, ASecondPairThroughWindowsExcludesChanceOnly) {
+  const auto through_windows = [](int target, int link) {
+    PlacedPair made = pair(2, target, 6.0, 1.0, 1.0, link);
+    made.evidence.twins.rooms = false;
+    made.evidence.twins.otherwise = 0.5;
+    return made;
+  };
+  PlacementOdds one(3, {through_windows(0, 0)});
+  PlacementOdds two(3, {through_windows(0, 0), through_windows(1, 1)});
+  const SideOdds& by_one = one.of(side({2}, 3));
+  const SideOdds& by_two = two.of(side({2}, 3));
+  EXPECT_LT(by_two.chance, 1e-3 * by_one.chance);
+  EXPECT_GT(by_two.twin, 0.2 * by_one.twin);
+  EXPECT_LT(by_two.twin, 0.9 * by_one.twin);
 }
 
 /// That there is a look-alike place is believed once for a side, what is seen against it counts for each

@@ -27,6 +27,7 @@ constexpr double kHeldRad = 0.01;
 constexpr double kOneAlternativeM = 0.05;
 constexpr double kOneAlternativeRad = 0.0175;
 constexpr double kElsewhereLikelier = 1.0;  // odds above which a side is taken to be elsewhere
+constexpr double kWorthSearching = 0.1;     // share of the risk that makes a cut worth a search around it
 constexpr double kFirmShare = 0.05;         // doubt below which a node may lend its component the frame
 constexpr double kLeastListed = 0.01;       // of an alternative place, as a share of the risk, to be listed
 
@@ -239,10 +240,8 @@ class Solver {
 
   /// A cut is the same from wherever it was found: those of all references that were tried are weighed.
   void weigh_doubts() {
-    for (std::vector<bool>& side : odds_->weak_sides(reference_)) {
-      const int first = static_cast<int>(std::find(side.begin(), side.end(), true) - side.begin());
-      cuts_.insert(first == component(first) ? other_side(side, first) : std::move(side));
-    }
+    for (const std::vector<bool>& side : odds_->weak_sides(reference_)) cuts_.insert(without_first(side));
+    search_on();
     doubts_.clear();
     for (const std::vector<bool>& cut : cuts_) {
       const std::vector<bool> side = seen_from_frame(cut);
@@ -250,6 +249,49 @@ class Solver {
       doubts_.push_back({side, odds.total(), odds.links, {}});
     }
     weigh_moves();
+  }
+
+  /// Cuts are found by what single pairs say. Where pairs say the same, or disagree, another cut may be
+  /// likelier: that on which one node beside it is on the other side.
+  void search_on() {
+    std::vector<std::vector<bool>> open(cuts_.begin(), cuts_.end());
+    while (!open.empty()) {
+      const std::vector<bool> cut = std::move(open.back());
+      open.pop_back();
+      double most = odds_->of(seen_from_frame(cut)).total();
+      if (most < kWorthSearching * risk_) continue;
+      std::vector<bool> likeliest;
+      for (const std::size_t n : nodes_beside(cut)) {
+        std::vector<bool> other = cut;
+        other[n].flip();
+        if (std::find(other.begin(), other.end(), true) == other.end()) continue;
+        const double odds = odds_->of(seen_from_frame(other)).total();
+        if (odds <= most) continue;
+        most = odds;
+        likeliest = std::move(other);
+      }
+      if (!likeliest.empty() && cuts_.insert(likeliest).second) open.push_back(std::move(likeliest));
+    }
+  }
+
+  /// Those that pairs across a cut join, but for the first of the component.
+  [[nodiscard]] std::set<std::size_t> nodes_beside(const std::vector<bool>& cut) const {
+    std::set<std::size_t> nodes;
+    for (const PlacedPair& pair : odds_->pairs()) {
+      const auto source = static_cast<std::size_t>(pair.source);
+      const auto target = static_cast<std::size_t>(pair.target);
+      if (cut[source] == cut[target]) continue;
+      for (const std::size_t n : {source, target}) {
+        if (component(static_cast<int>(n)) != static_cast<int>(n)) nodes.insert(n);
+      }
+    }
+    return nodes;
+  }
+
+  /// The side of a cut that its component's first node is not on.
+  [[nodiscard]] std::vector<bool> without_first(const std::vector<bool>& side) const {
+    const int first = static_cast<int>(std::find(side.begin(), side.end(), true) - side.begin());
+    return first == component(first) ? other_side(side, first) : side;
   }
 
   /// The largest part of each component that no doubt divides lends it the frame: what is in doubt against it

@@ -409,7 +409,12 @@ TwoStoreys two_storeys(bool corridor_is_source = true) {
     link.source = source;
     link.target = target;
     link.poses = {measured_pose(inverse(truth[static_cast<std::size_t>(target)]) * from, 40.0, random)};
-    link.poses.front().twin = TwinEvidence{0.171, 0.0053, otherwise_nats, alike_nats};
+    TwinEvidence twin;
+    twin.otherwise = 0.171;
+    twin.alike = 0.0053;
+    twin.otherwise_nats.fill(otherwise_nats);
+    twin.alike_nats.fill(alike_nats);
+    link.poses.front().twin = twin;
     link.twin = probability_of(*link.poses.front().twin);
     graph.links.push_back(link);
   };

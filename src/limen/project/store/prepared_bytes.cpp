@@ -108,9 +108,10 @@ PoseSigma get_sigma(ByteReader& reader) {
 void put_twin(ByteWriter& writer, const std::optional<TwinEvidence>& said) {
   writer.put(said.has_value());
   const TwinEvidence twin = said.value_or(TwinEvidence{});
-  for (const double stated :
-       {twin.otherwise, twin.alike, twin.otherwise_nats, twin.alike_nats, twin.things, twin.agreeing})
-    writer.put(stated);
+  writer.put(twin.rooms);
+  for (const double stated : {twin.otherwise, twin.alike, twin.things, twin.agreeing}) writer.put(stated);
+  for (const NatsOfThings& nats : {twin.otherwise_nats, twin.alike_nats})
+    for (const double level : nats) writer.put(level);
   for (const auto& levels : {twin.built.one, twin.built.twin})
     for (const double log : levels) writer.put(log);
 }
@@ -118,9 +119,10 @@ void put_twin(ByteWriter& writer, const std::optional<TwinEvidence>& said) {
 std::optional<TwinEvidence> get_twin(ByteReader& reader) {
   const bool asked = reader.get<bool>();
   TwinEvidence twin;
-  for (double* value :
-       {&twin.otherwise, &twin.alike, &twin.otherwise_nats, &twin.alike_nats, &twin.things, &twin.agreeing})
-    reader.get(*value);
+  twin.rooms = reader.get<bool>();
+  for (double* value : {&twin.otherwise, &twin.alike, &twin.things, &twin.agreeing}) reader.get(*value);
+  for (NatsOfThings* nats : {&twin.otherwise_nats, &twin.alike_nats})
+    for (double& level : *nats) reader.get(level);
   for (auto* levels : {&twin.built.one, &twin.built.twin})
     for (double& log : *levels) reader.get(log);
   return asked ? std::optional(twin) : std::nullopt;

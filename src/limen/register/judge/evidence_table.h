@@ -26,21 +26,27 @@ struct Surface {
   double search_nats;      ///< what the best of all wrong poses reaches by chance
   Contradiction contradicted;
   double twice;  ///< share of places that the same two scans see again elsewhere, built and furnished alike
-  double nothing_shared;  ///< odds beforehand that nothing is shared, against a pose that was proposed ...
-  double unlisted;        ///< ... and that a place is shared whose pose was not proposed
+  double look_alike;  ///< odds beforehand of a look-alike place whose right pose was not found, through
+                      ///< windows ...
+  double look_alike_per_m2;  ///< ... and nats against it, of agreeing surface
+  double nothing_shared;     ///< odds beforehand that nothing is shared, against a pose that was proposed ...
+  double unlisted;           ///< ... and that a place is shared whose pose was not proposed
 };
-inline constexpr Surface kRooms{0.7, 1.17, 7.55, 7.47, {0.22, {0.00635, 6.68}, {0.209, 8.38}}, 0.0, 1.0, 0.1};
-inline constexpr Surface kThroughWall{0.81,    1.28, 6.45, 6.06, {0.29, {0.000401, 133}, {0.0781, 15.7}},
-                                      0.00777, 1.0,  0.1};
-inline constexpr Surface kPastWall{0.788, 1.31, 6.96, 5.17, {0.536, {0.000385, 391}, {0.0392, 30.8}},
-                                   0,     1.0,  0.1};
+inline constexpr Surface kRooms{0.749, 1.16, 7.53, 7.13, {0.262, {0.00344, 11.2}, {0.156, 13.2}},
+                                0,     0,    0,    1.0,  0.1};
+inline constexpr Surface kThroughWall{0.86,    1.05,    6.15, 7.3, {0.218, {0.00059, 86}, {0.178, 6.93}},
+                                      0.00651, 0.00406, 0,    1.0, 0.1};
+inline constexpr Surface kPastWall{1.29, 1.84,  6.7,   6.48, {0.556, {0.000453, 297}, {0.0509, 22.8}},
+                                   0,    0.992, 0.185, 1.0,  0.1};
 inline constexpr Surface kStreets{0.263, 1.2, 7.6, 13.4, {0.357, {0.0109, 7.31}, {0.35, 11.1}},
-                                  0.0,   1.0, 0.1};
-inline constexpr Surface kInModel{1.9, 1.9, 7.6, 9.5, {0.4, {0.02, 8.0}, {0.3, 6.0}}, 0.0, 1.0, 0.1};
+                                  0.0,   0.0, 0.0, 1.0,  0.1};
+inline constexpr Surface kInModel{1.9, 1.9, 7.6, 9.5, {0.4, {0.02, 8.0}, {0.3, 6.0}},
+                                  0.0, 0.0, 0.0, 1.0, 0.1};
 
 /// What two scans see of the same furniture and clutter.
 struct Furniture {
   ShareBelief stayed;       ///< share of a room's things that are where they were
+  ShareBelief in_place;     ///< share of what is seen of such a thing that agrees
   double measured;          ///< factor by which the deviations of a pair's faces are off: median ...
   double measured_spread;   ///< ... and deviation of its logarithm
   double pushed;            ///< share of the others that was pushed ...
@@ -49,22 +55,23 @@ struct Furniture {
   double chance_strength;   ///< ... and how well it is known, in observations
   double met;               ///< share of the faces in another room that are near one another by chance ...
   double met_m;             ///< ... to so much
-  double built_in;          ///< share of the things in a look-alike room that are the building's after all
-  ShareBelief alike;        ///< share of the things in a room furnished alike that have a counterpart
+  ShareBelief built_in;     ///< share of a building's things that are its own after all
+  ShareBelief alike;        ///< share of the others in a room furnished alike that have a counterpart
   double put_m;             ///< how accurately those were put alike: median ...
   double put_spread;        ///< ... and deviation of its logarithm
 };
-inline constexpr Furniture kFurniture{{0.787, 4.84}, 0.669,  1.02,   0.827,         0.00682, 0.0955, 38.9,
-                                      0.0697,        0.0123, 0.0375, {0.492, 3.13}, 0.0196,  0.288};
+inline constexpr Furniture kFurniture{{0.768, 4.09},   {0.946, 65.5}, 0.808,  1,     0.911,
+                                      0.00777,         0.103,         2.22,   0.115, 0.00968,
+                                      {0.00465, 18.4}, {0.389, 3.44}, 0.0248, 0.252};
 
 /// Look-alike places: odds beforehand that a pose whose walls agree lays a place on another one ...
-inline constexpr double kOtherwise = 0.755;        ///< ... that is furnished otherwise,
-inline constexpr double kOtherwiseApart = 0.0544;  ///< the same where a wall is between the stations,
-inline constexpr double kAlike = 0.00505;          ///< and one that is furnished alike.
-inline constexpr double kRateStrength = 0.871;     ///< how well their share in a building is known, in scans
-inline constexpr double kInPair = 0.1;         ///< share of them whose other place the same two scans show
-inline constexpr double kBuilt = 2.16;         ///< weight of how surfaces were built, against chance
-inline constexpr double kBent = 0.0964;        ///< share of pairs whose scans are bent within themselves
-inline constexpr double kBendStrength = 0.45;  ///< how well shares of bends are known in a project, in scans
+inline constexpr double kOtherwise = 0.939;        ///< ... that is furnished otherwise,
+inline constexpr double kOtherwiseApart = 0.0679;  ///< the same where a wall is between the stations,
+inline constexpr double kAlike = 0.00458;          ///< and one that is furnished alike.
+inline constexpr double kRateStrength = 1.42;      ///< how well their share in a building is known, in scans
+inline constexpr double kInPair = 0.106;        ///< share of them whose other place the same two scans show
+inline constexpr double kBuilt = 2.23;          ///< weight of how surfaces were built, against chance
+inline constexpr double kBent = 0.0899;         ///< share of pairs whose scans are bent within themselves
+inline constexpr double kBendStrength = 0.203;  ///< how well shares of bends are known in a project, in scans
 
 }  // namespace limen::evidence_table

@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <optional>
 #include <vector>
 
 #include "limen/base/progress.h"
+#include "limen/geometry/joined_points.h"
 #include "limen/geometry/polygon_clip.h"
 #include "limen/register/judge/built_planes.h"
 #include "limen/register/judge/common_surfaces.h"
@@ -87,6 +89,28 @@ Observations observations(const std::vector<Stated>& stated, const std::vector<d
   }
   seen.share = seen.count > 0.0 ? agreeing / seen.count : 0.0;
   return seen;
+}
+
+/// What is nearer than `kThingLengthM`, one by one, is of one thing. `places`: of the answers, then of the
+/// faces.
+void group_by_thing(const std::vector<Stated>& stated, const std::vector<double>& shares,
+                    const std::vector<Vector3d>& places, IndividualMatter& individual) {
+  DisjointSets sets = joined_points(places, kThingLengthM);
+  constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
+  std::vector<std::size_t> number(places.size(), kNone);
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    std::size_t& thing = number[sets.find(i)];
+    if (thing == kNone) {
+      thing = individual.things.size();
+      individual.things.emplace_back();
+    }
+    if (i < stated.size()) {
+      individual.things[thing].count += shares[i];
+      if (stated[i].agrees) individual.things[thing].agreeing += shares[i];
+    } else {
+      individual.faces[i - stated.size()].thing = thing;
+    }
+  }
 }
 
 /// One scan with what is the building's and what is not.
@@ -196,9 +220,10 @@ std::vector<MetFace> met_faces(const Side& scan, const Side& judge, const Rigid3
 }
 
 /// What is in a room is its own to the millimetre: offsets between pieces that both scans have.
-/// `scatter_m`: of a piece of wall, by how the two scans differ on walls that both saw.
+/// `scatter_m`: of a piece of wall, by how the two scans differ on walls that both saw. The places of the
+/// faces are added to `places`.
 std::vector<FaceMiss> face_offsets(const Side& source, const Side& target, const Rigid3& target_from_source,
-                                   double scatter_m) {
+                                   double scatter_m, std::vector<Vector3d>& places) {
   // Nearness is mutual, about: the sparser scan asks.
   const bool source_asks = source.view.details != nullptr && target.view.details != nullptr &&
                            source.view.details->size() <= target.view.details->size();
@@ -206,13 +231,13 @@ std::vector<FaceMiss> face_offsets(const Side& source, const Side& target, const
       joined(source_asks ? met_faces(source, target, target_from_source, Rigid3{})
                          : met_faces(target, source, inverse(target_from_source), target_from_source));
   const std::vector<double> shares = shares_of(faces, 8.0 * kThingLengthM);
-  const std::vector<int> things = things_of(faces);
   const double drift = std::hypot(source.view.features->drift_m, target.view.features->drift_m);
   std::vector<FaceMiss> offsets;
   for (std::size_t k = 0; k < faces.size(); ++k) {
     const MetFace& face = faces[k];
     const double uneven_m = std::max(kUnevenM, scatter_m);
-    offsets.push_back({face.offset_m, shares[k], std::hypot(uneven_m, face.sigma_m, drift), things[k]});
+    offsets.push_back({face.offset_m, shares[k], std::hypot(uneven_m, face.sigma_m, drift), 0});
+    places.push_back(face.at);
   }
   return offsets;
 }
@@ -267,14 +292,18 @@ IndividualMatter MatterAsker::operator()(const Rigid3& target_from_source) const
   IndividualMatter individual;
   if (source.view.space == nullptr || target.view.space == nullptr) return individual;
   const std::vector<Stated> stated = stated_of_matter(source, target, target_from_source);
-  individual.matter = observations(stated, shares_of(stated, 8.0 * kThingLengthM));
+  const std::vector<double> shares = shares_of(stated, 8.0 * kThingLengthM);
+  individual.matter = observations(stated, shares);
   individual.chance = chance_of(source, target, target_from_source);
   individual.apart = wall_between(source, target, target_from_source) ||
                      wall_between(target, source, inverse(target_from_source));
   const CommonSurfaces surfaces =
       common_surfaces(source.view, source.built, target.view, target.built, target_from_source);
   individual.built = built_evidence(surfaces.all);
-  individual.faces = face_offsets(source, target, target_from_source, surfaces.scatter_m);
+  std::vector<Vector3d> places;
+  for (const Stated& one : stated) places.push_back(one.at);
+  individual.faces = face_offsets(source, target, target_from_source, surfaces.scatter_m, places);
+  group_by_thing(stated, shares, places, individual);
   return individual;
 }
 

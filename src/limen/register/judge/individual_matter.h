@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <vector>
 
@@ -24,7 +25,13 @@ struct FaceMiss {
   double share = 1.0;     ///< of one observation: faces that tell the same make one together
   /// What noise leaves between two measurements of the face; roughness and the pose come on top.
   double sigma_m = 0.0;
-  int thing = 0;  ///< faces near one another are of one thing: what it is, all of them are
+  std::size_t thing = 0;  ///< number of its thing in `IndividualMatter::things`
+};
+
+/// What is near one another is of one thing: it is where it was, or it is not, as a whole.
+struct ThingSeen {
+  double count = 0.0;     ///< observations of it ...
+  double agreeing = 0.0;  ///< ... and how many of them agree
 };
 
 /// Pieces farther apart than this are not taken for one another.
@@ -36,6 +43,8 @@ inline constexpr double kNearFaceM = 0.06;
 struct IndividualMatter {
   /// Pieces that the other scan saw either as matter or as free space.
   Observations matter;
+  /// The same, thing by thing; some show faces only.
+  std::vector<ThingSeen> things;
   /// Flat faces of things that the other scan has nearby as well, and how far apart the two are.
   std::vector<FaceMiss> faces;
   /// Share of `matter` that agrees when one room's things are shifted about in the other: chance.

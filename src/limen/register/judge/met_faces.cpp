@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "limen/geometry/joined_points.h"
-
 namespace limen {
 namespace {
 
@@ -58,15 +56,6 @@ double correlation(const MetFace& a, const MetFace& b) {
   const Vector2d across = a.normal.head<2>().normalized();
   const double aligned = std::abs(across.dot(b.normal.head<2>().normalized()));
   return aligned * std::exp(-apart.norm() / length);
-}
-
-std::vector<int> things_of(const std::vector<MetFace>& faces) {
-  std::vector<Vector3d> places;
-  for (const MetFace& face : faces) places.push_back(face.at);
-  DisjointSets sets = joined_points(places, kThingLengthM);
-  std::vector<int> things;
-  for (std::size_t i = 0; i < faces.size(); ++i) things.push_back(static_cast<int>(sets.find(i)));
-  return things;
 }
 
 std::vector<MetFace> joined(const std::vector<MetFace>& pieces) {

@@ -13,7 +13,8 @@ namespace limen {
 // Pieces that lie so in one plane are of one face: a leaf, a cupboard's front.
 inline constexpr double kOneFaceM = 0.04;
 inline constexpr double kOneFaceCosine = 0.97;
-inline constexpr double kThingLengthM = 0.4;  ///< faces nearer than this tell the same ...
+inline constexpr double kThingLengthM =
+    0.4;  ///< faces nearer than this are of one thing and tell the same ...
 inline constexpr double kFrontLengthM = 1.5;  ///< ... and those of one plane nearer than this
 
 /// A face of one scan that the other has as well, in the target's frame.
@@ -38,9 +39,6 @@ double correlation(const MetFace& a, const MetFace& b);
 /// The pieces of one face were put where they are together: they make one observation, a better one the more
 /// they are.
 std::vector<MetFace> joined(const std::vector<MetFace>& pieces);
-
-/// Of each face the number of its thing: faces nearer than `kThingLengthM`, one by one, are of one.
-std::vector<int> things_of(const std::vector<MetFace>& faces);
 
 /// Each piece's share of an observation, w_i / sum_j w_j rho_ij: neighbours that tell the same make one
 /// together, however many they are, and what is alone is one of its own. Farther apart than `reach_m`

@@ -69,7 +69,7 @@ class Weighing {
         table_(table_of(sort)),
         questions_(questions),
         against_chance_(nats_against_chance(poses, sort)),
-        things_(poses.size()) {
+        look_alikes_(poses.size()) {
     for (std::size_t k = 1; k < poses.size(); ++k) {
       if (against_chance_[k] + poses[k].log_prior > against_chance_[first_] + poses[first_].log_prior)
         first_ = k;
@@ -80,13 +80,13 @@ class Weighing {
   [[nodiscard]] std::size_t first() const { return first_; }
   /// Odds that a pose lays a place on a look-alike one.
   [[nodiscard]] double look_alike(std::size_t pose) {
-    return questions_.things ? limen::odds_of(things(pose)) : 0.0;
+    return questions_.look_alike ? limen::odds_of(twins(pose)) : 0.0;
   }
   /// By how much what agrees under a pose exceeds chance, nats.
   [[nodiscard]] double against_chance(std::size_t pose) {
-    if (!questions_.things) return against_chance_[pose];
-    return against_chance_[pose] + things(pose).otherwise_nats +
-           evidence_table::kBuilt * built_nats(things(pose).built);
+    if (!asks_things(pose)) return against_chance_[pose];
+    return against_chance_[pose] + nats_of(twins(pose).otherwise_nats) +
+           evidence_table::kBuilt * built_nats(twins(pose).built);
   }
   /// Whether a pose may be right: of the many that are refined in a model those that exceed chance, and the
   /// best.
@@ -106,10 +106,11 @@ class Weighing {
  private:
   static constexpr double kNegligible = 1e-7;
 
-  [[nodiscard]] const TwinEvidence& things(std::size_t pose) {
-    if (!things_[pose]) things_[pose] = questions_.things(pose);
-    return *things_[pose];
+  [[nodiscard]] const TwinEvidence& twins(std::size_t pose) {
+    if (!look_alikes_[pose]) look_alikes_[pose] = questions_.look_alike(pose);
+    return *look_alikes_[pose];
   }
+  [[nodiscard]] bool asks_things(std::size_t pose) { return questions_.look_alike && twins(pose).rooms; }
   // Logarithms, for the odds of large scans may underflow.
 
   /// That a pose agrees though another one is right which resembles it, by chance or because the building
@@ -122,8 +123,8 @@ class Weighing {
            table_.against_per_m2 * less_contradicted_m2;
   }
   [[nodiscard]] double log_wrong(double log_resembling, std::size_t pose) {
-    return log_sum_exp({log_resembling, -against_chance(pose),
-                        std::log(evidence_table::kInPair) + std::log(look_alike(pose))});
+    const double in_pair = asks_things(pose) ? evidence_table::kInPair * look_alike(pose) : 0.0;
+    return log_sum_exp({log_resembling, -against_chance(pose), std::log(in_pair)});
   }
   /// Share of a pose among all but `another`, by how much each exceeds chance; 0 where no place is seen
   /// twice.
@@ -153,7 +154,7 @@ class Weighing {
   const PairQuestions& questions_;
   std::vector<double> against_chance_;
   std::size_t first_ = 0;
-  std::vector<std::optional<TwinEvidence>> things_;
+  std::vector<std::optional<TwinEvidence>> look_alikes_;
 };
 
 }  // namespace
@@ -169,6 +170,19 @@ std::vector<double> nats_against_chance(const std::vector<FoundPose>& poses, Pai
         table.search_nats);
   }
   return nats;
+}
+
+TwinEvidence look_alike_through_windows(const PoseScore& score, PairSort sort, double repeats) {
+  const evidence_table::Surface& table = table_of(sort);
+  TwinEvidence evidence;
+  evidence.rooms = false;
+  evidence.otherwise = repeats * table.look_alike;
+  evidence.alike = evidence.otherwise * evidence_table::kAlike / evidence_table::kOtherwise;
+  const double against = table.look_alike_per_m2 * score.evidence_m2 +
+                         nats_of_contradiction(score.agreeing_m2, score.contradicted_m2, table.contradicted);
+  evidence.otherwise_nats.fill(against);
+  evidence.alike_nats.fill(against);
+  return evidence;
 }
 
 Posterior weigh_poses(const std::vector<FoundPose>& poses, PairSort sort, const PairQuestions& questions) {

@@ -23,18 +23,27 @@ enum class PairSort : std::uint8_t {
   in_model       ///< one side is a building model
 };
 
+/// Whether one scan is of a room and the other of what is outside.
+constexpr bool is_through_windows(PairSort sort) {
+  return sort == PairSort::through_wall || sort == PairSort::past_wall;
+}
+
 /// Of each pose, by how much what agrees and what is contradicted exceeds what the best of all wrong poses
 /// reaches by chance, natural logarithm of the odds. In a model chance is learned from the other poses
 /// (model_odds.h).
 std::vector<double> nats_against_chance(const std::vector<FoundPose>& poses, PairSort sort);
 
+/// What a room and a scan from outside say of a look-alike place, the right pose not being among those found.
+/// It agrees by design, so surface excludes it slowly, and what is contradicted speaks for it. `repeats`:
+/// factor of the odds beforehand.
+TwinEvidence look_alike_through_windows(const PoseScore& score, PairSort sort, double repeats = 1.0);
+
 /// What the two scans say beside the scores; each is asked where it matters only.
 struct PairQuestions {
   /// What distinguishes two poses, given their numbers.
   std::function<PoseContrast(std::size_t first, std::size_t second)> contrast;
-  /// What things, and how the building was built, say of a pose. Null: not asked, for look-alike places are
-  /// searched as well.
-  std::function<TwinEvidence(std::size_t pose)> things;
+  /// What is known of look-alike places under a pose. Null: nothing, for they are searched as well.
+  std::function<TwinEvidence(std::size_t pose)> look_alike;
   double repeats = 1.0;  ///< factor of the share of places that both scans see twice
 };
 

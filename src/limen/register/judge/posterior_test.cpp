@@ -10,6 +10,7 @@
 #include <rapidcheck/gtest.h>
 
 #include "limen/register/judge/evidence_table.h"
+#include "limen/register/judge/twin_odds.h"
 
 namespace limen {
 namespace {
@@ -35,15 +36,15 @@ PairQuestions questions_of(const std::vector<FoundPose>& poses) {
 Posterior weighed(const std::vector<FoundPose>& poses, const std::vector<TwinEvidence>& things = {},
                   PairSort sort = PairSort::rooms) {
   PairQuestions questions = questions_of(poses);
-  if (!things.empty()) questions.things = [&](std::size_t k) { return things[k]; };
+  if (!things.empty()) questions.look_alike = [&](std::size_t k) { return things[k]; };
   return weigh_poses(poses, sort, questions);
 }
 
 /// Things of a room agree under a pose, by so many nats.
 TwinEvidence things(double nats) {
   TwinEvidence evidence;
-  evidence.otherwise_nats = nats;
-  evidence.alike_nats = std::min(0.0, nats);
+  evidence.otherwise_nats.fill(nats);
+  evidence.alike_nats.fill(std::min(0.0, nats));
   return evidence;
 }
 
@@ -235,6 +236,20 @@ TEST(ReasonOf, WhatIsOpenIsNamed) {
             "the common surface does not fix the shift along (1.00, 0.00, 0.00)");
   EXPECT_NE(reason_of(Outcome::under_constrained, sure, {}, {kOpen, true}, {}).find("drifts"),
             std::string::npos);
+}
+
+TEST(Posterior, ThroughWindowsSurfaceExcludesALookAlikeRoomSlowly) {
+  const auto look_alike = [](double agreeing_m2, double contradicted_m2) {
+    return look_alike_through_windows(pose(agreeing_m2, contradicted_m2).score, PairSort::past_wall);
+  };
+  EXPECT_LT(odds_of(look_alike(40.0, 0.0)), 0.1 * odds_of(look_alike(20.0, 0.0)));
+  // What is contradicted speaks for it.
+  EXPECT_GT(odds_of(look_alike(20.0, 2.0)), 10.0 * odds_of(look_alike(20.0, 0.0)));
+  // The same surface excludes chance far better.
+  EXPECT_GT(nats_against_chance({pose(30.0)}, PairSort::past_wall).front(),
+            against_otherwise(look_alike(30.0, 0.0)) + 10.0);
+  const double stated = look_alike_through_windows({}, PairSort::past_wall, 0.05).otherwise;
+  EXPECT_NEAR(stated, 0.05 * look_alike(0.0, 0.0).otherwise, 1e-12);
 }
 
 }  // namespace

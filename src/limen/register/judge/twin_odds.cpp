@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
 #include <numbers>
 #include <utility>
 #include <vector>
@@ -51,114 +50,145 @@ std::array<Node, 10> shares_of(const ShareBelief& belief) {
   return nodes;
 }
 
-/// Of a lognormal distribution (Gauss-Hermite).
-std::array<Node, 3> scales_of(double median, double spread) {
+/// Of a lognormal distribution (Gauss-Hermite), and the logarithms of their weights.
+std::array<double, 3> scales_of(double median, double spread) {
   const double far = std::exp(std::numbers::sqrt3 * spread);
-  return {{{median / far, std::log(1.0 / 6.0)},
-           {median, std::log(2.0 / 3.0)},
-           {median * far, std::log(1.0 / 6.0)}}};
+  return {median / far, median, median * far};
+}
+const std::array<double, 3> kLogScale = {std::log(1.0 / 6.0), std::log(2.0 / 3.0), std::log(1.0 / 6.0)};
+
+/// Logarithms of the densities of what was seen of each thing, under one assumption.
+using OfThings = std::vector<double>;
+
+OfThings of_surface(const IndividualMatter& seen, const ShareBelief& agreeing) {
+  OfThings logs;
+  for (const ThingSeen& thing : seen.things)
+    logs.push_back(log_beta_binomial(thing.agreeing, thing.count - thing.agreeing, agreeing));
+  return logs;
 }
 
-constexpr double kStray = 0.1;  // share of the faces of a thing of the building that are of something else
+/// Adds the faces of each thing. `near`: of so large a share, the rest lies anywhere; `sigma_m`: of a face
+/// near its place.
+template <typename Sigma>
+void add_faces(const IndividualMatter& seen, double near, const Sigma& sigma_m, OfThings& logs) {
+  for (const FaceMiss& face : seen.faces)
+    logs[face.thing] +=
+        face.share * std::log(near * normal_density(face.offset_m, sigma_m(face)) + (1.0 - near) * kAnywhere);
+}
 
-/// Log-likelihood of faces. Not all that is the building's is known as such: a step, a fitting, a reveal at
-/// an angle. In a look-alike place a share of the things is the building's, and agrees with all its faces.
-class FaceLikelihood {
- public:
-  explicit FaceLikelihood(const IndividualMatter& seen) : seen_(seen) {
-    for (const FaceMiss& face : seen.faces) {
-      const double exact = normal_density(face.offset_m, face.sigma_m);
-      as_built_[face.thing] += face.share * std::log((1.0 - kStray) * exact + kStray * kAnywhere);
+/// If they are where they were, or were put: one for each scale of the deviations of faces.
+template <typename Sigma>
+std::array<OfThings, 3> in_place(const IndividualMatter& seen, double median, double spread,
+                                 const Sigma& sigma_m) {
+  const OfThings surface = of_surface(seen, kFurniture.in_place);
+  std::array<OfThings, 3> kept;
+  const std::array<double, 3> scales = scales_of(median, spread);
+  for (std::size_t k = 0; k < kept.size(); ++k) {
+    kept[k] = surface;
+    add_faces(
+        seen, kFurniture.in_place.mean, [&](const FaceMiss& face) { return sigma_m(face, scales[k]); },
+        kept[k]);
+  }
+  return kept;
+}
+
+/// As they were measured: the scale is how well the deviations are known.
+std::array<OfThings, 3> kept_in_place(const IndividualMatter& seen) {
+  return in_place(seen, kFurniture.measured, kFurniture.measured_spread,
+                  [](const FaceMiss& face, double scale) { return scale * face.sigma_m; });
+}
+
+/// As people put them: the scale, metres, comes on top.
+std::array<OfThings, 3> put_in_place(const IndividualMatter& seen) {
+  return in_place(seen, kFurniture.put_m, kFurniture.put_spread,
+                  [](const FaceMiss& face, double scale) { return std::hypot(scale, face.sigma_m); });
+}
+
+/// If they are elsewhere, or others: surface agrees by chance, and a share of the faces is near another.
+OfThings elsewhere(const IndividualMatter& seen, double near, double near_m) {
+  const ShareBelief chance{std::clamp(seen.chance + kFurniture.more_than_chance, 0.01, 0.7),
+                           kFurniture.chance_strength};
+  OfThings logs = of_surface(seen, chance);
+  add_faces(
+      seen, near, [&](const FaceMiss& face) { return std::hypot(near_m, face.sigma_m); }, logs);
+  return logs;
+}
+
+/// Shares of a building's things that are its own (a step, a fitting), evenly by the logarithm of their odds.
+const std::array<Node, kBuiltInLevels>& built_in_shares() {
+  static const std::array<Node, kBuiltInLevels> levels = [] {
+    constexpr double kFirstLogOdds = -6.0;
+    constexpr double kStep = 1.5;
+    std::array<Node, kBuiltInLevels> nodes;
+    std::array<double, kBuiltInLevels> logs{};
+    const ShareBelief& belief = kFurniture.built_in;
+    for (std::size_t j = 0; j < nodes.size(); ++j) {
+      nodes[j].at = 1.0 / (1.0 + std::exp(-kFirstLogOdds - kStep * static_cast<double>(j)));
+      logs[j] = belief.strength *
+                (belief.mean * std::log(nodes[j].at) + (1.0 - belief.mean) * std::log1p(-nodes[j].at));
     }
-  }
+    const double sum = log_sum_exp(logs);
+    for (std::size_t j = 0; j < nodes.size(); ++j) nodes[j].log_weight = logs[j] - sum;
+    return nodes;
+  }();
+  return levels;
+}
 
-  /// `densities`: of each face, where none is the building's.
-  [[nodiscard]] double of(const std::vector<double>& densities) const {
-    double sum = 0.0;
-    for (std::size_t k = 0; k < densities.size(); ++k) sum += seen_.faces[k].share * std::log(densities[k]);
-    return sum;
+/// Of all things, for each share that is the building's: those are as in `fixed`, the others as in `loose`.
+NatsOfThings sums_of(const OfThings& fixed, const OfThings& loose) {
+  NatsOfThings sums{};
+  for (std::size_t j = 0; j < sums.size(); ++j) {
+    const double log_fixed = std::log(built_in_shares()[j].at);
+    const double log_loose = std::log1p(-built_in_shares()[j].at);
+    for (std::size_t g = 0; g < loose.size(); ++g)
+      sums[j] += log_sum_exp({log_fixed + fixed[g], log_loose + loose[g]});
   }
+  return sums;
+}
 
-  /// The same where a share of the things is the building's.
-  [[nodiscard]] double with_built_in(const std::vector<double>& densities) const {
-    std::map<int, double> as_put;
-    for (std::size_t k = 0; k < densities.size(); ++k)
-      as_put[seen_.faces[k].thing] += seen_.faces[k].share * std::log(densities[k]);
-    double sum = 0.0;
-    for (const auto& [thing, log] : as_put)
-      sum += log_sum_exp(
-          {std::log1p(-kFurniture.built_in) + log, std::log(kFurniture.built_in) + as_built_.at(thing)});
-    return sum;
+/// For each share the logarithm of a sum over weighted cases.
+class LogMixture {
+ public:
+  void add(double log_weight, const NatsOfThings& logs) {
+    for (std::size_t j = 0; j < kBuiltInLevels; ++j) cases_[j].push_back(log_weight + logs[j]);
+  }
+  [[nodiscard]] NatsOfThings sum() const {
+    NatsOfThings sums{};
+    for (std::size_t j = 0; j < kBuiltInLevels; ++j) sums[j] = log_sum_exp(cases_[j]);
+    return sums;
   }
 
  private:
-  const IndividualMatter& seen_;
-  std::map<int, double> as_built_;  ///< of each thing, if it is the building's
+  std::array<std::vector<double>, kBuiltInLevels> cases_;
 };
 
-/// Two explanations in which a share of the things is where it was, or was put: one room, or one that is
-/// furnished alike.
-struct Arrangement {
-  bool look_alike = false;
-  std::array<Node, 3>
-      scales;  ///< of the faces in place: factors of their deviations; of a look-alike, metres on top
-  double pushed = 0.0;  ///< share of the other faces that lies near its place
-};
-
-const Arrangement& one_room() {
-  static const Arrangement room{false, scales_of(kFurniture.measured, kFurniture.measured_spread),
-                                kFurniture.pushed};
-  return room;
-}
-
-const Arrangement& furnished_alike() {
-  static const Arrangement alike{true, scales_of(kFurniture.put_m, kFurniture.put_spread), 0.0};
-  return alike;
-}
-
-/// The share of things in place, as that of one room, is one for what agrees and for faces; it and the scale
-/// are integrated out.
-double log_likelihood(const IndividualMatter& seen, const Arrangement& arrangement) {
-  static const std::array<Node, 10> shares = shares_of(kFurniture.stayed);
-  const double agreeing = seen.matter.agreeing();
-  const FaceLikelihood faces(seen);
-  std::vector<double> elsewhere;
-  for (const FaceMiss& face : seen.faces) {
-    const double pushed = normal_density(face.offset_m, std::hypot(kFurniture.pushed_m, face.sigma_m));
-    elsewhere.push_back(arrangement.pushed * pushed + (1.0 - arrangement.pushed) * kAnywhere);
-  }
-  std::vector<double> in_place(seen.faces.size());
-  std::vector<double> densities(seen.faces.size());
-  std::vector<double> logs;
-  for (const Node& scale : arrangement.scales) {
-    for (std::size_t k = 0; k < seen.faces.size(); ++k) {
-      const FaceMiss& face = seen.faces[k];
-      in_place[k] = normal_density(face.offset_m, arrangement.look_alike ? std::hypot(scale.at, face.sigma_m)
-                                                                         : scale.at * face.sigma_m);
-    }
-    for (const Node& share : shares) {
-      for (std::size_t k = 0; k < densities.size(); ++k)
-        densities[k] = share.at * in_place[k] + (1.0 - share.at) * elsewhere[k];
-      logs.push_back(scale.log_weight + share.log_weight + agreeing * std::log(share.at) +
-                     (seen.matter.count - agreeing) * std::log1p(-share.at) +
-                     (arrangement.look_alike ? faces.with_built_in(densities) : faces.of(densities)));
+/// Of the other things an unknown share is as in `kept`; it and the scale are integrated out.
+NatsOfThings log_likelihood(const std::array<OfThings, 3>& fixed, const std::array<OfThings, 3>& kept,
+                            const OfThings& elsewhere, const ShareBelief& share) {
+  LogMixture mixture;
+  OfThings loose(elsewhere.size());
+  for (std::size_t k = 0; k < kept.size(); ++k) {
+    for (const Node& node : shares_of(share)) {
+      for (std::size_t g = 0; g < loose.size(); ++g)
+        loose[g] = log_sum_exp({std::log(node.at) + kept[k][g], std::log1p(-node.at) + elsewhere[g]});
+      mixture.add(kLogScale[k] + node.log_weight, sums_of(fixed[k], loose));
     }
   }
-  return log_sum_exp(logs);
+  return mixture.sum();
 }
 
-/// Where the things are another room's, they agree by chance.
-double log_likelihood_of_chance(const IndividualMatter& seen) {
-  const ShareBelief chance{std::clamp(seen.chance + kFurniture.more_than_chance, 0.01, 0.7),
-                           kFurniture.chance_strength};
-  const double agreeing = seen.matter.agreeing();
-  std::vector<double> densities;
-  for (const FaceMiss& face : seen.faces) {
-    const double met = normal_density(face.offset_m, std::hypot(kFurniture.met_m, face.sigma_m));
-    densities.push_back(kFurniture.met * met + (1.0 - kFurniture.met) * kAnywhere);
-  }
-  return log_beta_binomial(agreeing, seen.matter.count - agreeing, chance) +
-         FaceLikelihood(seen).with_built_in(densities);
+/// Where all but the building's are another room's.
+NatsOfThings log_likelihood_of_others(const std::array<OfThings, 3>& fixed, const OfThings& elsewhere) {
+  LogMixture mixture;
+  for (std::size_t k = 0; k < fixed.size(); ++k) mixture.add(kLogScale[k], sums_of(fixed[k], elsewhere));
+  return mixture.sum();
+}
+
+/// Of one place, whatever the share, against another explanation.
+NatsOfThings nats_against(double same, const NatsOfThings& other) {
+  NatsOfThings nats{};
+  for (std::size_t j = 0; j < nats.size(); ++j) nats[j] = same - other[j];
+  return nats;
 }
 
 constexpr double kFew = 3.0;          // observations
@@ -188,24 +218,40 @@ TwinEvidence weigh_twin(const IndividualMatter& individual, const TwinOptions& o
   TwinEvidence evidence;
   evidence.alike = options.alike;
   evidence.otherwise = individual.apart ? options.otherwise_apart : options.otherwise;
-  const double same = log_likelihood(individual, one_room());
-  evidence.otherwise_nats = same - log_likelihood_of_chance(individual);
-  evidence.alike_nats = same - log_likelihood(individual, furnished_alike());
   evidence.built = individual.built;
-  evidence.things = individual.matter.count;
-  evidence.agreeing = individual.matter.agreeing();
+  for (const ThingSeen& thing : individual.things) {
+    const double seen = std::min(1.0, thing.count);
+    evidence.things += seen;
+    if (thing.count > 0.0) evidence.agreeing += seen * thing.agreeing / thing.count;
+  }
+  const std::array<OfThings, 3> kept = kept_in_place(individual);
+  const std::array<OfThings, 3> put = put_in_place(individual);
+  const OfThings pushed = elsewhere(individual, kFurniture.pushed, kFurniture.pushed_m);
+  const OfThings others = elsewhere(individual, kFurniture.met, kFurniture.met_m);
+  NatsOfThings here = log_likelihood(kept, kept, pushed, kFurniture.stayed);
+  for (std::size_t j = 0; j < here.size(); ++j) here[j] += built_in_shares()[j].log_weight;
+  const double same = log_sum_exp(here);
+  evidence.otherwise_nats = nats_against(same, log_likelihood_of_others(kept, others));
+  evidence.alike_nats = nats_against(same, log_likelihood(kept, put, others, kFurniture.stayed));
+
   return evidence;
 }
 
+double nats_of(const NatsOfThings& nats) {
+  NatsOfThings logs{};
+  for (std::size_t j = 0; j < logs.size(); ++j) logs[j] = built_in_shares()[j].log_weight - nats[j];
+  return -log_sum_exp(logs);
+}
+
 double against_otherwise(const TwinEvidence& evidence) {
-  return evidence.otherwise_nats + built_nats(evidence.built);
+  return nats_of(evidence.otherwise_nats) + built_nats(evidence.built);
 }
 
 double against_alike(const TwinEvidence& evidence) {
   const double other = evidence.things - evidence.agreeing;
   const double own = log_beta_binomial(evidence.agreeing, other, kFurniture.stayed) -
                      log_beta_binomial(evidence.agreeing, other, kFurniture.alike);
-  return evidence.alike_nats + std::min(0.0, own) + built_nats(evidence.built);
+  return nats_of(evidence.alike_nats) + std::min(0.0, own) + built_nats(evidence.built);
 }
 
 double odds_of(const TwinEvidence& evidence) {
@@ -232,6 +278,11 @@ std::string twin_words(const IndividualMatter& individual, double probability) {
       "a room built and furnished alike cannot be excluded ({}): {:.0f} % of the objects in the room agree, "
       "but too few to the millimetre",
       percent_words(probability), 100.0 * matter.share);
+}
+
+std::string twin_words_through_windows(double probability) {
+  return fmt::format("a look-alike room cannot be excluded ({}): too little is seen through the windows",
+                     percent_words(probability));
 }
 
 }  // namespace limen

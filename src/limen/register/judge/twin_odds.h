@@ -28,9 +28,12 @@ TwinOptions twin_options(bool nothing_repeats);
 /// evidence_table::kFurniture its numbers. Without observations there is no evidence for or against any.
 TwinEvidence weigh_twin(const IndividualMatter& individual, const TwinOptions& options = {});
 
+/// Of things, whatever share of a building's is its own. Over several pairs the nats of each share add up.
+double nats_of(const NatsOfThings& nats);
+
 /// Nats against a look-alike place that is furnished otherwise.
 double against_otherwise(const TwinEvidence& evidence);
-/// Nats against one that is furnished alike. How many of its things are its own is not known: it is given the
+/// Nats against one that is furnished alike. How many of its things match is not known: it is given the
 /// better of two shares. So things that agree never exclude it, only faces that agree better than hands put
 /// them.
 double against_alike(const TwinEvidence& evidence);
@@ -42,5 +45,7 @@ double probability_of(const TwinEvidence& evidence);
 
 /// What a user should know of a pair whose twin cannot be excluded: one sentence's end.
 std::string twin_words(const IndividualMatter& individual, double probability);
+/// The same of a room and a scan from outside.
+std::string twin_words_through_windows(double probability);
 
 }  // namespace limen

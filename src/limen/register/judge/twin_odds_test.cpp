@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limen/register/judge/twin_odds.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <utility>
 
 #include <gtest/gtest.h>
@@ -21,7 +23,9 @@ std::vector<FaceMiss> faces(int count, double deviation_m) {
   for (int k = 0; k < count; ++k) {
     // Quantiles of the even distribution, stretched: a spread of the deviation asked for.
     const double even = (k + 0.5) / count - 0.5;
-    offsets.push_back({.offset_m = even * std::sqrt(12.0) * deviation_m, .sigma_m = 0.002, .thing = k});
+    offsets.push_back({.offset_m = even * std::sqrt(12.0) * deviation_m,
+                       .sigma_m = 0.002,
+                       .thing = static_cast<std::size_t>(k)});
   }
   return offsets;
 }
@@ -29,6 +33,8 @@ std::vector<FaceMiss> faces(int count, double deviation_m) {
 IndividualMatter seen(Observations matter, std::vector<FaceMiss> offsets, double chance = 0.05) {
   IndividualMatter individual;
   individual.matter = matter;
+  for (double k = 0.0; k < matter.count; ++k)  // things of one observation each, first those that agree
+    individual.things.push_back({1.0, std::clamp(matter.agreeing() - k, 0.0, 1.0)});
   individual.faces = std::move(offsets);
   individual.chance = chance;
   return individual;
@@ -123,6 +129,23 @@ TEST(TwinOdds, SidesOfOneThingAreTheBuildingsTogether) {
   EXPECT_LT(of_one, of_two - 0.3);
   // However little else agrees, one such thing does not make a landing the next one.
   EXPECT_GT(twin_of(seen({8, 0.25}, sides)), 0.01);
+}
+
+TEST(TwinOdds, OneThingIsTheBuildingsAsAWhole) {
+  // A flight of stairs of so many pieces, all of which agree: it may be the building's.
+  const auto flights = [](double pieces, std::size_t count) {
+    IndividualMatter stairs;
+    stairs.chance = 0.2;
+    stairs.things.assign(count, {pieces, pieces});
+    for (std::size_t k = 0; k < count; ++k)
+      stairs.faces.push_back({.offset_m = 0.0001, .sigma_m = 0.002, .thing = k});
+    return against_otherwise(weigh_twin(stairs));
+  };
+  const double of_one = flights(6.0, 1);
+  EXPECT_GT(of_one, 3.0);
+  EXPECT_LT(flights(60.0, 1) - of_one, 0.5);       // however large it is
+  EXPECT_GT(flights(6.0, 4), of_one + 5.0);        // four of them are hardly all the building's
+  EXPECT_LT(flights(6.0, 4), 4.0 * of_one - 1.0);  // but where one is, others are as well
 }
 
 TEST(TwinOdds, PiecesOfOneFaceAreOneObservation) {
