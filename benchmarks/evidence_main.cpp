@@ -87,6 +87,8 @@ class Rows {
           continue;
         }
         PreparedPair pair{scans[i].scan, scans[j].scan};
+        set_from_source_ = scans[i].set_from_scan;
+        set_from_target_ = scans[j].set_from_scan;
         run(s_.set, scans[i].name, scans[j].name, foreign ? "foreign" : "known", pair,
             foreign ? std::nullopt : std::optional(inverse(scans[j].set_from_scan) * scans[i].set_from_scan));
       }
@@ -136,6 +138,26 @@ class Rows {
     for (const ThingSeen& thing : seen.things)
       things += fmt::format("{}[{:.2f}, {:.2f}]", things.empty() ? "" : ", ", thing.count, thing.agreeing);
     return fmt::format(R"("chance": {:.3f}, "things": [{}], "faces_mm": [{}])", seen.chance, things, faces);
+  }
+  /// How a pose moves the scan from inside, in the frame of the set, the one from outside being where it is.
+  /// `moved_source`: by it, in the source's prepared frame.
+  [[nodiscard]] std::string moved(const PreparedPair& pair, const Rigid3& moved_source) const {
+    const Rigid3 set_from_prepared = set_from_source_ * Rigid3{pair.source.upright_from_scan.transpose(),
+                                                               pair.source.extracted.features.local_origin};
+    Rigid3 moved = set_from_prepared * moved_source * inverse(set_from_prepared);
+    if (pair.source.surroundings == Surroundings::outside) moved = inverse(moved);
+    std::string text;
+    for (int r = 0; r < 3; ++r)
+      text += fmt::format("{}{:.17g}, {:.17g}, {:.17g}, {:.17g}", r == 0 ? "" : ", ", moved.rotation(r, 0),
+                          moved.rotation(r, 1), moved.rotation(r, 2), moved.translation[r]);
+    return fmt::format(R"(, "moved": [{}])", text);
+  }
+  /// Which scan of a pair through windows is the one from inside, and where it is.
+  [[nodiscard]] std::string inside(const PreparedPair& pair) const {
+    const bool source = pair.source.surroundings != Surroundings::outside;
+    const Vector3d at = (source ? set_from_source_ : set_from_target_).translation;
+    return fmt::format(R"("inside": "{}", "at": [{:.3f}, {:.3f}, {:.3f}], )", source ? "source" : "target",
+                       at.x(), at.y(), at.z());
   }
   static std::string place_of(const std::string& name) { return name.substr(0, name.find('/')); }
   [[nodiscard]] std::string name_of(std::uint64_t seed) const {
@@ -189,6 +211,7 @@ class Rows {
                       k == 0 ? "" : ", ", right && is_near(pose, *right, pair, s_.near_m, s_.near_deg),
                       score.evidence_m2, score.agreeing_m2, score.contradicted_m2, score.opening_m2,
                       unobserved_freedoms(poses[k].refined, 0.03).empty());
+      if (right && is_through_windows(sort_of(worked))) text += moved(pair, inverse(*right) * pose);
       if (sort_of(worked) == PairSort::rooms && k < kAskedThings) {
         const IndividualMatter seen = asker(poses[k].refined.target_from_source);
         text += fmt::format(R"(, "built": {:.3f}, "built_one": [{:.2f}], "apart": {:d}, {})",
@@ -211,10 +234,11 @@ class Rows {
     const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
     file_
         << fmt::format(
-               R"({{"set": "{}", "source": "{}", "target": "{}", "kind": "{}", "sort": "{}", "noise_mm": {:.1f}, )"
+               R"({{"set": "{}", "source": "{}", "target": "{}", "kind": "{}", "sort": "{}", {}"noise_mm": {:.1f}, )"
                R"("seconds": {:.2f}, "poses": [{}], "contrasts": [{}]}})",
-               set, from, to, kind, sort, 1e3 * std::max(source.features->noise_m, target.features->noise_m),
-               spent.count(), text, contrasts)
+               set, from, to, kind, sort, right && is_through_windows(sort_of(worked)) ? inside(pair) : "",
+               1e3 * std::max(source.features->noise_m, target.features->noise_m), spent.count(), text,
+               contrasts)
         << "\n"
         << std::flush;
   }
@@ -223,6 +247,8 @@ class Rows {
   std::chrono::steady_clock::time_point start_;
   std::ofstream file_;
   int count_ = 0;
+  Rigid3 set_from_source_;  ///< of a list
+  Rigid3 set_from_target_;
 };
 
 }  // namespace

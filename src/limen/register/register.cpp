@@ -145,13 +145,13 @@ class AskedPair {
   [[nodiscard]] PairQuestions questions() {
     PairQuestions questions;
     questions.contrast = [this](std::size_t first, std::size_t second) { return contrast(first, second); };
-    if (asks_things() || is_through_windows(sort_of(pair_)))
-      questions.look_alike = [this](std::size_t pose) { return beside_start(pose, weigh_look_alike(pose)); };
+    if (sort_of(pair_) == PairSort::rooms)
+      questions.look_alike = [this](std::size_t pose) { return beside_start(pose, weigh_things(pose)); };
     questions.repeats = repeats();
     return questions;
   }
   /// What is known of look-alike places, without a belief about the start: of rooms where a pose was asked
-  /// about.
+  /// about, through windows for a project's sake.
   [[nodiscard]] std::optional<TwinEvidence> look_alike(std::size_t pose) const {
     if (is_through_windows(sort_of(pair_)))
       return look_alike_through_windows(poses_[pose].score, sort_of(pair_), repeats());
@@ -161,9 +161,7 @@ class AskedPair {
   /// Why a look-alike place cannot be excluded, of so large a probability.
   [[nodiscard]] std::string look_alike_words(std::size_t pose, double probability) const {
     const auto found = things_.find(pose);
-    if (found != things_.end()) return twin_words(found->second.seen, probability);
-    if (!is_through_windows(sort_of(pair_))) return "";
-    return twin_words_through_windows(probability);
+    return found == things_.end() ? "" : twin_words(found->second.seen, probability);
   }
   [[nodiscard]] std::optional<StartAgreement> agreement_with_start(std::size_t pose) const {
     if (!start_) return std::nullopt;
@@ -184,12 +182,10 @@ class AskedPair {
     TwinEvidence evidence;
   };
 
-  [[nodiscard]] bool asks_things() const { return sort_of(pair_) == PairSort::rooms; }
   [[nodiscard]] double repeats() const {
     return twin_options(options_.nothing_repeats).alike / evidence_table::kAlike;
   }
-  [[nodiscard]] TwinEvidence weigh_look_alike(std::size_t pose) {
-    if (!asks_things()) return *look_alike(pose);
+  [[nodiscard]] TwinEvidence weigh_things(std::size_t pose) {
     if (!asker_) asker_.emplace(pair_.source.view(), pair_.target.view());
     IndividualMatter seen = (*asker_)(pose_of(pose));
     TwinEvidence evidence = weigh_twin(seen, twin_options(options_.nothing_repeats));

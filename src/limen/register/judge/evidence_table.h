@@ -26,22 +26,18 @@ struct Surface {
   double search_nats;      ///< what the best of all wrong poses reaches by chance
   Contradiction contradicted;
   double twice;  ///< share of places that the same two scans see again elsewhere, built and furnished alike
-  double look_alike;  ///< odds beforehand of a look-alike place whose right pose was not found, through
-                      ///< windows ...
-  double look_alike_per_m2;  ///< ... and nats against it, of agreeing surface
-  double nothing_shared;     ///< odds beforehand that nothing is shared, against a pose that was proposed ...
-  double unlisted;           ///< ... and that a place is shared whose pose was not proposed
+  double nothing_shared;  ///< odds beforehand that nothing is shared, against a pose that was proposed ...
+  double unlisted;        ///< ... and that a place is shared whose pose was not proposed
 };
 inline constexpr Surface kRooms{0.749, 1.16, 7.53, 7.13, {0.262, {0.00344, 11.2}, {0.156, 13.2}},
-                                0,     0,    0,    1.0,  0.1};
-inline constexpr Surface kThroughWall{0.86,    1.05,    6.15, 7.3, {0.218, {0.00059, 86}, {0.178, 6.93}},
-                                      0.00651, 0.00406, 0,    1.0, 0.1};
-inline constexpr Surface kPastWall{1.29, 1.84,  6.7,   6.48, {0.556, {0.000453, 297}, {0.0509, 22.8}},
-                                   0,    0.992, 0.185, 1.0,  0.1};
+                                0,     1.0,  0.1};
+inline constexpr Surface kThroughWall{0.81,    1.28, 6.45, 6.06, {0.29, {0.000401, 133}, {0.0781, 15.7}},
+                                      0.00777, 1.0,  0.1};
+inline constexpr Surface kPastWall{0.788, 1.31, 6.96, 5.17, {0.536, {0.000385, 391}, {0.0392, 30.8}},
+                                   0,     1.0,  0.1};
 inline constexpr Surface kStreets{0.263, 1.2, 7.6, 13.4, {0.357, {0.0109, 7.31}, {0.35, 11.1}},
-                                  0.0,   0.0, 0.0, 1.0,  0.1};
-inline constexpr Surface kInModel{1.9, 1.9, 7.6, 9.5, {0.4, {0.02, 8.0}, {0.3, 6.0}},
-                                  0.0, 0.0, 0.0, 1.0, 0.1};
+                                  0.0,   1.0, 0.1};
+inline constexpr Surface kInModel{1.9, 1.9, 7.6, 9.5, {0.4, {0.02, 8.0}, {0.3, 6.0}}, 0.0, 1.0, 0.1};
 
 /// What two scans see of the same furniture and clutter.
 struct Furniture {
@@ -68,6 +64,7 @@ inline constexpr Furniture kFurniture{{0.768, 4.09},   {0.946, 65.5}, 0.808,  1,
 inline constexpr double kOtherwise = 0.939;        ///< ... that is furnished otherwise,
 inline constexpr double kOtherwiseApart = 0.0679;  ///< the same where a wall is between the stations,
 inline constexpr double kAlike = 0.00458;          ///< and one that is furnished alike.
+inline constexpr double kBehindWindows = 0.0122;   ///< that pairs through windows agree on another one
 inline constexpr double kRateStrength = 1.42;      ///< how well their share in a building is known, in scans
 inline constexpr double kInPair = 0.106;        ///< share of them whose other place the same two scans show
 inline constexpr double kBuilt = 2.23;          ///< weight of how surfaces were built, against chance

@@ -84,7 +84,7 @@ class Weighing {
   }
   /// By how much what agrees under a pose exceeds chance, nats.
   [[nodiscard]] double against_chance(std::size_t pose) {
-    if (!asks_things(pose)) return against_chance_[pose];
+    if (!questions_.look_alike) return against_chance_[pose];
     return against_chance_[pose] + nats_of(twins(pose).otherwise_nats) +
            evidence_table::kBuilt * built_nats(twins(pose).built);
   }
@@ -110,7 +110,7 @@ class Weighing {
     if (!look_alikes_[pose]) look_alikes_[pose] = questions_.look_alike(pose);
     return *look_alikes_[pose];
   }
-  [[nodiscard]] bool asks_things(std::size_t pose) { return questions_.look_alike && twins(pose).rooms; }
+
   // Logarithms, for the odds of large scans may underflow.
 
   /// That a pose agrees though another one is right which resembles it, by chance or because the building
@@ -123,8 +123,8 @@ class Weighing {
            table_.against_per_m2 * less_contradicted_m2;
   }
   [[nodiscard]] double log_wrong(double log_resembling, std::size_t pose) {
-    const double in_pair = asks_things(pose) ? evidence_table::kInPair * look_alike(pose) : 0.0;
-    return log_sum_exp({log_resembling, -against_chance(pose), std::log(in_pair)});
+    return log_sum_exp({log_resembling, -against_chance(pose),
+                        std::log(evidence_table::kInPair) + std::log(look_alike(pose))});
   }
   /// Share of a pose among all but `another`, by how much each exceeds chance; 0 where no place is seen
   /// twice.
@@ -176,10 +176,9 @@ TwinEvidence look_alike_through_windows(const PoseScore& score, PairSort sort, d
   const evidence_table::Surface& table = table_of(sort);
   TwinEvidence evidence;
   evidence.rooms = false;
-  evidence.otherwise = repeats * table.look_alike;
+  evidence.otherwise = repeats * evidence_table::kBehindWindows;
   evidence.alike = evidence.otherwise * evidence_table::kAlike / evidence_table::kOtherwise;
-  const double against = table.look_alike_per_m2 * score.evidence_m2 +
-                         nats_of_contradiction(score.agreeing_m2, score.contradicted_m2, table.contradicted);
+  const double against = nats_of_contradiction(score.agreeing_m2, score.contradicted_m2, table.contradicted);
   evidence.otherwise_nats.fill(against);
   evidence.alike_nats.fill(against);
   return evidence;

@@ -34,8 +34,9 @@ constexpr bool is_through_windows(PairSort sort) {
 std::vector<double> nats_against_chance(const std::vector<FoundPose>& poses, PairSort sort);
 
 /// What a room and a scan from outside say of a look-alike place, the right pose not being among those found.
-/// It agrees by design, so surface excludes it slowly, and what is contradicted speaks for it. `repeats`:
-/// factor of the odds beforehand.
+/// In a pair that is part of what chance reaches; but several such pairs agree on it by design. So agreeing
+/// surface does not exclude it, and what is contradicted speaks for it. `repeats`: factor of the odds
+/// beforehand.
 TwinEvidence look_alike_through_windows(const PoseScore& score, PairSort sort, double repeats = 1.0);
 
 /// What the two scans say beside the scores; each is asked where it matters only.

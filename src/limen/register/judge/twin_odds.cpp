@@ -280,9 +280,4 @@ std::string twin_words(const IndividualMatter& individual, double probability) {
       percent_words(probability), 100.0 * matter.share);
 }
 
-std::string twin_words_through_windows(double probability) {
-  return fmt::format("a look-alike room cannot be excluded ({}): too little is seen through the windows",
-                     percent_words(probability));
-}
-
 }  // namespace limen

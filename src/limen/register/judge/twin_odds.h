@@ -45,7 +45,5 @@ double probability_of(const TwinEvidence& evidence);
 
 /// What a user should know of a pair whose twin cannot be excluded: one sentence's end.
 std::string twin_words(const IndividualMatter& individual, double probability);
-/// The same of a room and a scan from outside.
-std::string twin_words_through_windows(double probability);
 
 }  // namespace limen
