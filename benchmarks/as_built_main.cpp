@@ -171,7 +171,7 @@ class Rows {
                R"("nats": {:.2f}, "without": {:.3g}, "with": {:.3g}, "otherwise": {:.2f}, "alike": {:.2f}, )"
                R"("scatter_mm": {:.2f}, "noise_mm": {:.2f}, "seconds": {:.4f}, "surfaces": [{}]{}}})",
                set, names, kind, score.agreeing_m2, score.contradicted_m2, nats, probability_of(said), after,
-               said.otherwise_nats, said.alike_nats, 1e3 * surfaces.scatter_m,
+               nats_of(said.otherwise_nats), nats_of(said.alike_nats), 1e3 * surfaces.scatter_m,
                1e3 * std::max(source.features->noise_m, target.features->noise_m), spent.count(), list,
                tables_of(surfaces.all))
         << "\n"
