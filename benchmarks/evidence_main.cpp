@@ -46,7 +46,6 @@ struct Settings {
   bool as_drawn = false;
   bool foreign = false;
   bool placements = false;
-  bool plant = false;
   int every = 1;
   double near_m = 0.05;
   double near_deg = 0.5;
@@ -191,8 +190,7 @@ class Rows {
     if (!s_.sorts.empty() && std::find(s_.sorts.begin(), s_.sorts.end(), sort) == s_.sorts.end()) return;
     std::vector<StageTime> stages;
     StageClock clock(stages, silent_monitor());
-    RegisterOptions options;
-    if (s_.plant && truth) options.start = StartPrior{*truth, 0.1, 0.02};
+    const RegisterOptions options;
     std::vector<FoundPose> poses = find_poses(worked, options, clock);
     if (poses.size() > kAskedPoses) poses.resize(kAskedPoses);
     const ScanView source = worked.source.view();
@@ -267,8 +265,6 @@ int main(int argc, char** argv) {
   app.add_flag("--as-drawn", settings.as_drawn, "walls exactly where they were drawn");
   app.add_flag("--foreign", settings.foreign, "only pairs of different places");
   app.add_flag("--placements", settings.placements, "right and wrong placements of a list's scans instead");
-  app.add_flag("--plant", settings.plant,
-               "the true pose is among those that are refined: what the search loses");
   app.add_option("--every", settings.every, "only every so many pairs of a list");
   app.add_option("--near-m", settings.near_m, "a pose nearer than this is the true one ...");
   app.add_option("--near-deg", settings.near_deg, "... and its rotation nearer than this");

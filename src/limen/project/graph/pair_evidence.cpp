@@ -51,13 +51,13 @@ void LookAlikeSum::add(const PairEvidence& evidence, double of_things, double of
     add_to(sum_.alike_nats, of_things, twins.alike_nats);
     sum_.things += of_things * twins.things;
     sum_.agreeing += of_things * twins.agreeing;
+    built_nats_ += of_surface * bounded(built_nats(twins.built, bends));
   } else {
     const double by_surface =
         evidence.looks_for_twins ? bounded(twins.otherwise_nats.front()) : evidence.chance_nats;
     for (NatsOfThings* sum : {&sum_.otherwise_nats, &sum_.alike_nats})
       for (double& nats : *sum) nats += of_surface * by_surface;
   }
-  built_nats_ += of_surface * bounded(built_nats(evidence.twins.built, bends));
 }
 
 double PairEvidence::alone() const {

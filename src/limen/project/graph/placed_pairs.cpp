@@ -79,7 +79,7 @@ PlacedPair linked_pair(const PoseGraph& graph, const LinkMatcher& matcher, const
 }
 
 bool says_something(const PlacedPair& pair) {
-  return pair.evidence.chance_nats != 0.0 || nats_of(pair.evidence.twins.otherwise_nats) != 0.0;
+  return pair.evidence.chance_nats != 0.0 || pair.evidence.twins.otherwise_nats != NatsOfThings{};
 }
 
 }  // namespace

@@ -79,20 +79,8 @@ double agreeing_share(const std::vector<Stated>& stated) {
   return total > 0.0 ? agreeing / total : 0.0;
 }
 
-/// `shares`: each answer's, of an observation.
-Observations observations(const std::vector<Stated>& stated, const std::vector<double>& shares) {
-  Observations seen;
-  double agreeing = 0.0;
-  for (std::size_t i = 0; i < stated.size(); ++i) {
-    seen.count += shares[i];
-    if (stated[i].agrees) agreeing += shares[i];
-  }
-  seen.share = seen.count > 0.0 ? agreeing / seen.count : 0.0;
-  return seen;
-}
-
-/// What is nearer than `kThingLengthM`, one by one, is of one thing. `places`: of the answers, then of the
-/// faces.
+/// What is nearer than `kThingLengthM`, one by one, is of one thing. `shares`: of each answer, of an
+/// observation. `places`: of the answers, then of the faces.
 void group_by_thing(const std::vector<Stated>& stated, const std::vector<double>& shares,
                     const std::vector<Vector3d>& places, IndividualMatter& individual) {
   DisjointSets sets = joined_points(places, kThingLengthM);
@@ -111,6 +99,12 @@ void group_by_thing(const std::vector<Stated>& stated, const std::vector<double>
       individual.faces[i - stated.size()].thing = thing;
     }
   }
+  double agreeing = 0.0;
+  for (const ThingSeen& thing : individual.things) {
+    individual.matter.count += thing.count;
+    agreeing += thing.agreeing;
+  }
+  if (individual.matter.count > 0.0) individual.matter.share = agreeing / individual.matter.count;
 }
 
 /// One scan with what is the building's and what is not.
@@ -293,7 +287,6 @@ IndividualMatter MatterAsker::operator()(const Rigid3& target_from_source) const
   if (source.view.space == nullptr || target.view.space == nullptr) return individual;
   const std::vector<Stated> stated = stated_of_matter(source, target, target_from_source);
   const std::vector<double> shares = shares_of(stated, 8.0 * kThingLengthM);
-  individual.matter = observations(stated, shares);
   individual.chance = chance_of(source, target, target_from_source);
   individual.apart = wall_between(source, target, target_from_source) ||
                      wall_between(target, source, inverse(target_from_source));

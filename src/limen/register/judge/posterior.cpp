@@ -110,7 +110,6 @@ class Weighing {
     if (!look_alikes_[pose]) look_alikes_[pose] = questions_.look_alike(pose);
     return *look_alikes_[pose];
   }
-
   // Logarithms, for the odds of large scans may underflow.
 
   /// That a pose agrees though another one is right which resembles it, by chance or because the building

@@ -50,11 +50,12 @@ std::array<Node, 10> shares_of(const ShareBelief& belief) {
   return nodes;
 }
 
-/// Of a lognormal distribution (Gauss-Hermite), and the logarithms of their weights.
+/// Values of a lognormal distribution (Gauss-Hermite) ...
 std::array<double, 3> scales_of(double median, double spread) {
   const double far = std::exp(std::numbers::sqrt3 * spread);
   return {median / far, median, median * far};
 }
+/// ... and the logarithms of their weights.
 const std::array<double, 3> kLogScale = {std::log(1.0 / 6.0), std::log(2.0 / 3.0), std::log(1.0 / 6.0)};
 
 /// Logarithms of the densities of what was seen of each thing, under one assumption.
@@ -167,10 +168,12 @@ NatsOfThings log_likelihood(const std::array<OfThings, 3>& fixed, const std::arr
                             const OfThings& elsewhere, const ShareBelief& share) {
   LogMixture mixture;
   OfThings loose(elsewhere.size());
-  for (std::size_t k = 0; k < kept.size(); ++k) {
-    for (const Node& node : shares_of(share)) {
+  for (const Node& node : shares_of(share)) {
+    const double log_kept = std::log(node.at);
+    const double log_elsewhere = std::log1p(-node.at);
+    for (std::size_t k = 0; k < kept.size(); ++k) {
       for (std::size_t g = 0; g < loose.size(); ++g)
-        loose[g] = log_sum_exp({std::log(node.at) + kept[k][g], std::log1p(-node.at) + elsewhere[g]});
+        loose[g] = log_sum_exp({log_kept + kept[k][g], log_elsewhere + elsewhere[g]});
       mixture.add(kLogScale[k] + node.log_weight, sums_of(fixed[k], loose));
     }
   }
