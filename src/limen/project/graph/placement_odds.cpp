@@ -15,6 +15,38 @@ namespace {
 
 constexpr double kLeastSurfaceM2 = 1e-3;  // of a pair that shares none: a given pose has a weight too
 constexpr double kHardlyFresh = 0.05;     // share of a pair's surface that no other shows
+constexpr double kNegligible = 1e-6;      // odds
+constexpr int kTreesAtOnce = 32;
+constexpr int kMostTrees = 512;
+constexpr double kKnownWell = 0.1;  // standard error, as a share
+
+/// The mean of a value of random trees, and its standard error.
+struct Estimate {
+  double sum = 0.0;
+  double squares = 0.0;
+
+  void add(double value) {
+    sum += value;
+    squares += value * value;
+  }
+  [[nodiscard]] double mean(int trees) const { return sum / trees; }
+  [[nodiscard]] double error(int trees) const {
+    return std::sqrt(std::max(0.0, squares / trees - mean(trees) * mean(trees)) / (trees - 1));
+  }
+};
+
+/// Of each node of a tree the sides that its edges cut off, the node on it first.
+std::map<int, std::vector<bool>> sides_of_edges(const std::vector<int>& parent) {
+  std::map<int, std::vector<bool>> sides;
+  for (std::size_t n = 0; n < parent.size(); ++n) {
+    for (auto top = n; parent[top] >= 0; top = static_cast<std::size_t>(parent[top])) {
+      std::vector<bool>& side = sides[static_cast<int>(top)];
+      side.resize(parent.size(), false);
+      side[n] = true;
+    }
+  }
+  return sides;
+}
 
 }  // namespace
 
@@ -22,8 +54,13 @@ PlacementOdds::PlacementOdds(int nodes, std::vector<PlacedPair> pairs, const std
     : nodes_(nodes),
       pairs_(std::move(pairs)),
       views_(nodes, pairs_),
+      trees_(nodes),
       rate_(nodes, pairs_, unused),
-      bends_(nodes, pairs_) {}
+      bends_(nodes, pairs_) {
+  for (const PlacedPair& pair : pairs_) {
+    if (pair.link >= 0 || pair.evidence.chance_nats > 0.0) trees_.connect(pair.source, pair.target);
+  }
+}
 
 double PlacementOdds::odds_of_look_alike(const std::vector<const PlacedPair*>& across,
                                          const std::vector<bool>& side) const {
@@ -40,6 +77,9 @@ double PlacementOdds::odds_of_look_alike(const std::vector<const PlacedPair*>& a
   const std::vector<double> of_things = views_.shares(across, side, things);
   const BendBelief bends = bends_.without(side);
   LookAlikeSum against;
+  const bool rooms = std::any_of(across.begin(), across.end(), [](const PlacedPair* pair) {
+    return pair->link >= 0 && pair->evidence.asks_things();
+  });
   double otherwise = 0.0;
   double alike = 0.0;
   bool believed = false;  // once, as little as any pair believes it
@@ -47,8 +87,12 @@ double PlacementOdds::odds_of_look_alike(const std::vector<const PlacedPair*>& a
     const PairEvidence& evidence = across[k]->evidence;
     against.add(evidence, of_things[k], of_surface[k], bends);
     if (across[k]->link < 0 || !evidence.looks_for_twins) continue;
-    otherwise = believed ? std::min(otherwise, evidence.twins.otherwise) : evidence.twins.otherwise;
-    alike = believed ? std::min(alike, evidence.twins.alike) : evidence.twins.alike;
+    // Of two rooms a view through windows excludes look-alike places no better than chance.
+    const double by_chance = rooms && !evidence.asks_things() ? std::exp(-evidence.chance_nats) : 0.0;
+    const double pair_otherwise = evidence.twins.otherwise + by_chance;
+    const double pair_alike = evidence.twins.alike + by_chance;
+    otherwise = believed ? std::min(otherwise, pair_otherwise) : pair_otherwise;
+    alike = believed ? std::min(alike, pair_alike) : pair_alike;
     believed = true;
   }
   return rate_.factor(side) *
@@ -74,10 +118,54 @@ double PlacementOdds::log_odds_of_chance(std::vector<const PlacedPair*> across, 
   return first - against;
 }
 
-const SideOdds& PlacementOdds::of(const std::vector<bool>& side) {
+PlacementOdds::Known& PlacementOdds::known_of(const std::vector<bool>& side) {
   const auto [known, fresh] = known_.try_emplace(side);
-  if (fresh) known->second = without(side, {});
+  if (fresh) known->second.odds = without(side, {});
   return known->second;
+}
+
+const SideOdds& PlacementOdds::of(const std::vector<bool>& side) {
+  Known& known = known_of(side);
+  if (!known.shared && known.odds.total() > kNegligible) known.odds.share = trees_.share_of_one_edge(side);
+  known.shared = true;
+  return known.odds;
+}
+
+std::vector<double> PlacementOdds::of_nodes(const std::vector<int>& reference,
+                                            const std::set<std::vector<bool>>& found, double risk) {
+  std::vector<double> odds(reference.size(), 0.0);
+  for (const std::vector<bool>& side : found) {
+    for (std::size_t n = 0; n < side.size(); ++n) {
+      if (side[n]) odds[n] += of(side).total();
+    }
+  }
+  std::set<int> roots(reference.begin(), reference.end());
+  roots.erase(-1);
+  RandomStream random(0);
+  std::vector<Estimate> others(reference.size());
+  const auto known_well = [&](int trees) {
+    for (std::size_t n = 0; n < odds.size(); ++n) {
+      if (others[n].error(trees) > kKnownWell * std::max(risk, odds[n] + others[n].mean(trees))) return false;
+    }
+    return true;
+  };
+  int trees = 0;
+  do {
+    for (int k = 0; k < kTreesAtOnce; ++k, ++trees) {
+      std::vector<double> of_tree(reference.size(), 0.0);
+      for (const auto& [node, side] :
+           sides_of_edges(trees_.random_tree({roots.begin(), roots.end()}, random))) {
+        if (found.count(side) > 0) continue;
+        const SideOdds& of_side = known_of(side).odds;
+        for (std::size_t n = 0; n < side.size(); ++n) {
+          if (side[n]) of_tree[n] += of_side.twin + of_side.chance;
+        }
+      }
+      for (std::size_t n = 0; n < of_tree.size(); ++n) others[n].add(of_tree[n]);
+    }
+  } while (trees < kMostTrees && !known_well(trees));
+  for (std::size_t n = 0; n < odds.size(); ++n) odds[n] += others[n].mean(trees);
+  return odds;
 }
 
 SideOdds PlacementOdds::without(const std::vector<bool>& side, const std::vector<int>& links) const {

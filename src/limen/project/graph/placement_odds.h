@@ -3,10 +3,12 @@
 #pragma once
 
 #include <map>
+#include <set>
 #include <vector>
 
 #include "limen/project/graph/look_alike_rate.h"
 #include "limen/project/graph/shared_views.h"
+#include "limen/project/graph/spanning_trees.h"
 
 namespace limen {
 
@@ -14,12 +16,16 @@ namespace limen {
 struct SideOdds {
   double twin = 0.0;       ///< the side lies on a look-alike place
   double chance = 0.0;     ///< the pairs across agree by chance
+  double share = 1.0;      ///< of the ways to join the scans in which the side is joined by one pair
   std::vector<int> links;  ///< that hold it, but for those that show nothing new
 
-  [[nodiscard]] double total() const { return twin + chance; }
+  [[nodiscard]] double total() const { return share * (twin + chance); }
 };
 
 /// Odds of sides, by all pairs that a configuration places in sight of each other.
+///
+/// Scans are joined one by one, by a tree of pairs. Any tree is as likely as any other, and each of its pairs
+/// may join a wrong place. So a side is elsewhere as often as trees join it by one pair.
 ///
 /// Look-alike places: that there is one is believed once for a side, as often as it happens in this building
 /// (look_alike_rate.h). What things and walls say against it adds up over the pairs across; those that show
@@ -30,17 +36,26 @@ class PlacementOdds {
   PlacementOdds(int nodes, std::vector<PlacedPair> pairs, const std::vector<UnusedLink>& unused = {});
 
   [[nodiscard]] const SideOdds& of(const std::vector<bool>& side);
-  /// The same, had these links not been.
+  /// Of each node that it is elsewhere than its `reference` says (-1: it has none): the sum over all sides
+  /// that it is on. Those of `found` are summed, all others estimated from random trees, until the standard
+  /// error is a tenth of `risk` or of the sum.
+  [[nodiscard]] std::vector<double> of_nodes(const std::vector<int>& reference,
+                                             const std::set<std::vector<bool>>& found, double risk);
+  /// Of a side, had these links not been, in whatever way it is joined.
   [[nodiscard]] SideOdds without(const std::vector<bool>& side, const std::vector<int>& links) const;
   /// The same of a side that these pairs alone hold, somewhere else.
   [[nodiscard]] SideOdds of_pairs(const std::vector<PlacedPair>& pairs, const std::vector<bool>& side) const;
-  [[nodiscard]] const std::vector<PlacedPair>& pairs() const { return pairs_; }
 
   /// Sides on which each node may be elsewhere: alone, and on its side of the weakest cuts between it and its
   /// `reference` (of each node; -1: none).
   [[nodiscard]] std::vector<std::vector<bool>> weak_sides(const std::vector<int>& reference) const;
 
  private:
+  struct Known {
+    SideOdds odds;
+    bool shared = false;  ///< whether the share is counted
+  };
+  [[nodiscard]] Known& known_of(const std::vector<bool>& side);
   [[nodiscard]] SideOdds of_across(const std::vector<const PlacedPair*>& across,
                                    const std::vector<bool>& side) const;
   [[nodiscard]] double odds_of_look_alike(const std::vector<const PlacedPair*>& across,
@@ -51,9 +66,10 @@ class PlacementOdds {
   int nodes_;
   std::vector<PlacedPair> pairs_;
   SharedViews views_;
+  SpanningTrees trees_;
   LookAlikeRate rate_;
   LearnedBends bends_;
-  std::map<std::vector<bool>, SideOdds> known_;
+  std::map<std::vector<bool>, Known> known_;
 };
 
 }  // namespace limen

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <initializer_list>
+#include <set>
 #include <utility>
 
 #include <gtest/gtest.h>
@@ -128,6 +129,67 @@ TEST(PlacementOdds, ByHowMuchScansAreBentIsLearnedFromTheOthers) {
   EXPECT_LT(odds(10, exact, exact), 0.01 * odds(10, exact, {}));
   // Alone it is judged by what is believed of any sensor.
   EXPECT_NEAR(odds(2, {}, judged) / odds(2, {}, {}), std::exp(-built_nats(judged)), 1e-6);
+}
+
+/// Rooms that look alike are excluded by a view through windows no better than it excludes chance.
+TEST(PlacementOdds, AWeakViewThroughWindowsExcludesNoLookAlikeRoom) {
+  const auto odds = [](double chance_nats) {
+    PlacedPair windows = pair(2, 1, chance_nats, 0.0, 0.0, 1);
+    windows.evidence.twins.rooms = false;
+    windows.evidence.twins.otherwise = 0.01;
+    return PlacementOdds(3, {pair(2, 0, 9.0, 2.0, 2.0, 0), windows}).of(side({2}, 3)).twin;
+  };
+  EXPECT_GT(odds(0.2), 20.0 * odds(8.0));
+}
+
+/// Each pair on the way to a scan may join a wrong place.
+TEST(PlacementOdds, DoubtsAddUpAlongAChain) {
+  std::vector<PlacedPair> pairs;
+  for (int n = 1; n < 4; ++n) pairs.push_back(pair(n, n - 1, 5.0, 3.0, 1.0, n));
+  PlacementOdds odds(4, pairs);
+  const double last = odds.of(side({3}, 4)).total();
+  const double all = last + odds.of(side({2, 3}, 4)).total() + odds.of(side({1, 2, 3}, 4)).total();
+  const std::vector<double> of_nodes = odds.of_nodes({0, 0, 0, 0}, {}, 0.001);
+  EXPECT_EQ(of_nodes[0], 0.0);
+  EXPECT_NEAR(of_nodes[3], all, 1e-9 * all);
+  EXPECT_NEAR(of_nodes[3] - of_nodes[2], last, 1e-9 * all);
+  // Another scan lends the frame: the same pairs are on the way.
+  EXPECT_NEAR(odds.of_nodes({3, 3, 3, 3}, {}, 0.001)[0], all, 1e-9 * all);
+}
+
+/// The sum over all sides is the same where sides are listed and where trees are drawn.
+TEST(PlacementOdds, SidesThatAreNotFoundCountAsWell) {
+  constexpr int kNodes = 5;
+  std::vector<PlacedPair> pairs;
+  for (int a = 0; a < kNodes; ++a) {
+    for (int b = 0; b < a; ++b)
+      pairs.push_back(pair(a, b, 4.0, 0.4 * a, 0.2 * b, static_cast<int>(pairs.size())));
+  }
+  PlacementOdds odds(kNodes, pairs);
+  std::set<std::vector<bool>> all;
+  for (int bits = 1; bits < 1 << (kNodes - 1); ++bits) {
+    std::vector<bool> moved(kNodes, false);
+    for (int n = 1; n < kNodes; ++n) moved[static_cast<std::size_t>(n)] = (bits >> (n - 1) & 1) != 0;
+    all.insert(moved);
+  }
+  const std::vector<int> reference(kNodes, 0);
+  const std::vector<double> listed = odds.of_nodes(reference, all, 0.001);
+  const std::vector<double> drawn = odds.of_nodes(reference, {}, 0.001);
+  const std::vector<double> some = odds.of_nodes(reference, {side({4}, kNodes), side({1, 2}, kNodes)}, 0.001);
+  for (std::size_t n = 1; n < kNodes; ++n) {
+    EXPECT_NEAR(drawn[n], listed[n], 0.3 * listed[n]);
+    EXPECT_NEAR(some[n], listed[n], 0.3 * listed[n]);
+  }
+}
+
+/// What is seen from many other scans is elsewhere in fewer ways than what a single pair joins.
+TEST(PlacementOdds, ASideThatManyPairsJoinIsSeldomJoinedByOneAlone) {
+  std::vector<PlacedPair> pairs;
+  for (int a = 0; a < 8; ++a) {
+    for (int b = 0; b < a; ++b) pairs.push_back(pair(a, b, 9.0, 3.0, 3.0, static_cast<int>(pairs.size())));
+  }
+  EXPECT_LT(PlacementOdds(8, pairs).of(side({1, 4, 6, 7}, 8)).share, 0.02);
+  EXPECT_EQ(PlacementOdds(2, {pairs.front()}).of(side({1}, 2)).share, 1.0);
 }
 
 /// A storey that hangs on one staircase is one side.

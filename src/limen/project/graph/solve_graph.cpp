@@ -27,7 +27,6 @@ constexpr double kHeldRad = 0.01;
 constexpr double kOneAlternativeM = 0.05;
 constexpr double kOneAlternativeRad = 0.0175;
 constexpr double kElsewhereLikelier = 1.0;  // odds above which a side is taken to be elsewhere
-constexpr double kWorthSearching = 0.1;     // share of the risk that makes a cut worth a search around it
 constexpr double kFirmShare = 0.05;         // doubt below which a node may lend its component the frame
 constexpr double kLeastListed = 0.01;       // of an alternative place, as a share of the risk, to be listed
 
@@ -241,7 +240,6 @@ class Solver {
   /// A cut is the same from wherever it was found: those of all references that were tried are weighed.
   void weigh_doubts() {
     for (const std::vector<bool>& side : odds_->weak_sides(reference_)) cuts_.insert(without_first(side));
-    search_on();
     doubts_.clear();
     for (const std::vector<bool>& cut : cuts_) {
       const std::vector<bool> side = seen_from_frame(cut);
@@ -249,43 +247,6 @@ class Solver {
       doubts_.push_back({side, odds.total(), odds.links, {}});
     }
     weigh_moves();
-  }
-
-  /// Cuts are found by what single pairs say. Where pairs say the same, or disagree, another cut may be
-  /// likelier: that on which one node beside it is on the other side.
-  void search_on() {
-    std::vector<std::vector<bool>> open(cuts_.begin(), cuts_.end());
-    while (!open.empty()) {
-      const std::vector<bool> cut = std::move(open.back());
-      open.pop_back();
-      double most = odds_->of(seen_from_frame(cut)).total();
-      if (most < kWorthSearching * risk_) continue;
-      std::vector<bool> likeliest;
-      for (const std::size_t n : nodes_beside(cut)) {
-        std::vector<bool> other = cut;
-        other[n].flip();
-        if (std::find(other.begin(), other.end(), true) == other.end()) continue;
-        const double odds = odds_->of(seen_from_frame(other)).total();
-        if (odds <= most) continue;
-        most = odds;
-        likeliest = std::move(other);
-      }
-      if (!likeliest.empty() && cuts_.insert(likeliest).second) open.push_back(std::move(likeliest));
-    }
-  }
-
-  /// Those that pairs across a cut join, but for the first of the component.
-  [[nodiscard]] std::set<std::size_t> nodes_beside(const std::vector<bool>& cut) const {
-    std::set<std::size_t> nodes;
-    for (const PlacedPair& pair : odds_->pairs()) {
-      const auto source = static_cast<std::size_t>(pair.source);
-      const auto target = static_cast<std::size_t>(pair.target);
-      if (cut[source] == cut[target]) continue;
-      for (const std::size_t n : {source, target}) {
-        if (component(static_cast<int>(n)) != static_cast<int>(n)) nodes.insert(n);
-      }
-    }
-    return nodes;
   }
 
   /// The side of a cut that its component's first node is not on.
@@ -360,23 +321,20 @@ class Solver {
   }
 
   void judge_nodes() {
+    std::set<std::vector<bool>> found;
+    for (const std::vector<bool>& cut : cuts_) found.insert(seen_from_frame(cut));
+    const std::vector<double> wrongly_joined = odds_->of_nodes(reference_, found, risk_);
     for (std::size_t n = 0; n < solved_.nodes.size(); ++n) {
       SolvedNode& node = solved_.nodes[n];
       if (node.component < 0) continue;
       node.frame_from_node = best_.frame_from_node[n];
       node.covariance = covariance_[n];
-      double elsewhere = 0.0;
-      std::map<std::vector<bool>, double> moved;  // of one side several links may propose one place
+      double elsewhere = wrongly_joined[n];
       for (const Doubt& doubt : doubts_) {
-        if (!doubt.side[n]) continue;
-        if (doubt.move) {
-          moved[doubt.side] = std::max(moved[doubt.side], doubt.odds);
-          add_alternative(*doubt.move, node);
-        } else {
-          elsewhere = std::max(elsewhere, doubt.odds);
-        }
+        if (!doubt.side[n] || !doubt.move) continue;
+        elsewhere = std::max(elsewhere, doubt.odds);
+        add_alternative(*doubt.move, node);
       }
-      for (const auto& [side, odds] : moved) elsewhere = std::max(elsewhere, odds);
       node.doubt = elsewhere / (1.0 + elsewhere);
       node.state = node.doubt > probable_risk_ ? NodeState::ambiguous
                    : !is_held(n)               ? NodeState::under_constrained

@@ -1,0 +1,94 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#include "limen/project/graph/spanning_trees.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include <Eigen/SparseCholesky>
+
+namespace limen {
+
+void SpanningTrees::connect(int a, int b) {
+  neighbours_[static_cast<std::size_t>(a)].push_back(b);
+  neighbours_[static_cast<std::size_t>(b)].push_back(a);
+}
+
+std::vector<int> SpanningTrees::reached(const std::vector<int>& from, const std::vector<bool>& among) const {
+  std::vector<int> nodes = from;
+  std::vector<bool> known(neighbours_.size(), false);
+  for (const int node : from) known[static_cast<std::size_t>(node)] = true;
+  for (std::size_t k = 0; k < nodes.size(); ++k) {
+    for (const int other : beside(nodes[k])) {
+      const auto n = static_cast<std::size_t>(other);
+      if (known[n] || !among[n]) continue;
+      known[n] = true;
+      nodes.push_back(other);
+    }
+  }
+  return nodes;
+}
+
+double SpanningTrees::log_count(const std::vector<int>& nodes) const {
+  if (nodes.size() < 2) return 0.0;
+  std::vector<int> row(neighbours_.size(), -1);
+  for (std::size_t k = 0; k < nodes.size(); ++k)
+    row[static_cast<std::size_t>(nodes[k])] = static_cast<int>(k);
+  // The Laplacian without the last node.
+  const auto size = static_cast<int>(nodes.size()) - 1;
+  std::vector<Eigen::Triplet<double>> entries;
+  for (int k = 0; k < size; ++k) {
+    for (const int neighbour : beside(nodes[static_cast<std::size_t>(k)])) {
+      const int other = row[static_cast<std::size_t>(neighbour)];
+      if (other < 0) continue;
+      entries.emplace_back(k, k, 1.0);
+      if (other < size) entries.emplace_back(k, other, -1.0);
+    }
+  }
+  Eigen::SparseMatrix<double> laplacian(size, size);
+  laplacian.setFromTriplets(entries.begin(), entries.end());
+  return Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>(laplacian).vectorD().array().log().sum();
+}
+
+double SpanningTrees::share_of_one_edge(const std::vector<bool>& side) const {
+  const auto first = static_cast<int>(std::find(side.begin(), side.end(), true) - side.begin());
+  const std::vector<int> inside = reached({first}, side);
+  if (inside.size() < static_cast<std::size_t>(std::count(side.begin(), side.end(), true))) return 0.0;
+  std::vector<bool> other_side = side;
+  other_side.flip();
+  double crossing = 0.0;
+  int beyond = -1;
+  for (const int node : inside) {
+    for (const int other : beside(node)) {
+      if (side[static_cast<std::size_t>(other)]) continue;
+      beyond = other;
+      crossing += 1.0;
+    }
+  }
+  if (beyond < 0) return 0.0;
+  const std::vector<int> outside = reached({beyond}, other_side);
+  const std::vector<int> all = reached({first}, std::vector<bool>(side.size(), true));
+  if (inside.size() + outside.size() < all.size()) return 0.0;
+  return crossing * std::exp(log_count(inside) + log_count(outside) - log_count(all));
+}
+
+std::vector<int> SpanningTrees::random_tree(const std::vector<int>& roots, RandomStream& random) const {
+  std::vector<int> parent(neighbours_.size(), -1);
+  std::vector<bool> in_tree(neighbours_.size(), false);
+  for (const int root : roots) in_tree[static_cast<std::size_t>(root)] = true;
+  for (const int start : reached(roots, std::vector<bool>(neighbours_.size(), true))) {
+    // A random walk to the tree; where it comes to a node again, it leaves the loop out.
+    for (int at = start; !in_tree[static_cast<std::size_t>(at)];) {
+      const std::vector<int>& ways = beside(at);
+      const int next = ways[random.below(static_cast<std::uint32_t>(ways.size()))];
+      parent[static_cast<std::size_t>(at)] = next;
+      at = next;
+    }
+    for (int at = start; !in_tree[static_cast<std::size_t>(at)]; at = parent[static_cast<std::size_t>(at)])
+      in_tree[static_cast<std::size_t>(at)] = true;
+  }
+  return parent;
+}
+
+}  // namespace limen

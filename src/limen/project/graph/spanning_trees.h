@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "limen/base/random.h"
+
+namespace limen {
+
+/// The ways in which nodes can be joined one by one: the spanning trees of a graph without parallel edges,
+/// each as likely as any other.
+class SpanningTrees {
+ public:
+  explicit SpanningTrees(int nodes) : neighbours_(static_cast<std::size_t>(nodes)) {}
+  void connect(int a, int b);
+
+  /// Share of the trees in which a single edge joins `side` to the rest of its component. By Kirchhoff's
+  /// theorem: the number of trees is a determinant.
+  [[nodiscard]] double share_of_one_edge(const std::vector<bool>& side) const;
+
+  /// Of a random tree the parent of each node; -1: a root, or no root is reached. By Wilson's algorithm.
+  [[nodiscard]] std::vector<int> random_tree(const std::vector<int>& roots, RandomStream& random) const;
+
+ private:
+  [[nodiscard]] const std::vector<int>& beside(int node) const {
+    return neighbours_[static_cast<std::size_t>(node)];
+  }
+  /// Those that are reached from `from`, of `among` only.
+  [[nodiscard]] std::vector<int> reached(const std::vector<int>& from, const std::vector<bool>& among) const;
+  /// Logarithm of the number of trees of some nodes that hang together.
+  [[nodiscard]] double log_count(const std::vector<int>& nodes) const;
+
+  std::vector<std::vector<int>> neighbours_;
+};
+
+}  // namespace limen
