@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <map>
+#include <optional>
 #include <set>
 #include <tuple>
 #include <utility>
@@ -22,6 +23,9 @@ constexpr std::size_t kMostProposals = 48;  // of placements of two parts
 constexpr int kMostMoves = 200;             // of scans and parts, one after the other
 constexpr double kLeastGain = 1e-6;         // nats
 constexpr double kLeastOdds = 1e-300;
+// Look-alike places in a building of twenty scans that show none, against what is believed beforehand
+// (LookAlikeRate): what may yet be learned of a building joins its parts, and PlacementOdds parts them.
+constexpr double kLeastRate = 0.04;
 constexpr int kMostReopened = 3;
 
 /// The placement of two parts that the pairs between them say most for.
@@ -108,7 +112,7 @@ class Growth {
 
   void find_join(const Parts& parts) {
     const std::vector<std::size_t>& links = links_.at(parts);
-    PartJoin best;
+    std::optional<PartJoin> best;
     double next = 0.0;
     std::set<std::pair<std::size_t, int>> covered;  // by a placement that was weighed
     std::size_t weighed = 0;
@@ -125,19 +129,19 @@ class Growth {
         evidence.add(matcher_.evidence(k, pose));
         covered.insert({k, pose});
       }
+      if (evidence.nats(kLeastRate) <= 0.0) continue;
       const double nats = evidence.nats();
-      if (nats > best.nats) {
-        next = best.nats;
+      if (!best || nats > best->nats) {
+        next = best ? std::max(next, best->nats) : next;
         best = {nats, 0.0, placed};
       } else {
         next = std::max(next, nats);
       }
     }
-    best.lead = best.nats - next;
-    if (best.nats > 0.0)
-      joins_[parts] = best;
-    else
-      joins_.erase(parts);
+    joins_.erase(parts);
+    if (!best) return;
+    best->lead = best->nats - next;
+    joins_[parts] = *best;
   }
 
   void join(const Parts parts, const PartJoin& how) {
@@ -257,8 +261,9 @@ void settle(const PoseGraph& graph, const LinkMatcher& matcher, Configuration& c
 }
 
 /// Scans and parts go to where the pairs say more; whether any did.
-bool apply_best_move(const PoseGraph& graph, const LinkMatcher& matcher, Configuration& configuration) {
-  const std::vector<Move> moves = proposed_moves(graph, matcher, configuration);
+bool apply_best_move(const PoseGraph& graph, const LinkMatcher& matcher, MoveTo to,
+                     Configuration& configuration) {
+  const std::vector<Move> moves = proposed_moves(graph, matcher, configuration, to);
   const auto best = std::max_element(moves.begin(), moves.end(),
                                      [](const Move& a, const Move& b) { return a.gain() < b.gain(); });
   if (best == moves.end() || best->gain() <= kLeastGain) return false;
@@ -303,11 +308,12 @@ void JoinEvidence::add(const PairEvidence& evidence) {
   any_ = true;
 }
 
-double JoinEvidence::nats() const {
+double JoinEvidence::nats(double rate) const {
   if (!any_) return 0.0;
   return -std::log(std::exp(first_ - chance_) +
-                   prior_otherwise_ * std::exp(-look_alike_.against_otherwise()) +
-                   prior_alike_ * std::exp(-look_alike_.against_alike()) + kLeastOdds);
+                   rate * (prior_otherwise_ * std::exp(-look_alike_.against_otherwise()) +
+                           prior_alike_ * std::exp(-look_alike_.against_alike())) +
+                   kLeastOdds);
 }
 
 LinkMatcher::LinkMatcher(const PoseGraph& graph) : graph_(graph) {
@@ -349,7 +355,11 @@ Configuration best_configuration(const PoseGraph& graph, const LinkMatcher& matc
   join_parts(graph, matcher, best);
   // What a moved side gave up may join elsewhere. A configuration that comes again ends the search.
   std::set<std::vector<int>> known = {best.pose};
-  for (int k = 0; k < kMostMoves && apply_best_move(graph, matcher, best); ++k) {
+  const auto moved = [&] {
+    return apply_best_move(graph, matcher, MoveTo::other_places, best) ||
+           apply_best_move(graph, matcher, MoveTo::this_place, best);
+  };
+  for (int k = 0; k < kMostMoves && moved(); ++k) {
     join_parts(graph, matcher, best);
     if (!known.insert(best.pose).second) break;
   }

@@ -47,8 +47,10 @@ class JoinEvidence {
  public:
   void add(const PairEvidence& evidence);
 
-  /// Against every other explanation; 0: no pair agrees.
-  [[nodiscard]] double nats() const;
+  /// Against every other explanation, where look-alike places are as frequent as that, against what is
+  /// believed beforehand; 0: no pair agrees.
+  [[nodiscard]] double nats(double rate = 1.0) const;
+  [[nodiscard]] double nats_against_chance() const { return chance_ - first_; }
 
  private:
   bool any_ = false;

@@ -19,10 +19,12 @@ constexpr double kAgreementGate = 4.0;  // times the bound: what a moved side ag
 
 class MoveSearch {
  public:
-  MoveSearch(const PoseGraph& graph, const LinkMatcher& matcher, const Configuration& configuration)
+  MoveSearch(const PoseGraph& graph, const LinkMatcher& matcher, const Configuration& configuration,
+             MoveTo to)
       : graph_(graph),
         matcher_(matcher),
         present_(configuration),
+        to_(to),
         links_of_(static_cast<std::size_t>(graph.nodes)) {
     for (std::size_t k = 0; k < graph.links.size(); ++k) {
       links_of_[static_cast<std::size_t>(graph.links[k].source)].push_back(k);
@@ -44,7 +46,7 @@ class MoveSearch {
       std::optional<std::set<std::vector<bool>>> sides;
       for (std::size_t p = 0; p < link.poses.size(); ++p) {
         if (static_cast<int>(p) == present_.pose[k] || matcher_.is_left_out(k, p)) continue;
-        if (matcher_.evidence(k, static_cast<int>(p)).alone() <= 0.0 || is_here(link, link.poses[p]))
+        if (matcher_.evidence(k, static_cast<int>(p)).alone() <= 0.0 || !is_asked_for(link, link.poses[p]))
           continue;
         CancelScope::check();
         if (!sides) sides = sides_of(link, cut);
@@ -62,11 +64,12 @@ class MoveSearch {
     return present_.frame_from_node[static_cast<std::size_t>(node)];
   }
 
-  /// Whether a pose means the present place, which its link knows less well than it says.
-  [[nodiscard]] bool is_here(const GraphLink& link, const LinkPose& pose) const {
+  [[nodiscard]] bool is_asked_for(const GraphLink& link, const LinkPose& pose) const {
     const Vector6d missed = misfit(pose, present_.target_from_source(link));
-    return (missed.head<3>().norm() < kNoOtherPlaceRad && missed.tail<3>().norm() < kNoOtherPlaceM) ||
-           chi_square(missed, pose.covariance) <= kChiSquareBound;
+    if (chi_square(missed, pose.covariance) <= kChiSquareBound) return false;
+    const bool is_here =
+        missed.head<3>().norm() < kNoOtherPlaceRad && missed.tail<3>().norm() < kNoOtherPlaceM;
+    return is_here == (to_ == MoveTo::this_place);
   }
 
   /// Either end alone, and what hangs together with it.
@@ -95,8 +98,10 @@ class MoveSearch {
       if (!side[n]) continue;
       for (const std::size_t k : links_of_[n]) weigh(k, move, now, then);
     }
-    move.present_nats = now.nats();
-    move.moved_nats = then.nats();
+    // Within one place look-alike places are no question.
+    const bool here = to_ == MoveTo::this_place;
+    move.present_nats = here ? now.nats_against_chance() : now.nats();
+    move.moved_nats = here ? then.nats_against_chance() : then.nats();
     return move;
   }
 
@@ -116,7 +121,8 @@ class MoveSearch {
     const GraphLink& link = graph_.links[k];
     if (!crosses(link, move.side)) return;
     const int present = present_.pose[k];
-    const int moved = matcher_.nearest(k, moved_pose(link, move), kAgreementGate);
+    const int moved =
+        matcher_.nearest(k, moved_pose(link, move), to_ == MoveTo::this_place ? 1.0 : kAgreementGate);
     if (present >= 0) now.add(matcher_.evidence(k, present));
     if (moved >= 0) then.add(matcher_.evidence(k, moved));
     if (present >= 0 && moved >= 0) {
@@ -135,14 +141,15 @@ class MoveSearch {
   const PoseGraph& graph_;
   const LinkMatcher& matcher_;
   const Configuration& present_;
+  MoveTo to_;
   std::vector<std::vector<std::size_t>> links_of_;
 };
 
 }  // namespace
 
 std::vector<Move> proposed_moves(const PoseGraph& graph, const LinkMatcher& matcher,
-                                 const Configuration& configuration) {
-  return MoveSearch(graph, matcher, configuration).run();
+                                 const Configuration& configuration, MoveTo to) {
+  return MoveSearch(graph, matcher, configuration, to).run();
 }
 
 }  // namespace limen
