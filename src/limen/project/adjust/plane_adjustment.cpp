@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 
+#include "limen/base/parallel.h"
 #include "limen/base/progress.h"
 #include "limen/geometry/linear.h"
 
@@ -17,17 +18,7 @@ constexpr double kPlanesDone = 1e-9;
 constexpr double kMissed =
     9.0;  // mean squared deviations at which an observation has lost three quarters of its weight
 constexpr double kTinyInformation = 1e-9;
-
-/// F with F F^T = the weighted moments [p; 1][p; 1]^T, p in the node's frame.
-Eigen::Matrix4d factor_of(const PlaneObservation& observation) {
-  const Spectrum3 spectrum = spectrum_of(observation.moments.covariance());
-  const double count = std::min(observation.moments.count, observation.most_points);
-  Eigen::Matrix4d factor = Eigen::Matrix4d::Zero();
-  factor.topLeftCorner<3, 3>() = spectrum.vectors * spectrum.values.cwiseMax(0.0).cwiseSqrt().asDiagonal();
-  factor.topRightCorner<3, 1>() = observation.anchor + observation.moments.mean();
-  factor(3, 3) = 1.0;
-  return std::sqrt(count) / observation.sigma_m * factor;
-}
+constexpr std::size_t kAtOnce = 64;
 
 class JointSolver {
  public:
@@ -38,6 +29,7 @@ class JointSolver {
     for (std::size_t k = 0; k < problem.observations.size(); ++k)
       seen_by_[static_cast<std::size_t>(problem.observations[k].plane)].push_back(k);
     solution_.frame_from_node = problem.frame_from_node;
+    for (const PlaneObservation& seen : problem.observations) factors_.push_back(moment_factor(seen));
     solution_.weights.assign(problem.observations.size(), 1.0);
   }
 
@@ -78,16 +70,18 @@ class JointSolver {
   /// Each plane anew from all that is seen of it, about its centroid.
   void fit_planes() {
     planes_.assign(seen_by_.size(), {});
-    for (std::size_t p = 0; p < seen_by_.size(); ++p) {
-      if (seen_by_[p].empty()) continue;
-      const PlaneObservation& first = problem_.observations[seen_by_[p].front()];
-      const Vector3d about = pose(first.node) * first.anchor;
-      PointMoments all;
-      for (const std::size_t k : seen_by_[p]) add_moments(k, about, all);
-      const PlaneFit fit = fit_plane(all);
-      const PlaneFrame frame = make_frame(fit.plane, fit.centroid);
-      planes_[p] = {about + fit.centroid, fit.plane.normal, 0.0, frame.u, frame.v};
-    }
+    parallel_for(seen_by_.size(), kAtOnce, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t p = begin; p < end; ++p) {
+        if (seen_by_[p].empty()) continue;
+        const PlaneObservation& first = problem_.observations[seen_by_[p].front()];
+        const Vector3d about = pose(first.node) * first.anchor;
+        PointMoments all;
+        for (const std::size_t k : seen_by_[p]) add_moments(k, about, all);
+        const PlaneFit fit = fit_plane(all);
+        const PlaneFrame frame = make_frame(fit.plane, fit.centroid);
+        planes_[p] = {about + fit.centroid, fit.plane.normal, 0.0, frame.u, frame.v};
+      }
+    });
   }
 
   /// The points of an observation in the frame about `about`, weighted.
@@ -104,14 +98,16 @@ class JointSolver {
   }
 
   void weigh() {
-    for (std::size_t k = 0; k < problem_.observations.size(); ++k) {
-      const PlaneObservation& seen = problem_.observations[k];
-      const PlaneResidual residual =
-          plane_residual(seen, pose(seen.node), planes_[static_cast<std::size_t>(seen.plane)]);
-      const double mean = residual.value.squaredNorm() / std::min(seen.moments.count, seen.most_points);
-      const double ratio = kMissed / (kMissed + mean);
-      solution_.weights[k] = ratio * ratio;
-    }
+    parallel_for(problem_.observations.size(), kAtOnce, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k) {
+        const PlaneObservation& seen = problem_.observations[k];
+        const PlaneResidual residual =
+            plane_residual(factors_[k], pose(seen.node), planes_[static_cast<std::size_t>(seen.plane)]);
+        const double mean = residual.value.squaredNorm() / std::min(seen.moments.count, seen.most_points);
+        const double ratio = kMissed / (kMissed + mean);
+        solution_.weights[k] = ratio * ratio;
+      }
+    });
   }
 
   void build() {
@@ -138,7 +134,7 @@ class JointSolver {
     for (const std::size_t k : seen) {
       const PlaneObservation& observation = problem_.observations[k];
       const double weight = plane_share_ * solution_.weights[k];
-      const PlaneResidual residual = plane_residual(observation, pose(observation.node), planes_[p]);
+      const PlaneResidual residual = plane_residual(factors_[k], pose(observation.node), planes_[p]);
       own += weight * residual.by_plane.transpose() * residual.by_plane;
       own_right -= weight * residual.by_plane.transpose() * residual.value;
       const Wide own_mixed = weight * residual.by_pose.transpose() * residual.by_plane;
@@ -181,7 +177,7 @@ class JointSolver {
       const std::size_t plane = static_cast<std::size_t>(seen.plane);
       if (seen_by_[plane].size() < 2) continue;
       // What a plane's own thickness leaves is no contradiction between scans.
-      const PlaneResidual residual = plane_residual(seen, pose(seen.node), planes_[plane]);
+      const PlaneResidual residual = plane_residual(factors_[k], pose(seen.node), planes_[plane]);
       sum += solution_.weights[k] * (residual.value.squaredNorm() - own_misfit(seen));
       count += 3.0 * solution_.weights[k];
     }
@@ -261,6 +257,7 @@ class JointSolver {
   JointSolution solution_;
   double plane_share_ = 1.0;  // of the weight that planes are given
   std::vector<Matrix6d> information_;
+  std::vector<Eigen::Matrix4d> factors_;  ///< of the observations' moments
   std::vector<std::vector<std::size_t>> seen_by_;
   std::vector<AnchoredPlane> planes_;
   PoseSystem system_;
@@ -268,12 +265,21 @@ class JointSolver {
 
 }  // namespace
 
-PlaneResidual plane_residual(const PlaneObservation& observation, const Rigid3& frame_from_node,
+Eigen::Matrix4d moment_factor(const PlaneObservation& observation) {
+  const Spectrum3 spectrum = spectrum_of(observation.moments.covariance());
+  const double count = std::min(observation.moments.count, observation.most_points);
+  Eigen::Matrix4d factor = Eigen::Matrix4d::Zero();
+  factor.topLeftCorner<3, 3>() = spectrum.vectors * spectrum.values.cwiseMax(0.0).cwiseSqrt().asDiagonal();
+  factor.topRightCorner<3, 1>() = observation.anchor + observation.moments.mean();
+  factor(3, 3) = 1.0;
+  return std::sqrt(count) / observation.sigma_m * factor.transpose();
+}
+
+PlaneResidual plane_residual(const Eigen::Matrix4d& factor, const Rigid3& frame_from_node,
                              const AnchoredPlane& plane) {
   // distance(p) = n . (R p + t - a) - o = w . [p; 1]
   const Matrix3d back = frame_from_node.rotation.transpose();
   const Vector3d from_anchor = frame_from_node.translation - plane.anchor;
-  const Eigen::Matrix4d factor = factor_of(observation).transpose();
   const auto row = [&](const Vector3d& direction, double constant) {
     Eigen::Vector4d w;
     w << back * direction, constant;

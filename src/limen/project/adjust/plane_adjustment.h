@@ -64,9 +64,12 @@ struct AnchoredPlane {
   Vector3d v = Vector3d::UnitY();
 };
 
+/// F^T with F F^T = the weighted moments [p; 1][p; 1]^T, p in the node's frame.
+Eigen::Matrix4d moment_factor(const PlaneObservation& observation);
+
 /// Exact point-to-plane residuals at a cost that does not depend on the number of points: the 4 x 4 matrix of
 /// moments is factored once.
-PlaneResidual plane_residual(const PlaneObservation& observation, const Rigid3& frame_from_node,
+PlaneResidual plane_residual(const Eigen::Matrix4d& factor, const Rigid3& frame_from_node,
                              const AnchoredPlane& plane);
 
 /// Robust least squares over all poses and planes; planes are eliminated (Schur), the poses solved by sparse

@@ -39,11 +39,12 @@ TEST(PlaneAdjustment, DerivativesAreThoseOfDifferences) {
   const PlaneObservation seen = seen_plane(0, 0, pose, truth, {1, 2, 0.5}, 0.01, random);
   const PlaneFrame frame = make_frame(truth, {0.5, 1.5, 1});
   const AnchoredPlane plane{frame.origin, truth.normal, 0.03, frame.u, frame.v};
-  const PlaneResidual residual = plane_residual(seen, pose, plane);
+  const Eigen::Matrix4d factor = moment_factor(seen);
+  const PlaneResidual residual = plane_residual(factor, pose, plane);
   constexpr double kStep = 1e-6;
   for (Eigen::Index k = 0; k < 6; ++k) {
-    const Eigen::Vector4d slope = (plane_residual(seen, nudged(pose, k, kStep), plane).value -
-                                   plane_residual(seen, nudged(pose, k, -kStep), plane).value) /
+    const Eigen::Vector4d slope = (plane_residual(factor, nudged(pose, k, kStep), plane).value -
+                                   plane_residual(factor, nudged(pose, k, -kStep), plane).value) /
                                   (2 * kStep);
     EXPECT_LT((slope - residual.by_pose.col(k)).norm(), 1e-5 * (1.0 + slope.norm())) << k;
   }
@@ -53,7 +54,7 @@ TEST(PlaneAdjustment, DerivativesAreThoseOfDifferences) {
       if (k == 0) moved.normal += step * plane.u;
       if (k == 1) moved.normal += step * plane.v;
       if (k == 2) moved.offset += step;
-      return plane_residual(seen, pose, moved).value;
+      return plane_residual(factor, pose, moved).value;
     };
     const Eigen::Vector4d slope = (with(kStep) - with(-kStep)) / (2 * kStep);
     EXPECT_LT((slope - residual.by_plane.col(k)).norm(), 1e-5 * (1.0 + slope.norm())) << k;

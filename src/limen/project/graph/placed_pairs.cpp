@@ -15,6 +15,7 @@ namespace {
 
 constexpr double kLeastContactM2 = 0.1;
 constexpr double kMostAskedNats = 4.0;  // for a placement that no search proposed
+constexpr std::size_t kAskedAtOnce = 8;
 
 double contact_m2(const PoseHeard& queried) {
   return queried.agreeing_m2 + queried.contradicted_m2;
@@ -123,28 +124,39 @@ std::vector<PlacedPair> placed_pairs(const PoseGraph& graph, const LinkMatcher& 
 }
 
 double nats_against_move(const Configuration& configuration, const std::vector<bool>& side,
-                         const Rigid3& frame_from_frame, const PoseQuery& query) {
+                         const Rigid3& frame_from_frame, double enough, const PoseQuery& query) {
   if (!query) return 0.0;
-  std::vector<std::pair<std::size_t, std::size_t>> asked;
+  struct Asked {
+    int moved = -1;
+    int other = -1;
+    Rigid3 other_from_moved;
+  };
+  std::vector<Asked> asked;
   for (std::size_t moved = 0; moved < side.size(); ++moved) {
     for (std::size_t other = 0; other < side.size(); ++other) {
       if (side[moved] && !side[other] && configuration.component[moved] == configuration.component[other])
-        asked.emplace_back(moved, other);
+        asked.push_back({static_cast<int>(moved), static_cast<int>(other),
+                         inverse(configuration.frame_from_node[other]) * frame_from_frame *
+                             configuration.frame_from_node[moved]});
     }
   }
-  std::vector<double> against(asked.size(), 0.0);
-  parallel_for(asked.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) {
-      const auto& [moved, other] = asked[k];
-      against[k] =
-          -nats_of_contact(query.surface(static_cast<int>(moved), static_cast<int>(other),
-                                         inverse(configuration.frame_from_node[other]) * frame_from_frame *
-                                             configuration.frame_from_node[moved]),
-                           evidence_table::kPlaced);
-    }
+  std::stable_sort(asked.begin(), asked.end(), [](const Asked& a, const Asked& b) {
+    return a.other_from_moved.translation.squaredNorm() < b.other_from_moved.translation.squaredNorm();
   });
   // What several scans saw there is one observation.
-  return against.empty() ? 0.0 : std::max(0.0, *std::max_element(against.begin(), against.end()));
+  double most = 0.0;
+  for (std::size_t first = 0; first < asked.size() && most < enough; first += kAskedAtOnce) {
+    std::vector<double> against(std::min(kAskedAtOnce, asked.size() - first), 0.0);
+    parallel_for(against.size(), 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k) {
+        const Asked& pair = asked[first + k];
+        against[k] = -nats_of_contact(query.surface(pair.moved, pair.other, pair.other_from_moved),
+                                      evidence_table::kPlaced);
+      }
+    });
+    most = std::max(most, *std::max_element(against.begin(), against.end()));
+  }
+  return most;
 }
 
 }  // namespace limen

@@ -312,9 +312,11 @@ class Solver {
       // What agrees with both places tells them from each other by its two poses alone.
       double odds = odds_->without(side, move.either).total() /
                     odds_->of_pairs(move.moved_alone, side).total() * std::exp(move.either_nats);
-      if (odds <= kLeastListed * risk_) continue;
-      odds *= std::exp(-nats_against_move(best_, side, move.frame_from_frame, query_));
-      if (odds <= kLeastListed * risk_) continue;
+      const double least = kLeastListed * risk_;
+      if (odds <= least) continue;
+      odds *= std::exp(
+          -nats_against_move(best_, side, move.frame_from_frame, std::log(odds / least), query_));
+      if (odds <= least) continue;
       std::vector<int> present = move.present;
       doubts_.push_back({side, odds, std::move(present), std::move(move)});
     }
