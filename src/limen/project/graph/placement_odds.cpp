@@ -58,7 +58,7 @@ PlacementOdds::PlacementOdds(int nodes, std::vector<PlacedPair> pairs, const std
       rate_(nodes, pairs_, unused),
       bends_(nodes, pairs_) {
   for (const PlacedPair& pair : pairs_) {
-    if (pair.link >= 0 || pair.evidence.chance_nats > 0.0) trees_.connect(pair.source, pair.target);
+    if (pair.link >= 0 || pair.evidence.twins.things > 0.0) trees_.connect(pair.source, pair.target);
   }
 }
 
@@ -126,7 +126,7 @@ PlacementOdds::Known& PlacementOdds::known_of(const std::vector<bool>& side) {
 
 const SideOdds& PlacementOdds::of(const std::vector<bool>& side) {
   Known& known = known_of(side);
-  if (!known.shared && known.odds.total() > kNegligible) known.odds.share = trees_.share_of_one_edge(side);
+  if (!known.shared && known.odds.total() > kNegligible) known.odds.share = trees_.share_of_fewest_edges(side);
   known.shared = true;
   return known.odds;
 }

@@ -51,26 +51,31 @@ double SpanningTrees::log_count(const std::vector<int>& nodes) const {
   return Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>(laplacian).vectorD().array().log().sum();
 }
 
-double SpanningTrees::share_of_one_edge(const std::vector<bool>& side) const {
+double SpanningTrees::share_of_fewest_edges(const std::vector<bool>& side) const {
   const auto first = static_cast<int>(std::find(side.begin(), side.end(), true) - side.begin());
   const std::vector<int> inside = reached({first}, side);
   if (inside.size() < static_cast<std::size_t>(std::count(side.begin(), side.end(), true))) return 0.0;
   std::vector<bool> other_side = side;
   other_side.flip();
-  double crossing = 0.0;
-  int beyond = -1;
+  std::vector<int> part(side.size(), -1);  // of each node beyond the edges: which part it hangs together with
+  std::vector<double> edges;               // to each part
+  double log_share = log_count(inside) - log_count(reached({first}, std::vector<bool>(side.size(), true)));
   for (const int node : inside) {
     for (const int other : beside(node)) {
       if (side[static_cast<std::size_t>(other)]) continue;
-      beyond = other;
-      crossing += 1.0;
+      int& number = part[static_cast<std::size_t>(other)];
+      if (number < 0) {
+        const std::vector<int> beyond = reached({other}, other_side);
+        for (const int n : beyond) part[static_cast<std::size_t>(n)] = static_cast<int>(edges.size());
+        edges.push_back(0.0);
+        log_share += log_count(beyond);
+      }
+      edges[static_cast<std::size_t>(number)] += 1.0;
     }
   }
-  if (beyond < 0) return 0.0;
-  const std::vector<int> outside = reached({beyond}, other_side);
-  const std::vector<int> all = reached({first}, std::vector<bool>(side.size(), true));
-  if (inside.size() + outside.size() < all.size()) return 0.0;
-  return crossing * std::exp(log_count(inside) + log_count(outside) - log_count(all));
+  if (edges.empty()) return 0.0;
+  for (const double count : edges) log_share += std::log(count);
+  return std::exp(log_share);
 }
 
 std::vector<int> SpanningTrees::random_tree(const std::vector<int>& roots, RandomStream& random) const {

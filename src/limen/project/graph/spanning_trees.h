@@ -16,9 +16,9 @@ class SpanningTrees {
   explicit SpanningTrees(int nodes) : neighbours_(static_cast<std::size_t>(nodes)) {}
   void connect(int a, int b);
 
-  /// Share of the trees in which a single edge joins `side` to the rest of its component. By Kirchhoff's
-  /// theorem: the number of trees is a determinant.
-  [[nodiscard]] double share_of_one_edge(const std::vector<bool>& side) const;
+  /// Share of the trees in which a single edge joins `side` to the rest of its component, or to each part of
+  /// the rest that hangs together without it. By Kirchhoff's theorem: the number of trees is a determinant.
+  [[nodiscard]] double share_of_fewest_edges(const std::vector<bool>& side) const;
 
   /// Of a random tree the parent of each node; -1: a root, or no root is reached. By Wilson's algorithm.
   [[nodiscard]] std::vector<int> random_tree(const std::vector<int>& roots, RandomStream& random) const;

@@ -28,25 +28,25 @@ SpanningTrees all_joined(int nodes) {
 /// Of a tree every edge cuts one side off, and nothing else does.
 TEST(SpanningTrees, OfAChainTheEndsHangByOneEdge) {
   const SpanningTrees chain = joined(4, {{0, 1}, {1, 2}, {2, 3}});
-  EXPECT_NEAR(chain.share_of_one_edge({false, false, false, true}), 1.0, 1e-12);
-  EXPECT_NEAR(chain.share_of_one_edge({false, false, true, true}), 1.0, 1e-12);
-  EXPECT_EQ(chain.share_of_one_edge({false, false, true, false}), 0.0);
-  EXPECT_EQ(chain.share_of_one_edge({true, false, false, true}), 0.0);
+  EXPECT_NEAR(chain.share_of_fewest_edges({false, false, false, true}), 1.0, 1e-12);
+  EXPECT_NEAR(chain.share_of_fewest_edges({false, false, true, true}), 1.0, 1e-12);
+  EXPECT_NEAR(chain.share_of_fewest_edges({false, false, true, false}), 1.0, 1e-12);  // joined to either end
+  EXPECT_EQ(chain.share_of_fewest_edges({true, false, false, true}), 0.0);
 }
 
 /// Of nodes of which each joins every other, by Cayley's formula.
 TEST(SpanningTrees, OfACompleteGraphAsCayleyCounts) {
   const SpanningTrees trees = all_joined(6);
-  EXPECT_NEAR(trees.share_of_one_edge({false, false, false, false, false, true}), std::pow(5.0 / 6.0, 4),
+  EXPECT_NEAR(trees.share_of_fewest_edges({false, false, false, false, false, true}), std::pow(5.0 / 6.0, 4),
               1e-12);
   // m^(m-1) (n-m)^(n-m-1) / n^(n-2)
-  EXPECT_NEAR(trees.share_of_one_edge({true, true, true, false, false, false}), 81.0 / 1296.0, 1e-12);
+  EXPECT_NEAR(trees.share_of_fewest_edges({true, true, true, false, false, false}), 81.0 / 1296.0, 1e-12);
 }
 
 TEST(SpanningTrees, OtherComponentsChangeNothing) {
   const SpanningTrees trees = joined(5, {{0, 1}, {1, 2}, {0, 2}, {3, 4}});
-  EXPECT_NEAR(trees.share_of_one_edge({false, false, true, false, false}), 2.0 / 3.0, 1e-12);
-  EXPECT_NEAR(trees.share_of_one_edge({false, false, false, false, true}), 1.0, 1e-12);
+  EXPECT_NEAR(trees.share_of_fewest_edges({false, false, true, false, false}), 2.0 / 3.0, 1e-12);
+  EXPECT_NEAR(trees.share_of_fewest_edges({false, false, false, false, true}), 1.0, 1e-12);
 }
 
 /// Random trees cut a side off as often as Kirchhoff's theorem says; four standard errors are allowed.
