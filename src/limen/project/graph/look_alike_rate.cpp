@@ -56,38 +56,6 @@ void add(double weight, const std::vector<double>& more, std::vector<double>& lo
   for (std::size_t k = 0; k < kShares; ++k) logs[k] += weight * more[k];
 }
 
-constexpr int kRounds = 30;  // of expectation maximisation
-
-/// Shares of the amounts of bends, added up: at first what is believed beforehand.
-struct Shares {
-  BendBelief sum = bends_beforehand();
-  double weight = evidence_table::kBendStrength;
-
-  Shares() {
-    for (double& share : sum) share *= weight;
-  }
-  void add(double more, const BendBelief& bends) {
-    for (std::size_t j = 0; j < kBendLevels; ++j) sum[j] += more * bends[j];
-    weight += more;
-  }
-  [[nodiscard]] BendBelief belief() const {
-    BendBelief shares = sum;
-    for (double& share : shares) share /= weight;
-    return shares;
-  }
-};
-
-/// Probabilities of the amounts by what one pair shows, if they have these shares.
-BendBelief shown_by(const BuiltEvidence& evidence, const BendBelief& shares) {
-  BendBelief bends{};
-  const double most = *std::max_element(evidence.one.begin(), evidence.one.end());
-  double sum = 0.0;
-  for (std::size_t j = 0; j < kBendLevels; ++j)
-    sum += bends[j] = shares[j] * std::exp(std::max(-300.0, evidence.one[j] - most));
-  for (double& bend : bends) bend /= sum;
-  return bends;
-}
-
 }  // namespace
 
 std::vector<UnusedLink> unused_links(const PoseGraph& graph, const LinkMatcher& matcher,
@@ -150,39 +118,6 @@ double LookAlikeRate::factor(const std::vector<bool>& side) const {
     all += density;
   }
   return look_alike / (all - look_alike) / kBelievedOdds;
-}
-
-LearnedBends::LearnedBends(int nodes, const std::vector<PlacedPair>& pairs) {
-  std::vector<double> count(static_cast<std::size_t>(nodes), 0.0);
-  std::vector<const BuiltEvidence*> seen;
-  for (const PlacedPair& pair : pairs) {
-    if (pair.link < 0 || !pair.evidence.asks_things()) continue;
-    pairs_.push_back({pair.source, pair.target});
-    seen.push_back(&pair.evidence.twins.built);
-    count[static_cast<std::size_t>(pair.source)] += 1.0;
-    count[static_cast<std::size_t>(pair.target)] += 1.0;
-  }
-  for (Pair& pair : pairs_)
-    pair.weight = 0.5 / count[static_cast<std::size_t>(pair.source)] +
-                  0.5 / count[static_cast<std::size_t>(pair.target)];
-  BendBelief shares = bends_beforehand();
-  for (int round = 0; round < kRounds; ++round) {
-    Shares all;
-    for (std::size_t k = 0; k < pairs_.size(); ++k) {
-      pairs_[k].bends = shown_by(*seen[k], shares);
-      all.add(pairs_[k].weight, pairs_[k].bends);
-    }
-    shares = all.belief();
-  }
-}
-
-BendBelief LearnedBends::without(const std::vector<bool>& side) const {
-  Shares shares;
-  for (const Pair& pair : pairs_) {
-    if (side[static_cast<std::size_t>(pair.source)] == side[static_cast<std::size_t>(pair.target)])
-      shares.add(pair.weight, pair.bends);
-  }
-  return shares.belief();
 }
 
 }  // namespace limen

@@ -7,7 +7,6 @@
 
 #include "limen/project/graph/configuration.h"
 #include "limen/project/graph/shared_views.h"
-#include "limen/register/judge/as_built.h"
 
 namespace limen {
 
@@ -44,26 +43,6 @@ class LookAlikeRate {
   std::vector<std::vector<double>> votes_;  ///< log of the likelihood of each share, by links that agree
   std::vector<std::vector<Link>> links_;    ///< those of each node ...
   std::vector<double> agreeing_;            ///< ... and their part of all its links
-};
-
-/// By how much the scans of a project are bent within themselves: one sensor took most of them. The shares of
-/// the amounts have a Dirichlet distribution beforehand (kBendStrength); expectation maximisation over the
-/// pairs that agree. Each scan counts once, by the mean of its pairs, and a pair is of two scans.
-class LearnedBends {
- public:
-  LearnedBends(int nodes, const std::vector<PlacedPair>& pairs);
-
-  /// Shares of the amounts, by all pairs but those that cross the border of `side`: they are to be judged.
-  [[nodiscard]] BendBelief without(const std::vector<bool>& side) const;
-
- private:
-  struct Pair {
-    int source = -1;
-    int target = -1;
-    double weight = 0.0;
-    BendBelief bends{};  ///< what it shows, given the shares of all pairs
-  };
-  std::vector<Pair> pairs_;
 };
 
 }  // namespace limen

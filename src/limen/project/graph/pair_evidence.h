@@ -40,8 +40,12 @@ class LookAlikeSum {
   /// Shares of what the pair shows that count for it (SharedViews): of things, and of the building's surface.
   void add(const PairEvidence& evidence, double of_things = 1.0, double of_surface = 1.0,
            const BendBelief& bends = bends_beforehand());
-  [[nodiscard]] double against_otherwise() const { return limen::against_otherwise(sum_) + built_nats_; }
-  [[nodiscard]] double against_alike() const { return limen::against_alike(sum_) + built_nats_; }
+  [[nodiscard]] double against_otherwise(const StayedBelief& stayed = stayed_beforehand()) const {
+    return limen::against_otherwise(sum_, stayed) + built_nats_;
+  }
+  [[nodiscard]] double against_alike(const StayedBelief& stayed = stayed_beforehand()) const {
+    return limen::against_alike(sum_, stayed) + built_nats_;
+  }
 
  private:
   TwinEvidence sum_;  ///< of things

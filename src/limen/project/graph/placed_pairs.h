@@ -16,8 +16,8 @@ namespace limen {
 std::vector<PlacedPair> placed_pairs(const PoseGraph& graph, const LinkMatcher& matcher,
                                      const Configuration& configuration, const PoseQuery& query);
 
-/// What pairs say against a move by what would be in the free space that others saw: nats, none below 0. Scans
-/// that come near one another are asked first, until one says `enough`.
+/// What pairs say against a move by what would be in the free space that others saw: nats, none below 0.
+/// Scans that come near one another are asked first, until one says `enough`.
 double nats_against_move(const Configuration& configuration, const std::vector<bool>& side,
                          const Rigid3& frame_from_frame, double enough, const PoseQuery& query);
 

@@ -56,7 +56,10 @@ PlacementOdds::PlacementOdds(int nodes, std::vector<PlacedPair> pairs, const std
       views_(nodes, pairs_),
       trees_(nodes),
       rate_(nodes, pairs_, unused),
-      bends_(nodes, pairs_) {
+      bends_(nodes, pairs_, bends_beforehand(), evidence_table::kBendStrength,
+             [](const PairEvidence& evidence) { return evidence.twins.built.one; }),
+      stayed_(nodes, pairs_, stayed_beforehand(), evidence_table::kStayedStrength,
+              [](const PairEvidence& evidence) { return logs_of_stayed(evidence.twins); }) {
   for (const PlacedPair& pair : pairs_) {
     if (pair.link >= 0 || pair.evidence.twins.things > 0.0) trees_.connect(pair.source, pair.target);
   }
@@ -76,6 +79,7 @@ double PlacementOdds::odds_of_look_alike(const std::vector<const PlacedPair*>& a
   const std::vector<double> of_surface = views_.shares(across, side, surface);
   const std::vector<double> of_things = views_.shares(across, side, things);
   const BendBelief bends = bends_.without(side);
+  const StayedBelief stayed = stayed_.without(side);
   LookAlikeSum against;
   const bool rooms = std::any_of(across.begin(), across.end(), [](const PlacedPair* pair) {
     return pair->link >= 0 && pair->evidence.asks_things();
@@ -95,8 +99,8 @@ double PlacementOdds::odds_of_look_alike(const std::vector<const PlacedPair*>& a
     alike = believed ? std::min(alike, pair_alike) : pair_alike;
     believed = true;
   }
-  return rate_.factor(side) *
-         (otherwise * std::exp(-against.against_otherwise()) + alike * std::exp(-against.against_alike()));
+  return rate_.factor(side) * (otherwise * std::exp(-against.against_otherwise(stayed)) +
+                               alike * std::exp(-against.against_alike(stayed)));
 }
 
 double PlacementOdds::log_odds_of_chance(std::vector<const PlacedPair*> across, const std::vector<bool>& side,
@@ -126,7 +130,8 @@ PlacementOdds::Known& PlacementOdds::known_of(const std::vector<bool>& side) {
 
 const SideOdds& PlacementOdds::of(const std::vector<bool>& side) {
   Known& known = known_of(side);
-  if (!known.shared && known.odds.total() > kNegligible) known.odds.share = trees_.share_of_fewest_edges(side);
+  if (!known.shared && known.odds.total() > kNegligible)
+    known.odds.share = trees_.share_of_fewest_edges(side);
   known.shared = true;
   return known.odds;
 }

@@ -6,6 +6,7 @@
 #include <set>
 #include <vector>
 
+#include "limen/project/graph/learned_shares.h"
 #include "limen/project/graph/look_alike_rate.h"
 #include "limen/project/graph/shared_views.h"
 #include "limen/project/graph/spanning_trees.h"
@@ -29,7 +30,8 @@ struct SideOdds {
 ///
 /// Look-alike places: that there is one is believed once for a side, as often as it happens in this building
 /// (look_alike_rate.h). What things and walls say against it adds up over the pairs across; those that show
-/// the same count once together. By how much scans are bent is learned from the other pairs. Chance: pairs
+/// the same count once together. By how much scans are bent, and how
+/// many things stay where they are, is learned from the other pairs. Chance: pairs
 /// err independently as far as they show different surface, and wrong poses agree with one another seldom.
 class PlacementOdds {
  public:
@@ -68,7 +70,8 @@ class PlacementOdds {
   SharedViews views_;
   SpanningTrees trees_;
   LookAlikeRate rate_;
-  LearnedBends bends_;
+  LearnedShares<kBendLevels> bends_;
+  LearnedShares<kStayedLevels> stayed_;
   std::map<std::vector<bool>, Known> known_;
 };
 

@@ -131,6 +131,23 @@ TEST(PlacementOdds, ByHowMuchScansAreBentIsLearnedFromTheOthers) {
   EXPECT_NEAR(odds(2, {}, judged) / odds(2, {}, {}), std::exp(-built_nats(judged)), 1e-6);
 }
 
+/// How many things stay where they are is learned from the other pairs: where nearly all stay, a pair of
+/// which half agree is sooner of two places.
+TEST(PlacementOdds, HowManyThingsStayIsLearnedFromTheOthers) {
+  const auto odds = [](double others_agree) {
+    std::vector<PlacedPair> pairs;
+    for (int n = 1; n < 10; ++n) {
+      pairs.push_back(pair(n, n - 1, 9.0, 4.0, 4.0, n));
+      TwinEvidence& twins = pairs.back().evidence.twins;
+      twins.things = 20.0;
+      twins.agreeing = n == 9 ? 10.0 : 20.0 * others_agree;
+    }
+    return PlacementOdds(10, pairs).of(side({9}, 10)).twin;
+  };
+  EXPECT_GT(odds(0.97), 5.0 * odds(0.5));
+  EXPECT_LT(odds(0.5), 1.1 * odds(0.6));
+}
+
 /// Rooms that look alike are excluded by a view through windows no better than it excludes chance.
 TEST(PlacementOdds, AWeakViewThroughWindowsExcludesNoLookAlikeRoom) {
   const auto odds = [](double chance_nats) {

@@ -314,8 +314,8 @@ class Solver {
                     odds_->of_pairs(move.moved_alone, side).total() * std::exp(move.either_nats);
       const double least = kLeastListed * risk_;
       if (odds <= least) continue;
-      odds *= std::exp(
-          -nats_against_move(best_, side, move.frame_from_frame, std::log(odds / least), query_));
+      odds *=
+          std::exp(-nats_against_move(best_, side, move.frame_from_frame, std::log(odds / least), query_));
       if (odds <= least) continue;
       std::vector<int> present = move.present;
       doubts_.push_back({side, odds, std::move(present), std::move(move)});

@@ -70,5 +70,6 @@ inline constexpr double kInPair = 0.106;        ///< share of them whose other p
 inline constexpr double kBuilt = 2.23;          ///< weight of how surfaces were built, against chance
 inline constexpr double kBent = 0.0899;         ///< share of pairs whose scans are bent within themselves
 inline constexpr double kBendStrength = 0.203;  ///< how well shares of bends are known in a project, in scans
+inline constexpr double kStayedStrength = 0.157;  ///< the same of the share of things that stay
 
 }  // namespace limen::evidence_table

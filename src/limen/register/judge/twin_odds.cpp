@@ -36,9 +36,10 @@ struct Node {
 };
 
 /// Midpoints of equal steps, weighed by the density of a beta distribution.
-std::array<Node, 10> shares_of(const ShareBelief& belief) {
-  std::array<Node, 10> nodes;
-  std::array<double, 10> logs{};
+template <std::size_t N>
+std::array<Node, N> shares_of(const ShareBelief& belief) {
+  std::array<Node, N> nodes;
+  std::array<double, N> logs{};
   for (std::size_t k = 0; k < nodes.size(); ++k) {
     const double q = (static_cast<double>(k) + 0.5) / static_cast<double>(nodes.size());
     logs[k] = (belief.mean * belief.strength - 1.0) * std::log(q) +
@@ -168,7 +169,7 @@ NatsOfThings log_likelihood(const std::array<OfThings, 3>& fixed, const std::arr
                             const OfThings& elsewhere, const ShareBelief& share) {
   LogMixture mixture;
   OfThings loose(elsewhere.size());
-  for (const Node& node : shares_of(share)) {
+  for (const Node& node : shares_of<10>(share)) {
     const double log_kept = std::log(node.at);
     const double log_elsewhere = std::log1p(-node.at);
     for (std::size_t k = 0; k < kept.size(); ++k) {
@@ -246,13 +247,50 @@ double nats_of(const NatsOfThings& nats) {
   return -log_sum_exp(logs);
 }
 
-double against_otherwise(const TwinEvidence& evidence) {
-  return nats_of(evidence.otherwise_nats) + built_nats(evidence.built);
+const StayedBelief& stayed_beforehand() {
+  static const StayedBelief belief = [] {
+    StayedBelief shares{};
+    const auto nodes = shares_of<kStayedLevels>(kFurniture.stayed);
+    for (std::size_t j = 0; j < shares.size(); ++j) shares[j] = std::exp(nodes[j].log_weight);
+    return shares;
+  }();
+  return belief;
 }
 
-double against_alike(const TwinEvidence& evidence) {
+StayedBelief logs_of_stayed(const TwinEvidence& evidence) {
+  StayedBelief logs{};
+  for (std::size_t j = 0; j < logs.size(); ++j) {
+    const double share = (static_cast<double>(j) + 0.5) / static_cast<double>(logs.size());
+    logs[j] =
+        evidence.agreeing * std::log(share) + (evidence.things - evidence.agreeing) * std::log1p(-share);
+  }
+  return logs;
+}
+
+namespace {
+
+/// By how much likelier what was seen is with this belief than with that of any room, nats.
+double nats_of_stayed(const TwinEvidence& evidence, const StayedBelief& stayed) {
+  const StayedBelief logs = logs_of_stayed(evidence);
+  StayedBelief now{};
+  StayedBelief before{};
+  for (std::size_t j = 0; j < logs.size(); ++j) {
+    now[j] = logs[j] + std::log(stayed[j]);
+    before[j] = logs[j] + std::log(stayed_beforehand()[j]);
+  }
+  return log_sum_exp(now) - log_sum_exp(before);
+}
+
+}  // namespace
+
+double against_otherwise(const TwinEvidence& evidence, const StayedBelief& stayed) {
+  return nats_of(evidence.otherwise_nats) + nats_of_stayed(evidence, stayed) + built_nats(evidence.built);
+}
+
+double against_alike(const TwinEvidence& evidence, const StayedBelief& stayed) {
   const double other = evidence.things - evidence.agreeing;
-  const double own = log_beta_binomial(evidence.agreeing, other, kFurniture.stayed) -
+  const double own = log_beta_binomial(evidence.agreeing, other, kFurniture.stayed) +
+                     nats_of_stayed(evidence, stayed) -
                      log_beta_binomial(evidence.agreeing, other, kFurniture.alike);
   return nats_of(evidence.alike_nats) + std::min(0.0, own) + built_nats(evidence.built);
 }

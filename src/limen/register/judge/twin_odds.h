@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <string>
 
 #include "limen/model/twin_evidence.h"
@@ -31,12 +33,21 @@ TwinEvidence weigh_twin(const IndividualMatter& individual, const TwinOptions& o
 /// Of things, whatever share of a building's is its own. Over several pairs the nats of each share add up.
 double nats_of(const NatsOfThings& nats);
 
-/// Nats against a look-alike place that is furnished otherwise.
-double against_otherwise(const TwinEvidence& evidence);
+/// How large a share of a room's things is where it was: the probability of each of so many shares.
+inline constexpr std::size_t kStayedLevels = 24;
+using StayedBelief = std::array<double, kStayedLevels>;
+
+/// Of any room (kFurniture.stayed).
+const StayedBelief& stayed_beforehand();
+/// Of what was seen, under each of these shares, the logarithm of the likelihood.
+StayedBelief logs_of_stayed(const TwinEvidence& evidence);
+
+/// Nats against a look-alike place that is furnished otherwise, with what is known of the share that stays.
+double against_otherwise(const TwinEvidence& evidence, const StayedBelief& stayed = stayed_beforehand());
 /// Nats against one that is furnished alike. How many of its things match is not known: it is given the
 /// better of two shares. So things that agree never exclude it, only faces that agree better than hands put
 /// them.
-double against_alike(const TwinEvidence& evidence);
+double against_alike(const TwinEvidence& evidence, const StayedBelief& stayed = stayed_beforehand());
 
 /// Odds of a look-alike place of either kind.
 double odds_of(const TwinEvidence& evidence);
