@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <numbers>
 #include <numeric>
 #include <set>
 
@@ -88,8 +87,6 @@ struct Layer {
 /// Planes of a scan by the direction their normals point to: +x, +y, -x, -y of its main directions, +z, -z.
 using Layers = std::array<std::vector<Layer>, 6>;
 
-constexpr double kRightAngle = 0.5 * std::numbers::pi;
-
 double turned(double angle, double by) {
   return angle - by * std::floor(angle / by);
 }
@@ -105,12 +102,7 @@ double main_direction(const ScanDigest& scan) {
     sine += plane.area_m2 * std::sin(angle);
     cosine += plane.area_m2 * std::cos(angle);
   }
-  return turned(std::atan2(sine, cosine) / 4.0, kRightAngle);
-}
-
-/// The axes are the main directions and the vertical.
-Matrix3d main_from_scan(const ScanDigest& scan) {
-  return rotation_exp(Vector3d(0.0, 0.0, -main_direction(scan))) * scan.upright_from_scan;
+  return turned(std::atan2(sine, cosine) / 4.0, 0.5 * 3.14159265358979323846);
 }
 
 Layers layers_of(const ScanDigest& scan) {
@@ -133,18 +125,9 @@ Layers layers_of(const ScanDigest& scan) {
   return layers;
 }
 
-constexpr std::size_t kShiftsTried = 3;  // along each direction
-constexpr std::size_t kPosesTried = 12;
-
-/// A shift along a direction, and the surface that it brings together, m^2.
-struct Shift {
-  double m = 0.0;
-  double weight_m2 = 0.0;
-};
-
-/// The shifts that bring most surface together, of planes that face both ways along one direction.
-std::vector<Shift> best_shifts(const std::vector<Layer>& a_plus, const std::vector<Layer>& b_plus,
-                               const std::vector<Layer>& a_minus, const std::vector<Layer>& b_minus) {
+/// The most surface that one shift brings together, of planes that face both ways along one direction.
+double best_shift(const std::vector<Layer>& a_plus, const std::vector<Layer>& b_plus,
+                  const std::vector<Layer>& a_minus, const std::vector<Layer>& b_minus) {
   std::map<long, double> votes;
   const auto vote = [&](const std::vector<Layer>& from, const std::vector<Layer>& to, double sign) {
     for (const Layer& a : from) {
@@ -159,54 +142,25 @@ std::vector<Shift> best_shifts(const std::vector<Layer>& a_plus, const std::vect
   };
   vote(a_plus, b_plus, 1.0);
   vote(a_minus, b_minus, -1.0);
-  std::vector<Shift> best;
-  while (best.size() < kShiftsTried && !votes.empty()) {
-    const auto most = std::max_element(votes.begin(), votes.end(),
-                                       [](const auto& a, const auto& b) { return a.second < b.second; });
-    const long bin = most->first;
-    best.push_back({kStepM * static_cast<double>(bin), most->second});
-    votes.erase(votes.lower_bound(bin - 2), votes.upper_bound(bin + 2));
-  }
+  double best = 0.0;
+  for (const auto& [bin, weight] : votes) best = std::max(best, weight);
   return best;
 }
 
-/// A pose of one scan's main directions in another's, and the surface that its shifts bring together.
-struct RoughPose {
-  Rigid3 b_from_a;
-  double weight_m2 = 0.0;
-};
-
-/// How much two scans may have in common, by their planes: for each of the four turns about the vertical that
-/// bring the main directions of their walls together the shifts along the two directions and the vertical are
-/// sought one by one, by votes; of the poses that these make up the one with the largest overlap counts.
-double common_planes(const ScanDigest& a, const Layers& of_a, const ScanDigest& b, const Layers& of_b) {
-  const std::vector<Shift> up = best_shifts(of_a[4], of_b[4], of_a[5], of_b[5]);
-  std::vector<RoughPose> poses;
+/// How much two scans may have in common, from their planes alone: m^2 of planes of one direction that one
+/// shift brings together, for the best of the four turns about the vertical that bring the main directions of
+/// their walls together; the shifts along the two directions and the vertical are sought one by one, by
+/// votes. A plane counts for no more than 5 m^2.
+double common_layers(const Layers& a, const Layers& b) {
+  const double up = best_shift(a[4], b[4], a[5], b[5]);
+  double best = 0.0;
   for (std::size_t turn = 0; turn < 4; ++turn) {
-    const std::vector<Shift> along = best_shifts(of_a[0], of_b[turn], of_a[2], of_b[(turn + 2) % 4]);
-    const std::vector<Shift> across =
-        best_shifts(of_a[1], of_b[(turn + 1) % 4], of_a[3], of_b[(turn + 3) % 4]);
-    const Matrix3d turned = rotation_exp(Vector3d(0.0, 0.0, kRightAngle * static_cast<double>(turn)));
-    for (const Shift& x : along) {
-      for (const Shift& y : across) {
-        for (const Shift& z : up)
-          poses.push_back({{turned, turned * Vector3d(x.m, y.m, 0.0) + Vector3d(0.0, 0.0, z.m)},
-                           std::min(x.weight_m2, y.weight_m2) + 0.25 * (x.weight_m2 + y.weight_m2) +
-                               0.25 * std::min(z.weight_m2, 2.0 * kMostM2)});
-      }
-    }
+    const double x = best_shift(a[0], b[turn], a[2], b[(turn + 2) % 4]);
+    const double y = best_shift(a[1], b[(turn + 1) % 4], a[3], b[(turn + 3) % 4]);
+    // A pose is held by all three: the weakest counts most.
+    best = std::max(best, std::min(x, y) + 0.25 * (x + y) + 0.25 * std::min(up, 2.0 * kMostM2));
   }
-  std::stable_sort(poses.begin(), poses.end(), [](const RoughPose& one, const RoughPose& other) {
-    return one.weight_m2 > other.weight_m2;
-  });
-  const Matrix3d from_a = main_from_scan(a);
-  const Matrix3d to_b = main_from_scan(b).transpose();
-  double most = 0.0;
-  for (std::size_t k = 0; k < std::min(kPosesTried, poses.size()); ++k) {
-    const Rigid3& pose = poses[k].b_from_a;
-    most = std::max(most, predicted_overlap(a, b, {to_b * pose.rotation * from_a, to_b * pose.translation}));
-  }
-  return most;
+  return best;
 }
 
 }  // namespace
@@ -219,7 +173,7 @@ std::vector<std::vector<std::size_t>> ranked_partners(const std::vector<ScanDige
     for (std::size_t i = begin; i < end; ++i) {
       for (std::size_t j = 0; j < i; ++j) {
         const bool models = digests[i].model && digests[j].model;
-        common[i].push_back(models ? 0.0 : common_planes(digests[j], layers[j], digests[i], layers[i]));
+        common[i].push_back(models ? 0.0 : common_layers(layers[j], layers[i]));
       }
     }
   });

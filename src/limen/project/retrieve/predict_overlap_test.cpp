@@ -69,26 +69,6 @@ TEST(PredictOverlap, IsTheSameBothWaysAndInEveryFrame) {
   EXPECT_NEAR(predicted_overlap(room(), other, turned * between), there, 1e-9);
 }
 
-/// Walls at the same distances that lie elsewhere along one another are no common room.
-TEST(RankedPartners, TheSameRoomComesBeforeWallsAtItsDistances) {
-  ScanDigest scattered = room();
-  for (std::size_t k = 0; k < scattered.planes.size(); ++k) {
-    const Vector3d along = scattered.planes[k].plane.normal.unitOrthogonal();
-    scattered.planes[k].centroid += 30.0 * static_cast<double>(k + 1) * along;
-  }
-  ScanDigest other = room();
-  const Rigid3 turned = pose(-1.1, {3.0, -2.0, 0.4});
-  for (PlaneDigest& plane : other.planes) {
-    plane.plane.normal = turned.rotation * plane.plane.normal;
-    plane.centroid = turned * plane.centroid;
-    plane.moments.sum = turned.rotation * plane.moments.sum;
-    plane.moments.outer = turned.rotation * plane.moments.outer * turned.rotation.transpose();
-  }
-  const std::vector<std::vector<std::size_t>> ranked = ranked_partners({room(), scattered, other});
-  EXPECT_EQ(ranked[0], (std::vector<std::size_t>{2, 1}));
-  EXPECT_EQ(ranked[2], (std::vector<std::size_t>{0, 1}));
-}
-
 TEST(PredictOverlap, AllPlanesLieInTheirBox) {
   const Rigid3 place = pose(0.4, {100.0, -20.0, 3.0});
   const Eigen::AlignedBox3d box = box_of_planes(room(), place);
