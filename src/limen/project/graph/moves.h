@@ -26,9 +26,10 @@ struct Move {
   [[nodiscard]] double gain() const { return moved_nats - present_nats; }
 };
 
-/// Every move that a pose of a link proposes which the configuration does not agree with: to other places, or
-/// within the present one.
+/// How far a move goes: no place repeats nearer than a wall is thick.
 enum class MoveTo { other_places, this_place };
+
+/// Every move that a pose of a link proposes which the configuration does not agree with.
 std::vector<Move> proposed_moves(const PoseGraph& graph, const LinkMatcher& matcher,
                                  const Configuration& configuration, MoveTo to = MoveTo::other_places);
 

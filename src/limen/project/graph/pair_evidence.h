@@ -40,11 +40,12 @@ class LookAlikeSum {
   /// Shares of what the pair shows that count for it (SharedViews): of things, and of the building's surface.
   void add(const PairEvidence& evidence, double of_things = 1.0, double of_surface = 1.0,
            const BendBelief& bends = bends_beforehand());
-  [[nodiscard]] double against_otherwise(const StayedBelief& stayed = stayed_beforehand()) const {
-    return limen::against_otherwise(sum_, stayed) + built_nats_;
+  [[nodiscard]] double stayed_nats(const StayedBelief& stayed) const { return nats_of_stayed(sum_, stayed); }
+  [[nodiscard]] double against_otherwise(double stayed_nats = 0.0) const {
+    return limen::against_otherwise(sum_, stayed_nats) + built_nats_;
   }
-  [[nodiscard]] double against_alike(const StayedBelief& stayed = stayed_beforehand()) const {
-    return limen::against_alike(sum_, stayed) + built_nats_;
+  [[nodiscard]] double against_alike(double stayed_nats = 0.0) const {
+    return limen::against_alike(sum_, stayed_nats) + built_nats_;
   }
 
  private:

@@ -48,6 +48,13 @@ std::map<int, std::vector<bool>> sides_of_edges(const std::vector<int>& parent) 
   return sides;
 }
 
+/// Adds the odds of a side to those of each node on it.
+void add_to_nodes(const std::vector<bool>& side, double more, std::vector<double>& odds) {
+  for (std::size_t n = 0; n < side.size(); ++n) {
+    if (side[n]) odds[n] += more;
+  }
+}
+
 }  // namespace
 
 PlacementOdds::PlacementOdds(int nodes, std::vector<PlacedPair> pairs, const std::vector<UnusedLink>& unused)
@@ -79,7 +86,6 @@ double PlacementOdds::odds_of_look_alike(const std::vector<const PlacedPair*>& a
   const std::vector<double> of_surface = views_.shares(across, side, surface);
   const std::vector<double> of_things = views_.shares(across, side, things);
   const BendBelief bends = bends_.without(side);
-  const StayedBelief stayed = stayed_.without(side);
   LookAlikeSum against;
   const bool rooms = std::any_of(across.begin(), across.end(), [](const PlacedPair* pair) {
     return pair->link >= 0 && pair->evidence.asks_things();
@@ -99,6 +105,7 @@ double PlacementOdds::odds_of_look_alike(const std::vector<const PlacedPair*>& a
     alike = believed ? std::min(alike, pair_alike) : pair_alike;
     believed = true;
   }
+  const double stayed = against.stayed_nats(stayed_.without(side));
   return rate_.factor(side) * (otherwise * std::exp(-against.against_otherwise(stayed)) +
                                alike * std::exp(-against.against_alike(stayed)));
 }
@@ -139,13 +146,10 @@ const SideOdds& PlacementOdds::of(const std::vector<bool>& side) {
 std::vector<double> PlacementOdds::of_nodes(const std::vector<int>& reference,
                                             const std::set<std::vector<bool>>& found, double risk) {
   std::vector<double> odds(reference.size(), 0.0);
-  for (const std::vector<bool>& side : found) {
-    for (std::size_t n = 0; n < side.size(); ++n) {
-      if (side[n]) odds[n] += of(side).total();
-    }
-  }
-  std::set<int> roots(reference.begin(), reference.end());
-  roots.erase(-1);
+  for (const std::vector<bool>& side : found) add_to_nodes(side, of(side).total(), odds);
+  std::set<int> lenders(reference.begin(), reference.end());
+  lenders.erase(-1);
+  const std::vector<int> roots(lenders.begin(), lenders.end());
   RandomStream random(0);
   std::vector<Estimate> others(reference.size());
   const auto known_well = [&](int trees) {
@@ -158,13 +162,8 @@ std::vector<double> PlacementOdds::of_nodes(const std::vector<int>& reference,
   do {
     for (int k = 0; k < kTreesAtOnce; ++k, ++trees) {
       std::vector<double> of_tree(reference.size(), 0.0);
-      for (const auto& [node, side] :
-           sides_of_edges(trees_.random_tree({roots.begin(), roots.end()}, random))) {
-        if (found.count(side) > 0) continue;
-        const SideOdds& of_side = known_of(side).odds;
-        for (std::size_t n = 0; n < side.size(); ++n) {
-          if (side[n]) of_tree[n] += of_side.twin + of_side.chance;
-        }
+      for (const auto& [node, side] : sides_of_edges(trees_.random_tree(roots, random))) {
+        if (found.count(side) == 0) add_to_nodes(side, known_of(side).odds.by_one_pair(), of_tree);
       }
       for (std::size_t n = 0; n < of_tree.size(); ++n) others[n].add(of_tree[n]);
     }

@@ -20,7 +20,9 @@ struct SideOdds {
   double share = 1.0;      ///< of the ways to join the scans in which the side is joined by one pair
   std::vector<int> links;  ///< that hold it, but for those that show nothing new
 
-  [[nodiscard]] double total() const { return share * (twin + chance); }
+  /// If one pair joins the side.
+  [[nodiscard]] double by_one_pair() const { return twin + chance; }
+  [[nodiscard]] double total() const { return share * by_one_pair(); }
 };
 
 /// Odds of sides, by all pairs that a configuration places in sight of each other.
@@ -30,9 +32,9 @@ struct SideOdds {
 ///
 /// Look-alike places: that there is one is believed once for a side, as often as it happens in this building
 /// (look_alike_rate.h). What things and walls say against it adds up over the pairs across; those that show
-/// the same count once together. By how much scans are bent, and how
-/// many things stay where they are, is learned from the other pairs. Chance: pairs
-/// err independently as far as they show different surface, and wrong poses agree with one another seldom.
+/// the same count once together. By how much scans are bent, and how many things stay where they are, is
+/// learned from the other pairs. Chance: pairs err independently as far as they show different surface, and
+/// wrong poses agree with one another seldom.
 class PlacementOdds {
  public:
   PlacementOdds(int nodes, std::vector<PlacedPair> pairs, const std::vector<UnusedLink>& unused = {});

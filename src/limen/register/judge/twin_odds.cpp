@@ -267,9 +267,6 @@ StayedBelief logs_of_stayed(const TwinEvidence& evidence) {
   return logs;
 }
 
-namespace {
-
-/// By how much likelier what was seen is with this belief than with that of any room, nats.
 double nats_of_stayed(const TwinEvidence& evidence, const StayedBelief& stayed) {
   const StayedBelief logs = logs_of_stayed(evidence);
   StayedBelief now{};
@@ -281,16 +278,13 @@ double nats_of_stayed(const TwinEvidence& evidence, const StayedBelief& stayed) 
   return log_sum_exp(now) - log_sum_exp(before);
 }
 
-}  // namespace
-
-double against_otherwise(const TwinEvidence& evidence, const StayedBelief& stayed) {
-  return nats_of(evidence.otherwise_nats) + nats_of_stayed(evidence, stayed) + built_nats(evidence.built);
+double against_otherwise(const TwinEvidence& evidence, double stayed_nats) {
+  return nats_of(evidence.otherwise_nats) + stayed_nats + built_nats(evidence.built);
 }
 
-double against_alike(const TwinEvidence& evidence, const StayedBelief& stayed) {
+double against_alike(const TwinEvidence& evidence, double stayed_nats) {
   const double other = evidence.things - evidence.agreeing;
-  const double own = log_beta_binomial(evidence.agreeing, other, kFurniture.stayed) +
-                     nats_of_stayed(evidence, stayed) -
+  const double own = log_beta_binomial(evidence.agreeing, other, kFurniture.stayed) + stayed_nats -
                      log_beta_binomial(evidence.agreeing, other, kFurniture.alike);
   return nats_of(evidence.alike_nats) + std::min(0.0, own) + built_nats(evidence.built);
 }

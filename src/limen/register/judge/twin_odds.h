@@ -41,13 +41,16 @@ using StayedBelief = std::array<double, kStayedLevels>;
 const StayedBelief& stayed_beforehand();
 /// Of what was seen, under each of these shares, the logarithm of the likelihood.
 StayedBelief logs_of_stayed(const TwinEvidence& evidence);
+/// By how much likelier what was seen is with this belief than with that of any room, nats.
+double nats_of_stayed(const TwinEvidence& evidence, const StayedBelief& stayed);
 
-/// Nats against a look-alike place that is furnished otherwise, with what is known of the share that stays.
-double against_otherwise(const TwinEvidence& evidence, const StayedBelief& stayed = stayed_beforehand());
+/// Nats against a look-alike place that is furnished otherwise. `stayed_nats`: nats_of_stayed, where more is
+/// known than of any room.
+double against_otherwise(const TwinEvidence& evidence, double stayed_nats = 0.0);
 /// Nats against one that is furnished alike. How many of its things match is not known: it is given the
 /// better of two shares. So things that agree never exclude it, only faces that agree better than hands put
 /// them.
-double against_alike(const TwinEvidence& evidence, const StayedBelief& stayed = stayed_beforehand());
+double against_alike(const TwinEvidence& evidence, double stayed_nats = 0.0);
 
 /// Odds of a look-alike place of either kind.
 double odds_of(const TwinEvidence& evidence);
