@@ -25,13 +25,13 @@ std::size_t compared(const ScanDigest& scan) {
   return std::min(kMostPlanesCompared, scan.planes.size());
 }
 
+}  // namespace
+
 Matrix3d spread_of(const PlaneDigest& plane) {
   Matrix3d spread = kTileM * kTileM * Matrix3d::Identity();
   if (plane.moments.count > 0.0) spread += plane.moments.covariance();
   return spread;
 }
-
-}  // namespace
 
 Eigen::AlignedBox3d box_of_planes(const ScanDigest& scan, const Rigid3& frame_from_scan) {
   constexpr double kSigmas = 2.0;  // an even spread ends at 1.7

@@ -12,6 +12,10 @@
 
 namespace limen {
 
+/// The spread of a plane's surface about its centroid, scan's axes: that of its tiles and what a tile reaches
+/// beyond its middle. m^2.
+Matrix3d spread_of(const PlaneDigest& plane);
+
 /// Where the planes of a scan reach to, in a frame; empty where it has none. Metres.
 Eigen::AlignedBox3d box_of_planes(const ScanDigest& scan, const Rigid3& frame_from_scan);
 

@@ -3,46 +3,24 @@
 #include <gtest/gtest.h>
 
 #include "limen/project/retrieve/choose_pairs.h"
+#include "limen/project/retrieve/drawn_rooms.h"
 
 namespace limen {
 namespace {
 
-/// A rectangle of tiles, `wide` x `high` metres about `middle`, seen from where its normal points to.
-PlaneDigest rectangle(const Vector3d& middle, const Vector3d& normal, double wide, double high) {
-  PlaneDigest digest;
-  digest.plane = {normal, normal.dot(middle)};
-  digest.centroid = middle;
-  digest.area_m2 = wide * high;
-  digest.oriented = true;
-  const Vector3d up = std::abs(normal.z()) > 0.5 ? Vector3d::UnitX() : Vector3d::UnitZ();
-  const Vector3d along = up.cross(normal).normalized();
-  for (double u = -0.5 * wide + 0.05; u < 0.5 * wide; u += 0.1)
-    for (double v = -0.5 * high + 0.05; v < 0.5 * high; v += 0.1) digest.moments.add(u * along + v * up);
-  return digest;
-}
-
 /// A room of 4 x 3 m, seen from within.
 ScanDigest room() {
-  ScanDigest scan;
-  scan.planes = {rectangle({2, 0, 0}, -Vector3d::UnitX(), 3.0, 2.5),
-                 rectangle({-2, 0, 0}, Vector3d::UnitX(), 3.0, 2.5),
-                 rectangle({0, 1.5, 0}, -Vector3d::UnitY(), 4.0, 2.5),
-                 rectangle({0, -1.5, 0}, Vector3d::UnitY(), 4.0, 2.5),
-                 rectangle({0, 0, -1.25}, Vector3d::UnitZ(), 4.0, 3.0)};
-  return scan;
-}
-
-Rigid3 pose(double turn, const Vector3d& shift) {
-  return {rotation_exp(Vector3d(0, 0, turn)), shift};
+  return drawn_room(Vector3d::Zero(), 4.0, 3.0);
 }
 
 TEST(PredictOverlap, TwoScansOfOneRoomShareItsSurface) {
-  EXPECT_NEAR(predicted_overlap(room(), room(), pose(0.0, {0, 0, 0})), 25.0, 1e-9);  // each 5 m^2 at most
+  EXPECT_NEAR(predicted_overlap(room(), room(), turn_and_shift(0.0, {0, 0, 0})), 25.0,
+              1e-9);  // each 5 m^2 at most
 }
 
 TEST(PredictOverlap, TheRoomNextDoorSharesNothing) {
-  EXPECT_LT(predicted_overlap(room(), room(), pose(0.0, {4.2, 0, 0})), 2.0);  // but the walls go on
-  EXPECT_LT(predicted_overlap(room(), room(), pose(0.0, {9.0, 7.0, 0})), 1e-6);
+  EXPECT_LT(predicted_overlap(room(), room(), turn_and_shift(0.0, {4.2, 0, 0})), 2.0);  // but the walls go on
+  EXPECT_LT(predicted_overlap(room(), room(), turn_and_shift(0.0, {9.0, 7.0, 0})), 1e-6);
 }
 
 TEST(PredictOverlap, BothSidesOfAWallAreTwo) {
@@ -54,11 +32,11 @@ TEST(PredictOverlap, BothSidesOfAWallAreTwo) {
 }
 
 TEST(PredictOverlap, IsTheSameBothWaysAndInEveryFrame) {
-  const Rigid3 between = pose(0.7, {1.0, 0.3, 0.05});
+  const Rigid3 between = turn_and_shift(0.7, {1.0, 0.3, 0.05});
   const double there = predicted_overlap(room(), room(), between);
   EXPECT_NEAR(predicted_overlap(room(), room(), inverse(between)), there, 0.05 * there + 1e-9);
   // The second scan in other axes: the pose between the two follows.
-  const Rigid3 turned = pose(-1.1, {0, 0, 0});
+  const Rigid3 turned = turn_and_shift(-1.1, {0, 0, 0});
   ScanDigest other = room();
   for (PlaneDigest& plane : other.planes) {
     plane.plane.normal = turned.rotation * plane.plane.normal;
@@ -70,7 +48,7 @@ TEST(PredictOverlap, IsTheSameBothWaysAndInEveryFrame) {
 }
 
 TEST(PredictOverlap, AllPlanesLieInTheirBox) {
-  const Rigid3 place = pose(0.4, {100.0, -20.0, 3.0});
+  const Rigid3 place = turn_and_shift(0.4, {100.0, -20.0, 3.0});
   const Eigen::AlignedBox3d box = box_of_planes(room(), place);
   for (const double x : {-1.9, 1.9})
     for (const double y : {-1.4, 1.4}) EXPECT_TRUE(box.contains(place * Vector3d(x, y, 0.0)));

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <map>
 #include <optional>
 #include <set>
 #include <tuple>
@@ -11,6 +12,7 @@
 
 #include "limen/base/parallel.h"
 #include "limen/project/retrieve/choose_pairs.h"
+#include "limen/project/retrieve/join_parts.h"
 #include "limen/project/solve/project_graph.h"
 #include "limen/project/survey/stated_place.h"
 
@@ -21,6 +23,7 @@ constexpr std::size_t kFirstPartners = 4;
 constexpr std::size_t kFirstStated = 3;  // where all places are stated
 constexpr std::size_t kMorePartners = 3;
 constexpr int kMostWaves = 4;
+constexpr std::size_t kPairsOfWave = 2;  // of a scan, on average: the next wave knows more
 constexpr double kLeastOverlapM2 = 3.0;  // less holds no pair
 constexpr int kMostStatedPairs = 4;      // of a scan, where all places are stated
 constexpr int kEnoughLinks = 4;          // verified ones: a scan that has them needs no more
@@ -29,12 +32,12 @@ class Waves {
  public:
   Waves(const std::vector<ProjectNode>& nodes, const UserWords& words, double risk, int pairs_per_scan,
         const PairTrier& try_all)
-      : nodes_(nodes), words_(words), risk_(risk), pairs_per_scan_(pairs_per_scan), try_all_(try_all) {}
+      : nodes_(nodes), words_(words), risk_(risk), pairs_per_scan_(pairs_per_scan), try_all_(try_all) {
+    for (const ProjectNode& node : nodes_) digests_.push_back(node.digest);
+  }
 
   std::vector<TriedPair> run() {
-    std::vector<ScanDigest> digests;
-    for (const ProjectNode& node : nodes_) digests.push_back(node.digest);
-    const std::vector<std::vector<std::size_t>> ranked = with_stated_places(ranked_partners(digests));
+    const std::vector<std::vector<std::size_t>> ranked = with_stated_places(ranked_partners(digests_));
     const bool all_stated = std::all_of(nodes_.begin(), nodes_.end(),
                                         [](const ProjectNode& node) { return node.stated.has_value(); });
     std::vector<TriedPair> tried = try_all_(best_pairs(ranked, all_stated ? kFirstStated : kFirstPartners));
@@ -44,7 +47,7 @@ class Waves {
       // What nothing holds is worth more with every wave.
       PairList next = next_pairs(ranked, tried, kFirstPartners << static_cast<unsigned>(wave));
       if (tried.size() >= most) break;
-      next.resize(std::min(next.size(), most - tried.size()));
+      next.resize(std::min({next.size(), most - tried.size(), kPairsOfWave * nodes_.size()}));
       if (next.empty()) break;
       for (TriedPair& pair : try_all_(next)) tried.push_back(std::move(pair));
     }
@@ -75,7 +78,7 @@ class Waves {
   using Done = std::set<std::pair<std::size_t, std::size_t>>;
 
   [[nodiscard]] PairList next_pairs(const std::vector<std::vector<std::size_t>>& ranked,
-                                    const std::vector<TriedPair>& tried, std::size_t partners) const {
+                                    const std::vector<TriedPair>& tried, std::size_t partners) {
     const ProjectGraph made = make_graph(nodes_, tried, words_);
     const SolvedGraph solved = solve_graph(made.graph, risk_);
     Done done;
@@ -86,8 +89,32 @@ class Waves {
       ++held[static_cast<std::size_t>(made.graph.links[k].source)];
       ++held[static_cast<std::size_t>(made.graph.links[k].target)];
     }
+    PairList next = between_parts(solved, done);
     const PairList by_place = partners_by_place(solved, held, done);
-    return in_turns(by_place, joining_partners(ranked, solved, held, partners, done));
+    const PairList others = in_turns(by_place, joining_partners(ranked, solved, held, partners, done));
+    next.insert(next.end(), others.begin(), others.end());
+    return next;
+  }
+
+  /// The pairs that should join parts, from where all their scans are by now.
+  [[nodiscard]] PairList between_parts(const SolvedGraph& solved, Done& done) {
+    std::vector<PlacedPart> parts;
+    std::map<int, std::size_t> part_of_component;
+    for (std::size_t i = 0; i < nodes_.size(); ++i) {
+      const SolvedNode& node = solved.nodes[i];
+      const auto [known, first] = part_of_component.emplace(node.component, parts.size());
+      const bool joined = node.component >= 0;
+      if (first || !joined) parts.emplace_back();
+      PlacedPart& part = first || !joined ? parts.back() : parts[known->second];
+      part.scans.push_back(i);
+      part.part_from_scan.push_back(joined ? node.frame_from_node : Rigid3{});
+    }
+    PairList pairs = joiner_.next_pairs(parts, [&](std::size_t high, std::size_t low) {
+      const bool models = digests_[high].model && digests_[low].model;
+      return models || done.count({high, low}) > 0 || !can_meet(nodes_[high], nodes_[low]);
+    });
+    done.insert(pairs.begin(), pairs.end());
+    return pairs;
   }
 
   /// Of scans that nothing holds, or only scans that stand apart from the rest with them, the first in their
@@ -166,6 +193,8 @@ class Waves {
   }
 
   const std::vector<ProjectNode>& nodes_;
+  std::vector<ScanDigest> digests_;
+  PartJoiner joiner_{digests_};
   const UserWords& words_;
   double risk_;
   int pairs_per_scan_;
