@@ -19,6 +19,8 @@ Matrix3d spread_of(const PlaneDigest& plane);
 /// Where the planes of a scan reach to, in a frame; empty where it has none. Metres.
 Eigen::AlignedBox3d box_of_planes(const ScanDigest& scan, const Rigid3& frame_from_scan);
 
+inline constexpr double kLeastOverlapM2 = 3.0;  ///< less surface in common holds no pair
+
 /// How much surface two scans should have in common where one is at a known pose to the other, from their
 /// planes alone: those that face one way and lie in one another are taken for ellipses of their tiles, and
 /// share the smaller area as far as these meet. m^2; a pair of planes counts for no more than 5 m^2. Poses

@@ -23,6 +23,7 @@ namespace {
 
 constexpr double kLeastPlaneM2 = 0.5;    // smaller ones are furniture
 constexpr std::size_t kMostOfScan = 60;  // of a scanner position, the largest
+constexpr double kMostReachM = 100.0;    // time and memory grow with the reach
 constexpr double kEvenSpread = 1.73;     // standard deviations from the middle of an even spread to its end
 constexpr std::size_t kMostOfTurn = 30;
 constexpr std::size_t kMostScored = 64;
@@ -31,7 +32,6 @@ constexpr std::size_t kPosesOfParts = 3;  // of two parts
 constexpr std::size_t kPairsOfPose = 2;
 constexpr int kMostOfPart = 3;             // pairs of the smaller of two parts
 constexpr double kCountsAgainst = 3.0;     // surface that was looked through, to surface in common
-constexpr double kLeastM2 = 3.0;           // less holds no pair
 constexpr std::size_t kMatchesOfScan = 2;  // in one go, on average: parts with most scans first
 constexpr double kSamePoseM = 0.5;
 constexpr double kSamePoseRad = 0.1;
@@ -80,8 +80,14 @@ PlacedPlane placed_plane(const ScanDigest& scan, const PlaneDigest& plane, const
       std::min_element(scan.stations.begin(), scan.stations.end(), [&](const Vector3d& a, const Vector3d& b) {
         return (a - plane.centroid).squaredNorm() < (b - plane.centroid).squaredNorm();
       });
-  if (nearest != scan.stations.end()) placed.eye = from_scan * *nearest;
+  if (nearest != scan.stations.end()) placed.scanner = from_scan * *nearest;
   return placed;
+}
+
+/// No larger or farther from its scanner than what belongs to one building.
+bool in_reach(const PlacedPlane& plane) {
+  const double away = plane.scanner ? (plane.middle - *plane.scanner).norm() : 0.0;
+  return std::max({away, plane.along.norm(), plane.across.norm()}) <= kMostReachM;
 }
 
 Part part_of(const std::vector<ScanDigest>& digests, const PlacedPart& placed) {
@@ -97,7 +103,9 @@ Part part_of(const std::vector<ScanDigest>& digests, const PlacedPart& placed) {
     const std::size_t most = scan.mobile || scan.model ? scan.planes.size() : kMostOfScan;
     for (std::size_t p = 0; p < std::min(most, scan.planes.size()); ++p) {
       if (scan.planes[p].area_m2 < kLeastPlaneM2) continue;
-      planes.push_back(placed_plane(scan, scan.planes[p], from_scan.back()));
+      const PlacedPlane plane = placed_plane(scan, scan.planes[p], from_scan.back());
+      if (!in_reach(plane)) continue;
+      planes.push_back(plane);
       add_surface_points(planes.back(), shown[k].points);
     }
     for (const SurfacePoint& point : shown[k].points) shown[k].box.extend(point.x);
@@ -107,7 +115,7 @@ Part part_of(const std::vector<ScanDigest>& digests, const PlacedPart& placed) {
   part.from_scan = std::move(from_scan);
   part.shown = std::move(shown);
   for (const PlacedPlane& plane : part.planes) {
-    if (plane.eye) part.box.extend(*plane.eye);  // what lies before it was looked through
+    if (plane.scanner) part.box.extend(*plane.scanner);  // what lies before a plane was looked through
   }
   for (const Shown& one : part.shown) part.box.extend(one.box);
   return part;
@@ -154,13 +162,13 @@ Agreement agreement(const Part& other, const Part& part, const Rigid3& other_fro
   return agreement;
 }
 
-/// Surface in common less what counts against it, m^2; less than `kLeastM2` where either part says so.
+/// Surface in common less what counts against it, m^2; less than `kLeastOverlapM2` where either part says so.
 double score_of(const Part& a, const Part& b, const Rigid3& a_from_b) {
   const auto score = [](const Agreement& one) {
     return one.held_m2() - kCountsAgainst * one.looked_through_m2;
   };
   const Agreement of_b = agreement(a, b, a_from_b);
-  if (score(of_b) < kLeastM2) return score(of_b);
+  if (score(of_b) < kLeastOverlapM2) return score(of_b);
   const Agreement of_a = agreement(b, a, inverse(a_from_b));
   return std::min(of_a.held_m2(), of_b.held_m2()) -
          kCountsAgainst * (of_a.looked_through_m2 + of_b.looked_through_m2);
@@ -217,7 +225,7 @@ std::vector<PartPose> best_poses(const Part& a, const Part& b) {
       const Rigid3 pose{rotation_exp(plan.angle * Vector3d::UnitZ()),
                         Vector3d(plan.shift.x(), plan.shift.y(), height)};
       const double score = score_of(a, b, pose);
-      if (score >= kLeastM2) poses.push_back({pose, score});
+      if (score >= kLeastOverlapM2) poses.push_back({pose, score});
     }
   }
   std::stable_sort(poses.begin(), poses.end(),
@@ -238,10 +246,10 @@ std::vector<PartPose> best_poses(const Part& a, const Part& b) {
 /// Numbers of two parts, the larger one first.
 using PartPair = std::pair<std::size_t, std::size_t>;
 
-/// Less score, less overlap, the two scans, the smaller part.
+/// In the order in which they sort: minus the score, minus the overlap, the two scans, the smaller part.
 using Proposal = std::tuple<double, double, std::size_t, std::size_t, std::size_t>;
 
-/// The parts that are matched in one go, and what is asked of them.
+/// Matches pairs of parts, all at once.
 class Matching {
  public:
   Matching(const std::vector<ScanDigest>& digests, const std::function<bool(std::size_t, std::size_t)>& tried,
@@ -285,7 +293,7 @@ class Matching {
           if (tried_(high, low)) continue;
           const double overlap = predicted_overlap(digests_[b.scans[j]], digests_[a.scans[i]],
                                                    inverse(a.from_scan[i]) * pose.a_from_b * b.from_scan[j]);
-          if (overlap >= kLeastM2) of_pose.emplace_back(-pose.score_m2, -overlap, high, low, smaller);
+          if (overlap >= kLeastOverlapM2) of_pose.emplace_back(-pose.score_m2, -overlap, high, low, smaller);
         }
       }
       std::sort(of_pose.begin(), of_pose.end());

@@ -110,6 +110,37 @@ TEST(PartJoiner, ALookAlikeRoomWithWallsWhereTheOtherPartIsClearComesNowhere) {
   EXPECT_NE(std::find(pairs.begin(), pairs.end(), std::pair(std::size_t{3}, std::size_t{1})), pairs.end());
 }
 
+TEST(PartJoiner, WhatLiesFarAwayChangesNothing) {
+  TwoParts two;
+  const PairList pairs = PartJoiner(two.digests).next_pairs(two.parts, never);
+  PlaneDigest far = two.row.first.planes[0];
+  far.centroid.x() += 80000.0;
+  PlaneDigest wide = far;
+  wide.moments.outer *= 1e10;  // 300 km
+  for (ScanDigest& scan : two.digests) scan.planes.insert(scan.planes.end(), {far, wide});
+  EXPECT_EQ(PartJoiner(two.digests).next_pairs(two.parts, never), pairs);
+}
+
+TEST(PlanImage, AHugePlanHasNoShifts) {
+  std::vector<PlacedPlane> walls(2);
+  for (PlacedPlane& wall : walls) {
+    wall.normal = Vector3d::UnitX();
+    wall.along = 5.0 * Vector3d::UnitY();
+    wall.across = 1.2 * Vector3d::UnitZ();
+    wall.area_m2 = 24.0;
+  }
+  const auto shifts = [&] {
+    const PlanView plan(walls);
+    std::vector<PlanPose> poses;
+    PlanImage(plan).add_best_shifts(plan, 0.0, 5, poses);
+    return poses.size();
+  };
+  walls[1].middle = {20.0, 0.0, 0.0};
+  EXPECT_GT(shifts(), 0U);
+  walls[1].middle = {90000.0, 90000.0, 0.0};
+  EXPECT_EQ(shifts(), 0U);
+}
+
 TEST(SeenSpace, KnowsSurfaceAndWhatWasLookedThrough) {
   PlacedPlane wall;
   wall.middle = {4.0, 0.0, 0.0};
@@ -118,7 +149,7 @@ TEST(SeenSpace, KnowsSurfaceAndWhatWasLookedThrough) {
   wall.across = {0.0, 0.0, 1.2};
   wall.area_m2 = 9.6;
   wall.oriented = true;
-  wall.eye = Vector3d::Zero();
+  wall.scanner = Vector3d::Zero();
   SeenSpace space;
   space.add(wall);
   const auto at = [&](const Vector3d& x, const Vector3d& normal) { return space.at({x, normal, 1.0, true}); };

@@ -15,8 +15,8 @@ struct PlacedPlane {
   Vector3d along = Vector3d::Zero();   ///< half its extent in one direction, level where it is a wall
   Vector3d across = Vector3d::Zero();  ///< half its extent in the other
   double area_m2 = 0.0;
-  bool oriented = false;        ///< the normal points to the side it was seen from
-  std::optional<Vector3d> eye;  ///< the scanner position that saw it
+  bool oriented = false;            ///< the normal points to the side it was seen from
+  std::optional<Vector3d> scanner;  ///< the scanner position that saw it
 };
 
 }  // namespace limen

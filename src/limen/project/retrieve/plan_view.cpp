@@ -21,6 +21,8 @@ constexpr double kNotClearM = 0.5;     // from its ends a line of sight is not s
 constexpr float kBeside = 0.4F;        // what a pixel beside a wall's counts
 constexpr float kPixelAgainst = 3.0F;  // what a pixel of wall that was looked through counts against
 constexpr float kLeastPixels = 5.0F;
+constexpr std::size_t kMostPixels = 1'000'000;        // of a plan
+constexpr std::size_t kMostShifts = 4 * kMostPixels;  // of two that are no larger
 constexpr double kQuarter = 0.5 * std::numbers::pi;
 
 template <class Put>
@@ -33,6 +35,10 @@ void draw(const Vector2d& from, const Vector2d& to, const Put& put) {
   }
 }
 
+std::size_t pixels_in(int width, int height) {
+  return static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+}
+
 bool is_wall(const PlacedPlane& plane) {
   return std::abs(plane.normal.z()) <= kWallSlope;
 }
@@ -43,22 +49,29 @@ PlanView::PlanView(const std::vector<PlacedPlane>& planes) {
   for (const PlacedPlane& plane : planes) {
     const Vector2d middle = plane.middle.head<2>();
     const Vector2d half = plane.along.head<2>();
-    if (plane.eye) {
-      const Vector2d eye = plane.eye->head<2>();
+    if (plane.scanner) {
+      const Vector2d scanner = plane.scanner->head<2>();
       for (const double k : {-0.6, 0.0, 0.6}) {
-        const Vector2d way = middle + k * half - eye;
+        const Vector2d way = middle + k * half - scanner;
         const double length = way.norm();
         if (length <= 2.0 * kNotClearM) continue;
-        sights_.push_back({eye + kNotClearM / length * way, eye + (1.0 - kNotClearM / length) * way});
+        sights_.push_back({scanner + kNotClearM / length * way, scanner + (1.0 - kNotClearM / length) * way});
       }
     }
-    if (!is_wall(plane)) continue;
-    const double height = 2.0 * std::max(std::abs(plane.across.z()), std::abs(plane.along.z()));
-    if (height < kLeastHeightM) continue;
-    walls_.push_back({middle - half, middle + half, std::atan2(plane.normal.y(), plane.normal.x()),
-                      static_cast<float>(std::min(1.0, height / kFullHeightM)), !plane.oriented});
+    if (is_wall(plane)) add_wall(plane);
   }
   find_main_directions(planes);
+}
+
+void PlanView::add_wall(const PlacedPlane& plane) {
+  const double height = 2.0 * std::max(std::abs(plane.across.z()), std::abs(plane.along.z()));
+  if (height < kLeastHeightM) return;
+  const Vector2d middle = plane.middle.head<2>();
+  const Vector2d half = plane.along.head<2>();
+  const auto weight = static_cast<float>(std::min(1.0, height / kFullHeightM));
+  const double angle = std::atan2(plane.normal.y(), plane.normal.x());
+  walls_.push_back({middle - half, middle + half, angle, weight});
+  if (!plane.oriented) walls_.push_back({middle - half, middle + half, angle + std::numbers::pi, weight});
 }
 
 void PlanView::find_main_directions(const std::vector<PlacedPlane>& planes) {
@@ -116,11 +129,12 @@ PlanImage::PlanImage(const PlanView& plan) {
       y = {std::min(y.first, row - 1), std::max(y.second, row + 2)};
     });
   }
+  const std::size_t size = pixels_in(x.second - x.first, y.second - y.first);
+  if (size > kMostPixels) return;
   x_ = x.first;
   y_ = y.first;
   width_ = x.second - x.first;
   height_ = y.second - y.first;
-  const std::size_t size = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
   for (std::vector<float>& way : ways_) way.assign(size, 0.0F);
   std::vector<bool> wall_here(size, false);
   for (const PlanView::Wall& wall : plan.walls_) {
@@ -129,12 +143,8 @@ PlanImage::PlanImage(const PlanView& plan) {
         const std::size_t pixel = index(column + k % 3 - 1, row + k / 3 - 1);
         wall_here[pixel] = true;
         const float weight = wall.weight * (k == 4 ? 1.0F : kBeside);
-        const auto put = [&](double angle) {
-          float& value = ways_[static_cast<std::size_t>(way_of(angle))][pixel];
-          value = std::max(value, weight);
-        };
-        put(wall.angle);
-        if (wall.both) put(wall.angle + std::numbers::pi);
+        float& value = ways_[static_cast<std::size_t>(way_of(wall.angle))][pixel];
+        value = std::max(value, weight);
       }
     });
   }
@@ -153,12 +163,8 @@ std::vector<PlanImage::Pixel> PlanImage::pixels_of(const std::vector<PlanView::W
   std::map<std::tuple<int, int, int>, float> weights;
   for (const PlanView::Wall& wall : walls) {
     draw(turned * wall.from, turned * wall.to, [&](int column, int row) {
-      const auto put = [&](double angle) {
-        float& weight = weights[{row, column, way_of(angle)}];
-        weight = std::max(weight, wall.weight);
-      };
-      put(wall.angle + turn);
-      if (wall.both) put(wall.angle + turn + std::numbers::pi);
+      float& weight = weights[{row, column, way_of(wall.angle + turn)}];
+      weight = std::max(weight, wall.weight);
     });
   }
   std::vector<Pixel> pixels;
@@ -178,7 +184,8 @@ void PlanImage::add_best_shifts(const PlanView& other, double angle, std::size_t
   const int columns = width_ + right->x - left->x;
   const int rows = height_ + top - pixels.front().y;
   const auto width = static_cast<std::size_t>(columns);
-  std::vector<float> sums(width * static_cast<std::size_t>(rows), 0.0F);
+  if (pixels_in(columns, rows) > kMostShifts) return;
+  std::vector<float> sums(pixels_in(columns, rows), 0.0F);
   for (const Pixel& pixel : pixels) {
     const std::vector<float>& image = ways_[static_cast<std::size_t>(pixel.way)];
     for (int row = 0; row < height_; ++row) {

@@ -26,15 +26,15 @@ class PlanView {
     Vector2d to = Vector2d::Zero();
     double angle = 0.0;   ///< of its normal
     float weight = 0.0F;  ///< 1 from 2 m of height on
-    bool both = false;    ///< it may face either way
   };
   struct Sight {
     Vector2d from = Vector2d::Zero();
     Vector2d to = Vector2d::Zero();
   };
+  void add_wall(const PlacedPlane& plane);
   void find_main_directions(const std::vector<PlacedPlane>& planes);
 
-  std::vector<Wall> walls_;
+  std::vector<Wall> walls_;  ///< two where a wall may face either way
   std::vector<Sight> sights_;
   std::vector<double> main_directions_;
 };
@@ -50,6 +50,7 @@ struct PlanPose {
 /// through.
 class PlanImage {
  public:
+  /// No pixels where the plan is larger than 250 x 250 m.
   explicit PlanImage(const PlanView& plan);
 
   /// The best shifts of another plan's walls after a turn by `angle`: the highest `most` peaks of the

@@ -45,14 +45,14 @@ void SeenSpace::add(const PlacedPlane& plane) {
     for (int b = -across; b <= across; ++b)
       cover(surface, plane.middle + plane.along * a / along + plane.across * b / across);
   }
-  if (!plane.eye) return;
+  if (!plane.scanner) return;
   std::vector<SurfacePoint> points;
   add_surface_points(plane, points);
   for (const SurfacePoint& point : points) {
-    const Vector3d way = point.x - *plane.eye;
+    const Vector3d way = point.x - *plane.scanner;
     const double length = way.norm();
     for (double t = kClearM; t < length - kClearM; t += kCellM)
-      cell_at(*plane.eye + t / length * way).clear = true;
+      cell_at(*plane.scanner + t / length * way).clear = true;
   }
 }
 

@@ -9,7 +9,7 @@
 
 namespace limen {
 
-/// A point of a surface and the area that it stands for. Metres, m^2.
+/// A point of a surface and the area that it represents. Metres, m^2.
 struct SurfacePoint {
   Vector3d x = Vector3d::Zero();
   Vector3d normal = Vector3d::UnitZ();

@@ -24,7 +24,6 @@ constexpr std::size_t kFirstStated = 3;  // where all places are stated
 constexpr std::size_t kMorePartners = 3;
 constexpr int kMostWaves = 4;
 constexpr std::size_t kPairsOfWave = 2;  // of a scan, on average: the next wave knows more
-constexpr double kLeastOverlapM2 = 3.0;  // less holds no pair
 constexpr int kMostStatedPairs = 4;      // of a scan, where all places are stated
 constexpr int kEnoughLinks = 4;          // verified ones: a scan that has them needs no more
 
@@ -44,9 +43,9 @@ class Waves {
     const int per_scan = all_stated ? std::min(kMostStatedPairs, pairs_per_scan_) : pairs_per_scan_;
     const auto most = static_cast<std::size_t>(per_scan) * nodes_.size();
     for (int wave = 1; wave <= kMostWaves; ++wave) {
+      if (tried.size() >= most) break;
       // What nothing holds is worth more with every wave.
       PairList next = next_pairs(ranked, tried, kFirstPartners << static_cast<unsigned>(wave));
-      if (tried.size() >= most) break;
       next.resize(std::min({next.size(), most - tried.size(), kPairsOfWave * nodes_.size()}));
       if (next.empty()) break;
       for (TriedPair& pair : try_all_(next)) tried.push_back(std::move(pair));
@@ -102,12 +101,12 @@ class Waves {
     std::map<int, std::size_t> part_of_component;
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
       const SolvedNode& node = solved.nodes[i];
-      const auto [known, first] = part_of_component.emplace(node.component, parts.size());
       const bool joined = node.component >= 0;
-      if (first || !joined) parts.emplace_back();
-      PlacedPart& part = first || !joined ? parts.back() : parts[known->second];
-      part.scans.push_back(i);
-      part.part_from_scan.push_back(joined ? node.frame_from_node : Rigid3{});
+      const std::size_t part =
+          joined ? part_of_component.emplace(node.component, parts.size()).first->second : parts.size();
+      if (part == parts.size()) parts.emplace_back();
+      parts[part].scans.push_back(i);
+      parts[part].part_from_scan.push_back(joined ? node.frame_from_node : Rigid3{});
     }
     PairList pairs = joiner_.next_pairs(parts, [&](std::size_t high, std::size_t low) {
       const bool models = digests_[high].model && digests_[low].model;
