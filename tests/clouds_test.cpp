@@ -37,7 +37,7 @@ class CloudsTest : public ProgramTest {
 
 TEST_F(CloudsTest, ThinKeepsAboutAsManyAsAskedForInEveryFormat) {
   write_floor("floor.csv", 200);
-  for (const std::string ending : {"ply", "las", "laz", "e57"}) {
+  for (const std::string ending : {"ply", "las", "laz", "copc.laz", "e57"}) {
     const ProgramRun done = run({"thin", "floor.csv", "out." + ending, "--points", "5000", "--json"});
     ASSERT_EQ(done.status, 0) << done.err;
     const Json stated = Json::parse(done.out);
@@ -91,7 +91,7 @@ TEST_F(CloudsTest, AScanLargerThanItsMemoryIsThinnedAndTellsSo) {
 TEST_F(CloudsTest, TransformThereAndBackInEachFormat) {
   write_floor("floor.csv", 30);
   write_whole(work() / "pose.txt", kShifted);
-  for (const std::string ending : {"ply", "las", "laz", "e57"}) {
+  for (const std::string ending : {"ply", "las", "laz", "copc.laz", "e57"}) {
     const std::string there = "there." + ending;
     ASSERT_EQ(run({"transform", "pose.txt", "floor.csv", there}).status, 0) << ending;
     EXPECT_NEAR(info(there)["scans"][0]["low"][0].get<double>(), 1000.25, 1e-4) << ending;
@@ -101,6 +101,7 @@ TEST_F(CloudsTest, TransformThereAndBackInEachFormat) {
     EXPECT_NEAR(back["scans"][0]["low"][0].get<double>(), 0.0, 1e-4) << ending;
     EXPECT_EQ(back["scans"][0]["points"], 900) << ending;
     EXPECT_NE(back["fields"].dump().find("\"label\""), std::string::npos) << ending;
+    EXPECT_EQ(back["format"].dump().find("COPC") != std::string::npos, ending == "copc.laz");
   }
   EXPECT_NE(
       run({"transform", "pose.txt", "floor.csv", "out.pcd"}).err.find(".ply, .las, .laz, .e57, .xyz or .csv"),

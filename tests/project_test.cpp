@@ -115,6 +115,9 @@ TEST_F(Project, StationsStandWhereTheTruthHasThemAndBytesNeverDiffer) {
   const ProgramRun moved = run({"transform", "out/project.json", "-o", "placed", "--as", "ply", "--quiet"});
   EXPECT_EQ(moved.status, 0) << moved.err;
   EXPECT_FALSE(std::filesystem::is_empty(work() / "placed"));
+  const ProgramRun copc = run({"transform", "out/project.json", "-o", "all", "--merge", "--as", "copc"});
+  EXPECT_EQ(copc.status, 0) << copc.err;
+  EXPECT_TRUE(std::filesystem::exists(work() / "all.copc.laz"));
   const ProgramRun merged = run({"transform", "out/project.json", "-o", "all.las", "--merge", "--quiet"});
   EXPECT_EQ(merged.status, 0) << merged.err;
   EXPECT_GT(std::filesystem::file_size(work() / "all.las"), 100000U);

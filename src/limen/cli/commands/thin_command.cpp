@@ -67,7 +67,7 @@ void add_thin_command(CommandLine& app, Session& session) {
   CommandLine* command = add_command(app, session, "thin", "Thin a point cloud of any size evenly",
                                      [options, &session] { return run(*options, session); });
   command->add_option("CLOUD", options->cloud, "A cloud of any format limen reads")->required();
-  command->add_option("OUT", options->output, "The file to write: .ply, .las, .laz, .e57 or .xyz")
+  command->add_option("OUT", options->output, "The file to write: .ply, .las, .laz, .copc.laz, .e57 or .xyz")
       ->required();
   command->add_option("--points N", options->thinning.most_points,
                       "Keep this many points, or a few less; the spacing is chosen to fit");

@@ -163,9 +163,10 @@ void add_transform_command(CommandLine& app, Session& session) {
       ->required();
   command->add_option("CLOUD", options->cloud, "The cloud to move, of any format limen reads")->required();
   command
-      ->add_option("OUT", options->output,
-                   "The file to write: of CLOUD's own format, which keeps all of it, or .ply, .las, .laz, "
-                   ".e57, .xyz; with --split a folder")
+      ->add_option(
+          "OUT", options->output,
+          "The file to write: of CLOUD's own format, which keeps all of it, or .ply, .las, .laz, .copc.laz, "
+          ".e57, .xyz; with --split a folder")
       ->required();
   command
       ->add_option(

@@ -23,6 +23,7 @@
 #include "limen/files/scan_in_file.h"
 #include "limen/io/cloud/transform_cloud.h"
 #include "limen/io/cloud/write_clouds.h"
+#include "limen/io/las/laz/copc_writer.h"
 #include "limen/report/json/json_values.h"
 #include "limen/report/project/read_project.h"
 #include "limen/report/summary/words.h"
@@ -36,7 +37,7 @@ namespace fs = std::filesystem;
 struct ProjectMoveOptions {
   std::string project;  ///< project.json
   std::string output;   ///< a folder, or with `merge` a file
-  std::string ending;   ///< "e57", "las", "ply", or empty: each as it is
+  std::string ending;   ///< as --as has it: "e57", "copc", or empty: each as it is
   bool merge = false;   ///< all in one file
   bool force = false;   ///< also of files that are not those that were registered
   std::string crs;      ///< of the frame, where the user says it
@@ -85,21 +86,28 @@ std::vector<Move> moves_of(const std::vector<ProjectEntry>& entries, const Sessi
   return moves;
 }
 
+/// What a file of a format ends in, as `--as` names it; "": of the file's own.
+std::string ending_of_format(const std::string& format, const fs::path& own) {
+  if (format.empty()) return is_copc_ending(own) ? ".copc.laz" : own.extension().string();
+  return format == "copc" ? ".copc.laz" : "." + format;
+}
+
 /// A name for each in the folder; files of one name from different folders are numbered.
 void name_outputs(std::vector<Move>& moves, const fs::path& folder, const std::string& ending) {
   std::set<fs::path> taken;
   for (Move& move : moves) {
     const ScanInFile named = scan_in_file(move.entry.file);
     const fs::path from(named.file);
-    std::string end = ending.empty() ? from.extension().string() : "." + ending;
+    std::string end = ending_of_format(ending, from);
     // A file of several stations becomes E57, and so does one of them where its format is not written.
     const bool one_of_several = named.index && !is_cloud_ending("cloud" + end);
     if (ending.empty() && (move.several || one_of_several)) end = ".e57";
     // What is bent is written point by point.
     if (move.entry.bend && !is_cloud_ending("cloud" + end)) end = ".ply";
-    const std::string stem = from.stem().string() + (named.index    ? fmt::format("_{}", *named.index)
-                                                     : move.several ? fmt::format("_{}", move.entry.index)
-                                                                    : std::string());
+    const std::string stem = (is_copc_ending(from) ? from.stem() : from).stem().string() +
+                             (named.index    ? fmt::format("_{}", *named.index)
+                              : move.several ? fmt::format("_{}", move.entry.index)
+                                             : std::string());
     move.output = folder / (stem + end);
     for (int k = 2; !taken.insert(move.output).second; ++k)
       move.output = folder / fmt::format("{}_{}{}", stem, k, end);
@@ -161,7 +169,10 @@ std::size_t write_each(std::vector<Move>& moves, const ProjectMoveOptions& optio
 std::size_t write_merged(const std::vector<Move>& moves, const ProjectMoveOptions& options,
                          const CoordinateSystem& system, const Session& session) {
   fs::path output(options.output);
-  if (!options.ending.empty() && output.extension() != "." + options.ending) output += "." + options.ending;
+  if (!options.ending.empty()) {
+    const std::string ending = ending_of_format(options.ending, output);
+    if (!output.string().ends_with(ending)) output += ending;
+  }
   check_inputs(moves, {}, options, session);
   check_output(output, moves);
   std::vector<StationToMove> stations;
@@ -217,7 +228,7 @@ void add_transform_project_command(CommandLine& app, Session& session) {
   command->add_option("PROJECT", options->project, "The project.json that limen project wrote")->required();
   command->add_option("-o,--output OUT", options->output, "A folder, or with --merge a file")->required();
   command->add_option("--as", options->ending, "Format of the output (default: each scan's own)")
-      ->one_of({"e57", "las", "laz", "ply"});
+      ->one_of({"e57", "las", "laz", "copc", "ply"});
   command->add_flag("--merge", options->merge, "All scans in one file");
   command->add_flag("--force", options->force,
                     "Accept files that are not the registered ones, for example copies in the same frame");

@@ -3,8 +3,6 @@
 #include "limen/extract/cells/morton_order.h"
 
 #include <algorithm>
-#include <array>
-#include <bit>
 #include <memory>
 #include <utility>
 
@@ -15,28 +13,6 @@ namespace limen {
 namespace {
 
 constexpr std::uint32_t kMiddle = 1U << 20U;
-constexpr std::size_t kPieces = 16;
-constexpr std::uint32_t kDigitBits = 11;
-constexpr std::uint32_t kDigits = 1U << kDigitBits;
-
-std::uint64_t spread(std::uint64_t v) {
-  v &= 0x1fffff;
-  v = (v | (v << 32U)) & 0x1f00000000ffffULL;
-  v = (v | (v << 16U)) & 0x1f0000ff0000ffULL;
-  v = (v | (v << 8U)) & 0x100f00f00f00f00fULL;
-  v = (v | (v << 4U)) & 0x10c30c30c30c30c3ULL;
-  return (v | (v << 2U)) & 0x1249249249249249ULL;
-}
-
-std::uint32_t gather(std::uint64_t v) {
-  v &= 0x1249249249249249ULL;
-  v = (v | (v >> 2U)) & 0x10c30c30c30c30c3ULL;
-  v = (v | (v >> 4U)) & 0x100f00f00f00f00fULL;
-  v = (v | (v >> 8U)) & 0x1f0000ff0000ffULL;
-  v = (v | (v >> 16U)) & 0x1f00000000ffffULL;
-  v = (v | (v >> 32U)) & 0x1fffffULL;
-  return static_cast<std::uint32_t>(v);
-}
 
 std::uint32_t cell_coordinate(double x, double cell_m) {
   // Of a number that is not negative what is cut off is what std::floor, a call, would take away.
@@ -54,40 +30,7 @@ double first_cell(const std::vector<Vector3d>& points, const Extent& extent, int
   return values[values.size() / 2] - kMiddle * cell_m;
 }
 
-/// One stable pass of a radix sort on `shift`'s digit; pieces keep their order, whoever works on them.
-void radix_pass(const CurvePlaces& from, CurvePlaces& to, std::uint32_t shift) {
-  const std::size_t n = from.size();
-  const std::size_t grain = (n + kPieces - 1) / kPieces;
-  std::vector<std::array<std::uint32_t, kDigits>> starts(kPieces);
-  parallel_for(n, grain, [&](std::size_t begin, std::size_t end) {
-    std::array<std::uint32_t, kDigits>& count = starts[begin / grain];
-    count.fill(0);
-    for (std::size_t i = begin; i < end; ++i) ++count[(from[i].code >> shift) & (kDigits - 1)];
-  });
-  const std::size_t used = (n + grain - 1) / grain;
-  std::uint32_t total = 0;
-  for (std::uint32_t digit = 0; digit < kDigits; ++digit) {
-    for (std::size_t piece = 0; piece < used; ++piece) {
-      const std::uint32_t count = starts[piece][digit];
-      starts[piece][digit] = total;
-      total += count;
-    }
-  }
-  parallel_for(n, grain, [&](std::size_t begin, std::size_t end) {
-    std::array<std::uint32_t, kDigits>& next = starts[begin / grain];
-    for (std::size_t i = begin; i < end; ++i) to[next[(from[i].code >> shift) & (kDigits - 1)]++] = from[i];
-  });
-}
-
 }  // namespace
-
-std::uint64_t morton_encode(std::uint32_t x, std::uint32_t y, std::uint32_t z) {
-  return spread(x) | (spread(y) << 1U) | (spread(z) << 2U);
-}
-
-CellIndex morton_decode(std::uint64_t code) {
-  return {gather(code), gather(code >> 1U), gather(code >> 2U)};
-}
 
 CurveOrder along_curve(const std::vector<Vector3d>& points, double cell_m) {
   CurveOrder sorted;
@@ -101,29 +44,10 @@ CurveOrder along_curve(const std::vector<Vector3d>& points, double cell_m) {
     return morton_encode(cell_coordinate(x.x(), cell_m), cell_coordinate(x.y(), cell_m),
                          cell_coordinate(x.z(), cell_m));
   };
-  const std::uint64_t first = code_of(points.front());
-  const std::uint64_t differ = parallel_reduce(
-      points.size(), 65536, std::uint64_t{0},
-      [&](std::size_t begin, std::size_t end) {
-        std::uint64_t part = 0;
-        for (std::size_t i = begin; i < end; ++i) {
-          items[i] = {code_of(points[i]), static_cast<std::uint32_t>(i)};
-          part |= items[i].code ^ first;
-        }
-        return part;
-      },
-      [](std::uint64_t a, std::uint64_t b) { return a | b; });
-  // Points that were laid along the curve once stay so, also with larger cubes.
-  if (std::is_sorted(items.begin(), items.end(),
-                     [](const CurvePlace& a, const CurvePlace& b) { return a.code < b.code; }))
-    return sorted;
-  CurvePlaces other(items.size());
-  // Digits above the highest bit in which any two codes differ need no pass.
-  const auto bits = static_cast<std::uint32_t>(std::bit_width(differ));
-  for (std::uint32_t shift = 0; shift < bits; shift += kDigitBits) {
-    radix_pass(items, other, shift);
-    items.swap(other);
-  }
+  parallel_for(points.size(), 65536, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) items[i] = {code_of(points[i]), static_cast<std::uint32_t>(i)};
+  });
+  sort_along_curve(items);
   return sorted;
 }
 

@@ -16,6 +16,7 @@
 #include "limen/io/e57/e57_copy.h"
 #include "limen/io/e57/e57_poses.h"
 #include "limen/io/las/las.h"
+#include "limen/io/las/laz/copc_writer.h"
 #include "limen/io/pcd/pcd.h"
 #include "limen/io/ply/ply.h"
 #include "limen/io/ptx/ptx.h"
@@ -38,7 +39,8 @@ bool has_ending_of(PointFormat format, const std::filesystem::path& path) {
     case PointFormat::e57:
       return ending == ".e57";
     case PointFormat::las:
-      return ending == ".las" || ending == ".laz";
+      // A COPC has its points in another order, and is written anew.
+      return ending == ".las" || (ending == ".laz" && !is_copc_ending(path));
     case PointFormat::text:
       return ending == ".pts" || ending == ".xyz" || ending == ".txt" || ending == ".csv" || ending == ".asc";
   }

@@ -207,8 +207,8 @@ LasHeader parse_las_header(std::string_view bytes, const std::string& name) {
 }
 
 std::string las_format_name(const LasHeader& header) {
-  return fmt::format("{} 1.{}, point format {}", header.compressed ? "LAZ" : "LAS", header.minor,
-                     header.point_format);
+  return fmt::format("{} 1.{}{}, point format {}", header.compressed ? "LAZ" : "LAS", header.minor,
+                     header.find("copc", 1) != nullptr ? " (COPC)" : "", header.point_format);
 }
 
 std::vector<std::string> las_coordinate_systems(const LasHeader& header) {

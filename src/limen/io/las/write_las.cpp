@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
-#include <optional>
+#include <memory>
 #include <type_traits>
 
 #include <fmt/format.h>
@@ -17,6 +17,7 @@
 #include "limen/io/las/las_fields.h"
 #include "limen/io/las/las_header.h"
 #include "limen/io/las/las_slots.h"
+#include "limen/io/las/laz/copc_writer.h"
 #include "limen/io/las/laz/laz_info.h"
 #include "limen/io/las/laz/laz_pack.h"
 #include "limen/io/las/laz/laz_writer.h"
@@ -110,6 +111,7 @@ class LasWriter : public CloudWriter {
       : name_(path.string()),
         plan_(plan),
         slots_(las_slots(plan, name_)),
+        tree_(is_copc_ending(path)),
         items_(is_laz_ending(path) ? laz::items_of(slots_.point_format, slots_.point_bytes) : Items{}),
         file_(path) {
     const double step =
@@ -119,7 +121,11 @@ class LasWriter : public CloudWriter {
     if (!offset_.allFinite()) offset_.setZero();
     const std::string head = beginning();
     file_.write(head);
-    if (!items_.empty()) packed_.emplace(file_, head.size(), items_);
+    if (tree_)
+      packed_ = std::make_unique<CopcWriter>(file_, head.size(), items_,
+                                             LasGrid{Vector3d::Constant(step_), offset_, false});
+    else if (!items_.empty())
+      packed_ = std::make_unique<LazWriter>(file_, head.size(), items_);
   }
 
   void write(const RecordTable& rows) override {
@@ -147,6 +153,10 @@ class LasWriter : public CloudWriter {
       records += las_record(user, number, body);
       ++count;
     };
+    if (tree_) {
+      records += copc_info_record();
+      ++count;
+    }
     // Of LAS 1.4 it is well-known text; a number alone has no place in it.
     const auto text = std::find_if(plan_.georeference.begin(), plan_.georeference.end(),
                                    [](const std::string& it) { return it.find('[') != std::string::npos; });
@@ -157,7 +167,8 @@ class LasWriter : public CloudWriter {
       put_las_vector(centre, 0, *plan_.centre);
       add(kLasCentreUser, kLasCentreNumber, centre);
     }
-    if (!items_.empty()) add(kLasZipUser, kLasZipNumber, laz::laszip_record(items_, kLazChunkPoints));
+    const std::uint32_t chunks = tree_ ? laz::kVaryingChunks : kLazChunkPoints;
+    if (!items_.empty()) add(kLasZipUser, kLasZipNumber, laz::laszip_record(items_, chunks));
     std::string header(kHeaderBytes14, '\0');
     header.replace(0, 4, "LASF");
     header[las_at::kMinorVersion - 1] = 1;
@@ -354,9 +365,10 @@ class LasWriter : public CloudWriter {
   std::string name_;
   CloudPlan plan_;
   LasSlots slots_;
+  bool tree_;    ///< a COPC
   Items items_;  ///< of packed points; else none
   AtomicFile file_;
-  std::optional<LazWriter> packed_;
+  std::unique_ptr<PointPacker> packed_;
   double step_ = kCoarsestStep;
   Vector3d offset_ = Vector3d::Zero();
   std::vector<double> spreads_;  ///< per column; empty before the first rows

@@ -9,6 +9,7 @@
 #include "limen/base/error.h"
 #include "limen/io/las/las_fields.h"
 #include "limen/io/las/laz/laz_integer.h"
+#include "limen/io/las/laz/laz_pack.h"
 
 // Source: M. Isenburg, LASzip; the LASzip specification of ASPRS' LAZ format (variable length record 22204).
 
@@ -18,7 +19,6 @@ namespace {
 using laz::ItemPlan;
 using laz::ItemType;
 
-constexpr std::uint32_t kVariable = 0xFFFFFFFFU;  ///< chunks tell their points in the table
 constexpr std::size_t kRecordHead = 34;
 constexpr std::size_t kItemBytes = 6;
 
@@ -158,7 +158,7 @@ void parse_table(const InfoSource& source, const Compression& compression, LazIn
   std::uint64_t at = begin;
   std::uint64_t left = source.header.points;
   for (std::size_t k = 0; k < count; ++k) {
-    const bool variable = compression.chunk_points == kVariable;
+    const bool variable = compression.chunk_points == laz::kVaryingChunks;
     if (variable) points = numbers.decode(decoder, points, 0);
     length = numbers.decode(decoder, length, 1);
     const std::uint64_t here = variable ? static_cast<std::uint32_t>(points)

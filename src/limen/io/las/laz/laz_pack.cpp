@@ -148,14 +148,17 @@ std::string pack_chunk(const std::vector<ItemPlan>& items, std::string_view reco
                            : pack_pointwise_chunk(items, records, stride);
 }
 
-std::string pack_table(const std::vector<std::uint32_t>& chunk_bytes) {
+std::string pack_table(const std::vector<ChunkSize>& chunks, bool varying) {
   std::string table(8, '\0');
-  put_las_number(table, 4, static_cast<std::uint32_t>(chunk_bytes.size()));
+  put_las_number(table, 4, static_cast<std::uint32_t>(chunks.size()));
   Encoder encoder;
-  IntegerCoder<Encoder, 32, 2> lengths;
-  std::int32_t last = 0;
-  for (const std::uint32_t bytes : chunk_bytes)
-    last = lengths.code(encoder, static_cast<std::int32_t>(bytes), last, 1);
+  IntegerCoder<Encoder, 32, 2> numbers;
+  std::int32_t points = 0;
+  std::int32_t bytes = 0;
+  for (const ChunkSize& chunk : chunks) {
+    if (varying) points = numbers.code(encoder, static_cast<std::int32_t>(chunk.points), points, 0);
+    bytes = numbers.code(encoder, static_cast<std::int32_t>(chunk.bytes), bytes, 1);
+  }
   return table + encoder.finish();
 }
 

@@ -8,7 +8,6 @@
 #include "limen/base/parallel.h"
 #include "limen/base/text.h"
 #include "limen/io/las/las_header.h"
-#include "limen/io/las/laz/laz_pack.h"
 
 namespace limen {
 namespace {
@@ -53,7 +52,7 @@ void LazWriter::pack_pending(std::size_t chunks) {
   for (const std::string& chunk : packed) {
     file_.write(chunk);
     end_ += chunk.size();
-    packed_bytes_.push_back(static_cast<std::uint32_t>(chunk.size()));
+    sizes_.push_back({kLazChunkPoints, static_cast<std::uint32_t>(chunk.size())});
   }
   pending_.erase(0, chunks * chunk_bytes_);
 }
@@ -61,7 +60,7 @@ void LazWriter::pack_pending(std::size_t chunks) {
 std::uint64_t LazWriter::finish() {
   pack_pending((pending_.size() + chunk_bytes_ - 1) / chunk_bytes_);
   file_.overwrite(begin_, bytes_of_place(end_));
-  const std::string table = laz::pack_table(packed_bytes_);
+  const std::string table = laz::pack_table(sizes_, false);
   file_.write(table);
   return end_ + table.size();
 }

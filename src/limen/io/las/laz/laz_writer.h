@@ -10,6 +10,7 @@
 
 #include "limen/base/atomic_file.h"
 #include "limen/io/las/laz/laz_items.h"
+#include "limen/io/las/laz/laz_pack.h"
 
 namespace limen {
 
@@ -18,17 +19,30 @@ inline constexpr std::uint32_t kLazChunkPoints = 50000;
 /// Whether a file of this name is to be packed.
 bool is_laz_ending(const std::filesystem::path& path);
 
+/// Takes the records of points and writes them packed.
+class PointPacker {
+ public:
+  PointPacker() = default;
+  PointPacker(const PointPacker&) = delete;
+  PointPacker& operator=(const PointPacker&) = delete;
+  virtual ~PointPacker() = default;
+
+  /// The next records, one behind the other.
+  virtual void write(std::string_view records) = 0;
+  /// Writes what is left. Call it once, last; tells how many bytes are in the file then.
+  virtual std::uint64_t finish() = 0;
+};
+
 /// Writes the points of a LAZ file, whose header and records are written already: chunks, packed on all
 /// threads, then their table. The same records give the same bytes however they are cut into pieces.
-class LazWriter {
+class LazWriter : public PointPacker {
  public:
   /// `points_begin`: how many bytes are in the file.
   LazWriter(AtomicFile& file, std::uint64_t points_begin, std::vector<laz::ItemPlan> items);
 
-  /// The next records, one behind the other.
-  void write(std::string_view records);
-  /// The last chunk and the table. Call it once, last; tells how many bytes are in the file then.
-  std::uint64_t finish();
+  void write(std::string_view records) override;
+  /// The last chunk and the table.
+  std::uint64_t finish() override;
 
  private:
   void pack_pending(std::size_t chunks);
@@ -39,7 +53,7 @@ class LazWriter {
   std::vector<laz::ItemPlan> items_;
   std::size_t chunk_bytes_ = 0;  ///< of the records of a whole chunk
   std::string pending_;          ///< records that are not packed yet
-  std::vector<std::uint32_t> packed_bytes_;
+  std::vector<laz::ChunkSize> sizes_;
 };
 
 }  // namespace limen
