@@ -9,7 +9,8 @@
 // look-alikes.
 //
 // - Boards hang plumb in one half of the trials, so that their edges lie along the rows and columns of
-//   points, and at any turn in the other; slanted by up to 45 degrees.
+//   points, and at any turn in the other; slanted by up to 45 degrees. Ranges vary by 5 %, so that the steps
+//   between points are no fraction of a board.
 // - error: root mean square per axis, millimetres; *3-D* that of the distance. ratio: root mean square of
 //   the distance over the square root of 3 and the stated deviation; below 1 the deviation is cautious.
 #include <algorithm>
@@ -119,8 +120,9 @@ const FoundTarget* nearest(const std::vector<FoundTarget>& found, TargetKind kin
   return nullptr;
 }
 
-void add_trial(double range_m, const Setting& setting, std::uint64_t seed, Trials& trials) {
+void add_trial(double nominal_range_m, const Setting& setting, std::uint64_t seed, Trials& trials) {
   RandomStream random(seed, 1);
+  const double range_m = nominal_range_m * random.uniform(0.95, 1.05);
   Mesh mesh = hall();
   const double aside_deg = degrees(std::atan(0.3 / range_m));
   const Vector3d ball = toward(aside_deg, random.uniform(-0.3, 0.3) * aside_deg, range_m);

@@ -25,15 +25,15 @@ Mesh target_wall() {
   return mesh;
 }
 
-/// As seen from a scanner at 0 0 0, some 4 mm from point to point at 6 m; about an origin of a national
-/// grid.
-Scan scan_of_targets(const Mesh& mesh, double noise_m = 0.002) {
+/// As seen from a scanner at 0 0 0, by default some 4 mm from point to point at 6 m; about an origin of a
+/// national grid.
+Scan scan_of_targets(const Mesh& mesh, std::size_t points = 400000) {
   const FieldOfView view{-12.0, 12.0, 24.0};
   const Rigid3 heading{rotation_exp({0, 0, -0.21}), Vector3d::Zero()};
   ScannerOptions scanner;
-  scanner.noise_m = noise_m;
+  scanner.noise_m = 0.002;
   Scan scan = station_scan(
-      "wall", sweep(RayCaster(mesh), {}, station_pattern(heading, 400000, view), scanner, 7), {});
+      "wall", sweep(RayCaster(mesh), {}, station_pattern(heading, points, view), scanner, 7), {});
   scan.local_origin = {652000, 6840000, 100};
   return scan;
 }
@@ -63,6 +63,32 @@ TEST(FindTargets, MeasuresABoardAtAnySlantToAMillimetre) {
     Mesh mesh = target_wall();
     add_board(mesh, board_at(kSite, slant, 2.0 * slant + 0.3));
     expect_one(find_targets(scan_of_targets(mesh), kBothKinds), TargetKind::board, kSite);
+  }
+}
+
+TEST(FindTargets, TheBordersOfABoardTellWhereRowsOfPointsAreFarApart) {
+  // Rows along the edges, 13 mm from one another: the two edges in the middle alone leave 3.7 mm (1 sigma).
+  for (const bool on_a_wall : {false, true}) {
+    double squares_m2 = 0.0;
+    double stated_m2 = 0.0;
+    constexpr int kTrials = 10;
+    for (int k = 0; k < kTrials; ++k) {
+      const Vector3d site = kSite + Vector3d(0.13, 0.0041, 0.0057) * k;
+      Mesh mesh = target_wall();
+      if (on_a_wall) {
+        const double x = site.x() + 0.001;
+        mesh.add_polygon({{x, -2, -2}, {x, -2, 2}, {x, 2, 2}, {x, 2, -2}}, surface_of(Element::wall));
+      }
+      add_board(mesh, board_at(site, 0.0, 0.0));
+      const std::vector<FoundTarget> found = find_targets(scan_of_targets(mesh, 36000), kBothKinds);
+      ASSERT_EQ(found.size(), 1U) << on_a_wall << " " << k;
+      EXPECT_LT(found.front().points, 600U);
+      EXPECT_LT((found.front().centre - site).norm(), 4.0 * found.front().sigma_m);
+      squares_m2 += (found.front().centre - site).squaredNorm() / (2.0 * kTrials);
+      stated_m2 += found.front().sigma_m * found.front().sigma_m / kTrials;
+    }
+    EXPECT_LT(std::sqrt(squares_m2), 0.003) << on_a_wall;
+    EXPECT_LT(std::sqrt(stated_m2), 0.003) << on_a_wall;
   }
 }
 

@@ -23,11 +23,13 @@ constexpr double kMostRoughM = 0.008;
 constexpr double kLeastSlant = 0.3;  // cosine between the ray and the normal
 constexpr double kGoesOn = 0.35;     // likeness of the surroundings to the pattern
 
-/// A point of the board's plane: bright or dark.
+/// A point of the board's plane, or where the ray of a point behind it went through.
 struct BoardPoint {
   Vector2d x = Vector2d::Zero();  ///< about where the centre was thought to be
-  double tone = 0.0;              ///< 1 or -1
+  double tone = 0.0;              ///< 1: bright, -1: dark
   double light = 0.0;
+  bool on_board = true;  ///< it can be a point of the board
+  bool beside = false;   ///< it can be a point of what is beside the board
 };
 
 /// The two kinds of light of points: by two means.
@@ -75,8 +77,10 @@ struct BoardPose {
 };
 
 /// The poses that explain the points: the mean of all, each with its probability, and how they scatter. A
-/// point on the wrong side of an edge costs its distance; a crossing is as probable anywhere between points
+/// point on the wrong side of an edge costs its distance; an edge is as probable anywhere between points
 /// that it must part, so that a grid of points along the edges is not thought to tell more than it does.
+/// Edges are the two that cross in the centre, and the board's border for points that may not be beside it,
+/// or must be.
 class BoardPosterior {
  public:
   BoardPosterior(const std::vector<BoardPoint>& points, double side_m) : all_(points), side_m_(side_m) {}
@@ -141,12 +145,22 @@ class BoardPosterior {
     for (const BoardPoint& point : all_) {
       const Vector2d at = pose_.on_board(point.x).cwiseAbs();
       const double reach = 1.5 * half.head<2>().maxCoeff() + half[2] * at.maxCoeff() + 2.0 * blur_m;
-      if (at.minCoeff() < reach) near_.push_back(point);
+      const bool border = !(point.on_board && point.beside) && at.maxCoeff() > 0.5 * side_m_ - reach;
+      if (at.minCoeff() < reach || border) near_.push_back(point);
     }
     if (near_.size() <= kMostPoints) return;
     const std::size_t stride = (near_.size() + kMostPoints - 1) / kMostPoints;
     for (std::size_t k = 0; k * stride < near_.size(); ++k) near_[k] = near_[k * stride];
     near_.resize((near_.size() + stride - 1) / stride);
+  }
+
+  /// How far a point is from where it can be, by its place along the two edges.
+  [[nodiscard]] double misfit_m(const Vector2d& at, const BoardPoint& point) const {
+    const double out_m = at.cwiseAbs().maxCoeff() - 0.5 * side_m_;
+    const double off_tone_m = at.x() * at.y() * point.tone < 0.0 ? at.cwiseAbs().minCoeff() : 0.0;
+    const double as_board_m = point.on_board ? std::max(out_m, off_tone_m) : 1e300;
+    const double as_beside_m = point.beside ? -out_m : 1e300;
+    return std::max(0.0, std::min(as_board_m, as_beside_m));
   }
 
   [[nodiscard]] double cost_of(const BoardPose& pose, double blur_m) const {
@@ -156,9 +170,8 @@ class BoardPosterior {
     const double s = std::sin(pose.turn_rad);
     for (const BoardPoint& point : near_) {
       const Vector2d off = point.x - pose.centre;
-      const double u = c * off.x() + s * off.y();
-      const double v = c * off.y() - s * off.x();
-      if (u * v * point.tone < 0.0) cost += std::min(kMostCost, std::min(std::abs(u), std::abs(v)) / blur_m);
+      const double away_m = misfit_m({c * off.x() + s * off.y(), c * off.y() - s * off.x()}, point);
+      cost += std::min(kMostCost, away_m / blur_m);
     }
     return cost;
   }
@@ -320,6 +333,84 @@ std::vector<BoardPoint> in_disc(const std::vector<BoardPoint>& points, const Vec
   return within;
 }
 
+/// The points of a view that tell where the board lies. Where the border can be seen, because there is
+/// nothing in its plane beside it, or because that sends back another light, points are of the board, or
+/// beside it; else only the circle within is used.
+class BorderPoints {
+ public:
+  BorderPoints(const PlaneView& view, const BoardPose& pose, double side_m)
+      : view_(view), pose_(pose), side_m_(side_m), inner_(in_disc(view.on, pose.centre, kDisc * side_m)) {}
+
+  [[nodiscard]] std::vector<BoardPoint> run() const {
+    std::vector<BoardPoint> points;
+    const std::vector<BoardPoint> around = ring(view_.on);
+    const bool stands_free = around.size() < 8;
+    if (stands_free && ring(view_.through).size() < 8) return inner_;
+    const TwoTones tones = tones_of(inner_);
+    const Light beside = light_of(around);
+    for (BoardPoint point : in_disc(view_.on, pose_.centre, side_m_)) {
+      if (!stands_free) {
+        const double tone = point.tone > 0.0 ? tones.bright : tones.dark;
+        const bool distinct = std::abs(beside.mean - tone) > kContrast * beside.deviation;
+        point.beside = !distinct || std::abs(point.light - beside.mean) < std::abs(point.light - tone);
+        point.on_board = !(distinct && point.beside);
+      }
+      points.push_back(point);
+    }
+    for (BoardPoint point : in_disc(view_.through, pose_.centre, side_m_)) {
+      point.on_board = false;
+      point.beside = true;
+      points.push_back(point);
+    }
+    return ends_there(points) ? points : inner_;
+  }
+
+ private:
+  struct Light {
+    double mean = 0.0;
+    double deviation = 0.0;
+  };
+
+  /// Clear of the board, at any turn.
+  [[nodiscard]] std::vector<BoardPoint> ring(const std::vector<BoardPoint>& points) const {
+    std::vector<BoardPoint> within;
+    for (const BoardPoint& point : points) {
+      const double away = (point.x - pose_.centre).norm() / side_m_;
+      if (away > 0.76 && away < 1.0) within.push_back(point);
+    }
+    return within;
+  }
+
+  static Light light_of(const std::vector<BoardPoint>& points) {
+    Light light;
+    const auto count = static_cast<double>(std::max<std::size_t>(1, points.size()));
+    for (const BoardPoint& point : points) light.mean += point.light / count;
+    double squares = 0.0;
+    for (const BoardPoint& point : points)
+      squares += (point.light - light.mean) * (point.light - light.mean) / count;
+    light.deviation = std::sqrt(squares);
+    return light;
+  }
+
+  /// Whether the points change where the board's side says: it may have a margin, or something may hide it.
+  [[nodiscard]] bool ends_there(const std::vector<BoardPoint>& points) const {
+    double count = 0.0;
+    double wrong = 0.0;
+    for (const BoardPoint& point : points) {
+      const double out = pose_.on_board(point.x).cwiseAbs().maxCoeff() / side_m_ - 0.5;
+      if (std::abs(out) < 0.05 || std::abs(out) > 0.15 || (point.on_board && point.beside)) continue;
+      ++count;
+      if (out < 0.0 ? !point.on_board : !point.beside) ++wrong;
+    }
+    return wrong <= kWrongShare * count;
+  }
+
+  const PlaneView& view_;
+  const BoardPose& pose_;
+  double side_m_;
+  std::vector<BoardPoint> inner_;
+};
+
 BoardCheck check_of(const PlaneView& view, const BoardPose& pose, double side_m, double noise_m) {
   BoardCheck check(pose, side_m, noise_m);
   for (const BoardPoint& point : view.on) check.add(point);
@@ -369,9 +460,11 @@ std::optional<FoundTarget> fit_board(const Vector3d& start, std::span<const LitP
                  0.5 * std::arg(quadrant_harmonic(frame, within, threshold)) - 0.25 * std::numbers::pi};
   Matrix3d covariance = Matrix3d::Zero();
   for (const double share : {0.7, 1.0}) {
-    const std::vector<BoardPoint> disc = in_disc(view.on, pose.centre, share * kDisc * side_m);
-    if (disc.size() < 4 * kLeastInQuadrant) return std::nullopt;
-    BoardPosterior posterior(disc, side_m);
+    const std::vector<BoardPoint> telling = share < 1.0
+                                                ? in_disc(view.on, pose.centre, share * kDisc * side_m)
+                                                : BorderPoints(view, pose, side_m).run();
+    if (telling.size() < 4 * kLeastInQuadrant) return std::nullopt;
+    BoardPosterior posterior(telling, side_m);
     posterior.run(pose);
     pose = posterior.pose();
     covariance = posterior.covariance();
