@@ -99,6 +99,27 @@ describe('both sides of a result', () => {
     await page.waitForSelector('#pin-0:not([hidden])');
   });
 
+  test('three places in each file give the line that registers them', async () => {
+    await page.click('#link');
+    for (const other of [1, 0]) {
+      await settled(page, () => page.uncheck(`[data-side="${other}"]`));
+      for (let k = 0; k < 3; ++k) await clickSomething(page, 5 * k);
+      await settled(page, () => page.check(`[data-side="${other}"]`));
+    }
+    const line = await page.locator('#link-line').innerText();
+    const places = [...line.matchAll(/--start-points (\S+)=(\S+)/g)].map((match) => match.slice(1).map((place) => place.split(',').map(Number)));
+    assert.match(line, /^limen register \S*indoor_00\.ply \S*outdoor\.ply -o linked /);
+    assert.equal(places.length, 3);
+    // The room is in its own frame, the street on the national grid.
+    for (const [room, street] of places) {
+      assert.ok(Math.hypot(...room) < 1000, `${room} is in the room's frame`);
+      assert.ok(street[0] > 1e6 && street[1] > 6e6, `${street} is on the grid`);
+    }
+    await page.keyboard.press('l');
+    assert.equal(await page.getAttribute('#link', 'aria-pressed'), 'false');
+    assert.match(await page.locator('#picked').innerText(), /Click a point/);
+  });
+
   test('two clicks measure', async () => {
     await page.keyboard.press('m');
     assert.equal(await page.getAttribute('#measure', 'aria-pressed'), 'true');

@@ -243,7 +243,12 @@ ViewScene read_view(const std::vector<ViewInput>& inputs, std::size_t most_point
     const ViewInput& input = inputs[clouds[k].input];
     Scan scan = with_whole_inputs([&] { return read_share(clouds[k], shares[k], metres_per_unit, session); });
     const Vector3d& middle = about(place_of_scan(input) * (scan.local_origin + scan.points.front()));
-    scene.sides[clouds[k].input] = side_of_cloud(input, clouds[k], std::move(scan), middle);
+    ViewSide& side = scene.sides[clouds[k].input] = side_of_cloud(input, clouds[k], std::move(scan), middle);
+    // Of files whose coordinates are shown as they are.
+    if (clouds[k].file->file().clouds().size() == 1 && !input.bend && !metres_per_unit) {
+      side.path = input.path;
+      side.file_from_frame = inverse(input.frame_from_world);
+    }
   }
   for (const auto& [k, model] : models)
     scene.sides[k].scene = view_of_model(model, inputs[k].frame_from_world,

@@ -45,6 +45,10 @@ std::string scene_of(const ViewScene& scene) {
     json["sides"].push_back(id_of(k));
     json[id_of(k)] = side_json(side.name, side.scene, points);
     json[id_of(k)]["about"] = side_words(side);
+    if (!side.path.empty()) {
+      json[id_of(k)]["path"] = side.path;
+      json[id_of(k)]["file_from_frame"] = json_of(to_matrix(side.file_from_frame));
+    }
     const bool planes = !side.scene.pictured.features.planes.empty();
     blobs += side_blobs(id_of(k), side.scene, points,
                         planes ? plane_of_points(side.scene) : std::vector<std::uint8_t>{});

@@ -169,6 +169,8 @@ const runView = (gl, canvas) => {
     cut: { on: false, axis: 2, place: [middle[0], middle[1], scene.eye], thickness: 0.5 },
   };
   const gpu = makeViewGpu(gl, scene);
+  // A project is linked by its questions.
+  const linking = typeof makeLinking === 'function' ? makeLinking(scene, () => { Object.assign(state, { measuring: false, ends: [] }); tell(); redraw(); }) : null;
   const spots = makeSpots(scene);
   let reach = 3 * norm(sub(scene.high, scene.low)) + 60;
   const placeOf = (side) => {
@@ -231,6 +233,7 @@ const runView = (gl, canvas) => {
     for (const k of [0, 1]) put(element(`pin-${k}`), state.ends[k]?.at);
     const marked = (number) => !state.pair && state.linksShown && (!state.floor || state.floor.scans.includes(number));
     for (const { node, number, at } of spots) put(node, marked(number) ? at : null);
+    for (const [node, at] of linking?.pins() ?? []) put(node, at);
     const both = state.ends.length === 2;
     put(element('length'), both ? scaled(add(state.ends[0].at, state.ends[1].at), 0.5) : null);
     if (both) element('length').textContent = t`${norm(sub(state.ends[1].at, state.ends[0].at)).toFixed(3)} m`;
@@ -244,10 +247,12 @@ const runView = (gl, canvas) => {
     const list = made('dl', {}, ...lines.flatMap(([name, value]) => [made('dt', {}, name), made('dd', {}, value)]));
     element('picked').replaceChildren(...(lines.length ? [list] : []), ...(ends.length < 2 ? [made('p', { class: 'soft' }, ask)] : []));
     element('measure').setAttribute('aria-pressed', String(measuring));
+    if (linking?.on) element('picked').replaceChildren(...linking.words());
   };
   const pickAt = (px, py) => {
     const found = pick(scene.sides.map((side) => ({ side, place: placeOf(side) })).filter(({ place }) => place), look, px, py);
-    if (found) state.ends = state.measuring && state.ends.length === 1 ? [...state.ends, found] : [found];
+    if (linking?.on) linking.add(found);
+    else if (found) state.ends = state.measuring && state.ends.length === 1 ? [...state.ends, found] : [found];
     tell();
     redraw();
   };
@@ -328,9 +333,11 @@ const runView = (gl, canvas) => {
     chooseView, setCamera, state, changed, colourings, cutRange, camera: () => camera, fit: () => fit(false),
     middle: () => pickAt(look.css[0] / 2, look.css[1] / 2),
   };
-  listenKeys(canvas, { m: () => setEnds(!state.measuring), escape: () => setEnds(state.measuring) }, actions);
-  element('measure').addEventListener('click', () => setEnds(!state.measuring));
-  element('clear').addEventListener('click', () => setEnds(state.measuring));
+  const measure = () => { if (linking?.on) linking.toggle(); setEnds(!state.measuring); };
+  const clear = () => { if (linking?.on) linking.clear(); else setEnds(state.measuring); };
+  listenKeys(canvas, { m: measure, escape: clear, ...(linking ? { l: linking.toggle } : {}) }, actions);
+  element('measure').addEventListener('click', measure);
+  element('clear').addEventListener('click', clear);
   element('size').addEventListener('input', (event) => { state.size = +event.target.value; redraw(); });
   for (const button of document.querySelectorAll('[data-view]')) button.addEventListener('click', () => chooseView(button.dataset.view));
   new ResizeObserver(redraw).observe(canvas);
