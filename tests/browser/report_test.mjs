@@ -24,7 +24,7 @@ before(async () => {
   limen(program, 'register', join(museum, 'indoor_00.ply'), join(museum, 'outdoor.ply'), '-o', join(folder, 'registered'), '--pdf');
   const long = join(museum, 'station_of_the_second_floor_of_the_north_wing_beside_the_great_stairs.ply');
   copyFileSync(join(museum, 'indoor_00.ply'), long);
-  limen(program, 'register', long, join(museum, 'outdoor.ply'), '-o', join(folder, 'handed_on'), '--language', 'fr',
+  limen(program, 'register', long, join(museum, 'outdoor.ply'), '-o', join(folder, 'handed_on'), '--language', 'de',
     '--title', 'Registration of the north wing, second floor, of the former municipal museum of natural history, stations of October',
     '--project', '2026-117 Museum refurbishment, lot 3', '--operator', 'Office of surveyors and partners', '--date', '22 November 2026');
   const office = join(folder, 'office');
@@ -196,15 +196,52 @@ describe('a registered pair', () => {
 });
 
 describe('a report to hand on', () => {
-  test('has its head, a summary in the language asked for, and no folder in a file name', async () => {
+  test('has its head, is in the language asked for, and has no folder in a file name', async () => {
     const { page, heard } = await openReport(browser.context, report('handed_on'));
     assert.match(await page.locator('.cover-title').innerText(), /north wing/);
-    assert.match(await page.locator('.cover').innerText(), /Projet\s+2026-117[\s\S]*Opérateur/);
-    assert.match(await page.locator('.summary[lang="fr"]').innerText(), /La probabilité que ce soit la bonne position/);
+    assert.match(await page.locator('.cover').innerText(), /Projekt\s+2026-117[\s\S]*Bearbeiter/);
+    assert.match(await page.locator('.verdict').innerText(), /Dies ist die richtige Lage mit einer Wahrscheinlichkeit von/);
     assert.ok((await page.locator('.path').allInnerTexts()).every((name) => !name.includes('/')));
     assert.equal(await page.title(), await page.locator('.cover-title').innerText());
     assert.deepEqual(heard.problems, []);
     await page.close();
+  });
+
+  test('has no text of the English page, nor has what a click and a key bring', async () => {
+    const table = readFileSync(new URL('../../src/limen/report/html/page/de.tsv', import.meta.url), 'utf8').split('\n')
+      .map((line) => line.split('\t'));
+    const alike = new Set(table.filter(([english, german]) => english === german).map(([english]) => english));
+    const said = async (name) => {
+      const { page } = await openReport(browser.context, report(name));
+      const words = new Set();
+      const listen = async () => {
+        for (const text of await page.evaluate(() => {
+          const texts = [...document.querySelectorAll('[aria-label]')].map((node) => node.ariaLabel);
+          const walker = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
+          while (walker.nextNode()) {
+            if (!walker.currentNode.parentElement.closest('script, style, [translate="no"]')) texts.push(walker.currentNode.data);
+          }
+          return texts.map((text) => text.trim()).filter((text) => /\p{L}{3}/u.test(text));
+        })) words.add(text);
+      };
+      await listen();
+      for (const key of ['n', 'c', 'c', 'p', 'b']) {
+        await settled(page, () => page.keyboard.press(key));
+        await listen();
+      }
+      await settled(page, () => page.keyboard.press('b'));
+      await page.focus('#canvas');
+      await settled(page, () => page.keyboard.press('Enter'));
+      await page.click('#copy');
+      await page.waitForFunction(() => document.getElementById('copied').textContent !== '');
+      await listen();
+      await page.close();
+      return words;
+    };
+    const english = await said('registered');
+    const both = [...await said('handed_on')].filter((text) => english.has(text) && !alike.has(text));
+    assert.ok(english.size > 100, `only ${english.size} texts`);
+    assert.deepEqual(both.filter((text) => !/\.ply$/.test(text)), []);
   });
 
   test('the freedoms and numbers are those of the pose that is shown', async () => {

@@ -3,10 +3,8 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
 #include "limen/report/html/language.h"
-#include "limen/report/summary/registration_report.h"
 
 namespace limen {
 
@@ -20,18 +18,10 @@ struct ReportCover {
   std::string logo = {};  ///< an image as a data URI
 };
 
-/// The outcome in some sentences for a reader who did not make it: verdict, probability, precision,
-/// residuals, what is open. Plain text, not escaped.
-std::vector<std::string> cover_summary(const RegistrationReport& report, Language language);
-
 /// Logo, title, project, operator and date, named in English; ready HTML, empty where none is given.
 std::string cover_facts(const ReportCover& cover);
 
 /// Where the operator signs, in English; ready HTML, empty where no operator is given.
 std::string signature_html(const ReportCover& cover);
-
-/// The head of the page: title, project, operator, date, and the summary where one is asked for in another
-/// language than the page's. Ready HTML, may be empty.
-std::string cover_html(const RegistrationReport& report, const ReportCover& cover);
 
 }  // namespace limen

@@ -109,27 +109,29 @@ Json segments_json(const Features& features) {
 
 /// Pose `number` of the report: 0 is the best one. Its tables come with it, for the page shows those of the
 /// pose that is looked at.
-Json pose_json(const RegistrationReport& report, std::size_t number, const ReportScene& scene) {
+Json pose_json(const RegistrationReport& report, std::size_t number, const ReportScene& scene,
+               Language language) {
   const Hypothesis& pose = number == 0 ? report.result.best : report.result.alternatives[number - 1];
   const Rigid3 local = to_local(pose.target_from_source, scene.source.origin, scene.target.origin);
-  return {{"matrix", json_of(to_matrix(local))},
-          {"text", matrix_text(file_matrix(report, pose.target_from_source))},
-          {"agreeing", pose.agreeing_m2},
-          {"contradicted", pose.contradicted_m2},
-          {"rms", pose.rms_m},
-          {"segments", pose.matched_segments},
-          {"length", pose.agreeing_length_m},
-          {"room", pose.room},
-          {"probability", pose.probability ? probability_words(*pose.probability) : ""},
-          {"sigma", sigma_table(report, number)},
-          {"key", key_table(report, number)}};
+  return {
+      {"matrix", json_of(to_matrix(local))},
+      {"text", matrix_text(file_matrix(report, pose.target_from_source))},
+      {"agreeing", pose.agreeing_m2},
+      {"contradicted", pose.contradicted_m2},
+      {"rms", pose.rms_m},
+      {"segments", pose.matched_segments},
+      {"length", pose.agreeing_length_m},
+      {"room", pose.room},
+      {"probability", pose.probability ? in_language(probability_words(*pose.probability), language) : ""},
+      {"sigma", page_in_language(sigma_table(report, number), language)},
+      {"key", page_in_language(key_table(report, number), language)}};
 }
 
-Json poses_json(const RegistrationReport& report, const ReportScene& scene) {
+Json poses_json(const RegistrationReport& report, const ReportScene& scene, Language language) {
   Json list = Json::array();
   if (report.result.outcome == Outcome::no_match) return list;
   const std::size_t count = std::min(report.result.alternatives.size() + 1, kMostPoses);
-  for (std::size_t k = 0; k < count; ++k) list.push_back(pose_json(report, k, scene));
+  for (std::size_t k = 0; k < count; ++k) list.push_back(pose_json(report, k, scene, language));
   return list;
 }
 
@@ -175,8 +177,8 @@ std::string side_blobs(const std::string& name, const SceneSide& side, const Qua
   return text + blob_element(name + "-intensities", stretched(side.intensities));
 }
 
-std::string scene_elements(const RegistrationReport& report, const ReportScene& scene,
-                           const SceneView& view) {
+std::string scene_elements(const RegistrationReport& report, const ReportScene& scene, const SceneView& view,
+                           Language language) {
   const RegistrationResult& result = report.result;
   const QuantisedPoints source = quantised_side(scene.source);
   const QuantisedPoints target = quantised_side(scene.target);
@@ -188,7 +190,7 @@ std::string scene_elements(const RegistrationReport& report, const ReportScene& 
                {"high", json_of(view.high)},
                {"cut", json_of(view.cut)},
                {"beside", json_of(to_matrix(view.target_from_source))},
-               {"poses", poses_json(report, scene)},
+               {"poses", poses_json(report, scene, language)},
                {"open", open_json(result)},
                {"matches", matches_json(result)}};
   for (Eigen::Index k = 0; k < 3; ++k)

@@ -9,6 +9,7 @@
 
 #include "limen/report/html/html_bytes.h"
 #include "limen/report/html/html_view.h"
+#include "limen/report/html/language.h"
 #include "limen/report/json/json_values.h"
 #include "limen/report/json/result_json.h"
 
@@ -26,7 +27,8 @@ std::string side_blobs(const std::string& name, const SceneSide& side, const Qua
 QuantisedPoints quantised_side(const SceneSide& side);
 
 /// The script elements that hold a scene for the page's own script: numbers and names as JSON, points and
-/// faces as base64.
-std::string scene_elements(const RegistrationReport& report, const ReportScene& scene, const SceneView& view);
+/// faces as base64. The poses' tables and probabilities are in the language.
+std::string scene_elements(const RegistrationReport& report, const ReportScene& scene, const SceneView& view,
+                           Language language);
 
 }  // namespace limen

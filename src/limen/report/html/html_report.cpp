@@ -25,13 +25,6 @@ std::string capitalised(std::string text) {
   return text;
 }
 
-/// "m2" of messages as "m²".
-std::string square_metres(std::string text) {
-  for (std::size_t at = text.find(" m2"); at != std::string::npos; at = text.find(" m2", at + 1))
-    text.replace(at, 3, " m²");
-  return text;
-}
-
 /// "the two scans", "the scan and the model", "the two lists of segments"
 std::string both_sides(const RegistrationReport& report) {
   if (report.source.kind == "segments") return "the two lists of segments";
@@ -62,12 +55,11 @@ std::vector<std::string> expectation(const RegistrationReport& report) {
                                     result.best.matched_segments > 0 ? "edges" : "points");
     if (const auto planes = plane_distance_rms(result.matches))
       words += fmt::format(", {} between matched planes", length_words(*planes));
-    words += " (root mean square)";
+    sentences.push_back(words + " (root mean square).");
     if (precision && precision->middle.formal_radius_m && precision->far_end.formal_radius_m)
-      words += fmt::format("; from the noise of the points alone the accuracy would be {} and {}",
-                           length_words(*precision->middle.formal_radius_m),
-                           length_words(*precision->far_end.formal_radius_m));
-    sentences.push_back(words + ".");
+      sentences.push_back(fmt::format("From the noise of the points alone the accuracy would be {} and {}.",
+                                      length_words(*precision->middle.formal_radius_m),
+                                      length_words(*precision->far_end.formal_radius_m)));
   }
   return sentences;
 }
@@ -186,11 +178,16 @@ std::string sentences(const VerdictWords& words) {
   return text;
 }
 
-/// What to do next, but for looking at this page.
+/// What to do next, but for looking at this page. A command stands apart from what it does.
 std::string steps(const RegistrationReport& report) {
   std::string items;
   for (const std::string& step : next_steps(report)) {
-    if (step.find("report.html") == std::string::npos) items += "<li>" + escaped(step) + "</li>\n";
+    if (step.find("report.html") != std::string::npos) continue;
+    const std::size_t end = step.find(": limen ");
+    const std::string command = end == std::string::npos ? ""
+                                                         : fmt::format(" <code translate=\"no\">{}</code>",
+                                                                       escaped(step.substr(end + 2)));
+    items += "<li>" + escaped(step.substr(0, command.empty() ? end : end + 1)) + command + "</li>\n";
   }
   return items.empty() ? items : "<ul>" + items + "</ul>\n";
 }
@@ -228,7 +225,7 @@ std::string tables(const RegistrationReport& report) {
 std::string matrix_card(const RegistrationReport& report) {
   if (report.result.outcome == Outcome::no_match) return {};
   return section("Transform, source to target",
-                 "<pre id=\"matrix\" tabindex=\"0\" aria-label=\"4 by 4 matrix, metres\">" +
+                 "<pre id=\"matrix\" translate=\"no\" tabindex=\"0\" aria-label=\"4 by 4 matrix, metres\">" +
                      matrix_text(file_matrix(report, report.result.best.target_from_source)) +
                      "</pre>\n<button type=\"button\" id=\"copy\">Copy</button> "
                      "<span id=\"copied\" role=\"status\"></span>\n"
@@ -248,23 +245,26 @@ ReportPages report_pages(const RegistrationReport& report, const ReportScene& sc
   pages.front = section_svg(scene, view, SectionSide::front);
   pages.side = section_svg(scene, view, SectionSide::side);
   const VerdictWords words = verdict_words(report);
-  const PageParts parts = {{"title", escaped(cover.title.empty() ? words.headline : cover.title)},
-                           {"outcome", to_string(report.result.outcome)},
-                           {"symbol", words.symbol},
-                           {"headline", escaped(words.headline)},
-                           {"cover", cover_html(report, cover)},
-                           {"sentences", sentences(words)},
-                           {"source", escaped(file_name(report.source))},
-                           {"target", escaped(file_name(report.target))},
-                           {"tables", tables(report) + matrix_card(report)},
-                           {"top", pages.top},
-                           {"front", pages.front},
-                           {"side", pages.side},
-                           {"version", kVersion},
-                           {"style", std::string(report_style())},
-                           {"script", std::string(report_script())},
-                           {"scene", scene_elements(report, scene, view)}};
+  const PageParts parts = {
+      {"title", escaped(cover.title.empty() ? in_language(words.headline, cover.language) : cover.title)},
+      {"outcome", to_string(report.result.outcome)},
+      {"symbol", words.symbol},
+      {"headline", escaped(words.headline)},
+      {"cover", cover_facts(cover)},
+      {"sentences", sentences(words)},
+      {"source", escaped(file_name(report.source))},
+      {"target", escaped(file_name(report.target))},
+      {"tables", tables(report) + matrix_card(report)},
+      {"top", pages.top},
+      {"front", pages.front},
+      {"side", pages.side},
+      {"version", kVersion},
+      {"style", std::string(report_style())},
+      {"script", std::string(report_script())},
+      {"scene", scene_elements(report, scene, view, cover.language) + texts_element(cover.language)}};
   pages.page = filled_in(report_pattern(), parts);
+  for (std::string* text : {&pages.page, &pages.top, &pages.front, &pages.side})
+    *text = page_in_language(*text, cover.language);
   return pages;
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <regex>
+#include <set>
 
 #include <gtest/gtest.h>
 
@@ -14,6 +15,7 @@
 #include "limen/geometry/spread_evenly.h"
 #include "limen/report/html/html_bytes.h"
 #include "limen/report/html/html_residuals.h"
+#include "limen/report/html/html_tables.h"
 #include "limen/report/html/section_svg.h"
 #include "limen/report/summary/words.h"
 
@@ -210,6 +212,105 @@ TEST(ReportPage, EveryOutcomeHasItsPage) {
     EXPECT_EQ(pages.page.find("id=\"matrix\"") == std::string::npos, outcome == Outcome::no_match);
     for (const std::string& svg : {pages.top, pages.front, pages.side}) EXPECT_TRUE(is_well_formed(svg));
   }
+}
+
+/// All that a page of this outcome can say.
+std::vector<RegistrationReport> talkative_reports(Outcome outcome) {
+  RegistrationReport report = report_of(outcome);
+  RegistrationResult& result = report.result;
+  result.reason = "12.5 m2 of surface agree, 0.5 m2 contradict, and no other pose fits nearly as well";
+  result.best.probability = 0.99996;
+  result.best.room = "A1";
+  result.best.sigma.formal_covariance = 0.25 * result.best.sigma.covariance;
+  result.best.explained_share = 0.5;
+  result.thickness = {{0, 1, 2, 0.3, 0.001}, {1, 1, 1, 0.3, 0.5}};
+  result.openings.resize(1);
+  result.alternatives.assign(2, result.best);
+  result.alternatives[0].tie = true;
+  for (const char* stage :
+       {"reading", "source features", "target features", "source features, target features", "hypotheses",
+        "scoring", "refinement", "judgement", "published method", "candidates", "verdict"})
+    result.stages.push_back({stage, 0.25});
+  report.source.with = {"with.ply"};
+  report.source.sha256 = "abcd";
+  report.options = {{"method", std::string("a method of mine")}};
+  if (outcome == Outcome::under_constrained)
+    result.unobserved = {{false, Vector3d::UnitY(), "shift along (0.00, 1.00, 0.00)"}};
+  std::vector<RegistrationReport> reports = {report};
+  const auto add = [&](const auto& change) {
+    reports.push_back(report);
+    change(reports.back());
+  };
+  add([](RegistrationReport& it) {
+    it.source.kind = "scan";
+    it.source.mobile = true;
+    it.target.kind = "model";
+    it.target.metres_per_unit = 0.001;
+    it.result.moved.resize(2);
+  });
+  add([](RegistrationReport& it) {
+    it.source.kind = it.target.kind = "scan";
+    it.source.centre_known = it.target.centre_known = true;
+    it.result.rivals = 2;
+    it.result.others = OtherExplanations{0.01, 0.0, 0.0};
+    it.result.unobserved.push_back({false, Vector3d::UnitZ(), "shift along the vertical"});
+  });
+  add([](RegistrationReport& it) {
+    it.source.kind = it.target.kind = "segments";
+    it.result.matches.clear();
+    it.result.best.matched_segments = 4;
+    it.result.best.agreeing_length_m = 12.5;
+    it.result.reason = "4 segments, 12.5 m, coincide in one plane, and no other pose fits nearly as well";
+  });
+  add([](RegistrationReport& it) {
+    it.result.published = PublishedScore{};
+    it.result.published->method = "2022";
+    it.result.reason =
+        "the published method 2022 finds no pose: the planes of the source lie in fewer than "
+        "three independent directions";
+  });
+  return reports;
+}
+
+TEST(ReportPage, LacksNoTextInAnyLanguage) {
+  const ReportScene scene = two_rooms(100);
+  for (const Outcome outcome : {Outcome::registered, Outcome::probable, Outcome::ambiguous,
+                                Outcome::under_constrained, Outcome::no_match}) {
+    for (const RegistrationReport& report : talkative_reports(outcome)) {
+      const ReportPages pages =
+          report_pages(report, scene, {"A title of mine", "a project", "an operator", "May 3rd"});
+      for (const Language language : {Language::french, Language::german}) {
+        std::set<std::string> missing;
+        static_cast<void>(page_in_language(pages.page, language, &missing));
+        static_cast<void>(
+            page_in_language(sigma_table(report, 0) + key_table(report, 0), language, &missing));
+        EXPECT_EQ(missing, std::set<std::string>()) << to_string(outcome);
+      }
+    }
+  }
+}
+
+TEST(ReportPage, InGermanAndFrenchItSaysTheSame) {
+  RegistrationReport report = report_of(Outcome::registered);
+  report.result.best.probability = 0.99996;
+  report.source.path = "station_1.5.ply";
+  report.options = {{"origin", std::string("0.5,0,0")}};
+  const ReportPages german = report_pages(report, two_rooms(100), {"", "", "", "", Language::german});
+  const auto holds = [&](const char* text) { return german.page.find(text) != std::string::npos; };
+  EXPECT_TRUE(holds("<html lang=\"de\">"));
+  EXPECT_TRUE(holds("<h1>Registriert: die beiden Scans passen nur auf eine Weise zusammen</h1>"));
+  EXPECT_TRUE(holds("<title translate=\"no\">Registriert: die beiden"));
+  EXPECT_TRUE(holds("Dies ist die richtige Lage mit einer Wahrscheinlichkeit von mehr als 99,99 %."));
+  EXPECT_TRUE(holds("\"probability\":\"mehr als 99,99 %\"")) << "the script's own poses";
+  EXPECT_TRUE(holds("\"Copied\":\"Kopiert\"")) << "the script's own texts";
+  EXPECT_TRUE(holds("Freiheitsgrad\\u003c/th>")) << "tables of the poses that the script shows";
+  EXPECT_TRUE(holds(">station_1.5.ply<") && holds(">0.5,0,0<")) << "names stay";
+  EXPECT_TRUE(holds(" 150.001")) << "the matrix is that of transform.txt";
+  EXPECT_NE(german.top.find(">Grundriss, 0,3 m dick</text>"), std::string::npos) << german.top.substr(0, 900);
+  EXPECT_NE(german.front.find("aria-label=\"Schnitt von vorne"), std::string::npos);
+  const ReportPages french = report_pages(report, two_rooms(100), {"", "", "", "", Language::french});
+  EXPECT_NE(french.page.find("Recalé : les deux scans ne s&#39;assemblent que d&#39;une seule façon"),
+            std::string::npos);
 }
 
 TEST(ReportPage, ThePlanTellsNorthOnAGridElseTheAxis) {

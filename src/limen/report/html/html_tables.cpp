@@ -24,16 +24,22 @@ std::string cell(const std::string& text, const char* tag = "td", const char* at
   return fmt::format("<{0}{1}>{2}</{0}>", tag, attributes, text);
 }
 
+/// A name of files or rooms, which is the same in every language.
+std::string as_named(const std::string& name) {
+  return "<span translate=\"no\">" + escaped(name) + "</span>";
+}
+
 std::string row(const std::string& head, const std::string& value) {
   return "<tr>" + cell(head, "th", " scope=\"row\"") + cell(value) + "</tr>\n";
 }
 
 /// A table with a head line; rows are ready HTML.
-std::string table(const std::vector<std::string>& heads, const std::string& rows, const char* id) {
+std::string table(const char* label, const std::vector<std::string>& heads, const std::string& rows,
+                  const char* id) {
   std::string text = fmt::format(
-      "<div class=\"scroll\" tabindex=\"0\" role=\"group\" aria-label=\"Table: {0}\"><table "
-      "id=\"{0}\"><thead><tr>",
-      id);
+      "<div class=\"scroll\" tabindex=\"0\" role=\"group\" aria-label=\"{}\"><table "
+      "id=\"{}\"><thead><tr>",
+      label, id);
   for (const std::string& head : heads) text += cell(head, "th", " scope=\"col\"");
   return text + "</tr></thead><tbody>\n" + rows + "</tbody></table></div>\n";
 }
@@ -100,21 +106,21 @@ std::string precision_table(const std::optional<PosePrecision>& precision) {
   if (!precision) return {};
   const std::string far = fmt::format("Far end, {:.0f} m from the centre", precision->far_distance_m);
   return table(
-      {"Place", "Accuracy (95 %)", "From the noise of the points alone"},
+      "Accuracy of the pose", {"Place", "Accuracy (95 %)", "From the noise of the points alone"},
       precision_row("Centre of the source", precision->middle) + precision_row(far, precision->far_end),
       "precision");
 }
 
 std::string hash_of(const std::string& sha256) {
   if (sha256.empty()) return "—";
-  return "<code class=\"hash\">" + sha256 + "</code>";
+  return "<code class=\"hash\" translate=\"no\">" + sha256 + "</code>";
 }
 
 std::string input_row(const char* side, const InputSummary& input) {
   const Vector3d extent = input.high - input.low;
-  std::string path = escaped(file_name(input));
+  std::string path = as_named(file_name(input));
   for (const std::string& with : input.with)
-    path += "<br>with " + escaped(std::filesystem::path(with).filename().string());
+    path += "<br>with " + as_named(std::filesystem::path(with).filename().string());
   std::string kind = input.kind == "scan" ? (input.mobile ? "mobile scan" : "static scan") : input.kind;
   if (input.kind == "scan" && !input.centre_known) kind = "scan, scanner position unknown";
   return "<tr>" + cell(side, "th", " scope=\"row\"") + cell(path) + cell(kind) + cell(size_of(input)) +
@@ -126,13 +132,14 @@ std::string input_row(const char* side, const InputSummary& input) {
 
 std::string key_table(const RegistrationReport& report, std::size_t pose) {
   const RegistrationResult& result = report.result;
-  std::string rows = row("Source", escaped(file_name(report.source)) + ", " + size_of(report.source));
-  rows += row("Target", escaped(file_name(report.target)) + ", " + size_of(report.target));
+  std::string rows =
+      row("Source", as_named(file_name(report.source)) + ", <span>" + size_of(report.source) + "</span>");
+  rows += row("Target", as_named(file_name(report.target)) + ", <span>" + size_of(report.target) + "</span>");
   if (!found(report)) return facts(rows, "key");
   const Hypothesis& shown = pose_of(result, pose);
   if (shown.probability && !result.published)
     rows += row("Probability", probability_words(*shown.probability));
-  if (!shown.room.empty()) rows += row("Room", escaped(shown.room));
+  if (!shown.room.empty()) rows += row("Room", as_named(shown.room));
   rows += evidence_rows(shown);
   if (pose == 0) rows += best_rows(result);
   if (!result.alternatives.empty())
@@ -165,7 +172,8 @@ std::string sigma_table(const RegistrationReport& report, std::size_t pose) {
             cell(fmt::format("{:.4f}°", degrees(turn[axis]) + 0.0)) +
             cell(deviation(true, axis, sigma, angle_words(sigma))) + "</tr>\n";
   }
-  return table({"Degree of freedom", "Value", "Standard deviation"}, rows, "sigma") +
+  return table("Uncertainty of the pose", {"Degree of freedom", "Value", "Standard deviation"}, rows,
+               "sigma") +
          precision_table(precision_of(report, shown));
 }
 
@@ -175,7 +183,7 @@ std::string causes_table(const RegistrationReport& report) {
     rows += "<tr>" + cell(escaped(cause.name), "th", " scope=\"row\"") + cell(escaped(cause.measured)) +
             cell(escaped(cause.remedy)) + "</tr>\n";
   if (rows.empty()) return {};
-  return table({"Cause", "Measured", "What to do"}, rows, "causes");
+  return table("Likely causes, the likeliest first", {"Cause", "Measured", "What to do"}, rows, "causes");
 }
 
 std::string alternatives_table(const RegistrationReport& report) {
@@ -205,7 +213,7 @@ std::string alternatives_table(const RegistrationReport& report) {
     }
     // Poses that were never judged to the end have none.
     rows += cell(pose.rms_m > 0 ? length_words(pose.rms_m) : "—");
-    if (rooms) rows += cell(escaped(pose.room));
+    if (rooms) rows += cell(as_named(pose.room));
     rows += "</tr>\n";
   }
   std::vector<std::string> heads = {"Pose"};
@@ -214,7 +222,7 @@ std::string alternatives_table(const RegistrationReport& report) {
   heads.emplace_back(segments ? "Length" : "Contradicted");
   heads.emplace_back("Residual");
   if (rooms) heads.emplace_back("Room");
-  return table(heads, rows, "alternatives");
+  return table("Poses", heads, rows, "alternatives");
 }
 
 std::string planes_table(const RegistrationReport& report) {
@@ -231,7 +239,8 @@ std::string planes_table(const RegistrationReport& report) {
         cell(length_words(match.distance_m)) + cell(angle_words(match.angle_rad)) +
         cell(area_words(match.overlap_m2)) + "</tr>\n";
   }
-  return table({"Planes, source – target", "Distance", "Angle", "Overlap"}, rows, "planes");
+  return table("Planes that agree", {"Planes, source – target", "Distance", "Angle", "Overlap"}, rows,
+               "planes");
 }
 
 std::string openings_table(const RegistrationReport& report) {
@@ -242,7 +251,8 @@ std::string openings_table(const RegistrationReport& report) {
     rows += "<tr>" + cell(fmt::format("{} – {}", match.source, match.target), "th", " scope=\"row\"") +
             cell(length_words(match.shift_across_m)) + cell(length_words(match.shift_up_m)) + "</tr>\n";
   }
-  return table({"Openings, source – target", "Offset, across", "Offset, upwards"}, rows, "openings");
+  return table("Openings that agree", {"Openings, source – target", "Offset, across", "Offset, upwards"},
+               rows, "openings");
 }
 
 std::string thickness_table(const RegistrationReport& report) {
@@ -256,12 +266,13 @@ std::string thickness_table(const RegistrationReport& report) {
             "</tr>\n";
   }
   if (rows.empty()) return {};
-  return table({"Wall, source – target plane", "Thickness", "One standard deviation", "Openings"}, rows,
+  return table("Walls between the scans",
+               {"Wall, source – target plane", "Thickness", "One standard deviation", "Openings"}, rows,
                "thickness");
 }
 
 std::string inputs_table(const RegistrationReport& report) {
-  return table({"Side", "File", "Kind", "Content", "Extent", "SHA-256"},
+  return table("Inputs", {"Side", "File", "Kind", "Content", "Extent", "SHA-256"},
                input_row("Source", report.source) + input_row("Target", report.target), "inputs");
 }
 
@@ -290,22 +301,25 @@ std::string stages_table(const RegistrationReport& report) {
   }
   rows += "<tr>" + cell("All", "th", " scope=\"row\"") + cell(fmt::format("{:.2f} s", total)) + cell("") +
           "</tr>\n";
-  return table({"Stage", "Time", "Share"}, rows, "stages");
+  return table("Time", {"Stage", "Time", "Share"}, rows, "stages");
 }
 
 std::string options_table(const RegistrationReport& report) {
-  std::string rows = row("limen", kVersion) + row("seed", fmt::format("{}", report.seed));
+  const auto option = [](const std::string& name, const std::string& value) {
+    return "<tr>" + cell(as_named(name), "th", " scope=\"row\"") + cell(as_named(value)) + "</tr>\n";
+  };
+  std::string rows = option("limen", kVersion) + option("seed", fmt::format("{}", report.seed));
   for (const auto& [name, value] : report.options) {
     const std::string text = std::visit(
         [](const auto& plain) {
           if constexpr (std::is_same_v<std::decay_t<decltype(plain)>, std::string>) {
-            return escaped(plain);
+            return plain;
           } else {
             return fmt::format("{}", plain);
           }
         },
         value);
-    rows += row(escaped(name), text);
+    rows += option(name, text);
   }
   return facts(rows, "options");
 }

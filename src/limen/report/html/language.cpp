@@ -16,6 +16,7 @@
 #include "limen/report/html/html_bytes.h"
 #include "limen/report/html/html_elements.h"
 #include "limen/report/html/report_page.h"
+#include "limen/report/summary/words.h"
 
 namespace limen {
 namespace {
@@ -40,7 +41,8 @@ TextTable rows_of(std::string_view table) {
 
 Texts texts_from(std::string_view table) {
   Texts texts;
-  for (auto& [english, other] : rows_of(table)) {
+  for (const auto& [key, other] : rows_of(table)) {
+    const std::string english = square_metres(key);
     if (english.find("{}") == std::string::npos)
       texts.whole.emplace(english, other);
     else
@@ -75,7 +77,7 @@ bool is_figure(std::string_view text) {
   return true;
 }
 
-/// 1.5 as 1,5; what has two points is no number.
+/// 1.5 as 1,5 and 1.5, 2.5 as 1,5; 2,5; what has two points is no number.
 std::string with_comma(std::string text) {
   const auto digit = [&](std::size_t at) { return at < text.size() && text[at] >= '0' && text[at] <= '9'; };
   for (std::size_t at = 0; at < text.size(); ++at) {
@@ -83,6 +85,8 @@ std::string with_comma(std::string text) {
     std::size_t end = at + 1;
     while (digit(end)) ++end;
     if (end == text.size() || text[end] != '.') text[at] = ',';
+    if (text.compare(end, 2, ", ") == 0 && (digit(end + 2) || text.compare(end + 2, 1, "-") == 0))
+      text[end] = ';';
     at = end;
   }
   return text;
@@ -109,6 +113,21 @@ std::optional<std::vector<std::string>> values_in(std::string_view text, std::st
   return values;
 }
 
+/// The first letter small, of English.
+std::string with_small(std::string text) {
+  if (text[0] >= 'A' && text[0] <= 'Z') text[0] = static_cast<char>(text[0] + 32);
+  return text;
+}
+
+/// The first letter large, of any of the languages: of UTF-8 those that begin with c3.
+std::string with_capital(std::string text) {
+  const std::size_t at = text.starts_with('\xc3') ? 1 : 0;
+  const auto code = static_cast<unsigned char>(text[at]);
+  if (at == 1 ? code >= 0xa0 && code < 0xbf : code >= 'a' && code <= 'z')
+    text[at] = static_cast<char>(code - 32);
+  return text;
+}
+
 class Translator {
  public:
   Translator(Language language, std::set<std::string>* missing)
@@ -116,14 +135,17 @@ class Translator {
 
   [[nodiscard]] std::string text(const std::string& english, bool value = false) const {
     if (is_figure(english)) return with_comma(english);
-    const auto whole = texts_.whole.find(english);
-    if (whole != texts_.whole.end()) return whole->second;
+    const std::string plain = square_metres(english);
+    // A reason that was made a sentence stands in the table without the capital and the full stop.
+    const bool stop = plain.ends_with('.');
+    const bool words = plain.find(' ') != std::string::npos;
+    const std::string reason = words ? with_small(plain.substr(0, plain.size() - (stop ? 1 : 0))) : plain;
+    const auto sentence = [&](const std::string& other) { return with_capital(other) + (stop ? "." : ""); };
+    if (const auto it = texts_.whole.find(plain); it != texts_.whole.end()) return it->second;
+    if (const auto it = texts_.whole.find(reason); it != texts_.whole.end()) return sentence(it->second);
     for (const auto& [pattern, other] : texts_.patterns) {
-      const std::optional<std::vector<std::string>> values = values_in(english, pattern);
-      if (!values) continue;
-      fmt::dynamic_format_arg_store<fmt::format_context> filled;
-      for (const std::string& one : *values) filled.push_back(text(one, true));
-      return fmt::vformat(other, filled);
+      if (const auto values = values_in(plain, pattern)) return filled(other, *values);
+      if (const auto values = values_in(reason, pattern)) return sentence(filled(other, *values));
     }
     // Values may be names, which are one word in tests.
     if (missing_ && (!value || english.find(' ') != std::string::npos)) missing_->insert(english);
@@ -151,6 +173,12 @@ class Translator {
   }
 
  private:
+  [[nodiscard]] std::string filled(const std::string& pattern, const std::vector<std::string>& values) const {
+    fmt::dynamic_format_arg_store<fmt::format_context> arguments;
+    for (const std::string& one : values) arguments.push_back(text(one, true));
+    return fmt::vformat(pattern, arguments);
+  }
+
   static std::string unescaped(std::string_view html) {
     static const std::array<std::pair<std::string, std::string>, 5> kSigns = {
         {{"&lt;", "<"}, {"&gt;", ">"}, {"&quot;", "\""}, {"&#39;", "'"}, {"&amp;", "&"}}};

@@ -14,8 +14,8 @@ namespace limen {
 enum class Language { english, french, german };
 const char* code_of(Language language);
 
-/// The text by the table of the language; its values too, and numbers with their decimal sign. What the table
-/// does not have stays.
+/// The text by the table of the language; its values too, and numbers with their decimal sign; a sentence
+/// also as the reason it was made of, without capital and full stop. What the table does not have stays.
 std::string in_language(const std::string& text, Language language);
 
 /// The same of the texts and labels of HTML, but for what is directly in an element with translate="no".

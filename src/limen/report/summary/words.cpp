@@ -48,6 +48,12 @@ std::string axis_words(const Vector3d& axis) {
   return fmt::format("({:.2f}, {:.2f}, {:.2f})", axis.x() + 0.0, axis.y() + 0.0, axis.z() + 0.0);
 }
 
+std::string square_metres(std::string text) {
+  for (std::size_t at = text.find(" m2"); at != std::string::npos; at = text.find(" m2", at + 1))
+    text.replace(at, 3, " m²");
+  return text;
+}
+
 std::string size_words(const Vector3d& size_m) {
   return fmt::format("{:.1f} x {:.1f} x {:.1f} m", size_m.x(), size_m.y(), size_m.z());
 }

@@ -20,6 +20,9 @@ std::string probability_words(double probability);
 /// "the vertical", or "(0.71, 0.71, 0.00)".
 std::string axis_words(const Vector3d& axis);
 
+/// "m2" of messages as "m²".
+std::string square_metres(std::string text);
+
 /// "12.3 x 8.1 x 2.9 m"
 std::string size_words(const Vector3d& size_m);
 

@@ -97,7 +97,7 @@ const startViewer = (gl, canvas) => {
   const overlay = (residual) => {
     const length = roundBelow(110 * look.metresPerPx);
     element('scale-bar').style.width = `${length / look.metresPerPx}px`;
-    element('scale-text').textContent = metres(length) + (camera.parallel ? '' : ' at the centre');
+    element('scale-text').textContent = camera.parallel ? metres(length) : t`${metres(length)} at the centre`;
     const apart = !state.after || (motion !== null);
     for (const [name, viewFromSide] of [['source', place], ['target', scene.viewFromTarget]]) {
       const tag = element(`tag-${name}`);
@@ -143,7 +143,7 @@ const startViewer = (gl, canvas) => {
   };
   const forget = () => {
     picked = null;
-    element('picked').replaceChildren(made('p', { class: 'soft' }, 'Click a point or a surface for details.'));
+    element('picked').replaceChildren(made('p', { class: 'soft' }, t`Click a point or a surface for details.`));
   };
   const pickAt = (px, py) => {
     const sides = [['source', place], ['target', scene.viewFromTarget]]

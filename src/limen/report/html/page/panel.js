@@ -3,7 +3,7 @@
 
 // Buttons, boxes and sliders around the view. They change `state` and call `changed`.
 
-const kLayers = [['cloud', 'Points'], ['planes', 'Outlines'], ['openings', 'Openings'], ['segments', 'Edges'], ['walls', 'Cut walls']];
+const kLayers = [['cloud', t`Points`], ['planes', t`Outlines`], ['openings', t`Openings`], ['segments', t`Edges`], ['walls', t`Cut walls`]];
 
 const made = (tag, attributes = {}, ...children) => {
   const node = document.createElement(tag);
@@ -22,17 +22,17 @@ const hasLayer = (side, layer) => {
 
 const buildLayers = (scene, state, changed) => {
   const grid = element('layers');
-  grid.append(made('span'), made('span', { class: 'head', style: 'color:var(--source-ink)' }, 'Source'),
-    made('span', { class: 'head', style: 'color:var(--target)' }, 'Target'));
+  grid.append(made('span'), made('span', { class: 'head', style: 'color:var(--source-ink)' }, t`Source`),
+    made('span', { class: 'head', style: 'color:var(--target)' }, t`Target`));
   for (const [layer, text] of kLayers) {
     if (!hasLayer(scene.source, layer) && !hasLayer(scene.target, layer)) continue;
     const faces = layer === 'cloud' && [scene.source, scene.target].some((side) => side.shape === 'faces');
-    const label = faces ? 'Points, faces' : text;
+    const label = faces ? t`Points, faces` : text;
     grid.append(made('span', {}, label));
     for (const name of ['source', 'target']) {
       const there = hasLayer(scene[name], layer);
       grid.append(made('input', {
-        type: 'checkbox', 'aria-label': `${label} of the ${name}`, 'data-layer': `${name}-${layer}`,
+        type: 'checkbox', 'aria-label': `${label}: ${name === 'source' ? t`Source` : t`Target`}`, 'data-layer': `${name}-${layer}`,
         disabled: !there, checked: there && state.layers[name][layer],
         onchange: (event) => { state.layers[name][layer] = event.target.checked; changed(); },
       }));
@@ -40,7 +40,7 @@ const buildLayers = (scene, state, changed) => {
   }
 };
 
-const kColourings = [['side', 'By side'], ['own', 'As measured'], ['residual', 'Residual']];
+const kColourings = [['side', t`By side`], ['own', t`As measured`], ['residual', t`Residual`]];
 
 const buildColours = (scene, state, changed) => {
   const offered = {
@@ -94,22 +94,22 @@ const showLegend = (scene, state, residual) => {
   legend.dataset.told = told;
   legend.replaceChildren();
   if (state.colouring === 'residual' && residual) {
-    legend.append(made('span', {}, 'Residual 0', made('span', { class: 'ramp', style: `background:${rampCss()}` }),
-      `${1000 * scene.residual_range} mm and more; grey: not matched`));
+    legend.append(made('span', {}, t`Residual 0`, made('span', { class: 'ramp', style: `background:${rampCss()}` }),
+      t`${1000 * scene.residual_range} mm and more; grey: not matched`));
   } else if (state.colouring === 'residual') {
-    legend.append('Residuals are shown for the best pose only, after registration');
+    legend.append(t`Residuals are shown for the best pose only, after registration`);
   } else {
     for (const name of ['source', 'target']) {
-      legend.append(made('span', { class: `chip ${name}` }, made('span', { class: 'mark' }), name === 'source' ? 'Source' : 'Target'));
+      legend.append(made('span', { class: `chip ${name}` }, made('span', { class: 'mark' }), name === 'source' ? t`Source` : t`Target`));
     }
   }
 };
 
 const numbersOf = (pose) => {
   const words = [];
-  if (pose.segments) words.push(`${pose.segments} segments, ${pose.length.toFixed(1)} m in common`);
-  else words.push(`${pose.agreeing.toFixed(1)} m² agree`, `${pose.contradicted.toFixed(1)} m² contradict`);
-  if (pose.rms > 0) words.push(`residual ${millimetres(pose.rms)}`);
+  if (pose.segments) words.push(t`${pose.segments} segments, ${pose.length.toFixed(1)} m in common`);
+  else words.push(t`${pose.agreeing.toFixed(1)} m² agree`, t`${pose.contradicted.toFixed(1)} m² contradict`);
+  if (pose.rms > 0) words.push(t`residual ${millimetres(pose.rms)}`);
   if (pose.probability) words.push(pose.probability);
   if (pose.room) words.push(pose.room);
   return words.join(' · ');
@@ -125,12 +125,13 @@ const showTables = (pose) => {
 
 const showPose = (scene, state) => {
   const count = scene.poses.length;
-  element('pose').value = state.pose === 0 ? `Best${count > 1 ? ` of ${count}` : ''}` : `Alternative ${state.pose} / ${count - 1}`;
+  const best = count > 1 ? t`Best of ${count}` : t`Best`;
+  element('pose').value = state.pose === 0 ? best : t`Alternative ${state.pose} / ${count - 1}`;
   element('numbers').textContent = count && state.after ? numbersOf(scene.poses[state.pose]) : '';
   if (count) {
     element('matrix').textContent = scene.poses[state.pose].text;
-    element('matrix-pose').textContent = state.pose === 0 ? 'The best pose, as in transform.txt.'
-      : `Alternative ${state.pose}, not the pose of transform.txt.`;
+    element('matrix-pose').textContent = state.pose === 0 ? t`The best pose, as in transform.txt.`
+      : t`Alternative ${state.pose}, not the pose of transform.txt.`;
     showTables(scene.poses[state.pose]);
   }
   for (const row of document.querySelectorAll('tr[data-pose]')) {
@@ -148,9 +149,9 @@ const copyMatrix = async () => {
   const said = element('copied');
   try {
     await navigator.clipboard.writeText(element('matrix').textContent);
-    said.textContent = 'Copied';
+    said.textContent = t`Copied`;
   } catch {
     getSelection().selectAllChildren(element('matrix'));
-    said.textContent = document.execCommand('copy') ? 'Copied' : 'Selected: copy it with Ctrl+C';
+    said.textContent = document.execCommand('copy') ? t`Copied` : t`Selected: copy it with Ctrl+C`;
   }
 };

@@ -97,23 +97,28 @@ const pick = (sides, look, px, py) => {
 /** Lines of text about a pick: pairs of name and value. `frames`: how to tell its place. */
 const describe = (scene, found, { targetFromView, residual }) => {
   const { side, point, plane } = found;
-  const lines = [[side.side === 'source' ? 'Source' : 'Target', side.name]];
+  const lines = [[side.side === 'source' ? t`Source` : t`Target`, side.name]];
   const local = apply(targetFromView, found.at);
   const world = add(local, scene.target.origin);
-  lines.push(['In target', world.map((c) => c.toFixed(3)).join('  ')]);
-  lines.push(['Type', point >= 0 ? `point${Math.max(...side.step) > 0.001 ? `, drawn to ±${millimetres(Math.max(...side.step) / 2)}` : ''}` : 'surface']);
+  lines.push([t`In target`, world.map((c) => t`${c.toFixed(3)}`).join('  ')]);
+  const coarse = Math.max(...side.step);
+  const kind = coarse > 0.001 ? t`point, drawn to ±${millimetres(coarse / 2)}` : t`point`;
+  lines.push([t`Type`, point >= 0 ? kind : t`surface`]);
   if (plane >= 0) {
     const { area, rms } = side.planes[plane];
-    lines.push(['Plane', `${plane}, ${area.toFixed(1)} m²${rms > 0 ? `, residuals ${millimetres(rms)}` : ''}`]);
+    const size = t`${area.toFixed(1)} m²`;
+    lines.push([t`Plane`, rms > 0 ? t`${plane}, ${size}, residuals ${millimetres(rms)}` : `${plane}, ${size}`]);
     const partner = scene.partner.get(side.side + plane);
     if (partner && residual) {
-      lines.push(['Matched', `${side.side === 'source' ? 'target' : 'source'} plane ${partner.other}, distance ${millimetres(partner.distance)}`]);
+      const distance = millimetres(partner.distance);
+      const words = side.side === 'source' ? t`target plane ${partner.other}, distance ${distance}` : t`source plane ${partner.other}, distance ${distance}`;
+      lines.push([t`Matched`, words]);
     }
   }
   const mark = point >= 0 ? side.marks[2 * point + 1] : 0;
   if (mark > 0 && residual) {
     const off = (mark - 128) / 127 * scene.residual_range;
-    lines.push(['Residual', `${Math.abs(mark - 128) === 127 ? 'beyond ' : ''}${millimetres(off)}`]);
+    lines.push([t`Residual`, Math.abs(mark - 128) === 127 ? t`beyond ${millimetres(off)}` : millimetres(off)]);
   }
   return lines;
 };
