@@ -42,6 +42,7 @@ struct DeviationCommand {
   DeviationOptions measuring;
   IssueChoice issues;
   CoverChoice cover;
+  bool pdf = false;
 };
 
 /// The scans of a group as one, about the first one's origin, with the optical centre of every point where
@@ -188,6 +189,7 @@ int run_on_project(const DeviationCommand& command, const Session& session) {
   if (pose_given)
     throw Error("the poses of the scans are taken from the project", command.scan,
                 "leave out --result, --identity, --inverse, --alternative, --origin and --with");
+  const std::filesystem::path browser = browser_for_pdf(command.pdf);
   ProjectDeviation project;
   project.project = command.scan;
   project.models = command.models;
@@ -200,7 +202,9 @@ int run_on_project(const DeviationCommand& command, const Session& session) {
   project.measuring = command.measuring;
   project.issues = command.issues;
   project.cover = cover_of(command.cover);
-  return run_project_deviation(project, session);
+  const int status = run_project_deviation(project, session);
+  if (command.pdf) write_pdf(browser, command.folder, session);
+  return status;
 }
 
 int run(const DeviationCommand& command, const Session& session) {
@@ -208,9 +212,9 @@ int run(const DeviationCommand& command, const Session& session) {
   if (command.model.empty()) throw Error("there is no model", "MODEL", "give an IFC, OBJ or PLY model");
   if (!command.models.empty())
     throw Error("--model is for projects", "", "give the one model after the scan");
-  if (!command.cover.empty())
+  if (!command.cover.empty() || command.pdf)
     throw Error("a report is made of projects only",
-                "--title, --project, --operator, --date, --logo, --language",
+                "--title, --project, --operator, --date, --logo, --language, --pdf",
                 "leave them out, or give a project.json");
   command.issues.options.check();
   check(command);
@@ -311,6 +315,7 @@ void add_deviation_command(CommandLine& app, Session& session) {
       ->in_range(1000, 1000000000);
   add_issue_options(*command, options->issues);
   add_cover_options(*command, options->cover);
+  add_pdf_option(*command, options->pdf);
 }
 
 }  // namespace limen

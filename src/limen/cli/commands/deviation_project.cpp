@@ -346,7 +346,7 @@ int run_project_deviation(const ProjectDeviation& command, const Session& sessio
     all.report.issues_stated = topics.size();
     issues = bcf_file(topics, date_of_file(command.project));
   }
-  fs::remove(folder.path() / "deviation.json");
+  for (const char* old : {"deviation.json", "report.pdf"}) fs::remove(folder.path() / old);
   all.report.cloud_points = cloud.write(folder.path() / "deviation.ply", command.colour_limit_m);
   if (!issues.empty()) write_file(command.issues.file, issues);
   const std::string json = building_json(all.report);
