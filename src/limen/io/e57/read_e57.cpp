@@ -150,8 +150,6 @@ std::unique_ptr<PointFile> open_e57(std::string_view bytes, const std::string& n
     source->clouds.push_back(facts_of(source->document.scans[k], cloud_name(*source, k)));
   }
   std::vector<std::string>& notes = source->clouds.front().notes;
-  if (!source->document.images.empty())
-    notes.push_back(fmt::format("images are skipped: {}", source->document.images.size()));
   if (source->pages.surplus() > 0)
     notes.push_back(
         fmt::format("{} bytes after the stated end of the file are skipped", source->pages.surplus()));
