@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <sstream>
@@ -93,6 +94,22 @@ TEST_F(SimulateModelTest, ModelFilesAreScannedToo) {
   const Json pose = pose_of(truth, 0);
   EXPECT_TRUE(pose[0][3] > 0.5 && pose[0][3] < 5.5 && pose[2][3] > 1.3 && pose[2][3] < 1.9);
   EXPECT_GT(truth["scans"][0]["points"].get<int>(), 4500);
+}
+
+TEST_F(SimulateModelTest, StationsAreE57WithAPanoramaAndTargetsAreSurveyed) {
+  const ProgramRun done = run({"simulate", "office", "-o", "day", "--room", "doorways", "--stations", "2",
+                               "--targets", "6", "--as", "e57", "--points-indoor", "20000", "--json"});
+  ASSERT_EQ(done.status, 0) << done.err;
+  EXPECT_EQ(Json::parse(done.out)["source"], "scan_01.e57");
+  EXPECT_EQ(json_at("day/truth/truth.json")["scans"][1]["file"], "scan_02.e57");
+  EXPECT_NE(read_whole(work() / "day/scan_02.e57").find("\x89PNG"), std::string::npos);
+  for (const char* file : {"day/control.csv", "day/truth/control.csv"}) {
+    const std::string table = read_whole(work() / file);
+    EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 7) << file;
+  }
+  const ProgramRun scene = run({"simulate", "museum", "-o", "none", "--targets", "3"});
+  EXPECT_EQ(scene.status, 2);
+  EXPECT_NE(scene.err.find("--targets is for models and whole buildings"), std::string::npos) << scene.err;
 }
 
 TEST_F(SimulateModelTest, BadModelsAndWishesAreStatedAndLeaveNothing) {

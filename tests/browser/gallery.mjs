@@ -8,12 +8,20 @@
 //   points    their size
 //   turn, shift  [right, up]: steps of the arrow keys, without Shift and with it
 //   zoom      steps of the key +
+// With "page": [width, height] it is the top of any page that limen writes, as it is.
 import playwright from 'playwright-core';
 import { openBrowser, openReport } from './browser.mjs';
 
 const [file, picture, settings] = process.argv.slice(2);
-const { size = [1100, 600], section, colour, points, turn = [0, 0], shift = [0, 0], zoom = 0 } = JSON.parse(settings);
+const { page: top, size = [1100, 600], section, colour, points, turn = [0, 0], shift = [0, 0], zoom = 0 } = JSON.parse(settings);
 const browser = await openBrowser(playwright);
+if (top) {
+  const { page } = await openReport(browser.context, file, { viewport: { width: top[0], height: top[1] }, ready: false });
+  await page.waitForTimeout(3000);
+  await page.screenshot({ path: picture, type: 'jpeg', quality: 65 });
+  await browser.close();
+  process.exit();
+}
 const { page } = await openReport(browser.context, file, { viewport: { width: 1500, height: 1000 } });
 const slide = (id, share) => page.locator(`#${id}`).evaluate((input, at) => {
   input.value = +input.min + at * (input.max - input.min);

@@ -14,6 +14,7 @@
 #include "limen/cli/commands/commands.h"
 #include "limen/cli/terminal/command.h"
 #include "limen/geometry/random_vectors.h"
+#include "limen/io/e57/e57.h"
 #include "limen/io/ply/ply.h"
 #include "limen/report/json/result_json.h"
 #include "limen/report/json/truth_json.h"
@@ -62,37 +63,55 @@ std::string summary(const ProjectTruth& truth, const std::string& folder) {
 }
 
 /// The targets as a surveyor measures them, or exactly, in the format of limen project --control.
-std::string control_text(const ProjectTruth& truth, double sigma_m) {
+template <typename AnyTruth>
+std::string control_text(const AnyTruth& truth, const std::vector<SiteTarget>& targets, double sigma_m) {
   std::string text = "name,x,y,z,sigma\n";
-  for (std::size_t k = 0; k < truth.targets.size(); ++k) {
+  for (std::size_t k = 0; k < targets.size(); ++k) {
     RandomStream random(truth.seed, 600000 + k);
-    const Vector3d x = truth.local_origin + truth.targets[k].centre + sigma_m * normal_vector(random);
-    text += fmt::format("{},{:.5f},{:.5f},{:.5f},{}\n", truth.targets[k].name, x.x(), x.y(), x.z(),
+    const Vector3d x = truth.local_origin + targets[k].centre + sigma_m * normal_vector(random);
+    text += fmt::format("{},{:.5f},{:.5f},{:.5f},{}\n", targets[k].name, x.x(), x.y(), x.z(),
                         sigma_m > 0.0 ? sigma_m : 1e-5);
   }
   return text;
 }
 
+template <typename AnyTruth>
+void write_control(const std::filesystem::path& folder, const AnyTruth& truth,
+                   const std::vector<SiteTarget>& targets, CaseFiles& files) {
+  constexpr double kSurveyedM = 0.001;
+  if (targets.empty()) return;
+  write_file(files.add(folder / "control.csv"), control_text(truth, targets, kSurveyedM));
+  write_file(files.add(folder / "truth" / "control.csv"), control_text(truth, targets, 0.0));
+}
+
+void write_scan(const std::filesystem::path& folder, const Scan& scan, bool e57, CaseFiles& files) {
+  const std::filesystem::path path = files.add(folder / (scan.name + (e57 ? ".e57" : ".ply")));
+  e57 ? write_e57(path, scan) : write_ply(path, scan);
+}
+
+/// Stations as E57, passes as PLY.
+template <typename AnyTruth>
+void name_as_e57(AnyTruth& truth) {
+  for (auto& scan : truth.scans) {
+    if (!scan.mobile) scan.ending = ".e57";
+  }
+}
+
 /// `limen simulate BUILDING --project -o DIR`: scans a whole building, one file a scan, and writes task.json
 /// and truth/project.json. `options.seed` is set.
-int run_simulate_project(const ProjectSceneOptions& options, const std::string& output,
+int run_simulate_project(const ProjectSceneOptions& options, const std::string& output, bool e57,
                          const Session& session) {
   options.check();
   const OutputFolder folder(output);
   const OutputFolder truth_folder(folder.path() / "truth");
   CaseFiles files;
-  const auto keep = [&](const Scan& scan) {
-    write_ply(files.add(folder.path() / (scan.name + ".ply")), scan);
-  };
-  const ProjectTruth truth = simulate_project(options, keep, *session.monitor);
+  const auto keep = [&](const Scan& scan) { write_scan(folder.path(), scan, e57 && !scan.mobile(), files); };
+  ProjectTruth truth = simulate_project(options, keep, *session.monitor);
+  if (e57) name_as_e57(truth);
   const std::string task = project_task_json(truth);
   write_file(files.add(truth_folder.path() / "project.json"), project_truth_json(truth));
   write_file(files.add(folder.path() / "task.json"), task);
-  if (!truth.targets.empty()) {
-    constexpr double kSurveyedM = 0.001;
-    write_file(files.add(folder.path() / "control.csv"), control_text(truth, kSurveyedM));
-    write_file(files.add(truth_folder.path() / "control.csv"), control_text(truth, 0.0));
-  }
+  write_control(folder.path(), truth, truth.targets, files);
   files.keep();
   session.say(summary(truth, output));
   session.answer(task);
@@ -115,12 +134,15 @@ struct SimulateOptions {
   std::size_t tripods = 0;
   std::size_t targets = 0;
   double open_doors = -1.0;
+  std::string as = "ply";
+  [[nodiscard]] bool e57() const { return as == "e57"; }
 };
 
 std::string summary(const SimulatedCase& simulated, const std::string& folder) {
   std::string text;
-  for (const Scan& scan : simulated.scans) {
-    text += fmt::format("{:<16} {:>9} points, {}\n", scan.name + ".ply", scan.size(),
+  for (std::size_t k = 0; k < simulated.scans.size(); ++k) {
+    const Scan& scan = simulated.scans[k];
+    text += fmt::format("{:<16} {:>9} points, {}\n", scan.name + simulated.truth.scans[k].ending, scan.size(),
                         scan.mobile() ? "mobile, world coordinates" : "station, its own frame");
   }
   if (simulated.truth.model) text += fmt::format("{:<16} the model\n", simulated.truth.model->file);
@@ -138,6 +160,7 @@ void write_station_poses(const SimulatedCase& simulated, const std::filesystem::
 RoomChoice room_choice(const std::string& room) {
   if (room == "unique") return RoomChoice::unique;
   if (room == "each") return RoomChoice::each;
+  if (room == "doorways") return RoomChoice::doorways;
   return room == "repeated" ? RoomChoice::repeated : RoomChoice::any;
 }
 
@@ -152,8 +175,10 @@ BimSceneOptions bim_options(const SimulateOptions& options) {
   bim.room = room_choice(options.room);
   // Who scans a building room by room leaves the doors open.
   if (bim.room == RoomChoice::each) bim.open_door_share = 0.9;
+  if (bim.room == RoomChoice::doorways) bim.open_door_share = 1.0;
   bim.as_built.on = options.as_built;
   bim.scanner = options.scene.scanner;
+  bim.targets = options.targets;
   bim.check();
   return bim;
 }
@@ -207,6 +232,7 @@ void check_options(const SimulateOptions& options, bool model) {
     return;
   }
   refuse(options.as_built, "--as-built", "models");
+  refuse(options.targets > 0, "--targets", "models and whole buildings (--project)");
   refuse(scene.drift_m > 0.0 && scene.outdoor == Outdoor::tripod, "--drift-m", "mobile scans");
   refuse(options.room != "any", "--room", "models");
   refuse(options.units != "m", "--units", kOffice);
@@ -250,7 +276,7 @@ int run_project(const SimulateOptions& options, const Session& session) {
   if (options.open_doors >= 0.0) project.open_door_share = options.open_doors;
   project.scanner = scene.scanner;
   project.styles = options.styles;
-  return run_simulate_project(project, options.output, session);
+  return run_simulate_project(project, options.output, options.e57(), session);
 }
 
 int run(SimulateOptions& options, const Session& session) {
@@ -263,7 +289,6 @@ int run(SimulateOptions& options, const Session& session) {
   only_project(options.styles, "--styles");
   only_project(options.passes >= 0, "--passes");
   only_project(options.tripods > 0, "--tripods");
-  only_project(options.targets > 0, "--targets");
   only_project(options.places != "usual", "--places");
   only_project(options.open_doors >= 0.0, "--open-doors");
   options.scene.as_built = !options.as_drawn;
@@ -274,13 +299,16 @@ int run(SimulateOptions& options, const Session& session) {
   const OutputFolder folder(options.output);
   const OutputFolder truth_folder(folder.path() / "truth");
   CaseFiles files;
-  const SimulatedCase simulated = model ? simulate_model(options, folder.path(), files, *session.monitor)
-                                        : simulate(options.scene, *session.monitor);
+  SimulatedCase simulated = model ? simulate_model(options, folder.path(), files, *session.monitor)
+                                  : simulate(options.scene, *session.monitor);
+  if (options.e57()) name_as_e57(simulated.truth);
   session.monitor->begin_stage("writing");
   for (const Scan& scan : simulated.scans) {
     session.monitor->throw_if_cancelled();
-    write_ply(files.add(folder.path() / (scan.name + ".ply")), scan);
+    write_scan(folder.path(), scan, options.e57() && !scan.mobile(), files);
   }
+  if (simulated.truth.model)
+    write_control(folder.path(), simulated.truth, simulated.truth.model->targets, files);
   const std::string task = task_json(simulated);
   write_station_poses(simulated, folder.path(), files);
   write_file(files.add(truth_folder.path() / "truth.json"), truth_json(simulated.truth));
@@ -334,9 +362,11 @@ void add_simulate_command(CommandLine& app, Session& session) {
                     "The building exactly as drawn; by default its walls lean, and walls, slabs and openings "
                     "are off by millimetres to a centimetre");
   command
-      ->add_option("--room", options->room,
-                   "For a model: scan a room that is unique in it, or repeated, or each in turn")
-      ->one_of({"any", "unique", "repeated", "each"});
+      ->add_option(
+          "--room", options->room,
+          "For a model: scan a room that is unique in it, or repeated, or each in turn, or doorways between "
+          "rooms and then each room")
+      ->one_of({"any", "unique", "repeated", "each", "doorways"});
   command->add_option("--units", options->units, "Unit of office's model.ifc")->one_of({"m", "mm"});
   add_length_option(*command, "--drift-m", scene.drift_m,
                     "Drift of the mobile scan's trajectory (default 0, with --project 0.008)");
@@ -348,6 +378,8 @@ void add_simulate_command(CommandLine& app, Session& session) {
       ->add_option("--outdoor", options->outdoor,
                    "Scan the street from a vehicle, or from a tripod before the first room's windows")
       ->one_of({"mobile", "static"});
+  command->add_option("--as", options->as, "Format of stations: ply (default), or e57, each with a panorama")
+      ->one_of({"ply", "e57"});
   command
       ->add_option("--places", options->places,
                    "With --project: one station per room, or as usual and one more in every open doorway")
@@ -356,9 +388,11 @@ void add_simulate_command(CommandLine& app, Session& session) {
                       "With --project: number of stations outside, around the building (default 0)");
   command->add_option(
       "--targets N", options->targets,
-      fmt::format("With --project: number of targets in each scanned room, spheres of {} mm radius and "
-                  "checkerboards of {} mm side by turns; control.csv has their surveyed centres (default 0)",
-                  1e3 * kSphereRadiusM, 1e3 * kBoardSideM));
+      fmt::format(
+          "With --project: number of targets in each scanned room, spheres of {0} mm radius and "
+          "checkerboards of {1} mm side by turns; of a model: of such spheres in all, three to a room; "
+          "control.csv has their surveyed centres (default 0)",
+          1e3 * kSphereRadiusM, 1e3 * kBoardSideM));
   command->add_option(
       "--open-doors SHARE", options->open_doors,
       "With --project: share of the inner doors that are open (default 0.9; 1 with --places doorways)");

@@ -12,6 +12,7 @@
 #include "limen/geometry/rigid.h"
 #include "limen/io/table/cloud_writer.h"
 #include "limen/io/table/point_file.h"
+#include "limen/model/scan.h"
 
 namespace limen {
 
@@ -24,8 +25,13 @@ namespace limen {
 /// fit.
 std::unique_ptr<CloudWriter> make_e57_writer(const std::filesystem::path& path, const CloudPlan& plan);
 
+/// Writes a static scan as an E57 file of one scan: points, intensities, and these as a panorama, as scanners
+/// with a camera add one. Throws Error where the file cannot be written.
+void write_e57(const std::filesystem::path& path, const Scan& scan);
+
 class E57PageWriter;
 class E57Section;
+struct E57Panorama;
 class E57Original;
 struct E57Entry;
 
@@ -42,6 +48,8 @@ class E57StationsWriter {
   void begin_station(const CloudPlan& plan);
   /// The next rows, with the columns of the station's plan.
   void write(const RecordTable& rows);
+  /// A picture of what is round the station.
+  void add(E57Panorama panorama);
   /// A scan of another E57 file as it is (e57_copy.h), moved; `wkt`: the coordinate system, in the place of
   /// its own where it is not empty.
   void copy(const E57Original& from, std::size_t scan, const Rigid3& target_from_source,
@@ -55,6 +63,7 @@ class E57StationsWriter {
   std::string name_;
   std::unique_ptr<E57PageWriter> file_;
   std::unique_ptr<E57Section> station_;
+  std::unique_ptr<E57Panorama> panorama_;  ///< of the station
   std::vector<E57Entry> stations_;
 };
 

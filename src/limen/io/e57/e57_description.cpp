@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <bit>
 #include <map>
+#include <numbers>
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>
@@ -185,6 +186,22 @@ E57Entry e57_entry(const E57Description& about) {
           {{"nor", kNormals}, {"limen", std::string(kE57LimenSpace)}},
           about.georeference,
           about.digest};
+}
+
+std::string e57_panorama_xml(const E57Description& about, const E57Panorama& picture, std::uint64_t section) {
+  std::string xml = "<vectorChild type=\"Structure\">\n";
+  xml += text_element("guid", guid_of(about.digest + 2)) +
+         text_element("associatedData3DGuid", guid_of(about.digest + 1)) +
+         text_element("name", about.name + " panorama");
+  xml += e57_pose_xml({Matrix3d::Identity(), about.shift});
+  xml += fmt::format(
+      "<sphericalRepresentation type=\"Structure\">\n<pngImage type=\"Blob\" fileOffset=\"{}\" "
+      "length=\"{}\"/>\n<imageHeight type=\"Integer\">{}</imageHeight>\n<imageWidth "
+      "type=\"Integer\">{}</imageWidth>\n",
+      section, picture.png.size(), picture.height, picture.width);
+  xml += float_element("pixelHeight", std::numbers::pi / static_cast<double>(picture.height)) +
+         float_element("pixelWidth", 2.0 * std::numbers::pi / static_cast<double>(picture.width));
+  return xml + "</sphericalRepresentation>\n</vectorChild>\n";
 }
 
 std::string e57_description_xml(const std::vector<E57Entry>& entries) {

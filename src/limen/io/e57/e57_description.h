@@ -85,6 +85,16 @@ struct E57Entry {
 };
 E57Entry e57_entry(const E57Description& about);
 
+/// A picture of all that is round the scanner, a PNG: azimuth falls from left to right by a whole turn with
+/// the scan's x axis in the middle, elevation from top to bottom by half a turn.
+struct E57Panorama {
+  std::string png;
+  std::size_t width = 0;
+  std::size_t height = 0;
+};
+/// The description of the panorama of a scan; `section`: where its bytes are, physical offset.
+std::string e57_panorama_xml(const E57Description& about, const E57Panorama& picture, std::uint64_t section);
+
 /// The file's XML; at least one scan.
 std::string e57_description_xml(const std::vector<E57Entry>& entries);
 

@@ -113,6 +113,14 @@ std::int64_t load_integer(const char* from, Scalar type) {
   return with_type(type, [&](auto kind) { return load_as<decltype(kind)>(from); });
 }
 
+/// A section of bytes that mean something to others.
+std::string e57_blob(const std::string& bytes) {
+  const std::uint64_t length = 16 + bytes.size();
+  std::string section(8, '\0');
+  for (unsigned k = 0; k < 8; ++k) section += static_cast<char>((length >> (8 * k)) & 255U);
+  return section + bytes;
+}
+
 /// Appends the nearest integer; false where there is none or it lies outside the column's bounds.
 bool append_rounded(E57Encoder& encoder, double value) {
   constexpr double kLargest = 9.2e18;
@@ -358,9 +366,21 @@ void E57StationsWriter::write(const RecordTable& rows) {
   station_->write(rows);
 }
 
+void E57StationsWriter::add(E57Panorama panorama) {
+  panorama_ = std::make_unique<E57Panorama>(std::move(panorama));
+}
+
 void E57StationsWriter::end_station() {
-  if (station_) stations_.push_back(e57_entry(station_->finish()));
+  if (!station_) return;
+  const E57Description about = station_->finish();
+  stations_.push_back(e57_entry(about));
   station_.reset();
+  if (!panorama_) return;
+  const std::uint64_t section = file_->physical();
+  file_->append(e57_blob(panorama_->png));
+  file_->fill_word();
+  stations_.back().images = e57_panorama_xml(about, *panorama_, section);
+  panorama_.reset();
 }
 
 void E57StationsWriter::copy(const E57Original& from, std::size_t scan, const Rigid3& target_from_source,

@@ -22,7 +22,7 @@ Json scan_json(const ProjectTruth& truth, std::size_t index) {
   const SimulatedScan& scan = truth.scans[index];
   Json json;
   json["name"] = scan.name;
-  json["file"] = scan.name + ".ply";
+  json["file"] = scan.name + scan.ending;
   json["kind"] = kind_of(scan);
   json["points"] = scan.points;
   json["room"] = number_or_null(scan.room);
@@ -74,14 +74,14 @@ std::string project_task_json(const ProjectTruth& truth) {
   json["units"] = "m";
   json["scans"] = Json::array();
   for (const SimulatedScan& scan : truth.scans)
-    json["scans"].push_back({{"file", scan.name + ".ply"}, {"kind", kind_of(scan)}});
+    json["scans"].push_back({{"file", scan.name + scan.ending}, {"kind", kind_of(scan)}});
   return to_text(json);
 }
 
 namespace {
 
-std::string file_of(const std::string& scan_name) {
-  return scan_name + ".ply";
+std::string file_of(const ScanTruth& scan) {
+  return scan.name + scan.ending;
 }
 
 const char* kind_of(bool mobile) {
@@ -94,7 +94,7 @@ Json scans_json(const Truth& truth) {
     const ScanTruth& scan = truth.scans[i];
     Json json;
     json["name"] = scan.name;
-    json["file"] = file_of(scan.name);
+    json["file"] = file_of(scan);
     json["kind"] = kind_of(scan.mobile);
     json["points"] = scan.plane_of_point.size();
     json["room"] = scan.room >= 0 ? Json(scan.room) : Json(nullptr);
@@ -118,8 +118,8 @@ Json pairs_json(const Truth& truth) {
     for (std::size_t target = 0; target < truth.scans.size(); ++target) {
       if (source == target) continue;
       Json json;
-      json["source"] = file_of(truth.scans[source].name);
-      json["target"] = file_of(truth.scans[target].name);
+      json["source"] = file_of(truth.scans[source]);
+      json["target"] = file_of(truth.scans[target]);
       json["target_from_source"] = json_of(to_matrix(true_target_from_source(truth, source, target)));
       if (!truth.shared.empty()) json["shared_m2"] = shared_m2(truth, source, target);
       pairs.push_back(std::move(json));
@@ -261,22 +261,24 @@ std::string truth_json(const Truth& truth) {
 }
 
 std::string task_json(const SimulatedCase& simulated) {
+  const std::vector<ScanTruth>& scans = simulated.truth.scans;
   Json json;
   json["units"] = "m";
   json["scans"] = Json::array();
-  for (const Scan& scan : simulated.scans)
-    json["scans"].push_back(
-        {{"file", file_of(scan.name)}, {"kind", kind_of(scan.mobile())}, {"level", scan.level}});
+  for (std::size_t k = 0; k < scans.size(); ++k)
+    json["scans"].push_back({{"file", file_of(scans[k])},
+                             {"kind", kind_of(simulated.scans[k].mobile())},
+                             {"level", simulated.scans[k].level}});
   if (simulated.truth.model) {
-    json["source"] = file_of(simulated.scans.front().name);
+    json["source"] = file_of(scans.front());
     json["target"] = simulated.truth.model->file;
     return to_text(json);
   }
-  if (simulated.scans.size() > 1) {
+  if (scans.size() > 1) {
     // The street's scan comes last: a mobile one, or a station in no room.
-    const bool outdoor = simulated.truth.scans.back().room < 0;
-    json["source"] = file_of(simulated.scans.front().name);
-    json["target"] = file_of((outdoor ? simulated.scans.back() : simulated.scans[1]).name);
+    const bool outdoor = scans.back().room < 0;
+    json["source"] = file_of(scans.front());
+    json["target"] = file_of(outdoor ? scans.back() : scans[1]);
   }
   return to_text(json);
 }

@@ -38,6 +38,11 @@ BuiltState as_built(const BimModel& model, const AsBuiltOptions& options, const 
 /// The differences between the model and what was built, in the order of the elements.
 std::vector<ModelChange> changes_of(const BimModel& model, const BuiltState& doors, const BuiltState& built);
 
+/// Puts up `count` spheres on poles, by threes about 1 m from a station, each time the farthest from all
+/// others. Throws Error where there is no place.
+std::vector<SiteTarget> put_up_spheres(BimMesh& built, const std::vector<BimStation>& stations,
+                                       std::size_t count, RandomStream& random);
+
 /// Adds furniture along the walls of the scanned rooms, and boxes on the floors about the stations: tables,
 /// crates, clutter on top. Returns how many.
 int add_clutter(BimMesh& built, const std::vector<BimStation>& stations, const AsBuiltOptions& options,

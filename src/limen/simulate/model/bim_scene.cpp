@@ -12,7 +12,7 @@ namespace limen {
 namespace {
 
 /// Streams of the seed, so that one choice does not disturb another.
-enum Stream : std::uint64_t { kDoors = 5001, kPlaces, kChanges, kClutter, kFrames };
+enum Stream : std::uint64_t { kDoors = 5001, kPlaces, kChanges, kClutter, kFrames, kTargets };
 
 /// Scans a model and writes down what is true.
 class BimSimulation {
@@ -46,14 +46,22 @@ class BimSimulation {
     if (planned.mesh.triangles().empty())
       throw Error("the model has no surface to be scanned", model_.name, "check it with limen info");
     RandomStream place_random(o_.seed, kPlaces);
-    stations_ = place_bim_stations(rooms_, RayCaster(planned.mesh), o_.stations, o_.room, place_random);
+    stations_ =
+        place_bim_stations(model_, rooms_, RayCaster(planned.mesh), o_.stations, o_.room, place_random);
     stated_.as_built = o_.as_built.on;
     stated_.file = model_.name;
     if (!o_.as_built.on) {
       stated_.changes = changes_of(model_, doors, doors);
       built_ = std::move(planned);
-      return;
+    } else {
+      build_otherwise(matter, doors, planned);
     }
+    RandomStream target_random(o_.seed, kTargets);
+    stated_.targets = put_up_spheres(built_, stations_, o_.targets, target_random);
+  }
+
+  void build_otherwise(const std::vector<BimMatter>& matter, const BuiltState& doors,
+                       const BimMesh& planned) {
     RandomStream change_random(o_.seed, kChanges);
     const BuiltState state = as_built(model_, o_.as_built, doors, stations_, planned, change_random);
     stated_.changes = changes_of(model_, doors, state);
@@ -130,6 +138,7 @@ void BimSceneOptions::check() const {
     throw_bad_option("stations", static_cast<double>(stations), "between 1 and 20");
   if (!(open_door_share >= 0.0 && open_door_share <= 1.0))
     throw_bad_option("open_door_share", open_door_share, "between 0 and 1");
+  if (targets > 50) throw_bad_option("targets", static_cast<double>(targets), "at most 50");
   as_built.check();
   scanner.check();
 }

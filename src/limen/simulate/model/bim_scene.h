@@ -21,6 +21,7 @@ struct BimSceneOptions {
   RoomChoice room = RoomChoice::any;  ///< of the first station
   double open_door_share = 0.5;       ///< doors that stand open: nothing of them is seen
   AsBuiltOptions as_built;
+  std::size_t targets = 0;  ///< spheres in all (put_up_spheres)
   ScannerOptions scanner;
 
   void check() const;

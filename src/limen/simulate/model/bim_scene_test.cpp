@@ -320,5 +320,50 @@ TEST(BimScene, SaysWhereThereIsNoPlaceForAScanner) {
   EXPECT_THROW((void)simulate_bim(office(), options), Error);
 }
 
+TEST(BimScene, SpheresAreSeenThreeByThreeWhereTheTruthHasThem) {
+  BimSceneOptions options = quick();
+  options.room = RoomChoice::doorways;
+  options.open_door_share = 1.0;
+  options.stations = 12;
+  options.points = 60000;
+  options.targets = 6;
+  const SimulatedCase made = simulate_bim(office(), options);
+  const std::vector<SiteTarget>& targets = made.truth.model->targets;
+  ASSERT_EQ(targets.size(), 6U);
+  std::size_t seen_by_most[2] = {0, 0};
+  for (std::size_t k = 0; k < made.scans.size(); ++k) {
+    std::size_t seen[2] = {0, 0};
+    for (std::size_t t = 0; t < targets.size(); ++t) {
+      const Vector3d centre = inverse(made.truth.scans[k].local_from_scan) * targets[t].centre;
+      std::size_t on_it = 0;
+      for (const Vector3d& x : made.scans[k].points)
+        on_it += std::abs((x - centre).norm() - 0.0725) < 0.01 ? 1 : 0;
+      seen[t / 3] += on_it >= 12 ? 1 : 0;
+    }
+    for (const std::size_t room : {0U, 1U}) seen_by_most[room] = std::max(seen_by_most[room], seen[room]);
+  }
+  EXPECT_EQ(seen_by_most[0], 3U);
+  EXPECT_EQ(seen_by_most[1], 3U);
+}
+
+TEST(BimScene, StationsStandInDoorwaysFirst) {
+  const BimModel model = office();
+  BimSceneOptions options = quick();
+  options.room = RoomChoice::doorways;
+  options.open_door_share = 1.0;
+  options.stations = 12;
+  const SimulatedCase made = simulate_bim(model, options);
+  std::size_t in_doors = 0;
+  for (const ScanTruth& scan : made.truth.scans) {
+    const Vector3d& at = scan.local_from_scan.translation;
+    in_doors += std::any_of(model.openings.begin(), model.openings.end(), [&](const BimOpening& opening) {
+      const Vector3d foot =
+          0.5 * (opening.corners[0] + opening.corners[1]) - 0.5 * opening.thickness_m * opening.normal;
+      return (foot - at).head<2>().norm() < 0.01 && at.z() - foot.z() > 1.3 && at.z() - foot.z() < 1.9;
+    });
+  }
+  EXPECT_GE(in_doors, 8U);
+}
+
 }  // namespace
 }  // namespace limen

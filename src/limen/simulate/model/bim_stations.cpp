@@ -137,10 +137,11 @@ ModelRoom describe(const BimModel& model, const std::vector<BimRoom>& rooms, std
 
 namespace {
 
-constexpr double kLeastArea = 5.0;        // m^2
-constexpr double kLeastAreaOfAll = 2.0;   // m^2, where all rooms are scanned
-constexpr double kLeastHeight = 2.0;      // m
-constexpr double kClearance = 0.5;        // m
+constexpr double kLeastArea = 5.0;       // m^2
+constexpr double kLeastAreaOfAll = 2.0;  // m^2, where all rooms are scanned
+constexpr double kLeastHeight = 2.0;     // m
+constexpr double kClearance = 0.5;       // m
+constexpr double kDoorwayClearance = 0.3;
 constexpr double kBetween = 1.0;          // m, from one station to the next
 constexpr double kHighestCeiling = 12.0;  // m above the scanner
 constexpr int kRays = 128;
@@ -174,9 +175,8 @@ class BimSurveyor {
   }
 
   /// One in each room that has space for it, in the order of the model; then a second one, and so on.
-  [[nodiscard]] std::vector<BimStation> through_all(std::size_t count) {
-    std::vector<BimStation> stations;
-    for (std::size_t before = 0; stations.size() < count;) {
+  [[nodiscard]] std::vector<BimStation> through_all(std::vector<BimStation> stations, std::size_t count) {
+    for (std::size_t before = stations.size(); stations.size() < count;) {
       for (std::size_t room = 0; room < rooms_.size() && stations.size() < count; ++room) {
         if (rooms_[room].area_m2 < kLeastAreaOfAll || rooms_[room].height_m < kLeastHeight) continue;
         const std::optional<BimStation> station = in_room(room);
@@ -184,6 +184,26 @@ class BimSurveyor {
       }
       if (stations.size() == before) break;
       before = stations.size();
+    }
+    return stations;
+  }
+
+  /// In the open doorways between two rooms of the lowest storey, in the order of the model.
+  [[nodiscard]] std::vector<BimStation> in_doorways(const std::vector<BimOpening>& openings,
+                                                    std::size_t count) {
+    std::vector<BimStation> stations;
+    double ground = 1e300;
+    for (const BimRoom& room : rooms_) ground = std::min(ground, room.floor_m);
+    for (const BimOpening& opening : openings) {
+      if (stations.size() == count) break;
+      const Vector3d foot =
+          0.5 * (opening.corners[0] + opening.corners[1]) - 0.5 * opening.thickness_m * opening.normal;
+      const Vector3d knee = foot + Vector3d(0.0, 0.0, 0.5);
+      const Vector3d beyond = (0.5 * opening.thickness_m + 0.3) * opening.normal;
+      if (foot.z() > ground + 1.0 || room_at(knee + beyond) < 0 || room_at(knee - beyond) < 0) continue;
+      const auto place = on_floor(knee);
+      if (place && clear(*place, kEnclosed, kDoorwayClearance))
+        stations.push_back(BimStation{*place, room_at(*place)});
     }
     return stations;
   }
@@ -295,14 +315,14 @@ class BimSurveyor {
   }
 
   /// Nothing within reach of the tripod, matter around, and never inside of matter.
-  [[nodiscard]] bool clear(const Vector3d& p, double enclosed) const {
+  [[nodiscard]] bool clear(const Vector3d& p, double enclosed, double clearance = kClearance) const {
     for (const double tilt : {-0.7, -0.3, 0.0, 0.3}) {
       for (int i = 0; i < 24; ++i) {
         const double azimuth = 2.0 * std::numbers::pi * i / 24;
         const Vector3d direction(std::cos(tilt) * std::cos(azimuth), std::cos(tilt) * std::sin(azimuth),
                                  std::sin(tilt));
         const RayHit hit = caster_.cast(p, direction);
-        if (hit.found() && (hit.inside || hit.range_m * std::cos(tilt) < kClearance)) return false;
+        if (hit.found() && (hit.inside || hit.range_m * std::cos(tilt) < clearance)) return false;
       }
     }
     int ended = 0;
@@ -335,12 +355,14 @@ std::vector<Vector3d> spread_directions(int count) {
   return directions;
 }
 
-std::vector<BimStation> place_bim_stations(const std::vector<BimRoom>& rooms, const RayCaster& caster,
-                                           std::size_t count, RoomChoice choice, RandomStream& random) {
+std::vector<BimStation> place_bim_stations(const BimModel& model, const std::vector<BimRoom>& rooms,
+                                           const RayCaster& caster, std::size_t count, RoomChoice choice,
+                                           RandomStream& random) {
   BimSurveyor surveyor(rooms, caster, random);
   std::vector<BimStation> stations;
-  if (choice == RoomChoice::each) {
-    stations = surveyor.through_all(count);
+  if (choice == RoomChoice::doorways) stations = surveyor.in_doorways(model.openings, count);
+  if (choice == RoomChoice::each || choice == RoomChoice::doorways) {
+    stations = surveyor.through_all(std::move(stations), count);
     if (stations.size() < count)
       throw Error(fmt::format("the model's rooms have space for {} scanners", stations.size()),
                   "limen simulate", "ask for no more --stations");

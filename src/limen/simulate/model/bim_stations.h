@@ -40,7 +40,8 @@ enum class RoomChoice {
   any,
   unique,    ///< no other room of the model is like it
   repeated,  ///< another one is
-  each       ///< the stations go through all rooms, one after the other
+  each,      ///< the stations go through all rooms, one after the other
+  doorways   ///< the same after one in every doorway between two rooms of the lowest storey
 };
 
 /// A tripod's place in a model.
@@ -56,7 +57,8 @@ std::vector<Vector3d> spread_directions(int count);
 /// room or through doors, or (`each`) in all rooms of at least 2 m^2 in turn, as long as there is space; 1.4
 /// to 1.8 m above the floor, at least 0.5 m from everything. Models without rooms are searched for places
 /// with a floor below, a ceiling above and walls around. Throws Error where there is none.
-std::vector<BimStation> place_bim_stations(const std::vector<BimRoom>& rooms, const RayCaster& caster,
-                                           std::size_t count, RoomChoice choice, RandomStream& random);
+std::vector<BimStation> place_bim_stations(const BimModel& model, const std::vector<BimRoom>& rooms,
+                                           const RayCaster& caster, std::size_t count, RoomChoice choice,
+                                           RandomStream& random);
 
 }  // namespace limen

@@ -119,7 +119,8 @@ struct TrueOpening {
 
 /// What is true of one scan.
 struct ScanTruth {
-  std::string name;  ///< Scan::name
+  std::string name;             ///< Scan::name
+  std::string ending = ".ply";  ///< of its file
   bool mobile = false;
   double drift_m = 0.0;    ///< error of the trajectory that was put in, one standard deviation per axis
   int room = -1;           ///< the room a station is in
@@ -160,6 +161,12 @@ struct ModelRoom {
   std::vector<int> like;  ///< other spaces of the same plan, height and openings: the model repeats the room
 };
 
+/// A target that was put up in the building.
+struct SiteTarget {
+  std::string name;
+  Vector3d centre = Vector3d::Zero();  ///< world less the truth's local_origin
+};
+
 /// What is true of a scanned model.
 struct ModelTruth {
   std::string file;  ///< name of the model's file
@@ -167,6 +174,7 @@ struct ModelTruth {
   std::vector<ModelChange> changes;
   std::vector<ModelRoom> rooms;  ///< one per scan
   int furniture = 0;             ///< boxes that the model does not have
+  std::vector<SiteTarget> targets = {};
 };
 
 /// The exact truth of a simulated case. Coordinates are about local_origin (a whole number of metres):

@@ -31,6 +31,7 @@ struct DriftSample {
 /// What is true of one scan of a project.
 struct SimulatedScan {
   std::string name;  ///< of the file, less its ending
+  std::string ending = ".ply";
   bool mobile = false;
   std::size_t points = 0;
   int room = -1;         ///< index into ProjectTruth::rooms; -1: the street
@@ -39,12 +40,6 @@ struct SimulatedScan {
   double surface_m2 = 0.0;              ///< of the building and its surroundings, seen by it
   Rigid3 local_from_scan;               ///< scan frame to world less ProjectTruth::local_origin
   Vector3d scanner = Vector3d::Zero();  ///< of a station, in its own frame; not always stated in the file
-};
-
-/// A target that was put up in the building.
-struct SiteTarget {
-  std::string name;
-  Vector3d centre = Vector3d::Zero();  ///< world less ProjectTruth::local_origin
 };
 
 /// The exact truth of a project. Coordinates are about local_origin: x_in_world = local_origin + x.

@@ -20,6 +20,12 @@ namespace {
 constexpr double kPoleM = 0.02;     // thick
 constexpr double kOffWallM = 0.01;  // walls as built bulge
 constexpr double kTargetsApartM = 0.8;
+constexpr double kRoomM = 0.25;
+
+bool apart(const Vector3d& x, const std::vector<SiteTarget>& others) {
+  return std::all_of(others.begin(), others.end(),
+                     [&](const SiteTarget& other) { return (other.centre - x).norm() > kTargetsApartM; });
+}
 
 /// Looks for places of targets in one room, and puts them up.
 class RoomTargets {
@@ -30,13 +36,9 @@ class RoomTargets {
   std::optional<Vector3d> sphere(const std::vector<SiteTarget>& others, RandomStream& random) {
     for (int attempt = 0; attempt < 200; ++attempt) {
       const Vector3d centre = place(random.uniform(1.0, 1.9), random);
-      if (!is_free(building_, room_, centre.head<2>(), 0.3) || !apart(centre, others) ||
-          nearest(centre) < 0.25)
+      if (!is_free(building_, room_, centre.head<2>(), 0.3) || !has_room_for_sphere(caster_, centre, others))
         continue;
-      add_sphere(mesh_, centre);
-      const double floor = building_.floor_height(room_, centre.head<2>());
-      mesh_.add_box({Vector3d(centre.x(), centre.y(), floor), 0.0},
-                    {kPoleM, kPoleM, centre.z() - kSphereRadiusM - floor}, surface_of(Element::furniture));
+      add_sphere_on_pole(mesh_, centre, building_.floor_height(room_, centre.head<2>()));
       return centre;
     }
     return std::nullopt;
@@ -71,23 +73,6 @@ class RoomTargets {
     }
     const Vector2d p = uniform_vector(low, high, random);
     return {p.x(), p.y(), room.floor_m + height_m};
-  }
-
-  static bool apart(const Vector3d& x, const std::vector<SiteTarget>& others) {
-    return std::all_of(others.begin(), others.end(),
-                       [&](const SiteTarget& other) { return (other.centre - x).norm() > kTargetsApartM; });
-  }
-
-  [[nodiscard]] double nearest(const Vector3d& x) const {
-    double least = 1e9;
-    for (int k = 0; k < 60; ++k) {
-      const double z = 1.0 - (k + 0.5) / 30.0;
-      const double turn = 2.4 * k;
-      const double flat = std::sqrt(1.0 - z * z);
-      const RayHit hit = caster_.cast(x, {flat * std::cos(turn), flat * std::sin(turn), z});
-      if (hit.found()) least = std::min(least, hit.inside ? 0.0 : hit.range_m);
-    }
-    return least;
   }
 
   /// Whether the wall behind the board and round it is free.
@@ -126,6 +111,25 @@ void add_sphere(Mesh& mesh, const Vector3d& centre, double radius_m) {
   Surface paint = surface_of(Element::furniture);
   paint.reflectivity = 0.8;
   mesh.add_ball({centre, radius_m}, paint);
+}
+
+void add_sphere_on_pole(Mesh& mesh, const Vector3d& centre, double floor_m) {
+  add_sphere(mesh, centre);
+  mesh.add_box({Vector3d(centre.x(), centre.y(), floor_m), 0.0},
+               {kPoleM, kPoleM, centre.z() - kSphereRadiusM - floor_m}, surface_of(Element::furniture));
+}
+
+bool has_room_for_sphere(const RayCaster& caster, const Vector3d& centre,
+                         const std::vector<SiteTarget>& others) {
+  if (!apart(centre, others)) return false;
+  for (int k = 0; k < 60; ++k) {
+    const double z = 1.0 - (k + 0.5) / 30.0;
+    const double turn = 2.4 * k;
+    const double flat = std::sqrt(1.0 - z * z);
+    const RayHit hit = caster.cast(centre, {flat * std::cos(turn), flat * std::sin(turn), z});
+    if (hit.found() && (hit.inside || hit.range_m < kRoomM)) return false;
+  }
+  return true;
 }
 
 std::vector<SiteTarget> put_up_targets(WholeBuilding& building, std::size_t count, std::uint64_t seed) {
