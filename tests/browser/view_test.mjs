@@ -25,6 +25,8 @@ before(async () => {
   limen(program, 'simulate', 'office', '-o', office, '--points-indoor', '60000');
   limen(program, 'view', join(office, 'model.ifc'), '-o', view('model'), '--title', 'The model of the office');
   limen(program, 'simulate', 'room', '-o', join(folder, 'room'), '--points-indoor', '30000');
+  limen(program, 'simulate', 'room', '-o', join(folder, 'e57'), '--points-indoor', '30000', '--as', 'e57');
+  limen(program, 'view', join(folder, 'e57', 'indoor_00.e57'), '-o', view('station'));
   limen(program, 'project', join(folder, 'room', 'indoor_00.ply'), join(folder, 'room', 'indoor_01.ply'), '-o', join(folder, 'project'));
   browser = await openBrowser(playwright);
   if (shots) mkdirSync(shots, { recursive: true });
@@ -161,6 +163,26 @@ describe('both sides of a result', () => {
     assert.deepEqual(heard.requests.filter((url) => !/^(file|data):/.test(url)), []);
     assert.equal(heard.requests.filter((url) => url.startsWith('file:')).length, 1);
     assert.ok(statSync(view('pair')).size < 2.5e6);
+  });
+});
+
+describe('a station with a panorama', () => {
+  test('a click on its place shows it', async () => {
+    const { page, heard } = await openReport(browser.context, view('station'));
+    const button = page.locator('button.sight');
+    assert.equal(await button.count(), 1);
+    await button.click();
+    const image = page.locator('dialog.picture img');
+    await image.waitFor();
+    assert.ok(await image.evaluate((node) => node.complete && node.naturalWidth === 2 * node.naturalHeight));
+    assert.deepEqual(await accessibilityFaults(page), []);
+    if (shots) await page.screenshot({ path: join(shots, 'view-panorama.png') });
+    await page.keyboard.press('Escape');
+    await image.waitFor({ state: 'detached' });
+    await settled(page, () => page.uncheck('[data-side="0"]'));
+    assert.ok(!(await button.isVisible()));
+    assert.deepEqual(heard.problems, []);
+    await page.close();
   });
 });
 

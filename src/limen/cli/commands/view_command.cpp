@@ -29,6 +29,7 @@
 #include "limen/io/cloud/read_scan.h"
 #include "limen/io/cloud/thin_cloud.h"
 #include "limen/io/cloud/write_clouds.h"
+#include "limen/io/e57/e57_copy.h"
 #include "limen/io/table/scan_builder.h"
 #include "limen/report/json/json_values.h"
 #include "limen/report/pose_file.h"
@@ -184,6 +185,29 @@ ViewSide side_of_cloud(const ViewInput& input, const CloudToView& cloud, Scan sc
   return side;
 }
 
+/// The images of an E57 at their places, as long as there is room for them on the page.
+std::vector<ViewPicture> pictures_of(const ViewInput& input, const CloudToView& cloud, const Vector3d& origin,
+                                     std::size_t& room, const Session& session) {
+  std::vector<ViewPicture> pictures;
+  if (cloud.file->format() != PointFormat::e57) return pictures;
+  const E57Original original(cloud.file->bytes(), cloud.file->name());
+  for (const E57Picture& picture : original.pictures()) {
+    const auto shown = std::find_if(cloud.clouds.begin(), cloud.clouds.end(),
+                                    [&](const PlacedCloud& placed) { return placed.cloud == picture.scan; });
+    if (shown == cloud.clouds.end()) continue;
+    if (picture.bytes > room) {
+      session.note(fmt::format("{}: an image of {:.1f} MB is left out: a page holds {:.0f} MB of images",
+                               cloud.file->name(), static_cast<double>(picture.bytes) / 1e6,
+                               static_cast<double>(kMostPictureBytes) / 1e6));
+      continue;
+    }
+    room -= picture.bytes;
+    pictures.push_back({input.frame_from_world * picture.file_from_image.translation - origin, picture.type,
+                        original.bytes_of(picture)});
+  }
+  return pictures;
+}
+
 /// File names, with the number of the scan where one file has several, and numbered where two are the same.
 void name_sides(const std::vector<ViewInput>& inputs, ViewScene& scene) {
   std::map<std::string, int> of_file;
@@ -239,11 +263,13 @@ ViewScene read_view(const std::vector<ViewInput>& inputs, std::size_t most_point
     return *origin;
   };
   const std::vector<std::uint64_t> shares = shares_of(clouds, most_points);
+  std::size_t picture_room = kMostPictureBytes;
   for (std::size_t k = 0; k < clouds.size(); ++k) {
     const ViewInput& input = inputs[clouds[k].input];
     Scan scan = with_whole_inputs([&] { return read_share(clouds[k], shares[k], metres_per_unit, session); });
     const Vector3d& middle = about(place_of_scan(input) * (scan.local_origin + scan.points.front()));
     ViewSide& side = scene.sides[clouds[k].input] = side_of_cloud(input, clouds[k], std::move(scan), middle);
+    side.pictures = pictures_of(input, clouds[k], middle, picture_room, session);
     // Of files whose coordinates are shown as they are.
     if (clouds[k].file->file().clouds().size() == 1 && !input.bend && !metres_per_unit) {
       side.path = input.path;

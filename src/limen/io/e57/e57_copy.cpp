@@ -166,6 +166,37 @@ std::size_t E57Original::owner_of(std::size_t image) const {
   return nearest;
 }
 
+std::vector<E57Picture> E57Original::pictures() const {
+  std::vector<E57Picture> pictures;
+  if (scans_.empty()) return pictures;
+  for (std::size_t k = 0; k < images_.size(); ++k) {
+    const std::size_t scan = owners_[k];
+    const Rigid3 of_scan = document_.scans[scan].pose.value_or(Rigid3{});
+    for (const auto& [element, type] : {std::pair{"jpegImage", "image/jpeg"}, {"pngImage", "image/png"}}) {
+      const pugi::xml_node blob = images_[k].find_node(
+          [name = std::string_view(element)](const pugi::xml_node& node) { return node.name() == name; });
+      if (!blob) continue;
+      pictures.push_back({scan, document_.images[k].pose.value_or(of_scan), type,
+                          blob.attribute("fileOffset").as_ullong(), blob.attribute("length").as_ullong()});
+      break;
+    }
+  }
+  return pictures;
+}
+
+std::vector<std::uint8_t> E57Original::bytes_of(const E57Picture& picture) const {
+  const std::uint64_t at = pages_.logical_of(picture.section, "an image") + kBlobHeaderBytes;
+  const std::uint64_t end = pages_.logical_size();
+  if (at > end || picture.bytes > end - at)
+    throw Error(fmt::format("an image of {} bytes ends behind the file", picture.bytes), pages_.name(),
+                "get the whole file, or export it again");
+  std::vector<std::uint8_t> bytes(picture.bytes);
+  if (bytes.empty()) return bytes;
+  pages_.check(pages_.page_of(at), pages_.page_of(at + bytes.size() - 1) + 1);
+  pages_.copy(at, bytes.size(), reinterpret_cast<char*>(bytes.data()));
+  return bytes;
+}
+
 std::string E57Original::copied(const pugi::xml_node& element, const Rigid3* pose, E57PageWriter& file,
                                 Monitor& monitor) const {
   pugi::xml_document copy;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <string>
@@ -22,6 +23,15 @@ class xml_node;
 
 namespace limen {
 
+/// An image of an E57 file as it is stored there.
+struct E57Picture {
+  std::size_t scan = 0;       ///< that it goes with
+  Rigid3 file_from_image;     ///< of the scan where it has none of its own
+  std::string type;           ///< "image/jpeg" or "image/png"
+  std::uint64_t section = 0;  ///< physical offset
+  std::uint64_t bytes = 0;
+};
+
 /// An E57 file whose scans are copied into others one by one, as they are but for their poses: points with
 /// invalid ones and grids, names, GUIDs, sensors, extensions, and the images that name the scan's GUID. An
 /// image that names no scan with points goes with the nearest one, without a place with the first. Check sums
@@ -36,6 +46,10 @@ class E57Original {
   ~E57Original();
 
   [[nodiscard]] const E57Document& document() const { return document_; }
+  /// The images that can be shown: JPEG and PNG, in the order of the file.
+  [[nodiscard]] std::vector<E57Picture> pictures() const;
+  /// Throws Error for damaged bytes.
+  [[nodiscard]] std::vector<std::uint8_t> bytes_of(const E57Picture& picture) const;
   /// Appends the bytes of the scan and its images to `file`; gives what its description needs. Throws Error
   /// for damaged bytes.
   E57Entry copy(std::size_t scan, const Rigid3& target_from_source, E57PageWriter& file,

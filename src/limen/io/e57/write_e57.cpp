@@ -79,7 +79,8 @@ void set_storage(E57Column& column, Scalar type) {
     if constexpr (std::is_floating_point_v<Value>) {
       column.storage = sizeof(Value) == 4 ? E57Storage::float32 : E57Storage::float64;
     } else {
-      column.minimum = static_cast<std::int64_t>(std::numeric_limits<Value>::min());
+      constexpr int kUnused = 64 - 8 * static_cast<int>(sizeof(Value));
+      column.minimum = std::is_signed_v<Value> ? std::numeric_limits<std::int64_t>::min() >> kUnused : 0;
       // The format knows no integers from 2^63 on.
       if (sizeof(Value) < 8) column.maximum = static_cast<std::int64_t>(std::numeric_limits<Value>::max());
     }

@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <regex>
@@ -9,8 +10,10 @@
 #include <gtest/gtest.h>
 #include <zlib.h>
 
+#include "limen/base/error.h"
 #include "limen/geometry/random_vectors.h"
 #include "limen/io/e57/e57.h"
+#include "limen/io/e57/e57_copy.h"
 #include "limen/io/e57/e57_document.h"
 #include "limen/io/e57/e57_pages.h"
 
@@ -86,6 +89,18 @@ TEST(WriteE57Scan, HasThePointsAndAPanoramaOfTheStation) {
   std::string png(number_after(image, "length=\""), '\0');
   pages.copy(pages.logical_of(number_after(image, "fileOffset=\""), "image") + 16, png.size(), png.data());
   const std::string pixels = pixels_of(png, width, height);
+  const E57Original original(bytes, "hall");
+  const std::vector<E57Picture> pictures = original.pictures();
+  ASSERT_EQ(pictures.size(), 1U);
+  EXPECT_EQ(pictures[0].scan, 0U);
+  EXPECT_EQ(pictures[0].type, "image/png");
+  EXPECT_EQ(pictures[0].file_from_image.translation, Vector3d(101.0, 202.0, 3.0));
+  const std::vector<std::uint8_t> same = original.bytes_of(pictures[0]);
+  EXPECT_TRUE(std::equal(same.begin(), same.end(), png.begin(), png.end(),
+                         [](std::uint8_t a, char b) { return a == static_cast<std::uint8_t>(b); }));
+  E57Picture cut = pictures[0];
+  cut.bytes = bytes.size();
+  EXPECT_THROW(original.bytes_of(cut), Error);
   // Columns go from azimuth pi to -pi, rows from the zenith to the nadir.
   const double wide = static_cast<double>(width);
   const auto column = static_cast<std::size_t>((0.5 - 0.8 / (2.0 * std::numbers::pi)) * wide);

@@ -49,6 +49,10 @@ std::string scene_of(const ViewScene& scene) {
       json[id_of(k)]["path"] = side.path;
       json[id_of(k)]["file_from_frame"] = json_of(to_matrix(side.file_from_frame));
     }
+    for (const ViewPicture& picture : side.pictures)
+      json[id_of(k)]["pictures"].push_back(
+          {{"at", json_of(picture.place)},
+           {"src", fmt::format("data:{};base64,{}", picture.type, base64(picture.bytes))}});
     const bool planes = !side.scene.pictured.features.planes.empty();
     blobs += side_blobs(id_of(k), side.scene, points,
                         planes ? plane_of_points(side.scene) : std::vector<std::uint8_t>{});

@@ -10,12 +10,20 @@
 
 namespace limen {
 
+/// A picture that was taken at a station.
+struct ViewPicture {
+  Vector3d place = Vector3d::Zero();  ///< about the origin of the ViewScene
+  std::string type;                   ///< "image/jpeg"
+  std::vector<std::uint8_t> bytes;
+};
+
 /// A scan or a model to look at. Its scene lies about the origin of the ViewScene; its own is not used.
 struct ViewSide {
   std::string name;
   std::uint64_t points_read = 0;  ///< of the file; 0 for a model
   std::string path;               ///< of a scan that can be registered as it lies; empty: it cannot
   Rigid3 file_from_frame;         ///< of such a scan
+  std::vector<ViewPicture> pictures;
   SceneSide scene;
 };
 
@@ -28,6 +36,9 @@ struct ViewScene {
 
 /// Bytes of the largest page: what a mail takes, and a browser opens at once.
 inline constexpr std::size_t kMostPageBytes = 20'000'000;
+
+/// Bytes of all pictures of a page together.
+inline constexpr std::size_t kMostPictureBytes = 9'000'000;
 
 /// A page that shows clouds and models in space, with sections and measuring; it needs nothing but itself.
 /// Throws Error where it would be larger than kMostPageBytes.

@@ -172,6 +172,7 @@ const runView = (gl, canvas) => {
   // A project is linked by its questions.
   const linking = typeof makeLinking === 'function' ? makeLinking(scene, () => { Object.assign(state, { measuring: false, ends: [] }); tell(); redraw(); }) : null;
   const spots = makeSpots(scene);
+  const pictures = typeof makePictures === 'function' ? makePictures(scene) : [];
   let reach = 3 * norm(sub(scene.high, scene.low)) + 60;
   const placeOf = (side) => {
     const { pair, share } = state;
@@ -234,6 +235,7 @@ const runView = (gl, canvas) => {
     const marked = (number) => !state.pair && state.linksShown && (!state.floor || state.floor.scans.includes(number));
     for (const { node, number, at } of spots) put(node, marked(number) ? at : null);
     for (const [node, at] of linking?.pins() ?? []) put(node, at);
+    for (const { node, side, at } of pictures) put(node, side.shown ? at : null);
     const both = state.ends.length === 2;
     put(element('length'), both ? scaled(add(state.ends[0].at, state.ends[1].at), 0.5) : null);
     if (both) element('length').textContent = t`${norm(sub(state.ends[1].at, state.ends[0].at)).toFixed(3)} m`;
