@@ -55,8 +55,8 @@ def _metadata() -> str:
     )
 
 
-def _wheel_file() -> str:
-    return f"Wheel-Version: 1.0\nGenerator: limen_build\nRoot-Is-Purelib: false\nTag: {_tag()}\n"
+def _wheel_file(tag: str) -> str:
+    return f"Wheel-Version: 1.0\nGenerator: limen_build\nRoot-Is-Purelib: false\nTag: {tag}\n"
 
 
 def _entry_points() -> str:
@@ -86,23 +86,23 @@ def _build(config_settings: dict | None) -> Path:
     return build / "python" / "limen"
 
 
-def _package_files(package: Path) -> list[Path]:
-    """The Python files, the module of this Python, the program, and the one that reads IFC."""
-    suffix = sysconfig.get_config_var("EXT_SUFFIX")
-    module = f"_limen{suffix}"
+def _package_files(package: Path, module: str) -> list[Path]:
+    """The Python files, the module, the program, and the one that reads IFC."""
     names = {module, *PROGRAMS, "py.typed"}
     files = sorted(package.iterdir())
     wanted = [path for path in files if path.name in names or path.suffix in (".py", ".pyi")]
     if module not in (path.name for path in wanted):
-        raise SystemExit(f"limen_build: {package} has no module for this Python")
+        raise SystemExit(f"limen_build: {package} has no {module}")
     return wanted
 
 
 class _Wheel:
     """A wheel that is being written; record() comes last."""
 
-    def __init__(self, path: Path) -> None:
-        self._zip = zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED)
+    def __init__(self, folder: Path, tag: str) -> None:
+        self.name = f"limen-{_version()}-{tag}.whl"
+        self._tag = tag
+        self._zip = zipfile.ZipFile(folder / self.name, "w", zipfile.ZIP_DEFLATED)
         self._record: list[str] = []
 
     def add(self, name: str, content: bytes, executable: bool = False) -> None:
@@ -113,15 +113,17 @@ class _Wheel:
         digest = base64.urlsafe_b64encode(hashlib.sha256(content).digest()).rstrip(b"=").decode()
         self._record.append(f"{name},sha256={digest},{len(content)}")
 
-    def close(self, info: str) -> None:
+    def close(self) -> str:
+        info = _info()
         self.add(f"{info}/METADATA", _metadata().encode())
-        self.add(f"{info}/WHEEL", _wheel_file().encode())
+        self.add(f"{info}/WHEEL", _wheel_file(self._tag).encode())
         self.add(f"{info}/entry_points.txt", _entry_points().encode())
         self.add(f"{info}/LICENSE", (ROOT / "LICENSE").read_bytes())
         name = f"{info}/RECORD"
         content = "\n".join(self._record + [f"{name},,"]) + "\n"
         self._zip.writestr(zipfile.ZipInfo(name, TIME), content)
         self._zip.close()
+        return self.name
 
 
 def _info() -> str:
@@ -140,7 +142,7 @@ def prepare_metadata_for_build_wheel(metadata_directory, config_settings=None):
     folder = Path(metadata_directory) / _info()
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "METADATA").write_text(_metadata(), encoding="utf-8")
-    (folder / "WHEEL").write_text(_wheel_file(), encoding="utf-8")
+    (folder / "WHEEL").write_text(_wheel_file(_tag()), encoding="utf-8")
     (folder / "entry_points.txt").write_text(_entry_points(), encoding="utf-8")
     return _info()
 
@@ -148,24 +150,28 @@ def prepare_metadata_for_build_wheel(metadata_directory, config_settings=None):
 prepare_metadata_for_build_editable = prepare_metadata_for_build_wheel
 
 
-def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
-    package = _build(config_settings)
-    name = f"limen-{_version()}-{_tag()}.whl"
-    wheel = _Wheel(Path(wheel_directory) / name)
-    for path in _package_files(package):
+def pack(folder: Path, package: Path, module: str, tag: str, licences: Path | None = None) -> str:
+    """Writes the wheel of a gathered package with one of its modules; returns its name."""
+    wheel = _Wheel(folder, tag)
+    for path in _package_files(package, module):
         wheel.add(f"limen/{path.name}", path.read_bytes(), executable=path.name in PROGRAMS)
-    wheel.close(_info())
-    return name
+    wheel.add("limen/share/limen/limen_dask.py", (ROOT / "src/dask/limen_dask.py").read_bytes())
+    for path in sorted(licences.iterdir()) if licences else []:
+        wheel.add(f"{_info()}/licenses/{path.name}", path.read_bytes())
+    return wheel.close()
+
+
+def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
+    module = "_limen" + sysconfig.get_config_var("EXT_SUFFIX")
+    return pack(Path(wheel_directory), _build(config_settings), module, _tag())
 
 
 def build_editable(wheel_directory, config_settings=None, metadata_directory=None):
     """A wheel that points to the build folder: Python files are taken from there after each build."""
     package = _build(config_settings)
-    name = f"limen-{_version()}-{_tag()}.whl"
-    wheel = _Wheel(Path(wheel_directory) / name)
+    wheel = _Wheel(Path(wheel_directory), _tag())
     wheel.add("limen.pth", f"{package.parent}\n".encode())
-    wheel.close(_info())
-    return name
+    return wheel.close()
 
 
 def _source_files() -> list[Path]:

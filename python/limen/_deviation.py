@@ -9,11 +9,10 @@ from dataclasses import dataclass, field
 from typing import Any, Optional, Union
 
 import numpy as np
-import numpy.typing as npt
 
 from . import _html, _limen
 from ._limen import DeviationOptions, Model, Scan
-from ._numbers import Array, Path, ProgressOption, as_pose, as_progress
+from ._numbers import Array, ArrayLike, Path, ProgressOption, as_pose, as_progress
 from ._registration import Registration
 from ._scans import read_model, read_scan
 
@@ -86,7 +85,7 @@ class Deviation:
 def deviation(
     scan: Union[Scan, Path],
     model: Union[Model, Path],
-    pose: Optional[Union[npt.ArrayLike, Registration]] = None,
+    pose: Optional[Union[ArrayLike, Registration]] = None,
     *,
     options: Optional[DeviationOptions] = None,
     progress: ProgressOption = None,

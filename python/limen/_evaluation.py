@@ -8,9 +8,8 @@ from dataclasses import dataclass, field
 from typing import Optional
 
 import numpy as np
-import numpy.typing as npt
 
-from ._numbers import Array, as_pose
+from ._numbers import Array, ArrayLike, as_pose
 from ._registration import Hypothesis, Registration
 
 
@@ -45,7 +44,7 @@ def _rotation_vector(rotation: Array) -> Array:
 
 
 def evaluate(
-    result: Registration, truth: npt.ArrayLike, *, pose: Optional[Hypothesis] = None
+    result: Registration, truth: ArrayLike, *, pose: Optional[Hypothesis] = None
 ) -> Evaluation:
     """Compare the best pose of a result, or `pose` of its alternatives, with the true 4 x 4 matrix."""
     found = result.best if pose is None else pose

@@ -6,13 +6,19 @@ from __future__ import annotations
 
 import os
 import sys
-from typing import Any, Callable, Optional, Union
+from typing import TYPE_CHECKING, Any, Callable, Optional, Union
 
 import numpy as np
-import numpy.typing as npt
 
 Path = Union[str, "os.PathLike[str]"]
-Array = npt.NDArray[Any]
+if TYPE_CHECKING:
+    import numpy.typing as npt
+
+    Array = npt.NDArray[Any]
+    ArrayLike = npt.ArrayLike
+else:  # NumPy 1.19 has no numpy.typing
+    Array = np.ndarray
+    ArrayLike = Any
 #: Called as progress(stage, done, total) when a stage begins, and ten times a second at most while it lasts;
 #: total is 0 where it is not known.
 Progress = Callable[[str, float, float], object]
@@ -72,7 +78,7 @@ def as_progress(progress: ProgressOption) -> Optional[Progress]:
     return _Bar(tqdm)
 
 
-def as_pose(pose: npt.ArrayLike) -> Array:
+def as_pose(pose: ArrayLike) -> Array:
     """A 4 x 4 matrix of a rigid motion, float64."""
     matrix = np.asarray(pose, dtype=np.float64)
     if matrix.shape != (4, 4):

@@ -11,18 +11,17 @@ from dataclasses import dataclass, field
 from typing import Any, Optional, Sequence, Union
 
 import numpy as np
-import numpy.typing as npt
 
 from . import _html, _limen
 from ._limen import Model, RegisterOptions, Scan
-from ._numbers import Array, Path, ProgressOption, as_pose, as_progress
+from ._numbers import Array, ArrayLike, Path, ProgressOption, as_pose, as_progress
 from ._scans import read_model, read_scan
 
 _DEFAULTS = RegisterOptions()
 
 #: What can be registered: a scan, a model, a file of either, an array of points (n, 3), or scans with their
 #: poses in one frame.
-Side = Union[Scan, Model, Path, Array, Sequence[tuple[Union[Scan, Path], npt.ArrayLike]]]
+Side = Union[Scan, Model, Path, Array, Sequence[tuple[Union[Scan, Path], ArrayLike]]]
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,7 +61,7 @@ class Hypothesis:
     matched_segments: int = 0
     sigma: Optional[Sigma] = field(default=None, repr=False)  #: how well it is known, were it the right one
 
-    def apply(self, points: npt.ArrayLike) -> Array:
+    def apply(self, points: ArrayLike) -> Array:
         """Move world coordinates of the source, (n, 3), into the target's frame by this pose."""
         return _limen.transform_points(np.asarray(points, dtype=np.float64), self.target_from_source)
 
@@ -183,7 +182,7 @@ class Registration:
         """The 4 x 4 matrix between world coordinates; None where nothing in common was found."""
         return None if self.best is None else self.best.target_from_source
 
-    def apply(self, points: npt.ArrayLike) -> Array:
+    def apply(self, points: ArrayLike) -> Array:
         """Move world coordinates of the source, (n, 3), into the target's frame."""
         if self.best is None:
             raise ValueError("no reliable overlap was found: there is no pose to apply")
@@ -285,7 +284,7 @@ class Registration:
 
 
 def _loaded(
-    side: Side, centre: Optional[npt.ArrayLike] = None
+    side: Side, centre: Optional[ArrayLike] = None
 ) -> Union[Model, list[tuple[Scan, Array]]]:
     """Files are read, arrays become scans; a scan alone stands in the origin of its group."""
     if isinstance(side, np.ndarray):
@@ -320,9 +319,9 @@ def register(
     wall_thickness_m: float = _DEFAULTS.wall_thickness_m,
     nothing_repeats: bool = _DEFAULTS.nothing_repeats,
     seed: int = _DEFAULTS.seed,
-    centre: Optional[npt.ArrayLike] = None,
-    source_centre: Optional[npt.ArrayLike] = None,
-    target_centre: Optional[npt.ArrayLike] = None,
+    centre: Optional[ArrayLike] = None,
+    source_centre: Optional[ArrayLike] = None,
+    target_centre: Optional[ArrayLike] = None,
     options: Optional[RegisterOptions] = None,
     progress: ProgressOption = None,
 ) -> Registration:

@@ -9,11 +9,10 @@ from dataclasses import dataclass
 from typing import Any, Optional, Union, overload
 
 import numpy as np
-import numpy.typing as npt
 
 from . import _html, _limen
 from ._limen import Model, Scan
-from ._numbers import Array, Path, ProgressOption, as_pose, as_progress
+from ._numbers import Array, ArrayLike, Path, ProgressOption, as_pose, as_progress
 
 
 @dataclass(frozen=True)
@@ -30,7 +29,7 @@ class Element:
 def read_scan(
     path: Path,
     *,
-    origin: Optional[npt.ArrayLike] = None,
+    origin: Optional[ArrayLike] = None,
     level: bool = _limen.LEVEL,
     units: str = "",
     progress: ProgressOption = None,
@@ -51,10 +50,10 @@ def read_model(path: Path, *, units: str = "", progress: ProgressOption = None) 
 
 
 @overload
-def transform(cloud: Scan, target_from_source: npt.ArrayLike) -> Scan: ...
+def transform(cloud: Scan, target_from_source: ArrayLike) -> Scan: ...
 @overload
-def transform(cloud: npt.NDArray[np.float64], target_from_source: npt.ArrayLike) -> Array: ...
-def transform(cloud: Union[Scan, Array], target_from_source: npt.ArrayLike) -> Union[Scan, Array]:
+def transform(cloud: Array, target_from_source: ArrayLike) -> Array: ...
+def transform(cloud: Union[Scan, Array], target_from_source: ArrayLike) -> Union[Scan, Array]:
     """Move a scan, or an array of world coordinates of shape (n, 3), by a 4 x 4 matrix."""
     pose = as_pose(target_from_source)
     if isinstance(cloud, Scan):
@@ -63,7 +62,7 @@ def transform(cloud: Union[Scan, Array], target_from_source: npt.ArrayLike) -> U
 
 
 def transform_file(
-    path: Path, target_from_source: npt.ArrayLike, output: Path, *, progress: ProgressOption = None
+    path: Path, target_from_source: ArrayLike, output: Path, *, progress: ProgressOption = None
 ) -> int:
     """Move a point file with all its values, as `limen transform` does; returns the number of points."""
     pose = as_pose(target_from_source)
