@@ -143,6 +143,12 @@ TEST_F(ServeTest, WorkIsMadeOfItsOwnFilesAlone) {
        R"({"kind": "project", "files": []})",
        R"({"kind": "project", "files": ["missing"]})",
        R"({"kind": "project", "files": "a.xyz"})",
+       R"({"kind": "project", "files": ["a.xyz", "b.xyz"], "control": "../a.xyz"})",
+       R"({"kind": "project", "files": ["a.xyz", "b.xyz"], "poses": "--help"})",
+       R"({"kind": "project", "files": ["a.xyz", "b.xyz"], "sphere": 199})",
+       R"({"kind": "project", "files": ["a.xyz", "b.xyz"], "board": "300"})",
+       R"({"kind": "register", "source": "a.xyz", "target": "b.xyz", "no_repeats": "none"})",
+       R"({"kind": "deviation", "of": 1})",
        R"({"kind": "view", "files": [7]})",
        R"({"kind": "view", "of": 5})",
        R"({"kind": "again", "of": "x"})",
@@ -175,6 +181,23 @@ TEST_F(ServeTest, WorkIsDoneAndFoundAgainByTheNext) {
   const RunningServer next(work(), "site");
   EXPECT_NE(next.ask("GET", "state").find("indoor_00.ply into indoor_01.ply"), std::string::npos);
   EXPECT_NE(next.token(), server().token());
+}
+
+TEST_F(ServeTest, AProjectTakesControlPointsAndIsComparedWithItsModel) {
+  ASSERT_EQ(
+      run({"simulate", "office", "--room", "unique", "-o", "office", "--points-indoor", "60000"}).status, 0);
+  for (const std::string name : {"scan_01.ply", "model.ifc"})
+    fs::copy(work() / "office" / name, work() / "site" / "files" / name);
+  write_whole(work() / "site" / "files" / "at.csv", "file,x,y,z,sigma\nfiles/scan_01.ply,0,0,0,1000\n");
+  const std::string asked =
+      R"({"kind": "project", "files": ["scan_01.ply", "model.ifc"], "poses": "at.csv", "no_repeats": true})";
+  EXPECT_EQ(status_in(server().ask("POST", "jobs", asked)), 202);
+  EXPECT_NE(server().state_with("\"state\": \"done\"").find("project.json"), std::string::npos);
+  const std::string project = read_whole(work() / "site" / "results" / "1" / "project.json");
+  EXPECT_NE(project.find("\"repeats\": \"none\""), std::string::npos);
+  EXPECT_NE(project.find("at.csv"), std::string::npos);
+  EXPECT_EQ(status_in(server().ask("POST", "jobs", R"({"kind": "deviation", "of": 1})")), 202);
+  EXPECT_NE(server().state_with("deviation.csv").find("\"state\": \"done\""), std::string::npos);
 }
 
 TEST_F(ServeTest, WhatRunsEndsWithIt) {

@@ -117,6 +117,22 @@ void add_units(const Asked& asked, const char* key, const char* option, std::vec
   words.insert(words.end(), {option, unit});
 }
 
+/// What the user knows of the building.
+void add_repeats(const Asked& asked, std::vector<std::string>& words) {
+  if (asked.flag("no_repeats")) words.insert(words.end(), {"--repeats", "none"});
+}
+
+/// A size of targets in tenths of a millimetre.
+void add_target_size(const Asked& asked, const char* key, const char* option,
+                     std::vector<std::string>& words) {
+  constexpr int kLeast = 200;
+  constexpr int kMost = 10000;
+  const int size = asked.number(key);
+  if (size == 0) return;
+  if (size < kLeast || size > kMost) throw HttpFault(400, "targets have 20 mm to 1 m");
+  words.insert(words.end(), {option, fmt::format("{}.{}mm", size / 10, size % 10)});
+}
+
 PageJob registering(const Asked& asked) {
   PageJob job;
   const std::string source = asked.file_at("source");
@@ -125,6 +141,7 @@ PageJob registering(const Asked& asked) {
   job.words = {"register", source, target, "-o", asked.results()};
   add_units(asked, "source_units", "--source-units", job.words);
   add_units(asked, "target_units", "--target-units", job.words);
+  add_repeats(asked, job.words);
   if (asked.flag("pdf")) job.words.emplace_back("--pdf");
   job.title = fmt::format("{} into {}", last_name(source), last_name(target));
   return job;
@@ -136,6 +153,13 @@ PageJob whole_project(const Asked& asked) {
   job.words = {"project"};
   job.words.insert(job.words.end(), files.begin(), files.end());
   job.words.insert(job.words.end(), {"-o", asked.results()});
+  for (const char* table : {"control", "poses"}) {
+    if (!asked.text(table).empty())
+      job.words.insert(job.words.end(), {std::string("--") + table, asked.file_at(table)});
+  }
+  add_target_size(asked, "sphere", "--sphere-radius", job.words);
+  add_target_size(asked, "board", "--board-side", job.words);
+  add_repeats(asked, job.words);
   if (asked.flag("pdf")) job.words.emplace_back("--pdf");
   job.title = joined_names(files);
   return job;
@@ -191,6 +215,24 @@ PageJob placing(const Asked& asked) {
       "transform", result_of(of), source,
       fmt::format("{}/{}_placed{}", asked.results(), name.stem().string(), name.extension().string())};
   job.title = add_alternative(asked, of, job.words);
+  return job;
+}
+
+/// A scan, or all of a project, against the model in which they were registered.
+PageJob comparing(const Asked& asked) {
+  PageJob job;
+  const PageJob& of = registration_or_project(asked);
+  job.words = {"deviation"};
+  if (of.kind == "project") {
+    job.words.push_back(result_of(of));
+  } else {
+    const Asked first{of.asked, asked.folder, asked.board};
+    job.words.insert(job.words.end(),
+                     {first.file_at("source"), first.file_at("target"), "--result", result_of(of)});
+  }
+  job.words.insert(job.words.end(), {"-o", asked.results()});
+  if (asked.flag("pdf")) job.words.emplace_back("--pdf");
+  job.title = of.title;
   return job;
 }
 
@@ -274,7 +316,7 @@ PageJob job_from_request(const Json& json, const fs::path& folder, const JobBoar
   const std::string kind = asked.text("kind");
   constexpr std::pair<const char*, PageJob (*)(const Asked&)> kKinds[] = {
       {"register", registering}, {"project", whole_project}, {"view", viewing}, {"place", placing},
-      {"decide", deciding},      {"plan", planning},         {"link", linking}};
+      {"decide", deciding},      {"plan", planning},         {"link", linking}, {"deviation", comparing}};
   for (const auto& [name, make] : kKinds) {
     if (kind != name) continue;
     PageJob job = make(asked);

@@ -10,10 +10,13 @@
 namespace limen {
 
 /// The work that the page asks for, by "kind":
-///   register  source, target; source_units, target_units
-///   project   files
+///   register  source, target; source_units, target_units; no_repeats
+///   project   files; control and poses: CSV files; sphere, board: sizes of targets in tenths of a
+///   millimetre;
+///             no_repeats
 ///   view      files, or of: a job, with alternative where one of its poses is meant
 ///   place     of: a job, with alternative where one of its poses is meant
+///   deviation of: a job of scans in a model
 ///   decide    of: a project, answer: one of those that its questions name; or link: the number of a link,
 ///             which is then a start of its two scans in the project
 ///   plan      scan: thinned for a plan of it

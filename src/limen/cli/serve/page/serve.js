@@ -118,7 +118,7 @@ const fileRow = ({ name, bytes }) => {
 /** Choices of a list, with what was chosen kept. */
 const fill = (select, values, fallback) => {
   const chosen = values.includes(select.value) ? select.value : fallback ?? '';
-  select.replaceChildren(...values.map((value) => make('option', { value, textContent: value })));
+  select.replaceChildren(...values.map((value) => make('option', { value, textContent: value || 'none' })));
   select.value = chosen;
 };
 
@@ -132,13 +132,14 @@ const showFiles = () => {
   byId('no-files').hidden = names.length > 0;
   fill(byId('source'), names, names[0]);
   fill(byId('target'), names, names[1] ?? names[0]);
+  for (const id of ['control', 'poses']) fill(byId(id), ['', ...names.filter((name) => /\.csv$/i.test(name))]);
   for (const button of byId('register').querySelectorAll('button')) button.disabled = names.length < 2;
   showTicked();
 };
 
 // Work
 
-const kinds = { register: 'Register', project: 'Project', view: 'View', place: 'Move', decide: 'Answer', link: 'Link' };
+const kinds = { register: 'Register', project: 'Project', view: 'View', place: 'Move', decide: 'Answer', link: 'Link', deviation: 'Deviation' };
 const results = new Map();  // what a job's result says, once it was read
 
 const start = async (work) => {
@@ -282,6 +283,8 @@ const jobCard = (job) => {
   if (job.outputs.length > 0) parts.push(make('p', { className: 'links' }, ...job.outputs.filter(({ name }) => !/^question_\d+\.svg$/.test(name)).map((file) => link(job, file))));
   const placed = result && (result.target_from_source || (result.scans ?? []).some((scan) => scan.frame_from_scan));
   if (job.state === 'done' && placed) parts.push(make('p', {}, button('Look at it', { kind: 'view', of: job.id }, `Look at ${job.title}`), ' ', button(job.kind === 'project' ? 'Move all scans there' : 'Move the scan there', { kind: 'place', of: job.id })));
+  const inModel = job.kind === 'project' ? (result?.scans ?? []).some(({ kind }) => kind === 'model') : result?.inputs?.target?.kind === 'model';
+  if (job.state === 'done' && placed && inModel) parts.at(-1).append(' ', button('Compare with the model', { kind: 'deviation', of: job.id, pdf: byId('pdf').checked }, `Compare ${job.title} with the model`));
   if (result && ['register', 'link'].includes(job.kind)) parts.push(...alternativesOf(job, result));
   if (result && job.kind === 'project') parts.push(...questionsOf(job, result));
   if (job.said) {
@@ -373,10 +376,14 @@ for (const id of ['source-units', 'target-units']) {
 }
 byId('register').onsubmit = (event) => {
   event.preventDefault();
-  start({ kind: 'register', source: byId('source').value, target: byId('target').value, source_units: byId('source-units').value, target_units: byId('target-units').value, pdf: byId('pdf').checked });
+  start({ kind: 'register', source: byId('source').value, target: byId('target').value, source_units: byId('source-units').value, target_units: byId('target-units').value, no_repeats: byId('no-repeats').checked, pdf: byId('pdf').checked });
 };
 byId('many').onsubmit = (event) => {
   event.preventDefault();
-  start({ kind: event.submitter.value, files: state.files.map((file) => file.name).filter((name) => ticked.has(name)), pdf: byId('pdf').checked });
+  const tenths = (id) => Math.round(10 * (byId(id).valueAsNumber || 0));
+  start({
+    kind: event.submitter.value, files: state.files.map((file) => file.name).filter((name) => ticked.has(name)), pdf: byId('pdf').checked,
+    control: byId('control').value, poses: byId('poses').value, sphere: tenths('sphere'), board: tenths('board'), no_repeats: byId('no-repeats').checked,
+  });
 };
 again();
