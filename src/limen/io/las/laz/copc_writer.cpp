@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <utility>
 
@@ -17,6 +18,30 @@
 // Source: COPC specification 1.0 (https://copc.io): the info record, the hierarchy, the keys of nodes.
 
 namespace limen {
+
+/// A node of the octree and the points that it keeps, in the list of all.
+struct CopcNode {
+  int level = 0;
+  CellIndex at;
+  std::size_t begin = 0;
+  std::size_t end = 0;
+  std::uint64_t place = 0;  ///< of its chunk in the file
+  std::uint32_t bytes = 0;
+};
+
+struct CopcTree {
+  std::vector<CopcNode> nodes;       ///< by level, then along the curve
+  std::vector<std::uint32_t> order;  ///< the points of the nodes
+};
+
+/// The cube of the root, metres in the file's frame, and the times of the points.
+struct CopcExtent {
+  Vector3d low = Vector3d::Zero();
+  double side = 1.0;
+  double earliest = 0.0;
+  double latest = 0.0;
+};
+
 namespace {
 
 constexpr std::size_t kHeaderBytes = 375;
@@ -32,27 +57,6 @@ constexpr int kBits = 21;                  ///< of a cell coordinate along one a
 constexpr int kCellBits = 7;               ///< 128 cells along the edge of a node
 constexpr int kDeepest = kBits - kCellBits;
 
-/// The cube of the root, metres in the file's frame.
-struct RootCube {
-  Vector3d low = Vector3d::Zero();
-  double side = 1.0;
-};
-
-/// A node of the octree and the points that it keeps, in the list of all.
-struct CopcNode {
-  int level = 0;
-  CellIndex at;
-  std::size_t begin = 0;
-  std::size_t end = 0;
-  std::uint64_t place = 0;  ///< of its chunk in the file
-  std::uint32_t bytes = 0;
-};
-
-struct Octree {
-  std::vector<CopcNode> nodes;       ///< by level, then along the curve
-  std::vector<std::uint32_t> order;  ///< the points of the nodes
-};
-
 /// Calls use(begin, end) for each run of places that lie in one cube, of the edge of the root over 2^level.
 template <typename Use>
 void for_each_cube(const CurvePlaces& places, std::size_t begin, std::size_t end, int level, const Use& use) {
@@ -65,8 +69,8 @@ void for_each_cube(const CurvePlaces& places, std::size_t begin, std::size_t end
   }
 }
 
-Octree octree_of(CurvePlaces left) {
-  Octree tree;
+CopcTree octree_of(CurvePlaces left) {
+  CopcTree tree;
   tree.order.reserve(left.size());
   CurvePlaces deeper;
   for (int level = 0; !left.empty(); ++level) {
@@ -145,41 +149,51 @@ void CopcWriter::write(std::string_view records) {
   }
 }
 
-std::uint64_t CopcWriter::finish() {
-  const std::size_t count =
-      blocks_.empty() ? 0 : (blocks_.size() - 1) * kBlockRecords + blocks_.back().size() / point_bytes_;
-  const auto point = [&](std::size_t index) {
-    std::array<std::int32_t, 3> steps{};
-    std::memcpy(steps.data(), record(static_cast<std::uint32_t>(index)), sizeof steps);
-    return Vector3d(grid_.offset + grid_.scale.cwiseProduct(Vector3d(steps[0], steps[1], steps[2])));
+std::size_t CopcWriter::count() const {
+  return blocks_.empty() ? 0 : (blocks_.size() - 1) * kBlockRecords + blocks_.back().size() / point_bytes_;
+}
+
+Vector3d CopcWriter::point(std::size_t index) const {
+  std::array<std::int32_t, 3> steps{};
+  std::memcpy(steps.data(), record(static_cast<std::uint32_t>(index)), sizeof steps);
+  return grid_.offset + grid_.scale.cwiseProduct(Vector3d(steps[0], steps[1], steps[2]));
+}
+
+CopcExtent CopcWriter::extent() const {
+  CopcExtent extent;
+  if (count() == 0) return extent;
+  const auto time = [&](std::size_t i) {
+    return las_number<double>({record(static_cast<std::uint32_t>(i)), point_bytes_}, kTimeAt);
   };
-  LasBox box{Vector3d::Constant(std::numeric_limits<double>::infinity()),
-             Vector3d::Constant(-std::numeric_limits<double>::infinity())};
-  double earliest = std::numeric_limits<double>::infinity();
-  double latest = -std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < count; ++i) {
+  Vector3d high = point(0);
+  extent = {high, 0.0, time(0), time(0)};
+  for (std::size_t i = 1; i < count(); ++i) {
     const Vector3d x = point(i);
-    box = {box.low.cwiseMin(x), box.high.cwiseMax(x)};
-    const auto time = las_number<double>({record(static_cast<std::uint32_t>(i)), point_bytes_}, kTimeAt);
-    earliest = std::min(earliest, time);
-    latest = std::max(latest, time);
+    extent.low = extent.low.cwiseMin(x);
+    high = high.cwiseMax(x);
+    extent.earliest = std::min(extent.earliest, time(i));
+    extent.latest = std::max(extent.latest, time(i));
   }
-  RootCube root;
-  if (count > 0) root.low = box.low;
   // A little larger, so that the highest point lies within in other programs' arithmetic too.
-  if (count > 0) root.side = 1.000001 * std::max((box.high - box.low).maxCoeff(), 0.001);
-  CurvePlaces places(count);
-  parallel_for(count, kBlockRecords, [&](std::size_t begin, std::size_t end) {
+  extent.side = 1.000001 * std::max((high - extent.low).maxCoeff(), 0.001);
+  return extent;
+}
+
+CopcTree CopcWriter::tree_in(const CopcExtent& extent) const {
+  CurvePlaces places(count());
+  parallel_for(count(), kBlockRecords, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      const Vector3d cell = (point(i) - root.low) * (std::ldexp(1.0, kBits) / root.side);
+      const Vector3d cell = (point(i) - extent.low) * (std::ldexp(1.0, kBits) / extent.side);
       places[i] = {morton_encode(static_cast<std::uint32_t>(cell.x()), static_cast<std::uint32_t>(cell.y()),
                                  static_cast<std::uint32_t>(cell.z())),
                    static_cast<std::uint32_t>(i)};
     }
   });
   sort_along_curve(places);
-  Octree tree = octree_of(std::move(places));
+  return octree_of(std::move(places));
+}
 
+std::uint64_t CopcWriter::write_nodes(CopcTree& tree) {
   file_.write(std::string(8, '\0'));  // where the table will be
   std::uint64_t end = begin_ + 8;
   std::vector<laz::ChunkSize> sizes;
@@ -202,37 +216,42 @@ std::uint64_t CopcWriter::finish() {
       end += packed[k].size();
     }
   }
-  const auto overwrite = [&](std::size_t at, auto value) {
-    std::string bytes(sizeof value, '\0');
-    put_las_number(bytes, 0, value);
-    file_.overwrite(at, bytes);
-  };
   overwrite(begin_, end);
   const std::string table = laz::pack_table(sizes, true);
   file_.write(table);
-  end += table.size();
+  return end + table.size();
+}
 
-  if (tree.nodes.empty()) tree.nodes.emplace_back();
-  const std::string page = hierarchy_of(tree.nodes);
+std::uint64_t CopcWriter::write_hierarchy(const std::vector<CopcNode>& nodes, const CopcExtent& extent,
+                                          std::uint64_t at) {
+  const std::string page = hierarchy_of(nodes);
   std::string head(kExtendedHead, '\0');
   head.replace(2, 4, "copc");
   put_las_number(head, 18, std::uint16_t{1000});
   put_las_number(head, 20, std::uint64_t{page.size()});
   file_.write(head + page);
-  overwrite(las_at::kLongRecords, end);
+  overwrite(las_at::kLongRecords, at);
   overwrite(las_at::kLongRecordCount, std::uint32_t{1});
 
   std::string info(kInfoBytes, '\0');
-  const double half = 0.5 * root.side;
-  put_las_vector(info, 0, root.low + Vector3d::Constant(half));
+  const double half = 0.5 * extent.side;
+  put_las_vector(info, 0, extent.low + Vector3d::Constant(half));
   put_las_number(info, 24, half);
-  put_las_number(info, 32, std::ldexp(root.side, -kCellBits));
-  put_las_number(info, 40, std::uint64_t{end + kExtendedHead});
+  put_las_number(info, 32, std::ldexp(extent.side, -kCellBits));
+  put_las_number(info, 40, at + kExtendedHead);
   put_las_number(info, 48, std::uint64_t{page.size()});
-  put_las_number(info, 56, count > 0 ? earliest : 0.0);
-  put_las_number(info, 64, count > 0 ? latest : 0.0);
+  put_las_number(info, 56, extent.earliest);
+  put_las_number(info, 64, extent.latest);
   file_.overwrite(kInfoAt, info);
-  return end + kExtendedHead + page.size();
+  return at + kExtendedHead + page.size();
+}
+
+std::uint64_t CopcWriter::finish() {
+  const CopcExtent extent = this->extent();
+  CopcTree tree = tree_in(extent);
+  const std::uint64_t end = write_nodes(tree);
+  if (tree.nodes.empty()) tree.nodes.emplace_back();
+  return write_hierarchy(tree.nodes, extent, end);
 }
 
 }  // namespace limen

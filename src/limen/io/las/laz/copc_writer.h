@@ -19,6 +19,10 @@ bool is_copc_ending(const std::filesystem::path& path);
 /// The record that must be the first of a COPC; its values are known in the end.
 std::string copc_info_record();
 
+struct CopcExtent;
+struct CopcNode;
+struct CopcTree;
+
 /// Writes the points of a COPC 1.0 file, formats 6 to 8: a LAZ whose chunks are the nodes of an octree. A
 /// node that has more than a few points keeps one of each cell, 128 cells an edge, and leaves the others to
 /// its eight children. All records stay in memory until the end, with 36 bytes more for each.
@@ -34,7 +38,21 @@ class CopcWriter : public PointPacker {
   std::uint64_t finish() override;
 
  private:
+  [[nodiscard]] std::size_t count() const;
   [[nodiscard]] const char* record(std::uint32_t index) const;
+  [[nodiscard]] Vector3d point(std::size_t index) const;
+  [[nodiscard]] CopcExtent extent() const;
+  [[nodiscard]] CopcTree tree_in(const CopcExtent& extent) const;
+  /// Chunks and their table; tells where the file ends then, as the next does.
+  std::uint64_t write_nodes(CopcTree& tree);
+  std::uint64_t write_hierarchy(const std::vector<CopcNode>& nodes, const CopcExtent& extent,
+                                std::uint64_t at);
+  template <typename Value>
+  void overwrite(std::uint64_t at, Value value) {
+    std::string bytes(sizeof value, '\0');
+    put_las_number(bytes, 0, value);
+    file_.overwrite(at, bytes);
+  }
 
   AtomicFile& file_;
   std::uint64_t begin_;
