@@ -4,7 +4,7 @@
 // Pictures that were taken at stations: a button at each place opens them.
 
 const openPicture = (name, src) => {
-  const dialog = made('dialog', { class: 'picture', 'aria-label': `Picture of ${name}`, onclose: () => dialog.remove() },
+  const dialog = made('dialog', { class: 'picture', 'aria-label': `Picture of ${name}`, onclose: () => dialog.remove(), onkeydown: (event) => event.stopPropagation() },
     made('div', { class: 'head' }, made('strong', {}, name), made('button', { type: 'button', onclick: () => dialog.close() }, 'Close')),
     made('div', { class: 'pan', tabindex: '0', role: 'region', 'aria-label': `Picture of ${name}, which can be moved` }, made('img', { src, alt: `What was seen round ${name}` })));
   document.body.append(dialog);
