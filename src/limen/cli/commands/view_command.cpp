@@ -272,7 +272,7 @@ ViewScene read_view(const std::vector<ViewInput>& inputs, std::size_t most_point
     side.pictures = pictures_of(input, clouds[k], middle, picture_room, session);
     // Of files whose coordinates are shown as they are.
     if (clouds[k].file->file().clouds().size() == 1 && !input.bend && !metres_per_unit) {
-      side.path = input.path;
+      side.path = fs::path(input.path).filename().string();
       side.file_from_frame = inverse(input.frame_from_world);
     }
   }

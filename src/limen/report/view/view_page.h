@@ -21,8 +21,8 @@ struct ViewPicture {
 struct ViewSide {
   std::string name;
   std::uint64_t points_read = 0;  ///< of the file; 0 for a model
-  std::string path;               ///< of a scan that can be registered as it lies; empty: it cannot
-  Rigid3 file_from_frame;         ///< of such a scan
+  std::string path;        ///< the file's name, of a scan that can be registered as it lies; else empty
+  Rigid3 file_from_frame;  ///< of such a scan
   std::vector<ViewPicture> pictures;
   SceneSide scene;
 };
