@@ -23,6 +23,10 @@ constexpr double kMostRoughM = 0.008;
 constexpr double kLeastSlant = 0.3;  // cosine between the ray and the normal
 constexpr double kGoesOn = 0.35;     // likeness of the surroundings to the pattern
 
+constexpr double kRingFrom = 0.76;  // of the side: clear of the board at any turn
+constexpr double kRingTo = 1.0;
+constexpr std::size_t kLeastInRing = 8;  // that tell something of what is beside the board
+
 /// A point of the board's plane, or where the ray of a point behind it went through.
 struct BoardPoint {
   Vector2d x = Vector2d::Zero();  ///< about where the centre was thought to be
@@ -200,7 +204,7 @@ class BoardCheck {
       ++clear_;
       wrong_ += as_on_board < 0.0 ? 1.0 : 0.0;
       part.light.push_back(point.light);
-    } else if (away > 0.76 && away < 1.0) {
+    } else if (away > kRingFrom && away < kRingTo) {
       // Squares of half the side would be as on the board at its corners, and the reverse beside it.
       Around& around = at.cwiseAbs().minCoeff() > 0.5 * side_m_ ? corners_ : sides_;
       ++around.count;
@@ -228,7 +232,9 @@ class BoardCheck {
   struct Around {
     double count = 0.0;
     double likeness = 0.0;
-    [[nodiscard]] bool goes_on() const { return count >= 8.0 && std::abs(likeness) > kGoesOn * count; }
+    [[nodiscard]] bool goes_on() const {
+      return count >= static_cast<double>(kLeastInRing) && std::abs(likeness) > kGoesOn * count;
+    }
   };
 
   /// How far the darkest bright quadrant is from the brightest dark one, in deviations within them.
@@ -344,8 +350,8 @@ class BorderPoints {
   [[nodiscard]] std::vector<BoardPoint> run() const {
     std::vector<BoardPoint> points;
     const std::vector<BoardPoint> around = ring(view_.on);
-    const bool stands_free = around.size() < 8;
-    if (stands_free && ring(view_.through).size() < 8) return inner_;
+    const bool stands_free = around.size() < kLeastInRing;
+    if (stands_free && ring(view_.through).size() < kLeastInRing) return inner_;
     const TwoTones tones = tones_of(inner_);
     const Light beside = light_of(around);
     for (BoardPoint point : in_disc(view_.on, pose_.centre, side_m_)) {
@@ -371,12 +377,11 @@ class BorderPoints {
     double deviation = 0.0;
   };
 
-  /// Clear of the board, at any turn.
   [[nodiscard]] std::vector<BoardPoint> ring(const std::vector<BoardPoint>& points) const {
     std::vector<BoardPoint> within;
     for (const BoardPoint& point : points) {
       const double away = (point.x - pose_.centre).norm() / side_m_;
-      if (away > 0.76 && away < 1.0) within.push_back(point);
+      if (away > kRingFrom && away < kRingTo) within.push_back(point);
     }
     return within;
   }

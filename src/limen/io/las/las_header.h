@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "limen/base/atomic_file.h"
 #include "limen/geometry/rigid.h"
 
 namespace limen {
@@ -33,6 +34,14 @@ void put_las_number(std::string& bytes, std::size_t at, Value value) {
 }
 inline void put_las_vector(std::string& bytes, std::size_t at, const Vector3d& values) {
   for (int k = 0; k < 3; ++k) put_las_number(bytes, at + 8 * static_cast<std::size_t>(k), values[k]);
+}
+
+/// Writes a number over bytes that were written to the file before.
+template <typename Value>
+void overwrite_las_number(AtomicFile& file, std::uint64_t at, Value value) {
+  std::string bytes(sizeof value, '\0');
+  put_las_number(bytes, 0, value);
+  file.overwrite(at, bytes);
 }
 
 /// Places of the LAS header that are read and patched, bytes from the beginning.

@@ -259,25 +259,20 @@ Tail tail_of(const Motion& motion) {
   return tail;
 }
 
-void overwrite_number(AtomicFile& file, std::size_t at, auto value) {
-  std::string bytes(sizeof value, '\0');
-  put_las_number(bytes, 0, value);
-  file.overwrite(at, bytes);
-}
-
 /// Counts and places that are known in the end.
 void patch_header(AtomicFile& file, const Motion& motion, const Tail& tail, std::uint64_t points_end) {
   const LasHeader& header = motion.header;
   if (header.minor >= 3 && tail.waveforms)
-    overwrite_number(file, las_at::kWaveforms, points_end + *tail.waveforms);
+    overwrite_las_number(file, las_at::kWaveforms, points_end + *tail.waveforms);
   if (header.minor < 4) return;
   const bool none = tail.long_record_count == 0U;
   if (tail.long_records)
-    overwrite_number(file, las_at::kLongRecords, none ? std::uint64_t{0} : points_end + *tail.long_records);
-  if (tail.long_record_count) overwrite_number(file, las_at::kLongRecordCount, *tail.long_record_count);
+    overwrite_las_number(file, las_at::kLongRecords,
+                         none ? std::uint64_t{0} : points_end + *tail.long_records);
+  if (tail.long_record_count) overwrite_las_number(file, las_at::kLongRecordCount, *tail.long_record_count);
   if (!header.compressed || tail.long_records) return;
-  overwrite_number(file, las_at::kLongRecords, std::uint64_t{0});
-  overwrite_number(file, las_at::kLongRecordCount, std::uint32_t{0});
+  overwrite_las_number(file, las_at::kLongRecords, std::uint64_t{0});
+  overwrite_las_number(file, las_at::kLongRecordCount, std::uint32_t{0});
 }
 
 void patch_bounds(AtomicFile& file, const LasGrid& grid, const Reach& reach) {
@@ -286,8 +281,8 @@ void patch_bounds(AtomicFile& file, const LasGrid& grid, const Reach& reach) {
     const auto axis = static_cast<int>(k);
     const double a = grid.offset[axis] + grid.scale[axis] * reach.low[k];
     const double b = grid.offset[axis] + grid.scale[axis] * reach.high[k];
-    overwrite_number(file, las_at::kBounds + 16 * k, std::max(a, b));
-    overwrite_number(file, las_at::kBounds + 16 * k + 8, std::min(a, b));
+    overwrite_las_number(file, las_at::kBounds + 16 * k, std::max(a, b));
+    overwrite_las_number(file, las_at::kBounds + 16 * k + 8, std::min(a, b));
   }
 }
 

@@ -340,23 +340,19 @@ class LasWriter : public CloudWriter {
   }
 
   void patch_header() {
-    const auto patch = [&](std::size_t at, auto value) {
-      std::string bytes(sizeof value, '\0');
-      put_las_number(bytes, 0, value);
-      file_.overwrite(at, bytes);
-    };
-    patch(las_at::kCount, summary_.points);
+    overwrite_las_number(file_, las_at::kCount, summary_.points);
     for (std::size_t k = 1; k < summary_.returns.size(); ++k)
-      patch(las_at::kReturns + 8 * (k - 1), summary_.returns[k]);
+      overwrite_las_number(file_, las_at::kReturns + 8 * (k - 1), summary_.returns[k]);
     for (std::size_t k = 0; k < 3 && summary_.points > 0; ++k) {
       const double offset = offset_[static_cast<int>(k)];
-      patch(las_at::kBounds + 16 * k, offset + step_ * summary_.high[k]);
-      patch(las_at::kBounds + 16 * k + 8, offset + step_ * summary_.low[k]);
+      overwrite_las_number(file_, las_at::kBounds + 16 * k, offset + step_ * summary_.high[k]);
+      overwrite_las_number(file_, las_at::kBounds + 16 * k + 8, offset + step_ * summary_.low[k]);
     }
     // Seconds of a week cannot be negative or more than a week has: such times are of the other kind.
     const bool of_week = summary_.earliest >= 0.0 && summary_.latest <= kSecondsOfWeek;
     const bool timed = summary_.earliest <= summary_.latest;
-    if (timed && !of_week) patch(las_at::kGlobalEncoding, static_cast<std::uint16_t>(kWktBit | 1U));
+    if (timed && !of_week)
+      overwrite_las_number(file_, las_at::kGlobalEncoding, static_cast<std::uint16_t>(kWktBit | 1U));
   }
 
   using Items = std::vector<laz::ItemPlan>;

@@ -216,7 +216,7 @@ std::uint64_t CopcWriter::write_nodes(CopcTree& tree) {
       end += packed[k].size();
     }
   }
-  overwrite(begin_, end);
+  overwrite_las_number(file_, begin_, end);
   const std::string table = laz::pack_table(sizes, true);
   file_.write(table);
   return end + table.size();
@@ -230,8 +230,8 @@ std::uint64_t CopcWriter::write_hierarchy(const std::vector<CopcNode>& nodes, co
   put_las_number(head, 18, std::uint16_t{1000});
   put_las_number(head, 20, std::uint64_t{page.size()});
   file_.write(head + page);
-  overwrite(las_at::kLongRecords, at);
-  overwrite(las_at::kLongRecordCount, std::uint32_t{1});
+  overwrite_las_number(file_, las_at::kLongRecords, at);
+  overwrite_las_number(file_, las_at::kLongRecordCount, std::uint32_t{1});
 
   std::string info(kInfoBytes, '\0');
   const double half = 0.5 * extent.side;

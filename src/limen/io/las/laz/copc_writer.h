@@ -47,12 +47,6 @@ class CopcWriter : public PointPacker {
   std::uint64_t write_nodes(CopcTree& tree);
   std::uint64_t write_hierarchy(const std::vector<CopcNode>& nodes, const CopcExtent& extent,
                                 std::uint64_t at);
-  template <typename Value>
-  void overwrite(std::uint64_t at, Value value) {
-    std::string bytes(sizeof value, '\0');
-    put_las_number(bytes, 0, value);
-    file_.overwrite(at, bytes);
-  }
 
   AtomicFile& file_;
   std::uint64_t begin_;

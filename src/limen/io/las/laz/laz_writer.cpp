@@ -16,12 +16,6 @@ namespace {
 constexpr std::size_t kChunksAtOnce = 16;
 constexpr std::size_t kMostPending = std::size_t{64} << 20U;
 
-std::string bytes_of_place(std::uint64_t place) {
-  std::string bytes(8, '\0');
-  put_las_number(bytes, 0, place);
-  return bytes;
-}
-
 }  // namespace
 
 bool is_laz_ending(const std::filesystem::path& path) {
@@ -31,9 +25,8 @@ bool is_laz_ending(const std::filesystem::path& path) {
 LazWriter::LazWriter(AtomicFile& file, std::uint64_t points_begin, std::vector<laz::ItemPlan> items)
     : file_(file), begin_(points_begin), end_(points_begin), items_(std::move(items)) {
   for (const laz::ItemPlan& item : items_) chunk_bytes_ += item.bytes * kLazChunkPoints;
-  const std::string place = bytes_of_place(0);
-  file_.write(place);  // of the table, known in the end
-  end_ += place.size();
+  file_.write(std::string(8, '\0'));  // the place of the table, known in the end
+  end_ += 8;
 }
 
 void LazWriter::write(std::string_view records) {
@@ -59,7 +52,7 @@ void LazWriter::pack_pending(std::size_t chunks) {
 
 std::uint64_t LazWriter::finish() {
   pack_pending((pending_.size() + chunk_bytes_ - 1) / chunk_bytes_);
-  file_.overwrite(begin_, bytes_of_place(end_));
+  overwrite_las_number(file_, begin_, end_);
   const std::string table = laz::pack_table(sizes_, false);
   file_.write(table);
   return end_ + table.size();

@@ -37,16 +37,20 @@ const makeLinking = (scene, changed) => {
     if (note) return;
     if (!own) chosen.push(own = { side: found.side, ends: [] });
     own.ends.push(found.at);
+    if (lineNow()) navigator.clipboard?.writeText(lineNow()).catch(() => {});
+  };
+  /** The line once all places are there, else nothing. */
+  const lineNow = () => {
+    if (chosen.length < 2 || chosen.some(({ ends }) => ends.length < kPlacesToLink)) return '';
+    const back = inverseRigid(scene.viewFromFrame);
+    return linkLine(chosen.map(({ side, ends }) => ({ side, places: ends.map((x) => add(turn(back, x), scene.origin)) })));
   };
   /** Nodes and where they are: null is hidden. */
   linking.pins = () => pins.flatMap((own, file) => own.map((node, k) => [node, linking.on ? chosen[file]?.ends[k] ?? null : null]));
   linking.words = () => {
-    const back = inverseRigid(scene.viewFromFrame);
-    const done = chosen.length === 2 && chosen.every(({ ends }) => ends.length === kPlacesToLink);
+    const line = lineNow();
     const counts = chosen.map(({ side, ends }) => made('p', {}, `${side.name}: ${ends.length} of ${kPlacesToLink}`));
-    if (!done) return [...counts, made('p', { class: 'soft' }, note || 'Click the same three places in two files, in the same order. Untick a file to see the other alone.')];
-    const line = linkLine(chosen.map(({ side, ends }) => ({ side, places: ends.map((x) => add(turn(back, x), scene.origin)) })));
-    navigator.clipboard?.writeText(line).catch(() => {});
+    if (!line) return [...counts, made('p', { class: 'soft' }, note || 'Click the same three places in two files, in the same order. Untick a file to see the other alone.')];
     return [...counts, made('p', {}, 'Paste this into a terminal, in the folder of this page’s files:'), made('pre', { id: 'link-line', tabindex: '0' }, line)];
   };
   return linking;
