@@ -44,8 +44,8 @@ struct Mode {
 
 class Settling {
  public:
-  Settling(const std::vector<PlaneSums>& planes, const NormalEquations& held, double slope, double factor)
-      : planes_(planes), held_(held), slope_(slope), factor_(factor) {
+  Settling(const std::vector<PlaneSums>& planes, double slope, double factor)
+      : planes_(planes), slope_(slope), factor_(factor) {
     for (const PlaneSums& plane : planes)
       moved_.push_back(
           {Integrated(plane, {kMovedM, slope}, factor), Integrated(plane, {kMovedM, kOtherSlope}, factor)});
@@ -93,9 +93,9 @@ class Settling {
   /// One step of expectation and maximisation; returns what builders err, as these planes show it.
   double improve(double err_m, Mode& mode) const {
     const Vector6d x = mode.step;
-    mode.information = held_.normal;
-    mode.log_likelihood = held_.right.dot(x) - 0.5 * x.dot(held_.normal * x);
-    Vector6d right = held_.right;
+    mode.information.setZero();
+    mode.log_likelihood = 0.0;
+    Vector6d right = Vector6d::Zero();
     double squares = kBuildersStrength * kBuilderErrsM * kBuilderErrsM;
     double count = kBuildersStrength;
     for (std::size_t k = 0; k < planes_.size(); ++k) {
@@ -110,8 +110,11 @@ class Settling {
           plane.counts *
           (answer.log_likelihood -
            0.5 * (plane.squares - 2.0 * plane.right.dot(x) + x.dot(plane.information * x)) / factor_);
+      // What is expected of the square of its offset, by how well the offset is known.
       const double offset_m = residuals[0] / plane.weight;
-      squares += plane.counts * (1.0 - answer.moved) * offset_m * offset_m;
+      const double known = err_m * err_m / (err_m * err_m + factor_ / plane.weight);
+      squares += plane.counts * (1.0 - answer.moved) *
+                 (known * known * offset_m * offset_m + (1.0 - known) * err_m * err_m);
       count += plane.counts * (1.0 - answer.moved);
     }
     mode.step = solve_symmetric(mode.information, right);
@@ -119,7 +122,6 @@ class Settling {
   }
 
   const std::vector<PlaneSums>& planes_;
-  const NormalEquations& held_;
   double slope_;
   double factor_;
   std::vector<std::array<Integrated, 2>> moved_;  ///< of each plane: moved, another surface
@@ -150,9 +152,8 @@ Matrix6d information_of(const PlaneSums& plane, const PlaneErrors& errors, doubl
          plane.shared * Integrated(plane, errors, factor).gain * plane.shared.transpose();
 }
 
-SettledPose settle_among_moved(const std::vector<PlaneSums>& planes, const NormalEquations& held,
-                               double slope, double factor) {
-  const Settling settling(planes, held, slope, factor);
+SettledPose settle_among_moved(const std::vector<PlaneSums>& planes, double slope, double factor) {
+  const Settling settling(planes, slope, factor);
   std::vector<Mode> modes{settling.from(Vector6d::Zero())};
   for (const std::size_t k : moved_planes(planes, modes.front())) {
     // As if this plane, of all that are off, were right: shifted along its normal.

@@ -29,17 +29,6 @@ struct PlaneSums {
 /// By how much a wall differs from the drawing, at least: 1 sigma.
 inline constexpr double kLeastBuilderErrsM = 0.002;
 
-/// Sums of one kind of evidence about a small turn and shift.
-struct NormalEquations {
-  Matrix6d normal = Matrix6d::Zero();
-  Vector6d right = Vector6d::Zero();
-
-  void add(const Vector6d& row, double residual, double weight) {
-    normal += weight * row * row.transpose();
-    right += weight * residual * row;
-  }
-};
-
 /// How far planes err as wholes, one standard deviation.
 struct PlaneErrors {
   double offset_m = 0.0;
@@ -64,9 +53,7 @@ struct SettledPose {
 /// The likeliest pose in a building of which each plane either is where the model has it, to the few
 /// millimetres that builders err (learned from these planes), or was moved by centimetres, or is another
 /// surface that lies near it. Which ones were moved is not known: poses that take other planes for the moved
-/// ones are sought too, and how likely they are and how far off is in the information. `held`: what else
-/// holds the pose.
-SettledPose settle_among_moved(const std::vector<PlaneSums>& planes, const NormalEquations& held,
-                               double slope, double factor);
+/// ones are sought too, and how likely they are and how far off is in the information.
+SettledPose settle_among_moved(const std::vector<PlaneSums>& planes, double slope, double factor);
 
 }  // namespace limen

@@ -48,7 +48,7 @@ std::vector<PlaneSums> building(const std::vector<double>& off_m) {
 }
 
 SettledPose settled(const std::vector<double>& off_m) {
-  return settle_among_moved(building(off_m), {}, 1e-4, 1.0);
+  return settle_among_moved(building(off_m), 1e-4, 1.0);
 }
 
 double sigma_x(const SettledPose& pose) {
@@ -86,12 +86,28 @@ TEST(SettleAmongMoved, OfTwoWallsNobodyKnowsWhichOneWasMoved) {
   EXPECT_LT(std::sqrt(inverse_of(pose.information)(4, 4)), 0.005) << "y is known as before";
 }
 
-TEST(SettleAmongMoved, WhatElseIsKnownDecides) {
-  NormalEquations opening;
-  opening.add(Vector6d::Unit(3), 0.03, 1.0 / (0.004 * 0.004));
-  const SettledPose pose = settle_among_moved(building({0.0, 0.03}), opening, 1e-4, 1.0);
+/// Openings of one wall, measured to 4 mm, that are off along x.
+PlaneSums openings(double off_m) {
+  constexpr double kWeight = 1.0 / (0.004 * 0.004);
+  const Vector6d row = Vector6d::Unit(3);
+  PlaneSums sums;
+  sums.weight = kWeight;
+  sums.information = kWeight * row * row.transpose();
+  sums.shared.col(0) = kWeight * row;
+  sums.common(0, 0) = kWeight;
+  sums.right = kWeight * off_m * row;
+  sums.residuals[0] = kWeight * off_m;
+  sums.squares = kWeight * off_m * off_m;
+  return sums;
+}
+
+TEST(SettleAmongMoved, OpeningsOfAWallDecideBetweenTwoOthers) {
+  std::vector<PlaneSums> planes = building({0.0, 0.03});
+  planes.push_back(openings(0.03));
+  const SettledPose pose = settle_among_moved(planes, 1e-4, 1.0);
   EXPECT_NEAR(pose.step[3], 0.03, 0.002);
   EXPECT_GT(pose.moved[0], 0.9);
+  EXPECT_GT(sigma_x(pose), 0.003) << "that wall may have been moved, too";
 }
 
 }  // namespace

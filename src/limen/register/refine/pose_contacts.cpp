@@ -67,8 +67,8 @@ class ContactFinder::Collector {
     }
     if (!options_.openings) return contacts;
     contacts.openings = openings_.under(pose, gates.opening_m);
-    for (const OpeningMatch& match : contacts.openings)
-      add_opening(match, stacked_with(match, contacts.openings), pose, gates.opening_m, contacts.all);
+    for (std::size_t k = 0; k < contacts.openings.size(); ++k)
+      add_opening(k, pose, gates.opening_m, contacts);
     return contacts;
   }
 
@@ -131,31 +131,32 @@ class ContactFinder::Collector {
   }
 
   /// What matched openings say: shifts within the wall, turns by the parallel faces, the gap between them.
-  /// `stacked`: of how many the shift across is one observation.
-  void add_opening(const OpeningMatch& match, double stacked, const Rigid3& pose, double gate,
-                   std::vector<Contact>& contacts) const {
+  void add_opening(std::size_t k, const Rigid3& pose, double gate, Contacts& contacts) const {
+    const OpeningMatch& match = contacts.openings[k];
     const double spread = 1.0 / match.trust;
     Contact contact;
+    contact.opening = static_cast<int>(k);
     contact.at = match.at;
     contact.area_m2 = kHoldingShare * match.trust * match.area_m2;
     contact.gate_m = gate;
     if (match.sigma_across_m < 0.5) {
       contact.normal = match.across;
       contact.residual_m = match.shift_across_m;
-      contact.sigma_m = spread * match.sigma_across_m * std::sqrt(stacked);
-      contacts.push_back(contact);
+      contact.sigma_m = spread * match.sigma_across_m * std::sqrt(stacked_with(match, contacts.openings));
+      contacts.all.push_back(contact);
     }
     if (match.sigma_up_m < 0.5) {
       contact.normal = match.up;
       contact.residual_m = match.shift_up_m;
       contact.sigma_m = spread * match.sigma_up_m;
-      contacts.push_back(contact);
+      contacts.all.push_back(contact);
     }
-    add_faces(match, pose, contacts);
+    add_faces(match, pose, contact, contacts.all);
   }
 
   /// The two faces of the wall of a matched opening.
-  void add_faces(const OpeningMatch& match, const Rigid3& pose, std::vector<Contact>& contacts) const {
+  void add_faces(const OpeningMatch& match, const Rigid3& pose, Contact contact,
+                 std::vector<Contact>& contacts) const {
     const Vector3d normal = match.across.cross(match.up);
     const Opening& source = source_.features->openings[static_cast<std::size_t>(match.source)];
     const Opening& target = target_.features->openings[static_cast<std::size_t>(match.target)];
@@ -165,12 +166,9 @@ class ContactFinder::Collector {
         sign * pose.rotation * source_.features->planes[static_cast<std::size_t>(source.facade)].plane.normal;
     const Vector3d turn =
         turned.cross(target_.features->planes[static_cast<std::size_t>(target.facade)].plane.normal);
-    Contact contact;
-    contact.at = match.at;
     contact.turn = true;
     contact.gate_m = kTurnGateRad;
     contact.sigma_m = options_.parallel_rad;
-    contact.area_m2 = kHoldingShare * match.trust * match.area_m2;
     for (const Vector3d& axis : {match.across, match.up}) {
       contact.normal = axis;
       contact.residual_m = turn.dot(axis);

@@ -20,6 +20,7 @@ struct Contact {
   double area_m2 = 0.0;   ///< surface it is worth as a hold
   int source_plane = -1;  ///< -1: not a pair of planes
   int target_plane = -1;
+  int opening = -1;  ///< of Contacts::openings
   bool turn = false;
 };
 

@@ -13,6 +13,7 @@
 #include "limen/base/progress.h"
 #include "limen/geometry/linear.h"
 #include "limen/register/refine/built_offsets.h"
+#include "limen/register/refine/planes_by_wall.h"
 #include "limen/register/refine/pose_contacts.h"
 
 namespace limen {
@@ -23,10 +24,20 @@ constexpr double kMaxCentreM = 20.0;    // the best known point is sought this f
 constexpr int kLeastTilted = 8;         // tiles of a pair whose slopes are looked at
 constexpr double kMovedGateM = 0.06;    // as far as walls are looked for that were moved
 constexpr double kOpeningErrsM = 0.02;  // how far windows and doors are from where a model has them: 1 sigma
-constexpr double kOneDirectionCosine = 0.99999;  // of planes of one wall
-constexpr double kWholePlaneM2 = 5.0;            // one observation of how a building was built
-constexpr double kOneOffsetM = 0.006;            // parts of one plane that differ by less were moved together
-constexpr double kGateSigma = 0.2;  // deviation of a tile far from the goal, as a share of the gate
+constexpr double kWholePlaneM2 = 5.0;   // one observation of how a building was built
+constexpr double kOneOffsetM = 0.006;   // parts of one plane that differ by less were moved together
+constexpr double kGateSigma = 0.2;      // deviation of a tile far from the goal, as a share of the gate
+
+/// Sums of one kind of evidence about a small turn and shift.
+struct NormalEquations {
+  Matrix6d normal = Matrix6d::Zero();
+  Vector6d right = Vector6d::Zero();
+
+  void add(const Vector6d& row, double residual, double weight) {
+    normal += weight * row * row.transpose();
+    right += weight * residual * row;
+  }
+};
 
 class Refiner {
  public:
@@ -190,32 +201,32 @@ class Refiner {
     std::vector<PlaneMatch> moved;
   };
 
-  /// Contacts whose pairs of planes lie in one plane of the model, and equally far from it, get the same
+  [[nodiscard]] const Features& model_features() const {
+    return *(source_.model ? source_ : target_).features;
+  }
+
+  /// A direction of the model's frame, in the target's.
+  [[nodiscard]] Vector3d to_target(const Vector3d& of_model, const Rigid3& target_from_source) const {
+    return source_.model ? Vector3d(target_from_source.rotation * of_model) : of_model;
+  }
+
+  /// Contacts whose pairs of planes lie in one wall of the model, and are equally far from it, get the same
   /// pair: a wall that was moved is moved with all its parts.
-  void join_pairs(std::vector<Contact>& contacts, const Vector3d& centre) const {
+  void join_pairs(std::vector<Contact>& contacts, const Vector3d& centre, PlanesByWall& walls) const {
     struct Part {
-      std::size_t model;
+      std::size_t wall;
       double offset_m;
       std::pair<int, int> pair;
     };
     std::vector<Part> parts;
-    std::vector<Plane> walls;
-    const std::vector<PlanarPolygon>& planes = (source_.model ? source_ : target_).features->planes;
-    for (const auto& [key, pair] : pairs_of(contacts, centre)) {
-      const Plane& plane = planes[static_cast<std::size_t>(source_.model ? key.first : key.second)].plane;
-      const auto wall = std::find_if(walls.begin(), walls.end(), [&](const Plane& known) {
-        return known.normal.dot(plane.normal) > kOneDirectionCosine &&
-               std::abs(known.offset - plane.offset) < kOneOffsetM;
-      });
-      parts.push_back({static_cast<std::size_t>(wall - walls.begin()), pair.mean_m(), key});
-      if (wall == walls.end()) walls.push_back(plane);
-    }
+    for (const auto& [key, pair] : pairs_of(contacts, centre))
+      parts.push_back({walls.wall_of(source_.model ? key.first : key.second), pair.mean_m(), key});
     std::sort(parts.begin(), parts.end(), [](const Part& a, const Part& b) {
-      return std::tie(a.model, a.offset_m, a.pair) < std::tie(b.model, b.offset_m, b.pair);
+      return std::tie(a.wall, a.offset_m, a.pair) < std::tie(b.wall, b.offset_m, b.pair);
     });
     std::map<std::pair<int, int>, std::pair<int, int>> joined;
     for (std::size_t k = 0; k < parts.size(); ++k) {
-      const bool same = k > 0 && parts[k].model == parts[k - 1].model &&
+      const bool same = k > 0 && parts[k].wall == parts[k - 1].wall &&
                         parts[k].offset_m - parts[k - 1].offset_m < kOneOffsetM;
       joined[parts[k].pair] = same ? joined.at(parts[k - 1].pair) : parts[k].pair;
     }
@@ -224,37 +235,65 @@ class Refiner {
           joined.at({contact.source_plane, contact.target_plane});
   }
 
-  /// A contact along the normal of the model's plane: of one pair the tiles of both sides then say the same
-  /// of a shift.
-  [[nodiscard]] Contact along_model(Contact contact, const Rigid3& target_from_source) const {
-    const auto normal_of = [](const ScanView& side, int plane) {
-      return side.features->planes[static_cast<std::size_t>(plane)].plane.normal;
-    };
-    const Vector3d normal =
-        source_.model ? Vector3d(target_from_source.rotation * normal_of(source_, contact.source_plane))
-                      : normal_of(target_, contact.target_plane);
+  /// A contact along the normal of the model's wall: the tiles of both its faces, and of both sides, then say
+  /// the same of a shift.
+  [[nodiscard]] Contact along_wall(Contact contact, const Rigid3& target_from_source,
+                                   PlanesByWall& walls) const {
+    const std::size_t wall = walls.wall_of(source_.model ? contact.source_plane : contact.target_plane);
+    const Vector3d normal = to_target(walls.normal(wall), target_from_source);
     if (normal.dot(contact.normal) < 0.0) contact.residual_m = -contact.residual_m;
     contact.normal = normal;
     return contact;
+  }
+
+  /// What the openings of each wall say together of shifts across and up. Where its faces lie is said by its
+  /// planes.
+  [[nodiscard]] std::vector<PlaneSums> opening_sums(const Contacts& found, const Rigid3& target_from_source,
+                                                    const Vector3d& centre, double factor,
+                                                    PlanesByWall& walls) const {
+    std::map<std::pair<std::size_t, bool>, PlaneSums> sums;
+    for (const Contact& contact : found.all) {
+      if (contact.opening < 0 || contact.turn) continue;
+      const OpeningMatch& match = found.openings[static_cast<std::size_t>(contact.opening)];
+      const Vector3d outward = match.across.cross(match.up);
+      const int opening = source_.model ? match.source : match.target;
+      const int facade = model_features().openings[static_cast<std::size_t>(opening)].facade;
+      if (facade < 0 || std::abs(contact.normal.dot(outward)) > 0.5) continue;
+      const std::size_t wall = walls.wall_of(facade);
+      const bool upright = std::abs(contact.normal.dot(match.up)) > 0.5;
+      // Seen from the two faces of a wall, what is right for one is left for the other.
+      const double side = outward.dot(to_target(walls.normal(wall), target_from_source));
+      const double sign = upright || side > 0.0 ? 1.0 : -1.0;
+      const double residual_m = sign * contact.residual_m;
+      const Vector6d row = sign * row_of(contact, centre);
+      const double weight = factor / (contact.sigma_m * contact.sigma_m + kOpeningErrsM * kOpeningErrsM);
+      PlaneSums& sum = sums[{wall, upright}];
+      sum.weight += weight;
+      sum.information += weight * row * row.transpose();
+      sum.shared.col(0) += weight * row;
+      sum.common(0, 0) += weight;
+      sum.right += weight * residual_m * row;
+      sum.residuals[0] += weight * residual_m;
+      sum.squares += weight * residual_m * residual_m;
+    }
+    std::vector<PlaneSums> all;
+    for (const auto& [wall, sum] : sums) all.push_back(sum);
+    return all;
   }
 
   /// Moves a pose in a model to where it is likeliest, given that some walls may have been moved.
   [[nodiscard]] std::optional<Settled> settle(RefinedPose& refined) const {
     const Contacts found =
         contacts_.near(refined.target_from_source, {kMovedGateM, options_.last_opening_gate_m});
+    PlanesByWall walls(model_features().planes);
     std::vector<Contact> contacts;
     for (const Contact& contact : found.all) {
-      if (contact.source_plane >= 0) contacts.push_back(along_model(contact, refined.target_from_source));
+      if (contact.source_plane >= 0)
+        contacts.push_back(along_wall(contact, refined.target_from_source, walls));
     }
     if (contacts.size() < 4) return std::nullopt;
     const Vector3d centre = middle_of(contacts);
-    NormalEquations openings;
-    for (const Contact& contact : found.all) {
-      if (contact.source_plane >= 0) continue;
-      const double variance = contact.sigma_m * contact.sigma_m + kOpeningErrsM * kOpeningErrsM;
-      openings.add(row_of(contact, centre), contact.residual_m, 1.0 / variance);
-    }
-    join_pairs(contacts, centre);
+    join_pairs(contacts, centre, walls);
     const PairMap pairs = pairs_of(contacts, centre);
     double squares = 0.0;
     std::vector<PlaneSums> planes;
@@ -265,12 +304,15 @@ class Refiner {
     }
     const double freedoms = 0.5 * static_cast<double>(contacts.size()) - static_cast<double>(pairs.size());
     const double factor = std::max(squares / std::max(1.0, freedoms), 1e-6);
-    const SettledPose settled = settle_among_moved(planes, openings, pair_slope(pairs, factor), factor);
+    for (const PlaneSums& openings : opening_sums(found, refined.target_from_source, centre, factor, walls))
+      planes.push_back(openings);
+    const SettledPose settled = settle_among_moved(planes, pair_slope(pairs, factor), factor);
     move_by(settled.step, centre, refined.target_from_source);
     Settled known{settled.information, centre, {}};
     std::size_t k = 0;
     for (const auto& [key, pair] : pairs) {
-      const double off_m = -pair.mean_m() + pair.shared.col(0).dot(settled.step) / pair.weight;
+      const double sign = walls.sign_of(source_.model ? key.first : key.second);
+      const double off_m = sign * (-pair.mean_m() + pair.shared.col(0).dot(settled.step) / pair.weight);
       if (settled.moved[k++] > 0.5)
         known.moved.push_back({key.first, key.second, off_m, angle_of(key, refined), pair.area_m2});
     }
