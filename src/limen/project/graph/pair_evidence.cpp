@@ -40,7 +40,12 @@ double against(double chance_nats, double odds_of_twin) {
 }  // namespace
 
 double PairEvidence::odds_of_twin() const {
-  return looks_for_twins ? odds_of(twins) : 0.0;
+  if (!looks_for_twins) return 0.0;
+  return asks_things() ? odds_of(twins) : (twins.otherwise + twins.alike) * std::exp(-behind_windows_nats());
+}
+
+double PairEvidence::behind_windows_nats() const {
+  return bounded(twins.otherwise_nats.front()) + evidence_table::kAgreeingBehind * std::max(0.0, chance_nats);
 }
 
 void LookAlikeSum::add(const PairEvidence& evidence, double of_things, double of_surface,
@@ -54,7 +59,7 @@ void LookAlikeSum::add(const PairEvidence& evidence, double of_things, double of
     built_nats_ += of_surface * bounded(built_nats(twins.built, bends));
   } else {
     const double by_surface =
-        evidence.looks_for_twins ? bounded(twins.otherwise_nats.front()) : evidence.chance_nats;
+        evidence.looks_for_twins ? evidence.behind_windows_nats() : evidence.chance_nats;
     for (NatsOfThings* sum : {&sum_.otherwise_nats, &sum_.alike_nats})
       for (double& nats : *sum) nats += of_surface * by_surface;
   }
