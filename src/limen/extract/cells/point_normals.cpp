@@ -13,10 +13,10 @@
 namespace limen {
 namespace {
 
-constexpr std::uint32_t kEnough = 12;  // points in a cube
-constexpr double kFlat = 4.0;          // times its thickness that a cube's points must spread
-constexpr double kUneven = 0.4;        // of the thickness allowed
-constexpr double kWide = 0.12;         // of the cube's edge that they must spread
+constexpr std::uint32_t kEnoughPoints = 12;  // points in a cube
+constexpr double kFlat = 4.0;                // times its thickness that a cube's points must spread
+constexpr double kUneven = 0.4;              // of the thickness allowed
+constexpr double kWide = 0.12;               // of the cube's edge that they must spread
 
 /// A cube with enough points, and whether they make a plane.
 struct LookedAt {
@@ -30,7 +30,7 @@ std::vector<LookedAt> cubes_with_enough(const MortonOrder& sorted, std::span<con
                                         int level) {
   std::vector<LookedAt> cubes;
   for_each_cell(sorted, open, level, [&](std::uint32_t begin, std::uint32_t end) {
-    if (end - begin >= kEnough) cubes.push_back({begin, end});
+    if (end - begin >= kEnoughPoints) cubes.push_back({begin, end});
   });
   return cubes;
 }

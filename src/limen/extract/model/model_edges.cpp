@@ -21,15 +21,15 @@ constexpr double kStraightM = 0.0005;      // corners that stand out less are no
 constexpr double kBridgeM = 0.005;
 
 /// One side of a polygon.
-struct Side {
+struct EdgeSide {
   Vector3d a;
   Vector3d b;
   Vector3d normal;  // of its polygon
   [[nodiscard]] double length() const { return (b - a).norm(); }
 };
 
-std::vector<Side> sides_of(const std::vector<PlanarPolygon>& surface) {
-  std::vector<Side> sides;
+std::vector<EdgeSide> sides_of(const std::vector<PlanarPolygon>& surface) {
+  std::vector<EdgeSide> sides;
   const auto add = [&](const PlanarPolygon& polygon, const Ring& outline) {
     const Ring ring = simplify_ring(outline, kStraightM);
     for (std::size_t i = 0; i < ring.size(); ++i) {
@@ -43,9 +43,9 @@ std::vector<Side> sides_of(const std::vector<PlanarPolygon>& surface) {
       for (const Ring& hole : part.holes) add(polygon, hole);
     }
   }
-  std::erase_if(sides, [](const Side& side) { return side.length() < kBridgeM; });
+  std::erase_if(sides, [](const EdgeSide& side) { return side.length() < kBridgeM; });
   std::stable_sort(sides.begin(), sides.end(),
-                   [](const Side& a, const Side& b) { return a.length() > b.length(); });
+                   [](const EdgeSide& a, const EdgeSide& b) { return a.length() > b.length(); });
   return sides;
 }
 
@@ -67,7 +67,7 @@ class LineMaker {
  public:
   explicit LineMaker(double same_line_m) : same_line_m_(same_line_m) {}
 
-  void add(const Side& side) {
+  void add(const EdgeSide& side) {
     std::size_t line = find(side);
     if (line == lines_.size()) lines_.push_back({side.a, (side.b - side.a).normalized(), {}});
     EdgeLine& own = lines_[line];
@@ -86,13 +86,13 @@ class LineMaker {
   [[nodiscard]] std::vector<EdgeLine>& lines() { return lines_; }
 
  private:
-  [[nodiscard]] bool on_line(const Side& side, const EdgeLine& line) const {
+  [[nodiscard]] bool on_line(const EdgeSide& side, const EdgeLine& line) const {
     if (std::abs((side.b - side.a).dot(line.direction)) < kSameDirection * side.length()) return false;
     const auto off = [&](const Vector3d& x) { return (x - line.point).cross(line.direction).norm(); };
     return off(side.a) <= same_line_m_ && off(side.b) <= same_line_m_;
   }
 
-  [[nodiscard]] std::size_t find(const Side& side) const {
+  [[nodiscard]] std::size_t find(const EdgeSide& side) const {
     for (const Vector3d& x : {Vector3d(0.5 * (side.a + side.b)), side.a, side.b}) {
       for (int k = 0; k < 27; ++k) {
         const auto found = cells_.find(cell_key(cell_of(x, kCellM) + way_to_cell(k)));
@@ -161,7 +161,7 @@ std::vector<Segment> sharp_edges(const std::vector<PlanarPolygon>& surface, cons
   if (!(options.min_length_m > 0)) throw_bad_option("min_length_m", options.min_length_m, "more than 0");
   if (!(options.same_line_m > 0)) throw_bad_option("same_line_m", options.same_line_m, "more than 0");
   LineMaker maker(options.same_line_m);
-  for (const Side& side : sides_of(surface)) {
+  for (const EdgeSide& side : sides_of(surface)) {
     CancelScope::check();
     maker.add(side);
   }

@@ -40,25 +40,25 @@ struct Motion {
   const LasSystem& system;           ///< of the target
 };
 
-using GridPlace = std::array<std::int32_t, 3>;
+using RecordSteps = std::array<std::int32_t, 3>;
 
-GridPlace place_of(const char* record) {
-  GridPlace place{};
+RecordSteps place_of(const char* record) {
+  RecordSteps place{};
   std::memcpy(place.data(), record, sizeof place);
   return place;
 }
-Vector3d old_point(const LasHeader& header, const GridPlace& place) {
+Vector3d old_point(const LasHeader& header, const RecordSteps& place) {
   return header.offset + header.scale.cwiseProduct(Vector3d(place[0], place[1], place[2]));
 }
 
 /// Extremes of integers; `outside`: some had no room.
 struct Reach {
-  GridPlace low{INT32_MAX, INT32_MAX, INT32_MAX};
-  GridPlace high{INT32_MIN, INT32_MIN, INT32_MIN};
+  RecordSteps low{INT32_MAX, INT32_MAX, INT32_MAX};
+  RecordSteps high{INT32_MIN, INT32_MIN, INT32_MIN};
   std::uint64_t points = 0;
   bool outside = false;
 
-  void add(const GridPlace& place) {
+  void add(const RecordSteps& place) {
     for (std::size_t k = 0; k < 3; ++k) {
       low[k] = std::min(low[k], place[k]);
       high[k] = std::max(high[k], place[k]);
@@ -92,7 +92,7 @@ LasBox measured_box(const Motion& motion) {
         [&](std::size_t begin, std::size_t end) {
           LasBox part = box;
           for (std::size_t i = begin; i < end; ++i) {
-            const GridPlace place = place_of(data + i * motion.header.point_bytes);
+            const RecordSteps place = place_of(data + i * motion.header.point_bytes);
             const Vector3d x = motion.target_from_source * old_point(motion.header, place);
             part.low = part.low.cwiseMin(x);
             part.high = part.high.cwiseMax(x);
@@ -115,7 +115,7 @@ Reach move_records(const Motion& motion, const LasGrid& grid, std::vector<char>&
         Reach reach;
         for (std::size_t i = begin; i < end; ++i) {
           char* record = &records[i * stride];
-          GridPlace place = place_of(record);
+          RecordSteps place = place_of(record);
           if (!grid.unchanged) {
             const Vector3d x = motion.target_from_source * old_point(motion.header, place);
             const Vector3d steps = (x - grid.offset).cwiseQuotient(grid.scale);

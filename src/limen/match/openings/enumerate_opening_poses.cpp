@@ -25,7 +25,7 @@ constexpr double kFrameM = 0.07;               // a window's frame between its t
 constexpr std::size_t kCandidatesPerPiece = 16;
 
 /// A shift in a wall that brings openings together, with the overlap that supports it.
-struct VotedShift {
+struct OpeningShift {
   Vector2d shift = Vector2d::Zero();
   double vote = 0.0;  // metres of edges, less what they miss
 };
@@ -36,7 +36,7 @@ struct WallPair {
   std::size_t target = 0;
   Matrix3d rotation = Matrix3d::Identity();
   Vector3d start = Vector3d::Zero();  // translation for shift 0 and thickness 0
-  std::vector<VotedShift> shifts;     // most votes first
+  std::vector<OpeningShift> shifts;   // most votes first
 };
 
 /// A pose to be fitted, and the thicknesses it shall be listed with where nothing holds that.
@@ -112,9 +112,9 @@ class OpeningEnumerator {
     return sum.cwiseQuotient(weight);
   }
 
-  [[nodiscard]] VotedShift voted(const std::vector<WallRectangle>& rectangles, std::size_t wall,
-                                 const Vector2d& shift) const {
-    VotedShift result{shift, 0.0};
+  [[nodiscard]] OpeningShift voted(const std::vector<WallRectangle>& rectangles, std::size_t wall,
+                                   const Vector2d& shift) const {
+    OpeningShift result{shift, 0.0};
     const double tolerance = options_.edge_tolerance_m + 2.0 * kEdgeNoiseM;
     for (const auto& [i, j] : matcher_.pairs_at(rectangles, wall, shift)) {
       const auto fit = matcher_.fit_of(rectangles[i], shift, matcher_.target()[wall].rectangles[j]);
@@ -123,22 +123,22 @@ class OpeningEnumerator {
     return result;
   }
 
-  [[nodiscard]] std::vector<VotedShift> shifts_of(const WallPair& pair) const {
+  [[nodiscard]] std::vector<OpeningShift> shifts_of(const WallPair& pair) const {
     const std::vector<WallRectangle> rectangles = as_seen_in_target(pair.source);
-    std::vector<VotedShift> all;
+    std::vector<OpeningShift> all;
     for (const WallRectangle& a : rectangles) {
       for (const WallRectangle& b : matcher_.target()[pair.target].rectangles) {
         if (!matcher_.alike(a, b)) continue;
-        const VotedShift shift = voted(rectangles, pair.target, shift_between(a, b));
+        const OpeningShift shift = voted(rectangles, pair.target, shift_between(a, b));
         if (shift.vote > 0.0) all.push_back(shift);
       }
     }
     std::stable_sort(all.begin(), all.end(),
-                     [](const VotedShift& x, const VotedShift& y) { return x.vote > y.vote; });
-    std::vector<VotedShift> kept;
-    for (const VotedShift& shift : all) {
+                     [](const OpeningShift& x, const OpeningShift& y) { return x.vote > y.vote; });
+    std::vector<OpeningShift> kept;
+    for (const OpeningShift& shift : all) {
       if (static_cast<int>(kept.size()) == options_.max_poses) break;
-      const bool known = std::any_of(kept.begin(), kept.end(), [&](const VotedShift& other) {
+      const bool known = std::any_of(kept.begin(), kept.end(), [&](const OpeningShift& other) {
         return (other.shift - shift.shift).cwiseAbs().maxCoeff() < options_.same_shift_m;
       });
       if (!known) kept.push_back(shift);
@@ -153,12 +153,12 @@ class OpeningEnumerator {
   }
 
   /// Thicknesses of the pair's wall that bring openings of two other walls together too, most votes first.
-  [[nodiscard]] std::vector<VotedShift> corner_thicknesses(const std::vector<WallPair>& pairs,
-                                                           const WallPair& pair,
-                                                           const Vector2d& shift) const {
+  [[nodiscard]] std::vector<OpeningShift> corner_thicknesses(const std::vector<WallPair>& pairs,
+                                                             const WallPair& pair,
+                                                             const Vector2d& shift) const {
     const Rigid3 base = pose_at(pair, shift, 0.0);
     const Vector3d normal = matcher_.target()[pair.target].normal();
-    std::vector<VotedShift> found;  // x: thickness
+    std::vector<OpeningShift> found;  // x: thickness
     for (const WallPair& other : pairs) {
       const WallWithOpenings& wall = matcher_.target()[other.target];
       const double along = wall.frame.u.dot(normal);
@@ -168,7 +168,7 @@ class OpeningEnumerator {
       const Vector3d off = base * middle - wall.frame.origin;
       const std::size_t count = std::min(other.shifts.size(), kCornerShifts);
       for (std::size_t i = 0; i < count; ++i) {
-        const VotedShift& s = other.shifts[i];
+        const OpeningShift& s = other.shifts[i];
         if (std::abs(wall.frame.v.dot(off) - s.shift.y()) > kCornerHeightM) continue;
         const double thickness = (wall.frame.u.dot(off) - s.shift.x()) / along;
         const double others = -wall.normal().dot(off - thickness * normal);
@@ -178,13 +178,13 @@ class OpeningEnumerator {
     return strongest(std::move(found));
   }
 
-  [[nodiscard]] std::vector<VotedShift> strongest(std::vector<VotedShift> found) const {
+  [[nodiscard]] std::vector<OpeningShift> strongest(std::vector<OpeningShift> found) const {
     std::stable_sort(found.begin(), found.end(),
-                     [](const VotedShift& x, const VotedShift& y) { return x.vote > y.vote; });
-    std::vector<VotedShift> kept;
-    for (const VotedShift& one : found) {
+                     [](const OpeningShift& x, const OpeningShift& y) { return x.vote > y.vote; });
+    std::vector<OpeningShift> kept;
+    for (const OpeningShift& one : found) {
       if (kept.size() == kCornerThicknesses) break;
-      const bool known = std::any_of(kept.begin(), kept.end(), [&](const VotedShift& other) {
+      const bool known = std::any_of(kept.begin(), kept.end(), [&](const OpeningShift& other) {
         return std::abs(other.shift.x() - one.shift.x()) < options_.same_thickness_m;
       });
       if (!known) kept.push_back(one);
@@ -225,8 +225,8 @@ class OpeningEnumerator {
   [[nodiscard]] std::vector<OpeningCandidate> candidates_of(const std::vector<WallPair>& pairs) const {
     std::vector<OpeningCandidate> all;
     for (const WallPair& pair : pairs) {
-      for (const VotedShift& shift : pair.shifts) {
-        for (const VotedShift& corner : corner_thicknesses(pairs, pair, shift.shift)) {
+      for (const OpeningShift& shift : pair.shifts) {
+        for (const OpeningShift& corner : corner_thicknesses(pairs, pair, shift.shift)) {
           const double thickness = corner.shift.x();
           all.push_back(
               {&pair, pose_at(pair, shift.shift, thickness), shift.vote + corner.vote, thickness, {}});

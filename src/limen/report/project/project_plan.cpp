@@ -34,9 +34,10 @@ constexpr Facing kFront = {0, 2};
 constexpr Facing kSide = {1, 2};
 
 /// From the report's axes to a drawing.
-class Sheet {
+class PlanSheet {
  public:
-  Sheet(const ProjectResult& result, const Matrix3d& axes, const std::vector<PlanSpot>& spots, Facing facing)
+  PlanSheet(const ProjectResult& result, const Matrix3d& axes, const std::vector<PlanSpot>& spots,
+            Facing facing)
       : axes_(axes), facing_(facing), low_(flat(spots.front().at)), high_(low_) {
     for (const PlanSpot& spot : spots) {
       add(spot.at);
@@ -93,7 +94,7 @@ class Sheet {
 };
 
 /// Walls from above; walls and slabs from aside.
-std::string patches_of(const ProjectScan& scan, const Sheet& sheet) {
+std::string patches_of(const ProjectScan& scan, const PlanSheet& sheet) {
   std::string path;
   for (const PlanPatch& patch : scan.patches) {
     if (sheet.is_plan() && !patch.upright) continue;
@@ -112,7 +113,7 @@ std::string patches_of(const ProjectScan& scan, const Sheet& sheet) {
              : fmt::format("<path class=\"{}\" d=\"{}\"/>\n", sheet.is_plan() ? "wall" : "slab", path);
 }
 
-std::string station_of(const ProjectScan& scan, const PlanSpot& spot, const Sheet& sheet) {
+std::string station_of(const ProjectScan& scan, const PlanSpot& spot, const PlanSheet& sheet) {
   const double x = sheet.x(spot.at);
   const double y = sheet.y(spot.at);
   const double enlarged = kEnlarged * sheet.scale();
@@ -128,7 +129,7 @@ std::string station_of(const ProjectScan& scan, const PlanSpot& spot, const Shee
 }
 
 std::string links_of(const ProjectResult& result, const std::vector<PlanSpot>& floor,
-                     const std::map<std::size_t, Vector3d>& places, const Sheet& sheet) {
+                     const std::map<std::size_t, Vector3d>& places, const PlanSheet& sheet) {
   std::set<std::size_t> here;
   for (const PlanSpot& spot : floor) here.insert(spot.scan);
   std::string text;
@@ -148,7 +149,8 @@ std::string links_of(const ProjectResult& result, const std::vector<PlanSpot>& f
 }
 
 /// Control and check points on a floor (from aside: on all), as triangles.
-std::string points_of(const ProjectResult& result, const std::vector<PlanSpot>& floor, const Sheet& sheet) {
+std::string points_of(const ProjectResult& result, const std::vector<PlanSpot>& floor,
+                      const PlanSheet& sheet) {
   constexpr double kAsideM = 2.5;  // above and below the stations
   std::string text;
   for (const ProjectPoint& point : result.points) {
@@ -170,7 +172,7 @@ std::string points_of(const ProjectResult& result, const std::vector<PlanSpot>& 
 }
 
 /// A bar of a round length.
-std::string bar_of(const Sheet& sheet) {
+std::string bar_of(const PlanSheet& sheet) {
   double metres = 1.0;
   for (const double tried : {2.0, 5.0, 10.0, 20.0, 50.0}) {
     if (tried * sheet.scale() < 0.3 * kWidth) metres = tried;
@@ -183,7 +185,7 @@ std::string bar_of(const Sheet& sheet) {
 }
 
 /// Where the frame's y axis points, which is north on a map.
-std::string north_of(const Sheet& sheet) {
+std::string north_of(const PlanSheet& sheet) {
   const Vector3d way = sheet.axes() * Vector3d::UnitY();
   const double turn = degrees(std::atan2(way.x(), way.y()));
   return fmt::format(
@@ -196,7 +198,7 @@ std::string north_of(const Sheet& sheet) {
 std::string drawing(const ProjectResult& result, const Matrix3d& axes, const std::vector<PlanSpot>& spots,
                     const std::map<std::size_t, Vector3d>& places, Facing facing, const std::string& name,
                     bool on_map) {
-  const Sheet sheet(result, axes, spots, facing);
+  const PlanSheet sheet(result, axes, spots, facing);
   std::string text = fmt::format(
       "<figure class=\"keep\"><figcaption>{0}</figcaption><svg class=\"plan\" viewBox=\"0 0 {1:.0f} "
       "{2:.0f}\" "

@@ -18,29 +18,29 @@ struct FurniturePart {
 };
 
 /// A piece in its own frame: x along the wall, y into the room from its back, footprint width x depth.
-struct Piece {
+struct FurniturePiece {
   Vector2d footprint = Vector2d::Zero();
   double height = 0.0;
   std::vector<FurniturePart> parts;
 };
 
-Piece box_piece(const Vector3d& size) {
+FurniturePiece box_piece(const Vector3d& size) {
   return {size.head<2>(), size.z(), {{{0.0, 0.5 * size.y(), 0.0}, size}}};
 }
 
-Piece cupboard(RandomStream& r) {
+FurniturePiece cupboard(RandomStream& r) {
   return box_piece(uniform_vector(Vector3d(0.7, 0.38, 1.55), Vector3d(1.7, 0.65, 2.15), r));
 }
 
-Piece sideboard(RandomStream& r) {
+FurniturePiece sideboard(RandomStream& r) {
   return box_piece(uniform_vector(Vector3d(0.8, 0.38, 0.65), Vector3d(1.8, 0.5, 0.95), r));
 }
 
-Piece shelf(RandomStream& r) {
+FurniturePiece shelf(RandomStream& r) {
   const double w = r.uniform(0.8, 1.4);
   const double d = r.uniform(0.26, 0.36);
   const double h = r.uniform(1.6, 2.2);
-  Piece piece{{w, d}, h, {}};
+  FurniturePiece piece{{w, d}, h, {}};
   piece.parts.push_back({{0.0, 0.01, 0.0}, {w, 0.02, h}});
   for (const double side : {-1.0, 1.0})
     piece.parts.push_back({{side * (0.5 * w - 0.012), 0.5 * d, 0.0}, {0.024, d, h}});
@@ -57,9 +57,9 @@ Piece shelf(RandomStream& r) {
   return piece;
 }
 
-Piece bed(RandomStream& r) {
+FurniturePiece bed(RandomStream& r) {
   const double w = r.uniform(0.9, 1.8);
-  Piece piece{{w, 2.05}, 1.0, {}};
+  FurniturePiece piece{{w, 2.05}, 1.0, {}};
   piece.parts.push_back({{0.0, 1.05, 0.12}, {w, 2.0, 0.28}});
   piece.parts.push_back({{0.0, 0.03, 0.0}, {w, 0.06, r.uniform(0.7, 1.0)}});
   piece.parts.push_back({{0.0, 1.05, 0.4}, {w - 0.06, 1.9, 0.1}});
@@ -67,7 +67,7 @@ Piece bed(RandomStream& r) {
   return piece;
 }
 
-void add_legs(Piece& piece, const Vector2d& middle, const Vector2d& size, double height) {
+void add_legs(FurniturePiece& piece, const Vector2d& middle, const Vector2d& size, double height) {
   for (const double x : {-1.0, 1.0})
     for (const double y : {-1.0, 1.0})
       piece.parts.push_back(
@@ -75,11 +75,11 @@ void add_legs(Piece& piece, const Vector2d& middle, const Vector2d& size, double
            {0.045, 0.045, height}});
 }
 
-Piece desk(RandomStream& r) {
+FurniturePiece desk(RandomStream& r) {
   const double w = r.uniform(1.1, 1.8);
   const double d = r.uniform(0.6, 0.8);
   const double h = r.uniform(0.71, 0.78);
-  Piece piece{{w, d}, 1.25, {}};
+  FurniturePiece piece{{w, d}, 1.25, {}};
   piece.parts.push_back({{0.0, 0.5 * d, h - 0.03}, {w, d, 0.03}});
   add_legs(piece, {0.0, 0.5 * d}, {w, d}, h - 0.03);
   const double x = r.uniform(-0.25, 0.25) * w;
@@ -88,9 +88,9 @@ Piece desk(RandomStream& r) {
   return piece;
 }
 
-Piece sofa(RandomStream& r) {
+FurniturePiece sofa(RandomStream& r) {
   const double w = r.uniform(1.4, 2.3);
-  Piece piece{{w, 0.9}, 0.85, {}};
+  FurniturePiece piece{{w, 0.9}, 0.85, {}};
   piece.parts.push_back({{0.0, 0.5, 0.08}, {w - 0.36, 0.8, 0.34}});
   piece.parts.push_back({{0.0, 0.12, 0.0}, {w, 0.22, r.uniform(0.72, 0.85)}});
   for (const double side : {-1.0, 1.0})
@@ -98,7 +98,7 @@ Piece sofa(RandomStream& r) {
   return piece;
 }
 
-void add_chair(Piece& piece, const Vector2d& at, const Vector2d& back, double seat) {
+void add_chair(FurniturePiece& piece, const Vector2d& at, const Vector2d& back, double seat) {
   piece.parts.push_back({{at.x(), at.y(), seat - 0.04}, {0.42, 0.42, 0.04}});
   add_legs(piece, at, {0.42, 0.42}, seat - 0.04);
   const bool along_x = std::abs(back.x()) > std::abs(back.y());
@@ -107,12 +107,12 @@ void add_chair(Piece& piece, const Vector2d& at, const Vector2d& back, double se
       {{middle.x(), middle.y(), seat}, {along_x ? 0.03 : 0.42, along_x ? 0.42 : 0.03, 0.42}});
 }
 
-Piece table(RandomStream& r) {
+FurniturePiece table(RandomStream& r) {
   const double w = r.uniform(0.9, 2.2);
   const double d = r.uniform(0.75, 1.05);
   const double h = r.uniform(0.7, 0.78);
   const double reach = 0.45;
-  Piece piece{{w + 2.0 * reach, d + 2.0 * reach}, 0.95, {}};
+  FurniturePiece piece{{w + 2.0 * reach, d + 2.0 * reach}, 0.95, {}};
   const Vector2d middle(0.0, 0.5 * d + reach);
   piece.parts.push_back({{0.0, middle.y(), h - 0.035}, {w, d, 0.035}});
   add_legs(piece, middle, {w, d}, h - 0.035);
@@ -129,10 +129,10 @@ Piece table(RandomStream& r) {
   return piece;
 }
 
-Piece display_case(RandomStream& r) {
+FurniturePiece display_case(RandomStream& r) {
   const double w = r.uniform(0.7, 1.6);
   const double d = r.uniform(0.5, 0.8);
-  Piece piece = box_piece({w, d, r.uniform(0.75, 1.05)});
+  FurniturePiece piece = box_piece({w, d, r.uniform(0.75, 1.05)});
   const double top = piece.parts[0].size.z();
   // An exhibit on it, in a few blocks.
   for (int i = 0; i < 3; ++i)
@@ -179,14 +179,14 @@ class FurnitureDecorator {
   }
 
  private:
-  using Maker = Piece (*)(RandomStream&);
+  using Maker = FurniturePiece (*)(RandomStream&);
 
   /// A chimney breast against a wall, in large halls a row of pillars: matter that reaches the ceiling.
   void add_structure() {
     const double height = room_.ceiling_m - room_.floor_m;
     if (random_.uniform() < 0.45) {
       const Vector2d foot = uniform_vector(Vector2d(0.8, 0.2), Vector2d(1.7, 0.5), random_);
-      const Piece breast = box_piece({foot.x(), foot.y(), height});
+      const FurniturePiece breast = box_piece({foot.x(), foot.y(), height});
       for (int attempt = 0; attempt < 12; ++attempt)
         if (try_at_wall(breast, 0.0, surface_of(Element::wall))) break;
     }
@@ -197,7 +197,7 @@ class FurnitureDecorator {
 
   void along_walls(int count, const std::vector<Maker>& makers) {
     for (int i = 0; i < count; ++i) {
-      const Piece piece = makers[random_.below(static_cast<std::uint32_t>(makers.size()))](random_);
+      const FurniturePiece piece = makers[random_.below(static_cast<std::uint32_t>(makers.size()))](random_);
       for (int attempt = 0; attempt < 10; ++attempt) {
         const Surface surface = wood();
         if (try_at_wall(piece, random_.uniform(0.005, 0.05), surface)) break;
@@ -238,7 +238,7 @@ class FurnitureDecorator {
     }
   }
 
-  bool try_at_wall(const Piece& piece, double gap, const Surface& like) {
+  bool try_at_wall(const FurniturePiece& piece, double gap, const Surface& like) {
     const Wall wall = random_wall();
     const double free = wall.length - piece.footprint.x();
     if (free < 0.1) return false;
@@ -248,7 +248,7 @@ class FurnitureDecorator {
     return try_place(piece, back, wall.along, like);
   }
 
-  void try_free(const Piece& piece, const Surface& like, bool turned) {
+  void try_free(const FurniturePiece& piece, const Surface& like, bool turned) {
     Vector2d low = room_.outline[0];
     Vector2d high = low;
     for (const Vector2d& p : room_.outline) {
@@ -266,7 +266,8 @@ class FurnitureDecorator {
   }
 
   /// `back`: the middle of the piece's back edge.
-  bool try_place(const Piece& piece, const Vector2d& back, const Vector2d& along, const Surface& like) {
+  bool try_place(const FurniturePiece& piece, const Vector2d& back, const Vector2d& along,
+                 const Surface& like) {
     const Vector2d in(-along.y(), along.x());
     const Ring area = rectangle_ring(back + 0.5 * piece.footprint.y() * in, along, piece.footprint);
     if (!fits(area, piece.footprint, piece.height)) return false;
