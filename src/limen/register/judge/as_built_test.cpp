@@ -32,7 +32,7 @@ Vector3d deviation(RandomStream& random, double offset_m, double turn_rad) {
 }
 
 /// Floor, ceiling and walls, reveals, columns along the square, in turns.
-std::vector<CommonSurface> seen(const Made& made, std::uint64_t seed) {
+std::vector<CommonSurface> scanned(const Made& made, std::uint64_t seed) {
   RandomStream random(seed, 0);
   std::vector<CommonSurface> surfaces;
   for (std::size_t i = 0; i < made.surfaces; ++i) {
@@ -67,19 +67,20 @@ double as_built_nats(const std::vector<CommonSurface>& surfaces) {
 
 double least_of(const Made& made) {
   double least = 1e9;
-  for (std::uint64_t seed = 1; seed <= 10; ++seed) least = std::min(least, as_built_nats(seen(made, seed)));
+  for (std::uint64_t seed = 1; seed <= 10; ++seed)
+    least = std::min(least, as_built_nats(scanned(made, seed)));
   return least;
 }
 
 double most_of(const Made& made) {
   double most = -1e9;
-  for (std::uint64_t seed = 1; seed <= 10; ++seed) most = std::max(most, as_built_nats(seen(made, seed)));
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) most = std::max(most, as_built_nats(scanned(made, seed)));
   return most;
 }
 
 double mean_of(const Made& made) {
   double sum = 0.0;
-  for (std::uint64_t seed = 1; seed <= 10; ++seed) sum += as_built_nats(seen(made, seed));
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) sum += as_built_nats(scanned(made, seed));
   return sum / 10.0;
 }
 
@@ -116,7 +117,7 @@ TEST(AsBuilt, WhatAMoveOfThePoseExplainsIsNoEvidence) {
   const Vector3d turn(0.001, -0.002, 0.0015);
   const Vector3d shift(0.004, 0.003, -0.002);
   for (const bool twin : {false, true}) {
-    std::vector<CommonSurface> surfaces = seen({.twin = twin}, 3);
+    std::vector<CommonSurface> surfaces = scanned({.twin = twin}, 3);
     const double before = as_built_nats(surfaces);
     for (CommonSurface& one : surfaces) {
       one.apart[0] += one.at.cross(one.normal).dot(turn) + one.normal.dot(shift);
@@ -133,7 +134,7 @@ TEST(AsBuilt, ThreeOffsetsAreThePosesOwn) {
 }
 
 TEST(AsBuilt, ASurfaceThatWasMovedCostsLittle) {
-  std::vector<CommonSurface> surfaces = seen({.surfaces = 20}, 4);
+  std::vector<CommonSurface> surfaces = scanned({.surfaces = 20}, 4);
   const double before = as_built_nats(surfaces);
   surfaces[7].apart[0] += 0.04;
   EXPECT_GT(as_built_nats(surfaces), before - 6.0);
@@ -141,7 +142,7 @@ TEST(AsBuilt, ASurfaceThatWasMovedCostsLittle) {
 
 TEST(AsBuilt, WithoutAWallNothingIsKnown) {
   std::vector<CommonSurface> slabs;
-  for (const CommonSurface& one : seen({}, 5))
+  for (const CommonSurface& one : scanned({}, 5))
     if (std::abs(one.normal.z()) > 0.5) slabs.push_back(one);
   EXPECT_EQ(as_built_nats(slabs), 0.0);
   EXPECT_EQ(as_built_nats({}), 0.0);
