@@ -21,7 +21,8 @@ struct PairEvidence {
 
   /// Whether things and walls of rooms were asked about.
   [[nodiscard]] bool asks_things() const { return looks_for_twins && twins.rooms; }
-  /// Against a look-alike place that windows show: by what is contradicted, and by what agrees.
+  /// Against a look-alike room behind windows, by what is contradicted and what agrees; where `twins` are not
+  /// of rooms.
   [[nodiscard]] double behind_windows_nats() const;
   /// Odds of a look-alike place of either kind.
   [[nodiscard]] double odds_of_twin() const;

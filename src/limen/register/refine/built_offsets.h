@@ -24,6 +24,15 @@ struct PlaneSums {
   double counts = 1.0;  ///< as so much of a plane: small ones are often not built as accurately
 
   [[nodiscard]] double mean_m() const { return residuals[0] / weight; }
+  /// All but `weight`. `whole`: what moves the residual with the offset and the slopes.
+  void add(const Vector6d& row, double residual_m, const Vector3d& whole, double of_weight) {
+    information += of_weight * row * row.transpose();
+    shared += of_weight * row * whole.transpose();
+    common += of_weight * whole * whole.transpose();
+    right += of_weight * residual_m * row;
+    residuals += of_weight * residual_m * whole;
+    squares += of_weight * residual_m * residual_m;
+  }
 };
 
 /// By how much a wall differs from the drawing, at least: 1 sigma.

@@ -22,12 +22,7 @@ PlaneSums face(const Vector3d& middle, const Vector3d& normal, double off_m) {
       Vector6d row;
       row << (middle + from_middle).cross(normal), normal;
       const Vector3d whole(1.0, 0.5 * i, 0.5 * j);
-      sums.information += kWeight * row * row.transpose();
-      sums.shared += kWeight * row * whole.transpose();
-      sums.common += kWeight * whole * whole.transpose();
-      sums.right += kWeight * off_m * row;
-      sums.residuals += kWeight * off_m * whole;
-      sums.squares += kWeight * off_m * off_m;
+      sums.add(row, off_m, whole, kWeight);
       sums.weight += kWeight;
     }
   }
@@ -89,15 +84,9 @@ TEST(SettleAmongMoved, OfTwoWallsNobodyKnowsWhichOneWasMoved) {
 /// Openings of one wall, measured to 4 mm, that are off along x.
 PlaneSums openings(double off_m) {
   constexpr double kWeight = 1.0 / (0.004 * 0.004);
-  const Vector6d row = Vector6d::Unit(3);
   PlaneSums sums;
   sums.weight = kWeight;
-  sums.information = kWeight * row * row.transpose();
-  sums.shared.col(0) = kWeight * row;
-  sums.common(0, 0) = kWeight;
-  sums.right = kWeight * off_m * row;
-  sums.residuals[0] = kWeight * off_m;
-  sums.squares = kWeight * off_m * off_m;
+  sums.add(Vector6d::Unit(3), off_m, Vector3d::UnitX(), kWeight);
   return sums;
 }
 

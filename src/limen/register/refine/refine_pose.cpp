@@ -269,12 +269,7 @@ class Refiner {
       const double weight = factor / (contact.sigma_m * contact.sigma_m + kOpeningErrsM * kOpeningErrsM);
       PlaneSums& sum = sums[{wall, upright}];
       sum.weight += weight;
-      sum.information += weight * row * row.transpose();
-      sum.shared.col(0) += weight * row;
-      sum.common(0, 0) += weight;
-      sum.right += weight * residual_m * row;
-      sum.residuals[0] += weight * residual_m;
-      sum.squares += weight * residual_m * residual_m;
+      sum.add(row, residual_m, Vector3d::UnitX(), weight);
     }
     std::vector<PlaneSums> all;
     for (const auto& [wall, sum] : sums) all.push_back(sum);
@@ -398,12 +393,7 @@ class Refiner {
       const Vector3d across = normal.unitOrthogonal();
       const Vector3d from_middle = contact.at - pair.middle;
       const Vector3d whole(1.0, from_middle.dot(across), from_middle.dot(normal.cross(across)));
-      pair.information += weight * row * row.transpose();
-      pair.shared += weight * row * whole.transpose();
-      pair.common += weight * whole * whole.transpose();
-      pair.right += weight * contact.residual_m * row;
-      pair.residuals += weight * contact.residual_m * whole;
-      pair.squares += weight * contact.residual_m * contact.residual_m;
+      pair.add(row, contact.residual_m, whole, weight);
       pair.area_m2 += 0.5 * contact.area_m2;
       pair.distance += 0.5 * contact.area_m2 * -contact.residual_m;
       ++pair.tiles;
