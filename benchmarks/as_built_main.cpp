@@ -153,7 +153,7 @@ class Rows {
     const auto start = std::chrono::steady_clock::now();
     const CommonSurfaces surfaces =
         common_surfaces(source, BuiltPlanes(source), target, BuiltPlanes(target), pose);
-    const double nats = built_nats(built_evidence(surfaces.all), bends_beforehand(0.0));
+    const double nats = built_nats(built_evidence(surfaces.all), {bends_beforehand(0.0)});
     const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
     const IndividualMatter matter = individual_matter(source, target, pose);
     TwinEvidence said = weigh_twin(matter);
@@ -171,7 +171,7 @@ class Rows {
                R"("nats": {:.2f}, "without": {:.3g}, "with": {:.3g}, "otherwise": {:.2f}, "alike": {:.2f}, )"
                R"("scatter_mm": {:.2f}, "noise_mm": {:.2f}, "seconds": {:.4f}, "surfaces": [{}]{}}})",
                set, names, kind, score.agreeing_m2, score.contradicted_m2, nats, probability_of(said), after,
-               nats_of(said.otherwise_nats), nats_of(said.alike_nats), 1e3 * surfaces.scatter_m,
+               otherwise_nats(said), alike_nats(said), 1e3 * surfaces.scatter_m,
                1e3 * std::max(source.features->noise_m, target.features->noise_m), spent.count(), list,
                tables_of(surfaces.all))
         << "\n"

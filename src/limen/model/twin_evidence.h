@@ -20,8 +20,9 @@ using NatsOfThings = std::array<double, kBuiltInLevels>;
 
 /// What was seen of how surfaces were built, for each of these amounts: logarithms of its density.
 struct BuiltEvidence {
-  std::array<double, kBendLevels> one{};   ///< if the scans show one place ...
-  std::array<double, kBendLevels> twin{};  ///< ... and if they show two that were built alike
+  std::array<double, kBendLevels> one{};       ///< if the scans show one place ...
+  std::array<double, kBendLevels> twin{};      ///< ... and if they show two that were built alike
+  std::array<double, kBendLevels> as_drawn{};  ///< either, of a building that is exactly as drawn
 };
 
 /// What two scans say of whether they show one place or two that look alike (register/judge/twin_odds.h). The
@@ -32,6 +33,7 @@ struct TwinEvidence {
   double alike = 0.0;             ///< ... and of one that is furnished alike
   NatsOfThings otherwise_nats{};  ///< of things against the first (natural logarithm)
   NatsOfThings alike_nats{};      ///< against the second, if as many things match as stay in one room
+  NatsOfThings share_nats{};      ///< against each share itself, if the scans show one place
   BuiltEvidence built{};          ///< of how surfaces were built against either
   double things = 0.0;            ///< how many were seen by both ...
   double agreeing = 0.0;          ///< ... and how many of them agree

@@ -27,6 +27,7 @@ const Given& given() {
     SceneOptions options;
     options.name = "room";
     options.points_indoor = 60000;
+    options.as_built = true;
     SimulatedCase simulated = simulate(options);
     Given pair{simulated.scans.at(0), simulated.scans.at(1), {}};
     pair.result = register_scans(pair.source, pair.target);

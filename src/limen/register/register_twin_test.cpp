@@ -138,7 +138,8 @@ TEST(RegisterTwins, TwoRoomsBuiltAlikeAreNot) {
 TEST(RegisterTwins, NorAreTwoFurnishedAlike) {
   const TwinCase rooms = twin_case(3, Furniture::alike);
   const RegistrationResult same = register_scans(rooms.scans[1], rooms.scans[0]);
-  EXPECT_GT(same.best.probability.value_or(0.0), 0.99) << same.reason;
+  // Exactly as drawn, and furnished so that a look-alike is conceivable: placed, but not sure.
+  EXPECT_GT(same.best.probability.value_or(0.0), 0.95) << same.reason;
   const RegistrationResult twins = register_scans(rooms.scans[2], rooms.scans[0]);
   EXPECT_NE(twins.outcome, Outcome::registered) << twins.reason;
   ASSERT_TRUE(twins.others);

@@ -13,9 +13,21 @@
 
 namespace limen {
 
+/// A pair of rooms that agrees, from which the project learns.
+struct WeighedPair {
+  std::size_t number = 0;  ///< among all
+  int source = -1;
+  int target = -1;
+  double weight = 0.0;  ///< each scan counts once, by the mean of its pairs, and a pair is of two scans
+
+  [[nodiscard]] bool is_within(const std::vector<bool>& side) const {
+    return side[static_cast<std::size_t>(source)] == side[static_cast<std::size_t>(target)];
+  }
+};
+std::vector<WeighedPair> weighed_pairs(int nodes, const std::vector<PlacedPair>& pairs);
+
 /// Shares of N cases, as pairs of a project show them that agree: one sensor took most of its scans, and on
-/// one day. The shares have a Dirichlet distribution beforehand; expectation maximisation. Each scan counts
-/// once, by the mean of its pairs, and a pair is of two scans.
+/// one day. The shares have a Dirichlet distribution beforehand; expectation maximisation.
 template <std::size_t N>
 class LearnedShares {
  public:
@@ -26,39 +38,28 @@ class LearnedShares {
   LearnedShares(int nodes, const std::vector<PlacedPair>& pairs, const Shares& beforehand, double strength,
                 const std::function<Shares(const PairEvidence&)>& logs)
       : beforehand_(beforehand), strength_(strength) {
-    std::vector<double> count(static_cast<std::size_t>(nodes), 0.0);
     std::vector<Shares> seen;
-    for (const PlacedPair& pair : pairs) {
-      if (pair.link < 0 || !pair.evidence.asks_things()) continue;
-      pairs_.push_back({pair.source, pair.target});
-      seen.push_back(likelihoods(logs(pair.evidence)));
-      count[static_cast<std::size_t>(pair.source)] += 1.0;
-      count[static_cast<std::size_t>(pair.target)] += 1.0;
+    for (const WeighedPair& pair : weighed_pairs(nodes, pairs)) {
+      pairs_.push_back({pair, {}});
+      seen.push_back(likelihoods(logs(pairs[pair.number].evidence)));
     }
-    for (Pair& pair : pairs_)
-      pair.weight = 0.5 / count[static_cast<std::size_t>(pair.source)] +
-                    0.5 / count[static_cast<std::size_t>(pair.target)];
     Shares shares = beforehand;
     for (int round = 0; round < kRounds; ++round) {
       for (std::size_t k = 0; k < pairs_.size(); ++k) pairs_[k].shares = shown_by(seen[k], shares);
-      shares = mean([](const Pair&) { return true; });
+      shares = mean([](const WeighedPair&) { return true; });
     }
   }
 
   /// By all pairs but those that cross the border of `side`: they are to be judged.
   [[nodiscard]] Shares without(const std::vector<bool>& side) const {
-    return mean([&](const Pair& pair) {
-      return side[static_cast<std::size_t>(pair.source)] == side[static_cast<std::size_t>(pair.target)];
-    });
+    return mean([&](const WeighedPair& pair) { return pair.is_within(side); });
   }
 
  private:
   static constexpr int kRounds = 30;
 
   struct Pair {
-    int source = -1;
-    int target = -1;
-    double weight = 0.0;
+    WeighedPair pair;
     Shares shares{};  ///< what it shows, given the shares of all pairs
   };
 
@@ -79,9 +80,9 @@ class LearnedShares {
     Shares sum = beforehand_;
     for (double& share : sum) share *= strength_;
     double weight = strength_;
-    for (const Pair& pair : pairs_) {
+    for (const auto& [pair, shown] : pairs_) {
       if (!counts(pair)) continue;
-      for (std::size_t j = 0; j < N; ++j) sum[j] += pair.weight * pair.shares[j];
+      for (std::size_t j = 0; j < N; ++j) sum[j] += pair.weight * shown[j];
       weight += pair.weight;
     }
     for (double& share : sum) share /= weight;

@@ -48,15 +48,15 @@ double PairEvidence::behind_windows_nats() const {
   return bounded(twins.otherwise_nats.front()) + evidence_table::kAgreeingBehind * std::max(0.0, chance_nats);
 }
 
-void LookAlikeSum::add(const PairEvidence& evidence, double of_things, double of_surface,
-                       const BendBelief& bends) {
+void LookAlikeSum::add(const PairEvidence& evidence, double of_things, double of_surface) {
   const TwinEvidence& twins = evidence.twins;
   if (evidence.asks_things()) {
     add_to(sum_.otherwise_nats, of_things, twins.otherwise_nats);
     add_to(sum_.alike_nats, of_things, twins.alike_nats);
+    add_to(sum_.share_nats, of_things, twins.share_nats);
     sum_.things += of_things * twins.things;
     sum_.agreeing += of_things * twins.agreeing;
-    built_nats_ += of_surface * bounded(built_nats(twins.built, bends));
+    built_nats_ += of_surface * bounded(built_nats(twins.built, belief_));
   } else {
     const double by_surface =
         evidence.looks_for_twins ? evidence.behind_windows_nats() : evidence.chance_nats;

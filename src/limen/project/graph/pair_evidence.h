@@ -40,18 +40,20 @@ inline constexpr double kMostPairNats = 9.2;
 /// question for all of them at once.
 class LookAlikeSum {
  public:
+  explicit LookAlikeSum(const BuiltBelief& built = {}) : belief_(built) {}
+
   /// Shares of what the pair shows that count for it (SharedViews): of things, and of the building's surface.
-  void add(const PairEvidence& evidence, double of_things = 1.0, double of_surface = 1.0,
-           const BendBelief& bends = bends_beforehand());
+  void add(const PairEvidence& evidence, double of_things = 1.0, double of_surface = 1.0);
   [[nodiscard]] double stayed_nats(const StayedBelief& stayed) const { return nats_of_stayed(sum_, stayed); }
   [[nodiscard]] double against_otherwise(double stayed_nats = 0.0) const {
-    return limen::against_otherwise(sum_, stayed_nats) + built_nats_;
+    return limen::against_otherwise(sum_, belief_.as_drawn, stayed_nats) + built_nats_;
   }
   [[nodiscard]] double against_alike(double stayed_nats = 0.0) const {
-    return limen::against_alike(sum_, stayed_nats) + built_nats_;
+    return limen::against_alike(sum_, belief_.as_drawn, stayed_nats) + built_nats_;
   }
 
  private:
+  BuiltBelief belief_;
   TwinEvidence sum_;  ///< of things
   double built_nats_ = 0.0;
 };

@@ -63,7 +63,7 @@ PlacedPair asked_pair(int source, int target, const Rigid3& target_from_source, 
   if (nats <= 0.0 || !query.things) return pair;
   // Where a placement is known to a decimetre, things that agree say something, and others nothing.
   if (const std::optional<TwinEvidence> things = query.things(source, target, target_from_source);
-      things && nats_of(things->otherwise_nats) > 0.0) {
+      things && otherwise_nats(*things) > 0.0) {
     for (std::size_t j = 0; j < kBuiltInLevels; ++j)
       twins.otherwise_nats[j] = std::min(things->otherwise_nats[j], kMostAskedNats);
     twins.things = twins.agreeing = things->agreeing;

@@ -64,12 +64,20 @@ PlacementOdds::PlacementOdds(int nodes, std::vector<PlacedPair> pairs, const std
       trees_(nodes),
       rate_(nodes, pairs_, unused),
       bends_(nodes, pairs_, bends_beforehand(), evidence_table::kBendStrength,
-             [](const PairEvidence& evidence) { return evidence.twins.built.one; }),
+             [](const PairEvidence& evidence) { return logs_of_bends(evidence.twins.built); }),
       stayed_(nodes, pairs_, stayed_beforehand(), evidence_table::kStayedStrength,
-              [](const PairEvidence& evidence) { return logs_of_stayed(evidence.twins); }) {
+              [](const PairEvidence& evidence) { return logs_of_stayed(evidence.twins); }),
+      as_drawn_(nodes, pairs_) {
   for (const PlacedPair& pair : pairs_) {
     if (pair.link >= 0 || pair.evidence.twins.things > 0.0) trees_.connect(pair.source, pair.target);
   }
+}
+
+BuiltBelief PlacementOdds::built_without(const std::vector<bool>& side) const {
+  BuiltBelief belief;
+  belief.bends = bends_.without(side);
+  belief.as_drawn = as_drawn_.without(side, belief.bends);
+  return belief;
 }
 
 double PlacementOdds::odds_of_look_alike(const std::vector<const PlacedPair*>& across,
@@ -79,14 +87,12 @@ double PlacementOdds::odds_of_look_alike(const std::vector<const PlacedPair*>& a
   for (const PlacedPair* pair : across) {
     const TwinEvidence& twins = pair->evidence.twins;
     surface.push_back(std::max(kLeastSurfaceM2, pair->shared_m2));
-    things.push_back(twins.things > 0.0
-                         ? twins.things
-                         : std::abs(nats_of(twins.otherwise_nats)) + std::abs(nats_of(twins.alike_nats)));
+    things.push_back(twins.things > 0.0 ? twins.things
+                                        : std::abs(otherwise_nats(twins)) + std::abs(alike_nats(twins)));
   }
   const std::vector<double> of_surface = views_.shares(across, side, surface);
   const std::vector<double> of_things = views_.shares(across, side, things);
-  const BendBelief bends = bends_.without(side);
-  LookAlikeSum against;
+  LookAlikeSum against(built_without(side));
   const bool rooms = std::any_of(across.begin(), across.end(), [](const PlacedPair* pair) {
     return pair->link >= 0 && pair->evidence.asks_things();
   });
@@ -95,7 +101,7 @@ double PlacementOdds::odds_of_look_alike(const std::vector<const PlacedPair*>& a
   bool believed = false;  // once, as little as any pair believes it
   for (std::size_t k = 0; k < across.size(); ++k) {
     const PairEvidence& evidence = across[k]->evidence;
-    against.add(evidence, of_things[k], of_surface[k], bends);
+    against.add(evidence, of_things[k], of_surface[k]);
     if (across[k]->link < 0 || !evidence.looks_for_twins) continue;
     // Of two rooms a view through windows excludes look-alike places no better than chance.
     const double by_chance = rooms && !evidence.asks_things() ? std::exp(-evidence.chance_nats) : 0.0;

@@ -6,6 +6,7 @@
 #include <set>
 #include <vector>
 
+#include "limen/project/graph/as_drawn.h"
 #include "limen/project/graph/learned_shares.h"
 #include "limen/project/graph/look_alike_rate.h"
 #include "limen/project/graph/shared_views.h"
@@ -64,6 +65,7 @@ class PlacementOdds {
                                    const std::vector<bool>& side) const;
   [[nodiscard]] double odds_of_look_alike(const std::vector<const PlacedPair*>& across,
                                           const std::vector<bool>& side) const;
+  [[nodiscard]] BuiltBelief built_without(const std::vector<bool>& side) const;
   [[nodiscard]] double log_odds_of_chance(std::vector<const PlacedPair*> across,
                                           const std::vector<bool>& side, SideOdds& odds) const;
 
@@ -74,6 +76,7 @@ class PlacementOdds {
   LookAlikeRate rate_;
   LearnedShares<kBendLevels> bends_;
   LearnedShares<kStayedLevels> stayed_;
+  AsDrawn as_drawn_;
   std::map<std::vector<bool>, Known> known_;
 };
 

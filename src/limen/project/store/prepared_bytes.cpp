@@ -110,9 +110,9 @@ void put_twin(ByteWriter& writer, const std::optional<TwinEvidence>& said) {
   const TwinEvidence twin = said.value_or(TwinEvidence{});
   writer.put(twin.rooms);
   for (const double stated : {twin.otherwise, twin.alike, twin.things, twin.agreeing}) writer.put(stated);
-  for (const NatsOfThings& nats : {twin.otherwise_nats, twin.alike_nats})
+  for (const NatsOfThings& nats : {twin.otherwise_nats, twin.alike_nats, twin.share_nats})
     for (const double level : nats) writer.put(level);
-  for (const auto& levels : {twin.built.one, twin.built.twin})
+  for (const auto& levels : {twin.built.one, twin.built.twin, twin.built.as_drawn})
     for (const double log : levels) writer.put(log);
 }
 
@@ -121,9 +121,9 @@ std::optional<TwinEvidence> get_twin(ByteReader& reader) {
   TwinEvidence twin;
   twin.rooms = reader.get<bool>();
   for (double* value : {&twin.otherwise, &twin.alike, &twin.things, &twin.agreeing}) reader.get(*value);
-  for (NatsOfThings* nats : {&twin.otherwise_nats, &twin.alike_nats})
+  for (NatsOfThings* nats : {&twin.otherwise_nats, &twin.alike_nats, &twin.share_nats})
     for (double& level : *nats) reader.get(level);
-  for (auto* levels : {&twin.built.one, &twin.built.twin})
+  for (auto* levels : {&twin.built.one, &twin.built.twin, &twin.built.as_drawn})
     for (double& log : *levels) reader.get(log);
   return asked ? std::optional(twin) : std::nullopt;
 }

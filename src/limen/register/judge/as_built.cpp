@@ -93,16 +93,22 @@ double slope_of(const BuiltBend& bend, double length_m) {
   return 2.0 * bend.offset_m / length_m;
 }
 
-// What is believed of buildings beforehand. scripts/fit_evidence ROWS.jsonl, of four buildings: of two real
-// ones and of two of another simulator. Exactly as drawn stand simulated ones only: 0.1 is presumed.
-constexpr std::array<BuiltQuality, 6> kQualities = {{{0.100, 0.0, 0.0},
-                                                     {0.214, 0.001, radians(0.05)},
-                                                     {0.214, 0.002, radians(0.1)},
-                                                     {0.386, 0.004, radians(0.2)},
-                                                     {0.043, 0.008, radians(0.4)},
-                                                     {0.043, 0.012, radians(0.6)}}};
+// What is believed beforehand of buildings that are not exactly as drawn. scripts/fit_evidence ROWS.jsonl, of
+// four buildings: of two real ones and of two of another simulator.
+constexpr std::array<BuiltQuality, 5> kQualities = {{{0.238, 0.001, radians(0.05)},
+                                                     {0.238, 0.002, radians(0.1)},
+                                                     {0.428, 0.004, radians(0.2)},
+                                                     {0.048, 0.008, radians(0.4)},
+                                                     {0.048, 0.012, radians(0.6)}}};
+constexpr BuiltQuality kAsDrawnQuality;
 constexpr std::array<BuiltBend, kBendLevels - 1> kBends = {
     {{0.461, 0.0003}, {0.175, 0.001}, {0.046, 0.002}, {0.060, 0.004}, {0.145, 0.008}, {0.113, 0.016}}};
+/// Of an unknown bend.
+double log_density(BendBelief logs, const BendBelief& bends) {
+  for (std::size_t j = 0; j < kBendLevels; ++j) logs[j] += std::log(bends[j]);
+  return log_sum_exp(logs);
+}
+
 constexpr double kStraySurface = 0.05;  // share of the surfaces that are of two things, or were moved
 
 }  // namespace
@@ -210,9 +216,10 @@ BuiltEvidence built_evidence(std::span<const CommonSurface> surfaces) {
     }
     evidence.one[j] = log_sum_exp(one);
     evidence.twin[j] = log_sum_exp(twin);
+    evidence.as_drawn[j] = density.of_one_place(kAsDrawnQuality, kBends[j]);
     twins[j] = std::log(kBends[j].weight) + evidence.twin[j];
   }
-  evidence.one.back() = evidence.twin.back() = log_sum_exp(twins);
+  evidence.one.back() = evidence.twin.back() = evidence.as_drawn.back() = log_sum_exp(twins);
   return evidence;
 }
 
@@ -225,13 +232,27 @@ BendBelief bends_beforehand(double bent) {
   return belief;
 }
 
-double built_nats(const BuiltEvidence& evidence, const BendBelief& belief) {
-  BuiltEvidence logs = evidence;
-  for (std::size_t j = 0; j < kBendLevels; ++j) {
-    logs.one[j] += std::log(belief[j]);
-    logs.twin[j] += std::log(belief[j]);
-  }
-  return log_sum_exp(logs.one) - log_sum_exp(logs.twin);
+double built_nats(const BuiltEvidence& evidence, const BuiltBelief& belief) {
+  const double other = std::log1p(-belief.as_drawn);
+  const double as_drawn = std::log(belief.as_drawn) + log_density(evidence.as_drawn, belief.bends);
+  return log_sum_exp({other + log_density(evidence.one, belief.bends), as_drawn}) -
+         log_sum_exp({other + log_density(evidence.twin, belief.bends), as_drawn});
+}
+
+double as_drawn_nats(const BuiltEvidence& evidence, const BendBelief& bends) {
+  return log_density(evidence.as_drawn, bends) - log_density(evidence.one, bends);
+}
+
+double probably_as_drawn(const BuiltEvidence& evidence) {
+  return 1.0 / (1.0 + (1.0 / evidence_table::kAsDrawn - 1.0) * std::exp(-as_drawn_nats(evidence)));
+}
+
+BendBelief logs_of_bends(const BuiltEvidence& evidence) {
+  BendBelief logs = evidence.one;
+  for (std::size_t j = 0; j < kBendLevels; ++j)
+    logs[j] = log_sum_exp({std::log1p(-evidence_table::kAsDrawn) + evidence.one[j],
+                           std::log(evidence_table::kAsDrawn) + evidence.as_drawn[j]});
+  return logs;
 }
 
 }  // namespace limen

@@ -81,7 +81,19 @@ using BendBelief = std::array<double, kBendLevels>;
 /// What is believed of pairs of any sensor. `bent`: probability that walls say nothing.
 BendBelief bends_beforehand(double bent = evidence_table::kBent);
 
+/// What is believed of how a building was built, and of how it was scanned.
+struct BuiltBelief {
+  BendBelief bends = bends_beforehand();
+  double as_drawn = evidence_table::kAsDrawn;  ///< that it is exactly as drawn
+};
+
 /// Nats for one place against one built alike.
-double built_nats(const BuiltEvidence& evidence, const BendBelief& belief = bends_beforehand());
+double built_nats(const BuiltEvidence& evidence, const BuiltBelief& belief = {});
+/// Nats for a building that is exactly as drawn, if the scans show one place.
+double as_drawn_nats(const BuiltEvidence& evidence, const BendBelief& bends = bends_beforehand());
+/// The probability of that, by what these walls say of it.
+double probably_as_drawn(const BuiltEvidence& evidence);
+/// Of each amount by which scans are bent, the logarithm of the density of what was seen of one place.
+BendBelief logs_of_bends(const BuiltEvidence& evidence);
 
 }  // namespace limen

@@ -62,7 +62,7 @@ std::vector<CommonSurface> scanned(const Made& made, std::uint64_t seed) {
 }
 
 double as_built_nats(const std::vector<CommonSurface>& surfaces) {
-  return built_nats(built_evidence(surfaces), bends_beforehand(0.0));
+  return built_nats(built_evidence(surfaces), {bends_beforehand(0.0)});
 }
 
 double least_of(const Made& made) {
@@ -88,6 +88,24 @@ TEST(AsBuilt, ABuildingThatStandsAsDrawnSaysNothing) {
   const Made drawn{.surfaces = 20, .offset_m = 0.0, .turn_rad = 0.0, .twin = true};
   EXPECT_LT(most_of(drawn), 0.1);
   EXPECT_GT(least_of(drawn), -0.1);
+}
+
+TEST(AsBuilt, WallsSayWhetherABuildingIsAsDrawn) {
+  const auto probability = [](const Made& made, std::uint64_t seed) {
+    return probably_as_drawn(built_evidence(scanned(made, seed)));
+  };
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    EXPECT_GT(probability({.offset_m = 0.0, .turn_rad = 0.0}, seed), 0.99);
+    EXPECT_LT(probability({}, seed), 1e-6);
+    // A look-alike place shows it as well.
+    EXPECT_GT(probability({.offset_m = 0.0, .turn_rad = 0.0, .twin = true}, seed), 0.99);
+    // Walls that differ may be a bent sensor's and say little.
+    EXPECT_LT(probability({.twin = true}, seed), 0.1);
+    // A noisy sensor does not.
+    EXPECT_NEAR(probability({.offset_m = 0.0, .turn_rad = 0.0, .noise = 60.0}, seed),
+                evidence_table::kAsDrawn, evidence_table::kAsDrawn);
+  }
+  EXPECT_NEAR(probably_as_drawn({}), evidence_table::kAsDrawn, 1e-12);
 }
 
 TEST(AsBuilt, OnePlaceIsStatedTheBetterTheMoreOfItIsSeen) {

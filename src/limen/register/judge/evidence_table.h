@@ -67,7 +67,9 @@ inline constexpr double kAlike = 0.00458;          ///< and one that is furnishe
 inline constexpr double kBehindWindows = 0.0256;   ///< that pairs through windows agree on another one,
 inline constexpr double kAgreeingBehind =
     0.495;  ///< and the weight of agreement against it, of that against chance
-inline constexpr double kRateStrength = 1.42;   ///< how well their share in a building is known, in scans
+inline constexpr double kRateStrength = 1.42;  ///< how well their share in a building is known, in scans
+inline constexpr double kAsDrawn = 0.02;       ///< that a building is exactly as drawn (presumed) ...
+inline constexpr ShareBelief kBuiltInAsDrawn{0.0144, 5.5};  ///< and Furniture::built_in of such a building
 inline constexpr double kInPair = 0.106;        ///< share of them whose other place the same two scans show
 inline constexpr double kBuilt = 2.23;          ///< weight of how surfaces were built, against chance
 inline constexpr double kBent = 0.0899;         ///< share of pairs whose scans are bent within themselves

@@ -85,7 +85,7 @@ class Weighing {
   /// By how much what agrees under a pose exceeds chance, nats.
   [[nodiscard]] double against_chance(std::size_t pose) {
     if (!questions_.look_alike) return against_chance_[pose];
-    return against_chance_[pose] + nats_of(twins(pose).otherwise_nats) +
+    return against_chance_[pose] + otherwise_nats(twins(pose)) +
            evidence_table::kBuilt * built_nats(twins(pose).built);
   }
   /// Whether a pose may be right: of the many that are refined in a model those that exceed chance, and the

@@ -117,31 +117,45 @@ OfThings elsewhere(const IndividualMatter& seen, double near, double near_m) {
 }
 
 /// Shares of a building's things that are its own (a step, a fitting), evenly by the logarithm of their odds.
-const std::array<Node, kBuiltInLevels>& built_in_shares() {
-  static const std::array<Node, kBuiltInLevels> levels = [] {
+const std::array<double, kBuiltInLevels>& built_in_shares() {
+  static const std::array<double, kBuiltInLevels> shares = [] {
     constexpr double kFirstLogOdds = -6.0;
     constexpr double kStep = 1.5;
-    std::array<Node, kBuiltInLevels> nodes;
-    std::array<double, kBuiltInLevels> logs{};
-    const ShareBelief& belief = kFurniture.built_in;
-    for (std::size_t j = 0; j < nodes.size(); ++j) {
-      nodes[j].at = 1.0 / (1.0 + std::exp(-kFirstLogOdds - kStep * static_cast<double>(j)));
-      logs[j] = belief.strength *
-                (belief.mean * std::log(nodes[j].at) + (1.0 - belief.mean) * std::log1p(-nodes[j].at));
-    }
-    const double sum = log_sum_exp(logs);
-    for (std::size_t j = 0; j < nodes.size(); ++j) nodes[j].log_weight = logs[j] - sum;
-    return nodes;
+    std::array<double, kBuiltInLevels> levels{};
+    for (std::size_t j = 0; j < levels.size(); ++j)
+      levels[j] = 1.0 / (1.0 + std::exp(-kFirstLogOdds - kStep * static_cast<double>(j)));
+    return levels;
   }();
-  return levels;
+  return shares;
+}
+
+/// Of each of these shares the logarithm of its probability.
+NatsOfThings log_built_in(const ShareBelief& belief) {
+  NatsOfThings logs{};
+  for (std::size_t j = 0; j < logs.size(); ++j)
+    logs[j] = belief.strength * (belief.mean * std::log(built_in_shares()[j]) +
+                                 (1.0 - belief.mean) * std::log1p(-built_in_shares()[j]));
+  const double sum = log_sum_exp(logs);
+  for (double& log : logs) log -= sum;
+  return logs;
+}
+
+/// The same of a building that is exactly as drawn with this probability.
+NatsOfThings log_built_in(double as_drawn) {
+  static const NatsOfThings built = log_built_in(kFurniture.built_in);
+  static const NatsOfThings drawn = log_built_in(evidence_table::kBuiltInAsDrawn);
+  NatsOfThings logs{};
+  for (std::size_t j = 0; j < logs.size(); ++j)
+    logs[j] = log_sum_exp({std::log1p(-as_drawn) + built[j], std::log(as_drawn) + drawn[j]});
+  return logs;
 }
 
 /// Of all things, for each share that is the building's: those are as in `fixed`, the others as in `loose`.
 NatsOfThings sums_of(const OfThings& fixed, const OfThings& loose) {
   NatsOfThings sums{};
   for (std::size_t j = 0; j < sums.size(); ++j) {
-    const double log_fixed = std::log(built_in_shares()[j].at);
-    const double log_loose = std::log1p(-built_in_shares()[j].at);
+    const double log_fixed = std::log(built_in_shares()[j]);
+    const double log_loose = std::log1p(-built_in_shares()[j]);
     for (std::size_t g = 0; g < loose.size(); ++g)
       sums[j] += log_sum_exp({log_fixed + fixed[g], log_loose + loose[g]});
   }
@@ -188,6 +202,13 @@ NatsOfThings log_likelihood_of_others(const std::array<OfThings, 3>& fixed, cons
   return mixture.sum();
 }
 
+/// Whatever the share.
+double log_likelihood_of(const NatsOfThings& against, double as_drawn) {
+  NatsOfThings logs = log_built_in(as_drawn);
+  for (std::size_t j = 0; j < logs.size(); ++j) logs[j] -= against[j];
+  return log_sum_exp(logs);
+}
+
 /// Of one place, whatever the share, against another explanation.
 NatsOfThings nats_against(double same, const NatsOfThings& other) {
   NatsOfThings nats{};
@@ -232,19 +253,25 @@ TwinEvidence weigh_twin(const IndividualMatter& individual, const TwinOptions& o
   const std::array<OfThings, 3> put = put_in_place(individual);
   const OfThings pushed = elsewhere(individual, kFurniture.pushed, kFurniture.pushed_m);
   const OfThings others = elsewhere(individual, kFurniture.met, kFurniture.met_m);
-  NatsOfThings here = log_likelihood(kept, kept, pushed, kFurniture.stayed);
-  for (std::size_t j = 0; j < here.size(); ++j) here[j] += built_in_shares()[j].log_weight;
-  const double same = log_sum_exp(here);
+  const NatsOfThings here = log_likelihood(kept, kept, pushed, kFurniture.stayed);
+  const NatsOfThings beforehand = log_built_in(evidence_table::kAsDrawn);
+  NatsOfThings weighted = here;
+  for (std::size_t j = 0; j < here.size(); ++j) weighted[j] += beforehand[j];
+  const double same = log_sum_exp(weighted);
+  evidence.share_nats = nats_against(same, here);
   evidence.otherwise_nats = nats_against(same, log_likelihood_of_others(kept, others));
   evidence.alike_nats = nats_against(same, log_likelihood(kept, put, others, kFurniture.stayed));
 
   return evidence;
 }
 
-double nats_of(const NatsOfThings& nats) {
-  NatsOfThings logs{};
-  for (std::size_t j = 0; j < logs.size(); ++j) logs[j] = built_in_shares()[j].log_weight - nats[j];
-  return -log_sum_exp(logs);
+double otherwise_nats(const TwinEvidence& evidence, double as_drawn) {
+  return log_likelihood_of(evidence.share_nats, as_drawn) -
+         log_likelihood_of(evidence.otherwise_nats, as_drawn);
+}
+
+double alike_nats(const TwinEvidence& evidence, double as_drawn) {
+  return log_likelihood_of(evidence.share_nats, as_drawn) - log_likelihood_of(evidence.alike_nats, as_drawn);
 }
 
 const StayedBelief& stayed_beforehand() {
@@ -278,20 +305,22 @@ double nats_of_stayed(const TwinEvidence& evidence, const StayedBelief& stayed) 
   return log_sum_exp(now) - log_sum_exp(before);
 }
 
-double against_otherwise(const TwinEvidence& evidence, double stayed_nats) {
-  return nats_of(evidence.otherwise_nats) + stayed_nats + built_nats(evidence.built);
+double against_otherwise(const TwinEvidence& evidence, double as_drawn, double stayed_nats) {
+  return otherwise_nats(evidence, as_drawn) + stayed_nats;
 }
 
-double against_alike(const TwinEvidence& evidence, double stayed_nats) {
+double against_alike(const TwinEvidence& evidence, double as_drawn, double stayed_nats) {
   const double other = evidence.things - evidence.agreeing;
   const double own = log_beta_binomial(evidence.agreeing, other, kFurniture.stayed) + stayed_nats -
                      log_beta_binomial(evidence.agreeing, other, kFurniture.alike);
-  return nats_of(evidence.alike_nats) + std::min(0.0, own) + built_nats(evidence.built);
+  return alike_nats(evidence, as_drawn) + std::min(0.0, own);
 }
 
 double odds_of(const TwinEvidence& evidence) {
-  return evidence.otherwise * std::exp(-against_otherwise(evidence)) +
-         evidence.alike * std::exp(-against_alike(evidence));
+  const double as_drawn = probably_as_drawn(evidence.built);
+  return std::exp(-built_nats(evidence.built)) *
+         (evidence.otherwise * std::exp(-against_otherwise(evidence, as_drawn)) +
+          evidence.alike * std::exp(-against_alike(evidence, as_drawn)));
 }
 
 double probability_of(const TwinEvidence& evidence) {

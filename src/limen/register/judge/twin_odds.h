@@ -30,8 +30,10 @@ TwinOptions twin_options(bool nothing_repeats);
 /// evidence_table::kFurniture its numbers. Without observations there is no evidence for or against any.
 TwinEvidence weigh_twin(const IndividualMatter& individual, const TwinOptions& options = {});
 
-/// Of things, whatever share of a building's is its own. Over several pairs the nats of each share add up.
-double nats_of(const NatsOfThings& nats);
+/// Of things against a look-alike place, whatever share of a building's is its own: more of one that is
+/// exactly as drawn (of this probability). Over several pairs the nats of each share add up.
+double otherwise_nats(const TwinEvidence& evidence, double as_drawn = evidence_table::kAsDrawn);
+double alike_nats(const TwinEvidence& evidence, double as_drawn = evidence_table::kAsDrawn);
 
 /// How large a share of a room's things is where it was: the probability of each of so many shares.
 inline constexpr std::size_t kStayedLevels = 24;
@@ -44,15 +46,16 @@ StayedBelief logs_of_stayed(const TwinEvidence& evidence);
 /// By how much likelier what was seen is with this belief than with that of any room, nats.
 double nats_of_stayed(const TwinEvidence& evidence, const StayedBelief& stayed);
 
-/// Nats against a look-alike place that is furnished otherwise. `stayed_nats`: nats_of_stayed, where more is
-/// known than of any room.
-double against_otherwise(const TwinEvidence& evidence, double stayed_nats = 0.0);
-/// Nats against one that is furnished alike. How many of its things match is not known: it is given the
-/// better of two shares. So things that agree never exclude it, only faces that agree better than hands put
-/// them.
-double against_alike(const TwinEvidence& evidence, double stayed_nats = 0.0);
+/// Nats of things against a look-alike place that is furnished otherwise. `as_drawn`: probability that the
+/// building is exactly as drawn. `stayed_nats`: nats_of_stayed, where more is known than of any room.
+double against_otherwise(const TwinEvidence& evidence, double as_drawn, double stayed_nats = 0.0);
+/// Nats of things against one that is furnished alike. How many of its things match is not known: it is given
+/// the better of two shares. So things that agree never exclude it, only faces that agree better than hands
+/// put them.
+double against_alike(const TwinEvidence& evidence, double as_drawn, double stayed_nats = 0.0);
 
-/// Odds of a look-alike place of either kind.
+/// Odds of a look-alike place of either kind, by things and walls. The walls say, too, whether the building
+/// is exactly as drawn.
 double odds_of(const TwinEvidence& evidence);
 /// The probability that the scans show two look-alike places and not one, by Bayes' rule.
 double probability_of(const TwinEvidence& evidence);

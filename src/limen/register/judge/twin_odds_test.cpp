@@ -45,7 +45,7 @@ double twin_of(const IndividualMatter& individual, const TwinOptions& options = 
 }
 
 double alike_of(const IndividualMatter& individual) {
-  return against_alike(weigh_twin(individual));
+  return against_alike(weigh_twin(individual), 0.0);
 }
 
 TEST(TwinOdds, WithoutEvidenceThePriorStands) {
@@ -109,6 +109,17 @@ TEST(TwinOdds, ThingsThatAreOthersSpeakForATwinFurnishedAlike) {
   EXPECT_LT(alike_of(seen({20, 0.3}, {})), -0.5);
 }
 
+/// What is built in is alike in all rooms of a drawing: to the millimetre, where it was built so.
+TEST(TwinOdds, OfABuildingAsDrawnThingsToTheMillimetreSayLess) {
+  for (const double count : {1.0, 3.0, 9.0}) {
+    const TwinEvidence evidence = weigh_twin(seen({count, 1.0}, faces(static_cast<int>(count), 0.0005)));
+    const double built = against_alike(evidence, 0.0);
+    EXPECT_GT(built, 0.5) << count;
+    EXPECT_LT(against_alike(evidence, 1.0), built - 0.3) << count;
+    EXPECT_LT(against_otherwise(evidence, 1.0), against_otherwise(evidence, 0.0) - 0.3) << count;
+  }
+}
+
 TEST(TwinOdds, ThroughADoorNoBeliefAloneRegisters) {
   // However much agrees: where no face was seen by both, rooms furnished alike would look the same.
   IndividualMatter apart = seen({60, 1.0}, {});
@@ -139,7 +150,7 @@ TEST(TwinOdds, OneThingIsTheBuildingsAsAWhole) {
     stairs.things.assign(count, {pieces, pieces});
     for (std::size_t k = 0; k < count; ++k)
       stairs.faces.push_back({.offset_m = 0.0001, .sigma_m = 0.002, .thing = k});
-    return against_otherwise(weigh_twin(stairs));
+    return against_otherwise(weigh_twin(stairs), 0.0);
   };
   const double of_one = flights(6.0, 1);
   EXPECT_GT(of_one, 3.0);

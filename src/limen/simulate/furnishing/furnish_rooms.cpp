@@ -3,6 +3,7 @@
 #include "limen/simulate/furnishing/furnish_rooms.h"
 
 #include <map>
+#include <utility>
 
 namespace limen {
 namespace {
@@ -65,7 +66,9 @@ std::vector<bool> furnish_rooms(World& world, std::size_t building, const Furnis
     const std::uint64_t own = mix64(seed * 7919 + room);
     const std::uint64_t common =
         design >= 0 ? mix64(seed * 104729 + static_cast<std::uint64_t>(design)) : own;
-    add_layout(world, building, room, make_fixtures(world, building, room, common));
+    Layout fixtures = make_fixtures(world, building, room, common);
+    if (world.as_built_seed) fixtures = as_put_up(std::move(fixtures), style.fixtures_m, own);
+    add_layout(world, building, room, fixtures);
     RandomStream random(own, 20);
     if (design >= 0 && designs.find(design) == designs.end()) {
       RandomStream choice(common, 21);

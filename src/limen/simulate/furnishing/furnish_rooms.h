@@ -17,6 +17,7 @@ struct FurnishingStyle {
   double small_per_m2 = 0.12;
   double shift_m = 0.025;  ///< of pieces placed by hand, one standard deviation per axis
   double turn_rad = 0.02;
+  double fixtures_m = 0.004;  ///< of fixtures in a building that is not as drawn, as of its openings
   /// Another day: some of the furniture moved or gone, what lies about is other. 0: the first day.
   std::uint64_t day = 0;
   double moved_share = 0.35;

@@ -326,6 +326,18 @@ Layout as_placed(const Layout& layout, const World& world, std::size_t building,
   return result;
 }
 
+Layout as_put_up(Layout fixtures, double shift_m, std::uint64_t seed) {
+  RandomStream random(seed, 14);
+  for (PlacedPiece& placed : fixtures) {
+    const double sideways = shift_m * random.normal();
+    const double outward = shift_m * std::abs(random.normal());
+    const double away = shift_m * std::abs(random.normal());
+    placed.back += sideways * placed.along + outward * left_of(placed.along);
+    placed.height_m += placed.height_m > 0.0 ? -away : away;
+  }
+  return fixtures;
+}
+
 void add_layout(World& world, std::size_t building, std::size_t room, const Layout& layout) {
   DesignRoom design(world.buildings[building], room);
   const Room here = design.room();

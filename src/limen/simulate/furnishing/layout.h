@@ -52,6 +52,10 @@ struct PlacingOptions {
 Layout as_placed(const Layout& layout, const World& world, std::size_t building, std::size_t room,
                  const PlacingOptions& options, std::uint64_t seed);
 
+/// Fixtures as they were put up: off their places by so much, one standard deviation, and not into the wall,
+/// the floor or the ceiling.
+Layout as_put_up(Layout fixtures, double shift_m, std::uint64_t seed);
+
 /// Builds a layout in a room: its own or another of the same design, mirrored if need be. Pieces for which
 /// there is no place are left out.
 void add_layout(World& world, std::size_t building, std::size_t room, const Layout& layout);
