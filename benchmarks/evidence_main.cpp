@@ -213,8 +213,8 @@ class Rows {
       if (sort_of(worked) == PairSort::rooms && k < kAskedThings) {
         const IndividualMatter seen = asker(poses[k].refined.target_from_source);
         text += fmt::format(R"(, "built": {:.3f}, "built_one": [{:.2f}], "apart": {:d}, {})",
-                            built_nats(seen.built, {bends_beforehand(0.0)}), fmt::join(seen.built.one, ", "),
-                            seen.apart, things(seen));
+                            built_nats(seen.built, {bends_beforehand(0.0)}),
+                            fmt::join(logs_of_bends(seen.built), ", "), seen.apart, things(seen));
       }
       text += "}";
     }

@@ -4,9 +4,9 @@
 
 #include "limen/register/judge/share_belief.h"
 
-/// The numbers of the judge of pairs. scripts/fit_posterior writes them, but for two that are presumed: all
-/// of kInModel, and the odds beforehand that end each Surface (pairs are given because they are thought to
-/// overlap).
+/// The numbers of the judge of pairs. scripts/fit_posterior writes them, but for those that are presumed:
+/// all of kInModel, kAsDrawn, and the odds beforehand that end each Surface (pairs are given because they are
+/// thought to overlap).
 namespace limen::evidence_table {
 
 /// Share of the surface seen by both scans that one of them puts into free space seen by the other.
