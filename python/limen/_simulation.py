@@ -45,7 +45,7 @@ def simulate(
     points_outdoor: Optional[int] = None,
     facades: Optional[int] = None,
     any_rotation: Optional[bool] = None,
-    as_built: Optional[bool] = None,
+    as_built: bool = True,
     curtain_share: Optional[float] = None,
     noise_m: Optional[float] = None,
     drift_m: Optional[float] = None,
@@ -53,7 +53,8 @@ def simulate(
 ) -> Simulation:
     """Scan a built-in building, one of scene_names(). What is not given is as the scene has it.
 
-    `as_built`: walls, slabs and openings are off by millimetres to a centimetre; else all is exactly as drawn."""
+    `as_built`: walls, slabs and openings are off by millimetres to a centimetre; else all is exactly as drawn, and
+    look-alike rooms are equal to the millimetre."""
     given = {
         "seed": seed,
         "stations": stations,
