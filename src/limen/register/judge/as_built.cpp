@@ -103,13 +103,13 @@ constexpr std::array<BuiltQuality, 5> kQualities = {{{0.238, 0.001, radians(0.05
 constexpr BuiltQuality kAsDrawnQuality;
 constexpr std::array<BuiltBend, kBendLevels - 1> kBends = {
     {{0.461, 0.0003}, {0.175, 0.001}, {0.046, 0.002}, {0.060, 0.004}, {0.145, 0.008}, {0.113, 0.016}}};
-/// Of an unknown bend.
+constexpr double kStraySurface = 0.05;  // share of the surfaces that are of two things, or were moved
+
+/// By how much the scans are bent is not known.
 double log_density(BendBelief logs, const BendBelief& bends) {
   for (std::size_t j = 0; j < kBendLevels; ++j) logs[j] += std::log(bends[j]);
   return log_sum_exp(logs);
 }
-
-constexpr double kStraySurface = 0.05;  // share of the surfaces that are of two things, or were moved
 
 }  // namespace
 

@@ -202,7 +202,7 @@ NatsOfThings log_likelihood_of_others(const std::array<OfThings, 3>& fixed, cons
   return mixture.sum();
 }
 
-/// Whatever the share.
+/// Of things, whatever share of them is the building's. `against`: nats against each share.
 double log_likelihood_of(const NatsOfThings& against, double as_drawn) {
   NatsOfThings logs = log_built_in(as_drawn);
   for (std::size_t j = 0; j < logs.size(); ++j) logs[j] -= against[j];
@@ -254,10 +254,7 @@ TwinEvidence weigh_twin(const IndividualMatter& individual, const TwinOptions& o
   const OfThings pushed = elsewhere(individual, kFurniture.pushed, kFurniture.pushed_m);
   const OfThings others = elsewhere(individual, kFurniture.met, kFurniture.met_m);
   const NatsOfThings here = log_likelihood(kept, kept, pushed, kFurniture.stayed);
-  const NatsOfThings beforehand = log_built_in(evidence_table::kAsDrawn);
-  NatsOfThings weighted = here;
-  for (std::size_t j = 0; j < here.size(); ++j) weighted[j] += beforehand[j];
-  const double same = log_sum_exp(weighted);
+  const double same = log_likelihood_of(nats_against(0.0, here), evidence_table::kAsDrawn);
   evidence.share_nats = nats_against(same, here);
   evidence.otherwise_nats = nats_against(same, log_likelihood_of_others(kept, others));
   evidence.alike_nats = nats_against(same, log_likelihood(kept, put, others, kFurniture.stayed));
