@@ -138,6 +138,9 @@ class Rows {
       things += fmt::format("{}[{:.2f}, {:.2f}]", things.empty() ? "" : ", ", thing.count, thing.agreeing);
     return fmt::format(R"("chance": {:.3f}, "things": [{}], "faces_mm": [{}])", seen.chance, things, faces);
   }
+  static std::string built(const BuiltEvidence& seen) {
+    return fmt::format(R"(, "built": {:.3f})", built_nats(seen, {bends_beforehand(0.0)}));
+  }
   /// How a pose moves the scan from inside, in the frame of the set, the one from outside being where it is.
   /// `moved_source`: by it, in the source's prepared frame.
   [[nodiscard]] std::string moved(const PreparedPair& pair, const Rigid3& moved_source) const {
@@ -210,10 +213,12 @@ class Rows {
                       score.evidence_m2, score.agreeing_m2, score.contradicted_m2, score.opening_m2,
                       unobserved_freedoms(poses[k].refined, 0.03).empty());
       if (right && is_through_windows(sort_of(worked))) text += moved(pair, inverse(*right) * pose);
-      if (sort_of(worked) == PairSort::rooms && k < kAskedThings) {
+      if (k < kAskedThings && is_through_windows(sort_of(worked)))
+        text += built(asker.built(poses[k].refined.target_from_source));
+      if (k < kAskedThings && sort_of(worked) == PairSort::rooms) {
         const IndividualMatter seen = asker(poses[k].refined.target_from_source);
-        text += fmt::format(R"(, "built": {:.3f}, "built_one": [{:.2f}], "apart": {:d}, {})",
-                            built_nats(seen.built, {bends_beforehand(0.0)}),
+        text += built(seen.built);
+        text += fmt::format(R"(, "built_one": [{:.2f}], "apart": {:d}, {})",
                             fmt::join(logs_of_bends(seen.built), ", "), seen.apart, things(seen));
       }
       text += "}";

@@ -147,6 +147,8 @@ class AskedPair {
     questions.contrast = [this](std::size_t first, std::size_t second) { return contrast(first, second); };
     if (sort_of(pair_) == PairSort::rooms)
       questions.look_alike = [this](std::size_t pose) { return beside_start(pose, weigh_things(pose)); };
+    else if (is_through_windows(sort_of(pair_)))
+      questions.look_alike = [this](std::size_t pose) { return weigh_surfaces(pose); };
     questions.repeats = repeats();
     return questions;
   }
@@ -185,9 +187,19 @@ class AskedPair {
   [[nodiscard]] double repeats() const {
     return twin_options(options_.nothing_repeats).alike / evidence_table::kAlike;
   }
-  [[nodiscard]] TwinEvidence weigh_things(std::size_t pose) {
+  [[nodiscard]] const MatterAsker& asker() {
     if (!asker_) asker_.emplace(pair_.source.view(), pair_.target.view());
-    IndividualMatter seen = (*asker_)(pose_of(pose));
+    return *asker_;
+  }
+  /// Look-alike rooms behind windows are among the poses.
+  [[nodiscard]] TwinEvidence weigh_surfaces(std::size_t pose) {
+    TwinEvidence evidence;
+    evidence.otherwise = 0.0;
+    evidence.built = asker().built(pose_of(pose));
+    return evidence;
+  }
+  [[nodiscard]] TwinEvidence weigh_things(std::size_t pose) {
+    IndividualMatter seen = asker()(pose_of(pose));
     TwinEvidence evidence = weigh_twin(seen, twin_options(options_.nothing_repeats));
     things_.insert_or_assign(pose, Things{std::move(seen), evidence});
     return evidence;

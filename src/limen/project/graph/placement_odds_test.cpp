@@ -53,7 +53,7 @@ TEST(PlacementOdds, ASecondPairThroughWindowsExcludesChanceSoonerThanALookAlikeR
   const SideOdds& by_one = one.of(side({2}, 3));
   const SideOdds& by_two = two.of(side({2}, 3));
   EXPECT_LT(by_two.chance, 1e-3 * by_one.chance);
-  EXPECT_GT(by_two.twin, 0.01 * by_one.twin);
+  EXPECT_GT(by_two.twin / by_one.twin, 100.0 * by_two.chance / by_one.chance);
   EXPECT_LT(by_two.twin, 0.1 * by_one.twin);
 }
 

@@ -99,10 +99,9 @@ class GraphMaker {
     const auto said = words_.pairs.find({pairs_[k].source, pairs_[k].target});
     const bool spoken = said != words_.pairs.end();
     if (spoken && said->second.kind == DecisionKind::reject) return;
-    if (found.outcome == Outcome::no_match) return;
     // Poses that are more probably none are what any two scans show: many of them would outweigh what is
     // sure.
-    if (!spoken && by_chance(found) > kMostChance) return;
+    if (spoken ? found.outcome == Outcome::no_match : by_chance(found) > kMostChance) return;
     GraphLink link;
     link.source = static_cast<int>(pairs_[k].source);
     link.target = static_cast<int>(pairs_[k].target);
@@ -184,7 +183,8 @@ class GraphMaker {
 
   /// Probability that none of a pair's poses is right, twins apart.
   [[nodiscard]] static double by_chance(const RegistrationResult& found) {
-    return found.others ? found.others->nothing_shared + found.others->unlisted_pose : 0.0;
+    if (found.others) return found.others->nothing_shared + found.others->unlisted_pose;
+    return found.outcome == Outcome::no_match ? 1.0 : 0.0;
   }
 
   /// What is known of how trajectories drift beyond what the pair took for it.

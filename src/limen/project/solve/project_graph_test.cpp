@@ -36,7 +36,17 @@ TEST(ProjectGraph, ALinkKeepsTheProbabilitiesOfItsPair) {
   ASSERT_EQ(links.size(), 1U);
   EXPECT_EQ(links.front().trust, LinkTrust::measured);
   EXPECT_NEAR(links.front().twin, 0.6, 1e-12);
-  EXPECT_TRUE(links_of(stated(Outcome::no_match, 0.0)).empty());
+}
+
+/// A pose that chance explains better is none to rely on by itself; others may still say the same.
+TEST(ProjectGraph, APairMakesALinkUnlessProbablyNothingIsShared) {
+  RegistrationResult pair = stated(Outcome::no_match, 0.0);
+  pair.others = OtherExplanations{.nothing_shared = 0.6, .twin = 0.0, .unlisted_pose = 0.0};
+  EXPECT_TRUE(links_of(pair).empty());
+  pair.others->nothing_shared = 0.4;
+  EXPECT_EQ(links_of(pair).size(), 1U);
+  pair.others.reset();
+  EXPECT_TRUE(links_of(pair).empty()) << "no pose was found";
 }
 
 TEST(ProjectGraph, WhatIsKnownToCentimetresTellsOnePlaceFromAnother) {

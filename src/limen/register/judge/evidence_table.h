@@ -24,20 +24,21 @@ struct Surface {
   double contrast_per_m2;  ///< nats, of surface that agrees better under one of two poses ...
   double against_per_m2;   ///< ... and of surface that one of them puts into seen free space
   double search_nats;      ///< what the best of all wrong poses reaches by chance
+  double built;            ///< weight of how surfaces were built, against chance
   Contradiction contradicted;
   double twice;  ///< share of places that the same two scans see again elsewhere, built and furnished alike
   double nothing_shared;  ///< odds beforehand that nothing is shared, against a pose that was proposed ...
   double unlisted;        ///< ... and that a place is shared whose pose was not proposed
 };
-inline constexpr Surface kRooms{0.749, 1.16, 7.53, 7.13, {0.262, {0.00344, 11.2}, {0.156, 13.2}},
+inline constexpr Surface kRooms{0.749, 1.16, 7.53, 7.13, 2.23, {0.262, {0.00344, 11.2}, {0.156, 13.2}},
                                 0,     1.0,  0.1};
-inline constexpr Surface kThroughWall{0.81,    1.28, 6.45, 6.06, {0.29, {0.000401, 133}, {0.0781, 15.7}},
-                                      0.00777, 1.0,  0.1};
-inline constexpr Surface kPastWall{0.788, 1.31, 6.96, 5.17, {0.536, {0.000385, 391}, {0.0392, 30.8}},
-                                   0,     1.0,  0.1};
-inline constexpr Surface kStreets{0.263, 1.2, 7.6, 13.4, {0.357, {0.0109, 7.31}, {0.35, 11.1}},
+inline constexpr Surface kThroughWall{
+    0.791, 0.747, 5.56, 5.08, 1.25, {0.145, {0.000119, 179}, {0.0441, 14.6}}, 0.00308, 1.0, 0.1};
+inline constexpr Surface kPastWall{0.66, 1.04, 7.52, 4.31, 0.544, {0.395, {0.000369, 343}, {0.0652, 14.2}},
+                                   0,    1.0,  0.1};
+inline constexpr Surface kStreets{0.263, 1.2, 7.6, 13.4, 0.0, {0.357, {0.0109, 7.31}, {0.35, 11.1}},
                                   0.0,   1.0, 0.1};
-inline constexpr Surface kInModel{1.9, 1.9, 7.6, 9.5, {0.4, {0.02, 8.0}, {0.3, 6.0}}, 0.0, 1.0, 0.1};
+inline constexpr Surface kInModel{1.9, 1.9, 7.6, 9.5, 0.0, {0.4, {0.02, 8.0}, {0.3, 6.0}}, 0.0, 1.0, 0.1};
 
 /// What two scans see of the same furniture and clutter.
 struct Furniture {
@@ -64,14 +65,13 @@ inline constexpr Furniture kFurniture{{0.768, 4.09},   {0.946, 65.5}, 0.808,  1,
 inline constexpr double kOtherwise = 0.939;        ///< ... that is furnished otherwise,
 inline constexpr double kOtherwiseApart = 0.0679;  ///< the same where a wall is between the stations,
 inline constexpr double kAlike = 0.00458;          ///< and one that is furnished alike.
-inline constexpr double kBehindWindows = 0.0256;   ///< that pairs through windows agree on another one,
+inline constexpr double kBehindWindows = 0.0236;   ///< that pairs through windows agree on another one,
 inline constexpr double kAgreeingBehind =
-    0.495;  ///< and the weight of agreement against it, of that against chance
+    0.899;  ///< and the weight of agreement against it, of that against chance
 inline constexpr double kRateStrength = 1.42;  ///< how well their share in a building is known, in scans
 inline constexpr double kAsDrawn = 0.02;       ///< that a building is exactly as drawn (presumed) ...
 inline constexpr ShareBelief kBuiltInAsDrawn{0.0144, 5.5};  ///< and Furniture::built_in of such a building
 inline constexpr double kInPair = 0.106;        ///< share of them whose other place the same two scans show
-inline constexpr double kBuilt = 2.23;          ///< weight of how surfaces were built, against chance
 inline constexpr double kBent = 0.0899;         ///< share of pairs whose scans are bent within themselves
 inline constexpr double kBendStrength = 0.203;  ///< how well shares of bends are known in a project, in scans
 inline constexpr double kStayedStrength = 0.157;  ///< the same of the share of things that stay

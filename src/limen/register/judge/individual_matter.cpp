@@ -300,6 +300,15 @@ IndividualMatter MatterAsker::operator()(const Rigid3& target_from_source) const
   return individual;
 }
 
+BuiltEvidence MatterAsker::built(const Rigid3& target_from_source) const {
+  CancelScope::check();
+  const Side& source = sides_->source;
+  const Side& target = sides_->target;
+  if (source.view.space == nullptr || target.view.space == nullptr) return {};
+  return built_evidence(
+      common_surfaces(source.view, source.built, target.view, target.built, target_from_source).all);
+}
+
 IndividualMatter individual_matter(const ScanView& source, const ScanView& target,
                                    const Rigid3& target_from_source) {
   return MatterAsker(source, target)(target_from_source);

@@ -66,6 +66,8 @@ class MatterAsker {
   MatterAsker& operator=(const MatterAsker&) = delete;
 
   [[nodiscard]] IndividualMatter operator()(const Rigid3& target_from_source) const;
+  /// Of the building's surfaces only.
+  [[nodiscard]] BuiltEvidence built(const Rigid3& target_from_source) const;
 
  private:
   struct Sides;

@@ -85,8 +85,7 @@ class Weighing {
   /// By how much what agrees under a pose exceeds chance, nats.
   [[nodiscard]] double against_chance(std::size_t pose) {
     if (!questions_.look_alike) return against_chance_[pose];
-    return against_chance_[pose] + otherwise_nats(twins(pose)) +
-           evidence_table::kBuilt * built_nats(twins(pose).built);
+    return against_chance_[pose] + otherwise_nats(twins(pose)) + table_.built * built_nats(twins(pose).built);
   }
   /// Whether a pose may be right: of the many that are refined in a model those that exceed chance, and the
   /// best.
@@ -240,7 +239,7 @@ std::size_t Posterior::rivals(double risk) const {
 Outcome outcome_of(const Posterior& posterior, const std::vector<UnobservedFreedom>& open,
                    const VerdictOptions& options) {
   const double chance = posterior.by_chance();
-  if (posterior.order.empty() || chance > posterior.place() + posterior.elsewhere() + posterior.others.twin)
+  if (posterior.order.empty() || chance > std::max(posterior.place(), posterior.others.twin))
     return Outcome::no_match;
   const double probable = 1.0 - options.probable_risk;
   if (!open.empty()) return posterior.place() >= probable ? Outcome::under_constrained : Outcome::ambiguous;
@@ -293,7 +292,7 @@ std::string reason_of(Outcome outcome, const Posterior& posterior, const PoseSco
   if (posterior.order.empty()) return "no planes of the two scans match";
   return fmt::format(
       "best overlap {:.1f} m2, but it puts {:.1f} m2 of surface where the other scanner saw empty space: "
-      "probably the scans do not overlap ({})",
+      "most likely the scans do not overlap ({})",
       best.agreeing_m2, best.contradicted_m2, percent_words(posterior.by_chance()));
 }
 

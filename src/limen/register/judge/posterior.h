@@ -43,7 +43,7 @@ TwinEvidence look_alike_through_windows(const PoseScore& score, PairSort sort, d
 struct PairQuestions {
   /// What distinguishes two poses, given their numbers.
   std::function<PoseContrast(std::size_t first, std::size_t second)> contrast;
-  /// What is known of look-alike places under a pose. Null: nothing, for they are searched as well.
+  /// What is known of look-alike places under a pose: odds of 0 where they are searched, too. Null: nothing.
   std::function<TwinEvidence(std::size_t pose)> look_alike;
   double repeats = 1.0;  ///< factor of the share of places that both scans see twice
 };
@@ -79,7 +79,7 @@ struct Posterior {
 Posterior weigh_poses(const std::vector<FoundPose>& poses, PairSort sort, const PairQuestions& questions);
 
 /// The one step from probabilities to an outcome, `open` being what the best pose leaves open.
-/// - `no_match` where chance is likelier than all that is shared together;
+/// - `no_match` where chance is likelier than the best pose and than a look-alike place;
 /// - `registered` and `probable` where the best pose is as sure as the options ask for and nothing is open;
 /// - `under_constrained` where something is open and the place is at least probable;
 /// - else `ambiguous`.

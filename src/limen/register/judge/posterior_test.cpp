@@ -153,6 +153,20 @@ TEST(Posterior, ARoomMayBeBehindOtherWindowsToo) {
   EXPECT_GT(best({pose(30), pose(14, 2)}, 1.0), 0.999) << "what is contradicted is not that room";
 }
 
+TEST(Posterior, ThroughWindowsHowSurfacesWereBuiltExcludesChance) {
+  const auto all = [](PairSort sort, double built_nats) {
+    TwinEvidence evidence;
+    evidence.otherwise = 0.0;
+    evidence.built.one.fill(built_nats);
+    return weighed({pose(9)}, {evidence}, sort);
+  };
+  for (const PairSort sort : {PairSort::through_wall, PairSort::past_wall}) {
+    EXPECT_LT(all(sort, 6.0).by_chance(), 0.5 * all(sort, 0.0).by_chance());
+    EXPECT_GT(all(sort, -6.0).by_chance(), all(sort, 0.0).by_chance());
+    EXPECT_EQ(all(sort, 0.0).others.twin, 0.0) << "look-alike rooms are searched there";
+  }
+}
+
 TEST(Posterior, WhatChanceReachesInAModelIsLearnedThere) {
   const auto in_model = [](double asked, double explained, double others) {
     std::vector<FoundPose> poses{pose(30), pose(8), pose(8)};
@@ -205,13 +219,13 @@ TEST(OutcomeOf, WhereSomethingIsOpenThePlaceHasToBeProbable) {
   EXPECT_EQ(outcome_of(odds(0.5, 0.5, 0.0, 0.0, 0.5), kHeld), Outcome::ambiguous);
 }
 
-TEST(OutcomeOf, WhereNothingSharedIsLikelierThanAllElseNothingMatches) {
+TEST(OutcomeOf, WhereNothingSharedIsTheLikeliestNothingMatches) {
   EXPECT_EQ(outcome_of(odds(0.007, 0.0, 0.0, 0.993), kOpen), Outcome::no_match);
-  EXPECT_EQ(outcome_of(odds(0.06, 0.1, 0.0, 0.84), kHeld), Outcome::no_match);
-  EXPECT_EQ(outcome_of(odds(0.2, 0.19, 0.1, 0.51), kHeld), Outcome::no_match);
-  EXPECT_EQ(outcome_of(odds(0.2, 0.21, 0.1, 0.49), kHeld), Outcome::ambiguous);
-  // More probable than any single pose, but less than all of them and a look-alike.
-  EXPECT_EQ(outcome_of(odds(0.2, 0.1, 0.3, 0.4), kHeld), Outcome::ambiguous);
+  EXPECT_EQ(outcome_of(odds(0.06, 0.54, 0.0, 0.4), kHeld), Outcome::no_match) << "many poses share that";
+  EXPECT_EQ(outcome_of(odds(0.3, 0.3, 0.09, 0.31), kHeld), Outcome::no_match);
+  EXPECT_EQ(outcome_of(odds(0.32, 0.3, 0.07, 0.31), kHeld), Outcome::ambiguous);
+  EXPECT_EQ(outcome_of(odds(0.2, 0.1, 0.4, 0.3), kHeld), Outcome::ambiguous) << "a look-alike place";
+  EXPECT_EQ(outcome_of(odds(0.2, 0.5, 0.0, 0.3, 0.3), kOpen), Outcome::ambiguous) << "the same place, slid";
   EXPECT_EQ(outcome_of({}, kHeld), Outcome::no_match);
 }
 
