@@ -76,6 +76,7 @@ class PoseEnumerator {
 
     std::vector<PoseCandidate> all;
     for (const std::vector<PoseCandidate>& poses : found) all.insert(all.end(), poses.begin(), poses.end());
+    keep_best(all, static_cast<std::size_t>(options_.max_poses));
     return all;
   }
 

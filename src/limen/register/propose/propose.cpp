@@ -89,7 +89,6 @@ std::vector<PoseCandidate> select_poses(const std::vector<PoseCandidate>& candid
     return Look{samples, kept, contradiction_weight, openings, true, kClearShare, 24, kClearM2};
   };
   std::vector<PoseCandidate> left = candidates;
-  if (left.size() > 2 * kVeryMany) left = best_of(left, source, target, look(kGlimpse, kVeryMany, 0.25));
   // A glance that leaves more than half of them costs more than it spares.
   if (left.size() > 2 * kMany) left = best_of(left, source, target, look(kGlance, kMany, 0.25));
   if (left.size() > kSome) left = best_of(left, source, target, look(kShortLook, kSome, 1.0));
