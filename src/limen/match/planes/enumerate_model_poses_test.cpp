@@ -8,6 +8,8 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
+#include "limen/match/planes/enumerate_poses.h"
+
 namespace limen {
 namespace {
 
@@ -117,6 +119,23 @@ TEST(EnumerateModelPoses, OfALargeBuildingThereAreBoundedlyManyPoses) {
   const std::vector<PoseCandidate> poses = enumerate_model_poses(scan_of_room(tilted_pose()), model, options);
   EXPECT_FALSE(poses.empty());
   EXPECT_LE(poses.size(), 60000U);
+}
+
+TEST(EnumerateSlidingPoses, ReturnsThoseWhosePlanesHaveMostInCommon) {
+  const Features room = scan_of_room({});
+  const Features rooms = building(3, 2, 2);
+  PoseEnumerationOptions options;
+  options.gravity_known = true;
+  options.max_poses = 1000000;
+  std::vector<PoseCandidate> all = enumerate_sliding_poses(room, rooms, 0.4, options);
+  options.max_poses = 200;
+  const std::vector<PoseCandidate> best = enumerate_sliding_poses(room, rooms, 0.4, options);
+  ASSERT_GT(all.size(), 1000U);
+  ASSERT_EQ(best.size(), 200U);
+  std::sort(all.begin(), all.end(),
+            [](const PoseCandidate& a, const PoseCandidate& b) { return a.precedence > b.precedence; });
+  EXPECT_LT(all.back().precedence, all[199].precedence);
+  for (const PoseCandidate& pose : best) EXPECT_GE(pose.precedence, all[199].precedence);
 }
 
 }  // namespace
