@@ -283,28 +283,62 @@ CommonSurfaces chosen(std::vector<Candidate> candidates) {
 
 }  // namespace
 
-CommonSurfaces common_surfaces(const ScanView& source, const BuiltPlanes& built_source,
-                               const ScanView& target, const BuiltPlanes& built_target,
-                               const Rigid3& target_from_source) {
+struct CommonSurfaceAsker::Walls {
+  /// Of the source: a wall with its tiles.
+  struct From {
+    const PlanarPolygon* plane;
+    std::vector<const SurfaceSample*> tiles;
+  };
+  /// Of the target.
+  struct To {
+    const PlanarPolygon* plane;
+    TileMap tiles;
+  };
+
+  ScanView source;
+  std::vector<From> from;
+  std::vector<To> to;
+};
+
+CommonSurfaceAsker::CommonSurfaceAsker(const ScanView& source, const BuiltPlanes& built_source,
+                                       const ScanView& target, const BuiltPlanes& built_target)
+    : walls_(new Walls{source, {}, {}}) {
   const std::vector<bool> from_walls = of_walls(source, built_source);
+  auto from_tiles = tiles_by_plane(source);
+  for (std::size_t i = 0; i < from_walls.size(); ++i) {
+    if (from_walls[i] && from_tiles[i].size() >= kLeastPairs)
+      walls_->from.push_back({&source.features->planes[i], std::move(from_tiles[i])});
+  }
   const std::vector<bool> to_walls = of_walls(target, built_target);
-  const auto from_tiles = tiles_by_plane(source);
   const auto to_tiles = tiles_by_plane(target);
-  const Finder finder(source, target_from_source);
-  std::vector<Candidate> candidates;
   for (std::size_t j = 0; j < to_walls.size(); ++j) {
     const PlanarPolygon& to = target.features->planes[j];
-    if (!to_walls[j] || to_tiles[j].size() < kLeastPairs) continue;
-    const TileMap map(target, to_tiles[j], to);
-    for (std::size_t i = 0; i < from_walls.size(); ++i) {
-      if (!from_walls[i] || from_tiles[i].size() < kLeastPairs) continue;
-      const PlanarPolygon& from = source.features->planes[i];
-      if ((target_from_source.rotation * from.plane.normal).dot(to.plane.normal) < kParallelCosine) continue;
-      const std::optional<Candidate> candidate = finder.ask(from, from_tiles[i], to, map);
+    if (to_walls[j] && to_tiles[j].size() >= kLeastPairs)
+      walls_->to.push_back({&to, TileMap(target, to_tiles[j], to)});
+  }
+}
+
+CommonSurfaceAsker::~CommonSurfaceAsker() = default;
+
+CommonSurfaces CommonSurfaceAsker::operator()(const Rigid3& target_from_source) const {
+  const Finder finder(walls_->source, target_from_source);
+  std::vector<Candidate> candidates;
+  for (const Walls::To& to : walls_->to) {
+    for (const Walls::From& from : walls_->from) {
+      if ((target_from_source.rotation * from.plane->plane.normal).dot(to.plane->plane.normal) <
+          kParallelCosine)
+        continue;
+      const std::optional<Candidate> candidate = finder.ask(*from.plane, from.tiles, *to.plane, to.tiles);
       if (candidate) candidates.push_back(*candidate);
     }
   }
   return chosen(std::move(candidates));
+}
+
+CommonSurfaces common_surfaces(const ScanView& source, const BuiltPlanes& built_source,
+                               const ScanView& target, const BuiltPlanes& built_target,
+                               const Rigid3& target_from_source) {
+  return CommonSurfaceAsker(source, built_source, target, built_target)(target_from_source);
 }
 
 }  // namespace limen

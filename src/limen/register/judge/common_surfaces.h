@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "limen/register/judge/as_built.h"
@@ -17,8 +18,25 @@ struct CommonSurfaces {
   double scatter_m = 0.0;
 };
 
-/// Asks where tiles of both scans lie in one plane (upright frames). Layers of one wall count once: the one
-/// most of which was seen.
+/// Asks where tiles of both scans lie in one plane under poses (upright frames). Layers of one wall count
+/// once: the one most of which was seen. The tiles of each wall are gathered once; what the views point to
+/// has to outlive this.
+class CommonSurfaceAsker {
+ public:
+  CommonSurfaceAsker(const ScanView& source, const BuiltPlanes& built_source, const ScanView& target,
+                     const BuiltPlanes& built_target);
+  ~CommonSurfaceAsker();
+  CommonSurfaceAsker(const CommonSurfaceAsker&) = delete;
+  CommonSurfaceAsker& operator=(const CommonSurfaceAsker&) = delete;
+
+  [[nodiscard]] CommonSurfaces operator()(const Rigid3& target_from_source) const;
+
+ private:
+  struct Walls;
+  std::unique_ptr<Walls> walls_;
+};
+
+/// The same of one pose.
 CommonSurfaces common_surfaces(const ScanView& source, const BuiltPlanes& built_source,
                                const ScanView& target, const BuiltPlanes& built_target,
                                const Rigid3& target_from_source);

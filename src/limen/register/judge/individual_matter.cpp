@@ -272,10 +272,14 @@ double chance_of(const Side& source, const Side& target, const Rigid3& target_fr
 struct MatterAsker::Sides {
   Side source;
   Side target;
+  CommonSurfaceAsker surfaces;
+
+  Sides(const ScanView& first, const ScanView& second)
+      : source(first), target(second), surfaces(first, source.built, second, target.built) {}
 };
 
 MatterAsker::MatterAsker(const ScanView& source, const ScanView& target)
-    : sides_(new Sides{Side(source), Side(target)}) {}
+    : sides_(new Sides(source, target)) {}
 
 MatterAsker::~MatterAsker() = default;
 
@@ -290,8 +294,7 @@ IndividualMatter MatterAsker::operator()(const Rigid3& target_from_source) const
   individual.chance = chance_of(source, target, target_from_source);
   individual.apart = wall_between(source, target, target_from_source) ||
                      wall_between(target, source, inverse(target_from_source));
-  const CommonSurfaces surfaces =
-      common_surfaces(source.view, source.built, target.view, target.built, target_from_source);
+  const CommonSurfaces surfaces = sides_->surfaces(target_from_source);
   individual.built = built_evidence(surfaces.all);
   std::vector<Vector3d> places;
   for (const Stated& one : stated) places.push_back(one.at);
@@ -302,11 +305,8 @@ IndividualMatter MatterAsker::operator()(const Rigid3& target_from_source) const
 
 BuiltEvidence MatterAsker::built(const Rigid3& target_from_source) const {
   CancelScope::check();
-  const Side& source = sides_->source;
-  const Side& target = sides_->target;
-  if (source.view.space == nullptr || target.view.space == nullptr) return {};
-  return built_evidence(
-      common_surfaces(source.view, source.built, target.view, target.built, target_from_source).all);
+  if (sides_->source.view.space == nullptr || sides_->target.view.space == nullptr) return {};
+  return built_evidence(sides_->surfaces(target_from_source).all);
 }
 
 IndividualMatter individual_matter(const ScanView& source, const ScanView& target,
