@@ -83,6 +83,19 @@ RC_GTEST_PROP(RigidLaws, LogarithmAndMatrixGoThereAndBack, ()) {
   RC_ASSERT((nearest_rotation(b_from_a.rotation) - b_from_a.rotation).norm() < 1e-12);
 }
 
+RC_GTEST_PROP(RigidLaws, TheNearestRotationOfOneThatWasStretchedIsThatOne, ()) {
+  const Matrix3d rotation = motion().rotation;
+  const Vector3d a = vector(1.0);
+  const Vector3d b = vector(1.0);
+  const Matrix3d stretch = a * a.transpose() - b * b.transpose();
+  for (const double amount : {1e-10, 1e-9, 1e-8, 1e-4, 0.1}) {
+    const Matrix3d nearest = nearest_rotation(rotation * (Matrix3d::Identity() + amount * stretch));
+    RC_ASSERT((nearest - rotation).norm() < 1e-14);
+    RC_ASSERT((nearest.transpose() * nearest - Matrix3d::Identity()).norm() < 1e-14);
+  }
+  RC_ASSERT(nearest_rotation(-rotation).determinant() > 0.0);
+}
+
 RC_GTEST_PROP(RigidLaws, LocalFramesChangeNothing, ()) {
   const Rigid3 target_from_source = motion();
   const Vector3d source_origin = 1e3 * vector(1000.0);

@@ -42,6 +42,11 @@ Rigid3 from_matrix(const Matrix4d& matrix, double tolerance) {
 }
 
 Matrix3d nearest_rotation(const Matrix3d& matrix) {
+  // What is off by rounding alone needs one step of Newton and Schulz, which squares how far it is off.
+  constexpr double kNear = 1e-8;
+  const Matrix3d off = matrix.transpose() * matrix - Matrix3d::Identity();
+  if (off.cwiseAbs().maxCoeff() < kNear && matrix.determinant() > 0)
+    return matrix * (Matrix3d::Identity() - 0.5 * off);
   const SingularValues3 svd = singular_values_of(matrix);
   const Vector3d signs(1, 1, (svd.left * svd.right.transpose()).determinant() < 0 ? -1 : 1);
   return svd.left * signs.asDiagonal() * svd.right.transpose();

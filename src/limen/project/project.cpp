@@ -16,6 +16,7 @@
 #include "limen/project/control/control_file.h"
 #include "limen/project/inputs/project_files.h"
 #include "limen/project/retrieve/choose_pairs.h"
+#include "limen/project/run/prepare_files.h"
 #include "limen/project/run/store_jobs.h"
 #include "limen/project/run/try_pairs.h"
 #include "limen/project/run/waves.h"
@@ -48,7 +49,7 @@ class Run {
     for (const std::string& text : files_.notes) note(text);
     count_files();
     if (engine_) prepare_elsewhere();
-    prepare_files();
+    prepare_all();
     if (nodes_.empty()) {
       const ProjectScan& first = result_.scans.front();
       throw Error("no scan could be read; the first: " + first.reason, first.file, "check the files");
@@ -140,35 +141,26 @@ class Run {
     }
   }
 
-  void prepare_files() {
+  void prepare_all() {
     monitor_.begin_stage("features");
     status_.stage = "features";
     write_status(folder_, status_);
-    for (std::size_t k = 0; k < files_.files.size(); ++k) {
-      monitor_.throw_if_cancelled();
-      const ProjectFile& file = files_.files[k];
-      const double all = static_cast<double>(files_.files.size());
-      StagePart part(monitor_, static_cast<double>(k) / all, static_cast<double>(k + 1) / all);
-      if (!file.fault.empty()) {
-        add_unreadable(file, file.fault);
-        continue;
-      }
-      if (!file.copy_of.empty()) {
-        add_copies(file);
-        continue;
-      }
-      try {
-        add_file(k, make_features(file, options_, store_, part));
-        ++status_.ready;
-      } catch (const StoreFault&) {
-        throw;
-      } catch (const Error& error) {
-        if (error.fault() != Fault::input) throw;
-        add_unreadable(file, stated_fault(file, error.what()));
-        ++status_.unreadable;
-      }
-      write_status(folder_, status_);
-    }
+    prepare_files(files_.files, options_, store_, monitor_,
+                  [this](std::size_t k, const FileOutcome& outcome) {
+                    const ProjectFile& file = files_.files[k];
+                    if (outcome.record) {
+                      add_file(k, *outcome.record);
+                      ++status_.ready;
+                    } else if (!file.copy_of.empty()) {
+                      add_copies(file);
+                    } else if (!file.fault.empty()) {
+                      add_unreadable(file, file.fault);
+                    } else {
+                      add_unreadable(file, stated_fault(file, outcome.fault));
+                      ++status_.unreadable;
+                    }
+                    write_status(folder_, status_);
+                  });
   }
 
   /// What is not kept is made by the engine's workers; what they could not make is the file's fault.

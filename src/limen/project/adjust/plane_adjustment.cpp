@@ -26,8 +26,11 @@ class JointSolver {
       : problem_(problem), system_(problem.fixed, problem.blends) {
     for (const PoseEdge& edge : problem.edges) information_.push_back(inverse_of(edge.pose.covariance));
     seen_by_.resize(static_cast<std::size_t>(problem.planes));
-    for (std::size_t k = 0; k < problem.observations.size(); ++k)
+    seen_from_.resize(problem.frame_from_node.size());
+    for (std::size_t k = 0; k < problem.observations.size(); ++k) {
       seen_by_[static_cast<std::size_t>(problem.observations[k].plane)].push_back(k);
+      seen_from_[static_cast<std::size_t>(problem.observations[k].node)].push_back(k);
+    }
     solution_.frame_from_node = problem.frame_from_node;
     for (const PlaneObservation& seen : problem.observations) factors_.push_back(moment_factor(seen));
     solution_.weights.assign(problem.observations.size(), 1.0);
@@ -98,12 +101,14 @@ class JointSolver {
   }
 
   void weigh() {
+    residuals_.resize(problem_.observations.size());
     parallel_for(problem_.observations.size(), kAtOnce, [&](std::size_t begin, std::size_t end) {
       for (std::size_t k = begin; k < end; ++k) {
         const PlaneObservation& seen = problem_.observations[k];
-        const PlaneResidual residual =
+        residuals_[k] =
             plane_residual(factors_[k], pose(seen.node), planes_[static_cast<std::size_t>(seen.plane)]);
-        const double mean = residual.value.squaredNorm() / std::min(seen.moments.count, seen.most_points);
+        const double mean =
+            residuals_[k].value.squaredNorm() / std::min(seen.moments.count, seen.most_points);
         const double ratio = kMissed / (kMissed + mean);
         solution_.weights[k] = ratio * ratio;
       }
@@ -114,7 +119,8 @@ class JointSolver {
     system_.clear();
     for (std::size_t e = 0; e < problem_.edges.size(); ++e)
       add_edge(problem_.edges[e], solution_.frame_from_node, information_[e], system_);
-    for (std::size_t p = 0; p < seen_by_.size(); ++p) add_plane(p);
+    add_nodes();
+    add_planes();
     for (const MarkedPoint& point : problem_.points) add_point(point);
     system_.factor();
   }
@@ -124,33 +130,76 @@ class JointSolver {
     return system_.move(solution_.frame_from_node);
   }
 
-  /// Adds what a plane says of the poses that see it, the plane itself eliminated.
-  void add_plane(std::size_t p) {
-    const std::vector<std::size_t>& seen = seen_by_[p];
-    if (seen.size() < 2) return;
+  /// What a plane that two see or more says of their poses, the plane itself eliminated: less
+  /// by_place * inverted * by_place^T for each two places of freedoms.
+  struct PlaneTerms {
+    std::map<int, Wide> by_place;  // many parts of a pass may see one plane
+    Matrix3d inverted = Matrix3d::Zero();
+    Vector3d right = Vector3d::Zero();
+  };
+
+  [[nodiscard]] double weight_of(std::size_t k) const { return plane_share_ * solution_.weights[k]; }
+  [[nodiscard]] bool is_shared(std::size_t plane) const { return seen_by_[plane].size() >= 2; }
+
+  /// Adds what the observations say as if the planes were known.
+  void add_nodes() {
+    std::vector<Matrix6d> blocks(solution_.frame_from_node.size(), Matrix6d::Zero());
+    std::vector<Vector6d> rights(blocks.size(), Vector6d::Zero());
+    parallel_for(blocks.size(), 1, [&](std::size_t node, std::size_t /*end*/) {
+      for (const std::size_t k : seen_from_[node]) {
+        if (!is_shared(static_cast<std::size_t>(problem_.observations[k].plane))) continue;
+        const PlaneResidual& residual = residuals_[k];
+        const Eigen::Matrix<double, 6, 4> weighted = weight_of(k) * residual.by_pose.transpose();
+        blocks[node].noalias() += weighted * residual.by_pose;
+        rights[node].noalias() -= weighted * residual.value;
+      }
+    });
+    for (std::size_t k = 0; k < blocks.size(); ++k) {
+      if (seen_from_[k].empty()) continue;
+      system_.add(static_cast<int>(k), static_cast<int>(k), blocks[k]);
+      system_.add_right(static_cast<int>(k), rights[k]);
+    }
+  }
+
+  /// Takes off what is due to the planes being unknown.
+  void add_planes() {
+    std::vector<PlaneTerms> terms(seen_by_.size());
+    parallel_for(terms.size(), kAtOnce, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t p = begin; p < end; ++p) terms[p] = terms_of(p);
+    });
+    std::vector<std::vector<std::size_t>> planes_of(static_cast<std::size_t>(system_.moving()));
+    for (std::size_t p = 0; p < terms.size(); ++p) {
+      for (const auto& [place, wide] : terms[p].by_place)
+        planes_of[static_cast<std::size_t>(place)].push_back(p);
+    }
+    parallel_for(planes_of.size(), 1, [&](std::size_t column, std::size_t /*end*/) {
+      const int place = static_cast<int>(column);
+      for (const std::size_t p : planes_of[column]) {
+        const std::map<int, Wide>& by_place = terms[p].by_place;
+        const auto own = by_place.find(place);
+        const Wide half = own->second * terms[p].inverted;
+        system_.add_right_at(place, -half * terms[p].right);
+        for (auto row = own; row != by_place.end(); ++row)
+          system_.add_at(row->first, place, -row->second * half.transpose());
+      }
+    });
+  }
+
+  [[nodiscard]] PlaneTerms terms_of(std::size_t p) const {
+    PlaneTerms terms;
+    if (!is_shared(p)) return terms;
     Matrix3d own = kTinyInformation * Matrix3d::Identity();
-    Vector3d own_right = Vector3d::Zero();
-    std::map<int, Wide> mixed;  // of each place of freedoms: many parts of a pass may see one plane
-    for (const std::size_t k : seen) {
-      const PlaneObservation& observation = problem_.observations[k];
-      const double weight = plane_share_ * solution_.weights[k];
-      const PlaneResidual residual = plane_residual(factors_[k], pose(observation.node), planes_[p]);
+    for (const std::size_t k : seen_by_[p]) {
+      const PlaneResidual& residual = residuals_[k];
+      const double weight = weight_of(k);
       own += weight * residual.by_plane.transpose() * residual.by_plane;
-      own_right -= weight * residual.by_plane.transpose() * residual.value;
-      const Wide own_mixed = weight * residual.by_pose.transpose() * residual.by_plane;
-      for (const auto& [place, share] : system_.shares(observation.node))
-        mixed.try_emplace(place, Wide::Zero()).first->second += share * own_mixed;
-      system_.add(observation.node, observation.node,
-                  weight * residual.by_pose.transpose() * residual.by_pose);
-      system_.add_right(observation.node, -weight * residual.by_pose.transpose() * residual.value);
+      terms.right -= weight * residual.by_plane.transpose() * residual.value;
+      const Wide mixed = weight * residual.by_pose.transpose() * residual.by_plane;
+      for (const auto& [place, share] : system_.shares(problem_.observations[k].node))
+        terms.by_place.try_emplace(place, Wide::Zero()).first->second += share * mixed;
     }
-    const Matrix3d inverted = inverse_of(own);
-    for (const auto& [row, of_row] : mixed) {
-      const Wide half = of_row * inverted;
-      system_.add_right_at(row, -half * own_right);
-      for (const auto& [column, of_column] : mixed)
-        system_.add_at(row, column, -half * of_column.transpose());
-    }
+    terms.inverted = inverse_of(own);
+    return terms;
   }
 
   /// Adds what the sights of a point say of their poses, the point itself eliminated.
@@ -175,13 +224,12 @@ class JointSolver {
     for (std::size_t k = 0; k < problem_.observations.size(); ++k) {
       const PlaneObservation& seen = problem_.observations[k];
       const std::size_t plane = static_cast<std::size_t>(seen.plane);
-      if (seen_by_[plane].size() < 2) continue;
+      if (!is_shared(plane)) continue;
       // What a plane's own thickness leaves is no contradiction between scans.
-      const PlaneResidual residual = plane_residual(factors_[k], pose(seen.node), planes_[plane]);
-      sum += solution_.weights[k] * (residual.value.squaredNorm() - own_misfit(seen));
+      sum += solution_.weights[k] * (residuals_[k].value.squaredNorm() - own_misfit(seen));
       count += 3.0 * solution_.weights[k];
     }
-    for (const std::vector<std::size_t>& seen : seen_by_) count -= seen.size() < 2 ? 0.0 : 3.0;
+    for (std::size_t p = 0; p < seen_by_.size(); ++p) count -= is_shared(p) ? 3.0 : 0.0;
     if (count > 0.0) solution_.variance_factor = sum / count;
   }
 
@@ -214,22 +262,20 @@ class JointSolver {
     const bool any = std::any_of(problem_.edges.begin(), problem_.edges.end(),
                                  [](const PoseEdge& edge) { return edge.stated; });
     if (!any) return;
+    system_.invert();
     solution_.edge_covariance.assign(problem_.edges.size(), Matrix6d::Zero());
     for (std::size_t e = 0; e < problem_.edges.size(); ++e) {
       const PoseEdge& edge = problem_.edges[e];
       if (!edge.stated) continue;
       CancelScope::check();
       const EdgeResidual residual = edge_residual(edge, pose(edge.source), pose(edge.target));
-      Matrix6d covariance = Matrix6d::Zero();
-      const auto add = [&](int a, const Matrix6d& by_a) {
-        if (!system_.moves(a)) return;
-        const Eigen::MatrixXd columns = system_.inverse_columns(a);
-        covariance += residual.by_source * system_.block_of(columns, edge.source) * by_a.transpose();
-        covariance += residual.by_target * system_.block_of(columns, edge.target) * by_a.transpose();
-      };
-      add(edge.source, residual.by_source);
-      add(edge.target, residual.by_target);
-      solution_.edge_covariance[e] = covariance;
+      const Matrix6d mixed = residual.by_source * system_.inverse_block(edge.source, edge.target) *
+                             residual.by_target.transpose();
+      solution_.edge_covariance[e] = residual.by_source * system_.inverse_block(edge.source, edge.source) *
+                                         residual.by_source.transpose() +
+                                     residual.by_target * system_.inverse_block(edge.target, edge.target) *
+                                         residual.by_target.transpose() +
+                                     mixed + mixed.transpose();
     }
   }
 
@@ -258,7 +304,9 @@ class JointSolver {
   double plane_share_ = 1.0;  // of the weight that planes are given
   std::vector<Matrix6d> information_;
   std::vector<Eigen::Matrix4d> factors_;  ///< of the observations' moments
-  std::vector<std::vector<std::size_t>> seen_by_;
+  std::vector<PlaneResidual> residuals_;
+  std::vector<std::vector<std::size_t>> seen_by_;    ///< of a plane
+  std::vector<std::vector<std::size_t>> seen_from_;  ///< of a node
   std::vector<AnchoredPlane> planes_;
   PoseSystem system_;
 };

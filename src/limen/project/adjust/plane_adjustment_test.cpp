@@ -61,6 +61,42 @@ TEST(PlaneAdjustment, DerivativesAreThoseOfDifferences) {
   }
 }
 
+/// A chain of nodes from the first, which is fixed, and an edge of its own uncertainty to each next one.
+JointProblem chain(int nodes, RandomStream& random) {
+  JointProblem problem;
+  problem.fixed.assign(static_cast<std::size_t>(nodes), false);
+  problem.fixed.front() = true;
+  for (int k = 0; k < nodes; ++k) problem.frame_from_node.push_back(random_pose(random, 3.0));
+  for (int k = 1; k < nodes; ++k) {
+    PoseEdge edge;
+    edge.source = k;
+    edge.target = k - 1;
+    edge.pose.target_from_source = inverse(problem.frame_from_node[static_cast<std::size_t>(k - 1)]) *
+                                   problem.frame_from_node[static_cast<std::size_t>(k)];
+    edge.pose.centre = random_pose(random, 2.0).translation;
+    Vector6d sigma;
+    for (double& one : sigma) one = 0.01 * random.uniform(0.5, 2.0);
+    edge.pose.covariance = sigma.cwiseAbs2().asDiagonal();
+    edge.stated = true;
+    problem.edges.push_back(edge);
+  }
+  return problem;
+}
+
+TEST(PlaneAdjustment, AnEdgeThatNothingChecksKeepsItsUncertaintyAndTwoAlikeHalveIt) {
+  RandomStream random(5);
+  JointProblem problem = chain(5, random);
+  const auto check = [&](std::size_t e, double share) {
+    const JointSolution solution = adjust_jointly(problem);
+    const Matrix6d wanted = share * problem.edges[e].pose.covariance;
+    EXPECT_LT((solution.edge_covariance[e] - wanted).norm(), 1e-3 * wanted.norm()) << e;
+  };
+  for (std::size_t e = 0; e < problem.edges.size(); ++e) check(e, 1.0);
+  problem.edges.push_back(problem.edges[2]);
+  check(1, 1.0);
+  check(2, 0.5);
+}
+
 TEST(PlaneAdjustment, EdgeDerivativesAreThoseOfDifferences) {
   RandomStream random(2);
   const Rigid3 source = random_pose(random, 4.0);

@@ -59,6 +59,7 @@ void BlockCholesky::factor(const LowerBlocks& matrix) {
     entries_ = entries;
   }
   take_values(matrix);
+  inverse_.clear();
   // Of each column those before it that have a block in its row, each with the place of that block.
   std::vector<std::vector<std::pair<std::size_t, std::size_t>>> before(columns_.size());
   place_.assign(columns_.size(), 0);
@@ -188,6 +189,7 @@ Eigen::MatrixXd BlockCholesky::solve(const Eigen::MatrixXd& right) const {
 }
 
 void BlockCholesky::invert() {
+  if (!inverse_.empty()) return;
   inverse_.assign(columns_.size(), {});
   inverse_diagonal_.assign(columns_.size(), Matrix6d::Zero());
   for (std::size_t j = columns_.size(); j-- > 0;) invert_column(j);

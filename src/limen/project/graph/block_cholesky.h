@@ -27,7 +27,7 @@ class BlockCholesky {
   /// The inverse times `right`, of six rows per block.
   [[nodiscard]] Eigen::MatrixXd solve(const Eigen::MatrixXd& right) const;
 
-  /// Makes the blocks of the inverse; to be called after factor().
+  /// Makes the blocks of the inverse, once for each factor(), which comes before it.
   void invert();
   /// A block of the inverse where the factor has one: everywhere where the matrix has, and at the diagonal.
   [[nodiscard]] std::optional<Matrix6d> inverse_block(int row, int column) const;

@@ -37,7 +37,8 @@ class PoseSystem {
   void clear();
   /// Adds to what two nodes have to do with each other; what concerns a fixed node is left out.
   void add(int row, int column, const Matrix6d& block);
-  /// The same of two places of freedoms.
+  /// The same of two places of freedoms. Different columns, and rows of the right side, may be added to at
+  /// once.
   void add_at(int row_place, int column_place, const Matrix6d& block);
   void add_right(int row, const Vector6d& part);
   void add_right_at(int row_place, const Vector6d& part);

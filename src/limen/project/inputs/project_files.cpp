@@ -133,11 +133,12 @@ ProjectFiles list_files(const ProjectInputs& inputs, Monitor& monitor) {
   for (const std::string& model : models) add(model, true);
   for (const std::string& scan : scans) add(scan, false);
   monitor.begin_stage("files");
-  for (std::size_t k = 0; k < list.files.size(); ++k) {
+  StageShares progress(monitor, list.files.size());
+  parallel_for(list.files.size(), 1, [&](std::size_t k, std::size_t /*end*/) {
     monitor.throw_if_cancelled();
     take_hash(list.files[k]);
-    monitor.advance(static_cast<double>(k + 1), static_cast<double>(list.files.size()));
-  }
+    progress.worker(k).advance(1.0, 1.0);
+  });
   mark_copies(list);
   return list;
 }
