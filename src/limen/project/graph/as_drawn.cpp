@@ -3,9 +3,8 @@
 #include "limen/project/graph/as_drawn.h"
 
 #include <algorithm>
-#include <cmath>
 
-#include "limen/register/judge/evidence_table.h"
+#include "limen/register/judge/as_built.h"
 
 namespace limen {
 
@@ -15,13 +14,13 @@ AsDrawn::AsDrawn(int nodes, const std::vector<PlacedPair>& pairs) {
 }
 
 double AsDrawn::without(const std::vector<bool>& side, const BendBelief& bends) const {
-  double log_odds = std::log(evidence_table::kAsDrawn / (1.0 - evidence_table::kAsDrawn));
+  double nats = 0.0;
   for (const Walls& walls : walls_) {
     if (walls.pair.is_within(side))
-      log_odds +=
+      nats +=
           walls.pair.weight * std::clamp(as_drawn_nats(walls.built, bends), -kMostPairNats, kMostPairNats);
   }
-  return 1.0 / (1.0 + std::exp(-log_odds));
+  return probability_as_drawn(nats);
 }
 
 }  // namespace limen

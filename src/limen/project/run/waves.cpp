@@ -25,7 +25,8 @@ constexpr std::size_t kMorePartners = 3;
 constexpr int kMostWaves = 4;
 constexpr std::size_t kPairsOfWave = 2;  // of a scan, on average: the next wave knows more
 constexpr int kMostStatedPairs = 4;      // of a scan, where all places are stated
-constexpr int kEnoughLinks = 4;          // verified ones: a scan that has them needs no more
+constexpr int kEnoughLinks = 4;          // verified ones: a scan that has them needs no more ...
+constexpr int kLeastLinks = 3;           // ... nor one that has so many and is registered
 
 class Waves {
  public:
@@ -158,8 +159,9 @@ class Waves {
     std::vector<std::vector<Wish>> of_scan(nodes_.size());
     parallel_for(nodes_.size(), 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
-        if (solved.nodes[i].component >= 0 && held[i] < kEnoughLinks)
-          of_scan[i] = wishes_of(i, solved, boxes, done);
+        const SolvedNode& node = solved.nodes[i];
+        const int enough = node.state == NodeState::registered ? kLeastLinks : kEnoughLinks;
+        if (node.component >= 0 && held[i] < enough) of_scan[i] = wishes_of(i, solved, boxes, done);
       }
     });
     std::vector<Wish> wishes;

@@ -243,8 +243,8 @@ double as_drawn_nats(const BuiltEvidence& evidence, const BendBelief& bends) {
   return log_density(evidence.as_drawn, bends) - log_density(evidence.one, bends);
 }
 
-double probably_as_drawn(const BuiltEvidence& evidence) {
-  return 1.0 / (1.0 + (1.0 / evidence_table::kAsDrawn - 1.0) * std::exp(-as_drawn_nats(evidence)));
+double probability_as_drawn(double nats) {
+  return 1.0 / (1.0 + (1.0 / evidence_table::kAsDrawn - 1.0) * std::exp(-nats));
 }
 
 BendBelief logs_of_bends(const BuiltEvidence& evidence) {

@@ -91,8 +91,8 @@ struct BuiltBelief {
 double built_nats(const BuiltEvidence& evidence, const BuiltBelief& belief = {});
 /// Nats for a building that is exactly as drawn, if the scans show one place.
 double as_drawn_nats(const BuiltEvidence& evidence, const BendBelief& bends = bends_beforehand());
-/// The probability of that, by what these walls say of it.
-double probably_as_drawn(const BuiltEvidence& evidence);
+/// The probability of that, given these nats.
+double probability_as_drawn(double nats);
 /// Of each amount by which scans are bent, the logarithm of the density of what was seen of one place.
 BendBelief logs_of_bends(const BuiltEvidence& evidence);
 

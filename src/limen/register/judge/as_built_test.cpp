@@ -92,7 +92,7 @@ TEST(AsBuilt, ABuildingThatStandsAsDrawnSaysNothing) {
 
 TEST(AsBuilt, WallsSayWhetherABuildingIsAsDrawn) {
   const auto probability = [](const Made& made, std::uint64_t seed) {
-    return probably_as_drawn(built_evidence(scanned(made, seed)));
+    return probability_as_drawn(as_drawn_nats(built_evidence(scanned(made, seed))));
   };
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     EXPECT_GT(probability({.offset_m = 0.0, .turn_rad = 0.0}, seed), 0.99);
@@ -105,7 +105,7 @@ TEST(AsBuilt, WallsSayWhetherABuildingIsAsDrawn) {
     EXPECT_NEAR(probability({.offset_m = 0.0, .turn_rad = 0.0, .noise = 60.0}, seed),
                 evidence_table::kAsDrawn, evidence_table::kAsDrawn);
   }
-  EXPECT_NEAR(probably_as_drawn({}), evidence_table::kAsDrawn, 1e-12);
+  EXPECT_NEAR(probability_as_drawn(0.0), evidence_table::kAsDrawn, 1e-12);
 }
 
 TEST(AsBuilt, OnePlaceIsStatedTheBetterTheMoreOfItIsSeen) {

@@ -290,10 +290,18 @@ std::string reason_of(Outcome outcome, const Posterior& posterior, const PoseSco
       break;
   }
   if (posterior.order.empty()) return "no planes of the two scans match";
+  return fmt::format("{}: the likeliest explanation is that the scans do not overlap ({})",
+                     overlap_words(best.agreeing_m2, best.contradicted_m2),
+                     percent_words(posterior.by_chance()));
+}
+
+std::string overlap_words(double agreeing_m2, double contradicted_m2) {
+  constexpr double kLeastShownM2 = 0.05;  // less would read 0.0
+  if (contradicted_m2 < kLeastShownM2)
+    return fmt::format("best overlap {:.1f} m2, which may be chance", agreeing_m2);
   return fmt::format(
-      "best overlap {:.1f} m2, but it puts {:.1f} m2 of surface where the other scanner saw empty space: "
-      "most likely the scans do not overlap ({})",
-      best.agreeing_m2, best.contradicted_m2, percent_words(posterior.by_chance()));
+      "best overlap {:.1f} m2, but it puts {:.1f} m2 of surface where the other scanner saw empty space",
+      agreeing_m2, contradicted_m2);
 }
 
 }  // namespace limen

@@ -91,4 +91,7 @@ std::string reason_of(Outcome outcome, const Posterior& posterior, const PoseSco
                       const OpenFreedoms& open, const std::string& look_alike,
                       const VerdictOptions& options = {});
 
+/// Of a best pose that is no answer: how much surface agrees and how much contradicts it, in words.
+std::string overlap_words(double agreeing_m2, double contradicted_m2);
+
 }  // namespace limen

@@ -314,7 +314,7 @@ double against_alike(const TwinEvidence& evidence, double as_drawn, double staye
 }
 
 double odds_of(const TwinEvidence& evidence) {
-  const double as_drawn = probably_as_drawn(evidence.built);
+  const double as_drawn = probability_as_drawn(as_drawn_nats(evidence.built));
   return std::exp(-built_nats(evidence.built)) *
          (evidence.otherwise * std::exp(-against_otherwise(evidence, as_drawn)) +
           evidence.alike * std::exp(-against_alike(evidence, as_drawn)));

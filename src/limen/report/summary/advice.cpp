@@ -11,6 +11,7 @@
 
 #include "limen/base/text.h"
 #include "limen/model/plausible_size.h"
+#include "limen/register/judge/posterior.h"
 #include "limen/report/summary/words.h"
 
 namespace limen {
@@ -48,9 +49,7 @@ WeighedCause overlap_cause(const RegistrationReport& report) {
                                  100.0 * *best.explained_share);
     cause.remedy = "check that the model is of this building and contains this storey";
   } else if (best.agreeing_m2 > 0.0) {
-    cause.measured = fmt::format(
-        "best overlap {:.1f} m2, but it puts {:.1f} m2 of surface where the other scanner saw empty space",
-        best.agreeing_m2, best.contradicted_m2);
+    cause.measured = overlap_words(best.agreeing_m2, best.contradicted_m2);
   } else {
     cause.measured = "no plane of one matches a plane of the other";
   }
