@@ -123,13 +123,13 @@ void ask_matter(const Side& scan, const Side& judge, const Rigid3& judge_from_sc
   for (const Piece& piece : scan.pieces) {
     SightQuery query;
     query.at = judge_from_scan * piece.detail->mean;
-    const BuiltPlanes::Place place = judge.built.place(query.at);
-    if (place == BuiltPlanes::Place::at_wall) continue;
     query.surface_m = kMatterM;
     query.free_m = kFreeM;
     const Sight sight = judge.view.space->look(query);
     const bool surface = sight.kind == SightKind::surface;
     if (!surface && sight.kind != SightKind::free) continue;
+    const BuiltPlanes::Place place = judge.built.place(query.at);
+    if (place == BuiltPlanes::Place::at_wall) continue;
     // Beyond an opening of both is what both rooms' neighbours have alike: corridors, façades.
     if (surface && piece.behind && place == BuiltPlanes::Place::behind) continue;
     if (surface && sight.plane >= 0 && judge.built.is_built(sight.plane)) continue;
