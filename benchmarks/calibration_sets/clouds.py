@@ -6,6 +6,7 @@ import numpy
 from . import poses
 
 VOXEL_M = 0.2
+FINE_M = 0.1  # tells the two faces of a wall from one another
 PLY_TYPES = {"char": "i1", "int8": "i1", "uchar": "u1", "uint8": "u1", "short": "i2", "int16": "i2", "ushort": "u2",
              "uint16": "u2", "int": "i4", "int32": "i4", "uint": "u4", "uint32": "u4", "float": "f4", "float32": "f4",
              "double": "f8", "float64": "f8"}
@@ -71,20 +72,25 @@ def write_ply(path, points):
     part.replace(path)
 
 
-def voxels(points, reference_from_scan):
+def voxels(points, reference_from_scan, size_m=VOXEL_M):
     """Numbers of the occupied cubes, sorted."""
     pose = numpy.array(reference_from_scan)
-    cells = numpy.floor((points @ pose[:3, :3].T + pose[:3, 3]) / VOXEL_M).astype(numpy.int64) + (1 << 20)
+    cells = numpy.floor((points @ pose[:3, :3].T + pose[:3, 3]) / size_m).astype(numpy.int64) + (1 << 20)
     return numpy.unique((cells[:, 0] << 42) | (cells[:, 1] << 21) | cells[:, 2])
 
 
 def measure(scans):
-    """Gives each scan of a set its middle and its cubes in the frame of the first scan."""
+    """Gives each scan of a set its middle and its cubes of both sizes in the frame of the first scan."""
     for scan in scans:
         points = points_of(scan.path)
         scan.middle = [float(x) for x in numpy.median(points, axis=0)]
-        scan.voxels = voxels(points, poses.relative(scans[0].world_from_scan, scan.world_from_scan))
+        pose = poses.relative(scans[0].world_from_scan, scan.world_from_scan)
+        scan.voxels, scan.fine = voxels(points, pose), voxels(points, pose, FINE_M)
 
 
 def shared_m2(a, b):
     return len(numpy.intersect1d(a.voxels, b.voxels, assume_unique=True)) * VOXEL_M ** 2
+
+
+def surely_shared_m2(a, b):
+    return len(numpy.intersect1d(a.fine, b.fine, assume_unique=True)) * FINE_M ** 2

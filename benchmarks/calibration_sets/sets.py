@@ -14,8 +14,10 @@ import sys
 
 import numpy
 
-from . import clouds, poses
+from . import clouds, poses, verdicts
 from .tables import shared_bin
+
+REACHABLE_M2 = 4.0  # two scans that share so much surface can be joined
 
 
 @dataclasses.dataclass
@@ -25,6 +27,7 @@ class Scan:
     world_from_scan: list
     middle: list = None
     voxels: object = None
+    fine: object = None
 
 
 @dataclasses.dataclass
@@ -186,3 +189,10 @@ def foreign_pairs(sets, count, seed):
             group.extend(Pair(one, a, b, name=f"foreign: {one.name}/{a.name} {other.name}/{b.name}")
                          for a in one.scans for b in other.scans)
     return in_turns([shuffled(group, f"{seed} {key}") for key, group in groups.items()], count)
+
+
+def reachable(one):
+    """The scans of a set that hang together by surface enough, by their numbers: the largest such group."""
+    pairs = itertools.combinations(range(len(one.scans)), 2)
+    return verdicts.largest_group(len(one.scans), [
+        (a, b) for a, b in pairs if clouds.surely_shared_m2(one.scans[a], one.scans[b]) >= REACHABLE_M2])

@@ -76,11 +76,13 @@ def reliability_table(rows):
 def project_line(project):
     rows = project["scans"]
     stated = [1.0 - r["doubt"] for r in rows if r["placed"] and r["doubt"] is not None]
+    reachable = [r for r in rows if r.get("reachable")]
     return [len(rows), sum(r["placed"] for r in rows), sum(r["right"] for r in rows),
             sum(r["right"] and r["in_frame"] for r in rows), sum(stated) / len(stated) if stated else None,
             *(sum(r["state"] == state for r in rows) for state in STATES),
             *(sum(r["state"] == state and r["placed"] and not r["right"] for r in rows) for state in STATES),
-            project["cpu_s"], project["wall_s"]]
+            project["cpu_s"], project["wall_s"], len(reachable),
+            *(sum(r["right"] and r["state"] in states for r in reachable) for states in (STATES[:2], STATES[:1]))]
 
 
 def project_table(projects):
@@ -92,7 +94,7 @@ def project_table(projects):
     names = ["registered", "probable", "ambiguous", "under_constr", "floating"]
     return ("Buildings: scans, by what is stated of their places",
             ["scans", "placed", "right", "in frame", "stated", *names, *("WRONG " + name[:5] for name in names),
-             "CPU s", "wall s"], lines)
+             "CPU s", "wall s", "reachable", "of these", "registered"], lines)
 
 
 def all_tables(run):

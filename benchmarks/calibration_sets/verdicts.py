@@ -44,16 +44,27 @@ def majority(placed, one):
     return min(groups, key=lambda group: (-len(group[0]), group[1]))[0]
 
 
-def project_rows(one, told):
+def largest_group(count, pairs):
+    """Of scans 0 to count - 1 the largest set that the pairs join, the first of equal ones."""
+    group = list(range(count))
+    for a, b in pairs:
+        old, new = max(group[a], group[b]), min(group[a], group[b])
+        group = [new if one == old else one for one in group]
+    best = max(range(count), key=lambda one: (group.count(one), -one), default=None)
+    return {k for k in range(count) if group[k] == best}
+
+
+def project_rows(one, told, reachable=frozenset()):
     """A row for each scan of a set. placed: it stands in a frame with others; right: where the majority there has it;
-    in_frame: that frame is the project's."""
+    in_frame: that frame is the project's; reachable: its number is among those that could be joined."""
     by_name = {scan["file"].replace("\\", "/").rsplit("/", 1)[-1]: scan for scan in told.get("scans", ())}
     rows, components = [], {}
-    for scan in one.scans:
+    for number, scan in enumerate(one.scans):
         of = by_name.get(scan.path.name, {})
         pose = of.get("frame_from_scan") or of.get("component_from_scan")
         row = {"name": f"{one.name}: {scan.name}", "state": of.get("state", "error"), "doubt": of.get("doubt"),
-               "in_frame": of.get("frame_from_scan") is not None, "placed": False, "right": False}
+               "in_frame": of.get("frame_from_scan") is not None, "placed": False, "right": False,
+               "reachable": number in reachable}
         rows.append(row)
         if pose:
             components.setdefault(of.get("component"), []).append({"row": row, "scan": scan, "pose": pose})
