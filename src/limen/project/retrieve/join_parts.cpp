@@ -13,6 +13,7 @@
 #include <utility>
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 
 #include "limen/base/parallel.h"
 #include "limen/project/retrieve/plan_view.h"
@@ -140,9 +141,9 @@ struct Agreement {
   }
 };
 
-/// Of what the scans of `part` show, with the space of `other`.
-Agreement agreement(const Part& other, const Part& part, const Rigid3& other_from_part) {
-  Agreement agreement;
+/// Calls `take` with each point that the scans of `part` show, moved, where `other` may reach to.
+template <class Take>
+void for_points_near(const Part& other, const Part& part, const Rigid3& other_from_part, const Take& take) {
   Eigen::AlignedBox3d reach;  // of the other, in the part
   const Rigid3 back = inverse(other_from_part);
   for (int corner = 0; corner < 8; ++corner)
@@ -153,13 +154,43 @@ Agreement agreement(const Part& other, const Part& part, const Rigid3& other_fro
       SurfacePoint moved = point;
       moved.x = other_from_part * point.x;
       moved.normal = other_from_part.rotation * point.normal;
-      const SeenSpace::Finding finding = other.space.at(moved);
-      if (finding == SeenSpace::Finding::surface)
-        agreement.common_m2 += point.area_m2 * moved.normal * moved.normal.transpose();
-      if (finding == SeenSpace::Finding::looked_through) agreement.looked_through_m2 += point.area_m2;
+      take(moved);
     }
   }
+}
+
+/// Of what the scans of `part` show, with the space of `other`.
+Agreement agreement(const Part& other, const Part& part, const Rigid3& other_from_part) {
+  Agreement agreement;
+  for_points_near(other, part, other_from_part, [&](const SurfacePoint& moved) {
+    const SeenSpace::Finding finding = other.space.at(moved);
+    if (finding == SeenSpace::Finding::surface)
+      agreement.common_m2 += moved.area_m2 * moved.normal * moved.normal.transpose();
+    if (finding == SeenSpace::Finding::looked_through) agreement.looked_through_m2 += moved.area_m2;
+  });
   return agreement;
+}
+
+/// A pose that a plan gave to a pixel, shifted along the level to where the walls of b lie in those of a:
+/// least squares, in which far walls lose their weight.
+Rigid3 settled(const Part& a, const Part& b, Rigid3 pose) {
+  constexpr int kRounds = 3;
+  constexpr double kNearM = 0.05;
+  constexpr double kSlope = 0.17;
+  for (int round = 0; round < kRounds; ++round) {
+    Eigen::Matrix2d normal = 1e-3 * Eigen::Matrix2d::Identity();
+    Vector2d right = Vector2d::Zero();
+    for_points_near(a, b, pose, [&](const SurfacePoint& point) {
+      if (std::abs(point.normal.z()) > kSlope) return;
+      const std::optional<double> way = a.space.way_to_surface(point);
+      if (!way) return;
+      const double weight = point.area_m2 / (1.0 + *way * *way / (kNearM * kNearM));
+      normal += weight * point.normal.head<2>() * point.normal.head<2>().transpose();
+      right += weight * *way * point.normal.head<2>();
+    });
+    pose.translation.head<2>() += normal.inverse() * right;
+  }
+  return pose;
 }
 
 /// Surface in common less what counts against it, m^2; less than `kLeastOverlapM2` where either part says so.
@@ -222,8 +253,9 @@ std::vector<PartPose> best_poses(const Part& a, const Part& b) {
   std::vector<PartPose> poses;
   for (const PlanPose& plan : plans) {
     for (const double height : heights) {
-      const Rigid3 pose{rotation_exp(plan.angle * Vector3d::UnitZ()),
-                        Vector3d(plan.shift.x(), plan.shift.y(), height)};
+      const Rigid3 pose = settled(
+          a, b,
+          {rotation_exp(plan.angle * Vector3d::UnitZ()), Vector3d(plan.shift.x(), plan.shift.y(), height)});
       const double score = score_of(a, b, pose);
       if (score >= kLeastOverlapM2) poses.push_back({pose, score});
     }

@@ -40,13 +40,16 @@ struct Row {
 
 /// Two parts: rooms 1 to 3, and rooms 3 and 4 of which every scan has axes of its own.
 struct TwoParts {
-  Rigid3 turned = turn_and_shift(0.7, {-3.0, 11.0, 0.4});
+  Rigid3 turned;
   Row row;
+  Rigid3 alone = turn_and_shift(-1.1, {2.0, 5.0, -2.0});
   std::vector<ScanDigest> digests = {row.first, row.second, row.third, seen_from(row.third, turned),
-                                     seen_from(row.fourth, turn_and_shift(-1.1, {2.0, 5.0, -2.0}))};
-  std::vector<PlacedPart> parts = {
-      {{0, 1, 2}, {Rigid3{}, Rigid3{}, Rigid3{}}},
-      {{3, 4}, {Rigid3{}, turned* inverse(turn_and_shift(-1.1, {2.0, 5.0, -2.0}))}}};
+                                     seen_from(row.fourth, alone)};
+  std::vector<PlacedPart> parts = {{{0, 1, 2}, {Rigid3{}, Rigid3{}, Rigid3{}}},
+                                   {{3, 4}, {Rigid3{}, turned* inverse(alone)}}};
+
+  explicit TwoParts(const Vector3d& moved = Vector3d::Zero())
+      : turned(turn_and_shift(0.7, Vector3d(-3.0, 11.0, 0.4) + moved)) {}
 };
 
 TEST(PartJoiner, TheTwoScansOfOneRoomComeFirst) {
@@ -54,6 +57,17 @@ TEST(PartJoiner, TheTwoScansOfOneRoomComeFirst) {
   const PairList pairs = PartJoiner(two.digests).next_pairs(two.parts, never);
   ASSERT_FALSE(pairs.empty());
   EXPECT_EQ(pairs.front(), std::pair(std::size_t{3}, std::size_t{2}));
+}
+
+TEST(PartJoiner, WhereThePartsLieWithinAPixelOfTheirPlansDoesNotMatter) {
+  for (const double x : {0.0, 0.05, 0.1, 0.15, 0.2}) {
+    for (const double y : {0.0, 0.05, 0.1, 0.15, 0.2}) {
+      const TwoParts two({x, y, 0.0});
+      const PairList pairs = PartJoiner(two.digests).next_pairs(two.parts, never);
+      ASSERT_FALSE(pairs.empty()) << x << ' ' << y;
+      EXPECT_EQ(pairs.front(), std::pair(std::size_t{3}, std::size_t{2})) << x << ' ' << y;
+    }
+  }
 }
 
 TEST(PartJoiner, TheOrderOfPartsDoesNotMatter) {
@@ -86,13 +100,15 @@ TEST(PartJoiner, TwoScansThatAreJoinedToNothingAreLeftToOthers) {
 }
 
 TEST(PartJoiner, ALookAlikeRoomWithWallsWhereTheOtherPartIsClearComesNowhere) {
-  // Beside room 2 of one part is a hall whose scanner looked at the wall between them; beside the same room
-  // of the other part are three cupboards.
-  const Row row;
+  // Beside room 2 of one part are a room and a hall whose scanners looked at the walls between them; beside
+  // the same room of the other part are three cupboards.
+  Row row;
   ScanDigest hall = drawn_room({11.4, 2.0, 1.25}, 6.0, 4.0);
   for (const double y : {0.5, 1.5, 2.5, 3.5}) {
-    for (const double z : {0.3, 0.9, 1.5, 2.1})
+    for (const double z : {0.3, 0.9, 1.5, 2.1}) {
       hall.planes.push_back(rectangle({8.4, y, z}, Vector3d::UnitX(), 1.0, 0.6));
+      row.first.planes.push_back(rectangle({5.0, y, z}, -Vector3d::UnitX(), 1.0, 0.6));
+    }
   }
   ScanDigest cupboards;
   for (const double y : {0.8, 2.0, 3.2})
@@ -157,6 +173,13 @@ TEST(SeenSpace, KnowsSurfaceAndWhatWasLookedThrough) {
   EXPECT_EQ(at({4.05, 0.7, 0.4}, Vector3d::UnitX()), SeenSpace::Finding::unknown);  // its other side
   EXPECT_EQ(at({2.0, 0.0, 0.0}, Vector3d::UnitX()), SeenSpace::Finding::looked_through);
   EXPECT_EQ(at({5.0, 0.0, 0.0}, Vector3d::UnitX()), SeenSpace::Finding::unknown);  // behind it
+  const auto way = [&](double x, const Vector3d& normal) {
+    return space.way_to_surface({{x, 0.7, 0.4}, normal, 1.0, true});
+  };
+  EXPECT_NEAR(way(3.7, -Vector3d::UnitX()).value_or(9.0), -0.3, 1e-9);
+  EXPECT_NEAR(way(4.35, -Vector3d::UnitX()).value_or(9.0), 0.35, 1e-9);
+  EXPECT_FALSE(way(4.35, Vector3d::UnitX()));  // its other side
+  EXPECT_FALSE(way(4.5, -Vector3d::UnitX()));
 }
 
 TEST(PlanImage, FindsTheShiftOfAPlanOnItself) {

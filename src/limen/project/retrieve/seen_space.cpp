@@ -73,6 +73,22 @@ SeenSpace::Finding SeenSpace::at(const SurfacePoint& point) const {
   return clear && !near ? Finding::looked_through : Finding::unknown;
 }
 
+std::optional<double> SeenSpace::way_to_surface(const SurfacePoint& point) const {
+  constexpr double kReachM = 0.4;
+  std::optional<double> nearest;
+  for (const double step : {0.0, 0.2, -0.2, kReachM, -kReachM}) {
+    const Cell* cell = find(point.x + step * point.normal);
+    if (cell == nullptr) continue;
+    for (const Surface& surface : cell->surfaces) {
+      const double cosine = surface.normal.dot(point.normal);
+      if ((point.oriented && surface.oriented ? cosine : std::abs(cosine)) < kSameWay) continue;
+      const double way = (surface.offset_m - surface.normal.dot(point.x)) / cosine;
+      if (std::abs(way) <= kReachM && (!nearest || std::abs(way) < std::abs(*nearest))) nearest = way;
+    }
+  }
+  return nearest;
+}
+
 SeenSpace::Cell& SeenSpace::cell_at(const Vector3d& x) {
   const auto [a, b] = key_of(x);
   const std::uint32_t number = numbers_.insert(a, b);

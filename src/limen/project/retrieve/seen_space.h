@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "limen/geometry/cell_numbers.h"
@@ -30,6 +31,9 @@ class SeenSpace {
   /// Surface: the point lies within 0.12 m in a plane that faces the same way. Looked through: a line of
   /// sight passes, and no plane of any direction is within 0.12 m.
   [[nodiscard]] Finding at(const SurfacePoint& point) const;
+  /// How far the nearest surface that faces the same way is along the point's normal; nothing: farther than
+  /// 0.4 m. Metres.
+  [[nodiscard]] std::optional<double> way_to_surface(const SurfacePoint& point) const;
 
  private:
   struct Surface {
