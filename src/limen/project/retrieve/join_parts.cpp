@@ -28,12 +28,13 @@ constexpr double kMostReachM = 100.0;    // time and memory grow with the reach
 constexpr double kEvenSpread = 1.73;     // standard deviations from the middle of an even spread to its end
 constexpr std::size_t kMostOfTurn = 30;
 constexpr std::size_t kMostScored = 64;
+constexpr std::size_t kMostScoredOfScans = 24;  // of two parts of one scan each: there are many of these
 constexpr std::size_t kMostHeights = 3;
 constexpr std::size_t kPosesOfParts = 3;  // of two parts
 constexpr std::size_t kPairsOfPose = 2;
-constexpr int kMostOfPart = 3;             // pairs of the smaller of two parts
-constexpr double kCountsAgainst = 3.0;     // surface that was looked through, to surface in common
-constexpr std::size_t kMatchesOfScan = 2;  // in one go, on average: parts with most scans first
+constexpr int kMostOfPart = 3;              // pairs of the smaller of two parts
+constexpr double kCountsAgainst = 3.0;      // surface that was looked through, to surface in common
+constexpr std::size_t kMatchesOfScan = 15;  // in one go, on average: parts with most scans first
 constexpr double kSamePoseM = 0.5;
 constexpr double kSamePoseRad = 0.1;
 
@@ -248,7 +249,8 @@ std::vector<PartPose> best_poses(const Part& a, const Part& b) {
   }
   std::stable_sort(plans.begin(), plans.end(),
                    [](const PlanPose& p, const PlanPose& q) { return p.score > q.score; });
-  plans.resize(std::min(plans.size(), kMostScored));
+  const bool scans = a.scans.size() + b.scans.size() == 2;
+  plans.resize(std::min(plans.size(), scans ? kMostScoredOfScans : kMostScored));
   const std::vector<double> heights = best_heights(a, b);
   std::vector<PartPose> poses;
   for (const PlanPose& plan : plans) {
@@ -350,8 +352,7 @@ PairList PartJoiner::next_pairs(const std::vector<PlacedPart>& parts,
   for (std::size_t i = 0; i < parts.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
       const PartPair pair = size(i) > size(j) ? PartPair(i, j) : PartPair(j, i);
-      if (size(i) + size(j) > 2 && sought_.count({parts[pair.first].scans, parts[pair.second].scans}) == 0)
-        open.push_back(pair);
+      if (sought_.count({parts[pair.first].scans, parts[pair.second].scans}) == 0) open.push_back(pair);
     }
   }
   std::stable_sort(open.begin(), open.end(), [&](const PartPair& a, const PartPair& b) {

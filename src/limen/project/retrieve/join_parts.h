@@ -29,8 +29,8 @@ class PartJoiner {
  public:
   explicit PartJoiner(const std::vector<ScanDigest>& digests) : digests_(digests) {}
 
-  /// The most promising first. Left out are pairs that were `tried` (higher, lower number), two scans that
-  /// are both joined to nothing, and two parts that an earlier call matched as they are.
+  /// The most promising first. Left out are pairs that were `tried` (higher, lower number), and two parts
+  /// that an earlier call matched as they are.
   PairList next_pairs(const std::vector<PlacedPart>& parts,
                       const std::function<bool(std::size_t, std::size_t)>& tried);
 
