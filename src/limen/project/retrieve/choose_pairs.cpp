@@ -11,6 +11,7 @@
 
 #include "limen/base/parallel.h"
 #include "limen/geometry/linear.h"
+#include "limen/project/retrieve/placed_plane.h"
 
 namespace limen {
 namespace {
@@ -74,7 +75,6 @@ namespace {
 
 constexpr double kMostM2 = 5.0;          // a plane counts for no more
 constexpr double kStepM = 0.05;          // of the shifts that are voted for
-constexpr double kUpright = 0.17;        // a wall's normal rises no more than this
 constexpr double kAlong = 0.97;          // cosine between a wall's normal and a main direction
 constexpr std::size_t kMostPlanes = 60;  // of a scan, the largest
 
@@ -97,7 +97,7 @@ double main_direction(const ScanDigest& scan) {
   double cosine = 0.0;
   for (const PlaneDigest& plane : scan.planes) {
     const Vector3d normal = scan.upright_from_scan * plane.plane.normal;
-    if (std::abs(normal.z()) > kUpright) continue;
+    if (!is_wall(normal)) continue;
     const double angle = 4.0 * std::atan2(normal.y(), normal.x());
     sine += plane.area_m2 * std::sin(angle);
     cosine += plane.area_m2 * std::cos(angle);

@@ -177,12 +177,11 @@ Agreement agreement(const Part& other, const Part& part, const Rigid3& other_fro
 Rigid3 settled(const Part& a, const Part& b, Rigid3 pose) {
   constexpr int kRounds = 3;
   constexpr double kNearM = 0.05;
-  constexpr double kSlope = 0.17;
   for (int round = 0; round < kRounds; ++round) {
     Eigen::Matrix2d normal = 1e-3 * Eigen::Matrix2d::Identity();
     Vector2d right = Vector2d::Zero();
     for_points_near(a, b, pose, [&](const SurfacePoint& point) {
-      if (std::abs(point.normal.z()) > kSlope) return;
+      if (!is_wall(point.normal)) return;
       const std::optional<double> way = a.space.way_to_surface(point);
       if (!way) return;
       const double weight = point.area_m2 / (1.0 + *way * *way / (kNearM * kNearM));

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cmath>
 #include <optional>
 
 #include "limen/geometry/rigid.h"
@@ -18,5 +19,11 @@ struct PlacedPlane {
   bool oriented = false;            ///< the normal points to the side it was seen from
   std::optional<Vector3d> scanner;  ///< the scanner position that saw it
 };
+
+/// Whether a normal is that of a wall: it rises no more than 10 degrees.
+inline bool is_wall(const Vector3d& normal) {
+  constexpr double kSlope = 0.17;
+  return std::abs(normal.z()) <= kSlope;
+}
 
 }  // namespace limen

@@ -14,7 +14,6 @@ namespace limen {
 namespace {
 
 constexpr double kPixelM = 0.25;
-constexpr double kWallSlope = 0.17;  // a wall's normal rises no more than this
 constexpr double kFullHeightM = 2.0;
 constexpr double kLeastHeightM = 1.0;  // lower ones are furniture
 constexpr double kNotClearM = 0.5;     // from its ends a line of sight is not sure to be clear
@@ -39,10 +38,6 @@ std::size_t pixels_in(int width, int height) {
   return static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
 }
 
-bool is_wall(const PlacedPlane& plane) {
-  return std::abs(plane.normal.z()) <= kWallSlope;
-}
-
 }  // namespace
 
 PlanView::PlanView(const std::vector<PlacedPlane>& planes) {
@@ -58,7 +53,7 @@ PlanView::PlanView(const std::vector<PlacedPlane>& planes) {
         sights_.push_back({scanner + kNotClearM / length * way, scanner + (1.0 - kNotClearM / length) * way});
       }
     }
-    if (is_wall(plane)) add_wall(plane);
+    if (is_wall(plane.normal)) add_wall(plane);
   }
   find_main_directions(planes);
 }
@@ -85,7 +80,7 @@ void PlanView::find_main_directions(const std::vector<PlacedPlane>& planes) {
   std::array<bool, kBins> taken{};
   const auto around = [](int bin) { return static_cast<std::size_t>((bin + kBins) % kBins); };
   for (const PlacedPlane& plane : planes) {
-    if (!is_wall(plane)) continue;
+    if (!is_wall(plane.normal)) continue;
     const double quarters = std::atan2(plane.normal.y(), plane.normal.x()) / kQuarter;
     wall[around(static_cast<int>((quarters - std::floor(quarters)) * kBins))] +=
         std::min(kMostWallM2, plane.area_m2);

@@ -17,7 +17,7 @@
 namespace limen {
 namespace {
 
-constexpr std::uintmax_t kLargeBytes = std::uintmax_t{64} << 20U;
+constexpr std::uintmax_t kLargeBytes = std::uintmax_t{32} << 20U;
 
 class FilePreparer {
  public:
@@ -48,7 +48,8 @@ class FilePreparer {
     const ProjectFile& file = files_[k];
     if (!file.fault.empty() || !file.copy_of.empty()) return {};
     std::error_code ignored;
-    const bool large = std::filesystem::file_size(file_of_scan(file.path), ignored) > kLargeBytes;
+    const bool large = options_.reading.memory_bytes > 0 ||
+                       std::filesystem::file_size(file_of_scan(file.path), ignored) > kLargeBytes;
     std::shared_lock beside(memory_, std::defer_lock);
     std::unique_lock alone(memory_, std::defer_lock);
     if (large)
