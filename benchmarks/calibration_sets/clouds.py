@@ -72,7 +72,7 @@ def write_ply(path, points):
     part.replace(path)
 
 
-def voxels(points, reference_from_scan, size_m=VOXEL_M):
+def voxels(points, reference_from_scan, size_m):
     """Numbers of the occupied cubes, sorted."""
     pose = numpy.array(reference_from_scan)
     cells = numpy.floor((points @ pose[:3, :3].T + pose[:3, 3]) / size_m).astype(numpy.int64) + (1 << 20)
@@ -85,12 +85,8 @@ def measure(scans):
         points = points_of(scan.path)
         scan.middle = [float(x) for x in numpy.median(points, axis=0)]
         pose = poses.relative(scans[0].world_from_scan, scan.world_from_scan)
-        scan.voxels, scan.fine = voxels(points, pose), voxels(points, pose, FINE_M)
+        scan.voxels = {size_m: voxels(points, pose, size_m) for size_m in (VOXEL_M, FINE_M)}
 
 
-def shared_m2(a, b):
-    return len(numpy.intersect1d(a.voxels, b.voxels, assume_unique=True)) * VOXEL_M ** 2
-
-
-def surely_shared_m2(a, b):
-    return len(numpy.intersect1d(a.fine, b.fine, assume_unique=True)) * FINE_M ** 2
+def shared_m2(a, b, size_m=VOXEL_M):
+    return len(numpy.intersect1d(a.voxels[size_m], b.voxels[size_m], assume_unique=True)) * size_m ** 2

@@ -26,8 +26,7 @@ class Scan:
     path: pathlib.Path
     world_from_scan: list
     middle: list = None
-    voxels: object = None
-    fine: object = None
+    voxels: dict = None  # by the size of the cubes
 
 
 @dataclasses.dataclass
@@ -195,4 +194,4 @@ def reachable(one):
     """The scans of a set that hang together by surface enough, by their numbers: the largest such group."""
     pairs = itertools.combinations(range(len(one.scans)), 2)
     return verdicts.largest_group(len(one.scans), [
-        (a, b) for a, b in pairs if clouds.surely_shared_m2(one.scans[a], one.scans[b]) >= REACHABLE_M2])
+        (a, b) for a, b in pairs if clouds.shared_m2(one.scans[a], one.scans[b], clouds.FINE_M) >= REACHABLE_M2])

@@ -94,7 +94,7 @@ def project_table(projects):
     names = ["registered", "probable", "ambiguous", "under_constr", "floating"]
     return ("Buildings: scans, by what is stated of their places",
             ["scans", "placed", "right", "in frame", "stated", *names, *("WRONG " + name[:5] for name in names),
-             "CPU s", "wall s", "reachable", "of these", "registered"], lines)
+             "CPU s", "wall s", "reachable", "r. placed", "r. registered"], lines)
 
 
 def all_tables(run):

@@ -268,14 +268,7 @@ class JointSolver {
       const PoseEdge& edge = problem_.edges[e];
       if (!edge.stated) continue;
       CancelScope::check();
-      const EdgeResidual residual = edge_residual(edge, pose(edge.source), pose(edge.target));
-      const Matrix6d mixed = residual.by_source * system_.inverse_block(edge.source, edge.target) *
-                             residual.by_target.transpose();
-      solution_.edge_covariance[e] = residual.by_source * system_.inverse_block(edge.source, edge.source) *
-                                         residual.by_source.transpose() +
-                                     residual.by_target * system_.inverse_block(edge.target, edge.target) *
-                                         residual.by_target.transpose() +
-                                     mixed + mixed.transpose();
+      solution_.edge_covariance[e] = covariance_of_edge(edge, pose(edge.source), pose(edge.target), system_);
     }
   }
 

@@ -72,13 +72,8 @@ void add_covariances(const Adjuster& adjuster, const std::vector<PoseEdge>& edge
   for (std::size_t e = 0; e < edges.size(); ++e) {
     const auto source = static_cast<std::size_t>(edges[e].source);
     const auto target = static_cast<std::size_t>(edges[e].target);
-    const EdgeResidual line =
-        edge_residual(edges[e], result.frame_from_node[source], result.frame_from_node[target]);
-    const Matrix6d across = system.inverse_block(edges[e].target, edges[e].source);
-    const Matrix6d mixed = line.by_target * across * line.by_source.transpose();
-    result.edge_covariance[e] = line.by_source * result.covariance[source] * line.by_source.transpose() +
-                                line.by_target * result.covariance[target] * line.by_target.transpose() +
-                                mixed + mixed.transpose();
+    result.edge_covariance[e] =
+        covariance_of_edge(edges[e], result.frame_from_node[source], result.frame_from_node[target], system);
   }
 }
 
@@ -99,6 +94,16 @@ EdgeResidual edge_residual(const PoseEdge& edge, const Rigid3& source, const Rig
   line.by_source = fill(source.translation, 1.0);
   line.by_target = fill(target.translation, -1.0);
   return line;
+}
+
+Matrix6d covariance_of_edge(const PoseEdge& edge, const Rigid3& source, const Rigid3& target,
+                            const PoseSystem& system) {
+  const EdgeResidual line = edge_residual(edge, source, target);
+  const Matrix6d mixed =
+      line.by_target * system.inverse_block(edge.target, edge.source) * line.by_source.transpose();
+  return line.by_source * system.inverse_block(edge.source, edge.source) * line.by_source.transpose() +
+         line.by_target * system.inverse_block(edge.target, edge.target) * line.by_target.transpose() +
+         mixed + mixed.transpose();
 }
 
 void add_edge(const PoseEdge& edge, const std::vector<Rigid3>& poses, const Matrix6d& information,

@@ -27,6 +27,10 @@ struct EdgeResidual {
 EdgeResidual edge_residual(const PoseEdge& edge, const Rigid3& frame_from_source,
                            const Rigid3& frame_from_target);
 
+/// Covariance of an edge's misfit after an adjustment; `system` is inverted.
+Matrix6d covariance_of_edge(const PoseEdge& edge, const Rigid3& frame_from_source,
+                            const Rigid3& frame_from_target, const PoseSystem& system);
+
 /// Adds an edge's say, weighted by `information`, to what is asked of the nodes it joins.
 void add_edge(const PoseEdge& edge, const std::vector<Rigid3>& poses, const Matrix6d& information,
               PoseSystem& system);

@@ -48,9 +48,6 @@ class PoseSystem {
   /// Moves the nodes to the solution; returns the largest shift or turn, metres or radians, and 0 where the
   /// system has no finite one.
   double move(std::vector<Rigid3>& poses) const;
-  /// Columns of the inverse for one node that moves; `block_of` takes a node's rows from them.
-  [[nodiscard]] Eigen::MatrixXd inverse_columns(int node) const;
-  [[nodiscard]] Matrix6d block_of(const Eigen::MatrixXd& columns, int node) const;
   /// Makes the blocks of the inverse that the factor has, all at once; then inverse_block() costs next to
   /// nothing for a node and for two that have to do with each other.
   void invert();
@@ -62,6 +59,9 @@ class PoseSystem {
 
  private:
   struct Sparse;
+  /// Columns of the inverse for one node that moves; `block_of` takes a node's rows from them.
+  [[nodiscard]] Eigen::MatrixXd inverse_columns(int node) const;
+  [[nodiscard]] Matrix6d block_of(const Eigen::MatrixXd& columns, int node) const;
 
   std::vector<NodeBlend> shares_;  // of each node: places of freedoms
   int size_ = 0;

@@ -177,8 +177,9 @@ Agreement agreement(const Part& other, const Part& part, const Rigid3& other_fro
 Rigid3 settled(const Part& a, const Part& b, Rigid3 pose) {
   constexpr int kRounds = 3;
   constexpr double kNearM = 0.05;
+  constexpr double kStayM2 = 1e-3;  // a direction that no wall holds does not move
   for (int round = 0; round < kRounds; ++round) {
-    Eigen::Matrix2d normal = 1e-3 * Eigen::Matrix2d::Identity();
+    Eigen::Matrix2d normal = kStayM2 * Eigen::Matrix2d::Identity();
     Vector2d right = Vector2d::Zero();
     for_points_near(a, b, pose, [&](const SurfacePoint& point) {
       if (!is_wall(point.normal)) return;

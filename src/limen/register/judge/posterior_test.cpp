@@ -244,6 +244,12 @@ TEST(ReasonOf, ItNamesWhatElseMayBe) {
   EXPECT_NE(reason(odds(0.1, 0.0, 0.1, 0.8)).find("do not overlap (80 %)"), std::string::npos);
 }
 
+TEST(ReasonOf, WhatContradictsTheBestOverlapIsNamedWhereThereIsAny) {
+  EXPECT_EQ(overlap_words(3.21, 0.04), "best overlap 3.2 m2, which may be chance");
+  EXPECT_EQ(overlap_words(3.21, 0.06),
+            "best overlap 3.2 m2, but it puts 0.1 m2 of surface where the other scanner saw empty space");
+}
+
 TEST(ReasonOf, WhatIsOpenIsNamed) {
   const Posterior sure = odds(1.0, 0.0, 0.0, 0.0);
   EXPECT_EQ(reason_of(Outcome::under_constrained, sure, {}, {kOpen}, {}),
