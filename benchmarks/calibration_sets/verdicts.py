@@ -38,10 +38,15 @@ def agreeing(anchor, placed, one):
     return [scan for scan, _ in good], sum(error[0] for _, error in good)
 
 
-def majority(placed, one):
-    """Of a component the largest group of scans that stand right to one scan of it."""
-    groups = [agreeing(anchor, placed, one) for anchor in placed]
-    return min(groups, key=lambda group: (-len(group[0]), group[1]))[0]
+def right_ones(placed, one):
+    """The scans of a component that stand right as seen from one of those that are registered or probable: the one that
+    most of these agree with, then most of all. Where none is, all count."""
+    sure = [scan for scan in placed if scan["row"]["state"] in ("registered", "probable")] or placed
+
+    def agreement(anchor):
+        group, error = agreeing(anchor, placed, one)
+        return -sum(scan in sure for scan in group), -len(group), error
+    return agreeing(min(sure, key=agreement), placed, one)[0]
 
 
 def largest_group(count, pairs):
@@ -55,8 +60,8 @@ def largest_group(count, pairs):
 
 
 def project_rows(one, told, reachable=frozenset()):
-    """A row for each scan of a set. placed: it stands in a frame with others; right: where the majority there has it;
-    in_frame: that frame is the project's; reachable: its number is among those that could be joined."""
+    """A row for each scan of a set. placed: it stands in a frame with others; right: where those have it that the
+    component is sure of (right_ones); in_frame: that frame is the project's; reachable: its number is among those that could be joined."""
     by_name = {scan["file"].replace("\\", "/").rsplit("/", 1)[-1]: scan for scan in told.get("scans", ())}
     rows, components = [], {}
     for number, scan in enumerate(one.scans):
@@ -72,6 +77,6 @@ def project_rows(one, told, reachable=frozenset()):
         if len(placed) > 1:
             for scan in placed:
                 scan["row"]["placed"] = True
-            for scan in majority(placed, one):
+            for scan in right_ones(placed, one):
                 scan["row"]["right"] = True
     return rows
