@@ -140,10 +140,10 @@ class StepParts {
   void bin(double edge) {
     cell_of_.reserve(places_.size());
     for (const Place& p : places_) {
-      const std::int32_t c = table_.insert(static_cast<std::int32_t>(std::floor(p.u / edge)),
-                                           static_cast<std::int32_t>(std::floor(p.v / edge)));
-      if (static_cast<std::size_t>(c) == cells_.size()) cells_.emplace_back();
-      cells_[static_cast<std::size_t>(c)].add(p.u, p.v, p.h);
+      const std::uint32_t c = table_.insert(static_cast<std::int32_t>(std::floor(p.u / edge)),
+                                            static_cast<std::int32_t>(std::floor(p.v / edge)));
+      if (c == cells_.size()) cells_.emplace_back();
+      cells_[c].add(p.u, p.v, p.h);
       cell_of_.push_back(c);
     }
     own_ = cells_;
@@ -226,14 +226,14 @@ class StepParts {
     for (int level = 0; level < kLevels; ++level) {
       CellNumbers larger(blocks.size() / 2);
       std::vector<Block> parents;
-      std::vector<std::int32_t> parent_of(blocks.size());
+      std::vector<std::uint32_t> parent_of(blocks.size());
       for (std::size_t b = 0; b < blocks.size(); ++b) {
         parent_of[b] = larger.insert(places.x(b) >> 1, places.y(b) >> 1);
-        if (static_cast<std::size_t>(parent_of[b]) == parents.size()) {
+        if (parent_of[b] == parents.size()) {
           parents.emplace_back();
           parents.back().first = blocks[b].first;
         }
-        Block& parent = parents[static_cast<std::size_t>(parent_of[b])];
+        Block& parent = parents[parent_of[b]];
         parent.sums.add(blocks[b].sums);
         parent.squares_of_parts += blocks[b].squares;
         parent.even = parent.even && blocks[b].even;
@@ -241,9 +241,9 @@ class StepParts {
       for (Block& parent : parents) even_out(parent);
       for (std::size_t c = 0; c < own_.size(); ++c) {
         if (block_of[c] < 0) continue;
-        const std::int32_t parent = parent_of[static_cast<std::size_t>(block_of[c])];
-        const Block& block = parents[static_cast<std::size_t>(parent)];
-        block_of[c] = block.even ? parent : -1;
+        const std::uint32_t parent = parent_of[static_cast<std::size_t>(block_of[c])];
+        const Block& block = parents[parent];
+        block_of[c] = block.even ? static_cast<std::int32_t>(parent) : -1;
         if (!block.even) continue;
         parts_[c] = block.first;
         cells_[static_cast<std::size_t>(block.first)] = block.sums;
@@ -373,7 +373,7 @@ class StepParts {
     std::vector<std::int32_t> number(cells_.size(), -1);
     std::vector<std::vector<std::uint32_t>> parts;
     for (std::size_t k = 0; k < points_.size(); ++k) {
-      const std::size_t root = root_of(static_cast<std::size_t>(cell_of_[k]));
+      const std::size_t root = root_of(cell_of_[k]);
       if (cells_[root].n < o_.least_points) continue;
       if (number[root] < 0) {
         number[root] = static_cast<std::int32_t>(parts.size());
@@ -388,11 +388,11 @@ class StepParts {
   const std::vector<std::uint32_t>& points_;
   CellNumbers table_;
   std::vector<Place> places_;
-  std::vector<std::int32_t> cell_of_;  ///< by point
-  std::vector<HeightSums> own_;        ///< of each cell
-  std::vector<HeightSums> cells_;      ///< at a part's root those of the part
-  std::vector<double> squares_;        ///< likewise, about its plane
-  std::vector<std::int32_t> parts_;    ///< by cell: towards the root of its part
+  std::vector<std::uint32_t> cell_of_;  ///< by point
+  std::vector<HeightSums> own_;         ///< of each cell
+  std::vector<HeightSums> cells_;       ///< at a part's root those of the part
+  std::vector<double> squares_;         ///< likewise, about its plane
+  std::vector<std::int32_t> parts_;     ///< by cell: towards the root of its part
   double noise_ = 0.0;
   double ridge_ = 0.0;
 };
