@@ -85,7 +85,7 @@ class Weighing {
   /// By how much what agrees under a pose exceeds chance, nats.
   [[nodiscard]] double against_chance(std::size_t pose) {
     if (!questions_.look_alike) return against_chance_[pose];
-    return against_chance_[pose] + otherwise_nats(twins(pose)) + table_.built * built_nats(twins(pose).built);
+    return against_chance_[pose] + otherwise_nats(twins(pose)) + table_.built * as_built(pose);
   }
   /// Whether a pose may be right: of the many that are refined in a model those that exceed chance, and the
   /// best.
@@ -109,16 +109,21 @@ class Weighing {
     if (!look_alikes_[pose]) look_alikes_[pose] = questions_.look_alike(pose);
     return *look_alikes_[pose];
   }
+  /// What the millimetres of walls say for one place, nats.
+  [[nodiscard]] double as_built(std::size_t pose) {
+    return questions_.look_alike ? built_nats(twins(pose).built) : 0.0;
+  }
   // Logarithms, for the odds of large scans may underflow.
 
   /// That a pose agrees though another one is right which resembles it, by chance or because the building
-  /// has the same place twice. That does not explain what the other one contradicts. `share`: of the other
-  /// one among all that may be the place seen twice.
-  [[nodiscard]] double log_resembling(double more_agrees_m2, double less_contradicted_m2,
-                                      double share) const {
+  /// has the same place twice, which is built otherwise by millimetres. That does not explain what the other
+  /// one contradicts. `share`: of the other one among all that may be the place seen twice.
+  [[nodiscard]] double log_resembling(std::size_t pose, double more_agrees_m2, double less_contradicted_m2,
+                                      double share) {
     const double twice = questions_.repeats * table_.twice * share;
-    return log_sum_exp({std::log1p(-twice) - table_.contrast_per_m2 * more_agrees_m2, std::log(twice)}) -
-           table_.against_per_m2 * less_contradicted_m2;
+    const double by_chance = std::log1p(-twice) - table_.contrast_per_m2 * more_agrees_m2;
+    const double both = twice > 0.0 ? log_sum_exp({by_chance, std::log(twice) - as_built(pose)}) : by_chance;
+    return both - table_.against_per_m2 * less_contradicted_m2;
   }
   [[nodiscard]] double log_wrong(double log_resembling, std::size_t pose) {
     return log_sum_exp({log_resembling, -against_chance(pose),
@@ -136,12 +141,12 @@ class Weighing {
   }
   [[nodiscard]] double odds_of(std::size_t pose, std::size_t leader) {
     const PoseContrast contrast = questions_.contrast(leader, pose);
-    const double right =
-        poses_[pose].log_prior - poses_[leader].log_prior +
-        log_wrong(log_resembling(contrast.for_first_m2, contrast.against_second_m2, share_of(pose, leader)),
-                  leader);
+    const double right = poses_[pose].log_prior - poses_[leader].log_prior +
+                         log_wrong(log_resembling(leader, contrast.for_first_m2, contrast.against_second_m2,
+                                                  share_of(pose, leader)),
+                                   leader);
     const double resembles =
-        log_resembling(contrast.for_second_m2, contrast.against_first_m2, share_of(leader, pose));
+        log_resembling(pose, contrast.for_second_m2, contrast.against_first_m2, share_of(leader, pose));
     const bool negligible = right - resembles < std::log(kNegligible);
     return std::exp(std::min(kMostNats, right - (negligible ? resembles : log_wrong(resembles, pose))));
   }

@@ -72,7 +72,8 @@ struct Posterior {
 /// One pose at most is right. What agrees under any other pose does so by chance, with the odds exp(-E), or
 /// because two places look alike, with the odds T, or because the two poses resemble one another: c, which is
 /// exp(-nats) of what agrees better, and is contradicted less, under that pose than under the right one.
-/// Against the likeliest pose l a pose k has the odds
+/// Where the same two scans may see a place twice, c is at least that share, times exp(-nats) of how walls
+/// were built. Against the likeliest pose l a pose k has the odds
 ///   (c_l + exp(-E_l) + a T_l) / (c_k + exp(-E_k) + a T_k),
 /// a being the share of look-alike places whose other one the same two scans show. That the place is not
 /// among the poses has the odds T_l (l is a look-alike's) and n exp(-E_l) (by chance), n beforehand.

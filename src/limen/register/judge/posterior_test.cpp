@@ -153,6 +153,19 @@ TEST(Posterior, ARoomMayBeBehindOtherWindowsToo) {
   EXPECT_GT(best({pose(30), pose(14, 2)}, 1.0), 0.999) << "what is contradicted is not that room";
 }
 
+TEST(Posterior, ARoomBehindAnotherWindowIsBuiltOtherwise) {
+  const auto best = [](double of_first, double of_second) {
+    std::vector<TwinEvidence> said(2);
+    for (std::size_t k = 0; k < said.size(); ++k) {
+      said[k].otherwise = 0.0;
+      said[k].built.one.fill(k == 0 ? of_first : of_second);
+    }
+    return weighed({pose(30), pose(14)}, said, PairSort::through_wall).best();
+  };
+  EXPECT_LT(best(0.0, 0.0), 0.95);
+  EXPECT_GT(best(6.0, 0.0), 0.99);
+}
+
 TEST(Posterior, ThroughWindowsHowSurfacesWereBuiltExcludesChance) {
   const auto all = [](PairSort sort, double built_nats) {
     TwinEvidence evidence;
