@@ -233,6 +233,14 @@ Eigen::MatrixXd inverse_of(const Eigen::MatrixXd& matrix) {
   return inverse_by_elimination(Square(matrix)).as<Eigen::MatrixXd>();
 }
 
+double log_determinant_of(const Matrix6d& definite) {
+  const Matrix3d first = definite.topLeftCorner<3, 3>();
+  const Matrix3d across = definite.topRightCorner<3, 3>();
+  const Matrix3d rest =
+      definite.bottomRightCorner<3, 3>() - Matrix3d(across.transpose() * inverse_of(first) * across);
+  return std::log(first.determinant()) + std::log(rest.determinant());
+}
+
 SingularValues3 singular_values_of(const Matrix3d& matrix) {
   const Eigen::JacobiSVD<Matrix3d> svd(matrix, Eigen::ComputeFullU | Eigen::ComputeFullV);
   return {svd.matrixU(), svd.singularValues(), svd.matrixV()};

@@ -41,6 +41,9 @@ Matrix4d inverse_of(const Matrix4d& matrix);
 Matrix6d inverse_of(const Matrix6d& matrix);
 Eigen::MatrixXd inverse_of(const Eigen::MatrixXd& matrix);
 
+/// log of the determinant of a symmetric positive definite matrix, by its blocks.
+double log_determinant_of(const Matrix6d& definite);
+
 /// A matrix as left * diagonal(values) * right^T, the
 /// values descending, not negative.
 struct SingularValues3 {

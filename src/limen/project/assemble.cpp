@@ -9,7 +9,6 @@
 #include <utility>
 #include <vector>
 
-#include <Eigen/Eigenvalues>
 #include <fmt/format.h>
 
 #include "limen/base/angles.h"
@@ -251,9 +250,8 @@ class Assembler {
       patch.upright = rise <= kUpright;
       const Matrix3d spread =
           frame_from_scan.rotation * plane.moments.covariance() * frame_from_scan.rotation.transpose();
-      const Vector3d along =
-          patch.upright ? result_.up.cross(normal).normalized()
-                        : Vector3d(Eigen::SelfAdjointEigenSolver<Matrix3d>(spread).eigenvectors().col(2));
+      const Vector3d along = patch.upright ? result_.up.cross(normal).normalized()
+                                           : Vector3d(spectrum_of(spread).vectors.col(2));
       const Vector3d across = normal.cross(along).normalized();
       // Evenly spread tiles: the half length is the root of three deviations squared.
       const auto half = [&](const Vector3d& way) {

@@ -8,8 +8,7 @@
 #include <numeric>
 #include <optional>
 
-#include <Eigen/LU>
-
+#include "limen/geometry/linear.h"
 #include "limen/match/openings/outline_fit.h"
 
 namespace limen {
@@ -91,7 +90,7 @@ EdgeShift shift_of(const Edge& low, const Edge& high, double low_splay, double h
   // Both sides of an opening splay alike, nearly.
   add({0.0, 1.0, -1.0}, 0.0, std::abs(low_splay - high_splay) < 1e-9 ? 0.004 : kNothing);
   add({1.0, 0.0, 0.0}, 0.0, kNothing);
-  const Matrix3d covariance = normal.inverse();
+  const Matrix3d covariance = inverse_of(normal);
   const Vector3d solution = covariance * right;
   return {solution.x(), std::sqrt(covariance(0, 0))};
 }

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/LU>
+#include "limen/geometry/linear.h"
 
 namespace limen {
 namespace {
@@ -87,7 +87,7 @@ std::optional<OutlineFit> fit_outlines(const Ring& first, const Ring& second,
     right /= point;
     // The growth starts anew each round, near zero a priori; the shift is what is still to go.
     information(2, 2) += 1.0 / (options.growth_sigma_m * options.growth_sigma_m);
-    const Vector3d step = information.fullPivLu().solve(right);
+    const Vector3d step = solve_symmetric(information, right);
     fit.shift_m += step.head<2>();
     fit.growth_m = step.z();
   }
@@ -96,7 +96,7 @@ std::optional<OutlineFit> fit_outlines(const Ring& first, const Ring& second,
   // Both ways: the corners of a rectangle are far from an arch, but no place of the arch is from it.
   fit.rms_m = std::max(left_over(points_along(moved, options.step_m), second, -fit.growth_m),
                        left_over(points_along(second, options.step_m), moved, fit.growth_m));
-  const Matrix3d covariance = information.inverse();
+  const Matrix3d covariance = inverse_of(information);
   fit.sigma_m = covariance.diagonal().head<2>().cwiseMax(0.0).cwiseSqrt();
   return fit;
 }

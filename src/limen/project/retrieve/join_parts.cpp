@@ -12,7 +12,6 @@
 #include <tuple>
 #include <utility>
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
 #include "limen/base/parallel.h"
@@ -72,9 +71,9 @@ PlacedPlane placed_plane(const ScanDigest& scan, const PlaneDigest& plane, const
     placed.along = kEvenSpread * std::sqrt(along.dot(spread * along)) * along;
     placed.across = kEvenSpread * std::sqrt(across.dot(spread * across)) * across;
   } else {
-    const Eigen::SelfAdjointEigenSolver<Matrix3d> axes(spread);
-    placed.along = kEvenSpread * std::sqrt(axes.eigenvalues()[2]) * axes.eigenvectors().col(2);
-    placed.across = kEvenSpread * std::sqrt(axes.eigenvalues()[1]) * axes.eigenvectors().col(1);
+    const Spectrum3 axes = spectrum_of(spread);
+    placed.along = kEvenSpread * std::sqrt(axes.values[2]) * axes.vectors.col(2);
+    placed.across = kEvenSpread * std::sqrt(axes.values[1]) * axes.vectors.col(1);
   }
   placed.area_m2 = plane.area_m2;
   placed.oriented = plane.oriented;

@@ -40,15 +40,6 @@ struct Seen {
   }
 };
 
-/// log of the determinant of a symmetric positive definite matrix, by its blocks.
-double log_determinant_of(const Matrix6d& definite) {
-  const Matrix3d first = definite.topLeftCorner<3, 3>();
-  const Matrix3d across = definite.topRightCorner<3, 3>();
-  const Matrix3d rest =
-      definite.bottomRightCorner<3, 3>() - Matrix3d(across.transpose() * inverse_of(first) * across);
-  return std::log(first.determinant()) + std::log(rest.determinant());
-}
-
 /// log of the density of all, the six numbers integrated out about their likeliest values (Laplace; exact
 /// where nothing is stray).
 double log_density(const std::vector<Seen>& all) {

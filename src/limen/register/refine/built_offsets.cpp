@@ -170,8 +170,7 @@ SettledPose settle_among_moved(const std::vector<PlaneSums>& planes, double slop
   std::vector<double> weights;
   for (const Mode& mode : modes) {
     covariances.push_back(damped_inverse(mode.information));
-    weights.push_back(mode.log_likelihood +
-                      0.5 * std::log(std::max(1e-300, covariances.back().determinant())));
+    weights.push_back(mode.log_likelihood + 0.5 * log_determinant_of(covariances.back()));
   }
   const std::size_t best =
       static_cast<std::size_t>(std::max_element(weights.begin(), weights.end()) - weights.begin());
