@@ -291,7 +291,7 @@ int main(int argc, char** argv) {
   app.add_option("-o,--output", settings.output,
                  "rows are added to this file; what it has is not done again");
   app.add_option("--wrong", settings.wrong,
-                 "the scans of pairs of which a wrong pose is told to be sure are written to this folder");
+                 "the scans of pairs whose wrong pose is stated as sure are written to this folder");
   app.add_flag("--lost", settings.lost, "so are those of pairs of one place whose pose was not found");
   app.add_option("--report", settings.report, "only the tables of such a file");
   app.add_option("--svg", settings.svg, "a picture of the reliability table");

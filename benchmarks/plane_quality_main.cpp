@@ -263,7 +263,7 @@ void add_options(CLI::App& app, Settings& settings) {
   app.add_option("--coarsest-cell-m", settings.coarsest_cell_m, "of grow: edge of the first cubes");
   app.add_option("--finest-cell-m", settings.finest_cell_m, "of grow: edge of the last cubes");
   app.add_option("--threads", settings.threads, "0: the machine's");
-  app.add_option("--repeats", settings.repeats, "runs of each detection; the fastest is told");
+  app.add_option("--repeats", settings.repeats, "runs of each detection; the fastest counts");
   app.add_flag("--kept", settings.kept, "of dense scans the points that features are found on");
   app.add_option("--kept-per-m2", settings.keep.most_per_m2,
                  "with --kept: so many on a square metre, of stations");

@@ -310,7 +310,7 @@ void add_options(CLI::App& app, Settings& settings) {
   app.add_option("--points", settings.points, "points of each scan");
   app.add_option("--stations", settings.stations, "stations of each building");
   app.add_flag("--outdoor", settings.outdoor, "the mobile scan instead of the stations");
-  app.add_flag("--no-centre", settings.no_centre, "the optical centre is not told");
+  app.add_flag("--no-centre", settings.no_centre, "the scanner's position is not given");
   app.add_option("--near-m", settings.near_m, "a segment is on an edge within this");
   app.add_option("--angle-deg", settings.angle_deg, "and this");
   app.add_option("--min-echoes", settings.truth.min_echoes, "next to an edge that must be found");
@@ -318,7 +318,7 @@ void add_options(CLI::App& app, Settings& settings) {
   app.add_option("--min-face-echoes", settings.truth.min_face_echoes,
                  "of a face of an edge that must be found");
   app.add_option("--threads", settings.threads, "0: the machine's");
-  app.add_option("--repeats", settings.repeats, "runs of each detection; the fastest is told");
+  app.add_option("--repeats", settings.repeats, "runs of each detection; the fastest counts");
   app.add_flag("--list", settings.list, "name what was missed and what was wrong");
 }
 

@@ -349,7 +349,7 @@ class EdgeTruthFinder {
     return ends(sides[0], sample.at);
   }
 
-  /// Echoes of the face next to the edge; finds the optical centre of the nearest.
+  /// Echoes of the face next to the edge; finds the scanner position of the nearest.
   bool has_echoes(const SeenSample& sample, Side& side) const {
     double nearest = 1e300;
     const Vector2d p = side.face->frame.to_plane(sample.at);

@@ -104,7 +104,7 @@ class RunningServer {
       if (state.find(words) != std::string::npos) return state;
       std::this_thread::sleep_for(std::chrono::milliseconds(50));
     }
-    ADD_FAILURE() << words << " was not told: " << state;
+    ADD_FAILURE() << words << " was not reported: " << state;
     return state;
   }
 

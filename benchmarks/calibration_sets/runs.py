@@ -27,8 +27,8 @@ class Runner:
         self.kept_only = kept_only
 
     def key(self, arguments, files):
-        told = [sha256(self.program), arguments, [[sha256(str(f)), pathlib.Path(f).name] for f in files]]
-        return hashlib.sha256(json.dumps(told).encode()).hexdigest()[:24]
+        asked = [sha256(self.program), arguments, [[sha256(str(f)), pathlib.Path(f).name] for f in files]]
+        return hashlib.sha256(json.dumps(asked).encode()).hexdigest()[:24]
 
     def answer(self, command, files, options, answer_name, threads):
         """The answer's JSON, with the exit status, CPU and wall seconds of the run that made it; None where it may not
@@ -42,8 +42,8 @@ class Runner:
             out = pathlib.Path(folder)
             run = self.run([self.program, command, *map(str, files), *options, "--threads", str(threads), "--quiet",
                             "-o", str(out / "out")], out)
-            told = out / "out" / answer_name
-            run["answer"] = json.loads(told.read_text()) if told.is_file() else {}
+            answer = out / "out" / answer_name
+            run["answer"] = json.loads(answer.read_text()) if answer.is_file() else {}
             part = out / "kept.json"
             part.write_text(json.dumps(run))
             if run["answer"] and run["exit"] >= 0:  # an outcome; what failed is tried again

@@ -137,7 +137,7 @@ def simulated(program, spec, more, work):
 
 
 def labelled_sets(program, data, work, simulate, simulate_args, names):
-    """All sets, or those named; what is missing is told and left out."""
+    """All sets, or those named; what is missing is named and left out."""
     found = []
     for name, (place, scans_of, tolerance) in REAL.items():
         if not names or name in names:

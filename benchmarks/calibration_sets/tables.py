@@ -158,8 +158,8 @@ def minus(a, b):
 def difference(run, baseline):
     """The same tables of what both runs have, as differences."""
     run, baseline = in_common(run, baseline)
-    told = [f"Against the baseline, of {len(run['pairs'])} pairs and {len(run['projects'])} buildings that both runs have\n"]
+    text = [f"Against the baseline, of {len(run['pairs'])} pairs and {len(run['projects'])} buildings that both runs have\n"]
     for (title, names, lines), (_, _, olds) in zip(all_tables(run), all_tables(baseline)):
         differences = [(label, [minus(a, b) for a, b in zip(values, old)]) for (label, values), (_, old) in zip(lines, olds)]
-        told.append(text_of((title, names, differences), signed=True))
-    return "\n".join(told + ["What came out otherwise"] + (changes(run, baseline) or ["nothing"])) + "\n"
+        text.append(text_of((title, names, differences), signed=True))
+    return "\n".join(text + ["What came out otherwise"] + (changes(run, baseline) or ["nothing"])) + "\n"

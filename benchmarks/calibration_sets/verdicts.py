@@ -59,10 +59,10 @@ def largest_group(count, pairs):
     return {k for k in range(count) if group[k] == best}
 
 
-def project_rows(one, told, reachable=frozenset()):
+def project_rows(one, document, reachable=frozenset()):
     """A row for each scan of a set. placed: it stands in a frame with others; right: where those have it that the
     component is sure of (right_ones); in_frame: that frame is the project's; reachable: its number is among those that could be joined."""
-    by_name = {scan["file"].replace("\\", "/").rsplit("/", 1)[-1]: scan for scan in told.get("scans", ())}
+    by_name = {scan["file"].replace("\\", "/").rsplit("/", 1)[-1]: scan for scan in document.get("scans", ())}
     rows, components = [], {}
     for number, scan in enumerate(one.scans):
         of = by_name.get(scan.path.name, {})

@@ -104,13 +104,13 @@ def deviation(
         options if options is not None else DeviationOptions(),
         as_progress(progress),
     )
-    told = measured.values()
+    values = measured.values()
     return Deviation(
-        elements=[ElementDeviation(**it) for it in told["elements"]],
-        unmodelled=[Unmodelled(*it) for it in told["unmodelled"]],
-        common_shift=told["common_shift"],
-        matched=told["matched"],
-        far=told["far"],
+        elements=[ElementDeviation(**it) for it in values["elements"]],
+        unmodelled=[Unmodelled(*it) for it in values["unmodelled"]],
+        common_shift=values["common_shift"],
+        matched=values["matched"],
+        far=values["far"],
         distance_m=measured.distance_m,
         element=measured.element,
         _measured=measured,

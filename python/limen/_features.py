@@ -108,19 +108,19 @@ def extract_features(
 ) -> Features:
     """Find the planes of a scan, and its openings and line segments unless they are not wanted.
 
-    Openings need a level scan whose optical centre is known or can be estimated; else there are none. Of a
+    Openings need a level scan whose scanner position is known or can be estimated; else there are none. Of a
     model: what a scanner could see of it, without noise.
     """
     if isinstance(scan, Model):
-        told = _limen.model_features(scan, as_progress(progress))
+        found = _limen.model_features(scan, as_progress(progress))
     else:
-        told = _limen.extract_features(
+        found = _limen.extract_features(
             scan,
             options if options is not None else ExtractOptions(),
             OpeningOptions() if openings is True else openings or None,
             SegmentOptions() if segments is True else segments or None,
             progress,
         )
-    told["planes"] = [Plane(**plane) for plane in told["planes"]]
-    told["openings"] = [Opening(**opening) for opening in told["openings"]]
-    return Features(**told)
+    found["planes"] = [Plane(**plane) for plane in found["planes"]]
+    found["openings"] = [Opening(**opening) for opening in found["openings"]]
+    return Features(**found)

@@ -14,7 +14,7 @@ from ._numbers import Array
 _WIDTH = 320.0
 _HEIGHT = 240.0
 _CELLS = 96
-#: Told apart with every kind of colour vision.
+#: Distinct with every kind of colour vision.
 COLOURS = ("#0072b2", "#d55e00", "#666666")
 #: Source and target, as in the report.
 SIDES = ("#c9660a", "#1f6fb4")

@@ -30,13 +30,13 @@ class ProjectScan:
 
 @dataclass(frozen=True, eq=False)
 class Project:
-    """What `limen project` found; `told` is all of project.json."""
+    """What `limen project` found; `document` is all of project.json."""
 
     outcome: str
     reason: str
     scans: list[ProjectScan]
     questions: list[str]
-    told: dict[str, Any] = field(repr=False)
+    document: dict[str, Any] = field(repr=False)
 
     def pose_of(self, file: Path, index: int = 0) -> Array:
         """The pose of a scan in the frame, by the name of its file. Raises KeyError where it has none."""
@@ -50,7 +50,7 @@ class Project:
 def read_project(path: Path) -> Project:
     """Read a project.json, or that of a project's folder."""
     place = FilePath(path)
-    told = json.loads((place / "project.json" if place.is_dir() else place).read_text(encoding="utf-8"))
+    document = json.loads((place / "project.json" if place.is_dir() else place).read_text(encoding="utf-8"))
     scans = [
         ProjectScan(
             file=it["file"],
@@ -59,14 +59,14 @@ def read_project(path: Path) -> Project:
             reason=it["reason"],
             index=it.get("index", 0),
         )
-        for it in told["scans"]
+        for it in document["scans"]
     ]
     return Project(
-        outcome=told["outcome"],
-        reason=told["reason"],
+        outcome=document["outcome"],
+        reason=document["reason"],
         scans=scans,
-        questions=[it["text"] for it in told["questions"]],
-        told=told,
+        questions=[it["text"] for it in document["questions"]],
+        document=document,
     )
 
 

@@ -57,7 +57,7 @@ class Hypothesis:
     explained_share: Optional[float] = None  #: against a model: of the walls that the scan saw
     room: str = ""  #: of a model with named rooms: where the first station stands
     probability: Optional[float] = None  #: that the scans were taken so; not of segments
-    tie: bool = False  #: of an alternative: it cannot be told from the best
+    tie: bool = False  #: of an alternative: it cannot be distinguished from the best
     matched_segments: int = 0
     sigma: Optional[Sigma] = field(default=None, repr=False)  #: how well it is known, were it the right one
 
@@ -66,8 +66,8 @@ class Hypothesis:
         return _limen.transform_points(np.asarray(points, dtype=np.float64), self.target_from_source)
 
 
-def _hypothesis(told: dict[str, Any]) -> Hypothesis:
-    return Hypothesis(**{**told, "sigma": Sigma(*told["sigma"])})
+def _hypothesis(values: dict[str, Any]) -> Hypothesis:
+    return Hypothesis(**{**values, "sigma": Sigma(*values["sigma"])})
 
 
 @dataclass(frozen=True)
@@ -212,14 +212,14 @@ class Registration:
     def motion(self) -> Optional[dict[str, Any]]:
         """The pose as a reader sees it: shift_m of the source's middle (`about`), and the turn about it (`axis`,
         turn_rad); as in result.json."""
-        told: Optional[dict[str, Any]] = self.to_dict()["motion"]
-        return told
+        values: Optional[dict[str, Any]] = self.to_dict()["motion"]
+        return values
 
     @property
     def precision(self) -> Optional[dict[str, Any]]:
         """Within what radius the source's middle and its far end are known (95 %), as in result.json."""
-        told: Optional[dict[str, Any]] = self.to_dict()["precision"]
-        return told
+        values: Optional[dict[str, Any]] = self.to_dict()["precision"]
+        return values
 
     @property
     def next_steps(self) -> list[str]:
@@ -234,8 +234,8 @@ class Registration:
 
     def to_dict(self) -> dict[str, Any]:
         """All that result.json holds."""
-        told: dict[str, Any] = json.loads(self._report.json())
-        return told
+        values: dict[str, Any] = json.loads(self._report.json())
+        return values
 
     def __repr__(self) -> str:
         return f"<limen.Registration: {self.outcome}: {self.reason}>"
@@ -243,10 +243,10 @@ class Registration:
     def _repr_html_(self) -> str:
         rows: list[tuple[str, str]] = []
         if self.best is not None:
-            told = self.to_dict()
+            values = self.to_dict()
             if self.best.probability is not None:
                 rows.append(("probability", f"{100 * self.best.probability:.2f} %"))
-            motion, precision = told["motion"], told["precision"]
+            motion, precision = values["motion"], values["precision"]
             shift = "{:.4f} {:.4f} {:.4f} m".format(*motion["shift_m"])
             rows.append(("shift of the centre", shift))
             axis = "{:.2f} {:.2f} {:.2f}".format(*motion["axis"])
@@ -347,19 +347,19 @@ def register(
     from_side = _loaded(source, centre if source_centre is None else source_centre)
     to_side = _loaded(target, centre if target_centre is None else target_centre)
     report = _limen.register(from_side, to_side, asked, as_progress(progress))
-    told = report.values()
+    values = report.values()
     return Registration(
-        outcome=told["outcome"],
-        reason=told["reason"],
-        best=None if told["best"] is None else _hypothesis(told["best"]),
-        sigma=Sigma(*told["sigma"]),
-        unobserved=[Unobserved(*it) for it in told["unobserved"]],
-        alternatives=[_hypothesis(it) for it in told["alternatives"]],
-        matches=[PlaneMatch(*it) for it in told["matches"]],
-        moved_planes=[PlaneMatch(*it) for it in told["moved_planes"]],
-        openings=[OpeningMatch(*it) for it in told["openings"]],
-        thickness=[Thickness(*it) for it in told["thickness"]],
-        stages=told["stages"],
+        outcome=values["outcome"],
+        reason=values["reason"],
+        best=None if values["best"] is None else _hypothesis(values["best"]),
+        sigma=Sigma(*values["sigma"]),
+        unobserved=[Unobserved(*it) for it in values["unobserved"]],
+        alternatives=[_hypothesis(it) for it in values["alternatives"]],
+        matches=[PlaneMatch(*it) for it in values["matches"]],
+        moved_planes=[PlaneMatch(*it) for it in values["moved_planes"]],
+        openings=[OpeningMatch(*it) for it in values["openings"]],
+        thickness=[Thickness(*it) for it in values["thickness"]],
+        stages=values["stages"],
         _report=report,
         _views=(_view(from_side), _view(to_side)),
     )

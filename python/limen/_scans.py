@@ -66,8 +66,8 @@ def transform_file(
 ) -> int:
     """Move a point file with all its values, as `limen transform` does; returns the number of points."""
     pose = as_pose(target_from_source)
-    told = _limen.transform_file(os.fspath(path), pose, os.fspath(output), as_progress(progress))
-    return int(told["points"])
+    written = _limen.transform_file(os.fspath(path), pose, os.fspath(output), as_progress(progress))
+    return int(written["points"])
 
 
 def thin(
@@ -79,8 +79,8 @@ def thin(
     """
     if points <= 0 and spacing_m <= 0:
         raise ValueError("give how many points to keep: points or spacing_m")
-    told = _limen.thin_file(os.fspath(path), os.fspath(output), points, spacing_m, as_progress(progress))
-    return int(told["points_written"])
+    written = _limen.thin_file(os.fspath(path), os.fspath(output), points, spacing_m, as_progress(progress))
+    return int(written["points_written"])
 
 
 def _scan_facts(scan: Scan) -> list[tuple[str, str]]:
@@ -97,7 +97,7 @@ def _scan_facts(scan: Scan) -> list[tuple[str, str]]:
     return [
         ("points", f"{len(scan):,}"),
         ("size", "{:.2f} x {:.2f} x {:.2f} m".format(*size)),
-        ("optical centre", place),
+        ("scanner position", place),
         ("attributes", ", ".join(has) or "none"),
         ("local origin", "{:g} {:g} {:g}".format(*scan.local_origin)),
     ]

@@ -20,29 +20,29 @@ struct MeasuredDeviation {
 };
 
 py::dict shift_dict(const ElementShift& shift) {
-  py::dict told;
-  told["shift_m"] = shift.shift_m;
-  told["sigma_m"] = shift.sigma_m;
-  told["held"] = shift.held;
-  return told;
+  py::dict values;
+  values["shift_m"] = shift.shift_m;
+  values["sigma_m"] = shift.sigma_m;
+  values["held"] = shift.held;
+  return values;
 }
 
 py::dict element_dict(const ElementDeviation& it, const BimModel& model) {
   const BimElement& element = model.elements[static_cast<std::size_t>(it.element)];
-  py::dict told;
-  told["name"] = element.name;
-  told["kind"] = to_string(element.kind);
-  told["guid"] = element.guid;
-  told["presence"] = to_string(it.presence);
-  told["points"] = it.points;
-  told["median_m"] = it.median_m;
-  told["sigma_m"] = it.sigma_m;
-  told["p95_m"] = it.p95_m;
-  told["loa"] = it.loa;
-  told["covered_share"] = it.covered_share;
-  told["shift_m"] = it.shift.shift_m;
-  told["shift_sigma_m"] = it.shift.sigma_m;
-  return told;
+  py::dict values;
+  values["name"] = element.name;
+  values["kind"] = to_string(element.kind);
+  values["guid"] = element.guid;
+  values["presence"] = to_string(it.presence);
+  values["points"] = it.points;
+  values["median_m"] = it.median_m;
+  values["sigma_m"] = it.sigma_m;
+  values["p95_m"] = it.p95_m;
+  values["loa"] = it.loa;
+  values["covered_share"] = it.covered_share;
+  values["shift_m"] = it.shift.shift_m;
+  values["shift_sigma_m"] = it.shift.sigma_m;
+  return values;
 }
 
 py::dict values(const MeasuredDeviation& measured) {
@@ -54,13 +54,13 @@ py::dict values(const MeasuredDeviation& measured) {
     const Vector3d& origin = measured.model->local_origin;
     unmodelled.append(py::make_tuple(it.points, Vector3d(origin + it.low), Vector3d(origin + it.high)));
   }
-  py::dict told;
-  told["elements"] = elements;
-  told["unmodelled"] = unmodelled;
-  told["common_shift"] = shift_dict(deviation.common);
-  told["matched"] = deviation.matched;
-  told["far"] = deviation.far;
-  return told;
+  py::dict values;
+  values["elements"] = elements;
+  values["unmodelled"] = unmodelled;
+  values["common_shift"] = shift_dict(deviation.common);
+  values["matched"] = deviation.matched;
+  values["far"] = deviation.far;
+  return values;
 }
 
 void save_deviation(const MeasuredDeviation& measured, const std::filesystem::path& path, double colour_limit_m) {

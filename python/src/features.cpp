@@ -107,15 +107,15 @@ py::dict features_dict(const ExtractedFeatures& extracted) {
   py::list openings;
   for (const PlanarPolygon& polygon : features.planes) planes.append(plane_dict(polygon, origin));
   for (const Opening& opening : features.openings) openings.append(opening_dict(opening, origin));
-  py::dict told;
-  told["planes"] = planes;
-  told["openings"] = openings;
-  told["segments"] = segments_array(features.segments, origin);
-  told["labels"] =
+  py::dict values;
+  values["planes"] = planes;
+  values["openings"] = openings;
+  values["segments"] = segments_array(features.segments, origin);
+  values["labels"] =
       py::array_t<std::int32_t>(static_cast<py::ssize_t>(extracted.labels.size()), extracted.labels.data());
-  told["inlier_threshold_m"] = features.inlier_threshold_m;
-  told["noise_m"] = features.noise_m;
-  return told;
+  values["inlier_threshold_m"] = features.inlier_threshold_m;
+  values["noise_m"] = features.noise_m;
+  return values;
 }
 
 }  // namespace

@@ -144,7 +144,7 @@ void bind_extraction(py::module_& module) {
       .field("min_height_m", &OpeningOptions::min_height_m, "of an opening")
       .field("max_width_m", &OpeningOptions::max_width_m, "of an opening")
       .field("max_height_m", &OpeningOptions::max_height_m, "of an opening")
-      .field("centre", &OpeningOptions::centre, "optical centre where the scan does not tell it, local")
+      .field("centre", &OpeningOptions::centre, "scanner position where the scan does not give it, local")
       .checked();
   Binder<SegmentOptions>(module, "SegmentOptions", "Which line segments are looked for.")
       .field("min_length_m", &SegmentOptions::min_length_m, "of a segment")

@@ -57,21 +57,21 @@ py::tuple sigma_tuple(const PoseSigma& sigma) {
 }
 
 py::dict hypothesis_dict(const Hypothesis& it) {
-  py::dict told;
-  told["target_from_source"] = to_matrix(it.target_from_source);
-  told["score"] = it.score;
-  told["agreeing_m2"] = it.agreeing_m2;
-  told["contradicted_m2"] = it.contradicted_m2;
-  told["rms_m"] = it.rms_m;
-  told["matched_planes"] = it.matched_planes;
-  told["matched_openings"] = it.matched_openings;
-  told["explained_share"] = it.explained_share;
-  told["room"] = it.room;
-  told["probability"] = it.probability;
-  told["tie"] = it.tie;
-  told["matched_segments"] = it.matched_segments;
-  told["sigma"] = sigma_tuple(it.sigma);
-  return told;
+  py::dict values;
+  values["target_from_source"] = to_matrix(it.target_from_source);
+  values["score"] = it.score;
+  values["agreeing_m2"] = it.agreeing_m2;
+  values["contradicted_m2"] = it.contradicted_m2;
+  values["rms_m"] = it.rms_m;
+  values["matched_planes"] = it.matched_planes;
+  values["matched_openings"] = it.matched_openings;
+  values["explained_share"] = it.explained_share;
+  values["room"] = it.room;
+  values["probability"] = it.probability;
+  values["tie"] = it.tie;
+  values["matched_segments"] = it.matched_segments;
+  values["sigma"] = sigma_tuple(it.sigma);
+  return values;
 }
 
 template <typename Item, typename Convert>
@@ -82,29 +82,29 @@ py::list list_of(const std::vector<Item>& items, const Convert& convert) {
 }
 
 py::dict result_dict(const RegistrationResult& result) {
-  py::dict told;
-  told["outcome"] = to_string(result.outcome);
-  told["reason"] = result.reason;
-  told["best"] = result.outcome == Outcome::no_match ? py::object(py::none()) : hypothesis_dict(result.best);
-  told["sigma"] = sigma_tuple(result.sigma);
-  told["unobserved"] = list_of(result.unobserved, [](const UnobservedFreedom& it) {
+  py::dict values;
+  values["outcome"] = to_string(result.outcome);
+  values["reason"] = result.reason;
+  values["best"] = result.outcome == Outcome::no_match ? py::object(py::none()) : hypothesis_dict(result.best);
+  values["sigma"] = sigma_tuple(result.sigma);
+  values["unobserved"] = list_of(result.unobserved, [](const UnobservedFreedom& it) {
     return py::make_tuple(it.name, it.rotation, it.direction);
   });
-  told["alternatives"] = list_of(result.alternatives, hypothesis_dict);
+  values["alternatives"] = list_of(result.alternatives, hypothesis_dict);
   const auto plane_match = [](const PlaneMatch& it) {
     return py::make_tuple(it.source, it.target, it.distance_m, it.angle_rad, it.overlap_m2);
   };
-  told["matches"] = list_of(result.matches, plane_match);
-  told["moved_planes"] = list_of(result.moved, plane_match);
-  told["openings"] = list_of(result.openings, [](const MatchedOpenings& it) {
+  values["matches"] = list_of(result.matches, plane_match);
+  values["moved_planes"] = list_of(result.moved, plane_match);
+  values["openings"] = list_of(result.openings, [](const MatchedOpenings& it) {
     return py::make_tuple(it.source, it.target, it.shift_across_m, it.shift_up_m);
   });
-  told["thickness"] = list_of(result.thickness, [](const MeasuredThickness& it) {
+  values["thickness"] = list_of(result.thickness, [](const MeasuredThickness& it) {
     return py::make_tuple(it.value_m, it.sigma_m, it.openings);
   });
-  told["stages"] =
+  values["stages"] =
       list_of(result.stages, [](const StageTime& it) { return py::make_tuple(it.name, it.seconds); });
-  return told;
+  return values;
 }
 
 /// A registration and what its report draws.
@@ -153,11 +153,11 @@ void bind_registration(py::module_& module) {
     const PythonSide to = side_from(target);
     Registered registered =
         run(progress, [&](Monitor& monitor) { return register_sides(from, to, options, monitor); });
-    OptionList& told = registered.report.options;
+    OptionList& stated = registered.report.options;
     for (const char* name : {"method", "gravity"})
-      told.emplace_back(name, asked.attr(name).cast<std::string>());
-    if (options.nothing_repeats) told.emplace_back("repeats", "none");
-    if (options.wall_thickness_m > 0) told.emplace_back("wall_thickness_m", options.wall_thickness_m);
+      stated.emplace_back(name, asked.attr(name).cast<std::string>());
+    if (options.nothing_repeats) stated.emplace_back("repeats", "none");
+    if (options.wall_thickness_m > 0) stated.emplace_back("wall_thickness_m", options.wall_thickness_m);
     return registered;
   });
 }

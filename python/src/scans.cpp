@@ -205,11 +205,11 @@ py::dict thin_file(const std::filesystem::path& input, const std::filesystem::pa
       return few ? write_clouds(clouds, output, monitor) : write_thinned(clouds, thinning, output, monitor);
     });
   });
-  py::dict told;
-  told["points_read"] = written.read;
-  told["points_written"] = written.written;
-  told["spacing_m"] = written.spacing_m;
-  return told;
+  py::dict values;
+  values["points_read"] = written.read;
+  values["points_written"] = written.written;
+  values["spacing_m"] = written.spacing_m;
+  return values;
 }
 
 py::dict transform_file(const std::filesystem::path& input, const Matrix4d& pose,
@@ -218,11 +218,11 @@ py::dict transform_file(const std::filesystem::path& input, const Matrix4d& pose
   const TransformedCloud cloud = run(progress, [&](Monitor& monitor) {
     return transform_cloud(input, target_from_source, output, {}, monitor);
   });
-  py::dict told;
-  told["points"] = cloud.points;
-  told["format"] = cloud.format;
-  told["notes"] = cloud.notes;
-  return told;
+  py::dict values;
+  values["points"] = cloud.points;
+  values["format"] = cloud.format;
+  values["notes"] = cloud.notes;
+  return values;
 }
 
 }  // namespace

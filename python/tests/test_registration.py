@@ -39,10 +39,10 @@ class Registered(unittest.TestCase):
     def test_files_are_those_of_the_program(self):
         with tempfile.TemporaryDirectory() as folder:
             self.result.save(Path(folder) / "result")
-            told = json.loads((Path(folder) / "result" / "result.json").read_text())
-            self.assertEqual(told, self.result.to_dict())
-            self.assertEqual(told["outcome"], "registered")
-            np.testing.assert_array_equal(told["target_from_source"], self.result.target_from_source)
+            written = json.loads((Path(folder) / "result" / "result.json").read_text())
+            self.assertEqual(written, self.result.to_dict())
+            self.assertEqual(written["outcome"], "registered")
+            np.testing.assert_array_equal(written["target_from_source"], self.result.target_from_source)
             self.assertIn("<html", (Path(folder) / "result" / "report.html").read_text(encoding="utf-8"))
             self.result.save(Path(folder) / "result", report=False)
             names = sorted(path.name for path in (Path(folder) / "result").iterdir())
@@ -111,14 +111,14 @@ class Registered(unittest.TestCase):
         )
 
     def test_names_are_those_of_the_file(self):
-        told = self.result.to_dict()
-        match, written = self.result.matches[0], told["matches"][0]
+        written = self.result.to_dict()
+        match, of_match = self.result.matches[0], written["matches"][0]
         for name in ("source_plane", "target_plane", "distance_m", "overlap_m2"):
-            self.assertEqual(getattr(match, name), written[name])
-        self.assertEqual(len(self.result.matched_openings), len(told["matched_openings"]))
-        self.assertEqual(len(self.result.wall_thickness), len(told["wall_thickness"]))
-        self.assertEqual(self.result.precision, told["precision"])
-        self.assertEqual(self.result.motion, told["motion"])
+            self.assertEqual(getattr(match, name), of_match[name])
+        self.assertEqual(len(self.result.matched_openings), len(written["matched_openings"]))
+        self.assertEqual(len(self.result.wall_thickness), len(written["wall_thickness"]))
+        self.assertEqual(self.result.precision, written["precision"])
+        self.assertEqual(self.result.motion, written["motion"])
         self.assertTrue(self.result.next_steps)
 
     def test_arrays_are_taken_as_they_are(self):
@@ -136,9 +136,9 @@ class Registered(unittest.TestCase):
             self.result.save(folder, report=False)
             np.savetxt(Path(folder) / "truth.txt", truth, fmt="%.17g")
             words = [sys.executable, "-m", "limen", "evaluate", folder + "/result.json", folder + "/truth.txt", "--json"]
-            told = json.loads(subprocess.run(words, capture_output=True, text=True, check=True).stdout)
-        self.assertAlmostEqual(told["translation_error_m"], error.translation_error_m, places=9)
-        self.assertAlmostEqual(told["rotation_error_deg"], error.rotation_error_deg, places=7)
+            written = json.loads(subprocess.run(words, capture_output=True, text=True, check=True).stdout)
+        self.assertAlmostEqual(written["translation_error_m"], error.translation_error_m, places=9)
+        self.assertAlmostEqual(written["rotation_error_deg"], error.rotation_error_deg, places=7)
         half_turn = np.diag([-1.0, 1.0, -1.0, 1.0])
         self.assertAlmostEqual(
             limen.evaluate(self.result, half_turn @ self.result.target_from_source).rotation_error_deg, 180.0
@@ -222,10 +222,10 @@ class LongWork(unittest.TestCase):
         cls.case = limen.simulate("room", points_indoor=300_000, stations=2)
 
     def test_progress_is_told(self):
-        heard = []
-        limen.register(*self.case.scans, progress=lambda *told: heard.append(told))
-        self.assertTrue({"hypotheses", "scoring", "refinement"} <= {stage for stage, _, _ in heard})
-        self.assertTrue(all(0 <= done <= total or total == 0 for _, done, total in heard))
+        steps = []
+        limen.register(*self.case.scans, progress=lambda *step: steps.append(step))
+        self.assertTrue({"hypotheses", "scoring", "refinement"} <= {stage for stage, _, _ in steps})
+        self.assertTrue(all(0 <= done <= total or total == 0 for _, done, total in steps))
 
     def test_what_progress_throws_stops_the_work(self):
         def stop(stage, done, total):

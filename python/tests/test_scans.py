@@ -70,7 +70,7 @@ class ScanFromArrays(unittest.TestCase):
         self.assertEqual(len(limen.Scan(points=[[0, 0, 0], [1, 2, 3]])), 2)
 
     def test_wrong_arrays_are_named(self):
-        for arguments, told in (
+        for arguments, message in (
             ({"points": np.zeros((5, 2))}, "points"),
             ({"points": np.zeros((0, 3))}, "no points"),
             ({"points": np.array([[0.0, np.nan, 0.0]])}, "points[0]"),
@@ -78,9 +78,9 @@ class ScanFromArrays(unittest.TestCase):
             ({"points": cube(5), "centres": np.zeros((2, 3))}, "centres"),
             ({"points": cube(5), "lines": np.zeros(5, int)}, "lines"),
         ):
-            with self.assertRaises(limen.Error, msg=told) as caught:
+            with self.assertRaises(limen.Error, msg=message) as caught:
                 limen.Scan(**arguments)
-            self.assertIn(told, str(caught.exception))
+            self.assertIn(message, str(caught.exception))
 
 
 class Files(unittest.TestCase):
@@ -138,15 +138,15 @@ class Units(unittest.TestCase):
 
 class Progress(unittest.TestCase):
     def test_true_tells_stages(self):
-        heard = io.StringIO()
-        with contextlib.redirect_stderr(heard):
+        output = io.StringIO()
+        with contextlib.redirect_stderr(output):
             limen.simulate("room", points_indoor=2_000, stations=1, progress=True)
-        self.assertTrue(heard.getvalue())
+        self.assertTrue(output.getvalue())
 
 
 class Projects(unittest.TestCase):
     def test_read_project_tells_poses_by_file(self):
-        told = {
+        document = {
             "outcome": "registered",
             "reason": "all scans stand",
             "scans": [
@@ -156,7 +156,7 @@ class Projects(unittest.TestCase):
             "questions": [{"text": "is it here?"}],
         }
         with tempfile.TemporaryDirectory() as folder:
-            (Path(folder) / "project.json").write_text(json.dumps(told))
+            (Path(folder) / "project.json").write_text(json.dumps(document))
             found = limen.read_project(folder)
         np.testing.assert_array_equal(found.pose_of("one.ply"), np.eye(4))
         self.assertEqual(found.questions, ["is it here?"])

@@ -29,21 +29,21 @@ class Stub(unittest.TestCase):
                 self.assertTrue(hasattr(_limen, node.name), node.name)
 
     def test_every_name_that_is_there_is_in_the_stub(self):
-        told = {node.name for node in stub() if isinstance(node, (ast.FunctionDef, ast.ClassDef))}
+        stated = {node.name for node in stub() if isinstance(node, (ast.FunctionDef, ast.ClassDef))}
         there = {name for name in dir(_limen) if not name.startswith("_") and callable(getattr(_limen, name))}
-        self.assertEqual(there - told, set())
+        self.assertEqual(there - stated, set())
 
     def test_members_of_classes_agree(self):
         for node in stub():
             if not isinstance(node, ast.ClassDef) or node.name == "Error":
                 continue
-            told = {part.name for part in node.body if isinstance(part, ast.FunctionDef)}
-            told |= {part.target.id for part in node.body if isinstance(part, ast.AnnAssign)}
+            stated = {part.name for part in node.body if isinstance(part, ast.FunctionDef)}
+            stated |= {part.target.id for part in node.body if isinstance(part, ast.AnnAssign)}
             kind = getattr(_limen, node.name)
-            for name in told:
+            for name in stated:
                 self.assertTrue(hasattr(kind, name), f"{node.name}.{name}")
             there = {name for name in vars(kind) if not name.startswith("_")}
-            self.assertEqual(there - told, set(), node.name)
+            self.assertEqual(there - stated, set(), node.name)
 
     def test_options_have_the_types_they_are_said_to_have(self):
         for node in stub():

@@ -65,8 +65,8 @@ def perform(program, words):
         return dict(answer, **json.loads(done.stdout))
     if done.returncode < 0:
         return dict(answer, words=f"limen was ended by {signal.Signals(-done.returncode).name}")
-    told = done.stderr.decode(errors="replace").strip().splitlines()
-    return dict(answer, words=told[-1] if told else f"limen ended with status {done.returncode}")
+    lines = done.stderr.decode(errors="replace").strip().splitlines()
+    return dict(answer, words=lines[-1] if lines else f"limen ended with status {done.returncode}")
 
 
 class Job:
@@ -231,7 +231,7 @@ class Driver:
 
     def reconnect(self, first):
         start = time.monotonic()
-        told = first
+        reported = first
         while True:
             try:
                 self.cluster.connect()
@@ -243,9 +243,9 @@ class Driver:
                 where = self.cluster.options.scheduler or self.cluster.options.scheduler_file or "this machine"
                 if time.monotonic() - start > (CONNECT_S if first else SCHEDULER_PATIENCE_S):
                     fault(f"Dask's scheduler cannot be reached: {error}", where, "start it, and run again")
-                if not told:
+                if not reported:
                     say(note=f"the scheduler {where} is gone; waiting for it")
-                    told = True
+                    reported = True
             self.pause()
 
     def pause(self):
@@ -281,7 +281,7 @@ class Driver:
             self.waiting.remove(job)
             job.starts += 1
             key = f"limen-{job.number}-{job.starts}-{job.name}"
-            # Not `retries`: what fails for good reason is told by the answer, and a worker's end is retried anyway.
+            # Not `retries`: what fails for good reason is in the answer, and a worker's end is retried anyway.
             future = self.cluster.client.submit(perform, self.program, job.words, key=key, pure=False)
             self.flying[key] = (job, future)
             future.add_done_callback(lambda done: self.events.put(("settled", done.key)))

@@ -120,7 +120,7 @@ describe('a registered pair', () => {
         words = await page.locator('#picked').innerText();
       }
       assert.match(words, side === 'source' ? /Source\s+indoor_00\.ply/ : /Target\s+outdoor\.ply/);
-      // The target lies on a national grid; millimetres are told.
+      // The target lies on a national grid; millimetres are shown.
       assert.match(words, /10\d{5}\.\d{3}\s+68\d{5}\.\d{3}\s+\d+\.\d{3}/);
       assert.match(words, /Plane\s+\d+, [\d.]+ m²/);
       await settled(page, () => page.check(`[data-layer="${other}-cloud"]`));
@@ -246,12 +246,12 @@ describe('a report to hand on', () => {
 
   test('the freedoms and numbers are those of the pose that is shown', async () => {
     const { page } = await openReport(browser.context, report('in_model'));
-    const told = () => page.locator('#sigma').innerText();
-    const first = await told();
+    const sigmaText = () => page.locator('#sigma').innerText();
+    const first = await sigmaText();
     await settled(page, () => page.keyboard.press('n'));
-    assert.notEqual(await told(), first);
+    assert.notEqual(await sigmaText(), first);
     await settled(page, () => page.keyboard.press('p'));
-    assert.equal(await told(), first);
+    assert.equal(await sigmaText(), first);
     await page.close();
   });
 });

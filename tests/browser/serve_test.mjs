@@ -21,12 +21,12 @@ const heard = { problems: [], requests: [] };
 /** Starts it and waits for the address that it tells. */
 const serve = async () => {
   server = spawn(program, ['serve', join(folder, 'site'), '--most-upload', '100M', '--json'], { stdio: ['ignore', 'pipe', 'inherit'] });
-  let told = '';
+  let printed = '';
   for await (const piece of server.stdout) {
-    told += piece;
-    if (told.includes('}')) break;
+    printed += piece;
+    if (printed.includes('}')) break;
   }
-  return JSON.parse(told).address;
+  return JSON.parse(printed).address;
 };
 
 const openPage = async (scheme = 'light', viewport) => {
@@ -158,8 +158,8 @@ describe('work', () => {
     await report.close();
   });
 
-  test('the stage that is told is shown, with the share of it', async () => {
-    // How long work takes is the machine's affair: the page is told of some that still runs.
+  test('the stage that is reported is shown, with the share of it', async () => {
+    // How long work takes is the machine's affair: the server states some that still runs.
     await page.route('**/state', async (route) => {
       const response = await route.fetch();
       const state = await response.json();

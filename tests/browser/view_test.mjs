@@ -131,10 +131,10 @@ describe('both sides of a result', () => {
     const places = [...words.matchAll(/End \d\s+(\S+)\s+(\S+)\s+(\S+)/g)].map((match) => match.slice(1).map(Number));
     assert.equal(places.length, 2);
     const distance = Math.hypot(...places[0].map((c, k) => places[1][k] - c));
-    const told = +/Distance\s+([\d.]+) m/.exec(words)[1];
-    assert.ok(told > 0.05 && Math.abs(told - distance) < 0.002, `${told} told, ${distance} between the ends`);
+    const stated = +/Distance\s+([\d.]+) m/.exec(words)[1];
+    assert.ok(stated > 0.05 && Math.abs(stated - distance) < 0.002, `${stated} stated, ${distance} between the ends`);
     await page.waitForSelector('#length:not([hidden])');  // it is put there with the next picture
-    assert.equal(await page.locator('#length').innerText(), `${told.toFixed(3)} m`);
+    assert.equal(await page.locator('#length').innerText(), `${stated.toFixed(3)} m`);
     if (shots) await page.screenshot({ path: join(shots, 'view-measured.png') });
     await settled(page, () => page.click('#clear'));
     assert.ok(!(await page.isVisible('#pin-0')));

@@ -24,7 +24,7 @@ TEST(ScanInFile, AFileThatIsThereUnderTheWholeNameCountsFirst) {
   const std::string odd = folder.write("all.e57 #1", "x").string();
   EXPECT_EQ(scan_in_file(odd).file, odd);
   EXPECT_FALSE(scan_in_file(odd).index);
-  EXPECT_EQ(file_of_scan(plain + "x #1"), plain + "x #1") << "no such file: the name is told as it was given";
+  EXPECT_EQ(file_of_scan(plain + "x #1"), plain + "x #1") << "no such file: the name stays as it was given";
 }
 
 }  // namespace

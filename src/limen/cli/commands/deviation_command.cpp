@@ -45,7 +45,7 @@ struct DeviationCommand {
   bool pdf = false;
 };
 
-/// The scans of a group as one, about the first one's origin, with the optical centre of every point where
+/// The scans of a group as one, about the first one's origin, with the scanner position of every point where
 /// all of them are known.
 Scan joined(const RegisterInput& input) {
   const auto& scans = input.scans;

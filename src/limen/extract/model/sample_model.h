@@ -27,8 +27,8 @@ struct ModelSamplingOptions {
 };
 
 /// Points on the visible surface of a model, none nearer than the spacing to another, hardly anywhere room
-/// for one more. The optical centre is unknown. Deterministic. Throws Error where the model is too large for
-/// the spacing.
+/// for one more. The scanner position is unknown. Deterministic. Throws Error where the model is too large
+/// for the spacing.
 Scan sample_model(const BimModel& model, const ModelSamplingOptions& options = {});
 
 /// The segments that the detector for scans finds in such a cloud, about the model's local origin.

@@ -52,7 +52,7 @@ std::vector<OpeningWall> opening_walls(const Scan& scan, const ExtractedFeatures
                                        const Vector3d& up, const OpeningOptions& options);
 
 /// For each wall what the rays say of it. A ray speaks of every wall it meets from the seen side. Throws
-/// Error where the optical centre is not known.
+/// Error where the scanner position is not known.
 std::vector<WallEvidence> opening_evidence(const Scan& scan, const ExtractedFeatures& extracted,
                                            const std::vector<OpeningWall>& walls,
                                            const OpeningOptions& options, Monitor& monitor);

@@ -29,7 +29,8 @@ struct OpeningOptions {
   double merge_bar_m = 0.12;   ///< bars flush with the wall no wider than this do not divide; >= 0
   double max_niche_m = 0.25;   ///< shallower recesses with a flat closed back are blind, seen from outside
   double max_curtain_gap_m = 0.3;  ///< what hangs this near before the wall may be a curtain; >= 0
-  std::optional<Vector3d> centre;  ///< optical centre where the scan does not tell it, about its local origin
+  std::optional<Vector3d>
+      centre;  ///< scanner position where the scan does not give it, about its local origin
 
   void check() const;
 };
@@ -37,7 +38,7 @@ struct OpeningOptions {
 /// Windows and doors of a scan as upright rectangles in its walls (2022, sections 2.2 and 2.3), wall by wall,
 /// each wall's from left to right. `extracted`: the scan's own features and labels; Opening::facade is an
 /// index into extracted.features.planes. `up`: unit vector against gravity in the scan's frame. Throws Error
-/// where the optical centre is known neither from the scan nor from the options.
+/// where the scanner position is known neither from the scan nor from the options.
 std::vector<Opening> find_openings(const Scan& scan, const ExtractedFeatures& extracted, const Vector3d& up,
                                    const OpeningOptions& options = {}, Monitor& monitor = silent_monitor());
 

@@ -49,14 +49,14 @@ const ticked = new Set(JSON.parse(sessionStorage.getItem('ticked') ?? '[]'));
 const upload = (file) => {
   const name = file.name.replace(/\s+/g, '_');
   const bar = make('progress', { max: 1, value: 0, 'aria-label': `Upload of ${name}` });
-  const told = make('span', { textContent: sizeOf(file.size) });
-  const item = make('li', {}, make('span', { textContent: name }), told, bar);
+  const size = make('span', { textContent: sizeOf(file.size) });
+  const item = make('li', {}, make('span', { textContent: name }), size, bar);
   byId('uploads').append(item);
   return new Promise((resolve) => {
     const end = (fault) => {
       if (fault) {
         bar.remove();
-        told.textContent = '';
+        size.textContent = '';
         item.append(make('span', { className: 'fault', role: 'alert', textContent: fault }));
         item.append(make('button', { className: 'plain', textContent: 'Dismiss', onclick: () => item.remove() }));
       } else {
@@ -267,8 +267,8 @@ const classOf = (job, result) => (job.state !== 'done' ? job.state : result?.out
 const jobCard = (job) => {
   const result = results.get(job.id)?.json;
   const title = make('h3', {}, `${kinds[job.kind] ?? job.kind}: `, make('span', { textContent: job.kind === 'decide' ? `${captionOf(job.title, false)}: ${scansOf(askedOf(job.title))}` : job.title }));
-  const told = make('p', {}, make('span', { className: 'state', textContent: outcomeOf(job, result) || job.state }), ' ', make('span', { className: 'soft time' }));
-  const parts = [title, told];
+  const stateLine = make('p', {}, make('span', { className: 'state', textContent: outcomeOf(job, result) || job.state }), ' ', make('span', { className: 'soft time' }));
+  const parts = [title, stateLine];
   if (job.state === 'running' || job.state === 'queued') {
     parts.push(make('progress', { max: 1, 'aria-label': `${job.title}: progress` }));
     parts.push(make('p', {}, make('button', { type: 'button', textContent: 'Stop', 'aria-label': `Stop ${job.title}`, onclick: async () => {

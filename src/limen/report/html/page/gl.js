@@ -162,7 +162,7 @@ const makeSurfacePainter = (gl, programs) => {
   };
 };
 
-/** "#1f6fb4" of a style's variable as three shares; grey where it is told otherwise. */
+/** "#1f6fb4" of a style's variable as three shares; grey where it is written otherwise. */
 const styleColour = (name) => {
   const text = getComputedStyle(document.documentElement).getPropertyValue(name).trim();
   const digits = /^#([0-9a-f]{2})([0-9a-f]{2})([0-9a-f]{2})/i.exec(text);

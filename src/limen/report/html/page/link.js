@@ -14,7 +14,7 @@ const linkLine = (sides) => {
   return ['limen register', ...sides.map(({ side }) => quoted(side.path)), '-o linked', ...points].join(' ');
 };
 
-/** Null where fewer than two files can be linked. `changed`: something is to be told and drawn anew. */
+/** Null where fewer than two files can be linked. `changed`: something is to be written and drawn anew. */
 const makeLinking = (scene, changed) => {
   if (scene.sides.filter((side) => side.path).length < 2) return null;
   let chosen = [];

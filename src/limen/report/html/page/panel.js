@@ -88,10 +88,10 @@ const rampCss = () => `linear-gradient(90deg, ${kRamp.map((c) => `rgb(${c.map((x
 
 const showLegend = (scene, state, residual) => {
   const legend = element('legend');
-  // Asked for every frame; what has not changed is not told again.
-  const told = `${state.colouring} ${residual}`;
-  if (legend.dataset.told === told) return;
-  legend.dataset.told = told;
+  // Asked for every frame; what has not changed is not written again.
+  const shown = `${state.colouring} ${residual}`;
+  if (legend.dataset.shown === shown) return;
+  legend.dataset.shown = shown;
   legend.replaceChildren();
   if (state.colouring === 'residual' && residual) {
     legend.append(made('span', {}, t`Residual 0`, made('span', { class: 'ramp', style: `background:${rampCss()}` }),
@@ -119,7 +119,7 @@ const numbersOf = (pose) => {
 const showTables = (pose) => {
   for (const [id, table] of [['sigma-of-pose', pose.sigma], ['key-of-pose', pose.key]]) {
     const box = element(id);
-    if (box && box.dataset.told !== table) { box.innerHTML = table; box.dataset.told = table; }
+    if (box && box.dataset.shown !== table) { box.innerHTML = table; box.dataset.shown = table; }
   }
 };
 

@@ -11,7 +11,7 @@ bool cutAway(vec3 x) {
   return dot(cutAxis, cutAxis) > 0.5 && (along < cutRange.x || along > cutRange.y);
 }`;
 
-// Five colours of the viridis map, told apart by every kind of sight and in grey.
+// Five colours of the viridis map, distinct for every kind of sight and in grey.
 const kRamp = [[0.267, 0.005, 0.329], [0.229, 0.322, 0.546], [0.128, 0.567, 0.551], [0.369, 0.789, 0.383], [0.993, 0.906, 0.144]];
 const kRampGlsl = `
 vec3 ramp(float t) {

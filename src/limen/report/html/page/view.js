@@ -51,8 +51,8 @@ const describeLength = ([a, b]) => {
 };
 
 const describePlace = (scene, { side, point, plane, at }, name) => {
-  const told = add(turn(inverseRigid(scene.viewFromFrame), at), scene.origin);
-  const lines = [[name, told.map((c) => t`${c.toFixed(3)}`).join('  ')], [t`File`, side.name]];
+  const inFrame = add(turn(inverseRigid(scene.viewFromFrame), at), scene.origin);
+  const lines = [[name, inFrame.map((c) => t`${c.toFixed(3)}`).join('  ')], [t`File`, side.name]];
   if (point < 0 && plane >= 0) lines.push([t`Surface`, t`${side.planes[plane].area.toFixed(1)} m²`]);
   return lines;
 };
