@@ -43,7 +43,7 @@ struct Scan {
   [[nodiscard]] std::size_t size() const { return points.size(); }
   [[nodiscard]] bool centre_known() const { return !centres.empty(); }
   [[nodiscard]] bool mobile() const { return centres.size() > 1; }
-  /// The optical centre of point i; call only where centre_known().
+  /// The scanner position of point i; call only where centre_known().
   [[nodiscard]] const Vector3d& centre(std::size_t i) const {
     return centres.size() > 1 ? centres[i] : centres[0];
   }
@@ -61,7 +61,7 @@ struct PlacedScan {
 /// The points of `scan` with the given indices, all attributes kept, in the given order.
 Scan subset(const Scan& scan, const std::vector<std::uint32_t>& indices);
 
-/// The scan's points and optical centres moved about the local origin, which stays.
+/// The scan's points and scanner positions moved about the local origin, which stays.
 Scan moved(Scan scan, const Rigid3& motion);
 
 /// A round number (100 m) near `x`, or 0,0,0 where all coordinates are below 10 km.

@@ -8,7 +8,7 @@
 
 namespace limen {
 
-/// An optical centre found from the data, and how well the data bears it out.
+/// A scanner position found from the data, and how well the data bears it out.
 struct EstimatedCentre {
   Vector3d centre = Vector3d::Zero();  ///< about the scan's local origin, metres
   Vector3d up = Vector3d::UnitZ();     ///< the axis the scanner turned about, sign open

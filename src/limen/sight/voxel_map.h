@@ -29,7 +29,7 @@ struct VoxelMapState {
 
 /// Space in cubes, for scans that see from many places (mobile, several stations) or from an unknown one:
 /// which surfaces were measured near a cube, and which cubes rays passed through. Coarser than a panorama,
-/// and silent where it does not know: no ray of an unknown optical centre frees a cube.
+/// and silent where it does not know: no ray of an unknown scanner position frees a cube.
 class VoxelMap : public SpaceView {
  public:
   VoxelMap(const Scan& scan, const Features& features, const VoxelMapOptions& options = {});

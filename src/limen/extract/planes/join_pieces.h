@@ -30,7 +30,7 @@ struct JoinOptions {
 struct PlanePiece {
   std::vector<std::uint32_t> points;  ///< of the scan, ascending
   PointMoments moments;               ///< about the anchor
-  Vector3d sight = Vector3d::Zero();  ///< sum of the ways to the optical centres, where they are known
+  Vector3d sight = Vector3d::Zero();  ///< sum of the ways to the scanner positions, where they are known
 };
 
 PlanePiece piece_of(const Scan& scan, std::vector<std::uint32_t> points, const Vector3d& anchor);

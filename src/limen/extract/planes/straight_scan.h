@@ -40,7 +40,7 @@ struct ScanDrift {
 ScanDrift scan_drift(const Scan& scan, const StraightOptions& options = {},
                      Monitor& monitor = silent_monitor());
 
-/// The scan with that taken out of its points and optical centres.
+/// The scan with that taken out of its points and scanner positions.
 Scan straightened(Scan scan, const ScanDrift& drift);
 
 }  // namespace limen

@@ -56,7 +56,7 @@ struct DetectedEdge {
 };
 
 /// The edges of a scan, longest first. Borders are judged by what the scanner saw beyond them: with an
-/// unknown optical centre only the outlines of holes are taken.
+/// unknown scanner position only the outlines of holes are taken.
 std::vector<DetectedEdge> find_edges(const Scan& scan, const ExtractedFeatures& extracted,
                                      const SegmentOptions& options = {}, Monitor& monitor = silent_monitor());
 

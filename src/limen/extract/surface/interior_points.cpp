@@ -143,7 +143,7 @@ std::vector<OutlineTarget> make_targets(const std::vector<PlanarPolygon>& polygo
   return targets;
 }
 
-/// Bounds of the rays of one block: their optical centres, their points.
+/// Bounds of the rays of one block: their scanner positions, their points.
 struct Block {
   Extent centres;
   Extent points;

@@ -48,7 +48,8 @@ class OutlineRaster {
 // - the crossing is tested against the outer ring with its holes filled: windows are the holes of the
 // polygon,
 //   and a test against the polygon itself fails exactly at them;
-// - only crossings strictly between the optical centre and the point count, each point having its own centre;
+// - only crossings strictly between the scanner position and the point count, each point having its own
+// centre;
 // - the printed distance is the one along the ray from the crossing to the point; at grazing incidence a wall
 //   that bulges by a few centimetres would pass it, so the depth behind the plane has a bound of its own;
 // - a wall whose outer side is known is only crossed from there.
@@ -71,8 +72,8 @@ struct Crossing {
 };
 
 /// For each point behind one of the walls `walls` (indices into `polygons`, about the scan's local origin)
-/// the crossing nearest to the scanner, by ascending point index. Throws Error where the scan's optical
-/// centre is not known.
+/// the crossing nearest to the scanner, by ascending point index. Throws Error where the scan's scanner
+/// position is not known.
 std::vector<Crossing> find_interior_points(const Scan& scan, const std::vector<PlanarPolygon>& polygons,
                                            const std::vector<int>& walls,
                                            const InteriorPointOptions& options = {},

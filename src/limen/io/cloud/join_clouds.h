@@ -18,7 +18,7 @@ struct PlacedCloud {
   const OpenPoints* input = nullptr;
   std::size_t cloud = 0;
   Rigid3 target_from_world;             ///< from the world of the file, its offset added
-  std::optional<Vector3d> centre = {};  ///< optical centre in the world of the file, where there is one
+  std::optional<Vector3d> centre = {};  ///< scanner position in the world of the file, where there is one
   std::size_t source = 0;               ///< number of the file
   std::shared_ptr<const SplineMotion> bend = {};  ///< of a pass that drifted: by time, after the motion
 };
@@ -29,7 +29,7 @@ struct PlacedCloud {
 class JoinedClouds {
  public:
   /// `tell_source`: a column source_cloud says which file each point is from. Static clouds with different
-  /// optical centres give them per point. Throws Error where a cloud lacks x, y or z, or none has points.
+  /// scanner positions give them per point. Throws Error where a cloud lacks x, y or z, or none has points.
   /// `system`: well-known text of the output's coordinate system; empty: that of the first cloud.
   JoinedClouds(std::vector<PlacedCloud> clouds, bool tell_source, const std::string& system = {});
 

@@ -23,7 +23,7 @@ std::uint64_t scan_bytes(const OpenPoints& input);
 ScanFile read_thinned(const OpenPoints& input, const ReadOptions& options,
                       Monitor& monitor = silent_monitor());
 
-/// The optical centre of a cloud, in the coordinates that read_scan gives its points, as read_scan would
+/// The scanner position of a cloud, in the coordinates that read_scan gives its points, as read_scan would
 /// settle it, judged by some of its points; empty where it is unknown or differs from point to point.
 std::optional<Vector3d> settled_centre(const OpenPoints& input, std::size_t cloud,
                                        Monitor& monitor = silent_monitor());

@@ -90,7 +90,7 @@ ScanFile read_at_once(const OpenPoints& input, const ReadOptions& options, Monit
   return read_clouds(input, options, monitor);
 }
 
-/// The scans with the optical centres that the trajectory gives.
+/// The scans with the scanner positions that the trajectory gives.
 ScanFile followed(ScanFile file, const Trajectory& trajectory) {
   for (Scan& scan : file.scans) {
     FollowedScan with = with_trajectory(scan, trajectory);

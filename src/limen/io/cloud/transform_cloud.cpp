@@ -89,7 +89,7 @@ void require_known_ending(const std::filesystem::path& output, const OpenPoints&
               "name the output .ply, .las, .laz, .e57, .xyz or .csv, or give it the ending of the input");
 }
 
-/// All clouds of a file; those that are copied need no optical centre, and empty ones are only copied.
+/// All clouds of a file; those that are copied need no scanner position, and empty ones are only copied.
 std::vector<PlacedCloud> placed_for(const std::filesystem::path& output, const OpenPoints& input,
                                     const Rigid3& pose, const std::optional<Vector3d>& origin,
                                     Monitor& monitor) {

@@ -54,7 +54,7 @@ struct StationToMove {
   std::shared_ptr<const SplineMotion> bend = {};  ///< of a pass that drifted: by time, in the target's frame
 };
 /// Clouds of one file or several, each moved by a pose of its own, in one file. In an .e57 each stays a scan
-/// of its own, its pose at the optical centre where that is known; in a .ply, .las or .laz they become one
+/// of its own, its pose at the scanner position where that is known; in a .ply, .las or .laz they become one
 /// cloud with the columns of all, and `source_cloud` tells which station a point is from where there are
 /// several. Throws Error where a file has no such cloud, or more than 256 would become one.
 TransformedCloud move_stations(const std::vector<StationToMove>& stations,

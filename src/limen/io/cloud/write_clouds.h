@@ -34,7 +34,7 @@ struct WrittenClouds {
   std::vector<std::string> notes;
 };
 
-/// A cloud of a file, in place for an output frame, with the optical centre if that is known. `origin`: the
+/// A cloud of a file, in place for an output frame, with the scanner position if that is known. `origin`: the
 /// centre, where the user tells it; small clouds are looked into where the file does not tell one.
 PlacedCloud placed_cloud(const OpenPoints& input, std::size_t cloud, const Rigid3& target_from_world,
                          const std::optional<Vector3d>& origin = {}, Monitor& monitor = silent_monitor());

@@ -63,7 +63,7 @@ struct E57Description {
   std::string name;
   std::vector<std::string> georeference;
   Vector3d shift = Vector3d::Zero();  ///< the pose
-  bool centre_known = false;          ///< the pose is the optical centre
+  bool centre_known = false;          ///< the pose is the scanner position
   std::array<E57Range, 3> bounds;     ///< of the points, about the shift
   std::uint64_t points = 0;
   std::uint64_t section = 0;  ///< physical offset

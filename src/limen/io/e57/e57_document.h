@@ -44,7 +44,7 @@ struct E57Scan {
   double quaternion_length = 1.0;
   double acquisition_start_s = 0.0;  ///< GPS time, 0: not stated
   std::array<std::optional<E57Limits>, 3> colour_limits;
-  std::string centre_word;  ///< what limen wrote of the optical centre: "known", "unknown" or nothing
+  std::string centre_word;  ///< what limen wrote of the scanner position: "known", "unknown" or nothing
   std::uint64_t points = 0;
   std::uint64_t section = 0;  ///< physical offset of the points
   std::vector<E57Column> columns;

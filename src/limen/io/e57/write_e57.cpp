@@ -210,7 +210,7 @@ void E57Section::plan_encoders() {
   encoders_.emplace_back(std::move(state));
 }
 
-/// What is taken off a column of the plan: coordinates of optical centres are stored about the pose too.
+/// What is taken off a column of the plan: coordinates of scanner positions are stored about the pose too.
 double E57Section::shift_of(const std::string& lower_name) const {
   constexpr std::array<std::string_view, 3> kCentre{"x_origin", "y_origin", "z_origin"};
   for (std::size_t k = 0; k < 3; ++k) {

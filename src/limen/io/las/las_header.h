@@ -66,7 +66,7 @@ inline constexpr std::size_t kReturns = 255;
 
 /// Bytes of a variable length record before its body.
 inline constexpr std::size_t kLasRecordHead = 54;
-/// Name of the record that holds the optical centre of a static scan, written by limen: three float64,
+/// Name of the record that holds the scanner position of a static scan, written by limen: three float64,
 /// metres.
 inline constexpr const char* kLasCentreUser = "limen";
 inline constexpr std::uint16_t kLasCentreNumber = 1;

@@ -20,8 +20,8 @@ TransformedCloud transform_pcd(const NamedBytes& input, const Rigid3& target_fro
 bool looks_like_pcd(std::string_view bytes);
 
 /// Reads a PCD file (version 0.5 to 0.7) from memory: ascii, binary and binary_compressed, fields of any type
-/// and count, rows and columns, packed rgb. A VIEWPOINT whose translation is not zero counts as optical
-/// centre where it can be one; the points are taken as they are. `name` is for messages.
+/// and count, rows and columns, packed rgb. A VIEWPOINT whose translation is not zero counts as scanner
+/// position where it can be one; the points are taken as they are. `name` is for messages.
 /// Throws Error that names the file and the line or byte.
 ScanFile read_pcd(std::string_view bytes, const std::string& name, const ReadOptions& options = {});
 

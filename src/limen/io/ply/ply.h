@@ -15,14 +15,14 @@
 namespace limen {
 
 /// Writes a scan as binary little-endian PLY with all that is known of it: x y z as double in world
-/// coordinates (the local origin added), per-point optical centres as x_origin y_origin z_origin, GPS_time,
-/// scan_line and scan_index, intensity, red green blue. A single optical centre, or that it is unknown, goes
-/// into a comment "scanner_position" that read_ply understands.
-/// The file appears whole or not at all; throws Error where it cannot be written.
+/// coordinates (the local origin added), per-point scanner positions as x_origin y_origin z_origin, GPS_time,
+/// scan_line and scan_index, intensity, red green blue. A single scanner position, or that it is unknown,
+/// goes into a comment "scanner_position" that read_ply understands. The file appears whole or not at all;
+/// throws Error where it cannot be written.
 void write_ply(const std::filesystem::path& path, const Scan& scan);
 
 /// Writes binary little-endian PLY with every column of the plan in its own type; whole numbers of 64 bits
-/// are named int64 and uint64, which few other programs know. The optical centre goes into a comment
+/// are named int64 and uint64, which few other programs know. The scanner position goes into a comment
 /// "scanner_position" that read_ply understands, texts of the coordinate system into comments "crs".
 /// Throws Error where the file cannot be written.
 std::unique_ptr<CloudWriter> make_ply_writer(const std::filesystem::path& path, const CloudPlan& plan);

@@ -22,7 +22,7 @@ TransformedCloud transform_ptx(const NamedBytes& input, const Rigid3& target_fro
 bool looks_like_ptx(std::string_view bytes);
 
 /// Reads a PTX file from memory: any number of static scans, each moved to world coordinates by its 4 x 4
-/// matrix. Each scan has its scanner's position as optical centre (where the matrix is the identity, 0,0,0
+/// matrix. Each scan has its scanner's position as scanner position (where the matrix is the identity, 0,0,0
 /// only where that can be the scanner), and columns and rows as topology. Missing returns (0 0 0) are left
 /// out. `name` is for messages. Throws Error that names the file, the scan and the line.
 ScanFile read_ptx(std::string_view bytes, const std::string& name, const ReadOptions& options = {});

@@ -26,7 +26,7 @@ struct CloudPlan {
   std::uint64_t most_points = 0;          ///< no more rows than these will come
   Vector3d near = Vector3d::Zero();       ///< a point of the cloud, metres: for formats that store integers
   double resolution_m = 0.0;              ///< of the source's coordinates where they were integers, else 0
-  std::optional<Vector3d> centre;         ///< optical centre of a static scan, frame of the output
+  std::optional<Vector3d> centre;         ///< scanner position of a static scan, frame of the output
   std::vector<std::string> georeference;  ///< of the source: texts of its coordinate system (WKT), if any
 };
 

@@ -16,7 +16,7 @@ namespace limen {
 
 /// One cloud of a point file, before its points are read.
 struct CloudFacts {
-  TableFacts table;                 ///< name, offset, pose, optical centre
+  TableFacts table;                 ///< name, offset, pose, scanner position
   std::uint64_t points = 0;         ///< as the file says
   std::vector<std::string> fields;  ///< names of the values per point, as the file has them
   std::vector<std::string> notes;   ///< sentences about what was assumed

@@ -280,7 +280,7 @@ std::string stated(const Vector3d& x) {
   return fmt::format("{:.3f} {:.3f} {:.3f}", x.x(), x.y(), x.z());
 }
 
-/// The optical centre of a scan whose points carry none, and a sentence about how it was found.
+/// The scanner position of a scan whose points carry none, and a sentence about how it was found.
 std::string settle_centre(Scan& scan, const TableFacts& facts, const ReadOptions& options) {
   if (options.origin) {
     scan.centres = {*options.origin - scan.local_origin};

@@ -20,7 +20,7 @@ struct TableFacts {
   /// The frame of the file from that of x y z, offset not yet added; turns points and per-point centres.
   std::optional<Rigid3> pose;
   bool has_offset = false;                  ///< the file carries an offset: its 0,0,0 is no scanner
-  std::optional<Vector3d> centre;           ///< optical centre, offset not yet added
+  std::optional<Vector3d> centre;           ///< scanner position, offset not yet added
   bool centre_unknown = false;              ///< the file says that it does not know its centre
   std::optional<Vector3d> possible_centre;  ///< taken only where it can be the scanner
   std::size_t missing = 0;                  ///< rows that the reader has counted as missing returns already

@@ -22,7 +22,7 @@ struct TrajectoryOptions {
   std::string utm_zone = "auto";
   double time_offset_s = 0.0;  ///< added to the times of the file
   double max_gap_s = 1.0;      ///< places are not interpolated across longer gaps
-  /// From the trajectory's point to the optical centre, in the body's frame: forward, right, down, metres.
+  /// From the trajectory's point to the scanner position, in the body's frame: forward, right, down, metres.
   Vector3d lever_arm_m = Vector3d::Zero();
 
   /// What is between the dashes and the names of these options in messages, as "source-".

@@ -41,7 +41,7 @@ class Trajectory {
   std::string option_side_;
 };
 
-/// A scan with its optical centres.
+/// A scan with its scanner positions.
 struct FollowedScan {
   Scan scan;
   std::size_t left_out = 0;  ///< points at times that the trajectory does not cover
@@ -52,7 +52,7 @@ struct FollowedScan {
 const Trajectory* covering_trajectory(const Scan& scan,
                                       const std::vector<std::shared_ptr<const Trajectory>>& trajectories);
 
-/// The scan with the optical centre of each point by its time. Throws Error where the scan has no times,
+/// The scan with the scanner position of each point by its time. Throws Error where the scan has no times,
 /// where no time of it is covered (with both ranges, and what would bring them together), or where the
 /// trajectory passes nowhere near the points.
 FollowedScan with_trajectory(const Scan& scan, const Trajectory& trajectory);

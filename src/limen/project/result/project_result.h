@@ -34,7 +34,7 @@ struct PlanPatch {
 struct PassKnot {
   double time_s = 0.0;
   double distance_m = 0.0;               ///< travelled
-  Vector3d place = Vector3d::Zero();     ///< of the optical centre, corrected; frame
+  Vector3d place = Vector3d::Zero();     ///< of the scanner position, corrected; frame
   Vector3d turn_rad = Vector3d::Zero();  ///< frame axes, about the correction's pivot
   Vector3d shift_m = Vector3d::Zero();   ///< of the pivot
   Vector3d moved_m = Vector3d::Zero();   ///< by what the turn and the shift move the place

@@ -14,7 +14,7 @@ namespace limen {
 struct PassWay {
   std::vector<double> times_s;      ///< ascending
   std::vector<double> distances_m;  ///< travelled
-  std::vector<Vector3d> places;     ///< of the optical centre, frame of the features, about their origin
+  std::vector<Vector3d> places;     ///< of the scanner position, frame of the features, about their origin
 
   [[nodiscard]] bool known() const { return !times_s.empty(); }
   [[nodiscard]] int knots() const { return static_cast<int>(times_s.size()); }

@@ -47,7 +47,7 @@ struct PreparedScan {
   bool surely_upright = false;     ///< no other way up need be tried
   bool model = false;              ///< a building model instead of a scan
   std::vector<BimSpace> rooms;     ///< of a model
-  std::vector<Vector3d> stations;  ///< optical centres of static stations, prepared frame
+  std::vector<Vector3d> stations;  ///< scanner positions of static stations, prepared frame
   Eigen::AlignedBox3d reach;       ///< around the samples, prepared frame
 
   SampleRuns runs;                     ///< of a model

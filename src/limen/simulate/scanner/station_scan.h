@@ -49,7 +49,7 @@ Vector3d rounded(const Vector3d& x);
 Sweep sweep_of_points(std::size_t points, const std::function<ScanPattern(std::size_t pulses)>& pattern,
                       const std::function<Sweep(const ScanPattern&)>& fire);
 
-/// The echoes as a station keeps them: in its own frame, about its optical centre.
+/// The echoes as a station keeps them: in its own frame, about its scanner position.
 Scan station_scan(std::string name, const Sweep& sweep, const Rigid3& scan_from_scene);
 
 /// The echoes of a `pattern` as a moving scanner keeps them, where its trajectory says that they are.

@@ -148,7 +148,7 @@ BuildingScanner::BuildingScanner(const WholeBuilding& building, const Rigid3& lo
 ScannedBuilding BuildingScanner::station(const std::string& name, const StationPlace& place,
                                          const ScanStyle& style, std::uint64_t seed) {
   RandomStream random(seed, 1);
-  // The instrument's own frame, about its optical centre; the file's may lie elsewhere.
+  // The instrument's own frame, about its scanner position; the file's may lie elsewhere.
   Rigid3 local_from_head;
   local_from_head.rotation = station_rotation(style.any_rotation, random);
   const Matrix3d tilt = tilted(style.tilt_rad, random);
