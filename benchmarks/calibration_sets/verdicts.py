@@ -39,7 +39,7 @@ def agreeing(anchor, placed, one):
 
 
 def right_ones(placed, one):
-    """The scans of a component that stand right as seen from one of those that are registered or probable: the one that
+    """The scans of a component that are right as seen from one of those that are registered or probable: the one that
     most of these agree with, then most of all. Where none is, all count."""
     sure = [scan for scan in placed if scan["row"]["state"] in ("registered", "probable")] or placed
 
@@ -60,8 +60,9 @@ def largest_group(count, pairs):
 
 
 def project_rows(one, document, reachable=frozenset()):
-    """A row for each scan of a set. placed: it stands in a frame with others; right: where those have it that the
-    component is sure of (right_ones); in_frame: that frame is the project's; reachable: its number is among those that could be joined."""
+    """A row for each scan of a set. placed: it is in a frame with others; right: where those have it that the component
+    is sure of (right_ones); in_frame: that frame is the project's; reachable: its number is among those that could be
+    joined."""
     by_name = {scan["file"].replace("\\", "/").rsplit("/", 1)[-1]: scan for scan in document.get("scans", ())}
     rows, components = [], {}
     for number, scan in enumerate(one.scans):

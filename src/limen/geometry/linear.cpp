@@ -234,11 +234,12 @@ Eigen::MatrixXd inverse_of(const Eigen::MatrixXd& matrix) {
 }
 
 double log_determinant_of(const Matrix6d& definite) {
+  constexpr double kLeast = 1e-300;  // by rounding what is next to singular may come out below 0
   const Matrix3d first = definite.topLeftCorner<3, 3>();
   const Matrix3d across = definite.topRightCorner<3, 3>();
   const Matrix3d rest =
       definite.bottomRightCorner<3, 3>() - Matrix3d(across.transpose() * inverse_of(first) * across);
-  return std::log(first.determinant()) + std::log(rest.determinant());
+  return std::log(std::max(kLeast, first.determinant())) + std::log(std::max(kLeast, rest.determinant()));
 }
 
 SingularValues3 singular_values_of(const Matrix3d& matrix) {

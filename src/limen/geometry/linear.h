@@ -41,7 +41,8 @@ Matrix4d inverse_of(const Matrix4d& matrix);
 Matrix6d inverse_of(const Matrix6d& matrix);
 Eigen::MatrixXd inverse_of(const Eigen::MatrixXd& matrix);
 
-/// log of the determinant of a symmetric positive definite matrix, by its blocks.
+/// log of the determinant of a symmetric positive definite matrix, by its blocks; finite where one is
+/// singular.
 double log_determinant_of(const Matrix6d& definite);
 
 /// A matrix as left * diagonal(values) * right^T, the

@@ -70,6 +70,20 @@ TEST(Linear, AllSizesAreSolvedAlike) {
   EXPECT_LT((inverse_of(larger) * larger - Matrix4d::Identity()).norm(), 1e-14);
 }
 
+RC_GTEST_PROP(LinearLaws, ADeterminantIsTheProductOfTheSpectrum, ()) {
+  const Matrix6d any = any_matrix(3.0);
+  const Matrix6d definite = any * any.transpose() + 0.1 * Matrix6d::Identity();
+  const double sum = spectrum_of(definite).values.array().log().sum();
+  RC_ASSERT(std::abs(log_determinant_of(definite) - sum) < 1e-6);
+}
+
+TEST(Linear, TheDeterminantOfASingularMatrixHasALogarithmToo) {
+  EXPECT_TRUE(std::isfinite(log_determinant_of(Matrix6d::Zero())));
+  Matrix6d flat = Matrix6d::Identity();
+  flat(5, 5) = 0.0;
+  EXPECT_LT(log_determinant_of(flat), -600.0);
+}
+
 TEST(Linear, ASkewMatrixIsACrossProduct) {
   const Vector3d a(1.0, -2.0, 0.5);
   const Vector3d b(0.3, 4.0, -1.0);
