@@ -29,8 +29,7 @@ struct OpeningOptions {
   double merge_bar_m = 0.12;   ///< bars flush with the wall no wider than this do not divide; >= 0
   double max_niche_m = 0.25;   ///< shallower recesses with a flat closed back are blind, seen from outside
   double max_curtain_gap_m = 0.3;  ///< what hangs this near before the wall may be a curtain; >= 0
-  std::optional<Vector3d>
-      centre;  ///< scanner position where the scan does not give it, about its local origin
+  std::optional<Vector3d> centre;  ///< scanner position, about the local origin, where the scan has none
 
   void check() const;
 };

@@ -72,7 +72,7 @@ struct Crossing {
 };
 
 /// For each point behind one of the walls `walls` (indices into `polygons`, about the scan's local origin)
-/// the crossing nearest to the scanner, by ascending point index. Throws Error where the scan's scanner
+/// the crossing nearest to the scanner, by ascending point index. Throws Error where the scanner's
 /// position is not known.
 std::vector<Crossing> find_interior_points(const Scan& scan, const std::vector<PlanarPolygon>& polygons,
                                            const std::vector<int>& walls,
