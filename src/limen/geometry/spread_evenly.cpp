@@ -3,8 +3,10 @@
 #include "limen/geometry/spread_evenly.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "limen/base/random.h"
 #include "limen/geometry/cell_key.h"
@@ -24,9 +26,13 @@ class CellSet {
     while (size < 2 * members) size *= 2;
     slots_.assign(size, -1);
   }
+  [[nodiscard]] std::size_t slot_of(std::int64_t cell) const {
+    const std::size_t slot = mix64(static_cast<std::uint64_t>(cell)) & (slots_.size() - 1);
+    __builtin_prefetch(&slots_[slot]);
+    return slot;
+  }
   /// Whether the cell was new.
-  bool insert(std::int64_t cell) {
-    std::size_t slot = mix64(static_cast<std::uint64_t>(cell)) & (slots_.size() - 1);
+  bool insert(std::int64_t cell, std::size_t slot) {
     while (slots_[slot] != -1) {
       if (slots_[slot] == cell) return false;
       slot = (slot + 1) & (slots_.size() - 1);
@@ -39,6 +45,26 @@ class CellSet {
   std::vector<std::int64_t> slots_;
 };
 
+/// Keeps the first of each cell. Memory answers for many at a time.
+void keep_first_of_each(const std::vector<Vector3d>& points, double cell_m,
+                        std::vector<std::uint32_t>& kept) {
+  constexpr std::size_t kAtATime = 64;
+  CellSet cells(kept.size());
+  std::array<std::pair<std::int64_t, std::size_t>, kAtATime> asked;
+  std::size_t first = 0;
+  for (std::size_t begin = 0; begin < kept.size(); begin += kAtATime) {
+    const std::size_t count = std::min(kAtATime, kept.size() - begin);
+    for (std::size_t k = 0; k < count; ++k) {
+      const std::int64_t cell = cell_key(cell_of(points[kept[begin + k]], cell_m));
+      asked[k] = {cell, cells.slot_of(cell)};
+    }
+    for (std::size_t k = 0; k < count; ++k) {
+      if (cells.insert(asked[k].first, asked[k].second)) kept[first++] = kept[begin + k];
+    }
+  }
+  kept.resize(first);
+}
+
 }  // namespace
 
 std::vector<std::uint32_t> spread_evenly(const std::vector<Vector3d>& points, std::size_t most) {
@@ -46,8 +72,7 @@ std::vector<std::uint32_t> spread_evenly(const std::vector<Vector3d>& points, st
   std::iota(kept.begin(), kept.end(), 0U);
   double cell = kFirstCellM;
   while (kept.size() > most) {
-    CellSet cells(kept.size());
-    std::erase_if(kept, [&](std::uint32_t i) { return !cells.insert(cell_key(cell_of(points[i], cell))); });
+    keep_first_of_each(points, cell, kept);
     // The number of points on surfaces falls with the square of the cells' width.
     const double excess =
         static_cast<double>(kept.size()) / static_cast<double>(std::max<std::size_t>(most, 1));

@@ -5,8 +5,8 @@
 #include <atomic>
 #include <cstdint>
 #include <filesystem>
+#include <initializer_list>
 #include <mutex>
-#include <shared_mutex>
 #include <utility>
 
 #include "limen/base/error.h"
@@ -28,36 +28,45 @@ class FilePreparer {
         store_(store),
         on_done_(on_done),
         progress_(monitor, files.size()),
-        outcomes_(files.size()) {}
+        outcomes_(files.size()) {
+    for (std::size_t k = 0; k < files.size(); ++k) (is_large(files[k]) ? large_ : small_).files.push_back(k);
+  }
+
+  void large_first() { work({&large_, &small_}); }
+  void small_ones() { work({&small_}); }
+
+ private:
+  /// Files that are made one after the other, each by the thread that takes it.
+  struct Queue {
+    std::vector<std::size_t> files;
+    std::atomic<std::size_t> next{0};
+  };
+
+  [[nodiscard]] bool is_large(const ProjectFile& file) const {
+    std::error_code ignored;
+    return options_.reading.memory_bytes > 0 ||
+           std::filesystem::file_size(file_of_scan(file.path), ignored) > kLargeBytes;
+  }
 
   /// Takes one file after the other until none is left, or another thread has failed.
-  void work() {
+  void work(std::initializer_list<Queue*> queues) {
     try {
-      for (std::size_t k = next_++; k < files_.size(); k = next_++) {
-        CancelScope::check();
-        settle(k, outcome_of(k));
+      for (Queue* queue : queues) {
+        for (std::size_t k = queue->next++; k < queue->files.size(); k = queue->next++) {
+          CancelScope::check();
+          settle(queue->files[k], outcome_of(files_[queue->files[k]], progress_.worker(queue->files[k])));
+        }
       }
     } catch (...) {
-      next_ = files_.size();
+      large_.next = small_.next = files_.size();
       throw;
     }
   }
 
- private:
-  FileOutcome outcome_of(std::size_t k) {
-    const ProjectFile& file = files_[k];
+  FileOutcome outcome_of(const ProjectFile& file, Monitor& monitor) {
     if (!file.fault.empty() || !file.copy_of.empty()) return {};
-    std::error_code ignored;
-    const bool large = options_.reading.memory_bytes > 0 ||
-                       std::filesystem::file_size(file_of_scan(file.path), ignored) > kLargeBytes;
-    std::shared_lock beside(memory_, std::defer_lock);
-    std::unique_lock alone(memory_, std::defer_lock);
-    if (large)
-      alone.lock();
-    else
-      beside.lock();
     try {
-      return {make_features(file, options_, store_, progress_.worker(k)), {}};
+      return {make_features(file, options_, store_, monitor), {}};
     } catch (const StoreFault&) {
       throw;
     } catch (const Error& error) {
@@ -81,8 +90,8 @@ class FilePreparer {
   const Store& store_;
   const std::function<void(std::size_t, FileOutcome)>& on_done_;
   StageShares progress_;
-  std::atomic<std::size_t> next_{0};
-  std::shared_mutex memory_;
+  Queue large_;
+  Queue small_;
   std::mutex mutex_;
   std::size_t settled_ = 0;
   std::vector<std::optional<FileOutcome>> outcomes_;
@@ -93,7 +102,7 @@ class FilePreparer {
 void prepare_files(const std::vector<ProjectFile>& files, const ProjectOptions& options, const Store& store,
                    Monitor& monitor, const std::function<void(std::size_t, FileOutcome)>& on_done) {
   FilePreparer preparer(files, options, store, monitor, on_done);
-  run_both([&] { preparer.work(); }, [&] { preparer.work(); });
+  run_both([&] { preparer.large_first(); }, [&] { preparer.small_ones(); });
 }
 
 }  // namespace limen

@@ -19,9 +19,9 @@ struct FileOutcome {
   std::string fault;
 };
 
-/// Makes the features of the files, two at a time: one alone leaves threads idle while it is read. A large
-/// file is alone, for its memory, and every file where a bound for that is stated. `on_done` gets the
-/// outcomes in the order of the files, one after the other. Throws what make_features() throws, bad input
+/// Makes the features of the files, two at a time: one alone leaves threads idle while it is read. For their
+/// memory no two are large ones; where a bound of memory is stated every file counts as large. `on_done` gets
+/// the outcomes in the order of the files, one after the other. Throws what make_features() throws, bad input
 /// excepted.
 void prepare_files(const std::vector<ProjectFile>& files, const ProjectOptions& options, const Store& store,
                    Monitor& monitor, const std::function<void(std::size_t, FileOutcome)>& on_done);

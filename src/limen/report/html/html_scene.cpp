@@ -13,16 +13,13 @@ namespace limen {
 namespace {
 
 void add_points(const RegisterInput& input, std::size_t most, SceneSide& side) {
-  struct Origin {
-    const Scan* scan;
-    std::size_t index;
-  };
   std::size_t total = 0;
   for (const PlacedScan& one : input.scans) total += one.scan.size();
   // Far more points than are wanted: every n-th first, for the grid's sake.
   const std::size_t stride = std::max<std::size_t>(1, total / (3 * std::max<std::size_t>(most, 1)));
   std::vector<Vector3d> points;
-  std::vector<Origin> origins;
+  points.reserve(total / stride + input.scans.size());
+  std::vector<std::size_t> firsts;  // of each scan among the points
   bool coloured = total > 0;
   bool measured = total > 0;
   for (const PlacedScan& one : input.scans) {
@@ -30,17 +27,17 @@ void add_points(const RegisterInput& input, std::size_t most, SceneSide& side) {
     const Rigid3 side_from_scan = to_local(one.group_from_scan, scan.local_origin, side.origin);
     coloured = coloured && (scan.size() == 0 || !scan.colours.empty());
     measured = measured && (scan.size() == 0 || !scan.intensities.empty());
-    for (std::size_t i = 0; i < scan.size(); i += stride) {
-      points.push_back(side_from_scan * scan.points[i]);
-      origins.push_back({&scan, i});
-    }
+    firsts.push_back(points.size());
+    for (std::size_t i = 0; i < scan.size(); i += stride) points.push_back(side_from_scan * scan.points[i]);
   }
+  std::size_t s = 0;
   for (const std::uint32_t kept : spread_evenly(points, most)) {
-    const Origin& from = origins[kept];
+    while (s + 1 < firsts.size() && firsts[s + 1] <= kept) ++s;
+    const Scan& scan = input.scans[s].scan;
+    const std::size_t i = (kept - firsts[s]) * stride;
     side.points.push_back(points[kept]);
-    for (std::size_t c = 0; coloured && c < 3; ++c)
-      side.colours.push_back(from.scan->colours[3 * from.index + c]);
-    if (measured) side.intensities.push_back(from.scan->intensities[from.index]);
+    for (std::size_t c = 0; coloured && c < 3; ++c) side.colours.push_back(scan.colours[3 * i + c]);
+    if (measured) side.intensities.push_back(scan.intensities[i]);
   }
 }
 
