@@ -24,7 +24,7 @@
 #include "limen/base/angles.h"
 #include "limen/register/judge/common_surfaces.h"
 #include "limen/register/judge/given_pose.h"
-#include "limen/register/judge/twin_odds.h"
+#include "limen/register/judge/look_alike_odds.h"
 #include "limen/register/prepare/prepared_pair.h"
 #include "limen/register/refine/refine_pose.h"
 #include "limen/register/register.h"
@@ -78,7 +78,7 @@ std::string joined_numbers(const std::vector<double>& values) {
   return "[" + text + "]";
 }
 
-/// For every stray share one place [quality][bend], and twins [kind][quality][bend], in one row.
+/// For every stray share one place [quality][bend], and look-alike places [kind][quality][bend], in one row.
 std::string tables_of(const std::vector<CommonSurface>& surfaces) {
   std::string one_text;
   std::string twin_text;
@@ -86,17 +86,17 @@ std::string tables_of(const std::vector<CommonSurface>& surfaces) {
     const AsBuiltDensity density(surfaces, stray);
     if (!density.knows_square()) return {};
     std::vector<double> one;
-    std::vector<double> twin;
+    std::vector<double> look_alike;
     for (const double offset : kOffsetsMm)
       for (const double turn : kTurnsDeg)
         for (const double bend : kBendsMm) {
           const BuiltQuality quality{1.0, 1e-3 * offset, radians(turn)};
           one.push_back(density.of_one_place(quality, {1.0, 1e-3 * bend}));
           for (const GoingOn same : kGoingOn)
-            twin.push_back(density.of_twin(quality, {1.0, 1e-3 * bend}, same));
+            look_alike.push_back(density.of_look_alike(quality, {1.0, 1e-3 * bend}, same));
         }
     one_text += (one_text.empty() ? "" : ",") + joined_numbers(one);
-    twin_text += (twin_text.empty() ? "" : ",") + joined_numbers(twin);
+    twin_text += (twin_text.empty() ? "" : ",") + joined_numbers(look_alike);
   }
   return fmt::format(R"(, "one": [{}], "twin": [{}])", one_text, twin_text);
 }
@@ -155,14 +155,14 @@ class Rows {
         common_surfaces(source, BuiltPlanes(source), target, BuiltPlanes(target), pose);
     const double nats = built_nats(built_evidence(surfaces.all), {bends_beforehand(0.0)});
     const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
-    const IndividualMatter matter = individual_matter(source, target, pose);
-    TwinEvidence said = weigh_twin(matter);
+    const SeenClutter matter = seen_clutter(source, target, pose);
+    LookAlikeEvidence said = weigh_look_alike(matter);
     const double after = probability_of(said);
     said.built = {};
     std::string list;
     for (const CommonSurface& one : surfaces.all)
       list += fmt::format("{}[{:.2f},{:.3f},{:.3f},{:.2f},{:.3f},{:.3f},{:.2f}]", list.empty() ? "" : ",",
-                          1e3 * one.apart[0], degrees(one.apart[1]), degrees(one.apart[2]),
+                          1e3 * one.deviation[0], degrees(one.deviation[1]), degrees(one.deviation[2]),
                           1e3 * std::sqrt(one.measured(0, 0)), degrees(std::sqrt(one.measured(1, 1))),
                           degrees(std::sqrt(one.measured(2, 2))), one.normal.z());
     file_

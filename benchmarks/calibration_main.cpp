@@ -1,10 +1,11 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Whether stated probabilities hold, and what becomes of pairs that look alike and are not: twins, rooms that
-// have nothing in common, other buildings of the same kind; against the simulator's exact truth.
+// Whether stated probabilities hold, and what becomes of pairs that look alike and are not: look-alike
+// places, rooms that have nothing in common, other buildings of the same kind; against the simulator's exact
+// truth.
 //   bench_calibration --purpose judging --minutes 20 -o rows.csv      again: goes on where it stopped
-//   bench_calibration --purpose fitting --only twin --pairs 100 -o rows.csv
+//   bench_calibration --purpose fitting --only look-alike place --pairs 100 -o rows.csv
 //   bench_calibration --report rows.csv --svg reliability.svg         the tables of rows made before
 // A pose is the true one within 5 cm at the scanner and half a degree.
 #include <chrono>
@@ -244,7 +245,7 @@ class Calibration {
 
 void print_tables(const std::vector<Row>& rows, const std::string& svg) {
   std::map<std::string, Count> kinds;
-  std::map<std::string, Count> twins;
+  std::map<std::string, Count> look_alikes;
   std::map<std::string, Count> buildings;
   Reliability reliability;
   double seconds = 0.0;
@@ -252,15 +253,15 @@ void print_tables(const std::vector<Row>& rows, const std::string& svg) {
     kinds[row.kind].add(row);
     buildings[fmt::format("{} ({})", row.building, row.purpose)].add(row);
     if (row.kind == "twin")
-      twins[fmt::format("{}{}{}{}", row.building, row.mirrored ? ", mirrored" : "",
-                        row.same_storey ? "" : ", other floor",
-                        row.furnished_alike ? ", furnished alike" : "")]
+      look_alikes[fmt::format("{}{}{}{}", row.building, row.mirrored ? ", mirrored" : "",
+                              row.same_storey ? "" : ", other floor",
+                              row.furnished_alike ? ", furnished alike" : "")]
           .add(row);
     for (const Statement& statement : row.statements) reliability.add(statement);
     seconds += row.seconds;
   }
   print_counts("kind of pair", kinds);
-  print_counts("twins: different rooms built alike", twins);
+  print_counts("twins: different rooms built alike", look_alikes);
   print_counts("building", buildings);
   if (reliability.count > 0)
     reliability.print();

@@ -23,7 +23,7 @@
 #include "limen/register/find_poses.h"
 #include "limen/register/judge/as_built.h"
 #include "limen/register/judge/given_pose.h"
-#include "limen/register/judge/twin_odds.h"
+#include "limen/register/judge/look_alike_odds.h"
 
 namespace {
 
@@ -128,7 +128,7 @@ class Rows {
                          s_.set, as == j ? "right" : "wrong", score.agreeing_m2, score.contradicted_m2)
           << "\n";
   }
-  static std::string things(const IndividualMatter& seen) {
+  static std::string things(const SeenClutter& seen) {
     std::string faces;
     for (const FaceMiss& face : seen.faces)
       faces += fmt::format("{}[{:.2f}, {:.3f}, {:.2f}, {}]", faces.empty() ? "" : ", ", 1e3 * face.offset_m,
@@ -200,7 +200,7 @@ class Rows {
     const ScanView target = worked.target.view();
     std::optional<Rigid3> right;
     if (truth) right = in_prepared_frames(*truth, pair);
-    const MatterAsker asker(source, target);
+    const ClutterComparer asker(source, target);
     std::string text;
     for (std::size_t k = 0; k < poses.size(); ++k) {
       const Rigid3 pose =
@@ -216,10 +216,10 @@ class Rows {
       if (k < kAskedThings && is_through_windows(sort_of(worked)))
         text += built(asker.built(poses[k].refined.target_from_source));
       if (k < kAskedThings && sort_of(worked) == PairSort::rooms) {
-        const IndividualMatter seen = asker(poses[k].refined.target_from_source);
+        const SeenClutter seen = asker(poses[k].refined.target_from_source);
         text += built(seen.built);
         text += fmt::format(R"(, "built_one": [{:.2f}], "apart": {:d}, {})",
-                            fmt::join(logs_of_bends(seen.built), ", "), seen.apart, things(seen));
+                            fmt::join(logs_of_bends(seen.built), ", "), seen.behind_wall, things(seen));
       }
       text += "}";
     }

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // A handful of scans of one building that make pairs of every kind: one room scanned twice, on another day
-// with its furniture partly moved, rooms that a door joins, different rooms built alike (twins), rooms that
-// have nothing in common.
+// with its furniture partly moved, rooms that a door joins, different rooms built alike (look-alike places),
+// rooms that have nothing in common.
 #pragma once
 
 #include <algorithm>
@@ -30,7 +30,7 @@ enum class PairKind : std::uint8_t {
   same_room,   ///< two places in one room
   other_day,   ///< one room, its furniture partly moved in between
   next_room,   ///< rooms that share at least 3 m^2 of seen surface
-  twin,        ///< different rooms built alike
+  look_alike,  ///< different rooms built alike
   other_room,  ///< of the same building, nothing in common
   unclear      ///< neither: a little surface in common, or not counted (days differ)
 };
@@ -39,7 +39,7 @@ struct PairSetOptions {
   std::string name = "flats";  ///< one of whole_building_names()
   std::uint64_t seed = 1;
   std::size_t points = 100000;  ///< of a station, about
-  std::size_t twins = 3;        ///< rooms like the first one
+  std::size_t look_alikes = 3;  ///< rooms like the first one
   bool styles = true;           ///< random ones for scans and furniture; else plain ones
   bool as_built = false;        ///< walls, slabs and openings are off the drawing as real ones are
 };
@@ -60,7 +60,7 @@ struct PairSet {
 
   [[nodiscard]] PairKind kind_of(std::size_t a, std::size_t b) const;
   [[nodiscard]] Rigid3 target_from_source(std::size_t source, std::size_t target) const;
-  /// Twins whose furniture is of one layout, placed by hand.
+  /// LookAlikes whose furniture is of one layout, placed by hand.
   [[nodiscard]] bool furnished_alike(std::size_t a, std::size_t b) const;
   [[nodiscard]] bool mirrored(std::size_t a, std::size_t b) const;
   [[nodiscard]] bool same_storey(std::size_t a, std::size_t b) const;
@@ -106,21 +106,21 @@ class Chooser {
       std::swap(living_[i - 1], living_[random.below(static_cast<std::uint32_t>(i))]);
   }
 
-  std::vector<Task> run(std::size_t twins) {
+  std::vector<Task> run(std::size_t look_alikes) {
     std::vector<Task> tasks;
     if (living_.empty()) return tasks;
     const std::size_t first =
         *std::max_element(living_.begin(), living_.end(), [&](std::size_t a, std::size_t b) {
-          return std::min(twins, twins_of(a)) < std::min(twins, twins_of(b));
+          return std::min(look_alikes, look_alikes_of(a)) < std::min(look_alikes, look_alikes_of(b));
         });
     tasks = {{{first}, 0, 0}, {{first}, 0, 1}, {{first}, 1, 2}};
     std::size_t others = 0;
     for (const std::size_t room : living_) {
       const bool alike = are_alike(first, room);
-      if (room == first || (alike ? twins == 0 : others > 0)) continue;
+      if (room == first || (alike ? look_alikes == 0 : others > 0)) continue;
       tasks.push_back({{room}, 0, 0});
       if (alike)
-        --twins;
+        --look_alikes;
       else
         ++others;
     }
@@ -139,7 +139,7 @@ class Chooser {
   [[nodiscard]] bool are_alike(std::size_t a, std::size_t b) const {
     return building_.rooms[a].alike >= 0 && building_.rooms[a].alike == building_.rooms[b].alike;
   }
-  [[nodiscard]] std::size_t twins_of(std::size_t room) const {
+  [[nodiscard]] std::size_t look_alikes_of(std::size_t room) const {
     return static_cast<std::size_t>(std::count_if(living_.begin(), living_.end(), [&](std::size_t other) {
       return other != room && are_alike(room, other);
     }));
@@ -179,7 +179,7 @@ inline PairKind PairSet::kind_of(std::size_t a, std::size_t b) const {
   const bool one_day = scans[a].day == scans[b].day;
   if (scans[a].truth.room == scans[b].truth.room) return one_day ? PairKind::same_room : PairKind::other_day;
   const bool alike = room_of(a).alike >= 0 && room_of(a).alike == room_of(b).alike;
-  if (alike) return PairKind::twin;
+  if (alike) return PairKind::look_alike;
   if (!one_day) return PairKind::unclear;
   double m2 = 0.0;
   for (const SharedSurface& pair : shared)
@@ -209,7 +209,7 @@ inline PairSet simulate_pair_set(const PairSetOptions& options, Monitor& monitor
   monitor.begin_stage("simulating");
   RandomStream random(options.seed, 3000);
   const WholeBuilding first = building_of(options, 0);
-  const std::vector<Task> tasks = Chooser(first, random).run(options.twins);
+  const std::vector<Task> tasks = Chooser(first, random).run(options.look_alikes);
   PairSet set{.name = options.name, .seed = options.seed, .scans = {}, .rooms = first.rooms, .shared = {}};
   const Rigid3 world_from_scene{any_heading(random), Vector3d::Zero()};
   for (const int day : {0, 1}) {

@@ -50,7 +50,7 @@ py::dict values(const MeasuredDeviation& measured) {
   py::list elements;
   for (const ElementDeviation& it : deviation.elements) elements.append(element_dict(it, *measured.model));
   py::list unmodelled;
-  for (const UnmodelledMatter& it : deviation.unmodelled) {
+  for (const UnmodelledObject& it : deviation.unmodelled) {
     const Vector3d& origin = measured.model->local_origin;
     unmodelled.append(py::make_tuple(it.points, Vector3d(origin + it.low), Vector3d(origin + it.high)));
   }

@@ -8,7 +8,8 @@
 namespace limen {
 
 /// A folder that one process at a time works in: while this lives no other can take it. The system releases
-/// it when the process ends, however it ends. Where the file system knows no locks, two are not kept apart.
+/// it when the process ends, however it ends. Where the file system knows no locks, two runs are not kept
+/// from one folder.
 class FolderLock {
  public:
   /// The file in it that is locked; gone with the lock.

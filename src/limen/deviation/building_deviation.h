@@ -28,7 +28,7 @@ struct ScanShare {
 struct BuildingDeviation {
   std::vector<ElementDeviation> elements;    ///< one per element of the model, in its order
   std::vector<int> seen_by;                  ///< of each: scans with enough points on it
-  std::vector<UnmodelledMatter> unmodelled;  ///< most points first
+  std::vector<UnmodelledObject> unmodelled;  ///< most points first
   std::vector<ScanShare> scans;              ///< in the order in which they came
   std::size_t points = 0;
   std::size_t matched = 0;
@@ -44,8 +44,8 @@ struct LaidScan {
 };
 
 /// Measures scans of one building against its model, one after the other: of each only what faces, tiles and
-/// pieces of loose matter gather is kept. Where several scans see a face, its offset is the robust mean of
-/// theirs, and the figures are of all points together.
+/// objects that are not in the model gather is kept. Where several scans see a face, its offset is the robust
+/// mean of theirs, and the figures are of all points together.
 class BuildingMeasurement {
  public:
   /// Throws Error for bad options or a model without faces; the model must stay.
@@ -69,7 +69,7 @@ class BuildingMeasurement {
   std::vector<DistanceCounts> counts_;            ///< of each element
   std::vector<int> seen_by_;                      ///< of each element
   std::vector<std::vector<FaceOffset>> offsets_;  ///< of each face, by the scans that saw it
-  LooseMatter loose_;
+  UnmodelledPoints loose_;
   std::vector<ScanShare> scans_;
 };
 

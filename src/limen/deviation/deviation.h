@@ -14,7 +14,7 @@
 namespace limen {
 
 struct DeviationOptions {
-  double max_distance_m = 0.10;       ///< matter farther from every face is not the model's, > 0
+  double max_distance_m = 0.10;       ///< surface farther from every face is not the model's, > 0
   double max_angle_deg = 30.0;        ///< between the surface at a point and its face, in (0, 90)
   double tile_m = 0.05;               ///< edge of the tiles by which coverage is counted, > 0
   std::size_t rays = 400000;          ///< of the scan by which coverage is counted, about
@@ -25,7 +25,7 @@ struct DeviationOptions {
   double min_held_share = 0.02;       ///< of the points' evidence that must hold a direction of a shift
   std::size_t min_held_points = 300;  ///< and so many points on faces across it
   double max_shift_sigma_m = 0.004;   ///< a direction known less well is open, > 0
-  double cluster_m = 0.15;            ///< matter not in the model: gaps up to this join pieces, > 0
+  double cluster_m = 0.15;            ///< objects not in the model: gaps up to this join pieces, > 0
   std::size_t min_cluster_points = 100;  ///< smaller pieces are not reported
 
   void check() const;
@@ -47,7 +47,7 @@ struct ElementShift {
   std::vector<Vector3d> open;           ///< unit, the others
 };
 
-/// One element against the scan. Distances are along the outward normals of its faces: positive where matter
+/// One element against the scan. Distances are along the outward normals of its faces: positive where surface
 /// protrudes from the model's surface.
 struct ElementDeviation {
   std::int32_t element = -1;  ///< index into BimModel::elements
@@ -65,8 +65,8 @@ struct ElementDeviation {
   ElementShift shift;
 };
 
-/// A piece of matter that no face of the model explains.
-struct UnmodelledMatter {
+/// An object that no face of the model explains.
+struct UnmodelledObject {
   std::size_t points = 0;
   Vector3d low = Vector3d::Zero();   ///< extent, about the model's local origin
   Vector3d high = Vector3d::Zero();  ///< metres
@@ -77,7 +77,7 @@ struct UnmodelledMatter {
 /// A scan against a model.
 struct Deviation {
   std::vector<ElementDeviation> elements;    ///< one per element of the model, in its order
-  std::vector<UnmodelledMatter> unmodelled;  ///< most points first
+  std::vector<UnmodelledObject> unmodelled;  ///< most points first
   std::vector<float> distance_m;             ///< per point, signed; NaN: on no face
   std::vector<std::int32_t> element;         ///< per point; -1: on no face
   std::size_t matched = 0;                   ///< points on faces

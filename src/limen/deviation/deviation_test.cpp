@@ -64,7 +64,7 @@ TEST(Deviation, ShiftsOfOneToFiveCentimetresAreFound) {
     EXPECT_EQ(found.elements[2].shift.held, 1);
     for (const Vector3d& open : found.elements[2].shift.open) EXPECT_NEAR(open.x(), 0.0, 1e-6);
     EXPECT_EQ(found.elements[6].shift.held, 2);
-    // The sign: matter that protrudes towards the room is positive.
+    // The sign: a surface that protrudes towards the room is positive.
     EXPECT_NEAR(found.elements[2].median_m, shifts[2].x(), 0.001);
     EXPECT_NEAR(found.elements[5].median_m, -shifts[5].y(), 0.001);
   }
@@ -153,7 +153,7 @@ TEST(Deviation, ClassesOfAccuracy) {
   EXPECT_EQ(loa_class(0.16), 0);
 }
 
-TEST(FaceOffset, OtherMatterWithinReachDoesNotPull) {
+TEST(FaceOffset, OtherSurfaceWithinReachDoesNotPull) {
   RandomStream random(3);
   std::vector<float> distances;
   for (int i = 0; i < 600; ++i) distances.push_back(static_cast<float>(0.021 + 0.003 * random.normal()));

@@ -8,13 +8,13 @@
 
 namespace limen {
 
-/// Where the matter before one face is.
+/// Where the surface before one face is.
 struct FaceOffset {
   Vector3d normal = Vector3d::UnitX();
   double offset_m = 0.0;  ///< along the normal
   double sigma_m = 0.0;   ///< standard deviation of the points about it
   std::size_t points = 0;
-  /// Other matter may stand there as well: another face lies near, or the offset is near the limit.
+  /// Another surface may be there as well: another face lies near, or the offset is near the limit.
   bool contested = false;
   double pose_sigma_m = 0.0;  ///< of the scan that saw it, as far as it is known
 };

@@ -12,7 +12,7 @@ namespace limen {
 namespace {
 
 constexpr double kContestedShare = 0.3;  // of a face's points that might be on another face
-constexpr double kOwnShare = 0.3;        // of the gap to it: matter nearer than this is the face's own
+constexpr double kOwnShare = 0.3;        // of the gap to it: surface nearer than this is the face's own
 constexpr double kNearLimit = 0.7;       // of the largest distance: what lies there may be anything
 constexpr double kPeakShare = 0.65;      // of a face's points that stand together, else it is two things
 constexpr std::size_t kFacePoints = 30;  // fewer do not tell where a face is

@@ -13,7 +13,7 @@ namespace limen {
 /// The signed distances of the points on each face, in the points' order.
 std::vector<std::vector<float>> distances_by_face(const PointFaces& laid, std::size_t faces);
 
-/// Where the matter before each face is, by one scan; `points` is 0 where too few tell it.
+/// Where the surface before each face is, by one scan; `points` is 0 where they are too few.
 std::vector<FaceOffset> face_offsets(const ModelFaces& faces, const PointFaces& laid,
                                      const std::vector<std::vector<float>>& distances_m,
                                      const DeviationOptions& options);

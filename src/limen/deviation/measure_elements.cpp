@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kMissingShare = 0.01;  // of an element's surface, that rays passed: less says little of it
 
-/// Matter that may let light pass: that rays went through says nothing.
+/// What may let light pass: that rays went through it is no evidence.
 bool may_be_pane(BimKind kind) {
   return kind == BimKind::window || kind == BimKind::plate;
 }

@@ -24,8 +24,8 @@ std::uint64_t key_of(const Vector3d& x, double cell_m) {
 }
 
 /// A piece before it holds anything.
-UnmodelledMatter nothing_yet() {
-  UnmodelledMatter piece;
+UnmodelledObject nothing_yet() {
+  UnmodelledObject piece;
   piece.low = Vector3d::Constant(1e300);
   piece.high = Vector3d::Constant(-1e300);
   return piece;
@@ -33,22 +33,22 @@ UnmodelledMatter nothing_yet() {
 
 }  // namespace
 
-void LooseMatter::add(const Vector3d& x) {
+void UnmodelledPoints::add(const Vector3d& x) {
   const std::uint64_t key = key_of(x, cell_m_);
   const auto [it, fresh] = places_.try_emplace(key, keys_.size());
   if (fresh) {
     keys_.push_back(key);
     cubes_.push_back(nothing_yet());
   }
-  UnmodelledMatter& cube = cubes_[it->second];
+  UnmodelledObject& cube = cubes_[it->second];
   ++cube.points;
   cube.low = cube.low.cwiseMin(x);
   cube.high = cube.high.cwiseMax(x);
   cube.centre += x;
 }
 
-std::vector<UnmodelledMatter> LooseMatter::pieces(std::size_t min_points, const Vector3d& low,
-                                                  const Vector3d& high) const {
+std::vector<UnmodelledObject> UnmodelledPoints::pieces(std::size_t min_points, const Vector3d& low,
+                                                       const Vector3d& high) const {
   DisjointSets joined(keys_.size());  // cubes, with their neighbours
   for (std::size_t k = 0; k < keys_.size(); ++k) {
     for (std::uint64_t n = 0; n < 27; ++n) {
@@ -58,32 +58,32 @@ std::vector<UnmodelledMatter> LooseMatter::pieces(std::size_t min_points, const 
       if (other != places_.end()) joined.join(k, other->second);
     }
   }
-  std::vector<UnmodelledMatter> pieces(keys_.size(), nothing_yet());
+  std::vector<UnmodelledObject> pieces(keys_.size(), nothing_yet());
   for (std::size_t k = 0; k < cubes_.size(); ++k) {
-    UnmodelledMatter& piece = pieces[joined.find(k)];
+    UnmodelledObject& piece = pieces[joined.find(k)];
     piece.points += cubes_[k].points;
     piece.low = piece.low.cwiseMin(cubes_[k].low);
     piece.high = piece.high.cwiseMax(cubes_[k].high);
     piece.centre += cubes_[k].centre;
   }
-  std::erase_if(pieces, [&](const UnmodelledMatter& piece) {
+  std::erase_if(pieces, [&](const UnmodelledObject& piece) {
     return piece.points < std::max<std::size_t>(1, min_points);
   });
-  for (UnmodelledMatter& piece : pieces) {
+  for (UnmodelledObject& piece : pieces) {
     piece.centre /= static_cast<double>(piece.points);
     piece.within_model =
         (piece.centre.array() >= low.array()).all() && (piece.centre.array() <= high.array()).all();
   }
   std::stable_sort(pieces.begin(), pieces.end(),
-                   [](const UnmodelledMatter& a, const UnmodelledMatter& b) { return a.points > b.points; });
+                   [](const UnmodelledObject& a, const UnmodelledObject& b) { return a.points > b.points; });
   return pieces;
 }
 
-std::vector<UnmodelledMatter> pieces_of(const std::vector<Vector3d>& points, double cell_m,
+std::vector<UnmodelledObject> pieces_of(const std::vector<Vector3d>& points, double cell_m,
                                         std::size_t min_points, const Vector3d& low, const Vector3d& high) {
-  LooseMatter matter(cell_m);
-  for (const Vector3d& x : points) matter.add(x);
-  return matter.pieces(min_points, low, high);
+  UnmodelledPoints loose(cell_m);
+  for (const Vector3d& x : points) loose.add(x);
+  return loose.pieces(min_points, low, high);
 }
 
 }  // namespace limen

@@ -11,8 +11,8 @@
 
 namespace limen {
 
-/// What an element of a model is to a laser: built matter that stays, or something that moves or lets light
-/// pass.
+/// What an element of a model is to a laser: something built that stays, or something that moves or lets
+/// light pass.
 enum class BimKind : std::uint8_t {
   wall,  ///< curtain walls' panels are plates or windows
   slab,
@@ -44,7 +44,7 @@ struct BimElement {
 /// A flat face of one element, seen from the side its normal points to. Faces of an element are maximal: no
 /// two that touch in one plane are apart. Curved surfaces are many faces.
 struct BimFace {
-  Plane plane;                ///< about the model's local origin; the normal points out of the matter
+  Plane plane;                ///< about the model's local origin; the normal points out of the solid
   PlaneFrame frame;           ///< 2-D coordinates of `outline`, right-handed with the normal
   Polygon outline;            ///< outer ring counter-clockwise, holes clockwise, openings already cut out
   double area_m2 = 0.0;       ///< holes taken out

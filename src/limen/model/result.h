@@ -10,9 +10,9 @@
 
 #include "limen/geometry/linear.h"
 #include "limen/geometry/rigid.h"
+#include "limen/model/look_alike_evidence.h"
 #include "limen/model/registration_picture.h"
 #include "limen/model/scanner_place.h"
-#include "limen/model/twin_evidence.h"
 
 namespace limen {
 
@@ -62,8 +62,9 @@ struct Hypothesis {
   double agreeing_length_m = 0.0;         ///< length of the smaller set of segments that lies on the other
   std::optional<double> explained_share;  ///< against a model: of the walls that the scan saw
   std::string room;                       ///< of a model with named rooms: where the (first) station then is
-  std::optional<TwinEvidence> twin;  ///< whether it lays a place on a look-alike one, where that was asked
-  bool tie = false;                  ///< of an alternative: it cannot be distinguished from the best
+  std::optional<LookAlikeEvidence>
+      look_alike;    ///< whether it lays a place on a look-alike one, where that was asked
+  bool tie = false;  ///< of an alternative: it cannot be distinguished from the best
 };
 
 /// A pair of planes that agree under the final pose.
@@ -103,7 +104,7 @@ struct StageTime {
 /// is 1.
 struct OtherExplanations {
   double nothing_shared = 0.0;  ///< the scans show different places
-  double twin = 0.0;            ///< different places built alike, which the best pose lays on one another
+  double look_alike = 0.0;      ///< different places built alike, which the best pose lays on one another
   double unlisted_pose = 0.0;   ///< they share a place, under a pose that was not proposed
 };
 

@@ -55,7 +55,7 @@ class Assembler {
     settle_frame();
     for (std::size_t n = 0; n < nodes_.size(); ++n) tell_scan(n);
     for (std::size_t k = 0; k < graph_.links.size(); ++k) tell_link(k);
-    tell_twins();
+    state_look_alikes();
     tell_survey();
     result_.decisions = judged_decisions({nodes_, pairs_, words_, broken_, graph_, solved_, pair_of_});
     result_.loops = solved_.loops;
@@ -335,7 +335,7 @@ class Assembler {
     }
     stated.number = link.number_of(static_cast<int>(taken));
     stated.given = link.trust == LinkTrust::given;
-    stated.twin = link.twin;
+    stated.look_alike = link.look_alike;
     stated.chance = link.chance;
     if (pair_of_[k] >= 0) {
       const RegistrationResult& pair = pairs_[static_cast<std::size_t>(pair_of_[k])].result;
@@ -383,7 +383,7 @@ class Assembler {
   }
 
   /// Pairs whose scans are more probably two places built alike: no links, but worth knowing of.
-  void tell_twins() {
+  void state_look_alikes() {
     for (std::size_t k = 0; k < pairs_.size(); ++k) {
       const RegistrationResult& pair = pairs_[k].result;
       const bool linked = std::find(pair_of_.begin(), pair_of_.end(), static_cast<int>(k)) != pair_of_.end();
@@ -395,7 +395,7 @@ class Assembler {
       stated.target_from_source = pair.best.target_from_source;
       stated.agreeing_m2 = pair.best.agreeing_m2;
       stated.sigma = pair.sigma;
-      stated.twin = pair.others ? pair.others->twin : 0.0;
+      stated.look_alike = pair.others ? pair.others->look_alike : 0.0;
       stated.pair = pair.outcome;
       stated.matches = pair.matches;
       stated.openings = pair.openings;

@@ -10,10 +10,10 @@
 #include "limen/geometry/polygon_clip.h"
 #include "limen/register/find_poses.h"
 #include "limen/register/judge/given_pose.h"
-#include "limen/register/judge/individual_matter.h"
+#include "limen/register/judge/look_alike_odds.h"
 #include "limen/register/judge/posterior.h"
+#include "limen/register/judge/seen_clutter.h"
 #include "limen/register/judge/start_prior.h"
-#include "limen/register/judge/twin_odds.h"
 #include "limen/register/prepare/prepare_model.h"
 #include "limen/register/published/register_published.h"
 #include "limen/register/refine/measure_thickness.h"
@@ -154,7 +154,7 @@ class AskedPair {
   }
   /// What is known of look-alike places, without a belief about the start: of rooms where a pose was asked
   /// about, through windows for a project's sake.
-  [[nodiscard]] std::optional<TwinEvidence> look_alike(std::size_t pose) const {
+  [[nodiscard]] std::optional<LookAlikeEvidence> look_alike(std::size_t pose) const {
     if (is_through_windows(sort_of(pair_)))
       return look_alike_through_windows(poses_[pose].score, sort_of(pair_), repeats());
     const auto found = things_.find(pose);
@@ -163,7 +163,7 @@ class AskedPair {
   /// Why a look-alike place cannot be excluded, of so large a probability.
   [[nodiscard]] std::string look_alike_words(std::size_t pose, double probability) const {
     const auto found = things_.find(pose);
-    return found == things_.end() ? "" : twin_words(found->second.seen, probability);
+    return found == things_.end() ? "" : limen::look_alike_words(found->second.seen, probability);
   }
   [[nodiscard]] std::optional<StartAgreement> agreement_with_start(std::size_t pose) const {
     if (!start_) return std::nullopt;
@@ -180,31 +180,31 @@ class AskedPair {
     return (*contrasts_)(pose_of(second));
   }
   struct Things {
-    IndividualMatter seen;
-    TwinEvidence evidence;
+    SeenClutter seen;
+    LookAlikeEvidence evidence;
   };
 
   [[nodiscard]] double repeats() const {
-    return twin_options(options_.nothing_repeats).alike / evidence_table::kAlike;
+    return look_alike_options(options_.nothing_repeats).alike / evidence_table::kAlike;
   }
-  [[nodiscard]] const MatterAsker& asker() {
+  [[nodiscard]] const ClutterComparer& asker() {
     if (!asker_) asker_.emplace(pair_.source.view(), pair_.target.view());
     return *asker_;
   }
   /// Look-alike rooms behind windows are among the poses.
-  [[nodiscard]] TwinEvidence weigh_surfaces(std::size_t pose) {
-    TwinEvidence evidence;
+  [[nodiscard]] LookAlikeEvidence weigh_surfaces(std::size_t pose) {
+    LookAlikeEvidence evidence;
     evidence.otherwise = 0.0;
     evidence.built = asker().built(pose_of(pose));
     return evidence;
   }
-  [[nodiscard]] TwinEvidence weigh_things(std::size_t pose) {
-    IndividualMatter seen = asker()(pose_of(pose));
-    TwinEvidence evidence = weigh_twin(seen, twin_options(options_.nothing_repeats));
+  [[nodiscard]] LookAlikeEvidence weigh_things(std::size_t pose) {
+    SeenClutter seen = asker()(pose_of(pose));
+    LookAlikeEvidence evidence = weigh_look_alike(seen, look_alike_options(options_.nothing_repeats));
     things_.insert_or_assign(pose, Things{std::move(seen), evidence});
     return evidence;
   }
-  [[nodiscard]] TwinEvidence beside_start(std::size_t pose, TwinEvidence evidence) const {
+  [[nodiscard]] LookAlikeEvidence beside_start(std::size_t pose, LookAlikeEvidence evidence) const {
     if (!start_) return evidence;
     const double believed = odds_of_look_alike_beside_start(start_->prior, start_->given(pose_of(pose)),
                                                             start_->at, poses_[pose].log_prior);
@@ -220,7 +220,7 @@ class AskedPair {
   std::optional<PreparedStart> start_;
   std::optional<std::size_t> contrasted_;  ///< the pose that contrasts are with
   std::optional<PoseContrasts> contrasts_;
-  std::optional<MatterAsker> asker_;
+  std::optional<ClutterComparer> asker_;
   std::map<std::size_t, Things> things_;
 };
 
@@ -252,7 +252,7 @@ void write_result(const std::vector<FoundPose>& poses, Posterior posterior, cons
   const OpenFreedoms open =
       open_freedoms(best.refined, covariance_with_drift(best.refined, pair.source.view(), pair.target.view()),
                     options.verdict);
-  const std::string look_alike = asked.look_alike_words(leader, posterior.others.twin);
+  const std::string look_alike = asked.look_alike_words(leader, posterior.others.look_alike);
   result.outcome = outcome_of(posterior, open.list, options.verdict);
   result.reason = reason_of(result.outcome, posterior, best.score, open, look_alike, options.verdict);
   if (result.outcome != Outcome::no_match) result.unobserved = open.list;
@@ -260,7 +260,7 @@ void write_result(const std::vector<FoundPose>& poses, Posterior posterior, cons
     const std::size_t k = posterior.order[rank];
     Hypothesis stated = to_hypothesis(as_given(poses[k], worked), pair);
     stated.probability = posterior.probabilities[rank];
-    stated.twin = asked.look_alike(k);
+    stated.look_alike = asked.look_alike(k);
     return stated;
   };
   result.best = hypothesis(0);

@@ -48,7 +48,7 @@ struct Judged {
   double score_m = 0.0;
 };
 
-/// What tells two poses apart, metres of evidence for either.
+/// What distinguishes two poses, metres of evidence for either.
 struct Contrast {
   double for_first_m = 0.0;
   double for_second_m = 0.0;

@@ -23,7 +23,7 @@ struct SegmentRegisterOptions {
   int min_segments = 6;            ///< segments in common
   double min_share = 0.3;          ///< where rivals explain as much, less than this is chance: no match
   double min_rival_value = 0.5;    ///< a pose with a smaller share of the best one's evidence is no rival
-  double max_rival_share = 0.45;   ///< nor one for which less of what tells the two apart speaks ...
+  double max_rival_share = 0.45;   ///< nor one for which less of what distinguishes the two supports it ...
   double min_lead_m = 2.0;         ///< ... where at least this much more supports the best
   double min_held_m = 0.3;         ///< length (times lever^2 for turns) that must hold each freedom
   double max_sigma_m = 0.02;       ///< a shift known less well than this counts as open

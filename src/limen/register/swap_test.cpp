@@ -92,7 +92,7 @@ RegistrationResult swaps(const Scan& source, const Scan& target) {
   EXPECT_EQ(forth.others.has_value(), back.others.has_value());
   if (forth.others && back.others) {
     EXPECT_EQ(forth.others->nothing_shared, back.others->nothing_shared);
-    EXPECT_EQ(forth.others->twin, back.others->twin);
+    EXPECT_EQ(forth.others->look_alike, back.others->look_alike);
     EXPECT_EQ(forth.others->unlisted_pose, back.others->unlisted_pose);
   }
   return forth;

@@ -34,7 +34,7 @@ struct SightQuery {
   Vector3d normal = Vector3d::Zero();  ///< of the surface asked for; zero: clutter, any surface will do
   bool oriented = false;               ///< the normal's sign counts
   double surface_m = 0.05;             ///< a surface nearer than this is the same surface
-  double free_m = 0.10;                ///< solid matter is contradicted where rays passed this much beyond
+  double free_m = 0.10;                ///< surface is contradicted where rays passed this much beyond
 
   [[nodiscard]] bool of_clutter() const { return normal.squaredNorm() < 0.25; }
 };

@@ -32,7 +32,7 @@ struct SurfaceColumns {
 struct LookTolerances {
   double surface_m = 0.05;   ///< surfaces of planes nearer than this are the same
   double clutter_m = 0.075;  ///< and clutter
-  double free_m = 0.10;      ///< solid matter is contradicted where rays passed this much beyond
+  double free_m = 0.10;      ///< surface is contradicted where rays passed this much beyond
 };
 
 /// Pieces of surface that are looked at together, at most.

@@ -76,7 +76,7 @@ Recipe identical_recipe(const SceneOptions& options, RandomStream& random) {
   facade.entrance = false;
   facade.interior_doors = false;
   facade.ornament_share = 0.0;
-  facade.curtain_share = 0.0;  // whatever was asked: curtains would tell rooms apart
+  facade.curtain_share = 0.0;  // whatever was asked: curtains would distinguish rooms
   Recipe recipe = begun(options);
   add_building(recipe.world, row_of_rooms(rooms, random), facade, random);
   // Neither the first room nor the last: there is one more on either side.

@@ -38,7 +38,7 @@ Recipe room_recipe(const SceneOptions& options, RandomStream& random) {
   return recipe;
 }
 
-/// An empty box whose only surfaces repeat under a turn: nobody can tell the poses apart.
+/// An empty box whose only surfaces repeat under a turn: nothing distinguishes the poses.
 Recipe symmetric_recipe(const SceneOptions& options, RandomStream& random) {
   const bool square = options.seed % 2 == 0;
   const double inner = random.uniform(4.0, 7.0);
@@ -130,7 +130,7 @@ Recipe museum_recipe(const SceneOptions& options, RandomStream& random) {
   return recipe;
 }
 
-/// Every bay and storey alike: only what lies outside the grid can tell shifts apart.
+/// Every bay and storey alike: only what lies outside the grid distinguishes shifts.
 Recipe regular_recipe(const SceneOptions& options, RandomStream& random) {
   PlanOptions plan;
   const double bay_m = random.uniform(2.7, 3.3);

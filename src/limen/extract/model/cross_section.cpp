@@ -11,7 +11,7 @@
 namespace limen {
 namespace {
 
-/// A piece of the section's outline; the matter lies on its left.
+/// A piece of the section's outline; the solid lies on its left.
 struct Piece {
   Vector2d from;
   Vector2d to;
@@ -31,7 +31,7 @@ class FaceCutter {
     for (const Ring& hole : face.outline.holes) add_crossings(face, hole, along, crossings);
     std::sort(crossings.begin(), crossings.end(),
               [](const auto& a, const auto& b) { return a.first < b.first; });
-    // With `along` = normal x outward the matter is on the left of the piece when it runs along.
+    // With `along` = normal x outward the solid is on the left of the piece when it runs along.
     for (std::size_t k = 0; k + 1 < crossings.size(); k += 2)
       pieces.push_back({frame_.to_plane(crossings[k].second), frame_.to_plane(crossings[k + 1].second)});
   }

@@ -38,7 +38,7 @@ struct Body {
 
 std::vector<Body> bodies_of(const BimModel& model) {
   std::vector<Body> bodies(model.elements.size());
-  const BuiltMatter is_built(model);
+  const BuiltElements is_built(model);
   for (const BimFace& face : model.faces) {
     const auto element = static_cast<std::size_t>(face.element);
     if (!is_built(model.elements[element])) continue;
@@ -104,21 +104,21 @@ class BodyGrid {
   CellLists cells_;
 };
 
-/// Where matter of other elements touches the face, in the face's coordinates.
-std::vector<Polygon> matter_before(const BimFace& face, const std::vector<Body>& bodies, const BodyGrid& grid,
+/// Where other elements touch the face, in the face's coordinates.
+std::vector<Polygon> bodies_before(const BimFace& face, const std::vector<Body>& bodies, const BodyGrid& grid,
                                    double front_m) {
   Box box = box_of(face);
   box.min().array() -= 2.0 * front_m;
   box.max().array() += 2.0 * front_m;
   PlaneFrame front = face.frame;
   front.origin += front_m * face.plane.normal;
-  std::vector<Polygon> matter;
+  std::vector<Polygon> covered;
   for (const std::size_t k : grid.meeting(box)) {
     if (static_cast<std::int32_t>(k) == face.element) continue;
     const std::vector<Polygon> section = cross_section(bodies[k].faces, front);
-    matter.insert(matter.end(), section.begin(), section.end());
+    covered.insert(covered.end(), section.begin(), section.end());
   }
-  return matter;
+  return covered;
 }
 
 /// What is left of one face.
@@ -135,10 +135,10 @@ std::vector<Rest> uncovered(const BimModel& model, const ModelSurfaceOptions& op
     for (std::size_t i = begin; i < end; ++i) {
       const BimFace& face = model.faces[i];
       if (bodies[static_cast<std::size_t>(face.element)].faces.empty()) continue;
-      const std::vector<Polygon> matter = matter_before(face, bodies, grid, options.front_m);
+      const std::vector<Polygon> covered = bodies_before(face, bodies, grid, options.front_m);
       rests[i].face = &face;
       rests[i].parts =
-          matter.empty() ? std::vector<Polygon>{face.outline} : difference({face.outline}, matter);
+          covered.empty() ? std::vector<Polygon>{face.outline} : difference({face.outline}, covered);
     }
   });
   std::erase_if(rests, [](const Rest& rest) { return rest.parts.empty(); });
@@ -271,11 +271,11 @@ void ModelSurfaceOptions::check() const {
   if (!(min_area_m2 >= 0)) throw_bad_option("min_area_m2", min_area_m2, "0 or more");
 }
 
-BuiltMatter::BuiltMatter(const BimModel& model)
+BuiltElements::BuiltElements(const BimModel& model)
     : no_kinds_(std::all_of(model.elements.begin(), model.elements.end(),
                             [](const BimElement& e) { return e.kind == BimKind::other; })) {}
 
-bool BuiltMatter::operator()(const BimElement& element) const {
+bool BuiltElements::operator()(const BimElement& element) const {
   switch (element.kind) {
     case BimKind::wall:
     case BimKind::slab:

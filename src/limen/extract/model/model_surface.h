@@ -15,7 +15,7 @@ std::vector<Polygon> cross_section(const std::vector<const BimFace*>& faces, con
                                    double tolerance_m = 0.002);
 
 struct ModelSurfaceOptions {
-  double front_m = 0.004;       ///< matter this near before a face hides it, > 0
+  double front_m = 0.004;       ///< a solid this near before a face hides it, > 0
   double same_plane_m = 0.002;  ///< faces of several elements within this are one plane, > 0
   double min_area_m2 = 0.01;    ///< smaller pieces are left out, >= 0
 
@@ -25,16 +25,16 @@ struct ModelSurfaceOptions {
 /// Whether a laser is stopped there today as on the day the model was drawn: walls, slabs, roofs, columns,
 /// beams, stairs, coverings, terrain. Not: panes, leaves, furniture, railings, and elements of no known kind,
 /// unless the file knows no kinds at all.
-class BuiltMatter {
+class BuiltElements {
  public:
-  explicit BuiltMatter(const BimModel& model);
+  explicit BuiltElements(const BimModel& model);
   bool operator()(const BimElement& element) const;
 
  private:
   bool no_kinds_;
 };
 
-/// The surface of a model's built matter as far as it borders on air: faces less what other elements stand
+/// The surface of a model's built elements as far as it borders on air: faces less what other elements stand
 /// against or penetrate them, flush faces of neighbouring elements made one. Each polygon has one part and
 /// may have holes; its normal points into the air; `oriented` is true, `inliers` 0.
 ///

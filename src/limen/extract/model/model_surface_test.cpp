@@ -91,7 +91,7 @@ TEST(VisibleSurface, FlushNeighboursBecomeOne) {
   EXPECT_EQ(sharp_edges(surface.polygons).size(), 12U);
 }
 
-TEST(VisibleSurface, WindowsAndFurnitureAreNoMatter) {
+TEST(VisibleSurface, WindowsAndFurnitureAreNotBuilt) {
   BimModel model = row_of_rooms({5.0});
   const double bare = total_area(visible_surface(model));
   add_box(model, BimKind::furniture, {1, 1, 0}, {2, 2, 1});

@@ -99,7 +99,8 @@ std::vector<PlaneFit> refitted(const Scan& scan, const PlaneLabels& planes) {
   return fits;
 }
 
-/// Planes with the relief of walls apart: in the scan freed of its drift, which would break walls into bands.
+/// Planes with the relief of walls as planes of its own: in the scan freed of its drift, which would break
+/// walls into bands.
 DetectedPlanes detect_relief(const Scan& scan, const GrowOptions& grow, Monitor& monitor) {
   constexpr double kDriftShare = 0.3;  // of the work, about
   StagePart straightening(monitor, 0.0, kDriftShare);

@@ -32,7 +32,7 @@ struct DetectOptions {
   PlaneDetector detector = PlaneDetector::automatic;
   ThresholdRule threshold = ThresholdRule::automatic;
   std::uint64_t seed = 1;  ///< of the detectors that draw samples
-  /// Of mobile scans, with `grow`: the relief of façades apart, as finely as the noise allows
+  /// Of mobile scans, with `grow`: the relief of façades as planes of its own, as finely as the noise allows
   /// (fine_planes.h). Without it, and by the automatic threshold, what protrudes by a few centimetres is one
   /// plane: fewer planes, each of them large, as a pose is sought with.
   bool relief = true;

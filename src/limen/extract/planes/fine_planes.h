@@ -28,9 +28,9 @@ struct FineOptions {
   void check() const;
 };
 
-/// Planes of a mobile scan as finely as its noise tells them apart: parts that only a gate had put together
-/// come apart (join_pieces.h), and the relief of walls is found (relief_sheets.h). `planes` were found at the
-/// threshold of the noise. A scan without scanner positions keeps its planes' two sides together.
+/// Planes of a mobile scan as finely as its noise allows: parts that only a gate had put together
+/// are separated (join_pieces.h), and the relief of walls is found (relief_sheets.h). `planes` were found at
+/// the threshold of the noise. A scan without scanner positions keeps its planes' two sides together.
 PlaneLabels fine_planes(const Scan& scan, const PlaneLabels& planes, const FineOptions& options);
 
 }  // namespace limen

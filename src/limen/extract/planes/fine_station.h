@@ -30,12 +30,12 @@ struct CoherentOptions {
 void coherent_labels(const SettleScene& scene, const CoherentOptions& options,
                      std::vector<std::int32_t>& labels, std::vector<PointMoments>& sums);
 
-/// Planes of a station as finely as its noise tells them apart. Those of `grown` were found at a threshold of
+/// Planes of a station as finely as its noise allows. Those of `grown` were found at a threshold of
 /// about three times the noise, in cubes: they hold neighbours that stand a few millimetres before or behind,
 /// and take the edges of boards from the planes across.
 /// 1. What no plane holds is looked through for the relief of walls (relief_sheets.h): edges of shelves,
 /// sills.
-/// 2. Planes come apart at steps (split_at_steps.h), parts of one plane are put together (join_pieces.h).
+/// 2. Planes are cut at steps (split_at_steps.h), parts of one plane are put together (join_pieces.h).
 /// 3. Points choose their planes anew (coherent_labels above); what cuts along the edge of others is given
 /// back. `order`: of the ground that they grew in.
 PlaneLabels fine_station_planes(const Scan& scan, const MortonOrder& order, const GrownPlanes& grown,

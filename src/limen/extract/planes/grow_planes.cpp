@@ -99,7 +99,7 @@ class PlaneGrower {
     sums_.resize(grower.planes());
   }
 
-  /// Sums per plane; pieces of one plane that were found apart become one.
+  /// Sums per plane; pieces of one plane that were found one by one become one.
   void merge() {
     sum_up();
     MergedPieces merged = merge_planes(sums_, radians(kJoinAngleDeg), kGateShare * threshold_m_);

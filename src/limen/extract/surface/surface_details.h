@@ -26,7 +26,7 @@ struct SurfaceDetail {
 struct DetailOptions {
   double cell_m = 0.10;  ///< edge of the cubes whose points make one piece; twice that where points are few
   std::size_t min_points = 8;      ///< of a piece
-  double max_scatter_m = 0.005;    ///< across a flat piece; edges and rounder matter are not flat
+  double max_scatter_m = 0.005;    ///< across a flat piece; edges and rounder things are not flat
   std::size_t most_pieces = 4000;  ///< of a scan, evenly chosen
 
   void check() const;

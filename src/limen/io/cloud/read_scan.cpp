@@ -30,7 +30,7 @@ void append_shifted(std::vector<Vector3d>& all, const std::vector<Vector3d>& mor
   for (const Vector3d& x : more) all.emplace_back(x + shift);
 }
 
-/// Appends a topology with its lines numbered after those that are there, one apart: no neighbours.
+/// Appends a topology with its lines numbered after those that are there, with a gap of one: no neighbours.
 void append(ScanTopology& all, const ScanTopology& more) {
   const auto last = std::max_element(all.line.begin(), all.line.end());
   const std::int32_t after = last == all.line.end() ? 0 : *last + 2;

@@ -17,8 +17,9 @@ std::vector<OpeningPose> distinct_poses(std::vector<OpeningPose> poses, const Ve
   const double cell = options.same_shift_m + options.same_thickness_m;
   std::vector<OpeningPose> kept;
   std::vector<Vector3d> middles;
-  std::map<long, std::vector<std::size_t>> by_x;  // of kept, in cells wider than twins can lie apart
-  const auto twins = [&](const OpeningPose& pose, const Vector3d& moved, std::size_t other) {
+  std::map<long, std::vector<std::size_t>>
+      by_x;  // of kept, in cells wider than look-alike places can lie apart
+  const auto look_alikes = [&](const OpeningPose& pose, const Vector3d& moved, std::size_t other) {
     const Vector3d off = moved - middles[other];
     const double across = off.dot(pose.wall_normal);
     if (std::abs(across) >= options.same_thickness_m) return false;
@@ -35,7 +36,7 @@ std::vector<OpeningPose> distinct_poses(std::vector<OpeningPose> poses, const Ve
       const auto near = by_x.find(k);
       if (near == by_x.end()) continue;
       known = std::any_of(near->second.begin(), near->second.end(),
-                          [&](std::size_t other) { return twins(pose, moved, other); });
+                          [&](std::size_t other) { return look_alikes(pose, moved, other); });
     }
     if (known) continue;
     by_x[place].push_back(kept.size());

@@ -25,7 +25,7 @@ namespace limen {
 
 struct DirectionClusterOptions {
   /// eps of algorithm 1, in (0, pi/2): 45 degrees gives the published three directions; about 10 degrees
-  /// tells oblique wings apart.
+  /// distinguishes oblique wings.
   double max_angle_rad = radians(45.0);
   int max_clusters = 3;                    ///< 0: as many as there are, >= 0
   double max_up_tilt_rad = radians(20.0);  ///< a cluster further from the vertical is no floor, in (0, pi/2)

@@ -26,11 +26,11 @@ struct ModelPoseOptions {
 /// planes must be oriented where `oriented` says so. `precedence` is the number of anchors that agree; score
 /// them all.
 ///
-/// This is 2021, section 3.2.2, turned round: not the shifts of each axis apart, for a building has hundreds
-/// on each, but three planes at a time that meet near one another. Cost: for every pair of anchors those
-/// pairs of the model's planes of their directions that stand near one another, found in a grid; the third
-/// plane is looked up where it crosses the line of shifts that the others leave. Memory: that of `max_poses`
-/// poses, and of the shifts under a few rotations at a time.
+/// This is 2021, section 3.2.2, turned round: not the shifts of each axis separately, for a building has
+/// hundreds on each, but three planes at a time that meet near one another. Cost: for every pair of anchors
+/// those pairs of the model's planes of their directions that stand near one another, found in a grid; the
+/// third plane is looked up where it crosses the line of shifts that the others leave. Memory: that of
+/// `max_poses` poses, and of the shifts under a few rotations at a time.
 std::vector<PoseCandidate> enumerate_model_poses(const Features& scan, const Features& model,
                                                  const ModelPoseOptions& options = {});
 

@@ -22,7 +22,7 @@ struct PoseEnumerationOptions {
 };
 
 /// Poses that put planes of the source on planes of the target, for any starting pose: rotations from pairs
-/// of directions, then the shifts along each axis apart, then triples of shifts ranked by overlap (2021,
+/// of directions, then the shifts along each axis separately, then triples of shifts ranked by overlap (2021,
 /// section 3.2.2). Best first, no two alike. Deterministic.
 ///
 /// Departures: any number of directions instead of three, all their associations and signs instead of the

@@ -30,7 +30,7 @@ class HelperProcess {
  private:
   int id_ = -1;
   int socket_ = -1;
-  std::string heard_;
+  std::string received_;
   bool ended_ = false;
 };
 

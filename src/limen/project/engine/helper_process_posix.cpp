@@ -82,10 +82,10 @@ bool HelperProcess::say(const std::string& line) {
 
 std::optional<std::string> HelperProcess::hear(int milliseconds) {
   for (;;) {
-    const std::size_t end = heard_.find('\n');
+    const std::size_t end = received_.find('\n');
     if (end != std::string::npos) {
-      std::string line = heard_.substr(0, end);
-      heard_.erase(0, end + 1);
+      std::string line = received_.substr(0, end);
+      received_.erase(0, end + 1);
       return line;
     }
     if (ended_) return {};
@@ -98,7 +98,7 @@ std::optional<std::string> HelperProcess::hear(int milliseconds) {
       ended_ = true;
       return {};
     }
-    heard_.append(piece.data(), static_cast<std::size_t>(got));
+    received_.append(piece.data(), static_cast<std::size_t>(got));
   }
 }
 

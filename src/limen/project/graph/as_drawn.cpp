@@ -10,7 +10,7 @@ namespace limen {
 
 AsDrawn::AsDrawn(int nodes, const std::vector<PlacedPair>& pairs) {
   for (const WeighedPair& pair : weighed_pairs(nodes, pairs))
-    walls_.push_back({pair, pairs[pair.number].evidence.twins.built});
+    walls_.push_back({pair, pairs[pair.number].evidence.look_alikes.built});
 }
 
 double AsDrawn::without(const std::vector<bool>& side, const BendBelief& bends) const {

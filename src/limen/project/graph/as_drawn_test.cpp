@@ -17,8 +17,8 @@ std::vector<PlacedPair> drawn_row(int scans, double nats) {
   std::vector<PlacedPair> pairs;
   for (int n = 1; n < scans; ++n) {
     PairEvidence evidence;
-    evidence.looks_for_twins = true;
-    evidence.twins.built.as_drawn.fill(nats);
+    evidence.asks_look_alike = true;
+    evidence.look_alikes.built.as_drawn.fill(nats);
     pairs.push_back({n, n - 1, 20.0, evidence, n});
   }
   return pairs;

@@ -301,9 +301,9 @@ void JoinEvidence::add(const PairEvidence& evidence) {
   chance_ += evidence.chance_nats + evidence.coincidence_nats;
   first_ = std::max(first_, evidence.coincidence_nats);
   look_alike_.add(evidence);
-  if (evidence.looks_for_twins) {
-    prior_otherwise_ = std::max(prior_otherwise_, evidence.twins.otherwise);
-    prior_alike_ = std::max(prior_alike_, evidence.twins.alike);
+  if (evidence.asks_look_alike) {
+    prior_otherwise_ = std::max(prior_otherwise_, evidence.look_alikes.otherwise);
+    prior_alike_ = std::max(prior_alike_, evidence.look_alikes.alike);
   }
   any_ = true;
 }

@@ -73,10 +73,10 @@ TEST(Configuration, APairOfLookAlikesKeepsPartsFromEachOther) {
   link.poses.front().probability = 0.6;
   EXPECT_EQ(best_configuration(made.graph, LinkMatcher(made.graph)).component[1], 0);
   GraphLink look_alike = link;
-  look_alike.twin = 0.9;
+  look_alike.look_alike = 0.9;
   made.graph.links.push_back(look_alike);
   EXPECT_EQ(best_configuration(made.graph, LinkMatcher(made.graph)).component[1], 0);
-  look_alike.twin = 0.9999;
+  look_alike.look_alike = 0.9999;
   made.graph.links.push_back(look_alike);
   EXPECT_EQ(best_configuration(made.graph, LinkMatcher(made.graph)).component[1], 1);
 }

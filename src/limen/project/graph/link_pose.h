@@ -7,8 +7,8 @@
 #include <Eigen/Core>
 
 #include "limen/geometry/rigid.h"
+#include "limen/model/look_alike_evidence.h"
 #include "limen/model/result.h"
-#include "limen/model/twin_evidence.h"
 
 namespace limen {
 
@@ -17,10 +17,11 @@ struct LinkPose {
   Rigid3 target_from_source;
   /// Of a small motion (turn about `centre` in radians, shift in metres) after the pose; target axes, SI.
   Matrix6d covariance = Matrix6d::Identity();
-  Vector3d centre = Vector3d::Zero();     ///< near the common surface, target frame, metres
-  double agreeing_m2 = 0.0;               ///< surface that supports it
-  double probability = 1.0;               ///< that it is the right one, by the pair alone
-  std::optional<TwinEvidence> twin = {};  ///< whether it lays a place on a look-alike one, if that was asked
+  Vector3d centre = Vector3d::Zero();  ///< near the common surface, target frame, metres
+  double agreeing_m2 = 0.0;            ///< surface that supports it
+  double probability = 1.0;            ///< that it is the right one, by the pair alone
+  std::optional<LookAlikeEvidence> look_alike =
+      {};  ///< whether it lays a place on a look-alike one, if that was asked
 };
 
 /// The same pose the other way round.

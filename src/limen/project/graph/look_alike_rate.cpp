@@ -7,7 +7,7 @@
 #include <cstddef>
 
 #include "limen/register/judge/evidence_table.h"
-#include "limen/register/judge/twin_odds.h"
+#include "limen/register/judge/look_alike_odds.h"
 
 namespace limen {
 namespace {
@@ -41,10 +41,10 @@ std::vector<double> density_beforehand() {
 
 /// The likelihood of each share, by what a link says of one place, of a look-alike one, and of chance. What
 /// is believed of the link beforehand, a user's word too, says nothing of the building.
-std::vector<double> logs_of(const TwinEvidence& twins, double here, double chance) {
+std::vector<double> logs_of(const LookAlikeEvidence& look_alikes, double here, double chance) {
   std::vector<double> logs(kShares);
-  const double beforehand = twins.otherwise + twins.alike;
-  const double look_alike = odds_of(twins);
+  const double beforehand = look_alikes.otherwise + look_alikes.alike;
+  const double look_alike = odds_of(look_alikes);
   for (std::size_t k = 0; k < kShares; ++k) {
     const double rate = odds_at(k) / kBelievedOdds;
     logs[k] = std::log(here + rate * look_alike + chance) - std::log1p(rate * beforehand);
@@ -79,7 +79,7 @@ LookAlikeRate::LookAlikeRate(int nodes, const std::vector<PlacedPair>& pairs,
     if (pair.link < 0 || !pair.evidence.asks_things()) continue;
     links_[static_cast<std::size_t>(pair.source)].push_back({pair.target, votes_.size()});
     links_[static_cast<std::size_t>(pair.target)].push_back({pair.source, votes_.size()});
-    votes_.push_back(logs_of(pair.evidence.twins, 1.0, 0.0));
+    votes_.push_back(logs_of(pair.evidence.look_alikes, 1.0, 0.0));
   }
   for (std::size_t n = 0; n < links_.size(); ++n) all[n] = static_cast<double>(links_[n].size());
   for (const UnusedLink& link : unused) {
@@ -92,7 +92,8 @@ LookAlikeRate::LookAlikeRate(int nodes, const std::vector<PlacedPair>& pairs,
     const double weight =
         1.0 / all[static_cast<std::size_t>(link.source)] + 1.0 / all[static_cast<std::size_t>(link.target)];
     add(weight,
-        logs_of(link.evidence.twins, link.contradicted ? 0.0 : 1.0, std::exp(-link.evidence.chance_nats)),
+        logs_of(link.evidence.look_alikes, link.contradicted ? 0.0 : 1.0,
+                std::exp(-link.evidence.chance_nats)),
         others_);
   }
 }

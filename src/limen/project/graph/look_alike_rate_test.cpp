@@ -13,11 +13,11 @@ namespace {
 PairEvidence evidence(double against_look_alike) {
   PairEvidence made;
   made.chance_nats = 9.0;
-  made.looks_for_twins = true;
-  made.twins.otherwise = evidence_table::kOtherwise;
-  made.twins.alike = evidence_table::kAlike;
-  made.twins.otherwise_nats.fill(against_look_alike);
-  made.twins.alike_nats.fill(against_look_alike);
+  made.asks_look_alike = true;
+  made.look_alikes.otherwise = evidence_table::kOtherwise;
+  made.look_alikes.alike = evidence_table::kAlike;
+  made.look_alikes.otherwise_nats.fill(against_look_alike);
+  made.look_alikes.alike_nats.fill(against_look_alike);
   return made;
 }
 
@@ -46,7 +46,7 @@ TEST(LookAlikeRate, PairsThatSayNothingChangeLittle) {
 /// doubt however many there are.
 TEST(LookAlikeRate, WhatIsBelievedOfLinksBeforehandSaysNothing) {
   std::vector<PlacedPair> pairs = row(30, 0.0);
-  for (PlacedPair& pair : pairs) pair.evidence.twins.otherwise /= 20.0;
+  for (PlacedPair& pair : pairs) pair.evidence.look_alikes.otherwise /= 20.0;
   EXPECT_NEAR(factor(30, pairs), 1.0, 0.05);
 }
 

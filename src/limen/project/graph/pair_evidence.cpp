@@ -8,10 +8,10 @@
 namespace limen {
 namespace {
 
-/// Evidence that leaves a probability of `probability`, of whichever kind of twin.
-TwinEvidence twin_evidence_of(double probability) {
+/// Evidence that leaves a probability of `probability`, of whichever kind of look-alike place.
+LookAlikeEvidence look_alike_evidence_of(double probability) {
   constexpr double kMostNats = 50.0;
-  TwinEvidence evidence;
+  LookAlikeEvidence evidence;
   const double nats =
       probability > 0.0 ? std::min(kMostNats, std::log((1.0 - probability) / probability)) : kMostNats;
   evidence.otherwise_nats.fill(nats);
@@ -33,44 +33,46 @@ void add_to(NatsOfThings& sum, double weight, const NatsOfThings& nats) {
   for (std::size_t j = 0; j < sum.size(); ++j) sum[j] += weight * bounded(nats[j]);
 }
 
-double against(double chance_nats, double odds_of_twin) {
-  return -std::log(std::exp(-chance_nats) + odds_of_twin);
+double against(double chance_nats, double odds_of_look_alike) {
+  return -std::log(std::exp(-chance_nats) + odds_of_look_alike);
 }
 
 }  // namespace
 
-double PairEvidence::odds_of_twin() const {
-  if (!looks_for_twins) return 0.0;
-  return asks_things() ? odds_of(twins) : (twins.otherwise + twins.alike) * std::exp(-behind_windows_nats());
+double PairEvidence::odds_of_look_alike() const {
+  if (!asks_look_alike) return 0.0;
+  return asks_things() ? odds_of(look_alikes)
+                       : (look_alikes.otherwise + look_alikes.alike) * std::exp(-behind_windows_nats());
 }
 
 double PairEvidence::behind_windows_nats() const {
-  return bounded(twins.otherwise_nats.front()) + evidence_table::kAgreeingBehind * std::max(0.0, chance_nats);
+  return bounded(look_alikes.otherwise_nats.front()) +
+         evidence_table::kAgreeingBehind * std::max(0.0, chance_nats);
 }
 
 void LookAlikeSum::add(const PairEvidence& evidence, double of_things, double of_surface) {
-  const TwinEvidence& twins = evidence.twins;
+  const LookAlikeEvidence& look_alikes = evidence.look_alikes;
   if (evidence.asks_things()) {
-    add_to(sum_.otherwise_nats, of_things, twins.otherwise_nats);
-    add_to(sum_.alike_nats, of_things, twins.alike_nats);
-    add_to(sum_.share_nats, of_things, twins.share_nats);
-    sum_.things += of_things * twins.things;
-    sum_.agreeing += of_things * twins.agreeing;
-    built_nats_ += of_surface * bounded(built_nats(twins.built, belief_));
+    add_to(sum_.otherwise_nats, of_things, look_alikes.otherwise_nats);
+    add_to(sum_.alike_nats, of_things, look_alikes.alike_nats);
+    add_to(sum_.share_nats, of_things, look_alikes.share_nats);
+    sum_.things += of_things * look_alikes.things;
+    sum_.agreeing += of_things * look_alikes.agreeing;
+    built_nats_ += of_surface * bounded(built_nats(look_alikes.built, belief_));
   } else {
     const double by_surface =
-        evidence.looks_for_twins ? evidence.behind_windows_nats() : evidence.chance_nats;
+        evidence.asks_look_alike ? evidence.behind_windows_nats() : evidence.chance_nats;
     for (NatsOfThings* sum : {&sum_.otherwise_nats, &sum_.alike_nats})
       for (double& nats : *sum) nats += of_surface * by_surface;
   }
 }
 
 double PairEvidence::alone() const {
-  return std::max(-kMostPairNats, against(chance_nats, odds_of_twin()));
+  return std::max(-kMostPairNats, against(chance_nats, odds_of_look_alike()));
 }
 
 double PairEvidence::in_loop() const {
-  return std::max(-kMostPairNats, against(chance_nats + coincidence_nats, odds_of_twin()));
+  return std::max(-kMostPairNats, against(chance_nats + coincidence_nats, odds_of_look_alike()));
 }
 
 PairEvidence evidence_of(const GraphLink& link, std::size_t pose) {
@@ -91,8 +93,9 @@ PairEvidence evidence_of(const GraphLink& link, std::size_t pose) {
       -kMostPairNats, std::min(kMostPairNats, std::log(best / wrong)) + std::log(probability(pose) / best));
   // Of several poses one agrees by chance so much sooner.
   evidence.coincidence_nats = -std::log(kCoincidence * static_cast<double>(link.poses.size()));
-  evidence.looks_for_twins = link.asks_for_twins();
-  if (evidence.looks_for_twins) evidence.twins = link.poses[pose].twin.value_or(twin_evidence_of(link.twin));
+  evidence.asks_look_alike = link.asks_look_alike();
+  if (evidence.asks_look_alike)
+    evidence.look_alikes = link.poses[pose].look_alike.value_or(look_alike_evidence_of(link.look_alike));
   return evidence;
 }
 

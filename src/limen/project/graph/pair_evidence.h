@@ -6,7 +6,7 @@
 
 #include "limen/project/graph/pose_graph.h"
 #include "limen/register/judge/as_built.h"
-#include "limen/register/judge/twin_odds.h"
+#include "limen/register/judge/look_alike_odds.h"
 
 namespace limen {
 
@@ -15,17 +15,17 @@ struct PairEvidence {
   double chance_nats = 0.0;  ///< against "the pair shares nothing"
   /// Against the same where other links already lay the pair so: wrong poses seldom agree by chance.
   double coincidence_nats = 0.0;
-  TwinEvidence twins;  ///< against look-alike places
-  bool looks_for_twins =
-      false;  ///< `twins` was measured; else a look-alike place is one of the pair's own poses
+  LookAlikeEvidence look_alikes;  ///< against look-alike places
+  bool asks_look_alike =
+      false;  ///< `look_alikes` was measured; else a look-alike place is one of the pair's own poses
 
   /// Whether things and walls of rooms were asked about.
-  [[nodiscard]] bool asks_things() const { return looks_for_twins && twins.rooms; }
-  /// Against a look-alike room behind windows, by what is contradicted and what agrees; where `twins` are not
-  /// of rooms.
+  [[nodiscard]] bool asks_things() const { return asks_look_alike && look_alikes.rooms; }
+  /// Against a look-alike room behind windows, by what is contradicted and what agrees; where `look_alikes`
+  /// are not of rooms.
   [[nodiscard]] double behind_windows_nats() const;
   /// Odds of a look-alike place of either kind.
-  [[nodiscard]] double odds_of_twin() const;
+  [[nodiscard]] double odds_of_look_alike() const;
   /// Against every other explanation, where nothing else joins the two nodes.
   [[nodiscard]] double alone() const;
   /// The same where other links join them as well.
@@ -54,7 +54,7 @@ class LookAlikeSum {
 
  private:
   BuiltBelief belief_;
-  TwinEvidence sum_;  ///< of things
+  LookAlikeEvidence sum_;  ///< of things
   double built_nats_ = 0.0;
 };
 

@@ -17,17 +17,17 @@ constexpr double kLeastContactM2 = 0.1;
 constexpr double kMostAskedNats = 4.0;  // for a placement that no search proposed
 constexpr std::size_t kAskedAtOnce = 8;
 
-double contact_m2(const PoseHeard& queried) {
+double contact_m2(const PoseSurface& queried) {
   return queried.agreeing_m2 + queried.contradicted_m2;
 }
 
 /// How much is contradicted where a placement is right is a property of a project as well: of what moves
 /// there, of glass, of how far apart its scans were taken. Learned as the median over what was asked, for
 /// most of it is right.
-evidence_table::Contradiction learned_contradiction(const std::vector<PoseHeard>& asked) {
+evidence_table::Contradiction learned_contradiction(const std::vector<PoseSurface>& asked) {
   constexpr double kMostRight = 0.5;
   std::vector<double> shares;
-  for (const PoseHeard& queried : asked) {
+  for (const PoseSurface& queried : asked) {
     if (contact_m2(queried) >= kLeastContactM2)
       shares.push_back(queried.contradicted_m2 / contact_m2(queried));
   }
@@ -40,13 +40,13 @@ evidence_table::Contradiction learned_contradiction(const std::vector<PoseHeard>
 }
 
 /// The evidence of the contradicted share of two scans for their placement, nats.
-double nats_of_contact(const PoseHeard& queried, const evidence_table::Contradiction& table) {
+double nats_of_contact(const PoseSurface& queried, const evidence_table::Contradiction& table) {
   if (contact_m2(queried) < kLeastContactM2) return 0.0;
   return std::min(kMostAskedNats, nats_of_contradiction(queried.agreeing_m2, queried.contradicted_m2, table));
 }
 
 /// What two scans say of a placement that no link of theirs agrees with.
-PlacedPair asked_pair(int source, int target, const Rigid3& target_from_source, const PoseHeard& surface,
+PlacedPair asked_pair(int source, int target, const Rigid3& target_from_source, const PoseSurface& surface,
                       const evidence_table::Contradiction& table, const PoseQuery& query) {
   PlacedPair pair;
   pair.source = source;
@@ -54,19 +54,19 @@ PlacedPair asked_pair(int source, int target, const Rigid3& target_from_source, 
   pair.shared_m2 = surface.agreeing_m2;
   const double nats = nats_of_contact(surface, table);
   pair.evidence.chance_nats = nats;
-  pair.evidence.looks_for_twins = true;
+  pair.evidence.asks_look_alike = true;
   // A look-alike place agrees by design: agreeing walls do not tell it from the right one, contradicted ones
   // do.
-  TwinEvidence& twins = pair.evidence.twins;
-  twins.otherwise_nats.fill(std::min(0.0, nats));
-  twins.alike_nats = twins.otherwise_nats;
+  LookAlikeEvidence& look_alikes = pair.evidence.look_alikes;
+  look_alikes.otherwise_nats.fill(std::min(0.0, nats));
+  look_alikes.alike_nats = look_alikes.otherwise_nats;
   if (nats <= 0.0 || !query.things) return pair;
   // Where a placement is known to a decimetre, things that agree say something, and others nothing.
-  if (const std::optional<TwinEvidence> things = query.things(source, target, target_from_source);
+  if (const std::optional<LookAlikeEvidence> things = query.things(source, target, target_from_source);
       things && otherwise_nats(*things) > 0.0) {
     for (std::size_t j = 0; j < kBuiltInLevels; ++j)
-      twins.otherwise_nats[j] = std::min(things->otherwise_nats[j], kMostAskedNats);
-    twins.things = twins.agreeing = things->agreeing;
+      look_alikes.otherwise_nats[j] = std::min(things->otherwise_nats[j], kMostAskedNats);
+    look_alikes.things = look_alikes.agreeing = things->agreeing;
   }
   return pair;
 }
@@ -80,7 +80,7 @@ PlacedPair linked_pair(const PoseGraph& graph, const LinkMatcher& matcher, const
 }
 
 bool says_something(const PlacedPair& pair) {
-  return pair.evidence.chance_nats != 0.0 || pair.evidence.twins.otherwise_nats != NatsOfThings{};
+  return pair.evidence.chance_nats != 0.0 || pair.evidence.look_alikes.otherwise_nats != NatsOfThings{};
 }
 
 }  // namespace
@@ -108,7 +108,7 @@ std::vector<PlacedPair> placed_pairs(const PoseGraph& graph, const LinkMatcher& 
     return inverse(configuration.frame_from_node[static_cast<std::size_t>(asked[k].second)]) *
            configuration.frame_from_node[static_cast<std::size_t>(asked[k].first)];
   };
-  std::vector<PoseHeard> surfaces(asked.size());
+  std::vector<PoseSurface> surfaces(asked.size());
   parallel_for(asked.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k)
       surfaces[k] = query.surface(asked[k].first, asked[k].second, pose(k));

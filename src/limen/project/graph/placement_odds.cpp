@@ -64,12 +64,12 @@ PlacementOdds::PlacementOdds(int nodes, std::vector<PlacedPair> pairs, const std
       trees_(nodes),
       rate_(nodes, pairs_, unused),
       bends_(nodes, pairs_, bends_beforehand(), evidence_table::kBendStrength,
-             [](const PairEvidence& evidence) { return logs_of_bends(evidence.twins.built); }),
+             [](const PairEvidence& evidence) { return logs_of_bends(evidence.look_alikes.built); }),
       stayed_(nodes, pairs_, stayed_beforehand(), evidence_table::kStayedStrength,
-              [](const PairEvidence& evidence) { return logs_of_stayed(evidence.twins); }),
+              [](const PairEvidence& evidence) { return logs_of_stayed(evidence.look_alikes); }),
       as_drawn_(nodes, pairs_) {
   for (const PlacedPair& pair : pairs_) {
-    if (pair.link >= 0 || pair.evidence.twins.things > 0.0) trees_.connect(pair.source, pair.target);
+    if (pair.link >= 0 || pair.evidence.look_alikes.things > 0.0) trees_.connect(pair.source, pair.target);
   }
 }
 
@@ -85,10 +85,11 @@ double PlacementOdds::odds_of_look_alike(const std::vector<const PlacedPair*>& a
   std::vector<double> surface;
   std::vector<double> things;
   for (const PlacedPair* pair : across) {
-    const TwinEvidence& twins = pair->evidence.twins;
+    const LookAlikeEvidence& look_alikes = pair->evidence.look_alikes;
     surface.push_back(std::max(kLeastSurfaceM2, pair->shared_m2));
-    things.push_back(twins.things > 0.0 ? twins.things
-                                        : std::abs(otherwise_nats(twins)) + std::abs(alike_nats(twins)));
+    things.push_back(look_alikes.things > 0.0
+                         ? look_alikes.things
+                         : std::abs(otherwise_nats(look_alikes)) + std::abs(alike_nats(look_alikes)));
   }
   const std::vector<double> of_surface = views_.shares(across, side, surface);
   const std::vector<double> of_things = views_.shares(across, side, things);
@@ -102,11 +103,11 @@ double PlacementOdds::odds_of_look_alike(const std::vector<const PlacedPair*>& a
   for (std::size_t k = 0; k < across.size(); ++k) {
     const PairEvidence& evidence = across[k]->evidence;
     against.add(evidence, of_things[k], of_surface[k]);
-    if (across[k]->link < 0 || !evidence.looks_for_twins) continue;
+    if (across[k]->link < 0 || !evidence.asks_look_alike) continue;
     // Of two rooms a view through windows excludes look-alike places no better than chance.
     const double by_chance = rooms && !evidence.asks_things() ? std::exp(-evidence.chance_nats) : 0.0;
-    const double pair_otherwise = evidence.twins.otherwise + by_chance;
-    const double pair_alike = evidence.twins.alike + by_chance;
+    const double pair_otherwise = evidence.look_alikes.otherwise + by_chance;
+    const double pair_alike = evidence.look_alikes.alike + by_chance;
     otherwise = believed ? std::min(otherwise, pair_otherwise) : pair_otherwise;
     alike = believed ? std::min(alike, pair_alike) : pair_alike;
     believed = true;
@@ -200,7 +201,7 @@ SideOdds PlacementOdds::of_across(const std::vector<const PlacedPair*>& across,
                                   const std::vector<bool>& side) const {
   SideOdds odds;
   odds.chance = std::exp(log_odds_of_chance(across, side, odds));
-  odds.twin = odds_of_look_alike(across, side);
+  odds.look_alike = odds_of_look_alike(across, side);
   return odds;
 }
 

@@ -16,13 +16,13 @@ namespace limen {
 
 /// Odds that a side of a component is elsewhere, against that it is where a configuration has it.
 struct SideOdds {
-  double twin = 0.0;       ///< the side lies on a look-alike place
-  double chance = 0.0;     ///< the pairs across agree by chance
-  double share = 1.0;      ///< of the ways to join the scans in which the side is joined by one pair
-  std::vector<int> links;  ///< that hold it, but for those that show nothing new
+  double look_alike = 0.0;  ///< the side lies on a look-alike place
+  double chance = 0.0;      ///< the pairs across agree by chance
+  double share = 1.0;       ///< of the ways to join the scans in which the side is joined by one pair
+  std::vector<int> links;   ///< that hold it, but for those that show nothing new
 
   /// If one pair joins the side.
-  [[nodiscard]] double by_one_pair() const { return twin + chance; }
+  [[nodiscard]] double by_one_pair() const { return look_alike + chance; }
   [[nodiscard]] double total() const { return share * by_one_pair(); }
 };
 

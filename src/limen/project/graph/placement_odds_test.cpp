@@ -18,9 +18,9 @@ PlacedPair pair(int source, int target, double chance_nats, double otherwise_nat
   PlacedPair made{source, target, shared_m2, {}, link};
   made.evidence.chance_nats = chance_nats;
   made.evidence.coincidence_nats = 6.9;
-  made.evidence.looks_for_twins = true;
-  made.evidence.twins.otherwise_nats.fill(otherwise_nats);
-  made.evidence.twins.alike_nats.fill(alike_nats);
+  made.evidence.asks_look_alike = true;
+  made.evidence.look_alikes.otherwise_nats.fill(otherwise_nats);
+  made.evidence.look_alikes.alike_nats.fill(alike_nats);
   return made;
 }
 
@@ -36,7 +36,7 @@ TEST(PlacementOdds, OfOnePairAreThePairs) {
   PlacementOdds odds(2, {only});
   const SideOdds& said = odds.of(side({1}, 2));
   EXPECT_NEAR(said.chance, std::exp(-5.0), 1e-9);
-  EXPECT_NEAR(said.twin, odds_of(only.evidence.twins), 0.2 * odds_of(only.evidence.twins));
+  EXPECT_NEAR(said.look_alike, odds_of(only.evidence.look_alikes), 0.2 * odds_of(only.evidence.look_alikes));
 }
 
 /// Windows of a look-alike room agree by design, in part: a second pair excludes chance sooner than such a
@@ -44,8 +44,8 @@ TEST(PlacementOdds, OfOnePairAreThePairs) {
 TEST(PlacementOdds, ASecondPairThroughWindowsExcludesChanceSoonerThanALookAlikeRoom) {
   const auto through_windows = [](int target, int link) {
     PlacedPair made = pair(2, target, 6.0, 1.0, 1.0, link);
-    made.evidence.twins.rooms = false;
-    made.evidence.twins.otherwise = 0.5;
+    made.evidence.look_alikes.rooms = false;
+    made.evidence.look_alikes.otherwise = 0.5;
     return made;
   };
   PlacementOdds one(3, {through_windows(0, 0)});
@@ -53,8 +53,8 @@ TEST(PlacementOdds, ASecondPairThroughWindowsExcludesChanceSoonerThanALookAlikeR
   const SideOdds& by_one = one.of(side({2}, 3));
   const SideOdds& by_two = two.of(side({2}, 3));
   EXPECT_LT(by_two.chance, 1e-3 * by_one.chance);
-  EXPECT_GT(by_two.twin / by_one.twin, 100.0 * by_two.chance / by_one.chance);
-  EXPECT_LT(by_two.twin, 0.1 * by_one.twin);
+  EXPECT_GT(by_two.look_alike / by_one.look_alike, 100.0 * by_two.chance / by_one.chance);
+  EXPECT_LT(by_two.look_alike, 0.1 * by_one.look_alike);
 }
 
 /// That there is a look-alike place is believed once for a side, what is seen against it counts for each
@@ -63,7 +63,7 @@ TEST(PlacementOdds, EvidenceOfPairsThatShowDifferentThingsMultiplies) {
   PlacementOdds one(3, {pair(2, 0, 5.0, 4.0, 2.0, 0)});
   PlacementOdds two(3, {pair(2, 0, 5.0, 4.0, 2.0, 0), pair(2, 1, 5.0, 4.0, 2.0, 1)});
   const std::vector<bool> alone = side({2}, 3);
-  EXPECT_NEAR(std::log(one.of(alone).twin / two.of(alone).twin), 3.0, 1.1);
+  EXPECT_NEAR(std::log(one.of(alone).look_alike / two.of(alone).look_alike), 3.0, 1.1);
   EXPECT_NEAR(std::log(one.of(alone).chance / two.of(alone).chance), 5.0 + 6.9, 0.2);
 }
 
@@ -73,7 +73,7 @@ TEST(PlacementOdds, TheSameSurfaceSeenTwiceCountsOnce) {
   PlacementOdds same(
       3, {pair(2, 0, 5.0, 4.0, 2.0, 0), pair(2, 1, 5.0, 4.0, 2.0, 1), pair(1, 0, 9.0, 9.0, 9.0, 2)});
   const std::vector<bool> alone = side({2}, 3);
-  EXPECT_GT(same.of(alone).twin, 3.0 * different.of(alone).twin);
+  EXPECT_GT(same.of(alone).look_alike, 3.0 * different.of(alone).look_alike);
 }
 
 /// What contradicts a placement makes it less probable, whatever agrees.
@@ -91,21 +91,21 @@ TEST(PlacementOdds, HowOftenPlacesRepeatIsLearned) {
     pairs.push_back(pair(n, n - 1, 9.0, n == 29 ? 0.0 : 9.0, n == 29 ? 0.0 : 9.0, n));
   PlacementOdds many(30, pairs);
   PlacementOdds few(2, {pair(1, 0, 9.0, 0.0, 0.0, 0)});
-  EXPECT_LT(many.of(side({29}, 30)).twin, 0.25 * few.of(side({1}, 2)).twin);
+  EXPECT_LT(many.of(side({29}, 30)).look_alike, 0.25 * few.of(side({1}, 2)).look_alike);
 }
 
 /// Pairs that show the same count once together, each by what it shows, and not the one that says most.
 TEST(PlacementOdds, TheOrderOfPairsDoesNotCount) {
   std::vector<PlacedPair> pairs = {pair(2, 0, 5.0, 6.0, 2.0, 0), pair(2, 1, 5.0, 1.0, -1.0, 1),
                                    pair(1, 0, 9.0, 9.0, 9.0, 2)};
-  for (PlacedPair& one : pairs) one.evidence.twins.things = 10.0;
+  for (PlacedPair& one : pairs) one.evidence.look_alikes.things = 10.0;
   const std::vector<bool> alone = side({2}, 3);
-  const double odds = PlacementOdds(3, pairs).of(alone).twin;
+  const double odds = PlacementOdds(3, pairs).of(alone).look_alike;
   std::swap(pairs[0], pairs[1]);
-  EXPECT_NEAR(PlacementOdds(3, pairs).of(alone).twin, odds, 1e-9 * odds);
+  EXPECT_NEAR(PlacementOdds(3, pairs).of(alone).look_alike, odds, 1e-9 * odds);
   std::vector<PlacedPair> equal = pairs;
-  equal[0].evidence.twins = equal[1].evidence.twins;
-  EXPECT_LT(PlacementOdds(3, equal).of(alone).twin, odds);
+  equal[0].evidence.look_alikes = equal[1].evidence.look_alikes;
+  EXPECT_LT(PlacementOdds(3, equal).of(alone).look_alike, odds);
 }
 
 /// What bent scans show of how walls were built is no evidence. By how much they are bent the other pairs
@@ -121,9 +121,9 @@ TEST(PlacementOdds, ByHowMuchScansAreBentIsLearnedFromTheOthers) {
     std::vector<PlacedPair> pairs;
     for (int n = 1; n < nodes; ++n) {
       pairs.push_back(pair(n, n - 1, 9.0, 4.0, 4.0, n));
-      pairs.back().evidence.twins.built = n == nodes - 1 ? last : others;
+      pairs.back().evidence.look_alikes.built = n == nodes - 1 ? last : others;
     }
-    return PlacementOdds(nodes, pairs).of(side({nodes - 1}, static_cast<std::size_t>(nodes))).twin;
+    return PlacementOdds(nodes, pairs).of(side({nodes - 1}, static_cast<std::size_t>(nodes))).look_alike;
   };
   EXPECT_GT(odds(10, exact, judged), 3.0 * odds(10, exact, {}));
   EXPECT_NEAR(odds(10, bending, judged), odds(10, bending, {}), 0.1 * odds(10, bending, {}));
@@ -139,11 +139,11 @@ TEST(PlacementOdds, HowManyThingsStayIsLearnedFromTheOthers) {
     std::vector<PlacedPair> pairs;
     for (int n = 1; n < 10; ++n) {
       pairs.push_back(pair(n, n - 1, 9.0, 4.0, 4.0, n));
-      TwinEvidence& twins = pairs.back().evidence.twins;
-      twins.things = 20.0;
-      twins.agreeing = n == 9 ? 10.0 : 20.0 * others_agree;
+      LookAlikeEvidence& look_alikes = pairs.back().evidence.look_alikes;
+      look_alikes.things = 20.0;
+      look_alikes.agreeing = n == 9 ? 10.0 : 20.0 * others_agree;
     }
-    return PlacementOdds(10, pairs).of(side({9}, 10)).twin;
+    return PlacementOdds(10, pairs).of(side({9}, 10)).look_alike;
   };
   EXPECT_GT(odds(0.97), 5.0 * odds(0.5));
   EXPECT_LT(odds(0.5), 1.1 * odds(0.6));
@@ -153,9 +153,9 @@ TEST(PlacementOdds, HowManyThingsStayIsLearnedFromTheOthers) {
 TEST(PlacementOdds, AWeakViewThroughWindowsExcludesNoLookAlikeRoom) {
   const auto odds = [](double chance_nats) {
     PlacedPair windows = pair(2, 1, chance_nats, 0.0, 0.0, 1);
-    windows.evidence.twins.rooms = false;
-    windows.evidence.twins.otherwise = 0.01;
-    return PlacementOdds(3, {pair(2, 0, 9.0, 2.0, 2.0, 0), windows}).of(side({2}, 3)).twin;
+    windows.evidence.look_alikes.rooms = false;
+    windows.evidence.look_alikes.otherwise = 0.01;
+    return PlacementOdds(3, {pair(2, 0, 9.0, 2.0, 2.0, 0), windows}).of(side({2}, 3)).look_alike;
   };
   EXPECT_GT(odds(0.2), 20.0 * odds(8.0));
 }

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "limen/model/twin_evidence.h"
+#include "limen/model/look_alike_evidence.h"
 #include "limen/project/graph/link_pose.h"
 #include "limen/project/graph/pose_query.h"
 
@@ -16,7 +16,7 @@ namespace limen {
 enum class LinkTrust {
   given,     ///< the files say so
   measured,  ///< by registering the pair: how sure it is its probabilities say
-  weak       ///< the pose leaves a direction free, so that it does not tell places apart
+  weak       ///< the pose leaves a direction free, so that it does not distinguish places
 };
 
 /// What a pair of nodes says of their poses; no pose is thrown away.
@@ -25,14 +25,14 @@ struct GraphLink {
   int target = -1;
   LinkTrust trust = LinkTrust::measured;
   std::vector<LinkPose> poses;  ///< at least one; best first
-  double twin = 0.0;            ///< probability that the best pose lays a place on another one built alike
+  double look_alike = 0.0;      ///< probability that the best pose lays a place on another one built alike
   double chance = 0.0;          ///< probability that none of its poses is right, look-alikes aside
   /// Where the pair's best pose is among `poses`: elsewhere than first where a user chose another, which
   /// took its place.
   int best = 0;
 
   /// Whether look-alike places were asked about: else they are among its poses.
-  [[nodiscard]] bool asks_for_twins() const { return twin > 0.0 || poses.front().twin; }
+  [[nodiscard]] bool asks_look_alike() const { return look_alike > 0.0 || poses.front().look_alike; }
 
   /// The number that the pair itself gives a pose.
   [[nodiscard]] int number_of(int pose) const { return pose == 0 ? best : pose == best ? 0 : pose; }
@@ -86,7 +86,7 @@ struct SolvedNode {
   double doubt = 0.0;  ///< probability that it is elsewhere, by the least that holds it to the frame
 };
 
-/// Two ways to put one part of a component against the rest that the data cannot tell apart.
+/// Two ways to put one part of a component against the rest that the data cannot distinguish.
 struct GraphQuestion {
   std::vector<int> moved;    ///< nodes that would move
   std::vector<int> current;  ///< links that speak for the present place only

@@ -6,12 +6,12 @@
 #include <optional>
 
 #include "limen/geometry/rigid.h"
-#include "limen/model/twin_evidence.h"
+#include "limen/model/look_alike_evidence.h"
 
 namespace limen {
 
 /// What the surface of two nodes says of a pose, as a pair's pose is scored; m^2.
-struct PoseHeard {
+struct PoseSurface {
   double agreeing_m2 = 0.0;
   double contradicted_m2 = 0.0;  ///< is where the other saw free space
   double value_m2 = 0.0;         ///< what poses are ranked by
@@ -20,9 +20,9 @@ struct PoseHeard {
 /// Asks two nodes of a pose that neither proposed (`target_from_source`); of those that cannot be asked
 /// nothing is known. Any number of threads may ask at once.
 struct PoseQuery {
-  std::function<PoseHeard(int source, int target, const Rigid3& target_from_source)> surface = {};
+  std::function<PoseSurface(int source, int target, const Rigid3& target_from_source)> surface = {};
   /// What things and walls say of a look-alike place.
-  std::function<std::optional<TwinEvidence>(int source, int target, const Rigid3& target_from_source)>
+  std::function<std::optional<LookAlikeEvidence>(int source, int target, const Rigid3& target_from_source)>
       things = {};
 
   explicit operator bool() const { return static_cast<bool>(surface); }

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "limen/project/graph/pose_graph.h"
-#include "limen/register/judge/twin_odds.h"
+#include "limen/register/judge/look_alike_odds.h"
 
 namespace limen {
 namespace {
@@ -125,7 +125,7 @@ TEST(SolveGraph, WhatSureLinksHoldTogetherLendsTheFrame) {
     GraphLink link;
     link.source = source;
     link.target = target;
-    link.chance = link.twin = 1e-6;
+    link.chance = link.look_alike = 1e-6;
     const Rigid3 truth = inverse(world_from_node[static_cast<std::size_t>(target)]) *
                          world_from_node[static_cast<std::size_t>(source)];
     link.poses = {measured_pose(truth, 20.0, random)};
@@ -207,13 +207,13 @@ TEST(SolveGraph, AnOpenLinkThatNothingSettlesLeavesItsScanAmbiguous) {
 
 /// A room that is alike to one next door: three scans there say that it may be theirs, and close loops with
 /// one another; what two passes see through its windows leaves hardly a doubt.
-TEST(SolveGraph, ARoomGoesWhereItsWindowsSayNotOnItsTwin) {
+TEST(SolveGraph, ARoomGoesWhereItsWindowsSayNotOnItsLookAlike) {
   RandomStream random(11, 1);
   PoseGraph graph;
   graph.nodes = 6;
   std::vector<Rigid3> world_from_node;
   for (int n = 0; n < graph.nodes; ++n) world_from_node.push_back(random_pose(random, 6.0));
-  const Rigid3 twin_from_room = random_pose(random, 6.0);
+  const Rigid3 look_alike_from_room = random_pose(random, 6.0);
   const auto link = [&](int source, int target, const Rigid3& moved) -> GraphLink& {
     GraphLink made;
     made.source = source;
@@ -229,8 +229,8 @@ TEST(SolveGraph, ARoomGoesWhereItsWindowsSayNotOnItsTwin) {
   link(3, 2, {});
   link(4, 3, {});
   for (const int neighbour : {2, 3, 4}) {
-    GraphLink& likely = link(5, neighbour, twin_from_room);
-    likely.twin = 0.3;
+    GraphLink& likely = link(5, neighbour, look_alike_from_room);
+    likely.look_alike = 0.3;
   }
   GraphLink& open = link(5, 1, {});
   open.chance = 1e-4;
@@ -335,20 +335,20 @@ TEST(SolveGraph, WhatNoSingleLinkForbidsAllForbidTogether) {
 
 /// Two rooms alike, scanned three times each, and a corridor that sees both: each pair of scans of different
 /// rooms is taken for one room, and all these false links agree with one another.
-TEST(SolveGraph, TwinRoomsLinkedWronglyAreNeverRegisteredBoth) {
+TEST(SolveGraph, LookAlikeRoomsLinkedWronglyAreNeverRegisteredBoth) {
   RandomStream random(4, 1);
   PoseGraph graph;
   graph.nodes = 7;
   std::vector<Rigid3> truth(7);
-  const Vector3d twin(6.8, 0, 0);
+  const Vector3d look_alike(6.8, 0, 0);
   for (std::size_t k = 0; k < 3; ++k) {
     truth[k].translation = {static_cast<double>(k), 1.0, 0};
-    truth[k + 3].translation = truth[k].translation + twin;
+    truth[k + 3].translation = truth[k].translation + look_alike;
   }
   truth[6].translation = {3, -3, 0};
   const auto add = [&](int source, int target, bool as_one_room, double agreeing) {
     Rigid3 from = truth[static_cast<std::size_t>(source)];
-    if (as_one_room && source >= 3) from.translation -= twin;
+    if (as_one_room && source >= 3) from.translation -= look_alike;
     GraphLink link;
     link.source = source;
     link.target = target;
@@ -409,13 +409,13 @@ TwoStoreys two_storeys(bool corridor_is_source = true) {
     link.source = source;
     link.target = target;
     link.poses = {measured_pose(inverse(truth[static_cast<std::size_t>(target)]) * from, 40.0, random)};
-    TwinEvidence twin;
-    twin.otherwise = 0.171;
-    twin.alike = 0.0053;
-    twin.otherwise_nats.fill(otherwise_nats);
-    twin.alike_nats.fill(alike_nats);
-    link.poses.front().twin = twin;
-    link.twin = probability_of(*link.poses.front().twin);
+    LookAlikeEvidence look_alike;
+    look_alike.otherwise = 0.171;
+    look_alike.alike = 0.0053;
+    look_alike.otherwise_nats.fill(otherwise_nats);
+    look_alike.alike_nats.fill(alike_nats);
+    link.poses.front().look_alike = look_alike;
+    link.look_alike = probability_of(*link.poses.front().look_alike);
     graph.links.push_back(link);
   };
   for (int a = 0; a < kRooms; ++a) {

@@ -102,9 +102,9 @@ struct ProjectLink {
   Rigid3 target_from_source;  ///< the accepted pose, else the best of the pair; world to world
   PoseSigma sigma;
   double agreeing_m2 = 0.0;
-  int number = 0;       ///< of the accepted pose, else the best, among the pair's own
-  double twin = 0.0;    ///< probability that it lays a place on another one built alike ...
-  double chance = 0.0;  ///< ... and that it is wrong otherwise; both by the pair alone
+  int number = 0;           ///< of the accepted pose, else the best, among the pair's own
+  double look_alike = 0.0;  ///< probability that it lays a place on another one built alike ...
+  double chance = 0.0;      ///< ... and that it is wrong otherwise; both by the pair alone
   std::vector<ProjectAlternative> alternatives;
   std::string reason;
   std::vector<PlaneMatch> matches;        ///< planes that agree under the pair's own best pose

@@ -20,12 +20,12 @@ namespace {
 // Of a placement that no search refined: deviations add up from scan to scan.
 constexpr double kPlacementM = 0.1;
 
-class ScanHearing {
+class ScanQuery {
  public:
-  ScanHearing(const std::vector<ProjectNode>& nodes, const RegisterOptions& options, ScanCache& cache)
+  ScanQuery(const std::vector<ProjectNode>& nodes, const RegisterOptions& options, ScanCache& cache)
       : nodes_(&nodes), options_(&options), cache_(&cache) {}
 
-  [[nodiscard]] PoseHeard surface(int source, int target, const Rigid3& target_from_source) const {
+  [[nodiscard]] PoseSurface surface(int source, int target, const Rigid3& target_from_source) const {
     if (!meet(source, target, target_from_source)) return {};
     const PoseScore score =
         score_given_pose(*cache_->get(node(source).key), *cache_->get(node(target).key),
@@ -33,12 +33,12 @@ class ScanHearing {
     return {score.agreeing_m2, score.contradicted_m2, score.value()};
   }
 
-  [[nodiscard]] std::optional<TwinEvidence> things(int source, int target,
-                                                   const Rigid3& target_from_source) const {
+  [[nodiscard]] std::optional<LookAlikeEvidence> things(int source, int target,
+                                                        const Rigid3& target_from_source) const {
     if (!meet(source, target, target_from_source)) return std::nullopt;
-    return twin_of_given_pose(*cache_->get(node(source).key), *cache_->get(node(target).key),
-                              world_pose(source, target, target_from_source),
-                              twin_options(options_->nothing_repeats));
+    return look_alike_of_given_pose(*cache_->get(node(source).key), *cache_->get(node(target).key),
+                                    world_pose(source, target, target_from_source),
+                                    look_alike_options(options_->nothing_repeats));
   }
 
  private:
@@ -66,7 +66,7 @@ class ScanHearing {
 
 PoseQuery query_of_scans(const std::vector<ProjectNode>& nodes, const RegisterOptions& options,
                          ScanCache& cache) {
-  const ScanHearing scans(nodes, options, cache);
+  const ScanQuery scans(nodes, options, cache);
   return {[scans](int source, int target, const Rigid3& pose) { return scans.surface(source, target, pose); },
           [scans](int source, int target, const Rigid3& pose) { return scans.things(source, target, pose); }};
 }

@@ -117,7 +117,7 @@ class Waves {
     return pairs;
   }
 
-  /// Of scans that nothing holds, or only scans that stand apart from the rest with them, the first in their
+  /// Of scans that nothing holds, or only scans that the rest does not hold either, the first in their
   /// lists: the first of each, then the second of each, and so on.
   [[nodiscard]] PairList joining_partners(const std::vector<std::vector<std::size_t>>& ranked,
                                           const SolvedGraph& solved, const std::vector<int>& held,

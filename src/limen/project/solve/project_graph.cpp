@@ -94,8 +94,9 @@ class GraphMaker {
 
   void add_pair(std::size_t k) {
     const RegistrationResult& found = pairs_[k].result;
-    // Loops cannot settle what a twin says: rooms built alike laid on one another close their loops too.
-    const double twin = found.others ? found.others->twin : 0.0;
+    // Loops cannot settle what a look-alike place says: rooms built alike laid on one another close their
+    // loops too.
+    const double look_alike = found.others ? found.others->look_alike : 0.0;
     const auto said = words_.pairs.find({pairs_[k].source, pairs_[k].target});
     const bool spoken = said != words_.pairs.end();
     if (spoken && said->second.kind == DecisionKind::reject) return;
@@ -106,7 +107,7 @@ class GraphMaker {
     link.source = static_cast<int>(pairs_[k].source);
     link.target = static_cast<int>(pairs_[k].target);
     link.trust = trust_of(found);
-    link.twin = twin;
+    link.look_alike = look_alike;
     link.chance = found.others ? by_chance(found) : kOfUnknown;
     link.poses.push_back(pose_of(link, found, found.best, 1.0));
     for (const Hypothesis& other : found.alternatives) {
@@ -165,8 +166,8 @@ class GraphMaker {
     const auto number = static_cast<std::size_t>(word.pose);
     if (number >= link.poses.size()) return;
     put_first(link.number_of(word.pose), link);
-    link.twin = std::min(link.twin, kWordWrong);
-    link.poses.front().twin.reset();
+    link.look_alike = std::min(link.look_alike, kWordWrong);
+    link.poses.front().look_alike.reset();
     link.chance = std::min(link.chance, kWordWrong);
     link.poses.front().probability = std::max(link.poses.front().probability, 1.0 - kWordWrong);
   }
@@ -181,7 +182,7 @@ class GraphMaker {
     return sigma.translation_m.maxCoeff() < kPlaceSigmaM && sigma.rotation_rad.maxCoeff() < kPlaceSigmaRad;
   }
 
-  /// Probability that none of a pair's poses is right, twins apart.
+  /// Probability that none of a pair's poses is right, look-alike places left out.
   [[nodiscard]] static double by_chance(const RegistrationResult& found) {
     if (found.others) return found.others->nothing_shared + found.others->unlisted_pose;
     return found.outcome == Outcome::no_match ? 1.0 : 0.0;
@@ -210,7 +211,7 @@ class GraphMaker {
     kept.centre = kept.target_from_source * (inverse(best) * (found.sigma.centre - target.local_origin));
     kept.agreeing_m2 = pose.agreeing_m2;
     kept.probability = pose.probability.value_or(1.0 / (1.0 + static_cast<double>(found.rivals)));
-    kept.twin = pose.twin;
+    kept.look_alike = pose.look_alike;
     const Drift drift = drift_of(link);
     if (!pose.sigma.covariance.isZero()) {
       kept.centre = pose.sigma.centre - target.local_origin;

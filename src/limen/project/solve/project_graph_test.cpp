@@ -13,14 +13,14 @@ namespace limen {
 namespace {
 
 /// What a pair gives whose look-alike place has this probability.
-RegistrationResult stated(Outcome outcome, double twin, std::size_t rivals = 0) {
+RegistrationResult stated(Outcome outcome, double look_alike, std::size_t rivals = 0) {
   RegistrationResult result;
   result.outcome = outcome;
-  result.best.probability = 1.0 - twin;
+  result.best.probability = 1.0 - look_alike;
   result.best.score = 30.0;
   result.best.agreeing_m2 = 30.0;
   result.rivals = rivals;
-  result.others = OtherExplanations{0.0, twin, 0.0};
+  result.others = OtherExplanations{0.0, look_alike, 0.0};
   if (rivals > 0) result.alternatives.push_back(result.best);
   return result;
 }
@@ -35,13 +35,13 @@ TEST(ProjectGraph, ALinkKeepsTheProbabilitiesOfItsPair) {
   const std::vector<GraphLink> links = links_of(stated(Outcome::ambiguous, 0.6));
   ASSERT_EQ(links.size(), 1U);
   EXPECT_EQ(links.front().trust, LinkTrust::measured);
-  EXPECT_NEAR(links.front().twin, 0.6, 1e-12);
+  EXPECT_NEAR(links.front().look_alike, 0.6, 1e-12);
 }
 
 /// A pose that chance explains better is none to rely on by itself; others may still say the same.
 TEST(ProjectGraph, APairMakesALinkUnlessProbablyNothingIsShared) {
   RegistrationResult pair = stated(Outcome::no_match, 0.0);
-  pair.others = OtherExplanations{.nothing_shared = 0.6, .twin = 0.0, .unlisted_pose = 0.0};
+  pair.others = OtherExplanations{.nothing_shared = 0.6, .look_alike = 0.0, .unlisted_pose = 0.0};
   EXPECT_TRUE(links_of(pair).empty());
   pair.others->nothing_shared = 0.4;
   EXPECT_EQ(links_of(pair).size(), 1U);
@@ -121,12 +121,12 @@ std::vector<GraphLink> links_with(const RegistrationResult& pair, const UserWord
 }
 
 TEST(ProjectGraph, AUsersWordMakesALinkSureOrLeavesItOut) {
-  const RegistrationResult twin = stated(Outcome::ambiguous, 0.9);
-  const std::vector<GraphLink> accepted = links_with(twin, word(DecisionKind::accept));
+  const RegistrationResult look_alike = stated(Outcome::ambiguous, 0.9);
+  const std::vector<GraphLink> accepted = links_with(look_alike, word(DecisionKind::accept));
   ASSERT_EQ(accepted.size(), 1U);
   // No surer than a user is.
-  EXPECT_GT(accepted.front().twin, 0.0);
-  EXPECT_LT(accepted.front().twin + accepted.front().chance, 0.001);
+  EXPECT_GT(accepted.front().look_alike, 0.0);
+  EXPECT_LT(accepted.front().look_alike + accepted.front().chance, 0.001);
   EXPECT_TRUE(links_with(stated(Outcome::registered, 0.0), word(DecisionKind::reject)).empty());
   EXPECT_TRUE(links_with(stated(Outcome::no_match, 0.0), word(DecisionKind::accept)).empty());
 }

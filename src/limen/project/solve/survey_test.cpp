@@ -59,14 +59,15 @@ struct TargetsOnly {
   }
 
   /// What a pair of these scans tells.
-  [[nodiscard]] TriedPair pair(std::size_t source, std::size_t target, double off_m, double twin) const {
+  [[nodiscard]] TriedPair pair(std::size_t source, std::size_t target, double off_m,
+                               double look_alike) const {
     TriedPair pair{source, target, {}};
     pair.result.outcome = Outcome::registered;
     pair.result.best.target_from_source = inverse(control_from_node[target]) * control_from_node[source];
     pair.result.best.target_from_source.translation.x() += off_m;
-    pair.result.best.probability = 1.0 - twin;
+    pair.result.best.probability = 1.0 - look_alike;
     pair.result.best.score = pair.result.best.agreeing_m2 = 30.0;
-    pair.result.others = OtherExplanations{0.0, twin, 0.0};
+    pair.result.others = OtherExplanations{0.0, look_alike, 0.0};
     pair.result.sigma.centre = inverse(control_from_node[target]) * control_from_node[source].translation;
     return pair;
   }
@@ -112,8 +113,8 @@ TEST(Survey, WhatStoodByTheSurveyAloneKeepsAFrameOfItsOwn) {
   EXPECT_EQ(frames, 1);
 }
 
-TEST(Survey, TargetsRefuteALinkAndSettleATwin) {
-  // c hangs on a by a link that is 0.3 m off, and on b by one that may lie on a twin.
+TEST(Survey, TargetsRefuteALinkAndSettleALookAlike) {
+  // c hangs on a by a link that is 0.3 m off, and on b by one that may lie on a look-alike place.
   TargetsOnly building({4, 4, 4});
   const std::vector<TriedPair> pairs = {building.pair(2, 0, 0.3, 0.0), building.pair(2, 1, 0.0, 0.2)};
   SolvedGraph solved;
@@ -133,8 +134,8 @@ TEST(Survey, TargetsRefuteALinkAndSettleATwin) {
 }
 
 TEST(Survey, ScansInDoubtAreHeldByTheirNeighboursTargetsOnly) {
-  // b has targets; c hangs on b by a link that may lie on a twin, and so it does: its own target fits
-  // nothing.
+  // b has targets; c hangs on b by a link that may lie on a look-alike place, and so it does: its own target
+  // fits nothing.
   TargetsOnly building({0, 4, 1});
   SolvedGraph solved;
   const PlacedSurvey placed = building.place(solved, {building.pair(2, 1, 1.0, 0.2)});
@@ -147,7 +148,8 @@ TEST(Survey, ScansInDoubtAreHeldByTheirNeighboursTargetsOnly) {
 }
 
 TEST(Survey, PointsThatOtherScansForetellConfirmAScanInDoubt) {
-  // Links that may lie on twins; two targets in each scan, and each two fit what the four others tell.
+  // Links that may lie on look-alike places; two targets in each scan, and each two fit what the four others
+  // tell.
   TargetsOnly building({2, 2, 2});
   const std::vector<TriedPair> pairs = {building.pair(1, 0, 0.0, 0.2), building.pair(2, 1, 0.0, 0.2)};
   SolvedGraph solved;
@@ -159,10 +161,10 @@ TEST(Survey, PointsThatOtherScansForetellConfirmAScanInDoubt) {
         0.02)
         << n;
   }
-  // The last scan a metre off, on its twin: its points fit nobody's, and it is not confirmed.
+  // The last scan a metre off, on a look-alike place: its points fit nobody's, and it is not confirmed.
   TargetsOnly wrong({4, 4, 2});
-  const std::vector<TriedPair> twins = {wrong.pair(1, 0, 0.0, 0.2), wrong.pair(2, 1, 1.0, 0.2)};
-  wrong.place(solved, twins);
+  const std::vector<TriedPair> look_alikes = {wrong.pair(1, 0, 0.0, 0.2), wrong.pair(2, 1, 1.0, 0.2)};
+  wrong.place(solved, look_alikes);
   EXPECT_EQ(solved.nodes[0].state, NodeState::registered);
   EXPECT_EQ(solved.nodes[1].state, NodeState::registered);
   EXPECT_EQ(solved.nodes[2].state, NodeState::ambiguous);

@@ -105,27 +105,29 @@ PoseSigma get_sigma(ByteReader& reader) {
   return sigma;
 }
 
-void put_twin(ByteWriter& writer, const std::optional<TwinEvidence>& said) {
+void put_look_alike(ByteWriter& writer, const std::optional<LookAlikeEvidence>& said) {
   writer.put(said.has_value());
-  const TwinEvidence twin = said.value_or(TwinEvidence{});
-  writer.put(twin.rooms);
-  for (const double stated : {twin.otherwise, twin.alike, twin.things, twin.agreeing}) writer.put(stated);
-  for (const NatsOfThings& nats : {twin.otherwise_nats, twin.alike_nats, twin.share_nats})
+  const LookAlikeEvidence look_alike = said.value_or(LookAlikeEvidence{});
+  writer.put(look_alike.rooms);
+  for (const double stated : {look_alike.otherwise, look_alike.alike, look_alike.things, look_alike.agreeing})
+    writer.put(stated);
+  for (const NatsOfThings& nats : {look_alike.otherwise_nats, look_alike.alike_nats, look_alike.share_nats})
     for (const double level : nats) writer.put(level);
-  for (const auto& levels : {twin.built.one, twin.built.twin, twin.built.as_drawn})
+  for (const auto& levels : {look_alike.built.one, look_alike.built.look_alike, look_alike.built.as_drawn})
     for (const double log : levels) writer.put(log);
 }
 
-std::optional<TwinEvidence> get_twin(ByteReader& reader) {
+std::optional<LookAlikeEvidence> get_look_alike(ByteReader& reader) {
   const bool asked = reader.get<bool>();
-  TwinEvidence twin;
-  twin.rooms = reader.get<bool>();
-  for (double* value : {&twin.otherwise, &twin.alike, &twin.things, &twin.agreeing}) reader.get(*value);
-  for (NatsOfThings* nats : {&twin.otherwise_nats, &twin.alike_nats, &twin.share_nats})
+  LookAlikeEvidence look_alike;
+  look_alike.rooms = reader.get<bool>();
+  for (double* value : {&look_alike.otherwise, &look_alike.alike, &look_alike.things, &look_alike.agreeing})
+    reader.get(*value);
+  for (NatsOfThings* nats : {&look_alike.otherwise_nats, &look_alike.alike_nats, &look_alike.share_nats})
     for (double& level : *nats) reader.get(level);
-  for (auto* levels : {&twin.built.one, &twin.built.twin, &twin.built.as_drawn})
+  for (auto* levels : {&look_alike.built.one, &look_alike.built.look_alike, &look_alike.built.as_drawn})
     for (double& log : *levels) reader.get(log);
-  return asked ? std::optional(twin) : std::nullopt;
+  return asked ? std::optional(look_alike) : std::nullopt;
 }
 
 void put_pose(ByteWriter& writer, const Hypothesis& pose) {
@@ -140,7 +142,7 @@ void put_pose(ByteWriter& writer, const Hypothesis& pose) {
   writer.put(pose.agreeing_length_m);
   writer.put(pose.explained_share.value_or(-1.0));
   writer.put(pose.room);
-  put_twin(writer, pose.twin);
+  put_look_alike(writer, pose.look_alike);
 }
 
 Hypothesis get_pose(ByteReader& reader) {
@@ -158,7 +160,7 @@ Hypothesis get_pose(ByteReader& reader) {
   const auto share = reader.get<double>();
   if (share >= 0) pose.explained_share = share;
   reader.get(pose.room);
-  pose.twin = get_twin(reader);
+  pose.look_alike = get_look_alike(reader);
   return pose;
 }
 
@@ -310,7 +312,7 @@ std::string bytes_of(const RegistrationResult& result) {
   writer.put_count(result.rivals);
   writer.put(result.others.has_value());
   const OtherExplanations others = result.others.value_or(OtherExplanations{});
-  for (const double probability : {others.nothing_shared, others.twin, others.unlisted_pose})
+  for (const double probability : {others.nothing_shared, others.look_alike, others.unlisted_pose})
     writer.put(probability);
   return writer.bytes();
 }
@@ -335,7 +337,7 @@ RegistrationResult result_from(std::string_view bytes, const std::string& where,
   result.rivals = reader.get<std::uint64_t>();
   const bool others = reader.get<bool>();
   OtherExplanations stated;
-  for (double* probability : {&stated.nothing_shared, &stated.twin, &stated.unlisted_pose})
+  for (double* probability : {&stated.nothing_shared, &stated.look_alike, &stated.unlisted_pose})
     reader.get(*probability);
   if (others) result.others = stated;
   return result;

@@ -131,12 +131,13 @@ bool AsBuiltDensity::goes_on(const CommonSurface& surface, GoingOn same) const {
   return std::abs(surface.normal.dot(axes_[same == GoingOn::along_first ? 0 : 1])) < kParallelNormal;
 }
 
-double AsBuiltDensity::apart(const BuiltQuality& quality, const BuiltBend& bend, const bool* goes_on) const {
+double AsBuiltDensity::of_deviations(const BuiltQuality& quality, const BuiltBend& bend,
+                                     const bool* goes_on) const {
   std::vector<Seen> all(surfaces_.size());
   for (std::size_t i = 0; i < surfaces_.size(); ++i) {
     const CommonSurface& surface = surfaces_[i];
     Seen& seen = all[i];
-    seen.value = surface.apart;
+    seen.value = surface.deviation;
     seen.rows.row(0) << surface.at.cross(surface.normal).transpose(), surface.normal.transpose();
     Vector3d variance(squared(bend.offset_m), 0.0, 0.0);
     for (int k = 0; k < 2; ++k) {
@@ -153,7 +154,8 @@ double AsBuiltDensity::apart(const BuiltQuality& quality, const BuiltBend& bend,
   return log_density(all);
 }
 
-double AsBuiltDensity::askew(const BuiltQuality& quality, const BuiltBend& bend, const bool* goes_on) const {
+double AsBuiltDensity::of_directions(const BuiltQuality& quality, const BuiltBend& bend,
+                                     const bool* goes_on) const {
   std::vector<Seen> all;
   for (std::size_t i = 0; i < surfaces_.size(); ++i) {
     const CommonSurface& surface = surfaces_[i];
@@ -182,35 +184,36 @@ double AsBuiltDensity::askew(const BuiltQuality& quality, const BuiltBend& bend,
 double AsBuiltDensity::of_one_place(const BuiltQuality& quality, const BuiltBend& bend) const {
   const auto all = std::make_unique<bool[]>(surfaces_.size());
   std::fill_n(all.get(), surfaces_.size(), true);
-  return apart(quality, bend, all.get()) + askew(quality, bend, all.get());
+  return of_deviations(quality, bend, all.get()) + of_directions(quality, bend, all.get());
 }
 
-double AsBuiltDensity::of_twin(const BuiltQuality& quality, const BuiltBend& bend, GoingOn same) const {
+double AsBuiltDensity::of_look_alike(const BuiltQuality& quality, const BuiltBend& bend, GoingOn same) const {
   const auto which = std::make_unique<bool[]>(surfaces_.size());
   for (std::size_t i = 0; i < surfaces_.size(); ++i) which[i] = goes_on(surfaces_[i], same);
-  return apart(quality, bend, which.get()) + askew(quality, bend, which.get());
+  return of_deviations(quality, bend, which.get()) + of_directions(quality, bend, which.get());
 }
 
 BuiltEvidence built_evidence(std::span<const CommonSurface> surfaces) {
   BuiltEvidence evidence;
   const AsBuiltDensity density(surfaces, kStraySurface);
   if (!density.knows_square()) return evidence;
-  std::array<double, kBends.size()> twins{};
+  std::array<double, kBends.size()> look_alikes{};
   for (std::size_t j = 0; j < kBends.size(); ++j) {
     std::vector<double> one;
-    std::vector<double> twin;
+    std::vector<double> look_alike;
     for (const BuiltQuality& quality : kQualities) {
       const double weight = std::log(quality.weight);
       one.push_back(weight + density.of_one_place(quality, kBends[j]));
       for (const GoingOn same : kGoingOn)
-        twin.push_back(weight - std::log(kGoingOn.size()) + density.of_twin(quality, kBends[j], same));
+        look_alike.push_back(weight - std::log(kGoingOn.size()) +
+                             density.of_look_alike(quality, kBends[j], same));
     }
     evidence.one[j] = log_sum_exp(one);
-    evidence.twin[j] = log_sum_exp(twin);
+    evidence.look_alike[j] = log_sum_exp(look_alike);
     evidence.as_drawn[j] = density.of_one_place(kAsDrawnQuality, kBends[j]);
-    twins[j] = std::log(kBends[j].weight) + evidence.twin[j];
+    look_alikes[j] = std::log(kBends[j].weight) + evidence.look_alike[j];
   }
-  evidence.one.back() = evidence.twin.back() = evidence.as_drawn.back() = log_sum_exp(twins);
+  evidence.one.back() = evidence.look_alike.back() = evidence.as_drawn.back() = log_sum_exp(look_alikes);
   return evidence;
 }
 
@@ -227,7 +230,7 @@ double built_nats(const BuiltEvidence& evidence, const BuiltBelief& belief) {
   const double other = std::log1p(-belief.as_drawn);
   const double as_drawn = std::log(belief.as_drawn) + log_density(evidence.as_drawn, belief.bends);
   return log_sum_exp({other + log_density(evidence.one, belief.bends), as_drawn}) -
-         log_sum_exp({other + log_density(evidence.twin, belief.bends), as_drawn});
+         log_sum_exp({other + log_density(evidence.look_alike, belief.bends), as_drawn});
 }
 
 double as_drawn_nats(const BuiltEvidence& evidence, const BendBelief& bends) {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "limen/geometry/linear.h"
-#include "limen/model/twin_evidence.h"
+#include "limen/model/look_alike_evidence.h"
 #include "limen/register/judge/evidence_table.h"
 
 namespace limen {
@@ -20,7 +20,7 @@ struct CommonSurface {
   std::array<double, 2> length_m = {1.0, 1.0};                             ///< what both saw, along these
   /// The source's surface less the target's: across at `at`, metres, and its slopes along both, radians; and
   /// the covariance that the scatter of the points leaves of it.
-  Vector3d apart = Vector3d::Zero();
+  Vector3d deviation = Vector3d::Zero();
   Matrix3d measured = Matrix3d::Identity();
   /// Mean of the normals of the whole planes, and what scatter leaves of it along both. Long planes only.
   bool long_enough = false;
@@ -55,12 +55,14 @@ class AsBuiltDensity {
   /// Whether any wall tells what is square.
   [[nodiscard]] bool knows_square() const { return known_; }
   [[nodiscard]] double of_one_place(const BuiltQuality& quality, const BuiltBend& bend) const;
-  [[nodiscard]] double of_twin(const BuiltQuality& quality, const BuiltBend& bend, GoingOn same) const;
+  [[nodiscard]] double of_look_alike(const BuiltQuality& quality, const BuiltBend& bend, GoingOn same) const;
 
  private:
   [[nodiscard]] bool goes_on(const CommonSurface& surface, GoingOn same) const;
-  [[nodiscard]] double apart(const BuiltQuality& quality, const BuiltBend& bend, const bool* goes_on) const;
-  [[nodiscard]] double askew(const BuiltQuality& quality, const BuiltBend& bend, const bool* goes_on) const;
+  [[nodiscard]] double of_deviations(const BuiltQuality& quality, const BuiltBend& bend,
+                                     const bool* goes_on) const;
+  [[nodiscard]] double of_directions(const BuiltQuality& quality, const BuiltBend& bend,
+                                     const bool* goes_on) const;
 
   std::vector<CommonSurface> surfaces_;
   double stray_;

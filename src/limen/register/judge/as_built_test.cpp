@@ -19,7 +19,7 @@ struct Made {
   double offset_m = 0.006;  ///< from what was drawn
   double turn_rad = radians(0.3);
   double noise = 1.0;           ///< times what a good scanner leaves
-  bool twin = false;            ///< the source is another room
+  bool look_alike = false;      ///< the source is another room
   bool bays = false;            ///< of which only what lies across the row is another
   bool turns_are_known = true;  ///< else only offsets are
 };
@@ -46,9 +46,9 @@ std::vector<CommonSurface> scanned(const Made& made, std::uint64_t seed) {
     one.length_m = {2.5, 2.5};
     const Vector3d target = deviation(random, made.offset_m, made.turn_rad);
     const Vector3d other = deviation(random, made.offset_m, made.turn_rad);
-    const bool goes_on = !made.twin || (made.bays && axis != 0);
+    const bool goes_on = !made.look_alike || (made.bays && axis != 0);
     const Vector3d source = goes_on ? target : other;
-    one.apart = source - target + deviation(random, made.noise * kNoiseM, made.noise * kNoiseRad);
+    one.deviation = source - target + deviation(random, made.noise * kNoiseM, made.noise * kNoiseRad);
     one.measured = Vector3d(kNoiseM, kNoiseRad, kNoiseRad).cwiseAbs2().asDiagonal();
     one.measured *= made.noise * made.noise;
     if (!made.turns_are_known) one.measured(1, 1) = one.measured(2, 2) = 1.0;
@@ -85,7 +85,7 @@ double mean_of(const Made& made) {
 }
 
 TEST(AsBuilt, ABuildingThatStandsAsDrawnSaysNothing) {
-  const Made drawn{.surfaces = 20, .offset_m = 0.0, .turn_rad = 0.0, .twin = true};
+  const Made drawn{.surfaces = 20, .offset_m = 0.0, .turn_rad = 0.0, .look_alike = true};
   EXPECT_LT(most_of(drawn), 0.1);
   EXPECT_GT(least_of(drawn), -0.1);
 }
@@ -98,9 +98,9 @@ TEST(AsBuilt, WallsSayWhetherABuildingIsAsDrawn) {
     EXPECT_GT(probability({.offset_m = 0.0, .turn_rad = 0.0}, seed), 0.99);
     EXPECT_LT(probability({}, seed), 1e-6);
     // A look-alike place shows it as well.
-    EXPECT_GT(probability({.offset_m = 0.0, .turn_rad = 0.0, .twin = true}, seed), 0.99);
+    EXPECT_GT(probability({.offset_m = 0.0, .turn_rad = 0.0, .look_alike = true}, seed), 0.99);
     // Walls that differ may be a bent sensor's and say little.
-    EXPECT_LT(probability({.twin = true}, seed), 0.1);
+    EXPECT_LT(probability({.look_alike = true}, seed), 0.1);
     // A noisy sensor does not.
     EXPECT_NEAR(probability({.offset_m = 0.0, .turn_rad = 0.0, .noise = 60.0}, seed),
                 evidence_table::kAsDrawn, evidence_table::kAsDrawn);
@@ -115,13 +115,13 @@ TEST(AsBuilt, OnePlaceIsStatedTheBetterTheMoreOfItIsSeen) {
   EXPECT_GT(least_of({.surfaces = 20}), 15.0);  // no bound at some odds
 }
 
-TEST(AsBuilt, ATwinIsStatedAsOne) {
+TEST(AsBuilt, ALookAlikeIsStatedAsOne) {
   // A sensor that bends by as much would explain most of it.
-  EXPECT_LT(most_of({.twin = true}), 0.0);
+  EXPECT_LT(most_of({.look_alike = true}), 0.0);
 }
 
 TEST(AsBuilt, SurfacesThatGoOnFromBayToBaySayNothingOfTheBay) {
-  EXPECT_LT(most_of({.twin = true, .bays = true}), 0.0);
+  EXPECT_LT(most_of({.look_alike = true, .bays = true}), 0.0);
 }
 
 TEST(AsBuilt, ANoisySensorTellsLess) {
@@ -134,15 +134,15 @@ TEST(AsBuilt, ANoisySensorTellsLess) {
 TEST(AsBuilt, WhatAMoveOfThePoseExplainsIsNoEvidence) {
   const Vector3d turn(0.001, -0.002, 0.0015);
   const Vector3d shift(0.004, 0.003, -0.002);
-  for (const bool twin : {false, true}) {
-    std::vector<CommonSurface> surfaces = scanned({.twin = twin}, 3);
+  for (const bool look_alike : {false, true}) {
+    std::vector<CommonSurface> surfaces = scanned({.look_alike = look_alike}, 3);
     const double before = as_built_nats(surfaces);
     for (CommonSurface& one : surfaces) {
-      one.apart[0] += one.at.cross(one.normal).dot(turn) + one.normal.dot(shift);
+      one.deviation[0] += one.at.cross(one.normal).dot(turn) + one.normal.dot(shift);
       for (Eigen::Index k = 0; k < 2; ++k)
-        one.apart[k + 1] += one.along[static_cast<std::size_t>(k)].cross(one.normal).dot(turn);
+        one.deviation[k + 1] += one.along[static_cast<std::size_t>(k)].cross(one.normal).dot(turn);
     }
-    EXPECT_NEAR(as_built_nats(surfaces), before, 0.05) << twin;
+    EXPECT_NEAR(as_built_nats(surfaces), before, 0.05) << look_alike;
   }
 }
 
@@ -154,7 +154,7 @@ TEST(AsBuilt, ThreeOffsetsAreThePosesOwn) {
 TEST(AsBuilt, ASurfaceThatWasMovedCostsLittle) {
   std::vector<CommonSurface> surfaces = scanned({.surfaces = 20}, 4);
   const double before = as_built_nats(surfaces);
-  surfaces[7].apart[0] += 0.04;
+  surfaces[7].deviation[0] += 0.04;
   EXPECT_GT(as_built_nats(surfaces), before - 6.0);
 }
 

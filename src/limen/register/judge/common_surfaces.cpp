@@ -239,7 +239,7 @@ class Finder {
     surface.normal = to.plane.normal;
     surface.along = along;
     surface.at = to.plane.offset * to.plane.normal + middle.x() * along[0] + middle.y() * along[1];
-    surface.apart = fit.value;
+    surface.deviation = fit.value;
     surface.measured = fit.factor * fit.covariance;
     for (Eigen::Index k = 0; k < 2; ++k)
       surface.length_m[static_cast<std::size_t>(k)] = box.high[k] - box.low[k] + kNearTileM;
@@ -283,7 +283,7 @@ CommonSurfaces chosen(std::vector<Candidate> candidates) {
 
 }  // namespace
 
-struct CommonSurfaceAsker::Walls {
+struct CommonSurfaceFinder::Walls {
   /// Of the source: a wall with its tiles.
   struct From {
     const PlanarPolygon* plane;
@@ -300,8 +300,8 @@ struct CommonSurfaceAsker::Walls {
   std::vector<To> to;
 };
 
-CommonSurfaceAsker::CommonSurfaceAsker(const ScanView& source, const BuiltPlanes& built_source,
-                                       const ScanView& target, const BuiltPlanes& built_target)
+CommonSurfaceFinder::CommonSurfaceFinder(const ScanView& source, const BuiltPlanes& built_source,
+                                         const ScanView& target, const BuiltPlanes& built_target)
     : walls_(new Walls{source, {}, {}}) {
   const std::vector<bool> from_walls = of_walls(source, built_source);
   auto from_tiles = tiles_by_plane(source);
@@ -318,9 +318,9 @@ CommonSurfaceAsker::CommonSurfaceAsker(const ScanView& source, const BuiltPlanes
   }
 }
 
-CommonSurfaceAsker::~CommonSurfaceAsker() = default;
+CommonSurfaceFinder::~CommonSurfaceFinder() = default;
 
-CommonSurfaces CommonSurfaceAsker::operator()(const Rigid3& target_from_source) const {
+CommonSurfaces CommonSurfaceFinder::operator()(const Rigid3& target_from_source) const {
   const Finder finder(walls_->source, target_from_source);
   std::vector<Candidate> candidates;
   for (const Walls::To& to : walls_->to) {
@@ -338,7 +338,7 @@ CommonSurfaces CommonSurfaceAsker::operator()(const Rigid3& target_from_source) 
 CommonSurfaces common_surfaces(const ScanView& source, const BuiltPlanes& built_source,
                                const ScanView& target, const BuiltPlanes& built_target,
                                const Rigid3& target_from_source) {
-  return CommonSurfaceAsker(source, built_source, target, built_target)(target_from_source);
+  return CommonSurfaceFinder(source, built_source, target, built_target)(target_from_source);
 }
 
 }  // namespace limen

@@ -21,13 +21,13 @@ struct CommonSurfaces {
 /// Asks where tiles of both scans lie in one plane under poses (upright frames). Layers of one wall count
 /// once: the one most of which was seen. The tiles of each wall are gathered once; what the views point to
 /// has to outlive this.
-class CommonSurfaceAsker {
+class CommonSurfaceFinder {
  public:
-  CommonSurfaceAsker(const ScanView& source, const BuiltPlanes& built_source, const ScanView& target,
-                     const BuiltPlanes& built_target);
-  ~CommonSurfaceAsker();
-  CommonSurfaceAsker(const CommonSurfaceAsker&) = delete;
-  CommonSurfaceAsker& operator=(const CommonSurfaceAsker&) = delete;
+  CommonSurfaceFinder(const ScanView& source, const BuiltPlanes& built_source, const ScanView& target,
+                      const BuiltPlanes& built_target);
+  ~CommonSurfaceFinder();
+  CommonSurfaceFinder(const CommonSurfaceFinder&) = delete;
+  CommonSurfaceFinder& operator=(const CommonSurfaceFinder&) = delete;
 
   [[nodiscard]] CommonSurfaces operator()(const Rigid3& target_from_source) const;
 

@@ -61,8 +61,8 @@ TEST(CommonSurfaces, HowFarAWallStandsOffIsMeasured) {
     const double off_m = std::abs(one.normal.x()) > 0.5 ? 0.006 : 0.0;
     const double sigma_m = std::sqrt(one.measured(0, 0));
     EXPECT_LT(sigma_m, 0.0005);
-    EXPECT_NEAR(one.apart[0], off_m, 4.0 * sigma_m);
-    EXPECT_NEAR(one.apart[1], 0.0, 4.0 * std::sqrt(one.measured(1, 1)));
+    EXPECT_NEAR(one.deviation[0], off_m, 4.0 * sigma_m);
+    EXPECT_NEAR(one.deviation[1], 0.0, 4.0 * std::sqrt(one.measured(1, 1)));
     EXPECT_TRUE(one.long_enough);
   }
 }
@@ -75,9 +75,9 @@ TEST(CommonSurfaces, SlopesAreThoseOfATurn) {
   for (const CommonSurface& one : seen.all) {
     for (std::size_t k = 0; k < 2; ++k) {
       const auto row = static_cast<Eigen::Index>(k) + 1;
-      EXPECT_NEAR(one.apart[row], turn.dot(one.along[k].cross(one.normal)), 0.0005);
+      EXPECT_NEAR(one.deviation[row], turn.dot(one.along[k].cross(one.normal)), 0.0005);
     }
-    EXPECT_NEAR(one.apart[0], one.normal.dot(turn.cross(one.at)), 0.001);
+    EXPECT_NEAR(one.deviation[0], one.normal.dot(turn.cross(one.at)), 0.001);
   }
 }
 

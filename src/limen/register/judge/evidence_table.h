@@ -62,10 +62,10 @@ inline constexpr Furniture kFurniture{{0.768, 4.09},   {0.946, 65.5}, 0.808,  1,
                                       {0.00465, 18.4}, {0.389, 3.44}, 0.0248, 0.252};
 
 /// Look-alike places: odds beforehand that a pose whose walls agree lays a place on another one ...
-inline constexpr double kOtherwise = 0.939;        ///< ... that is furnished otherwise,
-inline constexpr double kOtherwiseApart = 0.0679;  ///< the same where a wall is between the stations,
-inline constexpr double kAlike = 0.00458;          ///< and one that is furnished alike.
-inline constexpr double kBehindWindows = 0.0236;   ///< that pairs through windows agree on another one,
+inline constexpr double kOtherwise = 0.939;             ///< ... that is furnished otherwise,
+inline constexpr double kOtherwiseBehindWall = 0.0679;  ///< the same where a wall is between the stations,
+inline constexpr double kAlike = 0.00458;               ///< and one that is furnished alike.
+inline constexpr double kBehindWindows = 0.0236;        ///< that pairs through windows agree on another one,
 inline constexpr double kAgreeingBehind =
     0.899;  ///< and the weight of agreement against it, of that against chance
 inline constexpr double kRateStrength = 1.42;  ///< how well their share in a building is known, in scans

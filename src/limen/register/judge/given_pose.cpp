@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "limen/register/judge/individual_matter.h"
+#include "limen/register/judge/seen_clutter.h"
 
 namespace limen {
 namespace {
 
 constexpr double kSigmas = 3.0;
-constexpr double kAsBuiltM = 0.05;  // by how much built matter may miss its drawing and count
+constexpr double kAsBuiltM = 0.05;  // by how much what is built may miss its drawing and count
 
 /// A pose between the scans' worlds, expressed between the frames that they were prepared in.
 Rigid3 between_prepared(const PreparedScan& source, const PreparedScan& target,
@@ -49,10 +49,11 @@ PoseScore score_given_pose(const PreparedScan& source, const PreparedScan& targe
                     score);
 }
 
-TwinEvidence twin_of_given_pose(const PreparedScan& source, const PreparedScan& target,
-                                const Rigid3& target_from_source, const TwinOptions& options) {
-  return weigh_twin(
-      individual_matter(source.view(), target.view(), between_prepared(source, target, target_from_source)),
+LookAlikeEvidence look_alike_of_given_pose(const PreparedScan& source, const PreparedScan& target,
+                                           const Rigid3& target_from_source,
+                                           const LookAlikeOptions& options) {
+  return weigh_look_alike(
+      seen_clutter(source.view(), target.view(), between_prepared(source, target, target_from_source)),
       options);
 }
 

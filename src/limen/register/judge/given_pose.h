@@ -3,8 +3,8 @@
 #pragma once
 
 #include "limen/model/method.h"
+#include "limen/register/judge/look_alike_odds.h"
 #include "limen/register/judge/score_pose.h"
-#include "limen/register/judge/twin_odds.h"
 #include "limen/register/prepare/prepare_scan.h"
 
 namespace limen {
@@ -23,7 +23,8 @@ PoseScore score_given_pose(const PreparedScan& source, const PreparedScan& targe
                            double uncertainty_m = 0.0);
 
 /// What things say there of whether the scans show one room, or two built alike.
-TwinEvidence twin_of_given_pose(const PreparedScan& source, const PreparedScan& target,
-                                const Rigid3& target_from_source, const TwinOptions& options = {});
+LookAlikeEvidence look_alike_of_given_pose(const PreparedScan& source, const PreparedScan& target,
+                                           const Rigid3& target_from_source,
+                                           const LookAlikeOptions& options = {});
 
 }  // namespace limen

@@ -57,12 +57,12 @@ TEST(GivenPose, WhatIsKnownLessWellContradictsLess) {
   EXPECT_GT(loose.agreeing_m2, sharp.agreeing_m2);
 }
 
-TEST(GivenPose, ThingsSpeakAgainstATwinWhereTheyMeet) {
+TEST(GivenPose, ThingsThatMeetAreEvidenceAgainstALookAlike) {
   const TwoScans scans;
   Rigid3 off = scans.truth;
   off.translation.x() += 1.1;
-  EXPECT_LT(probability_of(twin_of_given_pose(scans.source, scans.target, scans.truth)),
-            probability_of(twin_of_given_pose(scans.source, scans.target, off)));
+  EXPECT_LT(probability_of(look_alike_of_given_pose(scans.source, scans.target, scans.truth)),
+            probability_of(look_alike_of_given_pose(scans.source, scans.target, off)));
 }
 
 }  // namespace

@@ -12,7 +12,7 @@ namespace limen {
 namespace {
 
 constexpr double kWallTilt = 0.5;         // |normal . up| of a wall is less
-constexpr double kMissesDrawingM = 0.05;  // by how much built matter may miss its drawing and count
+constexpr double kMissesDrawingM = 0.05;  // by how much what is built may miss its drawing and count
 constexpr double kCeilingTilt = 0.3;      // a ceiling, a sloping one too, looks down more than this
 constexpr double kColumnM = 0.25;         // walls are looked at in columns this wide
 constexpr double kBesideCeilingM = 0.5;   // beside the top of a column, and above it, a ceiling is sought ...

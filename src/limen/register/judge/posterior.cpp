@@ -12,8 +12,8 @@
 #include "limen/base/text.h"
 #include "limen/register/judge/as_built.h"
 #include "limen/register/judge/evidence_table.h"
+#include "limen/register/judge/look_alike_odds.h"
 #include "limen/register/judge/model_odds.h"
-#include "limen/register/judge/twin_odds.h"
 
 namespace limen {
 namespace {
@@ -80,12 +80,12 @@ class Weighing {
   [[nodiscard]] std::size_t first() const { return first_; }
   /// Odds that a pose lays a place on a look-alike one.
   [[nodiscard]] double look_alike(std::size_t pose) {
-    return questions_.look_alike ? limen::odds_of(twins(pose)) : 0.0;
+    return questions_.look_alike ? limen::odds_of(evidence_of(pose)) : 0.0;
   }
   /// By how much what agrees under a pose exceeds chance, nats.
   [[nodiscard]] double against_chance(std::size_t pose) {
     if (!questions_.look_alike) return against_chance_[pose];
-    return against_chance_[pose] + otherwise_nats(twins(pose)) + table_.built * as_built(pose);
+    return against_chance_[pose] + otherwise_nats(evidence_of(pose)) + table_.built * as_built(pose);
   }
   /// Whether a pose may be right: of the many that are refined in a model those that exceed chance, and the
   /// best.
@@ -105,13 +105,13 @@ class Weighing {
  private:
   static constexpr double kNegligible = 1e-7;
 
-  [[nodiscard]] const TwinEvidence& twins(std::size_t pose) {
+  [[nodiscard]] const LookAlikeEvidence& evidence_of(std::size_t pose) {
     if (!look_alikes_[pose]) look_alikes_[pose] = questions_.look_alike(pose);
     return *look_alikes_[pose];
   }
   /// What the millimetres of walls say for one place, nats.
   [[nodiscard]] double as_built(std::size_t pose) {
-    return questions_.look_alike ? built_nats(twins(pose).built) : 0.0;
+    return questions_.look_alike ? built_nats(evidence_of(pose).built) : 0.0;
   }
   // Logarithms, for the odds of large scans may underflow.
 
@@ -157,7 +157,7 @@ class Weighing {
   const PairQuestions& questions_;
   std::vector<double> against_chance_;
   std::size_t first_ = 0;
-  std::vector<std::optional<TwinEvidence>> look_alikes_;
+  std::vector<std::optional<LookAlikeEvidence>> look_alikes_;
 };
 
 }  // namespace
@@ -175,9 +175,9 @@ std::vector<double> nats_against_chance(const std::vector<FoundPose>& poses, Pai
   return nats;
 }
 
-TwinEvidence look_alike_through_windows(const PoseScore& score, PairSort sort, double repeats) {
+LookAlikeEvidence look_alike_through_windows(const PoseScore& score, PairSort sort, double repeats) {
   const evidence_table::Surface& table = table_of(sort);
-  TwinEvidence evidence;
+  LookAlikeEvidence evidence;
   evidence.rooms = false;
   evidence.otherwise = repeats * evidence_table::kBehindWindows;
   evidence.alike = evidence.otherwise * evidence_table::kAlike / evidence_table::kOtherwise;
@@ -212,7 +212,7 @@ Posterior weigh_poses(const std::vector<FoundPose>& poses, PairSort sort, const 
   }
   const double chance =
       std::exp(std::min(kMostNats, -weighing.against_chance(leader) - poses[leader].log_prior));
-  posterior.others.twin = weighing.look_alike(leader);
+  posterior.others.look_alike = weighing.look_alike(leader);
   posterior.others.nothing_shared = table.nothing_shared * chance;
   posterior.others.unlisted_pose = table.unlisted * chance;
   posterior.order = numbers;
@@ -221,9 +221,9 @@ Posterior weigh_poses(const std::vector<FoundPose>& poses, PairSort sort, const 
     return odds[a] > odds[b];
   });
   OtherExplanations& others = posterior.others;
-  double total = others.twin + others.nothing_shared + others.unlisted_pose;
+  double total = others.look_alike + others.nothing_shared + others.unlisted_pose;
   for (const double one : odds) total += one;
-  for (double* other : {&others.twin, &others.nothing_shared, &others.unlisted_pose}) *other /= total;
+  for (double* other : {&others.look_alike, &others.nothing_shared, &others.unlisted_pose}) *other /= total;
   for (const std::size_t k : posterior.order) posterior.probabilities.push_back(odds[k] / total);
   return posterior;
 }
@@ -244,7 +244,7 @@ std::size_t Posterior::rivals(double risk) const {
 Outcome outcome_of(const Posterior& posterior, const std::vector<UnobservedFreedom>& open,
                    const VerdictOptions& options) {
   const double chance = posterior.by_chance();
-  if (posterior.order.empty() || chance > std::max(posterior.place(), posterior.others.twin))
+  if (posterior.order.empty() || chance > std::max(posterior.place(), posterior.others.look_alike))
     return Outcome::no_match;
   const double probable = 1.0 - options.probable_risk;
   if (!open.empty()) return posterior.place() >= probable ? Outcome::under_constrained : Outcome::ambiguous;
@@ -258,7 +258,7 @@ namespace {
 std::string what_else(const Posterior& posterior, const std::string& look_alike) {
   const double chance = posterior.by_chance();
   const double elsewhere = posterior.elsewhere();
-  if (posterior.others.twin >= std::max(chance, elsewhere) && !look_alike.empty()) return look_alike;
+  if (posterior.others.look_alike >= std::max(chance, elsewhere) && !look_alike.empty()) return look_alike;
   if (chance > elsewhere)
     return fmt::format("the overlap is so small that it may be chance ({})", percent_words(chance));
   return fmt::format("the overlap does not exclude the other poses: one of them may be right ({})",

@@ -37,14 +37,14 @@ std::vector<double> nats_against_chance(const std::vector<FoundPose>& poses, Pai
 /// In a pair that is part of what chance reaches; but several such pairs agree on it by design. So agreeing
 /// surface does not exclude it, and what is contradicted speaks for it. `repeats`: factor of the odds
 /// beforehand.
-TwinEvidence look_alike_through_windows(const PoseScore& score, PairSort sort, double repeats = 1.0);
+LookAlikeEvidence look_alike_through_windows(const PoseScore& score, PairSort sort, double repeats = 1.0);
 
 /// What the two scans say beside the scores; each is asked where it matters only.
 struct PairQuestions {
   /// What distinguishes two poses, given their numbers.
   std::function<PoseContrast(std::size_t first, std::size_t second)> contrast;
   /// What is known of look-alike places under a pose: odds of 0 where they are searched, too. Null: nothing.
-  std::function<TwinEvidence(std::size_t pose)> look_alike;
+  std::function<LookAlikeEvidence(std::size_t pose)> look_alike;
   double repeats = 1.0;  ///< factor of the share of places that both scans see twice
 };
 

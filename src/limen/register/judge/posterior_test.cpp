@@ -10,7 +10,7 @@
 #include <rapidcheck/gtest.h>
 
 #include "limen/register/judge/evidence_table.h"
-#include "limen/register/judge/twin_odds.h"
+#include "limen/register/judge/look_alike_odds.h"
 
 namespace limen {
 namespace {
@@ -33,7 +33,7 @@ PairQuestions questions_of(const std::vector<FoundPose>& poses) {
   return questions;
 }
 
-Posterior weighed(const std::vector<FoundPose>& poses, const std::vector<TwinEvidence>& things = {},
+Posterior weighed(const std::vector<FoundPose>& poses, const std::vector<LookAlikeEvidence>& things = {},
                   PairSort sort = PairSort::rooms) {
   PairQuestions questions = questions_of(poses);
   if (!things.empty()) questions.look_alike = [&](std::size_t k) { return things[k]; };
@@ -41,8 +41,8 @@ Posterior weighed(const std::vector<FoundPose>& poses, const std::vector<TwinEvi
 }
 
 /// Things of a room agree under a pose, by so many nats.
-TwinEvidence things(double nats) {
-  TwinEvidence evidence;
+LookAlikeEvidence things(double nats) {
+  LookAlikeEvidence evidence;
   evidence.otherwise_nats.fill(nats);
   evidence.alike_nats.fill(std::min(0.0, nats));
   return evidence;
@@ -50,7 +50,7 @@ TwinEvidence things(double nats) {
 
 double sum(const Posterior& all) {
   return std::accumulate(all.probabilities.begin(), all.probabilities.end(), 0.0) +
-         all.others.nothing_shared + all.others.twin + all.others.unlisted_pose;
+         all.others.nothing_shared + all.others.look_alike + all.others.unlisted_pose;
 }
 
 TEST(Posterior, WithoutAPoseNothingIsShared) {
@@ -60,7 +60,7 @@ TEST(Posterior, WithoutAPoseNothingIsShared) {
 RC_GTEST_PROP(Posterior, AllSumsToOneAndTheOrderOfPosesMeansNothing, ()) {
   const auto count = *rc::gen::inRange<std::size_t>(1, 7);
   std::vector<FoundPose> poses;
-  std::vector<TwinEvidence> said;
+  std::vector<LookAlikeEvidence> said;
   for (std::size_t k = 0; k < count; ++k) {
     poses.push_back(pose(*rc::gen::inRange(0, 400) / 10.0 + 1e-3 * static_cast<double>(k),
                          *rc::gen::inRange(0, 50) / 10.0));
@@ -89,7 +89,7 @@ TEST(Posterior, HardlyAnyCommonSurfaceMeansNothingShared) {
 TEST(Posterior, ManyPosesOfHardlyAnySurfaceDoNotTakeFromOne) {
   std::vector<FoundPose> poses{pose(35)};
   const double alone = weighed(poses, {things(8)}).best();
-  std::vector<TwinEvidence> said{things(8)};
+  std::vector<LookAlikeEvidence> said{things(8)};
   for (int k = 0; k < 30; ++k) {
     poses.push_back(pose(1.5, 1.0));
     said.push_back(things(0));
@@ -122,7 +122,7 @@ TEST(Posterior, ALookAlikePlaceIsExcludedByThingsAndByHowSurfacesWereBuilt) {
   EXPECT_LT(weighed({pose(40)}, {things(0)}).best(), 0.6);
   EXPECT_GT(weighed({pose(40)}, {things(9)}).best(), 0.99);
   EXPECT_LT(weighed({pose(40)}, {things(-4)}).best(), 0.02);
-  TwinEvidence built;
+  LookAlikeEvidence built;
   built.built.one.fill(9.0);
   EXPECT_GT(weighed({pose(40)}, {built}).best(), 0.999);
 }
@@ -155,7 +155,7 @@ TEST(Posterior, ARoomMayBeBehindOtherWindowsToo) {
 
 TEST(Posterior, ARoomBehindAnotherWindowIsBuiltOtherwise) {
   const auto best = [](double of_first, double of_second) {
-    std::vector<TwinEvidence> said(2);
+    std::vector<LookAlikeEvidence> said(2);
     for (std::size_t k = 0; k < said.size(); ++k) {
       said[k].otherwise = 0.0;
       said[k].built.one.fill(k == 0 ? of_first : of_second);
@@ -168,7 +168,7 @@ TEST(Posterior, ARoomBehindAnotherWindowIsBuiltOtherwise) {
 
 TEST(Posterior, ThroughWindowsHowSurfacesWereBuiltExcludesChance) {
   const auto all = [](PairSort sort, double built_nats) {
-    TwinEvidence evidence;
+    LookAlikeEvidence evidence;
     evidence.otherwise = 0.0;
     evidence.built.one.fill(built_nats);
     return weighed({pose(9)}, {evidence}, sort);
@@ -176,7 +176,7 @@ TEST(Posterior, ThroughWindowsHowSurfacesWereBuiltExcludesChance) {
   for (const PairSort sort : {PairSort::through_wall, PairSort::past_wall}) {
     EXPECT_LT(all(sort, 6.0).by_chance(), 0.5 * all(sort, 0.0).by_chance());
     EXPECT_GT(all(sort, -6.0).by_chance(), all(sort, 0.0).by_chance());
-    EXPECT_EQ(all(sort, 0.0).others.twin, 0.0) << "look-alike rooms are searched there";
+    EXPECT_EQ(all(sort, 0.0).others.look_alike, 0.0) << "look-alike rooms are searched there";
   }
 }
 
@@ -202,8 +202,8 @@ TEST(Posterior, ABeliefMovesTheOddsBetweenPoses) {
 }
 
 /// Probabilities of the best pose, another one, a look-alike and chance.
-Posterior odds(double best, double other, double twin, double chance, double slid = 0.0) {
-  return {{0, 1}, {best, other}, {0.9 * chance, twin, 0.1 * chance}, slid};
+Posterior odds(double best, double other, double look_alike, double chance, double slid = 0.0) {
+  return {{0, 1}, {best, other}, {0.9 * chance, look_alike, 0.1 * chance}, slid};
 }
 
 const std::vector<UnobservedFreedom> kHeld;

@@ -13,7 +13,7 @@ namespace limen {
 
 struct ScoreOptions {
   double surface_m = 0.06;  ///< surfaces nearer than this agree
-  double free_m = 0.10;     ///< matter this far inside seen free space is contradicted
+  double free_m = 0.10;     ///< surface this far inside seen free space is contradicted
   double opening_m = 0.25;  ///< openings nearer than this within their wall agree
   bool openings = true;     ///< openings count
   std::size_t samples = 0;  ///< asked of each scan, about; 0: all
@@ -37,7 +37,7 @@ struct PoseScore {
   double unsure_opening_m2 = 0.0;
 
   /// What poses are ranked by, m^2. One contradicted square metre outweighs several agreeing ones: surfaces
-  /// meet by chance, but matter cannot stand where a ray passed.
+  /// meet by chance, but nothing solid is where a ray passed.
   [[nodiscard]] double value() const { return evidence_m2 - kContradictionWeight * contradicted_m2; }
 };
 

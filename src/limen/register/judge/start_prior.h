@@ -13,12 +13,12 @@ StartAgreement miss_of_start(const StartPrior& start, const Rigid3& pose, const 
 /// By how much a belief makes a pose more probable than it is without one: the logarithm of its density over
 /// the even one in the space that is searched (40 x 40 x 10 m, all headings where `upright`, else all turns).
 /// Never less than the logarithm of what is not trusted, nor more than `most`: a belief may single a pose out
-/// of all that a search can tell apart, but is no evidence that scans share anything.
+/// of all that a search can distinguish, but is no evidence that scans share anything.
 double log_prior_of_start(const StartPrior& start, const Rigid3& pose, const Vector3d& at, bool upright,
                           double most);
 
-/// The same of all poses whose place is more than `apart_m` from that of `pose`, as a twin's: other rooms
-/// that the belief bears as well.
+/// The same of all poses whose place is more than `apart_m` from that of `pose`, as a look-alike place's:
+/// other rooms that the belief bears as well.
 double log_prior_elsewhere(const StartPrior& start, const Rigid3& pose, const Vector3d& at, double apart_m);
 
 /// By how much a belief about the pose changes the odds of a look-alike place; `log_prior`: of `pose`. A

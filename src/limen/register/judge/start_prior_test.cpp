@@ -59,7 +59,7 @@ TEST(StartPrior, AWideBeliefSaysNothing) {
   EXPECT_NEAR(log_prior_of_start(wide, wide.target_from_source, kAt, true, kMost), 0.0, 1e-6);
 }
 
-TEST(StartPrior, TwinsAreRuledOutByWhatIsKnownToTheMetreOnly) {
+TEST(StartPrior, LookAlikesAreRuledOutByWhatIsKnownToTheMetreOnly) {
   const auto gain = [](double sigma_m) {
     const StartPrior start = belief(sigma_m, 5.0);
     return log_prior_of_start(start, start.target_from_source, kAt, true, kMost) -

@@ -24,12 +24,12 @@ std::vector<BcfTopic> two_topics() {
   wall.ifc_guid = "2O2Fr$t4X7Zf8NOew3FNbT";
   wall.colour = "E07000";
   wall.camera = looking_at({1, 2, 3}, {4, 2, 2});
-  BcfTopic matter;
-  matter.key = "matter";
-  matter.title = "Not in the model";
-  matter.lines = edges_of({0, 0, 0}, {1, 2, 3});
-  matter.camera = looking_at({0, 0, 5}, {0, 0, 0});
-  return {wall, matter};
+  BcfTopic object;
+  object.key = "matter";
+  object.title = "Not in the model";
+  object.lines = edges_of({0, 0, 0}, {1, 2, 3});
+  object.camera = looking_at({0, 0, 5}, {0, 0, 0});
+  return {wall, object};
 }
 
 constexpr const char* kDate = "2026-03-01T12:00:00Z";

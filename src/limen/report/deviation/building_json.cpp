@@ -78,7 +78,7 @@ std::string building_json(const BuildingReport& report) {
     json["elements"].push_back(std::move(element));
   }
   json["unmodelled"] = Json::array();
-  for (const UnmodelledMatter& piece : deviation.unmodelled)
+  for (const UnmodelledObject& piece : deviation.unmodelled)
     json["unmodelled"].push_back(unmodelled_json(piece, report.model.local_origin));
   json["version"] = kVersion;
   return to_text(json);

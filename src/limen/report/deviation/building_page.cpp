@@ -45,7 +45,7 @@ class BuildingPlan {
         size.x() + 40.0, size.y() + 40.0);
     // What is wrong is drawn last, over the rest.
     for (const char* wanted : {"not_judged", "found", "moved", "not_found"}) text += faces_of_class(wanted);
-    for (const UnmodelledMatter& piece : report_.deviation.unmodelled) text += box(piece);
+    for (const UnmodelledObject& piece : report_.deviation.unmodelled) text += box(piece);
     for (const BuildingScan& scan : report_.scans) text += scanner(scan);
     return text + "</svg>\n";
   }
@@ -96,7 +96,7 @@ class BuildingPlan {
                        name, a.x(), a.y(), b.x(), b.y());
   }
 
-  [[nodiscard]] std::string box(const UnmodelledMatter& piece) const {
+  [[nodiscard]] std::string box(const UnmodelledObject& piece) const {
     if (!piece.within_model) return {};
     const Vector2d corner = drawn({piece.low.x(), piece.high.y()});
     const Vector2d size = scale_ * (piece.high - piece.low).head<2>();
@@ -172,10 +172,10 @@ std::string elements_table(const BuildingReport& report) {
              unjudged);
 }
 
-std::string matter_table(const BuildingReport& report) {
+std::string unmodelled_table(const BuildingReport& report) {
   std::string rows;
   std::size_t shown = 0;
-  for (const UnmodelledMatter& piece : report.deviation.unmodelled) {
+  for (const UnmodelledObject& piece : report.deviation.unmodelled) {
     if (!piece.within_model || shown++ >= kBuildingRows) continue;
     const Vector3d size = piece.high - piece.low;
     const Vector3d middle = report.model.local_origin + piece.centre;
@@ -266,7 +266,7 @@ std::string building_page(const BuildingReport& report, const ReportCover& cover
           "moved\">moved</span>, <span class=\"state not_found\">not found</span>, <span class=\"state "
           "not_judged\">not judged</span>; filled boxes: objects that are not in the model; dots: origins of "
           "scans.</p>\n";
-  text += elements_table(report) + matter_table(report) + shares_table(report) + models_list(report);
+  text += elements_table(report) + unmodelled_table(report) + shares_table(report) + models_list(report);
   return page_in_language(text + signature_html(cover) + "</main></body></html>\n", cover.language);
 }
 

@@ -80,7 +80,7 @@ std::string project_deviation_schema() {
               "version"}),
       {{"element", building_element_schema()},
        {"shift", element_shift_schema()},
-       {"unmodelled", unmodelled_matter_schema()}});
+       {"unmodelled", unmodelled_schema()}});
 }
 
 }  // namespace limen

@@ -109,7 +109,7 @@ BcfTopic element_topic(const BimElement& element, const ElementDeviation& it) {
   return topic;
 }
 
-BcfTopic matter_topic(const UnmodelledMatter& piece, const BimModel& model, const IssueInputs& inputs) {
+BcfTopic unmodelled_topic(const UnmodelledObject& piece, const BimModel& model, const IssueInputs& inputs) {
   const Extent extent{model.local_origin + piece.low, model.local_origin + piece.high};
   const Vector3d size = piece.high - piece.low;
   const Vector3d middle = model.local_origin + piece.centre;
@@ -175,9 +175,9 @@ std::vector<BcfTopic> deviation_issues(const IssueInputs& inputs, const IssueOpt
     bring_into_file(topic, inputs.models[static_cast<std::size_t>(model)]);
     topics.push_back(std::move(topic));
   }
-  for (const UnmodelledMatter& piece : inputs.unmodelled) {
+  for (const UnmodelledObject& piece : inputs.unmodelled) {
     if (piece.within_model && (piece.high - piece.low).maxCoeff() >= options.matter_m)
-      topics.push_back(matter_topic(piece, inputs.model, inputs));
+      topics.push_back(unmodelled_topic(piece, inputs.model, inputs));
   }
   return topics;
 }

@@ -13,7 +13,7 @@ namespace limen {
 
 struct IssueOptions {
   double moved_m = 0.015;  ///< an element that is elsewhere by more is an issue: LOA30's bound; > 0
-  double matter_m = 0.5;   ///< matter not in the model whose longest side is at least this is one, > 0
+  double matter_m = 0.5;   ///< an object not in the model whose longest side is at least this is one, > 0
 
   void check() const;
 };
@@ -30,14 +30,14 @@ struct IssueModel {
 struct IssueInputs {
   const BimModel& model;                              ///< elements and faces
   const std::vector<ElementDeviation>& elements;      ///< measured
-  const std::vector<UnmodelledMatter>& unmodelled;    ///< measured
-  const std::vector<IssueModel>& models;              ///< files; the first one is that of unmodelled matter
+  const std::vector<UnmodelledObject>& unmodelled;    ///< measured
+  const std::vector<IssueModel>& models;              ///< files; the first one is that of unmodelled objects
   const std::vector<std::int32_t>& model_of_element;  ///< empty: all of the first
   const std::vector<Vector3d>& scanners;  ///< places, world of the elements: issues are seen from them
 };
 
 /// Of each kind, the worst first: elements that are missing, that stand elsewhere (by more than the bound,
-/// and than three of their sigmas), matter in the model's extent that it lacks.
+/// and than three of their sigmas), objects in the model's extent that it lacks.
 std::vector<BcfTopic> deviation_issues(const IssueInputs& inputs, const IssueOptions& options);
 
 /// Elements, the worst first: missing ones by the surface that rays passed, then found ones by how far they

@@ -47,7 +47,7 @@ std::string deviation_json(const DeviationReport& report, const BimModel& model)
   for (const ElementDeviation& it : deviation.elements)
     json["elements"].push_back(element_json(it, model.elements[static_cast<std::size_t>(it.element)]));
   json["unmodelled"] = Json::array();
-  for (const UnmodelledMatter& piece : deviation.unmodelled)
+  for (const UnmodelledObject& piece : deviation.unmodelled)
     json["unmodelled"].push_back(unmodelled_json(piece, model.local_origin));
   json["version"] = kVersion;
   return to_text(json);

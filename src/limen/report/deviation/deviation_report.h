@@ -30,7 +30,7 @@ struct DeviationReport {
 
 /// The text of deviation.json: `inputs`, `pose`, `options`, `summary` (points, elements by presence and by
 /// LOA, `common_shift`), `elements` (each of the model, with its figures, metres), `unmodelled` (pieces of
-/// matter that the model does not have, world coordinates).
+/// an object not in the model, world coordinates).
 std::string deviation_json(const DeviationReport& report, const BimModel& model);
 
 /// A row for each element, as deviation.csv and deviation.xlsx have it.
@@ -40,8 +40,8 @@ Sheet deviation_sheet(const DeviationReport& report, const BimModel& model);
 std::vector<std::string> deviation_columns();
 SheetRow deviation_row(const ElementDeviation& it, const BimElement& element);
 
-/// Red, green and blue of a deviation: blue for missing matter (negative), light grey at 0, orange for matter
-/// that is out; full colour from `limit_m` on. Distinguishable with every kind of colour vision.
+/// Red, green and blue of a deviation: blue for a missing surface (negative), light grey at 0, orange for
+/// surface that is out; full colour from `limit_m` on. Distinguishable with every kind of colour vision.
 struct Colour {
   unsigned char red = 0;
   unsigned char green = 0;

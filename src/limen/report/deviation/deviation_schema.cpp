@@ -43,7 +43,7 @@ Json element_shift_schema() {
       {"shift_m", "sigma_m", "held", "open"});
 }
 
-Json unmodelled_matter_schema() {
+Json unmodelled_schema() {
   return object({{"points", whole("")},
                  {"centre", numbers(3, "model coordinates")},
                  {"low", numbers(3, "of its box")},
@@ -103,7 +103,7 @@ std::string deviation_schema() {
                             {"inputs", "pose", "options", "summary", "elements", "unmodelled", "version"}),
                      {{"element", deviation_element_schema()},
                       {"shift", element_shift_schema()},
-                      {"unmodelled", unmodelled_matter_schema()}});
+                      {"unmodelled", unmodelled_schema()}});
 }
 
 }  // namespace limen

@@ -17,7 +17,7 @@ std::string project_deviation_schema();
 namespace schema {
 Json deviation_element_schema();
 Json element_shift_schema();
-Json unmodelled_matter_schema();
+Json unmodelled_schema();
 }  // namespace schema
 
 }  // namespace limen

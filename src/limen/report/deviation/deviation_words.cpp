@@ -43,7 +43,7 @@ Json element_json(const ElementDeviation& it, const BimElement& element) {
   return json;
 }
 
-Json unmodelled_json(const UnmodelledMatter& piece, const Vector3d& local_origin) {
+Json unmodelled_json(const UnmodelledObject& piece, const Vector3d& local_origin) {
   const Vector3d size = piece.high - piece.low;
   return {{"points", piece.points},
           {"centre", json_of(Vector3d(local_origin + piece.centre))},

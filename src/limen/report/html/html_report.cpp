@@ -178,7 +178,7 @@ std::string sentences(const VerdictWords& words) {
   return text;
 }
 
-/// What to do next, but for looking at this page. A command stands apart from what it does.
+/// What to do next, but for looking at this page. A command is set off from what it does.
 std::string steps(const RegistrationReport& report) {
   std::string items;
   for (const std::string& step : next_steps(report)) {

@@ -101,7 +101,7 @@ std::string precision_row(const std::string& name, const PlacePrecision& place) 
          cell(place.formal_radius_m ? length_words(*place.formal_radius_m) : "—") + "</tr>\n";
 }
 
-/// Formal and empirical apart.
+/// Formal and empirical separately.
 std::string precision_table(const std::optional<PosePrecision>& precision) {
   if (!precision) return {};
   const std::string far = fmt::format("Far end, {:.0f} m from the centre", precision->far_distance_m);

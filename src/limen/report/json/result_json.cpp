@@ -211,7 +211,7 @@ std::string result_json(const RegistrationReport& report) {
   json["probability"] = found && !result.published ? probability_json(result.best.probability) : Json();
   if (result.others) {
     json["probability_of_nothing_shared"] = result.others->nothing_shared;
-    json["probability_of_twin"] = result.others->twin;
+    json["probability_of_twin"] = result.others->look_alike;
     json["probability_of_unlisted_pose"] = result.others->unlisted_pose;
   }
   if (found && result.start)

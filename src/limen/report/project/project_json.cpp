@@ -86,7 +86,7 @@ Json link_json(const ProjectResult& result, std::size_t k) {
                {"overlap", json_of(overlap_of(result, k))},
                {"plane_rms_m", json_of(plane_distance_rms(link.matches))},
                {"adjusted_rms_m", json_of(plane_distance_rms(link.adjusted))},
-               {"twin", link.twin},
+               {"twin", link.look_alike},
                {"chance", link.chance},
                {"redundancy", link.solved.redundancy},
                {"loop_error_m", is_checked(link) ? Json(link.solved.loop_error_m) : Json()},

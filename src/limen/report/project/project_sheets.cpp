@@ -105,7 +105,7 @@ Sheet links_sheet(const ProjectResult& result) {
     row.push_back(yes_or_no(within_tolerance(result, link)));
     row.push_back(number_cell(link.solved.redundancy, 2));
     row.push_back(count_cell(loops_through(result, k)));
-    row.push_back(short_number_cell(link.twin));
+    row.push_back(short_number_cell(link.look_alike));
     row.push_back(short_number_cell(link.chance));
     sheet.rows.push_back(std::move(row));
   }

@@ -53,7 +53,7 @@ CoordinateSystem read_project_system(const std::filesystem::path& path);
 /// read_project().
 StatedTrajectories read_project_trajectories(const std::filesystem::path& path);
 
-/// Of all links that tell their poses: one that is left out as a twin does not. Throws Error as
+/// Of all links that tell their poses: one that is left out as a look-alike place does not. Throws Error as
 /// read_project().
 std::vector<ProjectPoses> read_project_poses(const std::filesystem::path& path);
 

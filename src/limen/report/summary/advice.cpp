@@ -175,14 +175,14 @@ double chance_of(const RegistrationResult& result) {
 }
 
 double elsewhere_of(const RegistrationResult& result) {
-  const double look_alike = result.others ? result.others->twin : 0.0;
+  const double look_alike = result.others ? result.others->look_alike : 0.0;
   return 1.0 - result.best.probability.value_or(1.0) - look_alike - chance_of(result);
 }
 
 /// What excludes a look-alike place, where nothing else is as likely besides the best pose.
 std::optional<std::string> step_of_look_alike(const RegistrationReport& report) {
   const RegistrationResult& result = report.result;
-  const double look_alike = result.others ? result.others->twin : 0.0;
+  const double look_alike = result.others ? result.others->look_alike : 0.0;
   if (look_alike < std::max(chance_of(result), elsewhere_of(result))) return std::nullopt;
   const bool said = std::any_of(report.options.begin(), report.options.end(),
                                 [](const auto& option) { return option.first == "repeats"; });
@@ -208,7 +208,7 @@ std::vector<std::string> steps_ambiguous(const RegistrationReport& report, const
   if (ties)
     steps.push_back(fmt::format("if you know which pose is right, choose it by its number: {}",
                                 transform_command(report, folder, true)));
-  if (report.result.others && report.result.others->twin > 0.0) {
+  if (report.result.others && report.result.others->look_alike > 0.0) {
     if (std::optional<std::string> step = step_of_look_alike(report)) steps.push_back(*std::move(step));
   }
   steps.push_back(in_model(report)

@@ -52,9 +52,9 @@ TEST(Advice, EveryOutcomeSaysWhatToDoNext) {
 
 TEST(Advice, AProbablePoseNamesWhatWouldMakeItSurer) {
   RegistrationReport report = pair_of(Outcome::probable);
-  const auto with = [&report](double twin, double chance, double elsewhere) {
-    report.result.others = OtherExplanations{chance, twin, 0.0};
-    report.result.best.probability = 1.0 - twin - chance - elsewhere;
+  const auto with = [&report](double look_alike, double chance, double elsewhere) {
+    report.result.others = OtherExplanations{chance, look_alike, 0.0};
+    report.result.best.probability = 1.0 - look_alike - chance - elsewhere;
     EXPECT_EQ(next_steps(report, "out").front(), surer(report));
     return surer(report);
   };

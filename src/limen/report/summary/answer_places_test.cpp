@@ -7,7 +7,7 @@
 namespace limen {
 namespace {
 
-RegistrationResult result_of(double best, const std::vector<double>& alternatives, double twin,
+RegistrationResult result_of(double best, const std::vector<double>& alternatives, double look_alike,
                              double nothing_shared) {
   RegistrationResult result;
   result.best.probability = best;
@@ -15,7 +15,7 @@ RegistrationResult result_of(double best, const std::vector<double>& alternative
     result.alternatives.emplace_back();
     result.alternatives.back().probability = probability;
   }
-  result.others = OtherExplanations{nothing_shared, twin, 0.0};
+  result.others = OtherExplanations{nothing_shared, look_alike, 0.0};
   return result;
 }
 
@@ -29,9 +29,9 @@ TEST(AnswerPlaces, TheLikeliestThatReachMostOfWhatIsShared) {
 }
 
 TEST(AnswerPlaces, APlaceBuiltAlikeIsOneOfThem) {
-  const AnswerPlaces twin = answer_places(result_of(0.8, {0.03}, 0.17, 0.0));
-  EXPECT_TRUE(twin.look_alike);
-  EXPECT_TRUE(twin.alternatives.empty());
+  const AnswerPlaces look_alike = answer_places(result_of(0.8, {0.03}, 0.17, 0.0));
+  EXPECT_TRUE(look_alike.look_alike);
+  EXPECT_TRUE(look_alike.alternatives.empty());
   EXPECT_FALSE(answer_places(result_of(0.6, {0.37}, 0.03, 0.0)).look_alike);
 }
 

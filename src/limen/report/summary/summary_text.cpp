@@ -22,7 +22,7 @@ AnswerPlaces answer_places(const RegistrationResult& result) {
   std::iota(places.alternatives.begin(), places.alternatives.end(), std::size_t{0});
   if (!result.others || !result.best.probability) return places;
   const auto probability = [&](std::size_t k) {
-    return k < count ? result.alternatives[k].probability.value_or(0.0) : result.others->twin;
+    return k < count ? result.alternatives[k].probability.value_or(0.0) : result.others->look_alike;
   };
   std::vector<std::size_t> order(count + 1);  // the last is the place that no pose is listed of
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -130,7 +130,8 @@ std::string place_lines(const RegistrationResult& result) {
   for (std::size_t k = 0; k < shown; ++k)
     text += alternative_line(places.alternatives[k] + 1, result.alternatives[places.alternatives[k]]);
   if (places.look_alike)
-    text += fmt::format("{:>7} {:>18}  a look-alike place\n", "", probability_words(result.others->twin));
+    text +=
+        fmt::format("{:>7} {:>18}  a look-alike place\n", "", probability_words(result.others->look_alike));
   if (shown < result.alternatives.size())
     text += fmt::format("      and {} more in result.json\n", result.alternatives.size() - shown);
   return text;

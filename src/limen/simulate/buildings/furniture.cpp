@@ -181,7 +181,7 @@ class FurnitureDecorator {
  private:
   using Maker = FurniturePiece (*)(RandomStream&);
 
-  /// A chimney breast against a wall, in large halls a row of pillars: matter that reaches the ceiling.
+  /// A chimney breast against a wall, in large halls a row of pillars: solids that reach the ceiling.
   void add_structure() {
     const double height = room_.ceiling_m - room_.floor_m;
     if (random_.uniform() < 0.45) {

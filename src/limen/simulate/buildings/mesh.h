@@ -111,7 +111,7 @@ struct MergedPlanes {
 /// of it; the largest face lends its plane.
 MergedPlanes merge_planes(const Mesh& mesh, double distance_m = 1e-3);
 
-/// The surface of a kind of matter, with its usual reflectivity.
+/// The surface of a kind of material, with its usual reflectivity.
 Surface surface_of(Element element, int opening = -1);
 
 }  // namespace limen

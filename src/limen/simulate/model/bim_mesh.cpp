@@ -68,8 +68,8 @@ class PaneFinder {
         end_(end),
         across_(main_direction()) {}
 
-  [[nodiscard]] std::vector<BimMatter> run() const {
-    std::vector<BimMatter> parts;
+  [[nodiscard]] std::vector<BimPart> run() const {
+    std::vector<BimPart> parts;
     std::vector<char> panes(end_ - begin_, 0);
     for (std::size_t i = begin_; i < end_; ++i) panes[i - begin_] = is_pane(i) ? 1 : 0;
     const bool any = std::find(panes.begin(), panes.end(), 1) != panes.end();
@@ -142,7 +142,7 @@ class PaneFinder {
            narrow_side(faces_[i].outline) >= kNarrowestBlock;
   }
 
-  void split(std::size_t i, std::vector<BimMatter>& parts) const {
+  void split(std::size_t i, std::vector<BimPart>& parts) const {
     const std::vector<Polygon> panes = grown({faces_[i].outline}, -kFrameWidth);
     for (const Polygon& pane : panes) parts.push_back({i, pane, Element::glass});
     for (const Polygon& bar : difference({faces_[i].outline}, panes))
@@ -182,7 +182,7 @@ std::vector<char> closed_elements(const BimModel& model) {
 }
 
 /// Adds one part, seen from one side or from both.
-void add_part(BimMesh& built, const BimFace& face, const BimMatter& part, const Vector3d& shift,
+void add_part(BimMesh& built, const BimFace& face, const BimPart& part, const Vector3d& shift,
               bool one_sided) {
   const std::vector<Triangle2> triangles = triangulate(part.outline);
   if (triangles.empty()) return;
@@ -207,21 +207,21 @@ void add_part(BimMesh& built, const BimFace& face, const BimMatter& part, const 
 
 }  // namespace
 
-std::vector<BimMatter> matter_of(const BimModel& model) {
-  std::vector<BimMatter> matter;
+std::vector<BimPart> parts_of(const BimModel& model) {
+  std::vector<BimPart> parts;
   for (std::size_t begin = 0; begin < model.faces.size();) {
     std::size_t end = begin + 1;
     while (end < model.faces.size() && model.faces[end].element == model.faces[begin].element) ++end;
     const BimElement& element = model.elements[static_cast<std::size_t>(model.faces[begin].element)];
     if (may_have_panes(element.kind)) {
-      for (BimMatter& part : PaneFinder(model, begin, end).run()) matter.push_back(std::move(part));
+      for (BimPart& part : PaneFinder(model, begin, end).run()) parts.push_back(std::move(part));
     } else {
       for (std::size_t i = begin; i < end; ++i)
-        matter.push_back({i, model.faces[i].outline, element_of(element, model.faces[i].plane.normal)});
+        parts.push_back({i, model.faces[i].outline, element_of(element, model.faces[i].plane.normal)});
     }
     begin = end;
   }
-  return matter;
+  return parts;
 }
 
 BuiltState as_planned(const BimModel& model) {
@@ -229,12 +229,12 @@ BuiltState as_planned(const BimModel& model) {
           std::vector<char>(model.elements.size(), 1)};
 }
 
-BimMesh build_mesh(const BimModel& model, const std::vector<BimMatter>& matter, const BuiltState& built) {
+BimMesh build_mesh(const BimModel& model, const std::vector<BimPart>& parts, const BuiltState& built) {
   // A mesh may be the skin of a room instead of a solid: only IFC says which.
   const bool solids = model.schema.rfind("IFC", 0) == 0;
   const std::vector<char> closed = closed_elements(model);
   BimMesh result;
-  for (const BimMatter& part : matter) {
+  for (const BimPart& part : parts) {
     const BimFace& face = model.faces[part.face];
     const auto element = static_cast<std::size_t>(face.element);
     if (built.there[element] == 0) continue;

@@ -10,7 +10,7 @@
 namespace limen {
 
 /// A part of a model's face and what it is to light.
-struct BimMatter {
+struct BimPart {
   std::size_t face = 0;  ///< index into BimModel::faces
   Polygon outline;       ///< in the face's frame
   Element element = Element::wall;
@@ -19,7 +19,7 @@ struct BimMatter {
 /// What each face is made of. Panes are found by their form: in windows and upright plates, flat pieces at
 /// most 5 cm thick; in doors, at most 3 cm thick and framed. A window without any is a block: its broad sides
 /// become a frame of 6 cm and glass.
-std::vector<BimMatter> matter_of(const BimModel& model);
+std::vector<BimPart> parts_of(const BimModel& model);
 
 /// How the elements of a model were built, one entry per element.
 struct BuiltState {
@@ -37,6 +37,6 @@ struct BimMesh {
 
 /// Elements of an IFC file that are closed solids are seen from outside only; light that gets inside them
 /// through a crack is lost. All others, and meshes, are seen from both sides.
-BimMesh build_mesh(const BimModel& model, const std::vector<BimMatter>& matter, const BuiltState& built);
+BimMesh build_mesh(const BimModel& model, const std::vector<BimPart>& parts, const BuiltState& built);
 
 }  // namespace limen

@@ -38,11 +38,11 @@ class BimSimulation {
 
  private:
   void build() {
-    const std::vector<BimMatter> matter = matter_of(model_);
+    const std::vector<BimPart> parts = parts_of(model_);
     BuiltState doors = as_planned(model_);
     RandomStream door_random(o_.seed, kDoors);
     open_doors(model_, o_.open_door_share, door_random, doors);
-    BimMesh planned = build_mesh(model_, matter, doors);
+    BimMesh planned = build_mesh(model_, parts, doors);
     if (planned.mesh.triangles().empty())
       throw Error("the model has no surface to be scanned", model_.name, "check it with limen info");
     RandomStream place_random(o_.seed, kPlaces);
@@ -54,18 +54,17 @@ class BimSimulation {
       stated_.changes = changes_of(model_, doors, doors);
       built_ = std::move(planned);
     } else {
-      build_otherwise(matter, doors, planned);
+      build_otherwise(parts, doors, planned);
     }
     RandomStream target_random(o_.seed, kTargets);
     stated_.targets = put_up_spheres(built_, stations_, o_.targets, target_random);
   }
 
-  void build_otherwise(const std::vector<BimMatter>& matter, const BuiltState& doors,
-                       const BimMesh& planned) {
+  void build_otherwise(const std::vector<BimPart>& parts, const BuiltState& doors, const BimMesh& planned) {
     RandomStream change_random(o_.seed, kChanges);
     const BuiltState state = as_built(model_, o_.as_built, doors, stations_, planned, change_random);
     stated_.changes = changes_of(model_, doors, state);
-    built_ = build_mesh(model_, matter, state);
+    built_ = build_mesh(model_, parts, state);
     RandomStream clutter_random(o_.seed, kClutter);
     stated_.furniture = add_clutter(built_, stations_, o_.as_built, clutter_random);
   }

@@ -31,7 +31,7 @@ struct BimSceneOptions {
 /// of a scan in the world is its pose in the model. The truth names what differs from the model and which
 /// rooms the scans show. Scans are named scan_01, scan_02, ...
 ///
-/// Panes let light pass (see matter_of); the model's outside is all there is of the world. Throws Error where
+/// Panes let light pass (see parts_of); the model's outside is all there is of the world. Throws Error where
 /// no place for a scanner is found.
 SimulatedCase simulate_bim(const BimModel& model, const BimSceneOptions& options,
                            Monitor& monitor = silent_monitor());

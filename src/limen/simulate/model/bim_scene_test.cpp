@@ -53,7 +53,7 @@ BimRecipe closed_room() {
 }
 
 int lost_rays(const BimModel& model) {
-  const BimMesh built = build_mesh(model, matter_of(model), as_planned(model));
+  const BimMesh built = build_mesh(model, parts_of(model), as_planned(model));
   const RayCaster caster(built.mesh);
   int lost = 0;
   for (const Vector3d& direction : spread_directions(300000)) {
@@ -82,7 +82,7 @@ TEST(BimMesh, PanesAreGlassAndFramesAreNot) {
   const BimModel model = office();
   double glass = 0.0;
   double frame = 0.0;
-  for (const BimMatter& part : matter_of(model)) {
+  for (const BimPart& part : parts_of(model)) {
     const BimFace& face = model.faces[part.face];
     const BimKind kind = model.elements[static_cast<std::size_t>(face.element)].kind;
     if (kind == BimKind::door) {
@@ -105,7 +105,7 @@ TEST(BimMesh, AWindowDrawnAsABlockGetsAFrameAndGlass) {
   const BimModel model = model_of(recipe);
   double glass = 0.0;
   double frame = 0.0;
-  for (const BimMatter& part : matter_of(model))
+  for (const BimPart& part : parts_of(model))
     (part.element == Element::glass ? glass : frame) += area(part.outline);
   EXPECT_NEAR(glass, 2.0 * 1.08 * 1.38, 1e-4);
   EXPECT_NEAR(frame, 2.0 * (1.2 * 1.5 - 1.08 * 1.38) + 2.0 * 0.1 * (1.2 + 1.5), 1e-4);

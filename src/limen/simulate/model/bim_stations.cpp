@@ -314,7 +314,7 @@ class BimSurveyor {
     return seen.size() >= kFan - 4 && signed_area(seen) >= kLeastArea;
   }
 
-  /// Nothing within reach of the tripod, matter around, and never inside of matter.
+  /// Nothing within reach of the tripod, surfaces around, and never inside a solid.
   [[nodiscard]] bool clear(const Vector3d& p, double enclosed, double clearance = kClearance) const {
     for (const double tilt : {-0.7, -0.3, 0.0, 0.3}) {
       for (int i = 0; i < 24; ++i) {

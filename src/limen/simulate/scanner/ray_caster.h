@@ -13,7 +13,7 @@ struct RayHit {
   int surface = -1;      ///< the side that was met; -1: nothing
   double range_m = 0.0;  ///< along the unit direction, computed in double precision on the surface's plane
   double cosine = 0.0;   ///< |direction . normal|
-  bool inside = false;   ///< met from behind, which only matter itself can: a crack between triangles
+  bool inside = false;   ///< met from behind, which needs a crack between triangles
 
   [[nodiscard]] bool found() const { return surface >= 0; }
 };

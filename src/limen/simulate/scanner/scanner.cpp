@@ -145,10 +145,10 @@ class LineScanner {
         surface = -1;
       }
     }
-    const Surface& matter = caster_.mesh().surfaces()[static_cast<std::size_t>(returns[i].surface)];
+    const Surface& material = caster_.mesh().surfaces()[static_cast<std::size_t>(returns[i].surface)];
     range += o_.noise_m * random.normal();
     if (range <= 0.05) return;
-    const double brightness = matter.reflectivity * returns[i].cosine * (1.0 + 0.05 * random.normal());
+    const double brightness = material.reflectivity * returns[i].cosine * (1.0 + 0.05 * random.normal());
     into.echoes.push_back({.point = pulse.origin + range * pulse.direction,
                            .line = static_cast<std::uint32_t>(line),
                            .index = static_cast<std::uint32_t>(i),

@@ -212,7 +212,7 @@ inline Rigid3 true_target_from_source(const Truth& truth, std::size_t source, st
                   to.mobile ? truth.local_origin : Vector3d::Zero());
 }
 
-/// Scans as a scanner would give them, and, apart, the truth.
+/// Scans as a scanner would give them, and separately the truth.
 struct SimulatedCase {
   std::vector<Scan> scans;
   Truth truth;

@@ -62,7 +62,7 @@ inline Rigid3 world_from_scan(const ProjectTruth& truth, std::size_t scan) {
 }
 
 /// Whether two stations stand in different rooms that are built alike.
-inline bool are_twins(const ProjectTruth& truth, std::size_t a, std::size_t b) {
+inline bool look_alike(const ProjectTruth& truth, std::size_t a, std::size_t b) {
   const int first = truth.scans[a].room;
   const int second = truth.scans[b].room;
   if (first < 0 || second < 0 || first == second) return false;

@@ -88,7 +88,7 @@ class RoomSurvey {
     return height > room_.ceiling_m + 0.1 || height < room_.floor_m - 0.1;
   }
 
-  /// How many doorways a ray passes before it ends on matter: through two in a row is better than through
+  /// How many doorways a ray passes before it ends on a surface: through two in a row is better than through
   /// one.
   [[nodiscard]] int doorways_passed(const Vector3d& from, const Vector3d& direction) const {
     double begin = 0.0;
@@ -120,7 +120,7 @@ class RoomSurvey {
            caster_.mesh().surfaces()[static_cast<std::size_t>(hit.surface)].element == Element::portal;
   }
 
-  /// How near matter is, in plan; 0 where the place lies within it.
+  /// How near the nearest solid is, in plan; 0 where the place lies within one.
   [[nodiscard]] double nearest(const Vector3d& p) const {
     double least = 1e9;
     for (const double tilt : {-0.8, -0.3, 0.0, 0.4}) {
@@ -129,7 +129,7 @@ class RoomSurvey {
         const Vector3d direction(std::cos(tilt) * std::cos(azimuth), std::cos(tilt) * std::sin(azimuth),
                                  std::sin(tilt));
         RayHit hit = caster_.cast(p, direction);
-        // Who is in a doorway has its empty cross-section beside him: it is no matter.
+        // Who is in a doorway has its empty cross-section beside him: it is no solid.
         for (int step = 0; wish_.doorway >= 0 && step < 4 && is_portal(hit); ++step)
           hit = caster_.cast(p, direction, hit.range_m + 1e-3);
         if (!hit.found()) continue;

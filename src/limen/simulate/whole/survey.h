@@ -16,7 +16,7 @@ struct StationPlace {
   std::size_t room = 0;
 };
 
-/// A place for a wish: on the floor, clear of matter, of several the one from which most
+/// A place for a wish: on the floor, clear of everything, of several the one from which most
 /// rays leave its room through doorways.
 /// Nothing where the room is too full. The stream is (seed, room, wish's part) alone: other stations do not
 /// change it.

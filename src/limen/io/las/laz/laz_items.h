@@ -13,7 +13,7 @@
 
 namespace limen::laz {
 
-/// The parts of a point that are coded apart, by their numbers in the LASzip record.
+/// The parts of a point that are coded separately, by their numbers in the LASzip record.
 enum class ItemType : std::uint16_t {
   byte = 0,
   point10 = 6,

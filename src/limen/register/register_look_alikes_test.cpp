@@ -6,8 +6,8 @@
 
 #include <gtest/gtest.h>
 
-#include "limen/register/judge/individual_matter.h"
 #include "limen/register/judge/score_pose.h"
+#include "limen/register/judge/seen_clutter.h"
 #include "limen/register/prepare/prepare_scan.h"
 #include "limen/register/register.h"
 #include "limen/simulate/buildings/building.h"
@@ -91,19 +91,19 @@ void furnish_both(World& world, Furniture furniture, RandomStream& random) {
 }
 
 /// Two stations in room 1 and one in room 2.
-struct TwinCase {
+struct LookAlikeCase {
   std::array<Scan, 3> scans;
   std::array<Rigid3, 3> scene_from_scan;
 };
 
-TwinCase twin_case(std::uint64_t seed, Furniture furniture) {
+LookAlikeCase look_alike_case(std::uint64_t seed, Furniture furniture) {
   RandomStream random(seed, 0);
   Recipe recipe = equal_rooms(random);
   furnish_both(recipe.world, furniture, random);
   recipe.station_rooms = {1, 1, 2};
   const RayCaster caster(recipe.world.mesh);
   const std::vector<Station> stations = place_stations(recipe, caster, random);
-  TwinCase made;
+  LookAlikeCase made;
   for (std::size_t i = 0; i < 3; ++i) {
     const Rigid3 head{any_heading(random), stations.at(i).position};
     const Sweep echoes = sweep_of_points(
@@ -118,8 +118,8 @@ TwinCase twin_case(std::uint64_t seed, Furniture furniture) {
   return made;
 }
 
-TEST(RegisterTwins, OneRoomScannedTwiceIsRegistered) {
-  const TwinCase rooms = twin_case(4, Furniture::own);
+TEST(RegisterLookAlikes, OneRoomScannedTwiceIsRegistered) {
+  const LookAlikeCase rooms = look_alike_case(4, Furniture::own);
   const RegistrationResult result = register_scans(rooms.scans[1], rooms.scans[0]);
   // The building is exactly as drawn, so that its walls say nothing: things alone exclude a look-alike.
   EXPECT_TRUE(result.outcome == Outcome::registered || result.outcome == Outcome::probable) << result.reason;
@@ -127,24 +127,24 @@ TEST(RegisterTwins, OneRoomScannedTwiceIsRegistered) {
   const Rigid3 truth = inverse(rooms.scene_from_scan[0]) * rooms.scene_from_scan[1];
   EXPECT_LT((result.best.target_from_source.translation - truth.translation).norm(), 0.01);
   ASSERT_TRUE(result.others);
-  EXPECT_LT(result.others->twin, 0.01);
+  EXPECT_LT(result.others->look_alike, 0.01);
 }
 
-TEST(RegisterTwins, TwoRoomsBuiltAlikeAreNot) {
-  const TwinCase rooms = twin_case(2, Furniture::own);
+TEST(RegisterLookAlikes, TwoRoomsBuiltAlikeAreNot) {
+  const LookAlikeCase rooms = look_alike_case(2, Furniture::own);
   EXPECT_NE(register_scans(rooms.scans[2], rooms.scans[0]).outcome, Outcome::registered);
 }
 
-TEST(RegisterTwins, NorAreTwoFurnishedAlike) {
-  const TwinCase rooms = twin_case(3, Furniture::alike);
+TEST(RegisterLookAlikes, NorAreTwoFurnishedAlike) {
+  const LookAlikeCase rooms = look_alike_case(3, Furniture::alike);
   const RegistrationResult same = register_scans(rooms.scans[1], rooms.scans[0]);
   // Exactly as drawn, and furnished so that a look-alike is conceivable: placed, but not sure.
   EXPECT_GT(same.best.probability.value_or(0.0), 0.95) << same.reason;
-  const RegistrationResult twins = register_scans(rooms.scans[2], rooms.scans[0]);
-  EXPECT_NE(twins.outcome, Outcome::registered) << twins.reason;
-  ASSERT_TRUE(twins.others);
-  // Rare as such twins are, it is far more probable than any risk that is taken.
-  EXPECT_GT(twins.others->twin, 20.0 * VerdictOptions{}.risk);
+  const RegistrationResult look_alikes = register_scans(rooms.scans[2], rooms.scans[0]);
+  EXPECT_NE(look_alikes.outcome, Outcome::registered) << look_alikes.reason;
+  ASSERT_TRUE(look_alikes.others);
+  // Rare as such look-alike places are, it is far more probable than any risk that is taken.
+  EXPECT_GT(look_alikes.others->look_alike, 20.0 * VerdictOptions{}.risk);
 }
 
 /// What things say of two scans of one room.
@@ -152,10 +152,10 @@ struct AskedRoom {
   PreparedScan source;
   PreparedScan target;
   Rigid3 upright;
-  IndividualMatter individual;
+  SeenClutter clutter;
 };
 
-AskedRoom asked_room(const TwinCase& rooms) {
+AskedRoom asked_room(const LookAlikeCase& rooms) {
   AskedRoom asked;
   asked.source = prepare_scan(rooms.scans[1], prepare_options({}));
   asked.target = prepare_scan(rooms.scans[0], prepare_options({}));
@@ -165,22 +165,22 @@ AskedRoom asked_room(const TwinCase& rooms) {
   asked.upright = {
       asked.target.upright_from_scan * truth.rotation * asked.source.upright_from_scan.transpose(),
       asked.target.upright_from_scan * truth.translation};
-  asked.individual = individual_matter(asked.source.view(), asked.target.view(), asked.upright);
+  asked.clutter = seen_clutter(asked.source.view(), asked.target.view(), asked.upright);
   return asked;
 }
 
-TEST(RegisterTwins, OneLeafIsOneThing) {
+TEST(RegisterLookAlikes, OneLeafIsOneThing) {
   for (const std::uint64_t seed : {6U, 7U}) {
-    const IndividualMatter leaf = asked_room(twin_case(seed, Furniture::leaf)).individual;
-    const IndividualMatter furnished = asked_room(twin_case(seed, Furniture::own)).individual;
-    EXPECT_GT(leaf.matter.count, 0.5) << seed;
-    EXPECT_LT(leaf.matter.count, 4.0) << seed;
-    EXPECT_GT(furnished.matter.count, 2.0 * leaf.matter.count) << seed;
+    const SeenClutter leaf = asked_room(look_alike_case(seed, Furniture::leaf)).clutter;
+    const SeenClutter furnished = asked_room(look_alike_case(seed, Furniture::own)).clutter;
+    EXPECT_GT(leaf.pieces.count, 0.5) << seed;
+    EXPECT_LT(leaf.pieces.count, 4.0) << seed;
+    EXPECT_GT(furnished.pieces.count, 2.0 * leaf.pieces.count) << seed;
   }
 }
 
-TEST(RegisterTwins, BareRoomsCannotBeStated) {
-  const TwinCase rooms = twin_case(5, Furniture::none);
+TEST(RegisterLookAlikes, BareRoomsCannotBeStated) {
+  const LookAlikeCase rooms = look_alike_case(5, Furniture::none);
   for (const std::size_t source : {1U, 2U}) {
     const RegistrationResult result = register_scans(rooms.scans[source], rooms.scans[0]);
     EXPECT_NE(result.outcome, Outcome::registered) << source;

@@ -1,9 +1,8 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
-#include "limen/register/judge/individual_matter.h"
+#include "limen/register/judge/seen_clutter.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -11,6 +10,8 @@
 #include <vector>
 
 #include "limen/base/progress.h"
+#include "limen/geometry/cell_key.h"
+#include "limen/geometry/cell_lists.h"
 #include "limen/geometry/joined_points.h"
 #include "limen/geometry/polygon_clip.h"
 #include "limen/register/judge/built_planes.h"
@@ -21,7 +22,7 @@ namespace limen {
 namespace {
 
 // When a piece agrees.
-constexpr double kMatterM = 0.08;      // pieces are 0.1 m, means of round ones lie off all surface
+constexpr double kSurfaceM = 0.08;     // pieces are 0.1 m, means of round ones lie off all surface
 constexpr double kFreeM = 0.15;        // rays passed this far beyond
 constexpr double kSlopedCosine = 0.7;  // of a face that tells shifts along the floor, to the vertical
 constexpr double kSameNormal = 0.94;   // cosine: normals of small pieces are known to some degrees
@@ -34,7 +35,7 @@ constexpr std::size_t kMostPieces = 1200;  // of each kind and scan, evenly chos
 
 constexpr int kDisplacements = 8;
 
-/// A piece of individual matter of one scan.
+/// A piece of clutter of one scan.
 struct Piece {
   const SurfaceDetail* detail = nullptr;
   bool behind = false;  ///< seen through an opening of this scan's walls
@@ -82,48 +83,87 @@ double agreeing_share(const std::vector<Stated>& stated) {
 /// What is nearer than `kThingLengthM`, one by one, is of one thing. `shares`: of each answer, of an
 /// observation. `places`: of the answers, then of the faces.
 void group_by_thing(const std::vector<Stated>& stated, const std::vector<double>& shares,
-                    const std::vector<Vector3d>& places, IndividualMatter& individual) {
+                    const std::vector<Vector3d>& places, SeenClutter& clutter) {
   DisjointSets sets = joined_points(places, kThingLengthM);
   constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
   std::vector<std::size_t> number(places.size(), kNone);
   for (std::size_t i = 0; i < places.size(); ++i) {
     std::size_t& thing = number[sets.find(i)];
     if (thing == kNone) {
-      thing = individual.things.size();
-      individual.things.emplace_back();
+      thing = clutter.things.size();
+      clutter.things.emplace_back();
     }
     if (i < stated.size()) {
-      individual.things[thing].count += shares[i];
-      if (stated[i].agrees) individual.things[thing].agreeing += shares[i];
+      clutter.things[thing].count += shares[i];
+      if (stated[i].agrees) clutter.things[thing].agreeing += shares[i];
     } else {
-      individual.faces[i - stated.size()].thing = thing;
+      clutter.faces[i - stated.size()].thing = thing;
     }
   }
   double agreeing = 0.0;
-  for (const ThingSeen& thing : individual.things) {
-    individual.matter.count += thing.count;
+  for (const ThingSeen& thing : clutter.things) {
+    clutter.pieces.count += thing.count;
     agreeing += thing.agreeing;
   }
-  if (individual.matter.count > 0.0) individual.matter.share = agreeing / individual.matter.count;
+  if (clutter.pieces.count > 0.0) clutter.pieces.share = agreeing / clutter.pieces.count;
 }
+
+/// The pieces of one scan, found by place.
+class DetailGrid {
+ public:
+  explicit DetailGrid(const std::vector<SurfaceDetail>* details) : details_(details) {
+    if (details == nullptr) return;
+    std::vector<std::vector<std::int64_t>> cells;
+    for (const SurfaceDetail& detail : *details) cells.push_back({cell_key(cell_of(detail.mean, kCellM))});
+    cells_ = CellLists(std::move(cells));
+  }
+
+  /// Of the pieces beside the place that face the same way the nearest; null: none.
+  [[nodiscard]] const SurfaceDetail* nearest(const Vector3d& at, const Vector3d& normal) const {
+    const SurfaceDetail* found = nullptr;
+    double least = kNearFaceM;
+    const Vector3d middle = cell_of(at, kCellM);
+    for (int k = 0; k < 27; ++k) {
+      for (const std::int32_t i : cells_.at(cell_key(middle + way_to_cell(k)))) {
+        const SurfaceDetail& other = (*details_)[static_cast<std::size_t>(i)];
+        if (other.normal.dot(normal) < kSameNormal) continue;
+        const Vector3d between = at - other.mean;
+        const double across = between.dot(other.normal);
+        const double along = (between - across * other.normal).norm();
+        if (along > kBesideM || std::abs(across) >= least) continue;
+        least = std::abs(across);
+        found = &other;
+      }
+    }
+    return found;
+  }
+
+ private:
+  static constexpr double kCellM = 0.17;  // no smaller than the reach: sqrt(kBesideM^2 + kNearFaceM^2)
+
+  const std::vector<SurfaceDetail>* details_;
+  CellLists cells_;
+};
 
 /// One scan with what is the building's and what is not.
 struct Side {
   ScanView view;
   BuiltPlanes built;
   std::vector<Piece> pieces;
+  DetailGrid details;
 
-  explicit Side(const ScanView& scan) : view(scan), built(scan), pieces(pieces_of(scan, built)) {}
+  explicit Side(const ScanView& scan)
+      : view(scan), built(scan), pieces(pieces_of(scan, built)), details(scan.details) {}
 };
 
 /// Asks `judge` about the pieces of `scan`; what it does not know is left out.
-void ask_matter(const Side& scan, const Side& judge, const Rigid3& judge_from_scan,
-                const Rigid3& target_from_scan, std::vector<Stated>& stated) {
+void compare_pieces(const Side& scan, const Side& judge, const Rigid3& judge_from_scan,
+                    const Rigid3& target_from_scan, std::vector<Stated>& stated) {
   if (!judge.view.knows_free) return;  // what it does not contradict it does not confirm either
   for (const Piece& piece : scan.pieces) {
     SightQuery query;
     query.at = judge_from_scan * piece.detail->mean;
-    query.surface_m = kMatterM;
+    query.surface_m = kSurfaceM;
     query.free_m = kFreeM;
     const Sight sight = judge.view.space->look(query);
     const bool surface = sight.kind == SightKind::surface;
@@ -140,65 +180,18 @@ void ask_matter(const Side& scan, const Side& judge, const Rigid3& judge_from_sc
   }
 }
 
-/// The flat pieces of one scan, found by place.
-class DetailGrid {
- public:
-  explicit DetailGrid(const std::vector<SurfaceDetail>& details) : details_(details) {
-    for (std::uint32_t i = 0; i < details.size(); ++i) cells_.emplace_back(cell_of(details[i].mean), i);
-    std::sort(cells_.begin(), cells_.end());
-  }
-
-  /// Of the pieces beside the place that face the same way the nearest; null: none.
-  [[nodiscard]] const SurfaceDetail* nearest(const Vector3d& at, const Vector3d& normal) const {
-    const SurfaceDetail* found = nullptr;
-    double least = kNearFaceM;
-    const Cell middle = cell_of(at);
-    for (int dx = -1; dx <= 1; ++dx)
-      for (int dy = -1; dy <= 1; ++dy)
-        for (int dz = -1; dz <= 1; ++dz) {
-          const Cell cell{middle[0] + dx, middle[1] + dy, middle[2] + dz};
-          auto it = std::lower_bound(cells_.begin(), cells_.end(), std::pair{cell, std::uint32_t{0}});
-          for (; it != cells_.end() && it->first == cell; ++it) {
-            const SurfaceDetail& other = details_[it->second];
-            if (other.normal.dot(normal) < kSameNormal) continue;
-            const Vector3d apart = at - other.mean;
-            const double across = apart.dot(other.normal);
-            const double along = (apart - across * other.normal).norm();
-            if (along > kBesideM || std::abs(across) >= least) continue;
-            least = std::abs(across);
-            found = &other;
-          }
-        }
-    return found;
-  }
-
- private:
-  using Cell = std::array<std::int64_t, 3>;
-  static Cell cell_of(const Vector3d& x) {
-    constexpr double kCellM = 0.17;  // no smaller than the reach: sqrt(kBesideM^2 + kNearFaceM^2)
-    return {static_cast<std::int64_t>(std::floor(x.x() / kCellM)),
-            static_cast<std::int64_t>(std::floor(x.y() / kCellM)),
-            static_cast<std::int64_t>(std::floor(x.z() / kCellM))};
-  }
-
-  const std::vector<SurfaceDetail>& details_;
-  std::vector<std::pair<Cell, std::uint32_t>> cells_;
-};
-
 /// Upright flat pieces of `scan` that `judge` has nearby as well: of what is in the room, not of the
 /// building, and not what both see through openings only.
 std::vector<MetFace> met_faces(const Side& scan, const Side& judge, const Rigid3& judge_from_scan,
                                const Rigid3& target_from_judge) {
   std::vector<MetFace> faces;
-  if (scan.view.details == nullptr || judge.view.details == nullptr) return faces;
-  const DetailGrid grid(*judge.view.details);
   for (const Piece& piece : scan.pieces) {
     const SurfaceDetail& detail = *piece.detail;
     if (!detail.flat()) continue;
     const Vector3d normal = judge_from_scan.rotation * detail.normal;
     if (std::abs(normal.z()) > kSlopedCosine) continue;
     const Vector3d at = judge_from_scan * detail.mean;
-    const SurfaceDetail* met = grid.nearest(at, normal);
+    const SurfaceDetail* met = judge.details.nearest(at, normal);
     if (met == nullptr) continue;
     const BuiltPlanes::Place there = judge.built.place(at);
     if (there == BuiltPlanes::Place::at_wall) continue;
@@ -236,11 +229,11 @@ std::vector<FaceMiss> face_offsets(const Side& source, const Side& target, const
   return offsets;
 }
 
-std::vector<Stated> stated_of_matter(const Side& source, const Side& target,
-                                     const Rigid3& target_from_source) {
+std::vector<Stated> compared_pieces(const Side& source, const Side& target,
+                                    const Rigid3& target_from_source) {
   std::vector<Stated> stated;
-  ask_matter(source, target, target_from_source, target_from_source, stated);
-  ask_matter(target, source, inverse(target_from_source), Rigid3{}, stated);
+  compare_pieces(source, target, target_from_source, target_from_source, stated);
+  compare_pieces(target, source, inverse(target_from_source), Rigid3{}, stated);
   return stated;
 }
 
@@ -259,7 +252,7 @@ double chance_of(const Side& source, const Side& target, const Rigid3& target_fr
     const double length = k % 2 == 0 ? 0.7 : 1.2;
     Rigid3 displaced = target_from_source;
     displaced.translation += length * Vector3d(std::cos(angle), std::sin(angle), 0.0);
-    const std::vector<Stated> stated = stated_of_matter(source, target, displaced);
+    const std::vector<Stated> stated = compared_pieces(source, target, displaced);
     if (stated.empty()) continue;
     share += agreeing_share(stated);
     ++counted;
@@ -269,49 +262,48 @@ double chance_of(const Side& source, const Side& target, const Rigid3& target_fr
 
 }  // namespace
 
-struct MatterAsker::Sides {
+struct ClutterComparer::Sides {
   Side source;
   Side target;
-  CommonSurfaceAsker surfaces;
+  CommonSurfaceFinder surfaces;
 
   Sides(const ScanView& first, const ScanView& second)
       : source(first), target(second), surfaces(first, source.built, second, target.built) {}
 };
 
-MatterAsker::MatterAsker(const ScanView& source, const ScanView& target)
+ClutterComparer::ClutterComparer(const ScanView& source, const ScanView& target)
     : sides_(new Sides(source, target)) {}
 
-MatterAsker::~MatterAsker() = default;
+ClutterComparer::~ClutterComparer() = default;
 
-IndividualMatter MatterAsker::operator()(const Rigid3& target_from_source) const {
+SeenClutter ClutterComparer::operator()(const Rigid3& target_from_source) const {
   CancelScope::check();
   const Side& source = sides_->source;
   const Side& target = sides_->target;
-  IndividualMatter individual;
-  if (source.view.space == nullptr || target.view.space == nullptr) return individual;
-  const std::vector<Stated> stated = stated_of_matter(source, target, target_from_source);
+  SeenClutter clutter;
+  if (source.view.space == nullptr || target.view.space == nullptr) return clutter;
+  const std::vector<Stated> stated = compared_pieces(source, target, target_from_source);
   const std::vector<double> shares = shares_of(stated, 8.0 * kThingLengthM);
-  individual.chance = chance_of(source, target, target_from_source);
-  individual.apart = wall_between(source, target, target_from_source) ||
-                     wall_between(target, source, inverse(target_from_source));
+  clutter.chance = chance_of(source, target, target_from_source);
+  clutter.behind_wall = wall_between(source, target, target_from_source) ||
+                        wall_between(target, source, inverse(target_from_source));
   const CommonSurfaces surfaces = sides_->surfaces(target_from_source);
-  individual.built = built_evidence(surfaces.all);
+  clutter.built = built_evidence(surfaces.all);
   std::vector<Vector3d> places;
   for (const Stated& one : stated) places.push_back(one.at);
-  individual.faces = face_offsets(source, target, target_from_source, surfaces.scatter_m, places);
-  group_by_thing(stated, shares, places, individual);
-  return individual;
+  clutter.faces = face_offsets(source, target, target_from_source, surfaces.scatter_m, places);
+  group_by_thing(stated, shares, places, clutter);
+  return clutter;
 }
 
-BuiltEvidence MatterAsker::built(const Rigid3& target_from_source) const {
+BuiltEvidence ClutterComparer::built(const Rigid3& target_from_source) const {
   CancelScope::check();
   if (sides_->source.view.space == nullptr || sides_->target.view.space == nullptr) return {};
   return built_evidence(sides_->surfaces(target_from_source).all);
 }
 
-IndividualMatter individual_matter(const ScanView& source, const ScanView& target,
-                                   const Rigid3& target_from_source) {
-  return MatterAsker(source, target)(target_from_source);
+SeenClutter seen_clutter(const ScanView& source, const ScanView& target, const Rigid3& target_from_source) {
+  return ClutterComparer(source, target)(target_from_source);
 }
 
 }  // namespace limen

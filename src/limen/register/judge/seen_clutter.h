@@ -6,7 +6,7 @@
 #include <memory>
 #include <vector>
 
-#include "limen/model/twin_evidence.h"
+#include "limen/model/look_alike_evidence.h"
 #include "limen/register/prepare/scan_view.h"
 
 namespace limen {
@@ -25,7 +25,7 @@ struct FaceMiss {
   double share = 1.0;     ///< of one observation: faces that tell the same make one together
   /// What noise leaves between two measurements of the face; roughness and the pose come on top.
   double sigma_m = 0.0;
-  std::size_t thing = 0;  ///< number of its thing in `IndividualMatter::things`
+  std::size_t thing = 0;  ///< number of its thing in `SeenClutter::things`
 };
 
 /// What is near one another is of one thing: it is where it was, or it is not, as a whole.
@@ -37,35 +37,35 @@ struct ThingSeen {
 /// Pieces farther apart than this are not taken for one another.
 inline constexpr double kNearFaceM = 0.06;
 
-/// What two scans say of matter that is not the building's: furniture, clutter, things that stand about.
-/// Rooms built alike agree on walls, slabs, columns, frames by design; on this matter only by chance, or
-/// because they are furnished alike.
-struct IndividualMatter {
-  /// Pieces that the other scan saw either as matter or as free space.
-  Observations matter;
+/// What two scans show of clutter: furniture and other things that are not the building's. Rooms built alike
+/// agree on walls, slabs, columns and frames by design; on clutter only by chance, or because they are
+/// furnished alike.
+struct SeenClutter {
+  /// Pieces that the other scan saw either as surface or as free space.
+  Observations pieces;
   /// The same, thing by thing; some show faces only.
   std::vector<ThingSeen> things;
   /// Flat faces of things that the other scan has nearby as well, and how far apart the two are.
   std::vector<FaceMiss> faces;
-  /// Share of `matter` that agrees when one room's things are shifted about in the other: chance.
+  /// Share of `pieces` that agrees when one room's things are shifted about in the other: chance.
   double chance = 0.0;
   /// A wall is between the two stations: what they have in common is seen through an opening.
-  bool apart = false;
+  bool behind_wall = false;
   /// How the building's surfaces were built, as both scans saw them (as_built.h).
   BuiltEvidence built{};
 };
 
-/// Asks each scan about the other's individual matter under poses (upright frames): pieces of surface on no
+/// Asks each scan about the other's clutter under poses (upright frames): pieces of surface on no
 /// plane, or on a plane smaller than a wall, off all large planes of both scans. Neither side is a model.
 /// What is the building's of either scan is found once; what the views point to has to outlive this.
-class MatterAsker {
+class ClutterComparer {
  public:
-  MatterAsker(const ScanView& source, const ScanView& target);
-  ~MatterAsker();
-  MatterAsker(const MatterAsker&) = delete;
-  MatterAsker& operator=(const MatterAsker&) = delete;
+  ClutterComparer(const ScanView& source, const ScanView& target);
+  ~ClutterComparer();
+  ClutterComparer(const ClutterComparer&) = delete;
+  ClutterComparer& operator=(const ClutterComparer&) = delete;
 
-  [[nodiscard]] IndividualMatter operator()(const Rigid3& target_from_source) const;
+  [[nodiscard]] SeenClutter operator()(const Rigid3& target_from_source) const;
   /// Of the building's surfaces only.
   [[nodiscard]] BuiltEvidence built(const Rigid3& target_from_source) const;
 
@@ -75,7 +75,6 @@ class MatterAsker {
 };
 
 /// The same of one pose.
-IndividualMatter individual_matter(const ScanView& source, const ScanView& target,
-                                   const Rigid3& target_from_source);
+SeenClutter seen_clutter(const ScanView& source, const ScanView& target, const Rigid3& target_from_source);
 
 }  // namespace limen

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
-#include "limen/register/judge/twin_odds.h"
+#include "limen/register/judge/look_alike_odds.h"
 
 #include <algorithm>
 #include <array>
@@ -62,7 +62,7 @@ const std::array<double, 3> kLogScale = {std::log(1.0 / 6.0), std::log(2.0 / 3.0
 /// Logarithms of the densities of what was seen of each thing, under one assumption.
 using OfThings = std::vector<double>;
 
-OfThings of_surface(const IndividualMatter& seen, const ShareBelief& agreeing) {
+OfThings of_surface(const SeenClutter& seen, const ShareBelief& agreeing) {
   OfThings logs;
   for (const ThingSeen& thing : seen.things)
     logs.push_back(log_beta_binomial(thing.agreeing, thing.count - thing.agreeing, agreeing));
@@ -72,7 +72,7 @@ OfThings of_surface(const IndividualMatter& seen, const ShareBelief& agreeing) {
 /// Adds the faces of each thing. `near`: of so large a share, the rest lies anywhere; `sigma_m`: of a face
 /// near its place.
 template <typename Sigma>
-void add_faces(const IndividualMatter& seen, double near, const Sigma& sigma_m, OfThings& logs) {
+void add_faces(const SeenClutter& seen, double near, const Sigma& sigma_m, OfThings& logs) {
   for (const FaceMiss& face : seen.faces)
     logs[face.thing] +=
         face.share * std::log(near * normal_density(face.offset_m, sigma_m(face)) + (1.0 - near) * kAnywhere);
@@ -80,7 +80,7 @@ void add_faces(const IndividualMatter& seen, double near, const Sigma& sigma_m, 
 
 /// If they are where they were, or were put: one for each scale of the deviations of faces.
 template <typename Sigma>
-std::array<OfThings, 3> in_place(const IndividualMatter& seen, double median, double spread,
+std::array<OfThings, 3> in_place(const SeenClutter& seen, double median, double spread,
                                  const Sigma& sigma_m) {
   const OfThings surface = of_surface(seen, kFurniture.in_place);
   std::array<OfThings, 3> kept;
@@ -95,19 +95,19 @@ std::array<OfThings, 3> in_place(const IndividualMatter& seen, double median, do
 }
 
 /// As they were measured: the scale is how well the deviations are known.
-std::array<OfThings, 3> kept_in_place(const IndividualMatter& seen) {
+std::array<OfThings, 3> kept_in_place(const SeenClutter& seen) {
   return in_place(seen, kFurniture.measured, kFurniture.measured_spread,
                   [](const FaceMiss& face, double scale) { return scale * face.sigma_m; });
 }
 
 /// As people put them: the scale, metres, comes on top.
-std::array<OfThings, 3> put_in_place(const IndividualMatter& seen) {
+std::array<OfThings, 3> put_in_place(const SeenClutter& seen) {
   return in_place(seen, kFurniture.put_m, kFurniture.put_spread,
                   [](const FaceMiss& face, double scale) { return std::hypot(scale, face.sigma_m); });
 }
 
 /// If they are elsewhere, or others: surface agrees by chance, and a share of the faces is near another.
-OfThings elsewhere(const IndividualMatter& seen, double near, double near_m) {
+OfThings elsewhere(const SeenClutter& seen, double near, double near_m) {
   const ShareBelief chance{std::clamp(seen.chance + kFurniture.more_than_chance, 0.01, 0.7),
                            kFurniture.chance_strength};
   OfThings logs = of_surface(seen, chance);
@@ -221,38 +221,38 @@ constexpr double kMostlyOther = 0.6;  // share agreeing below which the things a
 
 }  // namespace
 
-void TwinOptions::check() const {
+void LookAlikeOptions::check() const {
   const std::pair<const char*, double> odds[] = {
-      {"otherwise", otherwise}, {"otherwise_apart", otherwise_apart}, {"alike", alike}};
+      {"otherwise", otherwise}, {"otherwise_behind_wall", otherwise_behind_wall}, {"alike", alike}};
   for (const auto& [name, value] : odds) {
     if (!(value >= 0)) throw_bad_option(name, value, "0 or more");
   }
 }
 
-TwinOptions twin_options(bool nothing_repeats) {
+LookAlikeOptions look_alike_options(bool nothing_repeats) {
   constexpr double kWordsWrong = 0.05;
-  TwinOptions options;
+  LookAlikeOptions options;
   if (!nothing_repeats) return options;
-  for (double* believed : {&options.otherwise, &options.otherwise_apart, &options.alike})
+  for (double* believed : {&options.otherwise, &options.otherwise_behind_wall, &options.alike})
     *believed *= kWordsWrong;
   return options;
 }
 
-TwinEvidence weigh_twin(const IndividualMatter& individual, const TwinOptions& options) {
+LookAlikeEvidence weigh_look_alike(const SeenClutter& clutter, const LookAlikeOptions& options) {
   options.check();
-  TwinEvidence evidence;
+  LookAlikeEvidence evidence;
   evidence.alike = options.alike;
-  evidence.otherwise = individual.apart ? options.otherwise_apart : options.otherwise;
-  evidence.built = individual.built;
-  for (const ThingSeen& thing : individual.things) {
+  evidence.otherwise = clutter.behind_wall ? options.otherwise_behind_wall : options.otherwise;
+  evidence.built = clutter.built;
+  for (const ThingSeen& thing : clutter.things) {
     const double seen = std::min(1.0, thing.count);
     evidence.things += seen;
     if (thing.count > 0.0) evidence.agreeing += seen * thing.agreeing / thing.count;
   }
-  const std::array<OfThings, 3> kept = kept_in_place(individual);
-  const std::array<OfThings, 3> put = put_in_place(individual);
-  const OfThings pushed = elsewhere(individual, kFurniture.pushed, kFurniture.pushed_m);
-  const OfThings others = elsewhere(individual, kFurniture.met, kFurniture.met_m);
+  const std::array<OfThings, 3> kept = kept_in_place(clutter);
+  const std::array<OfThings, 3> put = put_in_place(clutter);
+  const OfThings pushed = elsewhere(clutter, kFurniture.pushed, kFurniture.pushed_m);
+  const OfThings others = elsewhere(clutter, kFurniture.met, kFurniture.met_m);
   const NatsOfThings here = log_likelihood(kept, kept, pushed, kFurniture.stayed);
   const double same = log_likelihood_of(nats_against(0.0, here), evidence_table::kAsDrawn);
   evidence.share_nats = nats_against(same, here);
@@ -262,12 +262,12 @@ TwinEvidence weigh_twin(const IndividualMatter& individual, const TwinOptions& o
   return evidence;
 }
 
-double otherwise_nats(const TwinEvidence& evidence, double as_drawn) {
+double otherwise_nats(const LookAlikeEvidence& evidence, double as_drawn) {
   return log_likelihood_of(evidence.share_nats, as_drawn) -
          log_likelihood_of(evidence.otherwise_nats, as_drawn);
 }
 
-double alike_nats(const TwinEvidence& evidence, double as_drawn) {
+double alike_nats(const LookAlikeEvidence& evidence, double as_drawn) {
   return log_likelihood_of(evidence.share_nats, as_drawn) - log_likelihood_of(evidence.alike_nats, as_drawn);
 }
 
@@ -281,7 +281,7 @@ const StayedBelief& stayed_beforehand() {
   return belief;
 }
 
-StayedBelief logs_of_stayed(const TwinEvidence& evidence) {
+StayedBelief logs_of_stayed(const LookAlikeEvidence& evidence) {
   StayedBelief logs{};
   for (std::size_t j = 0; j < logs.size(); ++j) {
     const double share = (static_cast<double>(j) + 0.5) / static_cast<double>(logs.size());
@@ -291,7 +291,7 @@ StayedBelief logs_of_stayed(const TwinEvidence& evidence) {
   return logs;
 }
 
-double nats_of_stayed(const TwinEvidence& evidence, const StayedBelief& stayed) {
+double nats_of_stayed(const LookAlikeEvidence& evidence, const StayedBelief& stayed) {
   const StayedBelief logs = logs_of_stayed(evidence);
   StayedBelief now{};
   StayedBelief before{};
@@ -302,43 +302,43 @@ double nats_of_stayed(const TwinEvidence& evidence, const StayedBelief& stayed) 
   return log_sum_exp(now) - log_sum_exp(before);
 }
 
-double against_otherwise(const TwinEvidence& evidence, double as_drawn, double stayed_nats) {
+double against_otherwise(const LookAlikeEvidence& evidence, double as_drawn, double stayed_nats) {
   return otherwise_nats(evidence, as_drawn) + stayed_nats;
 }
 
-double against_alike(const TwinEvidence& evidence, double as_drawn, double stayed_nats) {
+double against_alike(const LookAlikeEvidence& evidence, double as_drawn, double stayed_nats) {
   const double other = evidence.things - evidence.agreeing;
   const double own = log_beta_binomial(evidence.agreeing, other, kFurniture.stayed) + stayed_nats -
                      log_beta_binomial(evidence.agreeing, other, kFurniture.alike);
   return alike_nats(evidence, as_drawn) + std::min(0.0, own);
 }
 
-double odds_of(const TwinEvidence& evidence) {
+double odds_of(const LookAlikeEvidence& evidence) {
   const double as_drawn = probability_as_drawn(as_drawn_nats(evidence.built));
   return std::exp(-built_nats(evidence.built)) *
          (evidence.otherwise * std::exp(-against_otherwise(evidence, as_drawn)) +
           evidence.alike * std::exp(-against_alike(evidence, as_drawn)));
 }
 
-double probability_of(const TwinEvidence& evidence) {
+double probability_of(const LookAlikeEvidence& evidence) {
   const double odds = odds_of(evidence);
   return std::isfinite(odds) ? odds / (1.0 + odds) : 1.0;
 }
 
-std::string twin_words(const IndividualMatter& individual, double probability) {
-  const Observations& matter = individual.matter;
-  if (matter.count < kFew)
+std::string look_alike_words(const SeenClutter& clutter, double probability) {
+  const Observations& pieces = clutter.pieces;
+  if (pieces.count < kFew)
     return fmt::format("a look-alike room cannot be excluded ({}): both scans see hardly anything but walls",
                        percent_words(probability));
-  if (matter.share < kMostlyOther)
+  if (pieces.share < kMostlyOther)
     return fmt::format(
         "a look-alike room fits better ({}): the walls agree, but only {:.0f} % of the objects in the room "
         "do",
-        percent_words(probability), 100.0 * matter.share);
+        percent_words(probability), 100.0 * pieces.share);
   return fmt::format(
       "a room built and furnished alike cannot be excluded ({}): {:.0f} % of the objects in the room agree, "
       "but too few to the millimetre",
-      percent_words(probability), 100.0 * matter.share);
+      percent_words(probability), 100.0 * pieces.share);
 }
 
 }  // namespace limen

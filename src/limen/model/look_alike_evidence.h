@@ -12,7 +12,7 @@ namespace limen {
 inline constexpr std::size_t kBendLevels = 7;
 
 /// How many shares of things that are the building's after all (a step, a fitting) are distinguished
-/// (twin_odds.cpp).
+/// (look_alike_odds.cpp).
 inline constexpr std::size_t kBuiltInLevels = 5;
 
 /// Nats of things, for each of these shares.
@@ -20,14 +20,15 @@ using NatsOfThings = std::array<double, kBuiltInLevels>;
 
 /// What was seen of how surfaces were built, for each of these amounts: logarithms of its density.
 struct BuiltEvidence {
-  std::array<double, kBendLevels> one{};       ///< if the scans show one place ...
-  std::array<double, kBendLevels> twin{};      ///< ... and if they show two that were built alike
-  std::array<double, kBendLevels> as_drawn{};  ///< either, of a building that is exactly as drawn
+  std::array<double, kBendLevels> one{};         ///< if the scans show one place ...
+  std::array<double, kBendLevels> look_alike{};  ///< ... and if they show two that were built alike
+  std::array<double, kBendLevels> as_drawn{};    ///< either, of a building that is exactly as drawn
 };
 
-/// What two scans say of whether they show one place or two that look alike (register/judge/twin_odds.h). The
-/// odds beforehand are of a place. All else is of the scans: over several pairs it adds up.
-struct TwinEvidence {
+/// What two scans say of whether they show one place or two that look alike
+/// (register/judge/look_alike_odds.h). The odds beforehand are of a place. All else is of the scans: over
+/// several pairs it adds up.
+struct LookAlikeEvidence {
   bool rooms = true;              ///< both scans are of rooms: else things and walls were not asked
   double otherwise = 1.0;         ///< odds beforehand of a look-alike place that is furnished otherwise ...
   double alike = 0.0;             ///< ... and of one that is furnished alike
