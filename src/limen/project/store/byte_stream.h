@@ -2,12 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -16,35 +20,71 @@
 
 namespace limen {
 
+// What is kept goes to bytes and back by one function for both directions:
+//
+//   void transfer(auto& bytes, Is<Plane> auto& plane) { bytes(plane.normal, plane.offset); }
+//
+// Numbers, enumerations, strings, matrices of fixed size, and arrays, vectors and optionals of what can be
+// transferred need none.
+
+/// `T` is `Of`, const or not.
+template <typename T, typename Of>
+concept Is = std::same_as<std::remove_const_t<T>, Of>;
+
+template <typename Value>
+inline constexpr bool kIsPlain = std::is_arithmetic_v<Value> || std::is_enum_v<Value>;
+
 /// Puts values one after the other as the machine holds them (little-endian): the bytes that come back are
 /// the bytes that went in.
 class ByteWriter {
  public:
-  template <typename Value>
-  void put(const Value& value) {
-    static_assert(std::is_arithmetic_v<Value> || std::is_enum_v<Value>);
-    char raw[sizeof(Value)];
-    std::memcpy(raw, &value, sizeof(Value));
-    bytes_.append(raw, sizeof(Value));
+  template <typename... Values>
+  void operator()(const Values&... values) {
+    (put(values), ...);
   }
-  template <int Rows, int Columns>
-  void put(const Eigen::Matrix<double, Rows, Columns>& matrix) {
-    for (Eigen::Index k = 0; k < matrix.size(); ++k) put(matrix.data()[k]);
-  }
-  void put(const std::string& text) {
-    put_count(text.size());
-    bytes_ += text;
-  }
-  void put_count(std::size_t count) { put(static_cast<std::uint64_t>(count)); }
-  template <typename Value>
-  void put_all(const std::vector<Value>& values) {
-    put_count(values.size());
-    for (const Value& value : values) put(value);
-  }
+  void require(bool /*holds*/) const {}  // it is the reader's question
 
   [[nodiscard]] const std::string& bytes() const { return bytes_; }
 
  private:
+  template <typename Value>
+  void put(const Value& value) {
+    if constexpr (kIsPlain<Value>)
+      put_raw(&value, sizeof value);
+    else
+      transfer(*this, value);
+  }
+  template <int Rows, int Columns>
+  void put(const Eigen::Matrix<double, Rows, Columns>& matrix) {
+    put_raw(matrix.data(), sizeof(double) * static_cast<std::size_t>(matrix.size()));
+  }
+  void put(const std::string& text) {
+    put(text.size());
+    bytes_ += text;
+  }
+  template <typename Value>
+  void put(const std::vector<Value>& values) {
+    put(values.size());
+    if constexpr (kIsPlain<Value>)
+      put_raw(values.data(), values.size() * sizeof(Value));
+    else
+      for (const Value& value : values) put(value);
+  }
+  template <typename Value, std::size_t N>
+  void put(const std::array<Value, N>& values) {
+    for (const Value& value : values) put(value);
+  }
+  template <typename Value, std::size_t N>
+  void put(const Value (&values)[N]) {
+    for (const Value& value : values) put(value);
+  }
+  template <typename Value>
+  void put(const std::optional<Value>& value) {
+    put(value.has_value());
+    if (value) put(*value);
+  }
+  void put_raw(const void* from, std::size_t size) { bytes_.append(static_cast<const char*>(from), size); }
+
   std::string bytes_;
 };
 
@@ -53,73 +93,107 @@ class ByteReader {
  public:
   ByteReader(std::string_view bytes, std::string where) : bytes_(bytes), where_(std::move(where)) {}
 
-  template <typename Value>
-  Value get() {
-    if constexpr (std::is_same_v<Value, std::string>) {
-      const std::size_t size = get_count(1);
-      std::string text(bytes_.substr(at_, size));
-      at_ += size;
-      return text;
-    } else if constexpr (std::is_same_v<Value, bool>) {
-      const auto value = get<std::uint8_t>();
-      if (value > 1) fail();
-      return value == 1;
-    } else if constexpr (std::is_arithmetic_v<Value> || std::is_enum_v<Value>) {
-      need(sizeof(Value));
-      Value value;
-      std::memcpy(&value, bytes_.data() + at_, sizeof(Value));
-      at_ += sizeof(Value);
-      return value;
-    } else {
-      Value matrix;
-      for (Eigen::Index k = 0; k < matrix.size(); ++k) matrix.data()[k] = get<double>();
-      return matrix;
-    }
-  }
-  template <typename Value>
-  void get(Value& value) {
-    value = get<Value>();
-  }
-  /// A count of things of at least `least_bytes` each: never more than the bytes could hold.
-  std::size_t get_count(std::size_t least_bytes) {
-    const auto count = get<std::uint64_t>();
-    if (count > (bytes_.size() - at_) / least_bytes) fail();
-    return static_cast<std::size_t>(count);
-  }
-  template <typename Value>
-  std::vector<Value> get_all() {
-    std::vector<Value> values(get_count(std::is_same_v<Value, std::string> ? 8 : sizeof(Value)));
-    for (Value& value : values) value = get<Value>();
-    return values;
-  }
-  /// One of the values of an enumeration from 0 to `last`.
-  template <typename Value>
-  void get_enum(Value& value, Value last) {
-    value = get<Value>();
-    require(static_cast<std::int64_t>(value) >= 0 && value <= last);
-  }
-  /// A place in a list of `size`, or -1 where `or_none`.
-  void get_index(std::int32_t& index, std::size_t size, bool or_none = false) {
-    index = get<std::int32_t>();
-    require(index < 0 ? or_none && index == -1 : static_cast<std::size_t>(index) < size);
+  template <typename... Values>
+  void operator()(Values&... values) {
+    (get(values), ...);
   }
   /// Throws Error where what was read cannot be.
   void require(bool holds) const {
-    if (!holds) fail();
+    if (!holds) throw Error("the file is damaged", where_, "remove it: it is made again by the next run");
   }
-  [[nodiscard]] bool at_end() const { return at_ == bytes_.size(); }
 
  private:
-  [[noreturn]] void fail() const {
-    throw Error("the file is damaged", where_, "remove it: it is made again by the next run");
+  template <typename Value>
+  void get(Value& value) {
+    if constexpr (kIsPlain<Value>)
+      get_raw(&value, sizeof value);
+    else
+      transfer(*this, value);
   }
-  void need(std::size_t count) const {
-    if (count > bytes_.size() - at_) fail();
+  void get(bool& value) {
+    std::uint8_t byte = 0;
+    get(byte);
+    require(byte <= 1);
+    value = byte == 1;
+  }
+  template <int Rows, int Columns>
+  void get(Eigen::Matrix<double, Rows, Columns>& matrix) {
+    get_raw(matrix.data(), sizeof(double) * static_cast<std::size_t>(matrix.size()));
+  }
+  void get(std::string& text) {
+    text.resize(get_count(1));
+    get_raw(text.data(), text.size());
+  }
+  template <typename Value>
+  void get(std::vector<Value>& values) {
+    if constexpr (kIsPlain<Value>) {
+      values.resize(get_count(sizeof(Value)));
+      get_raw(values.data(), values.size() * sizeof(Value));
+    } else {
+      const std::size_t count = get_count(1);
+      values.clear();
+      // One by one: there may be fewer than damaged bytes say.
+      while (values.size() < count) get(values.emplace_back());
+    }
+  }
+  template <typename Value, std::size_t N>
+  void get(std::array<Value, N>& values) {
+    for (Value& value : values) get(value);
+  }
+  template <typename Value, std::size_t N>
+  void get(Value (&values)[N]) {
+    for (Value& value : values) get(value);
+  }
+  template <typename Value>
+  void get(std::optional<Value>& value) {
+    bool there = false;
+    get(there);
+    value.reset();
+    if (there) get(value.emplace());
+  }
+  /// A count of things of at least `least_bytes` each: never more than the bytes could hold.
+  std::size_t get_count(std::size_t least_bytes) {
+    std::uint64_t count = 0;
+    get(count);
+    require(count <= (bytes_.size() - at_) / least_bytes);
+    return static_cast<std::size_t>(count);
+  }
+  void get_raw(void* to, std::size_t size) {
+    require(size <= bytes_.size() - at_);
+    if (size > 0) std::memcpy(to, bytes_.data() + at_, size);
+    at_ += size;
   }
 
   std::string_view bytes_;
   std::size_t at_ = 0;
   std::string where_;
 };
+
+template <typename... Values>
+std::string bytes_of_all(const Values&... values) {
+  ByteWriter writer;
+  writer(values...);
+  return writer.bytes();
+}
+
+/// The value again. `where` is in messages. Throws Error where the bytes are damaged.
+template <typename Value>
+Value value_from(std::string_view bytes, const std::string& where) {
+  ByteReader reader(bytes, where);
+  Value value;
+  reader(value);
+  return value;
+}
+
+/// Whether it is a place in a list of `size`.
+inline bool is_place(std::int32_t index, std::size_t size) {
+  return index >= 0 && static_cast<std::size_t>(index) < size;
+}
+
+/// Whether it is one of an enumeration from 0 to `last`.
+template <typename Value>
+bool is_value(Value value, Value last) {
+  return static_cast<std::int64_t>(value) >= 0 && value <= last;
+}
 
 }  // namespace limen

@@ -21,10 +21,7 @@ constexpr std::size_t kHashDigits = 64;
 
 /// All that is before the hash and the packed bytes.
 std::string bytes_of(const EntryHead& head) {
-  ByteWriter writer;
-  writer.put(head.version);
-  writer.put(std::string(head.key));
-  return std::string(kMagic) + std::string(head.kind) + writer.bytes();
+  return std::string(kMagic) + std::string(head.kind) + bytes_of_all(head.version, std::string(head.key));
 }
 
 std::string deflated(std::string_view bytes) {
@@ -59,9 +56,7 @@ std::string inflated(std::string_view packed, std::uint64_t size, const std::fil
 
 void write_packed(const std::filesystem::path& path, const EntryHead& head, std::string_view bytes) {
   const std::string before = bytes_of(head);
-  ByteWriter size;
-  size.put_count(bytes.size());
-  const std::string packed = size.bytes() + deflated(bytes);
+  const std::string packed = bytes_of_all(bytes.size()) + deflated(bytes);
   AtomicFile file(path);
   file.write(before);
   file.write(sha256_of(before + packed));
@@ -82,7 +77,7 @@ std::optional<std::string> read_packed(const std::filesystem::path& path, const 
   const std::string_view packed = std::string_view(whole).substr(before.size() + kHashDigits);
   if (whole.compare(before.size(), kHashDigits, sha256_of(before + std::string(packed))) != 0)
     refuse("the file is damaged", path);
-  const auto size = ByteReader(packed, path.string()).get<std::uint64_t>();
+  const auto size = value_from<std::uint64_t>(packed, path.string());
   return inflated(packed.substr(sizeof(std::uint64_t)), size, path);
 }
 

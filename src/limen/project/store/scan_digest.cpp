@@ -2,9 +2,31 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limen/project/store/scan_digest.h"
 
-#include "limen/project/store/byte_stream.h"
+#include "limen/project/store/features_bytes.h"
 
 namespace limen {
+
+void transfer(auto& bytes, Is<PointMoments> auto& moments) {
+  bytes(moments.count, moments.sum, moments.outer);
+}
+
+void transfer(auto& bytes, Is<PassStrip> auto& strip) {
+  bytes(strip.plane, strip.place, strip.anchor, strip.moments);
+}
+
+void transfer(auto& bytes, Is<PlaneDigest> auto& plane) {
+  bytes(plane.plane, plane.centroid, plane.area_m2, plane.oriented, plane.interior, plane.moments);
+}
+
+void transfer(auto& bytes, Is<ScanDigest> auto& digest) {
+  auto& way = digest.track.way;
+  bytes(digest.local_origin, digest.mobile, digest.upright, digest.surely_upright, digest.model,
+        digest.upright_from_scan, digest.stations, digest.middle, digest.noise_m, digest.drift_m,
+        digest.planes, digest.openings, way.times_s, way.distances_m, way.places, digest.track.strips);
+  bytes.require(way.distances_m.size() == way.times_s.size() && way.places.size() == way.times_s.size());
+  for (const PassStrip& strip : digest.track.strips)
+    bytes.require(is_place(strip.plane, digest.planes.size()));
+}
 
 namespace {
 
@@ -29,46 +51,6 @@ PassTrack turned(PassTrack track, const Matrix3d& back) {
     strip.anchor = back * strip.anchor;
     strip.moments.sum = back * strip.moments.sum;
     strip.moments.outer = back * strip.moments.outer * back.transpose();
-  }
-  return track;
-}
-
-void put_moments(ByteWriter& writer, const PointMoments& moments) {
-  writer.put(moments.count);
-  writer.put(moments.sum);
-  writer.put(moments.outer);
-}
-void get_moments(ByteReader& reader, PointMoments& moments) {
-  reader.get(moments.count);
-  reader.get(moments.sum);
-  reader.get(moments.outer);
-}
-
-void put_track(ByteWriter& writer, const PassTrack& track) {
-  writer.put_all(track.way.times_s);
-  writer.put_all(track.way.distances_m);
-  writer.put_all(track.way.places);
-  writer.put_count(track.strips.size());
-  for (const PassStrip& strip : track.strips) {
-    writer.put(strip.plane);
-    writer.put(strip.place);
-    writer.put(strip.anchor);
-    put_moments(writer, strip.moments);
-  }
-}
-PassTrack get_track(ByteReader& reader, std::size_t planes) {
-  PassTrack track;
-  track.way.times_s = reader.get_all<double>();
-  track.way.distances_m = reader.get_all<double>();
-  track.way.places = reader.get_all<Vector3d>();
-  reader.require(track.way.distances_m.size() == track.way.times_s.size() &&
-                 track.way.places.size() == track.way.times_s.size());
-  track.strips.resize(reader.get_count(140));
-  for (PassStrip& strip : track.strips) {
-    reader.get_index(strip.plane, planes);
-    reader.get(strip.place);
-    reader.get(strip.anchor);
-    get_moments(reader, strip.moments);
   }
   return track;
 }
@@ -116,54 +98,11 @@ ScanDigest digest_of(const PreparedScan& prepared) {
 }
 
 std::string bytes_of(const ScanDigest& digest) {
-  ByteWriter writer;
-  writer.put(digest.local_origin);
-  for (const bool flag : {digest.mobile, digest.upright, digest.surely_upright, digest.model})
-    writer.put(flag);
-  writer.put(digest.upright_from_scan);
-  writer.put_all(digest.stations);
-  writer.put(digest.middle);
-  writer.put(digest.noise_m);
-  writer.put(digest.drift_m);
-  writer.put_count(digest.planes.size());
-  for (const PlaneDigest& plane : digest.planes) {
-    writer.put(plane.plane.normal);
-    writer.put(plane.plane.offset);
-    writer.put(plane.centroid);
-    writer.put(plane.area_m2);
-    writer.put(plane.oriented);
-    writer.put(plane.interior);
-    put_moments(writer, plane.moments);
-  }
-  writer.put_all(digest.openings);
-  put_track(writer, digest.track);
-  return writer.bytes();
+  return bytes_of_all(digest);
 }
 
 ScanDigest digest_from(std::string_view bytes, const std::string& where) {
-  ByteReader reader(bytes, where);
-  ScanDigest digest;
-  reader.get(digest.local_origin);
-  for (bool* flag : {&digest.mobile, &digest.upright, &digest.surely_upright, &digest.model})
-    reader.get(*flag);
-  reader.get(digest.upright_from_scan);
-  digest.stations = reader.get_all<Vector3d>();
-  reader.get(digest.middle);
-  reader.get(digest.noise_m);
-  reader.get(digest.drift_m);
-  digest.planes.resize(reader.get_count(168));
-  for (PlaneDigest& plane : digest.planes) {
-    reader.get(plane.plane.normal);
-    reader.get(plane.plane.offset);
-    reader.get(plane.centroid);
-    reader.get(plane.area_m2);
-    reader.get(plane.oriented);
-    reader.get(plane.interior);
-    get_moments(reader, plane.moments);
-  }
-  digest.openings = reader.get_all<Vector2d>();
-  digest.track = get_track(reader, digest.planes.size());
-  return digest;
+  return value_from<ScanDigest>(bytes, where);
 }
 
 }  // namespace limen

@@ -35,33 +35,25 @@ Scan picture_of(const Scan& scan, std::size_t most) {
 }
 
 std::string picture_bytes(const Scan& picture) {
-  ByteWriter writer;
-  writer.put(picture.local_origin);
-  writer.put_count(picture.size());
+  std::vector<float> places;
   for (const Vector3d& x : picture.points) {
-    for (Eigen::Index k = 0; k < 3; ++k) writer.put(static_cast<float>(x[k]));
+    for (Eigen::Index k = 0; k < 3; ++k) places.push_back(static_cast<float>(x[k]));
   }
-  writer.put_all(picture.colours);
-  writer.put_all(picture.intensities);
-  return writer.bytes();
+  return bytes_of_all(picture.local_origin, places, picture.colours, picture.intensities);
 }
 
 Scan picture_from(std::string_view bytes, const std::string& where, std::size_t most) {
-  constexpr std::size_t kPointBytes = 12;
   ByteReader reader(bytes, where);
   Scan picture;
-  reader.get(picture.local_origin);
-  picture.points.resize(reader.get_count(kPointBytes));
-  for (Vector3d& x : picture.points) {
-    for (Eigen::Index k = 0; k < 3; ++k) x[k] = static_cast<double>(reader.get<float>());
-  }
-  picture.colours = reader.get_all<std::uint8_t>();
-  picture.intensities = reader.get_all<float>();
-  reader.require(picture.colours.empty() || picture.colours.size() == 3 * picture.size());
-  reader.require(picture.intensities.empty() || picture.intensities.size() == picture.size());
-  const std::size_t count = std::min(most, picture.size());
-  picture.points.resize(count);
-  picture.points.shrink_to_fit();
+  std::vector<float> places;
+  reader(picture.local_origin, places, picture.colours, picture.intensities);
+  const std::size_t kept = places.size() / 3;
+  reader.require(places.size() == 3 * kept);
+  reader.require(picture.colours.empty() || picture.colours.size() == 3 * kept);
+  reader.require(picture.intensities.empty() || picture.intensities.size() == kept);
+  const std::size_t count = std::min(most, kept);
+  for (std::size_t i = 0; i < count; ++i)
+    picture.points.emplace_back(places[3 * i], places[3 * i + 1], places[3 * i + 2]);
   if (!picture.colours.empty()) picture.colours.resize(3 * count);
   if (!picture.intensities.empty()) picture.intensities.resize(count);
   return picture;

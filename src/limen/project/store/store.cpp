@@ -15,10 +15,20 @@
 #include "limen/project/store/scan_picture.h"
 
 namespace limen {
+
+void transfer(auto& bytes, Is<FileRecord> auto& record) {
+  bytes(record.points, record.notes, record.marks);
+}
+
+void transfer(auto& bytes, Is<FoundTarget> auto& target) {
+  bytes(target.kind, target.centre, target.sigma_m, target.points);
+  bytes.require(is_value(target.kind, TargetKind::board));
+}
+
 namespace {
 
 /// Of the files' contents; raise it where what is made, or how it is written, changes.
-constexpr std::uint32_t kFormat = 48;
+constexpr std::uint32_t kFormat = 49;
 
 std::string digits_of(const std::string& text) {
   std::uint64_t hash = 0x6c696d656e;
@@ -75,23 +85,14 @@ std::string Store::file_key(const FileKey& file) const {
 
 std::optional<FileRecord> Store::load_file(const FileKey& file) const {
   return loaded(kFiles, file_key(file), [](std::string_view bytes, const std::string& where) {
-    ByteReader reader(bytes, where);
-    FileRecord record;
-    for (const std::uint64_t points : reader.get_all<std::uint64_t>()) record.points.push_back(points);
-    record.notes = reader.get_all<std::string>();
-    for (std::size_t k = 0; k < record.points.size(); ++k)
-      record.marks.push_back(reader.get_all<std::uint64_t>());
+    auto record = value_from<FileRecord>(bytes, where);
+    record.marks.resize(record.points.size());
     return record;
   });
 }
 
 void Store::save_file(const FileKey& file, const FileRecord& record) const {
-  ByteWriter writer;
-  writer.put_all(record.points);
-  writer.put_all(record.notes);
-  for (std::size_t k = 0; k < record.points.size(); ++k)
-    writer.put_all(k < record.marks.size() ? record.marks[k] : std::vector<std::uint64_t>{});
-  save(kFiles, file_key(file), writer.bytes());
+  save(kFiles, file_key(file), bytes_of_all(record));
 }
 
 bool Store::has_features(const std::string& key) const {
@@ -132,30 +133,12 @@ std::optional<Scan> Store::load_picture(const std::string& key, std::size_t most
 
 std::optional<std::vector<FoundTarget>> Store::load_targets(const std::string& key,
                                                             const TargetOptions& sizes) const {
-  return loaded(kTargets, key_of_targets(key, sizes), [](std::string_view bytes, const std::string& where) {
-    ByteReader reader(bytes, where);
-    std::vector<FoundTarget> targets(reader.get_count(1));
-    for (FoundTarget& target : targets) {
-      reader.get_enum(target.kind, TargetKind::board);
-      reader.get(target.centre);
-      reader.get(target.sigma_m);
-      target.points = static_cast<std::size_t>(reader.get<std::uint64_t>());
-    }
-    return targets;
-  });
+  return loaded(kTargets, key_of_targets(key, sizes), value_from<std::vector<FoundTarget>>);
 }
 
 void Store::save_targets(const std::string& key, const TargetOptions& sizes,
                          const std::vector<FoundTarget>& targets) const {
-  ByteWriter writer;
-  writer.put_count(targets.size());
-  for (const FoundTarget& target : targets) {
-    writer.put(target.kind);
-    writer.put(target.centre);
-    writer.put(target.sigma_m);
-    writer.put_count(target.points);
-  }
-  save(kTargets, key_of_targets(key, sizes), writer.bytes());
+  save(kTargets, key_of_targets(key, sizes), bytes_of_all(targets));
 }
 
 bool Store::has_pair(const std::string& source, const std::string& target, const PairCounts& counts) const {
