@@ -130,7 +130,7 @@ std::shared_ptr<BuildingModel> load(const std::string& text, const RecordWriter&
     try {
       reader.readSingleStepLine(line, entity);
     } catch (const std::exception&) {
-      continue;  // a type that the schema does not know; what needs it tells of its lack
+      continue;  // a type that the schema does not know; what needs it reports that it is missing
     }
     if (!entity.second) continue;
     model->insertEntity(entity.second, true, false);

@@ -12,7 +12,7 @@ namespace limen {
 
 /// A file's bytes, mapped for reading, with a guard for the case that somebody makes the file shorter
 /// meanwhile (or its disk fails). The system answers the next look at such a byte with a signal that ends the
-/// process; here what is missing reads as zeros instead, and require_inputs_whole() tells of it.
+/// process; here what is missing reads as zeros instead, and require_inputs_whole() reports it.
 class GuardedMapping {
  public:
   /// Maps the first `size` (> 0) bytes of `descriptor`, which it keeps and closes; `name` is for messages.

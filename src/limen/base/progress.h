@@ -85,7 +85,7 @@ class StagePart : public Monitor {
   double end_;
 };
 
-/// One stage's progress that several workers make at once: what each tells of its own share is added up.
+/// One stage's progress that several workers make at once: what each reports of its own share is added up.
 class StageShares {
  public:
   StageShares(Monitor& whole, std::size_t workers) : whole_(whole), done_(workers, 0.0) {

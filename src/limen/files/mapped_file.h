@@ -38,7 +38,7 @@ void require_readable(const std::filesystem::path& path, const std::string& reme
 
 /// The bytes of a regular file, read-only, as long as the object lives: mapped, or read into memory where its
 /// disk cannot map it. Where the file becomes shorter meanwhile, what is missing reads as
-/// zeros, and require_inputs_whole() tells of it (base/guarded_mapping.h).
+/// zeros, and require_inputs_whole() reports it (base/guarded_mapping.h).
 class MappedFile {
  public:
   /// Throws Error where the path is missing, no regular file, unreadable or empty.

@@ -9,7 +9,7 @@
 
 namespace limen {
 
-/// Sets of points that hang together: points nearer to one another than `nearer_m` (more than 0) are of one.
+/// Sets of points that are connected: points nearer to one another than `nearer_m` (more than 0) are of one.
 DisjointSets joined_points(const std::vector<Vector3d>& points, double nearer_m);
 
 }  // namespace limen

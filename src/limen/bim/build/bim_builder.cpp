@@ -43,7 +43,7 @@ std::vector<PolygonMesh> solids_of(const RawOpening& opening) {
 
 /// How much of a face counts as wall.
 enum class Extent {
-  outline,   ///< what there is of it
+  outline,   ///< as far as it exists
   rectangle  ///< all within its bounding rectangle: where the file has cut the openings out already
 };
 
@@ -122,7 +122,7 @@ std::optional<BimOpening> box_of_opening(const RawModel& raw, const RawOpening& 
       if (!box) box = box_through(uncut[static_cast<std::size_t>(host)], opening, Extent::rectangle);
     } catch (const Error& error) {
       if (error.fault() != Fault::input) throw;
-      continue;  // the element's warning tells of its geometry
+      continue;  // the element's warning is about its geometry
     }
     if (!box) continue;
     box->host = opening.hosts.front();

@@ -157,7 +157,7 @@ void turn(PolygonMesh& mesh, std::size_t polygon) {
   std::reverse(mesh.corners.begin() + mesh.begin_of(polygon), mesh.corners.begin() + mesh.ends[polygon]);
 }
 
-/// Makes the polygons that hang together by edges of two agree; the greater area of a part decides.
+/// Makes the polygons that are connected by edges of two agree; the greater area of a part decides.
 void make_agree(PolygonMesh& mesh, const Neighbours& neighbours) {
   std::vector<std::int8_t> sense(mesh.size(), 0);
   for (std::size_t seed = 0; seed < mesh.size(); ++seed) {

@@ -120,7 +120,7 @@ double points_per_cube(const Scan& scan, double side_m) {
     counts.push_back(end - begin);
     begin = end;
   }
-  // Each point counts once, so that a few far and thin places do not speak for the whole.
+  // Each point counts once, so that a few far and thin places do not decide for the whole.
   std::sort(counts.begin(), counts.end());
   std::size_t passed = 0;
   for (const std::size_t count : counts) {

@@ -42,8 +42,8 @@ struct CommandDoc {
   std::vector<ExampleDoc> examples;
 };
 
-/// All that help, the manual page and the completions tell: taken from the command line itself, so that they
-/// cannot differ from it.
+/// All that help, the manual page and the completions contain: taken from the command line itself, so that
+/// they cannot differ from it.
 struct ProgramDoc {
   CommandDoc program;
   std::vector<CommandDoc> commands;

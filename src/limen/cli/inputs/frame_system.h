@@ -19,7 +19,7 @@ void add_crs_option(CommandLine& command, std::string& text);
 /// known where the text is empty. Throws Error for what is none.
 CoordinateSystem chosen_system(const std::string& text);
 
-/// The coordinate system that a point file tells of itself; not known where it tells none or cannot be
+/// The coordinate system that a point file states; not known where it states none or cannot be
 /// opened.
 CoordinateSystem system_of_file(const std::string& path);
 

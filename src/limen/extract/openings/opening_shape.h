@@ -70,10 +70,10 @@ std::array<SideSeparator, 2> frame_edges(const Scan& scan, const WallEvidence& e
                                          double front_m);
 
 /// Frames of a wall that lie equally deep are often equally wide. Where the windows say so, each upright side
-/// is placed again by its frame's inner edge and the width that the other windows tell.
+/// is placed again by its frame's inner edge and the width of the other windows.
 void share_frame_widths(std::vector<FramedRectangle>& windows);
 
-/// The side surface of an opening (reveal, lintel, sill) as far as its points tell.
+/// The side surface of an opening (reveal, lintel, sill) as far as its points show.
 struct Reveal {
   bool found = false;
   double place = 0.0;          ///< of the side at the wall's face, in the wall's frame

@@ -10,7 +10,7 @@
 
 namespace limen {
 
-/// A plane's points by parts that hang together: squares of `gap_m` that touch, also at a corner. Largest
+/// A plane's points by parts that are connected: squares of `gap_m` that touch, also at a corner. Largest
 /// first, each ascending.
 std::vector<std::vector<std::uint32_t>> touching_parts(const Scan& scan, const PlaneFit& fit,
                                                        const std::vector<std::uint32_t>& points,
@@ -26,7 +26,7 @@ struct JoinOptions {
   void check() const;
 };
 
-/// Points of one plane that hang together.
+/// Points of one plane that are connected.
 struct PlanePiece {
   std::vector<std::uint32_t> points;  ///< of the scan, ascending
   PointMoments moments;               ///< about the anchor
@@ -39,7 +39,7 @@ PlanePiece piece_of(const Scan& scan, std::vector<std::uint32_t> points, const V
 std::vector<std::int32_t> labels_with(std::vector<std::int32_t> labels, const std::vector<PlanePiece>& pieces,
                                       std::size_t first = 0);
 
-/// The parts of a plane's points that hang together and were seen from one side. Largest first.
+/// The parts of a plane's points that are connected and were seen from one side. Largest first.
 std::vector<PlanePiece> parts_of(const Scan& scan, const PlaneFit& fit,
                                  const std::vector<std::uint32_t>& points, double gap_m,
                                  const Vector3d& anchor);

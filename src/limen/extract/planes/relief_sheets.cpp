@@ -130,7 +130,7 @@ class SheetSearch {
   SheetSearch(const Scan& scan, const WallSpace& wall, const Vector3d& anchor, const SheetOptions& options)
       : scan_(scan), wall_(wall), anchor_(anchor), o_(options) {}
 
-  /// Sheets seen from the side that `sign` tells; their points are taken from `free`.
+  /// Sheets seen from the side that `sign` names; their points are taken from `free`.
   std::vector<PlanePiece> run(const std::vector<ReliefPoint>& free, std::size_t axis, double sign,
                               std::vector<char>& taken) const {
     std::vector<ReliefPoint> seen;

@@ -21,7 +21,7 @@ struct StepOptions {
   void check() const;
 };
 
-/// A plane's points in parts, each of one surface as far as the noise tells: two neighbours 4 mm apart in
+/// A plane's points in parts, each of one surface as far as the noise allows: two neighbours 4 mm apart in
 /// depth
 /// - a mullion and its frame, the sides and the boards of a shelf - lie within one threshold, but the means
 /// of cells of a dozen points show the step.

@@ -52,7 +52,7 @@ struct DetectedEdge {
   /// Indices into Features::planes, the second only of a crease; -1 is also a small plane that was
   /// looked for here alone.
   std::array<std::int32_t, 2> planes = {-1, -1};
-  double sigma_m = 0.0;  ///< one standard deviation of its place across, as the fit tells it
+  double sigma_m = 0.0;  ///< one standard deviation of its place across, from the fit
 };
 
 /// The edges of a scan, longest first. Borders are judged by what the scanner saw beyond them: with an

@@ -220,7 +220,7 @@ bool judge(BorderFit& fit, double core_begin, double core_end) {
   const double expected = kUniform * fit.shortfall_m;
   const double own = expected > 0.0 ? std::max(0.0, 1.0 - spread * spread / (expected * expected)) : 0.0;
   const double count = std::max(1.0, independent(heights));
-  // Nor do the gaps further in tell the shortfall itself better than to a part of it.
+  // Nor is the shortfall itself known better than to a part of it from the gaps further in.
   const double stated = kShortfallKnown * fit.shortfall_m;
   fit.sigma_m = std::sqrt(spread * spread / count + expected * expected * own + stated * stated);
   fit.angle_sigma_rad = std::sqrt(12.0 / count) * std::max(spread, 0.3 * expected) /

@@ -16,7 +16,7 @@ struct SplitOptions {
   void check() const;
 };
 
-/// Planes cut into the pieces that hang together, each fitted for itself: the ceilings of two rooms seen
+/// Planes cut into the pieces that are connected, each fitted for itself: the ceilings of two rooms seen
 /// through their windows may be one plane to a few millimetres, and neither room's. Pieces follow each other
 /// in the order of their planes, the largest first.
 PlaneLabels split_planes(const Scan& scan, const PlaneLabels& planes, const SplitOptions& options = {});

@@ -82,7 +82,7 @@ struct BoardPose {
 
 /// The poses that explain the points: the mean of all, each with its probability, and how they scatter. A
 /// point on the wrong side of an edge costs its distance; an edge is as probable anywhere between points
-/// that it must part, so that a grid of points along the edges is not thought to tell more than it does.
+/// that it must part, so that a grid of points along the edges is not taken for more informative than it is.
 /// Edges are the two that cross in the centre, and the board's border for points that may not be beside it,
 /// or must be.
 class BoardPosterior {

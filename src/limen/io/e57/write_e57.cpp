@@ -136,7 +136,7 @@ class E57Section {
   /// `name`: of the file, for messages.
   E57Section(E57PageWriter& file, std::string name, CloudPlan plan);
   void write(const RecordTable& rows);
-  /// Ends the section; tells what the file's description needs to know of it.
+  /// Ends the section; gives what the file's description needs.
   E57Description finish();
 
  private:

@@ -31,7 +31,7 @@ struct SbetMotion {
 };
 
 /// Records moved: places and attitudes are corrected, speeds and accelerations, which are along the
-/// platform's own axes or tell of its motion, stay as they were. `source` is the map of the trajectory
+/// platform's own axes or describe its motion, stay as they were. `source` is the map of the trajectory
 /// before, `target` that of the frame.
 std::vector<SbetRecord> moved_records(const std::vector<SbetRecord>& records, const MapProjection& source,
                                       const MapProjection& target, const SbetMotion& motion);

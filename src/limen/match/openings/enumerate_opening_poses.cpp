@@ -283,7 +283,7 @@ class OpeningEnumerator {
     return poses;
   }
 
-  /// The walls that proposed a pose speak for it, else those with most openings in common.
+  /// A pose is supported by the walls that proposed it, else by those with most openings in common.
   [[nodiscard]] static bool speaks_before(const WallMeeting& one, const WallMeeting& other,
                                           const WallPair& pair) {
     const auto own = [&](const WallMeeting& m) {

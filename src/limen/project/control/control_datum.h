@@ -10,7 +10,7 @@
 
 namespace limen {
 
-/// Nodes that stand firmly in one frame of their own.
+/// Nodes that links hold in one frame of their own.
 struct FramedNodes {
   std::vector<Rigid3> frame_from_node;
   std::vector<Matrix6d> covariance;  ///< of a turn about the node's origin and a shift; frame axes

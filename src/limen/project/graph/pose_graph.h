@@ -89,10 +89,10 @@ struct SolvedNode {
 /// Two ways to put one part of a component against the rest that the data cannot distinguish.
 struct GraphQuestion {
   std::vector<int> moved;    ///< nodes that would move
-  std::vector<int> current;  ///< links that speak for the present place only
-  std::vector<int> rival;    ///< links that speak for the other place only
+  std::vector<int> current;  ///< links that support the present place only
+  std::vector<int> rival;    ///< links that support the other place only
   Rigid3 frame_from_frame;   ///< how they would move; without meaning where `doubt` is set
-  double rival_nats = 0.0;   ///< by how much links speak for the other place
+  double rival_nats = 0.0;   ///< by how much links support the other place
   double doubt = 0.0;        ///< no other place is known, but the links are wrong with this probability
 };
 

@@ -29,7 +29,7 @@ class SpanningTrees {
   }
   /// Those that are reached from `from`, of `among` only.
   [[nodiscard]] std::vector<int> reached(const std::vector<int>& from, const std::vector<bool>& among) const;
-  /// Logarithm of the number of trees of some nodes that hang together.
+  /// Logarithm of the number of trees of some nodes that are connected.
   [[nodiscard]] double log_count(const std::vector<int>& nodes) const;
 
   std::vector<std::vector<int>> neighbours_;

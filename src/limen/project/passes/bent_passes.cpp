@@ -52,7 +52,7 @@ int add_blend(JointProblem& problem, const NodeBlend& blend, const Rigid3& pose,
   return static_cast<int>(number);
 }
 
-/// What the steps of a walk tell of its rate.
+/// The rate of a walk, from its steps.
 struct WalkEvidence {
   double squares = 0.0;  // of the steps, per metre
   double numbers = 0.0;  // of steps that the data hold

@@ -116,8 +116,8 @@ struct ProjectLink {
 struct ProjectQuestion {
   std::string text;
   std::vector<int> scans;         ///< that would move
-  std::vector<int> current;       ///< links that speak for the present place
-  std::vector<int> rival;         ///< links that speak for the other
+  std::vector<int> current;       ///< links that support the present place
+  std::vector<int> rival;         ///< links that support the other
   std::vector<Decision> answers;  ///< that would settle it
 };
 

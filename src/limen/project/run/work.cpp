@@ -151,7 +151,7 @@ class Worker {
     return digest->counts();
   }
 
-  /// The file that a key of features is of.
+  /// The file whose features have this key.
   [[nodiscard]] std::string file_of(const std::string& key) const {
     const bool model = key.find("-model-") != std::string::npos;
     for (const auto& [name, stated] : order_.at("files").items()) {

@@ -242,8 +242,8 @@ class Confirmer {
     }
   }
 
-  /// Where the scan is in the survey's frame by the points of all others; empty where they do not tell,
-  /// or it sees its own elsewhere, or none.
+  /// Where the scan is in the survey's frame by the points of all others; empty where they do not determine
+  /// it, or it sees its own elsewhere, or none.
   [[nodiscard]] std::optional<LinkPose> place(int node) const {
     if (!sees_known(node)) return {};
     FramedNodes others = framed_;

@@ -10,7 +10,7 @@
 
 namespace limen {
 
-/// Adds the survey's frame as a node, and a link to it of every scan whose own targets tell its pose
+/// Adds the survey's frame as a node, and a link to it of every scan whose own targets determine its pose
 /// there; contradictory ones are in the notes. Nothing where there are no control points.
 void add_survey_links(Survey& survey, ProjectGraph& made);
 

@@ -31,7 +31,7 @@ class Notes : public Monitor {
 const std::string kKey = "0123-0-aa";
 const std::string kOther = "4567-0-aa";
 
-/// A plane with one sample on it; `sample_plane` is the number it tells of its plane.
+/// A plane with one sample on it; `sample_plane` is the number of its plane that it states.
 PreparedScan little_scan(std::int32_t sample_plane = 0) {
   PreparedScan scan;
   PlanarPolygon plane;

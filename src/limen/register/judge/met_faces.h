@@ -13,7 +13,7 @@ namespace limen {
 // Pieces that lie so in one plane are of one face: a leaf, a cupboard's front.
 inline constexpr double kOneFaceM = 0.04;
 inline constexpr double kOneFaceCosine = 0.97;
-inline constexpr double kThingLengthM = 0.4;  ///< what is nearer than this is of one thing ...
+inline constexpr double kThingLengthM = 0.4;  ///< pieces nearer than this belong to one thing ...
 inline constexpr double kFrontLengthM = 1.5;  ///< ... and those of one plane nearer than this
 
 /// A face of one scan that the other has as well, in the target's frame.

@@ -35,7 +35,7 @@ std::vector<double> nats_against_chance(const std::vector<FoundPose>& poses, Pai
 
 /// What a room and a scan from outside say of a look-alike place, the right pose not being among those found.
 /// In a pair that is part of what chance reaches; but several such pairs agree on it by design. So agreeing
-/// surface does not exclude it, and what is contradicted speaks for it. `repeats`: factor of the odds
+/// surface does not exclude it, and contradictions make it more probable. `repeats`: factor of the odds
 /// beforehand.
 LookAlikeEvidence look_alike_through_windows(const PoseScore& score, PairSort sort, double repeats = 1.0);
 

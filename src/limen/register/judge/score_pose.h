@@ -69,7 +69,7 @@ class PoseContrasts {
   std::unique_ptr<Asked> asked_;
 };
 
-/// By how much the share of contradicted surface speaks for a pose against chance, natural logarithm. Under a
+/// Evidence of the share of contradicted surface for a pose against chance, natural logarithm. Under a
 /// right pose it is a property of a pair (doors, people, glass, things that were moved): known as a beta
 /// distribution only, and integrated out. So is the share that wrong poses contradict.
 double nats_of_contradiction(double agreeing_m2, double contradicted_m2,

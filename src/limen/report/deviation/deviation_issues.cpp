@@ -85,7 +85,7 @@ BcfTopic element_topic(const BimElement& element, const ElementDeviation& it) {
   topic.ifc_guid = element.guid;
   const std::string name = name_of(element);
   const std::string storey = storey_words(element);
-  // Of a mesh there is no GUID; its number tells it.
+  // A mesh has no GUID; its number identifies it.
   const std::string who = element.guid.empty() ? fmt::format("{} {}", it.element, name) : element.guid;
   if (it.presence == Presence::not_found) {
     topic.label = "missing";

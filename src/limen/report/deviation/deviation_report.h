@@ -16,7 +16,7 @@
 
 namespace limen {
 
-/// All that the files of a deviation tell beside the points themselves.
+/// All that the files of a deviation contain beside the points themselves.
 struct DeviationReport {
   Deviation deviation;
   InputSummary scan;

@@ -7,7 +7,7 @@
 
 namespace limen {
 
-/// What the files of a scan's and of a building's deviation tell alike.
+/// What the files of a scan's and of a building's deviation have in common.
 Json shift_json(const ElementShift& shift);
 Json element_json(const ElementDeviation& it, const BimElement& element);
 Json unmodelled_json(const UnmodelledObject& piece, const Vector3d& local_origin);

@@ -17,7 +17,7 @@ namespace limen {
 struct VerdictWords {
   std::string headline;                ///< "Registered: the two scans fit in one way only"
   std::vector<std::string> sentences;  ///< what to expect, what is open
-  std::string reason;                  ///< in the program's own words, where no sentence tells it
+  std::string reason;                  ///< in the program's own words, where no sentence fits
   std::string symbol;                  ///< one character: no outcome is shown by colour alone
 };
 VerdictWords verdict_words(const RegistrationReport& report);

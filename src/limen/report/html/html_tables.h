@@ -8,7 +8,7 @@
 
 namespace limen {
 
-// Tables of the report page, ready HTML; an empty text where there is nothing to tell.
+// Tables of the report page, ready HTML; an empty text where there is nothing to show.
 
 /// The few numbers that fit on the printed sheet. `pose`: 0 is the best one, then come the alternatives.
 std::string key_table(const RegistrationReport& report, std::size_t pose = 0);

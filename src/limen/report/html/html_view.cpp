@@ -48,7 +48,8 @@ ViewBox box_around(const std::vector<Vector3d>& places, const Rigid3& view_from_
   return box;
 }
 
-/// Adds a wall's direction in the plan, four times the angle, so that walls at right angles speak for one.
+/// Adds a wall's direction in the plan, four times the angle, so that walls at right angles count as one
+/// direction.
 void add_direction(const Vector3d& normal, double area_m2, const Vector3d& up, const Matrix3d& level,
                    Vector2d& sum) {
   if (std::abs(normal.dot(up)) > 0.2) return;

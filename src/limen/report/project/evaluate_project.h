@@ -29,7 +29,7 @@ struct ProjectErrors {
 
 /// Holds the places of all `registered` scans against the truth. A project's frame is its own: all are
 /// compared as they stand to one of them. A scan's truth is that of its file's name; where several are called
-/// alike their folders tell, as many as both paths end with. Throws Error, which names `truth_path`, where
+/// alike by their folders, as many as both paths end with. Throws Error, which names `truth_path`, where
 /// the truth lacks a scan or cannot be distinguished from another's.
 ProjectErrors evaluate_project(const std::vector<ProjectEntry>& project, const std::vector<TrueScan>& truth,
                                const std::filesystem::path& truth_path);

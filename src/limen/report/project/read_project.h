@@ -16,7 +16,7 @@
 
 namespace limen {
 
-/// A scan as project.json tells of it.
+/// A scan as project.json describes it.
 struct ProjectEntry {
   std::string file;
   int index = 0;
@@ -53,8 +53,8 @@ CoordinateSystem read_project_system(const std::filesystem::path& path);
 /// read_project().
 StatedTrajectories read_project_trajectories(const std::filesystem::path& path);
 
-/// Of all links that tell their poses: one that is left out as a look-alike place does not. Throws Error as
-/// read_project().
+/// Of all links whose poses are in the file; that of a link left out as a look-alike place is not. Throws
+/// Error as read_project().
 std::vector<ProjectPoses> read_project_poses(const std::filesystem::path& path);
 
 /// Its scans and models. Throws Error that names the file and the fault.

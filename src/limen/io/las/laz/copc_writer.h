@@ -34,7 +34,7 @@ class CopcWriter : public PointPacker {
              const LasGrid& grid);
 
   void write(std::string_view records) override;
-  /// The nodes, their table, the hierarchy as an extended record; the header tells of it then.
+  /// The nodes, their table, the hierarchy as an extended record; the header points to it then.
   std::uint64_t finish() override;
 
  private:
