@@ -29,6 +29,8 @@ std::vector<ProjectFile> some_files(const TemporaryFolder& folder) {
                                                                testing_io::Writing::little));
     files.push_back({path.string(), false, sha256_of_file(path), {}, {}});
   }
+  // A large one, too.
+  std::filesystem::resize_file(files[2].path, std::uintmax_t{33} << 20U);
   files[4].copy_of = files[0].path;
   files[5].fault = "may not be read";
   return files;
@@ -37,18 +39,22 @@ std::vector<ProjectFile> some_files(const TemporaryFolder& folder) {
 TEST(PrepareFiles, OutcomesComeInTheOrderOfTheFilesEachWithItsOwn) {
   const TemporaryFolder folder;
   const std::vector<ProjectFile> files = some_files(folder);
-  const Store store(folder / "store", "options");
-  std::vector<std::pair<std::size_t, FileOutcome>> outcomes;
-  prepare_files(files, {}, store, silent_monitor(),
-                [&](std::size_t k, FileOutcome outcome) { outcomes.emplace_back(k, std::move(outcome)); });
-  ASSERT_EQ(outcomes.size(), files.size());
-  for (std::size_t k = 0; k < files.size(); ++k) {
-    const auto& [number, outcome] = outcomes[k];
-    EXPECT_EQ(number, k);
-    EXPECT_EQ(outcome.record.has_value(), k == 0 || k == 1 || k == 3);
-    EXPECT_EQ(outcome.fault.empty(), k != 2);
-    if (!outcome.record) continue;
-    EXPECT_EQ(outcome.record->points, std::vector<std::size_t>{30000 - 5000 * k});
+  for (const std::size_t memory_bytes : {std::size_t{0}, std::size_t{1} << 30U}) {
+    const Store store(folder / ("store_" + std::to_string(memory_bytes)), "options");
+    ProjectOptions options;
+    options.reading.memory_bytes = memory_bytes;
+    std::vector<std::pair<std::size_t, FileOutcome>> outcomes;
+    prepare_files(files, options, store, silent_monitor(),
+                  [&](std::size_t k, FileOutcome outcome) { outcomes.emplace_back(k, std::move(outcome)); });
+    ASSERT_EQ(outcomes.size(), files.size());
+    for (std::size_t k = 0; k < files.size(); ++k) {
+      const auto& [number, outcome] = outcomes[k];
+      EXPECT_EQ(number, k);
+      EXPECT_EQ(outcome.record.has_value(), k == 0 || k == 1 || k == 3);
+      EXPECT_EQ(outcome.fault.empty(), k != 2);
+      if (!outcome.record) continue;
+      EXPECT_EQ(outcome.record->points, std::vector<std::size_t>{30000 - 5000 * k});
+    }
   }
 }
 
