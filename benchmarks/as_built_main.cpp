@@ -155,8 +155,8 @@ class Rows {
         common_surfaces(source, BuiltPlanes(source), target, BuiltPlanes(target), pose);
     const double nats = built_nats(built_evidence(surfaces.all), {bends_beforehand(0.0)});
     const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
-    const SeenClutter matter = seen_clutter(source, target, pose);
-    LookAlikeEvidence said = weigh_look_alike(matter);
+    const SeenClutter clutter = seen_clutter(source, target, pose);
+    LookAlikeEvidence said = weigh_look_alike(clutter);
     const double after = probability_of(said);
     said.built = {};
     std::string list;

@@ -5,7 +5,7 @@
 // places, rooms that have nothing in common, other buildings of the same kind; against the simulator's exact
 // truth.
 //   bench_calibration --purpose judging --minutes 20 -o rows.csv      again: goes on where it stopped
-//   bench_calibration --purpose fitting --only look-alike place --pairs 100 -o rows.csv
+//   bench_calibration --purpose fitting --only twin --pairs 100 -o rows.csv
 //   bench_calibration --report rows.csv --svg reliability.svg         the tables of rows made before
 // A pose is the true one within 5 cm at the scanner and half a degree.
 #include <chrono>
@@ -261,7 +261,7 @@ void print_tables(const std::vector<Row>& rows, const std::string& svg) {
     seconds += row.seconds;
   }
   print_counts("kind of pair", kinds);
-  print_counts("twins: different rooms built alike", look_alikes);
+  print_counts("look-alike rooms", look_alikes);
   print_counts("building", buildings);
   if (reliability.count > 0)
     reliability.print();

@@ -373,8 +373,8 @@ class EdgeTruthFinder {
     return side.echoes.size() >= static_cast<std::size_t>(o_.min_echoes);
   }
 
-  /// The first matter along a ray that is not glass.
-  [[nodiscard]] RayHit matter(const Vector3d& from, const Vector3d& towards) const {
+  /// The first surface along a ray that is not glass.
+  [[nodiscard]] RayHit first_solid(const Vector3d& from, const Vector3d& towards) const {
     const Vector3d origin = scene_from_points_ * from;
     const Vector3d direction = (scene_from_points_ * towards - origin).normalized();
     double begin = 0.05;
@@ -390,14 +390,14 @@ class EdgeTruthFinder {
   }
 
   [[nodiscard]] bool reaches(const Vector3d& centre, const Vector3d& x) const {
-    const RayHit hit = matter(centre, x);
+    const RayHit hit = first_solid(centre, x);
     return hit.found() && std::abs(hit.range_m - (x - centre).norm()) < 0.005 / std::max(0.1, hit.cosine);
   }
 
   /// Whether the face is seen to end at an edge.
   [[nodiscard]] bool ends(const Side& side, const Vector3d& at) const {
     const Vector3d beyond = at - kAside_m * side.into;
-    const RayHit hit = matter(side.centre, beyond);
+    const RayHit hit = first_solid(side.centre, beyond);
     if (!hit.found()) return true;
     const Vector3d x = side.centre + hit.range_m * (beyond - side.centre).normalized();
     const double sign = side.face->plane.signed_distance(side.centre) > 0.0 ? 1.0 : -1.0;

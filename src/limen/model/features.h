@@ -33,10 +33,10 @@ struct Opening {
   double edge_sigma_m[4] = {1.0, 1.0, 1.0, 1.0};
   double reveal_depth_m = 0.0;  ///< how far the sides of the opening reach behind the wall; 0: not seen
   double reveal_sigma_m = 0.0;  ///< one standard deviation of it
-  bool reveal_complete =
-      false;  ///< the sides end there: the depth is the wall's thickness, not a lower bound
-  std::vector<Vector3d>
-      outline;  ///< the seen outline in the wall where it is not a rectangle (arched, round)
+  /// The sides end there: the depth is the wall's thickness, not a lower bound.
+  bool reveal_complete = false;
+  /// The seen outline in the wall where it is not a rectangle (arched, round).
+  std::vector<Vector3d> outline;
 };
 
 /// A small piece of surface: the mean of the points in one tile of a plane, or of one cube of clutter.

@@ -50,8 +50,8 @@ struct PoseSigma {
 struct Hypothesis {
   Rigid3 target_from_source;  ///< world to world, metres
   PoseSigma sigma;            ///< how well it is known, were it the right one
-  std::optional<double>
-      probability;               ///< that the scans were taken so, among all that may be; not of segments
+  /// That the scans were taken so, among all that may be; not of segments.
+  std::optional<double> probability;
   double score = 0.0;            ///< higher is better, m^2 of agreeing surface less the contradicted one
   double agreeing_m2 = 0.0;      ///< surface of each scan met by the other, symmetrised
   double contradicted_m2 = 0.0;  ///< surface of one scan standing where the other's rays passed free
@@ -62,8 +62,7 @@ struct Hypothesis {
   double agreeing_length_m = 0.0;         ///< length of the smaller set of segments that lies on the other
   std::optional<double> explained_share;  ///< against a model: of the walls that the scan saw
   std::string room;                       ///< of a model with named rooms: where the (first) station then is
-  std::optional<LookAlikeEvidence>
-      look_alike;    ///< whether it lays a place on a look-alike one, where that was asked
+  std::optional<LookAlikeEvidence> look_alike;  ///< whether it lays a place on a look-alike one, where asked
   bool tie = false;  ///< of an alternative: it cannot be distinguished from the best
 };
 

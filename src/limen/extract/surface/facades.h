@@ -26,10 +26,10 @@ std::vector<int> find_facades(const std::vector<PlanarPolygon>& polygons, const 
 
 /// How far the region of a wall reaches beyond its polygon.
 struct WallOutlineOptions {
-  double close_gaps_m =
-      0.5;  ///< gaps narrower than this are closed: cornices, a window at the scan's edge; >= 0
-  double max_relief_m =
-      0.1;  ///< parallel pieces this near to the plane belong to the wall: plinths, bands; >= 0
+  /// Gaps narrower than this are closed: cornices, a window at the scan's edge; >= 0.
+  double close_gaps_m = 0.5;
+  /// Parallel pieces this near to the plane belong to the wall: plinths, bands; >= 0.
+  double max_relief_m = 0.1;
 
   void check() const;
 };

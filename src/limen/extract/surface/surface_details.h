@@ -17,8 +17,8 @@ struct SurfaceDetail {
   Vector3d mean = Vector3d::Zero();    ///< metres, about the scan's local origin
   Vector3d normal = Vector3d::Zero();  ///< towards the scanner where that is known; zero: not flat
   float area_m2 = 0.0F;
-  float sigma_m =
-      0.0F;  ///< of the mean across a flat piece: scatter of its points over the root of their number
+  /// Of the mean across a flat piece: scatter of its points over the root of their number.
+  float sigma_m = 0.0F;
 
   [[nodiscard]] bool flat() const { return !normal.isZero(); }
 };

@@ -17,8 +17,8 @@ std::vector<OpeningPose> distinct_poses(std::vector<OpeningPose> poses, const Ve
   const double cell = options.same_shift_m + options.same_thickness_m;
   std::vector<OpeningPose> kept;
   std::vector<Vector3d> middles;
-  std::map<long, std::vector<std::size_t>>
-      by_x;  // of kept, in cells wider than look-alike places can lie apart
+  // Of kept, in cells wider than the distance of two poses that look alike.
+  std::map<long, std::vector<std::size_t>> by_x;
   const auto look_alikes = [&](const OpeningPose& pose, const Vector3d& moved, std::size_t other) {
     const Vector3d off = moved - middles[other];
     const double across = off.dot(pose.wall_normal);

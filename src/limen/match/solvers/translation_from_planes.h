@@ -11,8 +11,8 @@ namespace limen {
 
 /// A plane of the source that shall lie on a plane of the target.
 struct PlanePair {
-  Vector3d source_point =
-      Vector3d::Zero();  ///< on the source's plane where the two overlap (or its centroid)
+  /// On the source's plane where the two overlap (or its centroid).
+  Vector3d source_point = Vector3d::Zero();
   Plane target;
   double weight = 1.0;  ///< >= 0; for example the area in common
 };

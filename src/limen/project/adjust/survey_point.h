@@ -36,8 +36,8 @@ struct MarkedPoint {
   std::vector<PointSight> sights;
   std::optional<KnownPlace> known;
   bool enters = true;  ///< otherwise the poses tell where it is, and it tells them nothing
-  bool known_enters =
-      true;  ///< otherwise its sights tie nodes to one another, and its coordinates tell nothing
+  /// Otherwise its sights tie nodes to one another, and its coordinates tell nothing.
+  bool known_enters = true;
 
   [[nodiscard]] bool is_known() const { return known.has_value() && enters && known_enters; }
 };

@@ -20,8 +20,8 @@ struct LinkPose {
   Vector3d centre = Vector3d::Zero();  ///< near the common surface, target frame, metres
   double agreeing_m2 = 0.0;            ///< surface that supports it
   double probability = 1.0;            ///< that it is the right one, by the pair alone
-  std::optional<LookAlikeEvidence> look_alike =
-      {};  ///< whether it lays a place on a look-alike one, if that was asked
+  /// Whether it lays a place on a look-alike one, where that was asked.
+  std::optional<LookAlikeEvidence> look_alike = {};
 };
 
 /// The same pose the other way round.

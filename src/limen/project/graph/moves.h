@@ -15,10 +15,10 @@ struct Move {
   Rigid3 frame_from_frame;
   double present_nats = 0.0;  ///< what pairs across the cut say of the present place ...
   double moved_nats = 0.0;    ///< ... and of the other
-  std::vector<int>
-      present;  ///< links that agree with the present place, and not by the same pose with the other
-  std::vector<int>
-      moved;  ///< links that agree with the other place, and not by the same pose with the present
+  /// Links that agree with the present place, and not by the same pose with the other.
+  std::vector<int> present;
+  /// Links that agree with the other place, and not by the same pose with the present.
+  std::vector<int> moved;
   std::vector<int> either;              ///< links that agree with both, by one pose or by two
   std::vector<PlacedPair> moved_alone;  ///< of links that agree with the other place alone
   double either_nats = 0.0;             ///< by how much more likely those that agree with both have it there

@@ -16,8 +16,8 @@ struct PairEvidence {
   /// Against the same where other links already lay the pair so: wrong poses seldom agree by chance.
   double coincidence_nats = 0.0;
   LookAlikeEvidence look_alikes;  ///< against look-alike places
-  bool asks_look_alike =
-      false;  ///< `look_alikes` was measured; else a look-alike place is one of the pair's own poses
+  /// `look_alikes` was measured; else a look-alike place is one of the pair's own poses.
+  bool asks_look_alike = false;
 
   /// Whether things and walls of rooms were asked about.
   [[nodiscard]] bool asks_things() const { return asks_look_alike && look_alikes.rooms; }

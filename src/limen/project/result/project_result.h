@@ -178,8 +178,8 @@ struct ProjectResult {
   int sigma_scan = -1;  ///< the scan that is held fixed, against which deviations are stated; -1: none is
   std::string control_file;   ///< empty: none was given
   std::string control_words;  ///< what came of it
-  double control_factor =
-      0.0;  ///< of squared deviations of control points against what they were given; 0: none
+  /// Of squared deviations of control points against what they were given; 0: none.
+  double control_factor = 0.0;
   std::vector<ProjectPoint> points;  ///< by name
   std::vector<ProjectDecision> decisions;
   std::vector<ProjectScan> scans;

@@ -25,8 +25,8 @@ struct PlacedSurvey {
   std::string words;                ///< what came of it, one sentence
   std::vector<bool> controlled;     ///< of each node: is in the survey's frame
   std::vector<MarkedPoint> points;  ///< of each mark: as it enters the adjustment
-  std::vector<std::vector<std::size_t>>
-      sights;                                  ///< of each point: the numbers of the mark's sights that count
+  /// Of each point: the numbers of the mark's sights that count.
+  std::vector<std::vector<std::size_t>> sights;
   std::vector<std::vector<Vector3d>> seen_at;  ///< of each sight of each mark: its place, as it was adjusted
   std::vector<bool> candidates;                ///< coordinates that may enter
   SettledPoints settled;                       ///< the last adjustment with them

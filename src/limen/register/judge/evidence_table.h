@@ -66,8 +66,8 @@ inline constexpr double kOtherwise = 0.939;             ///< ... that is furnish
 inline constexpr double kOtherwiseBehindWall = 0.0679;  ///< the same where a wall is between the stations,
 inline constexpr double kAlike = 0.00458;               ///< and one that is furnished alike.
 inline constexpr double kBehindWindows = 0.0236;        ///< that pairs through windows agree on another one,
-inline constexpr double kAgreeingBehind =
-    0.899;  ///< and the weight of agreement against it, of that against chance
+/// ... and the weight of agreement against it, of that against chance.
+inline constexpr double kAgreeingBehind = 0.899;
 inline constexpr double kRateStrength = 1.42;  ///< how well their share in a building is known, in scans
 inline constexpr double kAsDrawn = 0.02;       ///< that a building is exactly as drawn (presumed) ...
 inline constexpr ShareBelief kBuiltInAsDrawn{0.0144, 5.5};  ///< and Furniture::built_in of such a building

@@ -61,7 +61,7 @@ double odds_of(const LookAlikeEvidence& evidence);
 /// The probability that the scans show two look-alike places and not one, by Bayes' rule.
 double probability_of(const LookAlikeEvidence& evidence);
 
-/// What a user should know of a pair whose look-alike place cannot be excluded: one sentence's end.
+/// Why a look-alike place cannot be excluded: the end of a sentence for a user.
 std::string look_alike_words(const SeenClutter& clutter, double probability);
 
 }  // namespace limen

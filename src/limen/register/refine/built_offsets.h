@@ -54,8 +54,8 @@ Matrix6d damped_inverse(const Matrix6d& information);
 /// A pose among planes of which some were moved, as a small turn and shift.
 struct SettledPose {
   Vector6d step = Vector6d::Zero();
-  Matrix6d information =
-      Matrix6d::Zero();       ///< with what other such poses say, weighted by how likely they are
+  /// With what other such poses say, weighted by how likely they are.
+  Matrix6d information = Matrix6d::Zero();
   std::vector<double> moved;  ///< of each plane, the probability that it was moved
 };
 

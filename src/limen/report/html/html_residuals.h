@@ -17,8 +17,8 @@ std::vector<std::uint8_t> plane_of_points(const SceneSide& side);
 /// matched with.
 struct PointResiduals {
   double range_m = 0.01;  ///< what the largest byte represents; distances beyond count as it
-  std::vector<std::uint8_t>
-      values;  ///< 128 + 127 * distance / range, positive before the plane; 0: not matched
+  /// 128 + 127 * distance / range, positive before the plane; 0: not matched.
+  std::vector<std::uint8_t> values;
 };
 PointResiduals point_residuals(const ReportScene& scene, const RegistrationResult& result,
                                const std::vector<std::uint8_t>& plane_of_source);

@@ -26,8 +26,8 @@ struct ProjectEntry {
   double doubt = 0.0;   ///< probability that it is elsewhere
   std::string sha256;   ///< of the file's bytes
   std::string copy_of;  ///< another file of the same bytes
-  double sigma_m =
-      0.0;  ///< how well its place is known, the largest of three deviations; of a bent pass along it
+  /// How well its place is known, the largest of three deviations; of a bent pass along it.
+  double sigma_m = 0.0;
   std::optional<Rigid3> frame_from_scan;     ///< empty where it has no place in the project's frame
   std::shared_ptr<const SplineMotion> bend;  ///< of a pass that drifted: what moves it then, by time
   std::vector<double> knot_times_s;          ///< of that

@@ -86,8 +86,8 @@ struct FloorPlan {
   double base_m = 0.0;
   double roof_m = 3.0;
   std::vector<WindowAxis> axes;
-  std::vector<PlannedDoor> doors =
-      {};  ///< empty: doors are chosen at random, so that all rooms can be reached
+  /// Empty: doors are chosen at random, so that all rooms can be reached.
+  std::vector<PlannedDoor> doors = {};
 
   /// Faces of all rooms, then of the envelope.
   [[nodiscard]] std::vector<WallFace> faces() const;

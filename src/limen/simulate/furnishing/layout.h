@@ -43,8 +43,8 @@ struct PlacingOptions {
   double turn_rad = 0.0;  ///< one standard deviation
   double moved_share = 0.0;    ///< of the pieces: they stand elsewhere in the room
   double removed_share = 0.0;  ///< of the pieces
-  double pushed_share =
-      1.0;  ///< of those that stay, but for chairs and small things: shifted and turned a bit
+  /// Of those that stay, but for chairs and small things: shifted and turned a bit.
+  double pushed_share = 1.0;
   double contents_share = 1.0;  ///< of the pieces: what is in and on them is new
 };
 

@@ -21,8 +21,8 @@ struct ScannerOptions {
   double glass_loss_share = 0.03;    ///< that come back from nowhere
   double glass_mirror_share = 0.0;   ///< that are thrown back as by a mirror, and end on what it shows
   double max_range_m = 120.0;
-  double least_signal =
-      2.5e-4;  ///< reflectivity * cos(incidence) * (10 m / range)^2 that still gives an echo
+  /// Reflectivity * cos(incidence) * (10 m / range)^2 that still gives an echo.
+  double least_signal = 2.5e-4;
 
   void check() const;
 };
