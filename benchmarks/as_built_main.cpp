@@ -81,7 +81,7 @@ std::string joined_numbers(const std::vector<double>& values) {
 /// For every stray share one place [quality][bend], and look-alike places [kind][quality][bend], in one row.
 std::string tables_of(const std::vector<CommonSurface>& surfaces) {
   std::string one_text;
-  std::string twin_text;
+  std::string look_alike_text;
   for (const double stray : kStray) {
     const AsBuiltDensity density(surfaces, stray);
     if (!density.knows_square()) return {};
@@ -96,9 +96,9 @@ std::string tables_of(const std::vector<CommonSurface>& surfaces) {
             look_alike.push_back(density.of_look_alike(quality, {1.0, 1e-3 * bend}, same));
         }
     one_text += (one_text.empty() ? "" : ",") + joined_numbers(one);
-    twin_text += (twin_text.empty() ? "" : ",") + joined_numbers(look_alike);
+    look_alike_text += (look_alike_text.empty() ? "" : ",") + joined_numbers(look_alike);
   }
-  return fmt::format(R"(, "one": [{}], "twin": [{}])", one_text, twin_text);
+  return fmt::format(R"(, "one": [{}], "twin": [{}])", one_text, look_alike_text);
 }
 
 class Rows {

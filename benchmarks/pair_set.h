@@ -60,7 +60,7 @@ struct PairSet {
 
   [[nodiscard]] PairKind kind_of(std::size_t a, std::size_t b) const;
   [[nodiscard]] Rigid3 target_from_source(std::size_t source, std::size_t target) const;
-  /// LookAlikes whose furniture is of one layout, placed by hand.
+  /// Look-alike rooms whose furniture is of one layout, placed by hand.
   [[nodiscard]] bool furnished_alike(std::size_t a, std::size_t b) const;
   [[nodiscard]] bool mirrored(std::size_t a, std::size_t b) const;
   [[nodiscard]] bool same_storey(std::size_t a, std::size_t b) const;

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <optional>
+#include <utility>
 #include <vector>
 
 #include "limen/base/progress.h"
