@@ -39,6 +39,7 @@ struct Settings {
   int pairs = 0;
   double minutes = 10.0;
   bool plain = false;
+  bool as_built = false;
   std::string output;
   std::string wrong;
   bool lost = false;
@@ -150,6 +151,7 @@ class Calibration {
     options.seed = seed;
     options.points = s_.points;
     options.styles = !s_.plain;
+    options.as_built = s_.as_built;
     return Ready(simulate_pair_set(options));
   }
 
@@ -289,6 +291,7 @@ int main(int argc, char** argv) {
   app.add_option("--pairs", settings.pairs, "stop after so many; 0: no bound");
   app.add_option("--minutes", settings.minutes, "stop after so long");
   app.add_flag("--plain", settings.plain, "no random styles");
+  app.add_flag("--as-built", settings.as_built, "walls deviate from the drawing as real ones do");
   app.add_option("-o,--output", settings.output,
                  "rows are added to this file; what it has is not done again");
   app.add_option("--wrong", settings.wrong,

@@ -169,7 +169,7 @@ TEST_F(NewcomerTest, AProjectNamesWhatIsNoScanInMetresAndGoesOn) {
       run({"project", "a.ply", "b.ply", "mm.xyz", "degrees.xyz", "y_up.xyz", "ten.xyz", "-o", "project"});
   EXPECT_NE(done.status, 2) << done.err;
   for (const std::string line :
-       {"mm.xyz: cannot be read: mm.xyz: the points measure", "degrees of longitude and latitude",
+       {"mm.xyz: cannot be read: the points measure", "degrees of longitude and latitude",
         "y_up.xyz: its y axis seems to point up", "ten.xyz: holds 10 points, too few"})
     EXPECT_EQ(times_in(done.err, line), 1) << line << "\n" << done.err;
   // A pair needs both sides: there it is an error, but for the axes.

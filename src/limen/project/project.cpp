@@ -191,8 +191,10 @@ class Run {
   }
 
   static std::string stated_fault(const ProjectFile& file, const std::string& words) {
+    const std::string named = file.path + ": ";  // said where the fault is
+    const std::string fault = words.starts_with(named) ? words.substr(named.size()) : words;
     return "cannot be read: " +
-           (lists_files(file.path) ? "it names other files; give it as --scans " + file.path : words);
+           (lists_files(file.path) ? "it names other files; give it as --scans " + file.path : fault);
   }
 
   void add_unreadable(const ProjectFile& file, const std::string& fault) {

@@ -24,25 +24,12 @@ enum class Furniture { own, alike, none, leaf };
 constexpr std::size_t kPoints = 80000;
 
 /// A row of rooms of one width with windows at the same places.
-Recipe equal_rooms(RandomStream& random) {
+Recipe bare_rooms(RandomStream& random) {
   PlanOptions plan;
   const double bay = random.uniform(2.4, 3.0);
-  plan.main_bays_m.assign(8, bay);
   plan.south_depth_m = 5.0;
   plan.bays_per_room = 2;
-  plan.regular = true;
-  plan.use = RoomUse::office;
-  const double more = plan.outer_wall_m - 0.5 * plan.inner_wall_m;
-  plan.main_bays_m.front() += more;
-  plan.main_bays_m.back() += more;
-  FloorPlan made = make_floor_plan(plan, random);
-  std::vector<WindowAxis> axes;
-  for (WindowAxis axis : made.axes)
-    if (axis.bay < 200 && axis.at.y() < 0.5 * plan.south_depth_m) axes.push_back(axis);
-  axes.front().at.x() += 0.5 * more;
-  axes.back().at.x() -= 0.5 * more;
-  for (WindowAxis& axis : axes) axis.bay_m = bay;
-  made.axes = axes;
+  const FloorPlan made = equal_rooms(plan, bay, 8, random);
   FacadeOptions facade;
   facade.curtain_share = 0.0;
   facade.interior_doors = false;
@@ -98,7 +85,7 @@ struct LookAlikeCase {
 
 LookAlikeCase look_alike_case(std::uint64_t seed, Furniture furniture) {
   RandomStream random(seed, 0);
-  Recipe recipe = equal_rooms(random);
+  Recipe recipe = bare_rooms(random);
   furnish_both(recipe.world, furniture, random);
   recipe.station_rooms = {1, 1, 2};
   const RayCaster caster(recipe.world.mesh);

@@ -12,11 +12,9 @@ namespace {
 
 constexpr int kBaysPerRoom = 2;
 
-/// Rooms of one clear width: the first and the last bay are wider by what the outer wall takes more.
 FloorPlan row_of_rooms(int rooms, RandomStream& random) {
   PlanOptions plan;
   const double bay = random.uniform(2.5, 3.2);
-  plan.main_bays_m.assign(static_cast<std::size_t>(kBaysPerRoom * rooms), bay);
   plan.south_depth_m = random.uniform(4.6, 6.0);
   plan.outer_wall_m = random.uniform(0.3, 0.5);
   plan.inner_wall_m = random.uniform(0.12, 0.2);
@@ -24,21 +22,7 @@ FloorPlan row_of_rooms(int rooms, RandomStream& random) {
   plan.storey_height_m = random.uniform(3.1, 3.5);
   plan.ground_floor_m = random.uniform(0.3, 0.8);
   plan.bays_per_room = kBaysPerRoom;
-  plan.regular = true;
-  plan.use = RoomUse::office;
-  const double more = plan.outer_wall_m - 0.5 * plan.inner_wall_m;
-  plan.main_bays_m.front() += more;
-  plan.main_bays_m.back() += more;
-  FloorPlan made = make_floor_plan(plan, random);
-  // Windows in the street's façade only, at the same places in every room.
-  std::vector<WindowAxis> axes;
-  for (WindowAxis axis : made.axes)
-    if (axis.bay < 200 && axis.at.y() < 0.5 * plan.south_depth_m) axes.push_back(axis);
-  axes.front().at.x() += 0.5 * more;
-  axes.back().at.x() -= 0.5 * more;
-  for (WindowAxis& axis : axes) axis.bay_m = bay;
-  made.axes = axes;
-  return made;
+  return equal_rooms(plan, bay, kBaysPerRoom * rooms, random);
 }
 
 /// Furnishes one room and puts the same pieces at the same places of every other.

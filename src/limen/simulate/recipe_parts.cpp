@@ -31,6 +31,24 @@ int between(int low, int high, RandomStream& random) {
   return low + static_cast<int>(random.below(static_cast<std::uint32_t>(high - low + 1)));
 }
 
+FloorPlan equal_rooms(PlanOptions plan, double bay_m, int bays, RandomStream& random) {
+  plan.main_bays_m.assign(static_cast<std::size_t>(bays), bay_m);
+  plan.regular = true;
+  plan.use = RoomUse::office;
+  const double more = plan.outer_wall_m - 0.5 * plan.inner_wall_m;
+  plan.main_bays_m.front() += more;
+  plan.main_bays_m.back() += more;
+  FloorPlan made = make_floor_plan(plan, random);
+  std::vector<WindowAxis> axes;
+  for (WindowAxis axis : made.axes)
+    if (axis.bay < 200 && axis.at.y() < 0.5 * plan.south_depth_m) axes.push_back(axis);
+  axes.front().at.x() += 0.5 * more;
+  axes.back().at.x() -= 0.5 * more;
+  for (WindowAxis& axis : axes) axis.bay_m = bay_m;
+  made.axes = axes;
+  return made;
+}
+
 FacadeOptions random_facade(const SceneOptions& options, double curtain_share, RandomStream& random) {
   FacadeOptions facade;
   facade.window_width_m = random.uniform(0.95, 1.7);

@@ -21,6 +21,10 @@ std::vector<double> bays(int count, double low, double high, RandomStream& rando
 /// A whole number in [low, high].
 int between(int low, int high, RandomStream& random);
 
+/// Rooms of one clear width in a row, of `bays` bays together, with windows in the street's façade only, at
+/// the same places in every room. The first and the last bay are wider by what the outer wall takes more.
+FloorPlan equal_rooms(PlanOptions plan, double bay_m, int bays, RandomStream& random);
+
 /// The look of a house, different for every seed. `curtain_share`: where the options leave it to the scene.
 FacadeOptions random_facade(const SceneOptions& options, double curtain_share, RandomStream& random);
 
