@@ -79,7 +79,7 @@ inline bool is_placed(NodeState state) {
 
 struct SolvedNode {
   NodeState state = NodeState::floating;
-  int component = -1;                      ///< 0: the largest; -1: joined to nothing
+  int component = -1;                      ///< 0: the one with most placed nodes; -1: joined to nothing
   Rigid3 frame_from_node;                  ///< in the frame of the first node of its component
   Matrix6d covariance = Matrix6d::Zero();  ///< of a turn about the node's origin and a shift; frame axes, SI
   std::vector<Rigid3> alternatives;        ///< other poses that explain as much; frame

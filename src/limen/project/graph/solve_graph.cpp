@@ -5,6 +5,7 @@
 #include <iterator>
 #include <map>
 #include <set>
+#include <tuple>
 #include <utility>
 
 #include "limen/base/progress.h"
@@ -49,9 +50,9 @@ class Solver {
     choose_references();
     adjust();
     lend_by_what_is_held();
-    number_components();
     weigh_doubts();
     judge_nodes();
+    number_components();
     ask_questions();
     judge_links();
     solved_.loops = tested_loops(graph_, best_.pose, kLoopsPerLink);
@@ -144,6 +145,8 @@ class Solver {
     best_.pose[link] = -1;
   }
 
+  /// Whether nothing is joined to a node.
+  [[nodiscard]] bool is_alone(int node) const { return reference_[static_cast<std::size_t>(node)] < 0; }
   [[nodiscard]] int component(int node) const { return best_.component[static_cast<std::size_t>(node)]; }
   [[nodiscard]] const Rigid3& at(int node) const {
     return best_.frame_from_node[static_cast<std::size_t>(node)];
@@ -204,22 +207,23 @@ class Solver {
     }
   }
 
-  /// The largest component first; single nodes belong to none.
+  /// The component with most placed nodes first, then the largest; single nodes belong to none.
   void number_components() {
-    std::map<int, int> sizes;
-    for (const int lowest : best_.component) ++sizes[lowest];
-    std::vector<std::pair<int, int>> order;
-    for (const auto& [lowest, size] : sizes) {
-      if (size > 1) order.emplace_back(-size, lowest);
+    std::map<int, std::pair<int, int>> counts;  // placed nodes and all nodes, by the lowest one
+    for (int n = 0; n < graph_.nodes; ++n) {
+      if (is_alone(n)) continue;
+      auto& [placed, all] = counts[component(n)];
+      placed += is_placed(solved_.nodes[static_cast<std::size_t>(n)].state) ? 1 : 0;
+      ++all;
     }
+    std::vector<std::tuple<int, int, int>> order;
+    for (const auto& [lowest, count] : counts) order.emplace_back(-count.first, -count.second, lowest);
     std::sort(order.begin(), order.end());
     std::map<int, int> number;
-    for (std::size_t k = 0; k < order.size(); ++k) number[order[k].second] = static_cast<int>(k);
+    for (const auto& [placed, all, lowest] : order) number.emplace(lowest, static_cast<int>(number.size()));
     solved_.components = static_cast<int>(order.size());
-    for (std::size_t n = 0; n < solved_.nodes.size(); ++n) {
-      const auto found = number.find(best_.component[n]);
-      solved_.nodes[n].component = found == number.end() ? -1 : found->second;
-    }
+    for (int n = 0; n < graph_.nodes; ++n)
+      solved_.nodes[static_cast<std::size_t>(n)].component = is_alone(n) ? -1 : number.at(component(n));
   }
 
   /// The side of a cut that the node that lends the frame is not on.
@@ -328,7 +332,7 @@ class Solver {
     const std::vector<double> wrongly_joined = odds_->of_nodes(reference_, found, risk_);
     for (std::size_t n = 0; n < solved_.nodes.size(); ++n) {
       SolvedNode& node = solved_.nodes[n];
-      if (node.component < 0) continue;
+      if (is_alone(static_cast<int>(n))) continue;
       node.frame_from_node = best_.frame_from_node[n];
       node.covariance = covariance_[n];
       double elsewhere = wrongly_joined[n];

@@ -113,37 +113,60 @@ TEST(SolveGraph, AnExactLinkThatComesLateIsTakenAndLooseOnesGiveWay) {
   EXPECT_LT((found.translation - truth.translation).norm(), 0.03);
 }
 
-/// Three scans that sure links hold together, and four others that only links with two ways each do: the
-/// three lend the frame, and are registered, though they are the smaller side of the join.
-TEST(SolveGraph, WhatSureLinksHoldTogetherLendsTheFrame) {
-  RandomStream random(15, 1);
-  PoseGraph graph;
-  graph.nodes = 7;
-  std::vector<Rigid3> world_from_node;
-  for (int n = 0; n < 7; ++n) world_from_node.push_back(random_pose(random, 5.0));
-  const auto add = [&](int source, int target, bool open) {
+/// Seven scans; links among them are sure, or open: then they have two ways.
+class SevenScans {
+ public:
+  SevenScans() {
+    graph.nodes = 7;
+    for (int n = 0; n < 7; ++n) world_from_node_.push_back(random_pose(random_, 5.0));
+  }
+  void add(int source, int target, bool open) {
     GraphLink link;
     link.source = source;
     link.target = target;
     link.chance = link.look_alike = 1e-6;
-    const Rigid3 truth = inverse(world_from_node[static_cast<std::size_t>(target)]) *
-                         world_from_node[static_cast<std::size_t>(source)];
-    link.poses = {measured_pose(truth, 20.0, random)};
+    const Rigid3 truth = inverse(world_from_node_[static_cast<std::size_t>(target)]) *
+                         world_from_node_[static_cast<std::size_t>(source)];
+    link.poses = {measured_pose(truth, 20.0, random_)};
     if (open) {
       link.chance = 0.02;
-      link.poses.push_back(measured_pose(random_pose(random, 5.0), 20.0, random));
+      link.poses.push_back(measured_pose(random_pose(random_, 5.0), 20.0, random_));
     }
     for (LinkPose& pose : link.poses) pose.probability = (1.0 - link.chance) / (open ? 2.0 : 1.0);
     graph.links.push_back(link);
-  };
-  for (int n = 1; n < 5; ++n) add(n, n - 1, true);
-  add(5, 4, false);
-  add(6, 4, false);
-  add(6, 5, false);
-  const SolvedGraph solved = solve_graph(graph);
+  }
+
+  PoseGraph graph;
+
+ private:
+  RandomStream random_{15, 1};
+  std::vector<Rigid3> world_from_node_;
+};
+
+/// Three scans that sure links hold together, and four others that open links join to them: the three lend
+/// the frame, and are registered, though they are the smaller side of the join.
+TEST(SolveGraph, WhatSureLinksHoldTogetherLendsTheFrame) {
+  SevenScans scans;
+  for (int n = 1; n < 5; ++n) scans.add(n, n - 1, true);
+  scans.add(5, 4, false);
+  scans.add(6, 4, false);
+  scans.add(6, 5, false);
+  const SolvedGraph solved = solve_graph(scans.graph);
   ASSERT_EQ(solved.components, 1);
   for (std::size_t n = 0; n < 7; ++n)
     EXPECT_EQ(solved.nodes[n].state, n < 4 ? NodeState::ambiguous : NodeState::registered) << n;
+}
+
+/// Nothing joins the three to the four: theirs is the first component, though it is the smaller one.
+TEST(SolveGraph, TheComponentWithMostPlacedScansIsTheFirst) {
+  SevenScans scans;
+  for (int n = 1; n < 4; ++n) scans.add(n, n - 1, true);
+  scans.add(5, 4, false);
+  scans.add(6, 4, false);
+  scans.add(6, 5, false);
+  const SolvedGraph solved = solve_graph(scans.graph);
+  ASSERT_EQ(solved.components, 2);
+  for (std::size_t n = 0; n < 7; ++n) EXPECT_EQ(solved.nodes[n].component, n < 4 ? 1 : 0) << n;
 }
 
 /// Two groups that hold together in themselves, and a link that joins them but leaves a decimetre open: the
