@@ -238,6 +238,15 @@ TEST_F(DeviationProgramTest, ModelsOfAProjectAndMistakes) {
               "single.bcf"});
   ASSERT_EQ(done.status, 0) << done.err;
   EXPECT_EQ(in_lines(bcf_faults(read_whole(work() / "single.bcf"))), "");
+  const std::string model = read_whole(work() / "model.ifc");
+  for (const std::string file :
+       {"model.ifc", "true.json", "scan_01.ply", "single/deviation.json", "out", "nowhere/issues.bcf"})
+    EXPECT_EQ(
+        run({"deviation", "scan_01.ply", "model.ifc", "--result", "true.json", "-o", "single", "--bcf", file})
+            .status,
+        2)
+        << file;
+  EXPECT_EQ(read_whole(work() / "model.ifc"), model);
 }
 
 TEST_F(DeviationProgramTest, MistakesAreNamedAndLeaveNothingBehind) {

@@ -384,6 +384,11 @@ TEST_F(Project, DecisionsAreHeededTestedAndSurviveRuns) {
     EXPECT_EQ(project["links"][0]["state"], "rejected");
     EXPECT_EQ(project["links"][0]["reason"], "rejected by your decision");
   }
+  write_whole(work() / "half.json",
+              R"({"decisions": [{"choose": ["indoor_00.ply", "indoor_01.ply"], "pose": 0.9}]})");
+  std::vector<std::string> with_half = call(scans, "out");
+  with_half.insert(with_half.end(), {"--decide", "half.json"});
+  EXPECT_EQ(run(with_half).status, 2);
   // From a file, over what was said before; names that nothing has are reported.
   write_whole(
       work() / "words.json",

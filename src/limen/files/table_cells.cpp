@@ -73,6 +73,9 @@ TextTable read_text_table(const std::filesystem::path& path) {
   for (std::string line; std::getline(stream, line);) {
     ++number;
     const std::string_view text = trimmed(number == 1 ? without_byte_order_mark(line) : line);
+    if (!is_utf8(text))
+      throw Error("is not UTF-8 text", fmt::format("{}, line {}", path.string(), number),
+                  "save it as CSV UTF-8");
     if (text.empty() || text.front() == '#') continue;
     if (table.columns.line == 0) {
       table.mark = table_mark(text);

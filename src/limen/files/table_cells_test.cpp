@@ -57,6 +57,10 @@ TEST(TableCells, EmptyCellsAtTheEndAndShortLinesAreNoFault) {
   EXPECT_EQ(fault_of(""), "");
 }
 
+TEST(TableCells, BytesOfAnotherEncodingAreStatedWithTheirLine) {
+  EXPECT_EQ(fault_of("name,x\nA,1\nP\xE9,2\n"), "a.csv, line 3: is not UTF-8 text (save it as CSV UTF-8)");
+}
+
 TEST(TableCells, WhatIsNoFileIsStated) {
   const TemporaryFolder folder;
   const auto path = folder.write("a.csv", "name\n");

@@ -218,6 +218,10 @@ int run(const DeviationCommand& command, const Session& session) {
                 "leave them out, or give a project.json");
   command.issues.options.check();
   check(command);
+  std::vector<std::string> inputs = {command.scan, command.model};
+  inputs.insert(inputs.end(), command.with.begin(), command.with.end());
+  if (!command.result.empty()) inputs.push_back(command.result);
+  refuse_to_replace(inputs, command.folder, command.issues.file);
   const OutputFolder folder(command.folder);
   DeviationReport report;
   const PoseFile pose_file = command.result.empty() ? PoseFile{} : read_pose_file(command.result);

@@ -322,11 +322,36 @@ int status_of_matched(std::size_t matched, const Session& session) {
   return kExitNoMatch;
 }
 
+void refuse_to_replace(const std::vector<std::string>& inputs, const std::string& folder,
+                       const std::string& issues) {
+  const auto same = [](const fs::path& a, const fs::path& b) {
+    std::error_code missing;
+    return fs::weakly_canonical(a, missing) == fs::weakly_canonical(b, missing);
+  };
+  for (const char* name :
+       {"deviation.json", "deviation.csv", "deviation.xlsx", "deviation.ply", "report.html", "report.pdf"}) {
+    const fs::path own = fs::path(folder) / name;
+    for (const std::string& input : inputs) refuse_same_file(own.string(), input);
+    if (!issues.empty() && same(own, issues))
+      throw Error("is written by limen deviation itself", issues, "give the issues another name");
+  }
+  if (issues.empty()) return;
+  for (const std::string& input : inputs) refuse_same_file(issues, input);
+  const fs::path parent = fs::absolute(issues).parent_path();
+  if (fs::is_directory(issues)) throw Error("is a folder, not a file", issues, "name a file to write to");
+  if (!fs::is_directory(parent) && !same(parent, folder))
+    throw Error("there is no such folder", parent.string(), "make it, or write elsewhere");
+}
+
 int run_project_deviation(const ProjectDeviation& command, const Session& session) {
   command.measuring.check();
   command.issues.options.check();
   const CancelScope scope(*session.monitor);
   const std::vector<ProjectEntry> entries = read_project(command.project);
+  std::vector<std::string> inputs = command.models;
+  inputs.push_back(command.project);
+  for (const ProjectEntry& entry : entries) inputs.push_back(entry.file);
+  refuse_to_replace(inputs, command.folder, command.issues.file);
   const OutputFolder folder(command.folder);
   Gathering all;
   all.report.project = command.project;

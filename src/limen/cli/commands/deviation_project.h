@@ -28,6 +28,11 @@ struct ProjectDeviation {
 /// Whether a file is the project.json of `limen project`, by its name.
 bool names_project(const std::string& path);
 
+/// Throws Error where what `limen deviation` writes into `folder`, or the file of issues (empty: none), would
+/// replace one of the inputs or one another.
+void refuse_to_replace(const std::vector<std::string>& inputs, const std::string& folder,
+                       const std::string& issues);
+
 /// Measures every scan that is registered in a project's frame against its models, one scan at a time.
 int run_project_deviation(const ProjectDeviation& command, const Session& session);
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <deque>
 #include <filesystem>
+#include <map>
 #include <utility>
 
 #include <fmt/format.h>
@@ -17,6 +18,7 @@
 #include "limen/files/scan_in_file.h"
 #include "limen/geometry/rigid.h"
 #include "limen/io/crs/coordinate_system.h"
+#include "limen/io/table/packed_rows.h"
 #include "limen/io/table/record_table.h"
 
 namespace limen {
@@ -30,8 +32,8 @@ class ColumnMover {
  public:
   ColumnMover(const RecordTable& source, const Rigid3& motion, const SplineMotion* bend = nullptr);
 
-  /// The column of this name.
-  void add(const std::string& name);
+  /// The column of this name; `as_numbers`: as float64, whatever it is.
+  void add(const std::string& name, bool as_numbers);
   /// A column with the same value in every row.
   void add_constant(const std::string& name, double value);
   [[nodiscard]] RecordTable table() const { return table_; }
@@ -108,6 +110,7 @@ std::vector<double> moved_numbers(const RecordTable& table, const NamedTriple& t
 struct ColumnMover::Memory {
   std::shared_ptr<const void> source;
   std::deque<std::vector<double>> triples;
+  std::deque<std::vector<double>> numbers;
   std::deque<double> constants;
   std::deque<std::vector<char>> swapped;
   std::vector<std::pair<std::string, const double*>> moved;  ///< where each moved column begins
@@ -123,7 +126,7 @@ ColumnMover::ColumnMover(const RecordTable& source, const Rigid3& motion, const 
   table_.keeper = memory_;
 }
 
-void ColumnMover::add(const std::string& name) {
+void ColumnMover::add(const std::string& name, bool as_numbers) {
   const auto find_moved = [&] {
     return std::find_if(memory_->moved.begin(), memory_->moved.end(),
                         [&](const auto& column) { return column.first == name; });
@@ -141,6 +144,13 @@ void ColumnMover::add(const std::string& name) {
     return;
   }
   const Field& field = *source_.find({name});
+  if (as_numbers) {
+    std::vector<double>& numbers = memory_->numbers.emplace_back(source_.rows);
+    load_numbers(source_, field, {0, source_.rows}, numbers.data());
+    table_.fields.push_back(
+        {name, Scalar::float64, reinterpret_cast<const char*>(numbers.data()), sizeof(double)});
+    return;
+  }
   table_.fields.push_back(source_.swapped ? swapped_copy(field) : field);
 }
 
@@ -253,6 +263,7 @@ JoinedClouds::JoinedClouds(std::vector<PlacedCloud> clouds, bool tell_source, co
     : clouds_(std::move(clouds)), tell_source_(tell_source) {
   for (const std::string& name : kPoint) plan_.columns.push_back({name, Scalar::float64});
   std::vector<PlacedCloud> full;
+  std::map<std::string, std::pair<Field, std::size_t>> seen;  // columns, and how many clouds have them
   bool near_known = false;
   for (const PlacedCloud& placed : clouds_) {
     const CloudFacts& facts = placed.input->file().clouds()[placed.cloud];
@@ -260,6 +271,11 @@ JoinedClouds::JoinedClouds(std::vector<PlacedCloud> clouds, bool tell_source, co
     const std::optional<RecordTable> table = first_rows(placed, stream);
     if (!table) continue;
     add_columns(*table, facts);
+    for (const Field& field : table->fields) {
+      auto& [first, count] = seen.try_emplace(field.name, field, std::size_t{0}).first->second;
+      if (!same_kind(first, field)) mixed_.insert(field.name);
+      ++count;
+    }
     const double resolution = resolution_of(*table);
     const bool finer = full.empty() || resolution < plan_.resolution_m;
     if (finer) plan_.resolution_m = resolution;
@@ -271,6 +287,8 @@ JoinedClouds::JoinedClouds(std::vector<PlacedCloud> clouds, bool tell_source, co
   }
   if (full.empty()) throw Error("there are no points", clouds_.front().input->name(), "check the input");
   clouds_ = std::move(full);
+  for (const auto& [name, column] : seen)
+    if (column.second < clouds_.size()) mixed_.insert(name);
   const OpenPoints& first = *clouds_.front().input;
   plan_.name = std::filesystem::path(file_of_scan(first.name())).stem().string();
   if (clouds_.size() == 1 && (first.chosen() || first.file().clouds().size() > 1))
@@ -330,8 +348,9 @@ void JoinedClouds::settle_centres() {
 /// Reads one cloud after the other.
 class JoinedStream : public PointStream {
  public:
-  JoinedStream(const std::vector<PlacedCloud>& clouds, const CloudPlan& plan, bool tell_source)
-      : clouds_(clouds), plan_(plan), tell_source_(tell_source) {}
+  JoinedStream(const std::vector<PlacedCloud>& clouds, const CloudPlan& plan,
+               const std::set<std::string>& mixed, bool tell_source)
+      : clouds_(clouds), plan_(plan), mixed_(mixed), tell_source_(tell_source) {}
 
   std::optional<RecordTable> next(std::size_t most_rows) override {
     for (; at_ < clouds_.size(); ++at_, stream_.reset()) {
@@ -355,7 +374,7 @@ class JoinedStream : public PointStream {
       if (tell_source_ && name == kSourceColumn) {
         mover.add_constant(name, static_cast<double>(placed.source));
       } else if (piece.find({name}) != nullptr) {
-        mover.add(name);
+        mover.add(name, mixed_.count(name) > 0);
       } else if (origin != kOrigin.end() && centre) {
         mover.add_constant(name, (*centre)[origin - kOrigin.begin()]);
       } else {
@@ -367,13 +386,14 @@ class JoinedStream : public PointStream {
 
   const std::vector<PlacedCloud>& clouds_;
   const CloudPlan& plan_;
+  const std::set<std::string>& mixed_;
   bool tell_source_;
   std::size_t at_ = 0;
   std::unique_ptr<PointStream> stream_;
 };
 
 std::unique_ptr<PointStream> JoinedClouds::read() const {
-  return std::make_unique<JoinedStream>(clouds_, plan_, tell_source_);
+  return std::make_unique<JoinedStream>(clouds_, plan_, mixed_, tell_source_);
 }
 
 }  // namespace limen

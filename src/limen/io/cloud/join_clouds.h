@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -48,6 +49,7 @@ class JoinedClouds {
   std::vector<PlacedCloud> clouds_;
   bool tell_source_;
   CloudPlan plan_;
+  std::set<std::string> mixed_;  ///< columns that some clouds lack or have of another type
   std::vector<std::string> notes_;
 };
 

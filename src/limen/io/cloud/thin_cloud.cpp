@@ -142,7 +142,9 @@ class RecentCells {
 }  // namespace
 
 void ThinOptions::check() const {
-  if (!(spacing_m >= 0.0 && spacing_m < 1e4)) throw_bad_option("spacing_m", spacing_m, "0 to 10 000 m");
+  constexpr double kLeastSpacingM = 1e-6;  // less than any file tells apart
+  if (!(spacing_m == 0.0 || (spacing_m >= kLeastSpacingM && spacing_m < 1e4)))
+    throw_bad_option("spacing_m", spacing_m, "0.000001 to 10 000 m");
   if (most_points == 0 && spacing_m == 0.0 && memory_bytes == 0)
     throw_bad_option("most_points", 0.0, "above 0, where neither a spacing nor a memory is given");
 }

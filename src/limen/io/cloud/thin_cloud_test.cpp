@@ -110,6 +110,14 @@ TEST(ThinCloud, ASpacingGivesOnePointPerCubeWhateverThePieces) {
   }
 }
 
+TEST(ThinCloud, ASpacingBelowWhatNumbersTellApartIsRefused) {
+  ThinOptions options;
+  for (const double spacing_m : {1e-19, 1e-300, -0.1}) {
+    options.spacing_m = spacing_m;
+    EXPECT_THROW(options.check(), Error) << spacing_m;
+  }
+}
+
 TEST(ThinCloud, NoLatticeShows) {
   // A dense plane: what is kept must lie anywhere within its cubes, not at one side of them.
   auto numbers = std::make_shared<std::vector<double>>();

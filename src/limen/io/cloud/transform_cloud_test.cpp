@@ -3,6 +3,7 @@
 #include "limen/io/cloud/transform_cloud.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <utility>
 
@@ -11,8 +12,10 @@
 
 #include "limen/base/angles.h"
 #include "limen/base/error.h"
+#include "limen/io/cloud/join_clouds.h"
 #include "limen/io/cloud/read_scan.h"
 #include "limen/io/ply/ply_header.h"
+#include "limen/io/table/packed_rows.h"
 
 namespace limen {
 namespace {
@@ -48,6 +51,31 @@ std::string rich_ply(Writing w, const std::vector<Vector3d>& points, const std::
   ply += number(std::uint8_t{3}, w);
   for (int k = 0; k < 3; ++k) ply += number(std::int32_t{k}, w);
   return ply + row_end(w);
+}
+
+/// A column is a float in one cloud, bytes in the other, and a third cloud lacks it: the rows of all can be
+/// mixed.
+TEST(JoinedClouds, ColumnsOfOneNameAreOfOneKind) {
+  const TemporaryFolder folder;
+  const auto cloud = [](const std::string& column, const std::string& value) {
+    return "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n" +
+           column + "end_header\n1 2 3 " + value + "\n";
+  };
+  const OpenPoints floats(folder.write("a.ply", cloud("property float intensity\n", "0.5")));
+  const OpenPoints bytes(folder.write("b.ply", cloud("property uchar intensity\n", "7")));
+  const OpenPoints none(folder.write("c.ply", cloud("", "")));
+  const JoinedClouds joined({{&floats, 0, {}}, {&bytes, 0, {}}, {&none, 0, {}}}, false);
+  PackedRows rows;
+  std::vector<double> values;
+  const auto stream = joined.read();
+  while (const std::optional<RecordTable> piece = stream->next(10)) {
+    rows.require_columns(*piece);
+    load_numbers(*piece, *piece->find({"intensity"}), {0, 1}, &values.emplace_back());
+  }
+  ASSERT_EQ(values.size(), 3U);
+  EXPECT_EQ(values[0], 0.5);
+  EXPECT_EQ(values[1], 7.0);
+  EXPECT_TRUE(std::isnan(values[2]));
 }
 
 TEST(TransformCloud, MovesThePointsAndKeepsEverythingElse) {

@@ -8,14 +8,11 @@
 #include "limen/base/error.h"
 
 namespace limen {
-namespace {
 
 bool same_kind(const Field& a, const Field& b) {
   return a.name == b.name && a.type == b.type && a.scale == b.scale && a.offset == b.offset &&
          a.bits.shift == b.bits.shift && a.bits.count == b.bits.count;
 }
-
-}  // namespace
 
 void PackedRows::require_columns(const RecordTable& like) {
   if (columns_.empty()) {

@@ -10,6 +10,9 @@
 
 namespace limen {
 
+/// Whether two columns hold the same kind of value under one name: their rows can be mixed as they are.
+bool same_kind(const Field& a, const Field& b);
+
 /// Rows taken from tables of the same columns, one behind the other in one piece of memory, their numbers as
 /// they were stored.
 class PackedRows {

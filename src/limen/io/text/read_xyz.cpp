@@ -96,20 +96,22 @@ TextHeader parse_text_header(std::string_view bytes) {
   return header;
 }
 
-/// "1,5;2,5;3,5" or "1,5 2,5 3,5": every piece between semicolons or blanks has one comma and no point.
+/// "1,5;2,5;3" or "1,5 2,5 3": every piece between semicolons or blanks has one comma at most and no point.
 bool has_decimal_commas(std::string_view row) {
   std::size_t pieces = 0;
+  bool any = false;
   while (!row.empty()) {
     const std::size_t end = std::min(row.find_first_of("; \t\r"), row.size());
     const std::string_view piece = row.substr(0, end);
     row.remove_prefix(std::min(row.size(), end + 1));
     if (piece.empty()) continue;
-    if (piece.find('.') != std::string_view::npos || std::count(piece.begin(), piece.end(), ',') != 1)
-      return false;
+    const auto commas = std::count(piece.begin(), piece.end(), ',');
+    if (piece.find('.') != std::string_view::npos || commas > 1) return false;
     if (piece.front() == ',' || piece.back() == ',') return false;
+    any = any || commas == 1;
     ++pieces;
   }
-  return pieces >= 3;
+  return any && pieces >= 3;
 }
 
 /// Whether columns 3 to 5 are colours: whole numbers from 0 to 255, not all of them 0 or 1.

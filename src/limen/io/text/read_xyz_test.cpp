@@ -78,6 +78,14 @@ TEST(ReadXyz, TellsWhereTheCountIsWrong) {
   EXPECT_NE(more.notes.front().find("count says 1"), std::string::npos);
 }
 
+TEST(ReadXyz, DecimalCommasBesideWholeNumbersAreRefused) {
+  for (const std::string text : {"1,5;2,25;3,125", "1050003,351;6840002,458;28,500;200;180;170", "0;2,14;1",
+                                 "0,000 1,149 -0,867 200 180 170", "1,5\t2\t3\t-1200"})
+    EXPECT_THROW(read_xyz(text + "\n" + text + "\n", "t.csv"), Error) << text;
+  for (const std::string text : {"1;2;3", "1,2,3", "1.5,2.5,3.5", "1, 2, 3", "1.5;2;3"})
+    EXPECT_NO_THROW(read_xyz(text + "\n" + text + "\n", "t.csv")) << text;
+}
+
 TEST(ReadXyz, NamesTheLineOfABadRow) {
   std::string text;
   for (int i = 0; i < 200000; ++i) text += i == 150000 ? "1 2\n" : "1.5 2.5 3.5\n";

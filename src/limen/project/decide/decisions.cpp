@@ -66,7 +66,8 @@ Decision from_json(const Json& json, const std::string& where) {
     const std::optional<DecisionKind> kind = kind_called(name);
     if (!kind) continue;
     Decision decision{*kind, value.get<std::vector<std::string>>(), json.value("pose", 0)};
-    const bool numbered = *kind != DecisionKind::choose || json.contains("pose");
+    const bool numbered =
+        *kind != DecisionKind::choose || (json.contains("pose") && json.at("pose").is_number_integer());
     if (!counts_fit(decision) || decision.pose < 0 || !numbered)
       throw Error(fmt::format("\"{}\" has the wrong number of scans, or no pose", name), where,
                   "name two scans, for level one; choose needs \"pose\" too");

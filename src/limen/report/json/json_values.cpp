@@ -7,6 +7,11 @@
 namespace limen {
 namespace {
 
+/// Names in files may be of any encoding.
+std::string dumped(const Json& value) {
+  return value.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
 bool fits_one_line(const Json& array) {
   return std::none_of(array.begin(), array.end(), [](const Json& item) { return item.is_structured(); });
 }
@@ -15,7 +20,7 @@ std::string one_line(const Json& array) {
   std::string text = "[";
   for (const Json& item : array) {
     if (text.size() > 1) text += ", ";
-    text += item.dump();
+    text += dumped(item);
   }
   text += ']';
   return text;
@@ -23,7 +28,7 @@ std::string one_line(const Json& array) {
 
 void append_indented(std::string& text, const Json& value, std::size_t indent) {
   if (!value.is_structured() || value.empty()) {
-    text += value.dump();
+    text += dumped(value);
     return;
   }
   if (value.is_array() && fits_one_line(value)) {
@@ -38,7 +43,7 @@ void append_indented(std::string& text, const Json& value, std::size_t indent) {
     text += '\n';
     text.append(indent + 2, ' ');
     if (value.is_object()) {
-      text += Json(item.key()).dump();
+      text += dumped(item.key());
       text += ": ";
     }
     append_indented(text, item.value(), indent + 2);
