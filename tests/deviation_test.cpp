@@ -240,7 +240,7 @@ TEST_F(DeviationProgramTest, ModelsOfAProjectAndMistakes) {
   EXPECT_EQ(in_lines(bcf_faults(read_whole(work() / "single.bcf"))), "");
   const std::string model = read_whole(work() / "model.ifc");
   for (const std::string file :
-       {"model.ifc", "true.json", "scan_01.ply", "single/deviation.json", "out", "nowhere/issues.bcf"})
+       {"model.ifc", "true.json", "scan_01.ply", "single/deviation.json", "single", "nowhere/issues.bcf"})
     EXPECT_EQ(
         run({"deviation", "scan_01.ply", "model.ifc", "--result", "true.json", "-o", "single", "--bcf", file})
             .status,
