@@ -17,14 +17,8 @@ namespace {
 
 thread_local bool inside_parallel = false;
 
-int machine_threads() {
-  return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-}
-
-std::atomic<int>& wanted_threads() {
-  static std::atomic<int> count{machine_threads()};
-  return count;
-}
+const int kMachineThreads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+std::atomic<int> wanted_threads{kMachineThreads};
 
 /// One call of parallel_for: workers claim pieces until none is left.
 struct Job {
@@ -123,32 +117,30 @@ class Pool {
 };
 
 /// The process's pool. A forked child has none of its parent's threads, and its parent's locks in whatever
-/// state they were: it begins with a pool of its own and leaves the inherited one alone.
+/// state they were: it begins with a pool of its own and leaves the inherited one alone. The pool is made
+/// when the program is loaded, not at first use: a fork amid a first use would leave the child waiting for
+/// it.
 class PoolOfProcess {
  public:
-  static Pool& get() {
-    static const PoolOfProcess owner;
-    return *current;
-  }
-
- private:
   PoolOfProcess() {
-    current = new Pool;
     after_fork([] { current = new Pool; });
   }
+  PoolOfProcess(const PoolOfProcess&) = delete;
+  PoolOfProcess& operator=(const PoolOfProcess&) = delete;
   ~PoolOfProcess() { delete current; }
 
-  static inline Pool* current = nullptr;
+  static inline Pool* current = new Pool;
 };
+const PoolOfProcess pool_of_process;
 
 }  // namespace
 
 int thread_count() {
-  return wanted_threads();
+  return wanted_threads;
 }
 
 void set_thread_count(int count) {
-  wanted_threads() = count > 0 ? count : machine_threads();
+  wanted_threads = count > 0 ? count : kMachineThreads;
 }
 
 void parallel_for(std::size_t size, std::size_t grain,
@@ -163,7 +155,7 @@ void parallel_for(std::size_t size, std::size_t grain,
     job.size = size;
     job.grain = grain;
     job.body = &body;
-    if (PoolOfProcess::get().run(job, helpers)) {
+    if (PoolOfProcess::current->run(job, helpers)) {
       if (job.failure) std::rethrow_exception(job.failure);
       return;
     }
