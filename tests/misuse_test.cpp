@@ -276,6 +276,10 @@ TEST_F(MisuseTest, WordsAndNumbersThatCannotBe) {
       {registering({"--origin", "1e999,0,0"}), "--origin"},
       {registering({"--start-sigma", "1"}), "--start"},
       {registering({"--language", "xx"}), "--language"},
+      {registering({"--source-lever-arm", "1,2,3"}), "--source-trajectory"},
+      {registering({"--target-utm-zone", "32N"}), "--target-trajectory"},
+      {{"project", "a.ply", "b.ply", "-o", "out", "--trajectory-time-offset-s", "3"}, "--trajectory FILE"},
+      {{"transform", "result/result.json", "a.ply", "out.ply", "--alternative", "0"}, "--alternative"},
       {registering({"--as-published", "1999"}), "--as-published"},
       {registering({"--source-units", "mm"}), "--source-units"},
       {registering({"--source-units", "km"}), "--source-units"},
@@ -318,9 +322,12 @@ TEST_F(MisuseTest, NamesThatJsonCannotTellAreRefusedBeforeTheWork) {
 }
 
 TEST_F(MisuseTest, PlacesThatCannotBeWrittenTo) {
+  fs::create_directory(work() / "own");
+  fs::copy_file(work() / "a.xyz", work() / "own/transform.txt");
   expect_stated({
       {{"planes", "a.ply", "-o", ""}, "no name"},
       {{"register", "a.ply", "b.ply", "-o", ""}, "no name"},
+      {{"register", "own/transform.txt", "b.ply", "-o", "own"}, "would overwrite the input"},
       {{"planes", "a.ply", "-o", "missing/out.json"}, "missing/out.json"},
       {{"planes", "a.ply", "-o", "/proc/out.json"}, "/proc/out.json"},
       {{"register", "a.ply", "b.ply", "-o", "/proc/out"}, "/proc/out"},

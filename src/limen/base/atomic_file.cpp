@@ -87,6 +87,8 @@ AtomicFile::AtomicFile(fs::path path) : path_(std::move(path)) {
   }
   if (descriptor_ < 0) {
     beside_.clear();
+    if (fs::is_fifo(status))
+      throw Error("is a named pipe that no program reads", path_.string(), "begin to read it first");
     fail("cannot be written");
   }
 }

@@ -2,12 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limen/base/atomic_file.h"
 
+#include <array>
 #include <csignal>
 #include <fstream>
 #include <sstream>
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -72,6 +75,19 @@ TEST_F(AtomicFileTest, KeepsALinkAndReplacesWhatItPointsTo) {
 TEST_F(AtomicFileTest, WritesStraightToADevice) {
   write_file("/dev/null", "gone");
   EXPECT_TRUE(fs::is_character_file("/dev/null"));
+}
+
+TEST_F(AtomicFileTest, ANamedPipeNeedsItsReader) {
+  const fs::path pipe = folder_ / "pipe";
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  EXPECT_THROW(AtomicFile{pipe}, Error);
+  const int reader = open(pipe.c_str(), O_RDONLY | O_NONBLOCK);
+  ASSERT_GE(reader, 0);
+  write_file(pipe, "bytes");
+  std::array<char, 9> got{};
+  EXPECT_EQ(read(reader, got.data(), got.size()), 5);
+  EXPECT_STREQ(got.data(), "bytes");
+  close(reader);
 }
 
 TEST_F(AtomicFileTest, RefusesAFolderAndAMissingPlace) {

@@ -26,7 +26,10 @@ int open_to_read(const fs::path& path) {
 }
 
 int open_to_write(const fs::path& path) {
-  return open(path.c_str(), O_WRONLY | O_CLOEXEC);
+  // Without waiting for the reader of a named pipe: there is one, or it is an error.
+  const int descriptor = open(path.c_str(), O_WRONLY | O_CLOEXEC | O_NONBLOCK);
+  if (descriptor >= 0) fcntl(descriptor, F_SETFL, fcntl(descriptor, F_GETFL) & ~O_NONBLOCK);
+  return descriptor;
 }
 
 int make_file(const fs::path& path) {

@@ -32,6 +32,8 @@ std::string shortened(std::string_view text, std::size_t most_bytes);
 
 /// Whether all bytes are characters in UTF-8; JSON tells no others.
 bool is_utf8(std::string_view text);
+/// The same text with U+FFFD for each byte that belongs to no character.
+std::string as_utf8(std::string_view text);
 
 /// With spaces for ends of lines and zero bytes.
 std::string one_line(std::string text);

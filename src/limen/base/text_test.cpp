@@ -70,6 +70,14 @@ TEST(Text, Utf8MayHoldControlsAndNoOtherBytes) {
   EXPECT_FALSE(is_utf8("\xed\xa0\x80"));
 }
 
+TEST(Text, BytesOfNoCharacterAreReplacedAndAllOthersStay) {
+  const std::string sound = "a\tb Gr\xc3\xbc\xc3\x9f\x65 \xf0\x9f\x8f\xa0";
+  EXPECT_EQ(as_utf8(sound), sound);
+  EXPECT_EQ(as_utf8("caf\xe9.ply"), "caf\xEF\xBF\xBD.ply");
+  EXPECT_EQ(as_utf8("a\xc3"), "a\xEF\xBF\xBD");
+  EXPECT_TRUE(is_utf8(as_utf8("\xed\xa0\x80\xff")));
+}
+
 TEST(Text, WordsForAShellAreReadBack) {
   const std::vector<std::string> words = {"accept",       "z1.e57 #0", "o'clock.ply", "", "a\\b",
                                           "my  scan.ply", "2"};

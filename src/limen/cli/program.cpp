@@ -21,6 +21,7 @@
 #include "limen/base/text.h"
 #include "limen/base/version.h"
 #include "limen/cli/commands/commands.h"
+#include "limen/cli/help/program_doc.h"
 #include "limen/cli/help/program_help.h"
 #include "limen/cli/terminal/command.h"
 #include "limen/cli/terminal/command_line.h"
@@ -80,8 +81,7 @@ std::string usage_error(const CLI::App& app, const CLI::ParseError& error) {
   const std::vector<CLI::App*> chosen = app.get_subcommands();
   if (!chosen.empty()) {
     const CLI::App& command = *chosen.front();
-    const std::string name =
-        command.get_group().empty() && command.get_name() == kProjectMove ? "transform" : command.get_name();
+    const std::string name = typed_name(command);
     const std::string option = unknown_option(command);
     const std::string problem =
         option.empty()

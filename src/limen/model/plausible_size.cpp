@@ -33,7 +33,7 @@ constexpr std::size_t kPlanesOfAPose = 3;
 std::string remedy_for_units(const std::string& units_option) {
   const std::string name = units_option.empty()
                                ? "have its unit named"
-                               : "name the unit with " + units_option + " (mm, cm, ft, in, us-ft)";
+                               : "name the unit with " + units_option + " (mm, cm, ft, in, us-ft, km)";
   return "limen assumes metres for a file that states no unit: " + name + ", or export it again in metres";
 }
 

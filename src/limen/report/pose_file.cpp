@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "limen/base/error.h"
+#include "limen/base/text.h"
 #include "limen/files/bounded_json.h"
 #include "limen/files/mapped_file.h"
 #include "limen/files/scan_in_file.h"
@@ -36,7 +37,7 @@ std::string read_text(const fs::path& path) {
   std::string text((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
   if (!stream) throw Error("cannot be read", path.string(), "check its permissions");
   if (text.find_first_not_of(" \t\r\n") == std::string::npos) throw Error("is empty", path.string(), kRemedy);
-  return text;
+  return std::string(without_byte_order_mark(text));
 }
 
 Rigid3 rigid_from(const Matrix4d& matrix, const fs::path& path) {

@@ -64,6 +64,8 @@ TEST_F(PoseFileTest, ReadsWhatWeWrite) {
   EXPECT_EQ(pose.sigma->translation_m, Vector3d::Constant(1e-3));
   const PoseFile text = read_pose_file(file("transform.txt", transform_text(kPose)));
   EXPECT_TRUE(same(*text.target_from_source, kPose));
+  const PoseFile marked = read_pose_file(file("marked.txt", "\xEF\xBB\xBF" + transform_text(kPose)));
+  EXPECT_TRUE(same(*marked.target_from_source, kPose));
 }
 
 TEST_F(PoseFileTest, AProbablePoseIsReadWithItsProbability) {

@@ -11,9 +11,6 @@ namespace limen {
 /// `transform`; asked_project_move() tells which of the two is meant.
 void add_transform_project_command(CommandLine& app, Session& session);
 
-/// Its name.
-inline constexpr const char* kProjectMove = "transform-project";
-
 /// Whether the words after the program's name are `transform` with an option -o: only a project has one.
 bool asked_project_move(int argc, char** argv);
 

@@ -237,6 +237,15 @@ int status_of(Outcome outcome) {
   return kExitInternal;
 }
 
+void refuse_to_replace_inputs(const RegisterCommandOptions& options, const std::filesystem::path& folder) {
+  std::vector<std::string> inputs = {options.source, options.target};
+  for (const auto* with : {&options.source_with, &options.target_with})
+    inputs.insert(inputs.end(), with->begin(), with->end());
+  for (const char* own : {"result.json", "transform.txt"}) {
+    for (const std::string& input : inputs) refuse_same_file((folder / own).string(), input);
+  }
+}
+
 int run(const RegisterCommandOptions& options, const Session& session) {
   if (!options.as_published.empty() && options.method != "auto") {
     throw Error("--as-published and --method both choose a method", "--as-published " + options.as_published,
@@ -246,6 +255,7 @@ int run(const RegisterCommandOptions& options, const Session& session) {
   const ReportCover cover = cover_of(options.cover);
   const bool segments = takes_segments(options);
   const OutputFolder folder(options.folder);
+  refuse_to_replace_inputs(options, folder.path());
   const Registered registered =
       segments ? register_segment_lists(options, session) : register_files(options, session);
   const RegistrationReport& report = registered.report;

@@ -166,8 +166,9 @@ Scan read_share(const CloudToView& cloud, std::uint64_t share, std::optional<dou
   ReadOptions options;
   options.metres_per_unit = metres_per_unit;
   ScanFile file = with_scan({}, thinned.table, facts, options);
-  file.unusable += thinned.unusable;
-  if (const std::string note = unusable_note(file); !note.empty())
+  // A grid of returns has a place for those that are missing.
+  const std::size_t unusable = cloud.file->format() == PointFormat::ptx ? 0 : thinned.unusable;
+  if (const std::string note = unusable_note(unusable, thinned.read - thinned.unusable); !note.empty())
     session.note(fmt::format("{}: {}", cloud.file->name(), note));
   return std::move(file.scans.front());
 }

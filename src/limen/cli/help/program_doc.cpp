@@ -86,7 +86,9 @@ const std::vector<ExampleDoc>& examples_of(const std::string& command) {
        {{"Move a cloud into the target's frame",
          "limen transform result/result.json room.ply room_in_street.ply"},
         {"Both clouds in one file",
-         "limen transform result/result.json room.e57 both.e57 --merge street.laz"}}},
+         "limen transform result/result.json room.e57 both.e57 --merge street.laz"},
+        {"All scans of a project (options: limen transform -o OUT --help)",
+         "limen transform building/project.json -o placed"}}},
       {"thin",
        {{"Two million points of a file of any size", "limen thin street.laz street_2M.laz --points 2000000"},
         {"One point per centimetre", "limen thin room.e57 room.ply --spacing-m 0.01"}}},
@@ -119,10 +121,14 @@ const std::vector<ExampleDoc>& examples_of(const std::string& command) {
 
 }  // namespace
 
+std::string typed_name(const CLI::App& command) {
+  return command.get_name() == kProjectMove ? "transform" : command.get_name();
+}
+
 CommandDoc describe_command(const CLI::App& app) {
   CommandDoc doc;
   const bool root = app.get_parent() == nullptr;
-  doc.name = root ? "" : app.get_name();
+  doc.name = root ? "" : typed_name(app);
   doc.description = app.get_description();
   for (const CLI::Option* option : app.get_options()) {
     if (!option->get_group().empty()) doc.options.push_back(describe_option(*option));

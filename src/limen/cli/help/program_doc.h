@@ -49,6 +49,8 @@ struct ProgramDoc {
   std::vector<CommandDoc> commands;
 };
 
+/// The word by which a user calls a command.
+std::string typed_name(const CLI::App& command);
 CommandDoc describe_command(const CLI::App& app);
 ProgramDoc describe_program(const CLI::App& app);
 

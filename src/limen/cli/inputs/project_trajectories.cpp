@@ -105,6 +105,7 @@ void add_trajectories_option(CommandLine& command, TrajectoryChoice& choice) {
 }
 
 StatedTrajectories stated_trajectories(const TrajectoryChoice& choice, const CoordinateSystem& system) {
+  if (choice.files.empty()) require_trajectory(choice.reading);
   StatedTrajectories stated{choice.files, trajectory_options(choice.reading)};
   if (stated.reading.utm_zone == "auto" && system.known())
     stated.reading.utm_zone = system.code.empty() ? system.stated : system.code;

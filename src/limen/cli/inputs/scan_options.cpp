@@ -112,7 +112,7 @@ void add_alternative_option(CommandLine& command, int& alternative) {
   command
       .add_option("--alternative N", alternative,
                   "Use this alternative of the result, numbered from 1, instead of its best pose")
-      ->in_range(0, 1000000);
+      ->in_range(1, 1000000);
 }
 
 void add_trajectory_options(CommandLine& command, ReadingChoice& choice, const std::string& side) {
@@ -163,10 +163,25 @@ TrajectoryOptions trajectory_options(const ReadingChoice& choice) {
   return reading;
 }
 
+void require_trajectory(const ReadingChoice& choice) {
+  const std::pair<const char*, bool> given[] = {{"trajectory-columns", !choice.columns.empty()},
+                                                {"utm-zone", choice.utm_zone != "auto"},
+                                                {"trajectory-time-offset-s", choice.time_offset_s != 0.0},
+                                                {"lever-arm", !choice.lever_arm.empty()}};
+  for (const auto& [name, is_given] : given) {
+    if (is_given)
+      throw Error("describes a trajectory, but none is given", fmt::format("--{}{}", choice.side, name),
+                  fmt::format("add --{}trajectory FILE, or leave the option out", choice.side));
+  }
+}
+
 ReadOptions with_choice(ReadOptions options, const ReadingChoice& choice) {
   options.memory_bytes = parse_memory(choice.memory);
   options.metres_per_unit = metres_per_unit_of(choice.units);
-  if (choice.trajectory.empty()) return options;
+  if (choice.trajectory.empty()) {
+    require_trajectory(choice);
+    return options;
+  }
   options.trajectory =
       std::make_shared<const Trajectory>(read_trajectory(choice.trajectory, trajectory_options(choice)));
   return options;

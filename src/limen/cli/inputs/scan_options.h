@@ -54,6 +54,8 @@ void add_units_option(CommandLine& command, std::string& units, const std::strin
 std::optional<double> metres_per_unit_of(const std::string& units);
 /// How a trajectory is to be read.
 TrajectoryOptions trajectory_options(const ReadingChoice& choice);
+/// Throws Error where an option describes a trajectory; for a choice that names none.
+void require_trajectory(const ReadingChoice& choice);
 /// What read_options() gave, with the choice; reads the trajectory.
 ReadOptions with_choice(ReadOptions options, const ReadingChoice& choice);
 

@@ -26,6 +26,9 @@ enum ExitStatus : int {
 /// The heading of the options that every command has.
 inline constexpr const char* kCommonGroup = "Common options";
 
+/// The name of the command that is meant by `transform PROJECT -o OUT`.
+inline constexpr const char* kProjectMove = "transform-project";
+
 /// The options that every command has.
 struct CommonOptions {
   bool quiet = false;      ///< neither progress nor summary

@@ -161,7 +161,8 @@ ScanFile read_thinned(const OpenPoints& input, const ReadOptions& options, Monit
         fmt::format("{}: thinned from {} points to {} to stay within the memory, spacing about {:.3f} m",
                     facts.table.name, thinned.read, thinned.table.rows, thinned.spacing_m));
     file.dropped += thinned.unusable;
-    file.unusable += thinned.unusable;
+    // A grid of returns has a place for those that are missing.
+    if (input.format() != PointFormat::ptx) file.unusable += thinned.unusable;
     file = with_scan(std::move(file), without_angles(thinned.table), without_order(facts.table), options);
     file.scans.back().topology = {};
   }

@@ -123,12 +123,16 @@ ScanFile read_opened(const Open& open, const ReadOptions& options, Monitor& moni
 
 }  // namespace
 
+std::string unusable_note(std::size_t unusable, std::size_t kept) {
+  if (unusable == 0) return {};
+  return fmt::format("{} points have no finite coordinates below 100 000 km and are left out; {} are kept",
+                     unusable, kept);
+}
+
 std::string unusable_note(const ScanFile& file) {
-  if (file.unusable == 0) return {};
   std::size_t kept = 0;
   for (const Scan& scan : file.scans) kept += scan.size();
-  return fmt::format("{} points have no finite coordinates below 100 000 km and are left out; {} are kept",
-                     file.unusable, kept);
+  return unusable_note(file.unusable, kept);
 }
 
 void ReadOptions::check() const {

@@ -26,6 +26,7 @@ ScanFile read_scan_file(const std::filesystem::path& path, const ReadOptions& op
 /// How many points of a file that was read are no points: its user may have exported it wrong. Empty where
 /// all are. It is among the notes of read_scan_file().
 std::string unusable_note(const ScanFile& file);
+std::string unusable_note(std::size_t unusable, std::size_t kept);
 
 /// Reads scan `index` of a file, in the order of read_scan_file(), without the others where the format
 /// allows. Throws Error where there is none.

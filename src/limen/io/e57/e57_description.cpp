@@ -74,7 +74,8 @@ constexpr std::string_view kHead =
     "<e57Root type=\"Structure\" xmlns=\"http://www.astm.org/COMMIT/E57/2010-e57-v1.0\"";
 
 /// Text as CDATA; what XML cannot hold becomes a blank.
-std::string text_element(std::string_view name, std::string text) {
+std::string text_element(std::string_view name, std::string_view any_text) {
+  std::string text = as_utf8(any_text);
   for (char& c : text) {
     const auto byte = static_cast<unsigned char>(c);
     if (byte < 32 && c != '\n' && c != '\t') c = ' ';

@@ -10,6 +10,7 @@
 
 #include "limen/base/atomic_file.h"
 #include "limen/base/error.h"
+#include "limen/base/text.h"
 #include "limen/io/e57/e57_description.h"
 #include "limen/io/e57/e57_document.h"
 #include "limen/io/e57/e57_pages.h"
@@ -219,7 +220,7 @@ void write_replaced(const E57Pages& pages, Replacement changed, const std::files
 }  // namespace
 
 std::string with_coordinate_system(const std::string& xml, const std::string& wkt) {
-  std::string quoted = wkt;
+  std::string quoted = as_utf8(wkt);
   // The one thing that may not stand in a section of characters is its end.
   for (std::size_t at = quoted.find("]]>"); at != std::string::npos; at = quoted.find("]]>", at + 3))
     quoted.replace(at, 3, "]] >");

@@ -180,6 +180,13 @@ TEST(E57Poses, ACoordinateSystemIsNamed) {
   (void)replace_e57_poses(once, "in.e57", motion(), folder / "kept.e57");
   EXPECT_EQ(e57_coordinate_systems(testing_io::slurp(folder / "kept.e57"), "kept.e57"),
             std::vector<std::string>{wkt});
+  // XML has no other bytes than those of UTF-8.
+  (void)replace_e57_poses(source, "in.e57", motion(), folder / "latin.e57", silent_monitor(),
+                          "PROJCS[\"S\xfc"
+                          "d\"]");
+  EXPECT_EQ(e57_coordinate_systems(testing_io::slurp(folder / "latin.e57"), "latin.e57"),
+            std::vector<std::string>{"PROJCS[\"S\xEF\xBF\xBD"
+                                     "d\"]"});
   EXPECT_EQ(
       with_coordinate_system("<e57Root><coordinateMetadata type=\"String\"/><data3D/></e57Root>", "W"),
       "<e57Root><coordinateMetadata type=\"String\"><![CDATA[W]]></coordinateMetadata><data3D/></e57Root>");

@@ -418,7 +418,9 @@ ScanFile ScanBuilder::finish(ScanFile file) {
   if (parts.rows == 0) throw Error("there are no points", facts.name, "check how the file was exported");
   if (!parts.has_origin) {
     throw Error("no usable points: every one has a coordinate that is not a number or absurdly large",
-                facts.name, "check how the file was exported");
+                facts.name,
+                "check how the file was exported; limen assumes metres for a file that states no unit: name "
+                "another with --units");
   }
   parts.scan.colours = parts.colours.finish();
   parts.scan.topology = parts.topology();

@@ -55,10 +55,10 @@ Names column_names(std::string_view line) {
 
 /// What is before the rows.
 struct TextHeader {
-  Names names;
-  bool counted = false;       ///< a lone whole number: PTS
-  std::size_t body = 0;       ///< bytes before the first row (or count)
-  std::size_t lines = 0;      ///< lines before it
+  Names names;            ///< of the last line that has as many as a row has numbers, else of the last line
+  bool counted = false;   ///< a lone whole number: PTS
+  std::size_t body = 0;   ///< bytes before the first row (or count)
+  std::size_t lines = 0;  ///< lines before it
   std::string_view odd_line;  ///< the first line that is no comment, no names, no numbers
   std::size_t odd_number = 0;
   std::string_view row;  ///< the first row; empty where there is none
@@ -69,8 +69,17 @@ bool is_comment(std::string_view line) {
   return tokens.empty() || tokens[0][0] == '#' || tokens[0][0] == '%' || tokens[0].substr(0, 2) == "//";
 }
 
+/// The line of names that is meant: a comment too may have the words x, y and z.
+Names names_for(std::size_t numbers, const std::vector<Names>& lines) {
+  const auto as_many = [numbers](const Names& names) { return names.size() == numbers; };
+  const auto found = std::find_if(lines.rbegin(), lines.rend(), as_many);
+  if (found != lines.rend()) return *found;
+  return lines.empty() ? Names() : lines.back();
+}
+
 TextHeader parse_text_header(std::string_view bytes) {
   TextHeader header;
+  std::vector<Names> lines_of_names;
   std::size_t at = bytes.substr(0, 3) == "\xEF\xBB\xBF" ? 3 : 0;
   bool first_row_found = false;
   for (std::size_t line_number = 1; at < bytes.size() && line_number < kMostHeaderLines; ++line_number) {
@@ -84,10 +93,12 @@ TextHeader parse_text_header(std::string_view bytes) {
     }
     if (numbers > 1 || (numbers == 1 && !header.counted)) {
       header.row = line.text;
+      header.names = names_for(numbers, lines_of_names);
       return header;
     }
-    if (numbers == 0 && header.names.empty()) header.names = column_names(line.text);
-    if (numbers == 0 && header.names.empty() && !is_comment(line.text) && header.odd_number == 0) {
+    Names names = numbers == 0 ? column_names(line.text) : Names();
+    if (!names.empty()) lines_of_names.push_back(std::move(names));
+    if (numbers == 0 && lines_of_names.empty() && !is_comment(line.text) && header.odd_number == 0) {
       header.odd_line = line.text;
       header.odd_number = line_number;
     }
@@ -217,6 +228,11 @@ ScanFile read_xyz(std::string_view bytes, const std::string& name, const ReadOpt
   ScanFile file;
   file.format = format_name(header);
   file.fields = cloud.names;
+  if (const std::size_t numbers = leading_numbers(header.row); numbers > cloud.names.size()) {
+    file.notes.push_back(
+        fmt::format("its rows have {} numbers, but {} columns have names: the rest is unused", numbers,
+                    cloud.names.size()));
+  }
   if (header.counted && parsed.promised < parsed.rows) {
     file.notes.push_back(
         fmt::format("the count says {}, the file holds {} points", parsed.promised, parsed.rows));

@@ -25,6 +25,8 @@ const Case kCases[] = {
     {"names", "X,Y,Z\n1,2,3\n", {{1, 2, 3}}},
     {"names in another order", "\"Z\";\"intensity\";\"X\";\"Y\"\n3;9;1;2\n", {{1, 2, 3}}},
     {"names in a comment, units", "//X[m] Y[m] Z[m] R G B\n1 2 3 9 8 7\n", {{1, 2, 3}}},
+    {"a comment with the words before the names", "// crs X Y Z OTHER\n// z x y\n3 1 2\n", {{1, 2, 3}}},
+    {"a comment with the words behind the names", "z x y\n# x y and z in metres\n3 1 2\n", {{1, 2, 3}}},
     {"byte order mark", "\xEF\xBB\xBFx y z\n1 2 3\n", {{1, 2, 3}}},
     {"count line", "2\n1 2 3 -1000 9 8 7\n4 5 6 -1000 9 8 7\n", {{1, 2, 3}, {4, 5, 6}}},
     {"two counted blocks", "1\n1 2 3\n1\n4 5 6\n", {{1, 2, 3}, {4, 5, 6}}},
@@ -50,6 +52,14 @@ TEST(ReadXyz, ColumnsWithoutNamesFindTheirMeaning) {
   const Scan seven = read_xyz("1 2 3 -5 10 20 30\n", "t").scans.at(0);
   EXPECT_EQ(seven.intensities, std::vector<float>{-5.0F});
   EXPECT_EQ(seven.colours, (std::vector<std::uint8_t>{10, 20, 30}));
+}
+
+TEST(ReadXyz, NumbersWithoutANameAreSaidToBeUnused) {
+  const ScanFile file = read_xyz("x y z\n1 2 3 4 5\n", "t");
+  EXPECT_EQ(file.scans.at(0).points, std::vector<Vector3d>{Vector3d(1, 2, 3)});
+  EXPECT_EQ(file.notes.at(0), "its rows have 5 numbers, but 3 columns have names: the rest is unused");
+  EXPECT_TRUE(read_xyz("x y z\n1 2 3\n", "t").notes.empty() ||
+              read_xyz("x y z\n1 2 3\n", "t").notes.at(0).find("unused") == std::string::npos);
 }
 
 TEST(ReadXyz, AMobileScanMayBeATable) {

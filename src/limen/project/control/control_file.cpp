@@ -113,9 +113,13 @@ void read_table(const std::filesystem::path& path, const std::string& key, const
   if (table.columns.line == 0) throw Error("holds no line", path.string(), remedy);
   const auto where = [&](const TableRow& row) { return fmt::format("{}, line {}", path.string(), row.line); };
   std::map<std::string, std::size_t> columns;
-  for (std::size_t k = 0; k < table.columns.cells.size(); ++k)
-    columns.emplace(lower_case(table.columns.cells[k]), k);
+  for (std::size_t k = 0; k < table.columns.cells.size(); ++k) {
+    const std::string& name = table.columns.cells[k];
+    if (!columns.emplace(lower_case(name), k).second && !name.empty())
+      throw Error("two columns are called " + name, where(table.columns), remedy);
+  }
   if (columns.count(key) == 0) throw Error("no column is called " + key, where(table.columns), remedy);
+  if (table.rows.empty()) throw Error("no row follows the names of the columns", path.string(), remedy);
   for (const TableRow& row : table.rows) visit(Row(columns, row.cells, table.mark, where(row), remedy));
 }
 

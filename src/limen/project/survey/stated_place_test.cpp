@@ -82,10 +82,13 @@ TEST(StatedPositions, AreReadWithTheirDeviationsOrOneMetre) {
 
 TEST(StatedPositions, SayWhatIsWrongWithThem) {
   const TemporaryFolder folder;
-  const std::pair<const char*, const char*> faults[] = {{"name,x,y,z\na,1,2,3\n", "no column is called file"},
-                                                        {"file,x,y,z\na,1,2,3\na,1,2,3\n", "is given twice"},
-                                                        {"file,x,y,z,sigma\na,1,2,3,0\n", "is not above 0"},
-                                                        {"file,x,y\na,1,2\n", "there is no column z"}};
+  const std::pair<const char*, const char*> faults[] = {
+      {"name,x,y,z\na,1,2,3\n", "no column is called file"},
+      {"file,x,y,z\na,1,2,3\na,1,2,3\n", "is given twice"},
+      {"file,x,y,z,sigma\na,1,2,3,0\n", "is not above 0"},
+      {"file,x,y\na,1,2\n", "there is no column z"},
+      {"file,x,y,z,x\na,1,2,3,4\n", "two columns are called x"},
+      {"file,x,y,z\n", "no row follows"}};
   for (const auto& [text, words] : faults) {
     try {
       static_cast<void>(read_stated_positions(folder.write("a.csv", text)));

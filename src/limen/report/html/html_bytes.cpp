@@ -6,8 +6,6 @@
 #include <cmath>
 
 #include "limen/base/text.h"
-#include "limen/files/bounded_json.h"
-#include "limen/report/json/json_values.h"
 
 namespace limen {
 namespace {
@@ -92,11 +90,8 @@ std::string base64(const std::vector<std::uint8_t>& bytes) {
 }
 
 std::string escaped(const std::string& text) {
-  // The JSON library knows what is UTF-8: there and back, bad bytes replaced.
-  const std::string valid =
-      parsed_json<Json>(Json(text).dump(-1, ' ', false, Json::error_handler_t::replace)).get<std::string>();
   std::string safe;
-  for (const char c : printable_lines(valid)) {
+  for (const char c : printable_lines(as_utf8(text))) {
     switch (c) {
       case '&':
         safe += "&amp;";

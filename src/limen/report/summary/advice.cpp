@@ -127,10 +127,14 @@ std::string in_folder(const std::string& folder, const char* name) {
   return folder.empty() ? name : shell_word((std::filesystem::path(folder) / name).string());
 }
 
-/// The command that moves the source's cloud.
+/// The command that moves the source's cloud; what to do instead where the units differ, for it moves and
+/// does not scale.
 std::string transform_command(const RegistrationReport& report, const std::string& folder, bool choice) {
   const bool source_moves = report.source.kind == "scan";
   const InputSummary& moved = source_moves ? report.source : report.target;
+  if (report.source.metres_per_unit != report.target.metres_per_unit)
+    return fmt::format("apply {}, which includes the scale, in another program",
+                       in_folder(folder, "transform.txt"));
   return fmt::format("limen transform {}{}{} {} moved.ply", in_folder(folder, "result.json"),
                      choice ? " --alternative N" : "", source_moves ? "" : " --invert",
                      shell_word(moved.path));

@@ -125,6 +125,14 @@ TEST(Advice, UnitsAreGuessedWhereMetresMakeNoBuilding) {
   EXPECT_FALSE(likely_unit(room, stated)) << "the file states its unit";
 }
 
+TEST(Advice, CloudsInTwoUnitsAreNotMovedByTransform) {
+  RegistrationReport report = pair_of(Outcome::registered);
+  EXPECT_TRUE(any_names(next_steps(report, "out"), "limen transform"));
+  report.source.metres_per_unit = 0.001;
+  EXPECT_FALSE(any_names(next_steps(report, "out"), "limen transform"));
+  EXPECT_TRUE(any_names(next_steps(report, "out"), "out/transform.txt"));
+}
+
 TEST(Advice, TwoMetricFilesAreNotAdvisedAUnit) {
   RegistrationReport report = pair_of(Outcome::no_match);
   report.source = scan_of("room.ply", {8, 6, 3});
