@@ -216,7 +216,7 @@ TEST_F(MisuseTest, WhatIsNoFileOrTheWrongOne) {
       {{"project", "a.ply", "b.ply", "--check", "missing.csv", "-o", "out"}, "there is no such file"},
       {{"project", "a.ply", "b.ply", "--targets", "commas.csv", "-o", "out"},
        "commas.csv, line 2: 6 fields, 4 columns"},
-      {{"evaluate", "project/project.json", "pose.txt"}, "holds no poses by scan"},
+      {{"evaluate", "project/project.json", "pose.txt"}, "holds no list of scans with poses"},
       {{"evaluate", "pose.txt", "words.csv"}, "words.csv"},
       {{"info", "a.ply", "--trajectory", "missing.txt"}, "missing.txt"},
       {{"register", "a.ply", "b.ply", "--source-trajectory", "a.ply", "-o", "out"}, "a.ply"},

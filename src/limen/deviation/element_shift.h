@@ -27,8 +27,7 @@ FaceOffset face_offset(const Vector3d& normal, const std::vector<float>& distanc
 /// more. One observation still, for how flat a face is no number of scans changes. None: no points.
 FaceOffset joined_offset(const std::vector<FaceOffset>& by_scan);
 
-/// Faces whose points scatter much more than those of most points' faces are contested: no planes stand
-/// there.
+/// Marks faces as contested whose points scatter much more than is typical: their points form no plane.
 void contest_scattered(std::vector<FaceOffset>& faces);
 
 /// The rigid shift that explains the offsets of an element's faces, robustly.

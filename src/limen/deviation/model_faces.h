@@ -10,7 +10,7 @@
 
 namespace limen {
 
-/// The faces of a model as points are laid on them.
+/// The faces of a model to which points are assigned.
 struct ModelFaces {
   std::vector<FlatFace> faces;
   std::vector<std::int32_t> elements;  ///< of each face

@@ -254,7 +254,7 @@ Rigid3 chosen_pose(const PoseFile& file, int choice, const fs::path& path) {
 std::vector<TrueScan> read_true_scans(const fs::path& path) {
   const std::optional<Json> object = object_in(read_text(path), path);
   if (!object || !object->contains("scans") || !(*object)["scans"].is_array())
-    throw Error("holds no poses by scan", path.string(),
+    throw Error("holds no list of scans with poses", path.string(),
                 "give the truth that limen simulate wrote, or an object with scans, each with file and "
                 "world_from_scan");
   std::vector<TrueScan> scans;

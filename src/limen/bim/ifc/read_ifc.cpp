@@ -278,7 +278,7 @@ RawModel read_ifc(std::string_view bytes, const std::string& name, Monitor& moni
   const std::optional<Ifc4x3> newer =
       Ifc4x3::is_schema(file.schema()) ? std::optional<Ifc4x3>(file) : std::nullopt;
   if (newer && !newer->types_left_out().empty())
-    warnings.push_back(fmt::format("{} is read as IFC4; left out is what needs {}", file.schema(),
+    warnings.push_back(fmt::format("{} is read as IFC4; elements that need {} are left out", file.schema(),
                                    fmt::join(newer->types_left_out(), ", ")));
   IfcShapes shapes = ShapeSource(text_of_shapes(file, newer), name, monitor).get(warnings);
   RawModel model = Assembly(file, std::move(structure), std::move(shapes)).assemble();

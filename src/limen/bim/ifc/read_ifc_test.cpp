@@ -325,8 +325,10 @@ TEST_F(ReadIfc, WhatIfc4DoesNotKnowIsLeftOutAndNamed) {
       "#206=IFCBEAM('0000000000000000000032',$,'half',$,$,#13,#205,$,.BEAM.);\n";
   const BimModel model = model_of(text_of(file));
   ASSERT_GE(model.warnings.size(), 3U);
-  EXPECT_EQ(model.warnings[0],
-            "IFC4X3 is read as IFC4; left out is what needs IFCLINEARPLACEMENT, IFCSECTIONEDSOLIDHORIZONTAL");
+  EXPECT_EQ(
+      model.warnings[0],
+      "IFC4X3 is read as IFC4; elements that need IFCLINEARPLACEMENT, IFCSECTIONEDSOLIDHORIZONTAL are left "
+      "out");
   EXPECT_EQ(model.warnings[1], "#202 IfcSlab has no shape that can be read");
   EXPECT_EQ(model.warnings[2], "#206 IfcBeam has no shape that can be read");
   EXPECT_NEAR(area_of(model, 0), wall_area(), 2e-3);

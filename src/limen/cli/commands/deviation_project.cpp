@@ -139,8 +139,8 @@ Scan placed_scan(Scan scan, const ProjectEntry& entry, const Rigid3& model_from_
   return scan;
 }
 
-/// Where a static scanner stood as far as its points bear it out: rays from a wrong place tell of gaps that
-/// are none.
+/// Gives a static scan the position that its points support, or none: rays from a wrong position show false
+/// gaps.
 void settle_place(Scan& scan, const Session& session) {
   if (scan.mobile()) return;
   const ScannerPlace place = find_scan_frame(scan, Gravity::automatic, *session.monitor).place;

@@ -99,7 +99,8 @@ void name_outputs(std::vector<Move>& moves, const fs::path& folder, const std::s
     const ScanInFile named = scan_in_file(move.entry.file);
     const fs::path from(named.file);
     std::string end = ending_of_format(ending, from);
-    // A file of several stations becomes E57, and so does one of them where its format is not written.
+    // A file of several stations is written as E57. So is a single station of it if its format cannot be
+    // written.
     const bool one_of_several = named.index && !is_cloud_ending("cloud" + end);
     if (ending.empty() && (move.several || one_of_several)) end = ".e57";
     // What is bent is written point by point.

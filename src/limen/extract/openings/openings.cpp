@@ -307,7 +307,7 @@ std::vector<Opening> openings_of(const Scan& scan, const Features& features, con
     for (const Vector2d& p : hole.outline.ring)
       openings.back().outline.push_back(evidence.wall.frame.to_space(p));
   }
-  // A curtain hangs in the room; before a façade hang flags.
+  // Not in mobile scans: curtains hang indoors, and what hangs before a façade is often a flag.
   if (scan.mobile()) return openings;
   for (const OpeningRectangle& rectangle :
        curtained_rectangles(scan, evidence, grid, features.noise_m, options)) {

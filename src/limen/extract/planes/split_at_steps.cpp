@@ -263,7 +263,7 @@ class StepParts {
   void join_alike() {
     struct Edge {
       double strain;
-      double count;  ///< of both parts when it was looked at
+      double count;  ///< points of both parts when the edge was queued
       std::size_t a, b;
       bool operator<(const Edge& o) const { return std::tie(strain, a, b) > std::tie(o.strain, o.a, o.b); }
     };

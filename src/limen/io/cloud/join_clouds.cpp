@@ -330,7 +330,7 @@ void JoinedClouds::add_columns(const RecordTable& table, const CloudFacts& facts
   }
 }
 
-/// One centre is given by the plan, several by columns.
+/// The scanner position of a single cloud goes into the plan, those of several into columns.
 void JoinedClouds::settle_centres() {
   const auto has_column = [&] {
     return std::any_of(plan_.columns.begin(), plan_.columns.end(),

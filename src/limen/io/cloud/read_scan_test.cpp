@@ -87,7 +87,7 @@ std::vector<Broken> broken_others() {
       {"type.pcd", "VERSION 0.7\nFIELDS x y z\nSIZE 3 4 4\nTYPE F F F\nPOINTS 1\nDATA binary\n" + kTwelve,
        "unknown type"},
       {"sizes.pcd", "VERSION 0.7\nFIELDS x y z\nSIZE 4 4\nDATA ascii\n", "line 3"},
-      {"packed_end.pcd", pcd("POINTS 2\n", "binary_compressed") + "\x01", "end before"},
+      {"packed_end.pcd", pcd("POINTS 2\n", "binary_compressed") + "\x01", "are cut off"},
       {"packed_bad.pcd", pcd("POINTS 2\n", "binary_compressed") + packed + "\xFF\xFF\xFF\xFF"s, "damaged"},
       {"packed_few.pcd",
        pcd("POINTS 2\n", "binary_compressed") + bytes_of(std::uint32_t{13}) + bytes_of(std::uint32_t{12}) +

@@ -42,7 +42,7 @@ std::uint64_t mixed(std::uint64_t value) {
   return value ^ (value >> 31U);
 }
 
-/// The lot of a point: the lowest one of a cell is kept. No two are equal.
+/// A random rank for each point: the point of the lowest rank in a cell is kept. No two ranks are equal.
 std::uint64_t lot_of(std::uint64_t row) {
   return mixed(row + 0x9E3779B97F4A7C15ULL);
 }

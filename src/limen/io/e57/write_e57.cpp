@@ -32,7 +32,7 @@ constexpr std::uint64_t kE57PageBytes = 1024;
 constexpr std::size_t kRowStep = 64;
 /// Integers reach so far from the pose.
 constexpr double kReachM = 1e6;
-/// Finer than this a double serves as well.
+/// Coordinates that need a finer step than this are stored as doubles.
 constexpr double kFinestStepM = 1e-7;
 constexpr std::string_view kNotFinite = "cartesianInvalidState";
 

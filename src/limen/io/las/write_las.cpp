@@ -157,7 +157,7 @@ class LasWriter : public CloudWriter {
       records += copc_info_record();
       ++count;
     }
-    // Of LAS 1.4 it is well-known text; a number alone has no place in it.
+    // LAS 1.4 holds the coordinate system as well-known text; a code alone cannot be written there.
     const auto text = std::find_if(plan_.georeference.begin(), plan_.georeference.end(),
                                    [](const std::string& it) { return it.find('[') != std::string::npos; });
     if (text != plan_.georeference.end()) add("LASF_Projection", 2112, *text + '\0');

@@ -154,7 +154,7 @@ std::string expand_body(std::string_view body, std::size_t wanted, const std::st
   std::uint32_t sizes[2] = {0, 0};
   if (body.size() >= sizeof sizes) std::memcpy(sizes, body.data(), sizeof sizes);
   if (body.size() < sizeof sizes || sizes[0] > body.size() - sizeof sizes) {
-    throw Error("the compressed points end before their time", name, "get the whole file");
+    throw Error("the compressed points are cut off", name, "get the whole file");
   }
   auto expanded = expand_lzf(body.substr(sizeof sizes, sizes[0]), sizes[1]);
   if (!expanded) throw Error("the compressed points are damaged", name, "export the file again");

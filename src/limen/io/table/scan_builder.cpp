@@ -67,7 +67,7 @@ FieldTriple require_coordinates(const RecordTable& table, const TableFacts& fact
   const FieldTriple triple = find_triple(table, "");
   for (std::size_t k = 0; k < 3; ++k) {
     if (triple[k] != nullptr) continue;
-    throw Error(fmt::format("the points have no {} (their values are: {})", "xyz"[k], names_of(table)),
+    throw Error(fmt::format("the points have no {} (their columns are: {})", "xyz"[k], names_of(table)),
                 facts.name, "export the points with x, y and z");
   }
   return triple;

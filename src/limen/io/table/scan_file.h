@@ -27,8 +27,7 @@ struct ReadOptions {
   std::optional<double> metres_per_unit = {};
   /// A file whose scans would take more than this is thinned while it is read, and a note tells so; 0: never.
   std::uint64_t memory_bytes = 0;
-  /// From where a moving scanner saw its points, by their time; counts before what the file says, not before
-  /// `origin`. Empty: none.
+  /// Positions of a mobile scanner by time. They replace what the file says, but not `origin`. Empty: none.
   std::shared_ptr<const Trajectory> trajectory = {};
 
   /// Throws Error where the origin is not finite or the unit not more than 0.

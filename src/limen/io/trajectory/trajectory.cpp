@@ -59,7 +59,8 @@ std::optional<double> helpful_offset(const TimeRange& scan, const TimeRange& tra
               scan.name, remedy);
 }
 
-/// The times lie within those of the trajectory somewhere, and near: else both are of different frames.
+/// Throws Error where the median distance of points to their scanner positions is too large: the trajectory
+/// and the points are then in different frames.
 void require_near(const Scan& scan, const Trajectory& trajectory) {
   std::vector<double> distances;
   const std::size_t step = std::max<std::size_t>(1, scan.size() / 1000);

@@ -183,7 +183,7 @@ struct OpenLine {
   Vector3d first = Vector3d::Zero();
   Vector3d second = Vector3d::Zero();
   Matrix3d solve = Matrix3d::Identity();  ///< shift from the two offsets and the place along
-  bool open = false;                      ///< whether the two are no one direction
+  bool open = false;                      ///< whether the two normals are far enough from parallel
 
   /// Makes it that of two normals.
   void be_of(const Vector3d& p, const Vector3d& q) {

@@ -10,7 +10,7 @@
 
 namespace limen {
 
-/// What the surface of two nodes says of a pose, as a pair's pose is scored; m^2.
+/// How well the surfaces of two nodes agree with a pose, scored as for a pair; m^2.
 struct PoseSurface {
   double agreeing_m2 = 0.0;
   double contradicted_m2 = 0.0;  ///< is where the other saw free space

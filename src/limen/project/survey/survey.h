@@ -19,7 +19,7 @@ struct SurveyMark {
   PointRole role = PointRole::tie;
   bool scanner = false;           ///< where a scanner stood
   std::optional<Vector3d> given;  ///< world of the survey
-  MarkedPoint point;              ///< about the survey's origin; sights about the nodes' local origins
+  MarkedPoint point;              ///< relative to the survey's origin; sights to the nodes' local origins
 };
 
 /// Control, check and tie points of a project, by name.

@@ -174,7 +174,7 @@ constexpr double kLevelPathDeg = 3.0;  // z of a moving scanner's frame, nearer 
 constexpr double kWallDeg = 5.0;
 constexpr double kHeadingDeg = 0.5;    // walls off by more count less and less
 constexpr double kCornerShare = 0.01;  // of the points that lie beyond the corner along each axis
-/// Of the corner beyond that: the floor and the walls that make it must not lie on the border of cells.
+/// The corner lies this much farther out: the floor and the walls at it must not lie on borders of cells.
 constexpr double kMarginM = 0.11;
 
 /// Turns about the vertical only: x along `heading` as it is seen from above.

@@ -252,7 +252,7 @@ class Finder {
   const Rigid3& pose_;
 };
 
-/// Each wall once, by what most was seen of.
+/// Keeps one candidate for each wall, the one with the most tiles.
 CommonSurfaces chosen(std::vector<Candidate> candidates) {
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const Candidate& a, const Candidate& b) { return a.tiles > b.tiles; });

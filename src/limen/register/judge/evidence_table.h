@@ -27,8 +27,8 @@ struct Surface {
   double built;            ///< weight of how surfaces were built, against chance
   Contradiction contradicted;
   double twice;  ///< share of places that the same two scans see again elsewhere, built and furnished alike
-  double nothing_shared;  ///< odds beforehand that nothing is shared, against a pose that was proposed ...
-  double unlisted;        ///< ... and that a place is shared whose pose was not proposed
+  double nothing_shared;  ///< prior odds of no common surface, against a pose that was proposed ...
+  double unlisted;        ///< ... and of a common place whose pose was not proposed
 };
 inline constexpr Surface kRooms{0.749, 1.16, 7.53, 7.13, 2.23, {0.262, {0.00344, 11.2}, {0.156, 13.2}},
                                 0,     1.0,  0.1};

@@ -106,7 +106,8 @@ std::array<OfThings, 3> put_in_place(const SeenClutter& seen) {
                   [](const FaceMiss& face, double scale) { return std::hypot(scale, face.sigma_m); });
 }
 
-/// If they are elsewhere, or others: surface agrees by chance, and a share of the faces is near another.
+/// If the things were moved or replaced: surface agrees by chance, and a share `near` of the faces lies
+/// within about `near_m` of another face.
 OfThings elsewhere(const SeenClutter& seen, double near, double near_m) {
   const ShareBelief chance{std::clamp(seen.chance + kFurniture.more_than_chance, 0.01, 0.7),
                            kFurniture.chance_strength};

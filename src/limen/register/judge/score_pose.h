@@ -16,7 +16,7 @@ struct ScoreOptions {
   double free_m = 0.10;     ///< surface this far inside seen free space is contradicted
   double opening_m = 0.25;  ///< openings nearer than this within their wall agree
   bool openings = true;     ///< openings count
-  std::size_t samples = 0;  ///< asked of each scan, about; 0: all
+  std::size_t samples = 0;  ///< about how many of each scan are tested; 0: all
   bool ask_model = true;    ///< the scan is asked about a model's surface as well, not only the model
 };
 

@@ -10,10 +10,10 @@ namespace limen {
 /// How far a pose is from the one believed. `at`: a point of the source in the middle of what it saw.
 StartAgreement miss_of_start(const StartPrior& start, const Rigid3& pose, const Vector3d& at);
 
-/// By how much a belief makes a pose more probable than it is without one: the logarithm of its density over
-/// the even one in the space that is searched (40 x 40 x 10 m, all headings where `upright`, else all turns).
-/// Never less than the logarithm of what is not trusted, nor more than `most`: a belief may single a pose out
-/// of all that a search can distinguish, but is no evidence that scans share anything.
+/// Logarithm of how much more probable a belief makes a pose: its density over the uniform density in the
+/// space that is searched (40 x 40 x 10 m, all headings where `upright`, else all rotations). At least
+/// log(1 - trust) and at most `most`: a belief may single out one of the poses that a search can distinguish,
+/// but is no evidence that the scans overlap.
 double log_prior_of_start(const StartPrior& start, const Rigid3& pose, const Vector3d& at, bool upright,
                           double most);
 

@@ -85,7 +85,7 @@ PreparedScan prepare_scan(const Scan& scan, const PrepareOptions& options = {},
 PreparedScan prepare_scan(Scan&& scan, const PrepareOptions& options = {},
                           Monitor& monitor = silent_monitor());
 
-/// Both in a frame that is known already.
+/// As the two functions above, in a frame that is known already.
 PreparedScan prepare_in_frame(const Scan& scan, const ScanFrame& frame, const PrepareOptions& options = {},
                               Monitor& monitor = silent_monitor());
 PreparedScan prepare_in_frame(Scan&& scan, const ScanFrame& frame, const PrepareOptions& options = {},

@@ -23,7 +23,7 @@
 
 namespace limen {
 
-/// What random trials came to.
+/// The best of the random trials.
 struct BestTrial {
   std::size_t trial = 0;  ///< RandomStream(seed, trial) draws the hypothesis again
   double cost = 0.0;

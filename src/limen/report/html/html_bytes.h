@@ -32,8 +32,8 @@ std::vector<std::uint8_t> stretched(const std::vector<float>& intensities);
 /// RFC 4648, section 4, with padding, on one line.
 std::string base64(const std::vector<std::uint8_t>& bytes);
 
-/// Text for HTML content and quoted attributes; bytes that are not UTF-8 become U+FFFD, and what
-/// steers a line is written as printable() does.
+/// Text for HTML content and quoted attributes. Bytes that are not UTF-8 become U+FFFD. Control characters
+/// are written as printable_lines() writes them.
 std::string escaped(const std::string& text);
 
 }  // namespace limen

@@ -15,7 +15,7 @@ namespace limen {
 /// The coordinate system of a project's frame, and what else a run knows of the world.
 struct FrameSystem {
   CoordinateSystem system;  ///< as far as it is known
-  std::string said_by;      ///< "user", or "file": the one whose world coordinates the frame has
+  std::string said_by;      ///< "user", or "file": one whose world coordinates are the frame's
   StatedTrajectories trajectories = {};
 };
 

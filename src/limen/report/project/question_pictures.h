@@ -18,8 +18,8 @@ std::vector<std::vector<Decision>> asked_of(const ProjectQuestion& question);
 std::string asked_words(const std::vector<Decision>& answers);
 
 /// An SVG for each of the first pairs of scans that questions ask about, in the order of the questions and of
-/// asked_of(): both from above side by side, cut at the height of windows, turned alike by their link, and
-/// laid together by it. Empty where a scan has no picture.
+/// asked_of(): plans of both scans, cut at window height and turned to match by their link, side by side and
+/// then overlaid. Empty where a scan has no picture.
 std::vector<std::string> question_pictures(const ProjectResult& result,
                                            const std::vector<ProjectPicture>& pictures);
 

@@ -311,7 +311,7 @@ BuiltOpening AsBuilt::opening(const OpeningShape& shape, std::size_t inner, std:
   const double base = with_wall(0.5 * w, 0.5 * h);
   const Vector3d shift =
       off(sigma, random) * u + off(sigma, random) * v + (base + off(0.5 * sigma, random)) * in;
-  // Of the place in the opening (along u, v, inwards) the displacement along the same axes.
+  // Linear map from the place in the opening (along u, v, inwards) to the displacement along the same axes.
   Matrix3d slope = Matrix3d::Zero();
   slope(0, 0) = off(sigma, random) / w;
   slope(1, 1) = off(sigma, random) / h;

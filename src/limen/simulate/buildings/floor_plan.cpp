@@ -115,7 +115,7 @@ class Planner {
     }
     const double turn = o_.turn_rad;
     const double shift = depth_ * std::tan(0.5 * std::abs(turn));
-    // The wings turn about the corner where the façade bends outwards; the other corner is drawn back.
+    // The second wing is rotated about the convex corner of the joint; the concave corner is moved back.
     joint_ = {true, {length, turn > 0.0 ? 0.0 : depth_}, turned(Vector2d::UnitY(), 0.5 * turn)};
     Wing second{.bays = o_.second_bays_m, .end_wall = o_.outer_wall_m, .main = false};
     second.angle = turn;

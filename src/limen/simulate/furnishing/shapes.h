@@ -18,7 +18,7 @@ class ShapeBuilder {
   void ellipsoid(const Vector3d& middle, const Vector3d& radii);
   /// Loose triangles in an ellipsoid: leaves.
   void leaves(const Vector3d& middle, const Vector3d& radii, int count, RandomStream& random);
-  /// A tilted board: a sheet of some thickness about `middle`, leaning back by `lean_rad`.
+  /// A tilted board: a thin sheet that stands on `bottom_middle` and leans back by `lean_rad`.
   void leaning_board(const Vector3d& bottom_middle, double width, double height, double lean_rad);
 
  private:

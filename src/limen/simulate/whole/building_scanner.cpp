@@ -155,7 +155,7 @@ ScannedBuilding BuildingScanner::station(const std::string& name, const StationP
   if (!style.any_rotation && style.tilt_rad > 0.0) local_from_head.rotation = local_from_head.rotation * tilt;
   local_from_head.translation = rounded(local_from_scene_ * place.position);
   const Rigid3 scene_from_head = inverse(local_from_scene_) * local_from_head;
-  // Of a file in any rotation the instrument stood upright (or tilted) all the same.
+  // Even if the file's axes have any rotation, the instrument stood upright, or was slightly tilted.
   const Matrix3d stand = style.any_rotation ? tilt : scene_from_head.rotation;
   const Rigid3 pulses_from{stand * any_heading(random), scene_from_head.translation};
   Sweep result = sweep_of_points(

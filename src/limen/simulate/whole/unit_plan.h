@@ -19,7 +19,7 @@ struct UnitCell {
   RoomUse use = RoomUse::living;
   bool mirrored = false;  ///< a copy, its left and right exchanged, of the cell `design`
   int design = -1;        ///< -1: its own index
-  int flat = 0;           ///< units of several dwellings: which
+  int flat = 0;           ///< in units of several dwellings: index of the dwelling
 };
 
 /// A door in the middle of which `at` lies. `rooms`: indices of cells; -1: the corridor behind the unit.
