@@ -22,7 +22,8 @@ namespace {
 constexpr std::size_t kFirstPartners = 4;
 constexpr std::size_t kFirstStated = 3;  // where all places are stated
 constexpr std::size_t kMorePartners = 3;
-constexpr int kMostWaves = 4;
+constexpr std::size_t kFewPairs = 500;   // a project may try so many, however few scans it has
+constexpr int kLastDoubling = 4;         // of the partners that a wave may add
 constexpr std::size_t kPairsOfWave = 2;  // of a scan, on average: the next wave knows more
 constexpr int kMostStatedPairs = 4;      // of a scan, where all places are stated
 constexpr int kEnoughLinks = 4;          // verified ones: a scan that has them needs no more ...
@@ -42,11 +43,12 @@ class Waves {
                                         [](const ProjectNode& node) { return node.stated.has_value(); });
     std::vector<TriedPair> tried = try_all_(best_pairs(ranked, all_stated ? kFirstStated : kFirstPartners));
     const int per_scan = all_stated ? std::min(kMostStatedPairs, pairs_per_scan_) : pairs_per_scan_;
-    const auto most = static_cast<std::size_t>(per_scan) * nodes_.size();
-    for (int wave = 1; wave <= kMostWaves; ++wave) {
-      if (tried.size() >= most) break;
+    const std::size_t of_scans = static_cast<std::size_t>(per_scan) * nodes_.size();
+    const std::size_t most = all_stated ? of_scans : std::max(of_scans, kFewPairs);
+    for (int wave = 1; tried.size() < most; ++wave) {
       // What nothing holds is worth more with every wave.
-      PairList next = next_pairs(ranked, tried, kFirstPartners << static_cast<unsigned>(wave));
+      PairList next =
+          next_pairs(ranked, tried, kFirstPartners << static_cast<unsigned>(std::min(wave, kLastDoubling)));
       next.resize(std::min({next.size(), most - tried.size(), kPairsOfWave * nodes_.size()}));
       if (next.empty()) break;
       for (TriedPair& pair : try_all_(next)) tried.push_back(std::move(pair));
