@@ -210,7 +210,9 @@ TEST_F(DeviationProgramTest, ModelsOfAProjectAndMistakes) {
   ASSERT_EQ(two["models"].size(), 2U);
   EXPECT_EQ(two["models"][1]["place"], "with the first");
   EXPECT_GT(two["summary"]["elements_in_several_models"].get<int>(), 5);
-  ASSERT_EQ(run({"deviation", "project.json", "-o", "one"}).status, 0);
+  ASSERT_EQ(run({"deviation", "project.json", "-o", "one", "--bcf", "one/issues.bcf"}).status, 0);
+  EXPECT_TRUE(std::filesystem::exists(work() / "one/issues.bcf"));
+  EXPECT_EQ(json_of("one/deviation.json")["elements"].size(), two["elements"].size());
   EXPECT_EQ(json_of("one/deviation.json")["summary"]["points_on_faces"], two["summary"]["points_on_faces"]);
 
   const auto fails = [this](std::vector<std::string> arguments, const std::string& stated) {
@@ -223,6 +225,9 @@ TEST_F(DeviationProgramTest, ModelsOfAProjectAndMistakes) {
   };
   fails({"project.json", "--identity"}, "--identity");
   fails({"project.json", "--moved-m", "0"}, "moved_m");
+  fails({"project.json", "--units", "mm"}, "leave out --units");
+  fails({"project.json", "--lever-arm", "1,2,3"}, "--trajectory FILE");
+  fails({"project.json", "--bcf", "none"}, "is the output folder");
   fails({"scan_01.ply", "--identity"}, "no model");
   project["scans"][0]["sha256"] = std::string(64, '0');
   write_whole(work() / "project.json", project.dump());

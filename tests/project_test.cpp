@@ -389,6 +389,10 @@ TEST_F(Project, DecisionsAreHeededTestedAndSurviveRuns) {
   std::vector<std::string> with_half = call(scans, "out");
   with_half.insert(with_half.end(), {"--decide", "half.json"});
   EXPECT_EQ(run(with_half).status, 2);
+  // With its folder or without, it is the same scan: the later decision replaces the earlier.
+  const ProgramRun spelled =
+      run({"project", "decide", "out", "reject", "case/indoor_00.ply", "case/indoor_01.ply", "--json"});
+  EXPECT_EQ(json::parse(spelled.out)["decisions"].size(), 1U) << spelled.out;
   // From a file, over what was said before; names that nothing has are reported.
   write_whole(
       work() / "words.json",
@@ -412,6 +416,34 @@ TEST_F(Project, DecisionsAreHeededTestedAndSurviveRuns) {
   const ProgramRun bad = run(with_file);
   EXPECT_EQ(bad.status, 2);
   EXPECT_NE(bad.err.find("words.json, decision 1"), std::string::npos) << bad.err;
+}
+
+TEST_F(Project, NoInputIsReplaced) {
+  const std::vector<std::string> scans = simulate();
+  const std::string survey = "file,x,y,z\nindoor_00.ply,1,2,3\n";
+  write_whole(work() / "stations.csv", survey);
+  std::vector<std::string> words = call(scans, ".");
+  words.insert(words.end(), {"--poses", "stations.csv"});
+  const ProgramRun refused = run(words);
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_NE(refused.err.find("would overwrite the input"), std::string::npos) << refused.err;
+  EXPECT_EQ(read_whole(work() / "stations.csv"), survey);
+}
+
+TEST_F(Project, OptionsBeforeTheScansTakeNoScan) {
+  const std::vector<std::string> scans = simulate();
+  EXPECT_EQ(run({"simulate", "office", "--points-indoor", "2000", "-o", "office", "--quiet"}).status, 0);
+  const ProgramRun done =
+      run({"project", "--model", "office/model.ifc", scans[0], scans[1], "-o", "out", "--quiet"});
+  EXPECT_NE(done.status, 2) << done.err;
+  EXPECT_EQ(json::parse(text_of("out"))["scans"].size(), 3U);
+}
+
+TEST_F(Project, ATargetThatNoScanShowsEndsNothing) {
+  std::vector<std::string> words = call(simulate(), "out");
+  words.insert(words.end(), {"--sphere-radius", "72.5mm"});
+  const ProgramRun done = run(words);
+  EXPECT_EQ(done.status, 0) << done.err;
 }
 
 TEST_F(Project, WhatIsMissingIsStated) {

@@ -119,6 +119,20 @@ TEST_F(ServeTest, UploadsHaveBoundsAndAppearWhole) {
   ASSERT_EQ(send(descriptor, half.data(), half.size(), MSG_NOSIGNAL), static_cast<ssize_t>(half.size()));
   std::this_thread::sleep_for(std::chrono::milliseconds(200));
   close(descriptor);
+  // Of two uploads of one name the first that is whole counts.
+  const int late = server().connected();
+  const std::string begun = "PUT /" + server().token() + "/files/race.xyz HTTP/1.1\r\n" + server().host() +
+                            "Content-Length: 12\r\n\r\n1 2 3\n";
+  ASSERT_EQ(send(late, begun.data(), begun.size(), MSG_NOSIGNAL), static_cast<ssize_t>(begun.size()));
+  std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  EXPECT_EQ(status_in(server().ask("PUT", "files/race.xyz", "7 8 9\n")), 201);
+  ASSERT_EQ(send(late, "4 5 6\n", 6, MSG_NOSIGNAL), 6);
+  std::string reply(64, '\0');
+  ASSERT_GT(recv(late, reply.data(), reply.size(), 0), 0);
+  EXPECT_EQ(status_in(reply), 409);
+  close(late);
+  EXPECT_EQ(read_whole(work() / "site" / "files" / "race.xyz"), "7 8 9\n");
+  EXPECT_EQ(status_in(server().ask("DELETE", "files/race.xyz")), 200);
   server().state_with("a.xyz");
   for (int k = 0; k < 100 && std::distance(fs::directory_iterator(work() / "site" / "files"), {}) > 1; ++k)
     std::this_thread::sleep_for(std::chrono::milliseconds(50));

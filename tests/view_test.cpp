@@ -117,6 +117,14 @@ TEST_F(ViewTest, AllPlacedScansOfAProject) {
   for (const std::string side : {"side-0", "side-1"}) shown += scene[side]["count"].get<int>();
   EXPECT_LE(shown, 8000);
   EXPECT_GE(shown, 5000);
+
+  std::filesystem::copy_file(work() / "indoor_00.ply", work() / "indoor_01.ply",
+                             std::filesystem::copy_options::overwrite_existing);
+  const ProgramRun changed = run({"view", "building/project.json", "-o", "changed.html"});
+  EXPECT_EQ(changed.status, 2);
+  EXPECT_NE(changed.err.find("SHA-256"), std::string::npos) << changed.err;
+  const ProgramRun several = run({"view", "building/project.json", "--alternative", "7"});
+  EXPECT_NE(several.err.find("--alternative"), std::string::npos) << several.err;
 }
 
 TEST_F(ViewTest, APassThatDriftedIsShownBentBack) {

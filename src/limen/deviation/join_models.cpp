@@ -7,13 +7,12 @@
 namespace limen {
 namespace {
 
-BimFace moved_face(const BimFace& face, const Rigid3& pose, std::int32_t first_element) {
+BimFace moved_face(const BimFace& face, const Rigid3& pose) {
   BimFace moved = face;
   moved.plane = transformed(pose, face.plane);
   moved.frame.origin = pose * face.frame.origin;
   moved.frame.u = pose.rotation * face.frame.u;
   moved.frame.v = pose.rotation * face.frame.v;
-  moved.element = face.element + first_element;
   return moved;
 }
 
@@ -32,18 +31,22 @@ JoinedModel join_models(const std::vector<PlacedModel>& models) {
       joined.model.spaces.clear();
     }
     const Rigid3 pose = to_local(models[k].first_from_model, model.local_origin, joined.model.local_origin);
-    const auto first = static_cast<std::int32_t>(joined.model.elements.size());
-    std::vector<char> again(model.elements.size(), 0);
+    std::vector<std::int32_t> place(model.elements.size(), -1);  // among all; -1: an earlier model has it
     for (std::size_t e = 0; e < model.elements.size(); ++e) {
       const BimElement& element = model.elements[e];
-      again[e] = !element.guid.empty() && known.count(element.guid) > 0 ? 1 : 0;
-      joined.doubled += again[e] != 0 ? 1 : 0;
+      if (!element.guid.empty() && known.count(element.guid) > 0) {
+        ++joined.doubled;
+        continue;
+      }
+      place[e] = static_cast<std::int32_t>(joined.model.elements.size());
       joined.model.elements.push_back(element);
       joined.model_of_element.push_back(static_cast<std::int32_t>(k));
     }
     for (const BimFace& face : model.faces) {
-      if (again[static_cast<std::size_t>(face.element)] == 0)
-        joined.model.faces.push_back(k == 0 ? face : moved_face(face, pose, first));
+      const std::int32_t element = place[static_cast<std::size_t>(face.element)];
+      if (element < 0) continue;
+      joined.model.faces.push_back(k == 0 ? face : moved_face(face, pose));
+      joined.model.faces.back().element = element;
     }
     for (const BimFace& face : model.faces) {
       const std::string& guid = model.elements[static_cast<std::size_t>(face.element)].guid;

@@ -24,7 +24,7 @@ struct JoinedModel {
 };
 
 /// Puts the elements of all of them in one, model after model. An element whose GUID an earlier one has with
-/// faces is the same element: the later one loses its faces. Rooms and openings are left out.
+/// faces is the same element: the later one is left out. Rooms and openings are left out.
 JoinedModel join_models(const std::vector<PlacedModel>& models);
 
 }  // namespace limen

@@ -235,6 +235,7 @@ PoseFile read_pose_file(const fs::path& path) {
   if (const std::optional<Json> object = object_in(text, path)) return pose_from_object(*object, path);
   PoseFile pose;
   pose.target_from_source = pose_from_text(text, path);
+  pose.of_numbers = true;
   return pose;
 }
 

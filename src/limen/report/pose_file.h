@@ -25,6 +25,7 @@ struct PoseFile {
   double source_metres_per_unit = 1.0;  ///< of the numbers in the registered files; the poses are in metres
   double target_metres_per_unit = 1.0;
   std::vector<Rigid3> alternatives;  ///< the other poses, in the order of the file
+  bool of_numbers = false;           ///< a text: its translation is in the unit of the files, not in metres
 };
 
 /// The pose number `choice` of a file: 0 is its answer, 1 and more its alternatives in their order. Throws

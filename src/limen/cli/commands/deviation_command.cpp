@@ -189,6 +189,10 @@ int run_on_project(const DeviationCommand& command, const Session& session) {
   if (pose_given)
     throw Error("the poses of the scans are taken from the project", command.scan,
                 "leave out --result, --identity, --inverse, --alternative, --origin and --with");
+  if (!command.reading.units.empty() || !command.reading.trajectory.empty())
+    throw Error("the scans of a project are read as the project read them", command.scan,
+                "leave out --units and --trajectory");
+  require_trajectory(command.reading);
   const std::filesystem::path browser = browser_for_pdf(command.pdf);
   ProjectDeviation project;
   project.project = command.scan;

@@ -326,7 +326,7 @@ void refuse_to_replace(const std::vector<std::string>& inputs, const std::string
                        const std::string& issues) {
   const auto same = [](const fs::path& a, const fs::path& b) {
     std::error_code missing;
-    return fs::weakly_canonical(a, missing) == fs::weakly_canonical(b, missing);
+    return fs::weakly_canonical(fs::absolute(a), missing) == fs::weakly_canonical(fs::absolute(b), missing);
   };
   for (const char* name :
        {"deviation.json", "deviation.csv", "deviation.xlsx", "deviation.ply", "report.html", "report.pdf"}) {
@@ -339,6 +339,7 @@ void refuse_to_replace(const std::vector<std::string>& inputs, const std::string
   for (const std::string& input : inputs) refuse_same_file(issues, input);
   const fs::path parent = fs::absolute(issues).parent_path();
   if (fs::is_directory(issues)) throw Error("is a folder, not a file", issues, "name a file to write to");
+  if (same(issues, folder)) throw Error("is the output folder", issues, "name a file to write to");
   if (!fs::is_directory(parent) && !same(parent, folder))
     throw Error("there is no such folder", parent.string(), "make it, or write elsewhere");
 }

@@ -295,6 +295,18 @@ ProjectInputs inputs_of(const ProjectCommandOptions& options) {
           options.targets, options.poses,  options.decisions};
 }
 
+void refuse_to_replace_inputs(const ProjectCommandOptions& options, const std::filesystem::path& folder) {
+  std::vector<std::string> inputs = {options.control, options.check, options.poses,
+                                     options.targets, options.list,  options.decisions};
+  for (const auto* files : {&options.scans, &options.models, &options.trajectories.files})
+    inputs.insert(inputs.end(), files->begin(), files->end());
+  std::vector<const char*> own = {"project.json", "links.csv", "stations.csv", "tables.xlsx", "report.html"};
+  if (!options.spheres.empty() || !options.boards.empty()) own.push_back("targets.csv");
+  for (const char* name : own) {
+    for (const std::string& input : inputs) refuse_same_file((folder / name).string(), input);
+  }
+}
+
 /// Where nothing was kept that a later run could use, a folder is left as it was found.
 bool keeps_nothing(const std::filesystem::path& folder) {
   std::error_code stop;
@@ -365,6 +377,7 @@ int run(ProjectCommandOptions options, const Session& session) {
   const OutputFolder folder(options.folder);
   const FolderLock lock(folder.path(), "another limen is working in this folder",
                         "wait until it has finished, or give another folder");
+  refuse_to_replace_inputs(options, folder.path());
   const StatedTrajectories trajectories = stated_trajectories(options.trajectories, chosen);
   ProjectResult result = run_in(folder.path(), options, trajectories, session);
   result.tolerance_m = tolerance_m;

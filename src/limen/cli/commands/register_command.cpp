@@ -149,7 +149,8 @@ Registered register_files(const RegisterCommandOptions& options, const Session& 
   verdict.probable_risk = options.probable_risk;
   verdict.check();
   const std::optional<StartPrior> believed =
-      start_of(options.start, options.start_sigma, options.start_points);
+      start_of(options.start, options.start_sigma, options.start_points,
+               [&] { return unit_of_input(options.target, target_options.metres_per_unit); });
   RegisterOptions registering;
   registering.gravity = gravity_of(options.gravity);
   registering.method = method_of(options.method);
@@ -337,7 +338,7 @@ void add_register_command(CommandLine& app, Session& session) {
   command
       ->add_option("--start-points X,Y,Z=X,Y,Z", options->start_points,
                    "Instead of --start: three or more places, each in SOURCE and in TARGET, in metres")
-      ->take_all();
+      ->take_list();
   add_repeats_option(*command, options->repeats);
   add_with_option(*command, "--source-with", options->source_with, "SOURCE");
   add_with_option(*command, "--target-with", options->target_with, "TARGET");

@@ -45,13 +45,18 @@ int run(ThinCommand command, const Session& session) {
   const OpenPoints input(command.cloud);
   const CancelScope scope(*session.monitor);
   session.monitor->begin_stage("thinning");
-  const JoinedClouds clouds(placed_clouds(input, {}), input.file().clouds().size() > 1);
+  const std::vector<PlacedCloud> placed = placed_clouds(input, {});
+  require_one_unit(placed, command.output);
+  const double unit = unit_of_input(command.cloud, {});
+  command.thinning.spacing_m /= unit;
+  const JoinedClouds clouds(placed, input.file().clouds().size() > 1);
   const bool few = command.thinning.spacing_m == 0.0 && command.thinning.most_points > 0 &&
                    clouds.plan().most_points <= command.thinning.most_points;
-  const WrittenClouds written = with_whole_inputs([&] {
+  WrittenClouds written = with_whole_inputs([&] {
     return few ? write_clouds(clouds, command.output, *session.monitor)
                : write_thinned(clouds, command.thinning, command.output, *session.monitor);
   });
+  written.spacing_m *= unit;
   for (const std::string& note : written.notes) session.note(note);
   std::string text = fmt::format("{} of {} points kept", written.written, written.read);
   if (written.spacing_m > 0.0) text += fmt::format(", spacing about {:.4f} m", written.spacing_m);

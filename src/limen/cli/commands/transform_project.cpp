@@ -14,6 +14,7 @@
 
 #include "limen/base/atomic_file.h"
 #include "limen/base/error.h"
+#include "limen/base/length_unit.h"
 #include "limen/cli/commands/commands.h"
 #include "limen/cli/inputs/frame_system.h"
 #include "limen/cli/inputs/project_trajectories.h"
@@ -140,10 +141,33 @@ void check_output(const fs::path& output, const std::vector<Move>& moves) {
   for (const Move& move : moves) refuse_same_file(output.string(), move.entry.file);
 }
 
+/// The poses of a project are in metres, and a cloud is moved, not scaled: the frame gets the unit of the
+/// files. Throws Error where they have several, or a bent pass has another than metres.
+void to_unit_of_files(std::vector<Move>& moves, const ProjectMoveOptions& options, const Session& session) {
+  std::map<std::string, double> units;
+  for (const Move& move : moves) {
+    if (units.count(move.entry.file) == 0) units[move.entry.file] = unit_of_input(move.entry.file, {});
+  }
+  const auto& [first, unit] = *units.begin();
+  for (const auto& [file, other] : units) {
+    if (other == unit) continue;
+    throw Error(fmt::format("has its numbers in {}, and {} in {}, but a cloud is moved only, not scaled",
+                            unit_name(other), first, unit_name(unit)),
+                file, "convert all scans to one unit first, and run limen project again");
+  }
+  if (unit == 1.0) return;
+  for (Move& move : moves) {
+    if (move.entry.bend)
+      throw Error(fmt::format("is bent, but its numbers are in {}", unit_name(unit)), move.entry.file,
+                  "convert all scans to metres first, and run limen project again");
+    move.entry.frame_from_scan->translation /= unit;
+  }
+  session.note(fmt::format("{}: written in {}, the unit of its files", options.output, unit_name(unit)));
+}
+
 std::size_t write_each(std::vector<Move>& moves, const ProjectMoveOptions& options,
                        const CoordinateSystem& system, const Session& session) {
   const StatedTrajectories trajectories = read_project_trajectories(options.project);
-  check_inputs(moves, trajectories, options, session);
   const OutputFolder folder(options.output);
   name_outputs(moves, folder.path(), options.ending);
   for (const Move& move : moves) check_output(move.output, moves);
@@ -174,7 +198,6 @@ std::size_t write_merged(const std::vector<Move>& moves, const ProjectMoveOption
     const std::string ending = ending_of_format(options.ending, output);
     if (!output.string().ends_with(ending)) output += ending;
   }
-  check_inputs(moves, {}, options, session);
   check_output(output, moves);
   std::vector<StationToMove> stations;
   for (const Move& move : moves) {
@@ -201,6 +224,11 @@ int run(const ProjectMoveOptions& options, const Session& session) {
   if (moves.empty())
     throw Error("no scan has a pose in the project's frame", options.project,
                 "give a project with registered scans");
+  if (options.merge)
+    check_inputs(moves, {}, options, session);
+  else
+    check_inputs(moves, read_project_trajectories(options.project), options, session);
+  to_unit_of_files(moves, options, session);
   const std::size_t points = options.merge ? write_merged(moves, options, system, session)
                                            : write_each(moves, options, system, session);
   const Json json = {

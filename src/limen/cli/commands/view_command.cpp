@@ -7,6 +7,7 @@
 #include <memory>
 #include <numeric>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -86,7 +87,7 @@ std::vector<ViewInput> scans_of_project(const std::string& path, const Session& 
       continue;
     }
     inputs.push_back({found_beside(entry.file, path), entry.model ? -1 : entry.index, *entry.frame_from_scan,
-                      "", path, entry.bend});
+                      entry.sha256, path, entry.bend});
   }
   return inputs;
 }
@@ -228,7 +229,10 @@ void name_sides(const std::vector<ViewInput>& inputs, ViewScene& scene) {
 std::vector<ViewInput> view_inputs(const std::vector<std::string>& files, int alternative,
                                    const Session& session) {
   std::vector<ViewInput> inputs;
-  if (alternative > 0 && std::none_of(files.begin(), files.end(), is_json_name))
+  const auto has_alternatives = [](const std::string& file) {
+    return is_json_name(file) && !is_project(file);
+  };
+  if (alternative > 0 && std::none_of(files.begin(), files.end(), has_alternatives))
     throw Error("--alternative chooses among the poses of a result.json, but none is given", "",
                 "name the result.json, or leave the option out");
   for (const std::string& file : files) {
@@ -248,8 +252,9 @@ ViewScene read_view(const std::vector<ViewInput>& inputs, std::size_t most_point
                     std::optional<double> metres_per_unit, const Session& session) {
   std::vector<CloudToView> clouds;
   std::map<std::size_t, BimModel> models;
+  std::set<std::string> checked;
   for (std::size_t k = 0; k < inputs.size(); ++k) {
-    check_bytes(inputs[k]);
+    if (checked.insert(inputs[k].path).second) check_bytes(inputs[k]);
     if (is_bim_file(inputs[k].path)) {
       models.emplace(k, read_model_input(inputs[k].path, session, metres_per_unit, "--units"));
     } else {

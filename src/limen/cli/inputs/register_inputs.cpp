@@ -126,10 +126,22 @@ InputSide read_model_side(const SideOptions& options, const Session& session) {
   return side;
 }
 
-Rigid3 pose_in_group(const std::string& path) {
+/// The pose of a further scan in the frame of the side's own, `own`. A text is in the unit of its
+/// numbers; a registration of the two counts in either direction.
+Rigid3 pose_in_group(const std::string& path, const std::string& scan, const InputSummary& own) {
   const PoseFile file = read_pose_file(path);
-  if (file.target_from_source) return *file.target_from_source;
-  throw Error("holds no pose", path, "give four rows of four numbers, or the result.json of a registration");
+  if (!file.target_from_source)
+    throw Error("holds no pose", path,
+                "give four rows of four numbers, or the result.json of a registration");
+  Rigid3 pose = *file.target_from_source;
+  if (file.of_numbers) pose.translation *= own.metres_per_unit;
+  if (file.source_sha256.empty() || file.target_sha256.empty()) return pose;
+  const std::string hash = sha256_of_file(file_of_scan(scan));
+  if (file.source_sha256 == hash && file.target_sha256 == own.sha256) return pose;
+  if (file.source_sha256 == own.sha256 && file.target_sha256 == hash) return inverse(pose);
+  throw Error(fmt::format("registers {} in {}, but a pose of {} in {} is wanted", file.source_path,
+                          file.target_path, scan, own.path),
+              path, "give the result of these two files, or its matrix as a text of 4 x 4 numbers");
 }
 
 }  // namespace
@@ -151,7 +163,7 @@ InputSide read_side(const SideOptions& options, const Session& session) {
   ReadOptions reading = options.reading;
   reading.trajectory.reset();
   for (std::size_t k = 0; k + 1 < options.with.size(); k += 2) {
-    const Rigid3 pose = pose_in_group(options.with[k + 1]);
+    const Rigid3 pose = pose_in_group(options.with[k + 1], options.with[k], side.summary);
     side.input.scans.push_back(
         {read_input_scan(options.with[k], reading, session, options.units_option).scan, pose});
     require_plausible_size(side.input.scans.back().scan, options.units_option);

@@ -19,6 +19,7 @@
 #include "limen/bim/read_bim.h"
 #include "limen/files/mapped_file.h"
 #include "limen/files/scan_in_file.h"
+#include "limen/io/cloud/open_points.h"
 #include "limen/io/cloud/read_scan.h"
 #include "limen/io/ply/ply_header.h"
 #include "limen/model/plausible_size.h"
@@ -203,6 +204,13 @@ ReadOptions read_options(const std::string& origin, const std::string& option, c
   if (!origin.empty()) options.origin = parse_point(origin, option);
   options.level = gravity != "unknown";
   return options;
+}
+
+double unit_of_input(const std::string& path, std::optional<double> metres_per_unit) {
+  if (metres_per_unit || is_bim_file(path)) return metres_per_unit.value_or(1.0);
+  const OpenPoints open(path);
+  const std::vector<CloudFacts>& clouds = open.file().clouds();
+  return clouds.empty() ? 1.0 : clouds.front().table.metres_per_unit.value_or(1.0);
 }
 
 InputScan read_input_scan(const std::string& path, const ReadOptions& options, const Session& session,

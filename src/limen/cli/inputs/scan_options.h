@@ -74,6 +74,9 @@ void add_feature_options(CommandLine& command, FeatureChoice& choice);
 /// "auto", "up" or "unknown".
 ReadOptions read_options(const std::string& origin, const std::string& option, const std::string& gravity);
 
+/// Metres per unit of the numbers of a scan or a model: as the user says, else as the file, else 1.
+double unit_of_input(const std::string& path, std::optional<double> metres_per_unit);
+
 /// The one scan of a file, with what it was there.
 struct InputScan {
   Scan scan;

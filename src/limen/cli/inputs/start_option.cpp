@@ -48,7 +48,8 @@ double length_of(const std::string& text, const std::string& option) {
 }
 
 std::optional<StartPrior> start_of(const std::string& pose, const std::string& sigma,
-                                   const std::vector<std::string>& points) {
+                                   const std::vector<std::string>& points,
+                                   const std::function<double()>& unit_of_text) {
   if (!points.empty()) {
     if (!pose.empty() || !sigma.empty())
       throw Error("--start and --start-points both give a start", "--start-points", "give one of them");
@@ -65,6 +66,7 @@ std::optional<StartPrior> start_of(const std::string& pose, const std::string& s
   if (pose != "identity") {
     const PoseFile file = read_pose_file(pose);
     start.target_from_source = chosen_pose(file, 0, pose);
+    if (file.of_numbers) start.target_from_source.translation *= unit_of_text();
   }
   if (sigma.empty()) return start;
   const std::size_t comma = std::min(sigma.find(','), sigma.size());

@@ -96,7 +96,8 @@ Json served_files_json(const std::vector<ServedFile>& files) {
   return json;
 }
 
-JobBoard::JobBoard(fs::path folder) : folder_(std::move(folder)) {
+JobBoard::JobBoard(fs::path folder, std::vector<std::string> common_words)
+    : folder_(std::move(folder)), common_words_(std::move(common_words)) {
   find_kept();
 }
 
@@ -137,8 +138,17 @@ const PageJob& JobBoard::job(int id) const {
 }
 
 bool JobBoard::uses(const std::string& word) const {
+  const std::string quoted = Json(fs::path(word).filename().string()).dump();
+  const auto is_about = [&](const std::string& results) {
+    return std::any_of(jobs_.begin(), jobs_.end(), [&](const PageJob& job) {
+      return results.starts_with(fmt::format("results/{}/", job.id)) &&
+             job.asked.dump().find(quoted) != std::string::npos;
+    });
+  };
   return std::any_of(jobs_.begin(), jobs_.end(), [&](const PageJob& job) {
-    return !has_ended(job) && std::find(job.words.begin(), job.words.end(), word) != job.words.end();
+    return !has_ended(job) && std::any_of(job.words.begin(), job.words.end(), [&](const std::string& own) {
+      return own == word || is_about(own);
+    });
   });
 }
 
@@ -179,7 +189,9 @@ void JobBoard::begin(PageJob& job) {
   try {
     if (job.kind == "view" || job.kind == "place" || job.kind == "plan")
       fs::create_directories(results_of(job.id));
-    child_ = std::make_unique<Child>(job.words, folder_);
+    std::vector<std::string> words = job.words;
+    words.insert(words.end(), common_words_.begin(), common_words_.end());
+    child_ = std::make_unique<Child>(words, folder_);
   } catch (const std::exception& fault) {
     job.said = fault.what();
     end_running(kExitInternal);

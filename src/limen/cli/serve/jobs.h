@@ -44,8 +44,9 @@ class JobBoard {
  public:
   static constexpr std::size_t kMostWaiting = 20;
 
-  /// `folder`: what serve was given; finished work of an earlier run is found again.
-  explicit JobBoard(std::filesystem::path folder);
+  /// `folder`: what serve was given; finished work of an earlier run is found again. `common_words`: options
+  /// that every job gets.
+  explicit JobBoard(std::filesystem::path folder, std::vector<std::string> common_words = {});
 
   /// The number of the next job, for the names of its results.
   [[nodiscard]] int next_id() const { return next_id_; }
@@ -58,7 +59,7 @@ class JobBoard {
   void stop(int id);
   /// Throws HttpFault where there is none.
   [[nodiscard]] const PageJob& job(int id) const;
-  /// Whether work that waits or runs names the file.
+  /// Whether work that waits or runs needs the file: names it, or the results of a job that was about it.
   [[nodiscard]] bool uses(const std::string& word) const;
 
   /// Hears the running one, ends it, begins the next.
@@ -77,6 +78,7 @@ class JobBoard {
   void find_kept();
 
   std::filesystem::path folder_;
+  std::vector<std::string> common_words_;
   std::deque<PageJob> jobs_;
   int next_id_ = 1;
   std::unique_ptr<Child> child_;

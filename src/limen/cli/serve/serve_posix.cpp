@@ -1,6 +1,9 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
 #include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -20,7 +23,11 @@ void serve(const std::string& folder_name, int port, std::uint64_t most_upload, 
                         "open the page of that server, end that server, or give another folder");
   const LoopbackSocket socket(port);
   const Gate gate{new_token(), socket.port()};
-  ServeSite site(std::filesystem::canonical(folder.path()), gate, most_upload);
+  std::vector<std::string> common;
+  if (session.common.threads != 0) common = {"--threads", fmt::format("{}", session.common.threads)};
+  if (session.common.seed != CommonOptions{}.seed)
+    common.insert(common.end(), {"--seed", fmt::format("{}", session.common.seed)});
+  ServeSite site(std::filesystem::canonical(folder.path()), gate, most_upload, std::move(common));
   const std::string address = fmt::format("http://127.0.0.1:{}/{}/", socket.port(), gate.token);
   session.say(fmt::format(
       "open {}\nin a browser on this machine; whoever knows this address can use it. Ctrl-C ends it.\n",

@@ -102,11 +102,17 @@ std::optional<int> number_in(const std::string& text) {
 }
 
 /// A file that appears under its name once all of it has come.
+[[noreturn]] void refuse_second() {
+  throw HttpFault(409, "a file of this name exists: remove it, or give this one another name");
+}
+
 class FileUpload : public HttpUpload {
  public:
   FileUpload(const fs::path& path, std::string name) : file_(path), path_(path), name_(std::move(name)) {}
   void write(const std::string& bytes) override { file_.write(bytes); }
   HttpReply finish() override {
+    std::error_code unknown;
+    if (fs::exists(path_, unknown)) refuse_second();  // another upload of this name was faster
     file_.commit();
     try {
       if (!is_bim_file(path_)) point_format_of(MappedFile(path_.string()).bytes(), path_);
@@ -130,17 +136,19 @@ class FileUpload : public HttpUpload {
 
 }  // namespace
 
-ServeSite::ServeSite(fs::path folder, Gate gate, std::uint64_t most_upload_bytes)
+ServeSite::ServeSite(fs::path folder, Gate gate, std::uint64_t most_upload_bytes,
+                     std::vector<std::string> common_words)
     : folder_(std::move(folder)),
       gate_(std::move(gate)),
       most_upload_bytes_(most_upload_bytes),
       prints_(has_browser()),
-      jobs_(folder_) {
+      jobs_(folder_, std::move(common_words)) {
   std::error_code fault;
   for (const char* part : {"files", "results"}) {
     fs::create_directories(folder_ / part, fault);
     if (fault || fs::is_symlink(folder_ / part))
       throw Error("cannot be used", (folder_ / part).string(), "give a folder of its own to limen serve");
+    const OutputFolder swept(folder_ / part);  // of what a killed server left half written
   }
 }
 
@@ -160,8 +168,7 @@ std::unique_ptr<HttpUpload> ServeSite::begin(const HttpRequest& request) {
                     fmt::format("the file is too large: at most {} bytes can be uploaded (--most-upload)",
                                 most_upload_bytes_));
   std::error_code unknown;
-  if (fs::exists(folder_ / "files" / path[2], unknown))
-    throw HttpFault(409, "a file of this name exists: remove it, or give this one another name");
+  if (fs::exists(folder_ / "files" / path[2], unknown)) refuse_second();
   const fs::space_info space = fs::space(folder_ / "files", unknown);
   if (!unknown && space.available < request.content_bytes)
     throw HttpFault(507, "the disk has not enough free space for it");

@@ -49,8 +49,9 @@ class HttpUpload {
 /// Nothing of the folder but plain files in files/ and results/ID/ can be reached.
 class ServeSite {
  public:
-  /// `folder` exists; files/ and results/ are made in it.
-  ServeSite(std::filesystem::path folder, Gate gate, std::uint64_t most_upload_bytes);
+  /// `folder` exists; files/ and results/ are made in it. `common_words`: options that every job gets.
+  ServeSite(std::filesystem::path folder, Gate gate, std::uint64_t most_upload_bytes,
+            std::vector<std::string> common_words = {});
 
   /// Looks at the head of a request. Where it uploads a file: what takes its bytes; else nothing, and the
   /// body, of at most kMostBody bytes, goes to answer(). Throws HttpFault for whatever is not allowed.

@@ -82,6 +82,11 @@ Argument* Argument::type_size(int words) {
 }
 
 Argument* Argument::take_all() {
+  option_->take_all()->allow_extra_args(false);
+  return this;
+}
+
+Argument* Argument::take_list() {
   option_->take_all();
   return this;
 }

@@ -36,8 +36,10 @@ class Argument {
   Argument* group(const std::string& name);
   /// Words it takes each time it is given.
   Argument* type_size(int words);
-  /// Given several times, all words are kept.
+  /// Given several times, all words are kept; each time it takes no more than `type_size` words.
   Argument* take_all();
+  /// Takes all words that follow it.
+  Argument* take_list();
   /// Nothing but these is taken.
   Argument* one_of(const std::vector<std::string>& values);
   /// A whole number from `low` to `high`, both included.

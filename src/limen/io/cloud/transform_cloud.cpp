@@ -125,6 +125,7 @@ TransformedCloud write_placed(const std::vector<PlacedCloud>& clouds, bool tell_
   if (clouds.empty()) throw Error("there are no points", output.string(), "give scans with points");
   const PlacedCloud& first = clouds.front();
   require_known_ending(output, *first.input);
+  require_one_unit(clouds, output);
   const bool stations = lower_case(output.extension().string()) == ".e57" &&
                         (clouds.size() > 1 || (is_copied(*first.input, output) && !first.bend));
   if (!stations && tell_source && clouds.back().source > 255)

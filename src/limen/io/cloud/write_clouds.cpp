@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "limen/base/error.h"
+#include "limen/base/length_unit.h"
 #include "limen/base/text.h"
 #include "limen/io/cloud/read_cloud.h"
 #include "limen/io/e57/e57.h"
@@ -111,6 +112,24 @@ std::vector<PlacedCloud> placed_clouds(const OpenPoints& input, const Rigid3& ta
   for (std::size_t k = 0; k < input.file().clouds().size(); ++k)
     placed.push_back(placed_cloud(input, k, target_from_world, origin, monitor));
   return placed;
+}
+
+void require_one_unit(const std::vector<PlacedCloud>& clouds, const std::filesystem::path& output) {
+  const auto unit_of = [](const PlacedCloud& placed) {
+    return placed.input->file().clouds()[placed.cloud].table.metres_per_unit.value_or(1.0);
+  };
+  const double unit = unit_of(clouds.front());
+  for (const PlacedCloud& placed : clouds) {
+    if (unit_of(placed) == unit) continue;
+    throw Error(fmt::format("has its numbers in {}, and {} in {}: one file has one unit",
+                            unit_name(unit_of(placed)), clouds.front().input->name(), unit_name(unit)),
+                placed.input->name(), "convert all to one unit first");
+  }
+  const std::string ending = ending_of(output);
+  if (unit != 1.0 && ending != ".las" && ending != ".laz")
+    throw Error(fmt::format("has its numbers in {}, which a {} file cannot state", unit_name(unit),
+                            ending.empty() ? "PLY" : ending),
+                clouds.front().input->name(), "write .las or .laz, or convert it to metres first");
 }
 
 WrittenClouds write_clouds(const JoinedClouds& clouds, const std::filesystem::path& output,

@@ -119,7 +119,6 @@ void read_table(const std::filesystem::path& path, const std::string& key, const
       throw Error("two columns are called " + name, where(table.columns), remedy);
   }
   if (columns.count(key) == 0) throw Error("no column is called " + key, where(table.columns), remedy);
-  if (table.rows.empty()) throw Error("no row follows the names of the columns", path.string(), remedy);
   for (const TableRow& row : table.rows) visit(Row(columns, row.cells, table.mark, where(row), remedy));
 }
 
@@ -136,6 +135,7 @@ std::vector<SurveyedPoint> read_points(const std::filesystem::path& path, const 
       throw Error((key == "name" ? "the point " : "") + points.back().name + " is given twice", row.where(),
                   "take one of them out");
   });
+  if (points.empty()) throw Error("no row follows the names of the columns", path.string(), remedy);
   return points;
 }
 

@@ -53,8 +53,20 @@ bool is_of_link(DecisionKind kind) {
   return kind == DecisionKind::accept || kind == DecisionKind::reject || kind == DecisionKind::choose;
 }
 
+/// Whether two names are meant for one scan: the file's name alone, or with its folders.
+bool same_scan(const std::string& a, const std::string& b) {
+  const std::filesystem::path one(a);
+  const std::filesystem::path other(b);
+  const bool bare = !one.has_parent_path() || !other.has_parent_path();
+  return a == b || (bare && one.filename() == other.filename());
+}
+
+bool same_scans(const std::vector<std::string>& a, const std::vector<std::string>& b) {
+  return a.size() == b.size() && std::is_permutation(a.begin(), a.end(), b.begin(), same_scan);
+}
+
 bool replaces(const Decision& later, const Decision& earlier) {
-  if (later.scans != earlier.scans) return false;
+  if (!same_scans(later.scans, earlier.scans)) return false;
   if (earlier.kind == DecisionKind::start && later.kind == DecisionKind::reject) return true;
   if (later.kind == DecisionKind::start && is_of_link(earlier.kind)) return true;
   return later.kind == DecisionKind::forget || later.kind == earlier.kind ||

@@ -63,7 +63,7 @@ void LookAlikeSum::add(const PairEvidence& evidence, double of_things, double of
     const double by_surface =
         evidence.asks_look_alike ? evidence.behind_windows_nats() : evidence.chance_nats;
     for (NatsOfThings* sum : {&sum_.otherwise_nats, &sum_.alike_nats})
-      for (double& nats : *sum) nats += of_surface * by_surface;
+      for (double& nats : *sum) nats += (evidence.stated ? 1.0 : of_surface) * by_surface;
   }
 }
 
@@ -80,6 +80,7 @@ PairEvidence evidence_of(const GraphLink& link, std::size_t pose) {
   if (link.trust == LinkTrust::given) {
     evidence.chance_nats = -std::log(std::max(link.chance, kGivenWrong));
     evidence.coincidence_nats = -std::log(kCoincidence);
+    evidence.stated = true;
     return evidence;
   }
   // The pair is trusted no further than that; its poses exclude one another as surely as it says.

@@ -123,7 +123,9 @@ double PlacementOdds::log_odds_of_chance(std::vector<const PlacedPair*> across, 
     return std::pair(a->link < 0, -a->evidence.chance_nats) <
            std::pair(b->link < 0, -b->evidence.chance_nats);
   });
-  const std::vector<double> fresh = views_.fresh_shares(across, side);
+  std::vector<double> fresh = views_.fresh_shares(across, side);
+  for (std::size_t k = 0; k < across.size(); ++k)
+    if (across[k]->evidence.stated) fresh[k] = 1.0;
   double against = 0.0;
   double first = 0.0;  // closes no loop
   for (std::size_t k = 0; k < across.size(); ++k) {

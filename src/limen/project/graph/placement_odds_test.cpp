@@ -76,6 +76,20 @@ TEST(PlacementOdds, TheSameSurfaceSeenTwiceCountsOnce) {
   EXPECT_GT(same.of(alone).look_alike, 3.0 * different.of(alone).look_alike);
 }
 
+/// A pose that a file states does not depend on surface: another pair of the same two scans takes nothing of
+/// its certainty away.
+TEST(PlacementOdds, AStatedPoseIsAsCertainBesideAMeasuredPair) {
+  PlacedPair stated{1, 0, 0.0, {}, 1};
+  stated.evidence.chance_nats = 13.8;
+  stated.evidence.coincidence_nats = 6.9;
+  stated.evidence.stated = true;
+  PlacementOdds beside(2, {pair(1, 0, 3.0, 2.0, 2.0, 0), stated});
+  EXPECT_LT(beside.of(side({1}, 2)).total(), 1e-5);
+  stated.evidence.stated = false;
+  PlacementOdds as_surface(2, {pair(1, 0, 3.0, 2.0, 2.0, 0), stated});
+  EXPECT_GT(as_surface.of(side({1}, 2)).total(), 1e-3);
+}
+
 /// What contradicts a placement makes it less probable, whatever agrees.
 TEST(PlacementOdds, APairThatContradictsCounts) {
   PlacementOdds without(3, {pair(2, 0, 6.0, 3.0, 3.0, 0)});

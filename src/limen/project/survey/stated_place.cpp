@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limen/project/survey/stated_place.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -58,7 +59,25 @@ bool can_meet(const ProjectNode& a, const ProjectNode& b) {
   return (a.stated->x - b.stated->x).norm() < reach(a) + reach(b) + kMostSigmas * sigma;
 }
 
+/// Notes scans without a place whose stated position is too far from all other stated ones: no pair of them
+/// is tried.
+void note_far_ones(const std::vector<ProjectNode>& nodes, ProjectResult& result) {
+  for (const ProjectNode& node : nodes) {
+    const ProjectScan& scan = result.scans[node.scan];
+    if (!node.stated || is_placed(scan.state)) continue;
+    const auto others = [&](bool meeting) {
+      return std::any_of(nodes.begin(), nodes.end(), [&](const ProjectNode& other) {
+        return &other != &node && other.stated && (!meeting || can_meet(node, other));
+      });
+    };
+    if (others(false) && !others(true))
+      result.notes.push_back(fmt::format(
+          "the stated position of {} is too far from all others for an overlap: check it", scan_name(scan)));
+  }
+}
+
 void compare_with_stated(const std::vector<ProjectNode>& nodes, ProjectResult& result) {
+  note_far_ones(nodes, result);
   std::vector<PointPair> pairs;
   std::vector<ProjectScan*> scans;
   Vector3d origin = Vector3d::Zero();

@@ -43,6 +43,21 @@ TEST(StatedPlace, WhatIsNotStatedSaysNothing) {
   EXPECT_TRUE(can_meet(node_at({0, 0, 0}), node_at({7, 0, 0})));
 }
 
+TEST(StatedPlace, OneThatIsTooFarFromAllOthersIsNoted) {
+  std::vector<ProjectNode> nodes = {node_at({0, 0, 0}), node_at({5, 0, 0}), node_at({270, 0, 0}),
+                                    node_at({9, 9, 0})};
+  nodes[3].stated.reset();
+  ProjectResult result;
+  for (std::size_t k = 0; k < nodes.size(); ++k) {
+    nodes[k].scan = k;
+    result.scans.emplace_back();
+    result.scans.back().file = std::string(1, static_cast<char>('a' + k));
+  }
+  compare_with_stated(nodes, result);
+  ASSERT_EQ(result.notes.size(), 1U);
+  EXPECT_EQ(result.notes[0], "the stated position of c is too far from all others for an overlap: check it");
+}
+
 TEST(StatedPlace, AWrongStatedPositionIsFoundOut) {
   std::vector<ProjectNode> nodes;
   ProjectResult result;
