@@ -31,10 +31,9 @@ constexpr std::size_t kPointsOfAPlane = 200;
 constexpr std::size_t kPlanesOfAPose = 3;
 
 std::string remedy_for_units(const std::string& units_option) {
-  const std::string name = units_option.empty()
-                               ? "have its unit named"
-                               : "name the unit with " + units_option + " (mm, cm, ft, in, us-ft, km)";
-  return "limen assumes metres for a file that states no unit: " + name + ", or export it again in metres";
+  const std::string name =
+      units_option.empty() ? "" : "name the unit with " + units_option + " (mm, cm, ft, in, us-ft, km), or ";
+  return "limen assumes metres for a file that states no unit: " + name + "export it again in metres";
 }
 
 /// What the numbers are likely to be where the truth is a building of some metres to some hundred metres.

@@ -179,8 +179,8 @@ std::optional<Json> object_in(const std::string& text, const fs::path& path) {
   if (text[first] != '{') return std::nullopt;
   try {
     return parsed_json<Json>(text);
-  } catch (const std::exception& error) {
-    throw Error(fmt::format("is not valid JSON: {}", error.what()), path.string(), kRemedy);
+  } catch (const std::exception&) {
+    throw Error("is not valid JSON", path.string(), kRemedy);
   }
 }
 

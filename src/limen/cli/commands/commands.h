@@ -11,7 +11,8 @@ namespace limen {
 /// `transform`; asked_project_move() tells which of the two is meant.
 void add_transform_project_command(CommandLine& app, Session& session);
 
-/// Whether the words after the program's name are `transform` with an option -o: only a project has one.
+/// Whether the words after the program's name are `transform` with an option -o, which only a project has, or
+/// with a project.json alone.
 bool asked_project_move(int argc, char** argv);
 
 /// `limen info FILE`: what a scan file holds and what limen makes of it.

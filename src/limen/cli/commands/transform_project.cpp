@@ -243,6 +243,7 @@ int run(const ProjectMoveOptions& options, const Session& session) {
 
 bool asked_project_move(int argc, char** argv) {
   if (argc < 3 || std::string_view(argv[1]) != "transform") return false;
+  if (argc == 3 && fs::path(argv[2]).filename() == "project.json") return true;
   return std::any_of(argv + 2, argv + argc, [](const char* word) {
     const std::string_view text(word);
     return text == "-o" || text == "--output" || text.substr(0, 9) == "--output=";

@@ -98,6 +98,8 @@ std::string man_page(const ProgramDoc& doc) {
   text += ".SH ENVIRONMENT\n.TP\nLC_ALL, LC_CTYPE, LANG\n";
   text += paragraph("Whether the progress line may use characters beyond ASCII.");
   text += ".TP\nTERM\n" + paragraph("With the value dumb no progress line is shown.");
+  text += ".TP\nLIMEN_CHROMIUM\n" + paragraph("The browser that prints --pdf.");
+  text += ".TP\nLIMEN_IFC_HELPER\n" + paragraph("The helper program that reads IFC models.");
   text += ".SH EXAMPLES\n" + examples(doc.program).substr(4);
   return text;
 }

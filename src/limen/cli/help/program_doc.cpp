@@ -151,13 +151,16 @@ ProgramDoc describe_program(const CLI::App& app) {
 }
 
 std::vector<StatusDoc> status_docs() {
-  return {{kExitOk, "Done; for register: registered."},
-          {kExitInternal, "An internal error of limen: please report it."},
-          {kExitBadInput, "A file, a value or an option was wrong; one line on stderr says which."},
-          {kExitUndecided, "For register: probable, ambiguous, or under-constrained."},
-          {kExitNoMatch,
-           "For register: no reliable overlap was found; for deviation: no point lies on the model."},
-          {kExitInterrupted, "Interrupted; nothing was written."}};
+  return {
+      {kExitOk, "Done; for register: registered; for project: all scans registered in one frame."},
+      {kExitInternal, "An internal error of limen: please report it."},
+      {kExitBadInput, "A file, a value or an option was wrong; one line on stderr says which."},
+      {kExitUndecided,
+       "For register: probable, ambiguous, or under-constrained; for project: some scans are not "
+       "registered."},
+      {kExitNoMatch,
+       "For register and project: no reliable overlap was found; for deviation: no point lies on the model."},
+      {kExitInterrupted, "Interrupted; nothing was written."}};
 }
 
 std::string OptionDoc::text() const {

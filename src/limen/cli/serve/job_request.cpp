@@ -11,6 +11,7 @@
 #include "limen/base/error.h"
 #include "limen/base/length_unit.h"
 #include "limen/base/text.h"
+#include "limen/bim/read_bim.h"
 #include "limen/cli/serve/gate.h"
 #include "limen/cli/serve/http_request.h"
 #include "limen/files/bounded_json.h"
@@ -201,6 +202,13 @@ PageJob viewing(const Asked& asked) {
   return job;
 }
 
+/// The scan that a registration moves: its source, but the target where the source is a model. Whether it is.
+std::pair<std::string, bool> scan_of_pair(const Asked& asked, const PageJob& of) {
+  const Asked pair{of.asked, asked.folder, asked.board};
+  const bool model_is_source = is_bim_file(asked.folder / pair.file_at("source"));
+  return {pair.file_at(model_is_source ? "target" : "source"), model_is_source};
+}
+
 PageJob placing(const Asked& asked) {
   PageJob job;
   const PageJob& of = registration_or_project(asked);
@@ -209,11 +217,12 @@ PageJob placing(const Asked& asked) {
     job.title = of.title;
     return job;
   }
-  const std::string source = Asked{of.asked, asked.folder, asked.board}.file_at("source");
-  const fs::path name = last_name(source);
+  const auto [scan, model_is_source] = scan_of_pair(asked, of);
+  const fs::path name = last_name(scan);
   job.words = {
-      "transform", result_of(of), source,
+      "transform", result_of(of), scan,
       fmt::format("{}/{}_placed{}", asked.results(), name.stem().string(), name.extension().string())};
+  if (model_is_source) job.words.emplace_back("--invert");
   job.title = add_alternative(asked, of, job.words);
   return job;
 }
@@ -226,9 +235,11 @@ PageJob comparing(const Asked& asked) {
   if (of.kind == "project") {
     job.words.push_back(result_of(of));
   } else {
-    const Asked first{of.asked, asked.folder, asked.board};
-    job.words.insert(job.words.end(),
-                     {first.file_at("source"), first.file_at("target"), "--result", result_of(of)});
+    const auto [scan, model_is_source] = scan_of_pair(asked, of);
+    const std::string model =
+        Asked{of.asked, asked.folder, asked.board}.file_at(model_is_source ? "source" : "target");
+    job.words.insert(job.words.end(), {scan, model, "--result", result_of(of)});
+    if (model_is_source) job.words.emplace_back("--inverse");
   }
   job.words.insert(job.words.end(), {"-o", asked.results()});
   if (asked.flag("pdf")) job.words.emplace_back("--pdf");

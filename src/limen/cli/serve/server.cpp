@@ -47,8 +47,16 @@ const char* words_of(int status) {
       return "Conflict";
     case 413:
       return "Content Too Large";
+    case 411:
+      return "Length Required";
+    case 414:
+      return "URI Too Long";
     case 415:
       return "Unsupported Media Type";
+    case 431:
+      return "Request Header Fields Too Large";
+    case 501:
+      return "Not Implemented";
     case 507:
       return "Insufficient Storage";
     default:

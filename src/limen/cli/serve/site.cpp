@@ -161,7 +161,9 @@ std::unique_ptr<HttpUpload> ServeSite::begin(const HttpRequest& request) {
   }
   if (path.size() != 3 || path[1] != "files") throw HttpFault(405, "files are put to files/NAME");
   if (!is_safe_name(path[2]))
-    throw HttpFault(400, "this file name is not allowed: choose a name without / and spaces");
+    throw HttpFault(
+        400,
+        "this file name is not allowed: choose one without / and spaces that does not begin with a point");
   if (!request.has_content) throw HttpFault(411, "the length of the file is missing");
   if (request.content_bytes > most_upload_bytes_)
     throw HttpFault(413,

@@ -283,7 +283,7 @@ const jobCard = (job) => {
   if (job.outputs.length > 0) parts.push(make('p', { className: 'links' }, ...job.outputs.filter(({ name }) => !/^question_\d+\.svg$/.test(name)).map((file) => link(job, file))));
   const placed = result && (result.target_from_source || (result.scans ?? []).some((scan) => scan.frame_from_scan));
   if (job.state === 'done' && placed) parts.push(make('p', {}, button('Look at it', { kind: 'view', of: job.id }, `Look at ${job.title}`), ' ', button(job.kind === 'project' ? 'Move all scans there' : 'Move the scan there', { kind: 'place', of: job.id })));
-  const inModel = job.kind === 'project' ? (result?.scans ?? []).some(({ kind }) => kind === 'model') : ['registered', 'probable'].includes(result?.outcome) && result.inputs.target.kind === 'model';
+  const inModel = job.kind === 'project' ? (result?.scans ?? []).some(({ kind }) => kind === 'model') : ['registered', 'probable'].includes(result?.outcome) && (result.inputs.source.kind === 'model') !== (result.inputs.target.kind === 'model');
   if (job.state === 'done' && placed && inModel) parts.at(-1).append(' ', button('Compare with the model', { kind: 'deviation', of: job.id, pdf: byId('pdf').checked }, `Compare ${job.title} with the model`));
   if (result && ['register', 'link'].includes(job.kind)) parts.push(...alternativesOf(job, result));
   if (result && job.kind === 'project') parts.push(...questionsOf(job, result));
