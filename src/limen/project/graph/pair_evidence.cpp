@@ -94,6 +94,7 @@ PairEvidence evidence_of(const GraphLink& link, std::size_t pose) {
       -kMostPairNats, std::min(kMostPairNats, std::log(best / wrong)) + std::log(probability(pose) / best));
   // Of several poses one agrees by chance so much sooner.
   evidence.coincidence_nats = -std::log(kCoincidence * static_cast<double>(link.poses.size()));
+  evidence.stated = link.accepted;
   evidence.asks_look_alike = link.asks_look_alike();
   if (evidence.asks_look_alike)
     evidence.look_alikes = link.poses[pose].look_alike.value_or(look_alike_evidence_of(link.look_alike));

@@ -166,6 +166,7 @@ class GraphMaker {
     const auto number = static_cast<std::size_t>(word.pose);
     if (number >= link.poses.size()) return;
     put_first(link.number_of(word.pose), link);
+    link.accepted = true;
     link.look_alike = std::min(link.look_alike, kWordWrong);
     link.poses.front().look_alike.reset();
     link.chance = std::min(link.chance, kWordWrong);
