@@ -295,7 +295,7 @@ std::string reason_of(Outcome outcome, const Posterior& posterior, const PoseSco
       break;
   }
   if (posterior.order.empty()) return "no planes of the two scans match";
-  return fmt::format("{}: the likeliest explanation is that the scans do not overlap ({})",
+  return fmt::format("{}: no single pose is as likely as that the scans do not overlap ({})",
                      overlap_words(best.agreeing_m2, best.contradicted_m2),
                      percent_words(posterior.by_chance()));
 }
