@@ -81,6 +81,8 @@ const std::vector<ExampleDoc>& examples_of(const std::string& command) {
        {{"All stations of a building, whatever their order",
          "limen project scans/*.e57 street.las -o building"},
         {"How far a project has come", "limen project status building"},
+        {"Answers: accept, reject, choose A B N, level A, same-floor A B, forget A B",
+         "limen project decide building accept hall.e57 stairs.e57"},
         {"All scans in the common frame", "limen transform building/project.json -o placed"}}},
       {"transform",
        {{"Move a cloud into the target's frame",
