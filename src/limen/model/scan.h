@@ -74,6 +74,11 @@ Scan scan_of_points(std::vector<Vector3d> points);
 /// origin would amplify the smallest angle.
 Vector3d origin_near(const Scan& scan);
 
+/// No scanner reaches farther.
+inline constexpr double kFarthestRangeM = 2e4;
+/// Median distance of points to their scanner positions, of a thousand points; of a scan whose are known.
+double median_range(const Scan& scan);
+
 /// Axis-aligned extent of the points about local_origin; two zero vectors for an empty scan.
 struct Extent {
   Vector3d low = Vector3d::Zero();

@@ -29,6 +29,68 @@ namespace {
 constexpr std::size_t kRecordsPerStep = 500000;  ///< records per step of work
 constexpr std::size_t kRecordsPerPiece = 16384;
 
+/// Three extra values of a record that are a place or a direction.
+struct LasTriple {
+  std::array<LasField, 3> values;
+  bool direction = false;
+
+  [[nodiscard]] bool is_real() const {
+    const Scalar type = values[0].field.type;
+    return (type == Scalar::float32 || type == Scalar::float64) &&
+           std::all_of(values.begin(), values.end(),
+                       [type](const LasField& value) { return value.field.type == type; });
+  }
+};
+
+constexpr std::array<std::array<const char*, 3>, 3> kExtraTriples{
+    {{"x_origin", "y_origin", "z_origin"}, {"nx", "ny", "nz"}, {"normal_x", "normal_y", "normal_z"}}};
+
+/// Those that a motion changes.
+std::vector<LasTriple> extra_triples(const LasHeader& header, const Rigid3& motion) {
+  const bool turns = !motion.rotation.isIdentity(0.0);
+  if (!turns && motion.translation.isZero(0.0)) return {};
+  const LasLayout layout = las_layout(header);
+  std::vector<LasTriple> triples;
+  for (std::size_t t = 0; t < kExtraTriples.size(); ++t) {
+    LasTriple triple{{}, t > 0};
+    if (triple.direction && !turns) continue;
+    std::size_t found = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      for (const LasField& value : layout.fields) {
+        if (value.field.name != kExtraTriples[t][k]) continue;
+        triple.values[k] = value;
+        ++found;
+      }
+    }
+    if (found == 3) triples.push_back(std::move(triple));
+  }
+  return triples;
+}
+
+template <typename Real>
+void move_reals(const LasTriple& triple, const Rigid3& motion, char* record) {
+  Vector3d x;
+  for (std::size_t k = 0; k < 3; ++k) {
+    Real stored{};
+    std::memcpy(&stored, record + triple.values[k].at, sizeof stored);
+    const Field& field = triple.values[k].field;
+    x[static_cast<int>(k)] = field.offset + field.scale * static_cast<double>(stored);
+  }
+  x = triple.direction ? Vector3d(motion.rotation * x) : motion * x;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Field& field = triple.values[k].field;
+    const auto stored = static_cast<Real>((x[static_cast<int>(k)] - field.offset) / field.scale);
+    std::memcpy(record + triple.values[k].at, &stored, sizeof stored);
+  }
+}
+
+void move_triple(const LasTriple& triple, const Rigid3& motion, char* record) {
+  if (triple.values[0].field.type == Scalar::float64)
+    move_reals<double>(triple, motion, record);
+  else
+    move_reals<float>(triple, motion, record);
+}
+
 /// What is moved, and how.
 struct Motion {
   std::string_view bytes;
@@ -38,6 +100,7 @@ struct Motion {
   Monitor& monitor;
   std::vector<laz::ItemPlan> items;  ///< of points that are written packed; else none
   const LasSystem& system;           ///< of the target
+  std::vector<LasTriple> triples = {};
 };
 
 using RecordSteps = std::array<std::int32_t, 3>;
@@ -124,6 +187,9 @@ Reach move_records(const Motion& motion, const LasGrid& grid, std::vector<char>&
             for (std::size_t k = 0; k < 3; ++k)
               place[k] = static_cast<std::int32_t>(std::nearbyint(steps[static_cast<int>(k)]));
             std::memcpy(record, place.data(), sizeof place);
+          }
+          for (const LasTriple& triple : motion.triples) {
+            if (triple.is_real()) move_triple(triple, motion.target_from_source, record);
           }
           reach.add(place);
         }
@@ -338,6 +404,11 @@ std::vector<std::string> notes_of(const Motion& motion, const LasGrid& grid) {
         "the records of the coordinate system are kept as they were: they name the source's system, "
         "the coordinates are now the target's");
   }
+  for (const LasTriple& triple : motion.triples) {
+    if (!triple.is_real())
+      notes.push_back(fmt::format("{} and its like are whole numbers: they are kept as they were",
+                                  triple.values[0].field.name));
+  }
   if (las_wave_packet_at(header.point_format) != 0 && !grid.unchanged)
     notes.emplace_back("directions of wave packets are kept as they were, not turned");
   if (header.find("copc", 1) != nullptr)
@@ -357,7 +428,8 @@ TransformedCloud transform_las(std::string_view bytes, const std::string& name,
                                const Rigid3& target_from_source, const std::filesystem::path& output,
                                Monitor& monitor, const LasSystem& system) {
   const LasHeader header = parse_las_header(bytes, name);
-  Motion motion{bytes, name, header, target_from_source, monitor, {}, system};
+  Motion motion{bytes,   name, header, target_from_source,
+                monitor, {},   system, extra_triples(header, target_from_source)};
   if (is_laz_ending(output)) motion.items = laz::items_of(header.point_format, header.point_bytes);
   const std::optional<LasBox> stated = stated_box(header);
   LasGrid grid = moved_grid(header, target_from_source,

@@ -163,6 +163,34 @@ TEST(TransformLas, TheScannerMovesToo) {
   EXPECT_LT((opened->clouds()[0].table.centre.value() - turned() * centre).norm(), 1e-9);
 }
 
+TEST(TransformLas, PlacesAndDirectionsInExtraBytesMoveToo) {
+  const TemporaryFolder folder;
+  CloudPlan plan;
+  for (const char* name : {"x", "y", "z", "nx", "ny", "nz", "x_origin", "y_origin", "z_origin"})
+    plan.columns.push_back({name, name[0] == 'n' ? Scalar::float32 : Scalar::float64});
+  plan.near = {500000.0, 5400000.0, 100.0};
+  const Vector3d normal = Vector3d(1, 2, 2) / 3.0;
+  const Vector3d centre(500001.25, 5400002.5, 103.0);
+  const std::vector<double> numbers = {500000.0,   5400000.0,  100.0,      normal.x(), normal.y(),
+                                       normal.z(), centre.x(), centre.y(), centre.z()};
+  std::vector<std::string> names;
+  for (const ColumnPlan& one : plan.columns) names.push_back(one.name);
+  const auto writer = make_las_writer(folder / "in.las", plan);
+  writer->write(table_of_numbers(std::make_shared<const std::vector<double>>(numbers), names));
+  writer->finish();
+  Rigid3 shift;
+  shift.translation = {0.25, -3.0, 100.0};
+  for (const Rigid3& motion : {turned(), shift}) {
+    std::string after;
+    move(slurp(folder / "in.las"), motion, after);
+    const auto three = [&](const char* a, const char* b, const char* c) {
+      return Vector3d(column(after, a).at(0), column(after, b).at(0), column(after, c).at(0));
+    };
+    EXPECT_LT((three("nx", "ny", "nz") - motion.rotation * normal).norm(), 1e-6);
+    EXPECT_LT((three("x_origin", "y_origin", "z_origin") - motion * centre).norm(), 1e-8);
+  }
+}
+
 TEST(TransformLas, NothingIsLeftWhereItFails) {
   const TemporaryFolder folder;
   std::string bytes = file(sample(2, 1));

@@ -20,8 +20,10 @@ namespace {
 
 constexpr std::size_t kPcdRowsAtOnce = 65536;
 
-constexpr std::array<std::array<const char*, 3>, 3> kPcdTriples{
-    {{"x", "y", "z"}, {"x_origin", "y_origin", "z_origin"}, {"normal_x", "normal_y", "normal_z"}}};
+constexpr std::array<std::array<const char*, 3>, 4> kPcdTriples{{{"x", "y", "z"},
+                                                                 {"x_origin", "y_origin", "z_origin"},
+                                                                 {"nx", "ny", "nz"},
+                                                                 {"normal_x", "normal_y", "normal_z"}}};
 constexpr std::size_t kDirections = 2;  ///< from this triple on: only turned
 
 /// Fields of a file that change together.

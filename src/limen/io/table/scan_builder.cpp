@@ -410,6 +410,15 @@ void ScanBuilder::add(const RecordTable& table) {
   parts.colours.add(table);
 }
 
+/// Positions in another frame than the points would make rays of thousands of kilometres.
+void check_centres(const Scan& scan) {
+  const double range_m = scan.mobile() ? median_range(scan) : 0.0;
+  if (range_m <= kFarthestRangeM) return;
+  throw Error(fmt::format("the scanner positions of the points are {:.0f} km away from them", 1e-3 * range_m),
+              scan.name,
+              "bring x_origin, y_origin and z_origin into the frame of x, y and z, or leave them out");
+}
+
 ScanFile ScanBuilder::finish(ScanFile file) {
   Parts& parts = *parts_;
   const TableFacts& facts = parts.facts;
@@ -431,6 +440,7 @@ ScanFile ScanBuilder::finish(ScanFile file) {
                 "check how the file was exported");
   }
   check_extent(scan);
+  if (!parts.options.trajectory) check_centres(scan);
   scan.level = parts.options.level;
   std::string note = settle_centre(scan, facts, parts.options);
   if (!note.empty()) file.notes.push_back(std::move(note));

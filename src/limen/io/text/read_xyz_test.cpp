@@ -71,6 +71,17 @@ TEST(ReadXyz, AMobileScanMayBeATable) {
   EXPECT_EQ(scan.times_s, (std::vector<double>{7.5, 7.75}));
 }
 
+TEST(ReadXyz, ScannerPositionsInAnotherFrameAreRefused) {
+  const std::string text =
+      "x y z x_origin y_origin z_origin\n500000 5400000 3 0 0 1\n500001 5400000 3 1 0 1\n";
+  try {
+    (void)read_xyz(text, "t");
+    ADD_FAILURE() << "it was read";
+  } catch (const Error& error) {
+    EXPECT_NE(error.problem().find("5423 km away"), std::string::npos) << error.problem();
+  }
+}
+
 TEST(ReadXyz, KeepsNationalGridDigitsOverManyPieces) {
   const auto points = testing_io::random_points(80000, {1050000.1234, 6840000.5678, 100.0}, 40.0, 1);
   std::string text;

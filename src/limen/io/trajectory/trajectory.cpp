@@ -20,8 +20,6 @@ constexpr double kSamePlaceM = 0.01;
 constexpr double kWeekS = 604800.0;
 /// "Adjusted standard" GPS time is GPS time less this.
 constexpr double kAdjustmentS = 1e9;
-/// No scanner reaches farther.
-constexpr double kFarthestM = 2e4;
 constexpr std::size_t kTimesPerPiece = 16384;
 
 struct TimeRange {
@@ -52,7 +50,7 @@ std::optional<double> helpful_offset(const TimeRange& scan, const TimeRange& tra
       "the other: give what to add to those of the trajectory with --{}trajectory-time-offset-s",
       trajectory.option_side());
   if (const auto offset = helpful_offset(range, there))
-    remedy += fmt::format("; with {:.0f} they would overlap", *offset);
+    remedy += fmt::format("; changed by {:+.0f} s they would overlap", *offset);
   throw Error(fmt::format("the times of the points, {:.3f} to {:.3f} s, and of the trajectory {}, {:.3f} to "
                           "{:.3f} s, do not overlap",
                           range.first, range.last, trajectory.name(), there.first, there.last),
@@ -62,15 +60,10 @@ std::optional<double> helpful_offset(const TimeRange& scan, const TimeRange& tra
 /// Throws Error where the median distance of points to their scanner positions is too large: the trajectory
 /// and the points are then in different frames.
 void require_near(const Scan& scan, const Trajectory& trajectory) {
-  std::vector<double> distances;
-  const std::size_t step = std::max<std::size_t>(1, scan.size() / 1000);
-  for (std::size_t i = 0; i < scan.size(); i += step)
-    distances.push_back((scan.points[i] - scan.centre(i)).norm());
-  const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
-  std::nth_element(distances.begin(), middle, distances.end());
-  if (*middle <= kFarthestM) return;
+  const double range_m = median_range(scan);
+  if (range_m <= kFarthestRangeM) return;
   throw Error(
-      fmt::format("the trajectory {} is {:.0f} km away from the points", trajectory.name(), *middle / 1e3),
+      fmt::format("the trajectory {} is {:.0f} km away from the points", trajectory.name(), range_m / 1e3),
       scan.name,
       fmt::format("bring both into one frame, or give the UTM zone of the points with --{}utm-zone",
                   trajectory.option_side()));
@@ -132,7 +125,7 @@ const Trajectory* covering_trajectory(const Scan& scan,
     if (distances.empty() || 2 * distances.size() < asked || distances.size() <= most) continue;
     const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
     std::nth_element(distances.begin(), middle, distances.end());
-    if (*middle > kFarthestM) continue;
+    if (*middle > kFarthestRangeM) continue;
     best = trajectory.get();
     most = distances.size();
   }
