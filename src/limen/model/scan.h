@@ -76,7 +76,8 @@ Vector3d origin_near(const Scan& scan);
 
 /// No scanner reaches farther.
 inline constexpr double kFarthestRangeM = 2e4;
-/// Median distance of points to their scanner positions, of a thousand points; of a scan whose are known.
+/// Median distance of points to their scanner positions, of a thousand points; metres. The scan knows its
+/// scanner positions.
 double median_range(const Scan& scan);
 
 /// Axis-aligned extent of the points about local_origin; two zero vectors for an empty scan.

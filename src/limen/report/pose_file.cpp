@@ -34,10 +34,11 @@ std::string read_text(const fs::path& path) {
   if (fs::file_size(path, error) > kMostBytes)
     throw Error("is far too large for a pose", path.string(), kRemedy);
   std::ifstream stream(path, std::ios::binary);
-  std::string text((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
+  const std::string bytes((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
+  std::string text(without_byte_order_mark(bytes));
   if (!stream) throw Error("cannot be read", path.string(), "check its permissions");
   if (text.find_first_not_of(" \t\r\n") == std::string::npos) throw Error("is empty", path.string(), kRemedy);
-  return std::string(without_byte_order_mark(text));
+  return text;
 }
 
 Rigid3 rigid_from(const Matrix4d& matrix, const fs::path& path) {

@@ -90,6 +90,7 @@ TEST_F(PoseFileTest, RefusesWhatIsNoPose) {
   const std::vector<std::string> texts = {
       "",
       " \n",
+      "\xEF\xBB\xBF",
       "1 2 3",
       "1 0 0 0  0 1 0 0  0 0 1 0  0 0 0 1  7",
       "1 0 0 0  0 1 0 0  0 0 1 x  0 0 0 1",

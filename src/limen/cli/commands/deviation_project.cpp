@@ -328,11 +328,11 @@ void refuse_to_replace(const std::vector<std::string>& inputs, const std::string
     std::error_code missing;
     return fs::weakly_canonical(fs::absolute(a), missing) == fs::weakly_canonical(fs::absolute(b), missing);
   };
-  for (const char* name :
-       {"deviation.json", "deviation.csv", "deviation.xlsx", "deviation.ply", "report.html", "report.pdf"}) {
-    const fs::path own = fs::path(folder) / name;
-    for (const std::string& input : inputs) refuse_same_file(own.string(), input);
-    if (!issues.empty() && same(own, issues))
+  const std::vector<const char*> own = {"deviation.json", "deviation.csv", "deviation.xlsx",
+                                        "deviation.ply",  "report.html",   "report.pdf"};
+  refuse_same_files(folder, own, inputs);
+  for (const char* name : own) {
+    if (!issues.empty() && same(fs::path(folder) / name, issues))
       throw Error("is written by limen deviation itself", issues, "give the issues another name");
   }
   if (issues.empty()) return;

@@ -302,9 +302,7 @@ void refuse_to_replace_inputs(const ProjectCommandOptions& options, const std::f
     inputs.insert(inputs.end(), files->begin(), files->end());
   std::vector<const char*> own = {"project.json", "links.csv", "stations.csv", "tables.xlsx", "report.html"};
   if (!options.spheres.empty() || !options.boards.empty()) own.push_back("targets.csv");
-  for (const char* name : own) {
-    for (const std::string& input : inputs) refuse_same_file((folder / name).string(), input);
-  }
+  refuse_same_files(folder, own, inputs);
 }
 
 /// Where nothing was kept that a later run could use, a folder is left as it was found.

@@ -242,9 +242,7 @@ void refuse_to_replace_inputs(const RegisterCommandOptions& options, const std::
   std::vector<std::string> inputs = {options.source, options.target};
   for (const auto* with : {&options.source_with, &options.target_with})
     inputs.insert(inputs.end(), with->begin(), with->end());
-  for (const char* own : {"result.json", "transform.txt"}) {
-    for (const std::string& input : inputs) refuse_same_file((folder / own).string(), input);
-  }
+  refuse_same_files(folder, {"result.json", "transform.txt"}, inputs);
 }
 
 int run(const RegisterCommandOptions& options, const Session& session) {

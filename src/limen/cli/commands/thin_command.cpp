@@ -46,8 +46,7 @@ int run(ThinCommand command, const Session& session) {
   const CancelScope scope(*session.monitor);
   session.monitor->begin_stage("thinning");
   const std::vector<PlacedCloud> placed = placed_clouds(input, {});
-  require_one_unit(placed, command.output);
-  const double unit = unit_of_input(command.cloud, {});
+  const double unit = require_one_unit(placed, command.output);
   command.thinning.spacing_m /= unit;
   const JoinedClouds clouds(placed, input.file().clouds().size() > 1);
   const bool few = command.thinning.spacing_m == 0.0 && command.thinning.most_points > 0 &&

@@ -165,9 +165,9 @@ void to_unit_of_files(std::vector<Move>& moves, const ProjectMoveOptions& option
   session.note(fmt::format("{}: written in {}, the unit of its files", options.output, unit_name(unit)));
 }
 
-std::size_t write_each(std::vector<Move>& moves, const ProjectMoveOptions& options,
-                       const CoordinateSystem& system, const Session& session) {
-  const StatedTrajectories trajectories = read_project_trajectories(options.project);
+std::size_t write_each(std::vector<Move>& moves, const StatedTrajectories& trajectories,
+                       const ProjectMoveOptions& options, const CoordinateSystem& system,
+                       const Session& session) {
   const OutputFolder folder(options.output);
   name_outputs(moves, folder.path(), options.ending);
   for (const Move& move : moves) check_output(move.output, moves);
@@ -224,13 +224,12 @@ int run(const ProjectMoveOptions& options, const Session& session) {
   if (moves.empty())
     throw Error("no scan has a pose in the project's frame", options.project,
                 "give a project with registered scans");
-  if (options.merge)
-    check_inputs(moves, {}, options, session);
-  else
-    check_inputs(moves, read_project_trajectories(options.project), options, session);
+  const StatedTrajectories trajectories =
+      options.merge ? StatedTrajectories() : read_project_trajectories(options.project);
+  check_inputs(moves, trajectories, options, session);
   to_unit_of_files(moves, options, session);
   const std::size_t points = options.merge ? write_merged(moves, options, system, session)
-                                           : write_each(moves, options, system, session);
+                                           : write_each(moves, trajectories, options, system, session);
   const Json json = {
       {"input", options.project}, {"output", options.output}, {"scans", moves.size()}, {"points", points}};
   session.say(

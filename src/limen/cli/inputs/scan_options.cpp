@@ -321,4 +321,11 @@ void refuse_same_file(const std::string& output, const std::string& input) {
   }
 }
 
+void refuse_same_files(const std::filesystem::path& folder, const std::vector<const char*>& names,
+                       const std::vector<std::string>& inputs) {
+  for (const char* name : names) {
+    for (const std::string& input : inputs) refuse_same_file((folder / name).string(), input);
+  }
+}
+
 }  // namespace limen

@@ -126,5 +126,8 @@ int deliver(AtomicFile& file, const std::string& json, const std::string& summar
 
 /// Throws Error where `output` is the file `input`: a result never replaces what it was made from.
 void refuse_same_file(const std::string& output, const std::string& input);
+/// The same of files that a command writes into a folder under names of its own.
+void refuse_same_files(const std::filesystem::path& folder, const std::vector<const char*>& names,
+                       const std::vector<std::string>& inputs);
 
 }  // namespace limen

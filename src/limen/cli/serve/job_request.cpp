@@ -202,11 +202,19 @@ PageJob viewing(const Asked& asked) {
   return job;
 }
 
-/// The scan that a registration moves: its source, but the target where the source is a model. Whether it is.
-std::pair<std::string, bool> scan_of_pair(const Asked& asked, const PageJob& of) {
+/// The files of a registration: the scan that is moved is its source, but the target where that is a model.
+struct PairFiles {
+  std::string scan;
+  std::string other;
+  bool inverse = false;  ///< the scan is the target
+};
+
+PairFiles files_of_pair(const Asked& asked, const PageJob& of) {
   const Asked pair{of.asked, asked.folder, asked.board};
-  const bool model_is_source = is_bim_file(asked.folder / pair.file_at("source"));
-  return {pair.file_at(model_is_source ? "target" : "source"), model_is_source};
+  PairFiles files{pair.file_at("source"), pair.file_at("target")};
+  files.inverse = is_bim_file(asked.folder / files.scan);
+  if (files.inverse) std::swap(files.scan, files.other);
+  return files;
 }
 
 PageJob placing(const Asked& asked) {
@@ -217,12 +225,12 @@ PageJob placing(const Asked& asked) {
     job.title = of.title;
     return job;
   }
-  const auto [scan, model_is_source] = scan_of_pair(asked, of);
-  const fs::path name = last_name(scan);
+  const PairFiles files = files_of_pair(asked, of);
+  const fs::path name = last_name(files.scan);
   job.words = {
-      "transform", result_of(of), scan,
+      "transform", result_of(of), files.scan,
       fmt::format("{}/{}_placed{}", asked.results(), name.stem().string(), name.extension().string())};
-  if (model_is_source) job.words.emplace_back("--invert");
+  if (files.inverse) job.words.emplace_back("--invert");
   job.title = add_alternative(asked, of, job.words);
   return job;
 }
@@ -235,11 +243,9 @@ PageJob comparing(const Asked& asked) {
   if (of.kind == "project") {
     job.words.push_back(result_of(of));
   } else {
-    const auto [scan, model_is_source] = scan_of_pair(asked, of);
-    const std::string model =
-        Asked{of.asked, asked.folder, asked.board}.file_at(model_is_source ? "source" : "target");
-    job.words.insert(job.words.end(), {scan, model, "--result", result_of(of)});
-    if (model_is_source) job.words.emplace_back("--inverse");
+    const PairFiles files = files_of_pair(asked, of);
+    job.words.insert(job.words.end(), {files.scan, files.other, "--result", result_of(of)});
+    if (files.inverse) job.words.emplace_back("--inverse");
   }
   job.words.insert(job.words.end(), {"-o", asked.results()});
   if (asked.flag("pdf")) job.words.emplace_back("--pdf");

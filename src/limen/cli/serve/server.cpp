@@ -45,10 +45,10 @@ const char* words_of(int status) {
       return "Method Not Allowed";
     case 409:
       return "Conflict";
-    case 413:
-      return "Content Too Large";
     case 411:
       return "Length Required";
+    case 413:
+      return "Content Too Large";
     case 414:
       return "URI Too Long";
     case 415:

@@ -101,11 +101,11 @@ std::optional<int> number_in(const std::string& text) {
   return static_cast<int>(*number);
 }
 
-/// A file that appears under its name once all of it has come.
 [[noreturn]] void refuse_second() {
   throw HttpFault(409, "a file of this name exists: remove it, or give this one another name");
 }
 
+/// A file that appears under its name once all of it has come.
 class FileUpload : public HttpUpload {
  public:
   FileUpload(const fs::path& path, std::string name) : file_(path), path_(path), name_(std::move(name)) {}

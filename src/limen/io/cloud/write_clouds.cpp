@@ -114,7 +114,7 @@ std::vector<PlacedCloud> placed_clouds(const OpenPoints& input, const Rigid3& ta
   return placed;
 }
 
-void require_one_unit(const std::vector<PlacedCloud>& clouds, const std::filesystem::path& output) {
+double require_one_unit(const std::vector<PlacedCloud>& clouds, const std::filesystem::path& output) {
   const auto unit_of = [](const PlacedCloud& placed) {
     return placed.input->file().clouds()[placed.cloud].table.metres_per_unit.value_or(1.0);
   };
@@ -130,6 +130,7 @@ void require_one_unit(const std::vector<PlacedCloud>& clouds, const std::filesys
     throw Error(fmt::format("has its numbers in {}, which a {} file cannot state", unit_name(unit),
                             ending.empty() ? "PLY" : ending),
                 clouds.front().input->name(), "write .las or .laz, or convert it to metres first");
+  return unit;
 }
 
 WrittenClouds write_clouds(const JoinedClouds& clouds, const std::filesystem::path& output,

@@ -44,8 +44,8 @@ std::vector<PlacedCloud> placed_clouds(const OpenPoints& input, const Rigid3& ta
                                        Monitor& monitor = silent_monitor());
 
 /// Throws Error where the clouds' numbers are of several units, or of one that the format of `output` cannot
-/// state: all but LAS and LAZ are in metres. `output`: its name.
-void require_one_unit(const std::vector<PlacedCloud>& clouds, const std::filesystem::path& output);
+/// state: all but LAS and LAZ are in metres. Returns the unit in metres. `output`: its name.
+double require_one_unit(const std::vector<PlacedCloud>& clouds, const std::filesystem::path& output);
 
 /// Writes all points, piece after piece; .ply, .las or .e57 by the ending of `output`. LAS holds no points
 /// without coordinates: they are left out, and a note tells so.

@@ -18,8 +18,8 @@ struct PairEvidence {
   LookAlikeEvidence look_alikes;  ///< against look-alike places
   /// `look_alikes` was measured; else a look-alike place is one of the pair's own poses.
   bool asks_look_alike = false;
-  bool stated =
-      false;  ///< by a file, a survey or a user: it depends on no surface, which another pair may show too
+  /// By a file, a survey or a user: it depends on no surface, which another pair may show too.
+  bool stated = false;
 
   /// Whether things and walls of rooms were asked about.
   [[nodiscard]] bool asks_things() const { return asks_look_alike && look_alikes.rooms; }

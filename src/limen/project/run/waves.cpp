@@ -22,8 +22,8 @@ namespace {
 constexpr std::size_t kFirstPartners = 4;
 constexpr std::size_t kFirstStated = 3;  // where all places are stated
 constexpr std::size_t kMorePartners = 3;
-constexpr std::size_t kFewPairs = 500;   // a project may try so many, however few scans it has
-constexpr int kLastDoubling = 4;         // of the partners that a wave may add
+constexpr std::size_t kFewPairs = 500;   // a minute on two cores: all pairs of 32 scans, for any project
+constexpr int kLastDoubling = 4;         // later waves add no more partners of a scan than this one
 constexpr std::size_t kPairsOfWave = 2;  // of a scan, on average: the next wave knows more
 constexpr int kMostStatedPairs = 4;      // of a scan, where all places are stated
 constexpr int kEnoughLinks = 4;          // verified ones: a scan that has them needs no more ...
