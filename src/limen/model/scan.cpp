@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limen/model/scan.h"
 
+#include <algorithm>
+
 #include "limen/base/error.h"
 #include "limen/base/parallel.h"
 

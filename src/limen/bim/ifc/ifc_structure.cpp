@@ -161,8 +161,9 @@ class StructureReader {
     warn("the file states no length unit: metres are assumed");
   }
 
-  /// Metres per unit of the map's coordinates: the target's own, else the project's.
-  double metres_of_map(std::int64_t target) const {
+  /// Metres per unit of the map's coordinates: the target's own; without one metres where the scale turns the
+  /// project's units into metres, else the project's.
+  double metres_of_map(std::int64_t target, double scale) const {
     const Arguments arguments = arguments_of(target);
     constexpr std::size_t kMostArguments = 12;  // of a coordinate system there are seven
     for (std::size_t k = std::min(arguments.size(), kMostArguments); k > 0; --k) {
@@ -170,17 +171,21 @@ class StructureReader {
       const std::optional<double> metres = unit ? metres_of_unit(*unit) : std::nullopt;
       if (metres) return *metres;
     }
-    return structure_.metres_per_unit;
+    const double to_metres = scale / structure_.metres_per_unit;
+    return !plausible_scale(scale) && plausible_scale(to_metres) ? 1.0 : structure_.metres_per_unit;
   }
+
+  static bool plausible_scale(double scale) { return scale > 0.9 && scale < 1.1; }
 
   void read_map() {
     if (maps_.empty()) return;
     if (maps_.size() > 1) warn("the file has several map conversions: the first is used");
     const Arguments arguments = arguments_of(maps_.front());
-    const double metres = metres_of_map(step_reference(argument(arguments, 1)).value_or(0));
     const auto number = [&](std::size_t k, double otherwise) {
       return step_number(argument(arguments, k)).value_or(otherwise);
     };
+    const double scale = number(7, 1.0);
+    const double metres = metres_of_map(step_reference(argument(arguments, 1)).value_or(0), scale);
     MapConversion map;
     map.shift_m = metres * Vector3d(number(2, 0.0), number(3, 0.0), number(4, 0.0));
     const double length = std::hypot(number(5, 1.0), number(6, 0.0));
@@ -188,16 +193,15 @@ class StructureReader {
       map.cosine = number(5, 1.0) / length;
       map.sine = number(6, 0.0) / length;
     }
-    map.scale = scale_of_map(number(7, 1.0), metres);
+    map.scale = scale_of_map(scale, metres);
     structure_.map = map;
   }
 
   /// The scale between metres and metres. It should carry the change of units too; many files leave that out.
   double scale_of_map(double scale, double metres_of_map_unit) {
-    const auto plausible = [](double x) { return x > 0.9 && x < 1.1; };
     const double between_metres = scale * metres_of_map_unit / structure_.metres_per_unit;
-    if (plausible(between_metres)) return between_metres;
-    if (plausible(scale)) {
+    if (plausible_scale(between_metres)) return between_metres;
+    if (plausible_scale(scale)) {
       warn(fmt::format("the map conversion's scale {:g} ignores the units: it is applied between metres",
                        scale));
       return scale;

@@ -205,6 +205,25 @@ TEST_F(ReadIfc, MapConversionIsAppliedOnce) {
   EXPECT_NEAR((low_corner(model) - Vector3d(500000.0 - 23.0, 5400010.0, 109.8)).norm(), 0.0, 2e-4);
 }
 
+TEST_F(ReadIfc, AMapConversionsScaleSaysTheUnitOfTheMapWhereNothingElseDoes) {
+  WallFile file;
+  file.units_per_metre = 1000.0;
+  file.length_unit = "IFCSIUNIT(*,.LENGTHUNIT.,.MILLI.,.METRE.)";
+  file.more =
+      "#200=IFCPROJECTEDCRS('EPSG:25832',$,$,$,$,$,$);\n"
+      "#202=IFCMAPCONVERSION(#5,#200,500000.,5400000.,110.,1.,0.,0.001);\n";
+  const BimModel metres = model_of(text_of(file));
+  EXPECT_TRUE(metres.warnings.empty());
+  EXPECT_NEAR((low_corner(metres) - Vector3d(500010.0, 5400020.0, 109.8)).norm(), 0.0, 2e-4);
+  // Without the scale the map is in the project's millimetres.
+  file.more =
+      "#200=IFCPROJECTEDCRS('EPSG:25832',$,$,$,$,$,$);\n"
+      "#202=IFCMAPCONVERSION(#5,#200,500000000.,5400000000.,110000.,1.,0.,$);\n";
+  const BimModel millimetres = model_of(text_of(file));
+  EXPECT_TRUE(millimetres.warnings.empty());
+  EXPECT_NEAR((low_corner(millimetres) - Vector3d(500010.0, 5400020.0, 109.8)).norm(), 0.0, 2e-4);
+}
+
 TEST_F(ReadIfc, MapConversionThatForgetsTheUnitsIsStatedOf) {
   WallFile file;
   file.units_per_metre = 1000.0;

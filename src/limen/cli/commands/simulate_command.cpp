@@ -381,8 +381,10 @@ void add_simulate_command(CommandLine& app, Session& session) {
   command->add_option("--as", options->as, "Format of stations: ply (default), or e57, each with a panorama")
       ->one_of({"ply", "e57"});
   command
-      ->add_option("--places", options->places,
-                   "With --project: one station per room, or as usual and one more in every open doorway")
+      ->add_option(
+          "--places", options->places,
+          "With --project: some stations as usual, one per room, or as usual in every room and one more in "
+          "every doorway, whatever --stations says")
       ->one_of({"usual", "rooms", "doorways"});
   command->add_option("--tripods N", options->tripods,
                       "With --project: number of stations outside, around the building (default 0)");

@@ -18,6 +18,7 @@
 #include "limen/files/scan_in_file.h"
 #include "limen/geometry/rigid.h"
 #include "limen/io/crs/coordinate_system.h"
+#include "limen/io/table/moved_columns.h"
 #include "limen/io/table/packed_rows.h"
 #include "limen/io/table/record_table.h"
 
@@ -52,18 +53,8 @@ class ColumnMover {
 constexpr std::size_t kMovedPerPiece = 32768;
 constexpr std::size_t kMovedStrip = 1024;
 
-/// Three columns that change together.
-struct NamedTriple {
-  std::array<const char*, 3> names;
-  bool direction;  ///< turns only
-};
-constexpr std::array<NamedTriple, 4> kMovedTriples{{{{"x", "y", "z"}, false},
-                                                    {{"x_origin", "y_origin", "z_origin"}, false},
-                                                    {{"nx", "ny", "nz"}, true},
-                                                    {{"normal_x", "normal_y", "normal_z"}, true}}};
-
-std::optional<NamedTriple> triple_with(const RecordTable& table, const std::string& name) {
-  for (const NamedTriple& triple : kMovedTriples) {
+std::optional<MovedNames> triple_with(const RecordTable& table, const std::string& name) {
+  for (const MovedNames& triple : kMovedColumns) {
     if (std::find(triple.names.begin(), triple.names.end(), name) == triple.names.end()) continue;
     const bool whole = std::all_of(triple.names.begin(), triple.names.end(),
                                    [&](const char* one) { return table.find({one}) != nullptr; });
@@ -73,7 +64,7 @@ std::optional<NamedTriple> triple_with(const RecordTable& table, const std::stri
 }
 
 /// Moves each of the rows by what `bend` is at its own time.
-void bend_rows(const RecordTable& table, const NamedTriple& triple, const SplineMotion& bend, RowRange rows,
+void bend_rows(const RecordTable& table, const MovedNames& triple, const SplineMotion& bend, RowRange rows,
                double* numbers) {
   std::array<double, kMovedStrip> times{};
   load_numbers(table, *find_times(table), rows, times.data());
@@ -86,7 +77,7 @@ void bend_rows(const RecordTable& table, const NamedTriple& triple, const Spline
   }
 }
 
-std::vector<double> moved_numbers(const RecordTable& table, const NamedTriple& triple, const Rigid3& motion,
+std::vector<double> moved_numbers(const RecordTable& table, const MovedNames& triple, const Rigid3& motion,
                                   const SplineMotion* bend) {
   std::vector<double> numbers(3 * table.rows);
   const Vector3d shift = triple.direction ? Vector3d::Zero() : motion.translation;
@@ -131,7 +122,7 @@ void ColumnMover::add(const std::string& name, bool as_numbers) {
     return std::find_if(memory_->moved.begin(), memory_->moved.end(),
                         [&](const auto& column) { return column.first == name; });
   };
-  const std::optional<NamedTriple> triple = triple_with(source_, name);
+  const std::optional<MovedNames> triple = triple_with(source_, name);
   if (triple && find_moved() == memory_->moved.end()) {
     memory_->triples.push_back(moved_numbers(source_, *triple, motion_, bend_));
     for (std::size_t k = 0; k < 3; ++k)

@@ -43,22 +43,26 @@ constexpr std::array<KnownFormat, 6> kKnown{{
 struct Stranger {
   std::string_view begins;
   const char* name;
+  const char* remedy;
 };
+constexpr const char* kExport = "export the scan as E57, LAS, LAZ, PLY, PCD, PTX, PTS or XYZ text";
 constexpr std::array<Stranger, 4> kStrangers{{
-    {"ISO-10303-21", "IFC or STEP"},
-    {"PK\x03\x04", "a ZIP archive"},
-    {"\x1f\x8b", "a gzip archive"},
-    {"{", "JSON"},
+    {"ISO-10303-21", "IFC or STEP", kExport},
+    {"PK\x03\x04", "a ZIP archive in which no IFC file is found", "unpack it and give the file in it"},
+    {"\x1f\x8b", "a gzip archive", "unpack it and give the file in it"},
+    {"{", "JSON", kExport},
 }};
 
 [[noreturn]] void unknown_format(std::string_view bytes, const std::string& name) {
   std::string what = "unknown format";
+  const char* remedy = kExport;
   for (const Stranger& stranger : kStrangers) {
     if (bytes.substr(0, stranger.begins.size()) == stranger.begins) {
       what = fmt::format("this is {}, which is not read as a scan", stranger.name);
+      remedy = stranger.remedy;
     }
   }
-  throw Error(what, name, "export the scan as E57, LAS, LAZ, PLY, PCD, PTX, PTS or XYZ text");
+  throw Error(what, name, remedy);
 }
 
 bool is_stranger(std::string_view bytes) {

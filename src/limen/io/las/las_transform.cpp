@@ -22,6 +22,7 @@
 #include "limen/io/las/laz/laz_info.h"
 #include "limen/io/las/laz/laz_pack.h"
 #include "limen/io/las/laz/laz_writer.h"
+#include "limen/io/table/moved_columns.h"
 
 namespace limen {
 namespace {
@@ -32,7 +33,7 @@ constexpr std::size_t kRecordsPerPiece = 16384;
 /// Three extra values of a record that are a place or a direction.
 struct LasTriple {
   std::array<LasField, 3> values;
-  bool direction = false;
+  MovedColumns columns;
 
   [[nodiscard]] bool is_real() const {
     const Scalar type = values[0].field.type;
@@ -42,28 +43,20 @@ struct LasTriple {
   }
 };
 
-constexpr std::array<std::array<const char*, 3>, 3> kExtraTriples{
-    {{"x_origin", "y_origin", "z_origin"}, {"nx", "ny", "nz"}, {"normal_x", "normal_y", "normal_z"}}};
-
-/// Those that a motion changes.
+/// Those of the extra values that a motion changes.
 std::vector<LasTriple> extra_triples(const LasHeader& header, const Rigid3& motion) {
   const bool turns = !motion.rotation.isIdentity(0.0);
   if (!turns && motion.translation.isZero(0.0)) return {};
-  const LasLayout layout = las_layout(header);
+  const std::vector<LasField> fields = las_layout(header).fields;
+  const auto find = [&](std::string_view name, bool direction) -> std::optional<std::size_t> {
+    const auto found = std::find_if(fields.begin(), fields.end(),
+                                    [&](const LasField& value) { return value.field.name == name; });
+    if (name.size() == 1 || found == fields.end() || (direction && !turns)) return {};
+    return static_cast<std::size_t>(found - fields.begin());
+  };
   std::vector<LasTriple> triples;
-  for (std::size_t t = 0; t < kExtraTriples.size(); ++t) {
-    LasTriple triple{{}, t > 0};
-    if (triple.direction && !turns) continue;
-    std::size_t found = 0;
-    for (std::size_t k = 0; k < 3; ++k) {
-      for (const LasField& value : layout.fields) {
-        if (value.field.name != kExtraTriples[t][k]) continue;
-        triple.values[k] = value;
-        ++found;
-      }
-    }
-    if (found == 3) triples.push_back(std::move(triple));
-  }
+  for (const MovedColumns& moved : moved_columns(find))
+    triples.push_back({{fields[moved.column[0]], fields[moved.column[1]], fields[moved.column[2]]}, moved});
   return triples;
 }
 
@@ -76,7 +69,7 @@ void move_reals(const LasTriple& triple, const Rigid3& motion, char* record) {
     const Field& field = triple.values[k].field;
     x[static_cast<int>(k)] = field.offset + field.scale * static_cast<double>(stored);
   }
-  x = triple.direction ? Vector3d(motion.rotation * x) : motion * x;
+  x = triple.columns.moved(motion, x);
   for (std::size_t k = 0; k < 3; ++k) {
     const Field& field = triple.values[k].field;
     const auto stored = static_cast<Real>((x[static_cast<int>(k)] - field.offset) / field.scale);

@@ -13,6 +13,7 @@
 #include "limen/files/text_numbers.h"
 #include "limen/io/pcd/pcd.h"
 #include "limen/io/pcd/pcd_header.h"
+#include "limen/io/table/moved_columns.h"
 #include "limen/io/text/text.h"
 
 namespace limen {
@@ -20,39 +21,19 @@ namespace {
 
 constexpr std::size_t kPcdRowsAtOnce = 65536;
 
-constexpr std::array<std::array<const char*, 3>, 4> kPcdTriples{{{"x", "y", "z"},
-                                                                 {"x_origin", "y_origin", "z_origin"},
-                                                                 {"nx", "ny", "nz"},
-                                                                 {"normal_x", "normal_y", "normal_z"}}};
-constexpr std::size_t kDirections = 2;  ///< from this triple on: only turned
-
-/// Fields of a file that change together.
-struct Moved {
-  std::array<std::size_t, 3> field{};
-  bool direction = false;
-};
-
-std::vector<Moved> moved_fields(const PcdHeader& header) {
-  std::vector<Moved> all;
-  for (std::size_t t = 0; t < kPcdTriples.size(); ++t) {
-    Moved moved{{}, t >= kDirections};
-    bool whole = true;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const auto found = std::find_if(header.fields.begin(), header.fields.end(), [&](const PcdField& field) {
-        return field.name == kPcdTriples[t][k] && field.count == 1;
-      });
-      whole = whole && found != header.fields.end();
-      moved.field[k] = static_cast<std::size_t>(found - header.fields.begin());
-      whole = whole && (!moved.direction || found->type == 'F');
-    }
-    if (whole) all.push_back(moved);
-  }
-  return all;
+std::vector<MovedColumns> moved_fields(const PcdHeader& header) {
+  return moved_columns([&](std::string_view name, bool direction) -> std::optional<std::size_t> {
+    const auto found = std::find_if(header.fields.begin(), header.fields.end(), [&](const PcdField& field) {
+      return field.name == name && field.count == 1;
+    });
+    if (found == header.fields.end() || (direction && found->type != 'F')) return {};
+    return static_cast<std::size_t>(found - header.fields.begin());
+  });
 }
 
-bool becomes_double(const std::vector<Moved>& moved, std::size_t field) {
-  return std::any_of(moved.begin(), moved.end(), [&](const Moved& one) {
-    return !one.direction && std::find(one.field.begin(), one.field.end(), field) != one.field.end();
+bool becomes_double(const std::vector<MovedColumns>& moved, std::size_t field) {
+  return std::any_of(moved.begin(), moved.end(), [&](const MovedColumns& one) {
+    return !one.direction && std::find(one.column.begin(), one.column.end(), field) != one.column.end();
   });
 }
 
@@ -65,7 +46,8 @@ std::string viewpoint_line(const PcdHeader& header, const Rigid3& motion) {
 }
 
 /// SIZE or TYPE with the fields that become double.
-std::string per_field_line(const std::vector<std::string_view>& tokens, const std::vector<Moved>& moved) {
+std::string per_field_line(const std::vector<std::string_view>& tokens,
+                           const std::vector<MovedColumns>& moved) {
   const std::string word(tokens[0]);
   std::string line = word;
   for (std::size_t k = 1; k < tokens.size(); ++k) {
@@ -80,8 +62,8 @@ std::string per_field_line(const std::vector<std::string_view>& tokens, const st
   return line + "\n";
 }
 
-std::string header_text(std::string_view bytes, const PcdHeader& header, const std::vector<Moved>& moved,
-                        const Rigid3& motion) {
+std::string header_text(std::string_view bytes, const PcdHeader& header,
+                        const std::vector<MovedColumns>& moved, const Rigid3& motion) {
   std::string text;
   for (std::string_view rest = bytes.substr(0, header.body); !rest.empty();) {
     const TextLine line = first_line(rest);
@@ -112,7 +94,8 @@ struct Column {
 /// The binary points of a file on their way.
 class Records {
  public:
-  Records(const PcdHeader& header, const PcdBody& body, std::vector<Moved> moved, const std::string& name)
+  Records(const PcdHeader& header, const PcdBody& body, std::vector<MovedColumns> moved,
+          const std::string& name)
       : moved_(std::move(moved)), points_(header.point_count(name)) {
     const char* at = body.data;
     for (std::size_t k = 0; k < header.fields.size(); ++k) {
@@ -135,22 +118,22 @@ class Records {
         if (!becomes_double(moved_, k))
           std::memcpy(record + column.to, column.from + i * column.stride, column.bytes);
       }
-      for (const Moved& moved : moved_) put_moved(record, i, moved, motion);
+      for (const MovedColumns& moved : moved_) put_moved(record, i, moved, motion);
     }
     return out;
   }
   [[nodiscard]] std::size_t size() const { return points_; }
 
  private:
-  void put_moved(char* record, std::size_t row, const Moved& moved, const Rigid3& motion) const {
+  void put_moved(char* record, std::size_t row, const MovedColumns& moved, const Rigid3& motion) const {
     Vector3d x;
     for (std::size_t k = 0; k < 3; ++k) {
-      const Column& column = columns_[moved.field[k]];
+      const Column& column = columns_[moved.column[k]];
       x[static_cast<int>(k)] = load_number(column.from + row * column.stride, column.type, false);
     }
-    x = moved.direction ? Vector3d(motion.rotation * x) : motion * x;
+    x = moved.moved(motion, x);
     for (std::size_t k = 0; k < 3; ++k) {
-      const Column& column = columns_[moved.field[k]];
+      const Column& column = columns_[moved.column[k]];
       const double value = x[static_cast<int>(k)];
       if (moved.direction && column.type == Scalar::float32) {
         const auto narrow = static_cast<float>(value);
@@ -161,7 +144,7 @@ class Records {
     }
   }
 
-  std::vector<Moved> moved_;
+  std::vector<MovedColumns> moved_;
   std::size_t points_;
   std::size_t record_bytes_ = 0;
   std::vector<Column> columns_;
@@ -180,7 +163,7 @@ std::vector<std::string> column_names(const PcdHeader& header) {
 TransformedCloud transform_pcd(const NamedBytes& input, const Rigid3& target_from_source,
                                const std::filesystem::path& output) {
   const PcdHeader header = parse_pcd_header(input.bytes, input.name);
-  const std::vector<Moved> moved = moved_fields(header);
+  const std::vector<MovedColumns> moved = moved_fields(header);
   if (moved.empty() || moved.front().direction)
     throw Error("the points have no x, y and z", input.name, "export the points with them");
   TransformedCloud result{header.point_count(input.name), "PCD, " + header.data, {}};

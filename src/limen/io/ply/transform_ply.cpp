@@ -5,6 +5,7 @@
 #include <cstring>
 #include <iterator>
 #include <optional>
+#include <string_view>
 #include <vector>
 
 #include <fmt/format.h>
@@ -14,35 +15,30 @@
 #include "limen/files/text_numbers.h"
 #include "limen/io/ply/ply.h"
 #include "limen/io/ply/ply_header.h"
+#include "limen/io/table/moved_columns.h"
 
 namespace limen {
 namespace {
 
 constexpr std::size_t kFlushBytes = std::size_t{1} << 20U;
 
-/// Three properties of the points that change together.
-struct MovedTriple {
-  std::array<std::size_t, 3> property{};
-  bool direction = false;  ///< turns only: a normal
-};
-
 /// What becomes of the points of a PLY file.
 struct Plan {
   PlyElement vertex;
   std::size_t reachable = 0;  ///< properties that are looked at
-  std::vector<MovedTriple> moved;
+  std::vector<MovedColumns> moved;
   std::vector<Scalar> written;  ///< type of each property in the output
   Rigid3 target_from_source;
   Vector3d offset = Vector3d::Zero();
   bool swapped = false;
 
-  /// The values of a triple after the motion.
-  [[nodiscard]] Vector3d move(const MovedTriple& triple, const Vector3d& x) const {
-    return triple.direction ? Vector3d(target_from_source.rotation * x) : target_from_source * (offset + x);
+  /// The values of three columns after the motion.
+  [[nodiscard]] Vector3d move(const MovedColumns& columns, const Vector3d& x) const {
+    return columns.moved(target_from_source, columns.direction ? x : Vector3d(offset + x));
   }
 };
 
-std::optional<std::size_t> find_property(const Plan& plan, const std::string& name) {
+std::optional<std::size_t> find_property(const Plan& plan, std::string_view name) {
   for (std::size_t k = 0; k < plan.reachable; ++k) {
     const PlyProperty& property = plan.vertex.properties[k];
     if (!property.count_type && lower_case(property.name) == name) return k;
@@ -58,18 +54,6 @@ std::size_t reachable_properties(const PlyElement& vertex, PlyEncoding encoding)
   return text ? static_cast<std::size_t>(list - vertex.properties.begin()) : vertex.properties.size();
 }
 
-void add_triple(Plan& plan, const std::array<const char*, 3>& names, bool direction) {
-  MovedTriple triple{{}, direction};
-  for (std::size_t k = 0; k < 3; ++k) {
-    const std::optional<std::size_t> found = find_property(plan, names[k]);
-    if (!found || (direction && is_integer(plan.vertex.properties[*found].type))) return;
-    triple.property[k] = *found;
-  }
-  plan.moved.push_back(triple);
-  if (direction) return;
-  for (const std::size_t k : triple.property) plan.written[k] = Scalar::float64;
-}
-
 Plan plan_of(const PlyHeader& header, std::size_t which, const Rigid3& target_from_source) {
   Plan plan;
   plan.vertex = header.elements[which];
@@ -78,10 +62,15 @@ Plan plan_of(const PlyHeader& header, std::size_t which, const Rigid3& target_fr
   plan.offset = header.offset;
   plan.swapped = header.swapped();
   for (const PlyProperty& property : plan.vertex.properties) plan.written.push_back(property.type);
-  add_triple(plan, {"x", "y", "z"}, false);
-  add_triple(plan, {"x_origin", "y_origin", "z_origin"}, false);
-  add_triple(plan, {"nx", "ny", "nz"}, true);
-  add_triple(plan, {"normal_x", "normal_y", "normal_z"}, true);
+  plan.moved = moved_columns([&](std::string_view name, bool direction) -> std::optional<std::size_t> {
+    const std::optional<std::size_t> found = find_property(plan, name);
+    if (found && direction && is_integer(plan.vertex.properties[*found].type)) return {};
+    return found;
+  });
+  for (const MovedColumns& columns : plan.moved) {
+    if (columns.direction) continue;
+    for (const std::size_t k : columns.column) plan.written[k] = Scalar::float64;
+  }
   return plan;
 }
 
@@ -135,10 +124,10 @@ using MovedValues = std::vector<std::optional<double>>;
 template <typename Number>
 MovedValues moved_values(const Plan& plan, const Number& number) {
   MovedValues values(plan.vertex.properties.size());
-  for (const MovedTriple& triple : plan.moved) {
-    const Vector3d old{number(triple.property[0]), number(triple.property[1]), number(triple.property[2])};
-    const Vector3d moved = plan.move(triple, old);
-    for (std::size_t k = 0; k < 3; ++k) values[triple.property[k]] = moved[static_cast<int>(k)];
+  for (const MovedColumns& columns : plan.moved) {
+    const Vector3d old{number(columns.column[0]), number(columns.column[1]), number(columns.column[2])};
+    const Vector3d moved = plan.move(columns, old);
+    for (std::size_t k = 0; k < 3; ++k) values[columns.column[k]] = moved[static_cast<int>(k)];
   }
   return values;
 }

@@ -29,7 +29,6 @@ constexpr std::size_t kScannedStrip = 1024;
 /// No coordinate on Earth is larger (geocentric ones reach 6.4e6 m).
 constexpr double kLargestM = 1e8;
 constexpr double kLargestExtentM = 1e6;
-/// Points nearer to 0,0,0 than this keep it as their local origin.
 
 using FieldTriple = std::array<const Field*, 3>;
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "limen/io/table/cloud_writer.h"
+#include "limen/io/table/moved_columns.h"
 #include "limen/io/table/point_file.h"
 #include "limen/io/table/scan_file.h"
 
@@ -35,11 +36,7 @@ class LineMover {
   [[nodiscard]] std::string moved(std::string_view text, bool counts_allowed, const std::string& where) const;
 
  private:
-  struct Triple {
-    std::size_t column[3];
-    bool direction;
-  };
-  std::vector<Triple> triples_;
+  std::vector<MovedColumns> triples_;
   Rigid3 motion_;
 };
 

@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <optional>
 
@@ -21,11 +20,6 @@ constexpr std::size_t kPiecesAtOnce = 16;
 /// Digits behind the point: a tenth of a millimetre at least, and no more than a double has.
 constexpr int kLeastDecimals = 4;
 constexpr int kMostDecimals = 15;
-
-constexpr std::array<std::array<const char*, 3>, 4> kTextTriples{{{"x", "y", "z"},
-                                                                  {"x_origin", "y_origin", "z_origin"},
-                                                                  {"nx", "ny", "nz"},
-                                                                  {"normal_x", "normal_y", "normal_z"}}};
 
 std::string written_like(double value, std::string_view old) {
   const std::size_t point = old.find('.');
@@ -49,23 +43,18 @@ std::string_view take_piece(std::string_view& text) {
 
 }  // namespace
 
-LineMover::LineMover(const std::vector<std::string>& names, const Rigid3& motion) : motion_(motion) {
-  for (std::size_t t = 0; t < kTextTriples.size(); ++t) {
-    Triple triple{{}, t >= 2};
-    bool whole = true;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const auto found = std::find(names.begin(), names.end(), kTextTriples[t][k]);
-      whole = whole && found != names.end();
-      triple.column[k] = static_cast<std::size_t>(found - names.begin());
-    }
-    if (whole) triples_.push_back(triple);
-  }
-}
+LineMover::LineMover(const std::vector<std::string>& names, const Rigid3& motion)
+    : triples_(moved_columns([&](std::string_view name, bool) -> std::optional<std::size_t> {
+        const auto found = std::find(names.begin(), names.end(), name);
+        if (found == names.end()) return {};
+        return static_cast<std::size_t>(found - names.begin());
+      })),
+      motion_(motion) {}
 
 void LineMover::append(std::string& out, std::string_view line, const std::string& where) const {
   const std::vector<std::string_view> tokens = split_tokens(line);
   std::vector<std::optional<double>> values(tokens.size());
-  for (const Triple& triple : triples_) {
+  for (const MovedColumns& triple : triples_) {
     Vector3d x;
     for (std::size_t k = 0; k < 3; ++k) {
       const auto number =
@@ -76,7 +65,7 @@ void LineMover::append(std::string& out, std::string_view line, const std::strin
       }
       x[static_cast<int>(k)] = *number;
     }
-    x = triple.direction ? Vector3d(motion_.rotation * x) : motion_ * x;
+    x = triple.moved(motion_, x);
     for (std::size_t k = 0; k < 3; ++k) values[triple.column[k]] = x[static_cast<int>(k)];
   }
   const char* at = line.data();

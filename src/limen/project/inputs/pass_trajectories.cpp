@@ -32,6 +32,11 @@ std::string key_of(const StatedTrajectories& stated) {
 Scan along_trajectory(Scan scan, const Trajectories& trajectories, std::vector<std::string>& notes) {
   const Trajectory* trajectory = covering_trajectory(scan, trajectories);
   if (trajectory == nullptr) return scan;
+  // Remarks of its reading on where its scanner was.
+  notes.erase(std::remove_if(
+                  notes.begin(), notes.end(),
+                  [](const std::string& note) { return note.find("scanner position") != std::string::npos; }),
+              notes.end());
   FollowedScan followed = with_trajectory(scan, *trajectory);
   const auto found = std::find_if(trajectories.begin(), trajectories.end(),
                                   [&](const auto& other) { return other.get() == trajectory; });

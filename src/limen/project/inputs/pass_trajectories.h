@@ -23,7 +23,8 @@ Trajectories read_trajectories(const StatedTrajectories& stated);
 std::string key_of(const StatedTrajectories& stated);
 
 /// The scan with the places of its scanner along the trajectory that covers it, as it was where none does;
-/// `notes` tells which it was, by its mark (store/kept_notes.h): number 1 is the first of the trajectories.
+/// `notes` loses what was said of the scanner's position and tells which it was, by its mark
+/// (store/kept_notes.h): number 1 is the first of the trajectories.
 Scan along_trajectory(Scan scan, const Trajectories& trajectories, std::vector<std::string>& notes);
 
 }  // namespace limen

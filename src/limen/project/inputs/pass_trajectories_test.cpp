@@ -22,7 +22,7 @@ TEST(PassTrajectories, TheNoteTellsWhichOneByItsNumberNotByItsName) {
     scan.points.emplace_back(k, 2.0, 0.0);
     scan.times_s.push_back(100.0 + k);
   }
-  std::vector<std::string> notes;
+  std::vector<std::string> notes = {"the scanner position is unknown: the file does not state it"};
   const Scan along = along_trajectory(scan, {from_to(0.0, 10.0), from_to(99.0, 105.0)}, notes);
   EXPECT_EQ(along.size(), scan.size());
   ASSERT_EQ(notes.size(), 1U);

@@ -56,10 +56,48 @@ FramedNodes only(int node, int nodes) {
   return framed;
 }
 
+/// Eastings and northings are often exchanged. The mirrored coordinates contradict one another, or, where the
+/// points are in a plane, agree with scans that are upside down.
+class ColumnOrder {
+ public:
+  explicit ColumnOrder(const Survey& survey) : up_(survey.up), exchanged_(points_of(survey)) {
+    Matrix3d swap;
+    swap << 0.0, 1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0;
+    for (MarkedPoint& point : exchanged_) {
+      if (point.known) point.known = KnownPlace{swap * point.known->x, swap * point.known->covariance * swap};
+    }
+  }
+
+  /// Whether the points explain all with x and y exchanged, and do not as they are (`datum`).
+  [[nodiscard]] bool is_wrong(const ControlDatum& datum, const FramedNodes& nodes) const {
+    return !explains_all(datum, nodes) && explains_all(control_datum(exchanged_, nodes), nodes);
+  }
+
+ private:
+  /// All points agree, and the scans that are known to be upright stay so.
+  [[nodiscard]] bool explains_all(const ControlDatum& datum, const FramedNodes& nodes) const {
+    const std::vector<bool>& taken = datum.fit.taken;
+    if (datum.fit.state != PointFitState::fixed ||
+        std::find(taken.begin(), taken.end(), false) != taken.end())
+      return false;
+    for (std::size_t n = 0; n < up_.size(); ++n) {
+      const Matrix3d turn = datum.fit.pose.target_from_source.rotation * nodes.frame_from_node[n].rotation;
+      if (nodes.member[n] && (turn * up_[n]).z() < 0.0) return false;
+    }
+    return true;
+  }
+
+  std::vector<Vector3d> up_;
+  std::vector<MarkedPoint> exchanged_;
+};
+
+constexpr const char* kExchanged =
+    "agree with the scans only if x and y are exchanged: check the order of the columns";
+
 class SurveyPlacer {
  public:
   SurveyPlacer(const Survey& survey, ProjectGraph& made, SolvedGraph& solved)
-      : survey_(survey), made_(made), solved_(solved) {}
+      : survey_(survey), made_(made), solved_(solved), order_(survey) {}
 
   PlacedSurvey run() {
     placed_.points = points_of(survey_);
@@ -110,6 +148,10 @@ class SurveyPlacer {
     }
     const ControlDatum datum = control_datum(placed_.points, nodes);
     if (datum.points.empty()) return false;
+    if (order_.is_wrong(datum, nodes)) {
+      refused_ += fmt::format("; the control points {}", kExchanged);
+      return false;
+    }
     const auto agreeing = std::count(datum.fit.taken.begin(), datum.fit.taken.end(), true);
     if (datum.fit.state == PointFitState::too_few || agreeing < 3) {
       refuse(component, datum);
@@ -211,6 +253,7 @@ class SurveyPlacer {
   const Survey& survey_;
   ProjectGraph& made_;
   SolvedGraph& solved_;
+  ColumnOrder order_;
   PlacedSurvey placed_;
   std::string refused_;
 };
@@ -333,9 +376,16 @@ void add_survey_links(Survey& survey, ProjectGraph& made) {
   if (survey.file.empty()) return;
   const int nodes = made.graph.nodes;
   const std::vector<MarkedPoint> points = points_of(survey);
+  const ColumnOrder order(survey);
   for (int n = 0; n < nodes; ++n) {
-    const ControlDatum datum = control_datum(points, only(n, nodes));
+    const FramedNodes alone = only(n, nodes);
+    const ControlDatum datum = control_datum(points, alone);
     if (datum.fit.state == PointFitState::too_few) continue;
+    if (order.is_wrong(datum, alone)) {
+      survey.notes.push_back(fmt::format("the control points that {} sees {}",
+                                         survey.node_names[static_cast<std::size_t>(n)], kExchanged));
+      continue;
+    }
     if (!datum.fit.suspects.empty())
       survey.notes.push_back(fmt::format("targets of {} that contradict one another: {}",
                                          survey.node_names[static_cast<std::size_t>(n)],

@@ -94,6 +94,31 @@ TEST(Survey, ScansThatOnlyTargetsJoinStandInOneFrame) {
   EXPECT_FALSE(placed.controlled[2]);
 }
 
+TEST(Survey, CoordinatesWithExchangedColumnsDefineNoFrame) {
+  for (const bool flat : {false, true}) {
+    TargetsOnly building({4, 0, 0});
+    // Mirrored points of a plane fit a scan that is upside down.
+    building.survey.up = {building.control_from_node[0].rotation.transpose().col(2), Vector3d::Zero(),
+                          Vector3d::Zero()};
+    for (SurveyMark& mark : building.survey.marks) {
+      Vector3d& x = mark.point.known->x;
+      const Vector3d in_node = inverse(building.control_from_node[0]) * x;
+      if (flat) {
+        x.z() = 0.0;
+        mark.point.sights.front().x_in_node = inverse(building.control_from_node[0]) * x;
+      } else {
+        mark.point.sights.front().x_in_node = in_node;
+      }
+      std::swap(x.x(), x.y());
+    }
+    SolvedGraph solved;
+    const PlacedSurvey placed = building.place(solved);
+    EXPECT_FALSE(placed.placed) << flat;
+    ASSERT_EQ(building.survey.notes.size(), 1U) << flat;
+    EXPECT_NE(building.survey.notes.front().find("x and y are exchanged"), std::string::npos);
+  }
+}
+
 TEST(Survey, WhatStoodByTheSurveyAloneKeepsAFrameOfItsOwn) {
   TargetsOnly building({4, 4, 0});
   ProjectGraph made = make_graph(building.nodes, {building.pair(1, 0, 0.0, 0.0)}, {});

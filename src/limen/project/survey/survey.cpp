@@ -63,7 +63,12 @@ class SurveyReader {
     note("these targets are ignored, because their times are before or after all points of their scan:",
          late_);
     about_origin();
-    for (const ProjectNode& node : nodes_) survey_.node_names.push_back(scan_name(scans_[node.scan]));
+    for (const ProjectNode& node : nodes_) {
+      survey_.node_names.push_back(scan_name(scans_[node.scan]));
+      const ScanDigest& digest = node.digest;
+      survey_.up.push_back(digest.upright ? Vector3d(digest.upright_from_scan.transpose().col(2))
+                                          : Vector3d::Zero());
+    }
     return std::move(survey_);
   }
 

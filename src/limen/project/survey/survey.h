@@ -28,6 +28,7 @@ struct Survey {
   Vector3d origin = Vector3d::Zero();  ///< near the control points, whole metres
   std::vector<SurveyMark> marks;
   std::vector<std::string> node_names;
+  std::vector<Vector3d> up;  ///< of each node, its axes; zero where it is not known, empty where none is
   std::vector<std::string> notes;
 };
 

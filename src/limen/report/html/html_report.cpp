@@ -189,7 +189,9 @@ std::string steps(const RegistrationReport& report) {
                                                                        escaped(step.substr(end + 2)));
     items += "<li>" + escaped(step.substr(0, command.empty() ? end : end + 1)) + command + "</li>\n";
   }
-  return items.empty() ? items : "<ul>" + items + "</ul>\n";
+  if (items.empty()) return items;
+  const bool folder = items.find("DIR/") != std::string::npos;
+  return "<ul>" + items + "</ul>\n" + (folder ? "<p class=\"note\">DIR: the folder of this page.</p>\n" : "");
 }
 
 std::string agreement(const RegistrationReport& report) {

@@ -149,7 +149,7 @@ Json fields() {
       {"inputs", object({{"source", ref("input")}, {"target", ref("input")}}, {"source", "target"})},
       {"notes", list_of({{"type", "string"}}, "what was noticed about the inputs")},
       {"options", {{"type", "object"}}},
-      {"next_steps", list_of({{"type", "string"}}, "what to do next")},
+      {"next_steps", list_of({{"type", "string"}}, "what to do next; DIR is the folder of this file")},
       {"likely_causes", list_of(ref("cause"), "of no_match, the likeliest first")},
       {"version", text("of limen")},
       {"seed", {{"type", "integer"}, {"minimum", 0}}},

@@ -124,7 +124,8 @@ WeighedCause pair_cause(const RegistrationReport& report) {
 }
 
 std::string in_folder(const std::string& folder, const char* name) {
-  return folder.empty() ? name : shell_word((std::filesystem::path(folder) / name).string());
+  return folder.empty() ? std::string("DIR/") + name
+                        : shell_word((std::filesystem::path(folder) / name).string());
 }
 
 /// The command that moves the source's cloud; what to do instead where the units differ, for it moves and
