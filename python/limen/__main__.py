@@ -8,15 +8,16 @@ import os
 import sys
 from pathlib import Path
 
-__all__ = ["main"]
+__all__ = ["PROGRAM", "main"]
+
+PROGRAM = Path(__file__).with_name("limen_program")
 
 
 def main() -> None:
     """Becomes the program, with the arguments of this process."""
-    program = Path(__file__).with_name("limen_program")
-    if not program.exists():
-        sys.exit(f"limen: error: the program is not there: {program} (build the target limen_python_package)")
-    os.execv(program, ["limen", *sys.argv[1:]])
+    if not PROGRAM.exists():
+        sys.exit(f"limen: error: the program is not there: {PROGRAM} (build the target limen_python_package)")
+    os.execv(PROGRAM, ["limen", *sys.argv[1:]])
 
 
 if __name__ == "__main__":

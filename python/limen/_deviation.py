@@ -59,7 +59,12 @@ class Deviation:
 
     def save(self, folder: Path, *, colour_limit_m: float = 0.05) -> None:
         """Write deviation.json, .csv, .xlsx and .ply, as `limen deviation` does."""
+        if self._measured is None:
+            raise ValueError("what the files need is not kept in a pickle: save before")
         self._measured.save(os.fspath(folder), colour_limit_m)
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {**self.__dict__, "_measured": None}
 
     def _count(self, presence: str) -> int:
         return sum(element.presence == presence for element in self.elements)

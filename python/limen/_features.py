@@ -113,13 +113,17 @@ def extract_features(
     """
     if isinstance(scan, Model):
         found = _limen.model_features(scan, as_progress(progress))
+        if not openings:
+            found["openings"] = []
+        if not segments:
+            found["segments"] = np.empty((0, 2, 3))
     else:
         found = _limen.extract_features(
             scan,
             options if options is not None else ExtractOptions(),
             OpeningOptions() if openings is True else openings or None,
             SegmentOptions() if segments is True else segments or None,
-            progress,
+            as_progress(progress),
         )
     found["planes"] = [Plane(**plane) for plane in found["planes"]]
     found["openings"] = [Opening(**opening) for opening in found["openings"]]

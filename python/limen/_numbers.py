@@ -4,11 +4,14 @@
 
 from __future__ import annotations
 
+import operator
 import os
 import sys
 from typing import TYPE_CHECKING, Any, Callable, Optional, Union
 
 import numpy as np
+
+from . import _limen
 
 Path = Union[str, "os.PathLike[str]"]
 if TYPE_CHECKING:
@@ -83,4 +86,16 @@ def as_pose(pose: ArrayLike) -> Array:
     matrix = np.asarray(pose, dtype=np.float64)
     if matrix.shape != (4, 4):
         raise ValueError(f"a pose is a 4 x 4 matrix, not of shape {matrix.shape}")
+    _limen.require_pose(matrix)
     return matrix
+
+
+def as_count(name: str, value: Any) -> int:
+    """A number of something, as Python or NumPy has it."""
+    try:
+        count = operator.index(value)
+    except TypeError:
+        raise TypeError(f"{name} is {value!r}: give a whole number") from None
+    if count < 0:
+        raise ValueError(f"{name} is {count}: give a number from 0")
+    return count

@@ -7,13 +7,14 @@ from __future__ import annotations
 import json
 import os
 import subprocess
-import sys
 from dataclasses import dataclass, field
 from pathlib import Path as FilePath
-from typing import Any, Optional, Sequence
+from typing import Any, Optional, Sequence, Union
 
 import numpy as np
 
+from . import _limen
+from .__main__ import PROGRAM
 from ._numbers import Array, Path
 
 
@@ -50,7 +51,15 @@ class Project:
 def read_project(path: Path) -> Project:
     """Read a project.json, or that of a project's folder."""
     place = FilePath(path)
-    document = json.loads((place / "project.json" if place.is_dir() else place).read_text(encoding="utf-8"))
+    place = place / "project.json" if place.is_dir() else place
+    try:
+        document = json.loads(place.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise _limen.Error(f"{place}: {error.strerror} (give the folder of a project)") from error
+    except ValueError:
+        document = None
+    if not isinstance(document, dict) or "scans" not in document:
+        raise _limen.Error(f"{place}: is not the result of a project (give its folder, or its project.json)")
     scans = [
         ProjectScan(
             file=it["file"],
@@ -71,7 +80,7 @@ def read_project(path: Path) -> Project:
 
 
 def project(
-    scans: Sequence[Path],
+    scans: Union[Path, Sequence[Path]],
     output: Path,
     *,
     model: Optional[Path] = None,
@@ -83,14 +92,21 @@ def project(
     """Put scans of a building into one frame, as `limen project` does, in a process of its own.
 
     output: the folder of the project; what lies there of an earlier run is used again. control, targets, check: files
-    of known points, of where the scans see them, and of points to compare with. arguments: further ones of the command line. Raises RuntimeError with the program's own words where it refuses.
+    of known points, of where the scans see them, and of points to compare with. arguments: further ones of the command
+    line. Raises limen.Error with the program's own words where it refuses.
     """
-    words = [sys.executable, "-m", "limen", "project", *(os.fspath(scan) for scan in scans)]
+    if isinstance(scans, (str, os.PathLike)):
+        scans = [scans]
+    files = [os.fspath(scan) for scan in scans]
+    # A name that begins with a dash is no option.
+    files = [os.path.join(os.curdir, file) if file.startswith("-") else file for file in files]
+    words = [os.fspath(PROGRAM), "project", *files]
     words += ["-o", os.fspath(output), "--quiet", *arguments]
     for name, file in (("model", model), ("control", control), ("targets", targets), ("check", check)):
         if file is not None:
             words += [f"--{name}", os.fspath(file)]
     done = subprocess.run(words, capture_output=True, text=True, check=False)
     if done.returncode not in (0, 3, 4):
-        raise RuntimeError(done.stderr.strip() or f"limen project ended with status {done.returncode}")
+        said = done.stderr.strip().split("limen: error: ")[-1]
+        raise _limen.Error(said or f"limen project ended with status {done.returncode}")
     return read_project(output)

@@ -7,14 +7,14 @@ from __future__ import annotations
 import copy
 import json
 import os
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, Optional, Sequence, Union
 
 import numpy as np
 
 from . import _html, _limen
 from ._limen import Model, RegisterOptions, Scan
-from ._numbers import Array, ArrayLike, Path, ProgressOption, as_pose, as_progress
+from ._numbers import Array, ArrayLike, Path, ProgressOption, as_count, as_pose, as_progress
 from ._scans import read_model, read_scan
 
 _DEFAULTS = RegisterOptions()
@@ -226,6 +226,9 @@ class Registration:
         """What to do next, sentences."""
         return list(self.to_dict()["next_steps"])
 
+    def __copy__(self) -> Registration:
+        return replace(self)
+
     def __getstate__(self) -> dict[str, Any]:
         return {**self.__dict__, "_report": _Kept(self._report.json())}
 
@@ -283,18 +286,20 @@ class Registration:
         )
 
 
-def _loaded(
-    side: Side, centre: Optional[ArrayLike] = None
-) -> Union[Model, list[tuple[Scan, Array]]]:
+def _loaded(side: Side, centre: Optional[ArrayLike]) -> Union[Model, list[tuple[Scan, Array]]]:
     """Files are read, arrays become scans; a scan alone stands in the origin of its group."""
     if isinstance(side, np.ndarray):
         return [(Scan(points=side, centres=centre), np.eye(4))]
+    if isinstance(side, (str, os.PathLike)) and not _limen.is_model_file(os.fspath(side)):
+        return [(read_scan(side, origin=centre), np.eye(4))]
+    if centre is not None:
+        raise ValueError("a centre is of an array or of the file of a scan: Scan(points=..., centres=...) has its own")
     if isinstance(side, Model):
         return side
     if isinstance(side, Scan):
         return [(side, np.eye(4))]
     if isinstance(side, (str, os.PathLike)):
-        return read_model(side) if _limen.is_model_file(os.fspath(side)) else [(read_scan(side), np.eye(4))]
+        return read_model(side)
     placed = []
     for scan, pose in side:
         placed.append((scan if isinstance(scan, Scan) else read_scan(scan), as_pose(pose)))
@@ -329,23 +334,28 @@ def register(
 
     Either side is a Scan, a Model, a file of either, an array of points (n, 3) in metres, or a list of
     (scan, pose) known to one another. centre: from where arrays were seen, one place or one per point;
-    source_centre and target_centre where the two differ.
+    source_centre and target_centre where the two differ, and of files, one place.
     method: auto, polygons, openings, hybrid or segments. gravity: auto, up or unknown. nothing_repeats: no
     room, flat or storey of the building was built like another, as you know it (docs/judge.md).
     `options` has all that the keywords have and more; keywords that are not at their defaults count first.
     """
+    if options is not None and not isinstance(options, RegisterOptions):
+        raise TypeError(f"options are {type(options).__name__}: give limen.RegisterOptions(...)")
     asked = copy.copy(_DEFAULTS if options is None else options)
     for name, value in (
         ("method", method),
         ("gravity", gravity),
         ("wall_thickness_m", wall_thickness_m),
         ("nothing_repeats", nothing_repeats),
-        ("seed", seed),
+        ("seed", as_count("seed", seed)),
     ):
         if value != getattr(_DEFAULTS, name):
             setattr(asked, name, value)
-    from_side = _loaded(source, centre if source_centre is None else source_centre)
-    to_side = _loaded(target, centre if target_centre is None else target_centre)
+    arrays = [isinstance(side, np.ndarray) for side in (source, target)]
+    if centre is not None and not any(arrays):
+        raise ValueError("neither side is an array: give source_centre or target_centre for the file of a scan")
+    from_side = _loaded(source, centre if source_centre is None and arrays[0] else source_centre)
+    to_side = _loaded(target, centre if target_centre is None and arrays[1] else target_centre)
     report = _limen.register(from_side, to_side, asked, as_progress(progress))
     values = report.values()
     return Registration(

@@ -12,7 +12,7 @@ import numpy as np
 
 from . import _limen
 from ._limen import Scan
-from ._numbers import Array, ProgressOption, as_progress
+from ._numbers import Array, ProgressOption, as_count, as_progress
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -55,12 +55,15 @@ def simulate(
 
     `as_built`: walls, slabs and openings are off by millimetres to a centimetre; else all is exactly as drawn, and
     look-alike rooms are equal to the millimetre."""
-    given = {
+    counts = {
         "seed": seed,
         "stations": stations,
         "points_indoor": points_indoor,
         "points_outdoor": points_outdoor,
         "facades": facades,
+    }
+    given = {
+        **{name: as_count(name, value) for name, value in counts.items() if value is not None},
         "any_rotation": any_rotation,
         "as_built": as_built,
         "curtain_share": curtain_share,

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "module.h"
 
+#include <fmt/format.h>
+
 #include "limen/base/error.h"
 #include "limen/base/parallel.h"
 #include "limen/base/version.h"
@@ -41,9 +43,18 @@ void bind_errors(py::module_& module) {
       "`fault` tells who has to act: 'input', 'internal' (please report it) or 'cancelled'.",
       PyExc_ValueError, nullptr);
   if (error_type == nullptr) throw py::error_already_set();
+  // An error that Python code raises has them too.
+  for (const char* part : {"what", "where", "remedy"}) py::handle(error_type).attr(part) = "";
+  py::handle(error_type).attr("fault") = "input";
   module.add_object("Error", error_type);
   py::register_exception_translator(&translate);
-  module.def("set_threads", &set_thread_count, py::arg("count"));
+  module.def(
+      "set_threads",
+      [](int count) {
+        if (count < 0) throw Error(fmt::format("{} is no number of threads", count), "count", "give 0 for all");
+        set_thread_count(count);
+      },
+      py::arg("count"));
   module.def("threads", &thread_count);
   module.attr("__version__") = kVersion;
 }

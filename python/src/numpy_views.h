@@ -2,9 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cmath>
+#include <limits>
 #include <string>
+#include <type_traits>
 #include <vector>
 
+#include <fmt/format.h>
 #include <pybind11/eigen.h>
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
@@ -50,17 +54,37 @@ inline py::array points_array(const std::vector<Vector3d>& points, const Vector3
 /// (n, 3), less `origin`. Throws Error where the shape is another or a value is not finite.
 std::vector<Vector3d> points_from(const DoubleArray& array, const Vector3d& origin, const char* name);
 
-/// One value per point. Throws Error where the number is another.
+/// Numbers as NumPy has them, float64. Throws Error where they are none.
+DoubleArray doubles_from(const py::object& given, const char* name);
+
+/// One value per point, or one row of `columns`. Throws Error where the shape is another, or integers are asked
+/// for and a value is none that the type can hold.
 template <typename Value>
-std::vector<Value> values_from(const py::object& values, std::size_t count, const char* name) {
-  if (values.is_none()) return {};
-  const auto array = values.cast<py::array_t<Value, py::array::c_style | py::array::forcecast>>();
-  if (static_cast<std::size_t>(array.size()) != count) {
-    throw Error(std::string(name) + " has " + std::to_string(array.size()) + " values, but must have " +
-                    std::to_string(count),
+std::vector<Value> values_from(const py::object& given, std::size_t count, const char* name,
+                               py::ssize_t columns = 1) {
+  if (given.is_none()) return {};
+  const DoubleArray array = doubles_from(given, name);
+  const auto rows = static_cast<py::ssize_t>(count);
+  const bool fits = columns == 1 ? array.ndim() == 1 && array.shape(0) == rows
+                                 : array.ndim() == 2 && array.shape(0) == rows && array.shape(1) == columns;
+  if (!fits)
+    throw Error(fmt::format("{} is not of shape ({}{})", name, count,
+                            columns == 1 ? "," : fmt::format(", {}", columns)),
                 "", "give as many as there are points");
+  std::vector<Value> values(static_cast<std::size_t>(array.size()));
+  const double* from = array.data();
+  for (Value& value : values) {
+    const double number = *from++;
+    if constexpr (std::is_integral_v<Value>) {
+      using Limits = std::numeric_limits<Value>;
+      if (!(number >= Limits::min() && number <= Limits::max()) || number != std::floor(number))
+        throw Error(fmt::format("{} has the value {}", name, number), "",
+                    fmt::format("give whole numbers from {} to {}{}", Limits::min(), Limits::max(),
+                                sizeof(Value) == 1 ? ", such as numpy.uint8(255 * x) of x up to 1" : ""));
+    }
+    value = static_cast<Value>(number);
   }
-  return {array.data(), array.data() + array.size()};
+  return values;
 }
 
 }  // namespace limen::python

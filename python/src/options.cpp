@@ -70,6 +70,11 @@ class Binder {
       return made.cast<Options>();
     }));
     class_.def("__copy__", [](const Options& options) { return options; });
+    class_.def("__reduce__", [](const py::object& self) {
+      py::dict values;
+      for (const py::handle field : self.attr("_fields")) values[field] = self.attr(py::str(field));
+      return py::make_tuple(self.attr("__class__"), py::tuple(), py::make_tuple(py::none(), values));
+    });
     class_.def("__repr__", [](const py::object& self) {
       py::list parts;
       for (const py::handle field : self.attr("_fields"))
@@ -93,8 +98,8 @@ class Binder {
   Binder& choice(const char* name, Enum Options::*member, const Names<Enum, Size>& names, const char* doc) {
     class_.def_property(
         name, [member, names](const Options& options) { return name_of(names, options.*member); },
-        [member, names, name](Options& options, const std::string& wanted) {
-          options.*member = named(names, wanted, name);
+        [member, names, name](Options& options, const py::object& wanted) {
+          options.*member = named(names, py::str(wanted).template cast<std::string>(), name);
         },
         doc);
     fields_.append(name);

@@ -8,6 +8,8 @@
 #include "work.h"
 
 #include "limen/base/atomic_file.h"
+#include "limen/io/cloud/point_sample.h"
+#include "limen/model/plausible_size.h"
 #include "limen/register/register.h"
 #include "limen/report/html/html_report.h"
 #include "limen/report/json/result_json.h"
@@ -132,6 +134,20 @@ Registered register_sides(const PythonSide& source, const PythonSide& target, Re
   const RegisterInput from = input_of(source);
   const RegisterInput to = input_of(target);
   report.result = register_inputs(from, to, options, monitor);
+  report.source.place = report.result.source_place;
+  report.target.place = report.result.target_place;
+  for (const auto& [input, side] : {std::pair(&from, "SOURCE"), std::pair(&to, "TARGET")}) {
+    for (const auto& [scan, pose] : input->scans) {
+      for (const std::string& hint : hints_about(scan))
+        report.notes.push_back((scan.name.empty() ? side : scan.name) + ": " + hint);
+    }
+  }
+  if (!from.scans.empty() && !to.scans.empty()) {
+    const Scan& scan = from.scans.front().scan;
+    const std::string note =
+        same_points_note(PointSample(scan), point_marks(scan), to.scans.front().scan);
+    if (!note.empty()) report.notes.push_back(note);
+  }
   if (const auto& picture = report.result.picture)
     registered.scene = {with_picture(scene_side(from), picture->source),
                         with_picture(scene_side(to), picture->target)};
@@ -144,7 +160,7 @@ void bind_registration(py::module_& module) {
   py::class_<Registered>(module, "RegistrationReport")
       .def("values", [](const Registered& it) { return result_dict(it.report.result); })
       .def("json", [](const Registered& it) { return result_json(it.report); })
-      .def("save", &save, py::arg("folder"), py::arg("with_report"));
+      .def("save", &save, py::arg("folder"), py::arg("with_report"), py::call_guard<py::gil_scoped_release>());
   module.def("register", [](const py::object& source, const py::object& target, const py::object& asked,
                             const py::object& progress) {
     const auto& options = asked.cast<const RegisterOptions&>();

@@ -34,6 +34,14 @@ std::vector<Vector3d> points_from(const DoubleArray& array, const Vector3d& orig
   return points;
 }
 
+DoubleArray doubles_from(const py::object& given, const char* name) {
+  if (auto array = DoubleArray::ensure(given)) return array;
+  PyErr_Clear();
+  throw Error(std::string(name) + " are not numbers", "",
+              "give an array of them; one with named columns becomes one by "
+              "numpy.lib.recfunctions.structured_to_unstructured");
+}
+
 namespace {
 
 /// The origin near the middle of world coordinates.
@@ -55,7 +63,7 @@ Vector3d origin_of(const DoubleArray& points) {
 
 std::vector<Vector3d> centres_from(const py::object& centres, const Vector3d& origin, std::size_t points) {
   if (centres.is_none()) return {};
-  auto array = centres.cast<DoubleArray>();
+  DoubleArray array = doubles_from(centres, "centres");
   if (array.ndim() == 1 && array.size() == 3) array = array.reshape({1, 3});
   std::vector<Vector3d> list = points_from(array, origin, "centres");
   if (list.size() != 1 && list.size() != points)
@@ -70,7 +78,16 @@ struct ScanParts {
   py::object centres, times, intensities, colours, lines, indices, local_origin;
 };
 
-Scan make_scan(const DoubleArray& points, const ScanParts& parts, std::string name, bool level) {
+Vector3d local_origin_from(const py::object& given) {
+  const DoubleArray array = doubles_from(given, "local_origin");
+  const Vector3d origin = array.ndim() == 1 && array.size() == 3 ? Vector3d(array.at(0), array.at(1), array.at(2))
+                                                                 : Vector3d::Constant(NAN);
+  if (!origin.allFinite()) throw Error("local_origin is no place", "", "give x, y, z, finite");
+  return origin;
+}
+
+Scan make_scan(const py::object& given, const ScanParts& parts, std::string name, bool level) {
+  const DoubleArray points = doubles_from(given, "points");
   Scan scan;
   scan.name = std::move(name);
   scan.level = level;
@@ -79,14 +96,15 @@ Scan make_scan(const DoubleArray& points, const ScanParts& parts, std::string na
     scan.points = points_from(points, scan.local_origin, "points");
     scan.centres = centres_from(parts.centres, scan.local_origin, scan.size());
   } else {
-    scan.local_origin = parts.local_origin.cast<Vector3d>();
+    scan.local_origin = local_origin_from(parts.local_origin);
     scan.points = points_from(points, Vector3d::Zero(), "points");
     scan.centres = centres_from(parts.centres, Vector3d::Zero(), scan.size());
   }
+  if (scan.centres.size() == 1) scan.centre_source = PlaceSource::stated_by_user;
   if (scan.points.empty()) throw Error("there are no points", scan.name, "give at least one");
   scan.times_s = values_from<double>(parts.times, scan.size(), "times");
   scan.intensities = values_from<float>(parts.intensities, scan.size(), "intensities");
-  scan.colours = values_from<std::uint8_t>(parts.colours, 3 * scan.size(), "colours");
+  scan.colours = values_from<std::uint8_t>(parts.colours, scan.size(), "colours", 3);
   scan.topology.line = values_from<std::int32_t>(parts.lines, scan.size(), "lines");
   scan.topology.index = values_from<std::int32_t>(parts.indices, scan.size(), "indices");
   if (scan.topology.line.size() != scan.topology.index.size())
@@ -109,7 +127,7 @@ py::ssize_t rows(const Scan& scan) {
 void bind_scan(py::module_& module) {
   using Held = std::shared_ptr<Scan>;
   py::class_<Scan, Held> scan(module, "Scan");
-  scan.def(py::init([](const DoubleArray& points, py::object centres, py::object times,
+  scan.def(py::init([](const py::object& points, py::object centres, py::object times,
                        py::object intensities, py::object colours, py::object lines, py::object indices,
                        std::string name, bool level, py::object local_origin) {
              const ScanParts parts{std::move(centres),     std::move(times), std::move(intensities),
@@ -156,8 +174,14 @@ void bind_scan(py::module_& module) {
       [](Scan& it, int source) { it.centre_source = static_cast<PlaceSource>(source); });
   scan.def("__len__", &Scan::size);
   scan.def(
-      "save", [](const Scan& it, const std::filesystem::path& path) { write_ply(path, it); },
-      py::arg("path"));
+      "save",
+      [](const Scan& it, const std::filesystem::path& path) {
+        if (path.extension() != ".ply" && path.extension() != ".PLY")
+          throw Error("a scan is saved as PLY", path.string(),
+                      "end the name with .ply; limen.transform_file changes the format of a file");
+        write_ply(path, it);
+      },
+      py::arg("path"), py::call_guard<py::gil_scoped_release>());
 }
 
 void bind_model(py::module_& module) {
@@ -252,12 +276,16 @@ void bind_scans(py::module_& module) {
   module.def("is_model_file", &is_bim_file, py::arg("path"));
   module.def("transform_file", &transform_file);
   module.def("thin_file", &thin_file);
-  module.def("transform_scan", [](const Scan& scan, const Matrix4d& pose) {
-    return std::make_shared<Scan>(transformed(scan, from_matrix(pose)));
-  });
-  module.def("transform_points", [](const DoubleArray& points, const Matrix4d& pose) {
+  module.def("require_pose", [](const Matrix4d& pose) { from_matrix(pose); });
+  module.def(
+      "transform_scan",
+      [](const Scan& scan, const Matrix4d& pose) {
+        return std::make_shared<Scan>(transformed(scan, from_matrix(pose)));
+      },
+      py::call_guard<py::gil_scoped_release>());
+  module.def("transform_points", [](const py::object& points, const Matrix4d& pose) {
     const Rigid3 target_from_source = from_matrix(pose);
-    std::vector<Vector3d> moved = points_from(points, Vector3d::Zero(), "points");
+    std::vector<Vector3d> moved = points_from(doubles_from(points, "points"), Vector3d::Zero(), "points");
     for (Vector3d& x : moved) x = target_from_source * x;
     return points_array(moved);
   });

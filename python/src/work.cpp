@@ -59,7 +59,8 @@ InterruptScope::InterruptScope(Monitor& monitor) {
   sigaction(SIGINT, nullptr, &before_);
   if (before_.sa_handler == SIG_DFL || before_.sa_handler == SIG_IGN) return;
   installed_ = true;
-  interrupted_monitor.store(&monitor);
+  outer_ = interrupted_monitor.exchange(&monitor);
+  if (before_.sa_handler == on_interrupt) return;  // a function that shows progress has started other work
   pythons_handler.store(before_.sa_handler);
   struct sigaction action = {};
   action.sa_handler = on_interrupt;
@@ -70,8 +71,8 @@ InterruptScope::InterruptScope(Monitor& monitor) {
 
 InterruptScope::~InterruptScope() {
   if (!installed_) return;
-  sigaction(SIGINT, &before_, nullptr);
-  interrupted_monitor.store(nullptr);
+  if (before_.sa_handler != on_interrupt) sigaction(SIGINT, &before_, nullptr);
+  interrupted_monitor.store(outer_);
 }
 
 void raise_cause(CallbackMonitor& monitor) {

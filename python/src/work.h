@@ -47,6 +47,7 @@ class InterruptScope {
 
  private:
   bool installed_ = false;
+  Monitor* outer_ = nullptr;
   struct sigaction before_ = {};
 };
 

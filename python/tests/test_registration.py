@@ -1,5 +1,6 @@
 # SPDX-FileCopyrightText: The limen authors
 # SPDX-License-Identifier: Apache-2.0
+import copy
 import json
 import pickle
 import signal
@@ -49,6 +50,53 @@ class Registered(unittest.TestCase):
             self.assertEqual(names, ["result.json", "transform.txt"])
             text = np.loadtxt(Path(folder) / "result" / "transform.txt")
             np.testing.assert_array_equal(text, self.result.target_from_source)
+
+    def test_what_was_found_of_the_inputs_is_stated(self):
+        sides = self.result.to_dict()["inputs"]
+        self.assertTrue(sides["source"]["scanner"]["confirmed"] and sides["target"]["scanner"]["confirmed"])
+        source, target = self.case.scans
+        self.assertIn("same", limen.register(source, source).to_dict()["notes"][0])
+        far = (source.world_points + (652_000, 6_840_000, 0)).astype(np.float32)
+        self.assertIn("rounded to 0.5 m", limen.register(far, target).to_dict()["notes"][0])
+
+    def test_a_centre_is_of_arrays_and_of_files(self):
+        source, target = self.case.scans
+        with tempfile.TemporaryDirectory() as folder:
+            source.save(Path(folder) / "a.ply")
+            result = limen.register(Path(folder) / "a.ply", target, source_centre=(0.0, 0.01, 0.0))
+        scanner = result.to_dict()["inputs"]["source"]["scanner"]
+        self.assertEqual((scanner["source"], scanner["place"]), ("user", [0.0, 0.01, 0.0]))
+        for given in ({"source_centre": (0, 0, 0)}, {"centre": (0, 0, 0)}, {"seed": -1}):
+            with self.assertRaises(ValueError):
+                limen.register(source, target, **given)
+        for given in ({"seed": 1.5}, {"options": {"method": "auto"}}):
+            with self.assertRaises(TypeError):
+                limen.register(source, target, **given)
+        with self.assertRaisesRegex(limen.Error, "rigid"):
+            limen.evaluate(self.result, 2 * np.eye(4))
+
+    def test_copies_of_options_and_results_have_all(self):
+        options = limen.ExtractOptions()
+        options.grow.min_inliers = 77
+        for again in (copy.deepcopy(options), pickle.loads(pickle.dumps(options))):
+            self.assertEqual(again.grow.min_inliers, 77)
+        with tempfile.TemporaryDirectory() as folder:
+            copy.copy(self.result).save(folder)
+            self.assertTrue((Path(folder) / "report.html").exists())
+
+    def test_an_interrupt_while_progress_is_shown_by_other_work(self):
+        source, target = self.case.scans
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "a.ply"
+            source.save(path)
+
+            def tell(stage, done, total):
+                limen.read_scan(path)
+                signal.raise_signal(signal.SIGINT)
+
+            with self.assertRaises(KeyboardInterrupt):
+                limen.register(source, target, progress=tell)
+        self.assertTrue(limen.register(source, target).registered)
 
     def test_the_same_input_gives_the_same_pose(self):
         limen.set_threads(1)

@@ -46,6 +46,31 @@ class ScanFromArrays(unittest.TestCase):
         np.testing.assert_array_equal(scan.points, given)
         np.testing.assert_array_equal(scan.local_origin, FAR)
 
+    def test_values_that_cannot_be_kept_are_refused(self):
+        points = cube(10)
+        named = np.zeros(10, dtype=[("x", "f8"), ("y", "f8"), ("z", "f8")])
+        for given, said in (
+            ({"colours": np.full((10, 3), 0.5)}, "0.5"),
+            ({"colours": np.full((10, 3), 300)}, "300"),
+            ({"colours": np.zeros((3, 10))}, "shape"),
+            ({"times": np.zeros((5, 2))}, "shape"),
+            ({"lines": np.full(10, 2**40), "indices": np.zeros(10)}, "lines"),
+            ({"local_origin": (np.nan, 2.0, 3.0)}, "local_origin"),
+            ({"local_origin": (1.0, 2.0)}, "local_origin"),
+            ({"points": named}, "structured"),
+        ):
+            with self.assertRaisesRegex(limen.Error, said):
+                limen.Scan(**{"points": points, **given})
+
+    def test_a_stated_scanner_position_is_the_users(self):
+        scan = limen.Scan(points=cube(), centres=(0.0, 0.0, 0.5))
+        with tempfile.TemporaryDirectory() as folder:
+            scan.save(Path(folder) / "cube.ply")
+            read = limen.read_scan(Path(folder) / "cube.ply", origin=(0.0, 0.0, 0.5))
+            self.assertEqual(scan._centre_source, read._centre_source)
+            with self.assertRaisesRegex(limen.Error, "PLY"):
+                scan.save(Path(folder) / "cube.las")
+
     def test_all_values_come_back(self):
         n = 1000
         parts = {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -147,12 +148,44 @@ std::string few_points_hint(const Scan& scan) {
                      scan.points.size(), kPlanesOfAPose, kPointsOfAPlane);
 }
 
+std::string rounding_hint(const Scan& scan) {
+  constexpr std::size_t kManyPoints = 100;  // fewer may be round by chance
+  // Rounding errors are step / sqrt(12): 1 mm, a good scanner's noise.
+  constexpr double kCoarseStepM = 0.0035;
+  if (scan.size() < kManyPoints) return {};
+  double step_m = 0.0;
+  for (Eigen::Index k = 0; k < 3; ++k) {
+    const double origin = scan.local_origin[k];
+    const auto first = static_cast<float>(origin + scan.points.front()[k]);
+    const double step =
+        std::nextafter(std::abs(first), std::numeric_limits<float>::infinity()) - std::abs(first);
+    if (step < kCoarseStepM || step <= step_m) continue;
+    const bool rounded = std::all_of(scan.points.begin(), scan.points.end(), [&](const Vector3d& x) {
+      return static_cast<double>(static_cast<float>(origin + x[k])) == origin + x[k];
+    });
+    if (rounded) step_m = step;
+  }
+  if (step_m == 0.0) return {};
+  return fmt::format(
+      "its coordinates are rounded to {}, single precision: export them with double, or less an offset",
+      stated(step_m));
+}
+
 std::string degrees_hint(const Scan& scan) {
   if (scan.points.empty()) return {};
   const Vector3d sides = sides_of(scan);
   if (!seem_degrees(scan, sides)) return {};
   return fmt::format("x and y seem to be degrees of longitude and latitude: they span {:.2g} x {:.2g}, z {}",
                      sides.x(), sides.y(), stated(sides.z()));
+}
+
+std::vector<std::string> hints_about(const Scan& scan, const std::string& units_option) {
+  std::vector<std::string> hints;
+  for (std::string hint :
+       {size_hint(scan, units_option), degrees_hint(scan), few_points_hint(scan), rounding_hint(scan)}) {
+    if (!hint.empty()) hints.push_back(std::move(hint));
+  }
+  return hints;
 }
 
 std::string up_hint(const Vector3d& up_in_scan) {

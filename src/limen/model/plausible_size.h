@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "limen/model/bim_model.h"
 #include "limen/model/scan.h"
@@ -31,8 +32,15 @@ std::string size_hint(const Scan& scan, const std::string& units_option = {});
 /// A sentence where a scan has too few points for three planes; empty where it has enough.
 std::string few_points_hint(const Scan& scan);
 
+/// A sentence where coordinates are rounded to numbers of single precision so far from 0 that a scanner's
+/// noise is less: where export programs lose millimetres. Empty where they are not.
+std::string rounding_hint(const Scan& scan);
+
 /// A sentence where x and y look like degrees beside heights in metres; empty where they do not.
 std::string degrees_hint(const Scan& scan);
+
+/// All of these that a scan gives reason for.
+std::vector<std::string> hints_about(const Scan& scan, const std::string& units_option = {});
 
 /// A sentence where a mesh looks as if its y axis pointed up: its floors and ceilings face y, which is its
 /// least extent. Empty where there is nothing to ask; an IFC file says where up is.

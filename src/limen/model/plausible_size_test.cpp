@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "limen/base/error.h"
+#include "limen/geometry/random_vectors.h"
 
 namespace limen {
 namespace {
@@ -156,6 +157,22 @@ TEST(PlausibleSize, OnlyAMeshIsAskedForItsUnit) {
   EXPECT_NE(refusal_of(model, "--units").find("--units"), std::string::npos);
   model.schema = "IFC4";
   EXPECT_EQ(refusal_of(model, "--units").find("--units"), std::string::npos);
+}
+
+TEST(PlausibleSize, CoordinatesOfSinglePrecisionFarFromZeroAreNoticed) {
+  RandomStream random(3, 1);
+  Scan scan;
+  scan.local_origin = Vector3d(652000.0, 6840000.0, 0.0);
+  for (int k = 0; k < 200; ++k)
+    scan.points.push_back(uniform_vector(Vector3d::Zero(), Vector3d(9.0, 7.0, 3.0), random));
+  EXPECT_EQ(rounding_hint(scan), "");
+  for (Vector3d& x : scan.points)
+    x = (scan.local_origin + x).cast<float>().cast<double>() - scan.local_origin;
+  EXPECT_NE(rounding_hint(scan).find("rounded to 0.5 m"), std::string::npos) << rounding_hint(scan);
+  // Near 0 the same numbers are fine enough.
+  for (Vector3d& x : scan.points) x = x.cast<float>().cast<double>();
+  scan.local_origin.setZero();
+  EXPECT_EQ(rounding_hint(scan), "");
 }
 
 }  // namespace

@@ -211,9 +211,7 @@ Json json_of_file(const std::string& path, const ScanFile& file) {
   note(offset_remark(file.offset_applied));
   for (const Scan& scan : file.scans) {
     const ScanFrame frame = find_scan_frame(scan, Gravity::automatic);
-    note(size_hint(scan, "--units"));
-    note(degrees_hint(scan));
-    note(few_points_hint(scan));
+    for (const std::string& hint : hints_about(scan, "--units")) note(hint);
     if (frame.upright) note(up_hint(frame.frame_from_scan.row(2).transpose()));
     json["scans"].push_back(json_of_scan(scan, frame));
   }

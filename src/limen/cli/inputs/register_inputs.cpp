@@ -36,21 +36,14 @@ bool same_bytes(const std::string& a, const std::string& b) {
 std::string SamePointsWatch::note_on(const RegisterInput& side, bool is_source) {
   if (side.scans.empty()) return {};
   const Scan& scan = side.scans.front().scan;
-  const bool same = is_source ? same_bytes(source_, target_) : sample_.is_of(scan);
-  std::vector<std::uint64_t> marks = point_marks(scan);
-  const bool fewer = !same && !is_source && is_part_of(marks, marks_);
-  const bool more = !same && !is_source && is_part_of(marks_, marks);
   if (is_source) {
     sample_ = PointSample(scan);
-    marks_ = std::move(marks);
+    marks_ = point_marks(scan);
+    if (same_bytes(source_, target_)) return note_ = same_points_note(scan.size());
+  } else if (note_.empty()) {
+    return note_ = same_points_note(sample_, marks_, scan);
   }
-  if (!note_.empty()) return {};
-  constexpr const char* kNoTest = "a scan is registered to itself, which is no test for other scans";
-  if (same) note_ = fmt::format("SOURCE and TARGET hold the same {} points: {}", scan.size(), kNoTest);
-  if (fewer || more)
-    note_ = fmt::format("{} holds only points of {}, of which it seems a thinned copy or a part: {}",
-                        fewer ? "TARGET" : "SOURCE", fewer ? "SOURCE" : "TARGET", kNoTest);
-  return note_;
+  return {};
 }
 
 namespace {

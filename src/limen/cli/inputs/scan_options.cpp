@@ -235,8 +235,8 @@ InputScan read_input_scan(const std::string& path, const ReadOptions& options, c
     input.scan.name = path;
   }
   // What is beyond belief is refused by who works with it, in one line.
-  if (has_plausible_size(input.scan)) note(size_hint(input.scan, units_option));
-  note(few_points_hint(input.scan));
+  if (has_plausible_size(input.scan))
+    for (const std::string& hint : hints_about(input.scan, units_option)) note(hint);
   return input;
 }
 

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/format.h>
+
 #include "limen/base/random.h"
 
 namespace limen {
@@ -85,6 +87,24 @@ bool is_part_of(const std::vector<std::uint64_t>& part, const std::vector<std::u
     if (std::binary_search(whole.begin(), whole.end(), mark)) ++shared;
   }
   return shared >= kFewest && 10 * shared > 8 * asked;
+}
+
+namespace {
+constexpr const char* kNoTest = "a scan is registered to itself, which is no test for other scans";
+}  // namespace
+
+std::string same_points_note(std::size_t points) {
+  return fmt::format("SOURCE and TARGET hold the same {} points: {}", points, kNoTest);
+}
+
+std::string same_points_note(const PointSample& source, const std::vector<std::uint64_t>& marks_of_source,
+                             const Scan& target) {
+  if (source.is_of(target)) return same_points_note(target.size());
+  const std::vector<std::uint64_t> marks = point_marks(target);
+  const bool fewer = is_part_of(marks, marks_of_source);
+  if (!fewer && !is_part_of(marks_of_source, marks)) return {};
+  return fmt::format("{} holds only points of {}, of which it seems a thinned copy or a part: {}",
+                     fewer ? "TARGET" : "SOURCE", fewer ? "SOURCE" : "TARGET", kNoTest);
 }
 
 }  // namespace limen

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "limen/model/scan.h"
@@ -32,5 +33,12 @@ std::vector<std::uint64_t> point_marks(const Scan& scan);
 
 /// Whether nearly all points of the scan with the marks `part` are points of the one with `whole` too.
 bool is_part_of(const std::vector<std::uint64_t>& part, const std::vector<std::uint64_t>& whole);
+
+/// What a user is told who registers a scan of so many points to itself.
+std::string same_points_note(std::size_t points);
+/// The same where the points of TARGET are those of SOURCE, or of one side are a part of the other's; empty
+/// where both are scans of their own.
+std::string same_points_note(const PointSample& source, const std::vector<std::uint64_t>& marks_of_source,
+                             const Scan& target);
 
 }  // namespace limen

@@ -64,15 +64,6 @@ void require_unchanged(const ProjectFile& file) {
     throw Error("was changed while it was read", file.path, "run the project again once it is written");
 }
 
-/// What a user should look at before the scans are worked with.
-std::vector<std::string> doubts_about(const Scan& scan) {
-  std::vector<std::string> doubts;
-  for (std::string hint : {size_hint(scan), degrees_hint(scan), few_points_hint(scan)}) {
-    if (!hint.empty()) doubts.push_back(std::move(hint));
-  }
-  return doubts;
-}
-
 /// One scan of many may be a few points; where none can be a scan, the file is refused.
 void require_a_plausible_scan(const std::vector<Scan>& scans) {
   if (!scans.empty() && std::none_of(scans.begin(), scans.end(), has_plausible_size))
@@ -108,7 +99,7 @@ FileRecord make_scan_features(const ProjectFile& file, const ProjectOptions& opt
     const auto at = [&](std::size_t i) { return kReading + (1.0 - kReading) * static_cast<double>(i) / all; };
     StagePart preparing(monitor, at(k), at(k + 1));
     Scan scan = along_trajectory(std::move(read.scans[k]), trajectories, record.notes);
-    for (const std::string& doubt : doubts_about(scan))
+    for (const std::string& doubt : hints_about(scan))
       record.notes.push_back(read.scans.size() > 1 ? fmt::format("scan {}: {}", k, doubt) : doubt);
     record.points.push_back(scan.size());
     record.marks.push_back(point_marks(scan));

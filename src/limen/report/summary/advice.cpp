@@ -136,6 +136,7 @@ std::string transform_command(const RegistrationReport& report, const std::strin
   if (report.source.metres_per_unit != report.target.metres_per_unit)
     return fmt::format("apply {}, which includes the scale, in another program",
                        in_folder(folder, "transform.txt"));
+  if (moved.path.empty()) return fmt::format("apply {}", in_folder(folder, "transform.txt"));
   return fmt::format("limen transform {}{}{} {} moved.ply", in_folder(folder, "result.json"),
                      choice ? " --alternative N" : "", source_moves ? "" : " --invert",
                      shell_word(moved.path));
