@@ -72,7 +72,8 @@ Features tiled(const Scan& scan, const std::vector<FramePlane>& planes, const Ma
 /// A sample of the points, turned by `axes`, that shows how they spread over directions.
 std::vector<Vector3d> spread_sample(const Scan& scan, const Matrix3d& axes) {
   std::vector<Vector3d> points;
-  for (const std::uint32_t i : steady_sample(scan, kForSpread)) points.emplace_back(axes * scan.points[i]);
+  for (const std::uint32_t i : steady_sample(scan, kForSpread, kThinShellM))
+    points.emplace_back(axes * scan.points[i]);
   return points;
 }
 
@@ -134,7 +135,7 @@ ScannerPlace tested(const Scan& scan, const Features& features, const Matrix3d& 
 /// serves itself.
 std::optional<Scan> sample_for_place(const Scan& scan) {
   if (scan.mobile() || scan.size() <= 2 * kEnough) return std::nullopt;
-  return subset(scan, steady_sample(scan, kEnough));
+  return subset(scan, steady_sample(scan, kEnough, kThinShellM));
 }
 
 /// Where the scanner of `scan` stood, about its local origin: what is claimed is tested and kept, or replaced

@@ -198,6 +198,24 @@ TEST(ScannerPlace, AnAssumedPlaceThatThePointsRefuteIsReplaced) {
 }
 
 /// Too few points for the density on planes: the spread over directions decides.
+TEST(ScannerPlace, OfADenseScanIsTestedByAFairShareOfItsPoints) {
+  SceneOptions options;
+  options.name = "room";
+  options.points_indoor = 3000000;
+  options.stations = 1;
+  const Scan scan = simulate(options).scans.front();
+  ASSERT_GT(scan.size(), 2000000U);
+  const ScannerPlace claimed = find_scan_frame(scan, Gravity::automatic).place;
+  EXPECT_TRUE(claimed.confirmed);
+  EXPECT_FALSE(claimed.refuted);
+  Scan silent = scan;
+  silent.centres.clear();
+  const ScannerPlace found = find_scan_frame(silent, Gravity::automatic).place;
+  EXPECT_EQ(found.source, PlaceSource::estimated);
+  ASSERT_TRUE(found.sigma_m);
+  EXPECT_LT((found.centre - scan.centres.front()).norm(), 3.0 * *found.sigma_m);
+}
+
 TEST(ScannerPlace, AFalseClaimOfASparseScanIsDroppedAndATrueOneKept) {
   Scan scan = station_scan(-60.0, 8000);
   scan.centre_source = PlaceSource::assumed;

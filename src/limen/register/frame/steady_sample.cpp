@@ -3,7 +3,6 @@
 #include "limen/register/frame/steady_sample.h"
 
 #include <algorithm>
-#include <array>
 #include <numeric>
 
 #include "limen/base/parallel.h"
@@ -13,9 +12,8 @@ namespace limen {
 namespace {
 
 constexpr std::size_t kSampledPerPiece = 65536;
-/// Spherical shells this thick are chosen or left out as a whole: thin, so that every surface has its share;
-/// thick against the rounding of 32-bit coordinates.
-constexpr double kShellM = 1e-3;
+/// Chosen points are sorted within shells of 1 mm; farther out than 33 m all at once.
+constexpr double kSortedM = 1e-3;
 constexpr std::uint64_t kNearShells = 32768;
 constexpr std::size_t kShellsPerPiece = 512;
 /// The middle is rounded to this: the order of summation must not show.
@@ -40,39 +38,22 @@ struct Ranged {
   std::uint32_t index;
 };
 
-std::uint64_t shell_of(double range_m) {
-  return static_cast<std::uint64_t>(std::min(1e15, range_m / kShellM));
+std::uint64_t shell_of(double range_m, double shell_m) {
+  return static_cast<std::uint64_t>(std::min(1e15, range_m / shell_m));
 }
 
-/// Which shells are chosen; of the nearest it is looked up.
-class ChosenShells {
- public:
-  ChosenShells(std::size_t points, std::size_t most) : all_(points <= most) {
-    const double share = std::min(1.0, static_cast<double>(most) / static_cast<double>(points + 1));
-    bound_ = static_cast<std::uint64_t>(share * 18446744073709549568.0);
-    for (std::uint64_t shell = 0; shell < kNearShells; ++shell) near_[shell] = decide(shell);
-  }
-  [[nodiscard]] bool has(std::uint64_t shell) const {
-    return shell < kNearShells ? near_[shell] : decide(shell);
-  }
-
- private:
-  [[nodiscard]] bool decide(std::uint64_t shell) const { return all_ || mix64(shell + 1) < bound_; }
-
-  bool all_;
-  std::uint64_t bound_ = 0;
-  std::array<bool, kNearShells> near_{};
-};
-
 std::vector<Ranged> chosen_points(const std::vector<Vector3d>& points, const Vector3d& middle,
-                                  std::size_t most) {
-  const ChosenShells shells(points.size(), most);
+                                  std::size_t most, double shell_m) {
+  const bool all = points.size() <= most;
+  const double share = std::min(1.0, static_cast<double>(most) / static_cast<double>(points.size() + 1));
+  const auto bound = static_cast<std::uint64_t>(share * 18446744073709549568.0);
   std::vector<std::vector<Ranged>> parts((points.size() + kSampledPerPiece - 1) / kSampledPerPiece);
   parallel_for(points.size(), kSampledPerPiece, [&](std::size_t begin, std::size_t end) {
     std::vector<Ranged>& part = parts[begin / kSampledPerPiece];
     for (std::size_t i = begin; i < end; ++i) {
       const double range_m = (points[i] - middle).norm();
-      if (shells.has(shell_of(range_m))) part.push_back({range_m, static_cast<std::uint32_t>(i)});
+      if (all || mix64(shell_of(range_m, shell_m) + 1) < bound)
+        part.push_back({range_m, static_cast<std::uint32_t>(i)});
     }
   });
   std::vector<Ranged> chosen;
@@ -82,7 +63,9 @@ std::vector<Ranged> chosen_points(const std::vector<Vector3d>& points, const Vec
 
 /// Nearest first, points equally far by their coordinates. Shells are sorted each for itself.
 std::vector<Ranged> sorted_outwards(const std::vector<Ranged>& chosen, const std::vector<Vector3d>& points) {
-  const auto bucket = [](const Ranged& point) { return std::min(shell_of(point.range_m), kNearShells); };
+  const auto bucket = [](const Ranged& point) {
+    return std::min(shell_of(point.range_m, kSortedM), kNearShells);
+  };
   std::vector<std::size_t> ends(kNearShells + 2, 0);  // shifted by one: where each shell begins
   for (const Ranged& point : chosen) ++ends[bucket(point) + 1];
   std::partial_sum(ends.begin(), ends.end(), ends.begin());
@@ -108,9 +91,9 @@ std::vector<Ranged> sorted_outwards(const std::vector<Ranged>& chosen, const std
 
 }  // namespace
 
-std::vector<std::uint32_t> steady_sample(const Scan& scan, std::size_t most) {
+std::vector<std::uint32_t> steady_sample(const Scan& scan, std::size_t most, double shell_m) {
   const std::vector<Ranged> sorted =
-      sorted_outwards(chosen_points(scan.points, middle_of(scan.points), most), scan.points);
+      sorted_outwards(chosen_points(scan.points, middle_of(scan.points), most, shell_m), scan.points);
   std::vector<std::uint32_t> indices;
   indices.reserve(sorted.size());
   for (const Ranged& point : sorted) indices.push_back(point.index);
