@@ -183,7 +183,7 @@ void bind_options(py::module_& module) {
              "matter farther from every face is not the model's")
       .field("max_angle_deg", &DeviationOptions::max_angle_deg, "between the surface at a point and its face")
       .field("tile_m", &DeviationOptions::tile_m, "edge of the tiles by which coverage is counted")
-      .field("rays", &DeviationOptions::rays, "of the scan by which coverage is counted, about")
+      .field("rays", &DeviationOptions::rays, "of the scan that are followed through the model, about")
       .field("min_points", &DeviationOptions::min_points, "on an element that counts as found")
       .field("cluster_m", &DeviationOptions::cluster_m,
              "matter not in the model: gaps up to this join pieces")

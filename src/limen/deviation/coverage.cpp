@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "limen/base/parallel.h"
+#include "limen/base/random.h"
 
 namespace limen {
 namespace {
@@ -16,6 +17,15 @@ constexpr std::uint8_t kPassed = 2;
 constexpr double kMostTiles = 4e6;  // of one face
 constexpr double kBeginM = 0.2;     // of a ray: nothing so near to the scanner is measured
 constexpr std::size_t kSamplesPerPiece = 4096;
+constexpr double kSamePlaceM = 1e-4;
+
+/// A number by which points are drawn that stays when a file has them in another order.
+std::uint64_t number_of(const Vector3d& x) {
+  std::uint64_t number = 0;
+  for (const double coordinate : x)
+    number = mix64(number ^ static_cast<std::uint64_t>(std::llround(coordinate / kSamePlaceM)));
+  return number;
+}
 
 }  // namespace
 
@@ -32,9 +42,14 @@ FaceTiles::FaceTiles(const FaceIndex& index, double tile_m) : index_(index), gri
     if (low.x() > high.x()) continue;
     const Vector2d size = high - low;
     grid.low = low;
-    grid.tile_m = std::max(tile_m, std::sqrt(size.x() * size.y() / kMostTiles));
-    grid.columns = static_cast<std::size_t>(size.x() / grid.tile_m) + 1;
-    grid.rows = static_cast<std::size_t>(size.y() / grid.tile_m) + 1;
+    const double about_m = std::max(tile_m, std::sqrt(size.x() * size.y() / kMostTiles));
+    // They divide the face: a part of one counts no more than it has of it.
+    const auto tiles_along = [about_m](double length) {
+      return static_cast<std::size_t>(std::max(1.0, std::round(length / about_m)));
+    };
+    grid.columns = tiles_along(size.x());
+    grid.rows = tiles_along(size.y());
+    grid.tile_m = {size.x() / static_cast<double>(grid.columns), size.y() / static_cast<double>(grid.rows)};
     grid.begin = total;
     total += grid.columns * grid.rows;
   }
@@ -44,7 +59,7 @@ FaceTiles::FaceTiles(const FaceIndex& index, double tile_m) : index_(index), gri
 void FaceTiles::mark(int face, const Vector3d& x, std::uint8_t what) {
   const Grid& grid = grids_[static_cast<std::size_t>(face)];
   const Vector2d p = index_.face(face).frame.to_plane(x) - grid.low;
-  const Vector2d place = p / grid.tile_m;
+  const Vector2d place = p.cwiseQuotient(grid.tile_m);
   if (!(place.x() >= 0.0 && place.y() >= 0.0)) return;
   const auto column = static_cast<std::size_t>(place.x());
   const auto row = static_cast<std::size_t>(place.y());
@@ -62,16 +77,19 @@ FaceCoverage FaceTiles::count(std::size_t face) const {
     covered += (marks_[k] & kCovered) != 0 ? 1 : 0;
     passed += marks_[k] == kPassed ? 1 : 0;
   }
-  const double tile_m2 = grid.tile_m * grid.tile_m;
-  return {static_cast<double>(covered) * tile_m2, static_cast<double>(passed) * tile_m2};
+  // Tiles at an outline that is no rectangle count whole.
+  const double area_m2 = area(index_.face(static_cast<int>(face)).outline);
+  const double covered_m2 = std::min(area_m2, static_cast<double>(covered) * grid.tile_m.prod());
+  return {covered_m2, std::min(area_m2 - covered_m2, static_cast<double>(passed) * grid.tile_m.prod())};
 }
 
 void FaceTiles::add(const ScanInModel& scan, const PointFaces& laid, const DeviationOptions& options) {
-  const std::size_t stride = 1 + scan.points.size() / options.rays;
+  const double share = static_cast<double>(options.rays) / static_cast<double>(scan.points.size() + 1);
+  const auto bound = static_cast<std::uint64_t>(std::min(1.0, share) * 18446744073709549568.0);
   const auto follow = [&](std::size_t i) {
     const Vector3d& point = scan.points[i];
     if (laid.face[i] >= 0) mark(laid.face[i], point, kCovered);
-    if (!scan.centre_known()) return;
+    if (!scan.centre_known() || (share < 1.0 && number_of(point) >= bound)) return;
     const Vector3d& centre = scan.centre(i);
     const double range = (point - centre).norm();
     if (range <= kBeginM) return;
@@ -82,8 +100,8 @@ void FaceTiles::add(const ScanInModel& scan, const PointFaces& laid, const Devia
         mark(crossing.face, crossing.at, kPassed);
     }
   };
-  parallel_for(scan.points.size() / stride, kSamplesPerPiece, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) follow(k * stride);
+  parallel_for(scan.points.size(), kSamplesPerPiece, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) follow(i);
   });
 }
 

@@ -23,15 +23,15 @@ class FaceTiles {
  public:
   FaceTiles(const FaceIndex& index, double tile_m);
 
-  /// Follows about `options.rays` rays of a scan, evenly taken. Where the scanner's place is not known
-  /// nothing counts as passed.
+  /// Takes all points of a scan and follows about `options.rays` of its rays, drawn by their places. Where
+  /// the scanner's place is not known nothing counts as passed.
   void add(const ScanInModel& scan, const PointFaces& laid, const DeviationOptions& options);
   [[nodiscard]] std::vector<FaceCoverage> coverage() const;
 
  private:
   struct Grid {
     Vector2d low = Vector2d::Zero();
-    double tile_m = 0.0;
+    Vector2d tile_m = Vector2d::Zero();
     std::size_t columns = 0;
     std::size_t rows = 0;
     std::size_t begin = 0;

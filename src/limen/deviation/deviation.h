@@ -17,7 +17,7 @@ struct DeviationOptions {
   double max_distance_m = 0.10;       ///< surface farther from every face is not the model's, > 0
   double max_angle_deg = 30.0;        ///< between the surface at a point and its face, in (0, 90)
   double tile_m = 0.05;               ///< edge of the tiles by which coverage is counted, > 0
-  std::size_t rays = 400000;          ///< of the scan by which coverage is counted, about
+  std::size_t rays = 400000;          ///< of the scan that are followed through the model, about
   int min_points = 50;                ///< on an element that counts as found
   double min_judged_m2 = 0.05;        ///< surface that rays reached; with less an element is not judged, > 0
   double min_missing_m2 = 0.1;        ///< that rays passed through where an element is not found, > 0

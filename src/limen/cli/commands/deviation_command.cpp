@@ -121,9 +121,11 @@ std::string line_of(const ElementDeviation& it, const BimElement& element) {
     return fmt::format("{:<12} {:<32.32} not found: the scanner saw through {:.2f} m2 of it\n",
                        to_string(element.kind), name, it.passed_m2);
   }
-  return fmt::format("{:<12} {:<32.32} {:7.1f} {:7.1f}  {:<6} {:7.1f} {:3.0f} %\n", to_string(element.kind),
+  const bool held = it.shift.held > 0;
+  return fmt::format("{:<12} {:<32.32} {:7.1f} {:7.1f}  {:<6} {:>7} {:3.0f} %\n", to_string(element.kind),
                      name, 1e3 * it.median_m, 1e3 * it.p95_m, it.loa > 0 ? fmt::format("LOA{}", it.loa) : "-",
-                     1e3 * it.shift.shift_m.norm(), 100.0 * it.covered_share);
+                     held ? fmt::format("{:.1f}", 1e3 * it.shift.shift_m.norm()) : "-",
+                     100.0 * it.covered_share);
 }
 
 /// Elements that are missing or deviate most.

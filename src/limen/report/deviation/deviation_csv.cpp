@@ -24,8 +24,10 @@ void add_figures(SheetRow& row, const ElementDeviation& it) {
   for (const double metres : {it.median_m, it.mean_m, it.sigma_m, it.p95_m})
     row.push_back(number_cell(metres, 5));
   row.push_back(it.loa > 0 ? text_cell(fmt::format("LOA{}", it.loa)) : SheetCell{});
-  for (const double metres : shift.shift_m) row.push_back(number_cell(metres + 0.0, 5));
-  for (const double metres : shift.sigma_m) row.push_back(number_cell(metres, 5));
+  for (const Vector3d& vector : {shift.shift_m, shift.sigma_m}) {
+    for (const double metres : vector)
+      row.push_back(shift.held > 0 ? number_cell(metres + 0.0, 5) : SheetCell{});
+  }
   row.push_back(count_cell(static_cast<std::size_t>(shift.held)));
   row.push_back(text_cell(directions(shift.open)));
 }

@@ -91,11 +91,13 @@ BcfTopic element_topic(const BimElement& element, const ElementDeviation& it) {
     topic.label = "missing";
     topic.priority = "high";
     topic.colour = "D02020";
-    topic.title = fmt::format("Missing: {}", name);
+    const bool has_leaf = element.kind == BimKind::door || element.kind == BimKind::window;
+    topic.title = fmt::format("{}: {}", has_leaf ? "Missing, or open" : "Missing", name);
     topic.description = fmt::format(
-        "{} {} of the model was not found: the scanner saw through {:.2f} m2 of its surface, and points lie "
+        "{} {} of the model was not found{}: the scanner saw through {:.2f} m2 of its surface, and points "
+        "lie "
         "on {:.2f} m2.{}",
-        element.type, name, it.passed_m2, it.covered_m2, storey);
+        element.type, name, has_leaf ? ", or its leaf was open" : "", it.passed_m2, it.covered_m2, storey);
   } else {
     topic.label = "moved";
     topic.priority = "medium";
