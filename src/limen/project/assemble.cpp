@@ -42,6 +42,7 @@ class Assembler {
 
   void run() {
     ProjectGraph made = make_graph(nodes_, pairs_, words_);
+    add_target_links(survey_, made);
     add_survey_links(survey_, made);
     solved_ = solve_graph(made.graph, risk_, query_, probable_risk_);
     if (confirm_by_points(survey_, solved_, made))
@@ -98,6 +99,8 @@ class Assembler {
       }
       words += " contradict the others, and without them too few are left";
       made = make_graph(nodes_, pairs_, words_);
+      Survey noted = survey_;
+      add_target_links(noted, made);
       solved_ = solve_graph(made.graph, risk_, query_, probable_risk_);
       straighten(made);
       stand_alone();
@@ -325,7 +328,7 @@ class Assembler {
       return to_world(pose.target_from_source, source.local_origin, target.local_origin);
     };
     stated.target_from_source = world(link.poses[taken]);
-    stated.agreeing_m2 = link.poses[taken].agreeing_m2;
+    if (!link.by_targets) stated.agreeing_m2 = link.poses[taken].agreeing_m2;
     const Vector6d sigma = link.poses[taken].covariance.diagonal().cwiseSqrt();
     stated.sigma = {sigma.head<3>(), sigma.tail<3>(), link.poses[taken].centre + target.local_origin};
     for (std::size_t p = 0; p < link.poses.size(); ++p) {
@@ -349,7 +352,7 @@ class Assembler {
       }
     } else {
       stated.pair = Outcome::registered;
-      stated.reason = "given in the file";
+      stated.reason = link.by_targets ? "given by the targets that both see" : "given in the file";
     }
     result_.links.push_back(std::move(stated));
   }

@@ -30,7 +30,8 @@ struct GraphLink {
   /// Where the pair's best pose is among `poses`: elsewhere than first where a user chose another, which
   /// took its place.
   int best = 0;
-  bool accepted = false;  ///< by a user
+  bool accepted = false;    ///< by a user
+  bool by_targets = false;  ///< given by targets that both see, which enter the adjustment themselves
 
   /// Whether look-alike places were asked about: else they are among its poses.
   [[nodiscard]] bool asks_look_alike() const { return look_alike > 0.0 || poses.front().look_alike; }

@@ -151,7 +151,7 @@ const char* to_string(PointRole role);
 struct ProjectSight {
   int scan = -1;
   bool used = false;
-  double missed_m = 0.0;  ///< between where the scan has it and the adjusted point
+  std::optional<double> missed_m;  ///< between where the scan has it and the adjusted point; none: not placed
 };
 
 /// A surveyed point, or a target that ties scans to one another.

@@ -31,6 +31,17 @@ std::vector<MarkedPoint> points_along(std::vector<MarkedPoint> points, const Ben
   return points;
 }
 
+/// Whether the targets that gave a link are observations of their own.
+bool enter_themselves(const std::vector<MarkedPoint>& points, const GraphLink& link) {
+  const auto sees = [](const MarkedPoint& point, int node) {
+    return std::any_of(point.sights.begin(), point.sights.end(),
+                       [node](const PointSight& sight) { return sight.node == node; });
+  };
+  return std::count_if(points.begin(), points.end(), [&](const MarkedPoint& point) {
+           return sees(point, link.source) && sees(point, link.target);
+         }) >= 3;
+}
+
 }  // namespace
 
 BentPasses passes_to_bend(const std::vector<ProjectNode>& nodes, const SolvedGraph& solved) {
@@ -75,7 +86,7 @@ JointProblem joint_problem(const std::vector<ProjectNode>& nodes, const std::vec
   SharedPlanes shared(nodes, solved, passes);
   for (std::size_t k = 0; k < made.graph.links.size(); ++k) {
     const GraphLink& link = made.graph.links[k];
-    if (solved.links[k].pose < 0) continue;
+    if (solved.links[k].pose < 0 || (link.by_targets && enter_themselves(survey.points, link))) continue;
     PoseEdge edge{link.source, link.target, link.poses[static_cast<std::size_t>(solved.links[k].pose)]};
     if (made.pair_of[k] >= 0 && solved.links[k].pose == link.best) {
       const TriedPair& pair = pairs[static_cast<std::size_t>(made.pair_of[k])];

@@ -3,6 +3,7 @@
 #include "limen/project/solve/place_survey.h"
 
 #include <algorithm>
+#include <map>
 #include <optional>
 #include <set>
 #include <utility>
@@ -258,11 +259,13 @@ class SurveyPlacer {
   std::string refused_;
 };
 
-void link_to_survey(int node, LinkPose pose, ProjectGraph& made) {
+/// A link by targets, whose pose is known as `pose` says.
+void add_link(int source, int target, LinkPose pose, ProjectGraph& made) {
   GraphLink link;
-  link.source = node;
-  link.target = made.graph.anchor;
+  link.source = source;
+  link.target = target;
   link.trust = LinkTrust::given;
+  link.by_targets = true;
   link.chance = kTargetsWrong;
   pose.agreeing_m2 = kTargetsM2;
   // As rigid as scans are taken to be in the loops; the adjustment has the sights themselves.
@@ -271,6 +274,37 @@ void link_to_survey(int node, LinkPose pose, ProjectGraph& made) {
   link.poses.push_back(pose);
   made.graph.links.push_back(std::move(link));
   made.pair_of.push_back(-1);
+}
+
+void link_to_survey(int node, const LinkPose& pose, ProjectGraph& made) {
+  add_link(node, made.graph.anchor, pose, made);
+}
+
+/// Targets that two scans see.
+struct SharedTargets {
+  std::vector<PointPair> pairs;
+  std::vector<std::size_t> marks;
+};
+
+/// By the scans, the lower first. Of passes the place of a target hangs on its time: they are left out.
+std::map<std::pair<int, int>, SharedTargets> shared_targets(const Survey& survey) {
+  std::map<std::pair<int, int>, SharedTargets> all;
+  for (std::size_t m = 0; m < survey.marks.size(); ++m) {
+    const SurveyMark& mark = survey.marks[m];
+    if (mark.role == PointRole::check || mark.scanner) continue;
+    const std::vector<PointSight>& sights = mark.point.sights;  // by their nodes
+    for (std::size_t b = 1; b < sights.size(); ++b) {
+      for (std::size_t a = 0; a < b; ++a) {
+        if (sights[a].node == sights[b].node || sights[a].strayed_m > 0.0 || sights[b].strayed_m > 0.0)
+          continue;
+        SharedTargets& shared = all[{sights[a].node, sights[b].node}];
+        shared.pairs.push_back(
+            {sights[a].x_in_node, sights[a].covariance, sights[b].x_in_node, sights[b].covariance});
+        shared.marks.push_back(m);
+      }
+    }
+  }
+  return all;
 }
 
 /// Looks for scans of one component that known points confirm.
@@ -370,6 +404,23 @@ bool confirm_by_points(const Survey& survey, const SolvedGraph& solved, ProjectG
   if (made.graph.anchor < 0) made.graph.anchor = made.graph.nodes++;
   for (const auto& [node, pose] : found) link_to_survey(node, pose, made);
   return true;
+}
+
+void add_target_links(Survey& survey, ProjectGraph& made) {
+  for (const auto& [nodes, shared] : shared_targets(survey)) {
+    CancelScope::check();
+    const PointFit fit = fit_points(shared.pairs);
+    if (fit.state == PointFitState::too_few) continue;
+    if (!fit.suspects.empty()) {
+      std::vector<std::size_t> suspects;
+      for (const std::size_t k : fit.suspects) suspects.push_back(shared.marks[k]);
+      survey.notes.push_back(fmt::format("targets of {} and {} that contradict one another: {}",
+                                         survey.node_names[static_cast<std::size_t>(nodes.first)],
+                                         survey.node_names[static_cast<std::size_t>(nodes.second)],
+                                         names_of(survey, suspects)));
+    }
+    if (fit.state == PointFitState::fixed) add_link(nodes.first, nodes.second, fit.pose, made);
+  }
 }
 
 void add_survey_links(Survey& survey, ProjectGraph& made) {

@@ -10,6 +10,10 @@
 
 namespace limen {
 
+/// Adds a link between scans that see the same targets, where three or more determine their pose;
+/// contradictory ones are in the notes.
+void add_target_links(Survey& survey, ProjectGraph& made);
+
 /// Adds the survey's frame as a node, and a link to it of every scan whose own targets determine its pose
 /// there; contradictory ones are in the notes. Nothing where there are no control points.
 void add_survey_links(Survey& survey, ProjectGraph& made);

@@ -52,18 +52,19 @@ ProjectPoint stated_point(const SurveyMark& mark, const PlacedSurvey& placed, st
   const auto scan_of = [&](const PointSight& sight) {
     return static_cast<int>(nodes[static_cast<std::size_t>(sight.node)].scan);
   };
-  const bool seen = placed.placed && !placed.settled.findings.empty() && !placed.points[p].sights.empty();
-  for (std::size_t k = 0; k < mark.point.sights.size(); ++k)
-    stated.sights.push_back({scan_of(mark.point.sights[k]), false, 0.0});
-  if (!seen) {
-    if (mark.role == PointRole::tie) stated.state = PointState::compared;
-    stated.reason = reason_of(stated, {}, placed.placed);
+  const bool seen = !placed.settled.findings.empty() && !placed.points[p].sights.empty();
+  for (const PointSight& sight : mark.point.sights) stated.sights.push_back({scan_of(sight), false, {}});
+  if (!seen || (!placed.placed && mark.role != PointRole::tie)) {
+    stated.reason = reason_of(stated, {}, placed.placed || mark.role == PointRole::tie);
     return stated;
   }
   const PointFinding& finding = placed.settled.findings[p];
   const PointVerdict& verdict = placed.settled.verdicts[p];
-  stated.found = finding.x + survey.origin;
-  stated.found_sigma = sigmas(finding.covariance);
+  // Without a frame of their own, points have no coordinates; how well scans agree on them is known.
+  if (placed.placed) {
+    stated.found = finding.x + survey.origin;
+    stated.found_sigma = sigmas(finding.covariance);
+  }
   for (const std::size_t k : placed.sights[p]) {
     stated.sights[k].missed_m = (placed.seen_at[p][k] - finding.x).norm();
     stated.sights[k].used =

@@ -50,6 +50,7 @@ struct TargetsOnly {
   /// As assemble() goes about it.
   PlacedSurvey place(SolvedGraph& solved, const std::vector<TriedPair>& pairs = {}) {
     ProjectGraph made = make_graph(nodes, pairs, {});
+    add_target_links(survey, made);
     add_survey_links(survey, made);
     solved = solve_graph(made.graph, 0.001);
     if (confirm_by_points(survey, solved, made)) solved = solve_graph(made.graph, 0.001);
@@ -92,6 +93,71 @@ TEST(Survey, ScansThatOnlyTargetsJoinStandInOneFrame) {
   // Two targets hold no scan.
   EXPECT_EQ(solved.nodes[2].component, -1);
   EXPECT_FALSE(placed.controlled[2]);
+}
+
+/// Targets without coordinates that the first two scans see.
+void share_targets(TargetsOnly& building, int count) {
+  RandomStream random(9, 1);
+  building.survey.file.clear();
+  for (int k = 0; k < count; ++k) building.add_point(0, random);
+  for (SurveyMark& mark : building.survey.marks) {
+    const Vector3d x = building.control_from_node[0] * mark.point.sights.front().x_in_node;
+    const Matrix3d covariance = mark.point.sights.front().covariance;
+    PointSight other{1, inverse(building.control_from_node[1]) * x + noise3(kSigmaM, random), covariance};
+    other.number = 1;
+    mark.point.sights.push_back(other);
+    mark.role = PointRole::tie;
+    mark.point.known.reset();
+    mark.given.reset();
+  }
+}
+
+TEST(Survey, TargetsThatTwoScansSeeJoinThem) {
+  for (const bool look_alike : {false, true}) {
+    TargetsOnly building({0, 0, 0});
+    share_targets(building, 4);
+    std::vector<TriedPair> pairs;
+    if (look_alike) pairs.push_back(building.pair(1, 0, 4.8, 0.4));
+    SolvedGraph solved;
+    const PlacedSurvey placed = building.place(solved, pairs);
+    EXPECT_FALSE(placed.placed);
+    for (const std::size_t n : {0U, 1U})
+      EXPECT_EQ(solved.nodes[n].state, NodeState::registered) << look_alike;
+    const Rigid3 found = inverse(solved.nodes[0].frame_from_node) * solved.nodes[1].frame_from_node;
+    const Rigid3 truth = inverse(building.control_from_node[0]) * building.control_from_node[1];
+    const Rigid3 error = found * inverse(truth);
+    EXPECT_LT(rotation_angle(error.rotation), 0.004) << look_alike;
+    EXPECT_LT((error * building.nodes[0].digest.middle - building.nodes[0].digest.middle).norm(), 0.01);
+    building.nodes[1].scan = 1;
+    const std::vector<ProjectPoint> points = stated_points(building.survey, placed, building.nodes);
+    ASSERT_EQ(points.size(), 4U);
+    for (const ProjectPoint& point : points) {
+      EXPECT_EQ(point.state, PointState::compared);
+      EXPECT_FALSE(point.found);
+      for (const ProjectSight& sight : point.sights) {
+        ASSERT_TRUE(sight.missed_m);
+        EXPECT_LT(*sight.missed_m, 5.0 * kSigmaM);
+      }
+    }
+  }
+}
+
+TEST(Survey, TooFewOrFalseTargetsJoinNoScans) {
+  for (const int count : {2, 4}) {
+    TargetsOnly building({0, 0, 0});
+    share_targets(building, count);
+    // Two of four lie elsewhere.
+    if (count == 4) {
+      for (const std::size_t m : {0U, 1U})
+        building.survey.marks[m].point.sights[1].x_in_node += Vector3d(0.3, 0.2, 0.1 + 0.4 * double(m));
+    }
+    SolvedGraph solved;
+    building.place(solved);
+    EXPECT_EQ(solved.nodes[1].component, -1) << count;
+    EXPECT_EQ(building.survey.notes.size(), count == 4 ? 1U : 0U);
+    for (const ProjectPoint& point : stated_points(building.survey, {}, building.nodes))
+      EXPECT_EQ(point.state, PointState::not_placed);
+  }
 }
 
 TEST(Survey, CoordinatesWithExchangedColumnsDefineNoFrame) {

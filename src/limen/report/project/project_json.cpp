@@ -145,7 +145,9 @@ Json point_json(const ProjectPoint& point) {
     }
   }
   Json sights = list_json(point.sights, [&](const ProjectSight& sight) -> Json {
-    return {{"scan", sight.scan}, {"used", sight.used}, {"missed_m", sight.missed_m}};
+    return {{"scan", sight.scan},
+            {"used", sight.used},
+            {"missed_m", sight.missed_m ? Json(*sight.missed_m) : Json()}};
   });
   json["seen_by"] = std::move(sights);
   json["reason"] = point.reason;
