@@ -23,9 +23,9 @@ struct TargetTable {
   std::string words;
 };
 
-/// Names the targets of each scan by the distances between them: as control and check points, or, where
-/// there is no such file, as in the scan that sees most targets, so that others are tied to it. Those that
-/// fit nothing are called unknown_1, unknown_2 and so on.
+/// Names the targets of each scan by the distances between them: as control and check points where there are
+/// such files, else T1, T2 and so on where several scans see them, one scan joining the next. Those that one
+/// scan alone sees are called unknown_1, unknown_2 and so on.
 TargetTable table_of_targets(const std::vector<TargetsOfScan>& scans, const ProjectInputs& inputs);
 
 }  // namespace limen
