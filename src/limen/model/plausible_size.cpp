@@ -12,6 +12,7 @@
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
+#include "limen/base/drawn_steps.h"
 #include "limen/base/error.h"
 
 namespace limen {
@@ -49,9 +50,8 @@ std::string stated(double metres) {
 
 /// Extent of the points along one axis, the outermost left out.
 double side_of(const std::vector<Vector3d>& points, int axis) {
-  const std::size_t stride = 1 + points.size() / kLookedAt;
   std::vector<double> values;
-  for (std::size_t i = 0; i < points.size(); i += stride) values.push_back(points[i][axis]);
+  for_drawn_steps(points.size(), kLookedAt, [&](std::size_t i) { values.push_back(points[i][axis]); });
   const auto out = static_cast<std::ptrdiff_t>(values.size() / kLeftOut);
   std::nth_element(values.begin(), values.begin() + out, values.end());
   const double low = values[static_cast<std::size_t>(out)];

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "limen/base/drawn_steps.h"
 #include "limen/base/error.h"
 #include "limen/base/parallel.h"
 
@@ -69,9 +70,8 @@ Scan subset(const Scan& scan, const std::vector<std::uint32_t>& indices) {
 
 double median_range(const Scan& scan) {
   std::vector<double> ranges;
-  const std::size_t step = std::max<std::size_t>(1, scan.size() / 1000);
-  for (std::size_t i = 0; i < scan.size(); i += step)
-    ranges.push_back((scan.points[i] - scan.centre(i)).norm());
+  for_drawn_steps(scan.size(), 1000,
+                  [&](std::size_t i) { ranges.push_back((scan.points[i] - scan.centre(i)).norm()); });
   const auto middle = ranges.begin() + static_cast<std::ptrdiff_t>(ranges.size() / 2);
   std::nth_element(ranges.begin(), middle, ranges.end());
   return *middle;

@@ -7,6 +7,7 @@
 #include <limits>
 #include <numeric>
 
+#include "limen/base/drawn_steps.h"
 #include "limen/base/error.h"
 #include "limen/base/parallel.h"
 
@@ -164,23 +165,22 @@ void ScanGrid::cut_jumps(double max_jump) {
 }
 
 double surface_noise(const ScanGrid& grid) {
-  const std::size_t step = 1 + grid.size() / 200000;
   std::vector<double> offsets;
-  for (std::size_t at = 0; at < grid.size(); at += step) {
+  for_drawn_steps(grid.size(), 200000, [&](std::size_t at) {
     const auto& links = grid.links(at);
-    if (std::count(links.begin(), links.end(), ScanGrid::kNone) > 0) continue;
+    if (std::count(links.begin(), links.end(), ScanGrid::kNone) > 0) return;
     const auto neighbour = [&](ScanGrid::Link link) -> const Vector3d& {
       return grid.point(static_cast<std::size_t>(links[link]));
     };
     const Vector3d along = neighbour(ScanGrid::next) - neighbour(ScanGrid::previous);
     const Vector3d across = neighbour(ScanGrid::line_after) - neighbour(ScanGrid::line_before);
     const Vector3d normal = along.cross(across);
-    if (normal.norm() < 0.3 * along.norm() * across.norm() || normal.norm() < 1e-9) continue;
+    if (normal.norm() < 0.3 * along.norm() * across.norm() || normal.norm() < 1e-9) return;
     const Vector3d of_line = neighbour(ScanGrid::next) + neighbour(ScanGrid::previous);
     const Vector3d of_others = neighbour(ScanGrid::line_after) + neighbour(ScanGrid::line_before);
     // Half the sum of four independent echoes, two of them negative: the noise of one.
     offsets.push_back(0.5 * std::abs(normal.normalized().dot(of_line - of_others)));
-  }
+  });
   if (offsets.size() < 20) return 0.0;
   const auto middle = offsets.begin() + static_cast<std::ptrdiff_t>(offsets.size() / 2);
   std::nth_element(offsets.begin(), middle, offsets.end());

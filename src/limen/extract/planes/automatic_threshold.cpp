@@ -7,6 +7,7 @@
 #include <limits>
 #include <numeric>
 
+#include "limen/base/drawn_steps.h"
 #include "limen/base/error.h"
 
 namespace limen {
@@ -132,11 +133,10 @@ ThresholdChoice choose_threshold(const CloudSize& cloud, const ThresholdTrial& d
 namespace {
 
 Scan even_subset(const Scan& scan, std::size_t most) {
-  const std::size_t step = 1 + scan.size() / most;
   Scan part;
   part.local_origin = scan.local_origin;
-  part.points.reserve(scan.size() / step + 1);
-  for (std::size_t i = 0; i < scan.size(); i += step) part.points.push_back(scan.points[i]);
+  part.points.reserve(std::min(scan.size(), most));
+  for_drawn_steps(scan.size(), most, [&](std::size_t i) { part.points.push_back(scan.points[i]); });
   return part;
 }
 

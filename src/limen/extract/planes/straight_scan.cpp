@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "limen/base/drawn_steps.h"
 #include "limen/base/error.h"
 #include "limen/extract/planes/grow_planes.h"
 #include "limen/geometry/linear.h"
@@ -31,8 +32,7 @@ KnotPlace knot_place(const ScanDrift& drift, double time_s) {
 
 Scan timed_subset(const Scan& scan, std::size_t most) {
   std::vector<std::uint32_t> kept;
-  const std::size_t step = 1 + scan.size() / most;
-  for (std::size_t i = 0; i < scan.size(); i += step) kept.push_back(static_cast<std::uint32_t>(i));
+  for_drawn_steps(scan.size(), most, [&](std::size_t i) { kept.push_back(static_cast<std::uint32_t>(i)); });
   return subset(scan, kept);
 }
 

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <limits>
 
+#include "limen/base/drawn_steps.h"
 #include "limen/model/scan.h"
 
 namespace limen {
@@ -54,19 +55,18 @@ double hidden_share(const std::vector<Vector3d>& points, const Vector3d& candida
     std::uint32_t cell;
     float range;
   };
-  const std::size_t stride = std::max<std::size_t>(1, points.size() / kEnough);
   const std::size_t cells = cells_for(points.size());
   std::vector<float> nearest(6 * cells * cells, std::numeric_limits<float>::max());
   std::vector<Seen> all;
-  all.reserve(points.size() / stride + 1);
-  for (std::size_t i = 0; i < points.size(); i += stride) {
+  all.reserve(std::min(points.size(), kEnough));
+  for_drawn_steps(points.size(), kEnough, [&](std::size_t i) {
     const Vector3d ray = points[i] - candidate;
     const auto range = static_cast<float>(ray.norm());
-    if (range <= 0.0F) continue;
+    if (range <= 0.0F) return;
     const std::size_t cell = cell_of(ray, cells);
     all.push_back({static_cast<std::uint32_t>(cell), range});
     nearest[cell] = std::min(nearest[cell], range);
-  }
+  });
   if (all.empty()) return 0.0;
   const auto hidden = std::count_if(all.begin(), all.end(), [&](const Seen& seen) {
     return seen.range > 1.2F * nearest[seen.cell] + 0.2F;

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "limen/base/angles.h"
+#include "limen/base/drawn_steps.h"
 
 namespace limen {
 namespace {
@@ -86,11 +87,10 @@ bool is_overhead(double sine) {
 /// Calls `use` with the scanner position and the ray, not normalised, of a part of the points.
 template <typename Use>
 void look_round(const Scan& scan, const Use& use) {
-  const std::size_t step = std::max<std::size_t>(1, scan.size() / kLooks);
-  for (std::size_t i = 0; i < scan.size(); i += step) {
+  for_drawn_steps(scan.size(), kLooks, [&](std::size_t i) {
     const Vector3d ray = scan.points[i] - scan.centre(i);
     if (ray.norm() > kNearM) use(scan.centre(i), ray);
-  }
+  });
 }
 
 /// What a static scanner sees on each side.

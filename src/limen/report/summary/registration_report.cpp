@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "limen/base/drawn_steps.h"
+
 namespace limen {
 namespace {
 
@@ -19,10 +21,9 @@ InnerBox inner_box_of(const std::vector<Vector3d>& points) {
   InnerBox box;
   if (points.empty()) return box;
   constexpr std::size_t kEnough = 20000;
-  const std::size_t stride = 1 + points.size() / kEnough;
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
     std::vector<double> values;
-    for (std::size_t i = 0; i < points.size(); i += stride) values.push_back(points[i][axis]);
+    for_drawn_steps(points.size(), kEnough, [&](std::size_t i) { values.push_back(points[i][axis]); });
     std::sort(values.begin(), values.end());
     const std::size_t last = values.size() - 1;
     const std::size_t cut = values.size() / 20;
