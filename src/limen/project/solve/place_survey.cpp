@@ -307,6 +307,61 @@ std::map<std::pair<int, int>, SharedTargets> shared_targets(const Survey& survey
   return all;
 }
 
+/// Targets against the poses that pairs of scans are sure of without them. Wrong units, axes and columns are
+/// wrong in all scans alike, so that targets agree with one another.
+class TargetsAgainstScans {
+ public:
+  TargetsAgainstScans(const std::map<std::pair<int, int>, SharedTargets>& all, const ProjectGraph& made) {
+    for (const GraphLink& link : made.graph.links) {
+      if (link.trust != LinkTrust::measured || link.chance + link.look_alike > kSound) continue;
+      const bool forward = link.source < link.target;
+      const LinkPose& pose = link.poses.front();
+      const std::pair<int, int> nodes = std::minmax(link.source, link.target);
+      const auto shared = all.find(nodes);
+      if (shared != all.end()) compare(nodes, shared->second, forward ? pose : reversed(pose));
+    }
+  }
+
+  /// The pairs of scans whose targets are elsewhere by more than half.
+  [[nodiscard]] const std::set<std::pair<int, int>>& wrong() const { return wrong_; }
+  [[nodiscard]] bool all_wrong() const { return wrong_.size() > right_; }
+  [[nodiscard]] std::string words() const {
+    std::vector<double> missed = missed_m_;
+    const auto middle = missed.begin() + static_cast<std::ptrdiff_t>(missed.size() / 2);
+    std::nth_element(missed.begin(), middle, missed.end());
+    return fmt::format(
+        "the targets are not used: they are {:.2f} m apart in {} of {} pairs of scans whose surfaces agree; "
+        "check "
+        "their unit and the order of their columns",
+        *middle, wrong_.size(), wrong_.size() + right_);
+  }
+
+ private:
+  static constexpr double kSound = 1e-3;
+
+  void compare(const std::pair<int, int>& nodes, const SharedTargets& shared, const LinkPose& pose) {
+    std::vector<double> missed;
+    for (const PointPair& pair : shared.pairs) {
+      const Vector3d at = pose.target_from_source * pair.x_in_source;
+      const Matrix3d& turn = pose.target_from_source.rotation;
+      const Matrix3d covariance = pair.target_covariance + turn * pair.source_covariance * turn.transpose() +
+                                  moved_covariance(pose, Rigid3{}, at).bottomRightCorner<3, 3>();
+      const Vector3d miss = pair.x_in_target - at;
+      if (miss.dot(solve_symmetric(covariance, miss)) > kPointChiSquareBound) missed.push_back(miss.norm());
+    }
+    if (2 * missed.size() <= shared.pairs.size()) {
+      ++right_;
+      return;
+    }
+    wrong_.insert(nodes);
+    missed_m_.insert(missed_m_.end(), missed.begin(), missed.end());
+  }
+
+  std::set<std::pair<int, int>> wrong_;
+  std::size_t right_ = 0;
+  std::vector<double> missed_m_;
+};
+
 /// Looks for scans of one component that known points confirm.
 class Confirmer {
  public:
@@ -407,8 +462,21 @@ bool confirm_by_points(const Survey& survey, const SolvedGraph& solved, ProjectG
 }
 
 void add_target_links(Survey& survey, ProjectGraph& made) {
-  for (const auto& [nodes, shared] : shared_targets(survey)) {
+  const std::map<std::pair<int, int>, SharedTargets> all = shared_targets(survey);
+  const TargetsAgainstScans against(all, made);
+  if (against.all_wrong()) {
+    survey.notes.push_back(against.words());
+    for (SurveyMark& mark : survey.marks) mark.point.sights.clear();
+    return;
+  }
+  for (const auto& [nodes, shared] : all) {
     CancelScope::check();
+    if (against.wrong().count(nodes) > 0) {
+      survey.notes.push_back(fmt::format("the targets of {} and {} contradict the surface that both see",
+                                         survey.node_names[static_cast<std::size_t>(nodes.first)],
+                                         survey.node_names[static_cast<std::size_t>(nodes.second)]));
+      continue;
+    }
     const PointFit fit = fit_points(shared.pairs);
     if (fit.state == PointFitState::too_few) continue;
     if (!fit.suspects.empty()) {

@@ -160,6 +160,21 @@ TEST(Survey, TooFewOrFalseTargetsJoinNoScans) {
   }
 }
 
+TEST(Survey, TargetsThatContradictTheScansAreNotUsed) {
+  TargetsOnly building({0, 0, 0});
+  share_targets(building, 4);
+  for (SurveyMark& mark : building.survey.marks) {
+    for (PointSight& sight : mark.point.sights) sight.x_in_node *= 0.3048;
+  }
+  SolvedGraph solved;
+  building.place(solved, {building.pair(1, 0, 0.0, 0.0)});
+  const Rigid3 found = inverse(solved.nodes[0].frame_from_node) * solved.nodes[1].frame_from_node;
+  const Rigid3 truth = inverse(building.control_from_node[0]) * building.control_from_node[1];
+  EXPECT_LT((found.translation - truth.translation).norm(), 1e-3);
+  ASSERT_EQ(building.survey.notes.size(), 1U);
+  EXPECT_NE(building.survey.notes.front().find("check their unit"), std::string::npos);
+}
+
 TEST(Survey, CoordinatesWithExchangedColumnsDefineNoFrame) {
   for (const bool flat : {false, true}) {
     TargetsOnly building({4, 0, 0});
