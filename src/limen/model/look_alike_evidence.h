@@ -40,4 +40,8 @@ struct LookAlikeEvidence {
   double agreeing = 0.0;          ///< ... and how many of them agree
 };
 
+/// Places that look alike are further from each other than one of these.
+inline constexpr double kOtherPlaceM = 0.5;
+inline constexpr double kOtherPlaceRad = 0.087;
+
 }  // namespace limen

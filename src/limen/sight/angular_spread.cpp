@@ -3,6 +3,7 @@
 #include "limen/sight/angular_spread.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -70,6 +71,35 @@ std::vector<Vector3d> places_around(const Vector3d& claim) {
   return places;
 }
 
+/// A scanner that turns about an axis measures 1 / cos(elevation) times as densely as one that looks alike in
+/// all directions. So a point counts as the cosine of its elevation about each axis of the frame, and as one.
+using PointWeights = std::array<double, 4>;
+
+void add_weights(const Vector3d& ray, PointWeights& weights) {
+  constexpr double kLeastWeight = 0.02;
+  const Vector3d way = ray.normalized();
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double sine = way[static_cast<Eigen::Index>(k)];
+    weights[k] += std::max(kLeastWeight, std::sqrt(std::max(0.0, 1.0 - sine * sine)));
+  }
+  weights[3] += 1.0;
+}
+
+/// The entropy over the cells, by the weights that make it greatest, nats.
+double most_entropy(const std::vector<PointWeights>& weights) {
+  double most = 0.0;
+  for (std::size_t k = 0; k < PointWeights{}.size(); ++k) {
+    double all = 0.0;
+    double sum = 0.0;
+    for (const PointWeights& weight : weights) {
+      all += weight[k];
+      if (weight[k] > 0.0) sum += weight[k] * std::log(weight[k]);
+    }
+    most = std::max(most, std::log(all) - sum / all);
+  }
+  return most;
+}
+
 }  // namespace
 
 std::size_t direction_cells(const std::vector<Vector3d>& points, const Vector3d& place) {
@@ -85,9 +115,10 @@ std::size_t direction_cells(const std::vector<Vector3d>& points, const Vector3d&
 
 AngularSpread angular_spread(const std::vector<Vector3d>& points, const Vector3d& place,
                              std::size_t cells_along) {
-  std::vector<std::uint32_t> counts(6 * kFine * kFine * cells_along * cells_along, 0);
+  const std::size_t fine_cells = 6 * kFine * kFine * cells_along * cells_along;
+  std::vector<PointWeights> weights(fine_cells, PointWeights{});
   std::vector<std::uint32_t> rough(6 * cells_along * cells_along, 0);
-  std::vector<float> nearest(counts.size(), std::numeric_limits<float>::max());
+  std::vector<float> nearest(fine_cells, std::numeric_limits<float>::max());
   std::vector<std::uint32_t> cells;
   std::vector<float> ranges;
   cells.reserve(points.size());
@@ -97,7 +128,7 @@ AngularSpread angular_spread(const std::vector<Vector3d>& points, const Vector3d
     const auto range = static_cast<float>(ray.norm());
     if (range < kNearestRangeM) continue;
     const Cell cell = cell_of(ray, cells_along);
-    ++counts[cell.fine];
+    add_weights(ray, weights[cell.fine]);
     ++rough[cell.rough];
     nearest[cell.fine] = std::min(nearest[cell.fine], range);
     cells.push_back(static_cast<std::uint32_t>(cell.fine));
@@ -105,17 +136,12 @@ AngularSpread angular_spread(const std::vector<Vector3d>& points, const Vector3d
   }
   if (cells.empty()) return {};
   const auto total = static_cast<double>(cells.size());
-  double sum = 0.0;
-  for (const std::uint32_t count : counts) {
-    if (count > 1) sum += count * std::log(static_cast<double>(count));
-  }
   const auto filled = static_cast<std::uint32_t>(std::max(1.0, kFilledShare * total));
   const auto view = std::count_if(rough.begin(), rough.end(), [&](std::uint32_t n) { return n >= filled; });
   std::size_t hidden = 0;
   for (std::size_t i = 0; i < cells.size(); ++i)
     hidden += ranges[i] > (1.0F + kBehindShare) * nearest[cells[i]] + kBehindM ? 1 : 0;
-  const double entropy = std::log(total) - sum / total;
-  return {std::log(static_cast<double>(view) * static_cast<double>(kFine * kFine)) - entropy,
+  return {std::log(static_cast<double>(view) * static_cast<double>(kFine * kFine)) - most_entropy(weights),
           static_cast<double>(hidden) / total};
 }
 

@@ -158,7 +158,8 @@ ExtractedFeatures extract_features(const Scan& scan, const ExtractOptions& optio
   if (scan.centre_known() && options.interior.enabled) add_interior(scan, options, extracted, seeing_through);
   monitor.advance(kSeenThrough, 1.0);
   features.samples = sample_surface(scan, extracted.labels, features.planes, options.samples);
-  if (scan.mobile()) features.drift_m = drift_of(features);
+  // A cloud without scanner positions may be of many stations, or of a scanner that moved.
+  if (scan.mobile() || !scan.centre_known()) features.drift_m = drift_of(features);
   return extracted;
 }
 

@@ -125,8 +125,10 @@ ScanFile read_opened(const Open& open, const ReadOptions& options, Monitor& moni
 
 std::string unusable_note(std::size_t unusable, std::size_t kept) {
   if (unusable == 0) return {};
-  return fmt::format("{} points have no finite coordinates below 100 000 km and are left out; {} are kept",
-                     unusable, kept);
+  return fmt::format(
+      "{} points have no finite coordinates below 100 000 km, or are 0 0 0 far from all others, and are left "
+      "out; {} are kept",
+      unusable, kept);
 }
 
 std::string unusable_note(const ScanFile& file) {

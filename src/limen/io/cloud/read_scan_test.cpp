@@ -53,7 +53,7 @@ std::vector<Broken> broken_ply() {
       {"nan.ply",
        simple_ply<float>({Vector3d::Constant(std::nan("")), Vector3d::Constant(std::nan(""))}, Writing::big),
        "no usable points"},
-      {"extent.ply", simple_ply<double>({{0, 0, 0}, {5e7, 0, 0}}, Writing::little), "absurd extent"},
+      {"extent.ply", simple_ply<double>({{1, 0, 0}, {5e7, 0, 0}}, Writing::little), "absurd extent"},
       {"short_text.ply", "ply\nformat ascii 1.0\nelement vertex 2\n" + kXyzFloat + "end_header\n1 2 3\n1 2\n",
        "line 9"},
       {"few_text.ply", "ply\nformat ascii 1.0\nelement vertex 3\n" + kXyzFloat + "end_header\n1 2 3\n1 2 3\n",
@@ -135,6 +135,18 @@ TEST(ReadScan, EveryBrokenFileGetsOneClearError) {
   const TemporaryFolder folder;
   for (const Broken& broken : broken_ply()) expect_error(folder, broken);
   for (const Broken& broken : broken_others()) expect_error(folder, broken);
+}
+
+TEST(ReadScan, NoughtsFarFromAllOthersAreMissingReturns) {
+  const TemporaryFolder folder;
+  const Vector3d far(650000, 6860000, 30);
+  std::vector<Vector3d> points = {Vector3d::Zero(), far, far + Vector3d(3, 0, 0), Vector3d::Zero(),
+                                  far + Vector3d(0, 4, 2)};
+  const ScanFile grid = read_scan_file(folder.write("grid.ply", simple_ply<double>(points, Writing::little)));
+  EXPECT_EQ(grid.scans.front().size(), 3U);
+  EXPECT_EQ(grid.unusable, 2U);
+  for (Vector3d& x : points) x -= x.isZero(0.0) ? Vector3d::Zero() : far;
+  EXPECT_EQ(read_scan(folder.write("near.ply", simple_ply<double>(points, Writing::little))).size(), 5U);
 }
 
 TEST(ReadScan, PathsThatAreNoFilesGetOneClearError) {

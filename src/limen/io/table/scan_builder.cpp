@@ -90,16 +90,20 @@ TableFacts in_metres(TableFacts facts) {
   return facts;
 }
 
-/// The first usable point, world; the search is short unless the table begins with missing returns.
+/// The first usable point, world, that is not 0 0 0, if there is one; the search is short unless the table
+/// begins with missing returns.
 std::optional<Vector3d> first_usable(const RecordTable& table, const FieldTriple& fields,
                                      const TableFacts& facts) {
+  std::optional<Vector3d> first;
   for (std::size_t i = 0; i < table.rows; ++i) {
     Vector3d x;
     for (std::size_t k = 0; k < 3; ++k) load_numbers(table, *fields[k], {i, i + 1}, &x[static_cast<int>(k)]);
     x *= unit_of(facts);
-    if (usable(x)) return facts.offset + (facts.pose ? *facts.pose * x : x);
+    if (!usable(x)) continue;
+    first = facts.offset + (facts.pose ? *facts.pose * x : x);
+    if (!x.isZero(0.0)) break;
   }
-  return {};
+  return first;
 }
 
 /// Appends three columns as points, brought from the file's unit to metres and moved.
@@ -253,11 +257,13 @@ void settle_centres(std::vector<Vector3d>& centres) {
   centres.shrink_to_fit();
 }
 
-/// The scan without points that are no points, and how many those were.
+/// The scan without points that are no points, and how many those were. 0 0 0 far from all others is how some
+/// programs write a missing return.
 std::pair<Scan, std::size_t> without_unusable(Scan scan) {
   const auto good = [&](std::size_t i) {
     const bool seen_from = !scan.mobile() || usable(scan.centres[i] + scan.local_origin);
-    return seen_from && usable(scan.points[i] + scan.local_origin);
+    const Vector3d x = scan.points[i] + scan.local_origin;
+    return seen_from && usable(x) && (scan.local_origin.isZero(0.0) || !x.isZero(0.0));
   };
   const std::size_t bad = parallel_reduce(
       scan.size(), kScannedPerPiece, std::size_t{0},

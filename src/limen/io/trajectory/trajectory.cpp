@@ -111,6 +111,7 @@ std::optional<Vector3d> Trajectory::position(double time_s) const {
 const Trajectory* covering_trajectory(const Scan& scan,
                                       const std::vector<std::shared_ptr<const Trajectory>>& trajectories) {
   constexpr std::size_t kAsked = 1000;
+  constexpr double kOtherWayM = 2.0;  // farther from its own scanner positions it is that of another drive
   const std::size_t step = std::max<std::size_t>(1, scan.times_s.size() / kAsked);
   const Trajectory* best = nullptr;
   std::size_t most = 0;
@@ -120,12 +121,13 @@ const Trajectory* covering_trajectory(const Scan& scan,
     for (std::size_t i = 0; i < scan.times_s.size(); i += step) {
       ++asked;
       if (const std::optional<Vector3d> place = trajectory->position(scan.times_s[i]))
-        distances.push_back((scan.local_origin + scan.points[i] - *place).norm());
+        distances.push_back(
+            (scan.local_origin + (scan.mobile() ? scan.centres[i] : scan.points[i]) - *place).norm());
     }
     if (distances.empty() || 2 * distances.size() < asked || distances.size() <= most) continue;
     const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
     std::nth_element(distances.begin(), middle, distances.end());
-    if (*middle > kFarthestRangeM) continue;
+    if (*middle > (scan.mobile() ? kOtherWayM : kFarthestRangeM)) continue;
     best = trajectory.get();
     most = distances.size();
   }

@@ -199,6 +199,20 @@ TEST(WithTrajectory, RefusesAnotherFrame) {
             std::string::npos);
 }
 
+TEST(CoveringTrajectory, OfAnotherDriveIsNotTaken) {
+  const auto drive = [](double y) {
+    return std::make_shared<const Trajectory>(std::vector<double>{0.0, 10.0},
+                                              std::vector<Vector3d>{{0, y, 2}, {10, y, 2}}, "drive", 100.0);
+  };
+  Scan pass = timed_scan(1.0);
+  EXPECT_NE(covering_trajectory(pass, {drive(5.0)}), nullptr);
+  // Its own scanner positions say along which way it was measured.
+  for (const double time_s : pass.times_s) pass.centres.emplace_back(time_s - 100.0, 0.1, 2.0);
+  EXPECT_EQ(covering_trajectory(pass, {drive(5.0)}), nullptr);
+  const auto own = drive(0.0);
+  EXPECT_EQ(covering_trajectory(pass, {drive(5.0), own}), own.get());
+}
+
 TEST(WithTrajectory, IsUsedWhereAScanIsRead) {
   const TemporaryFolder folder;
   const auto scan = folder.write("s.csv", "x,y,z,gps_time\n1,2,3,10\n2,2,3,11\n3,2,3,99\n");

@@ -37,10 +37,6 @@ Vector6d misfit(const LinkPose& measured, const Rigid3& predicted);
 /// Squared length of a misfit in standard deviations.
 double chi_square(const Vector6d& misfit, const Matrix6d& covariance);
 
-/// Places that look alike are further from each other than one of these.
-inline constexpr double kOtherPlaceM = 0.5;
-inline constexpr double kOtherPlaceRad = 0.087;
-
 /// A loop or a link with more than this (six freedoms, once in a thousand by chance) does not close.
 inline constexpr double kChiSquareBound = 22.46;
 

@@ -103,7 +103,8 @@ std::optional<ScannerPlace> shown_instead(const ScannerPlace& claim, double clai
   const double ratio = claim.source == PlaceSource::assumed ? kClearlyWorse : kFarWorse;
   if (claim_misfit <= ratio * better->misfit + kMisfitNoise) return std::nullopt;
   const Vector3d claimed = axes * claim.centre;
-  if ((better->centre - claimed).norm() < 2.0 * kNearbyM) return std::nullopt;
+  if ((better->centre - claimed).norm() < std::max(kNearbyM, kNearbySigma * better->sigma_m))
+    return std::nullopt;
   const std::size_t cells = direction_cells(sample, claimed);
   const double hidden = angular_spread(sample, claimed, cells).hidden;
   if (angular_spread(sample, better->centre, cells).hidden > hidden + kAsHidden) return std::nullopt;

@@ -94,9 +94,13 @@ ModelWalls::Reaching ModelWalls::reaching_ceiling(const Vector3d& up) const {
 }
 
 const ModelWalls::Reaching* ModelWalls::reaching_under(const Matrix3d& rotation) const {
-  if (scan_.mobile) return nullptr;
   for (std::size_t way = 0; way < kWaysUp; ++way) {
-    if (rotation.row(2).dot(way_up(way)) > kUprightAgain) return &reaching_[way];
+    if (rotation.row(2).dot(way_up(way)) <= kUprightAgain) continue;
+    const Reaching& reaching = reaching_[way];
+    // Of a pass along the street every upright plane may be a wall.
+    const bool indoors =
+        std::any_of(reaching.begin(), reaching.end(), [](double share) { return share > 0.0; });
+    return scan_.mobile && !indoors ? nullptr : &reaching;
   }
   return nullptr;
 }

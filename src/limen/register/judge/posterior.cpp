@@ -10,6 +10,8 @@
 #include <fmt/format.h>
 
 #include "limen/base/text.h"
+#include "limen/geometry/rigid.h"
+#include "limen/model/look_alike_evidence.h"
 #include "limen/register/judge/as_built.h"
 #include "limen/register/judge/evidence_table.h"
 #include "limen/register/judge/look_alike_odds.h"
@@ -49,11 +51,11 @@ std::vector<double> nats_in_model(const std::vector<FoundPose>& poses) {
     const PoseScore& score = poses[k].score;
     const double by_contradiction =
         nats_of_contradiction(score.agreeing_m2, score.contradicted_m2, table.contradicted);
-    // That nothing is contradicted does not make walls of another building the model's.
-    if (nats[k] > 0.0)
-      nats[k] += table.nats_per_m2 * (score.value() - by_chance_m2) + by_contradiction;
-    else
-      nats[k] += std::min(0.0, by_contradiction);
+    // That nothing is contradicted does not make walls of another building the model's. More walls of the
+    // model never make a pose worse.
+    const double by_surface = table.nats_per_m2 * (score.value() - by_chance_m2) + by_contradiction;
+    const double without_walls = std::min(0.0, by_contradiction);
+    nats[k] = nats[k] > 0.0 ? std::max(nats[k] + by_surface, without_walls) : nats[k] + without_walls;
   }
   return nats;
 }
@@ -90,7 +92,8 @@ class Weighing {
   /// Whether a pose may be right: of the many that are refined in a model those that exceed chance, and the
   /// best.
   [[nodiscard]] bool is_candidate(std::size_t pose) const {
-    return sort_ != PairSort::in_model || against_chance_[pose] > 0.0 || pose == first_;
+    return sort_ != PairSort::in_model || against_chance_[pose] + poses_[pose].log_prior > 0.0 ||
+           pose == first_;
   }
   /// Odds of each pose against the one that leads.
   [[nodiscard]] std::vector<double> odds_against(std::size_t leader) {
@@ -125,9 +128,20 @@ class Weighing {
     const double both = twice > 0.0 ? log_sum_exp({by_chance, std::log(twice) - as_built(pose)}) : by_chance;
     return both - table_.against_per_m2 * less_contradicted_m2;
   }
+  /// Without look-alike places.
+  [[nodiscard]] double log_wrong_here(double log_resembling, std::size_t pose) {
+    return log_sum_exp({log_resembling, -against_chance(pose)});
+  }
   [[nodiscard]] double log_wrong(double log_resembling, std::size_t pose) {
-    return log_sum_exp({log_resembling, -against_chance(pose),
+    return log_sum_exp({log_wrong_here(log_resembling, pose),
                         std::log(evidence_table::kInPair) + std::log(look_alike(pose))});
+  }
+  /// Whether two poses are so near each other that they cannot be two places built alike.
+  [[nodiscard]] bool are_one_place(std::size_t a, std::size_t b) const {
+    const RefinedPose& first = poses_[a].refined;
+    const Rigid3 apart = poses_[b].refined.target_from_source * inverse(first.target_from_source);
+    return (apart * first.centre - first.centre).norm() < kOtherPlaceM &&
+           rotation_angle(apart.rotation) < kOtherPlaceRad;
   }
   /// Share of a pose among all but `another`, by how much each exceeds chance; 0 where no place is seen
   /// twice.
@@ -141,10 +155,12 @@ class Weighing {
   }
   [[nodiscard]] double odds_of(std::size_t pose, std::size_t leader) {
     const PoseContrast contrast = questions_.contrast(leader, pose);
-    const double right = poses_[pose].log_prior - poses_[leader].log_prior +
-                         log_wrong(log_resembling(leader, contrast.for_first_m2, contrast.against_second_m2,
-                                                  share_of(pose, leader)),
-                                   leader);
+    const double leads =
+        log_resembling(leader, contrast.for_first_m2, contrast.against_second_m2, share_of(pose, leader));
+    // A pose beside the leader lays no other place there.
+    const double right =
+        poses_[pose].log_prior - poses_[leader].log_prior +
+        (are_one_place(leader, pose) ? log_wrong_here(leads, leader) : log_wrong(leads, leader));
     const double resembles =
         log_resembling(pose, contrast.for_second_m2, contrast.against_first_m2, share_of(leader, pose));
     const bool negligible = right - resembles < std::log(kNegligible);

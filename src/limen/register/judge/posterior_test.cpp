@@ -128,11 +128,24 @@ TEST(Posterior, ALookAlikePlaceIsExcludedByThingsAndByHowSurfacesWereBuilt) {
 }
 
 TEST(Posterior, ThingsSeenThroughADoorOutweighTheWallsOfALookAlike) {
-  const std::vector<FoundPose> poses{pose(30), pose(9)};
+  std::vector<FoundPose> poses{pose(30), pose(9)};
+  poses[1].refined.target_from_source.translation = Vector3d(8.0, 0.0, 0.0);
   EXPECT_EQ(weighed(poses, {things(0), things(0)}).order.front(), 0U);
   const Posterior all = weighed(poses, {things(-9), things(9)});
   EXPECT_EQ(all.order.front(), 1U);
   EXPECT_GT(all.best(), 0.9);
+}
+
+TEST(Posterior, APoseBesideTheBestIsNoLookAlikePlace) {
+  std::vector<FoundPose> poses = {pose(70.0, 2.3), pose(46.0, 14.6)};
+  const std::vector<LookAlikeEvidence> look_alike = {things(9.0), things(9.0)};
+  poses[1].refined.target_from_source.translation = Vector3d(8.0, 0.0, 0.0);
+  const double far = weighed(poses, look_alike).best();
+  poses[1].refined.target_from_source.translation = Vector3d(0.2, 0.0, 0.0);
+  const Posterior near = weighed(poses, look_alike);
+  EXPECT_EQ(near.order.front(), 0U);
+  EXPECT_GT(near.best(), far);
+  EXPECT_LT(near.probabilities[1], 1e-6);
 }
 
 TEST(Posterior, AStreetShowsMuchThatRepeats) {
@@ -189,6 +202,20 @@ TEST(Posterior, WhatChanceReachesInAModelIsLearnedThere) {
   };
   EXPECT_GT(in_model(60, 57, 20), 0.999);
   EXPECT_LT(in_model(60, 15, 14), 0.5);
+}
+
+TEST(Posterior, MoreWallsOfTheModelNeverMakeAPoseWorse) {
+  // What chance reaches is much: a pose whose walls are hardly the model's gains less surface than it loses.
+  std::vector<FoundPose> poses = {pose(89.0, 4.7), pose(95.0, 4.7)};
+  poses[1].walls.asked = 17.5;
+  double before = -1e9;
+  for (double explained = 0.0; explained <= 17.5; explained += 0.5) {
+    poses[0].walls.asked = 17.5;
+    poses[0].walls.explained = explained;
+    const double nats = nats_against_chance(poses, PairSort::in_model)[0];
+    EXPECT_GE(nats, before - 1e-9) << explained;
+    before = nats;
+  }
 }
 
 TEST(Posterior, ABeliefMovesTheOddsBetweenPoses) {

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "limen/base/angles.h"
 #include "limen/base/progress.h"
 #include "limen/match/openings/match_openings.h"
 #include "limen/register/judge/weigh_looks.h"
@@ -27,17 +28,52 @@ struct Gathered {
   double factor = 1.0;               ///< surface that each represents, as a multiple of its own
 };
 
-Gathered gathered(const ScanView& scan, const AskedSamples& asked) {
+/// Of each plane itself, or the first one that is the same plane, continued elsewhere; nothing between scans.
+/// In a model walls of storeys above each other and pieces of a façade are one plane: that two of them meet
+/// is no coincidence once one does.
+std::vector<std::int32_t> same_planes(const ScanView& scan, const ScanView& judge) {
+  constexpr double kSameOffsetM = 0.05;
+  if (!scan.model && !judge.model) return {};
+  const double same_cosine = std::cos(radians(1.0));
+  const std::vector<PlanarPolygon>& planes = scan.features->planes;
+  std::vector<std::int32_t> first(planes.size());
+  for (std::size_t i = 0; i < planes.size(); ++i) {
+    first[i] = static_cast<std::int32_t>(i);
+    for (std::size_t j = 0; j < i; ++j) {
+      if (first[j] != static_cast<std::int32_t>(j) ||
+          std::abs(planes[i].plane.normal.dot(planes[j].plane.normal)) < same_cosine ||
+          std::abs(planes[j].plane.signed_distance(planes[i].centroid)) > kSameOffsetM)
+        continue;
+      first[i] = static_cast<std::int32_t>(j);
+      break;
+    }
+  }
+  return first;
+}
+
+/// `same`: as same_planes() gives them.
+Gathered gathered(const ScanView& scan, AskedSamples asked, const std::vector<std::int32_t>& same) {
+  const std::vector<SurfaceSample>& samples = scan.features->samples;
+  const auto plane_of = [&](const SurfaceSample& sample) {
+    if (sample.plane < 0) return -1;
+    return same.empty() ? sample.plane : same[static_cast<std::size_t>(sample.plane)];
+  };
+  if (!same.empty()) {
+    // Plane by plane, clutter last.
+    const auto place = [&](std::uint32_t i) { return static_cast<std::uint32_t>(plane_of(samples[i])); };
+    std::stable_sort(asked.indices.begin(), asked.indices.end(),
+                     [&](std::uint32_t a, std::uint32_t b) { return place(a) < place(b); });
+  }
   Gathered all;
   all.factor = asked.factor;
   all.columns.reserve(asked.indices.size());
   all.planes.reserve(asked.indices.size());
   all.areas_m2.reserve(asked.indices.size());
   for (const std::uint32_t i : asked.indices) {
-    const SurfaceSample& sample = scan.features->samples[i];
+    const SurfaceSample& sample = samples[i];
     const bool planar = sample.plane >= 0;
     all.columns.add(*scan.features, i);
-    all.planes.push_back(planar ? sample.plane : -1);
+    all.planes.push_back(plane_of(sample));
     all.areas_m2.push_back(planar ? sample.area_m2 : static_cast<float>(kClutterWeight) * sample.area_m2);
   }
   return all;
@@ -158,7 +194,11 @@ class WayContrast {
  public:
   WayContrast(const ScanView& scan, const ScanView& judge, const Rigid3& judge_from_scan,
               const ScoreOptions& options)
-      : scan_(scan), judge_(judge), first_(judge_from_scan), options_(options) {
+      : scan_(scan),
+        judge_(judge),
+        first_(judge_from_scan),
+        options_(options),
+        same_(same_planes(scan, judge)) {
     // Of a model only what comes within the scan's reach is asked, which both poses decide.
     if (judge.space != nullptr && !scan.model)
       known_ = ask_first(asked_samples(scan, judge, first_, options.samples));
@@ -191,7 +231,7 @@ class WayContrast {
   }
 
   [[nodiscard]] Stated ask_first(const AskedSamples& samples) const {
-    Stated stated{gathered(scan_, samples), {}, {}};
+    Stated stated{gathered(scan_, samples, same_), {}, {}};
     stated.gains.resize(stated.asked.planes.size());
     stated.contradictions.resize(stated.asked.planes.size());
     ask_all(stated.asked, judge_, first_, options_,
@@ -228,6 +268,7 @@ class WayContrast {
   ScanView judge_;
   Rigid3 first_;
   ScoreOptions options_;
+  std::vector<std::int32_t> same_;
   Stated known_;
 };
 
@@ -236,6 +277,8 @@ class WayContrast {
 struct PoseScorer::Asked {
   Gathered source;
   Gathered target;
+  std::vector<std::int32_t> same_in_source;
+  std::vector<std::int32_t> same_in_target;
   OpeningMatching openings;
 };
 
@@ -243,10 +286,16 @@ PoseScorer::PoseScorer(const ScanView& source, const ScanView& target, const Sco
     : source_(source),
       target_(target),
       options_(options),
-      asked_(new Asked{{}, {}, {*source.features, *target.features}}) {
+      asked_(new Asked{{}, {}, {}, {}, {*source.features, *target.features}}) {
   // Of a model only what comes within the scan's reach is asked, which the pose decides.
-  if (!source.model) asked_->source = gathered(source, asked_samples(source, target, {}, options.samples));
-  if (!target.model) asked_->target = gathered(target, asked_samples(target, source, {}, options.samples));
+  asked_->same_in_source = same_planes(source, target);
+  asked_->same_in_target = same_planes(target, source);
+  if (!source.model)
+    asked_->source =
+        gathered(source, asked_samples(source, target, {}, options.samples), asked_->same_in_source);
+  if (!target.model)
+    asked_->target =
+        gathered(target, asked_samples(target, source, {}, options.samples), asked_->same_in_target);
 }
 
 PoseScorer::~PoseScorer() = default;
@@ -257,7 +306,8 @@ PoseScore PoseScorer::operator()(const Rigid3& target_from_source) const {
     if (judge.space == nullptr || (scan.model && !options_.ask_model)) return PoseScore{};
     if (!scan.model) return one_way(fixed, judge, judge_from_scan, options_);
     const AskedSamples asked = asked_samples(scan, judge, judge_from_scan, options_.samples);
-    return one_way(gathered(scan, asked), judge, judge_from_scan, options_);
+    const auto& same = &scan == &source_ ? asked_->same_in_source : asked_->same_in_target;
+    return one_way(gathered(scan, asked, same), judge, judge_from_scan, options_);
   };
   const PoseScore forth = scored(source_, target_, asked_->source, target_from_source);
   const PoseScore back = scored(target_, source_, asked_->target, inverse(target_from_source));
