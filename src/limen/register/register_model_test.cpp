@@ -9,6 +9,7 @@
 #include "limen/base/error.h"
 #include "limen/register/prepare/prepare_group.h"
 #include "limen/register/register.h"
+#include "limen/simulate/model/bim_recipe.h"
 #include "limen/simulate/model/bim_scene.h"
 
 namespace limen {
@@ -105,6 +106,24 @@ TEST(RegisterToModel, AnotherBuildingIsNoMatch) {
   const SimulatedCase made = scan_of(row_of_rooms({4.1, 7.3}, {1.5, 0.0}), 1);
   const RegistrationResult result = register_to_model(made.scans[0], model);
   EXPECT_EQ(result.outcome, Outcome::no_match) << result.reason;
+}
+
+TEST(RegisterToModel, AMergedCloudOfTwoStoreysIsNotTakenForThoseAbove) {
+  const BimModel model = model_of(office_recipe());
+  BimSceneOptions options;
+  options.seed = 31;
+  options.stations = 6;
+  options.points = 120000;
+  options.room = RoomChoice::each;
+  const SimulatedCase made = simulate_bim(model, options);
+  // Nobody says from where its points were seen. Walls of storeys are in line.
+  Scan merged;
+  for (std::size_t k = 0; k < made.scans.size(); ++k) {
+    const Rigid3 pose = world_from_scan(made.truth, k);
+    for (const Vector3d& x : made.scans[k].points)
+      merged.points.push_back(pose * (x + made.scans[k].local_origin));
+  }
+  EXPECT_TRUE(near(register_to_model(merged, model).best.target_from_source, Rigid3{}));
 }
 
 TEST(RegisterToModel, StationsKnownToOneAnotherActTogether) {
