@@ -18,6 +18,7 @@
 namespace limen {
 namespace {
 
+constexpr std::size_t kManyPoints = 100;  // fewer may be round, or a metre high, by chance
 constexpr double kSmallestScanM = 0.1;
 constexpr double kLongestScanM = 1e5;   // a day of a mobile scanner
 constexpr double kThickestScanM = 1e3;  // the least of its three sides; of a city less
@@ -83,6 +84,7 @@ Vector3d sides_of(const Scan& scan) {
 
 /// Longitudes and latitudes beside heights in metres: less than a metre wide by the numbers, and metres high.
 bool seem_degrees(const Scan& scan, const Vector3d& sides) {
+  if (scan.size() < kManyPoints) return false;
   const double widest = std::max(sides.x(), sides.y());
   if (!(widest < kWidestDegrees && widest < kDegreesPerMetre * sides.z())) return false;
   const Vector3d place = scan.local_origin + scan.points[scan.points.size() / 2];
@@ -149,7 +151,6 @@ std::string few_points_hint(const Scan& scan) {
 }
 
 std::string rounding_hint(const Scan& scan) {
-  constexpr std::size_t kManyPoints = 100;  // fewer may be round by chance
   // Rounding errors are step / sqrt(12): 1 mm, a good scanner's noise.
   constexpr double kCoarseStepM = 0.0035;
   if (scan.size() < kManyPoints) return {};

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
+#include <map>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -14,6 +16,7 @@
 #include "limen/base/error.h"
 #include "limen/base/folder_lock.h"
 #include "limen/base/system.h"
+#include "limen/base/text.h"
 #include "limen/cli/commands/commands.h"
 #include "limen/cli/inputs/cover_option.h"
 #include "limen/cli/inputs/frame_system.h"
@@ -259,6 +262,21 @@ void refuse_vendors(const std::vector<std::string>& names) {
   }
 }
 
+/// The files of a folder that are probably its scans: those of the ending that most have.
+std::string scans_in(const std::filesystem::path& folder) {
+  static const std::set<std::string> kEndings = {".e57", ".las", ".laz", ".ply",
+                                                 ".pcd", ".ptx", ".pts", ".xyz"};
+  std::map<std::string, int> count;
+  std::error_code ignored;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
+    const std::string ending = entry.path().extension().string();
+    if (entry.is_regular_file(ignored) && kEndings.count(ending) > 0) ++count[ending];
+  }
+  const auto most = std::max_element(count.begin(), count.end(),
+                                     [](const auto& a, const auto& b) { return a.second < b.second; });
+  return shell_word(folder.string()) + "/*" + (most == count.end() ? "" : most->first);
+}
+
 /// A scan that cannot be read does not stop the others; where there is nothing else nothing is begun.
 void require_files(const ProjectCommandOptions& options) {
   refuse_vendors(options.scans);
@@ -267,7 +285,7 @@ void require_files(const ProjectCommandOptions& options) {
   bool any = options.scans.empty();
   for (const std::string& scan : options.scans) {
     if (std::filesystem::is_directory(scan, ignored))
-      throw Error("is a folder, not a scan", scan, "name the scans in it: " + scan + "/*");
+      throw Error("is a folder, not a scan", scan, "name the scans in it: " + scans_in(scan));
     any = any || std::filesystem::exists(file_of_scan(scan), ignored);
   }
   if (!any) static_cast<void>(MappedFile(options.scans.front()));  // says why

@@ -173,9 +173,10 @@ class SurveyPlacer {
     const std::string which =
         solved_.components > 1 ? fmt::format("group {} keeps", component) : "the scans keep";
     if (datum.fit.state == PointFitState::too_few) {
-      refused_ += fmt::format(
-          "; {} a frame of their own: {} control point{} seen there, too few to determine a frame", which,
-          datum.points.size(), datum.points.size() == 1 ? " is" : "s are");
+      refused_ +=
+          fmt::format("; {} a frame of their own: {} control point{} seen there, too {} to determine a frame",
+                      which, datum.points.size(), datum.points.size() == 1 ? " is" : "s are",
+                      datum.points.size() < 3 ? "few" : "nearly in a line, or known too poorly,");
     } else {
       refused_ += fmt::format(
           "; {} a frame of their own: {} contradict one another, and it cannot be decided which is wrong, or "

@@ -197,7 +197,6 @@ TEST(ScannerPlace, AnAssumedPlaceThatThePointsRefuteIsReplaced) {
   EXPECT_TRUE(frame.place.refuted->isZero());
 }
 
-/// Too few points for the density on planes: the spread over directions decides.
 TEST(ScannerPlace, OfADenseScanIsTestedByAFairShareOfItsPoints) {
   SceneOptions options;
   options.name = "room";
@@ -216,6 +215,7 @@ TEST(ScannerPlace, OfADenseScanIsTestedByAFairShareOfItsPoints) {
   EXPECT_LT((found.centre - scan.centres.front()).norm(), 3.0 * *found.sigma_m);
 }
 
+/// Too few points for the density on planes: the spread over directions decides.
 TEST(ScannerPlace, AFalseClaimOfASparseScanIsDroppedAndATrueOneKept) {
   Scan scan = station_scan(-60.0, 8000);
   scan.centre_source = PlaceSource::assumed;
