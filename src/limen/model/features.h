@@ -58,8 +58,9 @@ struct Features {
   std::vector<SurfaceSample> samples;  ///< evenly spread over the seen surface, planes first
   double inlier_threshold_m = 0.0;     ///< the distance threshold that was used or chosen
   double noise_m = 0.0;                ///< estimated range noise, one standard deviation
-  /// Slow error of a mobile scan's trajectory, one standard deviation per axis, as the surface of its large
-  /// planes shows it (with their relief); 0 for a static scan.
+  /// What a whole plane may be off, one standard deviation per axis: the slow error of a mobile scan's
+  /// trajectory, as the surface of its large planes shows it (with their relief), and coarse coordinates; 0
+  /// for other static scans.
   double drift_m = 0.0;
 };
 

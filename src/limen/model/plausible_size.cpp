@@ -150,26 +150,37 @@ std::string few_points_hint(const Scan& scan) {
                      scan.points.size(), kPlanesOfAPose, kPointsOfAPlane);
 }
 
-std::string rounding_hint(const Scan& scan) {
+double coordinate_step_m(const Scan& scan) {
   // Rounding errors are step / sqrt(12): 1 mm, a good scanner's noise.
   constexpr double kCoarseStepM = 0.0035;
-  if (scan.size() < kManyPoints) return {};
-  double step_m = 0.0;
+  constexpr double kEqual = 1e-6;  // of a step
+  if (scan.size() < kManyPoints) return 0.0;
+  double coarsest = 0.0;
   for (Eigen::Index k = 0; k < 3; ++k) {
     const double origin = scan.local_origin[k];
-    const auto first = static_cast<float>(origin + scan.points.front()[k]);
-    const double step =
-        std::nextafter(std::abs(first), std::numeric_limits<float>::infinity()) - std::abs(first);
-    if (step < kCoarseStepM || step <= step_m) continue;
-    const bool rounded = std::all_of(scan.points.begin(), scan.points.end(), [&](const Vector3d& x) {
-      return static_cast<double>(static_cast<float>(origin + x[k])) == origin + x[k];
-    });
-    if (rounded) step_m = step;
+    const auto all = [&](const auto& is_round) {
+      return std::all_of(scan.points.begin(), scan.points.end(),
+                         [&](const Vector3d& x) { return is_round(origin + x[k]); });
+    };
+    const auto first = std::abs(static_cast<float>(origin + scan.points.front()[k]));
+    const double step = std::nextafter(first, std::numeric_limits<float>::infinity()) - first;
+    if (step >= kCoarseStepM && step > coarsest &&
+        all([](double x) { return static_cast<double>(static_cast<float>(x)) == x; }))
+      coarsest = step;
+    for (const double decimal : {0.1, 0.05, 0.02, 0.01, 0.005}) {
+      if (decimal > coarsest &&
+          all([&](double x) { return std::abs(x / decimal - std::round(x / decimal)) < kEqual; }))
+        coarsest = decimal;
+    }
   }
+  return coarsest;
+}
+
+std::string rounding_hint(const Scan& scan) {
+  const double step_m = coordinate_step_m(scan);
   if (step_m == 0.0) return {};
-  return fmt::format(
-      "its coordinates are rounded to {}, single precision: export them with double, or less an offset",
-      stated(step_m));
+  return fmt::format("its coordinates are rounded to {}: export them with more digits, or less an offset",
+                     stated(step_m));
 }
 
 std::string degrees_hint(const Scan& scan) {

@@ -32,8 +32,10 @@ std::string size_hint(const Scan& scan, const std::string& units_option = {});
 /// A sentence where a scan has too few points for three planes; empty where it has enough.
 std::string few_points_hint(const Scan& scan);
 
-/// A sentence where coordinates are rounded to numbers of single precision so far from 0 that a scanner's
-/// noise is less: where export programs lose millimetres. Empty where they are not.
+/// To what the coordinates are rounded, metres: by a few decimals, or by single precision far from 0, where
+/// export programs lose millimetres; the coarsest axis. 0 where a scanner's noise is more.
+double coordinate_step_m(const Scan& scan);
+/// A sentence where they are; empty where not.
 std::string rounding_hint(const Scan& scan);
 
 /// A sentence where x and y look like degrees beside heights in metres; empty where they do not.

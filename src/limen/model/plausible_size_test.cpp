@@ -169,10 +169,15 @@ TEST(PlausibleSize, CoordinatesOfSinglePrecisionFarFromZeroAreNoticed) {
   for (Vector3d& x : scan.points)
     x = (scan.local_origin + x).cast<float>().cast<double>() - scan.local_origin;
   EXPECT_NE(rounding_hint(scan).find("rounded to 0.5 m"), std::string::npos) << rounding_hint(scan);
-  // Near 0 the same numbers are fine enough.
-  for (Vector3d& x : scan.points) x = x.cast<float>().cast<double>();
+  // Near 0 single precision is fine enough; centimetres are not.
   scan.local_origin.setZero();
-  EXPECT_EQ(rounding_hint(scan), "");
+  for (Vector3d& x : scan.points)
+    x = uniform_vector(Vector3d::Zero(), Vector3d(9.0, 7.0, 3.0), random).cast<float>().cast<double>();
+  EXPECT_EQ(coordinate_step_m(scan), 0.0);
+  for (Vector3d& x : scan.points) x = 0.001 * (1000.0 * x).array().round();
+  EXPECT_EQ(coordinate_step_m(scan), 0.0);
+  for (Vector3d& x : scan.points) x = 0.01 * (100.0 * x).array().round();
+  EXPECT_EQ(coordinate_step_m(scan), 0.01);
 }
 
 }  // namespace

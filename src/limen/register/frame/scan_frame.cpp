@@ -16,6 +16,7 @@
 #include "limen/base/parallel.h"
 #include "limen/extract/surface/sample_surface.h"
 #include "limen/model/features.h"
+#include "limen/model/plausible_size.h"
 #include "limen/register/frame/frame_planes.h"
 #include "limen/register/frame/scan_up.h"
 #include "limen/register/frame/steady_sample.h"
@@ -361,6 +362,7 @@ std::vector<FramePlane> planes_in(const Matrix3d& frame, const Vector3d& corner,
 
 ScanFrame find_scan_frame(const Scan& scan, Gravity gravity, Monitor& monitor) {
   ScanFrame found;
+  found.rounding_m = coordinate_step_m(scan) / std::sqrt(12.0);
   found.upright = found.surely_upright = gravity == Gravity::up;
   if (scan.centres.size() == 1) {
     found.place.source = scan.centre_source;

@@ -17,6 +17,7 @@ struct ScanFrame {
   bool upright = false;                             ///< z points up
   bool surely_upright = false;                      ///< so clearly that no other way need be tried
   ScannerPlace place;                               ///< about the scan's local origin
+  double rounding_m = 0.0;  ///< of a plane along an axis, one standard deviation: coordinates may be coarse
 };
 
 /// Up is, of the main directions of the large planes, the one with most evidence: a tripod scanner measures

@@ -217,6 +217,8 @@ PreparedScan prepare_laid(const Scan& laid, const ScanFrame& frame, const Prepar
     StagePart extracting(monitor, kFramed, kExtracted);
     prepared.extracted = extract_features(laid, extract, extracting);
   }
+  Features& features = prepared.extracted.features;
+  features.drift_m = std::hypot(features.drift_m, frame.rounding_m);
   if (options.track && laid.mobile() && !options.planes_only)
     prepared.track = find_pass_track(laid, prepared.extracted);
   look_around(laid, options, prepared, monitor);
