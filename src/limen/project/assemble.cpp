@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -121,9 +122,29 @@ class Assembler {
     result_.control_file = survey_.file;
     result_.control_words = placed_.words;
     for (const std::string& note : survey_.notes) result_.notes.push_back(note);
+    note_sights_left_out();
     if (!survey_.file.empty() && !placed_.placed) result_.notes.push_back(placed_.words);
     if (placed_.placed && placed_.settled.redundancy > 0.0)
       result_.control_factor = placed_.settled.chi_square / placed_.settled.redundancy;
+  }
+
+  /// Targets that one scan sees elsewhere than the others do: two of them may be exchanged.
+  void note_sights_left_out() {
+    std::map<int, std::string> of_scans;
+    for (const ProjectPoint& point : result_.points) {
+      if (point.state == PointState::not_placed || point.role == PointRole::check) continue;
+      const bool others = std::any_of(point.sights.begin(), point.sights.end(),
+                                      [](const ProjectSight& it) { return it.used; });
+      for (const ProjectSight& sight : point.sights) {
+        if (sight.used || !sight.missed_m || !others) continue;
+        std::string& names = of_scans[sight.scan];
+        names += fmt::format("{}{} ({:.3f} m)", names.empty() ? "" : ", ", point.name, *sight.missed_m);
+      }
+    }
+    for (const auto& [scan, names] : of_scans)
+      result_.notes.push_back(
+          fmt::format("targets of {} are left out, because they are elsewhere by the other scans: {}",
+                      scan_name(result_.scans[static_cast<std::size_t>(scan)]), names));
   }
 
   void tell_adjustment(const JointFinding& finding) {
