@@ -3,6 +3,7 @@
 #include "limen/model/plausible_size.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -150,37 +151,56 @@ std::string few_points_hint(const Scan& scan) {
                      scan.points.size(), kPlanesOfAPose, kPointsOfAPlane);
 }
 
-double coordinate_step_m(const Scan& scan) {
+namespace {
+
+/// The coarsest of the axes, of those steps to which all coordinates are rounded. `steps_at`: those that are
+/// tried, of the axis of a coordinate; `is_round(x, step)`.
+template <typename StepsAt, typename IsRound>
+double step_of_axes(const Scan& scan, const StepsAt& steps_at, const IsRound& is_round) {
   // Rounding errors are step / sqrt(12): 1 mm, a good scanner's noise.
   constexpr double kCoarseStepM = 0.0035;
-  constexpr double kEqual = 1e-6;  // of a step
   if (scan.size() < kManyPoints) return 0.0;
   double coarsest = 0.0;
   for (Eigen::Index k = 0; k < 3; ++k) {
     const double origin = scan.local_origin[k];
-    const auto all = [&](const auto& is_round) {
-      return std::all_of(scan.points.begin(), scan.points.end(),
-                         [&](const Vector3d& x) { return is_round(origin + x[k]); });
-    };
-    const auto first = std::abs(static_cast<float>(origin + scan.points.front()[k]));
-    const double step = std::nextafter(first, std::numeric_limits<float>::infinity()) - first;
-    if (step >= kCoarseStepM && step > coarsest &&
-        all([](double x) { return static_cast<double>(static_cast<float>(x)) == x; }))
-      coarsest = step;
-    for (const double decimal : {0.1, 0.05, 0.02, 0.01, 0.005}) {
-      if (decimal > coarsest &&
-          all([&](double x) { return std::abs(x / decimal - std::round(x / decimal)) < kEqual; }))
-        coarsest = decimal;
+    for (const double step : steps_at(origin + scan.points.front()[k])) {
+      if (step < kCoarseStepM || step <= coarsest) continue;
+      const bool all = std::all_of(scan.points.begin(), scan.points.end(),
+                                   [&](const Vector3d& x) { return is_round(origin + x[k], step); });
+      if (all) coarsest = step;
     }
   }
   return coarsest;
 }
 
+double single_precision_step_m(const Scan& scan) {
+  const auto step_at = [](double x) {
+    const auto first = std::abs(static_cast<float>(x));
+    return std::array<double, 1>{std::nextafter(first, std::numeric_limits<float>::infinity()) - first};
+  };
+  return step_of_axes(scan, step_at,
+                      [](double x, double) { return static_cast<double>(static_cast<float>(x)) == x; });
+}
+
+double decimal_step_m(const Scan& scan) {
+  constexpr double kEqual = 1e-6;  // of a step
+  const auto steps = [](double) { return std::array<double, 5>{0.1, 0.05, 0.02, 0.01, 0.005}; };
+  return step_of_axes(
+      scan, steps, [](double x, double step) { return std::abs(x / step - std::round(x / step)) < kEqual; });
+}
+
+}  // namespace
+
+double coordinate_step_m(const Scan& scan) {
+  return std::max(single_precision_step_m(scan), decimal_step_m(scan));
+}
+
 std::string rounding_hint(const Scan& scan) {
-  const double step_m = coordinate_step_m(scan);
+  const double step_m = single_precision_step_m(scan);
   if (step_m == 0.0) return {};
-  return fmt::format("its coordinates are rounded to {}: export them with more digits, or less an offset",
-                     stated(step_m));
+  return fmt::format(
+      "its coordinates are rounded to {}, single precision: export them with double, or less an offset",
+      stated(step_m));
 }
 
 std::string degrees_hint(const Scan& scan) {

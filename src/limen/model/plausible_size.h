@@ -35,7 +35,7 @@ std::string few_points_hint(const Scan& scan);
 /// To what the coordinates are rounded, metres: by a few decimals, or by single precision far from 0, where
 /// export programs lose millimetres; the coarsest axis. 0 where a scanner's noise is more.
 double coordinate_step_m(const Scan& scan);
-/// A sentence where they are; empty where not.
+/// A sentence where that is by single precision; empty where not: few decimals may be meant.
 std::string rounding_hint(const Scan& scan);
 
 /// A sentence where x and y look like degrees beside heights in metres; empty where they do not.
