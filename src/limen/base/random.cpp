@@ -26,7 +26,7 @@ std::uint32_t RandomStream::below(std::uint32_t n) {
 double RandomStream::uniform() {
   const std::uint64_t high = next();
   const std::uint64_t low = next();
-  return static_cast<double>(((high << 32U) | low) >> 11U) * 0x1.0p-53;
+  return unit_lot((high << 32U) | low);
 }
 
 double RandomStream::normal() {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 
 namespace limen {
@@ -34,6 +35,21 @@ inline std::uint64_t mix64(std::uint64_t value) {
   value = (value ^ (value >> 30U)) * 0xbf58476d1ce4e5b9ULL;
   value = (value ^ (value >> 27U)) * 0x94d049bb133111ebULL;
   return value ^ (value >> 31U);
+}
+
+/// The hash of the cell of `cell_m` that a place (three coordinates) lies in. Points that are drawn by it are
+/// the same ones in any order.
+template <typename Place>
+std::uint64_t mix_place(const Place& place, double cell_m) {
+  std::uint64_t mixed = 0;
+  for (const double x : place)
+    mixed = mix64(mixed ^ static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(x / cell_m))));
+  return mixed;
+}
+
+/// A hash as a number in [0, 1).
+inline double unit_lot(std::uint64_t mixed) {
+  return static_cast<double>(mixed >> 11U) * 0x1.0p-53;
 }
 
 }  // namespace limen

@@ -19,14 +19,6 @@ constexpr double kBeginM = 0.2;     // of a ray: nothing so near to the scanner 
 constexpr std::size_t kSamplesPerPiece = 4096;
 constexpr double kSamePlaceM = 1e-4;
 
-/// A number by which points are drawn that stays when a file has them in another order.
-std::uint64_t number_of(const Vector3d& x) {
-  std::uint64_t number = 0;
-  for (const double coordinate : x)
-    number = mix64(number ^ static_cast<std::uint64_t>(std::llround(coordinate / kSamePlaceM)));
-  return number;
-}
-
 }  // namespace
 
 FaceTiles::FaceTiles(const FaceIndex& index, double tile_m) : index_(index), grids_(index.size()) {
@@ -85,11 +77,10 @@ FaceCoverage FaceTiles::count(std::size_t face) const {
 
 void FaceTiles::add(const ScanInModel& scan, const PointFaces& laid, const DeviationOptions& options) {
   const double share = static_cast<double>(options.rays) / static_cast<double>(scan.points.size() + 1);
-  const auto bound = static_cast<std::uint64_t>(std::min(1.0, share) * 18446744073709549568.0);
   const auto follow = [&](std::size_t i) {
     const Vector3d& point = scan.points[i];
     if (laid.face[i] >= 0) mark(laid.face[i], point, kCovered);
-    if (!scan.centre_known() || (share < 1.0 && number_of(point) >= bound)) return;
+    if (!scan.centre_known() || unit_lot(mix_place(point, kSamePlaceM)) >= share) return;
     const Vector3d& centre = scan.centre(i);
     const double range = (point - centre).norm();
     if (range <= kBeginM) return;

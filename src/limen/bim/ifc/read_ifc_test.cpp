@@ -85,6 +85,13 @@ std::string text_of(const WallFile& file) {
   return text + file.more + "ENDSEC;\nEND-ISO-10303-21;\n";
 }
 
+WallFile in_millimetres() {
+  WallFile file;
+  file.units_per_metre = 1000.0;
+  file.length_unit = "IFCSIUNIT(*,.LENGTHUNIT.,.MILLI.,.METRE.)";
+  return file;
+}
+
 /// The tests of whole files need limen_ifc, which can be left out of a build.
 class ReadIfc : public ::testing::Test {
  protected:
@@ -167,10 +174,8 @@ TEST_F(ReadIfc, RevealsLookIntoTheOpening) {
 }
 
 TEST_F(ReadIfc, MillimetresOfAnOldSchema) {
-  WallFile file;
+  WallFile file = in_millimetres();
   file.schema = "IFC2X3";
-  file.units_per_metre = 1000.0;
-  file.length_unit = "IFCSIUNIT(*,.LENGTHUNIT.,.MILLI.,.METRE.)";
   const BimModel model = model_of(text_of(file));
   expect_wall(model);
   EXPECT_DOUBLE_EQ(model.metres_per_unit, 0.001);
@@ -191,9 +196,7 @@ TEST_F(ReadIfc, Feet) {
 }
 
 TEST_F(ReadIfc, MapConversionIsAppliedOnce) {
-  WallFile file;
-  file.units_per_metre = 1000.0;
-  file.length_unit = "IFCSIUNIT(*,.LENGTHUNIT.,.MILLI.,.METRE.)";
+  WallFile file = in_millimetres();
   // A quarter turn: x to the north, y to the west.
   file.more =
       "#200=IFCPROJECTEDCRS('EPSG:25832',$,$,$,$,$,#201);\n#201=IFCSIUNIT(*,.LENGTHUNIT.,$,.METRE.);\n"
@@ -206,9 +209,7 @@ TEST_F(ReadIfc, MapConversionIsAppliedOnce) {
 }
 
 TEST_F(ReadIfc, AMapConversionsScaleSaysTheUnitOfTheMapWhereNothingElseDoes) {
-  WallFile file;
-  file.units_per_metre = 1000.0;
-  file.length_unit = "IFCSIUNIT(*,.LENGTHUNIT.,.MILLI.,.METRE.)";
+  WallFile file = in_millimetres();
   file.more =
       "#200=IFCPROJECTEDCRS('EPSG:25832',$,$,$,$,$,$);\n"
       "#202=IFCMAPCONVERSION(#5,#200,500000.,5400000.,110.,1.,0.,0.001);\n";
@@ -225,9 +226,7 @@ TEST_F(ReadIfc, AMapConversionsScaleSaysTheUnitOfTheMapWhereNothingElseDoes) {
 }
 
 TEST_F(ReadIfc, MapConversionThatForgetsTheUnitsIsStatedOf) {
-  WallFile file;
-  file.units_per_metre = 1000.0;
-  file.length_unit = "IFCSIUNIT(*,.LENGTHUNIT.,.MILLI.,.METRE.)";
+  WallFile file = in_millimetres();
   file.more =
       "#200=IFCPROJECTEDCRS('EPSG:25832',$,$,$,$,$,#201);\n#201=IFCSIUNIT(*,.LENGTHUNIT.,$,.METRE.);\n"
       "#202=IFCMAPCONVERSION(#5,#200,500000.,5400000.,110.,1.,0.,1.);\n";

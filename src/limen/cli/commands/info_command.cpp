@@ -106,12 +106,7 @@ std::string info_table(const Json& files) {
 double points_per_cube(const Scan& scan, double side_m) {
   std::vector<std::uint64_t> keys;
   keys.reserve(scan.size());
-  for (const Vector3d& point : scan.points) {
-    std::uint64_t key = 0;
-    for (int k = 0; k < 3; ++k)
-      key = mix64(key ^ static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(point[k] / side_m))));
-    keys.push_back(key);
-  }
+  for (const Vector3d& point : scan.points) keys.push_back(mix_place(point, side_m));
   std::sort(keys.begin(), keys.end());
   std::vector<std::size_t> counts;
   for (std::size_t begin = 0; begin < keys.size();) {

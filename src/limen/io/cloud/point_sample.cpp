@@ -19,13 +19,6 @@ constexpr double kSamePointM = 1e-3;
 constexpr std::size_t kMarks = 1024;
 constexpr double kMarkM = 1e-4;
 
-std::uint64_t number_of(const Vector3d& place) {
-  std::uint64_t number = 0;
-  for (const double x : place)
-    number = mix64(number ^ static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(x / kMarkM))));
-  return number;
-}
-
 bool stands_left_of(const Vector3d& point, double x) {
   return point.x() < x;
 }
@@ -67,7 +60,7 @@ std::vector<std::uint64_t> point_marks(const Scan& scan) {
     marks.resize(kMarks);
   };
   for (const Vector3d& point : scan.points) {
-    const std::uint64_t number = number_of(scan.local_origin + point);
+    const std::uint64_t number = mix_place(scan.local_origin + point, kMarkM);
     if (number < least_left_out) marks.push_back(number);
     if (marks.size() >= 4 * kMarks) cut();
   }

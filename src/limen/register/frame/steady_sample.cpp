@@ -46,13 +46,12 @@ std::vector<Ranged> chosen_points(const std::vector<Vector3d>& points, const Vec
                                   std::size_t most, double shell_m) {
   const bool all = points.size() <= most;
   const double share = std::min(1.0, static_cast<double>(most) / static_cast<double>(points.size() + 1));
-  const auto bound = static_cast<std::uint64_t>(share * 18446744073709549568.0);
   std::vector<std::vector<Ranged>> parts((points.size() + kSampledPerPiece - 1) / kSampledPerPiece);
   parallel_for(points.size(), kSampledPerPiece, [&](std::size_t begin, std::size_t end) {
     std::vector<Ranged>& part = parts[begin / kSampledPerPiece];
     for (std::size_t i = begin; i < end; ++i) {
       const double range_m = (points[i] - middle).norm();
-      if (all || mix64(shell_of(range_m, shell_m) + 1) < bound)
+      if (all || unit_lot(mix64(shell_of(range_m, shell_m) + 1)) < share)
         part.push_back({range_m, static_cast<std::uint32_t>(i)});
     }
   });

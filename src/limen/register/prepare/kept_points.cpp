@@ -199,9 +199,7 @@ KeepLaw law_along_way(const WayRanges& way, std::size_t size, const KeepOptions&
 double lot_of(const Vector3d& in_frame) {
   constexpr double kFarM = 1e9;  // farther than anything lies
   const auto cell = [](double x) { return static_cast<std::uint64_t>((x + kFarM) / kCubeM); };
-  const std::uint64_t mixed =
-      mix64(cell(in_frame.x()) + mix64(cell(in_frame.y()) + mix64(cell(in_frame.z()))));
-  return static_cast<double>(mixed >> 11U) * 0x1p-53;
+  return unit_lot(mix64(cell(in_frame.x()) + mix64(cell(in_frame.y()) + mix64(cell(in_frame.z())))));
 }
 
 /// Those whose lot is below probability(index).
