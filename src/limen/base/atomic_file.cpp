@@ -29,8 +29,9 @@ constexpr std::string_view kEnding = ".part";
 /// Beside the destination, so that the rename stays within one file system; unique in this machine.
 fs::path hidden_name_beside(const fs::path& path) {
   static std::atomic<unsigned> counter{0};
-  const std::string name =
-      fmt::format(".{}{}{}-{}{}", path.filename().string(), kMark, getpid(), counter++, kEnding);
+  constexpr std::size_t kMostOfName = 200;  // bytes: file systems take 255
+  const std::string name = fmt::format(".{}{}{}-{}{}", path.filename().string().substr(0, kMostOfName), kMark,
+                                       getpid(), counter++, kEnding);
   return path.parent_path() / name;
 }
 

@@ -64,6 +64,12 @@ TEST_F(AtomicFileTest, WithoutCommitTheOldFileStaysAndNothingElse) {
   EXPECT_EQ(entries(), 1);
 }
 
+TEST_F(AtomicFileTest, TakesTheLongestNamesThatAFileCanHave) {
+  const std::string name(255, 'x');
+  write_file(folder_ / name, "all");
+  EXPECT_EQ(text_of(name), "all");
+}
+
 TEST_F(AtomicFileTest, KeepsALinkAndReplacesWhatItPointsTo) {
   write_file(folder_ / "real.txt", "old");
   fs::create_symlink(folder_ / "real.txt", folder_ / "link.txt");

@@ -25,6 +25,7 @@ namespace {
 struct PlanesOptions : FeatureChoice {
   std::string detector = "auto";
   std::string threshold = "auto";
+  int min_inliers = 0;
   ExtractOptions extract;
 };
 
@@ -85,6 +86,10 @@ int run(PlanesOptions options, const Session& session) {
   options.extract.detect.detector = detectors().at(options.detector);
   options.extract.detect.seed = session.common.seed;
   set_threshold(options.threshold, options.extract);
+  if (options.min_inliers != 0) {
+    options.extract.grow.min_inliers = options.min_inliers;
+    options.extract.interior.min_inliers = options.min_inliers;
+  }
   options.extract.check();
   refuse_same_file(options.output, options.scan);
   if (is_bim_file(options.scan)) return run_model(options, session);
@@ -119,8 +124,9 @@ void add_planes_command(CommandLine& app, Session& session) {
   command->add_option("--threshold-m,--inlier-threshold-m METRES|RULE", options->threshold,
                       "Largest distance of a point from its plane: metres, or a rule: auto (default), noise, "
                       "a_contrario; 0 is auto");
-  command->add_option("--min-inliers N", options->extract.grow.min_inliers,
-                      "Smallest number of points of a plane (default 200)");
+  command->add_option("--min-inliers N", options->min_inliers,
+                      "Smallest number of points of a plane; 0: 200, and 40 of what is seen through windows "
+                      "(default)");
   add_length_option(*command, "--alpha-m", options->extract.polygons.alpha_m,
                     "Radius of the outlines' alpha shape; 0: from the spacing of the points (default)");
 }

@@ -14,6 +14,7 @@
 
 #include "limen/base/error.h"
 #include "limen/base/parallel.h"
+#include "limen/base/progress.h"
 #include "limen/base/text.h"
 #include "limen/files/scan_in_file.h"
 #include "limen/geometry/rigid.h"
@@ -21,6 +22,7 @@
 #include "limen/io/table/moved_columns.h"
 #include "limen/io/table/packed_rows.h"
 #include "limen/io/table/record_table.h"
+#include "limen/io/table/value_tops.h"
 
 namespace limen {
 namespace {
@@ -33,8 +35,8 @@ class ColumnMover {
  public:
   ColumnMover(const RecordTable& source, const Rigid3& motion, const SplineMotion* bend = nullptr);
 
-  /// The column of this name; `as_numbers`: as float64, whatever it is.
-  void add(const std::string& name, bool as_numbers);
+  /// The column of this name; `as_numbers`: as float64, whatever it is, times `factor`.
+  void add(const std::string& name, bool as_numbers, double factor);
   /// A column with the same value in every row.
   void add_constant(const std::string& name, double value);
   [[nodiscard]] RecordTable table() const { return table_; }
@@ -117,7 +119,7 @@ ColumnMover::ColumnMover(const RecordTable& source, const Rigid3& motion, const 
   table_.keeper = memory_;
 }
 
-void ColumnMover::add(const std::string& name, bool as_numbers) {
+void ColumnMover::add(const std::string& name, bool as_numbers, double factor) {
   const auto find_moved = [&] {
     return std::find_if(memory_->moved.begin(), memory_->moved.end(),
                         [&](const auto& column) { return column.first == name; });
@@ -138,6 +140,8 @@ void ColumnMover::add(const std::string& name, bool as_numbers) {
   if (as_numbers) {
     std::vector<double>& numbers = memory_->numbers.emplace_back(source_.rows);
     load_numbers(source_, field, {0, source_.rows}, numbers.data());
+    if (factor != 1.0)
+      for (double& number : numbers) number = std::round(factor * number);
     table_.fields.push_back(
         {name, Scalar::float64, reinterpret_cast<const char*>(numbers.data()), sizeof(double)});
     return;
@@ -292,6 +296,7 @@ JoinedClouds::JoinedClouds(std::vector<PlacedCloud> clouds, bool tell_source, co
   }
   if (!system.empty()) plan_.georeference = {system};
   settle_centres();
+  settle_colours();
   if (tell_source_) add_column(kSourceColumn, Scalar::uint8);
 }
 
@@ -336,6 +341,76 @@ void JoinedClouds::settle_centres() {
   }
 }
 
+/// Of the columns of these names, the largest finite values of a cloud as it is stored.
+std::map<std::string, double> largest_of(const PlacedCloud& placed, const std::set<std::string>& names) {
+  std::map<std::string, double> largest;
+  const std::unique_ptr<PointStream> stream = placed.input->file().read(placed.cloud);
+  while (const std::optional<RecordTable> piece = stream->next(kPointsAtOnce)) {
+    CancelScope::check();
+    placed.input->forget();
+    for (const std::string& name : names) {
+      const Field* field = piece->find({name});
+      if (field != nullptr) largest[name] = std::max(largest[name], largest_value(*piece, *field));
+    }
+  }
+  return largest;
+}
+
+/// Clouds whose colours are of different kinds get factors to the one that all have then.
+void JoinedClouds::settle_colours() {
+  if (clouds_.size() < 2) return;
+  double top = 0.0;
+  std::vector<double> tops;
+  for (const PlacedCloud& placed : clouds_) {
+    std::unique_ptr<PointStream> stream;
+    const std::optional<RecordTable> table = first_rows(placed, stream);
+    bool bytes = true;
+    bool integer = true;
+    std::set<std::string> names;
+    for (const Field& field : table->fields) {
+      if (!is_colour(field.name)) continue;
+      names.insert(field.name);
+      bytes = bytes && kept_type(field) == Scalar::uint8;
+      integer = integer && is_integer(kept_type(field));
+    }
+    double largest = 0.0;
+    if (!bytes)
+      for (const auto& [name, most] : largest_of(placed, names)) largest = std::max(largest, most);
+    tops.push_back(names.empty() ? 0.0 : (bytes ? 255.0 : colour_top(largest, integer)));
+    top = std::max(top, tops.back());
+  }
+  const bool alike =
+      std::all_of(tops.begin(), tops.end(), [&](double one) { return one == 0.0 || one == top; });
+  if (alike) return;
+  for (std::size_t k = 0; k < clouds_.size(); ++k)
+    clouds_[k].colour_factor = tops[k] > 0.0 ? top / tops[k] : 1.0;
+  for (ColumnPlan& column : plan_.columns) {
+    if (!is_colour(lower_case(column.name))) continue;
+    column.type = top > 255.0 ? Scalar::uint16 : Scalar::uint8;
+    mixed_.insert(lower_case(column.name));
+  }
+}
+
+CloudPlan JoinedClouds::plan_with_largest() const {
+  CloudPlan plan = plan_;
+  std::set<std::string> asked;
+  for (const ColumnPlan& column : plan.columns) {
+    const std::string name = lower_case(column.name);
+    const bool fraction = name == "intensity" && !is_integer(column.type);
+    const bool colour = is_colour(name) && column.type != Scalar::uint8 && column.type != Scalar::uint16;
+    if (fraction || colour) asked.insert(name);
+  }
+  if (asked.empty()) return plan;
+  for (const PlacedCloud& placed : clouds_) {
+    for (const auto& [name, most] : largest_of(placed, asked)) {
+      for (ColumnPlan& column : plan.columns) {
+        if (lower_case(column.name) == name) column.largest = std::max(column.largest.value_or(0.0), most);
+      }
+    }
+  }
+  return plan;
+}
+
 /// Reads one cloud after the other.
 class JoinedStream : public PointStream {
  public:
@@ -365,7 +440,7 @@ class JoinedStream : public PointStream {
       if (tell_source_ && name == kSourceColumn) {
         mover.add_constant(name, static_cast<double>(placed.source));
       } else if (piece.find({name}) != nullptr) {
-        mover.add(name, mixed_.count(name) > 0);
+        mover.add(name, mixed_.count(name) > 0, is_colour(name) ? placed.colour_factor : 1.0);
       } else if (origin != kOrigin.end() && centre) {
         mover.add_constant(name, (*centre)[origin - kOrigin.begin()]);
       } else {

@@ -22,11 +22,13 @@ struct PlacedCloud {
   std::optional<Vector3d> centre = {};  ///< scanner position in the world of the file, where there is one
   std::size_t source = 0;               ///< number of the file
   std::shared_ptr<const SplineMotion> bend = {};  ///< of a pass that drifted: by time, after the motion
+  double colour_factor = 1.0;                     ///< to the kind of colours that the joined cloud has
 };
 
 /// Several clouds as one that is read in pieces: x y z as float64 in one frame, all other columns that any of
 /// them has. Optical centres per point move with the points, normals turn, everything else stays as it was;
-/// where a cloud lacks a column its points have 0 there, or not-a-number where the column takes it.
+/// where a cloud lacks a column its points have 0 there, or not-a-number where the column takes it. Colours
+/// of 8 and 16 bits and fractions are brought to one kind.
 class JoinedClouds {
  public:
   /// `tell_source`: a column source_cloud says which file each point is from. Static clouds with different
@@ -36,6 +38,9 @@ class JoinedClouds {
 
   /// What a writer needs to know; the columns are those of the tables of read(), in their order.
   [[nodiscard]] const CloudPlan& plan() const { return plan_; }
+  /// The plan with the largest values of colours and intensities that are no whole numbers of 8 or 16 bits:
+  /// reads all points where there are such.
+  [[nodiscard]] CloudPlan plan_with_largest() const;
   /// Sentences about what could not be carried over.
   [[nodiscard]] const std::vector<std::string>& notes() const { return notes_; }
   /// The points of all clouds, one cloud after the other; forgets the bytes that were read.
@@ -45,6 +50,7 @@ class JoinedClouds {
   void add_columns(const RecordTable& table, const CloudFacts& facts);
   void add_column(const std::string& name, Scalar type);
   void settle_centres();
+  void settle_colours();
 
   std::vector<PlacedCloud> clouds_;
   bool tell_source_;

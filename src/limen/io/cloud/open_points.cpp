@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "limen/base/error.h"
+#include "limen/base/progress.h"
 #include "limen/base/text.h"
 #include "limen/files/mapped_file.h"
 #include "limen/io/e57/e57.h"
@@ -174,6 +175,14 @@ OpenPoints::OpenPoints(const std::filesystem::path& path, const ScanInFile& name
   if (format_ == PointFormat::las)
     georeference_ = las_coordinate_systems(parse_las_header(bytes_->bytes(), path.string()));
   if (format_ == PointFormat::e57) georeference_ = e57_coordinate_systems(bytes_->bytes(), path.string());
+}
+
+void OpenPoints::prove(std::size_t cloud) const {
+  const std::unique_ptr<PointStream> stream = file_->read(cloud);
+  while (stream->next(kPointsAtOnce)) {
+    CancelScope::check();
+    forget();
+  }
 }
 
 std::uint64_t OpenPoints::points() const {

@@ -25,6 +25,9 @@ PointFormat point_format_of(std::string_view bytes, const std::filesystem::path&
 /// The clouds with points of a file, of which empty ones are no scans; a file of one cloud has one scan.
 std::vector<std::size_t> scans_with_points(const PointFile& file);
 
+/// Rows that are read at once where a file is read piece by piece.
+constexpr std::size_t kPointsAtOnce = std::size_t{1} << 18U;
+
 /// A point file with the bytes it is read from, or one scan of such a file: then the other clouds of the file
 /// are not seen.
 class OpenPoints {
@@ -49,6 +52,8 @@ class OpenPoints {
   [[nodiscard]] std::size_t number_in_file(std::size_t cloud) const { return first_ + cloud; }
   /// Points of all clouds, as the file says.
   [[nodiscard]] std::uint64_t points() const;
+  /// Reads all points of a cloud of file(), as a proof that it can be read. Throws Error where it cannot.
+  void prove(std::size_t cloud) const;
   /// Gives the memory of bytes that were read back; they may be read again.
   void forget() const { bytes_->forget(); }
 

@@ -11,6 +11,7 @@
 
 #include "limen/base/error.h"
 #include "limen/base/parallel.h"
+#include "limen/base/random.h"
 #include "limen/io/cloud/cell_table.h"
 #include "limen/io/table/packed_rows.h"
 
@@ -35,16 +36,9 @@ constexpr double kCloseEnough = 0.95;
 /// Bytes of a cell beside its record: its two slots, its row.
 constexpr std::size_t kBytesPerCell = 40;
 
-/// The bits of `value` well mixed, one to one.
-std::uint64_t mixed(std::uint64_t value) {
-  value = (value ^ (value >> 30U)) * 0xBF58476D1CE4E5B9ULL;
-  value = (value ^ (value >> 27U)) * 0x94D049BB133111EBULL;
-  return value ^ (value >> 31U);
-}
-
 /// A random rank for each point: the point of the lowest rank in a cell is kept. No two ranks are equal.
 std::uint64_t lot_of(std::uint64_t row) {
-  return mixed(row + 0x9E3779B97F4A7C15ULL);
+  return mix64(row);
 }
 
 std::uint64_t floor_of(double value) {
@@ -61,7 +55,7 @@ struct Grid {
     const std::uint64_t i = floor_of(x * per_m + 0.3819660113);
     const std::uint64_t j = floor_of(y * per_m + 0.2360679775);
     const std::uint64_t k = floor_of(z * per_m + 0.7082039325);
-    return mixed(i * 0x9E3779B97F4A7C15ULL + j * 0xC2B2AE3D27D4EB4FULL + k * 0x165667B19E3779F9ULL);
+    return mix64(i * 0x9E3779B97F4A7C15ULL + j * 0xC2B2AE3D27D4EB4FULL + k * 0x165667B19E3779F9ULL);
   }
 };
 
@@ -311,7 +305,11 @@ class CloudThinner::Cells {
     const auto wanted = static_cast<double>(options_.most_points);
     const std::uint64_t share = 1 + options_.most_points / 100000;
     double low = spacing_m_;
-    double high = 4.0 * spacing_m_;
+    double high = kFastestGrowth * low;
+    while (cells_at(high, share) > wanted) {
+      low = high;
+      high *= kFastestGrowth;
+    }
     double chosen = high;
     for (int round = 0; round < 24; ++round) {
       chosen = std::sqrt(low * high);

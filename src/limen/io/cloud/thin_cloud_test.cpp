@@ -59,6 +59,17 @@ TEST(ThinCloud, KeepsNearlyAsManyPointsAsAskedFor) {
   }
 }
 
+/// The spacing of nearly as many points as there are is found too, and none are drawn by lot.
+TEST(ThinCloud, ChoosesTheSpacingWhereMostPointsStay) {
+  const RecordTable table = room_table(30000);
+  for (const std::uint64_t wanted : {15000U, 25000U}) {
+    const ThinnedCloud kept = thinned(table, most(wanted));
+    ThinOptions spaced;
+    spaced.spacing_m = kept.spacing_m;
+    EXPECT_LE(thinned(table, spaced).table.rows, wanted + wanted / 20) << wanted;
+  }
+}
+
 TEST(ThinCloud, WhatIsKeptIsInTheCloudAndInItsOrder) {
   const RecordTable table = room_table(50000);
   const ThinnedCloud kept = thinned(table, most(4000));

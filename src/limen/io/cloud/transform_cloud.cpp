@@ -58,6 +58,7 @@ TransformedCloud move_in_format(const OpenPoints& input, const Rigid3& pose,
     case PointFormat::pcd:
       return transform_pcd(bytes, pose, output);
     case PointFormat::ptx:
+      for (std::size_t k = 0; k < input.file().clouds().size(); ++k) input.prove(k);
       return transform_ptx(bytes, pose, output);
     case PointFormat::text:
       return transform_text(bytes, pose, output);
@@ -66,6 +67,7 @@ TransformedCloud move_in_format(const OpenPoints& input, const Rigid3& pose,
     case PointFormat::e57:
       break;
   }
+  for (std::size_t k = 0; k < input.file().clouds().size(); ++k) input.prove(k);
   const MovedE57 moved = replace_e57_poses(input.bytes(), input.name(), pose, output, monitor, system.wkt);
   return {moved.points, input.file().format(), moved.notes};
 }

@@ -14,6 +14,7 @@
 #include "limen/base/error.h"
 #include "limen/io/cloud/join_clouds.h"
 #include "limen/io/cloud/read_scan.h"
+#include "limen/io/las/las.h"
 #include "limen/io/ply/ply_header.h"
 #include "limen/io/table/packed_rows.h"
 
@@ -76,6 +77,38 @@ TEST(JoinedClouds, ColumnsOfOneNameAreOfOneKind) {
   EXPECT_EQ(values[0], 0.5);
   EXPECT_EQ(values[1], 7.0);
   EXPECT_TRUE(std::isnan(values[2]));
+}
+
+TEST(JoinedClouds, ColoursAreBroughtToOneKind) {
+  const TemporaryFolder folder;
+  const auto cloud = [](const std::string& type, const std::string& colour) {
+    std::string text = "ply\nformat ascii 1.0\nelement vertex 1\n";
+    for (const char* name : {"x", "y", "z"}) text += std::string("property float ") + name + "\n";
+    for (const char* name : {"red", "green", "blue"}) text += "property " + type + " " + name + "\n";
+    return text + "end_header\n1 2 3 " + colour + "\n";
+  };
+  const OpenPoints bytes(folder.write("a.ply", cloud("uchar", "0 128 255")));
+  const OpenPoints words(folder.write("b.ply", cloud("ushort", "65535 32896 0")));
+  const OpenPoints fractions(folder.write("c.ply", cloud("float", "0.5 1 0")));
+  const JoinedClouds joined({{&bytes, 0, {}}, {&words, 0, {}}, {&fractions, 0, {}}}, false);
+  std::vector<double> green;
+  const auto stream = joined.read();
+  while (const std::optional<RecordTable> piece = stream->next(10))
+    load_numbers(*piece, *piece->find({"green"}), {0, 1}, &green.emplace_back());
+  EXPECT_EQ(green, (std::vector<double>{32896.0, 32896.0, 65535.0}));
+}
+
+/// LAS has one kind of intensities, whatever the first rows look like.
+TEST(TransformCloud, IntensitiesOfTheLastPointsCount) {
+  const TemporaryFolder folder;
+  std::string text = "x y z intensity\n";
+  for (int i = 0; i < 300000; ++i) text += "1 2 3 0.0\n";
+  transform_cloud(folder.write("in.xyz", text + "4 5 6 0.5\n"), {}, folder / "out.las");
+  const std::string bytes = slurp(folder / "out.las");
+  const std::size_t last = bytes.size() - parse_las_header(bytes, "test").point_bytes;
+  std::uint16_t intensity = 0;
+  std::memcpy(&intensity, &bytes[last + 12], sizeof intensity);
+  EXPECT_EQ(intensity, 32768);
 }
 
 TEST(TransformCloud, MovesThePointsAndKeepsEverythingElse) {
@@ -201,6 +234,14 @@ TEST(TransformCloud, PtxKeepsItsPointsAndMovesItsScanners) {
     }
     EXPECT_LT((after[k].local_origin + after[k].centres[0] - pose * Vector3d(1, 2, 3)).norm(), 3e-9);
   }
+}
+
+TEST(TransformCloud, APtxThatCannotBeReadIsNotCopied) {
+  const TemporaryFolder folder;
+  const std::string head = "2\n1\n1 2 3\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n1 2 3 1\n";
+  const auto in = folder.write("in.ptx", head + "1 2 3 0.5\nnothing\n");
+  EXPECT_THROW(transform_cloud(in, {}, folder / "out.ptx"), Error);
+  EXPECT_FALSE(std::filesystem::exists(folder / "out.ptx"));
 }
 
 TEST(TransformCloud, PtxFindsItsScansBehindEmptyLinesAsTheReaderDoes) {

@@ -25,6 +25,11 @@ std::string ending_of(const std::filesystem::path& path) {
   return lower_case(path.extension().string());
 }
 
+bool is_las_ending(const std::filesystem::path& path) {
+  const std::string ending = ending_of(path);
+  return ending == ".las" || ending == ".laz";
+}
+
 bool is_text(const std::string& ending) {
   return ending == ".xyz" || ending == ".txt" || ending == ".asc" || ending == ".csv";
 }
@@ -33,7 +38,7 @@ bool is_text(const std::string& ending) {
 
 std::unique_ptr<CloudWriter> make_cloud_writer(const std::filesystem::path& path, const CloudPlan& plan) {
   const std::string ending = ending_of(path);
-  if (ending == ".las" || ending == ".laz") return make_las_writer(path, plan);
+  if (is_las_ending(path)) return make_las_writer(path, plan);
   if (ending == ".e57") return make_e57_writer(path, plan);
   if (is_text(ending)) return make_text_writer(path, plan);
   // What has no ending is no ordinary file: a pipe.
@@ -44,8 +49,7 @@ std::unique_ptr<CloudWriter> make_cloud_writer(const std::filesystem::path& path
 
 bool is_cloud_ending(const std::filesystem::path& path) {
   const std::string ending = ending_of(path);
-  return ending == ".las" || ending == ".laz" || ending == ".e57" || ending == ".ply" || is_text(ending) ||
-         ending.empty();
+  return is_las_ending(path) || ending == ".e57" || ending == ".ply" || is_text(ending) || ending.empty();
 }
 
 bool has_cloud_ending(const std::filesystem::path& path) {
@@ -126,7 +130,7 @@ double require_one_unit(const std::vector<PlacedCloud>& clouds, const std::files
                 placed.input->name(), "convert all to one unit first");
   }
   const std::string ending = ending_of(output);
-  if (unit != 1.0 && ending != ".las" && ending != ".laz")
+  if (unit != 1.0 && !is_las_ending(output))
     throw Error(fmt::format("has its numbers in {}, which a {} file cannot state", unit_name(unit),
                             ending.empty() ? "PLY" : ending),
                 clouds.front().input->name(), "write .las or .laz, or convert it to metres first");
@@ -136,13 +140,16 @@ double require_one_unit(const std::vector<PlacedCloud>& clouds, const std::files
 WrittenClouds write_clouds(const JoinedClouds& clouds, const std::filesystem::path& output,
                            Monitor& monitor) {
   const auto total = static_cast<double>(clouds.plan().most_points);
-  const std::unique_ptr<CloudWriter> writer = make_cloud_writer(output, clouds.plan());
+  // Only LAS has numbers of one kind, which must be known before the first row.
+  const bool states_kind = is_las_ending(output);
+  const std::unique_ptr<CloudWriter> writer =
+      make_cloud_writer(output, states_kind ? clouds.plan_with_largest() : clouds.plan());
   const std::unique_ptr<PointStream> stream = clouds.read();
   monitor.set_unit(WorkUnit::points);
   WrittenClouds result;
   result.notes = clouds.notes();
   FiniteRows finite;
-  while (const std::optional<RecordTable> piece = stream->next(kStreamRows / 4)) {
+  while (const std::optional<RecordTable> piece = stream->next(kPointsAtOnce)) {
     writer->write(finite.of(*piece));
     result.read += piece->rows;
     monitor.throw_if_cancelled();
@@ -180,6 +187,7 @@ WrittenClouds write_stations(const std::vector<PlacedCloud>& stations, const std
     if (is_copied(input, output) && !station.bend) {
       if (opened != &input) original.emplace(input.bytes(), input.name(), [&input] { input.forget(); });
       opened = &input;
+      input.prove(station.cloud);
       writer.copy(*original, input.number_in_file(station.cloud), station.target_from_world, system, monitor);
       advance(input.file().clouds()[station.cloud].points);
       continue;
@@ -187,7 +195,7 @@ WrittenClouds write_stations(const std::vector<PlacedCloud>& stations, const std
     const JoinedClouds cloud({station}, false, system);
     writer.begin_station(cloud.plan());
     const std::unique_ptr<PointStream> stream = cloud.read();
-    while (const std::optional<RecordTable> piece = stream->next(kStreamRows / 4)) {
+    while (const std::optional<RecordTable> piece = stream->next(kPointsAtOnce)) {
       writer.write(*piece);
       advance(piece->rows);
     }

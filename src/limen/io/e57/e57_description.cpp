@@ -12,6 +12,7 @@
 
 #include "limen/base/random.h"
 #include "limen/base/version.h"
+#include "limen/io/table/value_tops.h"
 
 namespace limen {
 
@@ -107,12 +108,6 @@ std::string bounds_xml(const std::array<E57Range, 3>& bounds) {
   return xml + "</cartesianBounds>\n";
 }
 
-/// The range of the values' kind, not of the values: 0 to 1, 255 or 65535.
-double colour_top(double largest, bool integer) {
-  if (largest > 255.0) return 65535.0;
-  return largest > 1.0 || integer ? 255.0 : 1.0;
-}
-
 std::string limits_xml(const E57Description& about) {
   std::string colours;
   std::string intensity;
@@ -127,6 +122,7 @@ std::string limits_xml(const E57Description& about) {
     const std::string& name = about.columns[k].name;
     if (name.rfind("color", 0) == 0) {
       colours += float_element(name + "Minimum", 0.0);
+      // The range of the values' kind, not of the values.
       colours += float_element(name + "Maximum", colour_top(largest, integer));
     } else if (name == "intensity" && about.ranges[k].known()) {
       intensity += float_element("intensityMinimum", about.ranges[k].low);

@@ -21,6 +21,7 @@
 #include "limen/io/las/laz/laz_info.h"
 #include "limen/io/las/laz/laz_pack.h"
 #include "limen/io/las/laz/laz_writer.h"
+#include "limen/io/table/value_tops.h"
 
 namespace limen {
 namespace {
@@ -186,31 +187,27 @@ class LasWriter : public CloudWriter {
     return header + records;
   }
 
-  /// What a unit of a colour or of an intensity in fractions is worth in 65535ths; the first rows tell.
+  /// What a unit of a colour or of an intensity in fractions is worth in 65535ths: by the largest values that
+  /// the plan states, else by those of the first rows.
   void find_spreads(const RecordTable& rows) {
     spreads_.assign(plan_.columns.size(), 1.0);
     double largest = 0.0;
-    bool fractions = false;
-    const RowRange first{0, std::min(rows.rows, kEncodedPerPiece)};
-    std::vector<double> values(first.end);
+    bool integer = true;
     for (const LasSlot& slot : slots_.slots) {
-      const bool fraction =
-          slot.at == 12 && slot.store == LasStore::word && !is_integer(plan_.columns[slot.column].type);
+      const ColumnPlan& column = plan_.columns[slot.column];
+      const bool fraction = slot.at == 12 && slot.store == LasStore::word && !is_integer(column.type);
       if (slot.store != LasStore::colour && !fraction) continue;
-      load_numbers(rows, rows.fields[slot.column], first, values.data());
-      const double most = *std::max_element(values.begin(), values.end());
+      const double most = column.largest ? *column.largest : largest_value(rows, rows.fields[slot.column]);
       if (fraction) {
         spreads_[slot.column] = most > 0.0 && most <= 1.0 ? 65535.0 : 1.0;
       } else {
         largest = std::max(largest, most);
-        fractions = fractions || !is_integer(plan_.columns[slot.column].type);
+        integer = integer && is_integer(column.type);
       }
     }
     for (const LasSlot& slot : slots_.slots) {
-      if (slot.store != LasStore::colour) continue;
-      const Scalar type = plan_.columns[slot.column].type;
-      const bool bytes = type == Scalar::uint8 || (type != Scalar::uint16 && largest <= 255.0);
-      spreads_[slot.column] = fractions && largest <= 1.0 ? 65535.0 : (bytes ? 257.0 : 1.0);
+      if (slot.store == LasStore::colour && plan_.columns[slot.column].type != Scalar::uint16)
+        spreads_[slot.column] = 65535.0 / colour_top(largest, integer);
     }
   }
 

@@ -16,6 +16,7 @@ namespace limen {
 struct ColumnPlan {
   std::string name;  ///< as the source had it ("GPS_time"); lower case it is what readers understand
   Scalar type = Scalar::float64;
+  std::optional<double> largest = {};  ///< of its finite values, where that is known before they come
 };
 
 /// A cloud that is to be written, before its rows are there.

@@ -19,6 +19,7 @@
 #include "limen/io/table/optical_centre.h"
 #include "limen/io/table/profile_topology.h"
 #include "limen/io/table/record_table.h"
+#include "limen/io/table/value_tops.h"
 
 namespace limen {
 namespace {
@@ -224,8 +225,7 @@ class ColourColumns {
       largest = std::max(largest, static_cast<double>(value));
       if constexpr (std::is_floating_point_v<Value>) fractions = fractions || value != std::floor(value);
     }
-    if (largest > 255.0) return 255.0 / 65535.0;
-    return largest <= 1.0 && fractions ? 255.0 : 1.0;
+    return 255.0 / colour_top(largest, !fractions);
   }
 
   template <typename Value>
