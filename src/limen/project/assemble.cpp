@@ -318,7 +318,8 @@ class Assembler {
                      ? "registered by its own targets"
                      : "registered by three targets of its own: an error of one of them perpendicular to "
                        "their plane would not be detected";
-        if (bridges == 0) return "the only scan";
+        if (bridges == 0)
+          return nodes_.size() == 1 ? "the only scan" : "registered by what its links say together";
         return fmt::format("registered by {} link{} that no loop checks", bridges, bridges == 1 ? "" : "s");
       case NodeState::probable:
         return fmt::format("probability {} ({:.3g} % is needed for registered)",

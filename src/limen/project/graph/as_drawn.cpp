@@ -8,17 +8,16 @@
 
 namespace limen {
 
-AsDrawn::AsDrawn(int nodes, const std::vector<PlacedPair>& pairs) {
-  for (const WeighedPair& pair : weighed_pairs(nodes, pairs))
-    walls_.push_back({pair, pairs[pair.number].evidence.look_alikes.built});
+AsDrawn::AsDrawn(int nodes, const std::vector<PlacedPair>& pairs) : pairs_(nodes, pairs) {
+  for (const std::size_t k : pairs_.numbers()) walls_.push_back(pairs[k].evidence.look_alikes.built);
 }
 
 double AsDrawn::without(const std::vector<bool>& side, const BendBelief& bends) const {
+  const std::vector<double> weights = pairs_.weights_without(side);
   double nats = 0.0;
-  for (const Walls& walls : walls_) {
-    if (walls.pair.is_within(side))
-      nats +=
-          walls.pair.weight * std::clamp(as_drawn_nats(walls.built, bends), -kMostPairNats, kMostPairNats);
+  for (std::size_t k = 0; k < walls_.size(); ++k) {
+    if (weights[k] > 0.0)
+      nats += weights[k] * std::clamp(as_drawn_nats(walls_[k], bends), -kMostPairNats, kMostPairNats);
   }
   return probability_as_drawn(nats);
 }

@@ -17,11 +17,8 @@ class AsDrawn {
   [[nodiscard]] double without(const std::vector<bool>& side, const BendBelief& bends) const;
 
  private:
-  struct Walls {
-    WeighedPair pair;
-    BuiltEvidence built;
-  };
-  std::vector<Walls> walls_;
+  RoomPairs pairs_;
+  std::vector<BuiltEvidence> walls_;  ///< of each
 };
 
 }  // namespace limen

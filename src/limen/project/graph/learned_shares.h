@@ -13,18 +13,27 @@
 
 namespace limen {
 
-/// A pair of rooms that agrees, from which the project learns.
-struct WeighedPair {
-  std::size_t number = 0;  ///< among all
-  int source = -1;
-  int target = -1;
-  double weight = 0.0;  ///< each scan counts once, by the mean of its pairs, and a pair is of two scans
+/// Pairs of rooms that agree, from which a project learns.
+class RoomPairs {
+ public:
+  RoomPairs(int nodes, const std::vector<PlacedPair>& pairs);
 
-  [[nodiscard]] bool is_within(const std::vector<bool>& side) const {
-    return side[static_cast<std::size_t>(source)] == side[static_cast<std::size_t>(target)];
-  }
+  /// Their numbers among all pairs.
+  [[nodiscard]] const std::vector<std::size_t>& numbers() const { return numbers_; }
+  /// How much each counts if those that cross the border of `side` do not, for they are to be judged: a scan
+  /// counts once, by the mean of its pairs weighed by the surface they share, and a pair is of two scans.
+  [[nodiscard]] std::vector<double> weights_without(const std::vector<bool>& side) const;
+
+ private:
+  struct Ends {
+    std::size_t source = 0;
+    std::size_t target = 0;
+    double shared_m2 = 0.0;
+  };
+  std::size_t nodes_;
+  std::vector<std::size_t> numbers_;
+  std::vector<Ends> ends_;
 };
-std::vector<WeighedPair> weighed_pairs(int nodes, const std::vector<PlacedPair>& pairs);
 
 /// Shares of N cases, as pairs of a project show them that agree: one sensor took most of its scans, and on
 /// one day. The shares have a Dirichlet distribution beforehand; expectation maximisation.
@@ -37,53 +46,44 @@ class LearnedShares {
   /// case the logarithm of the likelihood.
   LearnedShares(int nodes, const std::vector<PlacedPair>& pairs, const Shares& beforehand, double strength,
                 const std::function<Shares(const PairEvidence&)>& logs)
-      : beforehand_(beforehand), strength_(strength) {
-    std::vector<Shares> seen;
-    for (const WeighedPair& pair : weighed_pairs(nodes, pairs)) {
-      pairs_.push_back({pair, {}});
-      seen.push_back(likelihoods(logs(pairs[pair.number].evidence)));
-    }
-    Shares shares = beforehand;
-    for (int round = 0; round < kRounds; ++round) {
-      for (std::size_t k = 0; k < pairs_.size(); ++k) pairs_[k].shares = shown_by(seen[k], shares);
-      shares = mean([](const WeighedPair&) { return true; });
-    }
+      : beforehand_(beforehand), strength_(strength), pairs_(nodes, pairs) {
+    for (const std::size_t k : pairs_.numbers()) seen_.push_back(likelihoods(logs(pairs[k].evidence)));
   }
 
-  /// By all pairs but those that cross the border of `side`: they are to be judged.
+  /// By all pairs but those that cross the border of `side`.
   [[nodiscard]] Shares without(const std::vector<bool>& side) const {
-    return mean([&](const WeighedPair& pair) { return pair.is_within(side); });
+    const std::vector<double> weights = pairs_.weights_without(side);
+    Shares shares = beforehand_;
+    for (int round = 0; round < kRounds; ++round) {
+      const Shares before = shares;
+      shares = learned(weights, before);
+      double moved = 0.0;
+      for (std::size_t j = 0; j < N; ++j) moved = std::max(moved, std::abs(shares[j] - before[j]));
+      if (moved < kSettled) break;
+    }
+    return shares;
   }
 
  private:
   static constexpr int kRounds = 30;
-
-  struct Pair {
-    WeighedPair pair;
-    Shares shares{};  ///< what it shows, given the shares of all pairs
-  };
+  static constexpr double kSettled = 1e-5;
 
   static Shares likelihoods(Shares logs) {
     const double most = *std::max_element(logs.begin(), logs.end());
     for (double& log : logs) log = std::exp(std::max(-300.0, log - most));
     return logs;
   }
-  static Shares shown_by(const Shares& likelihoods, const Shares& shares) {
-    Shares shown{};
-    double sum = 0.0;
-    for (std::size_t j = 0; j < N; ++j) sum += shown[j] = shares[j] * likelihoods[j];
-    for (double& share : shown) share /= sum;
-    return shown;
-  }
-  template <typename Counts>
-  [[nodiscard]] Shares mean(const Counts& counts) const {
+  /// What the pairs show, given these shares, and what was believed beforehand.
+  [[nodiscard]] Shares learned(const std::vector<double>& weights, const Shares& shares) const {
     Shares sum = beforehand_;
     for (double& share : sum) share *= strength_;
     double weight = strength_;
-    for (const auto& [pair, shown] : pairs_) {
-      if (!counts(pair)) continue;
-      for (std::size_t j = 0; j < N; ++j) sum[j] += pair.weight * shown[j];
-      weight += pair.weight;
+    for (std::size_t k = 0; k < seen_.size(); ++k) {
+      if (weights[k] == 0.0) continue;
+      double all = 0.0;
+      for (std::size_t j = 0; j < N; ++j) all += shares[j] * seen_[k][j];
+      for (std::size_t j = 0; j < N; ++j) sum[j] += weights[k] * shares[j] * seen_[k][j] / all;
+      weight += weights[k];
     }
     for (double& share : sum) share /= weight;
     return sum;
@@ -91,7 +91,8 @@ class LearnedShares {
 
   Shares beforehand_;
   double strength_;
-  std::vector<Pair> pairs_;
+  RoomPairs pairs_;
+  std::vector<Shares> seen_;  ///< likelihoods by each pair
 };
 
 }  // namespace limen

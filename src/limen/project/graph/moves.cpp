@@ -50,7 +50,12 @@ class MoveSearch {
           continue;
         CancelScope::check();
         if (!sides) sides = sides_of(link, cut);
-        for (const std::vector<bool>& side : *sides) {
+        std::set<std::vector<bool>> all = *sides;
+        for (const int own : {link.source, link.target}) {
+          if (std::vector<bool> side = side_that_goes_along(k, p, own); !side.empty())
+            all.insert(std::move(side));
+        }
+        for (const std::vector<bool>& side : all) {
           Move move = move_of(side, link, link.poses[p].target_from_source);
           if (!move.present.empty()) moves.push_back(std::move(move));
         }
@@ -85,13 +90,46 @@ class MoveSearch {
     return sides;
   }
 
+  /// How a side moves that has one end of the link, where the pose puts it.
+  [[nodiscard]] Rigid3 motion_of(const GraphLink& link, const Rigid3& target_from_source,
+                                 bool source_moves) const {
+    return source_moves ? at(link.target) * target_from_source * inverse(at(link.source))
+                        : at(link.source) * inverse(target_from_source) * inverse(at(link.target));
+  }
+
+  /// What hangs together with an end of a link if it moves to a pose of the link: other links that agree
+  /// there too hold it no more than their two poses differ. Empty where there are none.
+  [[nodiscard]] std::vector<bool> side_that_goes_along(std::size_t number, std::size_t pose, int own) const {
+    const GraphLink& link = graph_.links[number];
+    const Rigid3 motion = motion_of(link, link.poses[pose].target_from_source, own == link.source);
+    WeakestCut cut(graph_.nodes);
+    bool others = false;
+    for (std::size_t k = 0; k < graph_.links.size(); ++k) {
+      const GraphLink& one = graph_.links[k];
+      const int present = present_.pose[k];
+      if (present < 0) continue;
+      const double nats = matcher_.evidence(k, present).in_loop();
+      const auto held = [&](const Rigid3& moved) {
+        const int there = matcher_.nearest(k, moved, kAgreementGate);
+        if (there < 0) return nats;
+        others = others || k != number;
+        return nats - matcher_.evidence(k, there).in_loop();
+      };
+      if (one.poses.size() < 2) {
+        cut.connect(one.source, one.target, nats);
+        continue;
+      }
+      cut.connect(one.source, one.target, held(inverse(at(one.target)) * motion * at(one.source)),
+                  held(inverse(motion * at(one.target)) * at(one.source)));
+    }
+    return others ? cut.side(own, own == link.source ? link.target : link.source) : std::vector<bool>{};
+  }
+
   [[nodiscard]] Move move_of(const std::vector<bool>& side, const GraphLink& link,
                              const Rigid3& target_from_source) const {
     Move move;
     move.side = side;
-    move.frame_from_frame = side[static_cast<std::size_t>(link.source)]
-                                ? at(link.target) * target_from_source * inverse(at(link.source))
-                                : at(link.source) * inverse(target_from_source) * inverse(at(link.target));
+    move.frame_from_frame = motion_of(link, target_from_source, side[static_cast<std::size_t>(link.source)]);
     JoinEvidence now;
     JoinEvidence then;
     for (std::size_t n = 0; n < side.size(); ++n) {

@@ -3,6 +3,7 @@
 #include "support/synthetic_graph.h"
 #include <gtest/gtest.h>
 
+#include "limen/base/angles.h"
 #include "limen/project/graph/pose_graph.h"
 #include "limen/register/judge/look_alike_odds.h"
 
@@ -265,6 +266,42 @@ TEST(SolveGraph, ARoomGoesWhereItsWindowsSayNotOnItsLookAlike) {
   const Rigid3 found = inverse(solved.nodes[0].frame_from_node) * solved.nodes[5].frame_from_node;
   EXPECT_EQ(solved.nodes[5].component, solved.nodes[0].component);
   EXPECT_LT((truth.translation - found.translation).norm(), 0.05);
+}
+
+/// A building that looks alike from either end, and two groups of scans that only its model joins: each group
+/// fits at either end, so that where one is from the other is not known, though each is sure of itself.
+TEST(SolveGraph, GroupsThatASymmetricModelJoinsAreNotRegisteredTogether) {
+  RandomStream random(31, 1);
+  const Rigid3 other_end{Eigen::AngleAxisd(radians(180.0), Vector3d::UnitZ()).toRotationMatrix(),
+                         Vector3d(14.0, 9.0, 0.0)};
+  PoseGraph graph;
+  graph.nodes = 5;  // the model, two scans, and two scans
+  std::vector<Rigid3> model_from_scan(1);
+  for (int n = 1; n < graph.nodes; ++n) model_from_scan.push_back(random_pose(random, 6.0));
+  const auto add = [&](int source, int target, const Rigid3& truth) -> GraphLink& {
+    GraphLink link;
+    link.source = source;
+    link.target = target;
+    link.chance = 1e-6;
+    link.poses = {measured_pose(truth, 30.0, random)};
+    graph.links.push_back(link);
+    return graph.links.back();
+  };
+  for (int n = 1; n < graph.nodes; ++n) {
+    const Rigid3& truth = model_from_scan[static_cast<std::size_t>(n)];
+    GraphLink& link = add(n, 0, truth);
+    link.poses.push_back(measured_pose(other_end * truth, 30.0, random));
+    link.poses[0].probability = 0.53;
+    link.poses[1].probability = 0.47;
+  }
+  // Less sure than the links to the model: a scan by itself hangs on less than its group.
+  add(2, 1, inverse(model_from_scan[1]) * model_from_scan[2]).chance = 1e-3;
+  add(4, 3, inverse(model_from_scan[3]) * model_from_scan[4]).chance = 1e-3;
+  const SolvedGraph solved = solve_graph(graph);
+  const auto registered = [&](std::size_t n) { return solved.nodes[n].state == NodeState::registered; };
+  EXPECT_TRUE(registered(1) == registered(2) && registered(3) == registered(4));
+  EXPECT_NE(registered(1), registered(3));
+  EXPECT_FALSE(solved.questions.empty());
 }
 
 /// Passes that drift are known to one another to centimetres: a second pose that lies within that is the

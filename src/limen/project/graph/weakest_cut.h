@@ -19,9 +19,12 @@ class WeakestCut {
   explicit WeakestCut(int nodes)
       : network_(static_cast<std::size_t>(nodes)), held_(static_cast<std::size_t>(nodes), false) {}
 
-  void connect(int a, int b, double nats) {
-    const auto room = static_cast<int>(std::lround(kUnits * std::max(0.0, nats)));
-    if (room > 0) network_.connect(a, b, room, room);
+  void connect(int a, int b, double nats) { connect(a, b, nats, nats); }
+  /// `nats`: if only a is on the side; `back`: if only b is.
+  void connect(int a, int b, double nats, double back) {
+    const int there = room_for(nats);
+    const int and_back = room_for(back);
+    if (there > 0 || and_back > 0) network_.connect(a, b, there, and_back);
   }
 
   /// The nodes on the side of `from` of the weakest cut between it and `to`; empty: enough joins them.
@@ -44,6 +47,8 @@ class WeakestCut {
  private:
   static constexpr double kUnits = 1000.0;  // of the flow, per nat
   static constexpr int kEnough = 40000;     // 40 nats: more never makes a doubt
+
+  static int room_for(double nats) { return static_cast<int>(std::lround(kUnits * std::max(0.0, nats))); }
 
   FlowNetwork network_;
   std::vector<bool> held_;

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "limen/base/angles.h"
+#include "limen/project/solve/project_graph.h"
 #include "limen/register/judge/start_prior.h"
 
 namespace limen {
@@ -56,13 +57,24 @@ class DecisionJudge {
       if (link.best != stated.decision.pose) break;
       const bool taken = all_.solved.links[k].pose == 0;
       stated.state = taken ? DecisionState::kept : DecisionState::contradicted;
-      if (!taken)
-        stated.reason = fmt::format("the other links disagree with it by {:.0f} mm and {:.2f} deg",
-                                    1e3 * all_.solved.links[k].loop_error_m,
-                                    degrees(all_.solved.links[k].loop_error_rad));
+      if (!taken) stated.reason = words_of_contradiction(link);
       return;
     }
     stated.reason = "the pair has no such pose";
+  }
+
+  /// By how much the others put the two elsewhere than the pose that was chosen.
+  [[nodiscard]] std::string words_of_contradiction(const GraphLink& link) const {
+    const SolvedNode& source = all_.solved.nodes[static_cast<std::size_t>(link.source)];
+    const SolvedNode& target = all_.solved.nodes[static_cast<std::size_t>(link.target)];
+    if (source.component < 0 || source.component != target.component)
+      return "the other links of the two scans disagree with it";
+    const Rigid3 pose = inverse(target.frame_from_node) * source.frame_from_node;
+    const Rigid3& chosen = link.poses.front().target_from_source;
+    const Vector3d middle = digest(link.source).middle;
+    return fmt::format("the other links disagree with it by {:.0f} mm and {:.2f} deg",
+                       1e3 * (pose * middle - chosen * middle).norm(),
+                       degrees(rotation_angle(chosen.rotation.transpose() * pose.rotation)));
   }
 
   /// Whether the two stand near where the points that were shown put them.
@@ -95,7 +107,7 @@ class DecisionJudge {
     for (const TriedPair& pair : all_.pairs) {
       const std::pair own(static_cast<int>(pair.target), static_cast<int>(pair.source));
       if (own != std::pair(std::min(nodes[0], nodes[1]), std::max(nodes[0], nodes[1]))) continue;
-      if (pair.result.outcome == Outcome::no_match) return;
+      if (!makes_link(pair.result, true)) return;
       stated.state = DecisionState::kept;
       stated.reason = {};
       const SolvedNode& source = all_.solved.nodes[pair.source];

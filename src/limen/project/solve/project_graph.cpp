@@ -74,6 +74,12 @@ void open_up(const std::vector<UnobservedFreedom>& unobserved, Matrix6d& covaria
   }
 }
 
+/// Probability that none of a pair's poses is right, look-alike places left out.
+double by_chance(const RegistrationResult& found) {
+  if (found.others) return found.others->nothing_shared + found.others->unlisted_pose;
+  return found.outcome == Outcome::no_match ? 1.0 : 0.0;
+}
+
 class GraphMaker {
  public:
   GraphMaker(const std::vector<ProjectNode>& nodes, const std::vector<TriedPair>& pairs,
@@ -100,9 +106,7 @@ class GraphMaker {
     const auto said = words_.pairs.find({pairs_[k].source, pairs_[k].target});
     const bool spoken = said != words_.pairs.end();
     if (spoken && said->second.kind == DecisionKind::reject) return;
-    // Poses that are more probably none are what any two scans show: many of them would outweigh what is
-    // sure.
-    if (spoken ? found.outcome == Outcome::no_match : by_chance(found) > kMostChance) return;
+    if (!makes_link(found, spoken)) return;
     GraphLink link;
     link.source = static_cast<int>(pairs_[k].source);
     link.target = static_cast<int>(pairs_[k].target);
@@ -181,12 +185,6 @@ class GraphMaker {
 
   [[nodiscard]] static bool tells_places_apart(const PoseSigma& sigma) {
     return sigma.translation_m.maxCoeff() < kPlaceSigmaM && sigma.rotation_rad.maxCoeff() < kPlaceSigmaRad;
-  }
-
-  /// Probability that none of a pair's poses is right, look-alike places left out.
-  [[nodiscard]] static double by_chance(const RegistrationResult& found) {
-    if (found.others) return found.others->nothing_shared + found.others->unlisted_pose;
-    return found.outcome == Outcome::no_match ? 1.0 : 0.0;
   }
 
   /// What is known of how trajectories drift beyond what the pair took for it.
@@ -271,6 +269,11 @@ class GraphMaker {
 };
 
 }  // namespace
+
+bool makes_link(const RegistrationResult& found, bool spoken) {
+  if (by_chance(found) <= kMostChance) return true;
+  return spoken && found.outcome != Outcome::no_match;
+}
 
 ProjectGraph make_graph(const std::vector<ProjectNode>& nodes, const std::vector<TriedPair>& pairs,
                         const UserWords& words) {

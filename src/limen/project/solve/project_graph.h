@@ -18,6 +18,10 @@ struct ProjectGraph {
   std::vector<int> pair_of;  ///< of each link: index of its pair, -1: the file gives it
 };
 
+/// Whether a pair proposes poses. Those that are more probably none are what any two scans show: many of them
+/// would outweigh what is sure. `spoken`: a user said something of the pair.
+bool makes_link(const RegistrationResult& found, bool spoken);
+
 /// Every pair that found something, with all its poses, and what files say of their own scans. A user's word
 /// makes a pose surer, or leaves a link out: the loops still test it.
 ProjectGraph make_graph(const std::vector<ProjectNode>& nodes, const std::vector<TriedPair>& pairs,

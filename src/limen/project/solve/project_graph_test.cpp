@@ -128,7 +128,19 @@ TEST(ProjectGraph, AUsersWordMakesALinkSureOrLeavesItOut) {
   EXPECT_GT(accepted.front().look_alike, 0.0);
   EXPECT_LT(accepted.front().look_alike + accepted.front().chance, 0.001);
   EXPECT_TRUE(links_with(stated(Outcome::registered, 0.0), word(DecisionKind::reject)).empty());
-  EXPECT_TRUE(links_with(stated(Outcome::no_match, 0.0), word(DecisionKind::accept)).empty());
+}
+
+/// A pair may be no match for itself and a link all the same, which loops settle: what a user says of it
+/// counts. Where its poses are more probably none there is nothing to accept.
+TEST(ProjectGraph, AWordOnALinkThatIsNoMatchByItselfCounts) {
+  RegistrationResult pair = stated(Outcome::no_match, 0.0);
+  for (const double chance : {0.3, 0.9}) {
+    pair.others->nothing_shared = chance;
+    const bool is_link = chance < 0.5;
+    EXPECT_EQ(links_of(pair).size(), is_link ? 1U : 0U);
+    EXPECT_EQ(links_with(pair, word(DecisionKind::accept)).size(), is_link ? 1U : 0U);
+    EXPECT_TRUE(links_with(pair, word(DecisionKind::reject)).empty());
+  }
 }
 
 TEST(ProjectGraph, TheChosenPoseComesFirstAndPosesKeepTheirNumbers) {

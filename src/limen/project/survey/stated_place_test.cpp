@@ -9,6 +9,8 @@
 
 #include "limen/base/angles.h"
 #include "limen/base/error.h"
+#include "limen/base/random.h"
+#include "limen/geometry/random_vectors.h"
 
 namespace limen {
 namespace {
@@ -58,13 +60,15 @@ TEST(StatedPlace, OneThatIsTooFarFromAllOthersIsNoted) {
   EXPECT_EQ(result.notes[0], "the stated position of c is too far from all others for an overlap: check it");
 }
 
-TEST(StatedPlace, AWrongStatedPositionIsFoundOut) {
+/// Six scans in a frame, whose stated positions are off by `off(k)`.
+template <typename Off>
+ProjectResult compared_with_stated(const Off& off) {
   std::vector<ProjectNode> nodes;
   ProjectResult result;
   const Rigid3 grid{turned(20.0), Vector3d(652000, 6862000, 35)};
   for (int k = 0; k < 6; ++k) {
     const Vector3d found(5.0 * k, k % 2 == 0 ? 0.0 : 4.0, k % 3);
-    nodes.push_back(node_at(grid * found + (k == 2 ? Vector3d(0, 9, 0) : Vector3d(0.1 * k, 0, 0))));
+    nodes.push_back(node_at(grid * found + Vector3d(off(k))));
     nodes.back().scan = static_cast<std::size_t>(k);
     ProjectScan scan;
     scan.file = "scan" + std::to_string(k);
@@ -74,6 +78,20 @@ TEST(StatedPlace, AWrongStatedPositionIsFoundOut) {
     result.scans.push_back(scan);
   }
   compare_with_stated(nodes, result);
+  return result;
+}
+
+TEST(StatedPlace, PositionsThatAreAllWrongAreNoted) {
+  RandomStream random(7);
+  const ProjectResult result = compared_with_stated(
+      [&](int) { return uniform_vector(Vector3d(-30, -30, -3), Vector3d(30, 30, 3), random); });
+  ASSERT_EQ(result.notes.size(), 1U);
+  EXPECT_NE(result.notes[0].find("contradict the stated positions"), std::string::npos) << result.notes[0];
+}
+
+TEST(StatedPlace, AWrongStatedPositionIsFoundOut) {
+  const ProjectResult result =
+      compared_with_stated([](int k) { return k == 2 ? Vector3d(0, 9, 0) : Vector3d(0.1 * k, 0, 0); });
   for (std::size_t k = 0; k < 6; ++k) {
     ASSERT_TRUE(result.scans[k].stated && result.scans[k].stated->missed_m) << k;
     EXPECT_EQ(result.scans[k].stated->contradicted, k == 2) << *result.scans[k].stated->missed_m;
