@@ -94,6 +94,9 @@ double PlacementOdds::odds_of_look_alike(const std::vector<const PlacedPair*>& a
   const std::vector<double> of_surface = views_.shares(across, side, surface);
   const std::vector<double> of_things = views_.shares(across, side, things);
   LookAlikeSum against(built_without(side));
+  const bool rooms = std::any_of(across.begin(), across.end(), [](const PlacedPair* pair) {
+    return pair->link >= 0 && pair->evidence.asks_things();
+  });
   double otherwise = 0.0;
   double alike = 0.0;
   bool believed = false;  // once, as little as any pair believes it
@@ -101,8 +104,8 @@ double PlacementOdds::odds_of_look_alike(const std::vector<const PlacedPair*>& a
     const PairEvidence& evidence = across[k]->evidence;
     against.add(evidence, of_things[k], of_surface[k]);
     if (across[k]->link < 0 || !evidence.asks_look_alike) continue;
-    // A pair excludes look-alike places no better than chance.
-    const double by_chance = std::exp(-evidence.chance_nats);
+    // Of two rooms a view through windows excludes look-alike places no better than chance.
+    const double by_chance = rooms && !evidence.asks_things() ? std::exp(-evidence.chance_nats) : 0.0;
     const double pair_otherwise = evidence.look_alikes.otherwise + by_chance;
     const double pair_alike = evidence.look_alikes.alike + by_chance;
     otherwise = believed ? std::min(otherwise, pair_otherwise) : pair_otherwise;
