@@ -165,7 +165,8 @@ class GraphMaker {
     link.best = number;
   }
 
-  /// The pose that a user says is right becomes the first, as sure as a user is.
+  /// The pose that a user says is right becomes the first, as sure as a user is. Of the others each is as
+  /// likely as before, against none: if the word is wrong it says nothing of them.
   static void heed(const PairWord& word, GraphLink& link) {
     const auto number = static_cast<std::size_t>(word.pose);
     if (number >= link.poses.size()) return;
@@ -173,7 +174,10 @@ class GraphMaker {
     link.accepted = true;
     link.look_alike = std::min(link.look_alike, kWordWrong);
     link.poses.front().look_alike.reset();
-    link.chance = std::min(link.chance, kWordWrong);
+    if (link.chance > kWordWrong) {
+      for (LinkPose& pose : link.poses) pose.probability *= kWordWrong / link.chance;
+      link.chance = kWordWrong;
+    }
     link.poses.front().probability = std::max(link.poses.front().probability, 1.0 - kWordWrong);
   }
 

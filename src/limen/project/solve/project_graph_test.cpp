@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "limen/project/graph/pair_evidence.h"
 #include "limen/project/solve/shared_planes.h"
 #include "limen/project/solve/word_terms.h"
 
@@ -141,6 +142,22 @@ TEST(ProjectGraph, AWordOnALinkThatIsNoMatchByItselfCounts) {
     EXPECT_EQ(links_with(pair, word(DecisionKind::accept)).size(), is_link ? 1U : 0U);
     EXPECT_TRUE(links_with(pair, word(DecisionKind::reject)).empty());
   }
+}
+
+/// A word for one pose leaves the others as likely as they were: it may be wrong.
+TEST(ProjectGraph, AWordForOnePoseSaysNothingForAnother) {
+  RegistrationResult pair = stated(Outcome::ambiguous, 0.0, 1);
+  pair.best.probability = 0.5;
+  pair.others->nothing_shared = 0.2;
+  pair.alternatives[0].probability = 0.3;
+  pair.alternatives[0].target_from_source.translation.x() = 3.0;
+  const auto against_chance = [](const GraphLink& link, int number) {
+    return evidence_of(link, static_cast<std::size_t>(link.number_of(number))).chance_nats;
+  };
+  const GraphLink before = links_of(pair).front();
+  const GraphLink chosen = links_with(pair, word(DecisionKind::choose, 1)).front();
+  EXPECT_NEAR(against_chance(chosen, 0), against_chance(before, 0), 1e-9);
+  EXPECT_GT(against_chance(chosen, 1), against_chance(before, 1) + 5.0);
 }
 
 TEST(ProjectGraph, TheChosenPoseComesFirstAndPosesKeepTheirNumbers) {
