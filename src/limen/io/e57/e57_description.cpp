@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "limen/base/random.h"
+#include "limen/base/text.h"
 #include "limen/base/version.h"
 #include "limen/io/table/value_tops.h"
 
