@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limen/project/graph/moves.h"
 
-#include <optional>
+#include <algorithm>
 #include <set>
 #include <utility>
 
@@ -15,6 +15,9 @@ namespace {
 // No place repeats nearer than a wall is thick.
 constexpr double kNoOtherPlaceM = 0.15;
 constexpr double kNoOtherPlaceRad = 0.03;
+// Motions about the frame's origin, which may be far from what moves, that differ by more are not the same.
+constexpr double kSameMotionM = 3.0;
+constexpr double kSameMotionRad = 0.05;
 constexpr double kAgreementGate = 4.0;  // times the bound: what a moved side agrees with is not settled yet
 
 class MoveSearch {
@@ -39,32 +42,74 @@ class MoveSearch {
       if (pose >= 0)
         cut.connect(graph_.links[k].source, graph_.links[k].target, matcher_.evidence(k, pose).in_loop());
     }
+    collect_proposals();
     std::vector<Move> moves;
-    for (std::size_t k = 0; k < graph_.links.size(); ++k) {
-      const GraphLink& link = graph_.links[k];
-      if (!present_.joins(link) || link.trust == LinkTrust::weak || link.trust == LinkTrust::given) continue;
-      std::optional<std::set<std::vector<bool>>> sides;
-      for (std::size_t p = 0; p < link.poses.size(); ++p) {
-        if (static_cast<int>(p) == present_.pose[k] || matcher_.is_left_out(k, p)) continue;
-        if (matcher_.evidence(k, static_cast<int>(p)).alone() <= 0.0 || !is_asked_for(link, link.poses[p]))
-          continue;
-        CancelScope::check();
-        if (!sides) sides = sides_of(link, cut);
-        std::set<std::vector<bool>> all = *sides;
-        for (const int own : {link.source, link.target}) {
-          if (std::vector<bool> side = side_that_goes_along(k, p, own); !side.empty())
-            all.insert(std::move(side));
-        }
-        for (const std::vector<bool>& side : all) {
-          Move move = move_of(side, link, link.poses[p].target_from_source);
-          if (!move.present.empty()) moves.push_back(std::move(move));
-        }
+    std::set<std::vector<bool>> sides;  // of the link
+    for (std::size_t i = 0; i < proposals_.size(); ++i) {
+      const Proposal& proposal = proposals_[i];
+      const GraphLink& link = graph_.links[proposal.link];
+      CancelScope::check();
+      if (i == 0 || proposals_[i - 1].link != proposal.link) sides = sides_of(link, cut);
+      std::set<std::vector<bool>> all = sides;
+      for (const int own : {link.source, link.target}) {
+        if (!has_company(proposal, own)) continue;
+        if (std::vector<bool> side = side_that_goes_along(proposal, own); !side.empty())
+          all.insert(std::move(side));
+      }
+      for (const std::vector<bool>& side : all) {
+        Move move = move_of(side, link, link.poses[proposal.pose].target_from_source);
+        if (!move.present.empty()) moves.push_back(std::move(move));
       }
     }
     return moves;
   }
 
  private:
+  /// A pose of a link where the configuration has another one.
+  struct Proposal {
+    std::size_t link = 0;
+    std::size_t pose = 0;
+  };
+  /// How an end of a proposal's link would move.
+  struct EndMotion {
+    std::size_t link = 0;
+    Rigid3 motion;
+  };
+
+  void collect_proposals() {
+    for (std::size_t k = 0; k < graph_.links.size(); ++k) {
+      const GraphLink& link = graph_.links[k];
+      if (!present_.joins(link) || link.trust == LinkTrust::weak || link.trust == LinkTrust::given) continue;
+      for (std::size_t p = 0; p < link.poses.size(); ++p) {
+        if (static_cast<int>(p) == present_.pose[k] || matcher_.is_left_out(k, p)) continue;
+        if (matcher_.evidence(k, static_cast<int>(p)).alone() <= 0.0 || !is_asked_for(link, link.poses[p]))
+          continue;
+        proposals_.push_back({k, p});
+        for (const bool source_moves : {true, false})
+          motions_.push_back({k, motion_of(link, link.poses[p].target_from_source, source_moves)});
+      }
+    }
+    std::stable_sort(motions_.begin(), motions_.end(), [](const EndMotion& a, const EndMotion& b) {
+      return a.motion.translation.x() < b.motion.translation.x();
+    });
+  }
+
+  /// Whether another link proposes about the same motion: without looking at all links.
+  [[nodiscard]] bool has_company(const Proposal& proposal, int own) const {
+    const GraphLink& link = graph_.links[proposal.link];
+    const Rigid3 motion = motion_of(link, link.poses[proposal.pose].target_from_source, own == link.source);
+    auto other = std::lower_bound(motions_.begin(), motions_.end(), motion.translation.x() - kSameMotionM,
+                                  [](const EndMotion& a, double x) { return a.motion.translation.x() < x; });
+    for (; other != motions_.end() && other->motion.translation.x() < motion.translation.x() + kSameMotionM;
+         ++other) {
+      if (other->link != proposal.link &&
+          (other->motion.translation - motion.translation).norm() < kSameMotionM &&
+          rotation_angle(other->motion.rotation.transpose() * motion.rotation) < kSameMotionRad)
+        return true;
+    }
+    return false;
+  }
+
   [[nodiscard]] const Rigid3& at(int node) const {
     return present_.frame_from_node[static_cast<std::size_t>(node)];
   }
@@ -99,9 +144,9 @@ class MoveSearch {
 
   /// What hangs together with an end of a link if it moves to a pose of the link: other links that agree
   /// there too hold it no more than their two poses differ. Empty where there are none.
-  [[nodiscard]] std::vector<bool> side_that_goes_along(std::size_t number, std::size_t pose, int own) const {
-    const GraphLink& link = graph_.links[number];
-    const Rigid3 motion = motion_of(link, link.poses[pose].target_from_source, own == link.source);
+  [[nodiscard]] std::vector<bool> side_that_goes_along(const Proposal& proposal, int own) const {
+    const GraphLink& link = graph_.links[proposal.link];
+    const Rigid3 motion = motion_of(link, link.poses[proposal.pose].target_from_source, own == link.source);
     WeakestCut cut(graph_.nodes);
     bool others = false;
     for (std::size_t k = 0; k < graph_.links.size(); ++k) {
@@ -112,7 +157,7 @@ class MoveSearch {
       const auto held = [&](const Rigid3& moved) {
         const int there = matcher_.nearest(k, moved, kAgreementGate);
         if (there < 0) return nats;
-        others = others || k != number;
+        others = others || k != proposal.link;
         return nats - matcher_.evidence(k, there).in_loop();
       };
       if (one.poses.size() < 2) {
@@ -181,6 +226,8 @@ class MoveSearch {
   const Configuration& present_;
   MoveTo to_;
   std::vector<std::vector<std::size_t>> links_of_;
+  std::vector<Proposal> proposals_;  ///< link by link
+  std::vector<EndMotion> motions_;   ///< of both ends of their links, along x
 };
 
 }  // namespace

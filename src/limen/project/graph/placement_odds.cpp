@@ -48,6 +48,13 @@ std::map<int, std::vector<bool>> sides_of_edges(const std::vector<int>& parent) 
   return sides;
 }
 
+/// The nodes that lend others the frame.
+std::vector<int> lenders(const std::vector<int>& reference) {
+  std::set<int> all(reference.begin(), reference.end());
+  all.erase(-1);
+  return {all.begin(), all.end()};
+}
+
 /// Adds the odds of a side to those of each node on it.
 void add_to_nodes(const std::vector<bool>& side, double more, std::vector<double>& odds) {
   for (std::size_t n = 0; n < side.size(); ++n) {
@@ -152,13 +159,23 @@ const SideOdds& PlacementOdds::of(const std::vector<bool>& side) {
   return known.odds;
 }
 
+std::set<std::vector<bool>> PlacementOdds::likely_sides(const std::vector<int>& reference, double least) {
+  const std::vector<int> roots = lenders(reference);
+  RandomStream random(0);
+  std::set<std::vector<bool>> likely;
+  for (int k = 0; k < kTreesAtOnce; ++k) {
+    for (const auto& [node, side] : sides_of_edges(trees_.random_tree(roots, random))) {
+      if (known_of(side).odds.by_one_pair() >= least && of(side).total() >= least) likely.insert(side);
+    }
+  }
+  return likely;
+}
+
 std::vector<double> PlacementOdds::of_nodes(const std::vector<int>& reference,
                                             const std::set<std::vector<bool>>& found, double risk) {
   std::vector<double> odds(reference.size(), 0.0);
   for (const std::vector<bool>& side : found) add_to_nodes(side, of(side).total(), odds);
-  std::set<int> lenders(reference.begin(), reference.end());
-  lenders.erase(-1);
-  const std::vector<int> roots(lenders.begin(), lenders.end());
+  const std::vector<int> roots = lenders(reference);
   RandomStream random(0);
   std::vector<Estimate> others(reference.size());
   const auto known_well = [&](int trees) {

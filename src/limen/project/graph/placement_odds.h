@@ -41,6 +41,9 @@ class PlacementOdds {
   PlacementOdds(int nodes, std::vector<PlacedPair> pairs, const std::vector<UnusedLink>& unused = {});
 
   [[nodiscard]] const SideOdds& of(const std::vector<bool>& side);
+  /// Sides without the nodes of `reference` (of each node; -1: none) whose odds are `least` or more, among
+  /// those that random trees join by one pair.
+  [[nodiscard]] std::set<std::vector<bool>> likely_sides(const std::vector<int>& reference, double least);
   /// Of each node that it is elsewhere than its `reference` says (-1: it has none): the sum over all sides
   /// that it is on. Those of `found` are summed, all others estimated from random trees, until the standard
   /// error is a tenth of `risk` or of the sum.

@@ -51,6 +51,7 @@ class Solver {
     adjust();
     lend_by_what_is_held();
     weigh_doubts();
+    add_likely_doubts();
     judge_nodes();
     number_components();
     ask_questions();
@@ -251,6 +252,15 @@ class Solver {
       doubts_.push_back({side, odds.total(), odds.links, {}});
     }
     weigh_moves();
+  }
+
+  /// What no weakest cut shows: groups that many pairs join, each of which says little.
+  void add_likely_doubts() {
+    for (const std::vector<bool>& side : odds_->likely_sides(reference_, kFirmShare * risk_)) {
+      if (!cuts_.insert(without_first(side)).second) continue;
+      const SideOdds& odds = odds_->of(side);
+      doubts_.push_back({side, odds.total(), odds.links, {}});
+    }
   }
 
   /// The side of a cut that its component's first node is not on.
