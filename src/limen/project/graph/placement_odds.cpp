@@ -55,6 +55,26 @@ std::vector<int> lenders(const std::vector<int>& reference) {
   return {all.begin(), all.end()};
 }
 
+/// The odds beforehand of a look-alike place, of one kind: once for all pairs, and as little as any of them
+/// believes it. A pair that agrees by chance believes what the others do.
+double believed_once(const std::vector<const PlacedPair*>& across, double LookAlikeEvidence::*kind) {
+  const auto is_asked = [](const PlacedPair* pair) {
+    return pair->link >= 0 && pair->evidence.asks_look_alike;
+  };
+  double most = 0.0;
+  for (const PlacedPair* pair : across) {
+    if (is_asked(pair)) most = std::max(most, pair->evidence.look_alikes.*kind);
+  }
+  double least = most;
+  for (const PlacedPair* pair : across) {
+    if (!is_asked(pair)) continue;
+    const double chance = std::min(1.0, std::exp(-pair->evidence.chance_nats));
+    const double own = pair->evidence.look_alikes.*kind;
+    least = std::min(least, own + chance * (most - own));
+  }
+  return least;
+}
+
 /// Adds the odds of a side to those of each node on it.
 void add_to_nodes(const std::vector<bool>& side, double more, std::vector<double>& odds) {
   for (std::size_t n = 0; n < side.size(); ++n) {
@@ -101,24 +121,10 @@ double PlacementOdds::odds_of_look_alike(const std::vector<const PlacedPair*>& a
   const std::vector<double> of_surface = views_.shares(across, side, surface);
   const std::vector<double> of_things = views_.shares(across, side, things);
   LookAlikeSum against(built_without(side));
-  const bool rooms = std::any_of(across.begin(), across.end(), [](const PlacedPair* pair) {
-    return pair->link >= 0 && pair->evidence.asks_things();
-  });
-  double otherwise = 0.0;
-  double alike = 0.0;
-  bool believed = false;  // once, as little as any pair believes it
-  for (std::size_t k = 0; k < across.size(); ++k) {
-    const PairEvidence& evidence = across[k]->evidence;
-    against.add(evidence, of_things[k], of_surface[k]);
-    if (across[k]->link < 0 || !evidence.asks_look_alike) continue;
-    // Of two rooms a view through windows excludes look-alike places no better than chance.
-    const double by_chance = rooms && !evidence.asks_things() ? std::exp(-evidence.chance_nats) : 0.0;
-    const double pair_otherwise = evidence.look_alikes.otherwise + by_chance;
-    const double pair_alike = evidence.look_alikes.alike + by_chance;
-    otherwise = believed ? std::min(otherwise, pair_otherwise) : pair_otherwise;
-    alike = believed ? std::min(alike, pair_alike) : pair_alike;
-    believed = true;
-  }
+  for (std::size_t k = 0; k < across.size(); ++k)
+    against.add(across[k]->evidence, of_things[k], of_surface[k]);
+  const double otherwise = believed_once(across, &LookAlikeEvidence::otherwise);
+  const double alike = believed_once(across, &LookAlikeEvidence::alike);
   const double stayed = against.stayed_nats(stayed_.without(side));
   return rate_.factor(side) * (otherwise * std::exp(-against.against_otherwise(stayed)) +
                                alike * std::exp(-against.against_alike(stayed)));
