@@ -31,11 +31,11 @@ struct SideOdds {
 /// Scans are joined one by one, by a tree of pairs. Any tree is as likely as any other, and each of its pairs
 /// may join a wrong place. So a side is elsewhere as often as trees join it by one pair.
 ///
-/// Look-alike places: that there is one is believed once for a side, as little as any pair believes it and as
-/// often as it happens in this building (look_alike_rate.h). What things and walls say against it adds up
+/// Look-alike places: that there is one is believed once for a side, as little as any pair believes it, and
+/// as often as it happens in this building (look_alike_rate.h). What things and walls say against it adds up
 /// over the pairs across; those that show the same count once together. By how much scans are bent, and how
-/// many things stay where they are, is learned from the other pairs. Chance: pairs err independently as far
-/// as they show different surface, and wrong poses agree with one another seldom.
+/// many things stay where they are, is learned from the pairs on either side. Chance: pairs err independently
+/// as far as they show different surface, and wrong poses agree with one another seldom.
 class PlacementOdds {
  public:
   PlacementOdds(int nodes, std::vector<PlacedPair> pairs, const std::vector<UnusedLink>& unused = {});
