@@ -48,12 +48,19 @@ class LearnedShares {
                 const std::function<Shares(const PairEvidence&)>& logs)
       : beforehand_(beforehand), strength_(strength), pairs_(nodes, pairs) {
     for (const std::size_t k : pairs_.numbers()) seen_.push_back(likelihoods(logs(pairs[k].evidence)));
+    by_all_ = settled(std::vector<bool>(static_cast<std::size_t>(nodes), false), beforehand);
   }
 
   /// By all pairs but those that cross the border of `side`.
-  [[nodiscard]] Shares without(const std::vector<bool>& side) const {
+  [[nodiscard]] Shares without(const std::vector<bool>& side) const { return settled(side, by_all_); }
+
+ private:
+  static constexpr int kRounds = 30;
+  static constexpr double kSettled = 1e-5;
+
+  /// There is one solution, wherever the search starts: from near by it takes few rounds.
+  [[nodiscard]] Shares settled(const std::vector<bool>& side, Shares shares) const {
     const std::vector<double> weights = pairs_.weights_without(side);
-    Shares shares = beforehand_;
     for (int round = 0; round < kRounds; ++round) {
       const Shares before = shares;
       shares = learned(weights, before);
@@ -63,10 +70,6 @@ class LearnedShares {
     }
     return shares;
   }
-
- private:
-  static constexpr int kRounds = 30;
-  static constexpr double kSettled = 1e-5;
 
   static Shares likelihoods(Shares logs) {
     const double most = *std::max_element(logs.begin(), logs.end());
@@ -93,6 +96,7 @@ class LearnedShares {
   double strength_;
   RoomPairs pairs_;
   std::vector<Shares> seen_;  ///< likelihoods by each pair
+  Shares by_all_{};
 };
 
 }  // namespace limen

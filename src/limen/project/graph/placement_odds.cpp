@@ -16,7 +16,11 @@ namespace {
 constexpr double kLeastSurfaceM2 = 1e-3;  // of a pair that shares none: a given pose has a weight too
 constexpr double kHardlyFresh = 0.05;     // share of a pair's surface that no other shows
 constexpr double kNegligible = 1e-6;      // odds
-constexpr int kTreesAtOnce = 128;  // a side that one in thirty of them joins by one pair is hardly missed
+constexpr int kTreesAtOnce = 32;
+// A side that one tree in thirty joins by one pair is hardly missed by so many. Trees of large projects have
+// many sides each, and fewer are drawn.
+constexpr int kUsualTrees = 128;
+constexpr int kUsualNodes = 64;
 constexpr int kMostTrees = 512;
 constexpr double kKnownWell = 0.1;  // standard error, as a share
 
@@ -46,6 +50,10 @@ std::map<int, std::vector<bool>> sides_of_edges(const std::vector<int>& parent) 
     }
   }
   return sides;
+}
+
+int fewest_trees(int nodes) {
+  return std::max(kTreesAtOnce, kUsualTrees * kUsualNodes / std::max(kUsualNodes, nodes));
 }
 
 /// The nodes that lend others the frame.
@@ -169,7 +177,7 @@ std::set<std::vector<bool>> PlacementOdds::likely_sides(const std::vector<int>& 
   const std::vector<int> roots = lenders(reference);
   RandomStream random(0);
   std::set<std::vector<bool>> likely;
-  for (int k = 0; k < kTreesAtOnce; ++k) {
+  for (int k = 0; k < fewest_trees(nodes_); ++k) {
     for (const auto& [node, side] : sides_of_edges(trees_.random_tree(roots, random))) {
       if (known_of(side).odds.by_one_pair() >= least && of(side).total() >= least) likely.insert(side);
     }
@@ -199,7 +207,7 @@ std::vector<double> PlacementOdds::of_nodes(const std::vector<int>& reference,
       }
       for (std::size_t n = 0; n < of_tree.size(); ++n) others[n].add(of_tree[n]);
     }
-  } while (trees < kMostTrees && !known_well(trees));
+  } while (trees < fewest_trees(nodes_) || (trees < kMostTrees && !known_well(trees)));
   for (std::size_t n = 0; n < odds.size(); ++n) odds[n] += others[n].mean(trees);
   return odds;
 }
