@@ -100,7 +100,8 @@ void compare_with_stated(const std::vector<ProjectNode>& nodes, ProjectResult& r
   for (PointPair& pair : pairs) pair.x_in_source -= shift;
   const PointFit fit = fit_points(pairs);
   if (fit.state == PointFitState::contradictory)
-    result.notes.push_back("the scans contradict the stated positions: no few of them agree with each other");
+    result.notes.push_back(
+        "the scans contradict the stated positions, and which of them are wrong cannot be decided");
   if (fit.state == PointFitState::contradictory || fit.redundancy < kLeastFitRedundancy) return;
   for (std::size_t k = 0; k < pairs.size(); ++k) {
     const double missed = (fit.pose.target_from_source * pairs[k].x_in_source - pairs[k].x_in_target).norm();
