@@ -219,7 +219,7 @@ class Rows {
         const SeenClutter seen = asker(poses[k].refined.target_from_source);
         text += built(seen.built);
         text += fmt::format(R"(, "built_one": [{:.2f}], "apart": {:d}, {})",
-                            fmt::join(logs_of_bends(seen.built), ", "), seen.behind_wall, things(seen));
+                            fmt::join(logs_of_bends(seen.built, 0.0), ", "), seen.behind_wall, things(seen));
       }
       text += "}";
     }

@@ -254,6 +254,39 @@ TEST_F(DeviationProgramTest, ModelsOfAProjectAndMistakes) {
   EXPECT_EQ(read_whole(work() / "model.ifc"), model);
 }
 
+TEST_F(DeviationProgramTest, TheResultSaysTheUnitsOfBothFiles) {
+  // A floor of 10 ft x 10 ft, and points 0.1 ft above it; the scan's numbers are moved by 50 ft.
+  write_whole(work() / "floor.obj", "o floor\nv 0 0 0\nv 10 0 0\nv 10 10 0\nv 0 10 0\nf 1 2 3 4\n");
+  std::string points;
+  for (int i = 5; i < 95; ++i) {
+    for (int j = 5; j < 95; ++j)
+      points += std::to_string(0.1 * i - 50.0) + " " + std::to_string(0.1 * j) + " 0.1\n";
+  }
+  write_whole(work() / "scan.xyz", points);
+  const auto matrix = [](double x) { return Json{{1, 0, 0, x}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}; };
+  Json result = {{"target_from_source", matrix(15.24)}};
+  result["inputs"]["source"] = {{"path", "scan.xyz"}, {"metres_per_unit", 0.3048}};
+  result["inputs"]["target"] = {{"path", "floor.obj"}, {"metres_per_unit", 0.3048}};
+  write_whole(work() / "result.json", result.dump());
+  // A text says it in the unit of the files.
+  write_whole(work() / "transform.txt", "1 0 0 50\n0 1 0 0\n0 0 1 0\n0 0 0 1\n");
+  const std::vector<std::string> in_feet = {"--units", "ft", "--model-units", "ft"};
+  for (const std::string pose : {"result.json", "transform.txt"}) {
+    std::vector<std::string> words = {"deviation", "scan.xyz", "floor.obj", "--result", pose, "-o", "out"};
+    if (pose == "transform.txt") words.insert(words.end(), in_feet.begin(), in_feet.end());
+    const ProgramRun done = run(words);
+    ASSERT_EQ(done.status, 0) << done.err;
+    const Json element = json_of("out/deviation.json")["elements"][0];
+    EXPECT_EQ(element["points"], 8100);
+    EXPECT_NEAR(element["median_m"].get<double>(), 0.03048, 1e-4);
+    std::filesystem::remove_all(work() / "out");
+  }
+  const ProgramRun mixed =
+      run({"deviation", "scan.xyz", "floor.obj", "--result", "transform.txt", "--units", "ft", "-o", "out"});
+  EXPECT_EQ(mixed.status, 2);
+  EXPECT_NE(mixed.err.find("the scan is in ft, but the model in m"), std::string::npos) << mixed.err;
+}
+
 TEST_F(DeviationProgramTest, MistakesAreNamedAndLeaveNothingBehind) {
   write_whole(work() / "cube.obj",
               "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n"

@@ -217,7 +217,7 @@ TEST_F(ServeTest, AProjectTakesControlPointsAndIsComparedWithItsModel) {
   EXPECT_EQ(status_in(server().ask("POST", "jobs", turned)), 202);
   EXPECT_NE(server().state_with("transform.txt").find("model.ifc into scan_01.ply"), std::string::npos);
   EXPECT_EQ(status_in(server().ask("POST", "jobs", R"({"kind": "place", "of": 3})")), 202);
-  EXPECT_EQ(status_in(server().ask("POST", "jobs", R"({"kind": "deviation", "of": 3})")), 202);
+  EXPECT_EQ(status_in(server().ask("POST", "jobs", R"({"kind": "deviation", "of": 3, "pdf": true})")), 202);
   EXPECT_NE(server().state_with("scan_01_placed.ply").find("deviation"), std::string::npos);
   for (int k = 0; k < 600 && !fs::exists(work() / "site" / "results" / "5.json"); ++k)
     std::this_thread::sleep_for(std::chrono::milliseconds(50));

@@ -103,6 +103,21 @@ TEST_F(ViewTest, BothSidesOfAResultStandInTheTargetsFrame) {
   EXPECT_FALSE(std::filesystem::exists(work() / "other.html"));
 }
 
+TEST_F(ViewTest, AResultKnowsTheUnitsOfItsFiles) {
+  write_wall("feet.xyz", 10.0);
+  write_wall("metres.xyz", 0.0);
+  json result;
+  result["target_from_source"] = {{1, 0, 0, 100}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}};
+  result["inputs"]["source"] = {{"path", "feet.xyz"}, {"metres_per_unit", 0.3048}};
+  result["inputs"]["target"] = {{"path", "metres.xyz"}, {"metres_per_unit", 1.0}};
+  write_whole(work() / "result.json", result.dump());
+  must_view({"result.json", "-o", "out.html"});
+  const json scene = scene_of("out.html");
+  EXPECT_NEAR(low_of(scene, "side-0")[0], 103.048, 1e-4);
+  EXPECT_NEAR(low_of(scene, "side-1")[0], 0.0, 1e-6);
+  EXPECT_FALSE(scene["side-0"].contains("path"));  // its places are not those of the file
+}
+
 TEST_F(ViewTest, AllPlacedScansOfAProject) {
   ASSERT_EQ(run({"simulate", "room", "--points-indoor", "30000", "-o", ".", "--quiet"}).status, 0);
   ASSERT_EQ(run({"project", "indoor_00.ply", "indoor_01.ply", "-o", "building", "--quiet"}).status, 0);

@@ -43,5 +43,7 @@ struct LookAlikeEvidence {
 /// Places that look alike are further from each other than one of these.
 inline constexpr double kOtherPlaceM = 0.5;
 inline constexpr double kOtherPlaceRad = 0.087;
+/// What is nearer to one another than this is no other place.
+inline constexpr double kNoOtherPlaceM = 0.15;
 
 }  // namespace limen

@@ -113,10 +113,10 @@ void take_inputs(const Json& object, PoseFile& pose) {
   if (source.is_object()) pose.source_sha256 = text_at(source, "sha256");
   if (target.is_object()) pose.target_sha256 = text_at(target, "sha256");
   if (source.is_object()) pose.source_middle = vector_at(source, "middle");
-  const auto unit_of = [](const Json& side) {
-    if (!side.is_object() || !side.contains("metres_per_unit")) return 1.0;
+  const auto unit_of = [](const Json& side) -> std::optional<double> {
+    if (!side.is_object() || !side.contains("metres_per_unit")) return {};
     const Json& unit = side["metres_per_unit"];
-    return unit.is_number() && unit.get<double>() > 0 ? unit.get<double>() : 1.0;
+    return unit.is_number() && unit.get<double>() > 0 ? std::optional(unit.get<double>()) : std::nullopt;
   };
   pose.source_metres_per_unit = unit_of(source);
   pose.target_metres_per_unit = unit_of(target);

@@ -22,8 +22,9 @@ struct PoseFile {
   std::string target_path;
   std::string source_sha256;  ///< of the registered file's bytes, 64 hexadecimal digits; empty where unknown
   std::string target_sha256;
-  double source_metres_per_unit = 1.0;  ///< of the numbers in the registered files; the poses are in metres
-  double target_metres_per_unit = 1.0;
+  /// Of the numbers in the registered files, where the file says; the poses are in metres.
+  std::optional<double> source_metres_per_unit;
+  std::optional<double> target_metres_per_unit;
   std::vector<Rigid3> alternatives;  ///< the other poses, in the order of the file
   bool of_numbers = false;           ///< a text: its translation is in the unit of the files, not in metres
 };

@@ -10,6 +10,7 @@
 
 #include "limen/base/atomic_file.h"
 #include "limen/base/error.h"
+#include "limen/base/length_unit.h"
 #include "limen/cli/commands/commands.h"
 #include "limen/cli/commands/deviation_project.h"
 #include "limen/cli/inputs/cover_option.h"
@@ -81,7 +82,7 @@ bool model_is_source(const DeviationCommand& command, const PoseFile& pose, cons
   return false;
 }
 
-/// The pose of the scan in the model, both in their world coordinates.
+/// The pose of the scan in the model, both in their world coordinates; of a text in the unit of its numbers.
 Rigid3 model_from_scan(const DeviationCommand& command, const PoseFile& pose, const Session& session,
                        DeviationReport& report) {
   if (command.result.empty()) return {};
@@ -90,6 +91,29 @@ Rigid3 model_from_scan(const DeviationCommand& command, const PoseFile& pose, co
   if (pose.outcome) report.result_outcome = to_string(*pose.outcome);
   if (command.alternative == 0) warn_of_doubt(pose, command.result, session);
   return model_is_source(command, pose, session) ? inverse(target_from_source) : target_from_source;
+}
+
+/// The units that the numbers of the scan and of the model were said to have when they were registered;
+/// nothing where the result does not say.
+struct RegisteredUnits {
+  std::optional<double> of_scan;
+  std::optional<double> of_model;
+};
+
+RegisteredUnits registered_units(const DeviationCommand& command, const PoseFile& pose) {
+  if (command.inverse || same_name(pose.target_path, command.scan))
+    return {pose.target_metres_per_unit, pose.source_metres_per_unit};
+  return {pose.source_metres_per_unit, pose.target_metres_per_unit};
+}
+
+/// A text has the unit of the files' numbers. Throws Error where the two files differ in it.
+void put_in_metres(const PoseFile& pose, const DeviationCommand& command, DeviationReport& report) {
+  if (!pose.of_numbers) return;
+  if (report.scan.metres_per_unit != report.model.metres_per_unit)
+    throw Error(fmt::format("is a text of numbers, and the scan is in {}, but the model in {}",
+                            unit_name(report.scan.metres_per_unit), unit_name(report.model.metres_per_unit)),
+                command.result, "give the result.json of limen register, which says more");
+  report.model_from_scan.translation *= report.model.metres_per_unit;
 }
 
 /// A pose holds for what was registered. Throws Error where a file's bytes are those of neither side.
@@ -161,14 +185,6 @@ std::string summary(const DeviationReport& report, const BimModel& model, const 
   return text + fmt::format("written to {}\n", folder);
 }
 
-/// The unit that the scan's numbers were said to have when it was registered; nothing where they were
-/// metres.
-std::optional<double> registered_unit(const DeviationCommand& command, const PoseFile& pose) {
-  const bool scan_is_target = command.inverse || same_name(pose.target_path, command.scan);
-  const double unit = scan_is_target ? pose.target_metres_per_unit : pose.source_metres_per_unit;
-  return unit == 1.0 ? std::nullopt : std::optional(unit);
-}
-
 /// Issues of one scan; returns their number.
 std::size_t write_issues(const DeviationCommand& command, const DeviationReport& report, const Scan& scan,
                          const BimModel& model) {
@@ -234,10 +250,14 @@ int run(const DeviationCommand& command, const Session& session) {
   report.model_from_scan = model_from_scan(command, pose_file, session, report);
   session.monitor->begin_stage("reading");
   ReadOptions reading = with_choice(read_options(command.origin, "--origin", "up"), command.reading);
-  if (!reading.metres_per_unit) reading.metres_per_unit = registered_unit(command, pose_file);
+  const RegisteredUnits registered = registered_units(command, pose_file);
+  if (!reading.metres_per_unit) reading.metres_per_unit = registered.of_scan;
   const InputSide scan_side = read_side({command.scan, command.with, reading, "--units"}, session);
   ReadOptions model_reading;
   model_reading.metres_per_unit = metres_per_unit_of(command.model_units);
+  // Of metres nobody need have spoken, and an IFC model says its own unit.
+  if (!model_reading.metres_per_unit && registered.of_model != 1.0)
+    model_reading.metres_per_unit = registered.of_model;
   const InputSide model_side = read_side({command.model, {}, model_reading, "--model-units"}, session);
   if (scan_side.input.model)
     throw Error("is a building model", command.scan, "give the scan first, then the model");
@@ -251,6 +271,9 @@ int run(const DeviationCommand& command, const Session& session) {
   report.scan = scan_side.summary;
   report.model = model_side.summary;
   check_inputs(command, pose_file, report);
+  for (const std::string& registered_scan : {pose_file.source_path, pose_file.target_path})
+    note_other_scan(registered_scan, command.scan, session);
+  put_in_metres(pose_file, command, report);
   report.measured = command.measuring;
   const Rigid3 pose = to_local(report.model_from_scan, scan.local_origin, model.local_origin);
   report.deviation = measure_deviation(scan, model, pose, command.measuring, *session.monitor);

@@ -70,11 +70,12 @@ void check_cloud(const TransformOptions& options, const PoseFile& pose) {
 /// A pose in metres for clouds whose numbers are in a unit of their own. Throws Error where the two differ: a
 /// cloud is moved, not scaled.
 Rigid3 in_unit_of_clouds(Rigid3 pose, const PoseFile& file, const std::string& path) {
-  const double unit = file.source_metres_per_unit;
-  if (unit != file.target_metres_per_unit) {
+  const double unit = file.source_metres_per_unit.value_or(1.0);
+  const double target_unit = file.target_metres_per_unit.value_or(1.0);
+  if (unit != target_unit) {
     throw Error(
         fmt::format("has its source in {} and its target in {}, but a cloud is moved only, not scaled",
-                    unit_name(unit), unit_name(file.target_metres_per_unit)),
+                    unit_name(unit), unit_name(target_unit)),
         path,
         "convert both files to one unit, or apply transform.txt, which includes the scale, in another "
         "program");
@@ -83,10 +84,11 @@ Rigid3 in_unit_of_clouds(Rigid3 pose, const PoseFile& file, const std::string& p
   return pose;
 }
 
-Rigid3 read_pose(const TransformOptions& options, const PoseFile& pose) {
+Rigid3 read_pose(const TransformOptions& options, const PoseFile& pose, const Session& session) {
   const Rigid3 target_from_source =
       in_unit_of_clouds(chosen_pose(pose, options.alternative, options.result), pose, options.result);
   check_cloud(options, pose);
+  note_other_scan(options.invert ? pose.target_path : pose.source_path, options.cloud, session);
   return options.invert ? inverse(target_from_source) : target_from_source;
 }
 
@@ -134,7 +136,7 @@ int run(const TransformOptions& options, const Session& session) {
   refuse_same_file(options.output, options.cloud);
   refuse_same_file(options.output, options.result);
   const PoseFile pose = options.result == "identity" ? unmoved() : read_pose_file(options.result);
-  const Rigid3 target_from_source = read_pose(options, pose);
+  const Rigid3 target_from_source = read_pose(options, pose, session);
   for (const std::string& other : options.merge) refuse_same_file(options.output, other);
   const CancelScope scope(*session.monitor);
   const CoordinateSystem system = chosen_system(options.crs);

@@ -43,10 +43,11 @@ namespace {
 /// One scan or model to look at, and where it is.
 struct ViewInput {
   std::string path;
-  int scan = -1;               ///< of the file, those without points not counted; -1: all
-  Rigid3 frame_from_world;     ///< metres
-  std::string sha256;          ///< that its bytes must have; empty: any
-  std::string stated_by = {};  ///< the file that says so
+  int scan = -1;                               ///< of the file, those without points not counted; -1: all
+  Rigid3 frame_from_world;                     ///< metres
+  std::string sha256;                          ///< that its bytes must have; empty: any
+  std::string stated_by = {};                  ///< the file that says so
+  std::optional<double> metres_per_unit = {};  ///< of its numbers, where a result says
   /// Of a mobile pass that drifted: by how much each point moves within the frame, by its time.
   std::shared_ptr<const SplineMotion> bend = {};
 };
@@ -73,9 +74,14 @@ std::vector<ViewInput> sides_of_result(const std::string& path, int alternative)
   if (pose.source_path.empty() || pose.target_path.empty())
     throw Error("does not name the files that were registered", path,
                 "give the result.json that limen register wrote");
-  ViewInput source{found_beside(pose.source_path, path), -1, chosen_pose(pose, alternative, path),
-                   pose.source_sha256, path};
-  ViewInput target{found_beside(pose.target_path, path), -1, Rigid3{}, pose.target_sha256, path};
+  ViewInput source{found_beside(pose.source_path, path),
+                   -1,
+                   chosen_pose(pose, alternative, path),
+                   pose.source_sha256,
+                   path,
+                   pose.source_metres_per_unit};
+  ViewInput target{found_beside(pose.target_path, path), -1, Rigid3{}, pose.target_sha256, path,
+                   pose.target_metres_per_unit};
   return {std::move(source), std::move(target)};
 }
 
@@ -86,8 +92,13 @@ std::vector<ViewInput> scans_of_project(const std::string& path, const Session& 
       session.note(fmt::format("{}: {}, not shown", scan_name(entry), entry.state));
       continue;
     }
-    inputs.push_back({found_beside(entry.file, path), entry.model ? -1 : entry.index, *entry.frame_from_scan,
-                      entry.sha256, path, entry.bend});
+    inputs.push_back({found_beside(entry.file, path),
+                      entry.model ? -1 : entry.index,
+                      *entry.frame_from_scan,
+                      entry.sha256,
+                      path,
+                      {},
+                      entry.bend});
   }
   return inputs;
 }
@@ -187,23 +198,39 @@ ViewSide side_of_cloud(const ViewInput& input, const CloudToView& cloud, Scan sc
   return side;
 }
 
-/// The images of an E57 at their places, as long as there is room for them on the page.
+/// Room for images on a page.
+struct PictureRoom {
+  std::size_t bytes = 0;
+  std::size_t left = 0;
+};
+
+/// What so many points leave of a page: three bytes of an image are four on it.
+PictureRoom room_beside(std::uint64_t points) {
+  constexpr std::uint64_t kBytesPerPoint = 12;  // place, plane and colour
+  const std::uint64_t taken = std::min<std::uint64_t>(kMostPageBytes, kBytesPerPoint * points);
+  const std::size_t bytes = std::min<std::size_t>(kMostPictureBytes, (kMostPageBytes - taken) / 4 * 3);
+  return {bytes, bytes};
+}
+
+/// The images of an E57 at their places, as long as there is room for them.
 std::vector<ViewPicture> pictures_of(const ViewInput& input, const CloudToView& cloud, const Vector3d& origin,
-                                     std::size_t& room, const Session& session) {
+                                     PictureRoom& room, const Session& session) {
   std::vector<ViewPicture> pictures;
   if (cloud.file->format() != PointFormat::e57) return pictures;
   const E57Original original(cloud.file->bytes(), cloud.file->name());
   for (const E57Picture& picture : original.pictures()) {
-    const auto shown = std::find_if(cloud.clouds.begin(), cloud.clouds.end(),
-                                    [&](const PlacedCloud& placed) { return placed.cloud == picture.scan; });
+    const auto shown = std::find_if(cloud.clouds.begin(), cloud.clouds.end(), [&](const PlacedCloud& placed) {
+      return cloud.file->number_in_file(placed.cloud) == picture.scan;
+    });
     if (shown == cloud.clouds.end()) continue;
-    if (picture.bytes > room) {
-      session.note(fmt::format("{}: an image of {:.1f} MB is left out: a page holds {:.0f} MB of images",
-                               cloud.file->name(), static_cast<double>(picture.bytes) / 1e6,
-                               static_cast<double>(kMostPictureBytes) / 1e6));
+    if (picture.bytes > room.left) {
+      session.note(fmt::format(
+          "{}: an image of {:.1f} MB is left out: beside so many points a page holds {:.0f} MB of images",
+          cloud.file->name(), static_cast<double>(picture.bytes) / 1e6,
+          static_cast<double>(room.bytes) / 1e6));
       continue;
     }
-    room -= picture.bytes;
+    room.left -= picture.bytes;
     pictures.push_back({input.frame_from_world * picture.file_from_image.translation - origin, picture.type,
                         original.bytes_of(picture)});
   }
@@ -246,17 +273,18 @@ std::vector<ViewInput> view_inputs(const std::vector<std::string>& files, int al
 }
 
 /// Reads them all, thinned to `most_points` together: small clouds whole, the rest in equal parts.
-/// `metres_per_unit`: where the user says so. Throws Error where one cannot be read or is not the file that a
-/// result is about.
-ViewScene read_view(const std::vector<ViewInput>& inputs, std::size_t most_points,
-                    std::optional<double> metres_per_unit, const Session& session) {
+/// Throws Error where one cannot be read or is not the file that a result is about.
+ViewScene read_view(const std::vector<ViewInput>& inputs, std::size_t most_points, const Session& session) {
   std::vector<CloudToView> clouds;
   std::map<std::size_t, BimModel> models;
   std::set<std::string> checked;
   for (std::size_t k = 0; k < inputs.size(); ++k) {
     if (checked.insert(inputs[k].path).second) check_bytes(inputs[k]);
     if (is_bim_file(inputs[k].path)) {
-      models.emplace(k, read_model_input(inputs[k].path, session, metres_per_unit, "--units"));
+      // Of metres nobody need have spoken, and an IFC model says its own unit.
+      const std::optional<double> unit =
+          inputs[k].metres_per_unit == 1.0 ? std::nullopt : inputs[k].metres_per_unit;
+      models.emplace(k, read_model_input(inputs[k].path, session, unit, "--units"));
     } else {
       clouds.push_back(open_cloud(inputs[k], k, session));
     }
@@ -269,15 +297,17 @@ ViewScene read_view(const std::vector<ViewInput>& inputs, std::size_t most_point
     return *origin;
   };
   const std::vector<std::uint64_t> shares = shares_of(clouds, most_points);
-  std::size_t picture_room = kMostPictureBytes;
+  PictureRoom picture_room = room_beside(std::accumulate(shares.begin(), shares.end(), std::uint64_t{0}));
   for (std::size_t k = 0; k < clouds.size(); ++k) {
     const ViewInput& input = inputs[clouds[k].input];
-    Scan scan = with_whole_inputs([&] { return read_share(clouds[k], shares[k], metres_per_unit, session); });
+    Scan scan =
+        with_whole_inputs([&] { return read_share(clouds[k], shares[k], input.metres_per_unit, session); });
     const Vector3d& middle = about(place_of_scan(input) * (scan.local_origin + scan.points.front()));
     ViewSide& side = scene.sides[clouds[k].input] = side_of_cloud(input, clouds[k], std::move(scan), middle);
     side.pictures = pictures_of(input, clouds[k], middle, picture_room, session);
     // Of files whose coordinates are shown as they are.
-    if (clouds[k].file->file().clouds().size() == 1 && !input.bend && !metres_per_unit) {
+    if (clouds[k].file->file().clouds().size() == 1 && !input.bend &&
+        input.metres_per_unit.value_or(1.0) == 1.0) {
       side.path = fs::path(input.path).filename().string();
       side.file_from_frame = inverse(input.frame_from_world);
     }
@@ -325,14 +355,16 @@ std::string title_of(const ViewCommand& command, const ViewScene& scene) {
 
 int run(const ViewCommand& command, const Session& session) {
   for (const std::string& file : command.files) refuse_same_file(command.output, file);
-  const std::vector<ViewInput> inputs = view_inputs(command.files, command.alternative, session);
+  std::vector<ViewInput> inputs = view_inputs(command.files, command.alternative, session);
+  if (const std::optional<double> unit = metres_per_unit_of(command.units)) {
+    for (ViewInput& input : inputs) input.metres_per_unit = unit;
+  }
   for (const ViewInput& input : inputs) refuse_same_file(command.output, input.path);
   // Opened before the long work: a place that cannot be written to is an error at once.
   AtomicFile file(command.output);
   const CancelScope scope(*session.monitor);
   session.monitor->begin_stage("reading");
-  ViewScene scene = read_view(inputs, static_cast<std::size_t>(command.most_points),
-                              metres_per_unit_of(command.units), session);
+  ViewScene scene = read_view(inputs, static_cast<std::size_t>(command.most_points), session);
   scene.title = title_of(command, scene);
   const std::string page = view_page(scene);
   file.write(page);

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limen/cli/inputs/registered_file.h"
 
+#include <filesystem>
+
 #include <fmt/format.h>
 
 #include "limen/base/error.h"
@@ -18,6 +20,16 @@ void warn_of_doubt(const PoseFile& file, const std::string& path, const Session&
     return session.warn(fmt::format("the pose in {} is only probable; the probability that it is right is {}",
                                     path, probability_words(*file.probability)));
   session.note(fmt::format("the pose in {} is {}: check it", path, to_string(*file.outcome)));
+}
+
+void note_other_scan(const std::string& registered, const std::string& given, const Session& session) {
+  const ScanInFile found = split_scan_name(registered);
+  const ScanInFile moved = split_scan_name(given);
+  const auto name = [](const ScanInFile& scan) { return std::filesystem::path(scan.file).filename(); };
+  if (!found.index || found.index == moved.index || name(found) != name(moved)) return;
+  session.note(fmt::format(
+      "the pose was found for scan #{} of {}: it holds for others only where the file's own poses join them",
+      *found.index, name(found).string()));
 }
 
 void require_registered_file(const ProjectEntry& entry, const std::string& project, bool force) {

@@ -14,6 +14,10 @@ namespace limen {
 /// probable one that is a warning with its probability, shown also where quiet. `path` names the file.
 void warn_of_doubt(const PoseFile& file, const std::string& path, const Session& session);
 
+/// Tells on standard error where a pose was found for one scan of a file and is applied to another one of it:
+/// that is right only where the file's own poses join them. Both as a user names scans.
+void note_other_scan(const std::string& registered, const std::string& given, const Session& session);
+
 /// A place in a project holds for the bytes that were registered. Throws Error where the scan's file cannot
 /// be read, or, but for `force`, holds other bytes; `project` names the project.json in messages.
 void require_registered_file(const ProjectEntry& entry, const std::string& project, bool force);

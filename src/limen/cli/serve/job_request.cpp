@@ -242,13 +242,13 @@ PageJob comparing(const Asked& asked) {
   job.words = {"deviation"};
   if (of.kind == "project") {
     job.words.push_back(result_of(of));
+    if (asked.flag("pdf")) job.words.emplace_back("--pdf");
   } else {
     const PairFiles files = files_of_pair(asked, of);
     job.words.insert(job.words.end(), {files.scan, files.other, "--result", result_of(of)});
     if (files.inverse) job.words.emplace_back("--inverse");
   }
   job.words.insert(job.words.end(), {"-o", asked.results()});
-  if (asked.flag("pdf")) job.words.emplace_back("--pdf");
   job.title = of.title;
   return job;
 }

@@ -317,7 +317,7 @@ void JoinedClouds::add_columns(const RecordTable& table, const CloudFacts& facts
   }
   const bool split_colour = table.find({"red"}) != nullptr;
   for (const Field& field : table.fields) {
-    if (field.name == "_" || field.name == kSourceColumn) continue;
+    if (field.name == "_" || (tell_source_ && field.name == kSourceColumn)) continue;
     // Colours packed into one number come as three columns too.
     if (split_colour && (field.name == "rgb" || field.name == "rgba")) continue;
     const bool moves = std::find(kPoint.begin(), kPoint.end(), field.name) != kPoint.end() ||

@@ -303,7 +303,8 @@ class LasWriter : public CloudWriter {
           summary.earliest = std::min(summary.earliest, strip.values[i]);
           summary.latest = std::max(summary.latest, strip.values[i]);
         }
-        return strip.store(slot.at, [](double value) { return value; });
+        // Of points whose time nobody knows LAS says 0.
+        return strip.store(slot.at, [](double value) { return std::isnan(value) ? 0.0 : value; });
       case LasStore::extra:
         return store_extra(strip, slot);
     }

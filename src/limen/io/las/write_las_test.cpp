@@ -103,6 +103,12 @@ TEST(WriteLas, TimesGoToTheirPlaceByAnyName) {
   }
 }
 
+TEST(WriteLas, ATimeThatNobodyKnowsIsZero) {
+  const std::string bytes =
+      written(plan_with({{"gps_time", Scalar::float64}}), {{652000, 6861000, 3, std::nan("")}});
+  EXPECT_EQ(column(bytes, "gps_time"), std::vector<double>{0.0});
+}
+
 TEST(WriteLas, AStandardValueIsMadeAnewFromTheMoreExactOne) {
   const CloudPlan plan = plan_with({{"intensity", Scalar::float32}, {"las_intensity", Scalar::uint16}});
   const std::string bytes = written(plan, {{652000, 6861000, 3, 0.25, 7}});

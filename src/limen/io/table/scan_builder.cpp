@@ -257,6 +257,19 @@ void settle_centres(std::vector<Vector3d>& centres) {
   centres.shrink_to_fit();
 }
 
+/// Where more than a few points have no scanner position, as in clouds merged of scans with and without, it
+/// is unknown for all: else those points would be lost. A sentence about it.
+std::string settle_missing_centres(Scan& scan) {
+  constexpr double kFew = 0.01;
+  if (!scan.mobile()) return {};
+  const auto missing = static_cast<std::size_t>(std::count_if(
+      scan.centres.begin(), scan.centres.end(), [](const Vector3d& centre) { return centre.hasNaN(); }));
+  if (static_cast<double>(missing) <= kFew * static_cast<double>(scan.size())) return {};
+  scan.centres.clear();
+  return fmt::format("{} of {} points state no scanner position; it is taken as unknown for all", missing,
+                     scan.size());
+}
+
 /// The scan without points that are no points, and how many those were. 0 0 0 far from all others is how some
 /// programs write a missing return.
 std::pair<Scan, std::size_t> without_unusable(Scan scan) {
@@ -439,6 +452,7 @@ ScanFile ScanBuilder::finish(ScanFile file) {
   parts.scan.colours = parts.colours.finish();
   parts.scan.topology = parts.topology();
   settle_centres(parts.scan.centres);
+  std::string mixed = settle_missing_centres(parts.scan);
   auto [scan, unusable] = without_unusable(std::move(parts.scan));
   if (scan.points.empty()) {
     throw Error("no usable points: none has finite coordinates and a finite scanner position", facts.name,
@@ -447,7 +461,8 @@ ScanFile ScanBuilder::finish(ScanFile file) {
   check_extent(scan);
   if (!parts.options.trajectory) check_centres(scan);
   scan.level = parts.options.level;
-  std::string note = settle_centre(scan, facts, parts.options);
+  const bool given = parts.options.origin || parts.options.trajectory;
+  std::string note = mixed.empty() || given ? settle_centre(scan, facts, parts.options) : std::move(mixed);
   if (!note.empty()) file.notes.push_back(std::move(note));
   file.dropped += unusable;
   file.unusable += unusable - std::min(unusable, facts.missing);

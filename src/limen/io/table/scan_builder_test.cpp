@@ -70,6 +70,30 @@ TEST(ScanBuilder, TablesOneByOneMakeTheScanOfOneTable) {
   EXPECT_EQ(whole.notes, pieces.notes);
 }
 
+TEST(ScanBuilder, PointsWithoutAScannerPositionAreKeptIfTheyAreMany) {
+  const std::vector<std::string> names = {"x", "y", "z", "x_origin", "y_origin", "z_origin"};
+  const auto scan_with = [&](std::size_t missing) {
+    RandomStream random(5, 0);
+    std::vector<double> all;
+    for (std::size_t i = 0; i < 1000; ++i) {
+      for (int k = 0; k < 3; ++k) all.push_back(random.uniform(0.0, 20.0));
+      for (int k = 0; k < 3; ++k)
+        all.push_back(i < missing ? std::numeric_limits<double>::quiet_NaN() : random.uniform(9.0, 10.0));
+    }
+    return with_scan({}, table_of_numbers(std::make_shared<const std::vector<double>>(all), names), facts(),
+                     {});
+  };
+  const ScanFile few = scan_with(5);
+  EXPECT_EQ(few.scans.front().size(), 995U);
+  EXPECT_TRUE(few.scans.front().mobile());
+  const ScanFile half = scan_with(500);
+  EXPECT_EQ(half.scans.front().size(), 1000U);
+  EXPECT_FALSE(half.scans.front().centre_known());
+  EXPECT_EQ(half.unusable, 0U);
+  EXPECT_EQ(half.notes.back(),
+            "500 of 1000 points state no scanner position; it is taken as unknown for all");
+}
+
 TEST(ScanBuilder, LineNumbersThatAreNoneAreNotBelieved) {
   std::vector<double> all = numbers(100);
   all[kNames.size() * 50 + 8] = 1e12;

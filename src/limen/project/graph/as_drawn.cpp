@@ -8,7 +8,8 @@
 
 namespace limen {
 
-AsDrawn::AsDrawn(int nodes, const std::vector<PlacedPair>& pairs) : pairs_(nodes, pairs) {
+AsDrawn::AsDrawn(const Viewpoints& viewpoints, int nodes, const std::vector<PlacedPair>& pairs)
+    : pairs_(viewpoints, nodes, pairs) {
   for (const std::size_t k : pairs_.numbers()) walls_.push_back(pairs[k].evidence.look_alikes.built);
 }
 

@@ -11,7 +11,7 @@ namespace limen {
 /// Whether a building is exactly as drawn, by the walls that its pairs show.
 class AsDrawn {
  public:
-  AsDrawn(int nodes, const std::vector<PlacedPair>& pairs);
+  AsDrawn(const Viewpoints& viewpoints, int nodes, const std::vector<PlacedPair>& pairs);
 
   /// The probability, by all pairs but those that cross the border of `side`: they are to be judged.
   [[nodiscard]] double without(const std::vector<bool>& side, const BendBelief& bends) const;

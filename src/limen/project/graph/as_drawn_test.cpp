@@ -27,7 +27,7 @@ std::vector<PlacedPair> drawn_row(int scans, double nats) {
 double without_last(int scans, const std::vector<PlacedPair>& pairs) {
   std::vector<bool> last(static_cast<std::size_t>(scans), false);
   last.back() = true;
-  return AsDrawn(scans, pairs).without(last, bends_beforehand());
+  return AsDrawn(Viewpoints(scans), scans, pairs).without(last, bends_beforehand());
 }
 
 TEST(AsDrawn, WithoutWallsIsWhatIsBelieved) {

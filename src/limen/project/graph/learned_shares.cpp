@@ -11,11 +11,12 @@ constexpr double kLeastSharedM2 = 1e-3;
 
 }  // namespace
 
-RoomPairs::RoomPairs(int nodes, const std::vector<PlacedPair>& pairs)
-    : nodes_(static_cast<std::size_t>(nodes)) {
+RoomPairs::RoomPairs(const Viewpoints& viewpoints, int nodes, const std::vector<PlacedPair>& pairs) {
+  for (int n = 0; n < nodes; ++n) weight_.push_back(viewpoints.weight(n));
   for (std::size_t k = 0; k < pairs.size(); ++k) {
     const PlacedPair& pair = pairs[k];
-    if (pair.link < 0 || !pair.evidence.asks_things()) continue;
+    if (pair.link < 0 || !pair.evidence.asks_things() || viewpoints.is_same(pair.source, pair.target))
+      continue;
     numbers_.push_back(k);
     ends_.push_back({static_cast<std::size_t>(pair.source), static_cast<std::size_t>(pair.target),
                      std::max(kLeastSharedM2, pair.shared_m2)});
@@ -23,7 +24,7 @@ RoomPairs::RoomPairs(int nodes, const std::vector<PlacedPair>& pairs)
 }
 
 std::vector<double> RoomPairs::weights_without(const std::vector<bool>& side) const {
-  std::vector<double> all_m2(nodes_, 0.0);
+  std::vector<double> all_m2(weight_.size(), 0.0);
   for (const Ends& ends : ends_) {
     if (side[ends.source] != side[ends.target]) continue;
     all_m2[ends.source] += ends.shared_m2;
@@ -33,8 +34,8 @@ std::vector<double> RoomPairs::weights_without(const std::vector<bool>& side) co
   weights.reserve(ends_.size());
   for (const Ends& ends : ends_) {
     const bool within = side[ends.source] == side[ends.target];
-    const double half_m2 = 0.5 * ends.shared_m2;
-    weights.push_back(within ? half_m2 / all_m2[ends.source] + half_m2 / all_m2[ends.target] : 0.0);
+    const auto part = [&](std::size_t node) { return 0.5 * weight_[node] * ends.shared_m2 / all_m2[node]; };
+    weights.push_back(within ? part(ends.source) + part(ends.target) : 0.0);
   }
   return weights;
 }

@@ -10,18 +10,20 @@
 #include <vector>
 
 #include "limen/project/graph/shared_views.h"
+#include "limen/project/graph/viewpoints.h"
 
 namespace limen {
 
 /// Pairs of rooms that agree, from which a project learns.
 class RoomPairs {
  public:
-  RoomPairs(int nodes, const std::vector<PlacedPair>& pairs);
+  RoomPairs(const Viewpoints& viewpoints, int nodes, const std::vector<PlacedPair>& pairs);
 
   /// Their numbers among all pairs.
   [[nodiscard]] const std::vector<std::size_t>& numbers() const { return numbers_; }
-  /// How much each counts if those that cross the border of `side` do not, for they are to be judged: a scan
-  /// counts once, by the mean of its pairs weighed by the surface they share, and a pair is of two scans.
+  /// How much each counts if those that cross the border of `side` do not, for they are to be judged: a place
+  /// that scans were taken from counts once, by the mean of its pairs weighed by the surface they share, and
+  /// a pair is of two.
   [[nodiscard]] std::vector<double> weights_without(const std::vector<bool>& side) const;
 
  private:
@@ -30,7 +32,7 @@ class RoomPairs {
     std::size_t target = 0;
     double shared_m2 = 0.0;
   };
-  std::size_t nodes_;
+  std::vector<double> weight_;  ///< of each node
   std::vector<std::size_t> numbers_;
   std::vector<Ends> ends_;
 };
@@ -44,9 +46,10 @@ class LearnedShares {
 
   /// `strength`: how well the shares are known beforehand, in scans. `logs`: of what a pair shows in each
   /// case the logarithm of the likelihood.
-  LearnedShares(int nodes, const std::vector<PlacedPair>& pairs, const Shares& beforehand, double strength,
+  LearnedShares(const Viewpoints& viewpoints, int nodes, const std::vector<PlacedPair>& pairs,
+                const Shares& beforehand, double strength,
                 const std::function<Shares(const PairEvidence&)>& logs)
-      : beforehand_(beforehand), strength_(strength), pairs_(nodes, pairs) {
+      : beforehand_(beforehand), strength_(strength), pairs_(viewpoints, nodes, pairs) {
     for (const std::size_t k : pairs_.numbers()) seen_.push_back(likelihoods(logs(pairs[k].evidence)));
     by_all_ = settled(std::vector<bool>(static_cast<std::size_t>(nodes), false), beforehand);
   }

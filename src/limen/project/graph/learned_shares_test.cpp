@@ -21,7 +21,7 @@ PlacedPair room_pair(int source, int target, double nats, double shared_m2 = 20.
 }
 
 double first_share(int nodes, const std::vector<PlacedPair>& pairs, const std::vector<bool>& side) {
-  const TwoShares shares(nodes, pairs, {0.5, 0.5}, 0.2, [](const PairEvidence& evidence) {
+  const TwoShares shares(Viewpoints(nodes), nodes, pairs, {0.5, 0.5}, 0.2, [](const PairEvidence& evidence) {
     return TwoShares::Shares{evidence.chance_nats, 0.0};
   });
   return shares.without(side)[0];

@@ -71,12 +71,13 @@ std::vector<UnusedLink> unused_links(const PoseGraph& graph, const LinkMatcher& 
   return unused;
 }
 
-LookAlikeRate::LookAlikeRate(int nodes, const std::vector<PlacedPair>& pairs,
+LookAlikeRate::LookAlikeRate(const Viewpoints& viewpoints, int nodes, const std::vector<PlacedPair>& pairs,
                              const std::vector<UnusedLink>& unused)
     : others_(density_beforehand()), links_(static_cast<std::size_t>(nodes)), agreeing_(links_.size(), 0.0) {
   std::vector<double> all(links_.size(), 0.0);
   for (const PlacedPair& pair : pairs) {
-    if (pair.link < 0 || !pair.evidence.asks_things()) continue;
+    if (pair.link < 0 || !pair.evidence.asks_things() || viewpoints.is_same(pair.source, pair.target))
+      continue;
     links_[static_cast<std::size_t>(pair.source)].push_back({pair.target, votes_.size()});
     links_[static_cast<std::size_t>(pair.target)].push_back({pair.source, votes_.size()});
     votes_.push_back(logs_of(pair.evidence.look_alikes, 1.0, 0.0));
@@ -87,10 +88,11 @@ LookAlikeRate::LookAlikeRate(int nodes, const std::vector<PlacedPair>& pairs,
     all[static_cast<std::size_t>(link.target)] += 1.0;
   }
   for (std::size_t n = 0; n < links_.size(); ++n)
-    agreeing_[n] = static_cast<double>(links_[n].size()) / std::max(1.0, all[n]);
+    agreeing_[n] = viewpoints.weight(static_cast<int>(n)) * static_cast<double>(links_[n].size()) /
+                   std::max(1.0, all[n]);
   for (const UnusedLink& link : unused) {
-    const double weight =
-        1.0 / all[static_cast<std::size_t>(link.source)] + 1.0 / all[static_cast<std::size_t>(link.target)];
+    const double weight = viewpoints.weight(link.source) / all[static_cast<std::size_t>(link.source)] +
+                          viewpoints.weight(link.target) / all[static_cast<std::size_t>(link.target)];
     add(weight,
         logs_of(link.evidence.look_alikes, link.contradicted ? 0.0 : 1.0,
                 std::exp(-link.evidence.chance_nats)),

@@ -7,6 +7,7 @@
 
 #include "limen/project/graph/configuration.h"
 #include "limen/project/graph/shared_views.h"
+#include "limen/project/graph/viewpoints.h"
 
 namespace limen {
 
@@ -24,11 +25,13 @@ std::vector<UnusedLink> unused_links(const PoseGraph& graph, const LinkMatcher& 
                                      const Configuration& configuration);
 
 /// How often, in this building, a pose whose walls agree lays a place on a look-alike one. The share has a
-/// beta distribution beforehand, for buildings differ (kRateStrength). Each scan counts once: by the clearest
-/// of its links that agree and by those that do not, as many as there are of each.
+/// beta distribution beforehand, for buildings differ (kRateStrength). Each place that scans
+/// were taken from counts once: by the clearest links of each that agree and by those that do not, as many as
+/// there are of each.
 class LookAlikeRate {
  public:
-  LookAlikeRate(int nodes, const std::vector<PlacedPair>& pairs, const std::vector<UnusedLink>& unused);
+  LookAlikeRate(const Viewpoints& viewpoints, int nodes, const std::vector<PlacedPair>& pairs,
+                const std::vector<UnusedLink>& unused);
 
   /// The odds of a look-alike place by all links but the pairs that cross the border of `side`, as a multiple
   /// of the odds beforehand.

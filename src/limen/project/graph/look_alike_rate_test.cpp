@@ -31,7 +31,7 @@ std::vector<PlacedPair> row(int scans, double against_look_alike) {
 double factor(int scans, const std::vector<PlacedPair>& pairs, const std::vector<UnusedLink>& unused = {}) {
   std::vector<bool> last(static_cast<std::size_t>(scans), false);
   last.back() = true;
-  return LookAlikeRate(scans, pairs, unused).factor(last);
+  return LookAlikeRate(Viewpoints(scans), scans, pairs, unused).factor(last);
 }
 
 TEST(LookAlikeRate, WithoutOtherLinksIsTheOneBeforehand) {

@@ -58,13 +58,17 @@ void LookAlikeSum::add(const PairEvidence& evidence, double of_things, double of
     add_to(sum_.share_nats, of_things, look_alikes.share_nats);
     sum_.things += of_things * look_alikes.things;
     sum_.agreeing += of_things * look_alikes.agreeing;
-    built_nats_ += of_surface * bounded(built_nats(look_alikes.built, belief_));
+    add_walls(look_alikes.built, of_surface);
   } else {
     const double by_surface =
         evidence.asks_look_alike ? evidence.behind_windows_nats() : evidence.chance_nats;
     for (NatsOfThings* sum : {&sum_.otherwise_nats, &sum_.alike_nats})
       for (double& nats : *sum) nats += (evidence.stated ? 1.0 : of_surface) * by_surface;
   }
+}
+
+void LookAlikeSum::add_walls(const BuiltEvidence& walls, double of_surface) {
+  built_nats_ += bounded(built_nats(walls, belief_, of_surface));
 }
 
 double PairEvidence::alone() const {

@@ -46,6 +46,8 @@ class LookAlikeSum {
 
   /// Shares of what the pair shows that count for it (SharedViews): of things, and of the building's surface.
   void add(const PairEvidence& evidence, double of_things = 1.0, double of_surface = 1.0);
+  /// How walls were built, alone.
+  void add_walls(const BuiltEvidence& walls, double of_surface);
   [[nodiscard]] double stayed_nats(const StayedBelief& stayed) const { return nats_of_stayed(sum_, stayed); }
   [[nodiscard]] double against_otherwise(double stayed_nats = 0.0) const {
     return limen::against_otherwise(sum_, belief_.as_drawn, stayed_nats) + built_nats_;

@@ -83,6 +83,30 @@ double believed_once(const std::vector<const PlacedPair*>& across, double LookAl
   return least;
 }
 
+/// What pairs of scans from the same two places say of walls: as one pair, for they are bent in the same way.
+class MeanWalls {
+ public:
+  void add(const BuiltEvidence& walls, double share) {
+    for (std::size_t j = 0; j < kBendLevels; ++j) {
+      sum_.one[j] += share * walls.one[j];
+      sum_.look_alike[j] += share * walls.look_alike[j];
+      sum_.as_drawn[j] += share * walls.as_drawn[j];
+    }
+    share_ += share;
+  }
+  [[nodiscard]] double share() const { return share_; }
+  [[nodiscard]] BuiltEvidence walls() const {
+    BuiltEvidence mean = sum_;
+    for (auto* logs : {&mean.one, &mean.look_alike, &mean.as_drawn})
+      for (double& log : *logs) log /= share_;
+    return mean;
+  }
+
+ private:
+  BuiltEvidence sum_;
+  double share_ = 0.0;
+};
+
 /// Adds the odds of a side to those of each node on it.
 void add_to_nodes(const std::vector<bool>& side, double more, std::vector<double>& odds) {
   for (std::size_t n = 0; n < side.size(); ++n) {
@@ -92,19 +116,30 @@ void add_to_nodes(const std::vector<bool>& side, double more, std::vector<double
 
 }  // namespace
 
-PlacementOdds::PlacementOdds(int nodes, std::vector<PlacedPair> pairs, const std::vector<UnusedLink>& unused)
+PlacementOdds::PlacementOdds(int nodes, std::vector<PlacedPair> pairs, const std::vector<UnusedLink>& unused,
+                             const std::optional<Viewpoints>& viewpoints)
     : nodes_(nodes),
+      viewpoints_(viewpoints.value_or(Viewpoints(nodes))),
       pairs_(std::move(pairs)),
       views_(nodes, pairs_),
       trees_(nodes),
-      rate_(nodes, pairs_, unused),
-      bends_(nodes, pairs_, bends_beforehand(), evidence_table::kBendStrength,
+      rate_(viewpoints_, nodes, pairs_, unused),
+      bends_(viewpoints_, nodes, pairs_, bends_beforehand(), evidence_table::kBendStrength,
              [](const PairEvidence& evidence) { return logs_of_bends(evidence.look_alikes.built); }),
-      stayed_(nodes, pairs_, stayed_beforehand(), evidence_table::kStayedStrength,
+      stayed_(viewpoints_, nodes, pairs_, stayed_beforehand(), evidence_table::kStayedStrength,
               [](const PairEvidence& evidence) { return logs_of_stayed(evidence.look_alikes); }),
-      as_drawn_(nodes, pairs_) {
+      as_drawn_(viewpoints_, nodes, pairs_) {
+  const auto joins = [](const PlacedPair& pair) {
+    return pair.link >= 0 || pair.evidence.look_alikes.things > 0.0;
+  };
+  std::map<std::pair<int, int>, double> count;  // of the pairs from one place to another
+  for (const PlacedPair& pair : pairs_)
+    if (joins(pair)) count[viewpoints_.of(pair.source, pair.target)] += 1.0;
   for (const PlacedPair& pair : pairs_) {
-    if (pair.link >= 0 || pair.evidence.look_alikes.things > 0.0) trees_.connect(pair.source, pair.target);
+    if (!joins(pair)) continue;
+    const bool same = viewpoints_.is_same(pair.source, pair.target);
+    trees_.connect(pair.source, pair.target,
+                   same ? 1.0 : 1.0 / count[viewpoints_.of(pair.source, pair.target)]);
   }
 }
 
@@ -129,8 +164,15 @@ double PlacementOdds::odds_of_look_alike(const std::vector<const PlacedPair*>& a
   const std::vector<double> of_surface = views_.shares(across, side, surface);
   const std::vector<double> of_things = views_.shares(across, side, things);
   LookAlikeSum against(built_without(side));
-  for (std::size_t k = 0; k < across.size(); ++k)
-    against.add(across[k]->evidence, of_things[k], of_surface[k]);
+  std::map<std::pair<int, int>, MeanWalls> walls;
+  for (std::size_t k = 0; k < across.size(); ++k) {
+    const bool rooms = across[k]->evidence.asks_things();
+    against.add(across[k]->evidence, of_things[k], rooms ? 0.0 : of_surface[k]);
+    if (rooms)
+      walls[viewpoints_.of(across[k]->source, across[k]->target)].add(across[k]->evidence.look_alikes.built,
+                                                                      of_surface[k]);
+  }
+  for (const auto& [viewpoints, mean] : walls) against.add_walls(mean.walls(), mean.share());
   const double otherwise = believed_once(across, &LookAlikeEvidence::otherwise);
   const double alike = believed_once(across, &LookAlikeEvidence::alike);
   const double stayed = against.stayed_nats(stayed_.without(side));

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <set>
 #include <vector>
 
@@ -28,8 +29,9 @@ struct SideOdds {
 
 /// Odds of sides, by all pairs that a configuration places in sight of each other.
 ///
-/// Scans are joined one by one, by a tree of pairs. Any tree is as likely as any other, and each of its pairs
-/// may join a wrong place. So a side is elsewhere as often as trees join it by one pair.
+/// Scans are joined one by one, by a tree of pairs. Any tree is as likely as any other, but that all pairs of
+/// scans from one place to another count once, and each of its pairs may join a wrong place. So a side is
+/// elsewhere as often as trees join it by one pair.
 ///
 /// Look-alike places: that there is one is believed once for a side, as little as any pair believes it, and
 /// as often as it happens in this building (look_alike_rate.h). What things and walls say against it adds up
@@ -38,7 +40,9 @@ struct SideOdds {
 /// as far as they show different surface, and wrong poses agree with one another seldom.
 class PlacementOdds {
  public:
-  PlacementOdds(int nodes, std::vector<PlacedPair> pairs, const std::vector<UnusedLink>& unused = {});
+  /// `viewpoints`: empty where every scan has its own.
+  PlacementOdds(int nodes, std::vector<PlacedPair> pairs, const std::vector<UnusedLink>& unused = {},
+                const std::optional<Viewpoints>& viewpoints = {});
 
   [[nodiscard]] const SideOdds& of(const std::vector<bool>& side);
   /// Sides without the nodes of `reference` (of each node; -1: none) whose odds are `least` or more, among
@@ -73,6 +77,7 @@ class PlacementOdds {
                                           const std::vector<bool>& side, SideOdds& odds) const;
 
   int nodes_;
+  Viewpoints viewpoints_;
   std::vector<PlacedPair> pairs_;
   SharedViews views_;
   SpanningTrees trees_;

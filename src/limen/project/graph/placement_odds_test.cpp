@@ -146,6 +146,62 @@ TEST(PlacementOdds, ByHowMuchScansAreBentIsLearnedFromTheOthers) {
   EXPECT_NEAR(odds(2, {}, judged) / odds(2, {}, {}), std::exp(-built_nats(judged)), 1e-6);
 }
 
+/// Two houses, in each of which two scans are not bent. That all pairs of one to the other are bent is far
+/// less probable than that one is.
+TEST(PlacementOdds, EachPairIsBentForItself) {
+  BuiltEvidence exact;  // of one place
+  exact.one = {0.0, -20.0, -30.0, -40.0, -50.0, -60.0, -20.0};
+  exact.look_alike = {-20.0, -25.0, -30.0, -40.0, -50.0, -60.0, -20.0};
+  exact.as_drawn.fill(-100.0);
+  BuiltEvidence differing;  // of two places, or bent so far that walls say nothing
+  differing.one = {-24.0, -20.0, -16.0, -12.0, -8.0, -4.0, 0.0};
+  differing.look_alike = {0.0, -1.0, -2.0, -3.0, -4.0, -4.0, 0.0};
+  differing.as_drawn.fill(-100.0);
+  const auto odds = [&](const std::vector<std::pair<int, int>>& across) {
+    std::vector<PlacedPair> pairs = {pair(1, 0, 9.0, 4.0, 4.0, 0), pair(3, 2, 9.0, 4.0, 4.0, 1)};
+    for (PlacedPair& within : pairs) within.evidence.look_alikes.built = exact;
+    for (const auto& [source, target] : across) {
+      pairs.push_back(pair(source, target, 9.0, 4.0, 4.0, static_cast<int>(pairs.size())));
+      pairs.back().evidence.look_alikes.built = differing;
+    }
+    return PlacementOdds(4, pairs).of(side({2, 3}, 4)).look_alike;
+  };
+  const double one = odds({{2, 0}});
+  EXPECT_GT(odds({{2, 0}, {3, 0}, {2, 1}, {3, 1}}), 20.0 * one);
+}
+
+/// A row of scans, each but the first `times` over from one place. A side is as surely where it is as in the
+/// row of single scans: its pairs are the same ones again, and that copies agree says nothing of a building.
+TEST(PlacementOdds, ASecondViewFromOnePlaceMakesNothingSurer) {
+  const auto odds = [](int times, bool known) {
+    constexpr int kPlaces = 5;
+    PoseGraph graph;
+    graph.nodes = kPlaces * times;
+    Configuration configuration;
+    std::vector<PlacedPair> pairs;
+    const auto n = static_cast<std::size_t>(graph.nodes);
+    configuration.component.assign(n, 0);
+    configuration.frame_from_node.resize(n);
+    std::vector<bool> last(n, false);
+    for (int a = 0; a < graph.nodes; ++a) {
+      graph.scanners.emplace_back(Vector3d(5.0 * (a / times), 0.0, 0.01 * (a % times)));
+      last[static_cast<std::size_t>(a)] = a / times == kPlaces - 1;
+      for (int b = 0; b < a; ++b) {
+        const int steps = a / times - b / times;
+        if (steps > 1) continue;
+        const double nats = steps == 0 ? 30.0 : 3.0;
+        pairs.push_back(pair(a, b, steps == 0 ? 9.2 : 4.0, nats, nats, static_cast<int>(pairs.size())));
+      }
+    }
+    return PlacementOdds(graph.nodes, pairs, {},
+                         known ? std::optional(Viewpoints(graph, configuration)) : std::nullopt)
+        .of(last)
+        .total();
+  };
+  EXPECT_NEAR(odds(3, true), odds(1, true), 0.5 * odds(1, true));
+  EXPECT_LT(odds(3, false), 0.2 * odds(1, false));
+}
+
 /// How many things stay where they are is learned from the other pairs: where nearly all stay, a pair of
 /// which half agree is sooner of two places.
 TEST(PlacementOdds, HowManyThingsStayIsLearnedFromTheOthers) {

@@ -45,6 +45,8 @@ struct PoseGraph {
   int nodes = 0;
   std::vector<GraphLink> links;
   int anchor = -1;  ///< a node that is the frame of the component it is part of, -1: none
+  /// Of each node, or of none, where its scanner was, in its own coordinates; of static scans.
+  std::vector<std::optional<Vector3d>> scanners;
 };
 
 /// What became of a link.

@@ -71,7 +71,7 @@ class Solver {
 
   void weigh() {
     odds_.emplace(graph_.nodes, placed_pairs(graph_, matcher_, best_, query_),
-                  unused_links(graph_, matcher_, best_));
+                  unused_links(graph_, matcher_, best_), Viewpoints(graph_, best_));
     reference_ = references();
     cuts_.clear();
   }
@@ -105,9 +105,14 @@ class Solver {
   /// The side that is most probably elsewhere leaves its component, and may join again by what did not lay it
   /// there; whether there was one.
   bool take_apart() {
+    return take_apart(odds_->weak_sides(reference_)) ||
+           take_apart(odds_->likely_sides(reference_, kElsewhereLikelier));
+  }
+
+  template <typename Sides>
+  bool take_apart(const Sides& sides) {
     const std::vector<bool>* worst = nullptr;
     double most = kElsewhereLikelier;
-    const std::vector<std::vector<bool>> sides = odds_->weak_sides(reference_);
     for (const std::vector<bool>& side : sides) {
       const double odds = odds_->of(side).total();
       if (odds <= most) continue;

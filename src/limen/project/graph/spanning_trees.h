@@ -9,12 +9,12 @@
 
 namespace limen {
 
-/// The ways in which nodes can be joined one by one: the spanning trees of a graph without parallel edges,
-/// each as likely as any other.
+/// The ways in which nodes can be joined one by one: the spanning trees of a graph without parallel edges.
+/// Each counts by the product of the weights of its edges.
 class SpanningTrees {
  public:
   explicit SpanningTrees(int nodes) : neighbours_(static_cast<std::size_t>(nodes)) {}
-  void connect(int a, int b);
+  void connect(int a, int b, double weight = 1.0);
 
   /// Share of the trees in which a single edge joins `side` to the rest of its component, or to each part of
   /// the rest that hangs together without it. By Kirchhoff's theorem: the number of trees is a determinant.
@@ -24,15 +24,20 @@ class SpanningTrees {
   [[nodiscard]] std::vector<int> random_tree(const std::vector<int>& roots, RandomStream& random) const;
 
  private:
-  [[nodiscard]] const std::vector<int>& beside(int node) const {
+  struct Way {
+    int to = -1;
+    double weight = 1.0;
+  };
+  [[nodiscard]] const std::vector<Way>& beside(int node) const {
     return neighbours_[static_cast<std::size_t>(node)];
   }
+  [[nodiscard]] static int chosen(const std::vector<Way>& ways, RandomStream& random);
   /// Those that are reached from `from`, of `among` only.
   [[nodiscard]] std::vector<int> reached(const std::vector<int>& from, const std::vector<bool>& among) const;
-  /// Logarithm of the number of trees of some nodes that are connected.
+  /// Logarithm of the sum of the trees of some nodes that are connected.
   [[nodiscard]] double log_count(const std::vector<int>& nodes) const;
 
-  std::vector<std::vector<int>> neighbours_;
+  std::vector<std::vector<Way>> neighbours_;
 };
 
 }  // namespace limen

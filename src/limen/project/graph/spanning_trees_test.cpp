@@ -43,6 +43,24 @@ TEST(SpanningTrees, OfACompleteGraphAsCayleyCounts) {
   EXPECT_NEAR(trees.share_of_fewest_edges({true, true, true, false, false, false}), 81.0 / 1296.0, 1e-12);
 }
 
+/// Of a triangle with edges of weights 1, 1/2 and 1/2 the trees weigh 1/2, 1/2 and 1/4.
+TEST(SpanningTrees, CountByTheWeightsOfTheirEdges) {
+  SpanningTrees trees(3);
+  trees.connect(0, 1);
+  trees.connect(1, 2, 0.5);
+  trees.connect(2, 0, 0.5);
+  EXPECT_NEAR(trees.share_of_fewest_edges({false, false, true}), 0.8, 1e-12);
+  RandomStream random(3);
+  constexpr int kTrees = 4000;
+  int single = 0;
+  for (int k = 0; k < kTrees; ++k) {
+    const std::vector<int> parent = trees.random_tree({0}, random);
+    if (parent[1] == 0 || parent[2] == 1) ++single;
+  }
+  // That of weights 1/2 and 1/2 joins 1 to 2 and 2 to 0.
+  EXPECT_NEAR(single, kTrees * 0.8, 4.0 * std::sqrt(kTrees * 0.8 * 0.2));
+}
+
 TEST(SpanningTrees, OtherComponentsChangeNothing) {
   const SpanningTrees trees = joined(5, {{0, 1}, {1, 2}, {0, 2}, {3, 4}});
   EXPECT_NEAR(trees.share_of_fewest_edges({false, false, true, false, false}), 2.0 / 3.0, 1e-12);

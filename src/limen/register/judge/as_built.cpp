@@ -96,9 +96,25 @@ constexpr std::array<BuiltBend, kBendLevels - 1> kBends = {
     {{0.461, 0.0003}, {0.175, 0.001}, {0.046, 0.002}, {0.060, 0.004}, {0.145, 0.008}, {0.113, 0.016}}};
 constexpr double kStraySurface = 0.05;  // share of the surfaces that are of two things, or were moved
 
-/// By how much the scans are bent is not known.
-double log_density(BendBelief logs, const BendBelief& bends) {
-  for (std::size_t j = 0; j < kBendLevels; ++j) logs[j] += std::log(bends[j]);
+/// Scans that are not bent may seem bent by the least amount where few surfaces are seen: of each amount the
+/// logarithms of both, for `logs` is of pairs that are bent so.
+BendBelief as_it_seems(BendBelief logs, double seems_bent = evidence_table::kSeemsBent) {
+  if (seems_bent > 0.0)
+    logs[0] = log_sum_exp({std::log1p(-seems_bent) + logs[0], std::log(seems_bent) + logs[1]});
+  return logs;
+}
+
+/// As drawn with this probability, or not, for each amount of bends.
+BendBelief drawn_or_not(const BendBelief& logs, const BendBelief& as_drawn, double probability) {
+  BendBelief either{};
+  for (std::size_t j = 0; j < kBendLevels; ++j)
+    either[j] = log_sum_exp({std::log1p(-probability) + logs[j], std::log(probability) + as_drawn[j]});
+  return either;
+}
+
+/// By how much the scans are bent is not known. `share`: of what was seen, the part that counts.
+double log_density(BendBelief logs, const BendBelief& bends, double share = 1.0) {
+  for (std::size_t j = 0; j < kBendLevels; ++j) logs[j] = share * logs[j] + std::log(bends[j]);
   return log_sum_exp(logs);
 }
 
@@ -226,27 +242,26 @@ BendBelief bends_beforehand(double bent) {
   return belief;
 }
 
-double built_nats(const BuiltEvidence& evidence, const BuiltBelief& belief) {
-  const double other = std::log1p(-belief.as_drawn);
-  const double as_drawn = std::log(belief.as_drawn) + log_density(evidence.as_drawn, belief.bends);
-  return log_sum_exp({other + log_density(evidence.one, belief.bends), as_drawn}) -
-         log_sum_exp({other + log_density(evidence.look_alike, belief.bends), as_drawn});
+double built_nats(const BuiltEvidence& evidence, const BuiltBelief& belief, double share) {
+  const BendBelief one = as_it_seems(drawn_or_not(evidence.one, evidence.as_drawn, belief.as_drawn));
+  const BendBelief look_alike =
+      as_it_seems(drawn_or_not(evidence.look_alike, evidence.as_drawn, belief.as_drawn));
+  const double together = share * (log_density(one, belief.bends) - log_density(look_alike, belief.bends));
+  if (share == 1.0) return together;
+  const double each = log_density(one, belief.bends, share) - log_density(look_alike, belief.bends, share);
+  return 0.5 * (together + each);
 }
 
 double as_drawn_nats(const BuiltEvidence& evidence, const BendBelief& bends) {
-  return log_density(evidence.as_drawn, bends) - log_density(evidence.one, bends);
+  return log_density(as_it_seems(evidence.as_drawn), bends) - log_density(as_it_seems(evidence.one), bends);
 }
 
 double probability_as_drawn(double nats) {
   return 1.0 / (1.0 + (1.0 / evidence_table::kAsDrawn - 1.0) * std::exp(-nats));
 }
 
-BendBelief logs_of_bends(const BuiltEvidence& evidence) {
-  BendBelief logs = evidence.one;
-  for (std::size_t j = 0; j < kBendLevels; ++j)
-    logs[j] = log_sum_exp({std::log1p(-evidence_table::kAsDrawn) + evidence.one[j],
-                           std::log(evidence_table::kAsDrawn) + evidence.as_drawn[j]});
-  return logs;
+BendBelief logs_of_bends(const BuiltEvidence& evidence, double seems_bent) {
+  return as_it_seems(drawn_or_not(evidence.one, evidence.as_drawn, evidence_table::kAsDrawn), seems_bent);
 }
 
 }  // namespace limen

@@ -89,13 +89,16 @@ struct BuiltBelief {
   double as_drawn = evidence_table::kAsDrawn;  ///< that it is exactly as drawn
 };
 
-/// Nats for one place against one built alike.
-double built_nats(const BuiltEvidence& evidence, const BuiltBelief& belief = {});
+/// Nats for one place against one built alike. `share`: of what the pair shows of walls, the part that
+/// counts, for other pairs show the rest as well. Whether pairs are bent together or each for itself is not
+/// known: the mean of both is taken.
+double built_nats(const BuiltEvidence& evidence, const BuiltBelief& belief = {}, double share = 1.0);
 /// Nats for a building that is exactly as drawn, if the scans show one place.
 double as_drawn_nats(const BuiltEvidence& evidence, const BendBelief& bends = bends_beforehand());
 /// The probability of that, given these nats.
 double probability_as_drawn(double nats);
 /// Of each amount by which scans are bent, the logarithm of the density of what was seen of one place.
-BendBelief logs_of_bends(const BuiltEvidence& evidence);
+/// `seems_bent`: share of the pairs that are not bent and seem so.
+BendBelief logs_of_bends(const BuiltEvidence& evidence, double seems_bent = evidence_table::kSeemsBent);
 
 }  // namespace limen

@@ -73,7 +73,8 @@ inline constexpr double kAsDrawn = 0.02;       ///< that a building is exactly a
 inline constexpr ShareBelief kBuiltInAsDrawn{0.0144, 5.5};  ///< and Furniture::built_in of such a building
 inline constexpr double kInPair = 0.106;        ///< share of them whose other place the same two scans show
 inline constexpr double kBent = 0.0899;         ///< share of pairs whose scans are bent within themselves
-inline constexpr double kBendStrength = 0.203;  ///< how well shares of bends are known in a project, in scans
+inline constexpr double kSeemsBent = 0.0304;    ///< share of pairs that are not and seem bent by a millimetre
+inline constexpr double kBendStrength = 0.157;  ///< how well shares of bends are known in a project, in scans
 inline constexpr double kStayedStrength = 0.157;  ///< the same of the share of things that stay
 
 }  // namespace limen::evidence_table

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <pugixml.hpp>
 
+#include "limen/base/text.h"
 #include "limen/files/table_cells.h"
 #include "limen/files/xml_text.h"
 #include "limen/files/zip.h"
@@ -170,7 +171,7 @@ std::string types_text(std::size_t sheets) {
 }  // namespace
 
 SheetCell text_cell(std::string_view text) {
-  return {std::string(text), false};
+  return {as_utf8(text), false};
 }
 
 SheetCell number_cell(double value, int digits) {

@@ -22,6 +22,12 @@ TEST(Sheet, CsvQuotesTextsAndLeavesNumbers) {
   EXPECT_EQ(csv_of(two_rows()), "file,radius_95_m\r\n\"'=a, \"\"b\"\".ply\",0.0025\r\nR\x01 <&>,\r\n");
 }
 
+TEST(Sheet, TextsAreUtf8WhateverTheFilesSay) {
+  EXPECT_EQ(csv_line({text_cell("Au\xDF"
+                                "enwand")}),
+            "Au\uFFFDenwand");
+}
+
 TEST(Sheet, WhatIsNotFiniteIsAnEmptyCell) {
   EXPECT_TRUE(number_cell(std::numeric_limits<double>::infinity(), 3).text.empty());
   EXPECT_TRUE(short_number_cell(std::numeric_limits<double>::quiet_NaN()).text.empty());

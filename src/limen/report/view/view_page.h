@@ -37,7 +37,7 @@ struct ViewScene {
 /// Bytes of the largest page: what a mail takes, and a browser opens at once.
 inline constexpr std::size_t kMostPageBytes = 20'000'000;
 
-/// Bytes of all pictures of a page together.
+/// Bytes of all pictures of a page together, at most.
 inline constexpr std::size_t kMostPictureBytes = 9'000'000;
 
 /// A page that shows clouds and models in space, with sections and measuring; it needs nothing but itself.

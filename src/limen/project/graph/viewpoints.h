@@ -1,0 +1,40 @@
+// SPDX-FileCopyrightText: The limen authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+#include "limen/project/graph/configuration.h"
+
+namespace limen {
+
+/// Which scans were taken from one place. A second view from there shows nothing that the first does not, and
+/// that both agree says nothing of the building.
+class Viewpoints {
+ public:
+  /// Every scan has its own.
+  explicit Viewpoints(int nodes);
+  /// By where scanners were (PoseGraph::scanners): those nearer to each other than kNoOtherPlaceM.
+  Viewpoints(const PoseGraph& graph, const Configuration& configuration);
+
+  [[nodiscard]] bool is_same(int a, int b) const {
+    return first_[static_cast<std::size_t>(a)] == first_[static_cast<std::size_t>(b)];
+  }
+  /// The places of two scans; the same for all scans from these two.
+  [[nodiscard]] std::pair<int, int> of(int a, int b) const {
+    return std::minmax(first_[static_cast<std::size_t>(a)], first_[static_cast<std::size_t>(b)]);
+  }
+  /// One, divided by the number of scans from the place of this one.
+  [[nodiscard]] double weight(int node) const {
+    return 1.0 / count_[static_cast<std::size_t>(first_[static_cast<std::size_t>(node)])];
+  }
+
+ private:
+  std::vector<int> first_;     ///< of each node the first one of its place
+  std::vector<double> count_;  ///< of each first one, the nodes of its place
+};
+
+}  // namespace limen
