@@ -91,8 +91,7 @@ JointProblem joint_problem(const std::vector<ProjectNode>& nodes, const std::vec
     if (made.pair_of[k] >= 0 && solved.links[k].pose == link.best) {
       const TriedPair& pair = pairs[static_cast<std::size_t>(made.pair_of[k])];
       for (const PlaneMatch& match : pair.result.matches) {
-        if (match.overlap_m2 >= kSharedM2)
-          shared.join(link.source, match.source, link.target, match.target, edge.pose.target_from_source);
+        if (match.overlap_m2 >= kSharedM2) shared.join(link, match, edge.pose.target_from_source);
       }
       for (const bool source : {true, false}) {
         int& node = source ? edge.source : edge.target;

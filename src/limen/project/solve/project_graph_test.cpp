@@ -9,6 +9,7 @@
 #include "limen/project/graph/pair_evidence.h"
 #include "limen/project/solve/shared_planes.h"
 #include "limen/project/solve/word_terms.h"
+#include "limen/register/judge/as_built.h"
 
 namespace limen {
 namespace {
@@ -245,11 +246,47 @@ TEST(SharedPlanes, WhatThePairItselfSeesInTwoPlanesIsNotOneSurface) {
     SharedPlanes shared(nodes, solved, none);
     Rigid3 pose;
     pose.translation = {2, 0, step_m};
-    shared.join(1, 0, 0, 0, pose);
+    GraphLink link;
+    link.source = 1;
+    link.target = 0;
+    PlaneMatch match;
+    match.source = match.target = 0;
+    shared.join(link, match, pose);
     JointProblem problem;
     shared.tell({true, true}, problem);
     EXPECT_EQ(problem.planes, step_m < 0.01 ? 1 : 0) << step_m;
   }
+}
+
+/// Of a floor that both see whole each observation is as accurate as its tiles; of what one of them alone
+/// sees a part may have been built some millimetres off.
+TEST(SharedPlanes, WhatOneScanAloneSawMayHaveBeenBuiltOtherwise) {
+  const std::vector<ProjectNode> nodes = {over_a_floor(0), over_a_floor(1)};
+  const double area_m2 = nodes[0].digest.planes[0].area_m2;
+  SolvedGraph solved;
+  solved.nodes.resize(2);
+  solved.nodes[1].frame_from_node.translation = {2, 0, 0};
+  GraphLink link;
+  link.source = 1;
+  link.target = 0;
+  PlaneMatch match;
+  match.source = match.target = 0;
+  const auto sigma_m = [&](double share) {
+    const BentPasses none({});
+    SharedPlanes shared(nodes, solved, none);
+    match.overlap_m2 = share * area_m2;
+    shared.join(link, match, solved.nodes[1].frame_from_node);
+    JointProblem problem;
+    shared.tell({true, true}, problem);
+    EXPECT_EQ(problem.observations.size(), 2U);
+    // Of the whole plane, of which so many points count.
+    return problem.observations[0].sigma_m / std::sqrt(problem.observations[0].most_points);
+  };
+  EXPECT_GT(area_m2, 0.0);
+  EXPECT_LT(sigma_m(1.0), 0.001);
+  EXPECT_NEAR(sigma_m(0.5), built_offset_m() * std::sqrt(0.5), 0.0005);
+  EXPECT_NEAR(sigma_m(0.0), built_offset_m(), 0.0005);
+  EXPECT_NEAR(built_offset_m(), 0.0042, 0.0001);
 }
 
 UserWords said(DecisionKind kind) {

@@ -9,6 +9,7 @@
 
 #include "limen/base/angles.h"
 #include "limen/geometry/linear.h"
+#include "limen/register/judge/as_built.h"
 
 namespace limen {
 namespace {
@@ -62,7 +63,12 @@ bool go_on(const PlaneDigest& a, const PlaneDigest& b, const Rigid3& b_from_a, d
 
 SharedPlanes::SharedPlanes(const std::vector<ProjectNode>& nodes, const SolvedGraph& solved,
                            const BentPasses& passes)
-    : nodes_(nodes), solved_(solved), passes_(passes), first_(first_planes(nodes)), surfaces_(first_.back()) {
+    : nodes_(nodes),
+      solved_(solved),
+      passes_(passes),
+      first_(first_planes(nodes)),
+      surfaces_(first_.back()),
+      common_(first_.back(), 0.0) {
   strips_.resize(passes.any() ? nodes.size() : 0);
   for (std::size_t n = 0; n < strips_.size(); ++n) {
     strips_[n].resize(digest(n).planes.size());
@@ -79,12 +85,11 @@ void SharedPlanes::for_each(const Visit& visit) {
   }
 }
 
-void SharedPlanes::join(int source, int source_plane, int target, int target_plane,
-                        const Rigid3& target_from_source) {
-  const auto source_node = static_cast<std::size_t>(source);
-  const auto target_node = static_cast<std::size_t>(target);
-  const PlaneDigest& a = digest(source_node).planes[static_cast<std::size_t>(source_plane)];
-  const PlaneDigest& b = digest(target_node).planes[static_cast<std::size_t>(target_plane)];
+void SharedPlanes::join(const GraphLink& link, const PlaneMatch& match, const Rigid3& target_from_source) {
+  const auto source_node = static_cast<std::size_t>(link.source);
+  const auto target_node = static_cast<std::size_t>(link.target);
+  const PlaneDigest& a = digest(source_node).planes[static_cast<std::size_t>(match.source)];
+  const PlaneDigest& b = digest(target_node).planes[static_cast<std::size_t>(match.target)];
   const Rigid3& frame_from_a = solved_.nodes[source_node].frame_from_node;
   const Rigid3& frame_from_b = solved_.nodes[target_node].frame_from_node;
   const Plane in_frame = transformed(frame_from_a, a.plane);
@@ -95,20 +100,26 @@ void SharedPlanes::join(int source, int source_plane, int target, int target_pla
   if (std::abs(in_frame.signed_distance(frame_from_b * b.centroid)) > kSharedM + kStrays * strays) return;
   const bool drawn = digest(source_node).model || digest(target_node).model;
   if (!go_on(a, b, target_from_source, std::hypot(strays, drawn ? kDrawnM : 0.0))) return;
-  surfaces_.join(first_[source_node] + static_cast<std::size_t>(source_plane),
-                 first_[target_node] + static_cast<std::size_t>(target_plane));
+  const std::size_t of_source = first_[source_node] + static_cast<std::size_t>(match.source);
+  const std::size_t of_target = first_[target_node] + static_cast<std::size_t>(match.target);
+  surfaces_.join(of_source, of_target);
+  const double share = std::min(1.0, match.overlap_m2 / std::max(a.area_m2, b.area_m2));
+  for (const std::size_t plane : {of_source, of_target}) common_[plane] = std::max(common_[plane], share);
 }
 
-PlaneObservation SharedPlanes::whole_plane(std::size_t node, const PlaneDigest& seen) const {
+PlaneObservation SharedPlanes::whole_plane(std::size_t node, std::size_t plane) const {
+  const PlaneDigest& seen = digest(node).planes[plane];
   PlaneObservation observation;
   observation.node = static_cast<int>(node);
   observation.moments = seen.moments;
   observation.anchor = seen.centroid;
   const double length = std::sqrt(12.0 * seen.moments.covariance().trace());
   const double own = std::hypot(kFlatM, kBendPerM * length);
-  // What a trajectory drifts by is one for the whole plane.
-  observation.sigma_m = std::hypot(own, nodes_[node].strays_m() * std::sqrt(kTilesThatCount));
-  if (digest(node).model) observation.sigma_m = std::hypot(own, kDrawnM * std::sqrt(kTilesThatCount));
+  // What a trajectory drifts by is one for the whole plane, and so is what was built some millimetres off.
+  const double alone = 1.0 - common_[first_[node] + plane];
+  const double whole =
+      digest(node).model ? kDrawnM : std::hypot(nodes_[node].strays_m(), built_offset_m() * std::sqrt(alone));
+  observation.sigma_m = std::hypot(own, whole * std::sqrt(kTilesThatCount));
   observation.most_points = kTilesThatCount;
   return observation;
 }
@@ -132,7 +143,7 @@ void SharedPlanes::tell(const std::vector<bool>& taken, JointProblem& problem) {
     }
     if (seers.size() < 2) continue;
     for (const auto& [node, plane] : seen) {
-      PlaneObservation observation = whole_plane(node, digest(node).planes[plane]);
+      PlaneObservation observation = whole_plane(node, plane);
       observation.plane = problem.planes;
       problem.observations.push_back(observation);
     }

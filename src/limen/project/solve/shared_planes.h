@@ -22,8 +22,9 @@ class SharedPlanes {
   /// `solved`: the poses by which planes are compared; `passes` as they are bent so far. All outlive this.
   SharedPlanes(const std::vector<ProjectNode>& nodes, const SolvedGraph& solved, const BentPasses& passes);
 
-  /// Joins two planes where they lie in one under the solved poses and under the pair's own.
-  void join(int source, int source_plane, int target, int target_plane, const Rigid3& target_from_source);
+  /// Joins two planes where they lie in one under the solved poses and under the pair's own. Both scans saw
+  /// `match.overlap_m2` of them: what one saw beyond may be another wall, built some millimetres off.
+  void join(const GraphLink& link, const PlaneMatch& match, const Rigid3& target_from_source);
 
   /// Adds the observations of the planes that two nodes or more see, or a bent pass at two times: of a bent
   /// pass strip by strip, and of what it sees patch by patch, for long walls bend.
@@ -51,7 +52,7 @@ class SharedPlanes {
   template <typename Visit>
   void for_each(const Visit& visit);
   [[nodiscard]] const ScanDigest& digest(std::size_t node) const { return nodes_[node].digest; }
-  [[nodiscard]] PlaneObservation whole_plane(std::size_t node, const PlaneDigest& seen) const;
+  [[nodiscard]] PlaneObservation whole_plane(std::size_t node, std::size_t plane) const;
   [[nodiscard]] Seen seen_strip(std::size_t node, std::size_t strip) const;
   void tell_patches(std::size_t root, const std::vector<std::pair<std::size_t, std::size_t>>& members,
                     JointProblem& problem);
@@ -61,7 +62,8 @@ class SharedPlanes {
   const SolvedGraph& solved_;
   const BentPasses& passes_;
   std::vector<std::size_t> first_;
-  DisjointSets surfaces_;                                      ///< planes that are one, of all nodes
+  DisjointSets surfaces_;       ///< planes that are one, of all nodes
+  std::vector<double> common_;  ///< of each the largest share that another scan saw as well
   std::vector<std::vector<std::vector<std::size_t>>> strips_;  // of each plane of each node
 };
 

@@ -242,6 +242,12 @@ BendBelief bends_beforehand(double bent) {
   return belief;
 }
 
+double built_offset_m() {
+  double squares = 0.0;
+  for (const BuiltQuality& quality : kQualities) squares += quality.weight * squared(quality.offset_m);
+  return std::sqrt(squares);
+}
+
 double built_nats(const BuiltEvidence& evidence, const BuiltBelief& belief, double share) {
   const BendBelief one = as_it_seems(drawn_or_not(evidence.one, evidence.as_drawn, belief.as_drawn));
   const BendBelief look_alike =

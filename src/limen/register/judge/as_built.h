@@ -35,6 +35,9 @@ struct BuiltQuality {
   double turn_rad = 0.0;
 };
 
+/// By how far a surface of a building is from where it was drawn, one standard deviation over all buildings.
+double built_offset_m();
+
 /// By how much two measurements of one surface differ as a whole, besides scatter, one standard deviation.
 struct BuiltBend {
   double weight = 1.0;
