@@ -446,6 +446,14 @@ TEST_F(Project, ATargetThatNoScanShowsEndsNothing) {
   EXPECT_EQ(done.status, 0) << done.err;
 }
 
+TEST_F(Project, ATrajectoryThatNoScanWasMeasuredAlongIsNoted) {
+  const std::vector<std::string> scans = simulate();
+  write_whole(work() / "way.csv", "time,x,y,z\n1,0,0,0\n2,1,0,0\n3,2,0,0\n");
+  const ProgramRun done = run({"project", scans[0], "--trajectory", "way.csv", "-o", "along"});
+  EXPECT_NE(done.err.find("way.csv: no scan was measured along this trajectory"), std::string::npos)
+      << done.err;
+}
+
 TEST_F(Project, WhatIsMissingIsStated) {
   const ProgramRun nowhere = run({"project", "a.ply"});
   EXPECT_EQ(nowhere.status, 2);

@@ -11,6 +11,7 @@
 #include "limen/base/error.h"
 #include "limen/base/progress.h"
 #include "limen/io/cloud/point_sample.h"
+#include "limen/io/trajectory/read_trajectory.h"
 #include "limen/model/plausible_size.h"
 #include "limen/project/assemble.h"
 #include "limen/project/control/control_file.h"
@@ -56,6 +57,7 @@ class Run {
     }
     note_lone_scan();
     note_copies();
+    note_unused_trajectories();
     take_stated();
     order_nodes();
     name_found_targets();
@@ -115,6 +117,22 @@ class Run {
               "{} holds only points of {}, of which it seems a thinned copy or a part: leave one of them out",
               name(less), name(more)));
       }
+    }
+  }
+
+  void note_unused_trajectories() {
+    const std::vector<std::string>& files = options_.trajectories.files;
+    for (std::size_t k = 0; k < files.size(); ++k) {
+      const std::string used = "was measured along " + files[k];
+      const bool any = std::any_of(result_.notes.begin(), result_.notes.end(), [&](const std::string& text) {
+        return text.size() >= used.size() && text.compare(text.size() - used.size(), used.size(), used) == 0;
+      });
+      if (any) continue;
+      const Trajectory trajectory = read_trajectory(files[k], options_.trajectories.reading);
+      note(
+          fmt::format("{}: no scan was measured along this trajectory: none has most of its times between "
+                      "{:.1f} and {:.1f} s, or its points are far away",
+                      files[k], trajectory.first_s(), trajectory.last_s()));
     }
   }
 

@@ -15,6 +15,7 @@ namespace limen {
 namespace {
 
 constexpr double kMostSigmas = 4.0;     // by which stated positions may be off where scans meet
+constexpr double kUpsideDown = 0.9;     // cosine
 constexpr int kLeastFitRedundancy = 6;  // of the fit that all are compared by: four positions
 
 Vector3d place_in(const ScanDigest& digest) {
@@ -81,6 +82,7 @@ void compare_with_stated(const std::vector<ProjectNode>& nodes, ProjectResult& r
   std::vector<PointPair> pairs;
   std::vector<ProjectScan*> scans;
   Vector3d origin = Vector3d::Zero();
+  Vector3d up = Vector3d::Zero();  // of the frame, where scans know it
   for (const ProjectNode& node : nodes) {
     if (!node.stated) continue;
     ProjectScan& scan = result.scans[node.scan];
@@ -94,6 +96,8 @@ void compare_with_stated(const std::vector<ProjectNode>& nodes, ProjectResult& r
     pair.x_in_target = found - origin;
     pairs.push_back(pair);
     scans.push_back(&scan);
+    if (node.digest.upright)
+      up += scan.frame_from_scan->rotation * node.digest.upright_from_scan.row(2).transpose();
   }
   if (pairs.empty()) return;
   const Vector3d shift = pairs.front().x_in_source;
@@ -103,6 +107,12 @@ void compare_with_stated(const std::vector<ProjectNode>& nodes, ProjectResult& r
     result.notes.push_back(
         "the scans contradict the stated positions, and which of them are wrong cannot be decided");
   if (fit.state == PointFitState::contradictory || fit.redundancy < kLeastFitRedundancy) return;
+  if (up.dot(fit.pose.target_from_source.rotation.col(2)) < -kUpsideDown * up.norm()) {
+    result.notes.push_back(
+        "the stated positions fit the scans only upside down: their x and y may be exchanged, or one axis "
+        "reversed");
+    return;
+  }
   for (std::size_t k = 0; k < pairs.size(); ++k) {
     const double missed = (fit.pose.target_from_source * pairs[k].x_in_source - pairs[k].x_in_target).norm();
     const double sigma = std::sqrt(pairs[k].source_covariance.trace() / 3.0);
@@ -111,7 +121,7 @@ void compare_with_stated(const std::vector<ProjectNode>& nodes, ProjectResult& r
     stated.contradicted = !fit.taken[k];
     if (stated.contradicted)
       result.notes.push_back(
-          fmt::format("the scans contradict the stated position of {}: it is {:.1f} m off (sigma {:.1f} m)",
+          fmt::format("the scans contradict the stated position of {}: it is {:.1f} m off (sigma {:.2g} m)",
                       scan_name(*scans[k]), missed, sigma));
   }
 }

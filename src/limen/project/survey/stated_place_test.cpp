@@ -60,15 +60,16 @@ TEST(StatedPlace, OneThatIsTooFarFromAllOthersIsNoted) {
   EXPECT_EQ(result.notes[0], "the stated position of c is too far from all others for an overlap: check it");
 }
 
-/// Six scans in a frame, whose stated positions are off by `off(k)`.
-template <typename Off>
-ProjectResult compared_with_stated(const Off& off) {
+/// Six scans in a frame, on one storey or not, whose stated positions are `stated(k, true one)`.
+template <typename Stated>
+ProjectResult compared_with(const Stated& stated, bool storey) {
   std::vector<ProjectNode> nodes;
   ProjectResult result;
   const Rigid3 grid{turned(20.0), Vector3d(652000, 6862000, 35)};
   for (int k = 0; k < 6; ++k) {
-    const Vector3d found(5.0 * k, k % 2 == 0 ? 0.0 : 4.0, k % 3);
-    nodes.push_back(node_at(grid * found + Vector3d(off(k))));
+    const Vector3d found(5.0 * k, k % 2 == 0 ? 0.0 : 4.0, storey ? 0.0 : k % 3);
+    nodes.push_back(node_at(stated(k, grid * found)));
+    nodes.back().digest.upright = true;
     nodes.back().scan = static_cast<std::size_t>(k);
     ProjectScan scan;
     scan.file = "scan" + std::to_string(k);
@@ -79,6 +80,20 @@ ProjectResult compared_with_stated(const Off& off) {
   }
   compare_with_stated(nodes, result);
   return result;
+}
+
+/// The same, off by `off(k)`.
+template <typename Off>
+ProjectResult compared_with_stated(const Off& off) {
+  return compared_with([&](int k, const Vector3d& x) -> Vector3d { return x + Vector3d(off(k)); }, false);
+}
+
+TEST(StatedPlace, ExchangedColumnsAreNotedAndNoScanIsBlamed) {
+  const ProjectResult result =
+      compared_with([](int, const Vector3d& x) { return Vector3d(x.y(), x.x(), x.z()); }, true);
+  ASSERT_EQ(result.notes.size(), 1U);
+  EXPECT_NE(result.notes[0].find("x and y may be exchanged"), std::string::npos) << result.notes[0];
+  for (const ProjectScan& scan : result.scans) EXPECT_FALSE(scan.stated->contradicted);
 }
 
 TEST(StatedPlace, PositionsThatAreAllWrongAreNoted) {
