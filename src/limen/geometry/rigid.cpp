@@ -36,7 +36,7 @@ Rigid3 from_matrix(const Matrix4d& matrix, double tolerance) {
   if (!rigid) {
     throw Error(
         "the 4 x 4 matrix is not a rigid motion (scale, shear, mirror or a last row other than 0 0 0 1)", "",
-        "give a rotation and a translation in metres");
+        "give a rotation and a translation");
   }
   return {nearest_rotation(block), matrix.topRightCorner<3, 1>()};
 }

@@ -83,14 +83,14 @@ bool model_is_source(const DeviationCommand& command, const PoseFile& pose, cons
 }
 
 /// The pose of the scan in the model, both in their world coordinates; of a text in the unit of its numbers.
-Rigid3 model_from_scan(const DeviationCommand& command, const PoseFile& pose, const Session& session,
-                       DeviationReport& report) {
+Rigid3 model_from_scan(const DeviationCommand& command, const PoseFile& pose, bool model_moved,
+                       const Session& session, DeviationReport& report) {
   if (command.result.empty()) return {};
   const Rigid3 target_from_source = chosen_pose(pose, command.alternative, command.result);
   report.result_path = command.result;
   if (pose.outcome) report.result_outcome = to_string(*pose.outcome);
   if (command.alternative == 0) warn_of_doubt(pose, command.result, session);
-  return model_is_source(command, pose, session) ? inverse(target_from_source) : target_from_source;
+  return model_moved ? inverse(target_from_source) : target_from_source;
 }
 
 /// The units that the numbers of the scan and of the model were said to have when they were registered;
@@ -100,9 +100,8 @@ struct RegisteredUnits {
   std::optional<double> of_model;
 };
 
-RegisteredUnits registered_units(const DeviationCommand& command, const PoseFile& pose) {
-  if (command.inverse || same_name(pose.target_path, command.scan))
-    return {pose.target_metres_per_unit, pose.source_metres_per_unit};
+RegisteredUnits registered_units(const PoseFile& pose, bool model_moved) {
+  if (model_moved) return {pose.target_metres_per_unit, pose.source_metres_per_unit};
   return {pose.source_metres_per_unit, pose.target_metres_per_unit};
 }
 
@@ -247,10 +246,11 @@ int run(const DeviationCommand& command, const Session& session) {
   const OutputFolder folder(command.folder);
   DeviationReport report;
   const PoseFile pose_file = command.result.empty() ? PoseFile{} : read_pose_file(command.result);
-  report.model_from_scan = model_from_scan(command, pose_file, session, report);
+  const bool model_moved = !command.result.empty() && model_is_source(command, pose_file, session);
+  report.model_from_scan = model_from_scan(command, pose_file, model_moved, session, report);
   session.monitor->begin_stage("reading");
   ReadOptions reading = with_choice(read_options(command.origin, "--origin", "up"), command.reading);
-  const RegisteredUnits registered = registered_units(command, pose_file);
+  const RegisteredUnits registered = registered_units(pose_file, model_moved);
   if (!reading.metres_per_unit) reading.metres_per_unit = registered.of_scan;
   const InputSide scan_side = read_side({command.scan, command.with, reading, "--units"}, session);
   ReadOptions model_reading;

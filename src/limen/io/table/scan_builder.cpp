@@ -247,51 +247,64 @@ class ColourColumns {
   bool bytes_ = true;
 };
 
-/// Of centres that are all the same one stays.
-void settle_centres(std::vector<Vector3d>& centres) {
-  if (centres.empty()) return;
-  const bool same =
-      std::all_of(centres.begin(), centres.end(), [&](const Vector3d& c) { return c == centres[0]; });
+/// Of centres that are all the same one stays; points without one have it too.
+void settle_centres(Scan& scan) {
+  const auto is_stated = [&](const Vector3d& centre) { return usable(centre + scan.local_origin); };
+  std::vector<Vector3d>& centres = scan.centres;
+  const auto first = std::find_if(centres.begin(), centres.end(), is_stated);
+  if (first == centres.end()) return;
+  const Vector3d one = *first;
+  const bool same = std::all_of(centres.begin(), centres.end(),
+                                [&](const Vector3d& c) { return c == one || !is_stated(c); });
   if (!same) return;
-  centres.resize(1);
+  centres.assign(1, one);
   centres.shrink_to_fit();
 }
 
-/// Where more than a few points have no scanner position, as in clouds merged of scans with and without, it
-/// is unknown for all: else those points would be lost. A sentence about it.
-std::string settle_missing_centres(Scan& scan) {
-  constexpr double kFew = 0.01;
-  if (!scan.mobile()) return {};
-  const auto missing = static_cast<std::size_t>(std::count_if(
-      scan.centres.begin(), scan.centres.end(), [](const Vector3d& centre) { return centre.hasNaN(); }));
-  if (static_cast<double>(missing) <= kFew * static_cast<double>(scan.size())) return {};
-  scan.centres.clear();
-  return fmt::format("{} of {} points state no scanner position; it is taken as unknown for all", missing,
-                     scan.size());
-}
-
-/// The scan without points that are no points, and how many those were. 0 0 0 far from all others is how some
-/// programs write a missing return.
-std::pair<Scan, std::size_t> without_unusable(Scan scan) {
-  const auto good = [&](std::size_t i) {
-    const bool seen_from = !scan.mobile() || usable(scan.centres[i] + scan.local_origin);
-    const Vector3d x = scan.points[i] + scan.local_origin;
-    return seen_from && usable(x) && (scan.local_origin.isZero(0.0) || !x.isZero(0.0));
-  };
-  const std::size_t bad = parallel_reduce(
+template <typename Good>
+std::size_t count_bad(const Scan& scan, const Good& good) {
+  return parallel_reduce(
       scan.size(), kScannedPerPiece, std::size_t{0},
       [&](std::size_t begin, std::size_t end) {
         std::size_t count = 0;
-        for (std::size_t i = begin; i < end; ++i) count += good(i) ? 0U : 1U;
+        for (std::size_t i = begin; i < end; ++i) count += good(scan, i) ? 0U : 1U;
         return count;
       },
       [](std::size_t a, std::size_t b) { return a + b; });
-  if (bad == 0) return {std::move(scan), 0};
+}
+
+/// The scan with only those points that are `good`; all but `bad` are.
+template <typename Good>
+Scan only(Scan scan, const Good& good, std::size_t bad) {
+  if (bad == 0) return scan;
   std::vector<std::uint32_t> kept;
+  kept.reserve(scan.size() - bad);
   for (std::size_t i = 0; i < scan.size(); ++i) {
-    if (good(i)) kept.push_back(static_cast<std::uint32_t>(i));
+    if (good(scan, i)) kept.push_back(static_cast<std::uint32_t>(i));
   }
-  return {subset(scan, kept), bad};
+  return subset(scan, kept);
+}
+
+/// Whether a point is one. 0 0 0 far from all others is how some programs write a missing return.
+bool is_point(const Scan& scan, std::size_t i) {
+  const Vector3d x = scan.points[i] + scan.local_origin;
+  return usable(x) && (scan.local_origin.isZero(0.0) || !x.isZero(0.0));
+}
+
+bool has_scanner(const Scan& scan, std::size_t i) {
+  return !scan.mobile() || usable(scan.centres[i] + scan.local_origin);
+}
+
+/// Of points that have no scanner position how many are to be left out. Where they are many, as in clouds
+/// merged of scans with and without, none is: then it is unknown for all, and a sentence says so.
+std::size_t settle_missing_centres(Scan& scan, std::string& note) {
+  constexpr double kMany = 0.1;
+  const std::size_t missing = count_bad(scan, has_scanner);
+  if (static_cast<double>(missing) <= kMany * static_cast<double>(scan.size())) return missing;
+  scan.centres.clear();
+  note = fmt::format("{} of {} points state no scanner position; it is taken as unknown for all", missing,
+                     scan.size());
+  return 0;
 }
 
 std::string stated(const Vector3d& x) {
@@ -451,9 +464,13 @@ ScanFile ScanBuilder::finish(ScanFile file) {
   }
   parts.scan.colours = parts.colours.finish();
   parts.scan.topology = parts.topology();
-  settle_centres(parts.scan.centres);
-  std::string mixed = settle_missing_centres(parts.scan);
-  auto [scan, unusable] = without_unusable(std::move(parts.scan));
+  std::size_t unusable = count_bad(parts.scan, is_point);
+  Scan scan = only(std::move(parts.scan), is_point, unusable);
+  settle_centres(scan);
+  std::string mixed;
+  const std::size_t unseen = settle_missing_centres(scan, mixed);
+  scan = only(std::move(scan), has_scanner, unseen);
+  unusable += unseen;
   if (scan.points.empty()) {
     throw Error("no usable points: none has finite coordinates and a finite scanner position", facts.name,
                 "check how the file was exported");

@@ -72,13 +72,13 @@ TEST(ScanBuilder, TablesOneByOneMakeTheScanOfOneTable) {
 
 TEST(ScanBuilder, PointsWithoutAScannerPositionAreKeptIfTheyAreMany) {
   const std::vector<std::string> names = {"x", "y", "z", "x_origin", "y_origin", "z_origin"};
-  const auto scan_with = [&](std::size_t missing) {
+  const auto scan_with = [&](std::size_t missing, bool returns = false) {
     RandomStream random(5, 0);
     std::vector<double> all;
     for (std::size_t i = 0; i < 1000; ++i) {
-      for (int k = 0; k < 3; ++k) all.push_back(random.uniform(0.0, 20.0));
-      for (int k = 0; k < 3; ++k)
-        all.push_back(i < missing ? std::numeric_limits<double>::quiet_NaN() : random.uniform(9.0, 10.0));
+      const double none = std::numeric_limits<double>::quiet_NaN();
+      for (int k = 0; k < 3; ++k) all.push_back(returns && i < missing ? none : random.uniform(0.0, 20.0));
+      for (int k = 0; k < 3; ++k) all.push_back(i < missing ? none : random.uniform(9.0, 10.0));
     }
     return with_scan({}, table_of_numbers(std::make_shared<const std::vector<double>>(all), names), facts(),
                      {});
@@ -92,6 +92,10 @@ TEST(ScanBuilder, PointsWithoutAScannerPositionAreKeptIfTheyAreMany) {
   EXPECT_EQ(half.unusable, 0U);
   EXPECT_EQ(half.notes.back(),
             "500 of 1000 points state no scanner position; it is taken as unknown for all");
+  // A missing return has no position either, and says nothing of the others.
+  const ScanFile returns = scan_with(500, true);
+  EXPECT_EQ(returns.scans.front().size(), 500U);
+  EXPECT_TRUE(returns.scans.front().mobile());
 }
 
 TEST(ScanBuilder, LineNumbersThatAreNoneAreNotBelieved) {

@@ -12,7 +12,7 @@ constexpr double kLeastSharedM2 = 1e-3;
 }  // namespace
 
 RoomPairs::RoomPairs(const Viewpoints& viewpoints, int nodes, const std::vector<PlacedPair>& pairs) {
-  for (int n = 0; n < nodes; ++n) weight_.push_back(viewpoints.weight(n));
+  std::vector<bool> paired(static_cast<std::size_t>(nodes), false);
   for (std::size_t k = 0; k < pairs.size(); ++k) {
     const PlacedPair& pair = pairs[k];
     if (pair.link < 0 || !pair.evidence.asks_things() || viewpoints.is_same(pair.source, pair.target))
@@ -20,7 +20,9 @@ RoomPairs::RoomPairs(const Viewpoints& viewpoints, int nodes, const std::vector<
     numbers_.push_back(k);
     ends_.push_back({static_cast<std::size_t>(pair.source), static_cast<std::size_t>(pair.target),
                      std::max(kLeastSharedM2, pair.shared_m2)});
+    paired[ends_.back().source] = paired[ends_.back().target] = true;
   }
+  weight_ = viewpoints.weights(paired);
 }
 
 std::vector<double> RoomPairs::weights_without(const std::vector<bool>& side) const {

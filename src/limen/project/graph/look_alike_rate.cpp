@@ -87,12 +87,15 @@ LookAlikeRate::LookAlikeRate(const Viewpoints& viewpoints, int nodes, const std:
     all[static_cast<std::size_t>(link.source)] += 1.0;
     all[static_cast<std::size_t>(link.target)] += 1.0;
   }
+  std::vector<bool> linked;
+  for (const double links : all) linked.push_back(links > 0.0);
+  const std::vector<double> weights = viewpoints.weights(linked);
   for (std::size_t n = 0; n < links_.size(); ++n)
-    agreeing_[n] = viewpoints.weight(static_cast<int>(n)) * static_cast<double>(links_[n].size()) /
-                   std::max(1.0, all[n]);
+    agreeing_[n] = weights[n] * static_cast<double>(links_[n].size()) / std::max(1.0, all[n]);
   for (const UnusedLink& link : unused) {
-    const double weight = viewpoints.weight(link.source) / all[static_cast<std::size_t>(link.source)] +
-                          viewpoints.weight(link.target) / all[static_cast<std::size_t>(link.target)];
+    const auto source = static_cast<std::size_t>(link.source);
+    const auto target = static_cast<std::size_t>(link.target);
+    const double weight = weights[source] / all[source] + weights[target] / all[target];
     add(weight,
         logs_of(link.evidence.look_alikes, link.contradicted ? 0.0 : 1.0,
                 std::exp(-link.evidence.chance_nats)),

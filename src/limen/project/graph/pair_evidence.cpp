@@ -68,7 +68,8 @@ void LookAlikeSum::add(const PairEvidence& evidence, double of_things, double of
 }
 
 void LookAlikeSum::add_walls(const BuiltEvidence& walls, double of_surface) {
-  built_nats_ += bounded(built_nats(walls, belief_, of_surface));
+  built_nats_ += std::clamp(built_nats(walls, belief_, of_surface), -kMostPairNats,
+                            std::min(1.0, of_surface) * kMostPairNats);
 }
 
 double PairEvidence::alone() const {

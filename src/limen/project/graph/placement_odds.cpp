@@ -16,6 +16,7 @@ namespace {
 constexpr double kLeastSurfaceM2 = 1e-3;  // of a pair that shares none: a given pose has a weight too
 constexpr double kHardlyFresh = 0.05;     // share of a pair's surface that no other shows
 constexpr double kNegligible = 1e-6;      // odds
+constexpr double kAsOne = 100.0;          // weight of a pair of one place in trees, which then seldom part it
 constexpr int kTreesAtOnce = 32;
 // A side that one tree in thirty joins by one pair is hardly missed by so many. Trees of large projects have
 // many sides each, and fewer are drawn.
@@ -139,7 +140,7 @@ PlacementOdds::PlacementOdds(int nodes, std::vector<PlacedPair> pairs, const std
     if (!joins(pair)) continue;
     const bool same = viewpoints_.is_same(pair.source, pair.target);
     trees_.connect(pair.source, pair.target,
-                   same ? 1.0 : 1.0 / count[viewpoints_.of(pair.source, pair.target)]);
+                   same ? kAsOne : 1.0 / count[viewpoints_.of(pair.source, pair.target)]);
   }
 }
 

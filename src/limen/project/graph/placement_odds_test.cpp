@@ -170,11 +170,12 @@ TEST(PlacementOdds, EachPairIsBentForItself) {
   EXPECT_GT(odds({{2, 0}, {3, 0}, {2, 1}, {3, 1}}), 20.0 * one);
 }
 
-/// A row of scans, each but the first `times` over from one place. A side is as surely where it is as in the
-/// row of single scans: its pairs are the same ones again, and that copies agree says nothing of a building.
+/// A row of places, or places that all see one another, with `times` scans from each. A side is as surely
+/// where it is as in the row of single scans: its pairs are the same ones again, and that copies agree says
+/// nothing of a building.
 TEST(PlacementOdds, ASecondViewFromOnePlaceMakesNothingSurer) {
-  const auto odds = [](int times, bool known) {
-    constexpr int kPlaces = 5;
+  const auto odds = [](int times, bool known, int reach) {
+    constexpr int kPlaces = 6;
     PoseGraph graph;
     graph.nodes = kPlaces * times;
     Configuration configuration;
@@ -188,7 +189,7 @@ TEST(PlacementOdds, ASecondViewFromOnePlaceMakesNothingSurer) {
       last[static_cast<std::size_t>(a)] = a / times == kPlaces - 1;
       for (int b = 0; b < a; ++b) {
         const int steps = a / times - b / times;
-        if (steps > 1) continue;
+        if (steps > reach) continue;
         const double nats = steps == 0 ? 30.0 : 3.0;
         pairs.push_back(pair(a, b, steps == 0 ? 9.2 : 4.0, nats, nats, static_cast<int>(pairs.size())));
       }
@@ -198,8 +199,10 @@ TEST(PlacementOdds, ASecondViewFromOnePlaceMakesNothingSurer) {
         .of(last)
         .total();
   };
-  EXPECT_NEAR(odds(3, true), odds(1, true), 0.5 * odds(1, true));
-  EXPECT_LT(odds(3, false), 0.2 * odds(1, false));
+  for (const int reach : {1, 5}) {
+    EXPECT_NEAR(odds(3, true, reach), odds(1, true, reach), 0.25 * odds(1, true, reach)) << reach;
+    EXPECT_LT(odds(3, false, reach), 0.3 * odds(1, false, reach)) << reach;
+  }
 }
 
 /// How many things stay where they are is learned from the other pairs: where nearly all stay, a pair of

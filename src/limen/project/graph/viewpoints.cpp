@@ -7,8 +7,7 @@
 
 namespace limen {
 
-Viewpoints::Viewpoints(int nodes)
-    : first_(static_cast<std::size_t>(nodes)), count_(static_cast<std::size_t>(nodes), 1.0) {
+Viewpoints::Viewpoints(int nodes) : first_(static_cast<std::size_t>(nodes)) {
   std::iota(first_.begin(), first_.end(), 0);
 }
 
@@ -24,10 +23,19 @@ Viewpoints::Viewpoints(const PoseGraph& graph, const Configuration& configuratio
                         (*at[k] - *at[n]).norm() < kNoOtherPlaceM;
       if (!near) continue;
       first_[n] = static_cast<int>(k);
-      count_[k] += 1.0;
       break;
     }
   }
+}
+
+std::vector<double> Viewpoints::weights(const std::vector<bool>& some) const {
+  std::vector<double> count(first_.size(), 0.0);
+  for (std::size_t n = 0; n < some.size(); ++n)
+    count[static_cast<std::size_t>(first_[n])] += some[n] ? 1.0 : 0.0;
+  std::vector<double> weights(first_.size(), 0.0);
+  for (std::size_t n = 0; n < some.size(); ++n)
+    if (some[n]) weights[n] = 1.0 / count[static_cast<std::size_t>(first_[n])];
+  return weights;
 }
 
 }  // namespace limen

@@ -27,14 +27,11 @@ class Viewpoints {
   [[nodiscard]] std::pair<int, int> of(int a, int b) const {
     return std::minmax(first_[static_cast<std::size_t>(a)], first_[static_cast<std::size_t>(b)]);
   }
-  /// One, divided by the number of scans from the place of this one.
-  [[nodiscard]] double weight(int node) const {
-    return 1.0 / count_[static_cast<std::size_t>(first_[static_cast<std::size_t>(node)])];
-  }
+  /// Of each of some scans one, divided by how many of them are from its place; 0 of the others.
+  [[nodiscard]] std::vector<double> weights(const std::vector<bool>& some) const;
 
  private:
-  std::vector<int> first_;     ///< of each node the first one of its place
-  std::vector<double> count_;  ///< of each first one, the nodes of its place
+  std::vector<int> first_;  ///< of each node the first one of its place
 };
 
 }  // namespace limen

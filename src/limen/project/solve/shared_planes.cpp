@@ -68,7 +68,7 @@ SharedPlanes::SharedPlanes(const std::vector<ProjectNode>& nodes, const SolvedGr
       passes_(passes),
       first_(first_planes(nodes)),
       surfaces_(first_.back()),
-      common_(first_.back(), 0.0) {
+      common_(first_.back(), {0.0, 0}) {
   strips_.resize(passes.any() ? nodes.size() : 0);
   for (std::size_t n = 0; n < strips_.size(); ++n) {
     strips_[n].resize(digest(n).planes.size());
@@ -103,11 +103,23 @@ void SharedPlanes::join(const GraphLink& link, const PlaneMatch& match, const Ri
   const std::size_t of_source = first_[source_node] + static_cast<std::size_t>(match.source);
   const std::size_t of_target = first_[target_node] + static_cast<std::size_t>(match.target);
   surfaces_.join(of_source, of_target);
+  if (from_one_place(source_node, target_node)) return;
   const double share = std::min(1.0, match.overlap_m2 / std::max(a.area_m2, b.area_m2));
-  for (const std::size_t plane : {of_source, of_target}) common_[plane] = std::max(common_[plane], share);
+  for (const std::size_t plane : {of_source, of_target}) {
+    common_[plane].first += share;
+    ++common_[plane].second;
+  }
 }
 
-PlaneObservation SharedPlanes::whole_plane(std::size_t node, std::size_t plane) const {
+bool SharedPlanes::from_one_place(std::size_t a, std::size_t b) const {
+  const auto scanner = [&](std::size_t n) {
+    return solved_.nodes[n].frame_from_node * digest(n).stations.front();
+  };
+  const auto is_static = [&](std::size_t n) { return !digest(n).mobile && digest(n).stations.size() == 1; };
+  return is_static(a) && is_static(b) && (scanner(a) - scanner(b)).norm() < kNoOtherPlaceM;
+}
+
+PlaneObservation SharedPlanes::whole_plane(std::size_t node, std::size_t plane, std::size_t views) const {
   const PlaneDigest& seen = digest(node).planes[plane];
   PlaneObservation observation;
   observation.node = static_cast<int>(node);
@@ -116,7 +128,8 @@ PlaneObservation SharedPlanes::whole_plane(std::size_t node, std::size_t plane) 
   const double length = std::sqrt(12.0 * seen.moments.covariance().trace());
   const double own = std::hypot(kFlatM, kBendPerM * length);
   // What a trajectory drifts by is one for the whole plane, and so is what was built some millimetres off.
-  const double alone = 1.0 - common_[first_[node] + plane];
+  const auto& [common, count] = common_[first_[node] + plane];
+  const double alone = (count > 0 ? 1.0 - common / count : 1.0) * static_cast<double>(views);
   const double whole =
       digest(node).model ? kDrawnM : std::hypot(nodes_[node].strays_m(), built_offset_m() * std::sqrt(alone));
   observation.sigma_m = std::hypot(own, whole * std::sqrt(kTilesThatCount));
@@ -143,7 +156,10 @@ void SharedPlanes::tell(const std::vector<bool>& taken, JointProblem& problem) {
     }
     if (seers.size() < 2) continue;
     for (const auto& [node, plane] : seen) {
-      PlaneObservation observation = whole_plane(node, plane);
+      const auto views = std::count_if(seers.begin(), seers.end(), [&, n = node](std::size_t other) {
+        return other == n || from_one_place(other, n);
+      });
+      PlaneObservation observation = whole_plane(node, plane, static_cast<std::size_t>(views));
       observation.plane = problem.planes;
       problem.observations.push_back(observation);
     }

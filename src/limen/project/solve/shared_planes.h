@@ -52,7 +52,10 @@ class SharedPlanes {
   template <typename Visit>
   void for_each(const Visit& visit);
   [[nodiscard]] const ScanDigest& digest(std::size_t node) const { return nodes_[node].digest; }
-  [[nodiscard]] PlaneObservation whole_plane(std::size_t node, std::size_t plane) const;
+  /// Whether the scanners of two static scans were at one place: they see the same of a surface.
+  [[nodiscard]] bool from_one_place(std::size_t a, std::size_t b) const;
+  /// `views`: how many scans from its place see the surface.
+  [[nodiscard]] PlaneObservation whole_plane(std::size_t node, std::size_t plane, std::size_t views) const;
   [[nodiscard]] Seen seen_strip(std::size_t node, std::size_t strip) const;
   void tell_patches(std::size_t root, const std::vector<std::pair<std::size_t, std::size_t>>& members,
                     JointProblem& problem);
@@ -62,8 +65,9 @@ class SharedPlanes {
   const SolvedGraph& solved_;
   const BentPasses& passes_;
   std::vector<std::size_t> first_;
-  DisjointSets surfaces_;       ///< planes that are one, of all nodes
-  std::vector<double> common_;  ///< of each the largest share that another scan saw as well
+  DisjointSets surfaces_;  ///< planes that are one, of all nodes
+  /// Of each plane the shares that scans from other places saw as well: their sum, and how many.
+  std::vector<std::pair<double, int>> common_;
   std::vector<std::vector<std::vector<std::size_t>>> strips_;  // of each plane of each node
 };
 

@@ -16,6 +16,7 @@ namespace {
 
 constexpr double kMostSigmas = 4.0;     // by which stated positions may be off where scans meet
 constexpr double kUpsideDown = 0.9;     // cosine
+constexpr double kRollKnown = 0.5;      // radians: positions in a line leave it open
 constexpr int kLeastFitRedundancy = 6;  // of the fit that all are compared by: four positions
 
 Vector3d place_in(const ScanDigest& digest) {
@@ -107,7 +108,8 @@ void compare_with_stated(const std::vector<ProjectNode>& nodes, ProjectResult& r
     result.notes.push_back(
         "the scans contradict the stated positions, and which of them are wrong cannot be decided");
   if (fit.state == PointFitState::contradictory || fit.redundancy < kLeastFitRedundancy) return;
-  if (up.dot(fit.pose.target_from_source.rotation.col(2)) < -kUpsideDown * up.norm()) {
+  const bool roll_known = fit.pose.covariance.topLeftCorner<2, 2>().trace() < kRollKnown * kRollKnown;
+  if (roll_known && up.dot(fit.pose.target_from_source.rotation.col(2)) < -kUpsideDown * up.norm()) {
     result.notes.push_back(
         "the stated positions fit the scans only upside down: their x and y may be exchanged, or one axis "
         "reversed");
