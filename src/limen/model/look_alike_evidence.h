@@ -43,7 +43,7 @@ struct LookAlikeEvidence {
 /// Places that look alike are further from each other than one of these.
 inline constexpr double kOtherPlaceM = 0.5;
 inline constexpr double kOtherPlaceRad = 0.087;
-/// What is nearer to one another than this is no other place.
+/// What is nearer to one another than this is no other place: none repeats nearer than a wall is thick.
 inline constexpr double kNoOtherPlaceM = 0.15;
 
 }  // namespace limen

@@ -121,18 +121,16 @@ class Run {
   }
 
   void note_unused_trajectories() {
-    const std::vector<std::string>& files = options_.trajectories.files;
-    for (std::size_t k = 0; k < files.size(); ++k) {
-      const std::string used = "was measured along " + files[k];
-      const bool any = std::any_of(result_.notes.begin(), result_.notes.end(), [&](const std::string& text) {
-        return text.size() >= used.size() && text.compare(text.size() - used.size(), used.size(), used) == 0;
-      });
-      if (any) continue;
-      const Trajectory trajectory = read_trajectory(files[k], options_.trajectories.reading);
+    for (const std::string& file : options_.trajectories.files) {
+      const std::string used = "was measured along " + file;
+      if (std::any_of(result_.notes.begin(), result_.notes.end(),
+                      [&](const std::string& text) { return text.ends_with(used); }))
+        continue;
+      const Trajectory trajectory = read_trajectory(file, options_.trajectories.reading);
       note(
           fmt::format("{}: no scan was measured along this trajectory: none has most of its times between "
                       "{:.1f} and {:.1f} s, or its points are far away",
-                      files[k], trajectory.first_s(), trajectory.last_s()));
+                      file, trajectory.first_s(), trajectory.last_s()));
     }
   }
 

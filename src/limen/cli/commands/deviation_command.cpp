@@ -255,9 +255,8 @@ int run(const DeviationCommand& command, const Session& session) {
   const InputSide scan_side = read_side({command.scan, command.with, reading, "--units"}, session);
   ReadOptions model_reading;
   model_reading.metres_per_unit = metres_per_unit_of(command.model_units);
-  // Of metres nobody need have spoken, and an IFC model says its own unit.
-  if (!model_reading.metres_per_unit && registered.of_model != 1.0)
-    model_reading.metres_per_unit = registered.of_model;
+  if (!model_reading.metres_per_unit)
+    model_reading.metres_per_unit = unit_to_read(command.model, registered.of_model);
   const InputSide model_side = read_side({command.model, {}, model_reading, "--model-units"}, session);
   if (scan_side.input.model)
     throw Error("is a building model", command.scan, "give the scan first, then the model");

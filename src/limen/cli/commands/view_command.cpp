@@ -21,6 +21,7 @@
 #include "limen/base/text.h"
 #include "limen/bim/read_bim.h"
 #include "limen/cli/commands/commands.h"
+#include "limen/cli/inputs/registered_file.h"
 #include "limen/cli/inputs/scan_options.h"
 #include "limen/cli/terminal/command.h"
 #include "limen/files/file_hash.h"
@@ -74,14 +75,12 @@ std::vector<ViewInput> sides_of_result(const std::string& path, int alternative)
   if (pose.source_path.empty() || pose.target_path.empty())
     throw Error("does not name the files that were registered", path,
                 "give the result.json that limen register wrote");
-  ViewInput source{found_beside(pose.source_path, path),
-                   -1,
-                   chosen_pose(pose, alternative, path),
-                   pose.source_sha256,
-                   path,
-                   pose.source_metres_per_unit};
-  ViewInput target{found_beside(pose.target_path, path), -1, Rigid3{}, pose.target_sha256, path,
-                   pose.target_metres_per_unit};
+  const std::string source_path = found_beside(pose.source_path, path);
+  const std::string target_path = found_beside(pose.target_path, path);
+  ViewInput source{source_path, -1, chosen_pose(pose, alternative, path), pose.source_sha256, path};
+  source.metres_per_unit = unit_to_read(source_path, pose.source_metres_per_unit);
+  ViewInput target{target_path, -1, Rigid3{}, pose.target_sha256, path};
+  target.metres_per_unit = unit_to_read(target_path, pose.target_metres_per_unit);
   return {std::move(source), std::move(target)};
 }
 
@@ -92,13 +91,9 @@ std::vector<ViewInput> scans_of_project(const std::string& path, const Session& 
       session.note(fmt::format("{}: {}, not shown", scan_name(entry), entry.state));
       continue;
     }
-    inputs.push_back({found_beside(entry.file, path),
-                      entry.model ? -1 : entry.index,
-                      *entry.frame_from_scan,
-                      entry.sha256,
-                      path,
-                      {},
-                      entry.bend});
+    inputs.push_back({found_beside(entry.file, path), entry.model ? -1 : entry.index, *entry.frame_from_scan,
+                      entry.sha256, path});
+    inputs.back().bend = entry.bend;
   }
   return inputs;
 }
@@ -281,10 +276,7 @@ ViewScene read_view(const std::vector<ViewInput>& inputs, std::size_t most_point
   for (std::size_t k = 0; k < inputs.size(); ++k) {
     if (checked.insert(inputs[k].path).second) check_bytes(inputs[k]);
     if (is_bim_file(inputs[k].path)) {
-      // Of metres nobody need have spoken, and an IFC model says its own unit.
-      const std::optional<double> unit =
-          inputs[k].metres_per_unit == 1.0 ? std::nullopt : inputs[k].metres_per_unit;
-      models.emplace(k, read_model_input(inputs[k].path, session, unit, "--units"));
+      models.emplace(k, read_model_input(inputs[k].path, session, inputs[k].metres_per_unit, "--units"));
     } else {
       clouds.push_back(open_cloud(inputs[k], k, session));
     }

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "limen/base/error.h"
+#include "limen/bim/read_bim.h"
 #include "limen/files/file_hash.h"
 #include "limen/files/mapped_file.h"
 #include "limen/files/scan_in_file.h"
@@ -30,6 +31,10 @@ void note_other_scan(const std::string& registered, const std::string& given, co
   session.note(fmt::format(
       "the pose was found for scan #{} of {}: it holds for others only where the file's own poses join them",
       *found.index, name(found).string()));
+}
+
+std::optional<double> unit_to_read(const std::string& path, std::optional<double> stated) {
+  return stated == 1.0 && is_bim_file(path) ? std::nullopt : stated;
 }
 
 void require_registered_file(const ProjectEntry& entry, const std::string& project, bool force) {

@@ -247,20 +247,6 @@ class ColourColumns {
   bool bytes_ = true;
 };
 
-/// Of centres that are all the same one stays; points without one have it too.
-void settle_centres(Scan& scan) {
-  const auto is_stated = [&](const Vector3d& centre) { return usable(centre + scan.local_origin); };
-  std::vector<Vector3d>& centres = scan.centres;
-  const auto first = std::find_if(centres.begin(), centres.end(), is_stated);
-  if (first == centres.end()) return;
-  const Vector3d one = *first;
-  const bool same = std::all_of(centres.begin(), centres.end(),
-                                [&](const Vector3d& c) { return c == one || !is_stated(c); });
-  if (!same) return;
-  centres.assign(1, one);
-  centres.shrink_to_fit();
-}
-
 template <typename Good>
 std::size_t count_bad(const Scan& scan, const Good& good) {
   return parallel_reduce(
@@ -295,16 +281,33 @@ bool has_scanner(const Scan& scan, std::size_t i) {
   return !scan.mobile() || usable(scan.centres[i] + scan.local_origin);
 }
 
-/// Of points that have no scanner position how many are to be left out. Where they are many, as in clouds
-/// merged of scans with and without, none is: then it is unknown for all, and a sentence says so.
-std::size_t settle_missing_centres(Scan& scan, std::string& note) {
+/// Of centres that are all the same one stays, for the few points without one too.
+void settle_same_centres(Scan& scan) {
+  std::vector<Vector3d>& centres = scan.centres;
+  const auto is_stated = [&](const Vector3d& centre) { return usable(centre + scan.local_origin); };
+  const auto first = std::find_if(centres.begin(), centres.end(), is_stated);
+  if (first == centres.end()) return;
+  const Vector3d one = *first;
+  const bool same = std::all_of(centres.begin(), centres.end(),
+                                [&](const Vector3d& c) { return c == one || !is_stated(c); });
+  if (!same) return;
+  centres.assign(1, one);
+  centres.shrink_to_fit();
+}
+
+/// The scanner positions of a scan, and how many points without one are to be left out. Where these are many,
+/// as in clouds merged of scans with and without, none is: it is unknown for all, and a sentence says so.
+std::size_t settle_centres(Scan& scan, std::string& note) {
   constexpr double kMany = 0.1;
   const std::size_t missing = count_bad(scan, has_scanner);
-  if (static_cast<double>(missing) <= kMany * static_cast<double>(scan.size())) return missing;
-  scan.centres.clear();
-  note = fmt::format("{} of {} points state no scanner position; it is taken as unknown for all", missing,
-                     scan.size());
-  return 0;
+  if (static_cast<double>(missing) > kMany * static_cast<double>(scan.size())) {
+    scan.centres.clear();
+    note = fmt::format("{} of {} points state no scanner position; it is taken as unknown for all", missing,
+                       scan.size());
+    return 0;
+  }
+  settle_same_centres(scan);
+  return scan.mobile() ? missing : 0;
 }
 
 std::string stated(const Vector3d& x) {
@@ -466,9 +469,8 @@ ScanFile ScanBuilder::finish(ScanFile file) {
   parts.scan.topology = parts.topology();
   std::size_t unusable = count_bad(parts.scan, is_point);
   Scan scan = only(std::move(parts.scan), is_point, unusable);
-  settle_centres(scan);
   std::string mixed;
-  const std::size_t unseen = settle_missing_centres(scan, mixed);
+  const std::size_t unseen = settle_centres(scan, mixed);
   scan = only(std::move(scan), has_scanner, unseen);
   unusable += unseen;
   if (scan.points.empty()) {

@@ -72,13 +72,13 @@ TEST(ScanBuilder, TablesOneByOneMakeTheScanOfOneTable) {
 
 TEST(ScanBuilder, PointsWithoutAScannerPositionAreKeptIfTheyAreMany) {
   const std::vector<std::string> names = {"x", "y", "z", "x_origin", "y_origin", "z_origin"};
-  const auto scan_with = [&](std::size_t missing, bool returns = false) {
+  const auto scan_with = [&](std::size_t missing, bool returns = false, bool still = false) {
     RandomStream random(5, 0);
     std::vector<double> all;
     for (std::size_t i = 0; i < 1000; ++i) {
       const double none = std::numeric_limits<double>::quiet_NaN();
       for (int k = 0; k < 3; ++k) all.push_back(returns && i < missing ? none : random.uniform(0.0, 20.0));
-      for (int k = 0; k < 3; ++k) all.push_back(i < missing ? none : random.uniform(9.0, 10.0));
+      for (int k = 0; k < 3; ++k) all.push_back(i < missing ? none : still ? 9.5 : random.uniform(9.0, 10.0));
     }
     return with_scan({}, table_of_numbers(std::make_shared<const std::vector<double>>(all), names), facts(),
                      {});
@@ -92,6 +92,13 @@ TEST(ScanBuilder, PointsWithoutAScannerPositionAreKeptIfTheyAreMany) {
   EXPECT_EQ(half.unusable, 0U);
   EXPECT_EQ(half.notes.back(),
             "500 of 1000 points state no scanner position; it is taken as unknown for all");
+  // That of a station is not that of the scan it was merged with.
+  const ScanFile merged = scan_with(500, false, true);
+  EXPECT_EQ(merged.scans.front().size(), 1000U);
+  EXPECT_FALSE(merged.scans.front().centre_known());
+  const ScanFile station = scan_with(5, false, true);
+  EXPECT_EQ(station.scans.front().size(), 1000U);
+  EXPECT_EQ(station.scans.front().centres.size(), 1U);
   // A missing return has no position either, and says nothing of the others.
   const ScanFile returns = scan_with(500, true);
   EXPECT_EQ(returns.scans.front().size(), 500U);

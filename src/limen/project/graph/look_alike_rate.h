@@ -25,9 +25,9 @@ std::vector<UnusedLink> unused_links(const PoseGraph& graph, const LinkMatcher& 
                                      const Configuration& configuration);
 
 /// How often, in this building, a pose whose walls agree lays a place on a look-alike one. The share has a
-/// beta distribution beforehand, for buildings differ (kRateStrength). Each place that scans
-/// were taken from counts once: by the clearest links of each that agree and by those that do not, as many as
-/// there are of each.
+/// beta distribution beforehand, for buildings differ (kRateStrength). Each place that scans were taken from
+/// counts once: by the clearest link of each scan that agrees and by those that do not, as many as there are
+/// of each.
 class LookAlikeRate {
  public:
   LookAlikeRate(const Viewpoints& viewpoints, int nodes, const std::vector<PlacedPair>& pairs,

@@ -12,7 +12,6 @@
 namespace limen {
 namespace {
 
-// No place repeats nearer than a wall is thick.
 constexpr double kNoOtherPlaceRad = 0.03;
 // Motions about the frame's origin, which may be far from what moves, that differ by more are not the same.
 constexpr double kSameMotionM = 3.0;

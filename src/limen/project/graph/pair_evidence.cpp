@@ -51,20 +51,23 @@ double PairEvidence::behind_windows_nats() const {
 }
 
 void LookAlikeSum::add(const PairEvidence& evidence, double of_things, double of_surface) {
-  const LookAlikeEvidence& look_alikes = evidence.look_alikes;
   if (evidence.asks_things()) {
-    add_to(sum_.otherwise_nats, of_things, look_alikes.otherwise_nats);
-    add_to(sum_.alike_nats, of_things, look_alikes.alike_nats);
-    add_to(sum_.share_nats, of_things, look_alikes.share_nats);
-    sum_.things += of_things * look_alikes.things;
-    sum_.agreeing += of_things * look_alikes.agreeing;
-    add_walls(look_alikes.built, of_surface);
+    add_things(evidence.look_alikes, of_things);
+    add_walls(evidence.look_alikes.built, of_surface);
   } else {
     const double by_surface =
         evidence.asks_look_alike ? evidence.behind_windows_nats() : evidence.chance_nats;
     for (NatsOfThings* sum : {&sum_.otherwise_nats, &sum_.alike_nats})
       for (double& nats : *sum) nats += (evidence.stated ? 1.0 : of_surface) * by_surface;
   }
+}
+
+void LookAlikeSum::add_things(const LookAlikeEvidence& look_alikes, double of_things) {
+  add_to(sum_.otherwise_nats, of_things, look_alikes.otherwise_nats);
+  add_to(sum_.alike_nats, of_things, look_alikes.alike_nats);
+  add_to(sum_.share_nats, of_things, look_alikes.share_nats);
+  sum_.things += of_things * look_alikes.things;
+  sum_.agreeing += of_things * look_alikes.agreeing;
 }
 
 void LookAlikeSum::add_walls(const BuiltEvidence& walls, double of_surface) {

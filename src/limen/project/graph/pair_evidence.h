@@ -46,6 +46,8 @@ class LookAlikeSum {
 
   /// Shares of what the pair shows that count for it (SharedViews): of things, and of the building's surface.
   void add(const PairEvidence& evidence, double of_things = 1.0, double of_surface = 1.0);
+  /// Things of a pair of rooms, alone.
+  void add_things(const LookAlikeEvidence& look_alikes, double of_things);
   /// How walls were built, alone. For one place they say no more than their share of what a pair may; each
   /// pair that speaks against it would have to be bent for itself.
   void add_walls(const BuiltEvidence& walls, double of_surface);

@@ -167,11 +167,14 @@ double PlacementOdds::odds_of_look_alike(const std::vector<const PlacedPair*>& a
   LookAlikeSum against(built_without(side));
   std::map<std::pair<int, int>, MeanWalls> walls;
   for (std::size_t k = 0; k < across.size(); ++k) {
-    const bool rooms = across[k]->evidence.asks_things();
-    against.add(across[k]->evidence, of_things[k], rooms ? 0.0 : of_surface[k]);
-    if (rooms)
-      walls[viewpoints_.of(across[k]->source, across[k]->target)].add(across[k]->evidence.look_alikes.built,
-                                                                      of_surface[k]);
+    const PairEvidence& evidence = across[k]->evidence;
+    if (!evidence.asks_things()) {
+      against.add(evidence, of_things[k], of_surface[k]);
+      continue;
+    }
+    against.add_things(evidence.look_alikes, of_things[k]);
+    walls[viewpoints_.of(across[k]->source, across[k]->target)].add(evidence.look_alikes.built,
+                                                                    of_surface[k]);
   }
   for (const auto& [viewpoints, mean] : walls) against.add_walls(mean.walls(), mean.share());
   const double otherwise = believed_once(across, &LookAlikeEvidence::otherwise);
@@ -281,7 +284,7 @@ SideOdds PlacementOdds::of_across(const std::vector<const PlacedPair*>& across,
   return odds;
 }
 
-std::vector<std::vector<bool>> PlacementOdds::weak_sides(const std::vector<int>& reference) const {
+std::set<std::vector<bool>> PlacementOdds::weak_sides(const std::vector<int>& reference) const {
   std::set<std::vector<bool>> sides;
   std::vector<WeakestCut> cuts(3,
                                WeakestCut(nodes_));  // against look-alike places of either kind, and chance
@@ -308,7 +311,7 @@ std::vector<std::vector<bool>> PlacementOdds::weak_sides(const std::vector<int>&
       if (std::vector<bool> side = cut.side_of(n); !side.empty()) sides.insert(std::move(side));
     }
   }
-  return {sides.begin(), sides.end()};
+  return sides;
 }
 
 }  // namespace limen

@@ -60,7 +60,7 @@ class PlacementOdds {
 
   /// Sides on which each node may be elsewhere: alone, and on its side of the weakest cuts between it and its
   /// `reference` (of each node; -1: none).
-  [[nodiscard]] std::vector<std::vector<bool>> weak_sides(const std::vector<int>& reference) const;
+  [[nodiscard]] std::set<std::vector<bool>> weak_sides(const std::vector<int>& reference) const;
 
  private:
   struct Known {

@@ -289,7 +289,7 @@ TEST(PlacementOdds, WeakSidesHoldWhatHangsTogether) {
                                    pair(4, 3, 9, 9, 9, 3), pair(5, 4, 9, 9, 9, 4), pair(5, 3, 9, 9, 9, 5),
                                    pair(3, 2, 3, 1, 0, 6)};
   const PlacementOdds odds(6, pairs);
-  const std::vector<std::vector<bool>> sides = odds.weak_sides({0, 0, 0, 0, 0, 0});
+  const std::set<std::vector<bool>> sides = odds.weak_sides({0, 0, 0, 0, 0, 0});
   EXPECT_NE(std::find(sides.begin(), sides.end(), side({3, 4, 5}, 6)), sides.end());
 }
 

@@ -109,8 +109,8 @@ class Solver {
            take_apart(odds_->likely_sides(reference_, kElsewhereLikelier));
   }
 
-  template <typename Sides>
-  bool take_apart(const Sides& sides) {
+  /// The one of these, if one is.
+  bool take_apart(const std::set<std::vector<bool>>& sides) {
     const std::vector<bool>* worst = nullptr;
     double most = kElsewhereLikelier;
     for (const std::vector<bool>& side : sides) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -17,7 +18,10 @@ class Viewpoints {
  public:
   /// Every scan has its own.
   explicit Viewpoints(int nodes);
-  /// By where scanners were (PoseGraph::scanners): those nearer to each other than kNoOtherPlaceM.
+  /// By where scanners were in the frames of their components, where that is known: those nearer to each
+  /// other than kNoOtherPlaceM. `component`: of each node.
+  Viewpoints(const std::vector<std::optional<Vector3d>>& scanners, const std::vector<int>& component);
+  /// By PoseGraph::scanners.
   Viewpoints(const PoseGraph& graph, const Configuration& configuration);
 
   [[nodiscard]] bool is_same(int a, int b) const {

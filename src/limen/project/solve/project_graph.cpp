@@ -88,10 +88,7 @@ class GraphMaker {
 
   ProjectGraph run() {
     graph_.nodes = static_cast<int>(nodes_.size());
-    for (const ProjectNode& node : nodes_) {
-      const bool known = !node.digest.mobile && node.digest.stations.size() == 1;
-      graph_.scanners.push_back(known ? std::optional(node.digest.stations.front()) : std::nullopt);
-    }
+    for (const ProjectNode& node : nodes_) graph_.scanners.push_back(node.digest.scanner());
     for (std::size_t k = 0; k < pairs_.size(); ++k) add_pair(k);
     add_given();
     return {std::move(graph_), std::move(pair_of_)};

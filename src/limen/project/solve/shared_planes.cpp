@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <set>
 #include <utility>
 
@@ -38,6 +39,17 @@ std::vector<std::size_t> first_planes(const std::vector<ProjectNode>& nodes) {
   return first;
 }
 
+Viewpoints viewpoints_of(const std::vector<ProjectNode>& nodes, const SolvedGraph& solved) {
+  std::vector<std::optional<Vector3d>> scanners;
+  std::vector<int> component;
+  for (std::size_t n = 0; n < nodes.size(); ++n) {
+    const std::optional<Vector3d> own = nodes[n].digest.scanner();
+    scanners.push_back(own ? std::optional<Vector3d>(solved.nodes[n].frame_from_node * *own) : std::nullopt);
+    component.push_back(solved.nodes[n].component);
+  }
+  return {scanners, component};
+}
+
 /// Whether a scan saw its plane there: within what an even spread with its moments covers, and a metre.
 bool lies_on(const Vector3d& x, const PlaneDigest& plane) {
   constexpr double kEven = 3.0;  // squared half width of an even spread, in variances
@@ -67,6 +79,7 @@ SharedPlanes::SharedPlanes(const std::vector<ProjectNode>& nodes, const SolvedGr
       solved_(solved),
       passes_(passes),
       first_(first_planes(nodes)),
+      viewpoints_(viewpoints_of(nodes, solved)),
       surfaces_(first_.back()),
       common_(first_.back(), {0.0, 0}) {
   strips_.resize(passes.any() ? nodes.size() : 0);
@@ -103,20 +116,12 @@ void SharedPlanes::join(const GraphLink& link, const PlaneMatch& match, const Ri
   const std::size_t of_source = first_[source_node] + static_cast<std::size_t>(match.source);
   const std::size_t of_target = first_[target_node] + static_cast<std::size_t>(match.target);
   surfaces_.join(of_source, of_target);
-  if (from_one_place(source_node, target_node)) return;
+  if (viewpoints_.is_same(link.source, link.target)) return;
   const double share = std::min(1.0, match.overlap_m2 / std::max(a.area_m2, b.area_m2));
   for (const std::size_t plane : {of_source, of_target}) {
     common_[plane].first += share;
     ++common_[plane].second;
   }
-}
-
-bool SharedPlanes::from_one_place(std::size_t a, std::size_t b) const {
-  const auto scanner = [&](std::size_t n) {
-    return solved_.nodes[n].frame_from_node * digest(n).stations.front();
-  };
-  const auto is_static = [&](std::size_t n) { return !digest(n).mobile && digest(n).stations.size() == 1; };
-  return is_static(a) && is_static(b) && (scanner(a) - scanner(b)).norm() < kNoOtherPlaceM;
 }
 
 PlaneObservation SharedPlanes::whole_plane(std::size_t node, std::size_t plane, std::size_t views) const {
@@ -157,7 +162,7 @@ void SharedPlanes::tell(const std::vector<bool>& taken, JointProblem& problem) {
     if (seers.size() < 2) continue;
     for (const auto& [node, plane] : seen) {
       const auto views = std::count_if(seers.begin(), seers.end(), [&, n = node](std::size_t other) {
-        return other == n || from_one_place(other, n);
+        return viewpoints_.is_same(static_cast<int>(other), static_cast<int>(n));
       });
       PlaneObservation observation = whole_plane(node, plane, static_cast<std::size_t>(views));
       observation.plane = problem.planes;

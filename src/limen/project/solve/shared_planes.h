@@ -11,6 +11,7 @@
 #include "limen/base/disjoint_sets.h"
 #include "limen/project/adjust/plane_adjustment.h"
 #include "limen/project/graph/pose_graph.h"
+#include "limen/project/graph/viewpoints.h"
 #include "limen/project/passes/bent_passes.h"
 #include "limen/project/state/project_node.h"
 
@@ -52,8 +53,6 @@ class SharedPlanes {
   template <typename Visit>
   void for_each(const Visit& visit);
   [[nodiscard]] const ScanDigest& digest(std::size_t node) const { return nodes_[node].digest; }
-  /// Whether the scanners of two static scans were at one place: they see the same of a surface.
-  [[nodiscard]] bool from_one_place(std::size_t a, std::size_t b) const;
   /// `views`: how many scans from its place see the surface.
   [[nodiscard]] PlaneObservation whole_plane(std::size_t node, std::size_t plane, std::size_t views) const;
   [[nodiscard]] Seen seen_strip(std::size_t node, std::size_t strip) const;
@@ -65,6 +64,7 @@ class SharedPlanes {
   const SolvedGraph& solved_;
   const BentPasses& passes_;
   std::vector<std::size_t> first_;
+  Viewpoints viewpoints_;
   DisjointSets surfaces_;  ///< planes that are one, of all nodes
   /// Of each plane the shares that scans from other places saw as well: their sum, and how many.
   std::vector<std::pair<double, int>> common_;

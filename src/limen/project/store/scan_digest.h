@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -42,6 +43,10 @@ struct ScanDigest {
   PassTrack track;                 ///< about the local origin, scan's axes
 
   [[nodiscard]] FeatureCounts counts() const { return {planes.size(), openings.size()}; }
+  /// Where the scanner of a static scan was, about the local origin, if that is known.
+  [[nodiscard]] std::optional<Vector3d> scanner() const {
+    return !mobile && stations.size() == 1 ? std::optional(stations.front()) : std::nullopt;
+  }
 };
 
 ScanDigest digest_of(const PreparedScan& prepared);

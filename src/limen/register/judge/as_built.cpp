@@ -96,8 +96,8 @@ constexpr std::array<BuiltBend, kBendLevels - 1> kBends = {
     {{0.461, 0.0003}, {0.175, 0.001}, {0.046, 0.002}, {0.060, 0.004}, {0.145, 0.008}, {0.113, 0.016}}};
 constexpr double kStraySurface = 0.05;  // share of the surfaces that are of two things, or were moved
 
-/// Scans that are not bent may seem bent by the least amount where few surfaces are seen: of each amount the
-/// logarithms of both, for `logs` is of pairs that are bent so.
+/// Of each amount of bends the logarithm of the density of what is seen of such pairs. `logs` has it of pairs
+/// that seem bent so; a share of those that are not bent seem bent by the next amount, where little is seen.
 BendBelief as_it_seems(BendBelief logs, double seems_bent = evidence_table::kSeemsBent) {
   if (seems_bent > 0.0)
     logs[0] = log_sum_exp({std::log1p(-seems_bent) + logs[0], std::log(seems_bent) + logs[1]});
