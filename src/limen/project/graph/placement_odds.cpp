@@ -40,6 +40,26 @@ struct Estimate {
   }
 };
 
+/// Of the joints on the way to a node: which part of their odds of places furnished alike remains when they
+/// ask once together whether the building has such places. If it has two, a scan is from either: two joints
+/// of equal odds leave it in the wrong one not twice as often as one joint, but as often as one of two coins
+/// shows a head. Unequal joints count as so many of the greatest odds as their sum makes.
+double part_asked_once(double sum, double greatest) {
+  return sum > 0.0 ? 2.0 * (1.0 - std::exp2(-sum / greatest)) * greatest / sum : 1.0;
+}
+
+/// The mean of that of a side, over the nodes on it and random trees.
+struct PartAsked {
+  double sum = 0.0;
+  double count = 0.0;
+
+  void add(double part) {
+    sum += part;
+    count += 1.0;
+  }
+  [[nodiscard]] double mean() const { return count > 0.0 ? sum / count : 1.0; }
+};
+
 /// Of each node of a tree the sides that its edges cut off, the node on it first.
 std::map<int, std::vector<bool>> sides_of_edges(const std::vector<int>& parent) {
   std::map<int, std::vector<bool>> sides;
@@ -151,8 +171,8 @@ BuiltBelief PlacementOdds::built_without(const std::vector<bool>& side) const {
   return belief;
 }
 
-double PlacementOdds::odds_of_look_alike(const std::vector<const PlacedPair*>& across,
-                                         const std::vector<bool>& side) const {
+void PlacementOdds::add_look_alike(const std::vector<const PlacedPair*>& across,
+                                   const std::vector<bool>& side, SideOdds& odds) const {
   std::vector<double> surface;
   std::vector<double> things;
   for (const PlacedPair* pair : across) {
@@ -180,8 +200,9 @@ double PlacementOdds::odds_of_look_alike(const std::vector<const PlacedPair*>& a
   const double otherwise = believed_once(across, &LookAlikeEvidence::otherwise);
   const double alike = believed_once(across, &LookAlikeEvidence::alike);
   const double stayed = against.stayed_nats(stayed_.without(side));
-  return rate_.factor(side) * (otherwise * std::exp(-against.against_otherwise(stayed)) +
-                               alike * std::exp(-against.against_alike(stayed)));
+  const double rate = rate_.factor(side);
+  odds.alike = rate * alike * std::exp(-against.against_alike(stayed));
+  odds.look_alike = rate * otherwise * std::exp(-against.against_otherwise(stayed)) + odds.alike;
 }
 
 double PlacementOdds::log_odds_of_chance(std::vector<const PlacedPair*> across, const std::vector<bool>& side,
@@ -233,8 +254,12 @@ std::set<std::vector<bool>> PlacementOdds::likely_sides(const std::vector<int>& 
 
 std::vector<double> PlacementOdds::of_nodes(const std::vector<int>& reference,
                                             const std::set<std::vector<bool>>& found, double risk) {
+  std::map<std::vector<bool>, PartAsked> parts;
   std::vector<double> odds(reference.size(), 0.0);
-  for (const std::vector<bool>& side : found) add_to_nodes(side, of(side).total(), odds);
+  for (const std::vector<bool>& side : found) {
+    parts.try_emplace(side);
+    add_to_nodes(side, of(side).total(), odds);
+  }
   const std::vector<int> roots = lenders(reference);
   RandomStream random(0);
   std::vector<Estimate> others(reference.size());
@@ -244,17 +269,44 @@ std::vector<double> PlacementOdds::of_nodes(const std::vector<int>& reference,
     }
     return true;
   };
+  struct Joint {
+    const SideOdds* odds = nullptr;
+    PartAsked* found = nullptr;
+  };
+  std::vector<Joint> joints(reference.size());
   int trees = 0;
   do {
     for (int k = 0; k < kTreesAtOnce; ++k, ++trees) {
-      std::vector<double> of_tree(reference.size(), 0.0);
-      for (const auto& [node, side] : sides_of_edges(trees_.random_tree(roots, random))) {
-        if (found.count(side) == 0) add_to_nodes(side, known_of(side).odds.by_one_pair(), of_tree);
+      const std::vector<int> parent = trees_.random_tree(roots, random);
+      for (const auto& [node, side] : sides_of_edges(parent)) {
+        const auto part = parts.find(side);
+        joints[static_cast<std::size_t>(node)] = {&known_of(side).odds,
+                                                  part == parts.end() ? nullptr : &part->second};
       }
-      for (std::size_t n = 0; n < of_tree.size(); ++n) others[n].add(of_tree[n]);
+      const auto on_way = [&](std::size_t n, const auto& use) {
+        for (; parent[n] >= 0; n = static_cast<std::size_t>(parent[n])) use(joints[n]);
+      };
+      for (std::size_t n = 0; n < parent.size(); ++n) {
+        double sum = 0.0;
+        double greatest = 0.0;
+        on_way(n, [&](const Joint& joint) {
+          sum += joint.odds->alike;
+          greatest = std::max(greatest, joint.odds->alike);
+        });
+        const double part = part_asked_once(sum, greatest);
+        double of_tree = 0.0;
+        on_way(n, [&](const Joint& joint) {
+          if (joint.found != nullptr)
+            joint.found->add(part);
+          else
+            of_tree += joint.odds->by_one_pair(part);
+        });
+        others[n].add(of_tree);
+      }
     }
   } while (trees < fewest_trees(nodes_) || (trees < kMostTrees && !known_well(trees)));
-  for (std::size_t n = 0; n < odds.size(); ++n) odds[n] += others[n].mean(trees);
+  for (std::size_t n = 0; n < odds.size(); ++n) odds[n] = others[n].mean(trees);
+  for (const auto& [side, part] : parts) add_to_nodes(side, of(side).total(part.mean()), odds);
   return odds;
 }
 
@@ -280,7 +332,7 @@ SideOdds PlacementOdds::of_across(const std::vector<const PlacedPair*>& across,
                                   const std::vector<bool>& side) const {
   SideOdds odds;
   odds.chance = std::exp(log_odds_of_chance(across, side, odds));
-  odds.look_alike = odds_of_look_alike(across, side);
+  add_look_alike(across, side, odds);
   return odds;
 }
 

@@ -18,13 +18,16 @@ namespace limen {
 /// Odds that a side of a component is elsewhere, against that it is where a configuration has it.
 struct SideOdds {
   double look_alike = 0.0;  ///< the side lies on a look-alike place
+  double alike = 0.0;       ///< the part of it that is furnished alike
   double chance = 0.0;      ///< the pairs across agree by chance
   double share = 1.0;       ///< of the ways to join the scans in which the side is joined by one pair
   std::vector<int> links;   ///< that hold it, but for those that show nothing new
 
-  /// If one pair joins the side.
-  [[nodiscard]] double by_one_pair() const { return look_alike + chance; }
-  [[nodiscard]] double total() const { return share * by_one_pair(); }
+  /// If one pair joins the side. `part`: of the places furnished alike, where others ask for them too.
+  [[nodiscard]] double by_one_pair(double part = 1.0) const {
+    return look_alike - (1.0 - part) * alike + chance;
+  }
+  [[nodiscard]] double total(double part = 1.0) const { return share * by_one_pair(part); }
 };
 
 /// Odds of sides, by all pairs that a configuration places in sight of each other.
@@ -35,9 +38,11 @@ struct SideOdds {
 ///
 /// Look-alike places: that there is one is believed once for a side, as little as any pair believes it, and
 /// as often as it happens in this building (look_alike_rate.h). What things and walls say against it adds up
-/// over the pairs across; those that show the same count once together. By how much scans are bent, and how
-/// many things stay where they are, is learned from the pairs on either side. Chance: pairs err independently
-/// as far as they show different surface, and wrong poses agree with one another seldom.
+/// over the pairs across; those that show the same count once together. That there are places furnished
+/// alike, too, is a fact of the building: the pairs on the way to a scan ask it once together. By how much
+/// scans are bent, and how many things stay where they are, is learned from the pairs on either side. Chance:
+/// pairs err independently as far as they show different surface, and wrong poses agree with one another
+/// seldom.
 class PlacementOdds {
  public:
   /// `viewpoints`: empty where every scan has its own.
@@ -70,8 +75,8 @@ class PlacementOdds {
   [[nodiscard]] Known& known_of(const std::vector<bool>& side);
   [[nodiscard]] SideOdds of_across(const std::vector<const PlacedPair*>& across,
                                    const std::vector<bool>& side) const;
-  [[nodiscard]] double odds_of_look_alike(const std::vector<const PlacedPair*>& across,
-                                          const std::vector<bool>& side) const;
+  void add_look_alike(const std::vector<const PlacedPair*>& across, const std::vector<bool>& side,
+                      SideOdds& odds) const;
   [[nodiscard]] BuiltBelief built_without(const std::vector<bool>& side) const;
   [[nodiscard]] double log_odds_of_chance(std::vector<const PlacedPair*> across,
                                           const std::vector<bool>& side, SideOdds& odds) const;

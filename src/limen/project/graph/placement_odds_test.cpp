@@ -248,6 +248,34 @@ TEST(PlacementOdds, DoubtsAddUpAlongAChain) {
   EXPECT_NEAR(odds.of_nodes({3, 3, 3, 3}, {}, 0.001)[0], all, 1e-9 * all);
 }
 
+/// Whether a building has places furnished alike is one question, however many pairs are on the way.
+TEST(PlacementOdds, PairsOnTheWayAskOnceForPlacesFurnishedAlike) {
+  std::vector<PlacedPair> pairs;
+  for (int n = 1; n < 6; ++n) {
+    pairs.push_back(pair(n, n - 1, 30.0, 30.0, 0.0, n));
+    pairs.back().evidence.look_alikes.otherwise = 0.9;
+    pairs.back().evidence.look_alikes.alike = 0.005;
+  }
+  PlacementOdds odds(6, pairs);
+  const std::vector<int> reference(6, 0);
+  const std::vector<double> drawn = odds.of_nodes(reference, {}, 0.001);
+  const double one = drawn[1];
+  EXPECT_GT(one, 1e-5);
+  EXPECT_NEAR(drawn[2], 1.5 * one, 0.1 * one);
+  EXPECT_NEAR(drawn[5], 2.0 * one, 0.2 * one);
+  std::set<std::vector<bool>> all;
+  for (int n = 1; n < 6; ++n) {
+    std::vector<bool> moved(6, false);
+    for (int k = n; k < 6; ++k) moved[static_cast<std::size_t>(k)] = true;
+    all.insert(moved);
+  }
+  EXPECT_NEAR(odds.of_nodes(reference, all, 0.001)[5], drawn[5], 0.4 * drawn[5]);
+  // A joint that the others do not resemble keeps its odds.
+  for (int n = 0; n < 4; ++n) pairs[static_cast<std::size_t>(n)].evidence.look_alikes.alike_nats.fill(9.0);
+  PlacementOdds weak(6, pairs);
+  EXPECT_GT(weak.of_nodes(reference, {}, 0.001)[5], 0.9 * weak.of(side({5}, 6)).total());
+}
+
 /// The sum over all sides is the same where sides are listed and where trees are drawn.
 TEST(PlacementOdds, SidesThatAreNotFoundCountAsWell) {
   constexpr int kNodes = 5;
