@@ -273,7 +273,12 @@ std::vector<TrueScan> read_true_scans(const fs::path& path) {
 Rigid3 read_true_pose(const fs::path& path, const PoseFile& result) {
   const std::string text = read_text(path);
   const std::optional<Json> object = object_in(text, path);
-  if (!object) return pose_from_text(text, path);
+  if (!object) {
+    Rigid3 pose = pose_from_text(text, path);
+    if (result.source_metres_per_unit == result.target_metres_per_unit)
+      pose.translation *= result.source_metres_per_unit.value_or(1.0);
+    return pose;
+  }
   if (!object->contains("scans") || object->contains("transform") || object->contains("target_from_source")) {
     const PoseFile truth = pose_from_object(*object, path);
     if (!truth.target_from_source) throw Error("holds no pose", path.string(), "give the true pose");

@@ -38,7 +38,8 @@ Rigid3 chosen_pose(const PoseFile& file, int choice, const std::filesystem::path
 /// not rigid.
 PoseFile read_pose_file(const std::filesystem::path& path);
 
-/// The true pose of a pair. Read from what read_pose_file() reads, or from the truth of a simulated case: an
+/// The true pose of a pair, metres. Read from what read_pose_file() reads (a text in the unit that `result`
+/// says the files have), or from the truth of a simulated case: an
 /// object with `scans`, each with `file` (or `name`) and `world_from_scan`; there the scans are found by the
 /// file names in `result`; the model that was scanned, where it is the target, by `file` of `model`. Throws
 /// Error where a scan is not in it.

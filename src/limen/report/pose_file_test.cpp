@@ -125,6 +125,14 @@ TEST_F(PoseFileTest, FindsTheTruthOfTwoScansOfACase) {
   EXPECT_THROW((void)read_true_pose(path, PoseFile{}), Error);
 }
 
+TEST_F(PoseFileTest, ATextOfTheTruthIsInTheUnitOfTheFiles) {
+  const fs::path path = file("truth.txt", "1 0 0 2000\n0 1 0 0\n0 0 1 500\n0 0 0 1\n");
+  PoseFile result;
+  EXPECT_EQ(read_true_pose(path, result).translation, Vector3d(2000.0, 0.0, 500.0));
+  result.source_metres_per_unit = result.target_metres_per_unit = 0.001;
+  EXPECT_LT((read_true_pose(path, result).translation - Vector3d(2.0, 0.0, 0.5)).norm(), 1e-12);
+}
+
 TEST_F(PoseFileTest, FindsTheTruthOfAScanInItsModel) {
   Json truth;
   truth["model"]["file"] = "house.ifc";

@@ -142,8 +142,9 @@ void add_evaluate_command(CommandLine& app, Session& session) {
       ->required();
   command
       ->add_option("TRUTH", options->truth,
-                   "The true pose: a text file with a 4 x 4 matrix, a JSON object with transform, or the "
-                   "truth.json of limen simulate; for a project its truth/project.json")
+                   "The true pose: a text file with a 4 x 4 matrix (in the unit of the registered files, as "
+                   "transform.txt), a JSON object with transform, or the truth.json of limen simulate; for a "
+                   "project its truth/project.json")
       ->required();
   add_length_option(*command, "--within-m", options->within_m,
                     "For a project: list each scan whose position is off by more than this (default 0.02)");
