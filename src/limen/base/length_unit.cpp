@@ -9,10 +9,9 @@
 namespace limen {
 
 const std::vector<LengthUnit>& length_units() {
-  static const std::vector<LengthUnit> units = {
-      {"m", "metres", 1.0},        {"mm", "millimetres", 0.001}, {"cm", "centimetres", 0.01},
-      {"ft", "feet", 0.3048},      {"in", "inches", 0.0254},     {"us-ft", "US survey feet", 1200.0 / 3937.0},
-      {"km", "kilometres", 1000.0}};
+  static const std::vector<LengthUnit> units = {{"m", 1.0},     {"mm", 0.001},  {"cm", 0.01},
+                                                {"ft", 0.3048}, {"in", 0.0254}, {"us-ft", 1200.0 / 3937.0},
+                                                {"km", 1000.0}};
   return units;
 }
 

@@ -12,7 +12,6 @@ namespace limen {
 /// A unit of length by its short name.
 struct LengthUnit {
   const char* name;        ///< "mm", as options take it
-  const char* plural;      ///< "millimetres", for sentences
   double metres_per_unit;  ///< exact
 };
 

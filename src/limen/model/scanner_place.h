@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 
 #include "limen/geometry/rigid.h"
 
@@ -31,5 +32,8 @@ struct ScannerPlace {
   /// kept where the user stated it.
   std::optional<Vector3d> refuted;
 };
+
+/// For a user: what the data say of a place that they refute, and what is used; empty where they refute none.
+std::string words_of_refuted(const ScannerPlace& place);
 
 }  // namespace limen

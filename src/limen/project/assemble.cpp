@@ -59,7 +59,8 @@ class Assembler {
     for (std::size_t k = 0; k < graph_.links.size(); ++k) tell_link(k);
     state_look_alikes();
     tell_survey();
-    result_.decisions = judged_decisions({nodes_, pairs_, words_, broken_, graph_, solved_, pair_of_});
+    result_.decisions =
+        judged_decisions({nodes_, pairs_, words_, broken_, placed_.controlled, graph_, solved_, pair_of_});
     result_.loops = solved_.loops;
     result_.components = solved_.components;
     for (const GraphQuestion& question : solved_.questions) tell_question(question);

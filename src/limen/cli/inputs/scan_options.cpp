@@ -280,22 +280,8 @@ Gravity gravity_of(const std::string& name) {
 void note_place(InputSummary& summary, const ScannerPlace& place, const Session& session) {
   if (summary.kind != "scan") return;
   summary.place = place;
-  if (!place.refuted) return;
-  const Vector3d& said = *place.refuted;
-  const std::string where = fmt::format("{:.3f} {:.3f} {:.3f}", said.x(), said.y(), said.z());
-  if (place.source == PlaceSource::stated_by_user) {
-    session.note(
-        fmt::format("{}: the points do not fit the given scanner position {}; it is used nevertheless",
-                    summary.path, where));
-    return;
-  }
-  const std::string instead =
-      place.source == PlaceSource::unknown
-          ? "it is taken as unknown"
-          : fmt::format("the position estimated from the points is used: {:.3f} {:.3f} {:.3f}",
-                        place.centre.x(), place.centre.y(), place.centre.z());
-  session.note(
-      fmt::format("{}: the points contradict the scanner position {}; {}", summary.path, where, instead));
+  if (const std::string words = words_of_refuted(place); !words.empty())
+    session.note(fmt::format("{}: {}", summary.path, words));
 }
 
 Features features_of(Scan&& scan, const PrepareOptions& options, InputSummary& summary,

@@ -97,7 +97,8 @@ PlanarPolygon make_polygon(const Scan& scan, const PlaneFit& fit, const std::vec
 }  // namespace
 
 void PolygonOptions::check() const {
-  if (alpha_m < 0) throw_bad_option("alpha_m", alpha_m, "0 or more");
+  constexpr double kFinestM = 0.001;  // no scan of a building has denser points
+  if (alpha_m != 0.0 && !(alpha_m >= kFinestM)) throw_bad_option("alpha_m", alpha_m, "0, or 0.001 or more");
   if (min_part_m2 < 0) throw_bad_option("min_part_m2", min_part_m2, "0 or more");
   if (min_hole_m2 < 0) throw_bad_option("min_hole_m2", min_hole_m2, "0 or more");
   if (simplify_m < 0) throw_bad_option("simplify_m", simplify_m, "0 or more");

@@ -106,6 +106,8 @@ std::vector<Broken> broken_others() {
       {"two.xyz", "1 2\n3 4\n", "three numbers"},
       {"commas.xyz", "1,5;2,5;3,5\n", "decimal commas"},
       {"commas.txt", "1,5 2,5 3,5\n", "decimal commas"},
+      {"commas.csv", "1,5, 2,5, 3,5\n", "decimal commas"},
+      {"returns.xyz", "1 2 3\r4 5 6\r7 8 9\r", "carriage return"},
       {"prose.txt", "To whom it may concern\n", "neither rows of numbers"},
       {"names_only.csv", "x,y,z\n", "no points"},
       {"nan.xyz", "nan nan nan\n", "no usable points"},

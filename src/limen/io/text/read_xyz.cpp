@@ -61,7 +61,8 @@ struct TextHeader {
   std::size_t lines = 0;  ///< lines before it
   std::string_view odd_line;  ///< the first line that is no comment, no names, no numbers
   std::size_t odd_number = 0;
-  std::string_view row;  ///< the first row; empty where there is none
+  std::string_view row;          ///< the first row; empty where there is none
+  bool ended_by_return = false;  ///< which is not followed by a line feed
 };
 
 bool is_comment(std::string_view line) {
@@ -93,6 +94,8 @@ TextHeader parse_text_header(std::string_view bytes) {
     }
     if (numbers > 1 || (numbers == 1 && !header.counted)) {
       header.row = line.text;
+      const std::string_view ending = bytes.substr(at + line.text.size(), 2);
+      header.ended_by_return = ending.size() == 2 && ending[0] == '\r' && ending[1] != '\n';
       header.names = names_for(numbers, lines_of_names);
       return header;
     }
@@ -113,8 +116,9 @@ bool has_decimal_commas(std::string_view row) {
   bool any = false;
   while (!row.empty()) {
     const std::size_t end = std::min(row.find_first_of("; \t\r"), row.size());
-    const std::string_view piece = row.substr(0, end);
+    std::string_view piece = row.substr(0, end);
     row.remove_prefix(std::min(row.size(), end + 1));
+    if (!row.empty() && !piece.empty() && piece.back() == ',') piece.remove_suffix(1);  // "1,5, 2,5"
     if (piece.empty()) continue;
     const auto commas = std::count(piece.begin(), piece.end(), ',');
     if (piece.find('.') != std::string_view::npos || commas > 1) return false;
@@ -166,6 +170,9 @@ void require_rows(const TextHeader& header, const std::string& name) {
   }
   if (header.row.empty()) throw Error("there are no points", name, "check how the file was exported");
   const std::string where = fmt::format("{}, line {}", name, header.lines + 1);
+  if (header.ended_by_return)
+    throw Error("the lines end with a carriage return alone", where,
+                "save the file with line ends of Linux or Windows");
   if (has_decimal_commas(header.row)) {
     throw Error("the numbers have decimal commas", where, "write them with decimal points");
   }

@@ -3,6 +3,7 @@
 #include "limen/project/decide/decisions.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <fstream>
 #include <optional>
 #include <utility>
@@ -24,6 +25,7 @@ using Json = nlohmann::ordered_json;
 constexpr DecisionKind kKinds[] = {DecisionKind::accept, DecisionKind::reject,     DecisionKind::choose,
                                    DecisionKind::level,  DecisionKind::same_floor, DecisionKind::start,
                                    DecisionKind::forget};
+constexpr int kLastPose = 1000;  // no pair has so many
 constexpr const char* kDecisionsRemedy =
     "write accept A B, reject A B, choose A B N, level A, same-floor A B, start A B POINTS or forget A B";
 
@@ -77,7 +79,9 @@ Decision from_json(const Json& json, const std::string& where) {
   for (const auto& [name, value] : json.items()) {
     const std::optional<DecisionKind> kind = kind_called(name);
     if (!kind) continue;
-    Decision decision{*kind, value.get<std::vector<std::string>>(), json.value("pose", 0)};
+    const auto pose = json.value("pose", std::int64_t{0});
+    Decision decision{*kind, value.get<std::vector<std::string>>(),
+                      pose < 0 || pose > kLastPose ? -1 : static_cast<int>(pose)};
     const bool numbered =
         *kind != DecisionKind::choose || (json.contains("pose") && json.at("pose").is_number_integer());
     if (!counts_fit(decision) || decision.pose < 0 || !numbered)
@@ -133,7 +137,7 @@ Decision decision_from(const std::vector<std::string>& words) {
   Decision decision{*kind, {words.begin() + 1, words.end()}, 0};
   if (*kind == DecisionKind::choose && !decision.scans.empty()) {
     const std::optional<std::size_t> number = parse_count(decision.scans.back());
-    if (!number || *number > 1000)
+    if (!number || *number > std::size_t{kLastPose})
       throw Error(fmt::format("\"{}\" is not the number of a pose", decision.scans.back()), "project decide",
                   kDecisionsRemedy);
     decision.pose = static_cast<int>(*number);

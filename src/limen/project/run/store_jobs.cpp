@@ -110,11 +110,16 @@ FileRecord make_scan_features(const ProjectFile& file, const ProjectOptions& opt
           "no target is looked for, because the file does not say where the scanner stood");
     if (options.targets.any() && !store.load_targets(key, options.targets))
       into_store([&] { store.save_targets(key, options.targets, targets_in(scan, options.targets)); });
-    if (store.has_features(key)) continue;
-    PrepareOptions with_track = prepare_options(options.registering);
-    with_track.track = true;
-    const PreparedScan prepared = prepare_scan(std::move(scan), with_track, preparing);
-    into_store([&] { store.save_features(key, prepared); });
+    std::optional<PreparedScan> prepared;
+    if (store.has_features(key)) prepared = store.load_features(key);
+    if (!prepared) {
+      PrepareOptions with_track = prepare_options(options.registering);
+      with_track.track = true;
+      prepared = prepare_scan(std::move(scan), with_track, preparing);
+      into_store([&] { store.save_features(key, *prepared); });
+    }
+    if (std::string words = words_of_refuted(prepared->place); !words.empty())
+      record.notes.push_back(std::move(words));
   }
   record.notes = without_name(std::move(record.notes), file.path);
   return record;

@@ -9,6 +9,7 @@
 
 #include "limen/base/angles.h"
 #include "limen/project/solve/project_graph.h"
+#include "limen/project/solve/word_terms.h"
 #include "limen/register/judge/start_prior.h"
 
 namespace limen {
@@ -19,14 +20,18 @@ constexpr double kJudgedTurnRad = 0.01;
 
 class DecisionJudge {
  public:
-  explicit DecisionJudge(const WordsAndSolution& all) : all_(all) {}
+  explicit DecisionJudge(const WordsAndSolution& all)
+      : all_(all), idle_(idle_words(all.words, all.nodes, all.solved, all.controlled)) {}
 
   [[nodiscard]] std::vector<ProjectDecision> run() const {
     std::vector<ProjectDecision> list;
     for (std::size_t d = 0; d < all_.words.decisions.size(); ++d) {
       ProjectDecision stated;
       stated.decision = all_.words.decisions[d];
-      judge(all_.words.nodes[d], d < all_.broken.size() && all_.broken[d], stated);
+      if (idle_[d].empty())
+        judge(all_.words.nodes[d], d < all_.broken.size() && all_.broken[d], stated);
+      else
+        stated.reason = idle_[d];
       list.push_back(stated);
     }
     return list;
@@ -126,6 +131,7 @@ class DecisionJudge {
   }
 
   const WordsAndSolution& all_;
+  std::vector<std::string> idle_;
 };
 
 }  // namespace

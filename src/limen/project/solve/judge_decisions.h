@@ -14,7 +14,8 @@ struct WordsAndSolution {
   const std::vector<ProjectNode>& nodes;
   const std::vector<TriedPair>& pairs;
   const UserWords& words;
-  const std::vector<bool>& broken;  ///< of each decision on what is level: as JointFinding tells it
+  const std::vector<bool>& broken;      ///< of each decision on what is level: as JointFinding tells it
+  const std::vector<bool>& controlled;  ///< of each node: whether it is in the frame of a survey
   const PoseGraph& graph;
   const SolvedGraph& solved;
   const std::vector<int>& pair_of;  ///< of each link

@@ -6,11 +6,14 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include "limen/base/angles.h"
+#include "limen/base/length_unit.h"
 #include "limen/base/progress.h"
 #include "limen/geometry/linear.h"
 #include "limen/project/control/control_datum.h"
@@ -57,24 +60,47 @@ FramedNodes only(int node, int nodes) {
   return framed;
 }
 
-/// Eastings and northings are often exchanged. The mirrored coordinates contradict one another, or, where the
-/// points are in a plane, agree with scans that are upside down.
-class ColumnOrder {
+/// Other ways in which the coordinates of control points may be meant. Eastings and northings are often
+/// exchanged: the mirrored coordinates contradict one another, or, where the points are in a plane, agree
+/// with scans that are upside down. Others are not in metres.
+class OtherReadings {
  public:
-  explicit ColumnOrder(const Survey& survey) : up_(survey.up), exchanged_(points_of(survey)) {
+  explicit OtherReadings(const Survey& survey) : up_(survey.up) {
     Matrix3d swap;
     swap << 0.0, 1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0;
-    for (MarkedPoint& point : exchanged_) {
-      if (point.known) point.known = KnownPlace{swap * point.known->x, swap * point.known->covariance * swap};
+    add(survey, swap, swap,
+        "agree with the scans only in a mirror, as if x and y are exchanged: check the order of the columns "
+        "and "
+        "their signs");
+    for (const LengthUnit& unit : length_units()) {
+      const Matrix3d scale = unit.metres_per_unit * Matrix3d::Identity();
+      if (unit.metres_per_unit == 1.0) continue;
+      // Their deviations may be in metres all the same.
+      for (const Matrix3d& of_sigma : {scale, Matrix3d(Matrix3d::Identity())})
+        add(survey, scale, of_sigma, fmt::format("agree with the scans only in {}: give metres", unit.name));
     }
   }
 
-  /// Whether the points explain all with x and y exchanged, and do not as they are (`datum`).
-  [[nodiscard]] bool is_wrong(const ControlDatum& datum, const FramedNodes& nodes) const {
-    return !explains_all(datum, nodes) && explains_all(control_datum(exchanged_, nodes), nodes);
+  /// The words for the first of them that explains all, where the points as they are (`datum`) do not.
+  [[nodiscard]] std::string better(const ControlDatum& datum, const FramedNodes& nodes) const {
+    if (explains_all(datum, nodes)) return {};
+    for (const auto& [words, points] : readings_) {
+      if (explains_all(control_datum(points, nodes), nodes)) return words;
+    }
+    return {};
   }
 
  private:
+  void add(const Survey& survey, const Matrix3d& change, const Matrix3d& of_sigma, const std::string& words) {
+    std::vector<MarkedPoint> points = points_of(survey);
+    for (MarkedPoint& point : points) {
+      if (point.known)
+        point.known =
+            KnownPlace{change * point.known->x, of_sigma * point.known->covariance * of_sigma.transpose()};
+    }
+    readings_.emplace_back(words, std::move(points));
+  }
+
   /// All points agree, and the scans that are known to be upright stay so.
   [[nodiscard]] bool explains_all(const ControlDatum& datum, const FramedNodes& nodes) const {
     const std::vector<bool>& taken = datum.fit.taken;
@@ -89,16 +115,13 @@ class ColumnOrder {
   }
 
   std::vector<Vector3d> up_;
-  std::vector<MarkedPoint> exchanged_;
+  std::vector<std::pair<std::string, std::vector<MarkedPoint>>> readings_;
 };
-
-constexpr const char* kExchanged =
-    "agree with the scans only if x and y are exchanged: check the order of the columns";
 
 class SurveyPlacer {
  public:
   SurveyPlacer(const Survey& survey, ProjectGraph& made, SolvedGraph& solved)
-      : survey_(survey), made_(made), solved_(solved), order_(survey) {}
+      : survey_(survey), made_(made), solved_(solved), readings_(survey) {}
 
   PlacedSurvey run() {
     placed_.points = points_of(survey_);
@@ -149,8 +172,8 @@ class SurveyPlacer {
     }
     const ControlDatum datum = control_datum(placed_.points, nodes);
     if (datum.points.empty()) return false;
-    if (order_.is_wrong(datum, nodes)) {
-      refused_ += fmt::format("; the control points {}", kExchanged);
+    if (const std::string words = readings_.better(datum, nodes); !words.empty()) {
+      refused_ += "; the control points " + words;
       return false;
     }
     const auto agreeing = std::count(datum.fit.taken.begin(), datum.fit.taken.end(), true);
@@ -255,7 +278,7 @@ class SurveyPlacer {
   const Survey& survey_;
   ProjectGraph& made_;
   SolvedGraph& solved_;
-  ColumnOrder order_;
+  OtherReadings readings_;
   PlacedSurvey placed_;
   std::string refused_;
 };
@@ -467,7 +490,8 @@ void add_target_links(Survey& survey, ProjectGraph& made) {
   const TargetsAgainstScans against(all, made);
   if (against.all_wrong()) {
     survey.notes.push_back(against.words());
-    for (SurveyMark& mark : survey.marks) mark.point.sights.clear();
+    for (SurveyMark& mark : survey.marks)
+      if (!mark.scanner) mark.point.sights.clear();
     return;
   }
   for (const auto& [nodes, shared] : all) {
@@ -496,14 +520,14 @@ void add_survey_links(Survey& survey, ProjectGraph& made) {
   if (survey.file.empty()) return;
   const int nodes = made.graph.nodes;
   const std::vector<MarkedPoint> points = points_of(survey);
-  const ColumnOrder order(survey);
+  const OtherReadings readings(survey);
   for (int n = 0; n < nodes; ++n) {
     const FramedNodes alone = only(n, nodes);
     const ControlDatum datum = control_datum(points, alone);
     if (datum.fit.state == PointFitState::too_few) continue;
-    if (order.is_wrong(datum, alone)) {
+    if (const std::string words = readings.better(datum, alone); !words.empty()) {
       survey.notes.push_back(fmt::format("the control points that {} sees {}",
-                                         survey.node_names[static_cast<std::size_t>(n)], kExchanged));
+                                         survey.node_names[static_cast<std::size_t>(n)], words));
       continue;
     }
     if (!datum.fit.suspects.empty())

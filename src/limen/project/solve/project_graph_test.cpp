@@ -313,6 +313,41 @@ TEST(WordTerms, ScansThatAreStatedToBeLevelBecomeSoUnlessTheDataContradictIt) {
   EXPECT_NEAR(leans.frame_from_node[1].rotation(2, 1), 0.01, 1e-5);
 }
 
+/// Much of the street through a window is not the floor of a room.
+TEST(WordTerms, TheFloorIsThePlaneBelowTheScanner) {
+  ProjectNode node = over_a_floor(0);
+  PlaneDigest street;
+  street.plane = {Vector3d::UnitZ(), 0.46};
+  street.centroid = {0.0, 12.0, -0.46};
+  street.area_m2 = 25.0;
+  for (int k = 0; k < 30; ++k) street.moments.add({0.5 * (k % 3), -4.0 + 0.3 * k, 0.0});
+  node.digest.planes.insert(node.digest.planes.begin(), street);
+  EXPECT_EQ(floor_of(node.digest), 1);
+  node.digest.planes.pop_back();
+  EXPECT_EQ(floor_of(node.digest), 0);
+}
+
+TEST(WordTerms, WordsThatCouldNotBeTestedAreOfNoUse) {
+  TwoScans two(0.0, 0.0);
+  const std::vector<bool> none(2, false);
+  const auto reasons = [&](const UserWords& words, const std::vector<bool>& controlled) {
+    return idle_words(words, two.nodes, two.solved, controlled);
+  };
+  EXPECT_EQ(reasons(said(DecisionKind::level), none), (std::vector<std::string>{"", ""}));
+  EXPECT_EQ(reasons(said(DecisionKind::same_floor), none), std::vector<std::string>{""});
+  UserWords one = said(DecisionKind::level);
+  one.decisions.pop_back();
+  one.nodes.pop_back();
+  EXPECT_NE(reasons(one, none).front().find("another level scan"), std::string::npos);
+  EXPECT_EQ(reasons(one, {true, true}).front(), "");
+  two.nodes[1].digest.planes.clear();
+  EXPECT_EQ(reasons(said(DecisionKind::same_floor), none).front(), "no floor was seen by b");
+  two.solved.nodes[1].component = 1;
+  EXPECT_EQ(reasons(said(DecisionKind::same_floor), none).front(), "nothing joins the two scans");
+  two.solved.nodes[0].component = -1;
+  EXPECT_EQ(reasons(one, none).front(), "nothing joins the scan to others");
+}
+
 TEST(WordTerms, FloorsOfOneHeightComeTogetherUnlessTheDataContradictIt) {
   std::vector<bool> broken;
   const JointSolution solution = TwoScans(0.0, 0.006).solve(said(DecisionKind::same_floor), broken);

@@ -200,6 +200,19 @@ TEST(Survey, CoordinatesWithExchangedColumnsDefineNoFrame) {
   }
 }
 
+TEST(Survey, CoordinatesInAnotherUnitDefineNoFrame) {
+  for (const double unit : {0.001, 0.3048}) {
+    TargetsOnly building({4, 0, 0});
+    for (SurveyMark& mark : building.survey.marks) mark.point.known->x /= unit;
+    SolvedGraph solved;
+    EXPECT_FALSE(building.place(solved).placed);
+    ASSERT_EQ(building.survey.notes.size(), 1U);
+    EXPECT_NE(building.survey.notes.front().find(unit == 0.001 ? "only in mm" : "only in ft"),
+              std::string::npos)
+        << building.survey.notes.front();
+  }
+}
+
 TEST(Survey, WhatStoodByTheSurveyAloneKeepsAFrameOfItsOwn) {
   TargetsOnly building({4, 4, 0});
   ProjectGraph made = make_graph(building.nodes, {building.pair(1, 0, 0.0, 0.0)}, {});

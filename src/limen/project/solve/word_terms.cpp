@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <string>
 #include <utility>
 
 #include "limen/base/angles.h"
@@ -19,6 +20,7 @@ constexpr double kFarTilt = 3.7;         // deviations, two freedoms, once in a 
 constexpr double kFarHeight = 3.3;       // one freedom
 const double kLevelCosine = std::cos(radians(3.0));
 constexpr double kBelowM = 0.5;
+constexpr double kNarrowestM = 0.05;  // no plane is known to be narrower
 constexpr double kLeastFloorM2 = 1.0;
 constexpr double kFreeRad2 = 1e2;  // what a word on level does not speak of
 constexpr double kFreeM2 = 1e6;
@@ -31,6 +33,18 @@ Vector3d up_in(const ScanDigest& digest) {
 /// The turn about a level axis that brings `up` to z.
 Matrix3d levelled(const Vector3d& up) {
   return rotation_between(up, Vector3d::UnitZ());
+}
+
+/// Tiles per square metre of a level plane below `from`, as if they were normally distributed. What is seen
+/// of the street through a window is not below a scanner, and what is below it is seen densely.
+double tiles_below(const PlaneDigest& plane, const Matrix3d& level_from_scan, const Vector3d& from) {
+  const Matrix3d spread = level_from_scan *
+                          (plane.moments.covariance() + kNarrowestM * kNarrowestM * Matrix3d::Identity()) *
+                          level_from_scan.transpose();
+  const Eigen::Matrix2d in_plan = spread.topLeftCorner<2, 2>();
+  const Vector2d off = (level_from_scan * (from - plane.centroid - plane.moments.mean())).head<2>();
+  return plane.moments.count * std::exp(-0.5 * off.dot(in_plan.inverse() * off)) /
+         std::sqrt(in_plan.determinant());
 }
 
 PoseEdge level_edge(int node, int up, const Rigid3& up_from_node) {
@@ -99,8 +113,12 @@ class WordSolution {
     return up.normalized();
   }
 
+  [[nodiscard]] bool says_what_is_up(const std::vector<std::size_t>& level) const {
+    return level.size() >= 2 || surveyed(level);
+  }
+
   void add_level(const std::vector<std::size_t>& level, JointProblem& problem) const {
-    if (level.size() < 2 && !surveyed(level)) return;
+    if (!says_what_is_up(level)) return;
     Rigid3 frame_from_up;
     frame_from_up.rotation = levelled(up_of(level)).transpose();
     const int number = static_cast<int>(problem.frame_from_node.size());
@@ -181,14 +199,45 @@ int floor_of(const ScanDigest& digest) {
   const Vector3d up = up_in(digest);
   const Vector3d from = digest.stations.empty() ? digest.middle : digest.stations.front();
   int best = -1;
+  double most = 0.0;
   for (std::size_t k = 0; k < digest.planes.size(); ++k) {
     const PlaneDigest& plane = digest.planes[k];
     if (std::abs(plane.plane.normal.dot(up)) < kLevelCosine || plane.area_m2 < kLeastFloorM2) continue;
     if ((plane.centroid - from).dot(up) > -kBelowM || plane.moments.count < 3.0) continue;
-    if (best < 0 || plane.area_m2 > digest.planes[static_cast<std::size_t>(best)].area_m2)
-      best = static_cast<int>(k);
+    const double density = tiles_below(plane, levelled(up), from);
+    if (density <= most) continue;
+    most = density;
+    best = static_cast<int>(k);
   }
   return best;
+}
+
+std::vector<std::string> idle_words(const UserWords& words, const std::vector<ProjectNode>& nodes,
+                                    const SolvedGraph& solved, const std::vector<bool>& controlled) {
+  std::vector<std::string> reasons(words.decisions.size());
+  const SpokenOf spoken = spoken_of(words, {}, solved);
+  const WordSolution solution(words, nodes, solved, controlled);
+  for (std::size_t k = 0; k < reasons.size(); ++k) {
+    if (words.nodes[k].empty()) continue;
+    const int component = solved.nodes[static_cast<std::size_t>(words.nodes[k].front())].component;
+    if (words.decisions[k].kind == DecisionKind::level) {
+      const auto level = spoken.level.find(component);
+      if (level == spoken.level.end())
+        reasons[k] = "nothing joins the scan to others";
+      else if (!solution.says_what_is_up(level->second))
+        reasons[k] = "it takes another level scan of its group, or control points";
+    }
+    if (words.decisions[k].kind != DecisionKind::same_floor) continue;
+    if (std::find(spoken.floors.begin(), spoken.floors.end(), k) == spoken.floors.end()) {
+      reasons[k] = "nothing joins the two scans";
+      continue;
+    }
+    for (std::size_t end = 0; end < words.nodes[k].size() && reasons[k].empty(); ++end) {
+      if (floor_of(nodes[static_cast<std::size_t>(words.nodes[k][end])].digest) < 0)
+        reasons[k] = "no floor was seen by " + words.decisions[k].scans[end];
+    }
+  }
+  return reasons;
 }
 
 std::optional<double> floors_apart(const ScanDigest& source, const ScanDigest& target,

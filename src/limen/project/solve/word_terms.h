@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "limen/project/adjust/plane_adjustment.h"
@@ -10,7 +11,8 @@
 
 namespace limen {
 
-/// The plane of a scan's floor: the largest level one clearly below the scanner; -1: none was seen.
+/// The plane of a scan's floor: the level one clearly below the scanner of which it sees most there; -1: none
+/// was seen.
 int floor_of(const ScanDigest& digest);
 
 /// By how much the floor of `source` lies above that of `target` with a pose between them (about the local
@@ -30,5 +32,9 @@ void add_word_terms(const UserWords& words, const std::vector<bool>& broken,
 /// chance).
 std::vector<bool> broken_words(const UserWords& words, const std::vector<ProjectNode>& nodes,
                                const SolvedGraph& solved, const std::vector<bool>& controlled);
+
+/// Why each decision on what is level was of no use; empty of the others.
+std::vector<std::string> idle_words(const UserWords& words, const std::vector<ProjectNode>& nodes,
+                                    const SolvedGraph& solved, const std::vector<bool>& controlled);
 
 }  // namespace limen

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <limits>
 #include <map>
+#include <set>
 #include <utility>
 
 #include <fmt/format.h>
@@ -54,8 +55,9 @@ class SurveyReader {
     if (!inputs.targets.empty()) add_targets(inputs.targets);
     std::vector<std::string> unseen;
     for (auto& [name, mark] : marks_) {
-      if (mark.point.sights.empty()) add_scanner(mark);
-      if (mark.point.sights.empty()) unseen.push_back(name);
+      const bool seen = !mark.point.sights.empty() || seen_late_.count(name) > 0;
+      if (!seen) add_scanner(mark);
+      if (!seen && mark.point.sights.empty()) unseen.push_back(name);
       survey_.marks.push_back(std::move(mark));
     }
     note("no scan sees", unseen);
@@ -113,6 +115,7 @@ class SurveyReader {
         sight.place = place_on(digest.track.way, target, sight.x_in_node);
         if (!sight.place) {
           late_.push_back(fmt::format("{} of {}", target.name, target.scan));
+          seen_late_.insert(target.name);
           continue;
         }
       }
@@ -163,7 +166,8 @@ class SurveyReader {
   Survey survey_;
   std::map<std::string, SurveyMark> marks_;
   std::vector<std::string> strangers_;
-  std::vector<std::string> late_;  ///< targets at times at which their pass was not under way
+  std::vector<std::string> late_;    ///< targets at times at which their pass was not under way
+  std::set<std::string> seen_late_;  ///< their names
 };
 
 }  // namespace
