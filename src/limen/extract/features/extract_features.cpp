@@ -64,7 +64,6 @@ void add_interior(const Scan& scan, const ExtractOptions& options, ExtractedFeat
   if (extracted.facades.empty()) return;
   const std::vector<std::uint32_t> behind = point_indices(
       find_interior_points(scan, features.planes, extracted.facades, options.interior.points, monitor));
-  extracted.interior_points = behind.size();
   std::vector<bool> marked = mostly_behind(features.planes, behind, extracted.labels);
   // A wall that others look through stays what it is.
   for (const int facade : extracted.facades) marked[static_cast<std::size_t>(facade)] = false;

@@ -39,8 +39,7 @@ struct ExtractOptions {
 struct ExtractedFeatures {
   Features features;
   std::vector<std::int32_t> labels;
-  std::vector<int> facades;         ///< indices of the planes that are façades, or walls of a station
-  std::size_t interior_points = 0;  ///< points behind them
+  std::vector<int> facades;  ///< indices of the planes that are façades, or walls of a station
 };
 
 /// Planar polygons and surface samples of a scan: the one-call door.

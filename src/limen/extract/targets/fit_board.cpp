@@ -40,7 +40,6 @@ struct BoardPoint {
 struct TwoTones {
   double dark = 0.0;
   double bright = 0.0;
-  double dark_share = 0.0;
 
   [[nodiscard]] double middle() const { return 0.5 * (dark + bright); }
 };
@@ -59,7 +58,7 @@ TwoTones tones_of(const Points& points) {
       ++count[kind];
     }
     if (count[0] == 0.0 || count[1] == 0.0) return {};
-    tones = {sum[0] / count[0], sum[1] / count[1], count[0] / (count[0] + count[1])};
+    tones = {sum[0] / count[0], sum[1] / count[1]};
     if (threshold == tones.middle()) break;
     threshold = tones.middle();
   }

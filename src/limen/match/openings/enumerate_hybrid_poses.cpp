@@ -212,23 +212,6 @@ HybridPoseOptions with_users_thickness(HybridPoseOptions options) {
 
 }  // namespace
 
-const char* to_string(ThicknessSource source) {
-  switch (source) {
-    case ThicknessSource::user:
-      return "user";
-    case ThicknessSource::reveals:
-      return "reveals";
-    case ThicknessSource::openings:
-      return "openings";
-    case ThicknessSource::planes:
-      return "planes";
-    case ThicknessSource::same_face:
-      return "same face";
-    default:
-      return "assumed";
-  }
-}
-
 void HybridPoseOptions::check() const {
   openings.check();
   if (wall_thickness_m && !(*wall_thickness_m > 0.0)) {

@@ -44,7 +44,6 @@ enum class ThicknessSource : std::uint8_t {
   planes,    ///< planes that both scans saw
   same_face  ///< both scans saw the same face of the wall: there is no thickness between them
 };
-const char* to_string(ThicknessSource source);
 
 /// A pose proposed by openings and planes, in the scans' local frames.
 struct HybridPose {

@@ -277,7 +277,6 @@ class OpeningEnumerator {
                                                     poses.front().wall_normal, shifts_m);
     for (std::size_t i = 0; i < poses.size(); ++i) {
       poses[i].distance = distances[i].distance;
-      poses[i].nominal_distance = distances[i].nominal;
       poses[i].support_m = 0.5 * (distances[i].source_covered_m + distances[i].target_covered_m);
     }
     return poses;
@@ -368,16 +367,11 @@ std::vector<OpeningPose> enumerate_opening_poses(const Features& source, const F
   const std::vector<WallWithOpenings> source_walls = walls_with_openings(source, wall_options);
   const std::vector<WallWithOpenings> target_walls = walls_with_openings(target, wall_options);
   std::vector<OpeningPose> all;
-  const int turns = options.quarter_turns && !options.gravity_known ? 4 : 1;
-  for (int turn = 0; turn < turns; ++turn) {
-    std::vector<WallWithOpenings> walls;
-    for (const WallWithOpenings& wall : source_walls) walls.push_back(turned(wall, turn));
-    const OpeningMatcher matcher(std::move(walls), target_walls, options);
-    for (const WallSides sides : {WallSides::opposite, WallSides::same}) {
-      if (!(sides == WallSides::opposite ? options.try_opposite : options.try_same)) continue;
-      const auto some = OpeningEnumerator(source, target, matcher, sides, options).run();
-      all.insert(all.end(), some.begin(), some.end());
-    }
+  const OpeningMatcher matcher(source_walls, target_walls, options);
+  for (const WallSides sides : {WallSides::opposite, WallSides::same}) {
+    if (!(sides == WallSides::opposite ? options.try_opposite : options.try_same)) continue;
+    const auto some = OpeningEnumerator(source, target, matcher, sides, options).run();
+    all.insert(all.end(), some.begin(), some.end());
   }
   return distinct_poses(std::move(all), middle_of(source_walls), options);
 }

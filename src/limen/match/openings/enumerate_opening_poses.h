@@ -31,8 +31,7 @@ enum class WallSides : std::uint8_t {
 const char* to_string(WallSides sides);
 
 struct OpeningPoseOptions {
-  bool gravity_known = true;   ///< both z axes point up; else each opening's own upper side is taken
-  bool quarter_turns = false;  ///< without gravity: also try rectangles turned by 90, 180, 270 degrees
+  bool gravity_known = true;  ///< both z axes point up; else each opening's own upper side is taken
   bool try_opposite = true;
   bool try_same = true;
   double size_tolerance_m = 0.25;  ///< widths and heights of one opening differ by no more (splayed reveals)
@@ -63,9 +62,8 @@ struct OpeningPose {
   Rigid3 target_from_source;
   /// Equation 14 in the form of (9) over all seen edges of both scans, wall normals taken out; a cost, m^3.
   double distance = 0.0;
-  double nominal_distance = 0.0;  ///< what it is where nothing matches
-  double support_m = 0.0;         ///< length of edges that lie on edges of the other scan, mean of both scans
-  int matched_openings = 0;       ///< number of `pairs`
+  double support_m = 0.0;    ///< length of edges that lie on edges of the other scan, mean of both scans
+  int matched_openings = 0;  ///< number of `pairs`
   std::vector<OpeningPair> pairs;
   int source_wall = -1;  ///< index into Features::planes of the wall that proposed it
   int target_wall = -1;

@@ -218,24 +218,6 @@ TEST(EnumerateOpeningPoses, WithoutGravityAnyRotationIsFound) {
   }
 }
 
-TEST(EnumerateOpeningPoses, QuarterTurnsFindARectangleThatLiesOnItsSide) {
-  const std::vector<Window> all = synthetic::irregular();
-  const Features outside = seen({south_wall(all)}, {});
-  Features inside = seen({south_wall({all[0], all[1], all[2]})}, {true, 0.4, 0.0, 0.0, 1});
-  for (Opening& opening : inside.openings) {  // corners named from the wrong side
-    std::rotate(std::begin(opening.corners), std::begin(opening.corners) + 1, std::end(opening.corners));
-  }
-  OpeningPoseOptions options;
-  options.gravity_known = false;
-  const Vector3d middle(4.0, 0.4, 1.8);
-  EXPECT_TRUE(true_places(enumerate_opening_poses(inside, outside, options), Rigid3{}, middle).empty());
-  options.quarter_turns = true;
-  const auto poses = enumerate_opening_poses(inside, outside, options);
-  ASSERT_FALSE(poses.empty());
-  EXPECT_LT(error_in_wall(poses.front(), Rigid3{}, middle), 0.01);
-  EXPECT_LT(angle_off(poses.front(), Rigid3{}), 0.1);
-}
-
 TEST(EnumerateOpeningPoses, TwoScansFromOneSideShareTheFace) {
   const std::vector<Window> all = synthetic::irregular();
   const Rigid3 truth = yaw_and_shift(80.0, Vector3d(-4.0, 2.0, 0.5));

@@ -147,19 +147,6 @@ std::vector<WallWithOpenings> walls_with_openings(const Features& features,
   return walls;
 }
 
-WallWithOpenings turned(const WallWithOpenings& wall, int quarter_turns) {
-  WallWithOpenings result = wall;
-  for (int turn = 0; turn < quarter_turns % 4; ++turn) {
-    // u becomes the old v, v the old -u: what was at the top is now at the right, the left is now the top.
-    result.frame = {result.frame.origin, result.frame.v, -result.frame.u};
-    for (WallRectangle& r : result.rectangles) {
-      r.edge = {-r.edge[1], r.edge[2], -r.edge[3], r.edge[0]};
-      r.sigma_m = {r.sigma_m[1], r.sigma_m[2], r.sigma_m[3], r.sigma_m[0]};
-    }
-  }
-  return result;
-}
-
 WallRectangle seen_from_behind(const WallRectangle& rectangle) {
   WallRectangle result = rectangle;
   result.edge[1] = -rectangle.edge[3];

@@ -45,8 +45,6 @@ struct WallWithOpeningsOptions {
 std::vector<WallWithOpenings> walls_with_openings(const Features& features,
                                                   const WallWithOpeningsOptions& options = {});
 
-/// The same wall turned by `quarter_turns` about its normal: its frame turns, and with it the names of edges.
-WallWithOpenings turned(const WallWithOpenings& wall, int quarter_turns);
 /// The rectangle as somebody on the other side of the wall sees it: left and right change places.
 WallRectangle seen_from_behind(const WallRectangle& rectangle);
 

@@ -88,15 +88,8 @@ class Clustering {
 
   void finish() {
     Matrix3d directions = Matrix3d::Zero();
-    for (DirectionCluster& cluster : result_.clusters) {
+    for (const DirectionCluster& cluster : result_.clusters)
       directions += cluster.direction * cluster.direction.transpose();
-      double sum = 0.0;
-      for (const int plane : cluster.planes) {
-        const double angle = line_angle(normal(plane), cluster.direction);
-        sum += weight(plane) * angle * angle;
-      }
-      cluster.spread_rad = cluster.weight > 0.0 ? std::sqrt(sum / cluster.weight) : 0.0;
-    }
     const Spectrum3 spectrum = spectrum_of(directions);
     for (int i = 0; i < 3; ++i) {
       if (spectrum.values[i] > options_.min_independence) {

@@ -40,7 +40,6 @@ struct DirectionClusterOptions {
 struct DirectionCluster {
   Vector3d direction = Vector3d::UnitZ();  ///< unit, on the side of the heaviest plane's normal
   double weight = 0.0;                     ///< sum of the planes' weights
-  double spread_rad = 0.0;                 ///< weighted root mean square angle to the direction
   std::vector<int> planes;                 ///< indices, heaviest first; the first is the seed
 };
 

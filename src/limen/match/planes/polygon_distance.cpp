@@ -19,8 +19,7 @@ struct NearPolygon {
 };
 
 bool may_agree(const PlanarPolygon& a, const PlanarPolygon& b, const AgreementOptions& options) {
-  if (angle_between(a.plane, b.plane) > options.max_angle_rad) return false;
-  return !(options.same_side && a.oriented && b.oriented) || a.plane.normal.dot(b.plane.normal) > 0.0;
+  return angle_between(a.plane, b.plane) <= options.max_angle_rad;
 }
 
 std::vector<NearPolygon> candidates(const PlanarPolygon& a, const std::vector<PlanarPolygon>& scan,
@@ -111,11 +110,6 @@ double agreement(const PlanarPolygon& a, const std::vector<PlanarPolygon>& scan,
     covered_m2 = now_m2;
   }
   return total;
-}
-
-double robust_error(const PlanarPolygon& a, const std::vector<PlanarPolygon>& scan,
-                    const AgreementOptions& options) {
-  return std::max(0.0, area(a.parts) - agreement(a, scan, options));  // (9)
 }
 
 double scan_agreement(const std::vector<PlanarPolygon>& a, const std::vector<PlanarPolygon>& b,

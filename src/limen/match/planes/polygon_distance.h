@@ -14,8 +14,8 @@
 // - the angle between planes is that of undirected normals, and normals are aligned in sign before the
 //   bisector plane is formed: as printed, opposed normals would give the other bisector;
 // - the overlap (8) is 0 where a polygon has no area;
-// - equation 9 is a cost and 10 a score, although both carry one name; here `agreement` is the score (10) and
-//   `robust_error` the cost (9) = |P1| - (10);
+// - equation 9 is a cost and 10 a score, although both carry one name; `agreement` is the score (10), and the
+//   cost (9) is |P1| - (10);
 // - where several polygons of the other scan cover one place, the place counts once, for the nearest of them:
 //   the printed sum can exceed |P1|;
 // - rdist is symmetrised, so that it does not matter which scan comes first.
@@ -50,7 +50,6 @@ double overlap_ratio(const PlanarPolygon& a, const PlanarPolygon& b);
 struct AgreementOptions {
   double max_distance_m = 0.1;           ///< d_thr of equations 9 and 10, > 0
   double max_angle_rad = radians(10.0);  ///< planes that differ by more do not agree at all, in (0, pi/2]
-  bool same_side = false;  ///< two oriented polygons agree only where both were seen from the same side
 
   void check() const;
 };
@@ -59,9 +58,6 @@ struct AgreementOptions {
 /// A score in m^2, between 0 and the area of `a`.
 double agreement(const PlanarPolygon& a, const std::vector<PlanarPolygon>& scan,
                  const AgreementOptions& options = {});
-/// Equation 9 in the approximation of 10: |a| - agreement. A cost in m^2.
-double robust_error(const PlanarPolygon& a, const std::vector<PlanarPolygon>& scan,
-                    const AgreementOptions& options = {});
 /// Mean over both directions of the summed agreement: the criterion that the best pose maximises, m^2.
 double scan_agreement(const std::vector<PlanarPolygon>& a, const std::vector<PlanarPolygon>& b,
                       const AgreementOptions& options = {});

@@ -249,7 +249,7 @@ class Voting {
       for (std::size_t n = 0; n < 27; ++n) {
         taken.insert(key(cell.at[0] + n % 3 - 1, cell.at[1] + n / 3 % 3 - 1, cell.at[2] + n / 9 - 1));
       }
-      shifts.push_back({shift_at(cell), cell.votes, 0});
+      shifts.push_back({shift_at(cell), 0});
     }
     return shifts;
   }
@@ -263,7 +263,7 @@ class Voting {
       shift[0] = middle_shift_[0];
       shift[1] += cell_m_ * static_cast<double>(peak.u);
       shift[2] += cell_m_ * static_cast<double>(peak.v);
-      shifts.push_back({basis_ * shift, peak.votes, 1});
+      shifts.push_back({basis_ * shift, 1});
       if (shifts.size() == options_.max_shifts) break;
     }
     return shifts;

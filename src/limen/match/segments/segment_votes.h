@@ -34,7 +34,6 @@ struct VoteOptions {
 /// A shift that pairs of parallel segments vote for.
 struct VotedShift {
   Vector3d translation = Vector3d::Zero();  ///< of target_from_source
-  double votes_m = 0.0;                     ///< length of the pairs that agree
   int free_translations = 0;                ///< components that no pair fixes
 };
 

@@ -24,10 +24,6 @@ Matrix3d frame_of(const Vector3d& u, const Vector3d& v) {
   return frame;
 }
 
-double vector_angle(const Vector3d& a, const Vector3d& b) {
-  return std::atan2(a.cross(b).norm(), a.dot(b));
-}
-
 }  // namespace
 
 Matrix3d rotation_from_main_directions(const MainDirections& source, const MainDirections& target) {
@@ -63,12 +59,6 @@ RotationFit rotation_from_directions(const std::vector<DirectionPair>& pairs, do
   const Vector3d diagonal(1.0, 1.0, sign);
   RotationFit fit;
   fit.rotation = svd.left * diagonal.asDiagonal() * svd.right.transpose();
-  double sum = 0.0;
-  for (const DirectionPair& pair : pairs) {
-    const double angle = vector_angle(fit.rotation * pair.source, pair.target);
-    sum += pair.weight * angle * angle;
-  }
-  fit.rms_rad = std::sqrt(sum / weight);
   // Two target directions at an angle s leave about s^2 / 4 in the second eigenvalue of their scatter.
   const Spectrum3 spread = spectrum_of(Matrix3d(scatter / weight));
   if (spread.values[1] < 0.25 * min_spread_rad * min_spread_rad) {

@@ -34,7 +34,6 @@ struct DirectionPair {
 
 struct RotationFit {
   Matrix3d rotation = Matrix3d::Identity();  ///< target_from_source, determinant +1
-  double rms_rad = 0.0;                      ///< weighted root mean square angle that is left
   /// Set where all directions are parallel (within `min_spread_rad`): the turn about it is not held.
   std::optional<Vector3d> free_axis;
 };

@@ -96,7 +96,6 @@ struct GraphQuestion {
   std::vector<int> current;  ///< links that support the present place only
   std::vector<int> rival;    ///< links that support the other place only
   Rigid3 frame_from_frame;   ///< how they would move; without meaning where `doubt` is set
-  double rival_nats = 0.0;   ///< by how much links support the other place
   double doubt = 0.0;        ///< no other place is known, but the links are wrong with this probability
 };
 

@@ -14,7 +14,6 @@ namespace limen {
 struct PoseSurface {
   double agreeing_m2 = 0.0;
   double contradicted_m2 = 0.0;  ///< is where the other saw free space
-  double value_m2 = 0.0;         ///< what poses are ranked by
 };
 
 /// Asks two nodes of a pose that neither proposed (`target_from_source`); of those that cannot be asked

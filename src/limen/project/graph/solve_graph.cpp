@@ -391,7 +391,6 @@ class Solver {
       if (largest->move) {
         question.rival = largest->move->moved;
         question.frame_from_frame = largest->move->frame_from_frame;
-        question.rival_nats = largest->move->moved_nats;
       } else {
         question.doubt = largest->odds / (1.0 + largest->odds);
       }

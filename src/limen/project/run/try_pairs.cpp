@@ -30,7 +30,7 @@ class ScanQuery {
     const PoseScore score =
         score_given_pose(*cache_->get(node(source).key), *cache_->get(node(target).key),
                          world_pose(source, target, target_from_source), options_->method, kPlacementM);
-    return {score.agreeing_m2, score.contradicted_m2, score.value()};
+    return {score.agreeing_m2, score.contradicted_m2};
   }
 
   [[nodiscard]] std::optional<LookAlikeEvidence> things(int source, int target,

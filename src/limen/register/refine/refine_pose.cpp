@@ -325,7 +325,6 @@ class Refiner {
     std::vector<Contact> others;
     for (const Contact& contact : found.all)
       (contact.source_plane >= 0 ? contacts : others).push_back(contact);
-    refined.matched_tiles = static_cast<int>(contacts.size());
     add_openings(others, refined);
     if (!contacts.empty()) add_planes(contacts, refined);
     move_centre(refined);

@@ -19,10 +19,9 @@ struct RefinedPose {
   Matrix6d geometry_m2 = Matrix6d::Zero();  ///< the same with m^2 of surface as weights
   Matrix6d formal_information = Matrix6d::Zero();  ///< as `information`, but every tile errs by itself
   double rms_m = 0.0;                              ///< weighted point-to-plane residual
-  int matched_tiles = 0;
-  std::vector<PlaneMatch> matches;     ///< pairs of planes with at least two matched tiles
-  std::vector<OpeningMatch> openings;  ///< pairs of openings, at the final pose
-  std::vector<PlaneMatch> moved;       ///< planes of a model that were probably not built where it has them
+  std::vector<PlaneMatch> matches;                 ///< pairs of planes with at least two matched tiles
+  std::vector<OpeningMatch> openings;              ///< pairs of openings, at the final pose
+  std::vector<PlaneMatch> moved;  ///< planes of a model that were probably not built where it has them
 };
 
 /// Covariance of (rotation, translation) about `pose.centre`, target axes, SI; a freedom that nothing holds
