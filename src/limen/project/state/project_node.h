@@ -26,7 +26,8 @@ struct ProjectNode {
   ScanDigest digest;
   bool grouped = false;                 ///< its file holds several scans that are known to one another
   std::optional<OwnDrift> drift;        ///< of a pass that can be bent
-  std::optional<SurveyedPoint> stated;  ///< where its scanner is said to have been, about
+  std::optional<SurveyedPoint> stated;  ///< where its scanner is said to have been, about ...
+  double reach_m = 0.0;                 ///< ... and how far its planes reach from there, no less
 
   /// By how much points of a mobile scan stray for its trajectory, one standard deviation per axis; metres.
   [[nodiscard]] double strays_m() const { return drift ? drift->strays_m : digest.drift_m; }

@@ -23,6 +23,12 @@ Vector3d place_in(const ScanDigest& digest) {
   return digest.stations.empty() ? digest.middle : digest.stations.front();
 }
 
+/// How far a scan's planes reach from its scanner, no less.
+double reach_of(const ScanDigest& digest) {
+  const Eigen::AlignedBox3d box = box_of_planes(digest, Rigid3{});
+  return box.isEmpty() ? 0.0 : 0.5 * box.diagonal().norm() + (box.center() - place_in(digest)).norm();
+}
+
 /// Variance of the difference of two stated positions, mean of its axes.
 double variance_between(const SurveyedPoint& a, const SurveyedPoint& b) {
   return (a.covariance + b.covariance).trace() / 3.0;
@@ -49,16 +55,14 @@ void take_stated_positions(const std::vector<SurveyedPoint>& positions, std::opt
     ProjectNode& known = nodes[static_cast<std::size_t>(node)];
     if (!known.digest.mobile && !known.digest.model) known.stated = position;
   }
+  for (ProjectNode& node : nodes)
+    if (node.stated) node.reach_m = reach_of(node.digest);
 }
 
 bool can_meet(const ProjectNode& a, const ProjectNode& b) {
   if (!a.stated || !b.stated) return true;
-  const auto reach = [](const ProjectNode& node) {
-    const Eigen::AlignedBox3d box = box_of_planes(node.digest, Rigid3{});
-    return box.isEmpty() ? 0.0 : 0.5 * box.diagonal().norm() + (box.center() - place_in(node.digest)).norm();
-  };
   const double sigma = std::sqrt(variance_between(*a.stated, *b.stated));
-  return (a.stated->x - b.stated->x).norm() < reach(a) + reach(b) + kMostSigmas * sigma;
+  return (a.stated->x - b.stated->x).norm() < a.reach_m + b.reach_m + kMostSigmas * sigma;
 }
 
 /// Notes scans without a place whose stated position is too far from all other stated ones: no pair of them

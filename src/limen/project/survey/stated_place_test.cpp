@@ -34,7 +34,10 @@ ProjectNode node_at(const Vector3d& x) {
     node.digest.planes.push_back(plane);
   }
   node.stated = SurveyedPoint{"", x, 0.25 * Matrix3d::Identity()};
-  return node;
+  std::vector<ProjectNode> nodes = {node};
+  std::vector<std::string> notes;
+  take_stated_positions({}, {}, {}, nodes, notes);
+  return nodes.front();
 }
 
 TEST(StatedPlace, WhatIsNotStatedSaysNothing) {
