@@ -75,6 +75,7 @@ class DaskEngine : public JobEngine {
     for (std::size_t k = 0; k < jobs.size(); ++k) {
       const Line line = {{"id", first_id_ + k}, {"name", jobs[k].name}, {"words", jobs[k].words}};
       // Where it hears nothing any more, its last words tell why.
+      monitor.throw_if_cancelled();
       if (!helper_.say(line.dump())) break;
     }
     for (std::size_t done = 0; done < jobs.size();) {

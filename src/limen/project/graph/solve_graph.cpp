@@ -122,8 +122,9 @@ class Solver {
     if (worst == nullptr) return false;
     for (std::size_t k = 0; k < graph_.links.size(); ++k) {
       const GraphLink& link = graph_.links[k];
-      if ((*worst)[static_cast<std::size_t>(link.source)] != (*worst)[static_cast<std::size_t>(link.target)])
-        give_up(k);
+      if (best_.joins(link) &&
+          (*worst)[static_cast<std::size_t>(link.source)] != (*worst)[static_cast<std::size_t>(link.target)])
+        give_up_place(k);
     }
     find_components(graph_, best_);
     join_parts(graph_, matcher_, best_);
@@ -145,9 +146,15 @@ class Solver {
     return true;
   }
 
-  void give_up(std::size_t link) {
-    if (best_.pose[link] < 0) return;
-    matcher_.leave_out(link, best_.pose[link]);
+  /// No pose of the link lays its nodes there again, or so near that it is no other place.
+  void give_up_place(std::size_t link) {
+    const std::vector<LinkPose>& poses = graph_.links[link].poses;
+    const Rigid3 place = best_.target_from_source(graph_.links[link]);
+    for (std::size_t p = 0; p < poses.size(); ++p) {
+      const Vector6d missed = misfit(poses[p], place);
+      const bool near = missed.head<3>().norm() <= kOtherPlaceRad && missed.tail<3>().norm() <= kOtherPlaceM;
+      if (near || best_.pose[link] == static_cast<int>(p)) matcher_.leave_out(link, static_cast<int>(p));
+    }
     best_.pose[link] = -1;
   }
 
