@@ -135,7 +135,13 @@ void AtomicFile::settle() {
 void AtomicFile::commit() {
   settle();
   require_inputs_whole();
+  // While it is held: nobody may take it for one that was left behind.
+  if (kRenamesHeldFiles) take_final_name();
   if (close(std::exchange(descriptor_, -1)) != 0) fail("cannot be written");
+  take_final_name();
+}
+
+void AtomicFile::take_final_name() {
   if (beside_.empty()) return;
   if (!rename_over(beside_, path_)) fail("cannot be renamed to its final name");
   beside_.clear();

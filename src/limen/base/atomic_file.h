@@ -41,6 +41,7 @@ class AtomicFile {
   [[noreturn]] void fail(const char* doing) const;
   void open_beside();
   void flush();
+  void take_final_name();
   void close_quietly() noexcept;
 
   std::filesystem::path path_;

@@ -16,7 +16,9 @@ class FolderLock {
   static constexpr const char* kFile = ".limen-lock";
 
   /// `taken`, `remedy`: the words of the error where another process has it. Throws Error, of the folder.
-  FolderLock(const std::filesystem::path& folder, const std::string& taken, const std::string& remedy);
+  /// `file`: of another lock of the folder.
+  FolderLock(const std::filesystem::path& folder, const std::string& taken, const std::string& remedy,
+             const char* file = kFile);
   ~FolderLock();
   FolderLock(const FolderLock&) = delete;
   FolderLock& operator=(const FolderLock&) = delete;

@@ -37,8 +37,8 @@ int opened(const std::filesystem::path& file) {
 }  // namespace
 
 FolderLock::FolderLock(const std::filesystem::path& folder, const std::string& taken,
-                       const std::string& remedy)
-    : file_(folder / kFile) {
+                       const std::string& remedy, const char* file)
+    : file_(folder / file) {
   for (;;) {
     descriptor_ = opened(file_);
     const bool locked = flock(descriptor_, LOCK_EX | LOCK_NB) == 0;

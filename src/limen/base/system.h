@@ -42,6 +42,12 @@ bool keep_from_children(int descriptor);
 bool hold(int descriptor);
 /// Removes a regular file of this user that nobody holds.
 void remove_unless_held(const std::filesystem::path& path);
+/// Whether a file that is open can be given another name.
+#ifdef _WIN32
+inline constexpr bool kRenamesHeldFiles = false;
+#else
+inline constexpr bool kRenamesHeldFiles = true;
+#endif
 /// Gives a file another name, also that of a file that is there.
 bool rename_over(const std::filesystem::path& from, const std::filesystem::path& to);
 /// A new folder of this user alone, whose name begins with `beginning`; empty where it fails.

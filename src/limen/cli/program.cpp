@@ -183,6 +183,13 @@ int run_action(const std::vector<std::string>& words, Session& session) {
     return fail_as(session, error.what(), status_of(error.fault()));
   } catch (const std::bad_alloc&) {
     return fail_as(session, "out of memory (give fewer points or a larger machine)", kExitInternal);
+  } catch (const std::system_error& error) {
+    if (error.code() == std::errc::resource_unavailable_try_again)
+      return fail_as(session, "the system allows no more threads (give --threads 1, or raise its limits)",
+                     kExitInternal);
+    return fail_as(session,
+                   fmt::format("{} (this is an internal error of limen: please report it)", error.what()),
+                   kExitInternal);
   } catch (const std::exception& error) {
     return fail_as(session,
                    fmt::format("{} (this is an internal error of limen: please report it)", error.what()),

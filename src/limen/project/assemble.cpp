@@ -367,6 +367,7 @@ class Assembler {
       const RegistrationResult& pair = pairs_[static_cast<std::size_t>(pair_of_[k])].result;
       stated.pair = pair.outcome;
       stated.reason = pair.reason;
+      note_change(stated);
       // They are those of the pair's own best pose; of another one nothing is known.
       if (stated.number == 0) {
         stated.matches = pair.matches;
@@ -378,6 +379,21 @@ class Assembler {
       stated.reason = link.by_targets ? "given by the targets that both see" : "given in the file";
     }
     result_.links.push_back(std::move(stated));
+  }
+
+  /// A pair that is sure of its pose, beside which the solution puts its scans, shows that something changed.
+  void note_change(const ProjectLink& link) {
+    const bool sure = link.pair == Outcome::registered || link.pair == Outcome::probable;
+    const SolvedLink& solved = link.solved;
+    if (!sure || solved.state != LinkState::rejected || solved.loop_error_m > kNoOtherPlaceM ||
+        solved.loop_error_rad > kOtherPlaceRad)
+      return;
+    result_.notes.push_back(
+        fmt::format("{} and {} alone fit {:.0f} mm and {:.2f} deg from where all scans together have them: "
+                    "something was moved or rebuilt between the scans, or one of them is bent",
+                    scan_name(result_.scans[static_cast<std::size_t>(link.source)]),
+                    scan_name(result_.scans[static_cast<std::size_t>(link.target)]),
+                    1e3 * solved.loop_error_m, degrees(solved.loop_error_rad)));
   }
 
   /// The distances of a pair's planes under the poses of the solution; none of passes that were bent.

@@ -44,7 +44,8 @@ class Run {
         store_(folder_ / "store", store_options(options), monitor),
         engine_(make_engine(options.engine, (folder_ / "store" / "dask.log").string(), monitor)),
         files_(list_files(inputs, monitor)),
-        decisions_(kept_decisions(folder_, inputs.decisions)) {}
+        decisions_(kept_decisions(folder_, inputs.decisions,
+                                  [this](const std::string& name) { return files_.full_name(name); })) {}
 
   ProjectResult run() {
     for (const std::string& text : files_.notes) note(text);

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
+#include <string>
 #include <vector>
 
 #include "limen/base/progress.h"
@@ -20,8 +22,10 @@ namespace limen {
 ProjectResult run_project(const ProjectInputs& inputs, const std::filesystem::path& folder,
                           const ProjectOptions& options = {}, Monitor& monitor = silent_monitor());
 
-/// Adds a decision to those that are kept in a project's folder, for the next run; returns them all. Throws
-/// Error where `folder` holds no project.
-std::vector<Decision> decide(const std::filesystem::path& folder, const Decision& decision);
+/// Adds a decision to those that are kept in a project's folder, for the next run; returns them all.
+/// `full_name`: how the project calls a scan that a decision names. Throws Error where `folder` holds no
+/// project.
+std::vector<Decision> decide(const std::filesystem::path& folder, const Decision& decision,
+                             const std::function<std::string(const std::string&)>& full_name = {});
 
 }  // namespace limen

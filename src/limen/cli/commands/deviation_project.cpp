@@ -353,6 +353,10 @@ int run_project_deviation(const ProjectDeviation& command, const Session& sessio
   inputs.push_back(command.project);
   for (const ProjectEntry& entry : entries) inputs.push_back(entry.file);
   refuse_to_replace(inputs, command.folder, command.issues.file);
+  std::error_code missing;
+  if (fs::equivalent(command.folder, fs::absolute(command.project).parent_path(), missing))
+    throw Error("is the folder of the project, whose report.html would be replaced", command.folder,
+                "give another folder");
   const OutputFolder folder(command.folder);
   Gathering all;
   all.report.project = command.project;

@@ -238,11 +238,15 @@ int tell_status(const std::string& folder, const Session& session) {
 
 /// Words: decide, the folder, and the decision.
 int take_decision(const std::vector<std::string>& words, const Session& session) {
-  const Decision decision = decision_from({words.begin() + 2, words.end()});
-  if (decision.kind != DecisionKind::forget) require_known(decision, words[1]);
-  const std::size_t before = kept_decisions(words[1], {}).size();
-  const std::vector<Decision> all = decide(words[1], decision);
+  Decision decision = decision_from({words.begin() + 2, words.end()});
   const bool forgets = decision.kind == DecisionKind::forget;
+  const auto full_name = full_names(words[1]);
+  if (!forgets)
+    decision = as_known(std::move(decision), words[1]);
+  else if (full_name)
+    for (std::string& name : decision.scans) name = full_name(name);
+  const std::size_t before = kept_decisions(words[1], {}).size();
+  const std::vector<Decision> all = decide(words[1], decision, full_name);
   const char* stated =
       !forgets               ? "{}: saved; decisions in all: {}; run the project again to apply and test it\n"
       : all.size() == before ? "{}: no such decision was saved; decisions in all: {}, unchanged\n"

@@ -136,6 +136,8 @@ int run(const TransformOptions& options, const Session& session) {
   refuse_same_file(options.output, options.cloud);
   refuse_same_file(options.output, options.result);
   const PoseFile pose = options.result == "identity" ? unmoved() : read_pose_file(options.result);
+  for (const std::string& registered : {pose.source_path, pose.target_path})
+    if (!registered.empty()) refuse_same_file(options.output, registered);
   const Rigid3 target_from_source = read_pose(options, pose, session);
   for (const std::string& other : options.merge) refuse_same_file(options.output, other);
   const CancelScope scope(*session.monitor);

@@ -66,23 +66,21 @@ void check_words(const ProjectMoveOptions& options) {
                 options.output, "add --merge to write one file, or give the name of a folder");
 }
 
-/// The scans with a place, by file; others are named.
+/// All scans, by file; those without a place are named.
 std::vector<Move> moves_of(const std::vector<ProjectEntry>& entries, const Session& session) {
   std::map<std::string, int> in_file;
   for (const ProjectEntry& entry : entries) ++in_file[entry.file];
   std::vector<Move> moves;
   for (const ProjectEntry& entry : entries) {
     if (entry.model) continue;
-    if (!entry.frame_from_scan) {
+    moves.push_back({entry, in_file[entry.file] > 1, {}});
+    if (!entry.frame_from_scan)
       session.note(fmt::format("{}: {}, not written", scan_name(entry), entry.state));
-      continue;
-    }
-    if (entry.state == "probable")
+    else if (entry.state == "probable")
       session.warn(fmt::format("{}: its pose is only probable; the probability that it is right is {}",
                                scan_name(entry), probability_words(1.0 - entry.doubt)));
     else if (entry.state != "registered")
       session.note(fmt::format("{}: its state is {}: check its pose", scan_name(entry), entry.state));
-    moves.push_back({entry, in_file[entry.file] > 1, {}});
   }
   return moves;
 }
@@ -134,11 +132,25 @@ void check_inputs(const std::vector<Move>& moves, const StatedTrajectories& traj
   for (const std::string& file : trajectories.files) require_readable(file, "restore the trajectory");
 }
 
-/// None of what is written replaces a scan of the project.
-void check_output(const fs::path& output, const std::vector<Move>& moves) {
+/// None of what is written replaces a scan or a model of the project, placed or not.
+void check_output(const fs::path& output, const std::vector<ProjectEntry>& entries) {
   std::error_code ignored;
   if (!fs::exists(output, ignored)) return;
-  for (const Move& move : moves) refuse_same_file(output.string(), move.entry.file);
+  for (const ProjectEntry& entry : entries) refuse_same_file(output.string(), entry.file);
+}
+
+/// Scans without a place are not written; of each that an earlier run wrote the cloud is still there.
+void leave_out_unplaced(std::vector<Move>& moves, const Session& session) {
+  std::error_code ignored;
+  for (const Move& move : moves) {
+    const bool left = !move.entry.frame_from_scan && !move.output.empty() &&
+                      fs::exists(move.output, ignored) &&
+                      !fs::equivalent(move.output, move.entry.file, ignored);
+    if (left)
+      session.warn(fmt::format("{}: is of an earlier run; its scan {} has no place now", move.output.string(),
+                               scan_name(move.entry)));
+  }
+  std::erase_if(moves, [](const Move& move) { return !move.entry.frame_from_scan; });
 }
 
 /// The poses of a project are in metres, and a cloud is moved, not scaled: the frame gets the unit of the
@@ -169,8 +181,6 @@ std::size_t write_each(std::vector<Move>& moves, const StatedTrajectories& traje
                        const ProjectMoveOptions& options, const CoordinateSystem& system,
                        const Session& session) {
   const OutputFolder folder(options.output);
-  name_outputs(moves, folder.path(), options.ending);
-  for (const Move& move : moves) check_output(move.output, moves);
   std::size_t points = 0;
   for (const Move& move : moves) {
     const Rigid3& pose = *move.entry.frame_from_scan;
@@ -191,14 +201,15 @@ std::size_t write_each(std::vector<Move>& moves, const StatedTrajectories& traje
   return points;
 }
 
-std::size_t write_merged(const std::vector<Move>& moves, const ProjectMoveOptions& options,
-                         const CoordinateSystem& system, const Session& session) {
+std::size_t write_merged(const std::vector<Move>& moves, const std::vector<ProjectEntry>& entries,
+                         const ProjectMoveOptions& options, const CoordinateSystem& system,
+                         const Session& session) {
   fs::path output(options.output);
   if (!options.ending.empty()) {
     const std::string ending = ending_of_format(options.ending, output);
     if (!output.string().ends_with(ending)) output += ending;
   }
-  check_output(output, moves);
+  check_output(output, entries);
   std::vector<StationToMove> stations;
   for (const Move& move : moves) {
     stations.push_back({move.entry.file, static_cast<std::size_t>(move.entry.index),
@@ -214,6 +225,9 @@ int run(const ProjectMoveOptions& options, const Session& session) {
   const std::vector<ProjectEntry> entries = read_project(options.project);
   check_words(options);
   std::vector<Move> moves = moves_of(entries, session);
+  if (!options.merge) name_outputs(moves, options.output, options.ending);
+  leave_out_unplaced(moves, session);
+  for (const Move& move : moves) check_output(move.output, entries);
   const CoordinateSystem stated = read_project_system(options.project);
   const CoordinateSystem chosen = chosen_system(options.crs);
   if (!same_system(stated, chosen))
@@ -228,7 +242,7 @@ int run(const ProjectMoveOptions& options, const Session& session) {
       options.merge ? StatedTrajectories() : read_project_trajectories(options.project);
   check_inputs(moves, trajectories, options, session);
   to_unit_of_files(moves, options, session);
-  const std::size_t points = options.merge ? write_merged(moves, options, system, session)
+  const std::size_t points = options.merge ? write_merged(moves, entries, options, system, session)
                                            : write_each(moves, trajectories, options, system, session);
   const Json json = {
       {"input", options.project}, {"output", options.output}, {"scans", moves.size()}, {"points", points}};

@@ -347,6 +347,10 @@ std::string title_of(const ViewCommand& command, const ViewScene& scene) {
 
 int run(const ViewCommand& command, const Session& session) {
   for (const std::string& file : command.files) refuse_same_file(command.output, file);
+  for (const std::string& file : command.files) {
+    if (!is_project(file)) continue;
+    for (const ProjectEntry& entry : read_project(file)) refuse_same_file(command.output, entry.file);
+  }
   std::vector<ViewInput> inputs = view_inputs(command.files, command.alternative, session);
   if (const std::optional<double> unit = metres_per_unit_of(command.units)) {
     for (ViewInput& input : inputs) input.metres_per_unit = unit;

@@ -56,6 +56,11 @@ class KnownScans {
         folder_.string(), "choose one of those in project.json: " + stated);
   }
 
+  [[nodiscard]] std::string full_name(const std::string& name) const {
+    const std::vector<std::size_t> found = among(name, false);
+    return found.size() == 1 ? scan_name(scans_[found.front()]) : name;
+  }
+
  private:
   [[nodiscard]] std::vector<std::size_t> places_of(bool copies) const {
     std::vector<std::size_t> places;
@@ -93,9 +98,9 @@ class KnownScans {
 
 }  // namespace
 
-void require_known(const Decision& decision, const std::filesystem::path& folder) {
+Decision as_known(Decision decision, const std::filesystem::path& folder) {
   std::error_code ignored;
-  if (!std::filesystem::exists(folder / "project.json", ignored)) return;
+  if (!std::filesystem::exists(folder / "project.json", ignored)) return decision;
   const KnownScans known(folder);
   std::set<std::size_t> scans;
   for (const std::string& name : decision.scans) scans.insert(known.called(name));
@@ -103,6 +108,14 @@ void require_known(const Decision& decision, const std::filesystem::path& folder
     throw Error(fmt::format("{} and {} are the same scan", decision.scans[0], decision.scans[1]),
                 folder.string(), "name two different scans");
   if (decision.kind == DecisionKind::choose) known.require_pose(decision);
+  for (std::string& name : decision.scans) name = known.full_name(name);
+  return in_order(std::move(decision));
+}
+
+std::function<std::string(const std::string&)> full_names(const std::filesystem::path& folder) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(folder / "project.json", ignored)) return {};
+  return [known = KnownScans(folder)](const std::string& name) { return known.full_name(name); };
 }
 
 }  // namespace limen

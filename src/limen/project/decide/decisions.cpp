@@ -43,28 +43,12 @@ bool counts_fit(const Decision& decision) {
   return scans == 2 && decision.scans[0] != decision.scans[1];
 }
 
-/// Of a pair it does not matter who is named first.
-Decision in_order(Decision decision) {
-  if (std::is_sorted(decision.scans.begin(), decision.scans.end())) return decision;
-  std::reverse(decision.scans.begin(), decision.scans.end());
-  for (ShownPoint& point : decision.points) std::rotate(point.begin(), point.begin() + 3, point.end());
-  return decision;
-}
-
 bool is_of_link(DecisionKind kind) {
   return kind == DecisionKind::accept || kind == DecisionKind::reject || kind == DecisionKind::choose;
 }
 
-/// Whether two names are meant for one scan: the file's name alone, or with its folders.
-bool same_scan(const std::string& a, const std::string& b) {
-  const std::filesystem::path one(a);
-  const std::filesystem::path other(b);
-  const bool bare = !one.has_parent_path() || !other.has_parent_path();
-  return a == b || (bare && one.filename() == other.filename());
-}
-
 bool same_scans(const std::vector<std::string>& a, const std::vector<std::string>& b) {
-  return a.size() == b.size() && std::is_permutation(a.begin(), a.end(), b.begin(), same_scan);
+  return a.size() == b.size() && std::is_permutation(a.begin(), a.end(), b.begin());
 }
 
 bool replaces(const Decision& later, const Decision& earlier) {
@@ -186,6 +170,13 @@ std::string decisions_text(const std::vector<Decision>& decisions) {
     text += (k == 0 ? "\n  " : ",\n  ") + json.dump();
   }
   return text + "\n]}\n";
+}
+
+Decision in_order(Decision decision) {
+  if (std::is_sorted(decision.scans.begin(), decision.scans.end())) return decision;
+  std::reverse(decision.scans.begin(), decision.scans.end());
+  for (ShownPoint& point : decision.points) std::rotate(point.begin(), point.begin() + 3, point.end());
+  return decision;
 }
 
 std::vector<Decision> merged(std::vector<Decision> decisions, const std::vector<Decision>& later) {

@@ -45,6 +45,9 @@ Decision decision_from(const std::vector<std::string>& words);
 std::vector<Decision> read_decisions(const std::filesystem::path& path);
 std::string decisions_text(const std::vector<Decision>& decisions);
 
+/// The same with its scans in order of their names: of a pair it does not matter who is named first.
+Decision in_order(Decision decision);
+
 /// The later word counts, but a start stays where a pose of its link is accepted or chosen: what was said of
 /// the link of the same two scans, or of the same scan's level or the same two floors, is replaced; `forget`
 /// takes back all that was said of just these scans. Sorted.

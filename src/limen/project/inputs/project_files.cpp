@@ -79,6 +79,19 @@ void mark_copies(ProjectFiles& list) {
 
 }  // namespace
 
+std::string ProjectFiles::full_name(const std::string& name) const {
+  const ScanInFile meant = split_scan_name(name);
+  std::set<std::string> found;
+  for (const ProjectFile& file : files) {
+    if (file.path == name) return name;
+    const std::string whole = split_scan_name(file.path).file;
+    if (whole == meant.file || std::filesystem::path(whole).filename() == meant.file) found.insert(whole);
+  }
+  if (found.count(meant.file) == 0 && found.size() != 1) return name;
+  const std::string& file = found.count(meant.file) > 0 ? meant.file : *found.begin();
+  return meant.index ? fmt::format("{} #{}", file, *meant.index) : file;
+}
+
 bool lists_files(const std::string& path) {
   constexpr std::streamsize kLongest = 4096;
   if (!why_unreadable(path).empty()) return false;

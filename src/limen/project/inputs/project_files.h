@@ -27,6 +27,10 @@ struct ProjectFile {
 struct ProjectFiles {
   std::vector<ProjectFile> files;  ///< by name, each path once
   std::vector<std::string> notes;
+
+  /// The name of a scan by the file as it was given, where the name means one of the files alone; else
+  /// itself.
+  [[nodiscard]] std::string full_name(const std::string& name) const;
 };
 
 /// The files in an order that does not depend on how they were given, with their hashes. Scans that turn out

@@ -3,8 +3,13 @@
 #include "limen/project/state/words.h"
 
 #include <algorithm>
+#include <chrono>
+#include <memory>
+#include <thread>
 
 #include "limen/base/atomic_file.h"
+#include "limen/base/error.h"
+#include "limen/base/folder_lock.h"
 #include "limen/project/state/project_status.h"
 #include "limen/project/state/scan_names.h"
 
@@ -19,6 +24,30 @@ std::vector<Decision> said_before(const std::filesystem::path& folder) {
   std::error_code ignored;
   if (!std::filesystem::exists(kept_in(folder), ignored)) return {};
   return read_decisions(kept_in(folder));
+}
+
+std::vector<Decision> with_full_names(std::vector<Decision> decisions,
+                                      const std::function<std::string(const std::string&)>& full_name) {
+  if (!full_name) return decisions;
+  for (Decision& decision : decisions) {
+    for (std::string& name : decision.scans) name = full_name(name);
+    decision = in_order(std::move(decision));
+  }
+  return decisions;
+}
+
+/// Answers given at the same time are written one after another.
+std::unique_ptr<FolderLock> lock_of_decisions(const std::filesystem::path& folder) {
+  constexpr int kTries = 200;
+  for (int k = 1;; ++k) {
+    try {
+      return std::make_unique<FolderLock>(folder, "another limen is saving decisions in this folder",
+                                          "try again", ".limen-decisions-lock");
+    } catch (const Error&) {
+      if (k == kTries) throw;
+      std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    }
+  }
 }
 
 /// `turned`: the first scan is the target.
@@ -55,17 +84,20 @@ UserWords words_by_nodes(const std::vector<Decision>& decisions, const std::vect
   return words;
 }
 
-std::vector<Decision> kept_decisions(const std::filesystem::path& folder, const std::string& file) {
-  std::vector<Decision> decisions = said_before(folder);
+std::vector<Decision> kept_decisions(const std::filesystem::path& folder, const std::string& file,
+                                     const std::function<std::string(const std::string&)>& full_name) {
+  std::vector<Decision> decisions = with_full_names(said_before(folder), full_name);
   if (file.empty()) return decisions;
-  decisions = merged(std::move(decisions), read_decisions(file));
+  decisions = merged(std::move(decisions), with_full_names(read_decisions(file), full_name));
   write_file(kept_in(folder), decisions_text(decisions));
   return decisions;
 }
 
-std::vector<Decision> decide(const std::filesystem::path& folder, const Decision& decision) {
+std::vector<Decision> decide(const std::filesystem::path& folder, const Decision& decision,
+                             const std::function<std::string(const std::string&)>& full_name) {
   static_cast<void>(project_status(folder));  // only a project's folder is written to
-  std::vector<Decision> decisions = merged(said_before(folder), {decision});
+  const auto lock = lock_of_decisions(folder);
+  std::vector<Decision> decisions = merged(with_full_names(said_before(folder), full_name), {decision});
   write_file(kept_in(folder), decisions_text(decisions));
   return decisions;
 }

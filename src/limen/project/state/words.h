@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <set>
 #include <string>
@@ -34,7 +35,9 @@ UserWords words_by_nodes(const std::vector<Decision>& decisions, const std::vect
                          const std::vector<ProjectScan>& scans);
 
 /// What the user said in earlier runs, and in `file` (empty: nothing), kept in the project's folder for the
-/// next run. Throws Error where a file of decisions is no good.
-std::vector<Decision> kept_decisions(const std::filesystem::path& folder, const std::string& file);
+/// next run. `full_name`: how the project calls a scan that a decision names. Throws Error where a file of
+/// decisions is no good.
+std::vector<Decision> kept_decisions(const std::filesystem::path& folder, const std::string& file,
+                                     const std::function<std::string(const std::string&)>& full_name = {});
 
 }  // namespace limen
