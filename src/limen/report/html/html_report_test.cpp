@@ -399,7 +399,7 @@ TEST(ReportWords, HeadlineHoldsAtTheFarEnd) {
   EXPECT_EQ(sentences[0], "This is the right place with a probability of 99.87 %.");
   EXPECT_EQ(
       sentences[1],
-      "Accuracy of room.ply (95 %): 0.6 mm at the centre, 0.9 mm at the far end, 30 m from the centre.");
+      "Accuracy of room.ply (95 %): 1.2 mm at the centre, 1.8 mm at the far end, 30 m from the centre.");
   EXPECT_EQ(sentences[2],
             "Residuals: 2.0 mm of the points, 0.8 mm between matched planes (root mean square).");
 }

@@ -11,10 +11,15 @@ namespace {
 constexpr double kNormal95 = 1.6448536269514722;  // one-sided
 constexpr double kLargeM = 1e5;                   // single precision keeps less than 8 mm there
 
-/// Quantile 0.95 of chi-square, for any number of freedoms of 1 or more (Wilson and Hilferty 1931).
-double chi_square_95(double freedoms) {
-  const double part = 2.0 / (9.0 * freedoms);
-  return freedoms * std::pow(1.0 - part + kNormal95 * std::sqrt(part), 3);
+/// Quantile 0.95 of `freedoms` times an F distribution's variable, of chi-square where `known_by` is large
+/// (Paulson 1942, Wilson and Hilferty 1931).
+double quantile_95(double freedoms, double known_by) {
+  const double a = 2.0 / (9.0 * freedoms);
+  const double b = 2.0 / (9.0 * known_by);
+  const double z2 = kNormal95 * kNormal95;
+  const double root = std::sqrt(a * (1.0 - b) * (1.0 - b) + b * (1.0 - a) * (1.0 - a) - a * b * z2);
+  return freedoms *
+         std::pow(((1.0 - a) * (1.0 - b) + kNormal95 * root) / ((1.0 - b) * (1.0 - b) - z2 * b), 3);
 }
 
 /// Covariance of the displacement of a point `lever` away from the centre of `covariance`.
@@ -32,12 +37,12 @@ Matrix3d displacement_covariance(const Matrix6d& covariance, const Vector3d& lev
   return moved;
 }
 
-PlacePrecision precision_at(const Vector3d& at, const PoseSigma& sigma,
+PlacePrecision precision_at(const Vector3d& at, const PoseSigma& sigma, double known_by,
                             const std::vector<UnobservedFreedom>& open) {
   const Vector3d lever = at - sigma.centre;
   PlacePrecision place;
   place.at = at;
-  place.radius_m = radius_95(displacement_covariance(sigma.covariance, lever, open));
+  place.radius_m = radius_95(displacement_covariance(sigma.covariance, lever, open), known_by);
   if (!sigma.formal_covariance.isZero(0.0))
     place.formal_radius_m = radius_95(displacement_covariance(sigma.formal_covariance, lever, open));
   return place;
@@ -68,12 +73,23 @@ StatedPlaces stated_places(const RegistrationReport& report, const Rigid3& targe
 
 }  // namespace
 
-double radius_95(const Matrix3d& covariance) {
+double radius_95(const Matrix3d& covariance, double known_by) {
   const double mean = covariance.trace();
   if (!(mean > 0)) return 0.0;
   const double square = (covariance * covariance).trace();
   const double freedoms = std::clamp(mean * mean / square, 1.0, 3.0);
-  return std::sqrt(mean / freedoms * chi_square_95(freedoms));
+  return std::sqrt(mean / freedoms * quantile_95(freedoms, known_by));
+}
+
+double freedoms_of(const std::vector<PlaneMatch>& matches) {
+  constexpr double kFewest = 3.0;
+  double sum = 0.0;
+  double squares = 0.0;
+  for (const PlaneMatch& match : matches) {
+    sum += match.overlap_m2;
+    squares += match.overlap_m2 * match.overlap_m2;
+  }
+  return squares > 0.0 ? std::max(kFewest, sum * sum / squares - 3.0) : 1e9;
 }
 
 std::optional<PosePrecision> precision_of(const RegistrationReport& report, const Hypothesis& pose) {
@@ -84,10 +100,11 @@ std::optional<PosePrecision> precision_of(const RegistrationReport& report, cons
   if (std::any_of(open.begin(), open.end(), [](const auto& freedom) { return freedom.rotation; }))
     return std::nullopt;
   const StatedPlaces places = stated_places(report, pose.target_from_source);
+  const double known_by = freedoms_of(result.matches);
   PosePrecision precision;
-  precision.middle = precision_at(places.middle, pose.sigma, open);
+  precision.middle = precision_at(places.middle, pose.sigma, known_by, open);
   for (const Vector3d& corner : places.corners) {
-    const PlacePrecision there = precision_at(corner, pose.sigma, open);
+    const PlacePrecision there = precision_at(corner, pose.sigma, known_by, open);
     if (there.radius_m > precision.far_end.radius_m) precision.far_end = there;
   }
   precision.far_distance_m = (precision.far_end.at - precision.middle.at).norm();

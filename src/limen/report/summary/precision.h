@@ -14,8 +14,14 @@ inline constexpr double kStatedConfidence = 0.95;
 
 /// Radius of the ball that holds a Gaussian displacement of covariance `covariance` (m^2) in 95 % of cases:
 /// its square is taken as gamma-distributed with the right mean and variance (Welch 1947, Satterthwaite
-/// 1946), and that quantile by Wilson and Hilferty (1931). Within 2 % of the true radius.
-double radius_95(const Matrix3d& covariance);
+/// 1946), and that quantile by Wilson and Hilferty (1931). Within 2 % of the true radius. `known_by`:
+/// freedoms that the scale of the covariance was estimated with; then the ball is that of Student's
+/// distribution (quantile of F by Paulson 1942).
+double radius_95(const Matrix3d& covariance, double known_by = 1e9);
+
+/// Freedoms with which a pose's covariance is known by how far its planes disagree: as many planes as their
+/// overlaps make, less the three that a shift takes; at least 3.
+double freedoms_of(const std::vector<PlaneMatch>& matches);
 
 /// How well a place of the source is known in the target.
 struct PlacePrecision {

@@ -57,6 +57,28 @@ TEST(Precision, RadiusHoldsNinetyFivePercentOfAnyGaussian) {
   EXPECT_EQ(radius_95(Matrix3d::Zero()), 0.0);
 }
 
+/// Where the covariance is the true one times a scale that was estimated with few freedoms.
+TEST(Precision, RadiusHoldsNinetyFivePercentWhereTheScaleIsKnownByFewFreedoms) {
+  RandomStream random(11);
+  for (const int known_by : {3, 5, 10}) {
+    for (const Vector3d& sigma : {Vector3d(1, 1, 1), Vector3d(1, 0.5, 0.1)}) {
+      constexpr int kTrials = 20000;
+      int within = 0;
+      for (int k = 0; k < kTrials; ++k) {
+        double squares = 0.0;
+        for (int j = 0; j < known_by; ++j) squares += std::pow(random.normal(), 2) / known_by;
+        const Matrix3d estimated = squares * Matrix3d(sigma.cwiseAbs2().asDiagonal());
+        const Vector3d off = sigma.cwiseProduct(normal_vector(random));
+        within += off.norm() <= radius_95(estimated, known_by) ? 1 : 0;
+      }
+      EXPECT_NEAR(static_cast<double>(within) / kTrials, 0.95, 0.012)
+          << known_by << ", " << sigma.transpose();
+    }
+  }
+  EXPECT_EQ(freedoms_of(std::vector<PlaneMatch>(9, {0, 0, 0.0, 0.0, 2.0})), 6.0);
+  EXPECT_EQ(freedoms_of(std::vector<PlaneMatch>(4, {0, 0, 0.0, 0.0, 2.0})), 3.0);
+}
+
 TEST(Precision, FarEndIsWhereTurnsMoveMost) {
   const RegistrationReport report = room_report();
   const auto precision = precision_of(report, report.result.best);
