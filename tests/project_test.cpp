@@ -430,6 +430,27 @@ TEST_F(Project, NoInputIsReplaced) {
   EXPECT_EQ(read_whole(work() / "stations.csv"), survey);
 }
 
+TEST_F(Project, AScanWithoutAPlaceIsNotReplacedEither) {
+  std::vector<std::string> scans = simulate();
+  std::string stray;
+  for (int k = 0; k < 400; ++k)
+    stray += std::to_string(0.1 * (k % 20)) + " " + std::to_string(0.1 * (k / 20)) + " 5\n";
+  write_whole(work() / "stray.xyz", stray);
+  scans.emplace_back("stray.xyz");
+  EXPECT_EQ(run(call(scans, "out")).status, 3);
+  for (const std::vector<std::string>& words :
+       {std::vector<std::string>{"transform", "out/project.json", "--merge", "-o", "stray.xyz"},
+        {"view", "out/project.json", "-o", "stray.xyz"}}) {
+    const ProgramRun refused = run(words);
+    EXPECT_EQ(refused.status, 2) << words[0];
+    EXPECT_NE(refused.err.find("would overwrite the input"), std::string::npos) << refused.err;
+    EXPECT_EQ(read_whole(work() / "stray.xyz"), stray) << words[0];
+  }
+  const ProgramRun own = run({"deviation", "out/project.json", "-o", "out"});
+  EXPECT_EQ(own.status, 2);
+  EXPECT_NE(own.err.find("is the folder of the project"), std::string::npos) << own.err;
+}
+
 TEST_F(Project, OptionsBeforeTheScansTakeNoScan) {
   const std::vector<std::string> scans = simulate();
   EXPECT_EQ(run({"simulate", "office", "--points-indoor", "2000", "-o", "office", "--quiet"}).status, 0);

@@ -43,6 +43,10 @@ TEST(Decisions, TheLaterWordCountsAndForgetTakesBack) {
             (Words{"level a", "reject a b", "same-floor a b"}));
   EXPECT_EQ(say({{"same-floor", "a", "b"}, {"reject", "b", "a"}, {"level", "a"}, {"forget", "b", "a"}}),
             Words{"level a"});
+  // Files of one name in two folders are two scans.
+  EXPECT_EQ(
+      say({{"accept", "1.ply", "2.ply"}, {"accept", "e/1.ply", "e/2.ply"}, {"forget", "e/1.ply", "e/2.ply"}}),
+      Words{"accept 1.ply 2.ply"});
 }
 
 TEST(Decisions, AStartIsOfItsScansInEitherOrderAndOutlastsTheAnswerAboutItsLink) {

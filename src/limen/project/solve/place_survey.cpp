@@ -69,9 +69,7 @@ class OtherReadings {
     Matrix3d swap;
     swap << 0.0, 1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0;
     add(survey, swap, swap,
-        "agree with the scans only in a mirror, as if x and y are exchanged: check the order of the columns "
-        "and "
-        "their signs");
+        "agree with the scans only in a mirror, as if x and y are exchanged: check columns and signs");
     for (const LengthUnit& unit : length_units()) {
       const Matrix3d scale = unit.metres_per_unit * Matrix3d::Identity();
       if (unit.metres_per_unit == 1.0) continue;

@@ -39,12 +39,12 @@ std::vector<Decision> with_full_names(std::vector<Decision> decisions,
 /// Answers given at the same time are written one after another.
 std::unique_ptr<FolderLock> lock_of_decisions(const std::filesystem::path& folder) {
   constexpr int kTries = 200;
+  const std::string taken = "another limen is saving decisions in this folder";
   for (int k = 1;; ++k) {
     try {
-      return std::make_unique<FolderLock>(folder, "another limen is saving decisions in this folder",
-                                          "try again", ".limen-decisions-lock");
-    } catch (const Error&) {
-      if (k == kTries) throw;
+      return std::make_unique<FolderLock>(folder, taken, "try again", ".limen-decisions-lock");
+    } catch (const Error& error) {
+      if (error.problem() != taken || k == kTries) throw;
       std::this_thread::sleep_for(std::chrono::milliseconds(50));
     }
   }
