@@ -167,6 +167,10 @@ int fail_as(const Session& session, const std::string& message, int status) {
 }
 
 /// Runs what the command line asked for; every exception becomes one line and a status.
+std::string internal_words(const std::exception& error) {
+  return fmt::format("{} (this is an internal error of limen: please report it)", error.what());
+}
+
 int run_action(const std::vector<std::string>& words, Session& session) {
   constexpr int kReaderGone = 128 + 13;  // as SIGPIPE would end it
   try {
@@ -184,16 +188,13 @@ int run_action(const std::vector<std::string>& words, Session& session) {
   } catch (const std::bad_alloc&) {
     return fail_as(session, "out of memory (give fewer points or a larger machine)", kExitInternal);
   } catch (const std::system_error& error) {
-    if (error.code() == std::errc::resource_unavailable_try_again)
-      return fail_as(session, "the system allows no more threads (give --threads 1, or raise its limits)",
-                     kExitInternal);
+    const bool threads = error.code() == std::errc::resource_unavailable_try_again;
     return fail_as(session,
-                   fmt::format("{} (this is an internal error of limen: please report it)", error.what()),
+                   threads ? "the system allows no more threads (give --threads 1, or raise its limits)"
+                           : internal_words(error),
                    kExitInternal);
   } catch (const std::exception& error) {
-    return fail_as(session,
-                   fmt::format("{} (this is an internal error of limen: please report it)", error.what()),
-                   kExitInternal);
+    return fail_as(session, internal_words(error), kExitInternal);
   }
 }
 

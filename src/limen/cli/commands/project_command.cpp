@@ -238,15 +238,10 @@ int tell_status(const std::string& folder, const Session& session) {
 
 /// Words: decide, the folder, and the decision.
 int take_decision(const std::vector<std::string>& words, const Session& session) {
-  Decision decision = decision_from({words.begin() + 2, words.end()});
+  const Decision decision = as_known(decision_from({words.begin() + 2, words.end()}), words[1]);
   const bool forgets = decision.kind == DecisionKind::forget;
-  const auto full_name = full_names(words[1]);
-  if (!forgets)
-    decision = as_known(std::move(decision), words[1]);
-  else if (full_name)
-    for (std::string& name : decision.scans) name = full_name(name);
   const std::size_t before = kept_decisions(words[1], {}).size();
-  const std::vector<Decision> all = decide(words[1], decision, full_name);
+  const std::vector<Decision> all = decide(words[1], decision, full_names(words[1]));
   const char* stated =
       !forgets               ? "{}: saved; decisions in all: {}; run the project again to apply and test it\n"
       : all.size() == before ? "{}: no such decision was saved; decisions in all: {}, unchanged\n"

@@ -40,6 +40,15 @@ class KnownScans {
                 "name the original: " + original_of(copy));
   }
 
+  void require(const Decision& decision) const {
+    std::set<std::size_t> scans;
+    for (const std::string& name : decision.scans) scans.insert(called(name));
+    if (scans.size() < decision.scans.size())
+      throw Error(fmt::format("{} and {} are the same scan", decision.scans[0], decision.scans[1]),
+                  folder_.string(), "name two different scans");
+    if (decision.kind == DecisionKind::choose) require_pose(decision);
+  }
+
   void require_pose(const Decision& choice) const {
     const std::size_t a = called(choice.scans[0]);
     const std::size_t b = called(choice.scans[1]);
@@ -102,12 +111,7 @@ Decision as_known(Decision decision, const std::filesystem::path& folder) {
   std::error_code ignored;
   if (!std::filesystem::exists(folder / "project.json", ignored)) return decision;
   const KnownScans known(folder);
-  std::set<std::size_t> scans;
-  for (const std::string& name : decision.scans) scans.insert(known.called(name));
-  if (scans.size() < decision.scans.size())
-    throw Error(fmt::format("{} and {} are the same scan", decision.scans[0], decision.scans[1]),
-                folder.string(), "name two different scans");
-  if (decision.kind == DecisionKind::choose) known.require_pose(decision);
+  if (decision.kind != DecisionKind::forget) known.require(decision);
   for (std::string& name : decision.scans) name = known.full_name(name);
   return in_order(std::move(decision));
 }

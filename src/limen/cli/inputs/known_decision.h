@@ -12,7 +12,7 @@ namespace limen {
 
 /// The decision with its scans called as in project.json. What it names must be there, or it would never be
 /// heeded: its scans, none of them a copy of another, and the pose. Throws Error that tells what there is; a
-/// project that was not finished tells nothing, and any decision is taken.
+/// project that was not finished tells nothing, and any decision is taken. What is gone can be forgotten.
 Decision as_known(Decision decision, const std::filesystem::path& folder);
 
 /// How project.json calls the scan that a name means; the name itself where it means none, or several.

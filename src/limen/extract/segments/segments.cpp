@@ -219,6 +219,7 @@ void SegmentOptions::check() const {
   if (!(min_angle_deg > 0.0 && min_angle_deg <= 90.0))
     throw_bad_option("min_angle_deg", min_angle_deg, "greater than 0, at most 90");
   if (min_plane_points < 0) throw_bad_option("min_plane_points", min_plane_points, "0 or more");
+  // One line of a building has no longer gap, and every line is extended by it.
   if (!(join_gap_m >= 0.0 && join_gap_m <= 100.0))
     throw_bad_option("join_gap_m", join_gap_m, "from 0 to 100");
   if (!(max_border_sigma_m > 0.0))

@@ -82,7 +82,7 @@ double radius_95(const Matrix3d& covariance, double known_by) {
 }
 
 double freedoms_of(const std::vector<PlaneMatch>& matches) {
-  constexpr double kFewest = 3.0;
+  constexpr double kFewest = 3.0;  // Paulson's approximation holds from there
   double sum = 0.0;
   double squares = 0.0;
   for (const PlaneMatch& match : matches) {
